@@ -1,0 +1,61 @@
+# The three verbs of the build: dmise_library, dmise_program, dmise_test.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g")
+
+set(DMISE_SANITIZE "" CACHE STRING "sanitizers to build with, as for -fsanitize=")
+option(DMISE_FUZZ "build the libFuzzer targets (clang)" OFF)
+option(DMISE_WERROR "treat warnings as errors" ON)
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+# No contracted multiply-adds and no fast-math: products must not depend on what a compiler fuses.
+add_compile_options(-ffp-contract=off -Wall -Wextra -Wno-missing-field-initializers)
+if(DMISE_WERROR)
+  add_compile_options(-Werror)
+endif()
+if(DMISE_SANITIZE)
+  add_compile_options(-fsanitize=${DMISE_SANITIZE} -fno-omit-frame-pointer -g)
+  add_link_options(-fsanitize=${DMISE_SANITIZE})
+endif()
+if(DMISE_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
+include_directories(${CMAKE_SOURCE_DIR})
+
+# dmise_library(NAME SOURCES a.cpp ... [DEPENDS lib ...]): an interface library when it has no source.
+function(dmise_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  if(ARG_SOURCES)
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(${name} PUBLIC ${ARG_DEPENDS})
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE ${ARG_DEPENDS})
+  endif()
+endfunction()
+
+# dmise_program(NAME SOURCES main.cpp ... [DEPENDS lib ...])
+function(dmise_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS})
+endfunction()
+
+# dmise_test(NAME SOURCES test_a.cpp ... [DEPENDS lib ...]): a GoogleTest program, each TEST a ctest.
+function(dmise_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE
+    DMISE_SOURCE_DIR="${CMAKE_SOURCE_DIR}" DMISE_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
+endfunction()

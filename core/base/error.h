@@ -1,0 +1,19 @@
+#pragma once
+#include <stdexcept>
+#include <string>
+
+namespace dmise {
+
+/// Anything that a caller can report in one line. Programs exit 1 on it.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The input is at fault: `file:line:column: key: reason, got value`. Programs exit 2 on it.
+class ConfigError : public Error {
+ public:
+  using Error::Error;
+};
+
+}  // namespace dmise

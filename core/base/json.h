@@ -1,0 +1,46 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace dmise {
+
+/// Writes one JSON value, keys in the order they are given. Doubles are the shortest text that reads
+/// back to the same bits, so equal values are equal bytes; NaN and infinities throw `Error` with the
+/// key: no NaN leaves the program.
+class JsonWriter {
+ public:
+  JsonWriter& begin_object();
+  JsonWriter& end_object();
+  JsonWriter& begin_array();
+  JsonWriter& end_array();
+  JsonWriter& key(std::string_view name);
+  JsonWriter& value(double number);
+  JsonWriter& value(std::int64_t number);
+  JsonWriter& value(std::uint64_t number);
+  JsonWriter& value(int number) { return value(std::int64_t(number)); }
+  JsonWriter& value(unsigned number) { return value(std::uint64_t(number)); }
+  JsonWriter& value(bool flag);
+  JsonWriter& value(std::string_view text);
+  JsonWriter& value(const char* text) { return value(std::string_view(text)); }
+  JsonWriter& null();
+  /// `text` is JSON already.
+  JsonWriter& raw(std::string_view text);
+
+  template <class T>
+  JsonWriter& field(std::string_view name, const T& v) {
+    key(name);
+    return value(v);
+  }
+
+  const std::string& text() const { return text_; }
+  std::string take() { return std::move(text_); }
+
+ private:
+  void separate();
+  std::string text_;
+  std::string last_key_;
+  bool need_comma_ = false;
+};
+
+}  // namespace dmise

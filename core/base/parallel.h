@@ -1,0 +1,30 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+
+namespace dmise {
+
+/// Threads that one process computes with. Results never depend on their number: work is cut into
+/// ranges by `grain` alone, and a range writes only what is its own.
+class Threads {
+ public:
+  /// `count` threads including the caller's, >= 1; 1 starts none.
+  explicit Threads(int count = 1);
+  ~Threads();
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+
+  int count() const { return count_; }
+
+  /// Calls `work(begin, end)` for consecutive ranges of at most `grain` items covering [0, items);
+  /// returns when all are done. The first exception that a range throws is rethrown here.
+  void for_ranges(std::size_t items, std::size_t grain,
+                  const std::function<void(std::size_t, std::size_t)>& work);
+
+ private:
+  struct Pool;
+  Pool* pool_ = nullptr;
+  int count_ = 1;
+};
+
+}  // namespace dmise

@@ -1,0 +1,92 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/sim_time.h"
+#include "core/frames/vec.h"
+
+namespace dmise {
+
+enum class DetectionKind : std::uint8_t { point, streak };
+/// Which instant of the exposure a time or direction belongs to.
+enum class ExposureEpoch : std::uint8_t { start, middle, end };
+
+/// One moving or point-like source found in one frame, from the counts image and its header alone.
+/// Pixels: (0, 0) is the centre of the first pixel. Directions: RA/Dec in ICRS read through the
+/// image's WCS ("astrometric": what the stars around it say), and the same with the annual
+/// aberration that the stars absorbed put right for an object that shares the Earth's motion.
+struct Detection {
+  std::string id;                  // "<sensor>/<frame>/<index>", stable over runs
+  std::string sensor;
+  std::uint32_t frame = 0;         // counts from 1
+  std::uint32_t index = 0;         // in the frame, from 0, by falling SNR
+  DetectionKind kind = DetectionKind::point;
+  ExposureEpoch epoch = ExposureEpoch::middle;
+  SimTime time;                    // of ra/dec
+  double ra_rad = 0.0, dec_rad = 0.0;               // astrometric, through the WCS
+  double corrected_ra_rad = 0.0, corrected_dec_rad = 0.0;  // annual aberration put right
+  std::array<double, 3> covariance_rad2{};          // var(ra cos dec), cov, var(dec)
+  Vec<Gcrs> sensor_position_m;     // at `time`
+  Vec<Gcrs> sensor_velocity_m_per_s;
+  bool light_time_removed = false;
+  bool aberration_removed = false; // of corrected_*
+  bool refraction_removed = true;  // absorbed by the WCS, as for stars
+  double magnitude = 0.0;          // in `band`, above the atmosphere, by the header's zero point
+  double magnitude_sigma = 0.0;
+  std::string band = "V";
+  double snr = 0.0;                // signal_e / sqrt(variance of the sum over its footprint)
+  double x_px = 0.0, y_px = 0.0;   // centroid
+  std::array<double, 3> covariance_px2{};           // var x, cov xy, var y
+  double signal_e = 0.0;           // electrons above the background
+  // Streak ends. Which end came first cannot be seen in one frame: end 1 is the one with smaller x
+  // (y on a tie), times are those of a motion from end 1 to end 2 and `direction_known` is false.
+  double end1_x_px = 0.0, end1_y_px = 0.0, end2_x_px = 0.0, end2_y_px = 0.0;
+  double end1_ra_rad = 0.0, end1_dec_rad = 0.0, end2_ra_rad = 0.0, end2_dec_rad = 0.0;
+  SimTime end1_time, end2_time;
+  bool direction_known = false;
+  double length_px = 0.0;          // between the ends; 0 for a point
+  double rate_rad_per_s = 0.0;     // angular, along the streak
+  bool saturated = false;          // a pixel of it is at full well or at the ADC's limit
+  bool at_edge = false;            // touches the frame's edge: an end is missing
+  bool star_like = false;          // shape and direction are those that a star's trail has there
+
+  bool operator==(const Detection&) const = default;
+};
+
+/// World coordinate system of an image: TAN with SIP distortion (Shupe et al. 2005).
+struct Wcs {
+  double crpix_x = 0.0, crpix_y = 0.0;      // reference pixel, (0, 0) at the first pixel's centre
+  double ra_rad = 0.0, dec_rad = 0.0;       // ICRS direction of the reference pixel
+  std::array<double, 4> cd_deg{};           // CD1_1 CD1_2 CD2_1 CD2_2 [deg/px]
+  int order = 0;                            // of the SIP polynomials, 0: none, at most 5
+  // A_pq, B_pq (pixel -> intermediate) and AP_pq, BP_pq (back), index p * (order + 1) + q.
+  std::vector<double> a, b, ap, bp;
+  double rms_px = 0.0, max_px = 0.0;        // of the fit to the true mapping
+
+  bool operator==(const Wcs&) const = default;
+};
+
+/// What is told of every exposure, also of one with nothing in it.
+struct FrameReport {
+  std::string sensor;
+  std::uint32_t frame = 0;                  // counts from 1
+  SimTime start, middle, end;               // of the exposure
+  double boresight_ra_rad = 0.0, boresight_dec_rad = 0.0;  // ICRS, at mid exposure
+  Wcs wcs;
+  Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;    // at mid exposure
+  double limiting_magnitude = 0.0;          // of a point source at SNR = detection threshold
+  double background_e = 0.0;                // median [e-/px]
+  double noise_e = 0.0;                     // median of the per-pixel noise [e-]
+  double zero_point_mag = 0.0;              // magnitude of a source of 1 e-/s
+  std::uint32_t detections = 0;             // published
+  std::uint32_t star_like = 0;              // sources found that move as the stars do
+  std::uint32_t saturated_px = 0;
+  std::uint32_t stars_rendered = 0, objects_rendered = 0;
+  std::string plan;                         // "effect effect ..." that ran, in order
+
+  bool operator==(const FrameReport&) const = default;
+};
+
+}  // namespace dmise

@@ -1,0 +1,32 @@
+#pragma once
+#include "core/base/sim_time.h"
+#include "core/frames/vec.h"
+
+namespace dmise {
+
+struct Cirs {};  // celestial intermediate: GCRS turned to the CIP of date, x axis at the CIO
+struct Tirs {};  // terrestrial intermediate: CIRS turned by the Earth rotation angle
+
+/// Orientation of the Earth around one instant. Precession, nutation and polar motion are those of
+/// `time`; the rotation angles run on from there, so that within a tick (minutes) the error is below
+/// 1 microarcsecond per second for the frozen part. Plain data: the environment node publishes it.
+struct EarthOrientation {
+  SimTime time;
+  Rotation<Cirs, Gcrs> cirs_from_gcrs;   // IAU 2006/2000A (or 2000B) bias-precession-nutation
+  Rotation<Itrs, Tirs> itrs_from_tirs;   // polar motion and TIO locator s'
+  double era_rad = 0.0;                  // Earth rotation angle at `time`, [0, 2 pi)
+  double era_rate_rad_per_s = 7.292115146706979e-5;
+  double gmst82_rad = 0.0;               // Greenwich mean sidereal time, IAU 1982, at `time`
+  double gmst82_rate_rad_per_s = 7.292115855306587e-5;
+
+  Rotation<Itrs, Gcrs> itrs_from_gcrs(SimTime t) const;
+  /// By GMST-82 and polar motion, without the equation of the equinoxes (AIAA 2006-6753).
+  Rotation<Itrs, Teme> itrs_from_teme(SimTime t) const;
+  Rotation<Gcrs, Teme> gcrs_from_teme(SimTime t) const;
+  /// Velocity in GCRS [m/s] of a point fixed to the Earth at `itrs_m` [m].
+  Vec<Gcrs> velocity_of_fixed_point(const Vec<Itrs>& itrs_m, SimTime t) const;
+
+  bool operator==(const EarthOrientation&) const = default;
+};
+
+}  // namespace dmise

@@ -1,0 +1,26 @@
+#pragma once
+#include <string>
+
+namespace dmise {
+
+enum class Projection { gnomonic, equidistant, equisolid, stereographic };
+
+/// The optics of a camera and the geometry of its pixels. Band: a top hat for now described by its
+/// centre and width; `transmission` is that of the optics and filter together.
+struct Optics {
+  Projection projection = Projection::gnomonic;
+  double focal_length_m = 0.0;
+  double aperture_m = 0.0;            // entrance pupil diameter
+  double obscuration = 0.0;           // secondary / primary diameter, [0, 1)
+  double pixel_pitch_m = 0.0;
+  int columns = 0;
+  int rows = 0;
+  double transmission = 1.0;          // (0, 1]
+  double psf_fwhm_px = 1.5;           // of the lens and focus (Gaussian), before pixel integration
+  bool equivalent_aperture = false;   // allows N < 0.5: the aperture is a collecting area only
+
+  double collecting_area_m2() const;
+  double pixel_angle_rad() const { return pixel_pitch_m / focal_length_m; }  // at the centre
+};
+
+}  // namespace dmise

@@ -1,0 +1,49 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/detection/detection.h"
+#include "core/detection/truth.h"
+#include "core/sim/state.h"
+
+namespace dmise {
+
+/// All that one sensor has to say of one frame; `detections` may be empty.
+struct DetectionSet {
+  std::string sensor;
+  std::uint32_t frame = 0;
+  std::vector<Detection> detections;
+
+  bool operator==(const DetectionSet&) const = default;
+};
+
+struct TruthSet {
+  std::string sensor;
+  std::uint32_t frame = 0;
+  std::vector<Truth> truths;
+
+  bool operator==(const TruthSet&) const = default;
+};
+
+/// The State interface: everything that actors and evaluators tell each other. To add one: list it
+/// here, give it a message in proto/ and a pair of functions in nodes/wire.
+using State =
+    std::variant<ObjectRoster, ObjectStates, EnvironmentState, FrameReport, DetectionSet, TruthSet>;
+
+/// One state, published on a topic for a tick. A topic may carry none, one or several a tick.
+struct Message {
+  std::string topic;
+  Tick tick = 0;
+  std::shared_ptr<const State> state;
+};
+
+// Topics. A sensor's own are `prefix + sensor name`.
+inline constexpr const char* objects_topic = "state/objects";  // roster (tick 0), then states
+inline constexpr const char* environment_topic = "env/common";
+inline constexpr const char* frame_prefix = "frame/";
+inline constexpr const char* detection_prefix = "detection/";
+inline constexpr const char* truth_prefix = "truth/";          // own endpoint, own security domain
+
+}  // namespace dmise

@@ -1,0 +1,30 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/sim/message.h"
+
+namespace dmise {
+
+/// An Actor (has a state over time) or an Evaluator (asks for state and makes a product). It does not
+/// know whether it runs in one process under the SimulationController or in a process of its own
+/// under nodes/runtime: both call `step` once for each tick 0, 1, 2, ... last, in order.
+class Participant {
+ public:
+  virtual ~Participant() = default;
+
+  virtual std::string name() const = 0;
+  virtual std::vector<std::string> produces() const = 0;  // topics, whole names
+  virtual std::vector<std::string> consumes() const = 0;  // topics, whole names
+
+  /// The work of one tick. `inputs`: all messages of the consumed topics for this tick, ordered by
+  /// (place of the topic in consumes(), order of publication). Returns what is published.
+  virtual std::vector<Message> step(Tick tick, std::span<const Message> inputs) = 0;
+
+  /// How far the work of the current tick is, for the progress deadline: any number that grows.
+  virtual std::uint64_t progress() const { return 0; }
+};
+
+}  // namespace dmise

@@ -1,0 +1,76 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/sim_time.h"
+#include "core/frames/earth_orientation.h"
+#include "core/frames/vec.h"
+
+// What actors tell evaluators: plain data, the same in one process and across a network.
+namespace dmise {
+
+/// Facts of one object that do not change over a run.
+struct ObjectInfo {
+  std::uint32_t catalogue_number = 0;  // up to 9 digits
+  std::string name;
+  std::string designator;              // international designator, may be empty
+  double radius_m = 1.0;               // of the equivalent diffuse sphere
+  double albedo = 0.2;                 // Lambert reflectance of that sphere, (0, 1]
+  double element_age_s = 0.0;          // start of the run minus the epoch of the elements
+
+  bool operator==(const ObjectInfo&) const = default;
+};
+
+/// All objects of a run; a position in this list is the object's index everywhere else.
+struct ObjectRoster {
+  std::vector<ObjectInfo> objects;
+
+  bool operator==(const ObjectRoster&) const = default;
+};
+
+/// States of all objects at one tick in GCRS, structure of arrays. Slope is the derivative of the
+/// position (symmetric difference of the propagator), for interpolation; velocity is the model's own.
+/// An object with `code` != 0 has no state: its numbers are 0.
+struct ObjectStates {
+  Tick tick = 0;
+  SimTime time;
+  std::size_t count = 0;
+  std::vector<double> position_m;         // 3 x count: all x, all y, all z
+  std::vector<double> slope_m_per_s;      // 3 x count
+  std::vector<double> velocity_m_per_s;   // 3 x count
+  std::vector<std::uint8_t> code;         // count; 0 or the error code of the motion model
+
+  Vec<Gcrs> position(std::size_t i) const {
+    return {position_m[i], position_m[count + i], position_m[2 * count + i]};
+  }
+  Vec<Gcrs> slope(std::size_t i) const {
+    return {slope_m_per_s[i], slope_m_per_s[count + i], slope_m_per_s[2 * count + i]};
+  }
+  bool operator==(const ObjectStates&) const = default;
+};
+
+/// Sky over one sensor's site.
+struct SkyState {
+  std::string sensor;
+  double zenith_mag_per_arcsec2 = 21.9;  // V, Johnson
+
+  bool operator==(const SkyState&) const = default;
+};
+
+/// The world that all sensors share, at one tick.
+struct EnvironmentState {
+  Tick tick = 0;
+  SimTime time;
+  EarthOrientation earth;
+  Vec<Gcrs> sun_m;                       // geocentric, geometric, of date in GCRS
+  Vec<Gcrs> moon_m;                      // geocentric
+  Vec<Gcrs> earth_barycentric_m;         // of the Earth's centre, ICRS axes
+  Vec<Gcrs> earth_velocity_m_per_s;      // barycentric, for annual aberration
+  double tt_jd1 = 0.0, tt_jd2 = 0.0;     // two-part TT Julian date of `time` [days]
+  std::vector<SkyState> skies;           // one a sensor, in scenario order
+
+  bool operator==(const EnvironmentState&) const = default;
+};
+
+}  // namespace dmise
