@@ -1,0 +1,35 @@
+#pragma once
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <string>
+
+// Reference data that is not part of the project: `$DMISE_DATA`, else ../shared/data beside the
+// checkout. Where a file is absent the test says so and skips; with DMISE_DATA set it fails.
+namespace dmise::test {
+
+inline bool exists(const std::string& path) {
+  struct stat info {};
+  return stat(path.c_str(), &info) == 0;
+}
+
+inline std::string data_path(const std::string& name) {
+  const char* root = std::getenv("DMISE_DATA");
+  return (root ? std::string(root) : std::string(DMISE_SOURCE_DIR "/../shared/data")) + "/" + name;
+}
+
+/// Catalogues from Debian packages that `./dmise setup` unpacks: "stars.dat", "satellites.dat".
+inline std::string catalogue_path(const std::string& name) {
+  return std::string(DMISE_SOURCE_DIR "/build/data/") + name;
+}
+
+}  // namespace dmise::test
+
+#define DMISE_NEEDS_FILE(path)                                                  \
+  do {                                                                          \
+    if (!dmise::test::exists(path)) {                                           \
+      if (std::getenv("DMISE_DATA")) FAIL() << "DMISE_DATA is set but there is no " << (path); \
+      GTEST_SKIP() << "needs " << (path);                                       \
+    }                                                                           \
+  } while (0)
