@@ -1,0 +1,11 @@
+#pragma once
+#include "core/config/scenario.h"
+#include "core/config/yaml_reader.h"
+
+namespace dmise {
+
+/// Reads a camera: the name of a preset, a path, or the mapping itself. The keys are those of
+/// launch/cameras/*.yaml.
+Camera read_camera(const YamlValue& value);
+
+}  // namespace dmise

@@ -1,0 +1,89 @@
+#include "core/base/json.h"
+#include "core/config/scenario.h"
+
+namespace dmise {
+namespace {
+
+struct PlaceWriter {
+  JsonWriter& json;
+  void operator()(const SiteConfig& site) const {
+    json.key("site").begin_object();
+    json.field("latitude_deg", site.latitude_deg).field("longitude_deg", site.longitude_deg);
+    json.field("height_m", site.height_m).end_object();
+  }
+  void operator()(const PlatformConfig& platform) const { json.field("platform", platform.object); }
+};
+
+struct PointingWriter {
+  JsonWriter& json;
+  void operator()(PointUp) const { json.field("pointing", "zenith"); }
+  void operator()(const PointHorizon& p) const {
+    json.key("pointing").begin_object();
+    json.field("azimuth_deg", p.azimuth_deg).field("elevation_deg", p.elevation_deg).end_object();
+  }
+  void operator()(const PointSky& p) const {
+    json.key("pointing").begin_object();
+    json.field("ra_deg", p.ra_deg).field("dec_deg", p.dec_deg).end_object();
+  }
+  void operator()(const PointTarget& p) const {
+    json.key("pointing").begin_object().field("target", p.object).end_object();
+  }
+};
+
+void write_camera(JsonWriter& json, const Camera& camera) {
+  const auto& o = camera.optics;
+  const auto& d = camera.detector;
+  json.key("camera").begin_object().field("name", camera.name);
+  json.field("projection", static_cast<int>(o.projection)).field("focal_length_m", o.focal_length_m);
+  json.field("aperture_m", o.aperture_m).field("obscuration", o.obscuration);
+  json.field("pixel_pitch_m", o.pixel_pitch_m).field("columns", o.columns).field("rows", o.rows);
+  json.field("transmission", o.transmission).field("psf_fwhm_px", o.psf_fwhm_px);
+  json.field("quantum_efficiency", d.quantum_efficiency).field("dark_e_per_s", d.dark_e_per_s);
+  json.field("read_noise_e", d.read_noise_e).field("full_well_e", d.full_well_e);
+  json.field("gain_e_per_dn", d.gain_e_per_dn).field("bias_dn", d.bias_dn);
+  json.field("adc_bits", d.adc_bits).field("band", camera.band.name);
+  json.field("band_centre_m", camera.band.centre_m).field("band_width_m", camera.band.width_m);
+  json.end_object();
+}
+
+void write_sensor(JsonWriter& json, const SensorConfig& s) {
+  json.begin_object().field("name", s.name);
+  std::visit(PlaceWriter{json}, s.place);
+  write_camera(json, s.camera);
+  std::visit(PointingWriter{json}, s.pointing);
+  json.field("tracking", static_cast<int>(s.tracking)).field("roll_deg", s.roll_deg);
+  json.field("exposure_s", s.exposure_s).field("cadence_s", s.cadence_s);
+  json.field("first_exposure_s", s.first_exposure_s);
+  json.field("sky_zenith_mag_per_arcsec2", s.sky_zenith_mag_per_arcsec2);
+  json.field("extinction_mag_per_airmass", s.extinction_mag_per_airmass);
+  json.field("detection_threshold_sigma", s.detection_threshold_sigma);
+  json.key("effects").begin_array();
+  for (std::size_t i = 0; i < effect_count; ++i)
+    if (s.effects.has(static_cast<Effect>(i))) json.value(facts(static_cast<Effect>(i)).name);
+  json.end_array().end_object();
+}
+
+}  // namespace
+
+std::string physics_json(const Scenario& scenario) {
+  JsonWriter json;
+  json.begin_object().key("simulation").begin_object();
+  json.field("start", scenario.start_utc).field("duration_ns", scenario.duration.ns);
+  json.field("tick_ns", scenario.tick.ns).field("seed", scenario.seed).end_object();
+  json.key("objects").begin_array();
+  for (const auto& source : scenario.objects) {
+    json.begin_object().field("catalogue", source.named).field("radius_m", source.radius_m);
+    json.field("albedo", source.albedo).key("only").begin_array();
+    for (const auto& name : source.only) json.value(name);
+    json.end_array().end_object();
+  }
+  json.end_array();
+  json.key("stars").begin_object().field("catalogue", scenario.star_catalogue_named);
+  json.field("faintest_mag", scenario.faintest_star_mag).end_object();
+  json.key("sensors").begin_array();
+  for (const auto& sensor : scenario.sensors) write_sensor(json, sensor);
+  json.end_array().end_object();
+  return json.take();
+}
+
+}  // namespace dmise

@@ -1,0 +1,276 @@
+#include "core/config/scenario.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/config/camera_config.h"
+#include "core/config/search_path.h"
+#include "core/config/yaml_reader.h"
+#include "core/time/utc.h"
+
+namespace dmise {
+namespace {
+
+struct SkyPreset {
+  const char* name;
+  double zenith_mag_per_arcsec2;
+};
+// V at the zenith: a city like Atlanta, a suburb, a good dark site, and zodiacal light seen from space.
+constexpr SkyPreset sky_presets[] = {
+    {"urban", 18.0}, {"suburban", 20.0}, {"dark", 21.9}, {"space", 21.0}};
+
+double read_sky(const YamlValue& value) {
+  if (value.is_map()) {
+    YamlMap map(value);
+    const double mag = map.number("zenith_mag_per_arcsec2", Bounds::between(-10.0, 30.0));
+    map.done();
+    return mag;
+  }
+  const std::string name = value.choice({"urban", "suburban", "dark", "space"});
+  for (const auto& preset : sky_presets)
+    if (name == preset.name) return preset.zenith_mag_per_arcsec2;
+  return 21.9;
+}
+
+SiteConfig read_site(const YamlValue& value) {
+  if (value.is_scalar()) {
+    const std::string path = find_preset("sites", value.text(), value.file());
+    if (path.empty()) {
+      const std::string hint = nearest_name(value.text(), preset_names("sites"));
+      value.fail("no such site" + (hint.empty() ? "" : ", did you mean " + hint + "?"));
+    }
+    return read_site(YamlValue::load(path));
+  }
+  YamlMap map(value);
+  SiteConfig site;
+  site.name = map.text_or("name", "");
+  map.find("source");  // for people
+  site.latitude_deg = map.number("latitude_deg", Bounds::between(-90.0, 90.0));
+  site.longitude_deg = map.number("longitude_deg", Bounds::between(-180.0, 360.0));
+  site.height_m = map.number_or("height_m", 0.0, Bounds::between(-500.0, 9000.0));
+  map.done();
+  return site;
+}
+
+void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor) {
+  if (value.is_scalar()) {
+    value.choice({"zenith"});
+    sensor.pointing = PointUp{};
+    return;
+  }
+  YamlMap map(value);
+  const bool horizon = map.find("azimuth_deg") || map.find("elevation_deg");
+  const bool sky = map.find("ra_deg") || map.find("dec_deg");
+  const auto target = map.find("target");
+  if (int(horizon) + int(sky) + int(bool(target)) > 1)
+    value.fail("give one of azimuth_deg and elevation_deg, ra_deg and dec_deg, target", false);
+  Tracking natural = Tracking::fixed;
+  if (horizon) {
+    if (!on_ground) value.fail("azimuth and elevation are for a sensor on the ground", false);
+    sensor.pointing = PointHorizon{map.number("azimuth_deg", Bounds::between(-360.0, 360.0)),
+                                   map.number("elevation_deg", Bounds::between(-90.0, 90.0))};
+  } else if (sky) {
+    sensor.pointing = PointSky{map.number("ra_deg", Bounds::between(-360.0, 360.0)),
+                               map.number("dec_deg", Bounds::between(-90.0, 90.0))};
+    natural = Tracking::sidereal;
+  } else if (target) {
+    sensor.pointing = PointTarget{target->text()};
+    natural = Tracking::target;
+  } else {
+    sensor.pointing = PointUp{};
+  }
+  sensor.tracking = natural;
+  if (const auto tracking = map.find("tracking")) {
+    const std::string name = tracking->choice({"fixed", "sidereal", "target"});
+    sensor.tracking = name == "fixed"      ? Tracking::fixed
+                      : name == "sidereal" ? Tracking::sidereal
+                                           : Tracking::target;
+    if (sensor.tracking == Tracking::target && !target)
+      tracking->fail("there is no target to follow", false);
+    if (sensor.tracking == Tracking::fixed && !on_ground && (sky || target))
+      tracking->fail("in orbit, fixed goes with zenith only; take sidereal or target");
+  }
+  sensor.roll_deg = map.number_or("roll_deg", 0.0, Bounds::between(-360.0, 360.0));
+  map.done();
+}
+
+void read_effects(const YamlValue& value, EffectSet& effects) {
+  YamlMap map(value);
+  for (std::size_t i = 0; i < effect_count; ++i) {
+    const auto effect = static_cast<Effect>(i);
+    if (const auto flag = map.find(facts(effect).name)) effects.set(effect, flag->flag());
+  }
+  if (const auto both = map.find("aberration")) {
+    effects.set(Effect::annual_aberration, both->flag());
+    effects.set(Effect::diurnal_aberration, both->flag());
+  }
+  map.done();
+}
+
+SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTime duration) {
+  YamlMap map(value);
+  SensorConfig sensor;
+  sensor.effects = effects;
+  const auto name = map.require("name");
+  sensor.name = name.text();
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_';
+  };
+  if (sensor.name.size() > 64 || !std::all_of(sensor.name.begin(), sensor.name.end(), allowed))
+    name.fail("must be at most 64 letters, digits, - and _");
+  const auto site = map.find("site");
+  const auto platform = map.find("platform");
+  if (bool(site) == bool(platform))
+    value.fail("needs either site (on the ground) or platform (an object of the catalogue)", false);
+  if (site) {
+    sensor.place = read_site(*site);
+  } else {
+    sensor.place = PlatformConfig{platform->text()};
+  }
+  sensor.camera = read_camera(map.require("camera"));
+  read_pointing(map.require("pointing"), bool(site), sensor);
+  const auto exposure = map.require("exposure_s");
+  sensor.exposure_s = exposure.number({.least = 1e-6, .most = 3600.0});
+  sensor.cadence_s = map.number("cadence_s", {.least = 1e-3, .most = 86400.0});
+  if (sensor.cadence_s < sensor.exposure_s)
+    exposure.fail("must be <= cadence_s");
+  const auto first = map.find("first_exposure_s");
+  if (first) sensor.first_exposure_s = first->number(Bounds::not_negative());
+  if (sim_seconds(sensor.first_exposure_s + sensor.exposure_s) > duration)
+    exposure.fail("the first exposure ends after the run does");
+  const auto sky = map.find("sky");
+  sensor.sky_zenith_mag_per_arcsec2 = sky ? read_sky(*sky) : (site ? 21.9 : 21.0);
+  sensor.extinction_mag_per_airmass =
+      map.number_or("extinction_mag_per_airmass", site ? 0.17 : 0.0, Bounds::between(0.0, 5.0));
+  if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
+  if (const auto detection = map.find("detection")) {
+    YamlMap settings(*detection);
+    sensor.detection_threshold_sigma =
+        settings.number_or("threshold_sigma", 5.0, Bounds::between(3.0, 1000.0));
+    settings.done();
+  }
+  map.done();
+  return sensor;
+}
+
+ObjectSource read_object_source(const YamlValue& value) {
+  YamlMap map(value);
+  ObjectSource source;
+  const auto catalogue = map.require("catalogue");
+  source.named = catalogue.text();
+  source.path = source.named == "gpredict" ? find_catalogue("satellites.dat")
+                                           : find_beside(source.named, value.file());
+  if (source.path.empty())
+    catalogue.fail(source.named == "gpredict"
+                       ? "Debian's gpredict catalogue is not there; ./dmise setup fetches it"
+                       : "there is no such file");
+  source.radius_m =
+      map.number_or("radius_m", 1.0, {.least = 0.0, .most = 1000.0, .least_open = true});
+  source.albedo = map.number_or("albedo", 0.2, {.least = 0.0, .most = 1.0, .least_open = true});
+  if (const auto only = map.find("only"))
+    for (const auto& name : only->list()) source.only.push_back(name.text());
+  map.done();
+  return source;
+}
+
+void read_simulation(const YamlValue& value, Scenario& scenario) {
+  YamlMap map(value);
+  const auto start = map.require("start");
+  scenario.start_utc = start.text();
+  try {
+    parse_utc(scenario.start_utc);
+  } catch (const Error& e) {
+    start.fail("must be a UTC time such as 2018-01-21T00:30:00Z");
+  }
+  scenario.duration = sim_seconds(map.number("duration_s", {.least = 1e-3, .most = 3.2e8}));
+  scenario.tick = sim_seconds(map.number("tick_s", {.least = 1e-6, .most = 3600.0}));
+  scenario.seed = static_cast<std::uint64_t>(
+      map.integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
+  if (const auto eop = map.find("earth_orientation")) {
+    scenario.earth_orientation_path = find_beside(eop->text(), value.file());
+    if (scenario.earth_orientation_path.empty()) eop->fail("there is no such file");
+  }
+  map.done();
+}
+
+void read_stars(const YamlValue& value, Scenario& scenario) {
+  YamlMap map(value);
+  const auto catalogue = map.require("catalogue");
+  scenario.star_catalogue_named = catalogue.text();
+  scenario.star_catalogue_path = scenario.star_catalogue_named == "kstars"
+                                     ? find_catalogue("stars.dat")
+                                     : find_beside(scenario.star_catalogue_named, value.file());
+  if (scenario.star_catalogue_path.empty())
+    catalogue.fail(scenario.star_catalogue_named == "kstars"
+                       ? "Debian's kstars catalogue is not there; ./dmise setup fetches it"
+                       : "there is no such file");
+  scenario.faintest_star_mag = map.number_or("faintest_mag", 9.5, Bounds::between(-2.0, 30.0));
+  map.done();
+}
+
+void read_network(const YamlValue& value, NetworkConfig& network) {
+  YamlMap map(value);
+  network.window_ticks = static_cast<int>(map.integer_or("window_ticks", 4, 1, 10000));
+  if (const auto policy = map.find("on_silent_node")) {
+    const std::string name = policy->choice({"fail", "wait", "drop"});
+    network.on_silent_node = name == "fail"   ? OnSilentNode::fail
+                             : name == "wait" ? OnSilentNode::wait
+                                              : OnSilentNode::drop;
+  }
+  network.silent_after_s = map.number_or("silent_after_s", 5.0, Bounds::between(0.1, 3600.0));
+  network.join_within_s = map.number_or("join_within_s", 30.0, Bounds::between(0.1, 86400.0));
+  map.done();
+}
+
+void read_output(const YamlValue& value, OutputConfig& output) {
+  YamlMap map(value);
+  output.fits = map.flag_or("fits", true);
+  output.png = map.flag_or("png", true);
+  output.truth = map.flag_or("truth", true);
+  output.star_truth = map.flag_or("star_truth", false);
+  output.preview_width_px = static_cast<int>(map.integer_or("preview_width_px", 1663, 16, 32768));
+  map.done();
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::string& path) {
+  YamlMap map(YamlValue::load(path));
+  Scenario scenario;
+  scenario.path = path;
+  read_simulation(map.require("simulation"), scenario);
+  if (const auto objects = map.find("objects"))
+    for (const auto& source : objects->list())
+      scenario.objects.push_back(read_object_source(source));
+  if (const auto stars = map.find("stars")) read_stars(*stars, scenario);
+  EffectSet effects;
+  if (const auto value = map.find("effects")) read_effects(*value, effects);
+  const auto sensors = map.require("sensors");
+  std::set<std::string> names{"orbit-node", "environment-node", "time-master", "broker"};
+  for (const auto& value : sensors.list()) {
+    scenario.sensors.push_back(read_sensor(value, effects, scenario.duration));
+    if (!names.insert(scenario.sensors.back().name).second)
+      YamlMap(value).require("name").fail("another node has this name");
+  }
+  if (scenario.sensors.empty()) sensors.fail("needs at least one sensor", false);
+  if (const auto network = map.find("network")) read_network(*network, scenario.network);
+  if (const auto output = map.find("output")) read_output(*output, scenario.output);
+  map.done();
+  return scenario;
+}
+
+const SensorConfig& sensor_named(const Scenario& scenario, const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& sensor : scenario.sensors) {
+    if (sensor.name == name) return sensor;
+    names.push_back(sensor.name);
+  }
+  const std::string hint = nearest_name(name, names);
+  throw ConfigError(scenario.path + ": sensors: no sensor is named " + name +
+                    (hint.empty() ? "" : ", did you mean " + hint + "?"));
+}
+
+}  // namespace dmise

@@ -1,0 +1,129 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/sim_time.h"
+#include "core/detector/detector.h"
+#include "core/effects/effects.h"
+#include "core/optics/camera.h"
+#include "core/photometry/band.h"
+
+namespace dmise {
+
+/// What a camera preset (launch/cameras/NAME.yaml) holds.
+struct Camera {
+  std::string name;
+  Optics optics;
+  Detector detector;
+  Band band;
+};
+
+/// A sensor on the ground.
+struct SiteConfig {
+  std::string name;
+  double latitude_deg = 0.0;   // geodetic, [-90, 90]
+  double longitude_deg = 0.0;  // east, [-180, 360)
+  double height_m = 0.0;       // above the ellipsoid, [-500, 9000]
+};
+
+/// A sensor aboard an object of the catalogue, named by number or name.
+struct PlatformConfig {
+  std::string object;
+};
+
+/// Where the boresight points. On the ground "up" is the zenith; in orbit away from the Earth.
+struct PointUp {};
+struct PointHorizon {
+  double azimuth_deg = 0.0;    // from north through east
+  double elevation_deg = 0.0;
+};
+struct PointSky {
+  double ra_deg = 0.0, dec_deg = 0.0;  // ICRS
+};
+struct PointTarget {
+  std::string object;          // catalogue number or name
+};
+using Pointing = std::variant<PointUp, PointHorizon, PointSky, PointTarget>;
+
+/// What the camera does while the shutter is open.
+enum class Tracking {
+  fixed,     // turns with the Earth (ground), or keeps its attitude to the local vertical (orbit)
+  sidereal,  // keeps its attitude to the stars
+  target,    // follows the target
+};
+
+struct SensorConfig {
+  std::string name;
+  std::variant<SiteConfig, PlatformConfig> place;
+  Camera camera;
+  Pointing pointing;
+  Tracking tracking = Tracking::fixed;
+  double roll_deg = 0.0;  // turns the image's up (-y), which is north, or the zenith for a pointing
+                          // on the horizon's grid, towards east (towards growing azimuth)
+  double exposure_s = 0.0;
+  double cadence_s = 0.0;
+  double first_exposure_s = 0.0;  // after the start of the run
+  double sky_zenith_mag_per_arcsec2 = 21.9;
+  double extinction_mag_per_airmass = 0.0;
+  double detection_threshold_sigma = 5.0;
+  EffectSet effects;
+};
+
+struct ObjectSource {
+  std::string path;               // resolved
+  std::string named;              // as in the scenario: "gpredict" or a path
+  double radius_m = 1.0;          // of the equivalent diffuse sphere, where nothing better is known
+  double albedo = 0.2;
+  std::vector<std::string> only;  // catalogue numbers or names; empty: all
+};
+
+enum class OnSilentNode { fail, wait, drop };
+
+struct NetworkConfig {
+  int window_ticks = 4;
+  OnSilentNode on_silent_node = OnSilentNode::fail;
+  double silent_after_s = 5.0;
+  double join_within_s = 30.0;
+};
+
+struct OutputConfig {
+  bool fits = true;
+  bool png = true;
+  bool truth = true;
+  bool star_truth = false;        // frame-NNNNNN.stars.csv: every star drawn
+  int preview_width_px = 1663;
+};
+
+/// A whole scenario, resolved: presets read, paths found, defaults filled in, everything checked.
+struct Scenario {
+  std::string path;
+  std::string start_utc;          // ISO 8601
+  SimTime duration;
+  SimTime tick;
+  std::uint64_t seed = 1;
+  std::string earth_orientation_path;  // IERS finals file, may be empty
+  std::vector<ObjectSource> objects;
+  std::string star_catalogue_path;     // empty: no stars
+  std::string star_catalogue_named;
+  double faintest_star_mag = 9.5;
+  std::vector<SensorConfig> sensors;
+  NetworkConfig network;
+  OutputConfig output;
+
+  /// The last tick: the first at or after the end of the run.
+  Tick last_tick() const { return (duration.ns + tick.ns - 1) / tick.ns; }
+  SimTime time_of(Tick k) const { return {k * tick.ns}; }
+};
+
+/// Reads and checks a scenario. Throws `ConfigError` with `file:line:column: key: reason, got value`.
+Scenario load_scenario(const std::string& path);
+
+/// What decides the products, in a fixed order: the same text gives the same bytes.
+std::string physics_json(const Scenario& scenario);
+
+const SensorConfig& sensor_named(const Scenario& scenario, const std::string& name);
+
+}  // namespace dmise

@@ -1,0 +1,219 @@
+#include "core/config/yaml_reader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+
+namespace dmise {
+namespace {
+
+std::string place(const std::string& file, const YAML::Mark& mark) {
+  if (mark.is_null()) return file;
+  return file + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
+}
+
+std::string number_text(double x) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
+}
+
+void refuse_repeated_keys(const YAML::Node& node, const std::string& file,
+                          const std::string& path) {
+  if (node.IsMap()) {
+    std::set<std::string> seen;
+    for (const auto& entry : node) {
+      const std::string inner =
+          path + (path.empty() ? "" : ".") +
+          (entry.first.IsScalar() ? entry.first.Scalar() : std::string("?"));
+      if (!entry.first.IsScalar())
+        throw ConfigError(place(file, entry.first.Mark()) + ": " + inner + ": key must be a word");
+      if (!seen.insert(entry.first.Scalar()).second)
+        throw ConfigError(place(file, entry.first.Mark()) + ": " + inner + ": key given twice");
+      refuse_repeated_keys(entry.second, file, inner);
+    }
+  } else if (node.IsSequence()) {
+    for (std::size_t i = 0; i < node.size(); ++i)
+      refuse_repeated_keys(node[i], file, path + "[" + std::to_string(i) + "]");
+  }
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string nearest_name(std::string_view word, const std::vector<std::string>& names) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const auto& name : names) {
+    const std::size_t d = edit_distance(word, name);
+    if (d < least) {
+      least = d;
+      best = name;
+    }
+  }
+  return best;
+}
+
+YamlValue YamlValue::load(const std::string& path) {
+  return parse(read_text_file(path, 16u << 20), path);
+}
+
+YamlValue YamlValue::parse(const std::string& text, const std::string& file) {
+  try {
+    auto node = YAML::Load(text);
+    if (!node.IsMap()) throw ConfigError(file + ":1:1: must be a mapping of keys to values");
+    refuse_repeated_keys(node, file, "");
+    return {node, std::make_shared<const std::string>(file), ""};
+  } catch (const YAML::Exception& e) {
+    throw ConfigError(place(file, e.mark) + ": not valid YAML: " + e.msg);
+  }
+}
+
+void YamlValue::fail(const std::string& reason, bool show_value) const {
+  std::string text = place(*file_, node_.Mark()) + ": " + (path_.empty() ? "" : path_ + ": ") + reason;
+  if (show_value) {
+    text += ", got ";
+    if (node_.IsScalar()) {
+      text += node_.Scalar().empty() ? "''" : node_.Scalar();
+    } else {
+      text += node_.IsMap() ? "a mapping" : node_.IsSequence() ? "a list" : "nothing";
+    }
+  }
+  throw ConfigError(text);
+}
+
+double YamlValue::number(Bounds bounds) const {
+  if (!is_scalar()) fail("must be a number");
+  const std::string& s = node_.Scalar();
+  double x = 0.0;
+  const char* first = s.data() + (s.starts_with('+') ? 1 : 0);
+  const auto [end, error] = std::from_chars(first, s.data() + s.size(), x);
+  if (error != std::errc{} || end != s.data() + s.size() || !std::isfinite(x))
+    fail("must be a number");
+  if (bounds.least_open ? x <= bounds.least : x < bounds.least)
+    fail("must be " + std::string(bounds.least_open ? "> " : ">= ") + number_text(bounds.least));
+  if (x > bounds.most) fail("must be <= " + number_text(bounds.most));
+  return x;
+}
+
+std::int64_t YamlValue::integer(std::int64_t least, std::int64_t most) const {
+  if (!is_scalar()) fail("must be a whole number");
+  const std::string& s = node_.Scalar();
+  std::int64_t x = 0;
+  const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
+  if (error != std::errc{} || end != s.data() + s.size()) fail("must be a whole number");
+  if (x < least) fail("must be >= " + std::to_string(least));
+  if (x > most) fail("must be <= " + std::to_string(most));
+  return x;
+}
+
+std::string YamlValue::text() const {
+  if (!is_scalar() || node_.Scalar().empty()) fail("must be a text");
+  return node_.Scalar();
+}
+
+bool YamlValue::flag() const {
+  if (is_scalar()) {
+    const std::string& s = node_.Scalar();
+    if (s == "on" || s == "true" || s == "yes") return true;
+    if (s == "off" || s == "false" || s == "no") return false;
+  }
+  fail("must be on or off");
+}
+
+std::string YamlValue::choice(std::initializer_list<std::string_view> choices) const {
+  std::vector<std::string> names(choices.begin(), choices.end());
+  const std::string word = is_scalar() ? node_.Scalar() : "";
+  if (std::find(names.begin(), names.end(), word) != names.end()) return word;
+  std::string all;
+  for (const auto& name : names) all += (all.empty() ? "" : ", ") + name;
+  fail("must be one of " + all);
+}
+
+std::vector<YamlValue> YamlValue::list() const {
+  if (!is_list()) fail("must be a list");
+  std::vector<YamlValue> values;
+  for (std::size_t i = 0; i < node_.size(); ++i)
+    values.push_back({node_[i], file_, path_ + "[" + std::to_string(i) + "]"});
+  return values;
+}
+
+YamlMap::YamlMap(const YamlValue& value) : value_(value) {
+  if (!value.is_map()) value.fail("must be a mapping of keys to values");
+}
+
+std::string YamlMap::child_path(std::string_view key) const {
+  return value_.path_ + (value_.path_.empty() ? "" : ".") + std::string(key);
+}
+
+std::optional<YamlValue> YamlMap::find(std::string_view key) {
+  known_.emplace(key);
+  const YAML::Node& map = value_.node_;  // const, so that looking does not insert
+  const YAML::Node child = map[std::string(key)];
+  if (!child.IsDefined()) return std::nullopt;
+  YamlValue value(child, value_.file_, child_path(key));
+  if (child.IsNull()) value.fail("has no value", false);
+  return value;
+}
+
+YamlValue YamlMap::require(std::string_view key) {
+  if (auto value = find(key)) return *value;
+  YamlValue(value_.node_, value_.file_, child_path(key)).fail("is missing", false);
+}
+
+std::vector<std::string> YamlMap::keys() const {
+  std::vector<std::string> names;
+  for (const auto& entry : value_.node_) names.push_back(entry.first.Scalar());
+  return names;
+}
+
+double YamlMap::number_or(std::string_view key, double otherwise, Bounds bounds) {
+  const auto value = find(key);
+  return value ? value->number(bounds) : otherwise;
+}
+
+std::int64_t YamlMap::integer_or(std::string_view key, std::int64_t otherwise, std::int64_t least,
+                                 std::int64_t most) {
+  const auto value = find(key);
+  return value ? value->integer(least, most) : otherwise;
+}
+
+std::string YamlMap::text_or(std::string_view key, std::string otherwise) {
+  const auto value = find(key);
+  return value ? value->text() : otherwise;
+}
+
+bool YamlMap::flag_or(std::string_view key, bool otherwise) {
+  const auto value = find(key);
+  return value ? value->flag() : otherwise;
+}
+
+void YamlMap::done() const {
+  for (const auto& entry : value_.node_) {
+    const std::string name = entry.first.Scalar();
+    if (known_.contains(name)) continue;
+    const std::string hint = nearest_name(name, {known_.begin(), known_.end()});
+    std::string reason = "unknown key";
+    if (!hint.empty()) reason += ", did you mean " + hint + "?";
+    YamlValue(entry.first, value_.file_, child_path(name)).fail(reason, false);
+  }
+}
+
+}  // namespace dmise

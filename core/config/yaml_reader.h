@@ -1,0 +1,90 @@
+#pragma once
+#include <yaml-cpp/yaml.h>
+
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dmise {
+
+/// Range that a number must lie in; the reason given when it does not.
+struct Bounds {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool least_open = false;  // `least` itself is refused
+
+  static Bounds positive() { return {.least = 0.0, .least_open = true}; }
+  static Bounds not_negative() { return {.least = 0.0}; }
+  static Bounds between(double least, double most) { return {.least = least, .most = most}; }
+};
+
+/// A value of a YAML file that knows where it stands: every complaint reads
+/// `file:line:column: key.path: reason, got value`.
+class YamlValue {
+ public:
+  /// Reads a whole file. Throws `ConfigError`, also for a key given twice.
+  static YamlValue load(const std::string& path);
+  static YamlValue parse(const std::string& text, const std::string& file);
+
+  bool is_map() const { return node_.IsMap(); }
+  bool is_list() const { return node_.IsSequence(); }
+  bool is_scalar() const { return node_.IsScalar(); }
+  const std::string& file() const { return *file_; }
+  const std::string& path() const { return path_; }
+
+  double number(Bounds bounds = {}) const;
+  std::int64_t integer(std::int64_t least, std::int64_t most) const;
+  std::string text() const;
+  bool flag() const;  // on/off, true/false, yes/no
+  /// One of `choices`; the nearest is suggested.
+  std::string choice(std::initializer_list<std::string_view> choices) const;
+  std::vector<YamlValue> list() const;
+
+  [[noreturn]] void fail(const std::string& reason, bool show_value = true) const;
+
+ private:
+  friend class YamlMap;
+  YamlValue(YAML::Node node, std::shared_ptr<const std::string> file, std::string path)
+      : node_(std::move(node)), file_(std::move(file)), path_(std::move(path)) {}
+
+  YAML::Node node_;
+  std::shared_ptr<const std::string> file_;
+  std::string path_;
+};
+
+/// The keys of a YAML mapping. Each model reads its own; `done()` refuses those that nobody read and
+/// suggests the nearest one that would have been.
+class YamlMap {
+ public:
+  explicit YamlMap(const YamlValue& value);
+
+  std::optional<YamlValue> find(std::string_view key);
+  YamlValue require(std::string_view key);
+  std::vector<std::string> keys() const;
+
+  double number(std::string_view key, Bounds bounds = {}) { return require(key).number(bounds); }
+  double number_or(std::string_view key, double otherwise, Bounds bounds = {});
+  std::int64_t integer_or(std::string_view key, std::int64_t otherwise, std::int64_t least,
+                          std::int64_t most);
+  std::string text(std::string_view key) { return require(key).text(); }
+  std::string text_or(std::string_view key, std::string otherwise);
+  bool flag_or(std::string_view key, bool otherwise);
+
+  const YamlValue& value() const { return value_; }
+  void done() const;
+
+ private:
+  std::string child_path(std::string_view key) const;
+  YamlValue value_;
+  std::set<std::string, std::less<>> known_;
+};
+
+/// The one of `names` that is likeliest meant by `word`; empty if none is near.
+std::string nearest_name(std::string_view word, const std::vector<std::string>& names);
+
+}  // namespace dmise

@@ -1,0 +1,42 @@
+#include "core/effects/effects.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::array<EffectFacts, effect_count> table{{
+    {"proper_motion", "stars move from their catalogue's epoch to the date",
+     "up to 10.4 arcsec a year (Barnard's star)"},
+    {"parallax", "stars seen from the Earth's place on its orbit", "up to 0.77 arcsec"},
+    {"light_deflection", "the Sun's gravity bends starlight", "4 mas at 90 deg from the Sun"},
+    {"annual_aberration", "the Earth's motion displaces stars", "up to 20.5 arcsec"},
+    {"diurnal_aberration", "the observer's geocentric motion displaces everything",
+     "0.32 arcsec on the ground, 5.2 in a low orbit"},
+    {"light_time", "objects are seen where they were when the light left", "up to 5.2 arcsec"},
+    {"refraction", "the atmosphere lifts what is seen from the ground",
+     "58 arcsec at 45 deg elevation, 5.3 arcmin at 10"},
+    {"extinction", "the atmosphere dims what is seen from the ground", "0.1 to 0.4 mag an airmass"},
+    {"shadow", "objects are dimmed by the Earth's penumbra and umbra",
+     "objects in shadow are drawn fully lit"},
+    {"earth_occultation", "the Earth hides what is behind it", "objects and stars behind it are drawn"},
+    {"stars", "star background", "no stars"},
+    {"objects", "space objects", "no objects"},
+    {"sky", "sky background", "no background and no noise of it"},
+    {"psf", "blur of the optics", "light falls on a point of no size"},
+    {"photon_noise", "photons arrive at random (Poisson)", "expected electrons instead of a draw"},
+    {"dark_current", "electrons that no light freed", "none"},
+    {"full_well", "a pixel holds so many electrons and no more", "no saturation before the ADC"},
+    {"read_noise", "noise of the read-out amplifier", "none"},
+    {"quantisation", "gain, bias, ADC range and rounding", "one DN an electron, no bias, 16 bits"},
+}};
+
+}  // namespace
+
+const EffectFacts& facts(Effect effect) { return table[static_cast<std::size_t>(effect)]; }
+
+std::optional<Effect> effect_named(std::string_view name) {
+  for (std::size_t i = 0; i < effect_count; ++i)
+    if (table[i].name == name) return static_cast<Effect>(i);
+  return std::nullopt;
+}
+
+}  // namespace dmise

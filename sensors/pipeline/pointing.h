@@ -1,0 +1,48 @@
+#pragma once
+#include "core/config/scenario.h"
+#include "core/frames/earth_orientation.h"
+#include "core/frames/site.h"
+#include "core/frames/vec.h"
+
+namespace dmise {
+
+/// Camera axes for a boresight at (`longitude_rad`, `latitude_rad`) of frame `F`: the image's up (-y)
+/// points along increasing latitude turned by `roll_rad` towards increasing longitude. Defined at the
+/// poles too, where the longitude chooses. Seen from inside the sphere: with north up, east is left.
+template <class F>
+Rotation<CameraFrame, F> camera_at(double longitude_rad, double latitude_rad, double roll_rad) {
+  const double cl = std::cos(longitude_rad), sl = std::sin(longitude_rad);
+  const double cb = std::cos(latitude_rad), sb = std::sin(latitude_rad);
+  const Vec<F> boresight{cl * cb, sl * cb, sb};
+  const Vec<F> north{-cl * sb, -sl * sb, cb};
+  const Vec<F> east{-sl, cl, 0.0};
+  const Vec<F> up = north * std::cos(roll_rad) + east * std::sin(roll_rad);
+  const Vec<F> right = cross(boresight, up);
+  Rotation<CameraFrame, F> r;
+  r.m = {{{right.x, right.y, right.z}, {-up.x, -up.y, -up.z}, {boresight.x, boresight.y, boresight.z}}};
+  return r;
+}
+
+/// Where an observer is, at one instant.
+struct ObserverState {
+  Vec<Gcrs> position_m;
+  Vec<Gcrs> velocity_m_per_s;  // geocentric
+};
+
+/// What the attitude of a camera may depend on at one instant.
+struct PointingScene {
+  SimTime time;
+  ObserverState observer;
+  Vec<Gcrs> target_m;                              // geocentric; used by PointTarget only
+  Rotation<Itrs, Gcrs> itrs_from_gcrs;
+  const Site* site = nullptr;                      // null aboard a platform
+};
+
+/// Attitude with which a camera would point at its goal at the instant of `scene`.
+Rotation<CameraFrame, Gcrs> aim(const SensorConfig& sensor, const PointingScene& scene);
+
+/// Attitude at the instant `now` of an exposure aimed at the instant `aimed`, as the tracking says.
+Rotation<CameraFrame, Gcrs> camera_from_gcrs(const SensorConfig& sensor, const PointingScene& aimed,
+                                             const PointingScene& now);
+
+}  // namespace dmise
