@@ -1,0 +1,9 @@
+#pragma once
+#include <string>
+
+namespace dmise {
+
+/// "DMISE 0.1.0"
+inline std::string software_name() { return "DMISE " DMISE_VERSION; }
+
+}  // namespace dmise

@@ -1,0 +1,53 @@
+#include "launch/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace dmise {
+
+using Seconds = std::chrono::duration<double>;
+
+Progress::Progress(double interval_s)
+    : start_(std::chrono::steady_clock::now()),
+      shown_(start_ - std::chrono::hours(1)),
+      interval_s_(interval_s),
+      terminal_(isatty(STDERR_FILENO)) {
+  if (terminal_) interval_s_ = 0.1;
+}
+
+Progress::~Progress() { clear_line(); }
+
+void Progress::clear_line() {
+  if (open_line_) std::fputs("\n", stderr);
+  open_line_ = false;
+}
+
+void Progress::show(const ProgressState& s, bool last) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!last && Seconds(now - shown_).count() < interval_s_) return;
+  shown_ = now;
+  char line[512];
+  const double wall_s = Seconds(now - start_).count();
+  int used = std::snprintf(line, sizeof line,
+                           "simulated %.0f of %.0f s, frames %d of %d, detections %ld, %.0f s elapsed",
+                           s.simulated_s, s.duration_s, s.frames, s.frames_total, s.detections, wall_s);
+  if (!s.waiting_for.empty())
+    std::snprintf(line + used, sizeof line - std::size_t(used), ", waiting for %s",
+                  s.waiting_for.c_str());
+  if (terminal_) {
+    constexpr int width = 20;
+    const double share = s.duration_s > 0 ? s.simulated_s / s.duration_s : 0.0;
+    const int full = std::clamp(static_cast<int>(share * width), 0, width);
+    std::fprintf(stderr, "\r\033[K[%.*s%.*s] %s", full, "####################", width - full,
+                 "....................", line);
+    open_line_ = true;
+    if (last) clear_line();
+  } else {
+    std::fprintf(stderr, "%s\n", line);
+  }
+  std::fflush(stderr);
+}
+
+}  // namespace dmise

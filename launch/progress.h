@@ -1,0 +1,32 @@
+#pragma once
+#include <chrono>
+#include <string>
+
+namespace dmise {
+
+/// What a running simulation tells whoever waits for it.
+struct ProgressState {
+  double simulated_s = 0.0;
+  double duration_s = 0.0;
+  int frames = 0, frames_total = 0;
+  long detections = 0;
+  std::string waiting_for;  // the nodes that hold the clock, empty if unknown
+};
+
+/// A bar redrawn in place on a terminal; one line at most every `interval_s` elsewhere.
+class Progress {
+ public:
+  explicit Progress(double interval_s = 5.0);
+  ~Progress();
+  void show(const ProgressState& state, bool last = false);
+  /// Ends the line being redrawn, so that other text can follow.
+  void clear_line();
+
+ private:
+  std::chrono::steady_clock::time_point start_, shown_;
+  double interval_s_;
+  bool terminal_ = false;
+  bool open_line_ = false;
+};
+
+}  // namespace dmise

@@ -1,0 +1,116 @@
+#include "launch/run_directory.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <tuple>
+
+#include "core/base/digest.h"
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+
+namespace dmise {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Number behind the first `"key":` of a JSON line written by JsonWriter; 0 if there is none.
+double number_in(const std::string& line, const std::string& key) {
+  const auto at = line.find("\"" + key + "\":");
+  return at == std::string::npos ? 0.0 : std::strtod(line.c_str() + at + key.size() + 3, nullptr);
+}
+
+std::int64_t integer_in(const std::string& line, const std::string& key) {
+  const auto at = line.find("\"" + key + "\":");
+  return at == std::string::npos ? 0
+                                 : std::strtoll(line.c_str() + at + key.size() + 3, nullptr, 10);
+}
+
+/// Whole lines of a file; one without its newline was cut short and is left out.
+std::vector<std::string> whole_lines(const std::string& path) {
+  std::vector<std::string> lines;
+  std::ifstream file(path);
+  std::string line;
+  while (std::getline(file, line))
+    if (!file.eof()) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+std::string scenario_digest(const Scenario& scenario) {
+  std::string all = physics_json(scenario);
+  for (const auto& source : scenario.objects) all += "\n" + sha256_hex(read_text_file(source.path));
+  for (const auto& path : {scenario.star_catalogue_path, scenario.earth_orientation_path})
+    all += "\n" + (path.empty() ? std::string("none") : sha256_hex(read_text_file(path)));
+  return sha256_hex(all);
+}
+
+RunDirectory::RunDirectory(std::string path, const Scenario& scenario, std::string digest)
+    : path_(std::move(path)), scenario_(scenario), digest_(std::move(digest)) {
+  std::error_code code;
+  fs::create_directories(path_, code);
+  if (code) throw Error(path_ + ": can't be made: " + code.message());
+  const std::string probe = file(".writable");
+  write_file_whole(probe, "");
+  fs::remove(probe, code);
+}
+
+RunDirectory::Content RunDirectory::content() const {
+  std::error_code ignored;
+  if (!fs::exists(file("run.json"), ignored)) {
+    for (const auto& sensor : scenario_.sensors)
+      if (fs::exists(file(sensor.name), ignored)) return Content::same_run_unfinished;
+    return Content::empty;
+  }
+  const std::string text = read_text_file(file("run.json"));
+  if (text.find("\"digest\":\"" + digest_ + "\"") == std::string::npos) return Content::another_run;
+  return text.find("\"status\":\"complete\"") == std::string::npos ? Content::same_run_unfinished
+                                                                   : Content::same_run_complete;
+}
+
+void RunDirectory::clear() {
+  std::error_code ignored;
+  for (const auto& sensor : scenario_.sensors) fs::remove_all(file(sensor.name), ignored);
+  for (const char* name : {"run.json", "detections.jsonl", "truth.jsonl", "frames.jsonl", "index.html"})
+    fs::remove(file(name), ignored);
+}
+
+void RunDirectory::merge_lines() const {
+  for (const std::string name : {"detections.jsonl", "truth.jsonl", "frames.jsonl"}) {
+    if (name == "truth.jsonl" && !scenario_.output.truth) continue;
+    // (time, sensor, place in the sensor's own file): never the order of arrival.
+    std::vector<std::tuple<std::int64_t, std::string, std::size_t, std::string>> rows;
+    for (const auto& sensor : scenario_.sensors) {
+      auto lines = whole_lines(file(sensor.name) + "/" + name);
+      for (std::size_t i = 0; i < lines.size(); ++i)
+        rows.emplace_back(integer_in(lines[i], "time_ns"), sensor.name, i, std::move(lines[i]));
+    }
+    std::sort(rows.begin(), rows.end());
+    std::string text;
+    for (const auto& row : rows) text += std::get<3>(row) + "\n";
+    write_file_whole(file(name), text);
+  }
+}
+
+std::vector<SensorSummary> summarise(const Scenario& scenario, const std::string& run_path) {
+  std::vector<SensorSummary> summaries;
+  for (const auto& sensor : scenario.sensors) {
+    SensorSummary s{.name = sensor.name};
+    const std::string directory = run_path + "/" + sensor.name + "/";
+    s.frames = static_cast<int>(whole_lines(directory + "frames.jsonl").size());
+    s.detections = static_cast<int>(whole_lines(directory + "detections.jsonl").size());
+    for (const auto& line : whole_lines(directory + "truth.jsonl"))
+      s.objects += line.find("\"in_frame\":true") != std::string::npos;
+    const auto costs = whole_lines(directory + "cost.jsonl");
+    for (const auto& line : costs) {
+      s.seconds_per_frame += number_in(line, "total_s") / double(costs.size());
+      s.memory_mb = std::max(s.memory_mb, number_in(line, "pss_mb"));
+    }
+    summaries.push_back(s);
+  }
+  return summaries;
+}
+
+}  // namespace dmise

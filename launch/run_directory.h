@@ -1,0 +1,49 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/config/scenario.h"
+
+namespace dmise {
+
+/// The directory that a run writes into, and what its run.json says of it.
+class RunDirectory {
+ public:
+  /// Makes `path` and tries to write there. Throws `Error` "PATH: reason".
+  RunDirectory(std::string path, const Scenario& scenario, std::string digest);
+
+  const std::string& path() const { return path_; }
+  const std::string& digest() const { return digest_; }
+
+  enum class Content { empty, same_run_complete, same_run_unfinished, another_run };
+  Content content() const;
+
+  /// Removes what an earlier run left: products of the scenario's sensors, merged files, run.json.
+  void clear();
+
+  /// Merges the sensors' lines into detections.jsonl, truth.jsonl and frames.jsonl, sorted by (time,
+  /// sensor, index). A line cut short by an interruption is left out.
+  void merge_lines() const;
+
+ private:
+  std::string file(const std::string& name) const { return path_ + "/" + name; }
+  std::string path_;
+  const Scenario& scenario_;
+  std::string digest_;
+};
+
+/// Digest of all that decides the products: the resolved scenario and the bytes of its catalogues.
+std::string scenario_digest(const Scenario& scenario);
+
+/// Per sensor, summed over its lines in frames.jsonl, detections.jsonl and cost.jsonl.
+struct SensorSummary {
+  std::string name;
+  int frames = 0;
+  int detections = 0;
+  int objects = 0;              // with light in a frame, from the truth
+  double seconds_per_frame = 0.0;
+  double memory_mb = 0.0;       // largest PSS reported
+};
+std::vector<SensorSummary> summarise(const Scenario& scenario, const std::string& run_path);
+
+}  // namespace dmise

@@ -1,0 +1,111 @@
+#include "launch/run_record.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "core/base/json.h"
+#include "core/base/text_file.h"
+#include "core/base/version.h"
+
+namespace dmise {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string frame_file(std::uint32_t frame, const char* ending) {
+  char name[64];
+  std::snprintf(name, sizeof name, "frame-%06u%s", frame, ending);
+  return name;
+}
+
+bool exists(const std::string& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+}  // namespace
+
+void write_run_record(const RunDirectory& directory, const Scenario& scenario,
+                      const RunOutcome& outcome) {
+  JsonWriter json;
+  json.begin_object().field("status", outcome.status).field("how", outcome.how);
+  if (!outcome.reason.empty()) json.field("reason", outcome.reason);
+  json.field("software", software_name()).field("digest", directory.digest());
+  json.field("seed", scenario.seed).field("wall_s", outcome.wall_s);
+  json.key("scenario").raw(physics_json(scenario));
+  json.key("nodes").begin_array();
+  for (const auto& node : outcome.nodes) {
+    json.begin_object().field("name", node.name).field("compute_s", node.compute_s);
+    json.field("messaging_s", node.messaging_s).field("waiting_s", node.waiting_s).end_object();
+  }
+  json.end_array().key("frames").begin_array();
+  for (const auto& sensor : scenario.sensors) {
+    std::ifstream costs(directory.path() + "/" + sensor.name + "/cost.jsonl");
+    std::string line;
+    while (std::getline(costs, line))
+      if (!costs.eof()) json.raw(line);
+  }
+  json.end_array().end_object();
+  write_file_whole(directory.path() + "/run.json", json.take() + "\n");
+}
+
+void write_index_page(const RunDirectory& directory, const Scenario& scenario) {
+  std::string html =
+      "<!doctype html><meta charset=utf-8><title>DMISE run</title>"
+      "<meta name=viewport content='width=device-width'>"
+      "<style>body{font:15px/1.4 sans-serif;background:#111;color:#ddd;margin:2em}"
+      "a{color:#8cf}img{max-width:100%;background:#000}table{border-collapse:collapse}"
+      "td,th{padding:.2em .8em;text-align:right;border-bottom:1px solid #333}"
+      "td:first-child,th:first-child{text-align:left}</style>"
+      "<h1>DMISE run</h1><p>Start " + scenario.start_utc + ", " +
+      std::to_string(static_cast<long>(scenario.duration.seconds())) + " s, seed " +
+      std::to_string(scenario.seed) +
+      ". Truth is green, detections are yellow. <a href=detections.jsonl>detections.jsonl</a> "
+      "<a href=truth.jsonl>truth.jsonl</a> <a href=run.json>run.json</a></p>"
+      "<table><tr><th>sensor<th>frames<th>objects in frame<th>detections<th>s a frame<th>PSS, MB";
+  const auto summaries = summarise(scenario, directory.path());
+  char cells[256];
+  for (const auto& s : summaries) {
+    std::snprintf(cells, sizeof cells, "<td>%d<td>%d<td>%d<td>%.2f<td>%.0f", s.frames, s.objects,
+                  s.detections, s.seconds_per_frame, s.memory_mb);
+    html += "<tr><td><a href='#" + s.name + "'>" + s.name + "</a>" + cells;
+  }
+  html += "</table>";
+  for (const auto& s : summaries) {
+    html += "<h2 id='" + s.name + "'>" + s.name + "</h2>";
+    for (std::uint32_t frame = 1; frame <= std::uint32_t(s.frames); ++frame) {
+      const std::string base = s.name + "/";
+      const std::string marked = base + frame_file(frame, "-marked.png");
+      if (!exists(directory.path() + "/" + marked)) continue;
+      html += "<p>frame " + std::to_string(frame) + ": <a href='" + base + frame_file(frame, ".fits") +
+              "'>FITS</a> <a href='" + base + frame_file(frame, ".png") + "'>PNG</a><br><a href='" +
+              marked + "'><img loading=lazy src='" + marked + "'></a></p>";
+    }
+  }
+  write_file_whole(directory.path() + "/index.html", html + "\n");
+}
+
+std::string summary_text(const RunDirectory& directory, const Scenario& scenario,
+                         const RunOutcome& outcome) {
+  char row[256];
+  std::snprintf(row, sizeof row, "%-20s %7s %8s %11s %10s %8s\n", "sensor", "frames", "objects",
+                "detections", "s a frame", "PSS, MB");
+  std::string text = row;
+  std::string picture;
+  for (const auto& s : summarise(scenario, directory.path())) {
+    std::snprintf(row, sizeof row, "%-20s %7d %8d %11d %10.2f %8.0f\n", s.name.c_str(), s.frames,
+                  s.objects, s.detections, s.seconds_per_frame, s.memory_mb);
+    text += row;
+    const std::string marked = directory.path() + "/" + s.name + "/" + frame_file(1, "-marked.png");
+    if (picture.empty() && exists(marked)) picture = marked;
+  }
+  std::snprintf(row, sizeof row, "%s in %.1f s (%s)\n", outcome.status.c_str(), outcome.wall_s,
+                outcome.how.c_str());
+  text += row;
+  if (!picture.empty()) text += "open " + picture + "\n";
+  text += "or   " + directory.path() + "/index.html\n";
+  return text;
+}
+
+}  // namespace dmise

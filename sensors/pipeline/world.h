@@ -1,0 +1,52 @@
+#pragma once
+#include <deque>
+#include <memory>
+
+#include "core/sim/state.h"
+
+namespace dmise {
+
+/// Position and its derivative in GCRS.
+struct Motion {
+  Vec<Gcrs> position_m;
+  Vec<Gcrs> slope_m_per_s;
+};
+
+/// The published states around an exposure: the last few ticks of what actors said, interpolated.
+class World {
+ public:
+  void add(std::shared_ptr<const ObjectRoster> roster) { roster_ = std::move(roster); }
+  void add(std::shared_ptr<const ObjectStates> states) { states_.push_back(std::move(states)); }
+  void add(std::shared_ptr<const EnvironmentState> state) { environment_.push_back(std::move(state)); }
+  /// Forgets what is not needed for times >= `t`.
+  void forget_before(SimTime t);
+
+  const ObjectRoster& roster() const { return *roster_; }
+  std::size_t object_count() const { return roster_ ? roster_->objects.size() : 0; }
+
+  /// Whether object `i` has a state at both ticks around `t`.
+  bool has_state(std::size_t i, SimTime t) const;
+  /// Cubic Hermite between the ticks around `t` on position and slope. `t` must lie within the ticks
+  /// held and the object have a state there.
+  Motion motion(std::size_t i, SimTime t) const;
+
+  /// The environment of the last tick at or before `t`.
+  const EnvironmentState& environment(SimTime t) const;
+
+  /// Index of the object with this catalogue number or name. Throws `ConfigError` with `what` first
+  /// if there is none or the name belongs to several.
+  std::size_t object_named(const std::string& name, const std::string& what) const;
+
+ private:
+  struct Around {
+    const ObjectStates* before;
+    const ObjectStates* after;
+  };
+  Around around(SimTime t) const;
+
+  std::shared_ptr<const ObjectRoster> roster_;
+  std::deque<std::shared_ptr<const ObjectStates>> states_;
+  std::deque<std::shared_ptr<const EnvironmentState>> environment_;
+};
+
+}  // namespace dmise

@@ -1,0 +1,101 @@
+#include "core/config/scenario.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+const std::string good = R"(simulation: {start: 2018-01-21T00:30:00Z, duration_s: 120, tick_s: 5, seed: 1}
+sensors:
+  - name: atlanta
+    site: {latitude_deg: 33.777, longitude_deg: -84.398, height_m: 300}
+    camera: omnissa
+    pointing: zenith
+    exposure_s: 20
+    cadence_s: 30
+)";
+
+class ScenarioFile : public testing::Test {
+ protected:
+  std::string path = (std::filesystem::path(testing::TempDir()) /
+                      ("scenario-" + std::to_string(getpid()) + ".yaml")).string();
+  void SetUp() override { setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1); }
+  void TearDown() override { std::remove(path.c_str()); }
+
+  Scenario load(const std::string& text) {
+    std::ofstream(path) << text;
+    return load_scenario(path);
+  }
+  std::string complaint(std::string text, const std::string& what, const std::string& with) {
+    text.replace(text.find(what), what.size(), with);
+    try {
+      load(text);
+    } catch (const ConfigError& e) {
+      std::string message = e.what();
+      if (message.starts_with(path)) message.erase(0, path.size() + 1);
+      return message;
+    }
+    return "";
+  }
+};
+
+TEST_F(ScenarioFile, ResolvesPresetsAndDefaults) {
+  const auto scenario = load(good);
+  ASSERT_EQ(scenario.sensors.size(), 1u);
+  const auto& sensor = scenario.sensors[0];
+  EXPECT_EQ(scenario.last_tick(), 24);
+  EXPECT_EQ(sensor.camera.optics.columns, 3326);
+  // 90 deg across 3326 pixels of 5.4 um.
+  EXPECT_NEAR(sensor.camera.optics.focal_length_m, 8.98e-3, 0.005e-3);
+  EXPECT_EQ(sensor.tracking, Tracking::fixed);
+  EXPECT_EQ(sensor.sky_zenith_mag_per_arcsec2, 21.9);
+  EXPECT_EQ(physics_json(scenario), physics_json(load(good)));
+}
+
+TEST_F(ScenarioFile, SaysWhereAndWhy) {
+  EXPECT_EQ(complaint(good, "exposure_s: 20", "exposure_s: -1"),
+            "7:17: sensors[0].exposure_s: must be >= 1e-06, got -1");
+  EXPECT_EQ(complaint(good, "exposure_s: 20", "exposur_s: 20"), "3:5: sensors[0].exposure_s: is missing");
+  EXPECT_EQ(complaint(good, "cadence_s: 30", "cadence_s: 30\n    roll_dg: 2"),
+            "9:5: sensors[0].roll_dg: unknown key");
+  EXPECT_EQ(complaint(good, "latitude_deg: 33.777", "latitude_deg: 133.777"),
+            "4:26: sensors[0].site.latitude_deg: must be <= 90, got 133.777");
+  EXPECT_EQ(complaint(good, "2018-01-21T00:30:00Z", "yesterday"),
+            "1:21: simulation.start: must be a UTC time such as 2018-01-21T00:30:00Z, got yesterday");
+  EXPECT_TRUE(complaint(good, "omnissa", "omnisa")
+                  .starts_with("5:13: sensors[0].camera: no such camera, did you mean omnissa?"));
+  EXPECT_EQ(complaint(good, "exposure_s: 20", "exposure_s: 40"),
+            "7:17: sensors[0].exposure_s: must be <= cadence_s, got 40");
+  EXPECT_EQ(complaint(good, "duration_s: 120", "duration_s: 10"),
+            "7:17: sensors[0].exposure_s: the first exposure ends after the run does, got 20");
+}
+
+TEST_F(ScenarioFile, RefusesTwoNodesOfOneName) {
+  const std::string second = good.substr(good.find("  - name"));
+  EXPECT_EQ(complaint(good + second, "seed: 1", "seed: 1"),
+            "9:11: sensors[1].name: another node has this name, got atlanta");
+  EXPECT_EQ(complaint(good, "name: atlanta", "name: time-master"),
+            "3:11: sensors[0].name: another node has this name, got time-master");
+}
+
+TEST_F(ScenarioFile, SwitchesEffectsForAllAndForOne) {
+  const auto scenario =
+      load("effects: {aberration: off}\n" + good + "    effects: {read_noise: off}\n");
+  const auto& effects = scenario.sensors[0].effects;
+  EXPECT_FALSE(effects.has(Effect::annual_aberration));
+  EXPECT_FALSE(effects.has(Effect::diurnal_aberration));
+  EXPECT_FALSE(effects.has(Effect::read_noise));
+  EXPECT_TRUE(effects.has(Effect::refraction));
+}
+
+}  // namespace
+}  // namespace dmise

@@ -1,0 +1,71 @@
+#include "core/config/yaml_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "core/base/error.h"
+
+namespace dmise {
+namespace {
+
+std::string complaint(const std::string& text, const std::function<void(YamlMap&)>& read) {
+  try {
+    YamlMap map(YamlValue::parse(text, "s.yaml"));
+    read(map);
+    map.done();
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(YamlReader, ReadsWhatIsThere) {
+  EXPECT_EQ(complaint("a: 1.5\nb: {c: on, d: [x, y]}\n",
+                      [](YamlMap& m) {
+                        EXPECT_EQ(m.number("a"), 1.5);
+                        YamlMap b(m.require("b"));
+                        EXPECT_TRUE(b.flag_or("c", false));
+                        EXPECT_EQ(b.require("d").list().at(1).text(), "y");
+                        b.done();
+                      }),
+            "");
+}
+
+TEST(YamlReader, PointsAtTheValueThatIsWrong) {
+  const auto read = [](YamlMap& m) { YamlMap(m.require("camera")).number("exposure_s", Bounds::positive()); };
+  EXPECT_EQ(complaint("camera:\n  exposure_s: -1\n", read),
+            "s.yaml:2:15: camera.exposure_s: must be > 0, got -1");
+  EXPECT_EQ(complaint("camera:\n  exposure_s: fast\n", read),
+            "s.yaml:2:15: camera.exposure_s: must be a number, got fast");
+  EXPECT_EQ(complaint("camera:\n  exposure_s: .nan\n", read),
+            "s.yaml:2:15: camera.exposure_s: must be a number, got .nan");
+  EXPECT_EQ(complaint("camera:\n  exposure_s: [1]\n", read),
+            "s.yaml:2:15: camera.exposure_s: must be a number, got a list");
+  EXPECT_EQ(complaint("camera:\n  gain: 1\n", read), "s.yaml:2:3: camera.exposure_s: is missing");
+}
+
+TEST(YamlReader, RefusesUnknownKeysWithASuggestion) {
+  EXPECT_EQ(complaint("exposur_s: 1\n", [](YamlMap& m) { m.number_or("exposure_s", 1.0); }),
+            "s.yaml:1:1: exposur_s: unknown key, did you mean exposure_s?");
+  EXPECT_EQ(complaint("colour: 1\n", [](YamlMap& m) { m.number_or("exposure_s", 1.0); }),
+            "s.yaml:1:1: colour: unknown key");
+}
+
+TEST(YamlReader, RefusesAKeyGivenTwice) {
+  EXPECT_EQ(complaint("a: {b: 1,\n    b: 2}\n", [](YamlMap& m) { m.find("a"); }),
+            "s.yaml:2:5: a.b: key given twice");
+}
+
+TEST(YamlReader, ReportsBrokenYamlWithItsPlace) {
+  EXPECT_TRUE(complaint("a: [1, 2\nb: 3\n", [](YamlMap&) {}).starts_with("s.yaml:2:"));
+  EXPECT_EQ(complaint("- 1\n", [](YamlMap&) {}), "s.yaml:1:1: must be a mapping of keys to values");
+}
+
+TEST(YamlReader, SuggestsOnlyWhatIsNear) {
+  EXPECT_EQ(nearest_name("omnisa", {"omnissa", "raven"}), "omnissa");
+  EXPECT_EQ(nearest_name("telescope", {"omnissa", "raven"}), "");
+}
+
+}  // namespace
+}  // namespace dmise
