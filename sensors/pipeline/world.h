@@ -33,10 +33,6 @@ class World {
   /// The environment of the last tick at or before `t`.
   const EnvironmentState& environment(SimTime t) const;
 
-  /// Index of the object with this catalogue number or name. Throws `ConfigError` with `what` first
-  /// if there is none or the name belongs to several.
-  std::size_t object_named(const std::string& name, const std::string& what) const;
-
  private:
   struct Around {
     const ObjectStates* before;
@@ -48,5 +44,10 @@ class World {
   std::deque<std::shared_ptr<const ObjectStates>> states_;
   std::deque<std::shared_ptr<const EnvironmentState>> environment_;
 };
+
+/// Index of the object with this catalogue number or name. Throws `ConfigError` with `what` first if
+/// there is none or the name belongs to several.
+std::size_t object_index(const ObjectRoster& roster, const std::string& name,
+                         const std::string& what);
 
 }  // namespace dmise

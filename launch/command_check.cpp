@@ -1,0 +1,34 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "launch/commands.h"
+#include "launch/participants.h"
+#include "orbit-node/orbit_actor.h"
+
+namespace dmise {
+namespace {
+
+void check(const std::string& path) {
+  const Scenario scenario = load_scenario(path);
+  const Clock clock = make_clock(scenario);
+  const auto population = load_objects(scenario, clock);
+  check_sensors(scenario, population.roster);
+  for (const auto& note : population.notes) std::printf("note: %s\n", note.c_str());
+  for (const auto& warning : clock.warnings(scenario.duration))
+    std::printf("note: %s\n", warning.c_str());
+  std::printf("%s: %zu objects, %zu sensors, %lld ticks of %g s: no errors\n", path.c_str(),
+              population.elements.size(), scenario.sensors.size(),
+              static_cast<long long>(scenario.last_tick()), scenario.tick.seconds());
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app) {
+  auto path = std::make_shared<std::string>();
+  auto* command = app.add_subcommand("check", "Reads a scenario and all that it names; runs nothing");
+  command->add_option("scenario", *path, "scenario (YAML)")->required();
+  command->callback([path] { check(*path); });
+}
+
+}  // namespace dmise

@@ -1,0 +1,25 @@
+#pragma once
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace dmise {
+
+// The subcommands of `dmise`. Each adds itself to the command line; its work runs in the callback and
+// throws `ConfigError` (exit 2), `Error` (exit 1) or `ExitWith`.
+
+/// Ends the program with a code of its own; what there was to say has been said.
+struct ExitWith {
+  int code = 0;
+};
+
+void add_check_command(CLI::App& app);
+void add_run_command(CLI::App& app);
+void add_launch_command(CLI::App& app);
+void add_detect_command(CLI::App& app);
+void add_catalogue_command(CLI::App& app);
+void add_bench_command(CLI::App& app);
+
+}  // namespace dmise

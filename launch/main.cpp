@@ -1,0 +1,33 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/base/version.h"
+#include "launch/commands.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Simulates a network of optical sensors that watch near-Earth space.", "dmise"};
+  app.set_version_flag("--version", dmise::software_name());
+  app.require_subcommand(1);
+  dmise::add_check_command(app);
+  dmise::add_run_command(app);
+  dmise::add_launch_command(app);
+  dmise::add_detect_command(app);
+  dmise::add_catalogue_command(app);
+  dmise::add_bench_command(app);
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& e) {
+    const int code = app.exit(e);
+    return code == 0 ? 0 : 2;
+  } catch (const dmise::ExitWith& e) {
+    return e.code;
+  } catch (const dmise::ConfigError& e) {
+    std::fprintf(stderr, "dmise: %s\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "dmise: %s\n", e.what());
+    return 1;
+  }
+}

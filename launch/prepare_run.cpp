@@ -1,0 +1,45 @@
+#include "launch/prepare_run.h"
+
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "launch/commands.h"
+
+namespace dmise {
+
+bool prepare_directory(RunDirectory& directory, bool force) {
+  switch (directory.content()) {
+    case RunDirectory::Content::same_run_complete:
+      if (!force) {
+        std::printf("%s holds this run, complete; --force does it again\n%s%s/index.html\n",
+                    directory.path().c_str(), "open ", directory.path().c_str());
+        return false;
+      }
+      break;
+    case RunDirectory::Content::another_run:
+      if (!force)
+        throw ConfigError(directory.path() +
+                          ": holds the products of another run; --force replaces them, --out writes "
+                          "elsewhere");
+      break;
+    case RunDirectory::Content::empty:
+    case RunDirectory::Content::same_run_unfinished: break;
+  }
+  directory.clear();
+  return true;
+}
+
+void finish_run(const RunDirectory& directory, const Scenario& scenario, const RunOutcome& outcome) {
+  directory.merge_lines();
+  write_run_record(directory, scenario, outcome);
+  write_index_page(directory, scenario);
+  std::fputs(summary_text(directory, scenario, outcome).c_str(), stdout);
+  if (outcome.status == "failed") throw Error(outcome.reason);
+  if (const int code = exit_code(outcome.status)) throw ExitWith{code};
+}
+
+int exit_code(const std::string& status) {
+  return status == "complete" ? 0 : status == "interrupted" ? 130 : 1;
+}
+
+}  // namespace dmise

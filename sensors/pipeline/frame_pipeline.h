@@ -1,0 +1,63 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/base/parallel.h"
+#include "core/config/scenario.h"
+#include "core/detection/detection.h"
+#include "core/detection/truth.h"
+#include "core/image/frame_header.h"
+#include "core/sky/star_catalogue.h"
+#include "core/time/clock.h"
+#include "sensors/pipeline/exposure.h"
+#include "sensors/pipeline/world.h"
+
+namespace dmise {
+
+/// One star as it was drawn.
+struct StarTruth {
+  std::uint32_t id = 0;          // in its catalogue
+  double v_mag = 0.0, bv = 0.0;
+  double x_px = 0.0, y_px = 0.0; // centroid of its light in the frame
+  double signal_e = 0.0;         // expected electrons deposited in the frame
+};
+
+/// Everything that comes of one exposure.
+struct FrameProducts {
+  CountImage counts;
+  FrameHeader header;
+  FrameReport report;
+  std::vector<Detection> detections;
+  std::vector<Truth> truths;
+  std::vector<StarTruth> stars;  // only when asked for
+  EffectTimes times;             // wall clock, never part of a repeatable product
+  double detection_s = 0.0, total_s = 0.0;
+};
+
+/// What a sensor's frames have in common.
+struct PipelineSettings {
+  SensorConfig sensor;
+  Clock clock;
+  std::uint64_t seed = 1;
+  std::string digest;
+  bool star_truth = false;
+};
+
+/// The chain of one sensor: states around an exposure -> stars, objects and sky at the focal plane ->
+/// expected electrons -> electrons -> counts -> detections. Keeps its buffers between frames.
+class FramePipeline {
+ public:
+  /// `stars` may be null: no stars. `threads` must outlive the pipeline.
+  FramePipeline(PipelineSettings settings, std::shared_ptr<const StarCatalogue> stars,
+                Threads& threads);
+  ~FramePipeline();
+
+  FrameProducts run(const Exposure& exposure, const World& world);
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace dmise

@@ -1,0 +1,33 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/config/scenario.h"
+#include "core/effects/effects.h"
+#include "core/time/clock.h"
+#include "sensors/pipeline/frame_pipeline.h"
+
+namespace dmise {
+
+/// Writes the products of one sensor into its own directory: frame-000001.fits and pictures whole or
+/// not at all, then its lines in frames.jsonl, detections.jsonl, truth.jsonl. A frame is done when its
+/// line in frames.jsonl is whole. Nothing here depends on the wall clock but cost.jsonl.
+class ProductWriter {
+ public:
+  ProductWriter(std::string directory, const OutputConfig& output, Clock clock);
+
+  void write(const FrameProducts& frame);
+
+ private:
+  std::string frame_path(std::uint32_t frame, const char* ending) const;
+  void append(const char* name, const std::string& lines) const;
+
+  std::string directory_;
+  OutputConfig output_;
+  Clock clock_;
+};
+
+/// Proportional set size of this process [MB]: its own memory and its share of what it shares.
+double pss_mb();
+
+}  // namespace dmise

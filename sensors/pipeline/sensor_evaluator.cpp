@@ -1,0 +1,64 @@
+#include "sensors/pipeline/sensor_evaluator.h"
+
+namespace dmise {
+
+SensorEvaluator::SensorEvaluator(PipelineSettings settings, SimTime tick_length, SimTime duration,
+                                 const OutputConfig& output,
+                                 std::shared_ptr<const StarCatalogue> stars, std::string directory,
+                                 Threads& threads)
+    : sensor_(settings.sensor),
+      tick_length_(tick_length),
+      last_frame_(exposures_within(settings.sensor, duration)),
+      pipeline_(settings, std::move(stars), threads),
+      writer_(std::move(directory), output, settings.clock) {}
+
+std::vector<std::string> SensorEvaluator::produces() const {
+  return {frame_prefix + sensor_.name, detection_prefix + sensor_.name, truth_prefix + sensor_.name};
+}
+
+std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> inputs) {
+  for (const auto& message : inputs) {
+    if (const auto* roster = std::get_if<ObjectRoster>(message.state.get()))
+      world_.add(std::shared_ptr<const ObjectRoster>(message.state, roster));
+    if (const auto* states = std::get_if<ObjectStates>(message.state.get()))
+      world_.add(std::shared_ptr<const ObjectStates>(message.state, states));
+    if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
+      world_.add(std::shared_ptr<const EnvironmentState>(message.state, state));
+  }
+  std::vector<Message> messages;
+  const SimTime now{tick * tick_length_.ns};
+  while (next_frame_ <= last_frame_ && !stop_asked_()) {
+    const Exposure exposure = exposure_of(sensor_, next_frame_);
+    if (exposure.end > now) {
+      world_.forget_before(exposure.start);
+      break;
+    }
+    FrameProducts frame = pipeline_.run(exposure, world_);
+    writer_.write(frame);
+    detections_ += static_cast<long>(frame.detections.size());
+    messages.push_back({frame_prefix + sensor_.name, tick,
+                        std::make_shared<State>(std::move(frame.report))});
+    messages.push_back({detection_prefix + sensor_.name, tick,
+                        std::make_shared<State>(DetectionSet{sensor_.name, exposure.frame,
+                                                             std::move(frame.detections)})});
+    messages.push_back({truth_prefix + sensor_.name, tick,
+                        std::make_shared<State>(
+                            TruthSet{sensor_.name, exposure.frame, std::move(frame.truths)})});
+    ++next_frame_;
+    ++progress_;
+  }
+  ++progress_;
+  return messages;
+}
+
+void check_sensors(const Scenario& scenario, const ObjectRoster& roster) {
+  for (const auto& sensor : scenario.sensors) {
+    const std::string where = scenario.path + ": sensors." + sensor.name;
+    if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place))
+      object_index(roster, platform->object, where + ".platform");
+    if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
+      object_index(roster, target->object, where + ".pointing.target");
+  }
+}
+
+}  // namespace dmise

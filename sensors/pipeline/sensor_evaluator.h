@@ -1,0 +1,50 @@
+#pragma once
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/config/scenario.h"
+#include "core/sim/participant.h"
+#include "sensors/pipeline/frame_pipeline.h"
+#include "sensors/pipeline/product_writer.h"
+
+namespace dmise {
+
+/// A sensor as an Evaluator: gathers the states of the world and, as soon as they cover an exposure,
+/// makes its frame, writes its products and publishes report, detections and truth.
+class SensorEvaluator : public Participant {
+ public:
+  SensorEvaluator(PipelineSettings settings, SimTime tick_length, SimTime duration,
+                  const OutputConfig& output, std::shared_ptr<const StarCatalogue> stars,
+                  std::string directory, Threads& threads);
+
+  std::string name() const override { return sensor_.name; }
+  std::vector<std::string> produces() const override;
+  std::vector<std::string> consumes() const override { return {objects_topic, environment_topic}; }
+  std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
+  std::uint64_t progress() const override { return progress_; }
+
+  /// Asked between frames: true leaves the rest of a step undone.
+  void stop_when(std::function<bool()> asked) { stop_asked_ = std::move(asked); }
+  int frames_done() const { return static_cast<int>(next_frame_) - 1; }
+  long detections_made() const { return detections_; }
+
+ private:
+  SensorConfig sensor_;
+  SimTime tick_length_;
+  std::uint32_t last_frame_;
+  FramePipeline pipeline_;
+  ProductWriter writer_;
+  World world_;
+  std::function<bool()> stop_asked_ = [] { return false; };
+  std::uint32_t next_frame_ = 1;
+  long detections_ = 0;
+  std::atomic<std::uint64_t> progress_{0};
+};
+
+/// Finds what sensors name in the roster: platforms and targets. Throws `ConfigError` naming the
+/// sensor and the key.
+void check_sensors(const Scenario& scenario, const ObjectRoster& roster);
+
+}  // namespace dmise

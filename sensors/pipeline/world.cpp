@@ -1,0 +1,61 @@
+#include "sensors/pipeline/world.h"
+
+#include "core/base/error.h"
+#include "core/config/yaml_reader.h"
+#include "core/orbit/interpolation.h"
+
+namespace dmise {
+
+void World::forget_before(SimTime t) {
+  while (states_.size() > 1 && states_[1]->time <= t) states_.pop_front();
+  while (environment_.size() > 1 && environment_[1]->time <= t) environment_.pop_front();
+}
+
+World::Around World::around(SimTime t) const {
+  for (std::size_t k = 1; k < states_.size(); ++k)
+    if (t <= states_[k]->time && t >= states_[k - 1]->time)
+      return {states_[k - 1].get(), states_[k].get()};
+  if (!states_.empty() && states_.back()->time == t) return {states_.back().get(), states_.back().get()};
+  throw Error("no object states at " + std::to_string(t.seconds()) + " s");
+}
+
+bool World::has_state(std::size_t i, SimTime t) const {
+  const auto [before, after] = around(t);
+  return before->code[i] == 0 && after->code[i] == 0;
+}
+
+Motion World::motion(std::size_t i, SimTime t) const {
+  const auto [before, after] = around(t);
+  if (before == after) return {before->position(i), before->slope(i)};
+  const double span_s = (after->time - before->time).seconds();
+  const double u_s = (t - before->time).seconds();
+  return hermite(before->position(i), before->slope(i), after->position(i), after->slope(i), span_s,
+                 u_s);
+}
+
+const EnvironmentState& World::environment(SimTime t) const {
+  for (auto state = environment_.rbegin(); state != environment_.rend(); ++state)
+    if ((*state)->time <= t) return **state;
+  throw Error("no environment at " + std::to_string(t.seconds()) + " s");
+}
+
+std::size_t object_index(const ObjectRoster& roster, const std::string& name,
+                         const std::string& what) {
+  std::size_t found = roster.objects.size();
+  for (std::size_t i = 0; i < roster.objects.size(); ++i) {
+    const auto& object = roster.objects[i];
+    if (std::to_string(object.catalogue_number) == name) return i;
+    if (object.name != name) continue;
+    if (found < roster.objects.size())
+      throw ConfigError(what + ": several objects have this name, give the catalogue number, got " + name);
+    found = i;
+  }
+  if (found < roster.objects.size()) return found;
+  std::vector<std::string> names;
+  for (const auto& object : roster.objects) names.push_back(object.name);
+  const std::string hint = nearest_name(name, names);
+  throw ConfigError(what + ": no such object" + (hint.empty() ? "" : ", did you mean " + hint + "?") +
+                    ", got " + name);
+}
+
+}  // namespace dmise
