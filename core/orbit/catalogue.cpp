@@ -1,0 +1,105 @@
+#include "core/orbit/catalogue.h"
+
+#include <unordered_map>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/orbit/epoch.h"
+#include "core/orbit/text_fields.h"
+#include "core/orbit/tle.h"
+
+namespace dmise {
+
+namespace {
+
+/// First line that says something: not blank, not a comment.
+std::string_view first_line(std::string_view text) {
+  LineReader lines(text);
+  while (const auto line = lines.next())
+    if (!trimmed(*line).empty() && trimmed(*line)[0] != '#') return trimmed(*line);
+  return {};
+}
+
+CatalogueFormat format_of(std::string_view text, const std::string& source) {
+  const std::string_view line = first_line(text);
+  if (line.empty()) throw ConfigError(source + ": holds no element sets");
+  if (line[0] == '[' && line.size() > 1 && line[1] >= '0' && line[1] <= '9')
+    return CatalogueFormat::gpredict;
+  return CatalogueFormat::tle;
+}
+
+/// Leaves the newest set of each object at its place in the file.
+void keep_newest(CatalogueFile& file) {
+  std::unordered_map<std::uint32_t, std::size_t> newest;  // catalogue number -> index
+  std::vector<bool> dropped(file.elements.size(), false);
+  for (std::size_t i = 0; i < file.elements.size(); ++i) {
+    const MeanElements& e = file.elements[i];
+    if (e.catalogue_number == 0) continue;
+    const auto [place, first] = newest.try_emplace(e.catalogue_number, i);
+    if (first) continue;
+    const MeanElements& other = file.elements[place->second];
+    const bool newer =
+        days_between({other.epoch_jd1, other.epoch_jd2}, {e.epoch_jd1, e.epoch_jd2}) >= 0;
+    dropped[newer ? place->second : i] = true;
+    if (newer) place->second = i;
+    ++file.superseded;
+  }
+  if (file.superseded == 0) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < file.elements.size(); ++i) {
+    if (dropped[i]) continue;
+    if (kept != i) file.elements[kept] = std::move(file.elements[i]);
+    ++kept;
+  }
+  file.elements.resize(kept);
+}
+
+}  // namespace
+
+const char* name_of(CatalogueFormat format) {
+  switch (format) {
+    case CatalogueFormat::tle:
+      return "TLE/3LE";
+    case CatalogueFormat::gpredict:
+      return "gpredict";
+    case CatalogueFormat::omm_json:
+      return "OMM (JSON)";
+    case CatalogueFormat::omm_csv:
+      return "OMM (CSV)";
+    case CatalogueFormat::omm_xml:
+      return "OMM (XML)";
+    case CatalogueFormat::omm_kvn:
+      return "OMM (KVN)";
+  }
+  return "";
+}
+
+std::string CatalogueFile::describe(const CatalogueProblem& problem) const {
+  return source + ":" + std::to_string(problem.line) + ": " + problem.reason;
+}
+
+CatalogueFile parse_catalogue(std::string_view text, const std::string& source,
+                              const CatalogueOptions& options) {
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (text.substr(0, byte_order_mark.size()) == byte_order_mark)
+    text.remove_prefix(byte_order_mark.size());
+  CatalogueFile file;
+  file.source = source;
+  file.format = format_of(text, source);
+  switch (file.format) {
+    case CatalogueFormat::gpredict:
+      read_gpredict(text, options.lenient, file);
+      break;
+    default:
+      read_tle(text, options.lenient, file);
+      break;
+  }
+  if (!options.keep_every_epoch) keep_newest(file);
+  return file;
+}
+
+CatalogueFile read_catalogue(const std::string& path, const CatalogueOptions& options) {
+  return parse_catalogue(read_text_file(path), path, options);
+}
+
+}  // namespace dmise

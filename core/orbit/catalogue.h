@@ -1,0 +1,55 @@
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/orbit/elements.h"
+
+namespace dmise {
+
+/// Formats of element sets, told apart by their content.
+enum class CatalogueFormat { tle, gpredict, omm_json, omm_csv, omm_xml, omm_kvn };
+
+/// "TLE/3LE", "OMM (JSON)", ...
+const char* name_of(CatalogueFormat format);
+
+struct CatalogueOptions {
+  /// TLE: read lines with a wrong or missing checksum and lines cut short after the last element,
+  /// with a warning each. By default they are refused: nothing else tells a damaged line.
+  bool lenient = false;
+  /// Keep all element sets of one object. By default the newest is kept and the others are counted.
+  bool keep_every_epoch = false;
+};
+
+/// Why one record was refused, or what is odd about one that was read.
+struct CatalogueProblem {
+  int line = 0;        // from 1; in JSON and XML the record's number, from 1
+  std::string reason;  // `reason, got "value"`
+};
+
+/// A catalogue as read. Every record is in exactly one of `elements`, `refused` and `superseded`.
+struct CatalogueFile {
+  std::string source;  // path, or what the caller calls the text
+  CatalogueFormat format = CatalogueFormat::tle;
+  std::vector<MeanElements> elements;      // in file order
+  std::vector<CatalogueProblem> refused;   // records that were not read
+  std::vector<CatalogueProblem> warnings;  // records that were read all the same
+  std::size_t superseded = 0;              // element sets older than another of the same object
+
+  std::size_t records() const { return elements.size() + refused.size() + superseded; }
+  /// `source:line: reason`
+  std::string describe(const CatalogueProblem& problem) const;
+};
+
+/// Reads a catalogue file (gzip too): TLE with or without names (also "0 NAME"), gpredict's
+/// satellites.dat, OMM in JSON, CSV, XML or KVN. A bad record never takes others with it. Of two
+/// sets of one object with one epoch the later in the file is kept; number 0 (not catalogued) is no
+/// one object. Throws `ConfigError` when the file can't be read or is in none of these formats.
+CatalogueFile read_catalogue(const std::string& path, const CatalogueOptions& options = {});
+
+/// The same from a text; `source` names it in messages.
+CatalogueFile parse_catalogue(std::string_view text, const std::string& source,
+                              const CatalogueOptions& options = {});
+
+}  // namespace dmise

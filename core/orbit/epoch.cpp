@@ -1,0 +1,95 @@
+#include "core/orbit/epoch.h"
+
+#include <erfa.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/orbit/text_fields.h"
+
+namespace dmise {
+
+namespace {
+
+constexpr std::array<int, 12> month_days = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+
+int days_in_month(int year, int month) {
+  return month_days[static_cast<std::size_t>(month - 1)] + (month == 2 && is_leap_year(year));
+}
+
+int day_of_year(int year, int month, int day) {
+  int days = day;
+  for (int m = 1; m < month; ++m) days += days_in_month(year, m);
+  return days;
+}
+
+/// Exactly `width` digits at `at`.
+std::optional<int> digits(std::string_view text, std::size_t at, std::size_t width) {
+  if (at + width > text.size()) return std::nullopt;
+  int value = 0;
+  for (std::size_t i = at; i < at + width; ++i) {
+    if (text[i] < '0' || text[i] > '9') return std::nullopt;
+    value = value * 10 + (text[i] - '0');
+  }
+  return value;
+}
+
+/// Length of the UTC day that begins at `midnight` [s]: 86400, or 86401 with a leap second.
+double utc_day_length_s(double midnight) {
+  double tai1 = 0, tai2 = 0, next1 = 0, next2 = 0;
+  // Years before 1960 and beyond ERFA's table answer "dubious": there 86400 s is what is meant.
+  if (eraUtctai(midnight, 0.0, &tai1, &tai2) != 0) return 86400.0;
+  if (eraUtctai(midnight + 1.0, 0.0, &next1, &next2) != 0) return 86400.0;
+  return std::round(((next1 - tai1) + (next2 - tai2)) * 86400.0);
+}
+
+}  // namespace
+
+bool is_leap_year(int year) { return year % 4 == 0 && (year % 100 != 0 || year % 400 == 0); }
+
+double julian_midnight(int year, int day_of_year) {
+  const int y = year - 1;
+  return 1721425.5 + 365.0 * y + (y / 4 - y / 100 + y / 400) + (day_of_year - 1);
+}
+
+int full_year(int two_digit_year) { return two_digit_year + (two_digit_year >= 57 ? 1900 : 2000); }
+
+std::optional<UtcEpoch> parse_iso_epoch(std::string_view text) {
+  text = trimmed(text);
+  if (!text.empty() && text.back() == 'Z') text.remove_suffix(1);
+  const std::size_t t = text.find_first_of("T ");
+  if (t == std::string_view::npos) return std::nullopt;
+  const std::string_view date = text.substr(0, t), time = text.substr(t + 1);
+
+  const auto year = digits(date, 0, 4);
+  if (!year || *year < 1583 || date.size() < 8 || date[4] != '-') return std::nullopt;
+  int ordinal = 0;
+  if (date.size() == 8) {
+    const auto day = digits(date, 5, 3);
+    if (!day || *day < 1 || *day > 365 + is_leap_year(*year)) return std::nullopt;
+    ordinal = *day;
+  } else {
+    const auto month = digits(date, 5, 2), day = digits(date, 8, 2);
+    if (date.size() != 10 || date[7] != '-' || !month || !day) return std::nullopt;
+    if (*month < 1 || *month > 12) return std::nullopt;
+    if (*day < 1 || *day > days_in_month(*year, *month)) return std::nullopt;
+    ordinal = day_of_year(*year, *month, *day);
+  }
+
+  const auto hour = digits(time, 0, 2), minute = digits(time, 3, 2);
+  if (!hour || !minute || *hour > 23 || *minute > 59 || time.size() < 8) return std::nullopt;
+  if (time[2] != ':' || time[5] != ':' || !digits(time, 6, 2)) return std::nullopt;
+  for (const char c : time.substr(8))
+    if (c != '.' && (c < '0' || c > '9')) return std::nullopt;
+  const auto second = parse_real(time.substr(6));
+  if (!second || *second < 0 || *second >= 61) return std::nullopt;
+
+  const double midnight = julian_midnight(*year, ordinal);
+  const double day_length_s = utc_day_length_s(midnight);
+  const double second_of_day = (*hour * 60.0 + *minute) * 60.0 + *second;
+  if (*second >= 60 && (*hour != 23 || *minute != 59)) return std::nullopt;
+  if (second_of_day >= day_length_s) return std::nullopt;
+  return UtcEpoch{midnight, second_of_day / day_length_s};
+}
+
+}  // namespace dmise

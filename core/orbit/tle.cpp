@@ -1,0 +1,183 @@
+#include "core/orbit/tle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/base/units.h"
+#include "core/orbit/epoch.h"
+#include "core/orbit/text_fields.h"
+
+namespace dmise {
+
+namespace {
+
+constexpr double rev_per_day_in_rad_per_min =
+    1440.0 / (2.0 * pi);  // divides, as the reference does
+constexpr std::size_t full_length = 69;
+
+/// Columns `first` to `last`, both counted from 1 as in the format's description.
+std::string_view columns(std::string_view line, std::size_t first, std::size_t last) {
+  if (line.size() < first) return {};
+  return line.substr(first - 1, last - first + 1);
+}
+
+double real_field(std::string_view field, const char* what) {
+  const auto value = parse_real(trimmed(field));
+  if (!value) throw RecordError(std::string(what) + " is not a number" + got(field));
+  return *value;
+}
+
+double real_in(std::string_view field, const char* what, double low, double high) {
+  const double value = real_field(field, what);
+  if (value < low || value > high)
+    throw RecordError(std::string(what) + " out of range" + got(field));
+  return value;
+}
+
+int count_or_zero(std::string_view field, const char* what) {
+  if (trimmed(field).empty()) return 0;
+  const auto value = parse_integer(trimmed(field));
+  if (!value || *value < 0) throw RecordError(std::string(what) + " is not a number" + got(field));
+  return *value;
+}
+
+std::string zeros_for_blanks(std::string_view field) {
+  std::string digits(field);
+  std::replace(digits.begin(), digits.end(), ' ', '0');
+  return digits;
+}
+
+/// "[+- ]ddddd[+- ]d": a mantissa after an assumed decimal point, and a power of ten. Blank is 0.
+double exponent_field(std::string_view field, const char* what) {
+  if (trimmed(field).empty()) return 0.0;
+  const char sign = field.front(), power_sign = field[6];
+  const auto mantissa = parse_real("." + zeros_for_blanks(field.substr(1, 5)));
+  const auto power = parse_count(zeros_for_blanks(field.substr(7, 1)));
+  const auto is_sign = [](char c) { return c == ' ' || c == '+' || c == '-'; };
+  if (!is_sign(sign) || !is_sign(power_sign) || !mantissa || !power)
+    throw RecordError(std::string(what) + " is not a number" + got(field));
+  const double value = *mantissa * std::pow(10.0, power_sign == '-' ? -double(*power) : *power);
+  return sign == '-' ? -value : value;
+}
+
+UtcEpoch epoch_field(std::string_view field) {
+  const auto year = parse_count(trimmed(field.substr(0, 2)));
+  const auto day = parse_count(trimmed(field.substr(2, 3)));
+  const auto fraction = parse_real(zeros_for_blanks(trimmed(field.substr(5))));
+  if (!year || !day || !fraction || *fraction < 0 || *fraction >= 1)
+    throw RecordError("epoch is not a year and day" + got(field));
+  const int full = full_year(static_cast<int>(*year));
+  if (*day < 1 || *day > (is_leap_year(full) ? 366u : 365u))
+    throw RecordError("epoch day out of range" + got(field));
+  return {julian_midnight(full, static_cast<int>(*day)), *fraction};
+}
+
+/// Refuses a line whose columns don't line up: a lost or doubled character shifts every field.
+void check_layout(std::string_view line, char number, std::initializer_list<std::size_t> blanks,
+                  std::initializer_list<std::size_t> points) {
+  const std::string name = std::string("line ") + number;
+  if (line.empty() || line[0] != number) throw RecordError("not " + name + got(line));
+  for (const char c : line)
+    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e)
+      throw RecordError(name + " holds a character that is not printable ASCII" + got(line));
+  for (const std::size_t column : blanks)
+    if (line.size() >= column && line[column - 1] != ' ')
+      throw RecordError(name + " has no blank in column " + std::to_string(column) + got(line));
+  for (const std::size_t column : points)
+    if (line.size() < column || line[column - 1] != '.')
+      throw RecordError(name + " has no '.' in column " + std::to_string(column) + got(line));
+}
+
+/// Cuts what follows column 69, checks length and checksum. `needed`: last column with an element.
+std::string_view checked_line(std::string_view line, char number, std::size_t needed, bool lenient,
+                              std::string* warning) {
+  const std::string name = std::string("line ") + number;
+  if (line.size() > full_length && line[full_length] == ' ') line = line.substr(0, full_length);
+  while (!line.empty() && line.back() == ' ') line.remove_suffix(1);
+  std::string fault;
+  if (line.size() > full_length)
+    throw RecordError(name + " has " + std::to_string(line.size()) + " columns, not 69" +
+                      got(line));
+  if (line.size() < full_length - 1) {
+    fault = name + " has " + std::to_string(line.size()) + " columns, not 69" + got(line);
+    if (line.size() < needed) throw RecordError(fault);
+  } else if (line.size() == full_length - 1) {
+    fault = name + " has no checksum" + got(line);
+  } else if (const int sum = tle_checksum(line); line.back() != '0' + sum) {
+    fault = name + " has a wrong checksum, expected " + std::to_string(sum) +
+            got(line.substr(full_length - 1));
+  }
+  if (fault.empty()) return line;
+  if (!lenient) throw RecordError(fault);
+  if (warning) *warning += (warning->empty() ? "" : "; ") + fault;
+  return line;
+}
+
+}  // namespace
+
+std::uint32_t parse_alpha5(std::string_view columns) {
+  const std::string_view text = trimmed(columns);
+  if (text.size() == 5 && text[0] >= 'A' && text[0] <= 'Z' && text[0] != 'I' && text[0] != 'O') {
+    const auto rest = parse_count(text.substr(1));
+    const std::uint32_t letter =
+        static_cast<std::uint32_t>(text[0] - 'A') + 10 - (text[0] > 'I') - (text[0] > 'O');
+    if (rest && text[1] != '+') return letter * 10000 + *rest;
+  } else if (const auto number = parse_count(text); number && text[0] != '+') {
+    return *number;
+  }
+  throw RecordError("catalogue number is neither digits nor Alpha-5" + got(columns));
+}
+
+int tle_checksum(std::string_view line) {
+  int sum = 0;
+  for (const char c : line.substr(0, full_length - 1)) {
+    if (c >= '0' && c <= '9') sum += c - '0';
+    if (c == '-') ++sum;
+  }
+  return sum % 10;
+}
+
+MeanElements parse_tle(std::string_view line1, std::string_view line2, bool lenient,
+                       std::string* warning) {
+  line1 = checked_line(line1, '1', 63, lenient, warning);
+  line2 = checked_line(line2, '2', 63, lenient, warning);
+  check_layout(line1, '1', {2, 9, 18, 33, 44, 53, 62, 64}, {24, 35});
+  check_layout(line2, '2', {2, 8, 17, 26, 34, 43, 52}, {12, 21, 38, 47, 55});
+
+  MeanElements e;
+  e.catalogue_number = parse_alpha5(columns(line1, 3, 7));
+  if (parse_alpha5(columns(line2, 3, 7)) != e.catalogue_number)
+    throw RecordError("line 2 is of another object than line 1" + got(columns(line2, 3, 7)));
+  e.classification = line1[7] == ' ' ? 'U' : line1[7];
+  e.designator = trimmed(columns(line1, 10, 17));
+  const UtcEpoch epoch = epoch_field(columns(line1, 19, 32));
+  e.epoch_jd1 = epoch.jd1;
+  e.epoch_jd2 = epoch.jd2;
+  e.ephemeris_type = count_or_zero(columns(line1, 63, 63), "ephemeris type");
+  if (e.ephemeris_type != 0 && e.ephemeris_type != 2 && e.ephemeris_type != 3)
+    throw RecordError("ephemeris type is not SGP4's" + got(columns(line1, 63, 63)));
+  e.element_number = count_or_zero(columns(line1, 65, 68), "element set number");
+
+  const double x = rev_per_day_in_rad_per_min;
+  e.mean_motion_dot_rad_per_min2 =
+      real_field(zeros_for_blanks(trimmed(columns(line1, 34, 43))), "mean motion dot") /
+      (x * 1440.0);
+  e.mean_motion_ddot_rad_per_min3 =
+      exponent_field(columns(line1, 45, 52), "mean motion ddot") / (x * 1440.0 * 1440.0);
+  e.bstar_per_earth_radius = exponent_field(columns(line1, 54, 61), "drag term");
+
+  e.inclination_rad = real_in(columns(line2, 9, 16), "inclination", 0, 180) * deg;
+  e.raan_rad = real_in(columns(line2, 18, 25), "right ascension of node", 0, 360) * deg;
+  e.eccentricity = real_in("." + zeros_for_blanks(columns(line2, 27, 33)), "eccentricity", 0, 1);
+  e.argument_of_perigee_rad = real_in(columns(line2, 35, 42), "argument of perigee", 0, 360) * deg;
+  e.mean_anomaly_rad = real_in(columns(line2, 44, 51), "mean anomaly", 0, 360) * deg;
+  const double n_rev_per_day = real_in(columns(line2, 53, 63), "mean motion", 0, 100);
+  if (n_rev_per_day <= 0)
+    throw RecordError("mean motion must be > 0" + got(columns(line2, 53, 63)));
+  e.mean_motion_rad_per_min = n_rev_per_day / x;
+  e.revolution = count_or_zero(columns(line2, 64, 68), "revolution number");
+  return e;
+}
+
+}  // namespace dmise
