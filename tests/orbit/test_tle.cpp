@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/base/units.h"
+#include "tests/orbit/elements_equal.h"
 
 namespace dmise {
 namespace {
