@@ -1,0 +1,85 @@
+#pragma once
+#include "core/base/lanes.h"
+#include "core/base/rng.h"
+
+// core/base/rng.h in lanes.
+namespace dmise::DMISE_SIMD {
+
+/// Philox4x32-10 of blocks `first + 0, 1, ...` (as many as wide_lanes), words in pixel order: words
+/// 0, 1 of each block go to `words[0]`, words 2, 3 to `words[1]`.
+DMISE_INLINE void philox(const RngKey& key, std::uint32_t first, std::uint32_t draw, U64 words[2]) {
+  U64 block;
+  for (int i = 0; i < wide_lanes; ++i) block[i] = first + std::uint32_t(i);
+  const U64 zero{};
+  U64 c0 = block, c1 = zero + draw, c2 = zero + key.stream[0], c3 = zero + key.stream[1];
+  std::uint32_t k0 = key.key[0], k1 = key.key[1];
+  for (int round = 0; round < 10; ++round) {
+    const U64 p0 = multiply_low(c0, zero + 0xD2511F53u);
+    const U64 p1 = multiply_low(c2, zero + 0xCD9E8D57u);
+    // The high halves hold rubbish from here on; `multiply_low` ignores them.
+    c0 = (p1 >> 32) ^ c1 ^ (zero + k0);
+    c1 = p1;
+    c2 = (p0 >> 32) ^ c3 ^ (zero + k1);
+    c3 = p0;
+    k0 += 0x9E3779B9u;
+    k1 += 0xBB67AE85u;
+  }
+  const U64 low = zero + 0xffffffffu;
+  words[0] = (c0 & low) | (c1 << 32);
+  words[1] = (c2 & low) | (c3 << 32);
+}
+
+/// Natural logarithm of q in (0, 1], absolute error below 1e-7 (1 + |ln q|).
+DMISE_INLINE F32 log_of(F32 q) {
+  const I32 shifted = bits<I32>(q) - 0x3f3504f3;  // of sqrt(1/2): mantissas in [sqrt 1/2, sqrt 2)
+  const I32 exponent = shifted >> 23;
+  const F32 f = bits<F32>((shifted & 0x7fffff) + 0x3f3504f3) - 1.0f;
+  F32 p = splat(-0.083054870f);
+  p = p * f + 0.127989404f;
+  p = p * f - 0.129434034f;
+  p = p * f + 0.141902319f;
+  p = p * f - 0.166434891f;
+  p = p * f + 0.200018801f;
+  p = p * f - 0.250002809f;
+  p = p * f + 0.333333265f;
+  return to_f32(exponent) * 0.693147181f + (f - f * f * (0.5f - f * p));
+}
+
+/// Standard normal quantile of words. With p the nearer tail's probability and w = -ln 4p(1-p):
+/// z = (1 - 2p) P(w), P fitted in two pieces to 6e-8 of its value.
+DMISE_INLINE F32 normal_of_words(U32 word) {
+  const I32 negative = bits<I32>(word) < 0 ? I32{} : I32{} - 1;  // word < 2^31: below the median
+  const I32 m = bits<I32>(negative ? word : ~word);              // [0, 2^31)
+  const F32 p = (to_f32(m) + 0.5f) * 0x1p-32f;
+  const F32 d = (to_f32(0x7fffffff - m) + 0.5f) * 0x1p-31f;  // 1 - 2 p
+  const F32 w = -log_of(4.0f * p * (1.0f - p));
+  const F32 t = w * (1.0f / 3.0f) - 1.0f;
+  F32 z = splat(-0.000162193363f);
+  z = z * t - 4.02223283e-05f;
+  z = z * t + 0.00140906236f;
+  z = z * t - 0.00194370611f;
+  z = z * t - 0.00438406914f;
+  z = z * t + 0.0223920671f;
+  z = z * t - 0.0319243592f;
+  z = z * t - 0.0730402069f;
+  z = z * t + 1.02515065f;
+  z = z * t + 2.29603523f;
+  const I32 tail = w > 6.0f;
+  if (any(tail)) {
+    const F32 s = (sqrt(max(w, splat(6.0f))) - 3.54853488f) * 0.909880738f;
+    F32 y = splat(8.37839297e-05f);
+    y = y * s - 0.000517000723f;
+    y = y * s + 0.00105393792f;
+    y = y * s - 0.00131495375f;
+    y = y * s + 0.00187578879f;
+    y = y * s - 0.00349236043f;
+    y = y * s + 0.00512034305f;
+    y = y * s + 1.56620949f;
+    y = y * s + 4.78624393f;
+    z = tail ? y : z;
+  }
+  z = z * d;
+  return negative ? -z : z;
+}
+
+}  // namespace dmise::DMISE_SIMD

@@ -1,0 +1,15 @@
+#pragma once
+#include "core/base/rng.h"
+
+// rng.cpp's loops, one copy per instruction set.
+#define DMISE_RNG_KERNELS(level)                                                             \
+  namespace dmise::level {                                                                   \
+  /* rng_words for `first` and `count` that are multiples of rng_group. */                   \
+  void rng_groups(const RngKey&, std::uint32_t first, std::size_t count, std::uint32_t draw, \
+                  std::uint32_t* out);                                                       \
+  void normals_of(const std::uint32_t* words, std::size_t count, float* out);                \
+  }
+DMISE_RNG_KERNELS(sse2)
+DMISE_RNG_KERNELS(avx2)
+DMISE_RNG_KERNELS(avx512)
+#undef DMISE_RNG_KERNELS

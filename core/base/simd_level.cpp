@@ -1,0 +1,41 @@
+#include "core/base/simd_level.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+
+namespace dmise {
+namespace {
+
+SimdLevel find_level() {
+  SimdLevel best = SimdLevel::sse2;
+  if (__builtin_cpu_supports("avx2")) best = SimdLevel::avx2;
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+    best = SimdLevel::avx512;
+  const char* wish = std::getenv("DMISE_SIMD");
+  for (SimdLevel level : {SimdLevel::sse2, SimdLevel::avx2})
+    if (wish && std::string_view(wish) == name(level)) best = std::min(best, level);
+  return best;
+}
+
+}  // namespace
+
+SimdLevel best_simd_level() {
+  static const SimdLevel level = find_level();
+  return level;
+}
+
+const char* name(SimdLevel level) {
+  switch (level) {
+    case SimdLevel::avx512:
+      return "avx512";
+    case SimdLevel::avx2:
+      return "avx2";
+    case SimdLevel::sse2:
+      break;
+  }
+  return "sse2";
+}
+
+}  // namespace dmise
