@@ -10,17 +10,27 @@ enum class Projection { gnomonic, equidistant, equisolid, stereographic };
 struct Optics {
   Projection projection = Projection::gnomonic;
   double focal_length_m = 0.0;
-  double aperture_m = 0.0;            // entrance pupil diameter
-  double obscuration = 0.0;           // secondary / primary diameter, [0, 1)
+  double aperture_m = 0.0;   // entrance pupil diameter
+  double obscuration = 0.0;  // secondary / primary diameter, [0, 1)
   double pixel_pitch_m = 0.0;
   int columns = 0;
   int rows = 0;
-  double transmission = 1.0;          // (0, 1]
-  double psf_fwhm_px = 1.5;           // of the lens and focus (Gaussian), before pixel integration
-  bool equivalent_aperture = false;   // allows N < 0.5: the aperture is a collecting area only
+  double transmission = 1.0;  // (0, 1]
+  double psf_fwhm_px = 1.5;   // of the lens and focus (Gaussian), before pixel integration; >= 0
+  bool equivalent_aperture = false;  // allows N < 0.5: the aperture is a collecting area only
 
+  /// Area of the entrance pupil less its obscuration [m2].
   double collecting_area_m2() const;
   double pixel_angle_rad() const { return pixel_pitch_m / focal_length_m; }  // at the centre
+  double focal_length_px() const { return focal_length_m / pixel_pitch_m; }
+  double f_number() const { return focal_length_m / aperture_m; }
 };
+
+/// Throws `ConfigError` "optics.KEY: reason, got value" for figures that no camera can have. Below
+/// a focal ratio of 0.5 radiance would not be conserved: refused unless `equivalent_aperture`.
+void check(const Optics& optics);
+
+/// "gnomonic", ...
+const char* name(Projection projection);
 
 }  // namespace dmise
