@@ -1,0 +1,60 @@
+#pragma once
+#include <array>
+#include <string_view>
+
+#include "core/frames/vec.h"
+#include "nodes/wire/state_codec.h"
+
+// One pair of functions for each state: core type <-> message of proto/. Private to nodes/wire.
+namespace dmise {
+
+Body encode_body(const ObjectRoster&);
+Body encode_body(const ObjectStates&);
+Body encode_body(const EnvironmentState&);
+Body encode_body(const FrameReport&);
+Body encode_body(const DetectionSet&);
+Body encode_body(const TruthSet&);
+
+ObjectRoster decode_roster(std::string_view payload);
+ObjectStates decode_states(std::string_view payload, std::string_view arrays);
+EnvironmentState decode_environment(std::string_view payload);
+FrameReport decode_report(std::string_view payload);
+DetectionSet decode_detections(std::string_view payload);
+TruthSet decode_truths(std::string_view payload);
+
+/// The message of type `M` that `payload` is.
+template <class M>
+M parse(std::string_view payload) {
+  M message;
+  if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size())))
+    throw Refused(Refusal::payload, "not a " + std::string(M::descriptor()->name()));
+  return message;
+}
+
+template <class Repeated, std::size_t n>
+void put(Repeated* field, const std::array<double, n>& values) {
+  field->Add(values.begin(), values.end());
+}
+
+template <std::size_t n, class Repeated>
+std::array<double, n> take(const Repeated& field, const char* name) {
+  if (std::size_t(field.size()) != n)
+    throw Refused(Refusal::payload, std::string(name) + ": must have " + std::to_string(n) +
+                                        " values, got " + std::to_string(field.size()));
+  std::array<double, n> values;
+  std::copy(field.begin(), field.end(), values.begin());
+  return values;
+}
+
+template <class Repeated, class F>
+void put(Repeated* field, const Vec<F>& v) {
+  put(field, std::array<double, 3>{v.x, v.y, v.z});
+}
+
+template <class F, class Repeated>
+Vec<F> take_vec(const Repeated& field, const char* name) {
+  const auto v = take<3>(field, name);
+  return {v[0], v[1], v[2]};
+}
+
+}  // namespace dmise

@@ -1,0 +1,79 @@
+#include "dmise/v1/frame.pb.h"
+#include "nodes/wire/codecs.h"
+
+// Fields that have one name and type on both sides, in the order of the message.
+#define DMISE_REPORT_FIELDS(X)                                                                  \
+  X(sensor)                                                                                     \
+  X(frame) X(boresight_ra_rad) X(boresight_dec_rad) X(limiting_magnitude) X(background_e)       \
+      X(noise_e) X(zero_point_mag) X(detections) X(star_like) X(saturated_px) X(stars_rendered) \
+          X(objects_rendered) X(plan)
+
+namespace dmise {
+namespace {
+
+void put_wcs(v1::Wcs* message, const Wcs& wcs) {
+  message->set_crpix_x_px(wcs.crpix_x);
+  message->set_crpix_y_px(wcs.crpix_y);
+  message->set_ra_rad(wcs.ra_rad);
+  message->set_dec_rad(wcs.dec_rad);
+  put(message->mutable_cd_deg(), wcs.cd_deg);
+  message->set_order(std::uint32_t(wcs.order));
+  message->mutable_a()->Add(wcs.a.begin(), wcs.a.end());
+  message->mutable_b()->Add(wcs.b.begin(), wcs.b.end());
+  message->mutable_ap()->Add(wcs.ap.begin(), wcs.ap.end());
+  message->mutable_bp()->Add(wcs.bp.begin(), wcs.bp.end());
+  message->set_rms_px(wcs.rms_px);
+  message->set_max_px(wcs.max_px);
+}
+
+Wcs take_wcs(const v1::Wcs& message) {
+  Wcs wcs;
+  wcs.crpix_x = message.crpix_x_px();
+  wcs.crpix_y = message.crpix_y_px();
+  wcs.ra_rad = message.ra_rad();
+  wcs.dec_rad = message.dec_rad();
+  wcs.cd_deg = take<4>(message.cd_deg(), "wcs.cd_deg");
+  if (message.order() > 5) throw Refused(Refusal::value, "wcs.order: must be 0 to 5");
+  wcs.order = int(message.order());
+  wcs.a.assign(message.a().begin(), message.a().end());
+  wcs.b.assign(message.b().begin(), message.b().end());
+  wcs.ap.assign(message.ap().begin(), message.ap().end());
+  wcs.bp.assign(message.bp().begin(), message.bp().end());
+  wcs.rms_px = message.rms_px();
+  wcs.max_px = message.max_px();
+  return wcs;
+}
+
+}  // namespace
+
+Body encode_body(const FrameReport& report) {
+  v1::FrameReport message;
+#define X(field) message.set_##field(report.field);
+  DMISE_REPORT_FIELDS(X)
+#undef X
+  message.set_start_ns(report.start.ns);
+  message.set_middle_ns(report.middle.ns);
+  message.set_end_ns(report.end.ns);
+  put_wcs(message.mutable_wcs(), report.wcs);
+  put(message.mutable_sensor_position_m(), report.sensor_position_m);
+  put(message.mutable_sensor_velocity_m_per_s(), report.sensor_velocity_m_per_s);
+  return {MessageKind::frame_report, message.SerializeAsString(), {}};
+}
+
+FrameReport decode_report(std::string_view payload) {
+  const auto message = parse<v1::FrameReport>(payload);
+  FrameReport report;
+#define X(field) report.field = message.field();
+  DMISE_REPORT_FIELDS(X)
+#undef X
+  report.start = {message.start_ns()};
+  report.middle = {message.middle_ns()};
+  report.end = {message.end_ns()};
+  report.wcs = take_wcs(message.wcs());
+  report.sensor_position_m = take_vec<Gcrs>(message.sensor_position_m(), "sensor_position_m");
+  report.sensor_velocity_m_per_s =
+      take_vec<Gcrs>(message.sensor_velocity_m_per_s(), "sensor_velocity_m_per_s");
+  return report;
+}
+
+}  // namespace dmise

@@ -1,0 +1,103 @@
+#include <bit>
+#include <cstring>
+#include <vector>
+
+#include "dmise/v1/state.pb.h"
+#include "nodes/wire/codecs.h"
+
+static_assert(std::endian::native == std::endian::little, "arrays travel little endian");
+
+namespace dmise {
+namespace {
+
+template <class T>
+void append_array(v1::ObjectStates* message, std::string* bytes, const char* name,
+                  std::initializer_list<std::size_t> shape, const std::vector<T>& values) {
+  auto* layout = message->add_arrays();
+  layout->set_name(name);
+  layout->set_type(sizeof(T) == 1 ? "uint8" : "float64");
+  for (const std::size_t extent : shape) layout->add_shape(extent);
+  layout->set_offset_bytes(bytes->size());
+  bytes->append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
+template <class T>
+std::vector<T> take_array(const v1::ObjectStates& message, std::string_view bytes, const char* name,
+                          std::initializer_list<std::size_t> shape) {
+  for (const auto& layout : message.arrays()) {
+    if (layout.name() != name) continue;
+    if (layout.type() != (sizeof(T) == 1 ? "uint8" : "float64") ||
+        !std::equal(layout.shape().begin(), layout.shape().end(), shape.begin(), shape.end()))
+      throw Refused(Refusal::payload, std::string(name) + ": wrong type or shape");
+    std::size_t size = sizeof(T);
+    for (const std::size_t extent : shape) size *= extent;  // extents are bounded by the caller
+    if (layout.offset_bytes() > bytes.size() || size > bytes.size() - layout.offset_bytes())
+      throw Refused(Refusal::payload, std::string(name) + ": reaches beyond the array frame");
+    std::vector<T> values(size / sizeof(T));
+    if (size > 0) std::memcpy(values.data(), bytes.data() + layout.offset_bytes(), size);
+    return values;
+  }
+  throw Refused(Refusal::payload, std::string(name) + ": no such array");
+}
+
+}  // namespace
+
+Body encode_body(const ObjectRoster& roster) {
+  v1::ObjectRoster message;
+  for (const ObjectInfo& object : roster.objects) {
+    auto* o = message.add_objects();
+    o->set_catalogue_number(object.catalogue_number);
+    o->set_name(object.name);
+    o->set_designator(object.designator);
+    o->set_radius_m(object.radius_m);
+    o->set_albedo(object.albedo);
+    o->set_element_age_s(object.element_age_s);
+  }
+  return {MessageKind::object_roster, message.SerializeAsString(), {}};
+}
+
+ObjectRoster decode_roster(std::string_view payload) {
+  const auto message = parse<v1::ObjectRoster>(payload);
+  ObjectRoster roster;
+  roster.objects.reserve(std::size_t(message.objects_size()));
+  for (const auto& o : message.objects())
+    roster.objects.push_back({.catalogue_number = o.catalogue_number(),
+                              .name = o.name(),
+                              .designator = o.designator(),
+                              .radius_m = o.radius_m(),
+                              .albedo = o.albedo(),
+                              .element_age_s = o.element_age_s()});
+  return roster;
+}
+
+Body encode_body(const ObjectStates& states) {
+  v1::ObjectStates message;
+  message.set_tick(states.tick);
+  message.set_time_ns(states.time.ns);
+  message.set_count(states.count);
+  std::string arrays;
+  arrays.reserve(states.count * (9 * sizeof(double) + 1));
+  append_array(&message, &arrays, "position_m", {3, states.count}, states.position_m);
+  append_array(&message, &arrays, "slope_m_per_s", {3, states.count}, states.slope_m_per_s);
+  append_array(&message, &arrays, "velocity_m_per_s", {3, states.count}, states.velocity_m_per_s);
+  append_array(&message, &arrays, "code", {states.count}, states.code);
+  return {MessageKind::object_states, message.SerializeAsString(), std::move(arrays)};
+}
+
+ObjectStates decode_states(std::string_view payload, std::string_view arrays) {
+  const auto message = parse<v1::ObjectStates>(payload);
+  if (message.count() > max_array_bytes)
+    throw Refused(Refusal::payload, "count: more objects than an array frame holds");
+  ObjectStates states;
+  states.tick = message.tick();
+  states.time = {message.time_ns()};
+  states.count = message.count();
+  states.position_m = take_array<double>(message, arrays, "position_m", {3, states.count});
+  states.slope_m_per_s = take_array<double>(message, arrays, "slope_m_per_s", {3, states.count});
+  states.velocity_m_per_s =
+      take_array<double>(message, arrays, "velocity_m_per_s", {3, states.count});
+  states.code = take_array<std::uint8_t>(message, arrays, "code", {states.count});
+  return states;
+}
+
+}  // namespace dmise

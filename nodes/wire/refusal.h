@@ -1,0 +1,32 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "core/base/error.h"
+
+namespace dmise {
+
+/// Why a message was not acted on. Counted by reason.
+enum class Refusal : std::uint8_t {
+  frames,          // number or size of the frames
+  envelope,        // not an Envelope
+  seal,            // CRC-32C of the message
+  schema_version,  // of another version of the wire
+  run,             // of another run
+  topic,           // nobody's, or not the publisher's, or the kind does not belong there
+  tick,            // outside the run, or tick and time disagree
+  payload,         // not the message that the envelope announces, or sizes that disagree
+  value,           // a number that is not finite or not in its range, or a text that is none
+  count
+};
+
+std::string_view name(Refusal reason);
+
+class Refused : public Error {
+ public:
+  Refused(Refusal reason, const std::string& what) : Error(what), reason(reason) {}
+  Refusal reason;
+};
+
+}  // namespace dmise

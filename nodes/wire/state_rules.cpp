@@ -1,0 +1,249 @@
+#include "nodes/wire/state_rules.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr double angle_limit_rad = 2 * pi;  // right ascensions may be counted from -pi or from 0
+constexpr double latitude_limit_rad = pi / 2 * (1 + 1e-12);
+constexpr double distance_limit_m = 1e15;  // 6,700 au
+constexpr double speed_limit_m_per_s = speed_of_light_m_per_s;
+constexpr std::size_t name_limit_bytes = 256;
+constexpr std::size_t text_limit_bytes = 16384;
+
+[[noreturn]] void refuse(const std::string& field, const std::string& reason) {
+  throw Refused(Refusal::value, field + ": " + reason);
+}
+
+void finite(double value, const char* field) {
+  if (!std::isfinite(value)) refuse(field, "must be finite");
+}
+
+void in_range(double value, double low, double high, const char* field) {
+  if (!(value >= low && value <= high))
+    refuse(field, "must be in [" + std::to_string(low) + ", " + std::to_string(high) + "], got " +
+                      std::to_string(value));
+}
+
+void not_negative(double value, const char* field) {
+  in_range(value, 0.0, std::numeric_limits<double>::max(), field);
+}
+
+void direction(double ra_rad, double dec_rad, const char* field) {
+  in_range(ra_rad, -angle_limit_rad, angle_limit_rad, field);
+  in_range(dec_rad, -latitude_limit_rad, latitude_limit_rad, field);
+}
+
+template <class F>
+void vector_within(const Vec<F>& v, double limit, const char* field) {
+  for (const double component : {v.x, v.y, v.z}) in_range(component, -limit, limit, field);
+}
+
+template <class To, class From>
+void rotates(const Rotation<To, From>& r, const char* field) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      double product = 0;
+      for (int k = 0; k < 3; ++k) product += r.m[i][k] * r.m[j][k];
+      if (!(std::abs(product - (i == j)) < 1e-9)) refuse(field, "rows must be orthonormal");
+    }
+  const Vec<To> x{r.m[0][0], r.m[0][1], r.m[0][2]}, y{r.m[1][0], r.m[1][1], r.m[1][2]},
+      z{r.m[2][0], r.m[2][1], r.m[2][2]};
+  if (!(dot(cross(x, y), z) > 0)) refuse(field, "must be right-handed");
+}
+
+/// A 2x2 covariance as variance, covariance, variance.
+void covariance(const std::array<double, 3>& c, const char* field) {
+  for (const double value : c) finite(value, field);
+  if (c[0] < 0 || c[2] < 0 || c[1] * c[1] > c[0] * c[2] * (1 + 1e-9))
+    refuse(field, "must be positive semi-definite");
+}
+
+void utf8(const std::string& text, std::size_t limit, const char* field) {
+  if (text.size() > limit) refuse(field, "longer than " + std::to_string(limit) + " bytes");
+  const auto* p = reinterpret_cast<const unsigned char*>(text.data());
+  const auto* end = p + text.size();
+  while (p < end) {
+    const int more = *p < 0x80 ? 0 : *p >> 5 == 6 ? 1 : *p >> 4 == 14 ? 2 : *p >> 3 == 30 ? 3 : -1;
+    if (more < 0 || end - p <= more) refuse(field, "must be UTF-8");
+    std::uint32_t code = more == 0 ? *p : *p & (0x3fu >> more);
+    for (int i = 1; i <= more; ++i) {
+      if (p[i] >> 6 != 2) refuse(field, "must be UTF-8");
+      code = code << 6 | (p[i] & 0x3fu);
+    }
+    constexpr std::uint32_t smallest[] = {0, 0x80, 0x800, 0x10000};
+    if (code < smallest[more] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000))
+      refuse(field, "must be UTF-8");
+    p += more + 1;
+  }
+}
+
+void name_text(const std::string& text, const char* field) { utf8(text, name_limit_bytes, field); }
+
+void frame_number(std::uint32_t frame) {
+  if (frame == 0) refuse("frame", "counts from 1");
+}
+
+void exposure(SimTime start, SimTime middle, SimTime end) {
+  if (start > middle || middle > end) refuse("exposure", "start, middle and end must be in order");
+}
+
+void check(const ObjectRoster& roster) {
+  for (const ObjectInfo& object : roster.objects) {
+    if (object.catalogue_number > 999999999) refuse("catalogue_number", "has up to 9 digits");
+    name_text(object.name, "name");
+    name_text(object.designator, "designator");
+    in_range(object.radius_m, std::numeric_limits<double>::min(), 1e9, "radius_m");
+    in_range(object.albedo, std::numeric_limits<double>::min(), 1.0, "albedo");
+    finite(object.element_age_s, "element_age_s");
+  }
+}
+
+void check(const ObjectStates& states) {
+  if (states.position_m.size() != 3 * states.count ||
+      states.slope_m_per_s.size() != 3 * states.count ||
+      states.velocity_m_per_s.size() != 3 * states.count || states.code.size() != states.count)
+    refuse("count", "arrays have another size");
+  for (const double x : states.position_m)
+    in_range(x, -distance_limit_m, distance_limit_m, "position_m");
+  for (const double v : states.slope_m_per_s)
+    in_range(v, -speed_limit_m_per_s, speed_limit_m_per_s, "slope_m_per_s");
+  for (const double v : states.velocity_m_per_s)
+    in_range(v, -speed_limit_m_per_s, speed_limit_m_per_s, "velocity_m_per_s");
+}
+
+void check(const EnvironmentState& state) {
+  rotates(state.earth.cirs_from_gcrs, "earth.cirs_from_gcrs");
+  rotates(state.earth.itrs_from_tirs, "earth.itrs_from_tirs");
+  finite(state.earth.era_rad, "earth.era_rad");
+  finite(state.earth.era_rate_rad_per_s, "earth.era_rate_rad_per_s");
+  finite(state.earth.gmst82_rad, "earth.gmst82_rad");
+  finite(state.earth.gmst82_rate_rad_per_s, "earth.gmst82_rate_rad_per_s");
+  vector_within(state.sun_m, distance_limit_m, "sun_m");
+  vector_within(state.moon_m, distance_limit_m, "moon_m");
+  vector_within(state.earth_barycentric_m, distance_limit_m, "earth_barycentric_m");
+  vector_within(state.earth_velocity_m_per_s, speed_limit_m_per_s, "earth_velocity_m_per_s");
+  in_range(state.tt_jd1, -1e8, 1e8, "tt_jd1_days");
+  in_range(state.tt_jd2, -1e8, 1e8, "tt_jd2_days");
+  for (const SkyState& sky : state.skies) {
+    name_text(sky.sensor, "skies.sensor");
+    in_range(sky.zenith_mag_per_arcsec2, -30, 60, "skies.zenith_mag_per_arcsec2");
+  }
+}
+
+void check(const Wcs& wcs) {
+  finite(wcs.crpix_x, "wcs.crpix_x_px");
+  finite(wcs.crpix_y, "wcs.crpix_y_px");
+  direction(wcs.ra_rad, wcs.dec_rad, "wcs.ra_rad, dec_rad");
+  for (const double value : wcs.cd_deg) finite(value, "wcs.cd_deg");
+  if (wcs.order < 0 || wcs.order > 5) refuse("wcs.order", "must be 0 to 5");
+  const std::size_t terms = std::size_t(wcs.order + 1) * std::size_t(wcs.order + 1);
+  for (const auto* polynomial : {&wcs.a, &wcs.b, &wcs.ap, &wcs.bp}) {
+    if (!(polynomial->size() == terms || (wcs.order == 0 && polynomial->empty())))
+      refuse("wcs.order", "polynomials have another size");
+    for (const double value : *polynomial) finite(value, "wcs polynomial");
+  }
+  not_negative(wcs.rms_px, "wcs.rms_px");
+  not_negative(wcs.max_px, "wcs.max_px");
+}
+
+void check(const FrameReport& report) {
+  name_text(report.sensor, "sensor");
+  frame_number(report.frame);
+  exposure(report.start, report.middle, report.end);
+  direction(report.boresight_ra_rad, report.boresight_dec_rad, "boresight");
+  check(report.wcs);
+  vector_within(report.sensor_position_m, distance_limit_m, "sensor_position_m");
+  vector_within(report.sensor_velocity_m_per_s, speed_limit_m_per_s, "sensor_velocity_m_per_s");
+  finite(report.limiting_magnitude, "limiting_magnitude");
+  finite(report.background_e, "background_e");
+  not_negative(report.noise_e, "noise_e");
+  finite(report.zero_point_mag, "zero_point_mag");
+  utf8(report.plan, text_limit_bytes, "plan");
+}
+
+void check(const Detection& d) {
+  name_text(d.id, "id");
+  name_text(d.sensor, "sensor");
+  name_text(d.band, "band");
+  frame_number(d.frame);
+  direction(d.ra_rad, d.dec_rad, "ra_rad, dec_rad");
+  direction(d.corrected_ra_rad, d.corrected_dec_rad, "corrected_ra_rad, corrected_dec_rad");
+  direction(d.end1_ra_rad, d.end1_dec_rad, "end1_ra_rad, end1_dec_rad");
+  direction(d.end2_ra_rad, d.end2_dec_rad, "end2_ra_rad, end2_dec_rad");
+  covariance(d.covariance_rad2, "covariance_rad2");
+  covariance(d.covariance_px2, "covariance_px2");
+  vector_within(d.sensor_position_m, distance_limit_m, "sensor_position_m");
+  vector_within(d.sensor_velocity_m_per_s, speed_limit_m_per_s, "sensor_velocity_m_per_s");
+  finite(d.magnitude, "magnitude");
+  not_negative(d.magnitude_sigma, "magnitude_sigma");
+  not_negative(d.length_px, "length_px");
+  not_negative(d.rate_rad_per_s, "rate_rad_per_s");
+  for (const double value :
+       {d.snr, d.signal_e, d.x_px, d.y_px, d.end1_x_px, d.end1_y_px, d.end2_x_px, d.end2_y_px})
+    finite(value, "detection");
+}
+
+void check(const DetectionSet& set) {
+  name_text(set.sensor, "sensor");
+  frame_number(set.frame);
+  for (const Detection& d : set.detections) {
+    check(d);
+    if (d.sensor != set.sensor || d.frame != set.frame)
+      refuse("detections", "of another sensor or frame");
+  }
+}
+
+void check(const TruthSet& set) {
+  name_text(set.sensor, "sensor");
+  frame_number(set.frame);
+  for (const Truth& t : set.truths) {
+    if (t.sensor != set.sensor || t.frame != set.frame)
+      refuse("truths", "of another sensor or frame");
+    name_text(t.name, "name");
+    exposure(t.start, t.middle, t.end);
+    in_range(t.true_range_m, 0, distance_limit_m, "true_range_m");
+    direction(t.true_ra_rad, t.true_dec_rad, "true_ra_rad, true_dec_rad");
+    direction(t.apparent_ra_rad, t.apparent_dec_rad, "apparent_ra_rad, apparent_dec_rad");
+    in_range(t.true_elevation_rad, -latitude_limit_rad, latitude_limit_rad, "true_elevation_rad");
+    in_range(t.phase_angle_rad, 0, pi * (1 + 1e-12), "phase_angle_rad");
+    in_range(t.sunlit, 0, 1, "sunlit");
+    not_negative(t.rendered_signal_e, "rendered_signal_e");
+    for (const double value : {t.true_magnitude, t.rendered_x_px, t.rendered_y_px, t.start_x_px,
+                               t.start_y_px, t.middle_x_px, t.middle_y_px, t.end_x_px, t.end_y_px})
+      finite(value, "truths");
+  }
+}
+
+// Where each kind of state travels, and which tick and time it names.
+struct Place {
+  std::string topic;
+  const Tick* tick = nullptr;
+  const SimTime* time = nullptr;
+};
+
+Place place(const ObjectRoster&) { return {objects_topic}; }
+Place place(const ObjectStates& s) { return {objects_topic, &s.tick, &s.time}; }
+Place place(const EnvironmentState& s) { return {environment_topic, &s.tick, &s.time}; }
+Place place(const FrameReport& report) { return {frame_prefix + report.sensor}; }
+Place place(const DetectionSet& set) { return {detection_prefix + set.sensor}; }
+Place place(const TruthSet& set) { return {truth_prefix + set.sensor}; }
+
+}  // namespace
+
+void check(const State& state) {
+  std::visit([](const auto& s) { check(s); }, state);
+}
+
+void check_place(const std::string& topic, const Envelope& envelope, const State& state) {
+  const Place where = std::visit([](const auto& s) { return place(s); }, state);
+  if (topic != where.topic) throw Refused(Refusal::topic, topic + ": a state of " + where.topic);
+  if ((where.tick && *where.tick != envelope.tick) || (where.time && *where.time != envelope.time))
+    throw Refused(Refusal::tick, topic + ": the state is of another tick than its envelope");
+}
+
+}  // namespace dmise

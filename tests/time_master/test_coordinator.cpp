@@ -1,0 +1,238 @@
+#include "time-master/coordinator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+
+namespace dmise {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Coordinator::Request node(const std::string& name, std::vector<std::string> produces = {},
+                          std::vector<std::string> consumes = {}) {
+  return {.node = {name, std::move(produces), std::move(consumes)}};
+}
+
+CoordinatorOptions options(std::vector<std::string> expected, Tick last_tick = 9, int window = 1) {
+  CoordinatorOptions o;
+  o.expected = std::move(expected);
+  o.last_tick = last_tick;
+  o.window_ticks = window;
+  return o;
+}
+
+Coordinator started(const CoordinatorOptions& o) {
+  Coordinator master(o);
+  for (const std::string& name : o.expected) master.join(node(name));
+  for (const std::string& name : o.expected) master.ready(name);
+  return master;
+}
+
+TEST(Coordinator, WaitsForTheSlowestNode) {
+  Coordinator master = started(options({"orbit", "camera"}));
+  EXPECT_EQ(master.granted(), 0);
+  master.done("orbit", 0);
+  EXPECT_EQ(master.granted(), 0);  // camera is still rendering
+  EXPECT_THAT(master.holding(), ElementsAre("camera"));
+  master.done("camera", 0);
+  EXPECT_EQ(master.granted(), 1);
+}
+
+TEST(Coordinator, LetsTheFastestRunAWindowAhead) {
+  Coordinator master = started(options({"orbit", "camera"}, 9, 4));
+  EXPECT_EQ(master.granted(), 3);
+  for (Tick tick = 0; tick <= 3; ++tick) master.done("orbit", tick);
+  EXPECT_EQ(master.granted(), 3);
+  master.done("camera", 0);
+  EXPECT_EQ(master.granted(), 4);
+}
+
+TEST(Coordinator, NeverGrantsBeyondTheLastTickAndEndsThere) {
+  Coordinator master = started(options({"orbit"}, 2, 10));
+  EXPECT_EQ(master.granted(), 2);
+  for (Tick tick = 0; tick <= 2; ++tick) master.done("orbit", tick);
+  EXPECT_EQ(master.phase(), Phase::ended);
+  EXPECT_FALSE(master.deserted());
+  master.leave("orbit", false);
+  EXPECT_TRUE(master.deserted());
+}
+
+TEST(Coordinator, OpensTheGateOnlyWhenAllExpectedAreReady) {
+  Coordinator master(options({"broker", "orbit", "camera"}));
+  master.join({.node = {"broker", {}, {}}, .keeps_time = false});
+  master.join(node("orbit"));
+  EXPECT_THAT(master.missing(), ElementsAre("camera"));
+  EXPECT_EQ(master.phase(), Phase::gathering);
+  master.join(node("camera"));
+  EXPECT_EQ(master.phase(), Phase::connecting);
+  master.ready("camera");
+  EXPECT_THAT(master.holding(), ElementsAre("orbit"));
+  EXPECT_EQ(master.granted(), -1);
+  master.ready("orbit");
+  EXPECT_EQ(master.granted(), 0);
+}
+
+TEST(Coordinator, RefusesASecondNodeOfOneName) {
+  Coordinator master(options({"orbit", "camera"}));
+  EXPECT_FALSE(master.join(node("camera")));
+  EXPECT_EQ(*master.join(node("camera")), "a node named camera has already joined");
+}
+
+TEST(Coordinator, RefusesANodeThatTheRunDoesNotHave) {
+  Coordinator master(options({"orbit", "camera"}));
+  EXPECT_EQ(*master.join(node("kamera")),
+            "this run has no node named kamera; it has orbit, camera");
+}
+
+TEST(Coordinator, FailsWhenATopicHasNoProducer) {
+  Coordinator master(options({"camera"}));
+  master.join(node("camera", {}, {"state/objects"}));
+  EXPECT_EQ(master.phase(), Phase::failed);
+  EXPECT_EQ(master.cause(), "camera needs state/objects, which nobody produces");
+}
+
+TEST(Coordinator, FailsWhenNodesWouldWaitForEachOther) {
+  Coordinator master(options({"a", "b"}));
+  master.join(node("a", {"x"}, {"y"}));
+  master.join(node("b", {"y"}, {"x"}));
+  EXPECT_EQ(master.cause(), "nodes wait for each other within a tick: a -> b -> a");
+}
+
+TEST(Coordinator, FailsWhenATopicHasTwoProducers) {
+  Coordinator master(options({"a", "b"}));
+  master.join(node("a", {"x"}));
+  master.join(node("b", {"x"}));
+  EXPECT_EQ(master.cause(), "x has two producers: a and b");
+}
+
+TEST(Coordinator, NamesASilentNodeWithinTheDeclaredTime) {
+  Coordinator master = started(options({"orbit", "camera"}));
+  master.done("camera", 0, seconds(1));
+  master.heartbeat("orbit", false, 0, seconds(5));
+  master.check(seconds(6));
+  EXPECT_EQ(master.phase(), Phase::running);  // 5 s after its last word, not more
+  master.check(seconds(6) + milliseconds(1));
+  EXPECT_EQ(master.phase(), Phase::failed);
+  EXPECT_EQ(master.cause(), "camera has been silent for 5.0 s (last tick done: 0 of 9)");
+}
+
+TEST(Coordinator, NamesANodeSoonerWhenItsConnectionBreaks) {
+  Coordinator master = started(options({"orbit", "camera"}));
+  master.suspect("camera", seconds(1));
+  master.check(seconds(1) + milliseconds(700));
+  EXPECT_EQ(master.phase(), Phase::running);
+  master.check(seconds(1) + milliseconds(800));
+  EXPECT_THAT(master.cause(), HasSubstr("camera has closed its connection"));
+}
+
+TEST(Coordinator, ForgetsASuspicionWhenTheNodeIsHeard) {
+  Coordinator master = started(options({"orbit", "camera"}));
+  master.suspect("camera", seconds(1));
+  master.heartbeat("camera", false, 0, seconds(1) + milliseconds(500));
+  master.check(seconds(3));
+  EXPECT_EQ(master.phase(), Phase::running);
+}
+
+TEST(Coordinator, FindsAHungStepBehindALivingHeartbeat) {
+  auto o = options({"camera"});
+  o.progress_after = seconds(10);
+  Coordinator master = started(o);
+  for (int s = 1; s <= 30; ++s) {  // progress grows until 15 s
+    master.heartbeat("camera", true, std::uint64_t(std::min(s, 15)), seconds(s));
+    master.check(seconds(s));
+    ASSERT_EQ(master.phase() == Phase::failed, s > 25) << s;
+  }
+  EXPECT_EQ(master.cause(), "camera has made no progress for 11.0 s (last tick done: -1 of 9)");
+}
+
+TEST(Coordinator, WaitsForASilentNodeByPolicy) {
+  auto o = options({"orbit", "camera"});
+  o.on_silent = SilentPolicy::wait;
+  Coordinator master = started(o);
+  master.done("orbit", 0, seconds(8));
+  master.check(seconds(9));
+  EXPECT_EQ(master.phase(), Phase::running);
+  EXPECT_EQ(master.granted(), 0);
+  EXPECT_TRUE(master.members().at("camera").silent);
+  EXPECT_THAT(master.holding(), ElementsAre("camera"));
+  master.done("camera", 0, seconds(100));
+  EXPECT_FALSE(master.members().at("camera").silent);
+  EXPECT_EQ(master.granted(), 1);
+}
+
+TEST(Coordinator, GoesOnWithoutASilentNodeByPolicy) {
+  auto o = options({"orbit", "camera"});
+  o.on_silent = SilentPolicy::drop;
+  Coordinator master = started(o);
+  master.done("orbit", 0, seconds(8));
+  master.check(seconds(9));
+  EXPECT_EQ(master.phase(), Phase::running);
+  EXPECT_TRUE(master.members().at("camera").dropped);
+  EXPECT_EQ(master.granted(), 1);
+}
+
+TEST(Coordinator, NeverGoesOnWithoutTheBroker) {
+  auto o = options({"broker", "camera"});
+  o.on_silent = SilentPolicy::drop;
+  Coordinator master(o);
+  master.join({.node = {"broker", {}, {}}, .keeps_time = false});
+  master.join(node("camera"));
+  master.ready("camera");
+  master.heartbeat("camera", false, 0, seconds(8));
+  master.check(seconds(9));
+  EXPECT_THAT(master.cause(), HasSubstr("broker has been silent"));
+}
+
+TEST(Coordinator, ForgetsANodeThatDiesBeforeAllHaveJoined) {
+  Coordinator master(options({"orbit", "camera"}));
+  master.join(node("camera"));
+  master.check(seconds(6));
+  EXPECT_THAT(master.missing(), ElementsAre("orbit", "camera"));
+  EXPECT_FALSE(master.join(node("camera"), seconds(7)));
+}
+
+TEST(Coordinator, NamesWhoIsMissingWhenTheStartTakesTooLong) {
+  auto o = options({"orbit", "camera"});
+  o.start_within = seconds(30);
+  Coordinator master(o);
+  master.join(node("camera"), seconds(29));
+  master.check(seconds(31));
+  EXPECT_EQ(master.cause(), "not started within 30.0 s: waiting for orbit");
+}
+
+TEST(Coordinator, KeepsTheFirstCause) {
+  Coordinator master = started(options({"orbit", "camera"}));
+  master.fail("camera", "disk full");
+  master.fail("orbit", "nobody listens");
+  master.stop("interrupted");
+  EXPECT_EQ(master.cause(), "camera: disk full");
+}
+
+TEST(Coordinator, FailsWhenANodeLeavesBeforeTheEnd) {
+  Coordinator master = started(options({"orbit", "camera"}));
+  master.leave("camera", true);
+  EXPECT_EQ(master.cause(), "camera was interrupted (last tick done: -1 of 9)");
+}
+
+TEST(Coordinator, DoesNoTickTwiceAndLosesNone) {
+  Coordinator master = started(options({"orbit"}, 9, 4));
+  master.done("orbit", 0);
+  master.done("orbit", 0);
+  EXPECT_EQ(master.members().at("orbit").done, 0);
+  master.done("orbit", 2);
+  EXPECT_EQ(master.cause(), "orbit: tick 2 is done, but 1 was next and 4 the last granted");
+}
+
+TEST(Coordinator, RefusesOptionsThatMakeNoSense) {
+  EXPECT_THROW(Coordinator(options({"a", "a"})), ConfigError);
+  EXPECT_THROW(Coordinator(options({})), ConfigError);
+  EXPECT_THROW(Coordinator(options({"a"}, 9, 0)), ConfigError);
+}
+
+}  // namespace
+}  // namespace dmise
