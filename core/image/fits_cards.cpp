@@ -1,0 +1,333 @@
+#include "core/image/fits_cards.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::size_t card_size = 80;
+constexpr std::size_t longest_text = 60;
+constexpr int highest_order = 9;  // of SIP polynomials, by its convention
+
+std::string number_text(double value) {
+  char buffer[40];
+  std::string text(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+  for (char& c : text)
+    if (c == 'e') c = 'E';
+  if (text.find_first_of(".E") == std::string::npos) text += ".0";
+  return text;
+}
+
+/// One visitor writes, one reads; `visit` names every keyword once for both.
+class CardWriter {
+ public:
+  std::vector<std::string> cards;
+
+  void number(const std::string& key, double& value, const char* comment) {
+    if (!std::isfinite(value)) throw Error("FITS header: " + key + ": not a finite number");
+    add(key, number_text(value), comment);
+  }
+  void angle(const std::string& key, double& value_rad, const char* comment) {
+    double degrees = value_rad / deg;
+    number(key, degrees, comment);
+  }
+  template <class Integer>
+  void integer(const std::string& key, Integer& value, const char* comment) {
+    add(key, std::to_string(value), comment);
+  }
+  void text(const std::string& key, std::string& value, const char* comment) {
+    if (value.size() > longest_text)
+      throw Error("FITS header: " + key + ": longer than 60 characters: " + value);
+    std::string quoted;
+    for (const char c : value) {
+      if (c < 0x20 || c > 0x7e) throw Error("FITS header: " + key + ": not printable ASCII");
+      quoted += c;
+      if (c == '\'') quoted += c;
+    }
+    if (quoted.size() > 68) throw Error("FITS header: " + key + ": too many quotes");
+    quoted.resize(std::max<std::size_t>(quoted.size(), 8), ' ');
+    add(key, "'" + quoted + "'", comment);
+  }
+  void utc(const std::string& key, std::string& value, const char* comment) {
+    std::string without_z = value.ends_with('Z') ? value.substr(0, value.size() - 1) : value;
+    text(key, without_z, comment);
+  }
+  void constant(const char* key, const char* value, const char* comment) {
+    std::string copy = value;
+    text(key, copy, comment);
+  }
+  void constant(const char* key, int value, const char* comment) { integer(key, value, comment); }
+  void projection(const char* key, Projection& value, const char* comment) {
+    constant(key, projection_name(value), comment);
+  }
+  bool present(const char*, bool here) const { return here; }
+  void sip(Wcs& wcs) {
+    if (wcs.order == 0) return;
+    if (wcs.order < 0 || wcs.order > highest_order)
+      throw Error("FITS header: A_ORDER: not in 0..9");
+    const auto polynomial = [&](const std::string& name, const std::vector<double>& coefficients) {
+      const auto side = std::size_t(wcs.order) + 1;
+      if (coefficients.size() != side * side)
+        throw Error("FITS header: " + name + "_ORDER: coefficients missing");
+      add(name + "_ORDER", std::to_string(wcs.order), "order of the SIP polynomial");
+      for (std::size_t p = 0; p < side; ++p)
+        for (std::size_t q = 0; p + q < side; ++q) {
+          double c = coefficients[p * side + q];
+          if (c != 0.0) number(name + "_" + std::to_string(p) + "_" + std::to_string(q), c, "");
+        }
+    };
+    polynomial("A", wcs.a);
+    polynomial("B", wcs.b);
+    polynomial("AP", wcs.ap);
+    polynomial("BP", wcs.bp);
+  }
+
+ private:
+  void add(const std::string& key, const std::string& value, const std::string& comment) {
+    std::string card = key;
+    card.resize(8, ' ');
+    card += "= ";
+    if (value[0] != '\'' && value.size() < 20) card.append(20 - value.size(), ' ');
+    card += value;
+    if (!comment.empty()) {
+      if (card.size() < 30) card.resize(30, ' ');
+      card += " / " + comment;
+    }
+    card.resize(card_size, ' ');
+    cards.push_back(std::move(card));
+  }
+};
+
+class CardReader {
+ public:
+  CardReader(const FitsValues& values, const std::string& name) : values_(values), name_(name) {}
+
+  void number(const std::string& key, double& value, const char*) {
+    value = number_of(key, find(key));
+  }
+  void angle(const std::string& key, double& value_rad, const char*) {
+    double degrees = 0.0;
+    number(key, degrees, "");
+    value_rad = degrees * deg;
+  }
+  template <class Integer>
+  void integer(const std::string& key, Integer& value, const char*) {
+    const std::string& text = find(key);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size())
+      fail(key, "must be an integer in range, got " + text);
+  }
+  void text(const std::string& key, std::string& value, const char*) { value = find(key); }
+  void utc(const std::string& key, std::string& value, const char*) { value = find(key); }
+  void constant(const char* key, const char* value, const char*) {
+    if (find(key) != value) fail(key, std::string("must be ") + value + ", got " + find(key));
+  }
+  void constant(const char* key, int value, const char*) {
+    constant(key, std::to_string(value).c_str(), "");
+  }
+  void projection(const char* key, Projection& value, const char*) {
+    const auto named = projection_named(find(key));
+    if (!named) fail(key, "not a projection, got " + find(key));
+    value = *named;
+  }
+  bool present(const char* key, bool) const { return values_.contains(key); }
+  void sip(Wcs& wcs) {
+    if (!values_.contains("A_ORDER")) return;
+    integer("A_ORDER", wcs.order, "");
+    if (wcs.order < 1 || wcs.order > highest_order) fail("A_ORDER", "must be in 1..9");
+    const auto polynomial = [&](const std::string& name, std::vector<double>& coefficients) {
+      constant((name + "_ORDER").c_str(), wcs.order, "");
+      const auto side = std::size_t(wcs.order) + 1;
+      coefficients.assign(side * side, 0.0);
+      for (std::size_t p = 0; p < side; ++p)
+        for (std::size_t q = 0; p + q < side; ++q) {
+          const std::string key = name + "_" + std::to_string(p) + "_" + std::to_string(q);
+          if (values_.contains(key)) number(key, coefficients[p * side + q], "");
+        }
+    };
+    polynomial("A", wcs.a);
+    polynomial("B", wcs.b);
+    polynomial("AP", wcs.ap);
+    polynomial("BP", wcs.bp);
+  }
+  void require(bool holds, const char* key, const char* condition) const {
+    if (!holds) fail(key, std::string(condition) + ", got " + find(key));
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& key, const std::string& reason) const {
+    throw ConfigError(name_ + ": " + key + ": " + reason);
+  }
+  const std::string& find(const std::string& key) const {
+    const auto at = values_.find(key);
+    if (at == values_.end()) fail(key, "is missing");
+    return at->second;
+  }
+  double number_of(const std::string& key, std::string text) const {
+    for (char& c : text)
+      if (c == 'D' || c == 'd') c = 'E';  // FITS allows the exponent of a double to be marked D
+    if (text.starts_with('+')) text.erase(0, 1);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+      fail(key, "must be a finite number, got " + text);
+    return value;
+  }
+
+  const FitsValues& values_;
+  const std::string& name_;
+};
+
+template <class Visitor>
+void visit_pixel_coordinate(Visitor& v, const char* key, double& zero_based, const char* comment) {
+  double one_based = zero_based + 1.0;
+  v.number(key, one_based, comment);
+  zero_based = one_based - 1.0;
+}
+
+template <class Visitor>
+void visit_wcs(Visitor& v, Wcs& wcs) {
+  const bool sip = v.present("A_ORDER", wcs.order > 0);
+  v.constant("WCSAXES", 2, "");
+  v.constant("CTYPE1", sip ? "RA---TAN-SIP" : "RA---TAN", "gnomonic, with SIP distortion if -SIP");
+  v.constant("CTYPE2", sip ? "DEC--TAN-SIP" : "DEC--TAN", "");
+  v.constant("CUNIT1", "deg", "");
+  v.constant("CUNIT2", "deg", "");
+  visit_pixel_coordinate(v, "CRPIX1", wcs.crpix_x, "centre of the first pixel is 1");
+  visit_pixel_coordinate(v, "CRPIX2", wcs.crpix_y, "");
+  v.angle("CRVAL1", wcs.ra_rad, "[deg] right ascension of the reference pixel");
+  v.angle("CRVAL2", wcs.dec_rad, "[deg] declination of the reference pixel");
+  v.number("CD1_1", wcs.cd_deg[0], "[deg/px]");
+  v.number("CD1_2", wcs.cd_deg[1], "[deg/px]");
+  v.number("CD2_1", wcs.cd_deg[2], "[deg/px]");
+  v.number("CD2_2", wcs.cd_deg[3], "[deg/px]");
+  v.constant("RADESYS", "ICRS", "places are astrometric: as in a star catalogue");
+  v.sip(wcs);
+  v.number("WCSRMS", wcs.rms_px, "[px] rms of the WCS against the true mapping");
+  v.number("WCSMAX", wcs.max_px, "[px] largest error of the WCS");
+}
+
+template <class Visitor, class Frame>
+void visit_vector(Visitor& v, const std::string& key, Vec<Frame>& vector, const char* comment) {
+  v.number(key + "X", vector.x, comment);
+  v.number(key + "Y", vector.y, "");
+  v.number(key + "Z", vector.z, "");
+}
+
+template <class Visitor>
+void visit(Visitor& v, FrameHeader& h) {
+  v.text("INSTRUME", h.sensor, "sensor");
+  v.integer("FRAMENUM", h.frame, "frame of this sensor, counts from 1");
+  v.constant("TIMESYS", "UTC", "");
+  v.utc("DATE-OBS", h.start_utc, "start of the exposure");
+  v.utc("DATE-BEG", h.start_utc, "start of the exposure");
+  v.utc("DATE-AVG", h.middle_utc, "middle of the exposure");
+  v.utc("DATE-END", h.end_utc, "end of the exposure");
+  v.integer("SIMT-BEG", h.start.ns, "[ns] start, since the scenario's start");
+  v.integer("SIMT-AVG", h.middle.ns, "[ns] middle");
+  v.integer("SIMT-END", h.end.ns, "[ns] end");
+  v.number("EXPTIME", h.exposure_s, "[s]");
+  v.text("MOUNT", h.mount, "how the camera is carried");
+  v.text("FILTER", h.band.name, "band");
+  v.number("BANDCEN", h.band.centre_m, "[m] centre of the band");
+  v.number("BANDWID", h.band.width_m, "[m] full width of the band");
+  v.number("GAIN", h.gain_e_per_dn, "[e-/DN]");
+  v.number("BIASLVL", h.bias_dn, "[DN] count of no electron");
+  v.number("RDNOISE", h.read_noise_e, "[e-] rms");
+  v.number("DARKCUR", h.dark_e_per_s, "[e-/s/px]");
+  v.number("FULLWELL", h.full_well_e, "[e-]");
+  v.number("SATURATE", h.saturation_dn, "[DN] counts from here on may be clipped");
+  v.number("PSFFWHM", h.psf_fwhm_px, "[px] Gaussian, before pixel integration");
+  v.number("PHOTZP", h.zero_point_mag, "[mag] of 1 e-/s, above the atmosphere");
+  v.projection("PROJNAME", h.projection, "of the lens");
+  v.number("FOCALPX", h.focal_length_px, "[px] focal length");
+  constexpr const char* attitudes[3] = {"QBEG", "QAVG", "QEND"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string key = attitudes[i];
+    Quaternion& q = h.camera_from_gcrs[i];
+    v.number(key + "0", q.w, "quaternion camera from GCRS, scalar first");
+    v.number(key + "1", q.x, "");
+    v.number(key + "2", q.y, "");
+    v.number(key + "3", q.z, "");
+  }
+  visit_vector(v, "SENPOS", h.sensor_position_m, "[m] sensor, GCRS, mid exposure");
+  visit_vector(v, "SENVEL", h.sensor_velocity_m_per_s, "[m/s] sensor, GCRS, mid exposure");
+  visit_vector(v, "EARVEL", h.earth_velocity_m_per_s, "[m/s] Earth, barycentric, GCRS axes");
+  if (v.present("OBSGEO-X", h.site.has_value())) {
+    if (!h.site) h.site.emplace();
+    visit_vector(v, "OBSGEO-", h.site->position_m, "[m] site, ITRS");
+    v.angle("SITELAT", h.site->latitude_rad, "[deg] geodetic latitude");
+    v.angle("SITELONG", h.site->longitude_rad, "[deg] longitude, east positive");
+    v.number("SITEELEV", h.site->height_m, "[m] height above the ellipsoid");
+  }
+  visit_wcs(v, h.wcs);
+  v.integer("SEED", h.seed, "of the random draws");
+  v.text("SCENARIO", h.scenario_digest, "digest of the scenario");
+  v.text("CREATOR", h.software, "");
+}
+
+void require_sense(const CardReader& v, const FrameHeader& h) {
+  v.require(h.exposure_s > 0, "EXPTIME", "must be > 0");
+  v.require(h.start <= h.middle && h.middle <= h.end, "SIMT-AVG", "must lie between start and end");
+  v.require(h.gain_e_per_dn > 0, "GAIN", "must be > 0");
+  v.require(h.read_noise_e >= 0, "RDNOISE", "must be >= 0");
+  v.require(h.saturation_dn > 0, "SATURATE", "must be > 0");
+  v.require(h.psf_fwhm_px > 0 && h.psf_fwhm_px <= 100, "PSFFWHM", "must be in (0, 100]");
+  v.require(h.focal_length_px > 0, "FOCALPX", "must be > 0");
+  const auto& cd = h.wcs.cd_deg;
+  v.require(cd[0] * cd[3] - cd[1] * cd[2] != 0, "CD1_1", "the CD matrix must have an inverse");
+  constexpr const char* attitudes[3] = {"QBEG0", "QAVG0", "QEND0"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Quaternion& q = h.camera_from_gcrs[i];
+    const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+    v.require(std::abs(square - 1) < 1e-6, attitudes[i], "the quaternion must have length 1");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> fits_cards(const FrameHeader& header) {
+  FrameHeader copy = header;
+  CardWriter writer;
+  visit(writer, copy);
+  return std::move(writer.cards);
+}
+
+void add_card(FitsValues& values, const std::string& card) {
+  if (card.size() < 10 || card.compare(8, 2, "= ") != 0) return;
+  const std::string key = card.substr(0, card.find_last_not_of(' ', 7) + 1);
+  std::size_t at = card.find_first_not_of(' ', 10);
+  std::string value;
+  if (at != std::string::npos && card[at] == '\'') {
+    for (++at; at < card.size(); ++at) {
+      if (card[at] == '\'' && (at + 1 >= card.size() || card[++at] != '\'')) break;
+      value += card[at];
+    }
+  } else if (at != std::string::npos) {
+    value = card.substr(at, card.find('/', at) - at);
+  }
+  value.resize(value.find_last_not_of(' ') + 1);
+  values.emplace(key, value);
+}
+
+FrameHeader header_from_values(const FitsValues& values, const std::string& name) {
+  FrameHeader header;
+  CardReader reader(values, name);
+  visit(reader, header);
+  require_sense(reader, header);
+  return header;
+}
+
+FrameHeader as_in_file(const FrameHeader& header) {
+  FitsValues values;
+  for (const std::string& card : fits_cards(header)) add_card(values, card);
+  return header_from_values(values, "FITS header");
+}
+
+}  // namespace dmise

@@ -1,0 +1,162 @@
+#include "core/image/fits_file.h"
+
+#include <fitsio.h>
+
+#include <array>
+#include <cstdlib>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/image/fits_cards.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::size_t fits_block = 2880;
+constexpr long widest_side = 1 << 16;
+// The best that Rice's code does is a few bits for 32 pixels: a file that claims more is a bomb.
+constexpr std::size_t most_pixels_per_byte = 128;
+
+/// An open FITS file; closed on the way out whatever happens.
+struct Fits {
+  fitsfile* file = nullptr;
+  int status = 0;
+
+  Fits() = default;
+  Fits(const Fits&) = delete;
+  Fits& operator=(const Fits&) = delete;
+  ~Fits() {
+    int ignored = 0;
+    if (file) fits_close_file(file, &ignored);
+    fits_clear_errmsg();
+  }
+  std::string reason() const {
+    char text[FLEN_STATUS] = "";
+    fits_get_errstatus(status, text);
+    return text;
+  }
+};
+
+/// Upper bound of the file's size: Rice adds a table row for every image row and never doubles it.
+std::size_t size_bound(const CountImage& counts, std::size_t cards, FitsCompression compression) {
+  const std::size_t header = (cards + 64) * 80 + 2 * fits_block;
+  const std::size_t data = counts.pixels.size() * sizeof(std::uint16_t) + fits_block;
+  if (compression == FitsCompression::none) return header + data;
+  return header + data + data / 4 + std::size_t(counts.rows) * 64 + 8 * fits_block;
+}
+
+std::array<long, 2> image_shape(Fits& fits, std::size_t file_bytes, const std::string& name) {
+  int bits = 0, axes = 0, type = 0;
+  std::array<long, 2> shape{};
+  fits_get_hdu_type(fits.file, &type, &fits.status);
+  if (fits.status == 0 && type == IMAGE_HDU)
+    fits_get_img_param(fits.file, 2, &bits, &axes, shape.data(), &fits.status);
+  if (fits.status == 0 && axes == 0) {  // an empty primary: a compressed image may follow
+    fits_movabs_hdu(fits.file, 2, &type, &fits.status);
+    if (fits.status != 0 || !fits_is_compressed_image(fits.file, &fits.status))
+      throw ConfigError(name + ": NAXIS: holds no image");
+    fits_get_img_param(fits.file, 2, &bits, &axes, shape.data(), &fits.status);
+  }
+  if (fits.status != 0) throw ConfigError(name + ": not a FITS image: " + fits.reason());
+  if (axes != 2) throw ConfigError(name + ": NAXIS: must be 2, got " + std::to_string(axes));
+  if (bits != SHORT_IMG)
+    throw ConfigError(name + ": BITPIX: must be 16, got " + std::to_string(bits));
+  for (int i = 0; i < 2; ++i) {
+    const long side = shape[std::size_t(i)];
+    if (side < 1 || side > widest_side)
+      throw ConfigError(name + ": NAXIS" + std::to_string(i + 1) + ": must be in 1..65536, got " +
+                        std::to_string(side));
+  }
+  if (std::size_t(shape[0]) * std::size_t(shape[1]) / most_pixels_per_byte > file_bytes)
+    throw ConfigError(name + ": NAXIS1: the image is larger than the file can hold");
+  return shape;
+}
+
+FitsValues read_cards(Fits& fits, const std::string& name) {
+  FitsValues values;
+  int count = 0;
+  fits_get_hdrspace(fits.file, &count, nullptr, &fits.status);
+  for (int i = 1; i <= count && fits.status == 0; ++i) {
+    char card[FLEN_CARD] = "";
+    fits_read_record(fits.file, i, card, &fits.status);
+    if (fits.status == 0) add_card(values, card);
+  }
+  if (fits.status != 0) throw ConfigError(name + ": header can't be read: " + fits.reason());
+  return values;
+}
+
+void require_unsigned_counts(const FitsValues& values, const std::string& name) {
+  const auto bzero = values.find("BZERO");
+  if (bzero == values.end()) throw ConfigError(name + ": BZERO: is missing");
+  if (std::strtod(bzero->second.c_str(), nullptr) != 32768.0)
+    throw ConfigError(name + ": BZERO: must be 32768, got " + bzero->second);
+  const auto bscale = values.find("BSCALE");
+  if (bscale != values.end() && std::strtod(bscale->second.c_str(), nullptr) != 1.0)
+    throw ConfigError(name + ": BSCALE: must be 1, got " + bscale->second);
+}
+
+}  // namespace
+
+std::string encode_frame(const CountImage& counts, const FrameHeader& header,
+                         FitsCompression compression) {
+  const auto cards = fits_cards(header);
+  std::string bytes(size_bound(counts, cards.size(), compression), '\0');
+  void* memory = bytes.data();
+  std::size_t memory_size = bytes.size();
+  Fits fits;
+  fits_create_memfile(&fits.file, &memory, &memory_size, 0, nullptr, &fits.status);
+  if (compression == FitsCompression::rice)
+    fits_set_compression_type(fits.file, RICE_1, &fits.status);
+  std::array<long, 2> shape = {counts.columns, counts.rows};
+  fits_create_img(fits.file, USHORT_IMG, 2, shape.data(), &fits.status);
+  for (const std::string& card : cards) fits_write_record(fits.file, card.c_str(), &fits.status);
+  // CFITSIO only reads the pixels; its interface predates const.
+  auto* pixels = const_cast<std::uint16_t*>(counts.pixels.data());
+  fits_write_img(fits.file, TUSHORT, 1, LONGLONG(counts.pixels.size()), pixels, &fits.status);
+  fits_flush_file(fits.file, &fits.status);
+  LONGLONG end = 0;
+  fits_get_hduaddrll(fits.file, nullptr, nullptr, &end, &fits.status);
+  if (fits.status == 0) {
+    fits_close_file(fits.file, &fits.status);
+    fits.file = nullptr;
+  }
+  if (fits.status != 0) throw Error("FITS can't be written: " + fits.reason());
+  bytes.resize(std::size_t(end));
+  return bytes;
+}
+
+Frame decode_frame(std::string_view bytes, const std::string& name) {
+  if (bytes.size() < fits_block || !bytes.starts_with("SIMPLE  ="))
+    throw ConfigError(name + ": SIMPLE: not a FITS file");
+  Fits fits;
+  void* memory = const_cast<char*>(bytes.data());  // opened for reading only
+  std::size_t memory_size = bytes.size();
+  fits_open_memfile(&fits.file, "frame", READONLY, &memory, &memory_size, 0, nullptr, &fits.status);
+  if (fits.status != 0) throw ConfigError(name + ": not a FITS file: " + fits.reason());
+  const auto shape = image_shape(fits, bytes.size(), name);
+  const FitsValues values = read_cards(fits, name);
+  Frame frame;
+  frame.header = header_from_values(values, name);
+  require_unsigned_counts(values, name);
+  frame.counts = CountImage(int(shape[0]), int(shape[1]));
+  int any_null = 0;
+  fits_read_img(fits.file, TUSHORT, 1, LONGLONG(frame.counts.pixels.size()), nullptr,
+                frame.counts.pixels.data(), &any_null, &fits.status);
+  if (fits.status != 0) throw ConfigError(name + ": pixels can't be read: " + fits.reason());
+  return frame;
+}
+
+void write_frame(const std::string& path, const CountImage& counts, const FrameHeader& header,
+                 FitsCompression compression) {
+  std::string bytes;
+  try {
+    bytes = encode_frame(counts, header, compression);
+  } catch (const Error& error) {
+    throw Error(path + ": " + error.what());
+  }
+  write_file_whole(path, bytes);
+}
+
+Frame read_frame(const std::string& path) { return decode_frame(read_text_file(path), path); }
+
+}  // namespace dmise

@@ -1,0 +1,76 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/base/sim_time.h"
+#include "core/detection/detection.h"
+#include "core/frames/vec.h"
+#include "core/optics/camera.h"
+#include "core/photometry/band.h"
+
+namespace dmise {
+
+/// Unit quaternion of a rotation of axes, scalar first: v_to = q v_from q*.
+struct Quaternion {
+  double w = 1.0, x = 0.0, y = 0.0, z = 0.0;
+
+  bool operator==(const Quaternion&) const = default;
+};
+
+/// Where a ground sensor stands.
+struct Site {
+  double latitude_rad = 0.0, longitude_rad = 0.0;  // geodetic
+  double height_m = 0.0;                           // above the scenario's ellipsoid
+  Vec<Itrs> position_m;
+
+  bool operator==(const Site&) const = default;
+};
+
+/// Everything that a frame says of itself: what its FITS header holds and all that a detector may
+/// know. Nothing in it depends on the wall clock or on how the run was started.
+struct FrameHeader {
+  std::string sensor;          // at most 60 printable ASCII characters, as all texts here
+  std::uint32_t frame = 0;     // counts from 1
+  SimTime start, middle, end;  // of the exposure
+  std::string start_utc, middle_utc,
+      end_utc;  // ISO 8601; FITS knows no Z: one at the end is dropped
+  double exposure_s = 0.0;
+  std::string mount;     // "fixed", "sidereal", ...
+  std::string software;  // name and version
+  std::string scenario_digest;
+  std::uint64_t seed = 0;
+
+  double gain_e_per_dn = 1.0;
+  double bias_dn = 0.0;
+  double read_noise_e = 0.0;  // rms
+  double dark_e_per_s = 0.0;
+  double full_well_e = 0.0;
+  double saturation_dn = 0.0;  // the lowest count that may be clipped: full well or ADC
+  double psf_fwhm_px = 0.0;    // Gaussian, before pixel integration
+  Band band;
+  double zero_point_mag = 0.0;  // of a source above the atmosphere that gives 1 e-/s
+
+  Wcs wcs;
+  Projection projection = Projection::gnomonic;
+  double focal_length_px = 0.0;
+  // Start, middle and end of the exposure: how the star field moves over the detector.
+  std::array<Quaternion, 3> camera_from_gcrs;
+
+  Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // geocentric, mid exposure
+  Vec<Gcrs> earth_velocity_m_per_s;                      // of the geocentre, barycentric, GCRS axes
+  std::optional<Site> site;                              // of a ground sensor
+
+  bool operator==(const FrameHeader&) const = default;
+};
+
+Quaternion quaternion_of(const Rotation<CameraFrame, Gcrs>& rotation);
+/// `q` is normalised first; its length must not be zero.
+Rotation<CameraFrame, Gcrs> rotation_of(const Quaternion& q);
+
+/// "gnomonic", ... as in FITS headers and configuration.
+const char* projection_name(Projection projection);
+std::optional<Projection> projection_named(const std::string& name);
+
+}  // namespace dmise
