@@ -37,13 +37,20 @@ struct Fits {
   }
 };
 
-/// Upper bound of the file's size: Rice adds a table row for every image row and never doubles it.
-std::size_t size_bound(const CountImage& counts, std::size_t cards, FitsCompression compression) {
-  const std::size_t header = (cards + 64) * 80 + 2 * fits_block;
-  const std::size_t data = counts.pixels.size() * sizeof(std::uint16_t) + fits_block;
-  if (compression == FitsCompression::none) return header + data;
-  return header + data + data / 4 + std::size_t(counts.rows) * 64 + 8 * fits_block;
-}
+/// Memory that CFITSIO writes a file into, and lets grow by realloc. It takes what is there at the
+/// start for a part of the file: only an uncompressed one, which overwrites all of it, may start
+/// large.
+struct FitsMemory {
+  void* data = nullptr;
+  std::size_t size = 0;
+
+  explicit FitsMemory(std::size_t size_) : data(std::calloc(1, size_)), size(size_) {
+    if (!data) throw Error("FITS can't be written: out of memory");
+  }
+  FitsMemory(const FitsMemory&) = delete;
+  FitsMemory& operator=(const FitsMemory&) = delete;
+  ~FitsMemory() { std::free(data); }
+};
 
 std::array<long, 2> image_shape(Fits& fits, std::size_t file_bytes, const std::string& name) {
   int bits = 0, axes = 0, type = 0;
@@ -100,11 +107,11 @@ void require_unsigned_counts(const FitsValues& values, const std::string& name) 
 std::string encode_frame(const CountImage& counts, const FrameHeader& header,
                          FitsCompression compression) {
   const auto cards = fits_cards(header);
-  std::string bytes(size_bound(counts, cards.size(), compression), '\0');
-  void* memory = bytes.data();
-  std::size_t memory_size = bytes.size();
+  const std::size_t whole = (cards.size() + 64) * 80 + 2 * counts.pixels.size() + 3 * fits_block;
+  FitsMemory memory(compression == FitsCompression::none ? whole : fits_block);
   Fits fits;
-  fits_create_memfile(&fits.file, &memory, &memory_size, 0, nullptr, &fits.status);
+  fits_create_memfile(&fits.file, &memory.data, &memory.size, std::size_t(1) << 20, std::realloc,
+                      &fits.status);
   if (compression == FitsCompression::rice)
     fits_set_compression_type(fits.file, RICE_1, &fits.status);
   std::array<long, 2> shape = {counts.columns, counts.rows};
@@ -121,8 +128,7 @@ std::string encode_frame(const CountImage& counts, const FrameHeader& header,
     fits.file = nullptr;
   }
   if (fits.status != 0) throw Error("FITS can't be written: " + fits.reason());
-  bytes.resize(std::size_t(end));
-  return bytes;
+  return std::string(static_cast<const char*>(memory.data), std::size_t(end));
 }
 
 Frame decode_frame(std::string_view bytes, const std::string& name) {
@@ -134,6 +140,11 @@ Frame decode_frame(std::string_view bytes, const std::string& name) {
   fits_open_memfile(&fits.file, "frame", READONLY, &memory, &memory_size, 0, nullptr, &fits.status);
   if (fits.status != 0) throw ConfigError(name + ": not a FITS file: " + fits.reason());
   const auto shape = image_shape(fits, bytes.size(), name);
+  LONGLONG end = 0;
+  fits_get_hduaddrll(fits.file, nullptr, nullptr, &end, &fits.status);
+  if (fits.status != 0 || std::size_t(end) > bytes.size())
+    throw ConfigError(name + ": is cut short: " + std::to_string(bytes.size()) + " of " +
+                      std::to_string(end) + " bytes");
   const FitsValues values = read_cards(fits, name);
   Frame frame;
   frame.header = header_from_values(values, name);

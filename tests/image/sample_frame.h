@@ -1,0 +1,71 @@
+#pragma once
+#include <cmath>
+
+#include "core/base/units.h"
+#include "core/image/frame_header.h"
+
+namespace dmise::test {
+
+/// A header with every field set to something that is not its default, of a camera at the equator
+/// of the sky; the WCS has a second-order distortion.
+inline FrameHeader sample_header(int columns = 200, int rows = 150) {
+  FrameHeader h;
+  h.sensor = "atlanta";
+  h.frame = 7;
+  h.start = {10'000'000'000};
+  h.middle = {20'000'000'000};
+  h.end = {30'000'000'000};
+  h.start_utc = "2018-01-20T23:40:10.000000000";
+  h.middle_utc = "2018-01-20T23:40:20.000000000";
+  h.end_utc = "2018-01-20T23:40:30.000000000";
+  h.exposure_s = 20.0;
+  h.mount = "fixed";
+  h.software = "dmise 0.1.0";
+  h.scenario_digest = "0123456789abcdef0123456789abcdef";
+  h.seed = 18446744073709551615u;
+  h.gain_e_per_dn = 0.35;
+  h.bias_dn = 250.0;
+  h.read_noise_e = 9.3;
+  h.dark_e_per_s = 0.02;
+  h.full_well_e = 25500.0;
+  h.saturation_dn = 65535.0;
+  h.psf_fwhm_px = 1.7;
+  h.band = {"V", 0.55e-6, 0.128e-6};
+  h.zero_point_mag = 17.3;
+  h.focal_length_px = 1663.0;
+  const double scale_deg = std::atan(1.0 / h.focal_length_px) / deg;
+  h.wcs.crpix_x = (columns - 1) / 2.0;
+  h.wcs.crpix_y = (rows - 1) / 2.0;
+  h.wcs.ra_rad = 1.1;
+  h.wcs.dec_rad = 0.6;
+  h.wcs.cd_deg = {scale_deg, 0.0, 0.0, -scale_deg};
+  h.wcs.order = 2;
+  h.wcs.a = {0, 0, 1e-6, 0, 2e-6, 0, -1e-6, 0, 0};
+  h.wcs.b = {0, 0, -2e-6, 0, 1e-6, 0, 3e-6, 0, 0};
+  h.wcs.ap = {0, 0, -1e-6, 0, -2e-6, 0, 1e-6, 0, 0};
+  h.wcs.bp = {0, 0, 2e-6, 0, -1e-6, 0, -3e-6, 0, 0};
+  h.wcs.rms_px = 0.001;
+  h.wcs.max_px = 0.003;
+  h.camera_from_gcrs = {Quaternion{0.5, 0.5, 0.5, 0.5}, Quaternion{0.6, 0.0, 0.8, 0.0},
+                        Quaternion{0.0, 0.28, 0.0, 0.96}};
+  h.sensor_position_m = {5.1e6, 1.2e6, 3.5e6};
+  h.sensor_velocity_m_per_s = {-87.5, 372.0, 0.1};
+  h.earth_velocity_m_per_s = {-26000.0, -13500.0, -5850.0};
+  h.site = Site{33.777 * deg, -84.398 * deg, 300.0, {517000.0, -5281000.0, 3525000.0}};
+  return h;
+}
+
+/// Counts with structure: every value occurs, neighbours differ.
+inline CountImage sample_counts(int columns = 200, int rows = 150) {
+  CountImage counts(columns, rows);
+  std::uint32_t state = 1;
+  for (auto& pixel : counts.pixels) {
+    state = state * 1664525u + 1013904223u;
+    pixel = std::uint16_t(300 + (state >> 26));
+  }
+  counts.pixels.front() = 0;
+  counts.pixels.back() = 65535;
+  return counts;
+}
+
+}  // namespace dmise::test

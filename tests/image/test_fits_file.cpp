@@ -1,0 +1,172 @@
+#include "core/image/fits_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/image/fits_cards.h"
+#include "tests/image/sample_frame.h"
+#include "tests/support/data.h"
+
+namespace dmise {
+namespace {
+
+using test::sample_counts;
+using test::sample_header;
+using testing::HasSubstr;
+
+std::string scratch(const std::string& name) { return testing::TempDir() + "/fits-" + name; }
+
+/// Exit status and output of a command.
+std::pair<int, std::string> run(const std::string& command) {
+  std::string output;
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  if (!pipe) return {-1, ""};
+  char buffer[4096];
+  while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) output.append(buffer, n);
+  return {pclose(pipe), output};
+}
+
+std::string error_of(std::string_view bytes) {
+  try {
+    decode_frame(bytes, "frame.fits");
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// `bytes` with the card of `key` replaced.
+std::string with_card(std::string bytes, const std::string& key, std::string card) {
+  std::string start = key;
+  start.resize(8, ' ');
+  const auto at = bytes.find(start + "=");
+  if (at == std::string::npos) throw Error("no card " + key);
+  card.resize(80, ' ');
+  return bytes.replace(at, 80, card);
+}
+
+TEST(FitsFile, ReadsBackWhatWasWritten) {
+  for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
+    const auto counts = sample_counts();
+    const auto header = as_in_file(sample_header());
+    const Frame frame = decode_frame(encode_frame(counts, header, compression), "frame.fits");
+    EXPECT_EQ(frame.counts.columns, counts.columns);
+    EXPECT_EQ(frame.counts.rows, counts.rows);
+    EXPECT_EQ(frame.counts.pixels, counts.pixels);
+    EXPECT_EQ(frame.header, as_in_file(header));
+  }
+}
+
+TEST(FitsFile, HeaderInMemoryIsTheHeaderOfTheFile) {
+  const auto header = sample_header();
+  const Frame frame = decode_frame(encode_frame(sample_counts(), header), "frame.fits");
+  EXPECT_EQ(frame.header, as_in_file(header));
+  EXPECT_NEAR(frame.header.wcs.ra_rad, header.wcs.ra_rad, 1e-15);
+  EXPECT_EQ(frame.header.seed, header.seed);
+}
+
+TEST(FitsFile, SpaceSensorHasNoSite) {
+  auto header = sample_header();
+  header.site.reset();
+  header.wcs.order = 0;
+  const Frame frame = decode_frame(encode_frame(sample_counts(), header), "frame.fits");
+  EXPECT_FALSE(frame.header.site);
+  EXPECT_EQ(frame.header.wcs.order, 0);
+}
+
+TEST(FitsFile, EqualFramesAreEqualBytesAndRiceIsSmaller) {
+  for (const auto compression : {FitsCompression::none, FitsCompression::rice})
+    EXPECT_EQ(encode_frame(sample_counts(), sample_header(), compression),
+              encode_frame(sample_counts(), sample_header(), compression));
+  EXPECT_LT(encode_frame(sample_counts(640, 480), sample_header(), FitsCompression::rice).size(),
+            0.6 * encode_frame(sample_counts(640, 480), sample_header()).size());
+}
+
+// Reference: fitsverify 4.20 (HEASARC), which knows the FITS standard.
+TEST(FitsFile, FitsverifyFindsNothing) {
+  if (std::system("command -v fitsverify > /dev/null") != 0) GTEST_SKIP() << "needs fitsverify";
+  for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
+    const std::string path = scratch("verify.fits");
+    write_frame(path, sample_counts(), sample_header(), compression);
+    const auto [status, output] = run("fitsverify " + path);
+    EXPECT_EQ(status, 0) << output;
+    EXPECT_THAT(output, HasSubstr("0 warning(s) and 0 error(s)"));
+  }
+}
+
+// Reference: astropy 5.2 through its own FITS and WCS readers.
+TEST(FitsFile, AstropyReadsHeaderAndPixels) {
+  const std::string python = "/usr/bin/python3";
+  if (std::system((python + " -c 'import astropy.wcs' 2> /dev/null").c_str()) != 0)
+    GTEST_SKIP() << "needs python3-astropy";
+  const std::string path = scratch("astropy.fits");
+  write_frame(path, sample_counts(), sample_header());
+  const auto [status, output] = run(
+      python + " -W error " DMISE_SOURCE_DIR "/tests/reference/read_frame_with_astropy.py " + path);
+  EXPECT_EQ(status, 0) << output;
+  EXPECT_EQ(output,
+            "shape 150 200 dtype uint16 corners 0 65535\n"
+            "gain 0.35 seed 18446744073709551615 obs 2018-01-20T23:40:10.000\n"
+            "frame icrs ctype RA---TAN-SIP DEC--TAN-SIP reference pixel 99.5 74.5\n");
+}
+
+TEST(FitsFile, NamesTheMissingOrWrongKeyword) {
+  const std::string good = encode_frame(sample_counts(), sample_header());
+  EXPECT_EQ(error_of(with_card(good, "EXPTIME", "COMMENT")), "frame.fits: EXPTIME: is missing");
+  EXPECT_EQ(error_of(with_card(good, "GAIN", "GAIN    = -1")),
+            "frame.fits: GAIN: must be > 0, got -1");
+  EXPECT_EQ(error_of(with_card(good, "GAIN", "GAIN    = nan")),
+            "frame.fits: GAIN: must be a finite number, got nan");
+  EXPECT_EQ(error_of(with_card(good, "CTYPE1", "CTYPE1  = 'GLON-CAR'")),
+            "frame.fits: CTYPE1: must be RA---TAN-SIP, got GLON-CAR");
+  EXPECT_EQ(error_of(with_card(good, "A_ORDER", "A_ORDER = 99")),
+            "frame.fits: A_ORDER: must be in 1..9");
+  EXPECT_EQ(error_of(with_card(good, "BZERO", "BZERO   = 0")),
+            "frame.fits: BZERO: must be 32768, got 0");
+  EXPECT_EQ(error_of(with_card(good, "QAVG0", "QAVG0   = 9.0")),
+            "frame.fits: QAVG0: the quaternion must have length 1, got 9.0");
+  EXPECT_EQ(error_of(with_card(good, "NAXIS1", "NAXIS1  = 60000000000")).find("frame.fits: "), 0u);
+  EXPECT_EQ(error_of(with_card(good, "NAXIS1", "NAXIS1  = 60000")).find("frame.fits: "), 0u);
+  EXPECT_EQ(error_of(with_card(good, "BITPIX", "BITPIX  = -32")),
+            "frame.fits: BITPIX: must be 16, got -32");
+}
+
+TEST(FitsFile, RefusesEveryTruncation) {
+  for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
+    const std::string good = encode_frame(sample_counts(), sample_header(), compression);
+    for (std::size_t size = 0; size + 2880 <= good.size(); size += 2880)
+      EXPECT_THAT(error_of(std::string_view(good).substr(0, size)), HasSubstr("frame.fits: "));
+  }
+  EXPECT_EQ(error_of("P5 640 480 255"), "frame.fits: SIMPLE: not a FITS file");
+}
+
+TEST(FitsFile, NamesTheFileThatCannotBeWritten) {
+  const std::string path = "/nonexistent-directory/frame.fits";
+  try {
+    write_frame(path, sample_counts(), sample_header());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr(path));
+  }
+  auto header = sample_header();
+  header.zero_point_mag = std::nan("");
+  EXPECT_THROW(write_frame(scratch("nan.fits"), sample_counts(), header), Error);
+  EXPECT_FALSE(test::exists(scratch("nan.fits")));
+}
+
+// A device that is always full stands for a full disk.
+TEST(FitsFile, FullDiskLeavesNoHalfFrame) {
+  const std::string link = scratch("full.fits.partial");
+  std::remove(link.c_str());
+  ASSERT_EQ(std::system(("ln -s /dev/full " + link).c_str()), 0);
+  EXPECT_THROW(write_frame(scratch("full.fits"), sample_counts(), sample_header()), Error);
+  EXPECT_FALSE(test::exists(scratch("full.fits")));
+}
+
+}  // namespace
+}  // namespace dmise
