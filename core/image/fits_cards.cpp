@@ -63,6 +63,9 @@ class CardWriter {
     text(key, copy, comment);
   }
   void constant(const char* key, int value, const char* comment) { integer(key, value, comment); }
+  void number_constant(const char* key, double value, const char* comment) {
+    number(key, value, comment);
+  }
   void projection(const char* key, Projection& value, const char* comment) {
     constant(key, projection_name(value), comment);
   }
@@ -130,6 +133,11 @@ class CardReader {
   }
   void constant(const char* key, int value, const char*) {
     constant(key, std::to_string(value).c_str(), "");
+  }
+  void number_constant(const char* key, double value, const char*) {
+    double found = 0.0;
+    number(key, found, "");
+    if (found != value) fail(key, "must be " + number_text(value) + ", got " + find(key));
   }
   void projection(const char* key, Projection& value, const char*) {
     const auto named = projection_named(find(key));
@@ -207,6 +215,7 @@ void visit_wcs(Visitor& v, Wcs& wcs) {
   v.number("CD1_2", wcs.cd_deg[1], "[deg/px]");
   v.number("CD2_1", wcs.cd_deg[2], "[deg/px]");
   v.number("CD2_2", wcs.cd_deg[3], "[deg/px]");
+  v.number_constant("LONPOLE", 180.0, "[deg] also where the reference is a celestial pole");
   v.constant("RADESYS", "ICRS", "places are astrometric: as in a star catalogue");
   v.sip(wcs);
   v.number("WCSRMS", wcs.rms_px, "[px] rms of the WCS against the true mapping");

@@ -1,0 +1,65 @@
+#include "core/image/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace dmise {
+namespace {
+
+/// Mean over `factor` x `factor` squares; what is left over at the right and bottom is dropped.
+Image<float, struct Averaged> average(const CountImage& counts, int factor) {
+  Image<float, Averaged> out(std::max(1, counts.columns / factor),
+                             std::max(1, counts.rows / factor));
+  const int wide = std::min(factor, counts.columns), high = std::min(factor, counts.rows);
+  for (int y = 0; y < out.rows; ++y)
+    for (int x = 0; x < out.columns; ++x) {
+      std::uint32_t sum = 0;
+      for (int j = 0; j < high; ++j)
+        for (int i = 0; i < wide; ++i) sum += counts.at(x * factor + i, y * factor + j);
+      out.at(x, y) = float(sum) / float(wide * high);
+    }
+  return out;
+}
+
+/// Median and noise (half the distance of the 16 % and 84 % points), from at most 2^16 pixels.
+std::array<float, 2> sky_of(const std::vector<float>& pixels) {
+  std::vector<float> sample;
+  const std::size_t step = pixels.size() / 65536 + 1;
+  for (std::size_t i = 0; i < pixels.size(); i += step) sample.push_back(pixels[i]);
+  const auto quantile = [&](double q) {
+    const auto at = sample.begin() + std::ptrdiff_t(q * double(sample.size() - 1));
+    std::nth_element(sample.begin(), at, sample.end());
+    return *at;
+  };
+  const float low = quantile(0.1587), median = quantile(0.5);
+  return {median, std::max(median - low, 1e-3f * std::max(1.0f, std::abs(median)))};
+}
+
+}  // namespace
+
+Preview preview(const CountImage& counts, const PictureSettings& settings) {
+  const int shrink = std::max(1, (counts.columns + settings.max_width - 1) / settings.max_width);
+  const int grow = std::max(1, settings.min_width / std::max(1, counts.columns));
+  const auto small = average(counts, shrink);
+  const auto [median, sigma] = sky_of(small.pixels);
+  const double white =
+      std::asinh((settings.black_sigma + settings.white_sigma) / settings.linear_sigma);
+  const auto grey = [&](float value) {
+    const double v = (double(value) - median) / sigma + settings.black_sigma;
+    const double level = 255.0 * std::asinh(v / settings.linear_sigma) / white;
+    return std::uint8_t(std::clamp(std::lround(level), 0l, 255l));
+  };
+  Preview out;
+  out.pixels_per_px = double(grow) / shrink;
+  out.picture = {small.columns * grow, small.rows * grow, 1, {}};
+  out.picture.pixels.resize(std::size_t(out.picture.columns) * std::size_t(out.picture.rows));
+  auto* at = out.picture.pixels.data();
+  for (int y = 0; y < out.picture.rows; ++y)
+    for (int x = 0; x < out.picture.columns; ++x) *at++ = grey(small.at(x / grow, y / grow));
+  return out;
+}
+
+}  // namespace dmise
