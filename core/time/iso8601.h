@@ -1,0 +1,18 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "core/time/julian_date.h"
+
+namespace dmise {
+
+/// Reads `2018-01-20T23:40:00Z` or with up to nine decimals of a second; the `Z` may be left out, a
+/// blank may stand for the `T`, and a date alone is its midnight. `23:59:60` is a time on days that
+/// end with a leap second only. Throws `ConfigError` with the reason and the text.
+Utc parse_utc(std::string_view text);
+
+/// `2018-01-20T23:40:00.000Z` with `decimals` in [0, 9] of a second, rounded down to them so that
+/// the text never names a second that has not begun.
+std::string format_utc(const Utc& utc, int decimals = 3);
+
+}  // namespace dmise

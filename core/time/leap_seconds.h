@@ -1,0 +1,42 @@
+#pragma once
+#include <cstdint>
+
+#include "core/time/julian_date.h"
+
+namespace dmise {
+
+/// A UTC instant in whole numbers: no rounding anywhere between a scenario's text and its clock.
+struct UtcInstant {
+  std::int64_t mjd = 0;        // UTC day
+  std::int64_t ns_of_day = 0;  // [0, day length): up to 86401e9 on a day with a leap second
+
+  bool operator==(const UtcInstant&) const = default;
+};
+
+/// The same instant on the uniform scale.
+struct TaiInstant {
+  std::int64_t mjd = 0;
+  std::int64_t ns_of_day = 0;  // [0, 86400e9)
+
+  bool operator==(const TaiInstant&) const = default;
+};
+
+/// TAI - UTC on the UTC day `mjd` [s], from ERFA's table. Throws `Error` before 1972, when UTC was
+/// not yet kept in whole seconds.
+int tai_minus_utc_s(std::int64_t mjd);
+
+/// Length of the UTC day `mjd` [s]: 86400, 86401 when it ends with a leap second.
+int utc_day_length_s(std::int64_t mjd);
+
+/// True where ERFA calls the year dubious: so far beyond its table that leap seconds may have been
+/// announced since. UTC is then ahead by that many seconds; nothing else is affected.
+bool leap_seconds_uncertain(std::int64_t mjd);
+
+TaiInstant to_tai(const UtcInstant& utc);
+UtcInstant to_utc(const TaiInstant& tai);
+
+/// Nearest nanosecond.
+UtcInstant to_instant(const Utc& utc);
+Utc to_julian_date(const UtcInstant& utc);
+
+}  // namespace dmise
