@@ -8,7 +8,7 @@
 #include "core/config/camera_config.h"
 #include "core/config/search_path.h"
 #include "core/config/yaml_reader.h"
-#include "core/time/utc.h"
+#include "core/time/iso8601.h"
 
 namespace dmise {
 namespace {

@@ -175,6 +175,13 @@ std::optional<YamlValue> YamlMap::find(std::string_view key) {
 
 YamlValue YamlMap::require(std::string_view key) {
   if (auto value = find(key)) return *value;
+  // A misspelt key is worth more than "is missing".
+  for (const auto& entry : value_.node_) {
+    const std::string name = entry.first.Scalar();
+    if (!known_.contains(name) && nearest_name(name, {std::string(key)}) == key)
+      YamlValue(entry.first, value_.file_, child_path(name))
+          .fail("unknown key, did you mean " + std::string(key) + "?", false);
+  }
   YamlValue(value_.node_, value_.file_, child_path(key)).fail("is missing", false);
 }
 

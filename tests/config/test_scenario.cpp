@@ -64,7 +64,8 @@ TEST_F(ScenarioFile, ResolvesPresetsAndDefaults) {
 TEST_F(ScenarioFile, SaysWhereAndWhy) {
   EXPECT_EQ(complaint(good, "exposure_s: 20", "exposure_s: -1"),
             "7:17: sensors[0].exposure_s: must be >= 1e-06, got -1");
-  EXPECT_EQ(complaint(good, "exposure_s: 20", "exposur_s: 20"), "3:5: sensors[0].exposure_s: is missing");
+  EXPECT_EQ(complaint(good, "exposure_s: 20", "exposur_s: 20"), "7:5: sensors[0].exposur_s: unknown key, did you mean exposure_s?");
+  EXPECT_EQ(complaint(good, "    exposure_s: 20\n", ""), "3:5: sensors[0].exposure_s: is missing");
   EXPECT_EQ(complaint(good, "cadence_s: 30", "cadence_s: 30\n    roll_dg: 2"),
             "9:5: sensors[0].roll_dg: unknown key");
   EXPECT_EQ(complaint(good, "latitude_deg: 33.777", "latitude_deg: 133.777"),
