@@ -1,0 +1,121 @@
+#include "launch/supervisor.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "core/base/error.h"
+
+namespace dmise {
+namespace {
+
+using Milliseconds = std::chrono::milliseconds;
+
+/// In the child: becomes the program, or tells `report` why not.
+[[noreturn]] void become(const std::vector<std::string>& arguments, const std::string& log_path,
+                         pid_t parent, int report) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) _exit(1);
+  const int log = open(log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0644);
+  const int in = open("/dev/null", O_RDONLY);
+  if (log >= 0 && in >= 0) {
+    dup2(in, STDIN_FILENO);
+    dup2(log, STDOUT_FILENO);
+    dup2(log, STDERR_FILENO);
+    std::vector<char*> argv;
+    for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    execv(argv[0], argv.data());
+  }
+  const int reason = errno;
+  if (write(report, &reason, sizeof reason) < 0) _exit(126);
+  _exit(127);
+}
+
+}  // namespace
+
+Supervisor::~Supervisor() { stop(Milliseconds(1000)); }
+
+void Supervisor::start(const std::string& name, const std::vector<std::string>& arguments,
+                       const std::string& log_path) {
+  int report[2];
+  if (pipe2(report, O_CLOEXEC) != 0) throw Error(name + ": no pipe: " + std::strerror(errno));
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid < 0) {
+    const int reason = errno;
+    close(report[0]);
+    close(report[1]);
+    throw Error(name + ": can't start a process: " + std::strerror(reason));
+  }
+  if (pid == 0) become(arguments, log_path, parent, report[1]);
+  close(report[1]);
+  int reason = 0;
+  ssize_t got = 0;
+  do {
+    got = read(report[0], &reason, sizeof reason);
+  } while (got < 0 && errno == EINTR);
+  close(report[0]);
+  if (got > 0) {
+    waitpid(pid, nullptr, 0);
+    throw Error(arguments[0] + ": can't be started: " + std::strerror(reason));
+  }
+  children_.push_back({name, pid, std::nullopt, log_path});
+}
+
+bool Supervisor::poll() {
+  bool running = false;
+  for (std::size_t i = 0; i < children_.size(); ++i) {
+    auto& child = children_[i];
+    if (child.exit_code) continue;
+    int status = 0;
+    if (waitpid(child.pid, &status, WNOHANG) != child.pid) {
+      running = true;
+      continue;
+    }
+    child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    if (*child.exit_code != 0 && !first_failure_) first_failure_ = i;
+  }
+  return running;
+}
+
+void Supervisor::stop(Milliseconds patience) {
+  const auto send = [this](int signal) {
+    for (const auto& child : children_)
+      if (!child.exit_code) kill(child.pid, signal);
+  };
+  if (!poll()) return;
+  send(SIGTERM);
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (poll() && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(Milliseconds(5));
+  send(SIGKILL);
+  while (poll()) std::this_thread::sleep_for(Milliseconds(5));
+}
+
+const Child* Supervisor::first_failure() const {
+  return first_failure_ ? &children_[*first_failure_] : nullptr;
+}
+
+std::string last_line(const std::string& path) {
+  std::ifstream file(path);
+  std::string line, last;
+  while (std::getline(file, line))
+    if (!line.empty()) last = line;
+  return last;
+}
+
+std::string program_directory() {
+  std::error_code ignored;
+  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path().string();
+}
+
+}  // namespace dmise

@@ -1,0 +1,52 @@
+#pragma once
+#include <sys/types.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dmise {
+
+/// A child process and how it ended.
+struct Child {
+  std::string name;
+  pid_t pid = 0;
+  std::optional<int> exit_code;  // 128 + signal when killed by one
+  std::string log_path;          // what it wrote to stderr
+};
+
+/// Starts the processes of a run and sees them all to their end: no child outlives it, also when it
+/// is itself killed (PR_SET_PDEATHSIG).
+class Supervisor {
+ public:
+  Supervisor() = default;
+  ~Supervisor();
+  Supervisor(const Supervisor&) = delete;
+  Supervisor& operator=(const Supervisor&) = delete;
+
+  /// `arguments[0]` is the program. Its stdout and stderr go to `log_path`. Throws `Error`.
+  void start(const std::string& name, const std::vector<std::string>& arguments,
+             const std::string& log_path);
+
+  /// Takes note of who has ended. True while somebody runs.
+  bool poll();
+  /// SIGTERM to all that run; SIGKILL to those that still do `patience` later.
+  void stop(std::chrono::milliseconds patience);
+
+  const std::vector<Child>& children() const { return children_; }
+  /// The first child seen to end with a code other than 0.
+  const Child* first_failure() const;
+
+ private:
+  std::vector<Child> children_;
+  std::optional<std::size_t> first_failure_;
+};
+
+/// The last line of a log that is not empty, without what stands before the message; for a report.
+std::string last_line(const std::string& path);
+
+/// Directory of the running program.
+std::string program_directory();
+
+}  // namespace dmise
