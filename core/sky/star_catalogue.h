@@ -1,0 +1,64 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace dmise {
+
+/// What a catalogue did not say of a star.
+enum StarFlag : std::uint8_t {
+  star_has_no_colour = 1,         // bv is by spectral class, else `default_star_bv`
+  star_has_no_parallax = 2,       // parallax_rad is 0: as far as it gets
+  star_has_no_proper_motion = 4,  // both motions are 0
+};
+
+/// Colour of a star whose catalogue gives neither B-V nor spectral class: the Sun's [mag].
+inline constexpr float default_star_bv = 0.65F;
+
+/// Stars in ICRS, structure of arrays. Places are for `epoch_jyear`; motions are of that epoch too.
+struct StarCatalogue {
+  double epoch_jyear = 2000.0;    // Julian year, TT
+  std::vector<std::uint32_t> id;  // the catalogue's own number, else the place in its file
+  std::vector<double> ra_rad;     // [0, 2 pi)
+  std::vector<double> dec_rad;    // [-pi/2, pi/2]
+  std::vector<double> pm_ra_cosdec_rad_per_yr;  // along right ascension, on the sky
+  std::vector<double> pm_dec_rad_per_yr;
+  std::vector<double> parallax_rad;  // >= 0
+  std::vector<float> v_mag;          // Johnson V
+  std::vector<float> bv;             // Johnson B-V [mag]
+  std::vector<std::uint8_t> flags;   // StarFlag, or-ed
+
+  std::size_t size() const { return ra_rad.size(); }
+  bool operator==(const StarCatalogue&) const = default;
+};
+
+/// One star as a reader finds it, before what is missing gets its stated default.
+struct StarRecord {
+  std::uint32_t id = 0;
+  double ra_rad = 0.0;
+  double dec_rad = 0.0;
+  std::optional<double> pm_ra_cosdec_rad_per_yr;
+  std::optional<double> pm_dec_rad_per_yr;
+  std::optional<double> parallax_rad;  // none when <= 0
+  double v_mag = 0.0;
+  std::optional<double> bv;
+  std::string_view spectral_type;  // may be empty
+};
+
+/// Appends a star with the defaults of `StarFlag`. Returns null, or what is wrong with the record,
+/// which is then left out: places outside the sphere, |magnitude| > 50, motions beyond 100
+/// arcsec/yr.
+const char* append_star(StarCatalogue& catalogue, const StarRecord& star);
+
+/// Mean B-V of a main-sequence star of a spectral type such as "K2V" or "A?"; none for classes
+/// without one (carbon stars, white dwarfs). Source: Fitzgerald 1970, A&A 4, 234, every fifth
+/// subclass.
+std::optional<double> bv_of_spectral_type(std::string_view type);
+
+/// Moves the star at `i` along a straight line on the sphere from one epoch to another [Julian
+/// years].
+void move_star(StarCatalogue& catalogue, std::size_t i, double from_jyear, double to_jyear);
+
+}  // namespace dmise

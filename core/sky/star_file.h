@@ -1,0 +1,44 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/sky/star_catalogue.h"
+
+namespace dmise {
+
+/// The star catalogues that can be read; all may be gzipped. To add one: list it here and in
+/// star_file.cpp, write its `parse_` beside the others, test it in tests/sky/test_star_file.cpp.
+enum class StarFormat {
+  kstars,  // stars.dat of Debian's kstars-data, fixed columns, place and motion of J2000.0
+  hyg,     // HYG database, CSV, columns by header name
+  bsc5,    // Yale Bright Star Catalogue, 5th edition (CDS V/50), fixed columns
+  csv,     // ra_deg, dec_deg, mag_v and optionally id, bv, pm_ra_mas_per_yr (times cos dec),
+           // pm_dec_mas_per_yr, parallax_mas, epoch_jyear (default 2000), in any order
+};
+
+/// A catalogue, and each line that could not be used: `file:line: reason`.
+struct StarReading {
+  StarCatalogue catalogue;  // epoch J2000.0
+  std::vector<std::string> problems;
+
+  bool operator==(const StarReading&) const = default;
+};
+
+/// The format by its first lines; none when it looks like none of them.
+std::optional<StarFormat> guess_star_format(std::string_view text);
+
+/// Reads a catalogue's text; `name` is the file as problems call it. Throws `ConfigError` when the
+/// whole is unusable: a header without the needed columns, a format that can't be told, no star at
+/// all.
+StarReading parse_stars(std::string_view text, const std::string& name,
+                        std::optional<StarFormat> format = std::nullopt);
+
+// Each format's own reader.
+StarReading parse_kstars(std::string_view text, const std::string& name);
+StarReading parse_hyg(std::string_view text, const std::string& name);
+StarReading parse_bsc5(std::string_view text, const std::string& name);
+StarReading parse_star_csv(std::string_view text, const std::string& name);
+
+}  // namespace dmise
