@@ -43,11 +43,13 @@ function(dmise_library name)
   endif()
 endfunction()
 
-# dmise_program(NAME SOURCES main.cpp ... [DEPENDS lib ...])
+# dmise_program(NAME SOURCES main.cpp ... [DEPENDS lib ...]): target `programs` builds them all.
+add_custom_target(programs)
 function(dmise_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPENDS})
+  add_dependencies(programs ${name})
 endfunction()
 
 # dmise_test(NAME SOURCES test_a.cpp ... [DEPENDS lib ...]): a GoogleTest program, each TEST a ctest.

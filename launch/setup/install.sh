@@ -1,0 +1,117 @@
+# Sourced by ./dmise: installs Debian packages, takes catalogues out of others, fetches Python packages.
+# Uses `lists` and `build` (directories), `log` (a file), `say` and `die`.
+
+names_in() { sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$@"; }
+digest_of() { sha256sum "$1" 2>/dev/null | cut -d ' ' -f 1; }
+
+as_root() {
+  if ((EUID == 0)); then "$@"; else sudo "$@"; fi
+}
+
+# Exits unless as_root will work. $*: what it is for.
+need_root() {
+  ((EUID != 0)) || return 0
+  command -v sudo >/dev/null || die "need root to $*: there is no sudo; run as root"
+  sudo -n true 2>/dev/null || [[ -t 0 ]] ||
+    die "need root to $*: sudo asks for a password and there is no terminal"
+}
+
+# Runs apt-get with its output in the log and a line for every fifth of the way.
+apt_get() {
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=600 \
+    -o Acquire::Retries=3 -o APT::Status-Fd=1 -o Dpkg::Use-Pty=0 "$@" 2>&1 |
+    tee -a "$log" | show_progress
+}
+
+show_progress() {
+  local kind item percent _ stage='' shown=-1
+  while IFS=: read -r kind item percent _; do
+    case $kind in
+      dlstatus) kind=fetching ;;
+      pmstatus) kind=installing ;;
+      *) continue ;;
+    esac
+    percent=${percent%%[.,]*}
+    [[ $percent =~ ^[0-9]+$ ]] || continue
+    [[ $kind == "$stage" ]] || { stage=$kind shown=-1; }
+    ((percent / 20 > shown)) || continue
+    shown=$((percent / 20))
+    say "  $kind $percent %"
+  done
+}
+
+why_apt_failed() {
+  if grep -qE 'Could not (resolve|connect)|Temporary failure|Failed to fetch|Connection failed' "$log"; then
+    die "cannot reach the Debian mirrors: is there a network? (log: $log)"
+  fi
+  die "apt-get failed: $(grep '^E:' "$log" | tail -n 1) (log: $log)"
+}
+
+# Prints those of the named packages that are not installed.
+missing_packages() {
+  comm -13 <(dpkg-query -W -f '${db:Status-Status} ${Package}\n' | sed -n 's/^installed //p' | sort -u) \
+    <(printf '%s\n' "$@" | sort -u)
+}
+
+# install_packages LIST..: files of package names. Does nothing, needs nothing when all are there.
+install_packages() {
+  local wanted missing
+  command -v apt-get >/dev/null && command -v dpkg-query >/dev/null ||
+    die "no apt-get: the set-up is for Debian 12; elsewhere install what $lists names and use cmake"
+  mapfile -t wanted < <(names_in "$@")
+  mapfile -t missing < <(missing_packages "${wanted[@]}")
+  ((${#missing[@]})) || return 0
+  need_root "install ${missing[*]}"
+  say "installing ${#missing[@]} packages (log: $log): ${missing[*]}"
+  apt_get update || why_apt_failed
+  apt_get install --no-install-recommends "${missing[@]}" || why_apt_failed
+}
+
+# download_package PACKAGE DIRECTORY: its .deb, not installed.
+download_package() {
+  local download=(apt-get -q -o Acquire::Retries=3 download "$1")
+  ((EUID != 0)) || download+=(-o APT::Sandbox::User=root)
+  (cd "$2" && "${download[@]}" >>"$log" 2>&1) && return
+  need_root "read the package lists"
+  apt_get update && (cd "$2" && "${download[@]}" >>"$log" 2>&1)
+}
+
+# Takes what catalogues.txt names, and the copyright files of the packages, into build/data.
+fetch_catalogues() {
+  local name package path tested found work
+  mkdir -p "$build/data"
+  while read -r name package path tested <&3; do
+    found=$(digest_of "$build/data/$name" || true)
+    [[ -z $found || ($found != "$tested" && $found != "$(cat "$build/data/$name.sha256" || true)") ]] ||
+      continue
+    say "fetching $name from Debian's $package"
+    work=$(mktemp -d "$build/fetch.XXXXXX")
+    download_package "$package" "$work" || { rm -rf "$work"; why_apt_failed; }
+    dpkg-deb --fsys-tarfile "$work"/*.deb |
+      tar -x -C "$work" "./$path" "./usr/share/doc/$package/copyright" ||
+      { rm -rf "$work"; die "Debian's $package does not hold $path"; }
+    cp "$work/usr/share/doc/$package/copyright" "$build/data/$name.copyright"
+    digest_of "$work/$path" >"$build/data/$name.sha256"
+    mv "$work/$path" "$build/data/$name"
+    rm -rf "$work"
+    [[ $(cat "$build/data/$name.sha256") == "$tested" ]] ||
+      say "note: $name is not Debian 12's edition; results may differ from the documented ones"
+  done 3< <(names_in "$lists/catalogues.txt")
+}
+
+# What python-packages.txt names, into build/venv. Without PyPI the tests that need it say so.
+fetch_python_packages() {
+  local stamp=$build/venv/packages.sha256 wanted
+  wanted=$(digest_of "$lists/python-packages.txt")
+  [[ ! -x $build/venv/bin/python || $(cat "$stamp" || true) != "$wanted" ]] 2>/dev/null || return 0
+  say "fetching Python packages into build/venv: $(names_in "$lists/python-packages.txt" | tr '\n' ' ')"
+  rm -rf "$build/venv"
+  /usr/bin/python3 -m venv --system-site-packages "$build/venv" >>"$log" 2>&1 ||
+    die "cannot make build/venv (log: $log)"
+  if "$build/venv/bin/python" -m pip install -q --retries 2 --timeout 30 --only-binary :all: --no-deps \
+    --ignore-installed -r "$lists/python-packages.txt" >>"$log" 2>&1; then
+    echo "$wanted" >"$stamp"
+  else
+    say "note: cannot fetch them; tests against the compiled SGP4 reference will say so (log: $log)"
+  fi
+}
