@@ -16,11 +16,12 @@ need_root() {
     die "need root to $*: sudo asks for a password and there is no terminal"
 }
 
-# Runs apt-get with its output in the log and a line for every fifth of the way.
+# Runs apt-get with its output in the log and a line for every fifth of the way. (Its progress goes
+# to descriptor 3, opened behind sudo, which would close it.)
 apt_get() {
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y -o DPkg::Lock::Timeout=600 \
-    -o Acquire::Retries=3 -o APT::Status-Fd=1 -o Dpkg::Use-Pty=0 "$@" 2>&1 |
-    tee -a "$log" | show_progress
+  as_root env DEBIAN_FRONTEND=noninteractive sh -c 'exec apt-get "$@" 3>&1' apt-get -q -y \
+    -o DPkg::Lock::Timeout=600 -o Acquire::Retries=3 -o APT::Status-Fd=3 -o Dpkg::Use-Pty=0 "$@" \
+    2>&1 | tee -a "$log" | show_progress
 }
 
 show_progress() {
@@ -63,7 +64,7 @@ install_packages() {
   ((${#missing[@]})) || return 0
   need_root "install ${missing[*]}"
   say "installing ${#missing[@]} packages (log: $log): ${missing[*]}"
-  apt_get update || why_apt_failed
+  apt_get update >/dev/null || why_apt_failed
   apt_get install --no-install-recommends "${missing[@]}" || why_apt_failed
 }
 
@@ -73,7 +74,7 @@ download_package() {
   ((EUID != 0)) || download+=(-o APT::Sandbox::User=root)
   (cd "$2" && "${download[@]}" >>"$log" 2>&1) && return
   need_root "read the package lists"
-  apt_get update && (cd "$2" && "${download[@]}" >>"$log" 2>&1)
+  apt_get update >/dev/null && (cd "$2" && "${download[@]}" >>"$log" 2>&1)
 }
 
 # Takes what catalogues.txt names, and the copyright files of the packages, into build/data.
