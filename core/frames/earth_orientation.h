@@ -1,6 +1,7 @@
 #pragma once
 #include "core/base/sim_time.h"
 #include "core/frames/vec.h"
+#include "core/time/clock.h"
 
 namespace dmise {
 
@@ -8,15 +9,16 @@ struct Cirs {};  // celestial intermediate: GCRS turned to the CIP of date, x ax
 struct Tirs {};  // terrestrial intermediate: CIRS turned by the Earth rotation angle
 
 /// Orientation of the Earth around one instant. Precession, nutation and polar motion are those of
-/// `time`; the rotation angles run on from there, so that within a tick (minutes) the error is below
-/// 1 microarcsecond per second for the frozen part. Plain data: the environment node publishes it.
+/// `time`; the rotation angles run on from there, so that the error of the frozen part grows by
+/// less than 2 microarcseconds a second (0.12 mas in a minute). Plain data: the environment node
+/// publishes it.
 struct EarthOrientation {
   SimTime time;
-  Rotation<Cirs, Gcrs> cirs_from_gcrs;   // IAU 2006/2000A (or 2000B) bias-precession-nutation
-  Rotation<Itrs, Tirs> itrs_from_tirs;   // polar motion and TIO locator s'
-  double era_rad = 0.0;                  // Earth rotation angle at `time`, [0, 2 pi)
+  Rotation<Cirs, Gcrs> cirs_from_gcrs;  // IAU 2006/2000A (or 2000B) bias-precession-nutation
+  Rotation<Itrs, Tirs> itrs_from_tirs;  // polar motion and TIO locator s'
+  double era_rad = 0.0;                 // Earth rotation angle at `time`, [0, 2 pi)
   double era_rate_rad_per_s = 7.292115146706979e-5;
-  double gmst82_rad = 0.0;               // Greenwich mean sidereal time, IAU 1982, at `time`
+  double gmst82_rad = 0.0;  // Greenwich mean sidereal time, IAU 1982, at `time`
   double gmst82_rate_rad_per_s = 7.292115855306587e-5;
 
   Rotation<Itrs, Gcrs> itrs_from_gcrs(SimTime t) const;
@@ -28,5 +30,19 @@ struct EarthOrientation {
 
   bool operator==(const EarthOrientation&) const = default;
 };
+
+/// Series for precession and nutation: a knob of accuracy against time.
+enum class Nutation {
+  iau2006_2000a,  // 1358 terms; the celestial pole to 0.3 mas (free core nutation left out)
+  iau2000b,       // 77 terms; within 1 mas of the full series, 1995 to 2050
+};
+
+/// The orientation at `time`, whose readings the other arguments are.
+EarthOrientation earth_orientation(SimTime time, const Tt& tt, const Ut1& ut1,
+                                   double polar_motion_x_rad, double polar_motion_y_rad,
+                                   Nutation nutation = Nutation::iau2006_2000a);
+
+EarthOrientation earth_orientation(const Clock& clock, SimTime time,
+                                   Nutation nutation = Nutation::iau2006_2000a);
 
 }  // namespace dmise
