@@ -1,0 +1,85 @@
+#include "core/photometry/spectrum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+struct Sample {
+  double wavelength_nm, value;
+};
+#include "core/photometry/reference_spectra_tables.inc"
+
+Spectrum from_samples(std::span<const Sample> samples, double unit_w_per_m2_m) {
+  Spectrum spectrum;
+  for (const Sample& sample : samples) {
+    spectrum.irradiance.wavelength_m.push_back(sample.wavelength_nm * nm);
+    spectrum.irradiance.value.push_back(sample.value * unit_w_per_m2_m);
+  }
+  return spectrum;
+}
+
+/// Integral of response(x) f(x) over the band by Simpson's rule between `at` (the band's knots and
+/// those of f, ascending): exact where f is linear times x.
+template <class F>
+double integrate(const Band& band, const std::vector<double>& at, F&& f) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < at.size(); ++i) {
+    const double a = at[i - 1], b = at[i], m = 0.5 * (a + b);
+    const auto g = [&](double x) { return band.response.at_or_zero(x) * f(x); };
+    sum += (b - a) / 6 * (g(a) + 4 * g(m) + g(b));
+  }
+  return sum;
+}
+
+}  // namespace
+
+const Spectrum& solar_spectrum() {
+  static const Spectrum spectrum = from_samples(sun_samples, 1e6);
+  return spectrum;
+}
+
+const Spectrum& vega_spectrum() {
+  static const Spectrum spectrum = from_samples(vega_samples, 1e-9 * 1e6);
+  return spectrum;
+}
+
+double photon_rate_per_m2(const Spectrum& spectrum, const Band& band) {
+  check_band(band);
+  const std::vector<double>& samples = spectrum.irradiance.wavelength_m;
+  if (samples.size() < 2) throw Error("a spectrum needs two samples or more");
+  if (band.low_m() < samples.front() || band.high_m() > samples.back())
+    throw Error("band " + band.name + ": reaches beyond the spectrum of the source, " +
+                std::to_string(samples.front() / um) + " to " +
+                std::to_string(samples.back() / um) + " um");
+  std::vector<double> at = knots(band);
+  for (const double x : samples)
+    if (x > band.low_m() && x < band.high_m()) at.push_back(x);
+  std::sort(at.begin(), at.end());
+  const double energy =
+      integrate(band, at, [&](double x) { return spectrum.irradiance.at_or_zero(x) * x; });
+  return energy / (planck_j_s * speed_of_light_m_per_s);
+}
+
+double black_body_photon_rate(double temperature_k, const Band& band) {
+  const std::vector<double> coarse = knots(band);
+  std::vector<double> at{coarse[0]};
+  for (std::size_t i = 1; i < coarse.size(); ++i) {
+    const double a = coarse[i - 1], b = coarse[i];
+    const int pieces = std::max(1, int(std::ceil((b - a) / (10 * nm) - 1e-9)));
+    for (int k = 1; k <= pieces; ++k) at.push_back(k == pieces ? b : a + (b - a) * k / pieces);
+  }
+  const double scale_m = planck_j_s * speed_of_light_m_per_s / (boltzmann_j_per_k * temperature_k);
+  // Photons rather than energy: x^-4, in micrometres to stay near 1.
+  return integrate(band, at, [&](double x) {
+    const double x_um = x / um;
+    return 1.0 / (x_um * x_um * x_um * x_um * std::expm1(scale_m / x));
+  });
+}
+
+}  // namespace dmise

@@ -1,0 +1,27 @@
+#pragma once
+#include "core/photometry/band.h"
+#include "core/photometry/curve.h"
+
+namespace dmise {
+
+/// Spectral irradiance [W/m2/m] over wavelength.
+struct Spectrum {
+  Curve irradiance;
+};
+
+/// The Sun at 1 au above the atmosphere, 0.2-5 um. Source: ASTM E490-00a, hat means every 5 nm up
+/// to 1.1 um.
+const Spectrum& solar_spectrum();
+/// Vega above the atmosphere, 0.2-2.195 um. Source: CALSPEC alpha_lyr_mod_001, hat means likewise.
+const Spectrum& vega_spectrum();
+
+/// Photons/s/m2 that a spectrum sends through a band: the integral of irradiance x response x
+/// wavelength / (h c), exact for both as tabulated. Throws `Error` when the band reaches beyond the
+/// spectrum.
+double photon_rate_per_m2(const Spectrum& spectrum, const Band& band);
+
+/// The same for a black body, up to a factor common to all bands, at `temperature_k` > 0. Relative
+/// error below 1e-6 for 1000 K and more.
+double black_body_photon_rate(double temperature_k, const Band& band);
+
+}  // namespace dmise

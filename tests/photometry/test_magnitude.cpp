@@ -1,0 +1,67 @@
+#include "core/photometry/magnitude.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+#include "core/photometry/spectrum.h"
+
+namespace dmise {
+namespace {
+
+// CALSPEC's Vega with the Bessell bands at full resolution, Vega V = 0.03 and U = 0.024.
+TEST(Magnitude, PhotonRatesOfMagnitudeZero) {
+  const struct {
+    const char* band;
+    double photons_per_s_m2;
+  } expected[] = {{"bessell-U", 4.81e9},
+                  {"bessell-B", 1.341e10},
+                  {"bessell-V", 8.991e9},
+                  {"bessell-R", 1.132e10},
+                  {"bessell-I", 6.921e9}};
+  for (const auto& [band, rate] : expected)
+    EXPECT_NEAR(zero_point_photons_per_s_m2(*filter_named(band)), rate, 0.005 * rate) << band;
+}
+
+// Willmer 2018, ApJS 236, 47: the Sun's Vega magnitudes B -26.13, V -26.76, R -27.15, I -27.47
+// (their V is -26.76 by definition, the others by other spectra of the Sun: 0.05 mag).
+TEST(Magnitude, TheSun) {
+  EXPECT_NEAR(sun_magnitude(*filter_named("bessell-V")), -26.76, 0.02);
+  EXPECT_NEAR(sun_magnitude(*filter_named("bessell-B")), -26.13, 0.05);
+  EXPECT_NEAR(sun_magnitude(*filter_named("bessell-R")), -27.15, 0.05);
+  EXPECT_NEAR(sun_magnitude(*filter_named("bessell-I")), -27.47, 0.05);
+}
+
+// Blanton & Roweis 2007, AJ 133, 734, table 1: AB - Vega is 0.79, -0.09, 0.02, 0.21, 0.45 in UBVRI.
+TEST(Magnitude, AbAgainstVega) {
+  const double expected[] = {0.79, -0.09, 0.02, 0.21, 0.45};
+  const char* names[] = {"bessell-U", "bessell-B", "bessell-V", "bessell-R", "bessell-I"};
+  for (int i = 0; i < 5; ++i) {
+    const Band band = *filter_named(names[i]);
+    EXPECT_NEAR(magnitude_of_light(zero_point_photons_per_s_m2(band) /
+                                   ab_zero_point_photons_per_s_m2(band)),
+                expected[i], 0.05)
+        << names[i];
+  }
+}
+
+// ASTM E490-00a: the solar constant is 1366.1 W/m2, of which 0.2 to 5 um hold all but about 0.5 %.
+TEST(Magnitude, SolarConstantIsKeptByTheShortTable) {
+  const Curve& sun = solar_spectrum().irradiance;
+  double sum = 0.0;
+  for (std::size_t i = 1; i < sun.value.size(); ++i)
+    sum += (sun.wavelength_m[i] - sun.wavelength_m[i - 1]) * (sun.value[i] + sun.value[i - 1]) / 2;
+  EXPECT_NEAR(sum, 1366.1 * 0.995, 1366.1 * 0.004);
+}
+
+TEST(Magnitude, SunlightOfAMagnitudeHasItInV) {
+  EXPECT_NEAR(sunlight_photons_per_s_m2(5.0, johnson_v()),
+              0.01 * zero_point_photons_per_s_m2(johnson_v()), 1e-3);
+}
+
+TEST(Magnitude, BandsBeyondTheSpectrumAreRefused) {
+  EXPECT_THROW(zero_point_photons_per_s_m2({"L", 3.5 * um, 0.5 * um, {}}), Error);
+}
+
+}  // namespace
+}  // namespace dmise
