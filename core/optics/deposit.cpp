@@ -1,0 +1,211 @@
+#include "core/optics/deposit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/optics/deposit_kernels.h"
+
+namespace dmise {
+namespace {
+
+constexpr int band_rows = 128;
+constexpr double panel_sigmas = 2.0;
+// Gauss-Legendre on [-1, 1], five nodes.
+constexpr double nodes[panel_nodes] = {-0.9061798459386640, -0.5384693101056831, 0.0,
+                                       0.5384693101056831, 0.9061798459386640};
+constexpr double node_weights[panel_nodes] = {0.2369268850561891, 0.4786286704993665,
+                                              0.5688888888888889, 0.4786286704993665,
+                                              0.2369268850561891};
+
+// The arc as a polynomial of time: place = start + tau (slope + tau curve).
+struct Motion {
+  PixelPosition start, slope, curve;
+
+  explicit Motion(const Arc& a)
+      : start(a.start),
+        slope(a.middle * 4.0 - a.start * 3.0 - a.end),
+        curve((a.start + a.end) * 2.0 - a.middle * 4.0) {}
+  PixelPosition at(double tau) const { return start + (slope + curve * tau) * tau; }
+  double greatest_speed() const {
+    const PixelPosition end = slope + curve * 2.0;
+    return std::max(std::hypot(slope.x_px, slope.y_px), std::hypot(end.x_px, end.y_px));
+  }
+};
+
+struct Box {
+  double left, top, right, bottom;
+
+  bool meets(const Box& b) const {
+    return left <= b.right && b.left <= right && top <= b.bottom && b.top <= bottom;
+  }
+};
+
+// Holds the parabola between two times: the hull of its Bezier points.
+Box bounds(const Motion& m, double tau0, double tau1) {
+  const PixelPosition a = m.at(tau0), c = m.at(tau1);
+  const PixelPosition b = a + (m.slope + m.curve * (2.0 * tau0)) * (0.5 * (tau1 - tau0));
+  return {std::min({a.x_px, b.x_px, c.x_px}), std::min({a.y_px, b.y_px, c.y_px}),
+          std::max({a.x_px, b.x_px, c.x_px}), std::max({a.y_px, b.y_px, c.y_px})};
+}
+
+// The part of the image plane whose light reaches rows [begin, end).
+Box reach(const PsfTable& psf, const RateImage& image, int begin, int end) {
+  const double r = psf.size;
+  return {-r, begin - r, image.columns + r, end + r};
+}
+
+// Calls `use(panel)` for the panels of an arc that meet `box`, in the order of time.
+template <class Use>
+void for_panels(const Arc& arc, const PsfTable& psf, const Box& box, const Use& use) {
+  const Motion motion(arc);
+  const double length = motion.greatest_speed();
+  PanelView panel;
+  const auto put = [&](int k, PixelPosition at, double signal_e) {
+    const double x = std::floor(at.x_px), y = std::floor(at.y_px);
+    panel.column[k] = int(std::clamp(x, -1e9, 1e9));
+    panel.row[k] = int(std::clamp(y, -1e9, 1e9));
+    panel.phase_x[k] = float(at.x_px - x);
+    panel.phase_y[k] = float(at.y_px - y);
+    panel.weight[k] = float(signal_e);
+  };
+  if (length < 1e-4 * psf.sigma_px) {
+    panel.nodes = 1;
+    put(0, motion.at(0.5), arc.signal_e);
+    if (bounds(motion, 0.0, 1.0).meets(box)) use(panel);
+    return;
+  }
+  panel.nodes = panel_nodes;
+  const double count = std::ceil(length / (panel_sigmas * psf.sigma_px));
+  const double step = 1.0 / count;
+  const auto visit = [&](const auto& self, double begin, double end) -> void {
+    if (!bounds(motion, begin * step, end * step).meets(box)) return;
+    if (end - begin > 1.0) {
+      const double half = std::floor(0.5 * (begin + end));
+      self(self, begin, half);
+      self(self, half, end);
+      return;
+    }
+    for (int k = 0; k < panel_nodes; ++k) {
+      const double tau = (begin + 0.5 + 0.5 * nodes[k]) * step;
+      const double brightness = 1.0 + arc.tilt * (2.0 * tau - 1.0);
+      put(k, motion.at(tau), arc.signal_e * brightness * 0.5 * node_weights[k] * step);
+    }
+    use(panel);
+  };
+  visit(visit, 0.0, count);
+}
+
+// Sum and first moment of a node's shares on one axis over the pixels [0, pixels).
+std::array<double, 2> shares_inside(const PsfTable& psf, int at, float phase, int pixels) {
+  const float position = phase * float(psf.phases);
+  const int p = std::min(int(position), psf.phases - 1);
+  const double f = position - float(p);
+  const float* a = psf.weights.data() + std::size_t(p) * std::size_t(psf.stride);
+  const float* b = a + psf.stride;
+  const int first = at + psf.first;
+  double sum = 0.0, moment = 0.0;
+  const int begin = std::max(0, -first), end = std::min(psf.size, pixels - first);
+  for (int i = begin; i < end; ++i) {
+    const double share = a[i] + f * (double(b[i]) - double(a[i]));
+    sum += share;
+    moment += share * i;
+  }
+  return {sum, moment + sum * first};
+}
+
+Deposited inside(const Arc& arc, const PsfTable& psf, const RateImage& image) {
+  double signal = 0.0, x = 0.0, y = 0.0;
+  for_panels(arc, psf, reach(psf, image, 0, image.rows), [&](const PanelView& panel) {
+    for (int k = 0; k < panel.nodes; ++k) {
+      const double w = panel.weight[k];
+      const auto [sx, mx] = shares_inside(psf, panel.column[k], panel.phase_x[k], image.columns);
+      const auto [sy, my] = shares_inside(psf, panel.row[k], panel.phase_y[k], image.rows);
+      signal += w * sx * sy;
+      x += w * mx * sy;
+      y += w * sx * my;
+    }
+  });
+  return signal > 0.0 ? Deposited{signal, x / signal, y / signal} : Deposited{};
+}
+
+void check(const Arc& arc, std::size_t index) {
+  const double all[] = {arc.start.x_px, arc.start.y_px, arc.middle.x_px, arc.middle.y_px,
+                        arc.end.x_px,   arc.end.y_px,   arc.signal_e,    arc.tilt};
+  bool fine = arc.signal_e >= 0.0 && std::abs(arc.tilt) <= 1.0;
+  for (double v : all) fine = fine && std::abs(v) < 1e15;
+  if (!fine)
+    throw Error("deposit: arc " + std::to_string(index) + " is not finite or has negative light");
+}
+
+}  // namespace
+
+Deposited operator+(const Deposited& a, const Deposited& b) {
+  const double sum = a.signal_e + b.signal_e;
+  if (!(sum > 0.0)) return {};
+  return {sum, (a.x_px * a.signal_e + b.x_px * b.signal_e) / sum,
+          (a.y_px * a.signal_e + b.y_px * b.signal_e) / sum};
+}
+
+std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf, RateImage& image,
+                               Threads& threads, SimdLevel level) {
+  const auto add = level == SimdLevel::avx512 ? avx512::add_panel
+                   : level == SimdLevel::avx2 ? avx2::add_panel
+                                              : sse2::add_panel;
+  const PsfTableView table{psf.weights.data(), psf.phases, psf.first, psf.size, psf.stride};
+  const std::size_t bands = std::size_t((image.rows + band_rows - 1) / band_rows);
+
+  // Arcs of each band, in order.
+  std::vector<std::vector<std::uint32_t>> of_band(bands);
+  for (std::size_t i = 0; i < arcs.size(); ++i) {
+    check(arcs[i], i);
+    const Box box = bounds(Motion(arcs[i]), 0.0, 1.0);
+    if (!box.meets(reach(psf, image, 0, image.rows))) continue;
+    const double last = double(image.rows - 1);
+    const auto from = std::size_t(std::clamp(box.top - psf.size, 0.0, last)) / band_rows;
+    const auto to = std::size_t(std::clamp(box.bottom + psf.size, 0.0, last)) / band_rows;
+    for (std::size_t b = from; b <= to; ++b) of_band[b].push_back(std::uint32_t(i));
+  }
+
+  const std::size_t span = std::size_t(psf.stride) + std::size_t(panel_sigmas * psf.sigma_px) + 16;
+  threads.for_ranges(bands, 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> work((2 * panel_nodes + 1) * span);
+    for (std::size_t b = begin; b < end; ++b) {
+      const int row_begin = int(b) * band_rows,
+                row_end = std::min(image.rows, row_begin + band_rows);
+      const BandView band{image.pixels.data(), image.columns, row_begin, row_end};
+      const Box box = reach(psf, image, row_begin, row_end);
+      for (std::uint32_t i : of_band[b])
+        for_panels(arcs[i], psf, box,
+                   [&](const PanelView& panel) { add(panel, table, band, work.data()); });
+    }
+  });
+
+  std::vector<Deposited> result(arcs.size());
+  threads.for_ranges(arcs.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) result[i] = inside(arcs[i], psf, image);
+  });
+  return result;
+}
+
+std::vector<Arc> with_brightness(const Arc& whole, std::span<const double> brightness) {
+  if (brightness.size() < 2) throw Error("with_brightness: at least two values");
+  const std::size_t count = brightness.size() - 1;
+  std::vector<Arc> arcs;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double sum = brightness[i] + brightness[i + 1];
+    if (!(sum > 0.0)) continue;
+    const auto at = [&](double step) { return place(whole, step / double(count)); };
+    const double begin = double(i);
+    arcs.push_back({at(begin), at(begin + 0.5), at(begin + 1.0),
+                    whole.signal_e * 0.5 * sum / double(count),
+                    (brightness[i + 1] - brightness[i]) / sum});
+  }
+  return arcs;
+}
+
+PixelPosition place(const Arc& arc, double tau) { return Motion(arc).at(tau); }
+
+}  // namespace dmise

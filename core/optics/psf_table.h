@@ -1,0 +1,36 @@
+#pragma once
+#include <vector>
+
+#include "core/optics/camera.h"
+
+namespace dmise {
+
+inline constexpr double fwhm_per_sigma = 2.3548200450309493;  // 2 sqrt(2 ln 2)
+/// Narrower Gaussians than this are deposited with this width; it moves light by less than 0.1 px.
+inline constexpr double narrowest_sigma_px = 0.02;
+
+/// A round Gaussian integrated over square pixels, as a table over the sub-pixel position: pixels
+/// are separable, so one axis is enough. With c the centre on an axis, `weights` has for each phase
+/// c - floor(c) the shares of the `size` pixels from floor(c) + first on. Shares of a phase sum to
+/// 1: what lies beyond 5 sigma goes to the outermost pixels. Between phases shares are interpolated
+/// linearly, with an error below 2e-7.
+struct PsfTable {
+  double sigma_px = 0.0;
+  int phases = 0;              // intervals
+  int first = 0;               // of the window, relative to floor(c); <= 0
+  int size = 0;                // pixels in the window
+  int stride = 0;              // of a row of `weights`, a multiple of 8; the rest is 0
+  std::vector<float> weights;  // (phases + 1) x stride
+};
+
+/// `sigma_px` in 0..500.
+PsfTable make_psf_table(double sigma_px);
+
+/// Standard deviation of the Gaussian with the half width at half maximum of the Airy pattern of a
+/// circular aperture, 0.514 lambda / D [px] (obscuration not considered).
+double diffraction_sigma_px(const Optics& optics, double wavelength_m);
+
+/// Width of the camera's PSF before pixel integration: `psf_fwhm_px` and diffraction in quadrature.
+double psf_sigma_px(const Optics& optics, double wavelength_m);
+
+}  // namespace dmise
