@@ -74,7 +74,7 @@ in_root() {
 
 check_products() {
   local out=$1 sensors=0 report
-  grep -q '"complete": *true' "$out/run.json" || die "run.json does not say that the run is complete"
+  grep -q '"status":"complete"' "$out/run.json" || die "run.json does not say that the run is complete"
   for report in detections.jsonl truth.jsonl index.html; do
     [[ -s $out/$report ]] || die "the demonstration left no $report"
   done
@@ -106,7 +106,7 @@ prove() {
   say "demonstration done after $((SECONDS - began)) s"
 
   in_root "$work" "$inside/dmise" demo >"$log.again" 2>&1 || die "again failed: $(tail -n 1 "$log.again")"
-  grep -q 'up to date' "$log.again" || die "a second ./dmise demo did the work again"
+  grep -q 'holds this run, complete' "$log.again" || die "a second ./dmise demo did the work again"
 }
 
 [[ ${DMISE_BARE_ROOT:-0} == 1 ]] || { say "skipped: set DMISE_BARE_ROOT=1 to spend a build on it"; exit 77; }
