@@ -1,0 +1,88 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "core/base/parallel.h"
+#include "core/frames/vec.h"
+#include "core/orbit/elements.h"
+
+namespace dmise {
+
+/// Why SGP4 has no state for an object. 1 to 6 are the reference implementation's numbers.
+enum class Sgp4Code : std::uint8_t {
+  ok = 0,
+  eccentricity = 1,            // mean eccentricity >= 1 or < -0.001
+  mean_motion = 2,             // mean motion <= 0
+  perturbed_eccentricity = 3,  // after the lunar and solar terms: < 0 or > 1
+  semilatus_rectum = 4,        // < 0
+  decayed = 6,                 // below the Earth's equatorial radius
+  // Ours, where the reference reports 0: farther than 2.2 a (1 + e), not finite, or asked for a
+  // time more than 1e8 minutes (190 years) from its epoch.
+  absurd = 7,
+};
+
+/// "mean eccentricity outside [0, 1)" and the like, for a log line.
+std::string_view describe(Sgp4Code code);
+
+struct Sgp4State {
+  Vec<Teme> position_m;
+  Vec<Teme> velocity_m_per_s;  // the model's; not the derivative of its position
+  Sgp4Code code = Sgp4Code::ok;
+};
+
+/// Instruction sets that the propagator is built for; the best one that the machine has is taken.
+enum class Simd : std::uint8_t { sse2, avx2, avx512 };
+Simd best_simd();
+std::string_view name(Simd simd);
+
+/// SGP4/SDP4 (WGS72, improved mode 'i') for whole catalogues: AIAA 2006-6753, Spacetrack Report 3.
+///
+/// Every state is a function of the element set and the time alone, to the bit: it depends on no
+/// earlier call, no other object, no thread. Calls are const, take no memory and may run at the
+/// same time. Where `code` is not ok the state is zeros. Instruction sets differ by less than 1e-8
+/// km.
+class Sgp4Batch {
+ public:
+  /// Element sets that SGP4 can't start from get their code; nothing throws.
+  explicit Sgp4Batch(std::span<const MeanElements> elements, Threads* threads = nullptr,
+                     Simd simd = best_simd());
+  ~Sgp4Batch();
+  Sgp4Batch(Sgp4Batch&&) noexcept;
+  Sgp4Batch& operator=(Sgp4Batch&&) noexcept;
+
+  std::size_t size() const;
+  Simd simd() const;
+
+  /// States of all objects at one instant, UTC two-part Julian date `jd1 + jd2` [d], in the order
+  /// given to the constructor. `position_m` and `velocity_m_per_s` hold 3 x size(): all x, all y,
+  /// all z in TEME; `code` holds size() values of Sgp4Code. Throws `Error` on a wrong size.
+  void propagate(double jd1, double jd2, std::span<double> position_m,
+                 std::span<double> velocity_m_per_s, std::span<std::uint8_t> code,
+                 Threads* threads = nullptr) const;
+
+  /// The same for some objects: result k is that of object `objects[k]` (any order, repeats
+  /// allowed).
+  void propagate_some(std::span<const std::uint32_t> objects, double jd1, double jd2,
+                      std::span<double> position_m, std::span<double> velocity_m_per_s,
+                      std::span<std::uint8_t> code) const;
+
+  /// One object at many times, each in minutes from its own epoch.
+  void propagate_times(std::size_t object, std::span<const double> minutes_since_epoch,
+                       std::span<double> position_m, std::span<double> velocity_m_per_s,
+                       std::span<std::uint8_t> code) const;
+
+  /// One object at one time in minutes from its own epoch.
+  Sgp4State propagate_one(std::size_t object, double minutes_since_epoch) const;
+
+  /// Minutes from an object's epoch to `jd1 + jd2` [d, UTC], without leap seconds, as SGP4 counts.
+  double minutes_since_epoch(std::size_t object, double jd1, double jd2) const;
+
+ private:
+  struct State;
+  std::unique_ptr<const State> state_;
+};
+
+}  // namespace dmise
