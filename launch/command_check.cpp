@@ -3,7 +3,9 @@
 #include <memory>
 
 #include "launch/commands.h"
-#include "launch/participants.h"
+#include "core/config/make_clock.h"
+#include "nodes/environment/environment_actor.h"
+#include "sensors/pipeline/make_sensor.h"
 #include "orbit-node/orbit_actor.h"
 
 namespace dmise {

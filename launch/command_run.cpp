@@ -6,11 +6,13 @@
 #include "core/base/error.h"
 #include "core/sim/controller.h"
 #include "launch/commands.h"
-#include "launch/participants.h"
+#include "core/config/make_clock.h"
+#include "nodes/environment/environment_actor.h"
+#include "sensors/pipeline/make_sensor.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
 #include "launch/run_record.h"
-#include "launch/stop_signal.h"
+#include "nodes/runtime/event.h"
 #include "orbit-node/orbit_actor.h"
 
 namespace dmise {
@@ -26,7 +28,7 @@ void run(const RunOptions& options) {
   const Scenario scenario = load_scenario(options.scenario);
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   if (!prepare_directory(directory, options.force)) return;
-  catch_stop_signals();
+  stop_signal();
   const auto start = std::chrono::steady_clock::now();
   RunOutcome outcome{.how = "one process"};
   Threads threads(options.threads);
@@ -34,14 +36,16 @@ void run(const RunOptions& options) {
   std::vector<SensorEvaluator*> sensors;
   int frames_total = 0;
   std::vector<std::unique_ptr<Participant>> participants;
-  participants.push_back(make_orbit_actor(scenario, threads));
-  for (const auto& note : static_cast<OrbitActor&>(*participants[0]).notes())
-    std::fprintf(stderr, "note: %s\n", note.c_str());
-  participants.push_back(make_environment_actor(scenario));
+  auto orbit = std::make_unique<OrbitActor>(scenario, make_clock(scenario), threads);
+  for (const auto& note : orbit->notes()) std::fprintf(stderr, "note: %s\n", note.c_str());
+  check_sensors(scenario, orbit->roster());
+  participants.push_back(std::move(orbit));
+  participants.push_back(std::make_unique<EnvironmentActor>(scenario, make_clock(scenario)));
+  const auto stars = load_stars(scenario);
   for (const auto& sensor : scenario.sensors) {
     auto evaluator =
-        make_sensor(scenario, sensor.name, directory.digest(), directory.path(), threads);
-    evaluator->stop_when(stop_requested);
+        make_sensor(scenario, sensor.name, directory.digest(), directory.path(), stars, threads);
+    evaluator->stop_when([] { return stop_signal().is_set(); });
     frames_total += static_cast<int>(exposures_within(sensor, scenario.duration));
     sensors.push_back(evaluator.get());
     participants.push_back(std::move(evaluator));
@@ -60,7 +64,7 @@ void run(const RunOptions& options) {
   };
   try {
     controller.run(scenario.last_tick(), [&](Tick tick) {
-      const bool stop = stop_requested();
+      const bool stop = stop_signal().is_set();
       progress.show(state_after(tick), stop || tick == scenario.last_tick());
       if (stop) outcome.status = "interrupted";
       return !stop;

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/config/yaml_reader.h"
-#include "core/frames/earth_orientation_at.h"
+#include "core/frames/earth_orientation.h"
 #include "core/orbit/catalogue.h"
 
 namespace dmise {

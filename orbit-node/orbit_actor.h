@@ -35,6 +35,7 @@ class OrbitActor : public Participant {
   std::uint64_t progress() const override { return steps_; }
 
   const std::vector<std::string>& notes() const { return population_.notes; }
+  const ObjectRoster& roster() const { return population_.roster; }
 
  private:
   SimTime tick_length_;

@@ -1,6 +1,6 @@
 #include "nodes/environment/environment_actor.h"
 
-#include "core/frames/earth_orientation_at.h"
+#include "core/frames/earth_orientation.h"
 #include "core/sky/solar_system.h"
 
 namespace dmise {

@@ -8,7 +8,7 @@
 #include "core/detection/detection.h"
 #include "core/detection/truth.h"
 #include "core/image/frame_header.h"
-#include "core/sky/star_catalogue.h"
+#include "core/sky/star_cache.h"
 #include "core/time/clock.h"
 #include "sensors/pipeline/exposure.h"
 #include "sensors/pipeline/world.h"
@@ -37,6 +37,7 @@ struct FrameProducts {
 
 /// What a sensor's frames have in common.
 struct PipelineSettings {
+  double faintest_star_mag = 9.5;
   SensorConfig sensor;
   Clock clock;
   std::uint64_t seed = 1;
@@ -49,7 +50,7 @@ struct PipelineSettings {
 class FramePipeline {
  public:
   /// `stars` may be null: no stars. `threads` must outlive the pipeline.
-  FramePipeline(PipelineSettings settings, std::shared_ptr<const StarCatalogue> stars,
+  FramePipeline(PipelineSettings settings, std::shared_ptr<const StarMap> stars,
                 Threads& threads);
   ~FramePipeline();
 

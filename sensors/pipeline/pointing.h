@@ -1,7 +1,7 @@
 #pragma once
 #include "core/config/scenario.h"
 #include "core/frames/earth_orientation.h"
-#include "core/frames/site.h"
+#include "core/frames/geodesy.h"
 #include "core/frames/vec.h"
 
 namespace dmise {

@@ -4,7 +4,7 @@ namespace dmise {
 
 SensorEvaluator::SensorEvaluator(PipelineSettings settings, SimTime tick_length, SimTime duration,
                                  const OutputConfig& output,
-                                 std::shared_ptr<const StarCatalogue> stars, std::string directory,
+                                 std::shared_ptr<const StarMap> stars, std::string directory,
                                  Threads& threads)
     : sensor_(settings.sensor),
       tick_length_(tick_length),

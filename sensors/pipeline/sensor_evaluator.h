@@ -16,7 +16,7 @@ namespace dmise {
 class SensorEvaluator : public Participant {
  public:
   SensorEvaluator(PipelineSettings settings, SimTime tick_length, SimTime duration,
-                  const OutputConfig& output, std::shared_ptr<const StarCatalogue> stars,
+                  const OutputConfig& output, std::shared_ptr<const StarMap> stars,
                   std::string directory, Threads& threads);
 
   std::string name() const override { return sensor_.name; }

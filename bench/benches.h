@@ -1,0 +1,18 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace dmise {
+
+/// One benchmark: prints what it measured and returns an exit code.
+struct Bench {
+  std::string name;
+  std::string what;
+  std::function<int(bool json)> run;
+};
+
+/// All benchmarks. To add one: write bench/bench_NAME.cpp, declare and list it in benches.cpp.
+std::vector<Bench> benches();
+
+}  // namespace dmise

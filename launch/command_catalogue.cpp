@@ -1,0 +1,105 @@
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/frames/earth_orientation.h"
+#include "core/orbit/catalogue.h"
+#include "core/orbit/sgp4_batch.h"
+#include "core/time/clock.h"
+#include "core/time/iso8601.h"
+#include "launch/commands.h"
+
+namespace dmise {
+namespace {
+
+struct StatesOptions {
+  std::string path, at, frame;
+};
+
+/// A Julian date such as 2458837.5, or an ISO 8601 time.
+Utc parse_instant(const std::string& text) {
+  double jd = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), jd);
+  if (error == std::errc{} && end == text.data() + text.size()) {
+    if (jd < 2.3e6 || jd > 2.6e6) throw ConfigError("--at: Julian date out of range, got " + text);
+    // Digits before the point and after it apart, so that no precision is lost.
+    const auto point = text.find('.');
+    const double days = std::strtod(text.substr(0, point).c_str(), nullptr);
+    const double part =
+        point == std::string::npos ? 0.0 : std::strtod(("0" + text.substr(point)).c_str(), nullptr);
+    return part >= 0.5 ? Utc{days + 0.5, part - 0.5} : Utc{days - 0.5, part + 0.5};
+  }
+  return parse_utc(text);
+}
+
+void append(std::string& row, double x) {
+  char buffer[32];
+  row += ',';
+  row.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr);
+}
+
+template <class F>
+void append(std::string& row, const Vec<F>& position_m, const Vec<F>& velocity_m_per_s) {
+  for (const auto& v : {position_m / 1e3, velocity_m_per_s / 1e3}) {
+    append(row, v.x);
+    append(row, v.y);
+    append(row, v.z);
+  }
+}
+
+void print_states(const StatesOptions& options) {
+  const auto catalogue = read_catalogue(options.path);
+  for (const auto& problem : catalogue.refused)
+    std::fprintf(stderr, "note: %s (left out)\n", catalogue.describe(problem).c_str());
+  const Utc utc = parse_instant(options.at);
+  const Clock clock(utc);
+  const EarthOrientation earth = earth_orientation(clock, {0});
+  const Sgp4Batch batch(catalogue.elements);
+  const std::size_t n = batch.size();
+  std::vector<double> position(3 * n), velocity(3 * n);
+  std::vector<std::uint8_t> code(n);
+  batch.propagate(utc.jd1, utc.jd2, position, velocity, code);
+  std::puts("id,code,x_km,y_km,z_km,vx_km_s,vy_km_s,vz_km_s");
+  std::string row;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec<Teme> r{position[i], position[n + i], position[2 * n + i]};
+    const Vec<Teme> v{velocity[i], velocity[n + i], velocity[2 * n + i]};
+    row = std::to_string(catalogue.elements[i].catalogue_number) + "," + std::to_string(code[i]);
+    if (code[i] != 0) {
+      row += ",,,,,,";
+    } else if (options.frame == "teme") {
+      append(row, r, v);
+    } else if (options.frame == "gcrs") {
+      const auto gcrs_from_teme = earth.gcrs_from_teme({0});
+      append(row, gcrs_from_teme * r, gcrs_from_teme * v);
+    } else {
+      // Velocity against the turning Earth: what a point fixed to it does is taken off.
+      const auto itrs_from_teme = earth.itrs_from_teme({0});
+      const auto itrs_from_gcrs = earth.itrs_from_gcrs({0});
+      const Vec<Itrs> place = itrs_from_teme * r;
+      append(row, place,
+             itrs_from_teme * v - itrs_from_gcrs * earth.velocity_of_fixed_point(place, {0}));
+    }
+    std::puts(row.c_str());
+  }
+}
+
+}  // namespace
+
+void add_catalogue_command(CLI::App& app) {
+  auto* command = app.add_subcommand("catalogue", "Element sets: what is in a file, states at a time");
+  command->require_subcommand(1);
+  auto options = std::make_shared<StatesOptions>();
+  auto* states = command->add_subcommand("states", "States of all objects at one time, as CSV (km, km/s)");
+  states->add_option("file", options->path, "TLE, 3LE, gpredict or OMM")->required();
+  states->add_option("--at", options->at, "UTC (ISO 8601) or Julian date")->required();
+  states->add_option("--frame", options->frame, "teme, gcrs or itrs")
+      ->default_val("teme")
+      ->check(CLI::IsMember({"teme", "gcrs", "itrs"}));
+  states->callback([options] { print_states(*options); });
+}
+
+}  // namespace dmise

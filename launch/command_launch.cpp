@@ -1,0 +1,230 @@
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "launch/commands.h"
+#include "core/config/make_clock.h"
+#include "nodes/environment/environment_actor.h"
+#include "sensors/pipeline/make_sensor.h"
+#include "launch/prepare_run.h"
+#include "launch/progress.h"
+#include "launch/run_record.h"
+#include "launch/supervisor.h"
+#include "nodes/runtime/event.h"
+#include "nodes/runtime/status.h"
+#include "orbit-node/orbit_actor.h"
+
+namespace dmise {
+namespace {
+
+using Clock_ = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
+
+struct LaunchOptions {
+  std::string scenario, out, bind = "tcp://127.0.0.1:0";
+  int threads = 1;
+  bool force = false;
+};
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", x);
+  return text;
+}
+
+/// One launch of a scenario as a process per node.
+class Launch {
+ public:
+  Launch(const LaunchOptions& options, const Scenario& scenario, const RunDirectory& directory)
+      : options_(options), scenario_(scenario), directory_(directory) {
+    for (const auto& sensor : scenario.sensors)
+      frames_total_ += static_cast<int>(exposures_within(sensor, scenario.duration));
+  }
+
+  RunOutcome run() {
+    const auto start = Clock_::now();
+    RunOutcome outcome{.how = "a process per node"};
+    std::filesystem::create_directories(directory_.path() + "/logs");
+    start_master();
+    const std::string master = master_address();
+    start_nodes(master);
+    watch(master, outcome);
+    outcome.wall_s = Seconds(Clock_::now() - start).count();
+    return outcome;
+  }
+
+ private:
+  std::string log_of(const std::string& name) const {
+    return directory_.path() + "/logs/" + name + ".log";
+  }
+  std::string announcement() const { return directory_.path() + "/logs/master.address"; }
+
+  void start_master() {
+    std::error_code ignored;
+    std::filesystem::remove(announcement(), ignored);
+    std::string expected = "orbit-node,environment-node";
+    for (const auto& sensor : scenario_.sensors) expected += "," + sensor.name;
+    const auto& network = scenario_.network;
+    const char* policy = network.on_silent_node == OnSilentNode::fail   ? "fail"
+                         : network.on_silent_node == OnSilentNode::wait ? "wait"
+                                                                        : "drop";
+    start("time-master", "dmise-time-master",
+          {"--bind", options_.bind, "--announce", announcement(), "--expect", expected, "--ticks",
+           std::to_string(scenario_.last_tick() + 1), "--tick-ns", std::to_string(scenario_.tick.ns),
+           "--window", std::to_string(network.window_ticks), "--silent-after",
+           number(network.silent_after_s), "--start-within", number(network.join_within_s),
+           "--on-silent", policy});
+  }
+
+  void start_nodes(const std::string& master) {
+    start("broker", "dmise-broker", {"--master", master});
+    const std::vector<std::string> common{"--config", options_.scenario, "--master", master,
+                                          "--threads", std::to_string(options_.threads)};
+    start("orbit-node", "dmise-orbit-node", common);
+    start("environment-node", "dmise-environment-node", common);
+    for (const auto& sensor : scenario_.sensors) {
+      auto arguments = common;
+      arguments.insert(arguments.end(), {"--name", sensor.name, "--out", directory_.path(), "--digest",
+                                         directory_.digest()});
+      start(sensor.name, "dmise-sensor-node", arguments);
+    }
+  }
+
+  void start(const std::string& name, const std::string& program,
+             std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), program_directory() + "/" + program);
+    processes_.start(name, arguments, log_of(name));
+  }
+
+  /// Waits for the master to bind and say where.
+  std::string master_address() {
+    const auto deadline = Clock_::now() + std::chrono::seconds(10);
+    while (Clock_::now() < deadline) {
+      if (!processes_.poll()) throw Error("time-master: " + last_line(log_of("time-master")));
+      if (std::filesystem::exists(announcement())) {
+        std::string address = read_text_file(announcement());
+        while (!address.empty() && std::isspace(static_cast<unsigned char>(address.back())))
+          address.pop_back();
+        if (!address.empty()) return address;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    throw Error("time-master: did not say its address within 10 s");
+  }
+
+  void watch(const std::string& master, RunOutcome& outcome) {
+    const Event& stop = stop_signal();
+    Progress progress;
+    RunStatus status;
+    std::optional<Clock_::time_point> first_death;
+    auto asked = Clock_::now() - std::chrono::hours(1);
+    bool running = true;
+    while ((running = processes_.poll()) && !stop.is_set()) {
+      if (!first_death && processes_.first_failure()) first_death = Clock_::now();
+      // The master decides what a dead node means; it has `silent_after_s`, and a little more.
+      if (first_death && scenario_.network.on_silent_node == OnSilentNode::fail &&
+          Seconds(Clock_::now() - *first_death).count() > scenario_.network.silent_after_s + 2.0)
+        break;
+      if (Clock_::now() - asked > std::chrono::milliseconds(200)) {
+        asked = Clock_::now();
+        ask(master, status);
+        progress.show(progress_state(status));
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    progress.clear_line();
+    processes_.stop(std::chrono::milliseconds(stop.is_set() ? 1500 : 500));
+    for (const auto& node : status.nodes)
+      outcome.nodes.push_back(
+          {node.name, node.times.compute_s, node.times.messaging_s, node.times.waiting_s});
+    const Child* clock = find("time-master");
+    if (stop.is_set()) {
+      outcome.status = "interrupted";
+    } else if (clock->exit_code != 0) {
+      outcome.status = "failed";
+      outcome.reason = reason(status);
+    }
+  }
+
+  void ask(const std::string& master, RunStatus& status) {
+    try {
+      status = ask_master(master, 0.5);
+    } catch (const Error&) {
+      // It is starting, busy or gone; its exit code will tell.
+    }
+  }
+
+  ProgressState progress_state(const RunStatus& status) const {
+    Tick done = status.last_tick;
+    for (const auto& node : status.nodes)
+      if (node.alive) done = std::min(done, node.done);
+    ProgressState state{
+        .simulated_s =
+            std::min(scenario_.time_of(std::max<Tick>(done, 0)), scenario_.duration).seconds(),
+        .duration_s = scenario_.duration.seconds(),
+        .frames_total = frames_total_};
+    for (const auto& sensor : summarise(scenario_, directory_.path())) {
+      state.frames += sensor.frames;
+      state.detections += sensor.detections;
+    }
+    for (const auto& name : status.missing.empty() ? status.holding : status.missing)
+      state.waiting_for += (state.waiting_for.empty() ? "" : ", ") + name;
+    return state;
+  }
+
+  const Child* find(const std::string& name) const {
+    for (const auto& child : processes_.children())
+      if (child.name == name) return &child;
+    return nullptr;
+  }
+
+  /// The first cause of a failure: what the node that failed first says, else what the master says.
+  std::string reason(const RunStatus& status) const {
+    const std::string cause =
+        status.cause.empty() ? last_line(log_of("time-master")) : status.cause;
+    return cause + " (logs in " + directory_.path() + "/logs)";
+  }
+
+  const LaunchOptions& options_;
+  const Scenario& scenario_;
+  const RunDirectory& directory_;
+  Supervisor processes_;
+  int frames_total_ = 0;
+};
+
+void launch(const LaunchOptions& options) {
+  const Scenario scenario = load_scenario(options.scenario);
+  RunDirectory directory(options.out, scenario, scenario_digest(scenario));
+  if (!prepare_directory(directory, options.force)) return;
+  stop_signal();
+  // What a node would complain of is better said here, once, before anything starts.
+  const auto population = load_objects(scenario, make_clock(scenario));
+  check_sensors(scenario, population.roster);
+  for (const auto& note : population.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  const RunOutcome outcome = Launch(options, scenario, directory).run();
+  finish_run(directory, scenario, outcome);
+}
+
+}  // namespace
+
+void add_launch_command(CLI::App& app) {
+  auto options = std::make_shared<LaunchOptions>();
+  auto* command = app.add_subcommand(
+      "launch", "Runs a scenario as a network: broker, time-master and a process per node");
+  command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
+  command->add_option("--out", options->out, "directory of the products")->default_val("out/launch");
+  command->add_option("--bind", options->bind, "address of the time-master; port 0 takes any free one")
+      ->capture_default_str();
+  command->add_option("--threads", options->threads, "threads of each node; the products do not depend on it")
+      ->default_val(1)
+      ->check(CLI::Range(1, 256));
+  command->add_flag("--force", options->force, "replace what is in the directory");
+  command->callback([options] { launch(*options); });
+}
+
+}  // namespace dmise

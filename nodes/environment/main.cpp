@@ -1,0 +1,26 @@
+// dmise-environment-node: publishes Sun, Moon, the Earth's orientation and the skies of a scenario.
+#include "core/base/error.h"
+#include "core/config/make_clock.h"
+#include "nodes/environment/environment_actor.h"
+#include "nodes/runtime/node.h"
+#include "nodes/runtime/program.h"
+
+int main(int argc, char** argv) {
+  dmise::CommonFlags flags{.name = "environment-node"};
+  std::string config;
+  int threads = 1;
+  CLI::App app("Publishes what all sensors of a scenario share.", "dmise-environment-node");
+  dmise::add_common_flags(app, flags);
+  app.add_option("--config", config, "scenario (YAML)")->required();
+  app.add_option("--threads", threads, "accepted as by all nodes; one is used");
+  return dmise::run_program(app, flags, argc, argv, [&] {
+    const dmise::Scenario scenario = dmise::load_scenario(config);
+    dmise::EnvironmentActor actor(scenario, dmise::make_clock(scenario));
+    if (flags.check) return 0;
+    if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
+    return dmise::run_node(actor, {.master = flags.master,
+                                   .join_within_s = scenario.network.join_within_s,
+                                   .stop = &dmise::stop_signal()})
+        .exit_code;
+  });
+}

@@ -1,0 +1,34 @@
+// dmise-sensor-node: one sensor of a scenario as a process of its own: renders, detects, publishes.
+#include "core/base/error.h"
+#include "nodes/runtime/node.h"
+#include "nodes/runtime/program.h"
+#include "sensors/pipeline/make_sensor.h"
+
+int main(int argc, char** argv) {
+  dmise::CommonFlags flags;
+  std::string config, out = "out/node", digest;
+  int threads = 1;
+  CLI::App app("Renders what one sensor of a scenario sees, finds what moved, publishes it.",
+               "dmise-sensor-node");
+  dmise::add_common_flags(app, flags);
+  app.add_option("--config", config, "scenario (YAML)")->required();
+  app.add_option("--out", out, "directory of the run; this sensor writes into its own below it")
+      ->capture_default_str();
+  app.add_option("--digest", digest, "digest of the run, written into every frame");
+  app.add_option("--threads", threads, "threads to compute with")->check(CLI::Range(1, 256));
+  return dmise::run_program(app, flags, argc, argv, [&] {
+    const dmise::Scenario scenario = dmise::load_scenario(config);
+    if (flags.name.empty()) throw dmise::ConfigError("--name: is required: which sensor this is");
+    dmise::Threads pool(threads);
+    const auto sensor =
+        dmise::make_sensor(scenario, flags.name, digest, out, dmise::load_stars(scenario), pool);
+    if (flags.check) return 0;
+    if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
+    sensor->stop_when([] { return dmise::stop_signal().is_set(); });
+    return dmise::run_node(*sensor, {.master = flags.master,
+                                     .join_within_s = scenario.network.join_within_s,
+                                     .stop_within_s = 1.5,
+                                     .stop = &dmise::stop_signal()})
+        .exit_code;
+  });
+}

@@ -1,0 +1,35 @@
+#include "sensors/pipeline/make_sensor.h"
+
+#include <cstdlib>
+
+#include "core/config/make_clock.h"
+
+namespace dmise {
+
+std::shared_ptr<const StarMap> load_stars(const Scenario& scenario) {
+  if (scenario.star_catalogue_path.empty()) return nullptr;
+  std::string cache;
+  if (const char* xdg = std::getenv("XDG_CACHE_HOME"))
+    cache = std::string(xdg) + "/dmise";
+  else if (const char* home = std::getenv("HOME"))
+    cache = std::string(home) + "/.cache/dmise";
+  return std::make_shared<const StarMap>(load_star_map(scenario.star_catalogue_path, cache));
+}
+
+std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,
+                                             const std::string& digest,
+                                             const std::string& directory,
+                                             std::shared_ptr<const StarMap> stars,
+                                             Threads& threads) {
+  return std::make_unique<SensorEvaluator>(
+      PipelineSettings{.sensor = sensor_named(scenario, name),
+                       .clock = make_clock(scenario),
+                       .seed = scenario.seed,
+                       .digest = digest,
+                       .faintest_star_mag = scenario.faintest_star_mag,
+                       .star_truth = scenario.output.star_truth},
+      scenario.tick, scenario.duration, scenario.output, std::move(stars), directory + "/" + name,
+      threads);
+}
+
+}  // namespace dmise

@@ -1,0 +1,20 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "sensors/pipeline/sensor_evaluator.h"
+
+namespace dmise {
+
+/// The scenario's star catalogue, indexed; null when it names none. Kept in the user's cache
+/// directory ($XDG_CACHE_HOME/dmise or ~/.cache/dmise) for the next process.
+std::shared_ptr<const StarMap> load_stars(const Scenario& scenario);
+
+/// The sensor `name` of the scenario. `digest` goes into its frames; `directory` is the run's, the
+/// sensor writes into its own below it.
+std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,
+                                             const std::string& digest,
+                                             const std::string& directory,
+                                             std::shared_ptr<const StarMap> stars, Threads& threads);
+
+}  // namespace dmise

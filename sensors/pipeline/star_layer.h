@@ -1,0 +1,30 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/base/parallel.h"
+#include "core/optics/psf_table.h"
+#include "core/photometry/star_light.h"
+#include "core/sky/star_cache.h"
+#include "sensors/pipeline/frame_pipeline.h"
+#include "sensors/pipeline/view.h"
+
+namespace dmise {
+
+/// The star background: every star of the field with its own place and its own trail.
+class StarLayer {
+ public:
+  StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map);
+
+  /// Adds the stars' light to `image`; returns how many left some in the frame. `truth`, if not
+  /// null, gets each of them.
+  std::uint32_t draw(const View& view, const PsfTable& psf, RateImage& image, Threads& threads,
+                     std::vector<StarTruth>* truth, double faintest_v_mag);
+
+ private:
+  std::shared_ptr<const StarMap> map_;
+  StarLight light_;
+};
+
+}  // namespace dmise

@@ -1,0 +1,60 @@
+#include "sensors/pipeline/view.h"
+
+#include "core/base/error.h"
+#include "core/optics/projection.h"
+
+namespace dmise {
+
+View::View(const SensorConfig& sensor, const Exposure& exposure, const World& world)
+    : sensor_(sensor),
+      exposure_(exposure),
+      world_(world),
+      environment_(&world.environment(exposure.middle)) {
+  if (const auto* site = std::get_if<SiteConfig>(&sensor.place)) {
+    site_ = Site{site->latitude_deg, site->longitude_deg, site->height_m};
+    site_m_ = itrs_from_geodetic(*site_);
+  } else {
+    platform_ = object_index(world.roster(), std::get<PlatformConfig>(sensor.place).object,
+                             sensor.name + ": platform");
+  }
+  if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
+    target_ = object_index(world.roster(), target->object, sensor.name + ": pointing.target");
+  for (const auto& needed : {platform_, target_})
+    if (needed && !(world.has_state(*needed, exposure.start) && world.has_state(*needed, exposure.end)))
+      throw Error(sensor.name + ": " + world.roster().objects[*needed].name +
+                  " has no state at frame " + std::to_string(exposure.frame));
+  aimed_ = pointing_scene(exposure.middle);
+}
+
+ObserverState View::observer(SimTime t) const {
+  if (platform_) {
+    const Motion motion = world_.motion(*platform_, t);
+    return {motion.position_m, motion.slope_m_per_s};
+  }
+  return {earth().itrs_from_gcrs(t).inverse() * site_m_,
+          earth().velocity_of_fixed_point(site_m_, t)};
+}
+
+PointingScene View::pointing_scene(SimTime t) const {
+  PointingScene scene{.time = t,
+                      .observer = observer(t),
+                      .itrs_from_gcrs = earth().itrs_from_gcrs(t),
+                      .site = site_ ? &*site_ : nullptr};
+  if (target_) scene.target_m = world_.motion(*target_, t).position_m;
+  return scene;
+}
+
+Rotation<CameraFrame, Gcrs> View::camera_from_gcrs(SimTime t) const {
+  return dmise::camera_from_gcrs(sensor_, aimed_, pointing_scene(t));
+}
+
+Vec<Gcrs> View::up(SimTime t) const {
+  if (!site_) return unit(observer(t).position_m);
+  return (enu_from_itrs(*site_) * earth().itrs_from_gcrs(t)).inverse() * Vec<Enu>{0, 0, 1};
+}
+
+std::optional<PixelPosition> View::pixel(const Vec<Gcrs>& apparent, SimTime t) const {
+  return project(sensor_.camera.optics, camera_from_gcrs(t) * apparent);
+}
+
+}  // namespace dmise

@@ -1,0 +1,53 @@
+#pragma once
+#include <array>
+#include <optional>
+
+#include "core/base/pixel.h"
+#include "core/config/scenario.h"
+#include "core/frames/geodesy.h"
+#include "sensors/pipeline/exposure.h"
+#include "sensors/pipeline/pointing.h"
+#include "sensors/pipeline/world.h"
+
+namespace dmise {
+
+/// How one sensor sees the world during one exposure: where it is, where it points, and which pixel
+/// a direction falls on, at any time of the exposure.
+class View {
+ public:
+  /// `world` must cover the exposure and outlive the view.
+  View(const SensorConfig& sensor, const Exposure& exposure, const World& world);
+
+  const SensorConfig& sensor() const { return sensor_; }
+  const Exposure& exposure() const { return exposure_; }
+  const World& world() const { return world_; }
+  bool on_ground() const { return site_.has_value(); }
+  const std::optional<Site>& site() const { return site_; }
+  /// The object that carries the sensor; it does not see itself.
+  std::optional<std::size_t> platform() const { return platform_; }
+
+  ObserverState observer(SimTime t) const;
+  const EarthOrientation& earth() const { return environment_->earth; }
+  const EnvironmentState& environment() const { return *environment_; }
+  Rotation<CameraFrame, Gcrs> camera_from_gcrs(SimTime t) const;
+  /// Normal of the ellipsoid at a ground sensor; for a sensor in orbit, away from the Earth's centre.
+  Vec<Gcrs> up(SimTime t) const;
+
+  /// Pixel of an apparent direction (observed: aberration and refraction in it); nothing where the
+  /// projection has no image.
+  std::optional<PixelPosition> pixel(const Vec<Gcrs>& apparent, SimTime t) const;
+
+ private:
+  PointingScene pointing_scene(SimTime t) const;
+
+  const SensorConfig& sensor_;
+  const Exposure exposure_;
+  const World& world_;
+  const EnvironmentState* environment_;  // of mid exposure
+  std::optional<Site> site_;
+  Vec<Itrs> site_m_;
+  std::optional<std::size_t> platform_, target_;
+  PointingScene aimed_;
+};
+
+}  // namespace dmise
