@@ -1,0 +1,90 @@
+#include "nodes/runtime/broker.h"
+
+#include <spdlog/spdlog.h>
+
+#include "core/base/error.h"
+#include "nodes/runtime/master.h"
+#include "nodes/runtime/master_link.h"
+
+namespace dmise {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::duration_cast;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+constexpr milliseconds drained{100};  // nothing more comes when it was quiet for so long
+constexpr int burst = 1000;           // messages in one direction before looking at the other
+
+/// Passes on what waits at `from`; returns the number of messages.
+int pass(zmq::socket_t& from, zmq::socket_t& to) {
+  int messages = 0;
+  zmq::message_t frame;
+  while (messages < burst && from.recv(frame, zmq::recv_flags::dontwait)) {
+    bool more = frame.more();
+    to.send(frame, more ? zmq::send_flags::sndmore : zmq::send_flags::none);
+    while (more) {
+      if (!from.recv(frame, zmq::recv_flags::none)) break;
+      more = frame.more();
+      to.send(frame, more ? zmq::send_flags::sndmore : zmq::send_flags::none);
+    }
+    ++messages;
+  }
+  return messages;
+}
+
+void serve(const BrokerOptions& options, BrokerResult* result) {
+  zmq::context_t context(1);
+  zmq::socket_t publishers = make_socket(context, zmq::socket_type::xsub, max_data_bytes);
+  zmq::socket_t subscribers = make_socket(context, zmq::socket_type::xpub, max_data_bytes);
+  subscribers.set(zmq::sockopt::linger, 500);
+
+  // The limit on a queue is that of the moment when its endpoint is bound.
+  v1::Join join;
+  join.set_name(broker_name);
+  auto* endpoints = join.mutable_broker();
+  subscribers.set(zmq::sockopt::sndhwm, options.observer_queue);
+  endpoints->set_observe_endpoint(bind_to(subscribers, options.observe));
+  subscribers.set(zmq::sockopt::sndhwm, 0);
+  endpoints->set_subscribe_endpoint(bind_to(subscribers, options.subscribe));
+  endpoints->set_publish_endpoint(bind_to(publishers, options.publish));
+
+  MasterLink link(context, options.master, options.stop);
+  link.join(join, duration_cast<nanoseconds>(duration<double>(options.join_within_s)));
+  link.keep({}, std::nullopt);
+
+  auto busy = now();
+  const std::vector<zmq::socket_t*> sockets{&publishers, &subscribers};
+  const auto finished = [&] {
+    if (link.phase() == v1::PHASE_FAILED || link.stopped()) return true;
+    return link.deserted() && now() - busy > drained;
+  };
+  while (!finished()) {
+    link.wait(sockets, link.deserted() ? drained : milliseconds(1000));
+    const int forward = pass(publishers, subscribers);
+    const int back = pass(subscribers, publishers);  // subscriptions
+    result->messages += std::uint64_t(forward);
+    if (forward + back > 0) busy = now();
+  }
+  const bool interrupted = link.stopped() && !link.over();
+  link.leave(interrupted, {});
+  if (link.phase() == v1::PHASE_FAILED) throw Error(link.cause());
+  if (interrupted) throw Error("interrupted");
+}
+
+}  // namespace
+
+BrokerResult run_broker(const BrokerOptions& options) {
+  BrokerResult result;
+  try {
+    serve(options, &result);
+  } catch (const std::exception& error) {
+    result.exit_code = 1;
+    result.reason = error.what();
+    spdlog::error("{}", result.reason);
+  }
+  return result;
+}
+
+}  // namespace dmise

@@ -1,0 +1,31 @@
+#pragma once
+#include <atomic>
+
+namespace dmise {
+
+/// A flag that a poll can wait for. Setting it is safe in a signal handler and from any thread.
+class Event {
+ public:
+  Event();
+  ~Event();
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+
+  void set();
+  bool is_set() const { return flag_.load(std::memory_order_acquire); }
+  /// Takes the flag down again.
+  void clear();
+  /// Readable while the flag is set.
+  int fd() const { return fd_; }
+  /// For work that looks now and then whether it should go on.
+  const std::atomic<bool>& flag() const { return flag_; }
+
+ private:
+  std::atomic<bool> flag_{false};
+  int fd_ = -1;
+};
+
+/// The event that SIGINT and SIGTERM set from now on: the polite end of a program.
+Event& stop_signal();
+
+}  // namespace dmise

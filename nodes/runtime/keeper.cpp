@@ -1,0 +1,105 @@
+#include "nodes/runtime/keeper.h"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "dmise/v1/node.pb.h"
+
+namespace dmise {
+
+using std::chrono::duration;
+
+Keeper::Keeper(zmq::context_t& context, KeeperOptions options,
+               std::optional<zmq::socket_t> resend_socket)
+    : options_(std::move(options)),
+      heartbeat_(make_socket(context, zmq::socket_type::dealer, max_control_bytes)),
+      resend_(std::move(resend_socket)),
+      heard_(now()) {
+  connect_to(heartbeat_, options_.master);
+  thread_ = std::thread([this] { run(); });
+}
+
+Keeper::~Keeper() {
+  quit_.set();
+  thread_.join();
+}
+
+v1::Grant Keeper::latest() {
+  const std::lock_guard lock(mutex_);
+  news_.clear();
+  return latest_;
+}
+
+void Keeper::run() {
+  auto next_beat = now();
+  while (!quit_.is_set()) {
+    if (now() >= next_beat) {
+      beat();
+      next_beat = now() + options_.heartbeat;
+    }
+    std::vector<zmq::pollitem_t> items{{nullptr, quit_.fd(), ZMQ_POLLIN, 0},
+                                       {heartbeat_.handle(), 0, ZMQ_POLLIN, 0}};
+    if (resend_) items.push_back({resend_->handle(), 0, ZMQ_POLLIN, 0});
+    wait_for(items, next_beat - now());
+    hear();
+    if (resend_) answer();
+    leave_if_stuck();
+  }
+}
+
+void Keeper::beat() {
+  v1::NodeMessage message;
+  message.set_run_id(options_.run_id);
+  auto* heartbeat = message.mutable_heartbeat();
+  heartbeat->set_name(options_.name);
+  heartbeat->set_incarnation(options_.incarnation);
+  heartbeat->set_computing(computing_.load(std::memory_order_relaxed));
+  heartbeat->set_progress(options_.progress ? options_.progress() : 0);
+  heartbeat_.send(to_frame(message), zmq::send_flags::none);
+}
+
+void Keeper::hear() {
+  while (const auto frame = receive_one(heartbeat_)) {
+    v1::MasterMessage message;
+    if (!from_frame(*frame, &message) || message.grant().run_id() != options_.run_id) continue;
+    heard_ = now();
+    post(message.grant());
+  }
+  if (const auto silence = now() - heard_; !over_ && silence > options_.silent_after) {
+    v1::Grant lost;
+    lost.set_run_id(options_.run_id);
+    lost.set_phase(v1::PHASE_FAILED);
+    lost.set_cause(fmt::format("the time-master at {} has been silent for {:.1f} s",
+                               options_.master, duration<double>(silence).count()));
+    post(lost);
+  }
+}
+
+void Keeper::post(const v1::Grant& grant) {
+  over_ = over_ || grant.phase() == v1::PHASE_ENDED || grant.phase() == v1::PHASE_FAILED;
+  const std::lock_guard lock(mutex_);
+  latest_ = grant;
+  news_.set();
+}
+
+void Keeper::answer() {
+  for (auto message = receive(*resend_); !message.empty(); message = receive(*resend_)) {
+    v1::ResendRequest request;
+    if (message.size() != 2 || !from_frame(message[1], &request) ||
+        request.run_id() != options_.run_id)
+      continue;
+    for (const SharedFrames& frames : options_.resend(request.topic(), request.from_sequence()))
+      send(*resend_, frames, message[0].to_string_view());
+  }
+}
+
+void Keeper::leave_if_stuck() {
+  if (options_.stop_within.count() == 0) return;
+  if (!over_since_ && (over_ || (options_.stop && options_.stop->is_set()))) over_since_ = now();
+  if (!over_since_ || !computing_.load(std::memory_order_relaxed)) return;
+  if (now() - *over_since_ < options_.stop_within) return;
+  spdlog::error("{}: stops in the middle of a step", options_.name);
+  _exit(1);
+}
+
+}  // namespace dmise

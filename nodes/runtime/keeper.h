@@ -1,0 +1,68 @@
+#pragma once
+#include <chrono>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "dmise/v1/time.pb.h"
+#include "nodes/runtime/event.h"
+#include "nodes/runtime/outbox.h"
+#include "nodes/runtime/socket.h"
+
+namespace dmise {
+
+struct KeeperOptions {
+  std::string master;  // address of its ROUTER
+  std::string name;
+  std::uint64_t run_id = 0;
+  std::uint64_t incarnation = 0;
+  std::chrono::nanoseconds heartbeat{};
+  std::chrono::nanoseconds silent_after{};  // of the master
+  std::chrono::nanoseconds stop_within{0};  // a step that goes on for longer after the end of the
+                                            // run or `stop` ends the process; 0: never
+  const Event* stop = nullptr;              // may be null
+  std::function<std::uint64_t()> progress;  // of the step; called from the keeper's thread
+  std::function<std::vector<SharedFrames>(const std::string&, std::uint64_t)> resend;
+};
+
+/// A node's second thread: tells the master that the process lives and how far its step is, hears
+/// the grant again in the answers, and sends again what others have missed - also during a long
+/// step.
+class Keeper {
+ public:
+  /// `resend_socket`: a bound ROUTER, or none.
+  Keeper(zmq::context_t& context, KeeperOptions options,
+         std::optional<zmq::socket_t> resend_socket);
+  ~Keeper();
+  Keeper(const Keeper&) = delete;
+  Keeper& operator=(const Keeper&) = delete;
+
+  void set_computing(bool computing) { computing_.store(computing, std::memory_order_relaxed); }
+  /// Set when `latest` has something new; cleared by `latest`.
+  const Event& news() const { return news_; }
+  v1::Grant latest();
+
+ private:
+  void run();
+  void beat();
+  void hear();
+  void answer();
+  void post(const v1::Grant& grant);
+  void leave_if_stuck();
+
+  KeeperOptions options_;
+  zmq::socket_t heartbeat_;
+  std::optional<zmq::socket_t> resend_;
+  Event quit_;
+  Event news_;
+  std::atomic<bool> computing_{false};
+  std::mutex mutex_;  // guards latest_
+  v1::Grant latest_;
+  std::chrono::nanoseconds heard_;
+  std::optional<std::chrono::nanoseconds> over_since_;
+  bool over_ = false;
+  std::thread thread_;  // last: it uses all of the above
+};
+
+}  // namespace dmise

@@ -1,0 +1,366 @@
+#include "nodes/runtime/master.h"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <random>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "nodes/runtime/peer_monitor.h"
+#include "nodes/runtime/socket.h"
+
+namespace dmise {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds check_interval{50};
+constexpr milliseconds connecting_interval{10};  // grants repeated while subscribers connect
+constexpr seconds farewell{2};  // longest wait for nodes to leave a run that is over
+constexpr seconds complain_interval{5};
+
+std::uint64_t new_run_id() {
+  std::random_device device;
+  std::uint64_t id = 0;
+  while (id == 0) id = std::uint64_t(device()) << 32 | device();
+  return id;
+}
+
+v1::Phase to_wire(Phase phase) {
+  switch (phase) {
+    case Phase::gathering:
+      return v1::PHASE_GATHERING;
+    case Phase::connecting:
+      return v1::PHASE_CONNECTING;
+    case Phase::running:
+      return v1::PHASE_RUNNING;
+    case Phase::ended:
+      return v1::PHASE_ENDED;
+    case Phase::failed:
+      break;
+  }
+  return v1::PHASE_FAILED;
+}
+
+CoordinatorOptions with_broker(const MasterOptions& options) {
+  CoordinatorOptions run = options.run;
+  if (options.with_broker) run.expected.insert(run.expected.begin(), broker_name);
+  return run;
+}
+
+double as_seconds(nanoseconds t) { return duration<double>(t).count(); }
+
+class Master {
+ public:
+  explicit Master(const MasterOptions& options)
+      : options_(options),
+        coordinator_(with_broker(options), now()),
+        router_(make_socket(context_, zmq::socket_type::router, max_control_bytes)),
+        ticks_(make_socket(context_, zmq::socket_type::pub, max_control_bytes)),
+        peers_(context_, router_),
+        run_id_(new_run_id()),
+        heartbeat_(std::min<nanoseconds>(milliseconds(250), options.run.silent_after / 8)) {
+    router_.set(zmq::sockopt::linger, 500);
+    ticks_.set(zmq::sockopt::linger, 500);
+    address_ = bind_to(router_, options.address);
+    tick_endpoint_ = bind_to(ticks_, any_port(options.address));
+    announce();
+  }
+
+  MasterResult run() {
+    auto next_check = now();
+    std::optional<nanoseconds> over_since;
+    while (true) {
+      wait(next_check - now());
+      for (const std::string& name : peers_.lost()) coordinator_.suspect(name, now());
+      hear();
+      if (options_.stop && options_.stop->is_set()) coordinator_.stop("interrupted");
+      if (now() >= next_check) {
+        coordinator_.check(now());
+        complain();
+        const bool connecting = coordinator_.phase() == Phase::connecting;
+        next_check = now() + (connecting ? connecting_interval : check_interval);
+        if (connecting || coordinator_.over()) publish();
+      }
+      if (coordinator_.phase() != phase_ || coordinator_.granted() != granted_) advance();
+      if (!coordinator_.over()) continue;
+      if (!over_since) over_since = now();
+      if (coordinator_.deserted() || now() - *over_since > farewell) break;
+    }
+    return result();
+  }
+
+ private:
+  struct Peer {
+    std::string routing_id;
+    std::uint64_t incarnation = 1;
+    v1::Join join;
+  };
+
+  void announce() {
+    spdlog::debug("listens on {}", address_);
+    if (!options_.announce_file.empty()) write_file_whole(options_.announce_file, address_ + "\n");
+    if (options_.announce_fd >= 0) {
+      const std::string line = address_ + "\n";
+      if (write(options_.announce_fd, line.data(), line.size()) != ssize_t(line.size()))
+        throw Error("announce-fd: can't write");
+    }
+    if (options_.on_bound) options_.on_bound(address_);
+  }
+
+  void wait(nanoseconds at_most) {
+    items_ = {{router_.handle(), 0, ZMQ_POLLIN, 0}, {peers_.handle(), 0, ZMQ_POLLIN, 0}};
+    if (options_.stop && !coordinator_.over())
+      items_.push_back({nullptr, options_.stop->fd(), ZMQ_POLLIN, 0});
+    wait_for(items_, at_most);
+  }
+
+  void hear() {
+    for (auto message = receive(router_); !message.empty(); message = receive(router_)) {
+      if (message.size() != 2 || !from_frame(message[1], &heard_)) continue;
+      const bool before_welcome = heard_.has_hello() || heard_.has_join();
+      if (!before_welcome && heard_.run_id() != run_id_) continue;
+      const std::string_view sender = message[0].to_string_view();
+      if (heard_.has_done()) {
+        coordinator_.done(name_of(sender), heard_.done().tick(), now());
+      } else if (heard_.has_heartbeat()) {
+        heartbeat(sender, message[1]);
+      } else if (heard_.has_join()) {
+        join(sender, message[1]);
+      } else if (heard_.has_ready()) {
+        coordinator_.ready(name_of(sender), now());
+      } else if (heard_.has_leave()) {
+        leave(name_of(sender));
+      } else if (heard_.has_failed()) {
+        coordinator_.fail(name_of(sender), heard_.failed().reason());
+      } else if (heard_.has_hello()) {
+        v1::MasterMessage answer;
+        fill(answer.mutable_endpoints());
+        reply(sender, answer);
+      }
+    }
+  }
+
+  /// The node that joined over this connection; "" if none.
+  const std::string& name_of(std::string_view routing_id) const {
+    static const std::string nobody;
+    const auto found = names_.find(routing_id);
+    return found != names_.end() ? found->second : nobody;
+  }
+
+  void join(std::string_view sender, zmq::message_t& frame) {
+    const v1::Join& join = heard_.join();
+    Coordinator::Request request;
+    request.node = {join.name(),
+                    {join.produces().begin(), join.produces().end()},
+                    {join.consumes().begin(), join.consumes().end()}};
+    request.node.produces.insert(request.node.produces.end(), join.produces_direct().begin(),
+                                 join.produces_direct().end());
+    request.keeps_time = !join.has_broker();
+    v1::MasterMessage answer;
+    const bool is_broker = join.name() == broker_name;
+    const auto refusal = join.has_broker() == is_broker
+                             ? coordinator_.join(request, now())
+                             : std::optional<std::string>("only the broker is named broker");
+    if (refusal) {
+      answer.mutable_refuse()->set_reason(*refusal);
+      reply(sender, answer);
+      spdlog::warn("refused {}: {}", join.name(), *refusal);
+      return;
+    }
+    names_[std::string(sender)] = join.name();
+    Peer& peer = peers_by_name_[join.name()];
+    peer = {std::string(sender), ++incarnations_[join.name()], join};
+    peers_.belongs(frame, join.name());
+    auto* welcome = answer.mutable_welcome();
+    welcome->set_run_id(run_id_);
+    welcome->set_incarnation(peer.incarnation);
+    welcome->set_tick_ns(options_.tick_length.ns);
+    welcome->set_last_tick(options_.run.last_tick);
+    welcome->set_window_ticks(std::uint32_t(options_.run.window_ticks));
+    welcome->set_heartbeat_s(as_seconds(heartbeat_));
+    welcome->set_silent_after_s(as_seconds(options_.run.silent_after));
+    welcome->set_tick_endpoint(tick_endpoint_);
+    reply(sender, answer);
+    const auto missing = coordinator_.missing();
+    spdlog::info("{} joined{}", join.name(),
+                 missing.empty() ? "" : "; waiting for " + joined(missing));
+  }
+
+  void heartbeat(std::string_view sender, zmq::message_t& frame) {
+    const auto& heartbeat = heard_.heartbeat();
+    const auto peer = peers_by_name_.find(heartbeat.name());
+    if (peer == peers_by_name_.end() || peer->second.incarnation != heartbeat.incarnation()) return;
+    peers_.belongs(frame, heartbeat.name());
+    coordinator_.heartbeat(heartbeat.name(), heartbeat.computing(), heartbeat.progress(), now());
+    v1::MasterMessage answer;
+    *answer.mutable_grant() = grant();
+    const auto member = coordinator_.members().find(heartbeat.name());
+    if (member == coordinator_.members().end() || member->second.dropped) {
+      answer.mutable_grant()->set_phase(v1::PHASE_FAILED);
+      answer.mutable_grant()->set_cause("the run goes on without " + heartbeat.name());
+    }
+    reply(sender, answer);
+  }
+
+  void leave(const std::string& name) {
+    const auto& leave = heard_.leave();
+    if (name.empty()) return;
+    times_[name] = {leave.compute_s(), leave.messaging_s(), leave.waiting_s()};
+    coordinator_.leave(name, leave.interrupted());
+    spdlog::debug("{} left", name);
+  }
+
+  void reply(std::string_view routing_id, const v1::MasterMessage& message) {
+    router_.send(zmq::buffer(routing_id), zmq::send_flags::sndmore);
+    router_.send(to_frame(message), zmq::send_flags::none);
+  }
+
+  /// Something changed: says so to everybody.
+  void advance() {
+    const Phase before = phase_;
+    phase_ = coordinator_.phase();
+    granted_ = coordinator_.granted();
+    if (phase_ != before) {
+      if (phase_ == Phase::connecting) send_topology();
+      if (phase_ == Phase::running) started_ = now();
+      if (before == Phase::running) ended_ = now();
+      if (phase_ == Phase::failed) spdlog::error("{}", coordinator_.cause());
+      if (phase_ == Phase::running) spdlog::info("all are ready");
+    }
+    publish();
+  }
+
+  void publish() { ticks_.send(to_frame(grant()), zmq::send_flags::none); }
+
+  const v1::Grant& grant() {
+    grant_.Clear();
+    grant_.set_run_id(run_id_);
+    grant_.set_tick(coordinator_.granted());
+    grant_.set_phase(to_wire(coordinator_.phase()));
+    grant_.set_cause(coordinator_.cause());
+    for (const auto& [name, member] : coordinator_.members()) {
+      if (!member.dropped) continue;
+      for (const std::string& topic : member.node.produces) {
+        auto* closed = grant_.add_closed();
+        closed->set_topic(topic);
+        closed->set_from_tick(member.done + 1);
+      }
+    }
+    if (coordinator_.over())
+      grant_.set_deserted(std::none_of(
+          coordinator_.members().begin(), coordinator_.members().end(),
+          [](const auto& entry) { return entry.second.keeps_time && entry.second.active(); }));
+    return grant_;
+  }
+
+  void send_topology() {
+    v1::MasterMessage message;
+    auto* topology = message.mutable_topology();
+    for (const auto& [name, peer] : peers_by_name_) {
+      if (peer.join.has_broker()) {
+        topology->set_publish_endpoint(peer.join.broker().publish_endpoint());
+        topology->set_subscribe_endpoint(peer.join.broker().subscribe_endpoint());
+      } else {
+        fill(topology->add_publishers(), peer);
+      }
+    }
+    for (const auto& [name, peer] : peers_by_name_) reply(peer.routing_id, message);
+  }
+
+  static void fill(v1::Publisher* publisher, const Peer& peer) {
+    publisher->set_name(peer.join.name());
+    publisher->set_incarnation(peer.incarnation);
+    *publisher->mutable_topics() = peer.join.produces();
+    *publisher->mutable_direct_topics() = peer.join.produces_direct();
+    publisher->set_direct_endpoint(peer.join.direct_endpoint());
+    publisher->set_resend_endpoint(peer.join.resend_endpoint());
+  }
+
+  void fill(v1::Endpoints* endpoints) const {
+    endpoints->set_run_id(run_id_);
+    endpoints->set_phase(to_wire(coordinator_.phase()));
+    endpoints->set_cause(coordinator_.cause());
+    endpoints->set_granted_tick(coordinator_.granted());
+    endpoints->set_last_tick(options_.run.last_tick);
+    endpoints->set_tick_ns(options_.tick_length.ns);
+    endpoints->set_tick_endpoint(tick_endpoint_);
+    for (const auto& [name, peer] : peers_by_name_) {
+      if (peer.join.has_broker())
+        endpoints->set_observe_endpoint(peer.join.broker().observe_endpoint());
+      else
+        fill(endpoints->add_publishers(), peer);
+    }
+    for (const auto& [name, member] : coordinator_.members()) {
+      auto* node = endpoints->add_nodes();
+      node->set_name(name);
+      node->set_done_tick(member.done);
+      node->set_alive(member.active() && !member.silent);
+      const auto times = times_.find(name);
+      if (times == times_.end()) continue;
+      node->set_compute_s(times->second.compute_s);
+      node->set_messaging_s(times->second.messaging_s);
+      node->set_waiting_s(times->second.waiting_s);
+    }
+    for (const std::string& name : coordinator_.missing()) endpoints->add_missing(name);
+    for (const std::string& name : coordinator_.holding()) endpoints->add_holding(name);
+  }
+
+  /// Names whom everybody waits for when nothing has moved for a while.
+  void complain() {
+    if (coordinator_.over()) return;
+    const auto state = std::pair(coordinator_.granted(), coordinator_.holding());
+    if (state != complained_about_) {
+      complained_about_ = state;
+      quiet_since_ = now();
+    } else if (now() - quiet_since_ >= complain_interval) {
+      spdlog::info("tick {} of {}: waiting for {}", coordinator_.granted(), options_.run.last_tick,
+                   joined(coordinator_.holding()));
+      quiet_since_ = now();
+    }
+  }
+
+  MasterResult result() const {
+    MasterResult result;
+    result.exit_code = coordinator_.phase() == Phase::ended ? 0 : 1;
+    result.reason = coordinator_.cause();
+    result.granted = coordinator_.granted();
+    if (started_) result.wall_s = as_seconds(ended_.value_or(now()) - *started_);
+    result.times = times_;
+    for (const auto& [name, member] : coordinator_.members())
+      if (member.dropped) result.dropped.push_back(name);
+    return result;
+  }
+
+  const MasterOptions& options_;
+  Coordinator coordinator_;
+  zmq::context_t context_{1};
+  zmq::socket_t router_, ticks_;
+  PeerMonitor peers_;
+  std::uint64_t run_id_;
+  nanoseconds heartbeat_;
+  std::string address_, tick_endpoint_;
+  std::vector<zmq::pollitem_t> items_;
+  std::map<std::string, std::string, std::less<>> names_;  // by routing id
+  std::map<std::string, Peer> peers_by_name_;
+  std::map<std::string, std::uint64_t> incarnations_;
+  std::map<std::string, TimeSplit> times_;
+  v1::NodeMessage heard_;
+  v1::Grant grant_;
+  Phase phase_ = Phase::gathering;  // as last told
+  Tick granted_ = -1;
+  std::optional<nanoseconds> started_, ended_;
+  std::pair<Tick, std::vector<std::string>> complained_about_;
+  nanoseconds quiet_since_{0};
+};
+
+}  // namespace
+
+MasterResult run_master(const MasterOptions& options) { return Master(options).run(); }
+
+}  // namespace dmise

@@ -1,0 +1,39 @@
+#pragma once
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "nodes/runtime/event.h"
+#include "nodes/runtime/master_link.h"
+#include "time-master/coordinator.h"
+
+namespace dmise {
+
+inline constexpr const char* broker_name = "broker";
+
+struct MasterOptions {
+  std::string address = "tcp://127.0.0.1:0";  // of the one socket that everybody must know
+  CoordinatorOptions run;  // `expected`: nodes that keep time, without the broker
+  bool with_broker = true;
+  SimTime tick_length{1'000'000'000};
+  Event* stop = nullptr;
+  std::string announce_file;  // the address is written here when bound
+  int announce_fd = -1;       // and here, as one line
+  std::function<void(const std::string& address)> on_bound;
+};
+
+struct MasterResult {
+  int exit_code = 0;   // 0: every tick was done
+  std::string reason;  // first cause of a code other than 0
+  Tick granted = -1;
+  double wall_s = 0.0;                     // from the first grant to the end
+  std::map<std::string, TimeSplit> times;  // of nodes that said goodbye
+  std::vector<std::string> dropped;
+};
+
+/// Keeps the clock of one run until every tick is done or the run fails. Throws `ConfigError` for
+/// options that make no sense and `Error` when the address can't be bound.
+MasterResult run_master(const MasterOptions& options);
+
+}  // namespace dmise

@@ -1,0 +1,80 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dmise/v1/node.pb.h"
+#include "dmise/v1/time.pb.h"
+#include "nodes/runtime/keeper.h"
+
+namespace dmise {
+
+/// How a process spent the time of a run.
+struct TimeSplit {
+  double compute_s = 0.0;    // in steps
+  double messaging_s = 0.0;  // encoding, sending, receiving, checking
+  double waiting_s = 0.0;    // for the clock or for inputs
+};
+
+/// A process's side of the conversation with the time-master: joins, hears grants (published, and
+/// repeated in answers to heartbeats), reports, leaves. Used from one thread.
+class MasterLink {
+ public:
+  MasterLink(zmq::context_t& context, std::string master, const Event* stop);
+  ~MasterLink();
+
+  /// Throws `Error` when refused or when there is no answer within the time.
+  v1::Welcome join(const v1::Join& request, std::chrono::nanoseconds within);
+
+  /// Starts the heartbeat. Only what `join` does not know needs to be set in `options`.
+  void keep(KeeperOptions options, std::optional<zmq::socket_t> resend_socket);
+  void set_computing(bool computing) { keeper_->set_computing(computing); }
+
+  void ready();
+  void done(Tick tick);
+  void leave(bool interrupted, const TimeSplit& times);
+  void failed(const std::string& reason);
+
+  /// Waits until the master says something, one of `sockets` is readable, the process is asked to
+  /// stop, or the time is over; takes in what the master said.
+  void wait(const std::vector<zmq::socket_t*>& sockets, std::chrono::nanoseconds at_most);
+
+  Tick granted() const { return granted_; }
+  v1::Phase phase() const { return phase_; }
+  bool over() const { return phase_ == v1::PHASE_ENDED || phase_ == v1::PHASE_FAILED; }
+  const std::string& cause() const { return cause_; }
+  bool deserted() const { return deserted_; }
+  bool stopped() const { return stop_ && stop_->is_set(); }
+  /// A grant came over the published channel: none will be missed.
+  bool hears_ticks() const { return hears_ticks_; }
+  const std::optional<v1::Topology>& topology() const { return topology_; }
+  const std::vector<v1::ClosedTopic>& closed() const { return closed_; }
+
+ private:
+  void tell(v1::NodeMessage& message);
+  void hear_control();
+  void hear_ticks();
+  void take(const v1::Grant& grant);
+
+  zmq::context_t& context_;
+  std::string master_;
+  const Event* stop_;
+  std::string name_;
+  zmq::socket_t control_;
+  zmq::socket_t ticks_;
+  std::unique_ptr<Keeper> keeper_;
+  std::vector<zmq::pollitem_t> items_;
+
+  v1::Welcome welcome_;
+  std::optional<v1::MasterMessage> answer_;  // to Join
+  std::optional<v1::Topology> topology_;
+  std::vector<v1::ClosedTopic> closed_;
+  v1::Grant scratch_;
+  Tick granted_ = -1;
+  v1::Phase phase_ = v1::PHASE_GATHERING;
+  std::string cause_;
+  bool deserted_ = false;
+  bool hears_ticks_ = false;
+};
+
+}  // namespace dmise

@@ -1,0 +1,35 @@
+#pragma once
+#include <string>
+
+#include "core/sim/participant.h"
+#include "nodes/runtime/event.h"
+#include "nodes/runtime/master_link.h"
+
+namespace dmise {
+
+struct NodeOptions {
+  std::string master;                      // "tcp://HOST:PORT" of the time-master
+  std::string host = "tcp://127.0.0.1:0";  // where this node's own sockets bind
+  double join_within_s = 30.0;             // longest wait for the master's first answer
+  double stop_within_s = 0.0;              // > 0: a step that is not over so long after the run or
+                                           // `stop` ends the process
+  Event* stop = nullptr;                   // asks the node to leave; see stop_signal()
+};
+
+struct NodeResult {
+  int exit_code = 0;   // 0, 1, or 2 when the configuration is at fault
+  std::string reason;  // of a code other than 0, one line
+  Tick done = -1;      // last tick done
+  TimeSplit times;
+  std::uint64_t refused = 0;  // messages that failed a check
+  std::string last_refusal;
+  std::uint64_t asked_again = 0;  // requests for messages that were missing
+};
+
+/// Runs a participant as a node of a network: joins at the master, waits until every consumed topic
+/// is heard, makes each step when its tick is granted and its inputs are complete, publishes what
+/// the step returns, leaves at the end. Truth topics go over a socket of the node's own, all others
+/// through the broker. Does not throw and does not print; it logs.
+NodeResult run_node(Participant& participant, const NodeOptions& options);
+
+}  // namespace dmise

@@ -1,0 +1,28 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace dmise {
+
+/// Flags that every program takes.
+struct CommonFlags {
+  std::string name;
+  std::string master;  // address of the time-master
+  std::string log_level = "info";
+  std::uint64_t seed = 0;
+  bool check = false;  // look at the flags and files, do nothing
+};
+
+/// Declares `--name --master --log-level --seed --check --version` with the values in `flags` as
+/// defaults.
+void add_common_flags(CLI::App& app, CommonFlags& flags);
+
+/// Reads the command line, starts the log, runs `body` and returns the process's exit code: that of
+/// `body`, 2 for a `ConfigError` or a wrong flag, 1 for any other exception, which is one line on
+/// stderr.
+int run_program(CLI::App& app, const CommonFlags& flags, int argc, char** argv,
+                const std::function<int()>& body);
+
+}  // namespace dmise

@@ -1,0 +1,63 @@
+#pragma once
+#include <chrono>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+#include <zmq.hpp>
+
+#include "nodes/wire/envelope.h"
+
+// Sockets as this project uses them: sizes capped, handshakes timed, no lingering but for last
+// words.
+namespace dmise {
+
+inline constexpr std::int64_t max_control_bytes = 1 << 20;
+inline constexpr std::int64_t max_data_bytes = max_array_bytes + (1 << 20);
+
+/// Queues without limit: those of a run are bounded by its window.
+zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
+                          std::int64_t max_message_bytes);
+
+/// Binds and returns the address with its real port. Throws `Error` "ADDRESS: reason".
+std::string bind_to(zmq::socket_t& socket, const std::string& address);
+
+/// Throws `Error` "ADDRESS: reason" when the address can't be one.
+void connect_to(zmq::socket_t& socket, const std::string& address);
+
+/// `address` ("tcp://HOST:PORT") with port 0: any free one on the same host.
+std::string any_port(const std::string& address);
+
+/// All frames of one message, or none when there is no message now.
+std::vector<zmq::message_t> receive(zmq::socket_t& socket);
+/// The only frame of a message; empty when there is no message now or it has several.
+std::optional<zmq::message_t> receive_one(zmq::socket_t& socket);
+
+/// Sends a message of three or four frames; large frames are not copied. `prefix`: routing id, if
+/// any.
+void send(zmq::socket_t& socket, const std::shared_ptr<const Frames>& frames,
+          std::string_view prefix = {});
+
+std::vector<std::string_view> views(const std::vector<zmq::message_t>& message);
+
+/// One message of Protocol Buffers as a frame.
+template <class M>
+zmq::message_t to_frame(const M& message) {
+  zmq::message_t frame(message.ByteSizeLong());
+  message.SerializeToArray(frame.data(), static_cast<int>(frame.size()));
+  return frame;
+}
+template <class M>
+bool from_frame(const zmq::message_t& frame, M* message) {
+  return message->ParseFromArray(frame.data(), static_cast<int>(frame.size()));
+}
+
+/// Waits until one of `items` is readable or the time is over.
+void wait_for(std::vector<zmq::pollitem_t>& items, std::chrono::nanoseconds at_most);
+
+/// Monotone wall clock.
+inline std::chrono::nanoseconds now() {
+  return std::chrono::steady_clock::now().time_since_epoch();
+}
+
+}  // namespace dmise

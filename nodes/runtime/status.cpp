@@ -1,0 +1,60 @@
+#include "nodes/runtime/status.h"
+
+#include "core/base/error.h"
+#include "nodes/runtime/socket.h"
+
+namespace dmise {
+namespace {
+
+Phase from_wire(v1::Phase phase) {
+  switch (phase) {
+    case v1::PHASE_CONNECTING:
+      return Phase::connecting;
+    case v1::PHASE_RUNNING:
+      return Phase::running;
+    case v1::PHASE_ENDED:
+      return Phase::ended;
+    case v1::PHASE_FAILED:
+      return Phase::failed;
+    default:
+      return Phase::gathering;
+  }
+}
+
+}  // namespace
+
+RunStatus ask_master(const std::string& address, double within_s) {
+  zmq::context_t context(1);
+  zmq::socket_t socket = make_socket(context, zmq::socket_type::dealer, max_control_bytes);
+  connect_to(socket, address);
+  v1::NodeMessage question;
+  question.mutable_hello();
+  socket.send(to_frame(question), zmq::send_flags::none);
+  const auto within = std::chrono::duration<double>(within_s);
+  std::vector<zmq::pollitem_t> items{{socket.handle(), 0, ZMQ_POLLIN, 0}};
+  wait_for(items, std::chrono::duration_cast<std::chrono::nanoseconds>(within));
+  const auto frame = receive_one(socket);
+  v1::MasterMessage answer;
+  if (!frame || !from_frame(*frame, &answer) || !answer.has_endpoints())
+    throw Error("no time-master answers at " + address);
+
+  const v1::Endpoints& e = answer.endpoints();
+  RunStatus status{.run_id = e.run_id(),
+                   .phase = from_wire(e.phase()),
+                   .cause = e.cause(),
+                   .granted = e.granted_tick(),
+                   .last_tick = e.last_tick(),
+                   .tick_length = {e.tick_ns()},
+                   .observe_endpoint = e.observe_endpoint(),
+                   .nodes = {},
+                   .missing = {e.missing().begin(), e.missing().end()},
+                   .holding = {e.holding().begin(), e.holding().end()}};
+  for (const auto& node : e.nodes())
+    status.nodes.push_back({.name = node.name(),
+                            .done = node.done_tick(),
+                            .alive = node.alive(),
+                            .times = {node.compute_s(), node.messaging_s(), node.waiting_s()}});
+  return status;
+}
+
+}  // namespace dmise

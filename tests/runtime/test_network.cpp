@@ -1,0 +1,152 @@
+// A whole network in one process: master, broker and nodes as threads, over real sockets.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <future>
+
+#include "nodes/runtime/broker.h"
+#include "nodes/runtime/log.h"
+#include "nodes/runtime/master.h"
+#include "nodes/runtime/node.h"
+#include "nodes/runtime/status.h"
+#include "tests/runtime/toy.h"
+
+namespace dmise {
+namespace {
+
+using namespace test;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A master in a thread; `address` once it is bound.
+struct MasterThread {
+  explicit MasterThread(MasterOptions options) {
+    std::promise<std::string> bound;
+    auto address_future = bound.get_future();
+    options.on_bound = [&](const std::string& where) { bound.set_value(where); };
+    options.stop = &stop;
+    result = std::async(std::launch::async, [options] { return run_master(options); });
+    address = address_future.get();
+  }
+  ~MasterThread() { stop.set(); }
+
+  Event stop;
+  std::string address;
+  std::future<MasterResult> result;
+};
+
+std::future<NodeResult> start(Participant& participant, const std::string& master,
+                              Event* stop = nullptr) {
+  return std::async(std::launch::async, [&participant, master, stop] {
+    return run_node(participant, {.master = master, .stop = stop});
+  });
+}
+
+std::future<BrokerResult> start_broker(const std::string& master, Event* stop = nullptr) {
+  return std::async(std::launch::async,
+                    [master, stop] { return run_broker({.master = master, .stop = stop}); });
+}
+
+MasterOptions run_of(std::vector<std::string> expected, Tick last_tick, int window = 1) {
+  MasterOptions options;
+  options.run.expected = std::move(expected);
+  options.run.last_tick = last_tick;
+  options.run.window_ticks = window;
+  return options;
+}
+
+std::string recorded_locally(Tick last_tick) {
+  ToyOrbit orbit;
+  ToyCamera a("a"), ab("ab");
+  ToyRecorder recorder({"a", "ab"});
+  drive({&orbit, &a, &ab, &recorder}, last_tick);
+  return recorder.record();
+}
+
+std::string recorded_by_a_network(Tick last_tick, int window) {
+  MasterThread master(run_of({"orbit", "a", "ab", "recorder"}, last_tick, window));
+  ToyOrbit orbit;
+  ToyCamera a("a"), ab("ab");  // one name begins like the other
+  ToyRecorder recorder({"a", "ab"});
+  auto broker = start_broker(master.address);
+  std::vector<std::future<NodeResult>> nodes;
+  for (Participant* participant : std::vector<Participant*>{&recorder, &ab, &a, &orbit})
+    nodes.push_back(start(*participant, master.address));
+  for (auto& node : nodes) {
+    const NodeResult result = node.get();
+    EXPECT_EQ(result.exit_code, 0) << result.reason;
+    EXPECT_EQ(result.refused, 0u) << result.last_refusal;
+    EXPECT_EQ(result.done, last_tick);
+  }
+  EXPECT_EQ(broker.get().exit_code, 0);
+  const MasterResult result = master.result.get();
+  EXPECT_EQ(result.exit_code, 0) << result.reason;
+  EXPECT_EQ(result.times.size(), 5u);
+  return recorder.record();
+}
+
+TEST(Network, GivesTheBytesOfOneProcess) {
+  const std::string expected = recorded_locally(200);
+  EXPECT_TRUE(recorded_by_a_network(200, 1) == expected);
+  EXPECT_TRUE(recorded_by_a_network(200, 4) == expected);
+}
+
+TEST(Network, RefusesASecondNodeOfOneName) {
+  MasterThread master(run_of({"orbit", "a"}, 3));
+  ToyOrbit orbit, twin;
+  Event stop;
+  auto first = start(orbit, master.address, &stop);
+  while (ask_master(master.address, 5).nodes.empty()) {
+  }
+  const NodeResult second = start(twin, master.address).get();
+  EXPECT_EQ(second.exit_code, 1);
+  EXPECT_THAT(second.reason, HasSubstr("a node named orbit has already joined"));
+  stop.set();
+  EXPECT_EQ(first.get().reason, "interrupted");
+}
+
+TEST(Network, TellsWhoIsMissing) {
+  MasterThread master(run_of({"orbit", "a"}, 3));
+  EXPECT_THAT(ask_master(master.address, 5).missing, ElementsAre("broker", "orbit", "a"));
+  master.stop.set();
+  EXPECT_EQ(master.result.get().exit_code, 1);
+}
+
+TEST(Network, NodeEndsWhenNoMasterAnswers) {
+  ToyOrbit orbit;
+  const NodeResult result = run_node(orbit, {.master = "tcp://127.0.0.1:9", .join_within_s = 0.2});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.reason, "no time-master answers at tcp://127.0.0.1:9");
+}
+
+TEST(Network, MasterNamesAnAddressThatIsTaken) {
+  MasterThread first(run_of({"orbit"}, 3));
+  MasterOptions second = run_of({"orbit"}, 3);
+  second.address = first.address;
+  try {
+    run_master(second);
+    FAIL() << "bound twice";
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()), first.address + ": address already in use");
+  }
+}
+
+TEST(Network, AFailingNodeIsTheCauseEverywhere) {
+  MasterThread master(run_of({"orbit", "a"}, 50, 2));
+  ToyOrbit orbit;
+  ToyCamera camera("a");
+  camera.on_step = [](Tick tick) {
+    if (tick == 7) throw Error("/out/a/frame-000007.fits: no space left on device");
+  };
+  auto broker = start_broker(master.address);
+  auto good = start(orbit, master.address);
+  auto bad = start(camera, master.address);
+  const std::string cause = "a: /out/a/frame-000007.fits: no space left on device";
+  EXPECT_EQ(bad.get().exit_code, 1);
+  EXPECT_EQ(good.get().reason, cause);
+  EXPECT_EQ(broker.get().reason, cause);
+  EXPECT_EQ(master.result.get().reason, cause);
+}
+
+}  // namespace
+}  // namespace dmise

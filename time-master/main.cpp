@@ -1,0 +1,58 @@
+// dmise-time-master: keeps the clock of one run, from the first node that joins to the last tick.
+#include "core/base/error.h"
+#include "nodes/runtime/master.h"
+#include "nodes/runtime/program.h"
+
+namespace {
+
+std::chrono::nanoseconds from_seconds(double s) {
+  return std::chrono::nanoseconds(dmise::sim_seconds(s).ns);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  dmise::CommonFlags flags{.name = "time-master"};
+  dmise::MasterOptions options;
+  dmise::Tick ticks = 1;
+  double silent_after_s = 5.0, progress_after_s = 0.0, start_within_s = 0.0;
+  CLI::App app("Keeps the clock of one run.", "dmise-time-master");
+  dmise::add_common_flags(app, flags);
+  app.add_option("--bind", options.address, "the address that everybody must know; port 0: any")
+      ->capture_default_str();
+  app.add_option("--announce", options.announce_file, "file to write the address to");
+  app.add_option("--announce-fd", options.announce_fd, "file descriptor to write the address to");
+  app.add_option("--expect", options.run.expected, "names of the nodes that keep time: a,b,c")
+      ->delimiter(',');
+  app.add_flag("!--no-broker", options.with_broker, "run without a broker: no topics");
+  app.add_option("--ticks", ticks, "number of ticks")->capture_default_str();
+  app.add_option("--tick-ns", options.tick_length.ns, "length of a tick")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--window", options.run.window_ticks, "ticks that a node may run ahead")
+      ->capture_default_str();
+  app.add_option("--silent-after", silent_after_s, "a node unheard of for so long is lost [s]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--progress-after", progress_after_s,
+                 "a step without progress for so long is hung [s]; 0: no limit")
+      ->capture_default_str();
+  app.add_option("--start-within", start_within_s,
+                 "longest wait for all nodes to be ready [s]; 0: no limit")
+      ->capture_default_str();
+  const std::map<std::string, dmise::SilentPolicy> policies{{"fail", dmise::SilentPolicy::fail},
+                                                            {"wait", dmise::SilentPolicy::wait},
+                                                            {"drop", dmise::SilentPolicy::drop}};
+  app.add_option("--on-silent", options.run.on_silent,
+                 "what a lost node means: fail, wait or drop (go on without it)")
+      ->transform(CLI::CheckedTransformer(policies));
+  return dmise::run_program(app, flags, argc, argv, [&] {
+    options.run.last_tick = ticks - 1;
+    options.run.silent_after = from_seconds(silent_after_s);
+    options.run.progress_after = from_seconds(progress_after_s);
+    options.run.start_within = from_seconds(start_within_s);
+    options.stop = &dmise::stop_signal();
+    if (flags.check) return dmise::Coordinator(options.run).over() ? 1 : 0;
+    return dmise::run_master(options).exit_code;
+  });
+}
