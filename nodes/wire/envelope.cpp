@@ -1,5 +1,7 @@
 #include "nodes/wire/envelope.h"
 
+#include <google/protobuf/stubs/logging.h>
+
 #include "core/base/crc32c.h"
 #include "dmise/v1/node.pb.h"
 
@@ -10,6 +12,9 @@ namespace {
 // be appended to a serialised message, so the whole is an Envelope to any Protocol Buffers library.
 constexpr char seal_tag = 0x7d;
 constexpr std::size_t seal_bytes = 5;
+
+// A message that can't be parsed is refused and counted here; the library would also print it.
+[[maybe_unused]] const auto* const printing = google::protobuf::SetLogHandler(nullptr);
 
 std::uint32_t seal_of(std::string_view topic, std::string_view unsealed, std::string_view payload,
                       std::string_view arrays) {

@@ -1,0 +1,200 @@
+#include "tests/wire/examples.h"
+
+#include "nodes/wire/state_codec.h"
+
+namespace dmise::test {
+namespace {
+
+constexpr double half_turn = 3.14159265358979;
+constexpr const char* sensor = "atlanta";
+
+template <class To, class From>
+Rotation<To, From> rotation(double angle_rad) {
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  return {{{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}}};
+}
+
+ObjectRoster roster(Numbers& n) {
+  ObjectRoster r;
+  for (std::uint32_t i = 0; i < 5; ++i)
+    r.objects.push_back({.catalogue_number = 999999999 - i,
+                         .name = "ÉTOILE " + std::to_string(i),
+                         .designator = i % 2 ? "" : "1998-067A",
+                         .radius_m = n.in(0.01, 50),
+                         .albedo = n.in(0.01, 1),
+                         .element_age_s = n.in(-1e7, 1e7)});
+  return r;
+}
+
+ObjectStates states(Numbers& n, Tick tick) {
+  ObjectStates s;
+  s.tick = tick;
+  s.time = example_run().time_of(tick);
+  s.count = 7;
+  for (std::size_t i = 0; i < 3 * s.count; ++i) {
+    s.position_m.push_back(i == 3 ? -0.0 : n.in(-4e7, 4e7));
+    s.slope_m_per_s.push_back(i == 4 ? 5e-324 : n.in(-8e3, 8e3));
+    s.velocity_m_per_s.push_back(n.in(-8e3, 8e3));
+  }
+  s.code = {0, 1, 2, 3, 4, 6, 255};
+  return s;
+}
+
+EnvironmentState environment(Numbers& n, Tick tick) {
+  EnvironmentState e;
+  e.tick = tick;
+  e.time = example_run().time_of(tick);
+  e.earth.time = e.time;
+  e.earth.cirs_from_gcrs = rotation<Cirs, Gcrs>(n.in(-1, 1));
+  e.earth.itrs_from_tirs = rotation<Itrs, Tirs>(n.in(-1e-6, 1e-6));
+  e.earth.era_rad = n.in(0, 2 * half_turn);
+  e.earth.gmst82_rad = n.in(0, 2 * half_turn);
+  e.earth.era_rate_rad_per_s = n.in(7e-5, 8e-5);
+  e.earth.gmst82_rate_rad_per_s = n.in(7e-5, 8e-5);
+  e.sun_m = n.vec<Gcrs>(1.5e11);
+  e.moon_m = n.vec<Gcrs>(4e8);
+  e.earth_barycentric_m = n.vec<Gcrs>(1.5e11);
+  e.earth_velocity_m_per_s = n.vec<Gcrs>(3e4);
+  e.tt_jd1 = 2458139.5;
+  e.tt_jd2 = n.in(0, 1);
+  e.skies = {{sensor, n.in(15, 22)}, {"b", n.in(15, 22)}};
+  return e;
+}
+
+FrameReport report(Numbers& n) {
+  FrameReport r;
+  r.sensor = sensor;
+  r.frame = 3;
+  r.start = {-7};
+  r.middle = {10'000'000'000};
+  r.end = {20'000'000'007};
+  r.boresight_ra_rad = n.in(0, 2 * half_turn);
+  r.boresight_dec_rad = n.in(-half_turn / 2, half_turn / 2);
+  r.wcs = {.crpix_x = n.in(0, 3000),
+           .crpix_y = n.in(0, 2000),
+           .ra_rad = n.in(0, 6),
+           .dec_rad = n.in(-1, 1),
+           .cd_deg = {n.in(-1, 1), n.in(-1, 1), n.in(-1, 1), n.in(-1, 1)},
+           .order = 3};
+  for (auto* polynomial : {&r.wcs.a, &r.wcs.b, &r.wcs.ap, &r.wcs.bp})
+    for (int i = 0; i < 16; ++i) polynomial->push_back(n.in(-1e-5, 1e-5));
+  r.wcs.rms_px = n.in(0, 1);
+  r.wcs.max_px = n.in(1, 2);
+  r.sensor_position_m = n.vec<Gcrs>(7e6);
+  r.sensor_velocity_m_per_s = n.vec<Gcrs>(8e3);
+  r.limiting_magnitude = n.in(5, 20);
+  r.background_e = n.in(0, 1e4);
+  r.noise_e = n.in(1, 100);
+  r.zero_point_mag = n.in(15, 25);
+  r.detections = 2;
+  r.star_like = 900;
+  r.saturated_px = 4;
+  r.stars_rendered = 1234;
+  r.objects_rendered = 17;
+  r.plan = "proper_motion refraction photon_noise";
+  return r;
+}
+
+Detection detection(Numbers& n, std::uint32_t index) {
+  Detection d;
+  d.id = std::string(sensor) + "/3/" + std::to_string(index);
+  d.sensor = sensor;
+  d.frame = 3;
+  d.index = index;
+  d.kind = index % 2 ? DetectionKind::streak : DetectionKind::point;
+  d.epoch = ExposureEpoch(index % 3);
+  d.time = {std::int64_t(n.in(0, 1e11))};
+  const auto angle = [&] { return n.in(0, 2 * half_turn); };
+  const auto latitude = [&] { return n.in(-half_turn / 2, half_turn / 2); };
+  d.ra_rad = angle(), d.dec_rad = latitude();
+  d.corrected_ra_rad = angle(), d.corrected_dec_rad = latitude();
+  d.covariance_rad2 = {n.in(1, 2) * 1e-12, n.in(-1, 1) * 1e-12, n.in(1, 2) * 1e-12};
+  d.sensor_position_m = n.vec<Gcrs>(7e6);
+  d.sensor_velocity_m_per_s = n.vec<Gcrs>(8e3);
+  d.light_time_removed = index % 2;
+  d.aberration_removed = index % 3;
+  d.refraction_removed = index % 5;
+  d.magnitude = n.in(-1, 20);
+  d.magnitude_sigma = n.in(0, 1);
+  d.band = "swir140";
+  d.snr = n.in(3, 1000);
+  d.x_px = n.in(0, 3000), d.y_px = n.in(0, 2000);
+  d.covariance_px2 = {n.in(1, 2), n.in(-1, 1), n.in(1, 2)};
+  d.signal_e = n.in(0, 1e6);
+  d.end1_x_px = n.in(0, 3000), d.end1_y_px = n.in(0, 3000);
+  d.end2_x_px = n.in(0, 3000), d.end2_y_px = n.in(0, 3000);
+  d.end1_ra_rad = angle(), d.end1_dec_rad = latitude();
+  d.end2_ra_rad = angle(), d.end2_dec_rad = latitude();
+  d.end1_time = {-1}, d.end2_time = {std::int64_t(n.in(0, 1e11))};
+  d.direction_known = index % 2;
+  d.length_px = n.in(0, 100);
+  d.rate_rad_per_s = n.in(0, 0.1);
+  d.saturated = d.at_edge = index % 2;
+  d.star_like = index % 3;
+  return d;
+}
+
+Truth truth(Numbers& n) {
+  Truth t;
+  t.sensor = sensor;
+  t.frame = 3;
+  t.catalogue_number = 44720;
+  t.name = "STARLINK-1008";
+  t.start = {0}, t.middle = {1}, t.end = {2};
+  for (double* range : {&t.true_range_m, &t.rendered_signal_e}) *range = n.in(0, 4e7);
+  for (double* angle : {&t.true_ra_rad, &t.apparent_ra_rad}) *angle = n.in(0, 2 * half_turn);
+  for (double* latitude : {&t.true_dec_rad, &t.apparent_dec_rad, &t.true_elevation_rad})
+    *latitude = n.in(-half_turn / 2, half_turn / 2);
+  t.phase_angle_rad = n.in(0, half_turn);
+  t.sunlit = n.in(0, 1);
+  for (double* value : {&t.true_magnitude, &t.rendered_x_px, &t.rendered_y_px, &t.start_x_px,
+                        &t.start_y_px, &t.middle_x_px, &t.middle_y_px, &t.end_x_px, &t.end_y_px})
+    *value = n.in(-100, 4000);
+  t.in_frame = true;
+  t.whole = n.in(0, 1) > 0.5;
+  return t;
+}
+
+}  // namespace
+
+std::vector<Example> examples(unsigned seed) {
+  Numbers n(seed);
+  const Tick tick = Tick(seed % 24) + 1;
+  DetectionSet detections{.sensor = sensor, .frame = 3, .detections = {}};
+  for (std::uint32_t i = 0; i < 4; ++i) detections.detections.push_back(detection(n, i));
+  TruthSet truths{.sensor = sensor, .frame = 3, .truths = {truth(n), truth(n)}};
+  return {{objects_topic, tick, roster(n)},
+          {objects_topic, tick, states(n, tick)},
+          {environment_topic, tick, environment(n, tick)},
+          {std::string(frame_prefix) + sensor, tick, report(n)},
+          {std::string(detection_prefix) + sensor, tick, detections},
+          {std::string(detection_prefix) + sensor, tick, DetectionSet{sensor, 4, {}}},
+          {std::string(truth_prefix) + sensor, tick, truths},
+          {objects_topic, tick,
+           ObjectStates{.tick = tick, .time = example_run().time_of(tick), .count = 0}}};
+}
+
+Frames sealed(const Example& example, std::uint64_t sequence) {
+  Body body = encode(example.state);
+  return seal(example.topic,
+              {.run_id = example_run().run_id,
+               .publisher = "source",
+               .sequence = sequence,
+               .kind = body.kind,
+               .tick = example.tick,
+               .time = example_run().time_of(example.tick),
+               .last_of_tick = true},
+              std::move(body.payload), std::move(body.arrays));
+}
+
+Receiver receiver_of_examples() {
+  Receiver receiver(example_run());
+  for (const std::string& topic :
+       {std::string(objects_topic), std::string(environment_topic),
+        std::string(frame_prefix) + sensor, std::string(detection_prefix) + sensor,
+        std::string(truth_prefix) + sensor})
+    receiver.allow(topic, "source", 1);
+  return receiver;
+}
+
+}  // namespace dmise::test
