@@ -1,0 +1,155 @@
+#include "core/detection/background.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace dmise {
+namespace {
+
+struct Sky {
+  float level = 0.0f, sigma = 0.0f;
+};
+
+/// Median of integers as if each were spread evenly over its unit: finer than the counts
+/// themselves.
+double spread_median(const std::vector<std::uint32_t>& histogram, std::size_t low, std::size_t high,
+                     double count) {
+  double below = 0.0;
+  for (std::size_t i = low; i < high; ++i) {
+    if (below + histogram[i] >= 0.5 * count && histogram[i] > 0)
+      return double(i) - 0.5 + (0.5 * count - below) / histogram[i];
+    below += histogram[i];
+  }
+  return double(low);
+}
+
+/// `values` is reordered; not empty.
+Sky clipped_sky(std::vector<std::uint16_t>& values) {
+  const auto quantile = [&](double q) {
+    const auto at = values.begin() + std::ptrdiff_t(q * double(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return double(*at);
+  };
+  const double first_median = quantile(0.5);
+  const double low = quantile(0.1587);
+  double sigma = std::max(first_median - low, 0.5), centre = first_median;
+  // All further work is on a histogram of the values near the median.
+  const double reach = 6 * sigma + 2;
+  const auto base = std::int64_t(std::max(0.0, std::floor(centre - reach)));
+  const std::size_t bins = std::size_t(2 * reach) + 2;
+  std::vector<std::uint32_t> histogram(bins, 0);
+  for (const auto v : values) {
+    const std::int64_t bin = std::int64_t(v) - base;
+    if (bin >= 0 && bin < std::int64_t(bins)) ++histogram[std::size_t(bin)];
+  }
+  double mean = centre, median = centre;
+  for (int pass = 0; pass < 8; ++pass) {
+    const auto edge = [&](double v) {
+      return std::size_t(std::clamp(std::ceil(v - double(base)), 0.0, double(bins)));
+    };
+    const std::size_t from = edge(centre - 3 * sigma), to = edge(centre + 3 * sigma + 1e-9);
+    double n = 0, sum = 0, squares = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      n += histogram[i];
+      sum += histogram[i] * double(i);
+      squares += histogram[i] * double(i) * double(i);
+    }
+    if (n < 2) break;
+    mean = sum / n + double(base);
+    median = spread_median(histogram, from, to, n) + double(base);
+    const double variance = std::max(squares / n - (sum / n) * (sum / n), 0.0);
+    const double before = sigma;
+    sigma = std::max(std::sqrt(variance) / 0.98658, 0.3);  // of a normal cut at 3 sigma
+    centre = median;
+    if (std::abs(sigma - before) < 1e-3 * before) break;
+  }
+  const double level = std::abs(mean - median) < 0.3 * sigma ? 2.5 * median - 1.5 * mean : median;
+  return {float(level), float(sigma)};
+}
+
+/// Middle value of each cell and its neighbours.
+std::vector<float> median_3x3(const std::vector<float>& mesh, int columns, int rows) {
+  std::vector<float> out(mesh.size()), near;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      near.clear();
+      for (int v = std::max(0, j - 1); v <= std::min(rows - 1, j + 1); ++v)
+        for (int u = std::max(0, i - 1); u <= std::min(columns - 1, i + 1); ++u)
+          near.push_back(mesh[std::size_t(v * columns + u)]);
+      std::sort(near.begin(), near.end());
+      out[std::size_t(j * columns + i)] =
+          0.5f * (near[near.size() / 2] + near[(near.size() - 1) / 2]);
+    }
+  return out;
+}
+
+float median_of(std::vector<float> values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Cell to the left (above) of a pixel's place in the mesh and the weight of the next one.
+struct Between {
+  int cell;
+  float next;
+};
+Between between(int pixel, int pixels, int cells) {
+  const float place = (float(pixel) + 0.5f) * float(cells) / float(pixels) - 0.5f;
+  const float held = std::clamp(place, 0.0f, float(cells - 1));
+  const int cell = std::min(int(held), std::max(0, cells - 2));
+  return {cell, held - float(cell)};
+}
+
+}  // namespace
+
+Background::Background(const CountImage& counts, int cell_px, Threads& threads)
+    : columns_(counts.columns),
+      rows_(counts.rows),
+      mesh_columns_(std::max(1, (counts.columns + cell_px / 2) / cell_px)),
+      mesh_rows_(std::max(1, (counts.rows + cell_px / 2) / cell_px)) {
+  const std::size_t cells = std::size_t(mesh_columns_) * std::size_t(mesh_rows_);
+  level_.resize(cells);
+  sigma_.resize(cells);
+  threads.for_ranges(cells, std::size_t(mesh_columns_), [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint16_t> values;
+    for (std::size_t cell = begin; cell < end; ++cell) {
+      const int i = int(cell) % mesh_columns_, j = int(cell) / mesh_columns_;
+      const int x0 = int(std::int64_t(i) * columns_ / mesh_columns_);
+      const int x1 = int(std::int64_t(i + 1) * columns_ / mesh_columns_);
+      const int y0 = int(std::int64_t(j) * rows_ / mesh_rows_);
+      const int y1 = int(std::int64_t(j + 1) * rows_ / mesh_rows_);
+      values.clear();
+      for (int y = y0; y < y1; ++y)
+        values.insert(values.end(), counts.row(y) + x0, counts.row(y) + x1);
+      const Sky sky = clipped_sky(values);
+      level_[cell] = sky.level;
+      sigma_[cell] = sky.sigma;
+    }
+  });
+  level_ = median_3x3(level_, mesh_columns_, mesh_rows_);
+  sigma_ = median_3x3(sigma_, mesh_columns_, mesh_rows_);
+}
+
+float Background::at(const std::vector<float>& mesh, int x, int y) const {
+  const Between u = between(x, columns_, mesh_columns_), v = between(y, rows_, mesh_rows_);
+  const float* above = mesh.data() + std::size_t(v.cell) * std::size_t(mesh_columns_);
+  const float* below = v.next > 0 ? above + mesh_columns_ : above;
+  const int right = u.next > 0 ? u.cell + 1 : u.cell;
+  const float top = above[u.cell] + u.next * (above[right] - above[u.cell]);
+  const float bottom = below[u.cell] + u.next * (below[right] - below[u.cell]);
+  return top + v.next * (bottom - top);
+}
+
+void Background::row(int y, float* level_dn, float* sigma_dn) const {
+  for (int x = 0; x < columns_; ++x) {
+    level_dn[x] = at(level_, x, y);
+    sigma_dn[x] = at(sigma_, x, y);
+  }
+}
+
+float Background::median_level_dn() const { return median_of(level_); }
+float Background::median_sigma_dn() const { return median_of(sigma_); }
+
+}  // namespace dmise

@@ -1,0 +1,224 @@
+#include "core/detection/compact_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace dmise {
+namespace {
+
+constexpr double bent_from_px = 30.0;     // a shorter streak is taken as straight
+constexpr double sloped_from_px = 15.0;   // and as evenly bright
+constexpr double background_prior = 0.1;  // of the mesh, in units of a pixel's noise
+
+/// The component's pixels and those that touch them, without saturated ones.
+std::vector<FitPixel> pixels_around(const Scene& scene, const Component& component,
+                                    bool& saturated) {
+  std::map<int, std::vector<std::pair<int, int>>> rows;
+  for (const Run& run : component.runs)
+    for (int y = run.y - 1; y <= run.y + 1; ++y)
+      if (y >= 0 && y < scene.counts.rows)
+        rows[y].push_back(
+            {std::max(0, run.first_x - 1), std::min(scene.counts.columns - 1, run.last_x + 1)});
+  std::vector<FitPixel> out;
+  for (auto& [y, spans] : rows) {
+    std::sort(spans.begin(), spans.end());
+    int done = -1;
+    for (const auto& [first, last] : spans)
+      for (int x = std::max(first, done + 1); x <= last; ++x) {
+        done = x;
+        if (scene.saturated(x, y))
+          saturated = true;
+        else
+          out.push_back(scene.pixel(x, y));
+      }
+  }
+  return out;
+}
+
+/// Moments of the light: centroid, and the trail that an even line of the same spread would be.
+Trail moments(const std::vector<FitPixel>& pixels, double sigma_px) {
+  double f = 0, x = 0, y = 0;
+  for (const auto& p : pixels) {
+    const double w = std::max(p.signal_e, 0.0f);
+    f += w;
+    x += w * p.x;
+    y += w * p.y;
+  }
+  if (!(f > 0)) return {};
+  x /= f;
+  y /= f;
+  double xx = 0, xy = 0, yy = 0, total = 0;
+  for (const auto& p : pixels) {
+    const double w = std::max(p.signal_e, 0.0f) / f, dx = p.x - x, dy = p.y - y;
+    xx += w * dx * dx;
+    xy += w * dx * dy;
+    yy += w * dy * dy;
+    total += p.signal_e;
+  }
+  Trail trail;
+  trail.x_px = x;
+  trail.y_px = y;
+  trail.flux_e = std::max(total, 1.0);
+  trail.angle_rad = 0.5 * std::atan2(2 * xy, xx - yy);
+  const double major = 0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy);
+  trail.length_px = std::sqrt(12 * std::max(major - sigma_px * sigma_px, 0.1));
+  return trail;
+}
+
+/// Two stars of half the flux each, apart along the trail.
+std::vector<Trail> split(const Trail& line, const Trail& star) {
+  std::vector<Trail> out;
+  for (const double side : {-0.28, 0.28}) {
+    Trail t = star;
+    t.x_px = line.x_px + side * line.length_px * std::cos(line.angle_rad);
+    t.y_px = line.y_px + side * line.length_px * std::sin(line.angle_rad);
+    t.flux_e = line.flux_e / 2;
+    out.push_back(t);
+  }
+  return out;
+}
+
+std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double margin_px) {
+  const double c = std::abs(std::cos(trail.angle_rad)), s = std::abs(std::sin(trail.angle_rad));
+  const double reach_x = trail.length_px / 2 * c + margin_px + std::abs(trail.sagitta_px);
+  const double reach_y = trail.length_px / 2 * s + margin_px + std::abs(trail.sagitta_px);
+  const int x0 = std::max(0, int(std::floor(trail.x_px - reach_x)));
+  const int x1 = std::min(scene.counts.columns - 1, int(std::ceil(trail.x_px + reach_x)));
+  const int y0 = std::max(0, int(std::floor(trail.y_px - reach_y)));
+  const int y1 = std::min(scene.counts.rows - 1, int(std::ceil(trail.y_px + reach_y)));
+  std::vector<FitPixel> out;
+  for (int y = y0; y <= y1; ++y)
+    for (int x = x0; x <= x1; ++x)
+      if (lies_on(trail, x, y, margin_px) && !scene.saturated(x, y))
+        out.push_back(scene.pixel(x, y));
+  return out;
+}
+
+/// Drops pixels that stand out of the model, with their neighbours, up or far down.
+std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels, const TrailFit& fit,
+                                       double sigma_px) {
+  std::vector<const FitPixel*> outliers;
+  for (const FitPixel& p : pixels) {
+    const double model = trail_value(fit.trails[0], sigma_px, p.x, p.y);
+    const double tolerated = 0.15 * model;  // of the peak's shape
+    const double limit =
+        4.0 * std::sqrt(p.variance_e2 + std::max(model, 0.0) + tolerated * tolerated);
+    const double residual = p.signal_e - model - fit.background_e;
+    if (residual > limit || residual < -1.5 * limit) outliers.push_back(&p);
+  }
+  if (outliers.empty()) return pixels;
+  std::vector<FitPixel> out;
+  for (const FitPixel& p : pixels) {
+    const bool near = std::any_of(outliers.begin(), outliers.end(), [&](const FitPixel* o) {
+      return std::abs(o->x - p.x) <= 1 && std::abs(o->y - p.y) <= 1;
+    });
+    if (!near) out.push_back(p);
+  }
+  return out;
+}
+
+bool plausible(const Scene& scene, const Trail& t) {
+  return std::isfinite(t.x_px + t.y_px + t.flux_e + t.length_px + t.angle_rad) && t.flux_e > 0 &&
+         t.x_px > -1 && t.y_px > -1 && t.x_px < scene.counts.columns && t.y_px < scene.counts.rows;
+}
+
+}  // namespace
+
+bool lies_on(const Trail& trail, double x_px, double y_px, double margin_px) {
+  const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
+  const double dx = x_px - trail.x_px, dy = y_px - trail.y_px;
+  const double along = dx * c + dy * s, across = dy * c - dx * s, half = trail.length_px / 2;
+  const double r = half > 0 ? std::clamp(along / half, -1.0, 1.0) : 0.0;
+  const double off = across - trail.sagitta_px * (1.0 / 3 - r * r);
+  const double beyond = std::max(std::abs(along) - half, 0.0);
+  return off * off + beyond * beyond <= margin_px * margin_px;
+}
+
+std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool streak,
+                                 double model_error) {
+  Source source;
+  source.streak = streak;
+  source.free = !streak                             ? unsigned(trail_place)
+                : start.length_px >= bent_from_px   ? unsigned(trail_bent_line)
+                : start.length_px >= sloped_from_px ? unsigned(trail_line | trail_slope)
+                                                    : unsigned(trail_line);
+  Trail trail = start;
+  if (!streak) trail.length_px = 0.0;
+  const double margin_px = 3 * scene.sigma_px + 2.5;
+  std::vector<FitPixel> pixels;
+  for (int round = 0; round < 3; ++round) {
+    if (!plausible(scene, trail)) return std::nullopt;
+    const auto all = pixels_near(scene, trail, margin_px);
+    pixels = round == 0 ? all : without_outliers(all, source.fit, scene.sigma_px);
+    if (pixels.size() < 12 || pixels.size() < all.size() / 2) return std::nullopt;
+    FitSettings settings;
+    settings.sigma_px = scene.sigma_px;
+    settings.model_error = model_error;
+    settings.background_sigma_e = background_prior * std::sqrt(double(pixels.front().variance_e2));
+    settings.most_steps = 20;
+    source.fit = fit_trails(pixels, {trail}, {source.free}, settings);
+    trail = source.fit.trails[0];
+  }
+  if (!plausible(scene, trail) || !(source.fit.cov(2, 2) > 0)) return std::nullopt;
+  const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
+  const double edge = 2 * scene.sigma_px;
+  for (const double half : {-trail.length_px / 2, trail.length_px / 2}) {
+    const double x = trail.x_px + half * c, y = trail.y_px + half * s;
+    if (x < edge || y < edge || x > scene.counts.columns - 1 - edge ||
+        y > scene.counts.rows - 1 - edge)
+      source.at_edge = true;
+    const int steps = int(trail.length_px / 2) + 1;
+    for (int i = 0; i <= steps && !source.saturated; ++i) {
+      const int px = int(std::lround(trail.x_px + half * c * i / steps));
+      const int py = int(std::lround(trail.y_px + half * s * i / steps));
+      if (scene.contains(px, py) && scene.saturated(px, py)) source.saturated = true;
+    }
+  }
+  return source;
+}
+
+std::optional<Source> judge_compact(const Scene& scene, const Component& component,
+                                    const DetectorSettings& settings) {
+  bool saturated = false;
+  const auto pixels = pixels_around(scene, component, saturated);
+  if (saturated || pixels.size() < 8) return std::nullopt;  // a clipped blob's shape tells nothing
+  const Trail light = moments(pixels, scene.sigma_px);
+  Trail star = scene.star_trail(light.x_px, light.y_px);
+  star.flux_e = light.flux_e;
+  FitSettings fit_settings;
+  fit_settings.sigma_px = scene.sigma_px;
+  fit_settings.model_error = settings.model_error;
+  fit_settings.most_steps = 8;
+  const TrailFit as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings);
+  if (as_star.good(3.5)) return std::nullopt;
+
+  fit_settings.most_steps = 15;
+  const TrailFit as_line = fit_trails(pixels, {light}, {trail_line}, fit_settings);
+  const TrailFit as_two =
+      fit_trails(pixels, split(light, star), {trail_place, trail_place}, fit_settings);
+  const double best_star = std::min(as_star.deviance - settings.blend_margin, as_two.deviance);
+  if (star.length_px >= settings.least_difference_px) {
+    Trail point = as_star.trails[0];
+    point.length_px = 0.0;
+    const TrailFit as_point = fit_trails(pixels, {point}, {trail_place}, fit_settings);
+    if (as_point.good(3.5) && as_point.deviance < as_star.deviance - settings.blend_margin &&
+        as_point.deviance < as_line.deviance + 9.0) {
+      auto source = fit_source(scene, as_point.trails[0], false, 0.0);
+      if (source && source->snr() >= settings.least_snr) return source;
+      return std::nullopt;
+    }
+  }
+  if (!as_line.good(4.0) || as_line.deviance > best_star - settings.blend_margin ||
+      !plausible(scene, as_line.trails[0]) || as_line.trails[0].length_px < 1.0)
+    return std::nullopt;
+  auto source = fit_source(scene, as_line.trails[0], true, 0.0);
+  if (!source || source->snr() < settings.least_snr) return std::nullopt;
+  const double sigma_length_px = std::sqrt(source->fit.cov(3, 3));
+  if (trail_difference_px(source->trail(), star) <
+      std::max(settings.least_difference_px, 4 * sigma_length_px))
+    return std::nullopt;
+  return source;
+}
+
+}  // namespace dmise

@@ -1,0 +1,35 @@
+#pragma once
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/base/parallel.h"
+#include "core/detection/background.h"
+
+namespace dmise {
+
+/// Pixels [first_x, last_x] of one row that stand above the threshold.
+struct Run {
+  int y = 0, first_x = 0, last_x = 0;
+};
+
+/// Pixels that touch each other (8-connected), as runs by rising row and column.
+struct Component {
+  std::vector<Run> runs;
+  int min_x = 0, max_x = 0, min_y = 0, max_y = 0;
+  int pixels = 0;
+  float peak_snr = 0.0f;  // of the matched filter
+  int peak_x = 0, peak_y = 0;
+};
+
+/// Convolves the frame less its background with a Gaussian of `sigma_px` (the matched filter of a
+/// point source, in units of its own noise), keeps what exceeds `low` and returns the connected
+/// pieces that reach `high` somewhere, by rising (row, column) of their first pixel. Works in bands
+/// of rows: beside the frame only a few of them are held. Equal for any number of threads.
+std::vector<Component> find_components(const CountImage& counts, const Background& background,
+                                       double sigma_px, double low, double high, Threads& threads);
+
+/// Sum of the squares of the unit-sum Gaussian on the pixel grid: a point source of flux F in white
+/// noise s has matched-filter SNR F sqrt(this) / s.
+double kernel_square_sum(double sigma_px);
+
+}  // namespace dmise

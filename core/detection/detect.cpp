@@ -1,0 +1,128 @@
+#include "core/detection/detect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/detection/background.h"
+#include "core/detection/compact_source.h"
+#include "core/detection/components.h"
+#include "core/detection/describe.h"
+#include "core/detection/long_streak.h"
+#include "core/detection/scene.h"
+#include "core/detection/star_motion.h"
+
+namespace dmise {
+namespace {
+
+/// Gaussian of the header's PSF as pixels see it.
+double effective_sigma_px(double fwhm_px) {
+  const double sigma = fwhm_px / std::sqrt(8 * std::log(2.0));
+  return std::sqrt(sigma * sigma + 1.0 / 12);
+}
+
+/// Longer than a star's light can be there, however bright.
+bool is_long(const Scene& scene, const Component& c) {
+  const double star_px = scene.star_trail(c.peak_x, c.peak_y).length_px;
+  const double extent_px = std::hypot(c.max_x - c.min_x + 1, c.max_y - c.min_y + 1);
+  return extent_px > star_px + 12 * scene.sigma_px + 6;
+}
+
+/// Sources of all components, in the components' order.
+std::vector<std::vector<Source>> judge(const Scene& scene, const std::vector<Component>& components,
+                                       const DetectorSettings& settings, Threads& threads) {
+  std::vector<std::vector<Source>> found(components.size());
+  threads.for_ranges(components.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (is_long(scene, components[i])) {
+        found[i] = find_long_streaks(scene, components[i], settings);
+      } else if (auto source = judge_compact(scene, components[i], settings)) {
+        found[i].push_back(std::move(*source));
+      }
+    }
+  });
+  return found;
+}
+
+bool before(const Source& a, const Source& b) {
+  if (a.snr() != b.snr()) return a.snr() > b.snr();
+  if (a.trail().y_px != b.trail().y_px) return a.trail().y_px < b.trail().y_px;
+  return a.trail().x_px < b.trail().x_px;
+}
+
+/// By falling SNR; what lies on the light of a stronger streak is a piece of it.
+std::vector<Source> distinct(std::vector<std::vector<Source>> found, double sigma_px) {
+  std::vector<Source> all, out;
+  for (auto& some : found)
+    for (Source& source : some) all.push_back(std::move(source));
+  std::sort(all.begin(), all.end(), before);
+  for (Source& source : all) {
+    const bool piece = std::any_of(out.begin(), out.end(), [&](const Source& stronger) {
+      return lies_on(stronger.trail(), source.trail().x_px, source.trail().y_px,
+                     3 * sigma_px + 1.5);
+    });
+    if (!piece) out.push_back(std::move(source));
+  }
+  return out;
+}
+
+std::uint32_t count_saturated(const CountImage& counts, double saturation_dn) {
+  return std::uint32_t(std::count_if(counts.pixels.begin(), counts.pixels.end(),
+                                     [&](std::uint16_t v) { return v >= saturation_dn; }));
+}
+
+FrameReport make_report(const CountImage& counts, const FrameHeader& header,
+                        const Background& background, double sigma_px, double threshold_snr) {
+  FrameReport r;
+  r.sensor = header.sensor;
+  r.frame = header.frame;
+  r.start = header.start;
+  r.middle = header.middle;
+  r.end = header.end;
+  const Vec<Gcrs> boresight =
+      rotation_of(header.camera_from_gcrs[1]).inverse() * Vec<CameraFrame>{0, 0, 1};
+  const auto place = to_spherical(boresight);
+  r.boresight_ra_rad = place[0];
+  r.boresight_dec_rad = place[1];
+  r.wcs = header.wcs;
+  r.sensor_position_m = header.sensor_position_m;
+  r.sensor_velocity_m_per_s = header.sensor_velocity_m_per_s;
+  r.background_e = (background.median_level_dn() - header.bias_dn) * header.gain_e_per_dn;
+  r.noise_e = background.median_sigma_dn() * header.gain_e_per_dn;
+  r.zero_point_mag = header.zero_point_mag;
+  const double least_e = threshold_snr * r.noise_e / std::sqrt(kernel_square_sum(sigma_px));
+  r.limiting_magnitude = header.zero_point_mag - 2.5 * std::log10(least_e / header.exposure_s);
+  r.saturated_px = count_saturated(counts, header.saturation_dn);
+  return r;
+}
+
+}  // namespace
+
+DetectionResult detect(const CountImage& counts, const FrameHeader& header,
+                       const DetectorSettings& settings, Threads& threads) {
+  const Background background(counts, settings.background_cell_px, threads);
+  const StarMotion stars(header, counts.columns, counts.rows);
+  const Scene scene{counts,
+                    background,
+                    stars,
+                    header.gain_e_per_dn,
+                    header.saturation_dn,
+                    effective_sigma_px(header.psf_fwhm_px)};
+  const auto components = find_components(counts, background, scene.sigma_px, settings.connect_snr,
+                                          settings.seed_snr, threads);
+  auto found = judge(scene, components, settings, threads);
+  DetectionResult result;
+  result.report = make_report(counts, header, background, scene.sigma_px, settings.seed_snr);
+  result.report.star_like = std::uint32_t(
+      std::count_if(found.begin(), found.end(), [](const auto& some) { return some.empty(); }));
+  for (const Source& source : distinct(std::move(found), scene.sigma_px)) {
+    Detection d = describe(source, header);
+    d.index = std::uint32_t(result.detections.size());
+    d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);
+    result.detections.push_back(std::move(d));
+  }
+  result.report.detections = std::uint32_t(result.detections.size());
+  return result;
+}
+
+}  // namespace dmise

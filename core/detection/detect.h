@@ -1,0 +1,32 @@
+#pragma once
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/base/parallel.h"
+#include "core/detection/detection.h"
+#include "core/image/frame_header.h"
+
+namespace dmise {
+
+/// Knobs of the detector. SNRs are in units of the matched filter's own noise.
+struct DetectorSettings {
+  int background_cell_px = 64;
+  double seed_snr = 5.0;             // a source must reach this in one pixel of the filtered frame
+  double connect_snr = 3.0;          // pixels above this belong to it
+  double least_snr = 6.0;            // of the fitted flux of what is published
+  double least_difference_px = 1.5;  // between a source's trail and a star's there
+  double blend_margin = 16.0;        // deviance by which a short streak must beat two blended stars
+  double model_error = 0.03;         // relative, of the PSF, when shapes are judged
+};
+
+struct DetectionResult {
+  FrameReport report;  // complete but for what only a renderer knows (`*_rendered`, `plan`)
+  std::vector<Detection> detections;  // published: not star-like, by falling SNR
+};
+
+/// Finds what does not move as the stars do, from the counts and the header alone. Equal for any
+/// number of threads. Memory beside the frame: a few rows and the sources.
+DetectionResult detect(const CountImage& counts, const FrameHeader& header,
+                       const DetectorSettings& settings, Threads& threads);
+
+}  // namespace dmise

@@ -1,0 +1,314 @@
+#include "core/detection/long_streak.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/base/units.h"
+#include "core/detection/compact_source.h"
+
+namespace dmise {
+namespace {
+
+constexpr int most_lines = 4;       // in one component
+constexpr int window_px = 16;       // by which a streak grows
+constexpr double growth_snr = 4.0;  // of a window that goes on
+constexpr double gap_snr = 6.0;     // of one beyond a gap
+
+struct Point {
+  double x, y;
+};
+
+/// A line cut into slices: one for each column (or row, where it is steeper than 45 degrees).
+struct Line {
+  double x = 0.0, y = 0.0;  // a point on it
+  double ux = 1.0, uy = 0.0;
+
+  bool by_columns() const { return std::abs(ux) >= std::abs(uy); }
+  double major(const Point& p) const { return by_columns() ? p.x : p.y; }
+  /// Length of the line in one slice.
+  double slice_px() const { return 1.0 / std::max(std::abs(ux), std::abs(uy)); }
+  double off(const Point& p) const { return (p.y - y) * ux - (p.x - x) * uy; }
+  Point at(double major_px) const {
+    return by_columns() ? Point{major_px, y + (major_px - x) * uy / ux}
+                        : Point{x + (major_px - y) * ux / uy, major_px};
+  }
+};
+
+Line line_through(const Point& a, const Point& b) {
+  const double length = std::hypot(b.x - a.x, b.y - a.y);
+  return {a.x, a.y, (b.x - a.x) / length, (b.y - a.y) / length};
+}
+
+/// Electrons per px of length in one slice, by the matched profile across.
+struct Slice {
+  double e_per_px = 0.0, variance = 0.0;  // variance 0: no pixel to look at
+};
+
+Slice slice_at(const Scene& scene, const Line& line, int major, double offset_px) {
+  const Point centre = line.at(major);
+  const double sigma = scene.sigma_px, cosine = 1.0 / line.slice_px();
+  const double minor = line.by_columns() ? centre.y : centre.x;
+  const double middle = minor + offset_px / cosine;
+  const int reach = int(std::ceil(2.5 * sigma / cosine));
+  double gd = 0.0, gg = 0.0, variance = 0.0;
+  const int nearest = int(std::lround(middle));
+  for (int m = nearest - reach; m <= nearest + reach; ++m) {
+    const int px = line.by_columns() ? major : m, py = line.by_columns() ? m : major;
+    if (!scene.contains(px, py)) continue;
+    const double n = (m - middle) * cosine / sigma;
+    const double g = std::exp(-0.5 * n * n) / (sigma * std::sqrt(2 * pi));
+    const FitPixel pixel = scene.pixel(px, py);
+    gd += g * pixel.signal_e;
+    gg += g * g;
+    variance += g * g * (pixel.variance_e2 + std::max(pixel.signal_e, 0.0f));
+  }
+  // Less than half a profile inside the frame says nothing.
+  if (gg < 0.25 * cosine / (2 * sigma * std::sqrt(pi))) return {};
+  return {gd / gg, variance / (gg * gg)};
+}
+
+std::vector<Slice> slices(const Scene& scene, const Line& line, int from, int to,
+                          double offset_px) {
+  std::vector<Slice> out;
+  for (int k = from; k <= to; ++k) {
+    const Slice s = slice_at(scene, line, k, offset_px);
+    if (s.variance > 0) out.push_back(s);
+  }
+  return out;
+}
+
+double median_level(const std::vector<Slice>& s) {
+  std::vector<double> levels;
+  for (const Slice& slice : s) levels.push_back(slice.e_per_px);
+  if (levels.empty()) return 0.0;
+  const auto middle = levels.begin() + std::ptrdiff_t(levels.size() / 2);
+  std::nth_element(levels.begin(), middle, levels.end());
+  return *middle;
+}
+
+/// Mean with what rises above twice `level` (a star on the line) cut off, and its SNR.
+std::array<double, 2> held_mean(const std::vector<Slice>& s, double level) {
+  double sum = 0.0, variance = 0.0;
+  for (const Slice& slice : s) {
+    sum += std::min(slice.e_per_px, 2 * level);
+    variance += slice.variance;
+  }
+  if (s.empty() || !(variance > 0)) return {0.0, 0.0};
+  return {sum / double(s.size()), sum / std::sqrt(variance)};
+}
+
+/// The line that most of the points lie on, by pairs of points far apart; nothing shorter than
+/// `least`.
+std::optional<Line> main_line(const std::vector<Point>& points, double width_px, double least_px) {
+  const std::size_t step = points.size() / 400 + 1,
+                    anchors = std::min<std::size_t>(40, points.size());
+  std::optional<Line> best;
+  int most = 0;
+  for (std::size_t a = 0; a < anchors; ++a)
+    for (std::size_t b = a + 1; b < anchors; ++b) {
+      const Point& p = points[a * (points.size() - 1) / (anchors - 1)];
+      const Point& q = points[b * (points.size() - 1) / (anchors - 1)];
+      if (std::hypot(p.x - q.x, p.y - q.y) < least_px) continue;
+      const Line line = line_through(p, q);
+      int count = 0;
+      for (std::size_t i = 0; i < points.size(); i += step)
+        count += std::abs(line.off(points[i])) < width_px;
+      if (count > most) {
+        most = count;
+        best = line;
+      }
+    }
+  return best;
+}
+
+/// Principal axis of the points within `width_px` of the line.
+Line refined(const std::vector<Point>& points, const Line& line, double width_px) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  for (const Point& p : points) {
+    if (std::abs(line.off(p)) > width_px) continue;
+    const double dx = p.x - line.x, dy = p.y - line.y;
+    n += 1;
+    x += dx;
+    y += dy;
+    xx += dx * dx;
+    xy += dx * dy;
+    yy += dy * dy;
+  }
+  if (n < 3) return line;
+  x /= n;
+  y /= n;
+  const double angle = 0.5 * std::atan2(2 * (xy / n - x * y), xx / n - x * x - (yy / n - y * y));
+  return {line.x + x, line.y + y, std::cos(angle), std::sin(angle)};
+}
+
+/// Extent of a streak along its line's major axis.
+struct Extent {
+  int from, to;
+};
+
+/// Follows the line beyond one end while light of about the same level goes on; swings it as it
+/// learns.
+void grow(const Scene& scene, Line& line, Extent& extent, int way, double level) {
+  const int limit = line.by_columns() ? scene.counts.columns : scene.counts.rows;
+  int gap = 0;
+  while (true) {
+    const int first = way > 0 ? extent.to + 1 + gap : extent.from - window_px - gap;
+    const int last = first + window_px - 1;
+    if (last < 0 || first >= limit) return;
+    double best_snr = 0.0, best_mean = 0.0, best_offset = 0.0;
+    for (double offset = -1.5; offset <= 1.5; offset += 0.5) {
+      const auto [mean, snr] = held_mean(slices(scene, line, first, last, offset), level);
+      if (snr > best_snr) {
+        best_snr = snr;
+        best_mean = mean;
+        best_offset = offset;
+      }
+    }
+    if (best_snr > (gap ? gap_snr : growth_snr) && best_mean > 0.5 * level) {
+      const Point far = line.at((first + last) / 2.0);
+      const Point seen = {far.x - best_offset * line.uy, far.y + best_offset * line.ux};
+      const double keep = way > 0 ? extent.from : extent.to;
+      const Point anchor = line.at(0.75 * keep + 0.25 * (way > 0 ? extent.to : extent.from));
+      const double sign =
+          line.ux * (seen.x - anchor.x) + line.uy * (seen.y - anchor.y) > 0 ? 1 : -1;
+      const bool columns = line.by_columns();
+      Line swung = line_through(anchor, seen);
+      swung.ux *= sign;
+      swung.uy *= sign;
+      if (swung.by_columns() != columns) return;
+      line = swung;
+      if (way > 0)
+        extent.to = std::min(last, limit - 1);
+      else
+        extent.from = std::max(first, 0);
+      gap = 0;
+    } else if (gap == 0) {
+      gap = window_px;
+    } else {
+      return;
+    }
+  }
+}
+
+/// Where the light ends: the cut that best parts slices near `level` from slices near zero.
+Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, double level) {
+  const auto end = [&](int inside, int outside) {
+    const int way = outside > inside ? 1 : -1;
+    double sum = 0.0, most = 0.0;
+    int best = inside;
+    for (int k = inside; k != outside + way; k += way) {
+      const Slice s = slice_at(scene, line, k, 0.0);
+      if (!(s.variance > 0)) continue;
+      sum += std::clamp(s.e_per_px, -level, 2 * level) - level / 2;
+      if (sum > most) {
+        most = sum;
+        best = k;
+      }
+    }
+    return best;
+  };
+  const int middle = (extent.from + extent.to) / 2;
+  return {end(middle, extent.from - window_px), end(middle, extent.to + window_px)};
+}
+
+/// Even and complete enough to be one object's path: most pieces of it carry its light.
+bool is_continuous(const Scene& scene, const Trail& t) {
+  const Line line{t.x_px, t.y_px, std::cos(t.angle_rad), std::sin(t.angle_rad)};
+  const double half = t.length_px / 2 - scene.sigma_px;
+  const double level = t.flux_e / t.length_px;
+  double noise = 0.0;
+  struct Piece {
+    double sum, variance, count;
+  };
+  const int slices_total = int(2 * half / line.slice_px());
+  if (slices_total < 6) return false;
+  std::vector<Slice> all;
+  std::vector<double> expected;
+  for (int k = 0; k <= slices_total; ++k) {
+    const double along = -half + k * line.slice_px(), r = 2 * along / t.length_px;
+    const double major = (line.by_columns() ? t.x_px + along * line.ux : t.y_px + along * line.uy);
+    const double bend = t.sagitta_px * (1.0 / 3 - r * r);
+    const Slice s = slice_at(scene, line, int(std::lround(major)), bend);
+    if (!(s.variance > 0)) continue;
+    all.push_back(s);
+    expected.push_back(level * (1 + t.slope * r));
+    noise += s.variance;
+  }
+  if (all.size() < 6) return false;
+  noise = std::sqrt(noise / double(all.size()));
+  // Pieces long enough to carry 4 sigma each, at least 2 px.
+  const auto length = std::size_t(std::clamp(std::ceil(std::pow(4 * noise / level, 2)), 2.0, 1e6));
+  int pieces = 0, lit = 0, over = 0;
+  for (std::size_t i = 0; i + length <= all.size(); i += length) {
+    double sum = 0.0, want = 0.0;
+    for (std::size_t k = i; k < i + length; ++k) {
+      sum += all[k].e_per_px;
+      want += expected[k];
+    }
+    ++pieces;
+    lit += sum > 0.4 * want;
+    over += sum > 2.0 * want;
+  }
+  return pieces >= 3 && lit >= 0.8 * pieces && over <= 0.3 * pieces;
+}
+
+std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
+                                const DetectorSettings& settings) {
+  const double level = median_level(slices(scene, line, extent.from, extent.to, 0.0));
+  if (!(level > 0)) return std::nullopt;
+  grow(scene, line, extent, +1, level);
+  grow(scene, line, extent, -1, level);
+  extent = trimmed(scene, line, extent, level);
+  const Point a = line.at(extent.from - 0.5), b = line.at(extent.to + 0.5);
+  Trail start;
+  start.x_px = (a.x + b.x) / 2;
+  start.y_px = (a.y + b.y) / 2;
+  start.length_px = std::hypot(b.x - a.x, b.y - a.y);
+  start.angle_rad = std::atan2(b.y - a.y, b.x - a.x);
+  start.flux_e = level * start.length_px;
+  if (start.length_px < 6 * scene.sigma_px) return std::nullopt;
+  auto source = fit_source(scene, start, true, 0.02);
+  if (!source || source->snr() < settings.least_snr) return std::nullopt;
+  const Trail& t = source->trail();
+  if (t.length_px < 6 * scene.sigma_px || source->fit.reduced_chi2() > 2.5 ||
+      !is_continuous(scene, t))
+    return std::nullopt;
+  if (trail_difference_px(t, scene.star_trail(t.x_px, t.y_px)) < settings.least_difference_px + 1)
+    return std::nullopt;
+  return source;
+}
+
+}  // namespace
+
+std::vector<Source> find_long_streaks(const Scene& scene, const Component& component,
+                                      const DetectorSettings& settings) {
+  std::vector<Point> points;
+  for (const Run& run : component.runs)
+    for (int x = run.first_x; x <= run.last_x; ++x) points.push_back({double(x), double(run.y)});
+  const double width_px = 1.5 * scene.sigma_px + 0.5, least_px = 8 * scene.sigma_px;
+  std::vector<Source> out;
+  for (int n = 0; n < most_lines && points.size() >= 2 * std::size_t(least_px); ++n) {
+    const auto found = main_line(points, width_px, least_px);
+    if (!found) break;
+    Line line = refined(points, *found, width_px);
+    line = refined(points, line, width_px);
+    std::vector<double> on;
+    for (const Point& p : points)
+      if (std::abs(line.off(p)) < width_px) on.push_back(line.major(p));
+    if (on.size() < 8) break;
+    const auto [low, high] = std::minmax_element(on.begin(), on.end());
+    if ((*high - *low) * line.slice_px() < least_px) break;
+    const auto source = streak_on(scene, line, {int(*low), int(*high)}, settings);
+    if (source) out.push_back(*source);
+    // What is left once the line and its skirts are taken away.
+    const double skirt_px = 3 * scene.sigma_px + 1;
+    std::erase_if(points, [&](const Point& p) {
+      return source ? lies_on(source->trail(), p.x, p.y, skirt_px)
+                    : std::abs(line.off(p)) < width_px;
+    });
+  }
+  return out;
+}
+
+}  // namespace dmise

@@ -1,0 +1,60 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+
+#include "core/detection/background.h"
+#include "core/detection/star_motion.h"
+#include "core/detection/trail_fit.h"
+
+namespace dmise {
+
+/// A frame as the fits see it: electrons less background, noise, saturation, star trails.
+struct Scene {
+  const CountImage& counts;
+  const Background& background;
+  const StarMotion& stars;
+  double gain_e_per_dn;
+  double saturation_dn;
+  double sigma_px;  // of a point source's Gaussian, pixel included
+
+  bool contains(int x, int y) const {
+    return x >= 0 && y >= 0 && x < counts.columns && y < counts.rows;
+  }
+  bool saturated(int x, int y) const { return counts.at(x, y) >= saturation_dn; }
+  FitPixel pixel(int x, int y) const {
+    const double noise_e = background.sigma_dn(x, y) * gain_e_per_dn;
+    return {x, y, float((counts.at(x, y) - background.level_dn(x, y)) * gain_e_per_dn),
+            float(noise_e * noise_e)};
+  }
+  /// A star's light at `place`, without flux.
+  Trail star_trail(double x_px, double y_px) const {
+    const PixelPosition d = stars.trail_at({x_px, y_px});
+    Trail trail;
+    trail.x_px = x_px;
+    trail.y_px = y_px;
+    trail.length_px = std::hypot(d.x_px, d.y_px);
+    trail.angle_rad = std::atan2(d.y_px, d.x_px);
+    return trail;
+  }
+};
+
+/// A source after its last fit: what a detection is made of.
+struct Source {
+  TrailFit fit;       // trails[0]; line parameters free if `streak`
+  unsigned free = 0;  // which of them
+  bool streak = false;
+  bool saturated = false;
+  bool at_edge = false;
+
+  const Trail& trail() const { return fit.trails[0]; }
+  double snr() const { return trail().flux_e / std::sqrt(fit.cov(2, 2)); }
+};
+
+/// Length of the smallest difference between two trails whose directions have no sign [px].
+inline double trail_difference_px(const Trail& a, const Trail& b) {
+  const double ax = a.length_px * std::cos(a.angle_rad), ay = a.length_px * std::sin(a.angle_rad);
+  const double bx = b.length_px * std::cos(b.angle_rad), by = b.length_px * std::sin(b.angle_rad);
+  return std::fmin(std::hypot(ax - bx, ay - by), std::hypot(ax + bx, ay + by));
+}
+
+}  // namespace dmise

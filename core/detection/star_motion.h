@@ -1,0 +1,30 @@
+#pragma once
+#include <optional>
+
+#include "core/base/pixel.h"
+#include "core/image/frame_header.h"
+
+namespace dmise {
+
+/// How the star field moves over the detector during the exposure, from the header's attitudes and
+/// projection. Distortion and differential refraction are left out: of a trail they change per
+/// mille.
+class StarMotion {
+ public:
+  StarMotion(const FrameHeader& header, int columns, int rows);
+
+  /// Displacement [px] from start to end of the exposure of the star that is at `pixel` in its
+  /// middle; zero where the projection has no place for it.
+  PixelPosition trail_at(PixelPosition pixel) const;
+
+ private:
+  std::optional<Vec<CameraFrame>> direction(PixelPosition pixel) const;
+  std::optional<PixelPosition> pixel(const Vec<CameraFrame>& direction) const;
+
+  Projection projection_;
+  double focal_length_px_;
+  PixelPosition centre_;
+  Rotation<CameraFrame, CameraFrame> start_from_middle_, end_from_middle_;
+};
+
+}  // namespace dmise
