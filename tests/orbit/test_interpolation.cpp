@@ -1,0 +1,87 @@
+#include "core/orbit/interpolation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/orbit/two_body.h"
+
+namespace dmise {
+namespace {
+
+constexpr HermiteOrder orders[] = {HermiteOrder::cubic, HermiteOrder::quintic,
+                                   HermiteOrder::septic};
+
+std::function<Vec<Gcrs>(double)> path_of(const KeplerElements& elements) {
+  const TwoBodyState start = state_of(elements);
+  return [start](double t_s) { return propagate_two_body(start, t_s).position_m; };
+}
+
+TEST(Interpolation, PolynomialsOfTheOrderAreExact) {
+  for (const HermiteOrder order : orders) {
+    const int degree = static_cast<int>(order);
+    const auto power = [&](double x) { return std::pow(x, degree); };
+    const auto slope = [&](double x) { return degree * std::pow(x, degree - 1); };
+    for (const double u : {0.0, 0.1, 0.5, 0.9, 1.0}) {
+      const HermiteWeights w = hermite_weights(order, u, 2.0);  // x = tick * 2 + 3
+      double sum = 0;
+      for (int k = 0; k < w.count; ++k) {
+        const double x = (w.first + k) * 2.0 + 3.0;
+        sum += w.position[static_cast<std::size_t>(k)] * power(x) +
+               w.slope_s[static_cast<std::size_t>(k)] * slope(x);
+      }
+      EXPECT_NEAR(sum / power(2 * u + 3), 1, 1e-13) << degree << " " << u;
+    }
+  }
+}
+
+TEST(Interpolation, TicksThemselvesAreMetExactly) {
+  for (const HermiteOrder order : orders)
+    for (const double u : {0.0, 1.0}) {
+      const HermiteWeights w = hermite_weights(order, u, 10.0);
+      for (int k = 0; k < w.count; ++k) {
+        EXPECT_EQ(w.position[static_cast<std::size_t>(k)],
+                  w.first + k == static_cast<int>(u) ? 1 : 0);
+        EXPECT_EQ(w.slope_s[static_cast<std::size_t>(k)], 0);
+      }
+    }
+}
+
+// The remainder of the cubic on a circle is r (n h)^4 / 384 at the middle.
+TEST(Interpolation, CubicErrorOnACircleIsTheTextbooks) {
+  const double r_m = 7e6, h_s = 60, n = std::sqrt(earth_gm_m3_per_s2 / (r_m * r_m * r_m));
+  const auto error = measure_interpolation<Gcrs>(path_of({.periapsis_m = r_m}), HermiteOrder::cubic,
+                                                 0, h_s, 20, 9);
+  EXPECT_NEAR(error.max_m / (r_m * std::pow(n * h_s, 4) / 384), 1, 0.01);
+}
+
+// Each order gains its power of the tick length: what the knob promises.
+TEST(Interpolation, ErrorFallsWithTheOrder) {
+  const KeplerElements transfer{.periapsis_m = 6.8e6, .eccentricity = 0.3};
+  double before_m = 1e9;
+  for (const HermiteOrder order : orders) {
+    const double coarse = measure_interpolation<Gcrs>(path_of(transfer), order, 0, 480, 10).max_m;
+    const double fine = measure_interpolation<Gcrs>(path_of(transfer), order, 0, 240, 20).max_m;
+    EXPECT_NEAR(std::log2(coarse / fine), static_cast<int>(order) + 1, 0.5);
+    EXPECT_LT(fine, before_m);
+    before_m = fine;
+  }
+}
+
+// A slope 2.6 cm/s off at both ends, as SGP4's velocity is, costs more than all of the cubic's own
+// error at 10 s: it must not pass for the derivative.
+TEST(Interpolation, VelocityOfAnotherModelIsNoSlope) {
+  const auto path = path_of({.periapsis_m = 7e6});
+  const auto error = measure_interpolation<Gcrs>(path, HermiteOrder::cubic, 0, 10, 20);
+  EXPECT_LT(error.max_m, 5e-4);
+  const auto slope = [&](double t) {
+    return symmetric_slope(path(t - slope_half_step_s), path(t + slope_half_step_s));
+  };
+  const Vec<Gcrs> wrong{0.026, 0, 0};
+  const Vec<Gcrs> p =
+      interpolate_cubic(0.25, 10, path(0), slope(0) + wrong, path(10), slope(10) + wrong);
+  EXPECT_GT(norm(p - path(2.5)), 0.02);
+}
+
+}  // namespace
+}  // namespace dmise
