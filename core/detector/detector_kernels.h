@@ -1,0 +1,43 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "core/base/rng.h"
+
+// The detector's loops over pixels, one copy per instruction set. `first` is a multiple of
+// rng_group.
+namespace dmise {
+
+inline constexpr int poisson_most_steps = 128;
+
+#define DMISE_DETECTOR_KERNELS(level)                                                              \
+  namespace level {                                                                                \
+  /* Stops before a group of pixels in which a mean is not in 0..largest; returns how far it came. \
+   */                                                                                              \
+  std::size_t poisson(const RngKey& key, std::uint32_t first, const float* mean,                   \
+                      std::size_t count, float* out);                                              \
+  /* P(N <= k) for k = 0, 1, ... until it rounds to 1 for 52 bits; returns how many. */            \
+  int poisson_cumulative(float mean, double* cumulative);                                          \
+  /* sum += how many thresholds the pixel's word exceeds; true when one equals the word. */        \
+  bool add_exceeded(const RngKey& key, std::uint32_t first, const std::uint32_t* thresholds,       \
+                    int steps, float* sum, std::size_t count);                                     \
+  void add_normal(const RngKey& key, std::uint32_t first, float sigma, float* sum,                 \
+                  std::size_t count);                                                              \
+  /* Clips at `limit` and returns how many reached it. */                                          \
+  std::size_t clip(float limit, float* values, std::size_t count);                                 \
+  /* counts = round(e * dn_per_e + bias) within 0..highest; returns how many reached highest. */   \
+  std::size_t digitise(const float* e, std::size_t count, float dn_per_e, float bias_dn,           \
+                       float highest_dn, std::uint16_t* counts);                                   \
+  }
+DMISE_DETECTOR_KERNELS(sse2)
+DMISE_DETECTOR_KERNELS(avx2)
+DMISE_DETECTOR_KERNELS(avx512)
+#undef DMISE_DETECTOR_KERNELS
+
+/// `kernel_of(level, sse2::f, avx2::f, avx512::f)` is the one of the three for `level`.
+template <class Function>
+Function* kernel_of(SimdLevel level, Function* sse2, Function* avx2, Function* avx512) {
+  return level == SimdLevel::avx512 ? avx512 : level == SimdLevel::avx2 ? avx2 : sse2;
+}
+
+}  // namespace dmise

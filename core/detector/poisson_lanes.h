@@ -1,0 +1,90 @@
+#pragma once
+#include "core/base/random_lanes.h"
+
+// core/detector/poisson.h in lanes.
+namespace dmise::DMISE_SIMD {
+
+using F32Half = float __attribute__((vector_size(DMISE_SIMD_BYTES / 2)));
+using U32Half = std::uint32_t __attribute__((vector_size(DMISE_SIMD_BYTES / 2)));
+
+/// exp(-m) for m in [0, 50], relative error below 4e-16.
+DMISE_INLINE F64 exp_minus(F64 m) {
+  constexpr double magic = 0x1.8p52;  // adding it leaves the nearest integer in the low bits
+  const F64 shifted = m * 1.4426950408889634 + magic;
+  const F64 n = shifted - magic;
+  const F64 r = (n * 0.693147180369123816490 - m) + n * 1.90821492927058770002e-10;
+  F64 p = splat(1.0 / 479001600);
+  p = p * r + 1.0 / 39916800;
+  p = p * r + 1.0 / 3628800;
+  p = p * r + 1.0 / 362880;
+  p = p * r + 1.0 / 40320;
+  p = p * r + 1.0 / 5040;
+  p = p * r + 1.0 / 720;
+  p = p * r + 1.0 / 120;
+  p = p * r + 1.0 / 24;
+  p = p * r + 1.0 / 6;
+  p = p * r + 0.5;
+  p = p * (r * r) + r + 1.0;
+  const I64 scale = (1023 - (bits<I64>(shifted) & 0xffff)) << 52;  // 2^-n
+  return p * bits<F64>(scale);
+}
+
+/// Uniform in (0, 1) of 52 bits.
+DMISE_INLINE F64 uniform_of(U64 high, U64 low) {
+  const U64 mantissa = (high << 20) | (low >> 12);
+  return (bits<F64>(mantissa | 0x3ff0000000000000u) - 1.0) + 0x1p-53;
+}
+
+/// 1 / i, for the recurrence of the probabilities.
+struct Reciprocals {
+  double of[129];
+  constexpr Reciprocals() : of{} {
+    for (int i = 1; i < 129; ++i) of[i] = 1.0 / i;
+  }
+};
+inline constexpr Reciprocals reciprocals;
+
+/// Number of k with u > P(N <= k), for means below 24 (others give rubbish, and end too).
+DMISE_INLINE F64 poisson_small(F64 mean, F64 u) {
+  F64 p = exp_minus(mean), cumulative = p, k{};
+  for (int i = 1; i < 129; ++i) {
+    const I64 above = u > cumulative;
+    if (!any(above)) break;
+    k = above ? k + 1.0 : k;
+    p = p * (mean * reciprocals.of[i]);
+    cumulative += p;
+  }
+  return k;
+}
+
+/// By the expansion, for means from 24 on.
+DMISE_INLINE F32 poisson_large(F32 mean, U32 word) {
+  const F32 root = sqrt(mean), y = 1.0f / root;
+  const F32 w = normal_of_words(word);
+  const F32 s = max(min(w * y, splat(1.3f)), splat(-1.3f));
+  F32 b = splat(-0.00015232487f);
+  b = b * s + 0.000229912266f;
+  b = b * s - 0.000199164306f;
+  b = b * s + 0.000518381453f;
+  b = b * s - 0.00134131721f;
+  b = b * s + 0.00370720588f;
+  b = b * s - 0.0138885284f;
+  b = b * s + 0.166666632f;
+  F32 c = splat(0.00107286438f);
+  c = c * s - 0.00147687628f;
+  c = c * s + 0.00135159052f;
+  c = c * s - 0.00335762945f;
+  c = c * s + 0.00867375154f;
+  c = c * s - 0.0277850070f;
+  c = c * s + 0.333332961f;
+  F32 d = splat(0.0179676131f);
+  d = d * s - 0.0145740379f;
+  d = d * s + 0.0164811869f;
+  d = d * s - 0.0197157343f;
+  const F32 beyond = root * w + (w * w * b + (c + d * (y * y)));
+  // Whole part aside, so that nothing is lost: from 2^23 on a float has no other.
+  const F32 whole = mean < 0x1p23f ? floor(min(mean, splat(0x1p23f))) : mean;
+  return max(whole + floor((mean - whole) + beyond), F32{});
+}
+
+}  // namespace dmise::DMISE_SIMD
