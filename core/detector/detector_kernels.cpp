@@ -129,6 +129,15 @@ void add_normal(const RngKey& key, std::uint32_t first, float sigma, float* sum,
   });
 }
 
+bool copy_light(const float* in, std::size_t count, float* out) {
+  std::int32_t bad = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    bad |= in[i] >= 0.0f && in[i] <= 1e12f ? 0 : 1;
+    out[i] = in[i];
+  }
+  return bad == 0;
+}
+
 std::size_t clip(float limit, float* values, std::size_t count) {
   std::size_t reached = 0;
   for (std::size_t i = 0; i < count; ++i) {

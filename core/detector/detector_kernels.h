@@ -23,6 +23,8 @@ inline constexpr int poisson_most_steps = 128;
                     int steps, float* sum, std::size_t count);                                     \
   void add_normal(const RngKey& key, std::uint32_t first, float sigma, float* sum,                 \
                   std::size_t count);                                                              \
+  /* out = in; false when a value is not in 0..1e12. */                                            \
+  bool copy_light(const float* in, std::size_t count, float* out);                                 \
   /* Clips at `limit` and returns how many reached it. */                                          \
   std::size_t clip(float limit, float* values, std::size_t count);                                 \
   /* counts = round(e * dn_per_e + bias) within 0..highest; returns how many reached highest. */   \
