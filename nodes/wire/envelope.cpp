@@ -14,7 +14,7 @@ constexpr char seal_tag = 0x7d;
 constexpr std::size_t seal_bytes = 5;
 
 // A message that can't be parsed is refused and counted here; the library would also print it.
-[[maybe_unused]] const auto* const printing = google::protobuf::SetLogHandler(nullptr);
+[[maybe_unused]] const auto printing = google::protobuf::SetLogHandler(nullptr);
 
 std::uint32_t seal_of(std::string_view topic, std::string_view unsealed, std::string_view payload,
                       std::string_view arrays) {

@@ -1,0 +1,201 @@
+#include "bench/bench_tick.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/json.h"
+#include "nodes/runtime/log.h"
+#include "nodes/runtime/master.h"
+#include "nodes/runtime/node.h"
+#include "nodes/runtime/socket.h"
+
+namespace dmise {
+namespace {
+
+constexpr int repeats = 5;
+constexpr double target_ratio = 0.70;
+
+/// A node that does nothing, so that only the clock is measured.
+class Idle : public Participant {
+ public:
+  explicit Idle(int index) : name_("node-" + std::to_string(index)) {}
+  std::string name() const override { return name_; }
+  std::vector<std::string> produces() const override { return {}; }
+  std::vector<std::string> consumes() const override { return {}; }
+  std::vector<Message> step(Tick, std::span<const Message>) override { return {}; }
+
+ private:
+  std::string name_;
+};
+
+/// Child processes that each read one line of addresses from their standard pipe before they start.
+class Children {
+ public:
+  Children(int count, const std::function<int(int index, const std::string& line)>& work) {
+    for (int i = 0; i < count; ++i) {
+      int ends[2];
+      if (pipe(ends) != 0) throw Error("pipe: too many open files");
+      const pid_t pid = fork();
+      if (pid < 0) throw Error("fork: too many processes");
+      if (pid == 0) {
+        close(ends[1]);
+        std::string line;
+        for (char c; read(ends[0], &c, 1) == 1 && c != '\n';) line += c;
+        _exit(work(i, line));
+      }
+      close(ends[0]);
+      pids_.push_back(pid);
+      pipes_.push_back(ends[1]);
+    }
+  }
+  void tell(const std::string& line) {
+    for (int& end : pipes_) {
+      if (write(end, (line + "\n").data(), line.size() + 1) < 0) throw Error("a child is gone");
+      close(end);
+    }
+  }
+  ~Children() {
+    for (const pid_t pid : pids_) waitpid(pid, nullptr, 0);
+  }
+
+ private:
+  std::vector<pid_t> pids_;
+  std::vector<int> pipes_;
+};
+
+struct Tock {
+  std::int64_t tick;
+  std::int64_t node;
+};
+
+int bare_worker(int index, const std::string& line) {
+  const auto blank = line.find(' ');
+  zmq::context_t context(1);
+  zmq::socket_t ticks(context, zmq::socket_type::sub), acks(context, zmq::socket_type::push);
+  ticks.set(zmq::sockopt::subscribe, "");
+  ticks.connect(line.substr(0, blank));
+  acks.connect(line.substr(blank + 1));
+  for (std::int64_t last = -1;;) {
+    Tock tock;
+    (void)ticks.recv(zmq::buffer(&tock, sizeof tock));
+    if (tock.tick < 0) return 0;
+    if (tock.tick == last) continue;
+    last = tock.tick;
+    tock.node = index;
+    acks.send(zmq::buffer(&tock, sizeof tock));
+  }
+}
+
+/// Ticks per second of a bare publisher that waits for all answers before the next tick.
+double floor_per_s(int nodes, int ticks) {
+  Children children(nodes, bare_worker);
+  zmq::context_t context(1);
+  zmq::socket_t publisher(context, zmq::socket_type::pub), acks(context, zmq::socket_type::pull);
+  publisher.bind("tcp://127.0.0.1:*");
+  acks.bind("tcp://127.0.0.1:*");
+  children.tell(publisher.get(zmq::sockopt::last_endpoint) + " " +
+                acks.get(zmq::sockopt::last_endpoint));
+  Tock tock{0, 0}, ack{};
+  for (int ready = 0; ready < nodes;) {  // tick 0 again and again, until all have connected
+    publisher.send(zmq::buffer(&tock, sizeof tock));
+    std::vector<zmq::pollitem_t> items{{acks.handle(), 0, ZMQ_POLLIN, 0}};
+    wait_for(items, std::chrono::milliseconds(1));
+    while (acks.recv(zmq::buffer(&ack, sizeof ack), zmq::recv_flags::dontwait)) ++ready;
+  }
+  const auto start = now();
+  for (tock.tick = 1; tock.tick <= ticks; ++tock.tick) {
+    publisher.send(zmq::buffer(&tock, sizeof tock));
+    for (int i = 0; i < nodes; ++i) (void)acks.recv(zmq::buffer(&ack, sizeof ack));
+  }
+  const double elapsed_s = std::chrono::duration<double>(now() - start).count();
+  tock.tick = -1;
+  publisher.send(zmq::buffer(&tock, sizeof tock));
+  return ticks / elapsed_s;
+}
+
+/// Ticks per second of the time-master with nodes that do nothing.
+double ours_per_s(int nodes, int ticks) {
+  Children children(nodes, [](int index, const std::string& line) {
+    Idle idle(index);
+    return run_node(idle, {.master = line}).exit_code;
+  });
+  MasterOptions options;
+  options.with_broker = false;
+  for (int i = 0; i < nodes; ++i) options.run.expected.push_back(Idle(i).name());
+  options.run.last_tick = ticks - 1;
+  options.on_bound = [&](const std::string& address) { children.tell(address); };
+  const MasterResult result = run_master(options);
+  if (result.exit_code != 0) throw Error(result.reason);
+  return ticks / result.wall_s;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+struct Figure {
+  std::string name;
+  double value = 0.0;
+  std::string unit;
+  std::string anchor;
+  double anchor_value = 0.0;
+  double target = 0.0;  // of value / anchor_value; 0: none
+};
+
+void print(const Figure& figure, bool json) {
+  const double ratio = figure.anchor_value > 0 ? figure.value / figure.anchor_value : 0.0;
+  const bool met = ratio >= figure.target;
+  if (!json) {
+    std::printf("%-18s %10.2f %-8s", figure.name.c_str(), figure.value, figure.unit.c_str());
+    if (figure.target > 0) std::printf("  %s %.2f", met ? "reaches" : "misses", figure.target);
+    std::printf("\n");
+    return;
+  }
+  JsonWriter writer;
+  writer.begin_object().field("name", figure.name).field("value", figure.value);
+  writer.field("unit", figure.unit);
+  writer.key("anchor");
+  figure.anchor.empty() ? writer.null() : writer.value(figure.anchor);
+  for (const auto& [key, value] : {std::pair("anchor_value", figure.anchor_value),
+                                   std::pair("ratio", ratio), std::pair("target", figure.target)}) {
+    writer.key(key);
+    value > 0 ? writer.value(value) : writer.null();
+  }
+  writer.key("met");
+  figure.target > 0 ? writer.value(met) : writer.null();
+  writer.end_object();
+  std::printf("%s\n", writer.text().c_str());
+}
+
+}  // namespace
+
+int bench_tick(bool json) {
+  spdlog::set_level(spdlog::level::err);
+  for (const int nodes : {2, 4, 8, 16}) {
+    const int ticks = 24000 / nodes;
+    std::vector<double> floors, ours, ratios;
+    for (int i = 0; i < repeats; ++i) {  // side by side, so that both meet the same machine
+      floors.push_back(floor_per_s(nodes, ticks));
+      ours.push_back(ours_per_s(nodes, ticks));
+      ratios.push_back(ours.back() / floors.back());
+    }
+    const std::string count = std::to_string(nodes);
+    const std::string anchor = "bare ZeroMQ PUB + PUSH, tcp";
+    print({"floor_" + count + "_per_s", median(floors), "ticks/s", "", 0, 0}, json);
+    print({"ticks_" + count + "_per_s", median(ours), "ticks/s", anchor, median(floors), 0}, json);
+    print({"ratio_" + count, median(ratios), "1", anchor, 1.0, nodes == 16 ? target_ratio : 0},
+          json);
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+}  // namespace dmise
