@@ -90,19 +90,14 @@ float median_of(std::vector<float> values) {
   return *middle;
 }
 
-/// Cell to the left (above) of a pixel's place in the mesh and the weight of the next one.
-struct Between {
-  int cell;
-  float next;
-};
-Between between(int pixel, int pixels, int cells) {
+}  // namespace
+
+Background::Between Background::between(int pixel, int pixels, int cells) {
   const float place = (float(pixel) + 0.5f) * float(cells) / float(pixels) - 0.5f;
   const float held = std::clamp(place, 0.0f, float(cells - 1));
   const int cell = std::min(int(held), std::max(0, cells - 2));
   return {cell, held - float(cell)};
 }
-
-}  // namespace
 
 Background::Background(const CountImage& counts, int cell_px, Threads& threads)
     : columns_(counts.columns),
@@ -128,24 +123,33 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads)
       sigma_[cell] = sky.sigma;
     }
   });
+  for (int x = 0; x < columns_; ++x) across_.push_back(between(x, columns_, mesh_columns_));
   level_ = median_3x3(level_, mesh_columns_, mesh_rows_);
   sigma_ = median_3x3(sigma_, mesh_columns_, mesh_rows_);
 }
 
 float Background::at(const std::vector<float>& mesh, int x, int y) const {
-  const Between u = between(x, columns_, mesh_columns_), v = between(y, rows_, mesh_rows_);
-  const float* above = mesh.data() + std::size_t(v.cell) * std::size_t(mesh_columns_);
+  const Between u = across_[std::size_t(x)], v = between(y, rows_, mesh_rows_);
+  const float* above = mesh.data() + std::size_t(v.cell) * std::size_t(mesh_columns_) + u.cell;
   const float* below = v.next > 0 ? above + mesh_columns_ : above;
-  const int right = u.next > 0 ? u.cell + 1 : u.cell;
-  const float top = above[u.cell] + u.next * (above[right] - above[u.cell]);
-  const float bottom = below[u.cell] + u.next * (below[right] - below[u.cell]);
-  return top + v.next * (bottom - top);
+  const int right = u.next > 0 ? 1 : 0;
+  const float one = above[0] + v.next * (below[0] - above[0]);
+  const float next = above[right] + v.next * (below[right] - above[right]);
+  return one + u.next * (next - one);
 }
 
-void Background::row(int y, float* level_dn, float* sigma_dn) const {
+void Background::row(const std::vector<float>& mesh, int y, float* out) const {
+  const Between v = between(y, rows_, mesh_rows_);
+  const float* above = mesh.data() + std::size_t(v.cell) * std::size_t(mesh_columns_);
+  const float* below = v.next > 0 ? above + mesh_columns_ : above;
+  std::vector<float> line(std::size_t(mesh_columns_) + 1);
+  for (int i = 0; i < mesh_columns_; ++i)
+    line[std::size_t(i)] = above[i] + v.next * (below[i] - above[i]);
+  line[std::size_t(mesh_columns_)] = line[std::size_t(mesh_columns_) - 1];
   for (int x = 0; x < columns_; ++x) {
-    level_dn[x] = at(level_, x, y);
-    sigma_dn[x] = at(sigma_, x, y);
+    const Between u = across_[std::size_t(x)];
+    const float one = line[std::size_t(u.cell)];
+    out[x] = one + u.next * (line[std::size_t(u.cell) + 1] - one);
   }
 }
 

@@ -16,18 +16,28 @@ class Background {
 
   float level_dn(int x, int y) const { return at(level_, x, y); }
   float sigma_dn(int x, int y) const { return at(sigma_, x, y); }
-  /// The same along row `y`: `columns` values each.
-  void row(int y, float* level_dn, float* sigma_dn) const;
+  /// The same along row `y`: `columns` values.
+  void level_row(int y, float* level_dn) const { row(level_, y, level_dn); }
+  void sigma_row(int y, float* sigma_dn) const { row(sigma_, y, sigma_dn); }
   /// Medians over the frame.
   float median_level_dn() const;
   float median_sigma_dn() const;
 
  private:
+  /// Place of a pixel among the cells' centres: between `cell` and the next, with the next one's
+  /// weight.
+  struct Between {
+    int cell;
+    float next;
+  };
+  static Between between(int pixel, int pixels, int cells);
   float at(const std::vector<float>& mesh, int x, int y) const;
+  void row(const std::vector<float>& mesh, int y, float* out) const;
 
   int columns_, rows_;  // of the frame
   int mesh_columns_, mesh_rows_;
   std::vector<float> level_, sigma_;
+  std::vector<Between> across_;  // of every column
 };
 
 }  // namespace dmise

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double bent_from_px = 30.0;     // a shorter streak is taken as straight
 constexpr double sloped_from_px = 15.0;   // and as evenly bright
+constexpr int most_stars = 4;             // in a row, that may pass for a streak
 constexpr double background_prior = 0.1;  // of the mesh, in units of a pixel's noise
 
 /// The component's pixels and those that touch them, without saturated ones.
@@ -66,17 +67,24 @@ Trail moments(const std::vector<FitPixel>& pixels, double sigma_px) {
   return trail;
 }
 
-/// Two stars of half the flux each, apart along the trail.
-std::vector<Trail> split(const Trail& line, const Trail& star) {
+/// `count` stars in a row along the line, which share its flux.
+std::vector<Trail> stars_along(const Trail& line, const Trail& star, int count) {
   std::vector<Trail> out;
-  for (const double side : {-0.28, 0.28}) {
+  for (int i = 0; i < count; ++i) {
+    const double along = ((2 * i + 1.0) / count - 1) / 2 * line.length_px;
     Trail t = star;
-    t.x_px = line.x_px + side * line.length_px * std::cos(line.angle_rad);
-    t.y_px = line.y_px + side * line.length_px * std::sin(line.angle_rad);
-    t.flux_e = line.flux_e / 2;
+    t.x_px = line.x_px + along * std::cos(line.angle_rad);
+    t.y_px = line.y_px + along * std::sin(line.angle_rad);
+    t.flux_e = line.flux_e / count;
     out.push_back(t);
   }
   return out;
+}
+
+double deviance_of_stars(const std::vector<FitPixel>& pixels, const Trail& line, const Trail& star,
+                         int count, const FitSettings& settings) {
+  const std::vector<unsigned> free(std::size_t(count), trail_place);
+  return fit_trails(pixels, stars_along(line, star, count), free, settings).deviance;
 }
 
 std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double margin_px) {
@@ -178,6 +186,24 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
   return source;
 }
 
+bool beats_stars(const Scene& scene, const Source& source, const DetectorSettings& settings) {
+  const Trail& line = source.trail();
+  const Trail star = scene.star_trail(line.x_px, line.y_px);
+  const auto pixels = pixels_near(scene, line, 2.5 * scene.sigma_px + 0.5);
+  FitSettings fit_settings;
+  fit_settings.sigma_px = scene.sigma_px;
+  fit_settings.model_error = settings.model_error;
+  fit_settings.most_steps = 15;
+  const double as_line = fit_trails(pixels, {line}, {trail_line}, fit_settings).deviance;
+  // More stars fit better by chance, by about one for each of their parameters beyond the line's.
+  for (int count = 2; count <= most_stars; ++count) {
+    const double freedom = 3.0 * count - 5.0;
+    const double as_stars = deviance_of_stars(pixels, line, star, count, fit_settings) + freedom;
+    if (as_stars < as_line + settings.chain_margin) return false;
+  }
+  return true;
+}
+
 std::optional<Source> judge_compact(const Scene& scene, const Component& component,
                                     const DetectorSettings& settings) {
   bool saturated = false;
@@ -195,9 +221,8 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
 
   fit_settings.most_steps = 15;
   const TrailFit as_line = fit_trails(pixels, {light}, {trail_line}, fit_settings);
-  const TrailFit as_two =
-      fit_trails(pixels, split(light, star), {trail_place, trail_place}, fit_settings);
-  const double best_star = std::min(as_star.deviance - settings.blend_margin, as_two.deviance);
+  const double as_two = deviance_of_stars(pixels, light, star, 2, fit_settings);
+  const double best_star = std::min(as_star.deviance - settings.blend_margin, as_two);
   if (star.length_px >= settings.least_difference_px) {
     Trail point = as_star.trails[0];
     point.length_px = 0.0;
@@ -218,6 +243,7 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
   if (trail_difference_px(source->trail(), star) <
       std::max(settings.least_difference_px, 4 * sigma_length_px))
     return std::nullopt;
+  if (!beats_stars(scene, *source, settings)) return std::nullopt;
   return source;
 }
 

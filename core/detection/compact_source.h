@@ -19,6 +19,10 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
 std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool streak,
                                  double model_error);
 
+/// Is a line a better account of the light around the source than two, three or four stars in a
+/// row?
+bool beats_stars(const Scene& scene, const Source& source, const DetectorSettings& settings);
+
 /// Within the light of the trail: `margin_px` around the line from end to end.
 bool lies_on(const Trail& trail, double x_px, double y_px, double margin_px);
 

@@ -58,7 +58,7 @@ class Band {
     for (int j = 0; j < held; ++j) {
       const int y = first_row - radius + j;
       if (y < 0 || y >= counts_.rows) continue;
-      background_.row(y, level.data(), sigma.data());
+      background_.level_row(y, level.data());
       const auto* in = counts_.row(y);
       float* middle = line.data() + radius;
       for (int x = 0; x < columns; ++x) middle[x] = float(in[x]) - level[std::size_t(x)];
@@ -72,7 +72,7 @@ class Band {
       weigh_rows(
           kernel_, [&](int i) { return smoothed.data() + std::size_t(j + i) * width; },
           filtered.data(), columns);
-      background_.row(y, level.data(), sigma.data());
+      background_.sigma_row(y, sigma.data());
       append_runs(y, filtered, sigma, low, unit, out);
     }
     return out;

@@ -16,7 +16,8 @@ struct DetectorSettings {
   double least_snr = 6.0;            // of the fitted flux of what is published
   double least_difference_px = 1.5;  // between a source's trail and a star's there
   double blend_margin = 16.0;        // deviance by which a short streak must beat two blended stars
-  double model_error = 0.03;         // relative, of the PSF, when shapes are judged
+  double chain_margin = 6.0;  // by which it must beat a row of two to four, chance allowed for
+  double model_error = 0.03;  // relative, of the PSF, when shapes are judged
 };
 
 struct DetectionResult {

@@ -1,6 +1,7 @@
 #include "core/detection/long_streak.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -14,24 +15,32 @@ constexpr int most_lines = 4;       // in one component
 constexpr int window_px = 16;       // by which a streak grows
 constexpr double growth_snr = 4.0;  // of a window that goes on
 constexpr double gap_snr = 6.0;     // of one beyond a gap
+constexpr double chain_px = 30.0;   // blends of stars are not longer
+constexpr int most_rounds = 6;      // of fitting and following
 
 struct Point {
   double x, y;
 };
 
-/// A line cut into slices: one for each column (or row, where it is steeper than 45 degrees).
+/// A line cut into slices: one for each column (or row, where it is steeper than 45 degrees). It
+/// may be bent as a trail is, and goes on beyond the trail's ends.
 struct Line {
   double x = 0.0, y = 0.0;  // a point on it
   double ux = 1.0, uy = 0.0;
+  double sagitta_px = 0.0, half_length_px = 1.0;
 
   bool by_columns() const { return std::abs(ux) >= std::abs(uy); }
   double major(const Point& p) const { return by_columns() ? p.x : p.y; }
   /// Length of the line in one slice.
   double slice_px() const { return 1.0 / std::max(std::abs(ux), std::abs(uy)); }
   double off(const Point& p) const { return (p.y - y) * ux - (p.x - x) * uy; }
-  Point at(double major_px) const {
-    return by_columns() ? Point{major_px, y + (major_px - x) * uy / ux}
-                        : Point{x + (major_px - y) * ux / uy, major_px};
+  /// Point of the slice, `offset_px` across from the line.
+  Point at(double major_px, double offset_px = 0.0) const {
+    const double along = by_columns() ? (major_px - x) / ux : (major_px - y) / uy;
+    const double r = along / half_length_px;
+    const double off_px = offset_px + sagitta_px * (1.0 / 3 - r * r);
+    return by_columns() ? Point{major_px, y + along * uy + off_px / ux}
+                        : Point{x + along * ux - off_px / uy, major_px};
   }
 };
 
@@ -40,16 +49,24 @@ Line line_through(const Point& a, const Point& b) {
   return {a.x, a.y, (b.x - a.x) / length, (b.y - a.y) / length};
 }
 
+Line line_of(const Trail& t) {
+  return {t.x_px,
+          t.y_px,
+          std::cos(t.angle_rad),
+          std::sin(t.angle_rad),
+          t.sagitta_px,
+          std::max(t.length_px / 2, 1.0)};
+}
+
 /// Electrons per px of length in one slice, by the matched profile across.
 struct Slice {
   double e_per_px = 0.0, variance = 0.0;  // variance 0: no pixel to look at
 };
 
 Slice slice_at(const Scene& scene, const Line& line, int major, double offset_px) {
-  const Point centre = line.at(major);
+  const Point centre = line.at(major, offset_px);
   const double sigma = scene.sigma_px, cosine = 1.0 / line.slice_px();
-  const double minor = line.by_columns() ? centre.y : centre.x;
-  const double middle = minor + offset_px / cosine;
+  const double middle = line.by_columns() ? centre.y : centre.x;
   const int reach = int(std::ceil(2.5 * sigma / cosine));
   double gd = 0.0, gg = 0.0, variance = 0.0;
   const int nearest = int(std::lround(middle));
@@ -147,37 +164,30 @@ struct Extent {
   int from, to;
 };
 
-/// Follows the line beyond one end while light of about the same level goes on; swings it as it
-/// learns.
-void grow(const Scene& scene, Line& line, Extent& extent, int way, double level) {
+Extent extent_of(const Line& line, double half_length_px) {
+  const double centre = line.by_columns() ? line.x : line.y;
+  const double half = half_length_px / line.slice_px();
+  return {int(std::lround(centre - half)), int(std::lround(centre + half))};
+}
+
+/// Follows the line beyond one end while light of about the same level goes on, a window at a time,
+/// also over one dark window.
+void grow(const Scene& scene, const Line& line, Extent& extent, int way, double level) {
   const int limit = line.by_columns() ? scene.counts.columns : scene.counts.rows;
   int gap = 0;
   while (true) {
     const int first = way > 0 ? extent.to + 1 + gap : extent.from - window_px - gap;
     const int last = first + window_px - 1;
     if (last < 0 || first >= limit) return;
-    double best_snr = 0.0, best_mean = 0.0, best_offset = 0.0;
-    for (double offset = -1.5; offset <= 1.5; offset += 0.5) {
+    double best_snr = 0.0, best_mean = 0.0;
+    for (const double offset : {0.0, -0.7, 0.7}) {
       const auto [mean, snr] = held_mean(slices(scene, line, first, last, offset), level);
       if (snr > best_snr) {
         best_snr = snr;
         best_mean = mean;
-        best_offset = offset;
       }
     }
     if (best_snr > (gap ? gap_snr : growth_snr) && best_mean > 0.5 * level) {
-      const Point far = line.at((first + last) / 2.0);
-      const Point seen = {far.x - best_offset * line.uy, far.y + best_offset * line.ux};
-      const double keep = way > 0 ? extent.from : extent.to;
-      const Point anchor = line.at(0.75 * keep + 0.25 * (way > 0 ? extent.to : extent.from));
-      const double sign =
-          line.ux * (seen.x - anchor.x) + line.uy * (seen.y - anchor.y) > 0 ? 1 : -1;
-      const bool columns = line.by_columns();
-      Line swung = line_through(anchor, seen);
-      swung.ux *= sign;
-      swung.uy *= sign;
-      if (swung.by_columns() != columns) return;
-      line = swung;
       if (way > 0)
         extent.to = std::min(last, limit - 1);
       else
@@ -214,25 +224,18 @@ Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, doubl
 
 /// Even and complete enough to be one object's path: most pieces of it carry its light.
 bool is_continuous(const Scene& scene, const Trail& t) {
-  const Line line{t.x_px, t.y_px, std::cos(t.angle_rad), std::sin(t.angle_rad)};
-  const double half = t.length_px / 2 - scene.sigma_px;
+  const Line line = line_of(t);
   const double level = t.flux_e / t.length_px;
-  double noise = 0.0;
-  struct Piece {
-    double sum, variance, count;
-  };
-  const int slices_total = int(2 * half / line.slice_px());
-  if (slices_total < 6) return false;
+  const Extent extent = extent_of(line, t.length_px / 2 - scene.sigma_px);
   std::vector<Slice> all;
   std::vector<double> expected;
-  for (int k = 0; k <= slices_total; ++k) {
-    const double along = -half + k * line.slice_px(), r = 2 * along / t.length_px;
-    const double major = (line.by_columns() ? t.x_px + along * line.ux : t.y_px + along * line.uy);
-    const double bend = t.sagitta_px * (1.0 / 3 - r * r);
-    const Slice s = slice_at(scene, line, int(std::lround(major)), bend);
+  double noise = 0.0;
+  for (int k = extent.from; k <= extent.to; ++k) {
+    const Slice s = slice_at(scene, line, k, 0.0);
     if (!(s.variance > 0)) continue;
+    const double along = line.by_columns() ? (k - line.x) / line.ux : (k - line.y) / line.uy;
     all.push_back(s);
-    expected.push_back(level * (1 + t.slope * r));
+    expected.push_back(level * (1 + t.slope * 2 * along / t.length_px));
     noise += s.variance;
   }
   if (all.size() < 6) return false;
@@ -253,27 +256,51 @@ bool is_continuous(const Scene& scene, const Trail& t) {
   return pieces >= 3 && lit >= 0.8 * pieces && over <= 0.3 * pieces;
 }
 
+/// A trail along the line from end to end of the extent.
+Trail trail_along(const Line& line, const Extent& extent, double level) {
+  const Point a = line.at(extent.from - 0.5), b = line.at(extent.to + 0.5);
+  Trail t;
+  t.x_px = (a.x + b.x) / 2;
+  t.y_px = (a.y + b.y) / 2;
+  t.length_px = std::hypot(b.x - a.x, b.y - a.y);
+  t.angle_rad = std::atan2(b.y - a.y, b.x - a.x);
+  t.flux_e = level * t.length_px;
+  t.sagitta_px = line.sagitta_px * std::pow(t.length_px / (2 * line.half_length_px), 2);
+  return t;
+}
+
+/// Fit and follow in turn until the ends stay where they are.
 std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
                                 const DetectorSettings& settings) {
-  const double level = median_level(slices(scene, line, extent.from, extent.to, 0.0));
-  if (!(level > 0)) return std::nullopt;
-  grow(scene, line, extent, +1, level);
-  grow(scene, line, extent, -1, level);
-  extent = trimmed(scene, line, extent, level);
-  const Point a = line.at(extent.from - 0.5), b = line.at(extent.to + 0.5);
-  Trail start;
-  start.x_px = (a.x + b.x) / 2;
-  start.y_px = (a.y + b.y) / 2;
-  start.length_px = std::hypot(b.x - a.x, b.y - a.y);
-  start.angle_rad = std::atan2(b.y - a.y, b.x - a.x);
-  start.flux_e = level * start.length_px;
-  if (start.length_px < 6 * scene.sigma_px) return std::nullopt;
-  auto source = fit_source(scene, start, true, 0.02);
-  if (!source || source->snr() < settings.least_snr) return std::nullopt;
+  std::optional<Source> source;
+  for (int round = 0; round < most_rounds; ++round) {
+    const double level = median_level(slices(scene, line, extent.from, extent.to, 0.0));
+    if (!(level > 0)) return std::nullopt;
+    const Extent before = extent;
+    grow(scene, line, extent, +1, level);
+    grow(scene, line, extent, -1, level);
+    extent = trimmed(scene, line, extent, level);
+    if (source && std::abs(extent.from - before.from) <= 2 && std::abs(extent.to - before.to) <= 2)
+      break;
+    const Trail start = trail_along(line, extent, level);
+    if (start.length_px < 6 * scene.sigma_px) return std::nullopt;
+    source = fit_source(scene, start, true, 0.02);
+    if (!source || source->trail().length_px < 6 * scene.sigma_px) return std::nullopt;
+    const bool columns = line.by_columns();
+    line = line_of(source->trail());
+    if ((line.by_columns() ? line.ux : line.uy) < 0) {  // along rising columns (rows)
+      line.ux = -line.ux;
+      line.uy = -line.uy;
+      line.sagitta_px = -line.sagitta_px;
+    }
+    if (line.by_columns() != columns && round > 0) break;  // at 45 degrees: either will do
+    extent = extent_of(line, source->trail().length_px / 2);
+  }
   const Trail& t = source->trail();
-  if (t.length_px < 6 * scene.sigma_px || source->fit.reduced_chi2() > 2.5 ||
+  if (source->snr() < settings.least_snr || source->fit.reduced_chi2() > 2.5 ||
       !is_continuous(scene, t))
     return std::nullopt;
+  if (t.length_px < chain_px && !beats_stars(scene, *source, settings)) return std::nullopt;
   if (trail_difference_px(t, scene.star_trail(t.x_px, t.y_px)) < settings.least_difference_px + 1)
     return std::nullopt;
   return source;
@@ -304,8 +331,8 @@ std::vector<Source> find_long_streaks(const Scene& scene, const Component& compo
     // What is left once the line and its skirts are taken away.
     const double skirt_px = 3 * scene.sigma_px + 1;
     std::erase_if(points, [&](const Point& p) {
-      return source ? lies_on(source->trail(), p.x, p.y, skirt_px)
-                    : std::abs(line.off(p)) < width_px;
+      return std::abs(line.off(p)) < width_px ||
+             (source && lies_on(source->trail(), p.x, p.y, skirt_px));
     });
   }
   return out;
