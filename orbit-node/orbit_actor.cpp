@@ -7,11 +7,12 @@
 #include "core/config/yaml_reader.h"
 #include "core/frames/earth_orientation.h"
 #include "core/orbit/catalogue.h"
+#include "core/orbit/interpolation.h"
 
 namespace dmise {
 namespace {
 
-constexpr std::int64_t half_step_ns = 250'000'000;
+constexpr std::int64_t half_step_ns = std::int64_t(slope_half_step_s * 1e9);
 constexpr double stale_after_s = 30 * 86400.0;
 
 bool wanted(const ObjectSource& source, const MeanElements& elements) {

@@ -46,8 +46,7 @@ class OrbitActor : public Participant {
   std::uint64_t steps_ = 0;
 };
 
-/// States at one time. Slopes are symmetric differences of the propagator over +-0.25 s: their error,
-/// v n^2 h^2 / 6, is below 0.1 mm/s in a low orbit, and SGP4's rounding (1e-5 m) costs 0.02 mm/s.
+/// States at one time. Slopes are symmetric differences of the propagator (`slope_half_step_s`).
 ObjectStates states_at(const Sgp4Batch& batch, const Clock& clock, Tick tick, SimTime time,
                        Threads& threads);
 

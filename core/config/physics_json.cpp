@@ -56,7 +56,6 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   json.field("first_exposure_s", s.first_exposure_s);
   json.field("sky_zenith_mag_per_arcsec2", s.sky_zenith_mag_per_arcsec2);
   json.field("extinction_mag_per_airmass", s.extinction_mag_per_airmass);
-  json.field("detection_threshold_sigma", s.detection_threshold_sigma);
   json.key("effects").begin_array();
   for (std::size_t i = 0; i < effect_count; ++i)
     if (s.effects.has(static_cast<Effect>(i))) json.value(facts(static_cast<Effect>(i)).name);

@@ -146,12 +146,6 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTi
   sensor.extinction_mag_per_airmass =
       map.number_or("extinction_mag_per_airmass", site ? 0.17 : 0.0, Bounds::between(0.0, 5.0));
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
-  if (const auto detection = map.find("detection")) {
-    YamlMap settings(*detection);
-    sensor.detection_threshold_sigma =
-        settings.number_or("threshold_sigma", 5.0, Bounds::between(3.0, 1000.0));
-    settings.done();
-  }
   map.done();
   return sensor;
 }

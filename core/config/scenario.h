@@ -68,7 +68,6 @@ struct SensorConfig {
   double first_exposure_s = 0.0;  // after the start of the run
   double sky_zenith_mag_per_arcsec2 = 21.9;
   double extinction_mag_per_airmass = 0.0;
-  double detection_threshold_sigma = 5.0;
   EffectSet effects;
 };
 

@@ -10,18 +10,11 @@
 #include "core/image/frame_header.h"
 #include "core/sky/star_cache.h"
 #include "core/time/clock.h"
-#include "sensors/pipeline/exposure.h"
+#include "sensors/pipeline/frame_times.h"
+#include "sensors/pipeline/star_layer.h"
 #include "sensors/pipeline/world.h"
 
 namespace dmise {
-
-/// One star as it was drawn.
-struct StarTruth {
-  std::uint32_t id = 0;          // in its catalogue
-  double v_mag = 0.0, bv = 0.0;
-  double x_px = 0.0, y_px = 0.0; // centroid of its light in the frame
-  double signal_e = 0.0;         // expected electrons deposited in the frame
-};
 
 /// Everything that comes of one exposure.
 struct FrameProducts {
@@ -54,7 +47,7 @@ class FramePipeline {
                 Threads& threads);
   ~FramePipeline();
 
-  FrameProducts run(const Exposure& exposure, const World& world);
+  FrameProducts run(const FrameTimes& exposure, const World& world);
 
  private:
   struct Work;

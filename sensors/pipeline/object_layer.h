@@ -9,24 +9,16 @@
 
 namespace dmise {
 
-/// What the light of a source at 1 photon/s/m2 in the band becomes at the detector.
-struct Throughput {
-  double electrons_per_photon_m2 = 0.0;  // collecting area x transmission x quantum efficiency [m2]
-};
-Throughput throughput(const Camera& camera);
+// Space objects as streaks: those that the field, the horizon, the Earth and its shadow leave, each
+// along its own path with its own brightness over the exposure.
 
-/// Space objects as streaks: those that the field, the horizon, the Earth and its shadow leave, each
-/// along its own path with its own brightness over the exposure.
-class ObjectLayer {
- public:
-  /// Objects whose path over the exposure may touch the frame: their directions at its start, middle
-  /// and end, and the arcs between, against the field of view; the horizon (ground).
-  std::vector<std::size_t> visible(const View& view) const;
+/// Objects whose path over the exposure may touch the frame: their directions at its start, middle and
+/// end and the arcs between, against the field of view. The sensor's own platform is left out.
+std::vector<std::size_t> objects_in_field(const View& view);
 
-  /// Adds their light to `image` and tells what was drawn. An object that is nowhere near the frame
-  /// or wholly dark has no entry.
-  std::vector<Truth> draw(const View& view, const std::vector<std::size_t>& objects,
-                          const PsfTable& psf, RateImage& image, Threads& threads) const;
-};
+/// Adds their light to `image` and tells what was drawn. An object of which no light fell inside and
+/// whose path did not enter the frame has no entry.
+std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
+                                const PsfTable& psf, RateImage& image, Threads& threads);
 
 }  // namespace dmise

@@ -8,7 +8,7 @@ SensorEvaluator::SensorEvaluator(PipelineSettings settings, SimTime tick_length,
                                  Threads& threads)
     : sensor_(settings.sensor),
       tick_length_(tick_length),
-      last_frame_(exposures_within(settings.sensor, duration)),
+      last_frame_(frames_within(settings.sensor, duration)),
       pipeline_(settings, std::move(stars), threads),
       writer_(std::move(directory), output, settings.clock) {}
 
@@ -28,7 +28,7 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
   std::vector<Message> messages;
   const SimTime now{tick * tick_length_.ns};
   while (next_frame_ <= last_frame_ && !stop_asked_()) {
-    const Exposure exposure = exposure_of(sensor_, next_frame_);
+    const FrameTimes exposure = frame_times(sensor_, next_frame_);
     if (exposure.end > now) {
       world_.forget_before(exposure.start);
       break;

@@ -7,10 +7,17 @@
 #include "core/optics/psf_table.h"
 #include "core/photometry/star_light.h"
 #include "core/sky/star_cache.h"
-#include "sensors/pipeline/frame_pipeline.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
+
+/// One star as it was drawn.
+struct StarTruth {
+  std::uint32_t id = 0;           // in its catalogue
+  double v_mag = 0.0, bv = 0.0;
+  double x_px = 0.0, y_px = 0.0;  // centroid of its light in the frame
+  double signal_e = 0.0;          // expected electrons deposited in the frame
+};
 
 /// The star background: every star of the field with its own place and its own trail.
 class StarLayer {
@@ -20,7 +27,7 @@ class StarLayer {
   /// Adds the stars' light to `image`; returns how many left some in the frame. `truth`, if not
   /// null, gets each of them.
   std::uint32_t draw(const View& view, const PsfTable& psf, RateImage& image, Threads& threads,
-                     std::vector<StarTruth>* truth, double faintest_v_mag);
+                     double faintest_v_mag, std::vector<StarTruth>* truth) const;
 
  private:
   std::shared_ptr<const StarMap> map_;

@@ -1,18 +1,20 @@
 #include "sensors/pipeline/view.h"
 
 #include "core/base/error.h"
+#include "core/base/units.h"
 #include "core/optics/projection.h"
 
 namespace dmise {
 
-View::View(const SensorConfig& sensor, const Exposure& exposure, const World& world)
+View::View(const SensorConfig& sensor, const FrameTimes& times, const World& world)
     : sensor_(sensor),
-      exposure_(exposure),
+      times_(times),
       world_(world),
-      environment_(&world.environment(exposure.middle)) {
+      environment_(&world.environment(times.middle)) {
   if (const auto* site = std::get_if<SiteConfig>(&sensor.place)) {
     site_ = Site{site->latitude_deg, site->longitude_deg, site->height_m};
     site_m_ = itrs_from_geodetic(*site_);
+    refraction_ = Refraction(standard_weather(site->height_m), sensor.camera.band.centre_m * 1e6);
   } else {
     platform_ = object_index(world.roster(), std::get<PlatformConfig>(sensor.place).object,
                              sensor.name + ": platform");
@@ -20,10 +22,10 @@ View::View(const SensorConfig& sensor, const Exposure& exposure, const World& wo
   if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
     target_ = object_index(world.roster(), target->object, sensor.name + ": pointing.target");
   for (const auto& needed : {platform_, target_})
-    if (needed && !(world.has_state(*needed, exposure.start) && world.has_state(*needed, exposure.end)))
+    if (needed && !(world.has_state(*needed, times.start) && world.has_state(*needed, times.end)))
       throw Error(sensor.name + ": " + world.roster().objects[*needed].name +
-                  " has no state at frame " + std::to_string(exposure.frame));
-  aimed_ = pointing_scene(exposure.middle);
+                  " has no state at frame " + std::to_string(times.frame));
+  aimed_ = pointing_scene(times.middle);
 }
 
 ObserverState View::observer(SimTime t) const {
@@ -46,6 +48,16 @@ PointingScene View::pointing_scene(SimTime t) const {
 
 Rotation<CameraFrame, Gcrs> View::camera_from_gcrs(SimTime t) const {
   return dmise::camera_from_gcrs(sensor_, aimed_, pointing_scene(t));
+}
+
+ApparentPlaces View::places(SimTime t) const {
+  const auto& e = *environment_;
+  const SolarSystem bodies{e.sun_m, e.moon_m, e.earth_barycentric_m, e.earth_velocity_m_per_s};
+  const Tt tt{e.tt_jd1, e.tt_jd2 + (t - e.time).seconds() / day_s};
+  if (site_)
+    return {ground_observer(*site_, e.earth, t, tt, bodies, refraction_), sensor_.effects};
+  const ObserverState at = observer(t);
+  return {space_observer(at.position_m, at.velocity_m_per_s, tt, bodies), sensor_.effects};
 }
 
 Vec<Gcrs> View::up(SimTime t) const {

@@ -5,7 +5,8 @@
 #include "core/base/pixel.h"
 #include "core/config/scenario.h"
 #include "core/frames/geodesy.h"
-#include "sensors/pipeline/exposure.h"
+#include "core/sky/apparent.h"
+#include "sensors/pipeline/frame_times.h"
 #include "sensors/pipeline/pointing.h"
 #include "sensors/pipeline/world.h"
 
@@ -16,10 +17,12 @@ namespace dmise {
 class View {
  public:
   /// `world` must cover the exposure and outlive the view.
-  View(const SensorConfig& sensor, const Exposure& exposure, const World& world);
+  View(const SensorConfig& sensor, const FrameTimes& times, const World& world);
+  View(const View&) = delete;
+  View& operator=(const View&) = delete;
 
   const SensorConfig& sensor() const { return sensor_; }
-  const Exposure& exposure() const { return exposure_; }
+  const FrameTimes& times() const { return times_; }
   const World& world() const { return world_; }
   bool on_ground() const { return site_.has_value(); }
   const std::optional<Site>& site() const { return site_; }
@@ -30,6 +33,8 @@ class View {
   const EarthOrientation& earth() const { return environment_->earth; }
   const EnvironmentState& environment() const { return *environment_; }
   Rotation<CameraFrame, Gcrs> camera_from_gcrs(SimTime t) const;
+  /// Where light seems to come from, at `t`, with the sensor's effects.
+  ApparentPlaces places(SimTime t) const;
   /// Normal of the ellipsoid at a ground sensor; for a sensor in orbit, away from the Earth's centre.
   Vec<Gcrs> up(SimTime t) const;
 
@@ -41,12 +46,13 @@ class View {
   PointingScene pointing_scene(SimTime t) const;
 
   const SensorConfig& sensor_;
-  const Exposure exposure_;
+  const FrameTimes times_;
   const World& world_;
   const EnvironmentState* environment_;  // of mid exposure
   std::optional<Site> site_;
   Vec<Itrs> site_m_;
   std::optional<std::size_t> platform_, target_;
+  Refraction refraction_;
   PointingScene aimed_;
 };
 

@@ -27,10 +27,14 @@ bool World::has_state(std::size_t i, SimTime t) const {
 Motion World::motion(std::size_t i, SimTime t) const {
   const auto [before, after] = around(t);
   if (before == after) return {before->position(i), before->slope(i)};
-  const double span_s = (after->time - before->time).seconds();
-  const double u_s = (t - before->time).seconds();
-  return hermite(before->position(i), before->slope(i), after->position(i), after->slope(i), span_s,
-                 u_s);
+  const double tick_s = (after->time - before->time).seconds();
+  const double u = (t - before->time).seconds() / tick_s;
+  const auto p0 = before->position(i), p1 = after->position(i);
+  const auto s0 = before->slope(i), s1 = after->slope(i);
+  // The derivative of the cubic, so that a sensor's velocity agrees with its path.
+  const double a = 6 * u * (1 - u) / tick_s;
+  return {interpolate_cubic(u, tick_s, p0, s0, p1, s1),
+          (p1 - p0) * a + s0 * ((1 - u) * (1 - 3 * u)) + s1 * (u * (3 * u - 2))};
 }
 
 const EnvironmentState& World::environment(SimTime t) const {

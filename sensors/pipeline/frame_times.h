@@ -7,7 +7,7 @@
 namespace dmise {
 
 /// One opening of the shutter.
-struct Exposure {
+struct FrameTimes {
   std::uint32_t frame = 1;  // counts from 1
   SimTime start, middle, end;
 
@@ -17,7 +17,7 @@ struct Exposure {
   double seconds() const { return (end - start).seconds(); }
 };
 
-inline Exposure exposure_of(const SensorConfig& sensor, std::uint32_t frame) {
+inline FrameTimes frame_times(const SensorConfig& sensor, std::uint32_t frame) {
   const SimTime length = sim_seconds(sensor.exposure_s);
   const SimTime start{sim_seconds(sensor.first_exposure_s).ns +
                       std::int64_t(frame - 1) * sim_seconds(sensor.cadence_s).ns};
@@ -25,9 +25,9 @@ inline Exposure exposure_of(const SensorConfig& sensor, std::uint32_t frame) {
 }
 
 /// Exposures that end within the run.
-inline std::uint32_t exposures_within(const SensorConfig& sensor, SimTime duration) {
+inline std::uint32_t frames_within(const SensorConfig& sensor, SimTime duration) {
   std::uint32_t frame = 0;
-  const std::int64_t room = duration.ns - exposure_of(sensor, 1).end.ns;
+  const std::int64_t room = duration.ns - frame_times(sensor, 1).end.ns;
   if (room >= 0) frame = static_cast<std::uint32_t>(room / sim_seconds(sensor.cadence_s).ns + 1);
   return frame;
 }

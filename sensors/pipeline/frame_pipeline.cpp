@@ -1,0 +1,191 @@
+#include "sensors/pipeline/frame_pipeline.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "core/base/version.h"
+#include "core/detection/detect.h"
+#include "core/detector/expose.h"
+#include "core/optics/projection.h"
+#include "core/optics/wcs_fit.h"
+#include "core/time/iso8601.h"
+#include "sensors/pipeline/light.h"
+#include "sensors/pipeline/object_layer.h"
+#include "sensors/pipeline/sky_layer.h"
+
+namespace dmise {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+double since(WallClock::time_point start) {
+  return std::chrono::duration<double>(WallClock::now() - start).count();
+}
+
+/// Adds the time of its own life to an effect's.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(WallClock::now()) {}
+  ~Stopwatch() { seconds_ += since(start_); }
+
+ private:
+  double& seconds_;
+  WallClock::time_point start_;
+};
+
+/// ICRS direction of the star that the camera sees at a pixel in the middle of the exposure: the
+/// apparent place's inverse by iteration, so that refraction and aberration are those of the stars.
+std::optional<Vec<Gcrs>> star_at(const Optics& optics, const ApparentPlaces& places,
+                                 const Rotation<Gcrs, CameraFrame>& gcrs_from_camera,
+                                 double epoch_jyear, PixelPosition pixel) {
+  const auto seen = unproject(optics, pixel);
+  if (!seen) return std::nullopt;
+  const Vec<Gcrs> wanted = gcrs_from_camera * *seen;
+  Vec<Gcrs> star = wanted;
+  for (int i = 0; i < 5; ++i) {
+    const auto [ra, dec] = to_spherical(star);
+    const Vec<Gcrs> apparent =
+        places.star({.ra_rad = ra, .dec_rad = dec, .epoch_jyear = epoch_jyear});
+    star = unit(star + (wanted - apparent));
+  }
+  return star;
+}
+
+/// SIP order that leaves the fit below 0.01 px: refraction bends wide fields.
+int sip_order(const Optics& optics) { return half_diagonal_rad(optics) > 10 * deg ? 5 : 3; }
+
+}  // namespace
+
+struct FramePipeline::Work {
+  PipelineSettings settings;
+  Threads& threads;
+  std::optional<StarLayer> stars;
+  PsfTable psf;
+  RateImage light;  // kept between frames
+
+  Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)
+      : settings(std::move(s)), threads(t) {
+    const auto& camera = settings.sensor.camera;
+    if (map) stars.emplace(settings.sensor, std::move(map));
+    psf = make_psf_table(settings.sensor.effects.has(Effect::psf)
+                             ? psf_sigma_px(camera.optics, camera.band.centre_m)
+                             : 0.0);
+    light = RateImage(camera.optics.columns, camera.optics.rows);
+  }
+
+  bool has(Effect effect) const { return settings.sensor.effects.has(effect); }
+
+  std::string plan() const {
+    std::string text;
+    for (std::size_t i = 0; i < effect_count; ++i) {
+      const auto effect = static_cast<Effect>(i);
+      const bool runs = effect == Effect::stars ? has(effect) && stars : has(effect);
+      if (runs) text += (text.empty() ? "" : " ") + std::string(facts(effect).name);
+    }
+    return text;
+  }
+
+  FrameHeader header(const View& view) const;
+};
+
+FrameHeader FramePipeline::Work::header(const View& view) const {
+  const auto& sensor = settings.sensor;
+  const auto& optics = sensor.camera.optics;
+  const auto& detector = sensor.camera.detector;
+  const auto& times = view.times();
+  const auto& environment = view.environment();
+  const ObserverState observer = view.observer(times.middle);
+  const auto utc = [this](SimTime t) { return format_utc(settings.clock.utc(t), 6); };
+  FrameHeader h{.sensor = sensor.name,
+                .frame = times.frame,
+                .start = times.start,
+                .middle = times.middle,
+                .end = times.end,
+                .start_utc = utc(times.start),
+                .middle_utc = utc(times.middle),
+                .end_utc = utc(times.end),
+                .exposure_s = times.seconds(),
+                .mount = sensor.tracking == Tracking::fixed      ? "fixed"
+                         : sensor.tracking == Tracking::sidereal ? "sidereal"
+                                                                 : "target",
+                .software = software_name(),
+                .scenario_digest = settings.digest,
+                .seed = settings.seed,
+                .gain_e_per_dn = has(Effect::quantisation) ? detector.gain_e_per_dn : 1.0,
+                .bias_dn = has(Effect::quantisation) ? detector.bias_dn : 0.0,
+                .read_noise_e = has(Effect::read_noise) ? detector.read_noise_e : 0.0,
+                .dark_e_per_s = has(Effect::dark_current) ? detector.dark_e_per_s : 0.0,
+                .full_well_e = detector.full_well_e,
+                .psf_fwhm_px = psf.sigma_px * fwhm_per_sigma,
+                .band = sensor.camera.band,
+                .zero_point_mag = Light(view).zero_point_mag(),
+                .projection = optics.projection,
+                .focal_length_px = optics.focal_length_px(),
+                .sensor_position_m = observer.position_m,
+                .sensor_velocity_m_per_s = observer.velocity_m_per_s,
+                .earth_velocity_m_per_s = environment.earth_velocity_m_per_s,
+                .site = view.site()};
+  const double most_dn =
+      has(Effect::quantisation) ? std::exp2(detector.adc_bits) - 1 : 65535.0;
+  const double well_dn = h.full_well_e / h.gain_e_per_dn + h.bias_dn;
+  h.saturation_dn = has(Effect::full_well) ? std::min(most_dn, well_dn) : most_dn;
+  const SimTime at[3] = {times.start, times.middle, times.end};
+  for (int k = 0; k < 3; ++k) h.camera_from_gcrs[k] = quaternion_of(view.camera_from_gcrs(at[k]));
+
+  const auto places = view.places(times.middle);
+  const auto gcrs_from_camera = view.camera_from_gcrs(times.middle).inverse();
+  const double epoch = 2000.0 + julian_years_since_j2000(settings.clock.tt(times.middle));
+  h.wcs = fit_wcs(optics.columns, optics.rows,
+                  [&](PixelPosition pixel) {
+                    return star_at(optics, places, gcrs_from_camera, epoch, pixel);
+                  },
+                  sip_order(optics));
+  return h;
+}
+
+FramePipeline::FramePipeline(PipelineSettings settings, std::shared_ptr<const StarMap> stars,
+                             Threads& threads)
+    : work_(std::make_unique<Work>(std::move(settings), std::move(stars), threads)) {}
+
+FramePipeline::~FramePipeline() = default;
+
+FrameProducts FramePipeline::run(const FrameTimes& times, const World& world) {
+  Work& w = *work_;
+  const auto& sensor = w.settings.sensor;
+  const auto start = WallClock::now();
+  FrameProducts frame;
+  const View view(sensor, times, world);
+  std::uint32_t stars_drawn = 0;
+  {
+    Stopwatch timing(frame.times[Effect::sky]);
+    fill_sky(view, w.light, w.threads);
+  }
+  if (w.stars && w.has(Effect::stars)) {
+    Stopwatch timing(frame.times[Effect::stars]);
+    stars_drawn = w.stars->draw(view, w.psf, w.light, w.threads, w.settings.faintest_star_mag,
+                                w.settings.star_truth ? &frame.stars : nullptr);
+  }
+  if (w.has(Effect::objects)) {
+    Stopwatch timing(frame.times[Effect::objects]);
+    frame.truths = draw_objects(view, objects_in_field(view), w.psf, w.light, w.threads);
+  }
+  frame.header = w.header(view);
+  expose(w.light, sensor.camera.detector,
+         {w.settings.seed, sensor.name, times.frame, times.seconds()}, sensor.effects, w.threads,
+         frame.counts, &frame.times);
+
+  const auto detecting = WallClock::now();
+  auto result = detect(frame.counts, frame.header, {}, w.threads);
+  frame.detection_s = since(detecting);
+  frame.detections = std::move(result.detections);
+  frame.report = std::move(result.report);
+  frame.report.stars_rendered = stars_drawn;
+  for (const auto& truth : frame.truths) frame.report.objects_rendered += truth.in_frame;
+  frame.report.plan = w.plan();
+  frame.total_s = since(start);
+  return frame;
+}
+
+}  // namespace dmise

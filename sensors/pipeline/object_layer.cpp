@@ -1,0 +1,255 @@
+#include "sensors/pipeline/object_layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/base/units.h"
+#include "core/optics/deposit.h"
+#include "core/optics/projection.h"
+#include "core/photometry/diffuse_sphere.h"
+#include "core/photometry/magnitude.h"
+#include "core/sky/shadow.h"
+#include "sensors/pipeline/light.h"
+
+namespace dmise {
+namespace {
+
+/// Light time, aberration and refraction move an object by less than this.
+constexpr double widest_shift_rad = 1.0 * deg;
+
+/// Least angle between `axis` and the shorter great-circle arc from `a` to `b`; all unit vectors.
+double angle_to_arc(const Vec<Gcrs>& axis, const Vec<Gcrs>& a, const Vec<Gcrs>& b) {
+  const double ends = std::min(angle_rad(axis, a), angle_rad(axis, b));
+  const Vec<Gcrs> n = cross(a, b);
+  const double length = norm(n);
+  if (length < 1e-12) return ends;
+  const Vec<Gcrs> foot = axis - n * (dot(axis, n) / (length * length));
+  const bool between = dot(cross(a, foot), n) >= 0 && dot(cross(foot, b), n) >= 0;
+  return between && norm(foot) > 1e-12 ? std::asin(std::min(1.0, std::abs(dot(axis, n)) / length))
+                                       : ends;
+}
+
+/// An object at one time of the exposure.
+struct Sample {
+  std::optional<PixelPosition> pixel;
+  double electrons_per_s = 0.0;  // expected at the detector; 0 when dark or hidden
+  double sunlit = 0.0;
+};
+
+/// One instant of the exposure with all that does not depend on the object.
+struct Instant {
+  SimTime time;
+  ApparentPlaces places;
+  Rotation<CameraFrame, Gcrs> camera;
+  Hidden hidden;
+  ObserverState observer;
+
+  Instant(const View& view, SimTime t)
+      : time(t),
+        places(view.places(t)),
+        camera(view.camera_from_gcrs(t)),
+        hidden(view, t),
+        observer(view.observer(t)) {}
+};
+
+class Painter {
+ public:
+  explicit Painter(const View& view)
+      : view_(view),
+        light_(view),
+        shadow_(view.environment().sun_m, oblate_earth(view.earth())),
+        with_shadow_(view.sensor().effects.has(Effect::shadow)),
+        zero_mag_(object_photons_per_s_m2(0.0, view.sensor().camera.band)) {}
+
+  Sample sample(std::size_t object, const Instant& at) const {
+    const Motion motion = view_.world().motion(object, at.time);
+    const auto place = at.places.satellite(motion.position_m, motion.slope_m_per_s);
+    Sample s;
+    s.pixel = project(view_.sensor().camera.optics, at.camera * place.direction);
+    s.sunlit = with_shadow_ ? shadow_.sunlit_fraction(motion.position_m) : 1.0;
+    if (s.sunlit > 0.0 && !at.hidden.object(motion.position_m, place.direction))
+      s.electrons_per_s = zero_mag_ * light_of_magnitude(magnitude(object, motion, at)) * s.sunlit *
+                          light_.transmission(place.direction) * light_.electrons_per_photon_m2();
+    return s;
+  }
+
+  Illumination illumination(const Motion& motion, const Vec<Gcrs>& observer_m) const {
+    const Vec<Gcrs> to_sun = view_.environment().sun_m - motion.position_m;
+    const Vec<Gcrs> to_observer = observer_m - motion.position_m;
+    return {.range_m = norm(to_observer),
+            .phase_rad = angle_rad(to_sun, to_observer),
+            .sun_distance_au = norm(to_sun) / au_m};
+  }
+
+  /// V above the atmosphere, fully lit.
+  double magnitude(std::size_t object, const Motion& motion, const Instant& at) const {
+    const auto& facts = view_.world().roster().objects[object];
+    return diffuse_sphere_magnitude({facts.radius_m, facts.albedo},
+                                    illumination(motion, at.observer.position_m));
+  }
+
+ private:
+  const View& view_;
+  Light light_;
+  EarthShadow shadow_;
+  bool with_shadow_;
+  double zero_mag_;
+};
+
+/// Arcs between samples at even times, an odd number of them: each arc takes three.
+std::vector<Arc> arcs_of(const std::vector<Sample>& samples, double seconds) {
+  std::vector<Arc> arcs;
+  const std::size_t count = (samples.size() - 1) / 2;
+  const double arc_s = seconds / double(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Sample &a = samples[2 * k], &m = samples[2 * k + 1], &b = samples[2 * k + 2];
+    if (!a.pixel || !m.pixel || !b.pixel) continue;
+    const double mean = (a.electrons_per_s + 4 * m.electrons_per_s + b.electrons_per_s) / 6;
+    if (mean <= 0.0) continue;
+    const double tilt =
+        std::clamp((b.electrons_per_s - a.electrons_per_s) / (2 * mean), -1.0, 1.0);
+    arcs.push_back({*a.pixel, *m.pixel, *b.pixel, mean * arc_s, tilt});
+  }
+  return arcs;
+}
+
+double distance_px(const Sample& a, const Sample& b) {
+  return a.pixel && b.pixel ? std::hypot(a.pixel->x_px - b.pixel->x_px, a.pixel->y_px - b.pixel->y_px)
+                            : 1e9;
+}
+
+bool inside(const std::optional<PixelPosition>& p, const Optics& optics) {
+  return p && p->x_px > -0.5 && p->y_px > -0.5 && p->x_px < optics.columns - 0.5 &&
+         p->y_px < optics.rows - 0.5;
+}
+
+/// A path this long [px] is cut into arcs; shorter ones are one parabola to 1e-3 px.
+constexpr double straight_enough_px = 8.0;
+constexpr std::size_t plain_arcs = 1, curved_arcs = 16, changing_arcs = 128;
+
+/// Brightness that changes by more than this over an arc has an edge in it: shadow, horizon.
+constexpr double abrupt_ratio = 0.5;
+
+bool changes_abruptly(const std::vector<Sample>& samples) {
+  double least = samples[0].electrons_per_s, most = least;
+  for (const auto& s : samples) {
+    least = std::min(least, s.electrons_per_s);
+    most = std::max(most, s.electrons_per_s);
+  }
+  return least < abrupt_ratio * most;
+}
+
+}  // namespace
+
+std::vector<std::size_t> objects_in_field(const View& view) {
+  const auto& exposure = view.times();
+  const auto& world = view.world();
+  const SimTime times[3] = {exposure.start, exposure.middle, exposure.end};
+  // Directions are compared in the camera's frame, brought back to GCRS axes of mid exposure.
+  Rotation<Gcrs, Gcrs> held[3];
+  Vec<Gcrs> observer[3];
+  const auto gcrs_from_camera = view.camera_from_gcrs(exposure.middle).inverse();
+  for (int k = 0; k < 3; ++k) {
+    held[k] = gcrs_from_camera * view.camera_from_gcrs(times[k]);
+    observer[k] = view.observer(times[k]).position_m;
+  }
+  const Vec<Gcrs> axis = gcrs_from_camera * Vec<CameraFrame>{0, 0, 1};
+  const double radius = half_diagonal_rad(view.sensor().camera.optics) + widest_shift_rad;
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < world.object_count(); ++i) {
+    if (view.platform() == i || !world.has_state(i, times[0]) || !world.has_state(i, times[2]) ||
+        !world.has_state(i, times[1]))
+      continue;
+    Vec<Gcrs> d[3];
+    for (int k = 0; k < 3; ++k)
+      d[k] = held[k] * unit(world.motion(i, times[k]).position_m - observer[k]);
+    if (std::min(angle_to_arc(axis, d[0], d[1]), angle_to_arc(axis, d[1], d[2])) < radius)
+      found.push_back(i);
+  }
+  return found;
+}
+
+std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
+                                const PsfTable& psf, RateImage& image, Threads& threads) {
+  const auto& exposure = view.times();
+  const auto& optics = view.sensor().camera.optics;
+  const Painter painter(view);
+  // Instants of the finest division; coarser ones take every so manieth.
+  std::vector<std::optional<Instant>> instants(2 * changing_arcs + 1);
+  const auto instant = [&](std::size_t k) -> const Instant& {
+    if (!instants[k])
+      instants[k].emplace(view, exposure.at(double(k) / double(instants.size() - 1)));
+    return *instants[k];
+  };
+  const auto samples_of = [&](std::size_t object, std::size_t arcs) {
+    std::vector<Sample> samples;
+    const std::size_t step = changing_arcs / arcs;
+    for (std::size_t k = 0; k < instants.size(); k += step)
+      samples.push_back(painter.sample(object, instant(k)));
+    return samples;
+  };
+
+  std::vector<Truth> truths;
+  for (const std::size_t object : objects) {
+    std::vector<Sample> samples = samples_of(object, plain_arcs);
+    const Sample start = samples[0], middle = samples[1], end = samples[2];
+    if (distance_px(start, middle) + distance_px(middle, end) > straight_enough_px)
+      samples = samples_of(object, curved_arcs);
+    if (changes_abruptly(samples)) samples = samples_of(object, changing_arcs);
+    Deposited light;
+    const auto arcs = arcs_of(samples, exposure.seconds());
+    if (!arcs.empty())
+      for (const auto& part : deposit(arcs, psf, image, threads)) light = light + part;
+    bool enters = false;
+    for (const auto& s : samples) enters = enters || inside(s.pixel, optics);
+    if (light.signal_e <= 0.0 && !enters) continue;
+
+    const Instant& mid = instant(changing_arcs);
+    const auto& facts = view.world().roster().objects[object];
+    const Motion motion = view.world().motion(object, mid.time);
+    const auto place = mid.places.satellite(motion.position_m, motion.slope_m_per_s);
+    const auto [ra, dec] = to_spherical(place.astrometric);
+    const auto [apparent_ra, apparent_dec] = to_spherical(place.aberrated);
+    double sunlit = 0.0;
+    for (const auto& s : samples) sunlit += s.sunlit / double(samples.size());
+    Truth truth{.sensor = view.sensor().name,
+                .frame = exposure.frame,
+                .catalogue_number = facts.catalogue_number,
+                .name = facts.name,
+                .start = exposure.start,
+                .middle = exposure.middle,
+                .end = exposure.end,
+                .true_range_m = place.range_m,
+                .true_ra_rad = ra,
+                .true_dec_rad = dec,
+                .apparent_ra_rad = apparent_ra,
+                .apparent_dec_rad = apparent_dec,
+                .phase_angle_rad = painter.illumination(motion, mid.observer.position_m).phase_rad,
+                .sunlit = sunlit,
+                .true_magnitude = painter.magnitude(object, motion, mid),
+                .rendered_signal_e = light.signal_e,
+                .rendered_x_px = light.x_px,
+                .rendered_y_px = light.y_px,
+                .in_frame = light.signal_e > 0.0,
+                .whole = inside(start.pixel, optics) && inside(middle.pixel, optics) &&
+                         inside(end.pixel, optics)};
+    if (view.on_ground())
+      truth.true_elevation_rad =
+          std::asin(std::clamp(dot(view.up(mid.time), unit(motion.position_m - mid.observer.position_m)),
+                               -1.0, 1.0));
+    const auto put = [](const Sample& s, double& x, double& y) {
+      if (s.pixel) {
+        x = s.pixel->x_px;
+        y = s.pixel->y_px;
+      }
+    };
+    put(start, truth.start_x_px, truth.start_y_px);
+    put(middle, truth.middle_x_px, truth.middle_y_px);
+    put(end, truth.end_x_px, truth.end_y_px);
+    truths.push_back(std::move(truth));
+  }
+  return truths;
+}
+
+}  // namespace dmise
