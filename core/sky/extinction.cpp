@@ -1,0 +1,140 @@
+#include "core/sky/extinction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+#include "core/photometry/spectrum.h"
+#include "core/photometry/star_light.h"
+
+namespace dmise {
+namespace {
+
+struct Sample {
+  double wavelength_nm, mag_per_airmass;
+};
+#include "core/sky/extinction_tables.inc"
+
+struct Site {
+  std::string_view name;
+  std::span<const Sample> samples;
+};
+constexpr Site sites[] = {{"lick", lick},           {"ctio", ctio},
+                          {"kitt_peak", kitt_peak}, {"la_palma", la_palma},
+                          {"mauna_kea", mauna_kea}, {"paranal", paranal}};
+
+// Nodes of the table. In airmass they are even in sqrt(X), which follows the bend near X = 0.
+constexpr int colours = 13;  // every 0.2 of B-V
+constexpr int airmasses = 33;
+constexpr double most_airmass = 40.0;
+constexpr double sun_bv = 0.65;
+
+double airmass_of_node(int i) {
+  const double t = double(i) / (airmasses - 1);
+  return most_airmass * t * t;
+}
+
+double bv_of_node(int i) { return least_bv + i * (greatest_bv - least_bv) / (colours - 1); }
+
+}  // namespace
+
+std::optional<Curve> extinction_of_site(std::string_view name) {
+  for (const Site& site : sites) {
+    if (site.name != name) continue;
+    Curve curve;
+    for (const Sample& sample : site.samples) {
+      curve.wavelength_m.push_back(sample.wavelength_nm * nm);
+      curve.value.push_back(sample.mag_per_airmass);
+    }
+    return curve;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> extinction_site_names() {
+  std::vector<std::string> names;
+  for (const Site& site : sites) names.emplace_back(site.name);
+  return names;
+}
+
+Curve extinction_scaled_to(double k_v) {
+  if (!(k_v >= 0 && k_v < 10))
+    throw Error("extinction must be in [0, 10) mag/airmass, got " + std::to_string(k_v));
+  Curve curve = *extinction_of_site("lick");
+  const double scale = k_v / curve.at_or_end(550 * nm);
+  for (double& k : curve.value) k *= scale;
+  return curve;
+}
+
+Curve air_transmission(const Curve& extinction_mag_per_airmass, double airmass) {
+  constexpr double step_m = 5 * nm;  // linear in k is not linear in the transmission
+  const Curve& k = extinction_mag_per_airmass;
+  Curve curve;
+  const auto add = [&](double x) {
+    curve.wavelength_m.push_back(x);
+    curve.value.push_back(std::pow(10.0, -0.4 * k.at_or_end(x) * airmass));
+  };
+  for (std::size_t i = 0; i < k.wavelength_m.size(); ++i) {
+    const double from = k.wavelength_m[i];
+    add(from);
+    if (i + 1 == k.wavelength_m.size()) break;
+    const double span = k.wavelength_m[i + 1] - from;
+    const int pieces = std::max(1, int(std::ceil(span / step_m - 1e-9)));
+    for (int p = 1; p < pieces; ++p) add(from + span * p / pieces);
+  }
+  return curve;
+}
+
+BandExtinction::BandExtinction(const Band& band, const Curve& extinction_mag_per_airmass) {
+  check_curve(extinction_mag_per_airmass, "extinction");
+  // The band is narrow against the change of extinction: sums over even steps of wavelength.
+  constexpr int steps = 128;
+  const double step_m = (band.high_m() - band.low_m()) / steps;
+  std::vector<double> k(steps), response(steps), x_um(steps);
+  for (int s = 0; s < steps; ++s) {
+    const double x = band.low_m() + (s + 0.5) * step_m;
+    k[s] = extinction_mag_per_airmass.at_or_end(x);
+    response[s] = band.response.at_or_zero(x);
+    x_um[s] = x / um;
+  }
+  log_of_transmission_.reserve(colours * airmasses);
+  for (int c = 0; c < colours; ++c) {
+    const double kelvin = colour_temperature(bv_of_node(c)).kelvin;
+    const double scale_um = planck_j_s * speed_of_light_m_per_s / (boltzmann_j_per_k * kelvin) / um;
+    for (int a = 0; a < airmasses; ++a) {
+      double through = 0.0, above = 0.0;
+      for (int s = 0; s < steps; ++s) {
+        const double photons =
+            response[s] / (std::pow(x_um[s], 4) * std::expm1(scale_um / x_um[s]));
+        above += photons;
+        // Held above 0 in the thickest ultraviolet, so that the logarithm stays finite.
+        through += photons * std::max(std::pow(10.0, -0.4 * k[s] * airmass_of_node(a)), 1e-30);
+      }
+      log_of_transmission_.push_back(std::log(through / above));
+    }
+  }
+}
+
+double BandExtinction::of_star(double airmass, double bv) const {
+  const double x = std::clamp(airmass, 0.0, most_airmass);
+  const double a = std::sqrt(x / most_airmass) * (airmasses - 1);
+  const int low = std::min(int(a), airmasses - 2);
+  const double x0 = airmass_of_node(low), x1 = airmass_of_node(low + 1);
+  const double ta = (x - x0) / (x1 - x0);
+  const double used = bv >= least_bv ? std::min(bv, greatest_bv) : least_bv;
+  const double c = (used - least_bv) / (greatest_bv - least_bv) * (colours - 1);
+  const int row = std::min(int(c), colours - 2);
+  const double tc = c - row;
+  const double* at = &log_of_transmission_[std::size_t(row) * airmasses + std::size_t(low)];
+  const double here = at[0] + ta * (at[1] - at[0]);
+  const double next = at[airmasses] + ta * (at[airmasses + 1] - at[airmasses]);
+  return std::exp(here + tc * (next - here));
+}
+
+double BandExtinction::of_sunlight(double airmass) const { return of_star(airmass, sun_bv); }
+
+double BandExtinction::zenith_mag() const { return -2.5 * std::log10(of_sunlight(1.0)); }
+
+}  // namespace dmise
