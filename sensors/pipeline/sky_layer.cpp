@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/optics/projection.h"
-#include "core/sky/sky_brightness.h"
+#include "core/sky/surface_brightness.h"
 #include "sensors/pipeline/light.h"
 
 namespace dmise {
