@@ -1,0 +1,363 @@
+#include "core/orbit/sgp4_batch.h"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/orbit/sgp4_kernels.h"
+
+namespace dmise {
+
+using namespace sgp4;
+
+namespace {
+
+const Kernels& kernels_for(Simd simd) {
+  switch (simd) {
+    case Simd::avx512: return kernels_avx512;
+    case Simd::avx2: return kernels_avx2;
+    case Simd::sse2: break;
+  }
+  return kernels_sse2;
+}
+
+/// Objects that go the same road through the model, in blocks, in the order given.
+struct Group {
+  bool deep = false;
+  Resonance resonance = Resonance::none;
+  bool eccentric = false;
+  std::vector<std::uint32_t> index;  // of the object in each lane
+  std::vector<NearTerms<Lanes>> near;
+  std::vector<DeepTerms<Lanes>> far;
+  std::vector<SynchronousTerms<Lanes>> day;
+  std::vector<HalfDayTerms<Lanes>> half_day;
+  // A memo of each block's integrator: whoever holds the block's lock starts from it and leaves its
+  // own behind; who doesn't starts from the epoch and finds the same, later.
+  mutable std::vector<ResonanceNode> nodes;
+  std::unique_ptr<std::atomic_flag[]> busy;
+
+  std::size_t blocks() const { return deep ? far.size() : near.size(); }
+  DeepBlock block(std::size_t k, ResonanceNode* node) const {
+    return {&far[k], resonance == Resonance::day ? &day[k] : nullptr,
+            resonance == Resonance::half_day ? &half_day[k] : nullptr, node, eccentric};
+  }
+};
+
+constexpr std::size_t group_count = 14;
+constexpr double near_circle_limit = 0.05;   // beyond it the short cuts of small eccentricity rarely hold
+constexpr double low_inclination_rad = 0.22;  // below it Lyddane's terms are likely
+
+std::size_t group_of(const Model& m) {
+  const std::size_t eccentric = m.eccentricity >= near_circle_limit;
+  if (!m.deep) return eccentric;
+  const std::size_t low = m.inclination_rad < low_inclination_rad;
+  return 2 + 4 * static_cast<std::size_t>(m.resonance) + 2 * low + eccentric;
+}
+
+void add_to_group(Group& g, const Model& m, std::uint32_t object) {
+  const int lane = static_cast<int>(g.index.size() % block_lanes);
+  g.index.push_back(object);
+  if (lane == 0) {
+    if (!m.deep) g.near.emplace_back();
+    if (m.deep) g.far.emplace_back();
+    if (m.resonance == Resonance::day) g.day.emplace_back();
+    if (m.resonance == Resonance::half_day) g.half_day.emplace_back();
+  }
+  // A new block holds its first object in every lane, so that no lane computes on nothing.
+  for (int k = lane; k < (lane == 0 ? block_lanes : lane + 1); ++k) {
+    if (!m.deep) set_lane(g.near.back(), k, m.near);
+    if (m.deep) set_lane(g.far.back(), k, m.far);
+    if (m.resonance == Resonance::day) set_lane(g.day.back(), k, m.day);
+    if (m.resonance == Resonance::half_day) set_lane(g.half_day.back(), k, m.half_day);
+  }
+}
+
+ResonanceNode no_node() {
+  ResonanceNode node{};
+  for (double& t : node.time.lane) t = std::numeric_limits<double>::quiet_NaN();
+  return node;
+}
+
+void check_sizes(std::size_t n, std::span<const double> position, std::span<const double> velocity,
+                 std::span<const std::uint8_t> code) {
+  if (position.size() != 3 * n || velocity.size() != 3 * n || code.size() != n)
+    throw Error("SGP4 output of " + std::to_string(n) + " states: got room for " +
+                std::to_string(position.size()) + " position, " + std::to_string(velocity.size()) +
+                " velocity components and " + std::to_string(code.size()) + " codes");
+}
+
+void put_failure(const Output& out, std::size_t i, std::uint8_t code) {
+  out.code[i] = code;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    out.position[i + axis * out.stride] = out.velocity[i + axis * out.stride] = 0.0;
+}
+
+}  // namespace
+
+struct Sgp4Batch::State {
+  /// Lane `slot` of a group, counted through its blocks; or the code of an object that has none.
+  struct Place {
+    std::uint8_t group = 0, code = 0;
+    std::uint32_t slot = 0;
+  };
+  Simd simd = Simd::sse2;
+  const Kernels* kernels = nullptr;
+  std::vector<Group> groups{group_count};
+  std::vector<Place> places;
+  std::vector<std::uint32_t> failed;
+
+  const SecularTerms<Lanes>& secular(const Place& p) const {
+    const Group& g = groups[p.group];
+    return g.deep ? g.far[p.slot / block_lanes].secular : g.near[p.slot / block_lanes].secular;
+  }
+
+  double minutes(const Place& p, double jd1, double jd2) const {
+    const SecularTerms<Lanes>& s = secular(p);
+    const int lane = static_cast<int>(p.slot % block_lanes);
+    return (jd1 - s.epoch_jd1.lane[lane]) * minutes_per_day +
+           (jd2 - s.epoch_jd2.lane[lane]) * minutes_per_day;
+  }
+
+  void run(const Group& g, std::size_t begin, std::size_t end, double jd1, double jd2,
+           const Output& out) const {
+    const std::size_t last = std::min(end * block_lanes, g.index.size());
+    if (!g.deep) {
+      kernels->near_blocks(&g.near[begin], &g.index[begin * block_lanes],
+                           last - begin * block_lanes, g.eccentric, jd1, jd2, out);
+      return;
+    }
+    for (std::size_t k = begin; k < end; ++k) {
+      const int objects = static_cast<int>(std::min<std::size_t>(block_lanes, last - k * block_lanes));
+      const std::uint32_t* index = &g.index[k * block_lanes];
+      if (g.resonance == Resonance::none) {
+        kernels->deep_block_at(g.block(k, nullptr), index, objects, jd1, jd2, out);
+      } else if (!g.busy[k].test_and_set(std::memory_order_acquire)) {
+        kernels->deep_block_at(g.block(k, &g.nodes[k]), index, objects, jd1, jd2, out);
+        g.busy[k].clear(std::memory_order_release);
+      } else {
+        ResonanceNode own = no_node();
+        kernels->deep_block_at(g.block(k, &own), index, objects, jd1, jd2, out);
+      }
+    }
+  }
+
+  /// Eight lanes put together from anywhere in one group.
+  struct Gathered {
+    NearTerms<Lanes> near;
+    DeepTerms<Lanes> far;
+    SynchronousTerms<Lanes> day;
+    HalfDayTerms<Lanes> half_day;
+    ResonanceNode node = no_node();
+    Lanes t;
+    BlockStates states;
+
+    void copy(const Group& g, std::uint32_t slot, int lane) {
+      const std::size_t k = slot / block_lanes;
+      const int from = static_cast<int>(slot % block_lanes);
+      if (!g.deep) copy_lane(near, lane, g.near[k], from);
+      if (g.deep) copy_lane(far, lane, g.far[k], from);
+      if (g.resonance == Resonance::day) copy_lane(day, lane, g.day[k], from);
+      if (g.resonance == Resonance::half_day) copy_lane(half_day, lane, g.half_day[k], from);
+    }
+    void propagate(const Group& g, const Kernels& kernels) {
+      if (!g.deep) {
+        kernels.near_block(near, g.eccentric, t, states);
+      } else {
+        kernels.deep_block({&far, g.resonance == Resonance::day ? &day : nullptr,
+                            g.resonance == Resonance::half_day ? &half_day : nullptr, &node,
+                            g.eccentric},
+                           t, states);
+      }
+    }
+    void put(int lane, const Output& out, std::size_t i) const {
+      out.code[i] = states.code[lane];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        out.position[i + axis * out.stride] = states.position[axis][lane];
+        out.velocity[i + axis * out.stride] = states.velocity[axis][lane];
+      }
+    }
+  };
+};
+
+std::string_view describe(Sgp4Code code) {
+  switch (code) {
+    case Sgp4Code::ok: return "ok";
+    case Sgp4Code::eccentricity: return "mean eccentricity outside [0, 1)";
+    case Sgp4Code::mean_motion: return "mean motion not above 0";
+    case Sgp4Code::perturbed_eccentricity: return "perturbed eccentricity outside [0, 1]";
+    case Sgp4Code::semilatus_rectum: return "semilatus rectum below 0";
+    case Sgp4Code::decayed: return "decayed: below the Earth's surface";
+    case Sgp4Code::absurd: return "radius beyond 2.2 a (1 + e), or too far from its epoch";
+  }
+  return "unknown code";
+}
+
+Simd best_simd() {
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return Simd::avx512;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return Simd::avx2;
+  return Simd::sse2;
+}
+
+std::string_view name(Simd simd) {
+  switch (simd) {
+    case Simd::avx512: return "avx512";
+    case Simd::avx2: return "avx2";
+    case Simd::sse2: break;
+  }
+  return "sse2";
+}
+
+Sgp4Batch::Sgp4Batch(std::span<const MeanElements> elements, Threads* threads, Simd simd) {
+  auto state = std::make_unique<State>();
+  state->simd = simd;
+  state->kernels = &kernels_for(simd);
+  state->places.resize(elements.size());
+
+  // In pieces, so that the models of a large catalogue never all lie side by side.
+  constexpr std::size_t piece = 4096;
+  std::vector<Model> models(std::min(piece, elements.size()));
+  for (std::size_t start = 0; start < elements.size(); start += piece) {
+    const std::size_t count = std::min(piece, elements.size() - start);
+    const auto work = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) models[k] = initialise(elements[start + k]);
+    };
+    if (threads) threads->for_ranges(count, 256, work);
+    else work(0, count);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Model& m = models[k];
+      State::Place& place = state->places[start + k];
+      const auto object = static_cast<std::uint32_t>(start + k);
+      place.code = m.code;
+      if (m.code != 0) {
+        state->failed.push_back(object);
+        continue;
+      }
+      place.group = static_cast<std::uint8_t>(group_of(m));
+      Group& g = state->groups[place.group];
+      place.slot = static_cast<std::uint32_t>(g.index.size());
+      g.deep = m.deep;
+      g.resonance = m.resonance;
+      g.eccentric = m.eccentricity >= near_circle_limit;
+      add_to_group(g, m, object);
+    }
+  }
+  for (Group& g : state->groups) {
+    g.index.shrink_to_fit();
+    g.near.shrink_to_fit();
+    g.far.shrink_to_fit();
+    g.day.shrink_to_fit();
+    g.half_day.shrink_to_fit();
+    if (g.resonance == Resonance::none) continue;
+    g.nodes.assign(g.blocks(), no_node());
+    g.busy = std::make_unique<std::atomic_flag[]>(g.blocks());
+  }
+  state_ = std::move(state);
+}
+
+Sgp4Batch::~Sgp4Batch() = default;
+Sgp4Batch::Sgp4Batch(Sgp4Batch&&) noexcept = default;
+Sgp4Batch& Sgp4Batch::operator=(Sgp4Batch&&) noexcept = default;
+
+std::size_t Sgp4Batch::size() const { return state_->places.size(); }
+Simd Sgp4Batch::simd() const { return state_->simd; }
+
+void Sgp4Batch::propagate(double jd1, double jd2, std::span<double> position_m,
+                          std::span<double> velocity_m_per_s, std::span<std::uint8_t> code,
+                          Threads* threads) const {
+  check_sizes(size(), position_m, velocity_m_per_s, code);
+  const Output out{position_m.data(), velocity_m_per_s.data(), code.data(), size()};
+  constexpr std::size_t grain = 64;  // blocks
+  for (const Group& g : state_->groups) {
+    if (g.index.empty()) continue;
+    if (!threads || threads->count() == 1) {
+      state_->run(g, 0, g.blocks(), jd1, jd2, out);
+    } else {
+      threads->for_ranges(g.blocks(), grain, [&](std::size_t begin, std::size_t end) {
+        state_->run(g, begin, end, jd1, jd2, out);
+      });
+    }
+  }
+  for (std::uint32_t i : state_->failed) put_failure(out, i, state_->places[i].code);
+}
+
+void Sgp4Batch::propagate_some(std::span<const std::uint32_t> objects, double jd1, double jd2,
+                               std::span<double> position_m, std::span<double> velocity_m_per_s,
+                               std::span<std::uint8_t> code) const {
+  check_sizes(objects.size(), position_m, velocity_m_per_s, code);
+  const Output out{position_m.data(), velocity_m_per_s.data(), code.data(), objects.size()};
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    if (objects[k] >= size())
+      throw Error("SGP4: object " + std::to_string(objects[k]) + " of " + std::to_string(size()));
+    const State::Place& p = state_->places[objects[k]];
+    if (p.code != 0) put_failure(out, k, p.code);
+  }
+  for (std::size_t group = 0; group < group_count; ++group) {
+    const Group& g = state_->groups[group];
+    State::Gathered some;
+    std::size_t to[block_lanes];
+    int lanes = 0;
+    const auto flush = [&] {
+      if (lanes == 0) return;
+      for (int k = lanes; k < block_lanes; ++k) {
+        const State::Place& p = state_->places[objects[to[0]]];
+        some.copy(g, p.slot, k);
+        some.t.lane[k] = some.t.lane[0];
+      }
+      some.node = no_node();
+      some.propagate(g, *state_->kernels);
+      for (int k = 0; k < lanes; ++k) some.put(k, out, to[k]);
+      lanes = 0;
+    };
+    if (g.index.empty()) continue;
+    for (std::size_t k = 0; k < objects.size(); ++k) {
+      const State::Place& p = state_->places[objects[k]];
+      if (p.code != 0 || p.group != group) continue;
+      some.copy(g, p.slot, lanes);
+      some.t.lane[lanes] = state_->minutes(p, jd1, jd2);
+      to[lanes++] = k;
+      if (lanes == block_lanes) flush();
+    }
+    flush();
+  }
+}
+
+void Sgp4Batch::propagate_times(std::size_t object, std::span<const double> minutes,
+                                std::span<double> position_m, std::span<double> velocity_m_per_s,
+                                std::span<std::uint8_t> code) const {
+  check_sizes(minutes.size(), position_m, velocity_m_per_s, code);
+  const Output out{position_m.data(), velocity_m_per_s.data(), code.data(), minutes.size()};
+  const State::Place& p = state_->places.at(object);
+  if (p.code != 0) {
+    for (std::size_t k = 0; k < minutes.size(); ++k) put_failure(out, k, p.code);
+    return;
+  }
+  const Group& g = state_->groups[p.group];
+  State::Gathered all;
+  for (int lane = 0; lane < block_lanes; ++lane) all.copy(g, p.slot, lane);
+  for (std::size_t start = 0; start < minutes.size(); start += block_lanes) {
+    const std::size_t count = std::min<std::size_t>(block_lanes, minutes.size() - start);
+    for (std::size_t k = 0; k < block_lanes; ++k)
+      all.t.lane[k] = minutes[start + std::min(k, count - 1)];
+    all.propagate(g, *state_->kernels);
+    for (std::size_t k = 0; k < count; ++k) all.put(static_cast<int>(k), out, start + k);
+  }
+}
+
+Sgp4State Sgp4Batch::propagate_one(std::size_t object, double minutes_since_epoch) const {
+  double r[3], v[3];
+  std::uint8_t code;
+  propagate_times(object, {&minutes_since_epoch, 1}, r, v, {&code, 1});
+  return {{r[0], r[1], r[2]}, {v[0], v[1], v[2]}, static_cast<Sgp4Code>(code)};
+}
+
+double Sgp4Batch::minutes_since_epoch(std::size_t object, double jd1, double jd2) const {
+  const State::Place& p = state_->places.at(object);
+  if (p.code != 0) throw Error("SGP4: object " + std::to_string(object) + " has no epoch: " +
+                               std::string(describe(static_cast<Sgp4Code>(p.code))));
+  return state_->minutes(p, jd1, jd2);
+}
+
+}  // namespace dmise

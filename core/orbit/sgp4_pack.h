@@ -1,0 +1,158 @@
+// Doubles side by side, as many as the instruction set that this file is compiled for has lanes:
+// 8 with AVX-512 (F, DQ), 4 with AVX2 and FMA, else 2 with SSE2. Included only by sgp4_kernel.h, in
+// one file for each instruction set; everything has internal linkage, so that no function compiled
+// for one set is linked into code that runs on another.
+#pragma once
+#include <immintrin.h>
+
+#define DMISE_INLINE __attribute__((always_inline)) inline
+
+namespace dmise::sgp4 {
+namespace {
+
+// madd(a, b, c) = a b + c and nmadd(a, b, c) = c - a b: fused on purpose where FMA exists.
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+
+constexpr int pack_lanes = 8;
+constexpr bool fused = true;
+
+struct Mask {
+  __mmask8 m;
+};
+DMISE_INLINE Mask operator&(Mask a, Mask b) { return {__mmask8(a.m & b.m)}; }
+DMISE_INLINE Mask operator|(Mask a, Mask b) { return {__mmask8(a.m | b.m)}; }
+DMISE_INLINE Mask operator~(Mask a) { return {__mmask8(~a.m)}; }
+DMISE_INLINE unsigned bits(Mask a) { return a.m; }
+
+struct Pack {
+  __m512d v;
+  Pack() = default;
+  DMISE_INLINE Pack(__m512d x) : v(x) {}
+  DMISE_INLINE Pack(double x) : v(_mm512_set1_pd(x)) {}
+};
+DMISE_INLINE Pack load(const double* p) { return _mm512_load_pd(p); }
+DMISE_INLINE void store(double* p, Pack a) { _mm512_store_pd(p, a.v); }
+DMISE_INLINE Pack operator+(Pack a, Pack b) { return _mm512_add_pd(a.v, b.v); }
+DMISE_INLINE Pack operator-(Pack a, Pack b) { return _mm512_sub_pd(a.v, b.v); }
+DMISE_INLINE Pack operator*(Pack a, Pack b) { return _mm512_mul_pd(a.v, b.v); }
+DMISE_INLINE Pack operator/(Pack a, Pack b) { return _mm512_div_pd(a.v, b.v); }
+DMISE_INLINE Pack madd(Pack a, Pack b, Pack c) { return _mm512_fmadd_pd(a.v, b.v, c.v); }
+DMISE_INLINE Pack nmadd(Pack a, Pack b, Pack c) { return _mm512_fnmadd_pd(a.v, b.v, c.v); }
+DMISE_INLINE Pack sqrt(Pack a) { return _mm512_sqrt_pd(a.v); }
+DMISE_INLINE Pack max(Pack a, Pack b) { return _mm512_max_pd(a.v, b.v); }
+DMISE_INLINE Pack abs(Pack a) { return _mm512_abs_pd(a.v); }
+DMISE_INLINE Mask operator<(Pack a, Pack b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LT_OQ)}; }
+DMISE_INLINE Mask operator<=(Pack a, Pack b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LE_OQ)}; }
+DMISE_INLINE Mask operator==(Pack a, Pack b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_EQ_OQ)}; }
+DMISE_INLINE Pack select(Mask m, Pack yes, Pack no) {
+  return _mm512_mask_blend_pd(m.m, no.v, yes.v);
+}
+DMISE_INLINE Pack copy_sign(Pack magnitude, Pack sign) {
+  const __m512d s = _mm512_set1_pd(-0.0);
+  return _mm512_or_pd(_mm512_andnot_pd(s, magnitude.v), _mm512_and_pd(s, sign.v));
+}
+/// -x where the lowest bit of `odd` is set.
+DMISE_INLINE Pack negate_odd(Pack x, Pack odd) {
+  return _mm512_castsi512_pd(_mm512_xor_si512(
+      _mm512_castpd_si512(x.v), _mm512_slli_epi64(_mm512_castpd_si512(odd.v), 63)));
+}
+
+#elif defined(__AVX2__) && defined(__FMA__)
+
+constexpr int pack_lanes = 4;
+constexpr bool fused = true;
+
+struct Mask {
+  __m256d m;
+};
+DMISE_INLINE Mask operator&(Mask a, Mask b) { return {_mm256_and_pd(a.m, b.m)}; }
+DMISE_INLINE Mask operator|(Mask a, Mask b) { return {_mm256_or_pd(a.m, b.m)}; }
+DMISE_INLINE Mask operator~(Mask a) {
+  return {_mm256_xor_pd(a.m, _mm256_castsi256_pd(_mm256_set1_epi64x(-1)))};
+}
+DMISE_INLINE unsigned bits(Mask a) { return unsigned(_mm256_movemask_pd(a.m)); }
+
+struct Pack {
+  __m256d v;
+  Pack() = default;
+  DMISE_INLINE Pack(__m256d x) : v(x) {}
+  DMISE_INLINE Pack(double x) : v(_mm256_set1_pd(x)) {}
+};
+DMISE_INLINE Pack load(const double* p) { return _mm256_load_pd(p); }
+DMISE_INLINE void store(double* p, Pack a) { _mm256_store_pd(p, a.v); }
+DMISE_INLINE Pack operator+(Pack a, Pack b) { return _mm256_add_pd(a.v, b.v); }
+DMISE_INLINE Pack operator-(Pack a, Pack b) { return _mm256_sub_pd(a.v, b.v); }
+DMISE_INLINE Pack operator*(Pack a, Pack b) { return _mm256_mul_pd(a.v, b.v); }
+DMISE_INLINE Pack operator/(Pack a, Pack b) { return _mm256_div_pd(a.v, b.v); }
+DMISE_INLINE Pack madd(Pack a, Pack b, Pack c) { return _mm256_fmadd_pd(a.v, b.v, c.v); }
+DMISE_INLINE Pack nmadd(Pack a, Pack b, Pack c) { return _mm256_fnmadd_pd(a.v, b.v, c.v); }
+DMISE_INLINE Pack sqrt(Pack a) { return _mm256_sqrt_pd(a.v); }
+DMISE_INLINE Pack max(Pack a, Pack b) { return _mm256_max_pd(a.v, b.v); }
+DMISE_INLINE Pack abs(Pack a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v); }
+DMISE_INLINE Mask operator<(Pack a, Pack b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_LT_OQ)}; }
+DMISE_INLINE Mask operator<=(Pack a, Pack b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_LE_OQ)}; }
+DMISE_INLINE Mask operator==(Pack a, Pack b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_EQ_OQ)}; }
+DMISE_INLINE Pack select(Mask m, Pack yes, Pack no) { return _mm256_blendv_pd(no.v, yes.v, m.m); }
+DMISE_INLINE Pack copy_sign(Pack magnitude, Pack sign) {
+  const __m256d s = _mm256_set1_pd(-0.0);
+  return _mm256_or_pd(_mm256_andnot_pd(s, magnitude.v), _mm256_and_pd(s, sign.v));
+}
+DMISE_INLINE Pack negate_odd(Pack x, Pack odd) {
+  return _mm256_xor_pd(
+      x.v, _mm256_castsi256_pd(_mm256_slli_epi64(_mm256_castpd_si256(odd.v), 63)));
+}
+
+#else
+
+constexpr int pack_lanes = 2;
+constexpr bool fused = false;
+
+struct Mask {
+  __m128d m;
+};
+DMISE_INLINE Mask operator&(Mask a, Mask b) { return {_mm_and_pd(a.m, b.m)}; }
+DMISE_INLINE Mask operator|(Mask a, Mask b) { return {_mm_or_pd(a.m, b.m)}; }
+DMISE_INLINE Mask operator~(Mask a) {
+  return {_mm_xor_pd(a.m, _mm_castsi128_pd(_mm_set1_epi64x(-1)))};
+}
+DMISE_INLINE unsigned bits(Mask a) { return unsigned(_mm_movemask_pd(a.m)); }
+
+struct Pack {
+  __m128d v;
+  Pack() = default;
+  DMISE_INLINE Pack(__m128d x) : v(x) {}
+  DMISE_INLINE Pack(double x) : v(_mm_set1_pd(x)) {}
+};
+DMISE_INLINE Pack load(const double* p) { return _mm_load_pd(p); }
+DMISE_INLINE void store(double* p, Pack a) { _mm_store_pd(p, a.v); }
+DMISE_INLINE Pack operator+(Pack a, Pack b) { return _mm_add_pd(a.v, b.v); }
+DMISE_INLINE Pack operator-(Pack a, Pack b) { return _mm_sub_pd(a.v, b.v); }
+DMISE_INLINE Pack operator*(Pack a, Pack b) { return _mm_mul_pd(a.v, b.v); }
+DMISE_INLINE Pack operator/(Pack a, Pack b) { return _mm_div_pd(a.v, b.v); }
+DMISE_INLINE Pack madd(Pack a, Pack b, Pack c) { return a * b + c; }
+DMISE_INLINE Pack nmadd(Pack a, Pack b, Pack c) { return c - a * b; }
+DMISE_INLINE Pack sqrt(Pack a) { return _mm_sqrt_pd(a.v); }
+DMISE_INLINE Pack max(Pack a, Pack b) { return _mm_max_pd(a.v, b.v); }
+DMISE_INLINE Pack abs(Pack a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a.v); }
+DMISE_INLINE Mask operator<(Pack a, Pack b) { return {_mm_cmplt_pd(a.v, b.v)}; }
+DMISE_INLINE Mask operator<=(Pack a, Pack b) { return {_mm_cmple_pd(a.v, b.v)}; }
+DMISE_INLINE Mask operator==(Pack a, Pack b) { return {_mm_cmpeq_pd(a.v, b.v)}; }
+DMISE_INLINE Pack select(Mask m, Pack yes, Pack no) {
+  return _mm_or_pd(_mm_and_pd(m.m, yes.v), _mm_andnot_pd(m.m, no.v));
+}
+DMISE_INLINE Pack copy_sign(Pack magnitude, Pack sign) {
+  const __m128d s = _mm_set1_pd(-0.0);
+  return _mm_or_pd(_mm_andnot_pd(s, magnitude.v), _mm_and_pd(s, sign.v));
+}
+DMISE_INLINE Pack negate_odd(Pack x, Pack odd) {
+  return _mm_xor_pd(x.v, _mm_castsi128_pd(_mm_slli_epi64(_mm_castpd_si128(odd.v), 63)));
+}
+
+#endif
+
+constexpr unsigned all_lanes = (1u << pack_lanes) - 1u;
+DMISE_INLINE bool any(Mask m) { return bits(m) != 0; }
+
+}  // namespace
+}  // namespace dmise::sgp4

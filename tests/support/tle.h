@@ -1,0 +1,64 @@
+#pragma once
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/base/units.h"
+#include "core/orbit/elements.h"
+
+// The least that turns well-formed TLE lines into mean elements; the product's reader does the rest.
+namespace dmise::test {
+
+inline double tle_exponent(const std::string& field) {  // " 12345-3" is 0.12345e-3
+  const double mantissa = std::atof((field.substr(0, 1) + "." + field.substr(1, 5)).c_str());
+  return mantissa * std::pow(10.0, std::atoi(field.substr(6, 2).c_str()));
+}
+
+inline double julian_date_of_year(int year) {  // of January 0, 0h
+  const int y = year - 1;
+  return 1721424.5 + 365.0 * y + y / 4 - y / 100 + y / 400;
+}
+
+inline MeanElements elements_from_tle(const std::string& line1, const std::string& line2,
+                                      const std::string& name = "") {
+  MeanElements e;
+  e.name = name;
+  const char first = line1[2];
+  const std::string digits = line1.substr(3, 4);
+  int lead = first >= 'A' ? first - 'A' + 10 - (first > 'I') - (first > 'O') : std::atoi(line1.substr(2, 1).c_str());
+  e.catalogue_number = std::uint32_t(lead * 10000 + std::atoi(digits.c_str()));
+  const int year = std::atoi(line1.substr(18, 2).c_str());
+  e.epoch_jd1 = julian_date_of_year(year < 57 ? 2000 + year : 1900 + year) +
+                std::atoi(line1.substr(20, 3).c_str());
+  e.epoch_jd2 = std::atof(("0" + line1.substr(23, 9)).c_str());
+  e.mean_motion_rad_per_min = std::atof(line2.substr(52, 11).c_str()) * 2.0 * pi / 1440.0;
+  std::string eccentricity = line2.substr(26, 7);
+  for (char& c : eccentricity)
+    if (c == ' ') c = '0';
+  e.eccentricity = std::atof(("0." + eccentricity).c_str());
+  e.inclination_rad = std::atof(line2.substr(8, 8).c_str()) * deg;
+  e.raan_rad = std::atof(line2.substr(17, 8).c_str()) * deg;
+  e.argument_of_perigee_rad = std::atof(line2.substr(34, 8).c_str()) * deg;
+  e.mean_anomaly_rad = std::atof(line2.substr(43, 8).c_str()) * deg;
+  e.bstar_per_earth_radius = tle_exponent(line1.substr(53, 8));
+  return e;
+}
+
+/// Every pair of lines "1 ..." and "2 ..." in a text; other lines are names or comments.
+inline std::vector<MeanElements> elements_from_text(const std::string& text) {
+  std::vector<MeanElements> all;
+  std::istringstream in(text);
+  std::string line, line1;
+  while (std::getline(in, line)) {
+    if (line.size() >= 61 && line.compare(0, 2, "1 ") == 0) line1 = line;
+    if (line.size() >= 63 && line.compare(0, 2, "2 ") == 0 && !line1.empty()) {
+      all.push_back(elements_from_tle(line1, line));
+      line1.clear();
+    }
+  }
+  return all;
+}
+
+}  // namespace dmise::test
