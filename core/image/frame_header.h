@@ -20,12 +20,12 @@ struct Quaternion {
 };
 
 /// Where a ground sensor stands.
-struct Site {
+struct SitePlace {
   double latitude_rad = 0.0, longitude_rad = 0.0;  // geodetic
   double height_m = 0.0;                           // above the scenario's ellipsoid
   Vec<Itrs> position_m;
 
-  bool operator==(const Site&) const = default;
+  bool operator==(const SitePlace&) const = default;
 };
 
 /// Everything that a frame says of itself: what its FITS header holds and all that a detector may
@@ -60,7 +60,7 @@ struct FrameHeader {
 
   Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // geocentric, mid exposure
   Vec<Gcrs> earth_velocity_m_per_s;                      // of the geocentre, barycentric, GCRS axes
-  std::optional<Site> site;                              // of a ground sensor
+  std::optional<SitePlace> site;                             // of a ground sensor
 
   bool operator==(const FrameHeader&) const = default;
 };

@@ -1,7 +1,7 @@
 #include "nodes/environment/environment_actor.h"
 
 #include "core/frames/earth_orientation.h"
-#include "core/sky/solar_system.h"
+#include "core/sky/sun_moon.h"
 
 namespace dmise {
 

@@ -125,8 +125,10 @@ FrameHeader FramePipeline::Work::header(const View& view) const {
                 .focal_length_px = optics.focal_length_px(),
                 .sensor_position_m = observer.position_m,
                 .sensor_velocity_m_per_s = observer.velocity_m_per_s,
-                .earth_velocity_m_per_s = environment.earth_velocity_m_per_s,
-                .site = view.site()};
+                .earth_velocity_m_per_s = environment.earth_velocity_m_per_s};
+  if (const auto& site = view.site())
+    h.site = SitePlace{site->latitude_deg * deg, site->longitude_deg * deg, site->height_m,
+                       itrs_from_geodetic(*site)};
   const double most_dn =
       has(Effect::quantisation) ? std::exp2(detector.adc_bits) - 1 : 65535.0;
   const double well_dn = h.full_well_e / h.gain_e_per_dn + h.bias_dn;

@@ -30,11 +30,11 @@ struct FrameProducts {
 
 /// What a sensor's frames have in common.
 struct PipelineSettings {
-  double faintest_star_mag = 9.5;
   SensorConfig sensor;
   Clock clock;
   std::uint64_t seed = 1;
-  std::string digest;
+  std::string digest;            // of the run, written into every frame
+  double faintest_star_mag = 9.5;
   bool star_truth = false;
 };
 

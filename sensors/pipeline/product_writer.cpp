@@ -68,11 +68,11 @@ void ProductWriter::write(const FrameProducts& f) {
   const auto utc = [this](SimTime t) { return format_utc(clock_.utc(t), 6); };
   std::string lines;
   if (output_.truth) {
-    for (const auto& truth : f.truths) lines += truth_json(truth, utc) + "\n";
+    for (const auto& truth : f.truths) lines += to_json(truth, utc) + "\n";
     append("truth.jsonl", lines);
   }
   lines.clear();
-  for (const auto& detection : f.detections) lines += detection_json(detection, utc) + "\n";
+  for (const auto& detection : f.detections) lines += to_json(detection, utc) + "\n";
   append("detections.jsonl", lines);
 
   JsonWriter cost;
@@ -83,7 +83,7 @@ void ProductWriter::write(const FrameProducts& f) {
     cost.field(facts(static_cast<Effect>(i)).name, f.times.seconds[i]);
   cost.end_object().end_object();
   append("cost.jsonl", cost.take() + "\n");
-  append("frames.jsonl", report_json(f.report, utc) + "\n");
+  append("frames.jsonl", to_json(f.report, utc) + "\n");
 }
 
 }  // namespace dmise
