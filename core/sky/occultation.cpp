@@ -1,0 +1,34 @@
+#include "core/sky/occultation.h"
+
+namespace dmise {
+
+FreeSight::FreeSight(const Vec<Gcrs>& from_m, const OblateEarth& earth)
+    : earth_(earth),
+      from_(earth.stretched(from_m)),
+      from_squared_(dot(from_, from_)),
+      radius_squared_(earth.ellipsoid.equatorial_radius_m * earth.ellipsoid.equatorial_radius_m) {}
+
+// `along`: projection of the stretched place on the line, negative where the line comes down.
+bool FreeSight::passes(const Vec<Gcrs>& line, double along) const {
+  if (along >= 0.0) return true;
+  return from_squared_ - along * along / dot(line, line) >= radius_squared_;
+}
+
+bool FreeSight::clear(const Vec<Gcrs>& to_m) const {
+  const Vec<Gcrs> to = earth_.stretched(to_m);
+  if (dot(to, to) < radius_squared_) return false;
+  const Vec<Gcrs> line = to - from_;
+  if (dot(line, to) <= 0.0) return true;  // the end is the lowest point, and it is outside
+  return passes(line, dot(line, from_));
+}
+
+bool FreeSight::clear_direction(const Vec<Gcrs>& direction) const {
+  const Vec<Gcrs> line = earth_.stretched(direction);
+  return passes(line, dot(line, from_));
+}
+
+bool line_of_sight_clear(const Vec<Gcrs>& from_m, const Vec<Gcrs>& to_m, const OblateEarth& earth) {
+  return FreeSight(from_m, earth).clear(to_m);
+}
+
+}  // namespace dmise

@@ -1,0 +1,139 @@
+#include "core/sky/shadow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr double sun_radius_m = 6.957e8;  // IAU 2015 Resolution B3, nominal
+
+// The cheap tests hold for any Sun from 0.98 au on and any object out to 2e8 m.
+constexpr double cone_slope =
+    0.0048;  // of the penumbra's and umbra's edge: tan of the Sun's radius
+constexpr double margin_m = 100e3;
+
+// 2/3 b^3 - ... = b - sin b cos b, without cancellation.
+double segment(double b) {
+  if (b > 0.05) return b - std::sin(b) * std::cos(b);
+  const double bb = b * b;
+  return b * bb * (2.0 / 3 - bb * (2.0 / 15 - bb * (4.0 / 315)));
+}
+
+// Visible fraction of a disc of angular radius `s` whose centre stands `above` outside a limb of
+// geodesic curvature `k` >= 0 (the limb's circle has radius 1/k in the plane that touches the
+// sphere at the Sun; k = 0 is a straight horizon). All in radians.
+double visible_fraction(double s, double above, double k) {
+  if (above >= s) return 1.0;
+  const double centres = 1.0 + above * k;  // distance of the two centres, times k
+  if (s * k <= 1.0 && above <= -s) return 0.0;
+  if (s * k > 1.0 && centres <= s * k - 1.0) return 1.0 - 1.0 / (s * s * k * k);
+
+  // Half angles of the chord where the circles cross, seen from the disc's and the limb's centre.
+  const double cos_a = (2 * above + (above * above + s * s) * k) / (2 * s * centres);
+  const double a = std::acos(std::clamp(cos_a, -1.0, 1.0));
+  const double sin_b = s * k * std::sin(a);
+  const double cos_b = (centres * centres + 1.0 - s * s * k * k) / (2 * centres);
+  const double b = std::atan2(sin_b, cos_b);
+  const double of_disc = a - std::sin(a) * std::cos(a);
+  const double of_limb = b > 0.0 ? segment(b) / (s * s * k * k) : 0.0;
+  return std::clamp(1.0 - (of_disc + of_limb) / pi, 0.0, 1.0);
+}
+
+// A unit vector across `v` in the plane of `v` and `towards`; any across `v` when these are
+// parallel.
+Vec<Gcrs> across(const Vec<Gcrs>& v, const Vec<Gcrs>& towards) {
+  const Vec<Gcrs> part = towards - v * (dot(towards, v) / dot(v, v));
+  if (norm(part) > 1e-12 * norm(towards)) return unit(part);
+  const Vec<Gcrs> other = std::abs(v.x) < 0.6 * norm(v) ? Vec<Gcrs>{1, 0, 0} : Vec<Gcrs>{0, 1, 0};
+  return unit(cross(v, other));
+}
+
+}  // namespace
+
+EarthShadow::EarthShadow(const Vec<Gcrs>& sun_m, const OblateEarth& earth)
+    : sun_m_(sun_m), towards_sun_(unit(sun_m)), earth_(earth) {}
+
+bool EarthShadow::fully_lit(double along_m, double across_squared_m2) const {
+  if (along_m > margin_m) return true;
+  const double reach =
+      earth_.ellipsoid.equatorial_radius_m + margin_m + cone_slope * std::abs(along_m);
+  return across_squared_m2 > reach * reach;
+}
+
+bool EarthShadow::fully_dark(double along_m, double across_squared_m2) const {
+  if (along_m > -margin_m) return false;
+  const double reach = earth_.ellipsoid.polar_radius_m() - margin_m + cone_slope * along_m;
+  return reach > 0.0 && across_squared_m2 < reach * reach;
+}
+
+double EarthShadow::in_penumbra(const Vec<Gcrs>& object_m, const Vec<Gcrs>& stretched_m) const {
+  const Vec<Gcrs> to_sun = sun_m_ - object_m;
+  // In stretched space the Earth is a sphere: the limb towards the Sun lies in the plane of object,
+  // Earth and Sun, and the plane that touches there has the normal below. Planes stay planes, so
+  // the Sun's height over it is then taken in true space.
+  const double distance = norm(stretched_m);
+  const double radius = earth_.ellipsoid.equatorial_radius_m;
+  const double sin_limb = std::min(1.0, radius / distance);
+  const double cos_limb = std::sqrt((1.0 - sin_limb) * (1.0 + sin_limb));
+  const Vec<Gcrs> outwards = stretched_m / distance;
+  const Vec<Gcrs> side = across(outwards, earth_.stretched(to_sun));
+  const Vec<Gcrs> normal = unit(earth_.stretched(outwards * sin_limb + side * cos_limb));
+
+  const double sun_distance = norm(to_sun);
+  const double above = std::asin(std::clamp(dot(normal, to_sun) / sun_distance, -1.0, 1.0));
+  return visible_fraction(std::asin(sun_radius_m / sun_distance), above, cos_limb / sin_limb);
+}
+
+double EarthShadow::sunlit_fraction(const Vec<Gcrs>& object_m) const {
+  const Vec<Gcrs> stretched_m = earth_.stretched(object_m);
+  const double r = norm(stretched_m), radius = earth_.ellipsoid.equatorial_radius_m;
+  if (!(r >= radius * (1 - 1e-12))) {
+    char text[160];
+    std::snprintf(text, sizeof text, "object inside the Earth: position (%.0f, %.0f, %.0f) m",
+                  object_m.x, object_m.y, object_m.z);
+    throw Error(text);
+  }
+  const double along = dot(object_m, towards_sun_);
+  const double across_squared = dot(object_m, object_m) - along * along;
+  if (fully_lit(along, across_squared)) return 1.0;
+  if (fully_dark(along, across_squared)) return 0.0;
+  return in_penumbra(object_m, stretched_m);
+}
+
+std::size_t EarthShadow::sunlit_fractions(std::span<const double> position_m,
+                                          std::span<double> fraction) const {
+  const std::size_t count = fraction.size();
+  if (position_m.size() != 3 * count) throw Error("sunlit_fractions: three positions a fraction");
+  const double radius = earth_.ellipsoid.equatorial_radius_m;
+  const double clear_squared = (radius + 1.0) * (radius + 1.0);
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec<Gcrs> object_m{position_m[i], position_m[count + i], position_m[2 * count + i]};
+    const double squared = dot(object_m, object_m);
+    const double along = dot(object_m, towards_sun_);
+    const double across_squared = squared - along * along;
+    if (!(squared >= clear_squared) && !(norm(earth_.stretched(object_m)) >= radius)) {
+      fraction[i] = 0.0;
+      ++inside;
+    } else if (fully_lit(along, across_squared)) {
+      fraction[i] = 1.0;
+    } else if (fully_dark(along, across_squared)) {
+      fraction[i] = 0.0;
+    } else {
+      fraction[i] = in_penumbra(object_m, earth_.stretched(object_m));
+    }
+  }
+  return inside;
+}
+
+double sunlit_fraction(const Vec<Gcrs>& object_m, const Vec<Gcrs>& sun_m,
+                       const OblateEarth& earth) {
+  return EarthShadow(sun_m, earth).sunlit_fraction(object_m);
+}
+
+}  // namespace dmise

@@ -1,0 +1,70 @@
+#include "core/sky/sun_moon.h"
+
+#include <erfa.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+Vec<Gcrs> from_au(const double (&v)[3]) { return Vec<Gcrs>{v[0], v[1], v[2]} * au_m; }
+Vec<Gcrs> from_au_per_day(const double (&v)[3]) { return from_au(v) / day_s; }
+
+Tt later(const Tt& tt, double days) { return {tt.jd1, tt.jd2 + days}; }
+
+}  // namespace
+
+Vec<Gcrs> sun_by_almanac_m(const Tt& tt) {
+  const double n = (tt.jd1 - 2451545.0) + tt.jd2;  // days since J2000.0
+  const double mean_longitude = (280.460 + 0.9856474 * n) * deg;
+  const double anomaly = (357.528 + 0.9856003 * n) * deg;
+  const double distance_au =
+      1.00014 - 0.01671 * std::cos(anomaly) - 0.00014 * std::cos(2 * anomaly);
+  const double apparent_longitude =
+      mean_longitude + (1.915 * std::sin(anomaly) + 0.020 * std::sin(2 * anomaly)) * deg;
+  const double longitude = apparent_longitude + 20.5 * arcsec / distance_au;  // less aberration
+  const double obliquity = (23.439 - 4e-7 * n) * deg;
+
+  // Mean equator and equinox of date, then back by precession and frame bias.
+  double of_date[3] = {std::cos(longitude), std::cos(obliquity) * std::sin(longitude),
+                       std::sin(obliquity) * std::sin(longitude)};
+  double precession[3][3], gcrs[3];
+  eraPmat06(tt.jd1, tt.jd2, precession);
+  eraTrxp(precession, of_date, gcrs);
+  return from_au(gcrs) * distance_au;
+}
+
+Vec<Gcrs> moon_m(const Tt& tt) {
+  double pv[2][3];
+  eraMoon98(tt.jd1, tt.jd2, pv);
+  return from_au(pv[0]);
+}
+
+SolarSystem solar_system(const Tt& tt, Ephemeris ephemeris) {
+  const double years = julian_years_since_j2000(tt);
+  if (!(std::abs(years) <= 100.0))
+    throw Error("the Sun's ephemeris covers 1900 to 2100, got " + std::to_string(2000 + years));
+
+  SolarSystem s{.moon_m = moon_m(tt)};
+  if (ephemeris == Ephemeris::almanac) {
+    s.sun_m = sun_by_almanac_m(tt);
+    s.earth_barycentric_m = -s.sun_m;
+    const double half_days = 0.5;
+    s.earth_velocity_m_per_s =
+        (sun_by_almanac_m(later(tt, -half_days)) - sun_by_almanac_m(later(tt, half_days))) /
+        (2 * half_days * day_s);
+  } else {
+    double heliocentric[2][3], barycentric[2][3];
+    eraEpv00(tt.jd1, tt.jd2, heliocentric, barycentric);
+    s.sun_m = -from_au(heliocentric[0]);
+    s.earth_barycentric_m = from_au(barycentric[0]);
+    s.earth_velocity_m_per_s = from_au_per_day(barycentric[1]);
+  }
+  return s;
+}
+
+}  // namespace dmise

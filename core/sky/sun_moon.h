@@ -1,0 +1,31 @@
+#pragma once
+#include "core/frames/vec.h"
+#include "core/time/julian_date.h"
+
+namespace dmise {
+
+/// Sun, Moon and Earth at one instant, geometric (no light time), ICRS axes.
+struct SolarSystem {
+  Vec<Gcrs> sun_m;                   // from the Earth's centre
+  Vec<Gcrs> moon_m;                  // from the Earth's centre
+  Vec<Gcrs> earth_barycentric_m;     // the Earth's centre from the barycentre
+  Vec<Gcrs> earth_velocity_m_per_s;  // barycentric
+};
+
+/// Rungs of a ladder: accuracy against time.
+enum class Ephemeris {
+  almanac,  // Astronomical Almanac, page C5: 0.01 deg, 1950 to 2050
+  epv00,    // ERFA eraEpv00: 5 km (Earth from the Sun 0.01 arcsec), 5 mm/s; 1900 to 2100
+};
+
+/// Geometric Sun by the low-precision formulae of the Astronomical Almanac.
+Vec<Gcrs> sun_by_almanac_m(const Tt& tt);
+
+/// Moon by ERFA eraMoon98 (Meeus after ELP 2000-82): 10 arcsec, 20 km.
+Vec<Gcrs> moon_m(const Tt& tt);
+
+/// Throws `Error` outside 1900 to 2100. The almanac's rung takes the barycentre for the Sun's
+/// centre: its velocity is good to 30 m/s (20 mas of aberration).
+SolarSystem solar_system(const Tt& tt, Ephemeris ephemeris = Ephemeris::epv00);
+
+}  // namespace dmise

@@ -1,0 +1,204 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <numeric>
+#include <vector>
+
+#include "core/sky/apparent.h"
+#include "core/time/iso8601.h"
+#include "tests/support/data.h"
+
+namespace dmise {
+namespace {
+
+struct Row {
+  double jd1, jd2;
+  double ra_rad, dec_rad, pm_ra, pm_dec, parallax, radial_velocity;
+  Vec<Gcrs> position_m, velocity_m_per_s, direction;
+
+  StarPlace star() const {
+    return {ra_rad, dec_rad, pm_ra, pm_dec, parallax, radial_velocity, 2000.0};
+  }
+  Observer observer() const {
+    const Tt tt{jd1, jd2};
+    return space_observer(position_m, velocity_m_per_s, tt, solar_system(tt));
+  }
+};
+
+EffectSet all_but(std::initializer_list<Effect> off) {
+  EffectSet effects;
+  for (const Effect e : off) effects.set(e, false);
+  return effects;
+}
+
+// Reference: astropy's ICRS to GCRS at the observer, tests/reference/apparent_stars.py 60 1.
+TEST(ApparentStars, AgreeWithAstropyToFiveMilliarcseconds) {
+  const Row rows[] = {
+#include "tests/sky/apparent_stars_reference.inc"
+  };
+  for (const Row& row : rows)
+    EXPECT_LT(angle_rad(ApparentPlaces(row.observer(), {}).star(row.star()), row.direction),
+              1 * mas)
+        << row.ra_rad / deg << " " << row.dec_rad / deg;
+}
+
+// The same script, run now for a thousand stars.
+TEST(ApparentStars, AThousandAgreeWithAstropyAtRunTime) {
+  const std::string python = "/usr/bin/python3";
+  DMISE_NEEDS_FILE(python);
+  FILE* pipe = popen((python + " -W ignore " DMISE_SOURCE_DIR
+                               "/tests/reference/apparent_stars.py 1000 2 2>/dev/null")
+                         .c_str(),
+                     "r");
+  ASSERT_TRUE(pipe);
+  int count = 0;
+  double worst = 0.0;
+  double v[17];
+  for (;;) {
+    int read = 0;
+    while (read < 17 && std::fscanf(pipe, read ? ",%lf" : "%lf", &v[read]) == 1) ++read;
+    if (read < 17) break;
+    const Row row{v[0],
+                  v[1],
+                  v[2],
+                  v[3],
+                  v[4],
+                  v[5],
+                  v[6],
+                  v[7],
+                  {v[8], v[9], v[10]},
+                  {v[11], v[12], v[13]},
+                  {v[14], v[15], v[16]}};
+    const Vec<Gcrs> p = ApparentPlaces(row.observer(), {}).star(row.star());
+    worst = std::max(worst, angle_rad(p, row.direction));
+    ++count;
+  }
+  const int status = pclose(pipe);
+  if (count == 0) GTEST_SKIP() << "python3-astropy is not there (status " << status << ")";
+  EXPECT_EQ(count, 1000);
+  EXPECT_LT(worst, 1 * mas);
+  RecordProperty("worst_uas", static_cast<int>(worst / mas * 1000));
+}
+
+Observer atlanta(const char* utc) {
+  const Clock clock(parse_utc(utc));
+  return ground_observer({33.777, -84.398, 300.0}, earth_orientation(clock, {}), {}, clock.tt({}),
+                         solar_system(clock.tt({})), Refraction(standard_weather(300.0)));
+}
+
+// Sizes as in any textbook on positional astronomy.
+TEST(ApparentStars, EachCorrectionHasItsSizeAndItsSwitch) {
+  const Observer here = atlanta("2018-01-20T23:40:00Z");
+  const StarPlace barnard{269.452079 * deg, 4.693391 * deg, -0.79858 * arcsec, 10.32812 * arcsec,
+                          0.54831 * arcsec};
+  const auto moved_by = [&](Effect effect, const StarPlace& star) {
+    return angle_rad(ApparentPlaces(here, {}).star(star),
+                     ApparentPlaces(here, all_but({effect})).star(star));
+  };
+  EXPECT_NEAR(moved_by(Effect::proper_motion, barnard), 18.055 * 10.36 * arcsec, 0.5 * arcsec);
+  EXPECT_LT(moved_by(Effect::parallax, barnard), 0.56 * arcsec);
+  EXPECT_GT(moved_by(Effect::parallax, barnard), 0.1 * arcsec);
+
+  const auto largest = [&](Effect effect) {
+    double most = 0.0;
+    for (int i = 0; i < 400; ++i) {
+      // Stars at 30 deg and more over the horizon.
+      const Vec<Gcrs> p = unit(here.air->zenith +
+                               from_spherical<Gcrs>(0.7 * i, std::asin(std::sin(1.1 * i))) * 0.86);
+      const auto [ra, dec] = to_spherical(p);
+      most = std::max(most, moved_by(effect, {ra, dec}));
+    }
+    return most;
+  };
+  EXPECT_NEAR(largest(Effect::annual_aberration), 20.8 * arcsec, 0.4 * arcsec);
+  EXPECT_NEAR(largest(Effect::diurnal_aberration), 0.32 * std::cos(33.777 * deg) * arcsec,
+              0.01 * arcsec);
+  EXPECT_GT(largest(Effect::light_deflection), 3 * mas);
+  EXPECT_LT(largest(Effect::light_deflection), 30 * mas);
+  EXPECT_GT(largest(Effect::refraction), 90 * arcsec);
+  EXPECT_EQ(largest(Effect::light_time), 0.0);
+}
+
+TEST(ApparentStars, AllSwitchedOffIsTheCataloguePlace) {
+  const EffectSet none =
+      all_but({Effect::proper_motion, Effect::parallax, Effect::light_deflection,
+               Effect::annual_aberration, Effect::diurnal_aberration, Effect::refraction});
+  const StarPlace star{1.0, 0.5, 1e-5, 1e-5, 1e-6};
+  EXPECT_LT(angle_rad(ApparentPlaces(atlanta("2018-01-20T23:40:00Z"), none).star(star),
+                      from_spherical<Gcrs>(1.0, 0.5)),
+            1e-15);
+}
+
+TEST(ApparentStars, RefractionLiftsTowardsTheZenithAndNothingAtIt) {
+  const Observer here = atlanta("2018-01-20T23:40:00Z");
+  const ApparentPlaces with(here, {}), without(here, all_but({Effect::refraction}));
+  for (double away = 0.0; away < 3.1; away += 0.01) {
+    const Vec<Gcrs> side = unit(cross(here.air->zenith, {0.1, 0.2, 0.9}));
+    const auto [ra, dec] = to_spherical(here.air->zenith * std::cos(away) + side * std::sin(away));
+    const Vec<Gcrs> up = with.star({ra, dec}), straight = without.star({ra, dec});
+    ASSERT_NEAR(norm(up), 1.0, 1e-14);
+    const double z = angle_rad(straight, here.air->zenith);
+    const double lift = z - angle_rad(up, here.air->zenith);
+    ASSERT_GE(lift, -1e-12) << away;
+    ASSERT_NEAR(angle_rad(up, straight), lift, 1e-12) << away;  // along the vertical
+    if (z < 1.0) {
+      ASSERT_NEAR(lift, 56.5 * arcsec * std::tan(z), 1.0 * arcsec);
+    }
+  }
+}
+
+TEST(ApparentStars, CrossThePoleAndTheTwentyFourHourLineWithoutAStep) {
+  const ApparentPlaces places(atlanta("2018-01-20T23:40:00Z"), {});
+  const double step = 1 * mas;
+  const StarPlace moving{.pm_ra_cosdec_rad_per_yr = 3 * arcsec, .parallax_rad = 0.1 * arcsec};
+  const auto at = [&](double ra, double dec) {
+    StarPlace star = moving;
+    star.ra_rad = ra;
+    star.dec_rad = dec;
+    return places.star(star);
+  };
+  for (int i = -5; i <= 5; ++i) {
+    EXPECT_NEAR(angle_rad(at(2 * pi + i * step, 0.3), at(i * step, 0.3)), 0.0, 1e-14);
+    EXPECT_NEAR(angle_rad(at(i * step, 0.3), at((i + 1) * step, 0.3)), step * std::cos(0.3),
+                0.01 * mas);
+  }
+  // A star without proper motion, over the pole along a meridian.
+  const auto still = [&](double north_of_pole) {
+    return places.star(
+        {.ra_rad = north_of_pole > 0 ? pi : 0.0, .dec_rad = pi / 2 - std::abs(north_of_pole)});
+  };
+  for (int i = -5; i < 5; ++i)
+    EXPECT_NEAR(angle_rad(still(i * step), still((i + 1) * step)), step, 0.01 * mas);
+}
+
+TEST(ApparentStars, AStarAtThePoleMovesByItsProperMotion) {
+  const Observer here = atlanta("2018-01-20T23:40:00Z");
+  const ApparentPlaces places(here, all_but({Effect::refraction}));
+  const StarPlace still{.ra_rad = 0.3, .dec_rad = pi / 2};
+  StarPlace moving = still;
+  moving.pm_ra_cosdec_rad_per_yr = 3 * arcsec;
+  moving.pm_dec_rad_per_yr = 4 * arcsec;
+  EXPECT_NEAR(angle_rad(places.star(still), places.star(moving)), 18.055 * 5 * arcsec,
+              0.02 * arcsec);
+}
+
+TEST(ApparentStars, ABatchGivesTheSameAsOneByOne) {
+  const ApparentPlaces places(atlanta("2018-01-20T23:40:00Z"), {});
+  constexpr std::size_t n = 10000;
+  std::vector<double> ra(n), dec(n), pm_ra(n, 1e-7), pm_dec(n, -1e-7), parallax(n, 1e-8);
+  for (std::size_t i = 0; i < n; ++i) {
+    ra[i] = std::fmod(0.37 * i, 2 * pi);
+    dec[i] = std::asin(std::sin(0.11 * i));
+  }
+  std::vector<std::uint32_t> which(n);
+  std::iota(which.rbegin(), which.rend(), 0u);
+  std::vector<Vec<Gcrs>> directions(n);
+  places.stars({2000.0, ra, dec, pm_ra, pm_dec, parallax, {}}, which, directions);
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t i = which[k];
+    ASSERT_EQ(directions[k], places.star({ra[i], dec[i], 1e-7, -1e-7, 1e-8}));
+  }
+}
+
+}  // namespace
+}  // namespace dmise

@@ -1,0 +1,117 @@
+#include "core/sky/refraction.h"
+
+#include <erfa.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr double observer_radius_m = 6371e3;
+const Refraction sea_level{standard_weather(0.0)};
+const Refraction dry{Weather{.humidity = 0.0}};
+
+// Reference: U.S. Standard Atmosphere 1976, tables I and III.
+TEST(Weather, FollowsTheStandardAtmosphere) {
+  EXPECT_NEAR(standard_weather(0).pressure_hpa, 1013.25, 0.01);
+  EXPECT_NEAR(standard_weather(2000).pressure_hpa, 794.95, 0.3);
+  EXPECT_NEAR(standard_weather(2000).temperature_c, 2.0, 0.1);
+  EXPECT_NEAR(standard_weather(11000).pressure_hpa, 226.32, 0.2);
+  EXPECT_NEAR(standard_weather(20000).pressure_hpa, 54.75, 0.1);
+}
+
+// Reference: rays traced through the standard atmosphere, tests/reference/refraction.py: apparent
+// zenith angle [deg], refraction of a star, and how much less a body at 550 km is lifted [arcsec].
+TEST(Refraction, AgreesWithTracedRays) {
+  const struct {
+    double zenith_deg, star_arcsec, less_arcsec, star_tolerance, less_tolerance;
+  } rows[] = {{0.5, 0.499, 0.008, 0.01, 0.001}, {20, 20.808, 0.320, 0.01, 0.001},
+              {45, 57.112, 0.906, 0.02, 0.01},  {60, 98.690, 1.664, 0.03, 0.02},
+              {70, 155.731, 2.920, 0.1, 0.05},  {75, 210.034, 4.382, 0.2, 0.1},
+              {80, 313.064, 7.892, 3, 0.3},     {85, 579.419, 21.098, 10, 1.5},
+              {88, 1066.535, 57.540, 30, 5},    {89.99, 1972.151, 153.161, 90, 20}};
+  for (const auto& row : rows) {
+    const double apparent = (90 - row.zenith_deg) * deg;
+    EXPECT_NEAR(dry.at_apparent_rad(apparent) / arcsec, row.star_arcsec, row.star_tolerance)
+        << row.zenith_deg;
+    // Distance to a body at 550 km along nearly this elevation.
+    const double true_star = dry.true_from_apparent_rad(apparent);
+    const double s = observer_radius_m * std::sin(true_star);
+    const double distance_m = std::sqrt(s * s + 550e3 * (2 * observer_radius_m + 550e3)) - s;
+    const double less =
+        dry.true_from_apparent_rad(apparent, distance_m, observer_radius_m) - true_star;
+    EXPECT_NEAR(less / arcsec, row.less_arcsec, row.less_tolerance) << row.zenith_deg;
+  }
+}
+
+// Reference: Bennett 1982 at 1010 hPa and 10 C: 34.5 arcmin; the Nautical Almanac: 34 at the
+// horizon.
+TEST(Refraction, HasTheSizesOfTheHandbooks) {
+  EXPECT_NEAR(sea_level.at_apparent_rad(45 * deg) / arcsec, 57.5, 1.0);
+  EXPECT_NEAR(sea_level.at_apparent_rad(10 * deg) / arcmin, 5.3, 0.1);
+  EXPECT_NEAR(sea_level.at_apparent_rad(0) / arcmin, 34.0, 0.7);
+}
+
+// Reference: ERFA eraRefco's own two terms.
+TEST(Refraction, IsErfasDownTo75DegreesFromTheZenith) {
+  double a, b;
+  eraRefco(800.0, 5.0, 0.3, 0.7, &a, &b);
+  const Refraction refraction(Weather{800.0, 5.0, 0.3}, 0.7);
+  for (double z = 0; z <= 75; z += 2.5) {
+    const double t = std::tan(z * deg);
+    EXPECT_NEAR(refraction.at_apparent_rad((90 - z) * deg), a * t + b * t * t * t, 1e-3 * mas);
+  }
+}
+
+TEST(Refraction, IsFiniteAndMonotoneFromNadirToZenithAndInvertsItself) {
+  for (const double distance_m : {0.0, 500e3, 3e6, 4e7}) {
+    const auto apparent_from_true = [&](double e) {
+      return distance_m == 0.0 ? sea_level.apparent_from_true_rad(e)
+                               : sea_level.apparent_from_true_rad(e, distance_m, observer_radius_m);
+    };
+    const auto true_from_apparent = [&](double e) {
+      return distance_m == 0.0 ? sea_level.true_from_apparent_rad(e)
+                               : sea_level.true_from_apparent_rad(e, distance_m, observer_radius_m);
+    };
+    double before = -10.0;
+    for (int i = -9000; i <= 9000; ++i) {
+      const double elevation = i * 0.01 * deg;
+      const double apparent = apparent_from_true(elevation);
+      ASSERT_TRUE(std::isfinite(apparent)) << i;
+      ASSERT_GT(apparent, before) << i;
+      ASSERT_LT(apparent - elevation, 35 * arcmin);
+      ASSERT_NEAR(true_from_apparent(apparent), elevation, 1e-3 * mas) << i;
+      before = apparent;
+    }
+  }
+}
+
+TEST(Refraction, IsConstantUnderTheHorizon) {
+  const double horizon = sea_level.at_apparent_rad(0.0);
+  EXPECT_EQ(sea_level.at_apparent_rad(-5 * deg), horizon);
+  EXPECT_NEAR(sea_level.apparent_from_true_rad(-5 * deg), -5 * deg + horizon, 1e-15);
+  EXPECT_NEAR(sea_level.apparent_from_true_rad(-horizon), 0.0, 1e-13);
+}
+
+TEST(Refraction, NoAirBendsNothing) {
+  for (const Refraction& none : {Refraction(), Refraction(Weather{.pressure_hpa = 0.0})})
+    for (double e = -1.5; e < 1.5; e += 0.1) {
+      EXPECT_EQ(none.apparent_from_true_rad(e), e);
+      EXPECT_EQ(none.apparent_from_true_rad(e, 1e6, 6.4e6), e);
+      EXPECT_EQ(none.true_from_apparent_rad(e), e);
+    }
+}
+
+TEST(Refraction, NonsenseIsRefused) {
+  EXPECT_THROW(Refraction(Weather{.pressure_hpa = -1}), Error);
+  EXPECT_THROW(Refraction(Weather{.humidity = 2}), Error);
+  EXPECT_THROW(Refraction(Weather{.temperature_c = std::nan("")}), Error);
+  EXPECT_THROW(Refraction(Weather{}, 0.0), Error);
+}
+
+}  // namespace
+}  // namespace dmise
