@@ -15,9 +15,9 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
 
 /// The last fit of a source that is not a star, over all pixels near `start`, whatever component
 /// they are in, with the local background free; pixels that stick out (stars beneath) are left out.
-/// Nothing when the fit fails or leaves the frame.
+/// Nothing when the fit fails or leaves the frame. A `draft` stops before the ends have settled.
 std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool streak,
-                                 double model_error);
+                                 double model_error, bool draft = false);
 
 /// Is a line a better account of the light around the source than two, three or four stars in a
 /// row?

@@ -28,20 +28,37 @@ bool is_long(const Scene& scene, const Component& c) {
   return extent_px > star_px + 12 * scene.sigma_px + 6;
 }
 
-/// Sources of all components, in the components' order.
-std::vector<std::vector<Source>> judge(const Scene& scene, const std::vector<Component>& components,
-                                       const DetectorSettings& settings, Threads& threads) {
-  std::vector<std::vector<Source>> found(components.size());
-  threads.for_ranges(components.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (is_long(scene, components[i])) {
-        found[i] = find_long_streaks(scene, components[i], settings);
-      } else if (auto source = judge_compact(scene, components[i], settings)) {
-        found[i].push_back(std::move(*source));
-      }
-    }
+struct Judged {
+  std::vector<Source> sources;
+  std::uint32_t star_like = 0;  // components that gave none
+};
+
+/// Compact components each for itself, in parallel; long ones by falling size, so that a streak's
+/// largest piece finds the whole of it and the others know.
+Judged judge(const Scene& scene, const std::vector<Component>& components,
+             const DetectorSettings& settings, Threads& threads) {
+  std::vector<const Component*> longs, compacts;
+  for (const Component& c : components) (is_long(scene, c) ? longs : compacts).push_back(&c);
+  std::stable_sort(longs.begin(), longs.end(),
+                   [](const Component* a, const Component* b) { return a->pixels > b->pixels; });
+  std::vector<std::optional<Source>> found(compacts.size());
+  threads.for_ranges(compacts.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      found[i] = judge_compact(scene, *compacts[i], settings);
   });
-  return found;
+  Judged out;
+  for (const Component* component : longs) {
+    const std::size_t before = out.sources.size();
+    find_long_streaks(scene, *component, settings, out.sources);
+    out.star_like += out.sources.size() == before;
+  }
+  for (auto& source : found) {
+    if (source)
+      out.sources.push_back(std::move(*source));
+    else
+      ++out.star_like;
+  }
+  return out;
 }
 
 bool before(const Source& a, const Source& b) {
@@ -51,10 +68,8 @@ bool before(const Source& a, const Source& b) {
 }
 
 /// By falling SNR; what lies on the light of a stronger streak is a piece of it.
-std::vector<Source> distinct(std::vector<std::vector<Source>> found, double sigma_px) {
-  std::vector<Source> all, out;
-  for (auto& some : found)
-    for (Source& source : some) all.push_back(std::move(source));
+std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
+  std::vector<Source> out;
   std::sort(all.begin(), all.end(), before);
   for (Source& source : all) {
     const bool piece = std::any_of(out.begin(), out.end(), [&](const Source& stronger) {
@@ -110,12 +125,11 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
                     effective_sigma_px(header.psf_fwhm_px)};
   const auto components = find_components(counts, background, scene.sigma_px, settings.connect_snr,
                                           settings.seed_snr, threads);
-  auto found = judge(scene, components, settings, threads);
+  Judged judged = judge(scene, components, settings, threads);
   DetectionResult result;
   result.report = make_report(counts, header, background, scene.sigma_px, settings.seed_snr);
-  result.report.star_like = std::uint32_t(
-      std::count_if(found.begin(), found.end(), [](const auto& some) { return some.empty(); }));
-  for (const Source& source : distinct(std::move(found), scene.sigma_px)) {
+  result.report.star_like = judged.star_like;
+  for (const Source& source : distinct(std::move(judged.sources), scene.sigma_px)) {
     Detection d = describe(source, header);
     d.index = std::uint32_t(result.detections.size());
     d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);

@@ -209,7 +209,8 @@ Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, doubl
     int best = inside;
     for (int k = inside; k != outside + way; k += way) {
       const Slice s = slice_at(scene, line, k, 0.0);
-      if (!(s.variance > 0)) continue;
+      // A star on the line tells nothing of the line.
+      if (!(s.variance > 0) || s.e_per_px > 2 * level + 4 * std::sqrt(s.variance)) continue;
       sum += std::clamp(s.e_per_px, -level, 2 * level) - level / 2;
       if (sum > most) {
         most = sum;
@@ -284,7 +285,7 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
       break;
     const Trail start = trail_along(line, extent, level);
     if (start.length_px < 6 * scene.sigma_px) return std::nullopt;
-    source = fit_source(scene, start, true, 0.02);
+    source = fit_source(scene, start, true, 0.02, true);
     if (!source || source->trail().length_px < 6 * scene.sigma_px) return std::nullopt;
     const bool columns = line.by_columns();
     line = line_of(source->trail());
@@ -296,9 +297,11 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
     if (line.by_columns() != columns && round > 0) break;  // at 45 degrees: either will do
     extent = extent_of(line, source->trail().length_px / 2);
   }
+  if (!is_continuous(scene, source->trail())) return std::nullopt;
+  source = fit_source(scene, source->trail(), true, 0.02);
+  if (!source || source->snr() < settings.least_snr) return std::nullopt;
   const Trail& t = source->trail();
-  if (source->snr() < settings.least_snr || source->fit.reduced_chi2() > 2.5 ||
-      !is_continuous(scene, t))
+  if (source->fit.reduced_chi2() > (t.length_px < chain_px ? 2.0 : 5.0) || !is_continuous(scene, t))
     return std::nullopt;
   if (t.length_px < chain_px && !beats_stars(scene, *source, settings)) return std::nullopt;
   if (trail_difference_px(t, scene.star_trail(t.x_px, t.y_px)) < settings.least_difference_px + 1)
@@ -308,17 +311,22 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
 
 }  // namespace
 
-std::vector<Source> find_long_streaks(const Scene& scene, const Component& component,
-                                      const DetectorSettings& settings) {
+void find_long_streaks(const Scene& scene, const Component& component,
+                       const DetectorSettings& settings, std::vector<Source>& found) {
+  const double width_px = 1.5 * scene.sigma_px + 0.5, least_px = 8 * scene.sigma_px;
+  const double skirt_px = 3 * scene.sigma_px + 1;
   std::vector<Point> points;
   for (const Run& run : component.runs)
-    for (int x = run.first_x; x <= run.last_x; ++x) points.push_back({double(x), double(run.y)});
-  const double width_px = 1.5 * scene.sigma_px + 0.5, least_px = 8 * scene.sigma_px;
-  std::vector<Source> out;
+    for (int x = run.first_x; x <= run.last_x; ++x) {
+      const bool taken = std::any_of(found.begin(), found.end(), [&](const Source& s) {
+        return lies_on(s.trail(), x, run.y, skirt_px);
+      });
+      if (!taken) points.push_back({double(x), double(run.y)});
+    }
   for (int n = 0; n < most_lines && points.size() >= 2 * std::size_t(least_px); ++n) {
-    const auto found = main_line(points, width_px, least_px);
-    if (!found) break;
-    Line line = refined(points, *found, width_px);
+    const auto rough = main_line(points, width_px, least_px);
+    if (!rough) break;
+    Line line = refined(points, *rough, width_px);
     line = refined(points, line, width_px);
     std::vector<double> on;
     for (const Point& p : points)
@@ -326,16 +334,13 @@ std::vector<Source> find_long_streaks(const Scene& scene, const Component& compo
     if (on.size() < 8) break;
     const auto [low, high] = std::minmax_element(on.begin(), on.end());
     if ((*high - *low) * line.slice_px() < least_px) break;
-    const auto source = streak_on(scene, line, {int(*low), int(*high)}, settings);
-    if (source) out.push_back(*source);
-    // What is left once the line and its skirts are taken away.
-    const double skirt_px = 3 * scene.sigma_px + 1;
+    auto source = streak_on(scene, line, {int(*low), int(*high)}, settings);
     std::erase_if(points, [&](const Point& p) {
       return std::abs(line.off(p)) < width_px ||
              (source && lies_on(source->trail(), p.x, p.y, skirt_px));
     });
+    if (source) found.push_back(std::move(*source));
   }
-  return out;
 }
 
 }  // namespace dmise

@@ -40,7 +40,7 @@ void draw_truth(Picture& picture, const Preview& preview, const Truth& truth, in
     draw_line(picture, xm - nx, ym - ny, x2 - nx, y2 - ny, truth_colour);
     draw_circle(picture, x1, y1, 9, truth_colour);  // where it was at the start
   }
-  draw_text(picture, int(xm) + 14, int(ym) - 12, truth.name, truth_colour, text_scale);
+  draw_text(picture, int(x1) + 14, int(y1) - 12, truth.name, truth_colour, text_scale);
 }
 
 void draw_detection(Picture& picture, const Preview& preview, const Detection& d, int text_scale) {
