@@ -20,6 +20,7 @@ constexpr int most_rounds = 6;      // of fitting and following
 
 struct Point {
   double x, y;
+  double weight = 1.0;  // by brightness: the ridge counts, not the skirts
 };
 
 /// A line cut into slices: one for each column (or row, where it is steeper than 45 degrees). It
@@ -121,18 +122,18 @@ std::optional<Line> main_line(const std::vector<Point>& points, double width_px,
   const std::size_t step = points.size() / 400 + 1,
                     anchors = std::min<std::size_t>(40, points.size());
   std::optional<Line> best;
-  int most = 0;
+  double most = 0.0;
   for (std::size_t a = 0; a < anchors; ++a)
     for (std::size_t b = a + 1; b < anchors; ++b) {
       const Point& p = points[a * (points.size() - 1) / (anchors - 1)];
       const Point& q = points[b * (points.size() - 1) / (anchors - 1)];
       if (std::hypot(p.x - q.x, p.y - q.y) < least_px) continue;
       const Line line = line_through(p, q);
-      int count = 0;
+      double weight = 0.0;
       for (std::size_t i = 0; i < points.size(); i += step)
-        count += std::abs(line.off(points[i])) < width_px;
-      if (count > most) {
-        most = count;
+        if (std::abs(line.off(points[i])) < width_px) weight += points[i].weight;
+      if (weight > most) {
+        most = weight;
         best = line;
       }
     }
@@ -145,14 +146,15 @@ Line refined(const std::vector<Point>& points, const Line& line, double width_px
   for (const Point& p : points) {
     if (std::abs(line.off(p)) > width_px) continue;
     const double dx = p.x - line.x, dy = p.y - line.y;
-    n += 1;
-    x += dx;
-    y += dy;
-    xx += dx * dx;
-    xy += dx * dy;
-    yy += dy * dy;
+    const double w = p.weight;
+    n += w;
+    x += w * dx;
+    y += w * dy;
+    xx += w * dx * dx;
+    xy += w * dx * dy;
+    yy += w * dy * dy;
   }
-  if (n < 3) return line;
+  if (!(n > 0)) return line;
   x /= n;
   y /= n;
   const double angle = 0.5 * std::atan2(2 * (xy / n - x * y), xx / n - x * x - (yy / n - y * y));
@@ -309,24 +311,41 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
   return source;
 }
 
-}  // namespace
-
-void find_long_streaks(const Scene& scene, const Component& component,
-                       const DetectorSettings& settings, std::vector<Source>& found) {
-  const double width_px = 1.5 * scene.sigma_px + 0.5, least_px = 8 * scene.sigma_px;
-  const double skirt_px = 3 * scene.sigma_px + 1;
+/// Points of the component off the streaks found before. Weights are the light, up to where the
+/// brightest fifth begins: a star on a streak must not pull more than the streak.
+std::vector<Point> free_points(const Scene& scene, const Component& component, double skirt_px,
+                               const std::vector<Source>& found) {
   std::vector<Point> points;
+  std::vector<double> lights;
   for (const Run& run : component.runs)
     for (int x = run.first_x; x <= run.last_x; ++x) {
       const bool taken = std::any_of(found.begin(), found.end(), [&](const Source& s) {
         return lies_on(s.trail(), x, run.y, skirt_px);
       });
-      if (!taken) points.push_back({double(x), double(run.y)});
+      if (taken) continue;
+      points.push_back({double(x), double(run.y), std::max(1.0f, scene.pixel(x, run.y).signal_e)});
+      lights.push_back(points.back().weight);
     }
+  if (points.empty()) return points;
+  const auto cap = lights.begin() + std::ptrdiff_t(lights.size() * 4 / 5);
+  std::nth_element(lights.begin(), cap, lights.end());
+  for (Point& p : points) p.weight = std::min(p.weight, *cap) / *cap;
+  return points;
+}
+
+}  // namespace
+
+void find_long_streaks(const Scene& scene, const Component& component,
+                       const DetectorSettings& settings, std::vector<Source>& found) {
+  const double width_px = 1.5 * scene.sigma_px + 0.5, least_px = 8 * scene.sigma_px;
+  // As far out as a streak of the component's peak stays above the connecting threshold.
+  const double rise = std::log(std::max(component.peak_snr / settings.connect_snr, 1.0));
+  const double skirt_px = std::max(3.0, 2 * std::sqrt(rise)) * scene.sigma_px + 1.5;
+  std::vector<Point> points = free_points(scene, component, skirt_px, found);
   for (int n = 0; n < most_lines && points.size() >= 2 * std::size_t(least_px); ++n) {
     const auto rough = main_line(points, width_px, least_px);
     if (!rough) break;
-    Line line = refined(points, *rough, width_px);
+    Line line = refined(points, *rough, 2 * width_px);
     line = refined(points, line, width_px);
     std::vector<double> on;
     for (const Point& p : points)
