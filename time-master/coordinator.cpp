@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <limits>
+#include <set>
 
 #include "core/base/error.h"
 
 namespace dmise {
 namespace {
+
+constexpr Tick no_tick = std::numeric_limits<Tick>::max();
 
 std::string in_seconds(Instant duration) {
   char text[32];
@@ -90,10 +93,8 @@ void Coordinator::done(const std::string& name, Tick tick, Instant now) {
 
 void Coordinator::grant() {
   if (phase_ != Phase::running) return;
-  Tick slowest = std::numeric_limits<Tick>::max();
-  for (const auto& [name, member] : members_)
-    if (member.keeps_time && member.active()) slowest = std::min(slowest, member.done);
-  if (slowest == std::numeric_limits<Tick>::max()) return fail_run("no node is left");
+  const Tick slowest = slowest_done();
+  if (slowest == no_tick) return fail_run("no node is left");
   if (slowest >= options_.last_tick) {
     phase_ = Phase::ended;
     return;
@@ -223,20 +224,39 @@ std::vector<std::string> Coordinator::missing() const {
 std::vector<std::string> Coordinator::holding() const {
   if (phase_ == Phase::gathering) return missing();
   std::vector<std::string> names;
+  if (phase_ == Phase::connecting) {
+    for (const std::string& name : options_.expected)
+      if (!members_.at(name).ready) names.push_back(name);
+    return names;
+  }
   if (over()) return names;
-  Tick slowest = std::numeric_limits<Tick>::max();
+  for (const auto& [name, member] : members_)
+    if (member.silent) names.push_back(name);
+  if (!names.empty()) return names;
+  const Tick slowest = slowest_done();
+  std::set<std::string> late_topics;  // of those who are behind
+  const auto behind = [&](const Member& member) {
+    return member.keeps_time && member.active() && member.done == slowest;
+  };
+  for (const auto& [name, member] : members_)
+    if (behind(member))
+      late_topics.insert(member.node.produces.begin(), member.node.produces.end());
   for (const std::string& name : options_.expected) {
     const Member& member = members_.at(name);
-    if (!member.keeps_time || !member.active()) continue;
-    if (phase_ == Phase::connecting) {
-      if (!member.ready) names.push_back(name);
-    } else if (member.done <= slowest) {
-      if (member.done < slowest) names.clear();
-      slowest = member.done;
-      names.push_back(name);
-    }
+    const auto& needs = member.node.consumes;
+    const bool waits = std::any_of(needs.begin(), needs.end(), [&](const std::string& topic) {
+      return late_topics.contains(topic);
+    });
+    if (behind(member) && !waits) names.push_back(name);
   }
   return names;
+}
+
+Tick Coordinator::slowest_done() const {
+  Tick slowest = no_tick;
+  for (const auto& [name, member] : members_)
+    if (member.keeps_time && member.active()) slowest = std::min(slowest, member.done);
+  return slowest;
 }
 
 bool Coordinator::deserted() const {

@@ -89,7 +89,8 @@ class Coordinator {
   Tick granted() const { return granted_; }
   /// Expected and not yet joined, in the order of the list.
   std::vector<std::string> missing() const;
-  /// Whom everybody waits for: those to join, to be ready, or the furthest behind.
+  /// Whom everybody waits for: those to join, to be ready, the silent, or the furthest behind who
+  /// wait for nobody's topics themselves.
   std::vector<std::string> holding() const;
   /// True when nobody is left.
   bool deserted() const;
@@ -105,6 +106,7 @@ class Coordinator {
   void connect_if_complete();
   void start_if_ready();
   void grant();
+  Tick slowest_done() const;
 
   CoordinatorOptions options_;
   std::map<std::string, Member> members_;

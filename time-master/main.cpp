@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   app.add_option("--announce", options.announce_file, "file to write the address to");
   app.add_option("--announce-fd", options.announce_fd, "file descriptor to write the address to");
   app.add_option("--expect", options.run.expected, "names of the nodes that keep time: a,b,c")
+      ->required()
       ->delimiter(',');
   app.add_flag("!--no-broker", options.with_broker, "run without a broker: no topics");
   app.add_option("--ticks", ticks, "number of ticks")->capture_default_str();

@@ -32,6 +32,7 @@ v1::Grant Keeper::latest() {
 
 void Keeper::run() {
   auto next_beat = now();
+  auto awake = now();
   while (!quit_.is_set()) {
     if (now() >= next_beat) {
       beat();
@@ -41,6 +42,9 @@ void Keeper::run() {
                                        {heartbeat_.handle(), 0, ZMQ_POLLIN, 0}};
     if (resend_) items.push_back({resend_->handle(), 0, ZMQ_POLLIN, 0});
     wait_for(items, next_beat - now());
+    // A process that was itself stopped has not heard the master because it could not.
+    if (now() - awake > options_.silent_after / 2) heard_ = now();
+    awake = now();
     hear();
     if (resend_) answer();
     leave_if_stuck();

@@ -49,6 +49,7 @@ v1::Phase to_wire(Phase phase) {
 
 CoordinatorOptions with_broker(const MasterOptions& options) {
   CoordinatorOptions run = options.run;
+  if (run.expected.empty()) throw ConfigError("expect: must name a node");
   if (options.with_broker) run.expected.insert(run.expected.begin(), broker_name);
   return run;
 }
@@ -90,7 +91,10 @@ class Master {
       if (coordinator_.phase() != phase_ || coordinator_.granted() != granted_) advance();
       if (!coordinator_.over()) continue;
       if (!over_since) over_since = now();
-      if (coordinator_.deserted() || now() - *over_since > farewell) break;
+      // Of a failure, the heartbeat of a node that hangs hears as well.
+      const bool told =
+          coordinator_.phase() == Phase::ended || now() - *over_since > 2 * heartbeat_;
+      if ((coordinator_.deserted() && told) || now() - *over_since > farewell) break;
     }
     return result();
   }

@@ -165,6 +165,19 @@ TEST(Coordinator, WaitsForASilentNodeByPolicy) {
   EXPECT_EQ(master.granted(), 1);
 }
 
+TEST(Coordinator, NamesWhoHoldsTheClockAndNotWhoWaitsForThem) {
+  Coordinator master(options({"orbit", "camera", "recorder"}));
+  master.join(node("orbit", {"state"}));
+  master.join(node("camera", {"detection"}, {"state"}));
+  master.join(node("recorder", {}, {"detection"}));
+  for (const char* name : {"orbit", "camera", "recorder"}) master.ready(name);
+  EXPECT_THAT(master.holding(), ElementsAre("orbit"));
+  master.done("orbit", 0);
+  EXPECT_THAT(master.holding(), ElementsAre("camera"));
+  master.done("camera", 0);
+  EXPECT_THAT(master.holding(), ElementsAre("recorder"));
+}
+
 TEST(Coordinator, GoesOnWithoutASilentNodeByPolicy) {
   auto o = options({"orbit", "camera"});
   o.on_silent = SilentPolicy::drop;

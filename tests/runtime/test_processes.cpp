@@ -1,0 +1,186 @@
+// A whole network of processes: what happens when one of them dies, hangs, is doubled or is
+// missing.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "nodes/runtime/status.h"
+#include "tests/support/process.h"
+
+namespace dmise {
+namespace {
+
+using test::Child;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string bin = DMISE_BINARY_DIR "/bin/";
+
+/// Master, broker, orbit, cameras a and b, recorder; each its own process.
+struct Stack {
+  std::unique_ptr<Child> master;
+  std::string address;
+  std::map<std::string, std::unique_ptr<Child>> nodes;
+
+  explicit Stack(const std::vector<std::string>& master_flags) {
+    std::vector<std::string> command{bin + "dmise-time-master", "--expect", "orbit,a,b,recorder",
+                                     "--announce-fd", "1"};
+    command.insert(command.end(), master_flags.begin(), master_flags.end());
+    master = std::make_unique<Child>(command);
+    if (!master->says("\n")) return;
+    address = master->output().substr(0, master->output().find('\n'));
+  }
+  void start_broker() {
+    nodes["broker"] = std::make_unique<Child>(
+        std::vector<std::string>{bin + "dmise-broker", "--master", address});
+  }
+  Child& start(const std::string& name, std::vector<std::string> more = {}) {
+    const std::string role = name == "a" || name == "b" ? "camera" : name;
+    std::vector<std::string> command{bin + "toy-node", "--role", role, "--name", name,
+                                     "--master",       address};
+    command.insert(command.end(), more.begin(), more.end());
+    nodes[name] = std::make_unique<Child>(command);
+    return *nodes[name];
+  }
+  void start_all() {
+    start_broker();
+    for (const char* name : {"recorder", "b", "a", "orbit"}) start(name);
+  }
+  /// Every process but `except` has ended within the time and with this code.
+  void expect_all_exit(int code, const std::string& except = "", double within_s = 15) {
+    EXPECT_EQ(master->exit_code(within_s), code) << master->output();
+    for (auto& [name, node] : nodes)
+      if (name != except) {
+        EXPECT_EQ(node->exit_code(within_s), code) << name << ": " << node->output();
+      }
+  }
+};
+
+TEST(Processes, RunToTheEnd) {
+  Stack stack({"--ticks", "20", "--window", "3"});
+  stack.start_all();
+  stack.expect_all_exit(0);
+}
+
+// The promise: a dead node is named within `silent_after_s`.
+TEST(Processes, AKilledNodeIsNamedAndTheRunFails) {
+  for (const std::string victim : {"orbit", "a", "recorder", "broker"}) {
+    Stack stack({"--ticks", "100000000", "--silent-after", "5"});
+    stack.start_all();
+    ASSERT_TRUE(stack.nodes["b"]->says("step 5\n")) << stack.nodes["b"]->output();
+    stack.nodes[victim]->kill(SIGKILL);
+    EXPECT_TRUE(stack.master->says(victim + " has", 5.0)) << stack.master->output();
+    stack.expect_all_exit(1, victim);
+    for (auto& [name, node] : stack.nodes)
+      if (name != victim) {
+        EXPECT_THAT(node->output(), HasSubstr(victim + " has"));
+      }
+  }
+}
+
+TEST(Processes, AStoppedNodeIsNamedAndTheRunFails) {
+  Stack stack({"--ticks", "100000000", "--silent-after", "1"});
+  stack.start_all();
+  ASSERT_TRUE(stack.nodes["b"]->says("step 5\n"));
+  stack.nodes["a"]->kill(SIGSTOP);
+  EXPECT_TRUE(stack.master->says("a has been silent for 1.", 3.0)) << stack.master->output();
+  stack.expect_all_exit(1, "a");
+}
+
+TEST(Processes, TheRunGoesOnWithoutAKilledNodeByPolicy) {
+  Stack stack({"--ticks", "3000", "--silent-after", "2", "--on-silent", "drop"});
+  stack.start_all();
+  ASSERT_TRUE(stack.nodes["b"]->says("step 5\n"));
+  stack.nodes["a"]->kill(SIGKILL);
+  stack.expect_all_exit(0, "a", 30);
+  EXPECT_THAT(stack.nodes["recorder"]->output(), HasSubstr("step 2999\n"));
+}
+
+TEST(Processes, TheRunWaitsForAStoppedNodeByPolicy) {
+  Stack stack({"--ticks", "3000", "--silent-after", "1", "--on-silent", "wait"});
+  stack.start_all();
+  ASSERT_TRUE(stack.nodes["b"]->says("step 5\n"));
+  stack.nodes["a"]->kill(SIGSTOP);
+  for (bool silent = false; !silent;)
+    for (const NodeStatus& node : ask_master(stack.address, 5).nodes)
+      silent = silent || (node.name == "a" && !node.alive);
+  EXPECT_THAT(ask_master(stack.address, 5).holding, ElementsAre("a"));
+  stack.nodes["a"]->kill(SIGCONT);
+  stack.expect_all_exit(0, "", 30);
+}
+
+TEST(Processes, AHungStepIsNamedByItsProgressDeadline) {
+  Stack stack({"--ticks", "100", "--progress-after", "1"});
+  stack.start_broker();
+  for (const char* name : {"recorder", "b", "orbit"}) stack.start(name);
+  stack.start("a", {"--hang-at", "7"});
+  EXPECT_TRUE(stack.master->says("a has made no progress for 1.")) << stack.master->output();
+  stack.expect_all_exit(1);  // the hung one too: its process ends itself
+}
+
+TEST(Processes, TheMasterSaysWhoIsMissing) {
+  Stack stack({"--ticks", "10", "--start-within", "1"});
+  stack.start_broker();
+  stack.start("orbit");
+  EXPECT_TRUE(stack.master->says("not started within 1.0 s: waiting for a, b, recorder"))
+      << stack.master->output();
+  stack.expect_all_exit(1);
+}
+
+TEST(Processes, ASecondNodeOfOneNameIsToldSo) {
+  Stack stack({"--ticks", "10"});
+  stack.start("orbit");
+  ASSERT_TRUE(stack.master->says("orbit joined"));
+  Child twin({bin + "toy-node", "--role", "orbit", "--name", "orbit", "--master", stack.address});
+  EXPECT_EQ(twin.exit_code(), 1);
+  EXPECT_THAT(twin.output(), HasSubstr("a node named orbit has already joined"));
+}
+
+TEST(Processes, APortInUseIsOneClearLine) {
+  Stack stack({"--ticks", "10"});
+  Child second({bin + "dmise-time-master", "--expect", "orbit", "--bind", stack.address});
+  EXPECT_EQ(second.exit_code(), 1);
+  EXPECT_THAT(second.output(), HasSubstr(stack.address + ": address already in use\n"));
+}
+
+TEST(Processes, WrongOptionsExitWithTwo) {
+  for (const std::vector<std::string>& flags : {std::vector<std::string>{"--expect", "a,a"},
+                                                {"--expect", "a", "--ticks", "0"},
+                                                {"--expect", "a", "--on-silent", "perhaps"},
+                                                {"--expct", "a"},
+                                                {}}) {
+    std::vector<std::string> command{bin + "dmise-time-master"};
+    command.insert(command.end(), flags.begin(), flags.end());
+    Child master(command);
+    EXPECT_EQ(master.exit_code(), 2) << master.output();
+  }
+  EXPECT_EQ(Child({bin + "dmise-broker"}).exit_code(), 2);
+}
+
+TEST(Processes, AnInterruptEndsEverybodyWithinTwoSeconds) {
+  Stack stack({"--ticks", "100000000"});
+  stack.start_broker();
+  for (const char* name : {"recorder", "b", "orbit"}) stack.start(name);
+  Child& hung = stack.start("a", {"--hang-at", "7"});
+  ASSERT_TRUE(hung.says("step 7\n"));
+  stack.master->kill(SIGINT);  // as from a terminal: everybody gets it
+  for (auto& [name, node] : stack.nodes) node->kill(SIGINT);
+  const auto start = std::chrono::steady_clock::now();
+  stack.expect_all_exit(1, "", 5);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(2500));
+}
+
+TEST(Processes, NobodySurvivesTheMaster) {
+  Stack stack({"--ticks", "100000000", "--silent-after", "1"});
+  stack.start_all();
+  ASSERT_TRUE(stack.nodes["b"]->says("step 5\n"));
+  stack.master->kill(SIGKILL);
+  for (auto& [name, node] : stack.nodes) {
+    EXPECT_EQ(node->exit_code(), 1) << name;
+    EXPECT_THAT(node->output(), HasSubstr("has been silent for 1."));
+  }
+}
+
+}  // namespace
+}  // namespace dmise
