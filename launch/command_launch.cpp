@@ -43,7 +43,7 @@ class Launch {
   Launch(const LaunchOptions& options, const Scenario& scenario, const RunDirectory& directory)
       : options_(options), scenario_(scenario), directory_(directory) {
     for (const auto& sensor : scenario.sensors)
-      frames_total_ += static_cast<int>(exposures_within(sensor, scenario.duration));
+      frames_total_ += static_cast<int>(frames_within(sensor, scenario.duration));
   }
 
   RunOutcome run() {

@@ -46,7 +46,7 @@ void run(const RunOptions& options) {
     auto evaluator =
         make_sensor(scenario, sensor.name, directory.digest(), directory.path(), stars, threads);
     evaluator->stop_when([] { return stop_signal().is_set(); });
-    frames_total += static_cast<int>(exposures_within(sensor, scenario.duration));
+    frames_total += static_cast<int>(frames_within(sensor, scenario.duration));
     sensors.push_back(evaluator.get());
     participants.push_back(std::move(evaluator));
   }

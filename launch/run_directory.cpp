@@ -44,7 +44,7 @@ std::string scenario_digest(const Scenario& scenario) {
   for (const auto& source : scenario.objects) all += "\n" + sha256_hex(read_text_file(source.path));
   for (const auto& path : {scenario.star_catalogue_path, scenario.earth_orientation_path})
     all += "\n" + (path.empty() ? std::string("none") : sha256_hex(read_text_file(path)));
-  return sha256_hex(all);
+  return sha256_hex(all).substr(0, 32);
 }
 
 RunDirectory::RunDirectory(std::string path, const Scenario& scenario, std::string digest)

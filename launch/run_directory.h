@@ -32,7 +32,8 @@ class RunDirectory {
   std::string digest_;
 };
 
-/// Digest of all that decides the products: the resolved scenario and the bytes of its catalogues.
+/// Digest of all that decides the products: the resolved scenario and the bytes of its catalogues; the
+/// first 128 bits of their SHA-256.
 std::string scenario_digest(const Scenario& scenario);
 
 /// Per sensor, summed over its lines in frames.jsonl, detections.jsonl and cost.jsonl.

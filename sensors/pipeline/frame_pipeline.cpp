@@ -8,6 +8,7 @@
 #include "core/base/version.h"
 #include "core/detection/detect.h"
 #include "core/detector/expose.h"
+#include "core/image/fits_cards.h"
 #include "core/optics/projection.h"
 #include "core/optics/wcs_fit.h"
 #include "core/time/iso8601.h"
@@ -179,7 +180,7 @@ FrameProducts FramePipeline::run(const FrameTimes& times, const World& world) {
          frame.counts, &frame.times);
 
   const auto detecting = WallClock::now();
-  auto result = detect(frame.counts, frame.header, {}, w.threads);
+  auto result = detect(frame.counts, as_in_file(frame.header), {}, w.threads);
   frame.detection_s = since(detecting);
   frame.detections = std::move(result.detections);
   frame.report = std::move(result.report);

@@ -1,0 +1,149 @@
+#include "core/detection/detection_json.h"
+
+#include <string_view>
+
+#include "core/base/json.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr double arcsec2 = arcsec * arcsec;
+
+/// Adds keys that share a form.
+class Line {
+ public:
+  explicit Line(const UtcText& utc) : utc_(utc) { json_.begin_object(); }
+
+  template <class T>
+  Line& field(std::string_view name, const T& value) {
+    json_.field(name, value);
+    return *this;
+  }
+  Line& angle(std::string_view name, double value_rad) { return field(name, value_rad / deg); }
+  /// "NAME_ns" and "NAME_utc".
+  Line& time(const std::string& name, SimTime value) {
+    field(name + "_ns", value.ns);
+    return field(name + "_utc", utc_(value));
+  }
+  template <class Values>
+  Line& array(std::string_view name, const Values& values, double unit = 1.0) {
+    json_.key(name).begin_array();
+    for (const double v : values) json_.value(v / unit);
+    json_.end_array();
+    return *this;
+  }
+  Line& vector(std::string_view name, const Vec<Gcrs>& v) {
+    return array(name, std::array<double, 3>{v.x, v.y, v.z});
+  }
+  Line& wcs(const Wcs& w) {
+    json_.key("wcs").begin_object();
+    json_.field("projection", w.order > 0 ? "TAN-SIP" : "TAN");
+    array("crpix_px", std::array<double, 2>{w.crpix_x, w.crpix_y});
+    array("crval_deg", std::array<double, 2>{w.ra_rad / deg, w.dec_rad / deg});
+    array("cd_deg_per_px", w.cd_deg);
+    json_.field("order", w.order);
+    if (w.order > 0) {
+      array("a", w.a);
+      array("b", w.b);
+      array("ap", w.ap);
+      array("bp", w.bp);
+    }
+    json_.field("rms_px", w.rms_px);
+    json_.field("max_px", w.max_px);
+    json_.end_object();
+    return *this;
+  }
+  std::string end() { return json_.end_object().take(); }
+
+ private:
+  JsonWriter json_;
+  const UtcText& utc_;
+};
+
+}  // namespace
+
+const char* detection_kind_name(DetectionKind kind) {
+  return kind == DetectionKind::streak ? "streak" : "point";
+}
+
+const char* exposure_epoch_name(ExposureEpoch epoch) {
+  switch (epoch) {
+    case ExposureEpoch::start:
+      return "start";
+    case ExposureEpoch::middle:
+      return "middle";
+    case ExposureEpoch::end:
+      return "end";
+  }
+  return "middle";
+}
+
+std::string to_json(const Detection& d, const UtcText& utc) {
+  Line line(utc);
+  line.field("id", d.id).field("sensor", d.sensor).field("frame", d.frame).field("index", d.index);
+  line.field("kind", detection_kind_name(d.kind)).field("epoch", exposure_epoch_name(d.epoch));
+  line.time("time", d.time);
+  line.angle("ra_deg", d.ra_rad).angle("dec_deg", d.dec_rad).field("axes", "ICRS");
+  line.angle("corrected_ra_deg", d.corrected_ra_rad)
+      .angle("corrected_dec_deg", d.corrected_dec_rad);
+  line.array("covariance_arcsec2", d.covariance_rad2, arcsec2);
+  line.vector("sensor_position_gcrs_m", d.sensor_position_m);
+  line.vector("sensor_velocity_gcrs_m_per_s", d.sensor_velocity_m_per_s);
+  line.field("light_time_removed", d.light_time_removed);
+  line.field("aberration_removed", d.aberration_removed);
+  line.field("refraction_removed", d.refraction_removed);
+  line.field("magnitude", d.magnitude).field("magnitude_sigma", d.magnitude_sigma);
+  line.field("band", d.band).field("snr", d.snr);
+  line.field("x_px", d.x_px).field("y_px", d.y_px).array("covariance_px2", d.covariance_px2);
+  line.field("signal_e", d.signal_e);
+  line.array("end1_px", std::array<double, 2>{d.end1_x_px, d.end1_y_px});
+  line.array("end2_px", std::array<double, 2>{d.end2_x_px, d.end2_y_px});
+  line.angle("end1_ra_deg", d.end1_ra_rad).angle("end1_dec_deg", d.end1_dec_rad);
+  line.angle("end2_ra_deg", d.end2_ra_rad).angle("end2_dec_deg", d.end2_dec_rad);
+  line.time("end1_time", d.end1_time).time("end2_time", d.end2_time);
+  line.field("direction_known", d.direction_known).field("length_px", d.length_px);
+  line.field("rate_arcsec_per_s", d.rate_rad_per_s / arcsec);
+  line.field("saturated", d.saturated).field("at_edge", d.at_edge).field("star_like", d.star_like);
+  return line.end();
+}
+
+std::string to_json(const FrameReport& r, const UtcText& utc) {
+  Line line(utc);
+  line.field("sensor", r.sensor).field("frame", r.frame);
+  line.time("start", r.start).time("middle", r.middle).time("end", r.end);
+  line.angle("boresight_ra_deg", r.boresight_ra_rad)
+      .angle("boresight_dec_deg", r.boresight_dec_rad);
+  line.wcs(r.wcs);
+  line.vector("sensor_position_gcrs_m", r.sensor_position_m);
+  line.vector("sensor_velocity_gcrs_m_per_s", r.sensor_velocity_m_per_s);
+  line.field("limiting_magnitude", r.limiting_magnitude).field("background_e", r.background_e);
+  line.field("noise_e", r.noise_e).field("zero_point_mag", r.zero_point_mag);
+  line.field("detections", r.detections).field("star_like", r.star_like);
+  line.field("saturated_px", r.saturated_px);
+  line.field("stars_rendered", r.stars_rendered).field("objects_rendered", r.objects_rendered);
+  line.field("plan", r.plan);
+  return line.end();
+}
+
+std::string to_json(const Truth& t, const UtcText& utc) {
+  Line line(utc);
+  line.field("sensor", t.sensor).field("frame", t.frame);
+  line.field("catalogue_number", t.catalogue_number).field("name", t.name);
+  line.time("start", t.start).time("middle", t.middle).time("end", t.end);
+  line.field("true_range_m", t.true_range_m);
+  line.angle("true_ra_deg", t.true_ra_rad).angle("true_dec_deg", t.true_dec_rad);
+  line.angle("apparent_ra_deg", t.apparent_ra_rad).angle("apparent_dec_deg", t.apparent_dec_rad);
+  line.angle("true_elevation_deg", t.true_elevation_rad)
+      .angle("phase_angle_deg", t.phase_angle_rad);
+  line.field("sunlit", t.sunlit).field("true_magnitude", t.true_magnitude);
+  line.field("rendered_signal_e", t.rendered_signal_e);
+  line.array("rendered_px", std::array<double, 2>{t.rendered_x_px, t.rendered_y_px});
+  line.array("start_px", std::array<double, 2>{t.start_x_px, t.start_y_px});
+  line.array("middle_px", std::array<double, 2>{t.middle_x_px, t.middle_y_px});
+  line.array("end_px", std::array<double, 2>{t.end_x_px, t.end_y_px});
+  line.field("in_frame", t.in_frame).field("whole", t.whole);
+  return line.end();
+}
+
+}  // namespace dmise

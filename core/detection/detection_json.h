@@ -1,0 +1,23 @@
+#pragma once
+#include <functional>
+#include <string>
+
+#include "core/detection/detection.h"
+#include "core/detection/truth.h"
+
+namespace dmise {
+
+/// ISO 8601 text of a simulation time.
+using UtcText = std::function<std::string(SimTime)>;
+
+// One line of JSON each, without the line's end, keys always in the same order. Times are
+// nanoseconds since the scenario's start and UTC; angles degrees; units stand in the keys. A value
+// that is not finite throws `Error` with its key.
+std::string to_json(const Detection& detection, const UtcText& utc);
+std::string to_json(const FrameReport& report, const UtcText& utc);
+std::string to_json(const Truth& truth, const UtcText& utc);
+
+const char* detection_kind_name(DetectionKind kind);
+const char* exposure_epoch_name(ExposureEpoch epoch);
+
+}  // namespace dmise
