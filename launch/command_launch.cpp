@@ -162,7 +162,7 @@ class Launch {
   ProgressState progress_state(const RunStatus& status) const {
     Tick done = status.last_tick;
     for (const auto& node : status.nodes)
-      if (node.alive) done = std::min(done, node.done);
+      if (node.alive && node.name != "broker") done = std::min(done, node.done);
     ProgressState state{
         .simulated_s =
             std::min(scenario_.time_of(std::max<Tick>(done, 0)), scenario_.duration).seconds(),
