@@ -255,23 +255,29 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
   fit_settings.model_error = settings.model_error;
   fit_settings.most_steps = 8;
   const TrailFit as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings);
-  if (as_star.good(3.5)) return std::nullopt;
+  if (as_star.good(0.5)) return std::nullopt;
+  const bool stars_trail = star.length_px >= settings.least_difference_px;
+  TrailFit as_point;
+  if (stars_trail) {
+    Trail point = as_star.trails[0];
+    point.length_px = 0.0;
+    as_point = fit_trails(pixels, {point}, {trail_place}, fit_settings);
+  }
+  const bool may_be_point =
+      stars_trail && as_point.deviance < as_star.deviance - settings.blend_margin;
+  if (as_star.good(3.5) && !may_be_point) return std::nullopt;
 
   fit_settings.most_steps = 15;
   const TrailFit as_line = fit_trails(pixels, {light}, {trail_line}, fit_settings);
+  if (may_be_point && as_point.good(5.0) &&
+      as_point.deviance < as_line.deviance + settings.blend_margin) {
+    auto source = fit_source(scene, as_point.trails[0], false, 0.0);
+    // A star that the frame's edge cuts has the shape of a point.
+    if (source && !source->at_edge && source->snr() >= settings.least_snr) return source;
+    return std::nullopt;
+  }
   const double as_two = deviance_of_stars(pixels, light, star, 2, fit_settings);
   const double best_star = std::min(as_star.deviance - settings.blend_margin, as_two);
-  if (star.length_px >= settings.least_difference_px) {
-    Trail point = as_star.trails[0];
-    point.length_px = 0.0;
-    const TrailFit as_point = fit_trails(pixels, {point}, {trail_place}, fit_settings);
-    if (as_point.good(3.5) && as_point.deviance < as_star.deviance - settings.blend_margin &&
-        as_point.deviance < as_line.deviance + 9.0) {
-      auto source = fit_source(scene, as_point.trails[0], false, 0.0);
-      if (source && source->snr() >= settings.least_snr) return source;
-      return std::nullopt;
-    }
-  }
   if (!as_line.good(4.0) || as_line.deviance > best_star - settings.blend_margin ||
       !plausible(scene, as_line.trails[0]) || as_line.trails[0].length_px < 1.0)
     return std::nullopt;

@@ -37,7 +37,7 @@ inline FrameHeader camera_header(int columns, int rows, double focal_length_px, 
   h.focal_length_px = focal_length_px;
   // Boresight on the meridian at right ascension 0 in the middle of the exposure.
   const double c = std::cos(dec_rad), s = std::sin(dec_rad);
-  const Rotation<CameraFrame, Gcrs> middle{{{{-s, 0, c}, {0, 1, 0}, {c, 0, s}}}};
+  const Rotation<CameraFrame, Gcrs> middle{{{{-s, 0, c}, {0, -1, 0}, {c, 0, s}}}};
   const auto at = [&](double seconds) {
     const double turn_rad = fixed_mount ? 7.292115e-5 * seconds : 0.0;
     Rotation<Gcrs, Gcrs> earth;
@@ -51,7 +51,7 @@ inline FrameHeader camera_header(int columns, int rows, double focal_length_px, 
   h.wcs.crpix_x = (columns - 1) / 2.0;
   h.wcs.crpix_y = (rows - 1) / 2.0;
   h.wcs.dec_rad = dec_rad;
-  h.wcs.cd_deg = {0.0, scale_deg, scale_deg, 0.0};
+  h.wcs.cd_deg = {0.0, -scale_deg, scale_deg, 0.0};
   return h;
 }
 
