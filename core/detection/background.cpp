@@ -68,18 +68,20 @@ Sky clipped_sky(std::vector<std::uint16_t>& values) {
   return {float(level), float(sigma)};
 }
 
-/// Middle value of each cell and its neighbours.
+/// Middle value of each cell and its neighbours; at the frame's edges only of those that have an
+/// opposite, so that a gradient stays what it is.
 std::vector<float> median_3x3(const std::vector<float>& mesh, int columns, int rows) {
   std::vector<float> out(mesh.size()), near;
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
       near.clear();
-      for (int v = std::max(0, j - 1); v <= std::min(rows - 1, j + 1); ++v)
-        for (int u = std::max(0, i - 1); u <= std::min(columns - 1, i + 1); ++u)
+      const int wide = std::min({1, i, columns - 1 - i}), high = std::min({1, j, rows - 1 - j});
+      for (int v = j - high; v <= j + high; ++v)
+        for (int u = i - wide; u <= i + wide; ++u)
           near.push_back(mesh[std::size_t(v * columns + u)]);
-      std::sort(near.begin(), near.end());
-      out[std::size_t(j * columns + i)] =
-          0.5f * (near[near.size() / 2] + near[(near.size() - 1) / 2]);
+      const auto middle = near.begin() + std::ptrdiff_t(near.size() / 2);  // an odd number
+      std::nth_element(near.begin(), middle, near.end());
+      out[std::size_t(j * columns + i)] = *middle;
     }
   return out;
 }
@@ -94,9 +96,8 @@ float median_of(std::vector<float> values) {
 
 Background::Between Background::between(int pixel, int pixels, int cells) {
   const float place = (float(pixel) + 0.5f) * float(cells) / float(pixels) - 0.5f;
-  const float held = std::clamp(place, 0.0f, float(cells - 1));
-  const int cell = std::min(int(held), std::max(0, cells - 2));
-  return {cell, held - float(cell)};
+  const int cell = std::clamp(int(std::floor(place)), 0, std::max(0, cells - 2));
+  return {cell, cells > 1 ? place - float(cell) : 0.0f};  // beyond the outer centres it goes on
 }
 
 Background::Background(const CountImage& counts, int cell_px, Threads& threads)
@@ -131,8 +132,8 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads)
 float Background::at(const std::vector<float>& mesh, int x, int y) const {
   const Between u = across_[std::size_t(x)], v = between(y, rows_, mesh_rows_);
   const float* above = mesh.data() + std::size_t(v.cell) * std::size_t(mesh_columns_) + u.cell;
-  const float* below = v.next > 0 ? above + mesh_columns_ : above;
-  const int right = u.next > 0 ? 1 : 0;
+  const float* below = mesh_rows_ > 1 ? above + mesh_columns_ : above;
+  const int right = mesh_columns_ > 1 ? 1 : 0;
   const float one = above[0] + v.next * (below[0] - above[0]);
   const float next = above[right] + v.next * (below[right] - above[right]);
   return one + u.next * (next - one);
@@ -141,11 +142,11 @@ float Background::at(const std::vector<float>& mesh, int x, int y) const {
 void Background::row(const std::vector<float>& mesh, int y, float* out) const {
   const Between v = between(y, rows_, mesh_rows_);
   const float* above = mesh.data() + std::size_t(v.cell) * std::size_t(mesh_columns_);
-  const float* below = v.next > 0 ? above + mesh_columns_ : above;
+  const float* below = mesh_rows_ > 1 ? above + mesh_columns_ : above;
   std::vector<float> line(std::size_t(mesh_columns_) + 1);
   for (int i = 0; i < mesh_columns_; ++i)
     line[std::size_t(i)] = above[i] + v.next * (below[i] - above[i]);
-  line[std::size_t(mesh_columns_)] = line[std::size_t(mesh_columns_) - 1];
+  line.back() = line[std::size_t(mesh_columns_) - 1];
   for (int x = 0; x < columns_; ++x) {
     const Between u = across_[std::size_t(x)];
     const float one = line[std::size_t(u.cell)];

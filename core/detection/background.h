@@ -9,7 +9,8 @@ namespace dmise {
 /// Level and noise of the sky over a frame [DN], from a mesh of cells: in each the counts are
 /// clipped at 3 sigma until nothing changes, the level is 2.5 median - 1.5 mean (Bertin & Arnouts
 /// 1996, A&AS 117, 393; the median where the two disagree by more than 0.3 sigma). A median over 3
-/// x 3 cells removes what a bright source leaves; between the cells' centres it is bilinear.
+/// x 3 cells removes what a bright source leaves; between the cells' centres it is bilinear, to the
+/// frame's edges it goes on straight.
 class Background {
  public:
   Background(const CountImage& counts, int cell_px, Threads& threads);

@@ -37,9 +37,9 @@ struct Fits {
   }
 };
 
-/// Memory that CFITSIO writes a file into, and lets grow by realloc. It takes what is there at the
-/// start for a part of the file: only an uncompressed one, which overwrites all of it, may start
-/// large.
+/// Memory that CFITSIO writes a file into, zeros at first. It can't seek beyond what it takes for
+/// the file's end, which is the memory's: so there is room for the whole file from the start, and
+/// where the file ends is asked afterwards.
 struct FitsMemory {
   void* data = nullptr;
   std::size_t size = 0;
@@ -108,7 +108,8 @@ std::string encode_frame(const CountImage& counts, const FrameHeader& header,
                          FitsCompression compression) {
   const auto cards = fits_cards(header);
   const std::size_t whole = (cards.size() + 64) * 80 + 2 * counts.pixels.size() + 3 * fits_block;
-  FitsMemory memory(compression == FitsCompression::none ? whole : fits_block);
+  // Rice adds a table to a header and may leave noise larger than it was, but never twice.
+  FitsMemory memory(compression == FitsCompression::none ? whole : 2 * whole);
   Fits fits;
   fits_create_memfile(&fits.file, &memory.data, &memory.size, std::size_t(1) << 20, std::realloc,
                       &fits.status);

@@ -62,6 +62,18 @@ TEST(FitsFile, ReadsBackWhatWasWritten) {
   }
 }
 
+// The worst that Rice's code can meet: nothing to compress. And much: one value.
+TEST(FitsFile, RiceReadsBackNoiseAndFlatFrames) {
+  CountImage counts(1500, 1100);
+  std::uint32_t state = 1;
+  for (auto& pixel : counts.pixels)
+    pixel = std::uint16_t((state = state * 1664525u + 1013904223u) >> 16);
+  for (const CountImage& image : {counts, CountImage(1500, 1100, 300), CountImage(1, 1, 7)}) {
+    const auto bytes = encode_frame(image, sample_header(), FitsCompression::rice);
+    EXPECT_EQ(decode_frame(bytes, "frame.fits").counts.pixels, image.pixels);
+  }
+}
+
 TEST(FitsFile, HeaderInMemoryIsTheHeaderOfTheFile) {
   const auto header = sample_header();
   const Frame frame = decode_frame(encode_frame(sample_counts(), header), "frame.fits");

@@ -1,0 +1,64 @@
+#include "core/detection/background.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace dmise {
+namespace {
+
+CountImage noise(int columns, int rows, double level, double slope, double sigma, unsigned seed) {
+  CountImage counts(columns, rows);
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x)
+      counts.at(x, y) = std::uint16_t(std::lround(level + slope * x + sigma * normal(random)));
+  return counts;
+}
+
+TEST(Background, LevelAndNoiseOfAPlainSky) {
+  Threads threads;
+  for (const double sigma : {1.0, 20.0}) {  // also where the noise is of the size of one count
+    const Background b(noise(640, 512, 1000, 0, sigma, 1), 64, threads);
+    for (int y = 30; y < 512; y += 90)
+      for (int x = 30; x < 640; x += 90) {
+        EXPECT_NEAR(b.level_dn(x, y), 1000, 0.1 * sigma);
+        const double counted = std::sqrt(sigma * sigma + 1.0 / 12);  // with the rounding to counts
+        EXPECT_NEAR(b.sigma_dn(x, y), counted, 0.05 * sigma);
+      }
+  }
+}
+
+TEST(Background, FollowsAGradient) {
+  Threads threads;
+  const Background b(noise(640, 512, 1000, 0.5, 10, 2), 64, threads);
+  for (int x = 4; x < 640; x += 40) EXPECT_NEAR(b.level_dn(x, 250), 1000 + 0.5 * x, 2.0);
+}
+
+TEST(Background, OneSourceInTwentyPixelsHardlyLiftsIt) {
+  auto counts = noise(512, 512, 1000, 0, 10, 3);
+  for (int y = 3; y < 512; y += 20)
+    for (int x = 3; x < 500; x += 20)
+      for (int i = 0; i < 20; ++i) counts.at(x + i % 5, y + i / 5) += 300;
+  Threads threads;
+  const Background b(counts, 64, threads);
+  EXPECT_NEAR(b.median_level_dn(), 1000, 1.0);
+  EXPECT_NEAR(b.median_sigma_dn(), 10, 0.5);
+}
+
+TEST(Background, RowAndPixelAgree) {
+  Threads threads;
+  const Background b(noise(200, 150, 1000, 0.7, 10, 4), 64, threads);
+  std::vector<float> level(200), sigma(200);
+  b.level_row(77, level.data());
+  b.sigma_row(77, sigma.data());
+  for (int x = 0; x < 200; ++x) {
+    EXPECT_FLOAT_EQ(level[std::size_t(x)], b.level_dn(x, 77));
+    EXPECT_FLOAT_EQ(sigma[std::size_t(x)], b.sigma_dn(x, 77));
+  }
+}
+
+}  // namespace
+}  // namespace dmise
