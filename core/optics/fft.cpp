@@ -1,0 +1,174 @@
+#include "core/optics/fft.h"
+
+#include <fftw3.h>
+
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+
+#include "core/base/error.h"
+
+namespace dmise {
+namespace {
+
+constexpr int row_group = 8;
+constexpr int column_group = 16;  // complex numbers: 128 bytes of a row
+constexpr unsigned flags = FFTW_ESTIMATE;
+
+// FFTW's planner is the one part of it that threads must not enter together.
+std::mutex& planner() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+fftwf_complex* as_fftw(float* p) { return reinterpret_cast<fftwf_complex*>(p); }
+
+}  // namespace
+
+int good_fft_size(int at_least, bool even) {
+  for (int n = std::max(1, at_least);; ++n) {
+    if (even && n % 2) continue;
+    int rest = n;
+    for (int prime : {2, 3, 5, 7})
+      while (rest % prime == 0) rest /= prime;
+    if (rest == 1) return n;
+  }
+}
+
+void FftBuffer::Free::operator()(float* p) const { fftwf_free(p); }
+
+FftBuffer::FftBuffer(std::size_t floats) : data_(fftwf_alloc_real(floats)), size_(floats) {
+  if (!data_) throw Error("fft: no memory for " + std::to_string(floats) + " numbers");
+  std::memset(data_.get(), 0, floats * sizeof(float));
+}
+
+// Rows are planned by groups and one by one (for the rest); columns in groups of a work area.
+struct RealFft2::Plans {
+  fftwf_plan rows_forward = nullptr, rows_inverse = nullptr;
+  fftwf_plan row_forward = nullptr, row_inverse = nullptr;
+  fftwf_plan columns_forward = nullptr, columns_inverse = nullptr;
+
+  ~Plans() {
+    std::lock_guard lock(planner());
+    for (fftwf_plan plan :
+         {rows_forward, rows_inverse, row_forward, row_inverse, columns_forward, columns_inverse})
+      if (plan) fftwf_destroy_plan(plan);
+  }
+};
+
+RealFft2::RealFft2(int columns, int rows) : plans_(new Plans), columns_(columns), rows_(rows) {
+  if (columns < 2 || columns % 2 || rows < 1) throw Error("fft: columns must be even, rows >= 1");
+  const int half = columns / 2 + 1;
+  const int groups = (half + column_group - 1) / column_group;
+  stride_ = 2 * column_group * groups;
+  FftBuffer image(std::size_t(stride_) * row_group);
+  FftBuffer work(std::size_t(2 * column_group) * std::size_t(rows));
+  std::lock_guard lock(planner());
+  const auto plan_rows = [&](int count, fftwf_plan& forward, fftwf_plan& inverse) {
+    float* p = image.data();
+    forward = fftwf_plan_many_dft_r2c(1, &columns_, count, p, nullptr, 1, stride_, as_fftw(p),
+                                      nullptr, 1, stride_ / 2, flags);
+    inverse = fftwf_plan_many_dft_c2r(1, &columns_, count, as_fftw(p), nullptr, 1, stride_ / 2, p,
+                                      nullptr, 1, stride_, flags);
+  };
+  plan_rows(row_group, plans_->rows_forward, plans_->rows_inverse);
+  plan_rows(1, plans_->row_forward, plans_->row_inverse);
+  const auto plan_columns = [&](int sign) {
+    fftwf_complex* p = as_fftw(work.data());
+    return fftwf_plan_many_dft(1, &rows_, column_group, p, nullptr, column_group, 1, p, nullptr,
+                               column_group, 1, sign, flags);
+  };
+  plans_->columns_forward = plan_columns(FFTW_FORWARD);
+  plans_->columns_inverse = plan_columns(FFTW_BACKWARD);
+}
+
+RealFft2::~RealFft2() = default;
+
+void RealFft2::transform_rows(FftBuffer& image, int used_rows, bool forward,
+                              Threads& threads) const {
+  threads.for_ranges(std::size_t(used_rows), row_group, [&](std::size_t begin, std::size_t end) {
+    const bool whole = end - begin == row_group;
+    for (std::size_t y = begin; y < end; y += whole ? row_group : 1) {
+      float* row = image.data() + y * std::size_t(stride_);
+      if (forward)
+        fftwf_execute_dft_r2c(whole ? plans_->rows_forward : plans_->row_forward, row,
+                              as_fftw(row));
+      else
+        fftwf_execute_dft_c2r(whole ? plans_->rows_inverse : plans_->row_inverse, as_fftw(row),
+                              row);
+    }
+  });
+}
+
+// Gathers each group of columns, calls use(group, work) and puts the result back.
+template <class Use>
+void RealFft2::column_groups(FftBuffer& image, int used_rows, Threads& threads,
+                             const Use& use) const {
+  const auto groups = std::size_t(stride_ / (2 * column_group));
+  constexpr std::size_t width = 2 * column_group;
+  threads.for_ranges(groups, 1, [&](std::size_t begin, std::size_t end) {
+    FftBuffer work(width * std::size_t(rows_));
+    for (std::size_t g = begin; g < end; ++g) {
+      for (int y = 0; y < used_rows; ++y)
+        std::memcpy(work.data() + std::size_t(y) * width,
+                    image.data() + std::size_t(y) * std::size_t(stride_) + g * width,
+                    width * sizeof(float));
+      std::fill(work.data() + std::size_t(used_rows) * width, work.data() + work.size(), 0.0f);
+      if (!use(g, work)) continue;
+      for (int y = 0; y < used_rows; ++y)
+        std::memcpy(image.data() + std::size_t(y) * std::size_t(stride_) + g * width,
+                    work.data() + std::size_t(y) * width, width * sizeof(float));
+    }
+  });
+}
+
+std::vector<std::complex<float>> RealFft2::spectrum(FftBuffer& image, Threads& threads) const {
+  transform_rows(image, rows_, true, threads);
+  const std::size_t each = std::size_t(column_group) * std::size_t(rows_);
+  std::vector<std::complex<float>> result(each * std::size_t(stride_ / (2 * column_group)));
+  const float scale = float(1.0 / (double(columns_) * rows_));
+  column_groups(image, rows_, threads, [&](std::size_t g, FftBuffer& work) {
+    fftwf_execute_dft(plans_->columns_forward, as_fftw(work.data()), as_fftw(work.data()));
+    for (std::size_t i = 0; i < each; ++i) result[g * each + i] = work.complex_data()[i] * scale;
+    return false;
+  });
+  return result;
+}
+
+void RealFft2::convolve(FftBuffer& image, int used_rows,
+                        const std::vector<std::complex<float>>& spectrum, Threads& threads) const {
+  transform_rows(image, used_rows, true, threads);
+  const std::size_t each = std::size_t(column_group) * std::size_t(rows_);
+  column_groups(image, used_rows, threads, [&](std::size_t g, FftBuffer& work) {
+    fftwf_execute_dft(plans_->columns_forward, as_fftw(work.data()), as_fftw(work.data()));
+    const auto* s = reinterpret_cast<const float*>(spectrum.data() + g * each);
+    float* w = work.data();
+    for (std::size_t i = 0; i < 2 * each; i += 2) {
+      const float re = w[i] * s[i] - w[i + 1] * s[i + 1];
+      w[i + 1] = w[i] * s[i + 1] + w[i + 1] * s[i];
+      w[i] = re;
+    }
+    fftwf_execute_dft(plans_->columns_inverse, as_fftw(w), as_fftw(w));
+    return true;
+  });
+  transform_rows(image, used_rows, false, threads);
+}
+
+ComplexFft2::ComplexFft2(int side) : side_(side) {
+  if (side < 1) throw Error("fft: side must be >= 1");
+  FftBuffer data(2 * std::size_t(side) * std::size_t(side));
+  std::lock_guard lock(planner());
+  plan_ = fftwf_plan_dft_2d(side, side, as_fftw(data.data()), as_fftw(data.data()), FFTW_FORWARD,
+                            flags);
+}
+
+ComplexFft2::~ComplexFft2() {
+  std::lock_guard lock(planner());
+  fftwf_destroy_plan(static_cast<fftwf_plan>(plan_));
+}
+
+void ComplexFft2::transform(FftBuffer& data) const {
+  fftwf_execute_dft(static_cast<fftwf_plan>(plan_), as_fftw(data.data()), as_fftw(data.data()));
+}
+
+}  // namespace dmise

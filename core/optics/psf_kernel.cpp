@@ -1,0 +1,81 @@
+#include "core/optics/psf_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+
+namespace dmise {
+
+PsfKernel kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad, int half,
+                    double* lost) {
+  if (!(cell_rad > 0.0) || half < 0 || half > 2048) throw Error("psf kernel: cell or size");
+  // Fine grid: an odd number of samples a cell, so that a sample is each cell's centre, and enough
+  // that the transfer function ends before its Nyquist frequency. Its period is twice the kernel's
+  // side, so that what wraps around comes from far outside.
+  int fine = int(std::ceil(2.0 * cutoff_per_rad * cell_rad));
+  fine = std::max(1, fine + (fine + 1) % 2);
+  const int period_cells = good_fft_size(2 * (2 * half + 1) + 16, true);
+  const int n = period_cells * fine;
+  if (n > 16384) throw Error("psf kernel: cells too coarse for the optics' resolution");
+  FftBuffer data(2 * std::size_t(n) * std::size_t(n));
+  const double step = 1.0 / (period_cells * cell_rad);
+  const auto frequency = [&](int i) { return step * (i <= n / 2 ? i : i - n); };
+  // Even in both axes: a quarter is enough.
+  std::vector<double> cell(std::size_t(n) / 2 + 1);
+  for (int i = 0; i <= n / 2; ++i) cell[std::size_t(i)] = pixel_otf(frequency(i), cell_rad);
+  for (int y = 0; y <= n / 2; ++y)
+    for (int x = 0; x <= n / 2; ++x) {
+      const auto value = float(otf(frequency(x), frequency(y)) * cell[std::size_t(x)] *
+                               cell[std::size_t(y)] / (double(period_cells) * period_cells));
+      if (value == 0.0f) continue;
+      for (int v : {y, (n - y) % n})
+        for (int u : {x, (n - x) % n})
+          data.data()[2 * (std::size_t(v) * std::size_t(n) + std::size_t(u))] = value;
+    }
+  ComplexFft2(n).transform(data);
+
+  PsfKernel kernel{half, std::vector<float>(std::size_t(2 * half + 1) * std::size_t(2 * half + 1))};
+  double sum = 0.0;
+  for (int dy = -half; dy <= half; ++dy)
+    for (int dx = -half; dx <= half; ++dx) {
+      const auto v = std::size_t((dy * fine + n) % n), u = std::size_t((dx * fine + n) % n);
+      const float share = std::max(0.0f, data.data()[2 * (v * std::size_t(n) + u)]);
+      kernel.values[std::size_t((dy + half) * kernel.side() + dx + half)] = share;
+      sum += share;
+    }
+  if (lost) *lost = 1.0 - sum;
+  for (float& share : kernel.values) share = float(share / sum);
+  return kernel;
+}
+
+PsfKernel optical_kernel(const Blur& blur, double cell_rad, int half, double* lost) {
+  // Where the first of diffraction, turbulence and jitter has left less than 1e-9.
+  double cutoff = std::min(blur.aperture_m, 2.9 * blur.r0_m) / blur.wavelength_m;
+  if (blur.jitter_rad > 0.0) cutoff = std::min(cutoff, 1.03 / blur.jitter_rad);
+  return kernel_of(
+      [&](double nu_x, double nu_y) { return optical_otf(blur, std::hypot(nu_x, nu_y)); }, cutoff,
+      cell_rad, half, lost);
+}
+
+double encircled_energy(const PsfKernel& kernel, double radius) {
+  constexpr int points = 16;
+  double sum = 0.0;
+  for (int dy = -kernel.half; dy <= kernel.half; ++dy)
+    for (int dx = -kernel.half; dx <= kernel.half; ++dx) {
+      const double nearest = std::hypot(dx, dy) - 0.75, farthest = std::hypot(dx, dy) + 0.75;
+      if (nearest > radius) continue;
+      int inside = points * points;
+      if (farthest > radius) {
+        inside = 0;
+        for (int j = 0; j < points; ++j)
+          for (int i = 0; i < points; ++i)
+            inside +=
+                std::hypot(dx + (i + 0.5) / points - 0.5, dy + (j + 0.5) / points - 0.5) <= radius;
+      }
+      sum += kernel.at(dx, dy) * double(inside) / (points * points);
+    }
+  return sum;
+}
+
+}  // namespace dmise

@@ -1,0 +1,37 @@
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "core/optics/fft.h"
+#include "core/optics/otf.h"
+
+namespace dmise {
+
+/// A point spread function on a grid of cells, the source in the middle of the central cell: the
+/// share of the light that each cell receives. Not negative, sums to 1.
+struct PsfKernel {
+  int half = 0;               // cells on each side of the central one
+  std::vector<float> values;  // side x side, row-major
+
+  int side() const { return 2 * half + 1; }
+  float at(int dx, int dy) const { return values[std::size_t((dy + half) * side() + dx + half)]; }
+};
+
+/// Transfer function at a frequency along x and along y [cycles/rad]; real and even.
+using TransferFunction = std::function<double(double nu_x, double nu_y)>;
+
+/// Kernel of a transfer function, integrated over cells of angular size `cell_rad` and cut off
+/// `half` cells from the centre; what lies beyond (`lost`, if asked for) is shared out by scaling.
+/// `cutoff` is the frequency from which on the function is nothing [cycles/rad]; cells may be
+/// larger or smaller than it resolves. Values that rounding makes negative become 0.
+PsfKernel kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad, int half,
+                    double* lost = nullptr);
+
+/// Kernel of the optics: diffraction, long exposure, jitter, defocus, cell integration.
+PsfKernel optical_kernel(const Blur& blur, double cell_rad, int half, double* lost = nullptr);
+
+/// Share of the light within `radius` cells of the centre, cells cut by the circle counted by the
+/// share of 16 x 16 points inside.
+double encircled_energy(const PsfKernel& kernel, double radius);
+
+}  // namespace dmise

@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "core/base/rng.h"
+#include "core/base/units.h"
+#include "core/optics/convolver.h"
+#include "core/optics/deposit.h"
+
+namespace dmise {
+namespace {
+
+constexpr double lambda = 0.55e-6, diameter = 0.3;
+const Blur airy{.wavelength_m = lambda, .aperture_m = diameter};
+
+double sum(const RateImage& image) {
+  return std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0);
+}
+
+// Born & Wolf: first zero at 1.2197 lambda/D with 83.8 % of the light inside, 91.0 % within the
+// second at 2.2331.
+TEST(PsfKernel, OfAClearApertureIsTheAiryPattern) {
+  const double cell = 0.05 * lambda / diameter;
+  double lost = 0;
+  PsfKernel k = optical_kernel(airy, cell, 300, &lost);
+  EXPECT_NEAR(lost, 0.2 / 15, 0.004);  // beyond 15 lambda/D: about 0.2 / radius
+  for (float& v : k.values) v *= float(1 - lost);
+  EXPECT_NEAR(encircled_energy(k, 1.2197 / 0.05), 0.838, 0.002);
+  EXPECT_NEAR(encircled_energy(k, 2.2331 / 0.05), 0.910, 0.002);
+  int darkest = 1;
+  for (int x = 1; x < 40; ++x)
+    if (k.at(x, 0) < k.at(darkest, 0)) darkest = x;
+  EXPECT_NEAR(darkest * 0.05, 1.2197, 0.05);
+  // The peak of the diffraction-limited pattern, pi/4 (D/lambda)^2 a steradian, over the central
+  // cell.
+  EXPECT_NEAR(k.at(0, 0), pi / 4 * 0.05 * 0.05, 2e-3 * pi / 4 * 0.05 * 0.05);
+}
+
+TEST(PsfKernel, CellsMuchLargerThanThePatternHoldAllOfIt) {
+  const PsfKernel k = optical_kernel(airy, 40 * lambda / diameter, 2);
+  EXPECT_GT(k.at(0, 0), 0.98);
+  EXPECT_NEAR(std::accumulate(k.values.begin(), k.values.end(), 0.0), 1.0, 1e-6);
+}
+
+TEST(PsfKernel, SumsToOneFromOneMillimetreOfSeeingToNone) {
+  for (double r0 : {1e-3, 0.05, 0.3, 100.0, std::numeric_limits<double>::infinity()}) {
+    Blur b = airy;
+    b.r0_m = r0;
+    const double cell = 0.25 * std::hypot(lambda / diameter, lambda / r0);
+    double lost = 0;
+    const PsfKernel k = optical_kernel(b, cell, 64, &lost);
+    EXPECT_NEAR(std::accumulate(k.values.begin(), k.values.end(), 0.0), 1.0, 1e-6) << r0;
+    EXPECT_LT(std::abs(lost), 0.03) << r0;
+    for (float v : k.values) ASSERT_GE(v, 0.0f);
+  }
+}
+
+// Reference: direct sums over the kernel.
+TEST(Convolver, IsTheConvolutionAlsoForPrimeAndTinyFrames) {
+  Threads one(1);
+  const PsfKernel k = optical_kernel(airy, 0.5 * lambda / diameter, 9);
+  for (auto [columns, rows] : {std::pair{101, 67}, {1, 40}, {40, 1}, {1, 1}, {8, 120}}) {
+    RateImage image(columns, rows), expected(columns, rows);
+    const RngKey key = rng_key(1, "s", 1, "e");
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      image.pixels[i] =
+          i % 7 == 0 ? float(1000 * uniform_of(rng_word(key, std::uint32_t(i), 0))) : 0.0f;
+    for (int y = 0; y < rows; ++y)
+      for (int x = 0; x < columns; ++x) {
+        double s = 0;
+        for (int dy = -9; dy <= 9; ++dy)
+          for (int dx = -9; dx <= 9; ++dx)
+            if (x - dx >= 0 && x - dx < columns && y - dy >= 0 && y - dy < rows)
+              s += double(k.at(dx, dy)) * image.at(x - dx, y - dy);
+        expected.at(x, y) = float(s);
+      }
+    Convolver(columns, rows, k, one).apply(image, one);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      ASSERT_NEAR(image.pixels[i], expected.pixels[i], 1e-3);
+  }
+}
+
+TEST(Convolver, KeepsTheFluxNeverGoesNegativeAndWrapsNothingAround) {
+  Threads one(1);
+  const PsfKernel k = optical_kernel(airy, 0.5 * lambda / diameter, 40);
+  Convolver convolver(400, 300, k, one);
+  RateImage image(400, 300);
+  image.at(200, 150) = 1e6f;
+  image.at(120, 80) = 10.0f;
+  convolver.apply(image, one);
+  EXPECT_NEAR(sum(image) / (1e6 + 10), 1.0, 1e-6);
+  for (float e : image.pixels) ASSERT_GE(e, 0.0f);
+
+  // In the last column: what leaves on the right does not come back on the left.
+  RateImage edge(400, 300);
+  edge.at(399, 299) = 1e6f;
+  convolver.apply(edge, one);
+  for (int y = 0; y < 250; ++y)
+    for (int x = 0; x < 350; ++x) ASSERT_LT(edge.at(x, y), 0.2f) << x << " " << y;
+  EXPECT_LT(sum(edge), 0.5e6);
+  EXPECT_GT(sum(edge), 0.25e6);
+}
+
+TEST(Convolver, TheBytesDoNotDependOnThreadsAndUseAgain) {
+  const PsfKernel k = optical_kernel(airy, 0.5 * lambda / diameter, 20);
+  RateImage light(503, 331);
+  const RngKey key = rng_key(1, "s", 1, "e");
+  for (std::size_t i = 0; i < light.pixels.size(); ++i)
+    light.pixels[i] = float(uniform_of(rng_word(key, std::uint32_t(i), 0)));
+  Threads one(1);
+  RateImage reference = light;
+  Convolver(503, 331, k, one).apply(reference, one);
+  for (int n : {1, 2, 4}) {
+    Threads threads(n);
+    Convolver convolver(503, 331, k, threads);
+    for (int again = 0; again < 2; ++again) {
+      RateImage image = light;
+      convolver.apply(image, threads);
+      ASSERT_EQ(image.pixels, reference.pixels) << n;
+    }
+  }
+}
+
+// The analytic deposit against 16 x finer cells through the transform and summed.
+TEST(Convolver, AnalyticDepositAgreesWithASixteenTimesFinerTransform) {
+  Threads one(1);
+  for (double sigma_px : {0.3, 0.7, 1.5}) {
+    const int fine = 16, side = 24, half = int(std::ceil(5.5 * sigma_px * fine));
+    const auto gaussian = [&](double nu_x, double nu_y) {
+      return jitter_otf(std::hypot(nu_x, nu_y), sigma_px * fine);
+    };
+    const PsfKernel k = kernel_of(gaussian, 0.5, 1.0, half);
+    RateImage grid(side * fine, side * fine);
+    const int u = 11 * fine + 5, v = 12 * fine + 13;
+    grid.at(u, v) = 1.0f;
+    Convolver(grid.columns, grid.rows, k, one).apply(grid, one);
+    RateImage direct(side, side);
+    const PixelPosition at{(u + 0.5) / fine - 0.5, (v + 0.5) / fine - 0.5};
+    const Arc point{at, at, at, 1.0};
+    deposit(std::span(&point, 1), make_psf_table(sigma_px), direct, one);
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        double s = 0;
+        for (int j = 0; j < fine; ++j)
+          for (int i = 0; i < fine; ++i) s += grid.at(x * fine + i, y * fine + j);
+        EXPECT_NEAR(direct.at(x, y), s, 1e-4) << sigma_px;
+      }
+  }
+}
+
+}  // namespace
+}  // namespace dmise
