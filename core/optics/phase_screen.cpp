@@ -1,0 +1,115 @@
+#include "core/optics/phase_screen.h"
+
+#include <fftw3.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr double alpha = 5.0 / 3.0;
+// Stein's covariance: 1 - r^alpha + c2 r^2 up to r = 1 (plus a constant), then a smooth end at 2.
+constexpr double radius = 2.0;
+constexpr double beta = alpha * (2 - alpha) / (3 * radius * (radius * radius - 1));
+constexpr double c2 = 0.5 * (alpha - beta * (radius - 1) * (radius - 1) * (radius + 2));
+constexpr double c0 = beta * (radius - 1) * (radius - 1) * (radius - 1) + 1 - c2;
+
+double covariance(double r) {
+  if (r <= 1.0) return c0 - std::pow(r, alpha) + c2 * r * r;
+  if (r <= radius) return beta * std::pow(radius - r, 3) / r;
+  return 0.0;
+}
+
+int torus_side(double unit) { return good_fft_size(int(std::ceil(2 * radius * unit)) + 1, true); }
+
+}  // namespace
+
+double kolmogorov_structure(double separation, double r0) {
+  return 6.88 * std::pow(separation / r0, alpha);
+}
+
+KolmogorovScreens::KolmogorovScreens(int side)
+    : side_(side),
+      torus_(torus_side(std::sqrt(2.0) * side)),
+      unit_(std::sqrt(2.0) * side),
+      fft_(torus_) {
+  if (side < 2 || side > 1024) throw Error("phase screen: side must be 2..1024 samples");
+  field_ = FftBuffer(2 * std::size_t(torus_) * std::size_t(torus_));
+  // Eigenvalues: the cosine transform of the covariance, in double precision, for they span more
+  // than seven digits.
+  const int n = torus_ / 2 + 1;
+  std::vector<double> lambda(std::size_t(n) * std::size_t(n));
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x)
+      lambda[std::size_t(y) * std::size_t(n) + std::size_t(x)] =
+          covariance(std::hypot(x, y) / unit_);
+  const fftw_plan plan = fftw_plan_r2r_2d(n, n, lambda.data(), lambda.data(), FFTW_REDFT00,
+                                          FFTW_REDFT00, FFTW_ESTIMATE);
+  fftw_execute(plan);
+  fftw_destroy_plan(plan);
+  amplitude_.resize(lambda.size());
+  for (std::size_t i = 0; i < lambda.size(); ++i)
+    amplitude_[i] = float(std::sqrt(std::max(0.0, lambda[i])) / torus_);
+}
+
+std::array<PhaseScreen, 2> KolmogorovScreens::draw(const RngKey& key, std::uint32_t draw,
+                                                   double r0_samples) {
+  const auto torus = std::size_t(torus_), n = torus / 2 + 1;
+  std::vector<std::uint32_t> words(2 * torus);
+  for (std::size_t y = 0; y < torus; ++y) {
+    const float* a = amplitude_.data() + std::min(y, torus - y) * n;
+    float* row = field_.data() + 2 * y * torus;
+    rng_words(key, std::uint32_t(2 * y * torus), words.size(), 2 * draw, words.data());
+    normals_of(words.data(), words.size(), row);
+    for (std::size_t x = 0; x < torus; ++x) {
+      const float amplitude = a[std::min(x, torus - x)];
+      row[2 * x] *= amplitude;
+      row[2 * x + 1] *= amplitude;
+    }
+  }
+  fft_.transform(field_);
+
+  // Real and imaginary part are independent fields; each gets a tilt that puts c2 r^2 right.
+  const double scale = std::sqrt(0.5 * kolmogorov_structure(unit_, r0_samples));
+  std::array<PhaseScreen, 2> screens;
+  for (std::size_t part = 0; part < 2; ++part) {
+    const auto tilt = [&](std::uint32_t axis) {
+      const std::uint32_t item = std::uint32_t(2 * part) + axis;
+      return std::sqrt(2 * c2) / unit_ * normal_of(rng_word(key, item, 2 * draw + 1));
+    };
+    const double tilt_x = tilt(0), tilt_y = tilt(1);
+    PhaseScreen& screen = screens[part];
+    screen.side = side_;
+    screen.phase_rad.resize(std::size_t(side_) * std::size_t(side_));
+    for (int y = 0; y < side_; ++y)
+      for (int x = 0; x < side_; ++x) {
+        const double field = field_.data()[2 * (std::size_t(y) * torus + std::size_t(x)) + part];
+        screen.phase_rad[std::size_t(y) * std::size_t(side_) + std::size_t(x)] =
+            float(scale * (field + tilt_x * x + tilt_y * y));
+      }
+  }
+  return screens;
+}
+
+double KolmogorovScreens::expected_structure(int dx, int dy) const {
+  const int n = torus_ / 2 + 1;
+  const auto weight = [&](int k) { return k == 0 || 2 * k == torus_ ? 1.0 : 2.0; };
+  double sum = 0.0;
+  std::vector<double> cosine_x(std::size_t(n), 0.0);
+  for (int k = 0; k < n; ++k) cosine_x[std::size_t(k)] = std::cos(2 * pi * k * double(dx) / torus_);
+  for (int j = 0; j < n; ++j) {
+    const double cosine_y = std::cos(2 * pi * j * double(dy) / torus_);
+    for (int k = 0; k < n; ++k) {
+      const double a = amplitude_[std::size_t(j) * std::size_t(n) + std::size_t(k)];
+      sum += weight(j) * weight(k) * a * a * (1 - cosine_x[std::size_t(k)] * cosine_y);
+    }
+  }
+  const double tilt = 2 * c2 * (double(dx) * dx + double(dy) * dy) / (unit_ * unit_);
+  return 0.5 * kolmogorov_structure(unit_, 1.0) * (2 * sum + tilt);
+}
+
+}  // namespace dmise

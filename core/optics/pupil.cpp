@@ -1,0 +1,162 @@
+#include "core/optics/pupil.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+// Noll's single index as radial order and azimuthal frequency; negative: the sine term.
+std::array<int, 2> orders(int noll) {
+  int n = 0, first = 1;
+  while (noll >= first + n + 1) first += ++n;
+  const int place = noll - first;
+  const int m = n % 2 ? 2 * (place / 2) + 1 : 2 * ((place + 1) / 2);
+  return {n, noll % 2 ? -m : m};
+}
+
+double factorial(int n) { return std::tgamma(n + 1.0); }
+
+// Share of open pupil at a place, in aperture diameters from the centre.
+bool is_open(const Pupil& p, double x, double y) {
+  const double r = std::hypot(x, y);
+  if (r > 0.5 || r < 0.5 * p.obscuration) return false;
+  for (int i = 0; i < p.spiders; ++i) {
+    const double angle = 2 * pi * i / p.spiders;
+    const double along = x * std::cos(angle) + y * std::sin(angle);
+    const double across = std::abs(y * std::cos(angle) - x * std::sin(angle));
+    if (along > 0 && across * p.aperture_m < 0.5 * p.spider_width_m) return false;
+  }
+  return true;
+}
+
+// Share of a sample's cell that is open, by 4 x 4 points.
+double open_share(const Pupil& p, double x, double y, double step) {
+  const double r = std::hypot(x, y);
+  if (r > 0.5 + step) return 0.0;
+  constexpr int points = 4;
+  int open = 0;
+  for (int j = 0; j < points; ++j)
+    for (int i = 0; i < points; ++i)
+      open +=
+          is_open(p, x + ((i + 0.5) / points - 0.5) * step, y + ((j + 0.5) / points - 0.5) * step);
+  return double(open) / (points * points);
+}
+
+}  // namespace
+
+double zernike(int noll, double rho, double theta_rad) {
+  if (noll < 1 || noll > 66) throw Error("zernike: Noll index must be 1..66");
+  const auto [n, signed_m] = orders(noll);
+  const int m = std::abs(signed_m);
+  double radial = 0.0;
+  for (int k = 0; k <= (n - m) / 2; ++k)
+    radial += (k % 2 ? -1.0 : 1.0) * factorial(n - k) /
+              (factorial(k) * factorial((n + m) / 2 - k) * factorial((n - m) / 2 - k)) *
+              std::pow(rho, n - 2 * k);
+  if (m == 0) return std::sqrt(n + 1.0) * radial;
+  const double angular = signed_m < 0 ? std::sin(m * theta_rad) : std::cos(m * theta_rad);
+  return std::sqrt(2.0 * (n + 1)) * radial * angular;
+}
+
+PupilGrid pupil_grid(const Pupil& pupil, double wavelength_m, double cell_rad, int half,
+                     double r0_m) {
+  PupilGrid g;
+  // Intensity ends at D / lambda: two samples for each lambda / D.
+  const int fine = int(std::ceil(2.0 * pupil.aperture_m / wavelength_m * cell_rad));
+  g.fine = std::max(1, fine + (fine + 1) % 2);
+  // step = lambda / (side cell / fine): more samples make finer steps and a wider image.
+  const double finest_m = std::min(pupil.aperture_m / 32, r0_m / 3);
+  const double field_rad = std::max(2.0 * (2 * half + 1) * cell_rad, wavelength_m / finest_m);
+  const int cells = good_fft_size(int(std::ceil(field_rad / cell_rad)), true);
+  g.side = cells * g.fine;
+  if (g.side > 8192)
+    throw Error("pupil: turbulence too strong for the aperture, or cells too coarse");
+  g.cell_rad = cell_rad;
+  g.step_m = wavelength_m / (cells * cell_rad);
+  return g;
+}
+
+int aperture_samples(const Pupil& pupil, const PupilGrid& grid) {
+  return int(std::ceil(pupil.aperture_m / grid.step_m)) + 2;
+}
+
+PsfKernel short_exposure_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
+                                const PhaseScreen* screen, int first_x, int first_y) {
+  const int across = aperture_samples(pupil, grid), n = grid.side;
+  if (across > n) throw Error("pupil: the grid is smaller than the aperture");
+  if (screen && (first_x < 0 || first_y < 0 || first_x + across > screen->side ||
+                 first_y + across > screen->side))
+    throw Error("pupil: the screen does not cover the aperture");
+  FftBuffer field(2 * std::size_t(n) * std::size_t(n));
+  const double step = grid.step_m / pupil.aperture_m;
+  for (int j = 0; j < across; ++j)
+    for (int i = 0; i < across; ++i) {
+      const double x = (i - 0.5 * (across - 1)) * step, y = (j - 0.5 * (across - 1)) * step;
+      const double open = open_share(pupil, x, y, step);
+      if (open == 0.0) continue;
+      double phase = screen ? screen->at(first_x + i, first_y + j) : 0.0;
+      const double rho = std::min(1.0, 2 * std::hypot(x, y)), theta = std::atan2(y, x);
+      for (const ZernikeTerm& t : pupil.wavefront) phase += t.rms_rad * zernike(t.noll, rho, theta);
+      const auto at = 2 * (std::size_t(j) * std::size_t(n) + std::size_t(i));
+      field.data()[at] = float(open * std::cos(phase));
+      field.data()[at + 1] = float(open * std::sin(phase));
+    }
+  const ComplexFft2 fft(n);
+  fft.transform(field);
+
+  // Intensity, then its transfer function times the cell's, then back.
+  double light = 0.0;
+  for (std::size_t i = 0; i < field.size(); i += 2) {
+    const double e = double(field.data()[i]) * field.data()[i] +
+                     double(field.data()[i + 1]) * field.data()[i + 1];
+    light += e;
+    field.data()[i] = float(e);
+    field.data()[i + 1] = 0.0f;
+  }
+  fft.transform(field);
+  std::vector<double> cell(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) {
+    const double nu = (i <= n / 2 ? i : i - n) * double(grid.fine) / (n * grid.cell_rad);
+    cell[std::size_t(i)] = pixel_otf(nu, grid.cell_rad);
+  }
+  // Forward once more instead of back: the image comes out mirrored, so conjugate first.
+  const double scale = double(grid.fine) * grid.fine / (light * double(n) * n);
+  for (std::size_t y = 0; y < std::size_t(n); ++y)
+    for (std::size_t x = 0; x < std::size_t(n); ++x) {
+      float* v = field.data() + 2 * (y * std::size_t(n) + x);
+      const double h = cell[x] * cell[y] * scale;
+      v[0] = float(v[0] * h);
+      v[1] = float(-v[1] * h);
+    }
+  fft.transform(field);
+
+  PsfKernel kernel{half, std::vector<float>(std::size_t(2 * half + 1) * std::size_t(2 * half + 1))};
+  double sum = 0.0;
+  for (int dy = -half; dy <= half; ++dy)
+    for (int dx = -half; dx <= half; ++dx) {
+      const auto v = std::size_t((dy * grid.fine + n) % n),
+                 u = std::size_t((dx * grid.fine + n) % n);
+      const float share = std::max(0.0f, field.data()[2 * (v * std::size_t(n) + u)]);
+      kernel.values[std::size_t((dy + half) * kernel.side() + dx + half)] = share;
+      sum += share;
+    }
+  for (float& share : kernel.values) share = float(share / sum);
+  return kernel;
+}
+
+PsfKernel mean_of(const std::vector<PsfKernel>& kernels) {
+  if (kernels.empty()) throw Error("psf kernel: mean of none");
+  PsfKernel mean{kernels[0].half, std::vector<float>(kernels[0].values.size())};
+  for (std::size_t i = 0; i < mean.values.size(); ++i) {
+    double sum = 0.0;
+    for (const PsfKernel& k : kernels) sum += k.values.at(i);
+    mean.values[i] = float(sum / double(kernels.size()));
+  }
+  return mean;
+}
+
+}  // namespace dmise

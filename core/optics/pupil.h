@@ -1,0 +1,57 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "core/optics/phase_screen.h"
+#include "core/optics/psf_kernel.h"
+
+namespace dmise {
+
+/// A Zernike term of the optics' wavefront, Noll's index (1 piston, 2 and 3 tilt, 4 defocus, 5 and
+/// 6 astigmatism, 7 and 8 coma, ...). Source: Noll 1976, J. Opt. Soc. Am. 66, 207.
+struct ZernikeTerm {
+  int noll = 4;  // 1..66
+  double rms_rad = 0.0;
+};
+
+/// Value of Noll's polynomial, rms 1 over the unit disc, at radius `rho` 0..1 and angle
+/// `theta_rad`.
+double zernike(int noll, double rho, double theta_rad);
+
+/// The pupil of a telescope.
+struct Pupil {
+  double aperture_m = 0.1;
+  double obscuration = 0.0;  // ratio of diameters, [0, 1)
+  int spiders = 0;           // vanes from the centre outwards, at equal angles, the first along x
+  double spider_width_m = 0.0;
+  std::vector<ZernikeTerm> wavefront;
+};
+
+/// Sampling of a pupil for kernels of given cells: the pupil plane's step follows from the
+/// wavelength and the cells.
+struct PupilGrid {
+  int side = 0;           // samples of the pupil plane, and of the image it transforms to
+  double step_m = 0.0;    // between samples
+  double cell_rad = 0.0;  // of the kernel
+  int fine = 1;           // image samples a cell along one axis, odd
+};
+
+/// Finest useful grid for cells of `cell_rad`, kernels of `half` cells and turbulence of `r0_m`
+/// (may be infinite): at least three samples in r0 and 32 across the aperture.
+PupilGrid pupil_grid(const Pupil& pupil, double wavelength_m, double cell_rad, int half,
+                     double r0_m);
+
+/// Instantaneous kernel |F{A exp(i phi)}|^2 through a screen sampled at the grid's step, integrated
+/// over cells. `screen` may be smaller than the grid as long as it covers the aperture; null: no
+/// turbulence. `first_x`, `first_y`: the sample of the screen that meets the aperture's first
+/// one (frozen flow).
+PsfKernel short_exposure_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
+                                const PhaseScreen* screen, int first_x = 0, int first_y = 0);
+
+/// Samples across the aperture, the side a screen needs.
+int aperture_samples(const Pupil& pupil, const PupilGrid& grid);
+
+/// Mean of kernels of one size.
+PsfKernel mean_of(const std::vector<PsfKernel>& kernels);
+
+}  // namespace dmise
