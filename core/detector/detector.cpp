@@ -31,6 +31,30 @@ void check(const Detector& d) {
           d.gain_e_per_dn);
   require(within(d.bias_dn, 0.0, 65535.0), "bias_dn", "must be in 0..65535", d.bias_dn);
   require(d.adc_bits >= 1 && d.adc_bits <= 16, "adc_bits", "must be 1..16", d.adc_bits);
+  const auto share = [&](double v, const char* key, double most) {
+    require(within(v, 0.0, most), key, "must be >= 0 and within its range", v);
+  };
+  share(d.prnu_rms, "prnu_rms", 0.2);
+  share(d.hot_pixel_fraction, "hot_pixel_fraction", 1.0);
+  share(d.hot_pixel_e_per_s, "hot_pixel_e_per_s", 1e9);
+  share(d.column_noise_e, "column_noise_e", 1e6);
+  share(d.nonlinearity, "nonlinearity", 0.5);
+  share(d.interpixel_coupling, "interpixel_coupling", 0.2);
+  share(d.persistence_fraction, "persistence_fraction", 1.0);
+  share(d.persistence_s, "persistence_s", 1e9);
+  share(d.cosmic_rays_per_px_s, "cosmic_rays_per_px_s", 1.0);
+  share(d.cosmic_ray_e_per_px, "cosmic_ray_e_per_px", 1e9);
+  require(d.cosmic_ray_depth_px > 0.0 && d.cosmic_ray_depth_px <= 100.0, "cosmic_ray_depth_px",
+          "must be in (0, 100]", d.cosmic_ray_depth_px);
+  require(d.reference_px >= 0 && d.reference_px <= 1000, "reference_px", "must be 0..1000",
+          d.reference_px);
+  require(d.persistence_fraction == 0.0 || d.persistence_s > 0.0, "persistence_s",
+          "must be > 0 with persistence", d.persistence_s);
+}
+
+double dark_current_at(double temperature_k, double reference_e_per_s, double reference_k,
+                       double doubling_k) {
+  return reference_e_per_s * std::exp2((temperature_k - reference_k) / doubling_k);
 }
 
 }  // namespace dmise

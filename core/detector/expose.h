@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/base/image.h"
 #include "core/base/parallel.h"
@@ -16,6 +17,14 @@ struct Exposure {
   std::string sensor;  // its name
   std::uint32_t frame = 0;
   double exposure_s = 0.0;  // >= 0
+  double idle_s = 0.0;      // since the end of the exposure before, for persistence; >= 0
+};
+
+/// What a detector keeps from one exposure to the next: trapped charge, and memory to use again.
+/// Empty at first. Only persistence makes a frame depend on the ones before it.
+struct DetectorMemory {
+  std::vector<float> trapped_e;  // rows x columns, if there is persistence
+  ElectronImage electrons;       // work area, if effects need a pixel's neighbours
 };
 
 /// Pixels that reached a limit.
@@ -29,16 +38,21 @@ struct SaturatedPixels {
 /// Exposes a detector to `light`, the photo-electrons expected of each pixel during the exposure
 /// [e-] (quantum efficiency applied), and reads it out into `counts` (resized as needed, memory
 /// kept):
-///   electrons = min(photon_noise(light) + dark_current, full_well)
-///   counts = quantisation(electrons + read_noise)
+///   light     = light x response (prnu) + trapped charge (persistence)
+///   electrons = photon_noise(light) + dark_current + hot pixels + cosmic rays, none in reference
+///               pixels, up to full_well (or blooming)
+///   signal    = electrons with interpixel coupling and nonlinearity
+///   counts    = quantisation(signal + column noise + read_noise)
 /// The image runs through all effects piece by piece, so that nothing of its size is held but light
-/// and counts. An effect that is off is left out: without photon noise the expected electrons go
-/// on, without quantisation counts are rounded but only the image's 16 bits limit them. Each effect
-/// draws from a stream of its own: switching one leaves the noise of the others as it was, and the
-/// bytes depend on neither threads nor instruction set. Adds each effect's seconds to `times`
-/// (summed over threads) if given. Throws `Error` naming the pixel when `light` is NaN or negative.
+/// and counts (and `memory.electrons` for blooming and interpixel coupling). An effect that is off
+/// is left out: without photon noise the expected electrons go on, without quantisation counts are
+/// rounded but only the image's 16 bits limit them. Each effect draws from a stream of its own:
+/// switching one leaves the noise of the others as it was, and the bytes depend on neither threads
+/// nor instruction set. Adds each effect's seconds to `times` (summed over threads) if given.
+/// Throws `Error` naming the pixel when `light` is NaN or negative.
 SaturatedPixels expose(const RateImage& light, const Detector& detector, const Exposure& exposure,
                        const EffectSet& effects, Threads& threads, CountImage& counts,
-                       EffectTimes* times = nullptr, SimdLevel level = best_simd_level());
+                       EffectTimes* times = nullptr, SimdLevel level = best_simd_level(),
+                       DetectorMemory* memory = nullptr);
 
 }  // namespace dmise

@@ -1,0 +1,13 @@
+#pragma once
+#include <cstddef>
+
+#include "core/base/image.h"
+#include "core/base/parallel.h"
+
+namespace dmise {
+
+/// Lets charge above the full well run along its column, half up and half down, into pixels with
+/// room; what reaches an end of the column is drained. Returns how many pixels end full.
+std::size_t blooming(double full_well_e, ElectronImage& electrons, Threads& threads);
+
+}  // namespace dmise

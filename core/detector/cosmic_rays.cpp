@@ -1,0 +1,65 @@
+#include "core/detector/cosmic_rays.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/units.h"
+#include "core/detector/poisson.h"
+
+namespace dmise {
+namespace {
+
+// Share of a track of `length` from `from` in the direction `slope` at which each pixel border of
+// one axis is crossed, appended to `cuts`.
+void add_crossings(double from, double extent, std::vector<double>& cuts) {
+  if (extent == 0.0) return;
+  const double low = std::min(from, from + extent), high = std::max(from, from + extent);
+  for (double border = std::ceil(low - 0.5) + 0.5; border < high; border += 1.0)
+    cuts.push_back((border - from) / extent);
+}
+
+}  // namespace
+
+std::vector<CosmicCharge> cosmic_rays(const Detector& d, int columns, int rows, double exposure_s,
+                                      const RngKey& key) {
+  std::vector<CosmicCharge> charges;
+  const auto mean = float(d.cosmic_rays_per_px_s * exposure_s * columns * double(rows));
+  float hits;
+  poisson(key, 0, &mean, 1, &hits);
+  std::vector<double> cuts;
+  for (std::uint32_t hit = 1; hit <= std::uint32_t(hits); ++hit) {
+    const auto u = [&](std::uint32_t draw) { return uniform_of(rng_word(key, hit, draw)); };
+    const double x = u(1) * columns - 0.5, y = u(2) * rows - 0.5;
+    // Flux through a plane goes with cos(theta): the cosine is the root of a uniform number.
+    const double cosine = std::sqrt(u(3));
+    const double across = std::min(d.cosmic_ray_depth_px * std::sqrt(1 - cosine * cosine) / cosine,
+                                   std::hypot(columns, rows));
+    const double dx = across * std::cos(2 * pi * u(4)), dy = across * std::sin(2 * pi * u(4));
+    const double charge = std::hypot(across, d.cosmic_ray_depth_px) * d.cosmic_ray_e_per_px;
+    cuts.assign({0.0, 1.0});
+    add_crossings(x, dx, cuts);
+    add_crossings(y, dy, cuts);
+    std::sort(cuts.begin(), cuts.end());
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      const double middle = 0.5 * (cuts[i] + cuts[i + 1]);
+      const auto px = std::int64_t(std::floor(x + dx * middle + 0.5)),
+                 py = std::int64_t(std::floor(y + dy * middle + 0.5));
+      if (px < 0 || px >= columns || py < 0 || py >= rows) continue;
+      charges.push_back(
+          {std::uint32_t(py * columns + px), float(charge * (cuts[i + 1] - cuts[i]))});
+    }
+  }
+  std::stable_sort(charges.begin(), charges.end(),
+                   [](const CosmicCharge& a, const CosmicCharge& b) { return a.pixel < b.pixel; });
+  return charges;
+}
+
+void add_cosmic_rays(std::span<const CosmicCharge> charges, std::uint32_t first,
+                     std::span<float> electrons) {
+  auto it = std::lower_bound(charges.begin(), charges.end(), first,
+                             [](const CosmicCharge& c, std::uint32_t p) { return c.pixel < p; });
+  for (; it != charges.end() && it->pixel - first < electrons.size(); ++it)
+    electrons[it->pixel - first] += it->electrons;
+}
+
+}  // namespace dmise
