@@ -99,7 +99,7 @@ Vec<Gcrs> ApparentPlaces::star(const StarPlace& star) const {
   }
   if (star_aberration_)
     p = aberrated_by(p, star_velocity_c_, sun_distance_au_, star_inverse_gamma_);
-  return refraction_ ? through_air(p, 0.0) : p;
+  return refraction_ ? through_air(p, Refraction::star) : p;
 }
 
 void ApparentPlaces::stars(const StarColumns& c, std::span<const std::uint32_t> which,
@@ -128,18 +128,15 @@ void ApparentPlaces::finish(const Vec<Gcrs>& line_m, SatellitePlace& place) cons
   place.direction = refraction_ ? through_air(place.aberrated, norm(line_m)) : place.aberrated;
 }
 
-// Turns a direction towards the zenith; `distance_m` 0 stands for infinity.
+// Turns a direction towards the zenith.
 Vec<Gcrs> ApparentPlaces::through_air(const Vec<Gcrs>& direction, double distance_m) const {
   const Vec<Gcrs>& up = observer_.air->zenith;
   const double sine = dot(direction, up);
   const Vec<Gcrs> level = direction - up * sine;
   const double cosine = norm(level);
   if (cosine < 1e-12) return direction;  // zenith or nadir: no side to bend to
-  const Refraction& refraction = observer_.air->refraction;
-  const double elevation = std::atan2(sine, cosine);
-  const double apparent = distance_m > 0.0 ? refraction.apparent_from_true_rad(
-                                                 elevation, distance_m, norm(observer_.position_m))
-                                           : refraction.apparent_from_true_rad(elevation);
+  const double apparent =
+      observer_.air->refraction.apparent_from_true_rad(std::atan2(sine, cosine), distance_m);
   return level * (std::cos(apparent) / cosine) + up * std::sin(apparent);
 }
 

@@ -14,6 +14,8 @@ namespace {
 
 constexpr double series_ends_rad = 15 * deg;   // elevation: the series alone above
 constexpr double bennett_ends_rad = 10 * deg;  // Bennett alone below
+constexpr double earth_radius_m = 6371e3;
+constexpr double gas_constant_per_gravity_m_per_k = 287.05287 / 9.80665;  // dry air, ISO 2533
 
 void check(double value, double low, double high, const char* name) {
   if (!(value >= low && value <= high))
@@ -46,13 +48,15 @@ Refraction::Refraction(const Weather& weather, double wavelength_um) {
   bennett_scale_ = 1.0;
   bennett_scale_ = series_rad(series_ends_rad) / bennett_rad(series_ends_rad);
 
-  // The two terms are g (1 - h) and -g (h - g/2) with g the refractivity and h the scale height.
-  const double difference = tan_term_rad_ - tan3_term_rad_;  // g - g^2/2
-  refractivity_ = 1.0 - std::sqrt(1.0 - 2.0 * difference);
-  scale_height_ = 1.0 - tan_term_rad_ / refractivity_;
-  // At the horizon the incoming line passes n - cos R radii from the Earth's centre.
-  const double horizon = at_apparent_rad(0.0);
-  horizon_flattening_ = refractivity_ * scale_height_ / (refractivity_ + 1.0 - std::cos(horizon));
+  // The two terms are g (1 - h) and -g (h - g/2) with g the refractivity, h the scale height.
+  refractivity_ = 1.0 - std::sqrt(1.0 - 2.0 * (tan_term_rad_ - tan3_term_rad_));
+  scale_height_m_ = gas_constant_per_gravity_m_per_k * (weather.temperature_c + 273.15);
+  // The line of a ray that comes in level passes the Earth's centre at n radii, the observer's at
+  // cos R.
+  const double scale_height = scale_height_m_ / earth_radius_m;
+  aside_at_horizon_ =
+      refractivity_ * scale_height / (refractivity_ + 1.0 - std::cos(at_apparent_rad(0.0)));
+  aside_above_ = 2.27 * scale_height;
 }
 
 double Refraction::series_rad(double apparent_elevation_rad) const {
@@ -60,10 +64,11 @@ double Refraction::series_rad(double apparent_elevation_rad) const {
   return tan_z * (tan_term_rad_ + tan3_term_rad_ * tan_z * tan_z);
 }
 
-// Bennett 1982, Journal of Navigation 35, 255.
+// Bennett 1982, Journal of Navigation 35, 255, with his second term.
 double Refraction::bennett_rad(double apparent_elevation_rad) const {
   const double h_deg = apparent_elevation_rad / deg;
-  return bennett_scale_ * arcmin / std::tan((h_deg + 7.31 / (h_deg + 4.4)) * deg);
+  const double first = 1.0 / std::tan((h_deg + 7.31 / (h_deg + 4.4)) * deg);
+  return bennett_scale_ * arcmin * (first - 0.06 * std::sin((14.7 * first + 13.0) * deg));
 }
 
 double Refraction::at_apparent_rad(double apparent_elevation_rad) const {
@@ -76,58 +81,47 @@ double Refraction::at_apparent_rad(double apparent_elevation_rad) const {
   return weight * series_rad(h) + (1 - weight) * bennett_rad(h);
 }
 
-// How far aside of the observer the incoming line passes, in radii. In second order g h sin z/cos^2
-// z, which also follows from the series; made finite so that it meets the exact value at the
-// horizon.
-double Refraction::offset_per_radius(double apparent_elevation_rad) const {
+// How far aside of the observer the line of the incoming ray passes. In second order g H sin
+// z/cos^2 z, which follows from the series too; the terms that keep it finite meet the exact value
+// at the horizon and were fitted to rays traced through the standard atmosphere
+// (tests/reference/refraction.py).
+double Refraction::aside_m(double apparent_elevation_rad) const {
   const double h = std::clamp(apparent_elevation_rad, 0.0, 0.5 * pi);
-  const double sin_h = std::sin(h);
-  return refractivity_ * scale_height_ * std::cos(h) / (sin_h * sin_h + horizon_flattening_);
+  const double s = std::sin(h);
+  const double bound = aside_above_ - (aside_above_ - aside_at_horizon_) * std::exp(-s / 0.05);
+  return refractivity_ * scale_height_m_ * std::cos(h) / (s * s + bound);
 }
 
-double Refraction::of_body_rad(double apparent_elevation_rad, double radius_per_distance) const {
+double Refraction::of_body_rad(double apparent_elevation_rad, double distance_m) const {
   const double of_star = at_apparent_rad(apparent_elevation_rad);
-  if (radius_per_distance == 0.0 || of_star == 0.0) return of_star;
-  const double aside = offset_per_radius(apparent_elevation_rad) * radius_per_distance;
+  if (distance_m == star) return of_star;
+  const double aside = aside_m(apparent_elevation_rad) / distance_m;
   return of_star - std::asin(std::min(aside, std::sin(of_star)));
 }
 
-// Solves apparent - R(apparent) = true by secants; R falls by less than 0.25 per unit, so that
-// plain repetition starts well inside.
-double Refraction::lifted(double true_elevation_rad, double radius_per_distance) const {
-  double a = true_elevation_rad + of_body_rad(true_elevation_rad, radius_per_distance);
-  double next = true_elevation_rad + of_body_rad(a, radius_per_distance);
-  double error_a = a - next;
-  double b = next;
+double Refraction::true_from_apparent_rad(double apparent_elevation_rad, double distance_m) const {
+  if (bennett_scale_ == 0.0) return apparent_elevation_rad;
+  return apparent_elevation_rad - of_body_rad(apparent_elevation_rad, distance_m);
+}
+
+// Solves apparent - R(apparent) = true by secants. R falls by less than 0.25 per unit, so that two
+// plain repetitions start well inside.
+double Refraction::apparent_from_true_rad(double true_elevation_rad, double distance_m) const {
+  if (bennett_scale_ == 0.0) return true_elevation_rad;
+  const auto repeat = [&](double apparent) {
+    return true_elevation_rad + of_body_rad(apparent, distance_m);
+  };
+  double a = repeat(true_elevation_rad), b = repeat(a);
+  double error_a = a - b;
   for (int i = 0; i < 30; ++i) {
-    const double error_b = b - true_elevation_rad - of_body_rad(b, radius_per_distance);
+    const double error_b = b - repeat(b);
     if (std::abs(error_b) < 1e-14 || error_b == error_a) break;
-    next = b - error_b * (b - a) / (error_b - error_a);
+    const double next = b - error_b * (b - a) / (error_b - error_a);
     a = b;
     error_a = error_b;
     b = next;
   }
   return b;
-}
-
-double Refraction::apparent_from_true_rad(double true_elevation_rad) const {
-  return bennett_scale_ == 0.0 ? true_elevation_rad : lifted(true_elevation_rad, 0.0);
-}
-
-double Refraction::true_from_apparent_rad(double apparent_elevation_rad) const {
-  return apparent_elevation_rad - at_apparent_rad(apparent_elevation_rad);
-}
-
-double Refraction::apparent_from_true_rad(double true_elevation_rad, double distance_m,
-                                          double observer_radius_m) const {
-  if (bennett_scale_ == 0.0) return true_elevation_rad;
-  return lifted(true_elevation_rad, observer_radius_m / distance_m);
-}
-
-double Refraction::true_from_apparent_rad(double apparent_elevation_rad, double distance_m,
-                                          double observer_radius_m) const {
-  return apparent_elevation_rad -
-         of_body_rad(apparent_elevation_rad, observer_radius_m / distance_m);
 }
 
 }  // namespace dmise

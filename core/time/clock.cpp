@@ -23,7 +23,11 @@ double mjd_with_fraction(const UtcInstant& utc) {
 }  // namespace
 
 Clock::Clock(const Utc& start, std::shared_ptr<const IersTable> iers)
-    : start_(to_tai(to_instant(start))), iers_(std::move(iers)) {}
+    : start_(to_tai(to_instant(start))), iers_(std::move(iers)) {
+  const UtcInstant utc = to_utc(start_);
+  unmeasured_.ut1_minus_tai_s = -tai_minus_utc_s(utc.mjd);
+  if (iers_ && iers_->at(mjd_with_fraction(utc))) unmeasured_ = iers_->last();
+}
 
 TaiInstant Clock::tai_instant(SimTime t) const {
   // Whole days first, so that no sum comes near the limits of 64 bits.
@@ -50,7 +54,7 @@ EarthRotationParameters Clock::earth_rotation(SimTime t) const {
   const UtcInstant utc = to_utc(tai_instant(t));
   if (iers_)
     if (const auto measured = iers_->at(mjd_with_fraction(utc))) return *measured;
-  return {.ut1_minus_tai_s = -static_cast<double>(tai_minus_utc_s(utc.mjd))};
+  return unmeasured_;
 }
 
 Ut1 Clock::ut1(SimTime t) const {
@@ -71,19 +75,19 @@ std::vector<std::string> Clock::warnings(SimTime end) const {
   const UtcInstant first = to_utc(start_), last = to_utc(tai_instant(end));
   if (leap_seconds_uncertain(last.mjd))
     lines.push_back("leap seconds until " + format_utc(to_julian_date(last), 0) +
-                    " are not all known: UTC, and UT1 where it is taken for UTC, may be ahead by "
-                    "whole seconds");
-  const bool covered =
-      iers_ && iers_->at(mjd_with_fraction(first)) && iers_->at(mjd_with_fraction(last));
-  if (!covered) {
+                    " are not all known: UTC may be ahead by whole seconds");
+  const bool start_measured = iers_ && iers_->at(mjd_with_fraction(first));
+  if (!start_measured || !iers_->at(mjd_with_fraction(last))) {
     std::string why = "no Earth orientation file given";
     if (iers_)
       why = "the Earth orientation file covers " +
             format_utc(to_julian_date({iers_->first_mjd(), 0}), 0) + " to " +
             format_utc(to_julian_date({iers_->last_mjd(), 0}), 0) + " only";
     lines.push_back(why +
-                    ": UT1 is taken for UTC there, an error of up to 0.9 s or 13.5 arcsec of Earth "
-                    "rotation, without polar motion, up to 0.6 arcsec");
+                    (start_measured ? ": its last values are kept"
+                                    : ": UT1 is taken for UTC, without polar motion") +
+                    ", an error of up to 0.9 s or 13.5 arcsec of Earth rotation and 0.6 arcsec of "
+                    "the pole");
   }
   return lines;
 }

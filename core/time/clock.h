@@ -15,7 +15,9 @@ namespace dmise {
 class Clock {
  public:
   /// `start`: UTC at simulation time 0, taken to the nanosecond, not before 1972 (`Error`).
-  /// `iers`: Earth rotation; without it, and beyond its ends, UT1 = UTC and no polar motion.
+  /// `iers`: Earth rotation. Where it does not cover the start, UT1 is UTC there and polar motion
+  /// 0; where it ends within a run, its last values are kept. Either way UT1 then runs on with TAI,
+  /// so that the Earth does not jump at a leap second.
   explicit Clock(const Utc& start, std::shared_ptr<const IersTable> iers = nullptr);
 
   Utc utc(SimTime t) const;
@@ -39,6 +41,7 @@ class Clock {
 
   TaiInstant start_;
   std::shared_ptr<const IersTable> iers_;
+  EarthRotationParameters unmeasured_;  // where `iers_` says nothing
 };
 
 }  // namespace dmise

@@ -25,6 +25,7 @@ class IersTable {
   /// `utc_mjd`: days and fraction, UTC.
   std::optional<EarthRotationParameters> at(double utc_mjd) const;
 
+  const EarthRotationParameters& last() const { return days_.back(); }
   std::int64_t first_mjd() const { return first_mjd_; }
   std::int64_t last_mjd() const { return first_mjd_ + static_cast<std::int64_t>(days_.size()) - 1; }
 

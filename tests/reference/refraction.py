@@ -1,6 +1,6 @@
 """Refraction by ray tracing through a standard atmosphere, for tests/sky/test_refraction.cpp.
 
-International Standard Atmosphere to 86 km, dry air of refractivity 2.7758e-4 at 15 C and 1013.25 hPa (0.55 um), observer at
+International Standard Atmosphere to 86 km, dry air of refractivity 2.7785e-4 at 15 C and 1013.25 hPa (0.55 um), observer at
 6371 km. A line an apparent zenith angle [deg]: refraction of a star, then how much less a body at 550 km
 is lifted [arcsec]. For the body the geocentric angle is integrated along the ray, without any asymptote.
 """
@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 R0, G, RM = 6371e3, 9.80665, 287.05287
 LAYERS = [(0, 288.15, -6.5e-3), (11e3, 216.65, 0), (20e3, 216.65, 1e-3), (32e3, 228.65, 2.8e-3),
           (47e3, 270.65, 0), (51e3, 270.65, -2.8e-3), (71e3, 214.65, -2e-3)]
-N0 = 2.7758e-4
+N0 = 2.7785e-4
 
 bases, pressure = [], 101325.0
 for i, (h, t, lapse) in enumerate(LAYERS):

@@ -31,7 +31,7 @@ EffectSet all_but(std::initializer_list<Effect> off) {
   return effects;
 }
 
-// Reference: astropy's ICRS to GCRS at the observer, tests/reference/apparent_stars.py 60 1.
+// Reference: astropy's ICRS to GCRS at the observer, tests/reference/apparent_stars.py 64 1.
 TEST(ApparentStars, AgreeWithAstropyToFiveMilliarcseconds) {
   const Row rows[] = {
 #include "tests/sky/apparent_stars_reference.inc"
@@ -47,7 +47,7 @@ TEST(ApparentStars, AThousandAgreeWithAstropyAtRunTime) {
   const std::string python = "/usr/bin/python3";
   DMISE_NEEDS_FILE(python);
   FILE* pipe = popen((python + " -W ignore " DMISE_SOURCE_DIR
-                               "/tests/reference/apparent_stars.py 1000 2 2>/dev/null")
+                               "/tests/reference/apparent_stars.py 1014 2 2>/dev/null")
                          .c_str(),
                      "r");
   ASSERT_TRUE(pipe);
@@ -75,7 +75,7 @@ TEST(ApparentStars, AThousandAgreeWithAstropyAtRunTime) {
   }
   const int status = pclose(pipe);
   if (count == 0) GTEST_SKIP() << "python3-astropy is not there (status " << status << ")";
-  EXPECT_EQ(count, 1000);
+  EXPECT_GE(count, 1000);
   EXPECT_LT(worst, 1 * mas);
   RecordProperty("worst_uas", static_cast<int>(worst / mas * 1000));
 }
@@ -142,7 +142,7 @@ TEST(ApparentStars, RefractionLiftsTowardsTheZenithAndNothingAtIt) {
     ASSERT_GE(lift, -1e-12) << away;
     ASSERT_NEAR(angle_rad(up, straight), lift, 1e-12) << away;  // along the vertical
     if (z < 1.0) {
-      ASSERT_NEAR(lift, 56.5 * arcsec * std::tan(z), 1.0 * arcsec);
+      ASSERT_NEAR(lift, 55.5 * arcsec * std::tan(z), 0.5 * arcsec);
     }
   }
 }

@@ -40,11 +40,11 @@ TEST(Shadow, IsContinuousAndMonotoneThroughThePenumbra) {
       // From the middle of the shadow to broad daylight.
       const double step = 0.2 * 0.00465 / 200;  // a thousandth of the Sun's disc
       const double edge = std::asin(std::min(1.0, 6.378137e6 / r));
-      double before = shadow.sunlit_fraction(behind(r, std::max(0.0, edge - 0.03), tilt));
+      double before = shadow.sunlit_fraction(behind(r, std::max(0.0, edge - 0.06), tilt));
       if (r < 1e8) {
         EXPECT_EQ(before, 0.0);
       }
-      for (double x = std::max(0.0, edge - 0.03); x < std::min(edge + 0.03, 3.0); x += step) {
+      for (double x = std::max(0.0, edge - 0.06); x < std::min(edge + 0.03, 3.0); x += step) {
         const double lit = shadow.sunlit_fraction(behind(r, x, tilt));
         ASSERT_TRUE(lit >= before - 1e-9 && lit <= before + 0.01)
             << r << " " << tilt << " " << x << ": " << before << " to " << lit;

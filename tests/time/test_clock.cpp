@@ -55,6 +55,25 @@ TEST(Clock, TheWholeRangeOfSimulationTimeIsUsable) {
   EXPECT_THROW(clock.utc(SimTime{INT64_MIN}), Error);  // 1725
 }
 
+TEST(Clock, TheEarthDoesNotJumpAtALeapSecondWithoutAnIersFile) {
+  const Clock clock(parse_utc("2016-12-31T23:59:58Z"));
+  for (int s = 0; s < 6; ++s)
+    EXPECT_NEAR(days_between(clock.ut1(sim_seconds(s)), clock.ut1({})) * 86400, s, 0.1 * ns);
+}
+
+TEST(Clock, KeepsTheLastMeasuredEarthRotationWithinARun) {
+  const std::string path = test::data_path("eop/finals2000A.all.gz");
+  DMISE_NEEDS_FILE(path);
+  const auto iers = std::make_shared<const IersTable>(IersTable::read_finals2000a(path));
+  const UtcInstant end{iers->last_mjd(), 0};
+  const Clock clock(to_julian_date({end.mjd - 1, 0}), iers);
+  const SimTime last = clock.sim_time(to_julian_date(end));
+  const double before = clock.earth_rotation(last).ut1_minus_tai_s;
+  EXPECT_EQ(clock.earth_rotation(last + sim_seconds(1)).ut1_minus_tai_s, before);
+  EXPECT_TRUE(clock.warnings(last).empty());
+  EXPECT_EQ(clock.warnings(last + sim_seconds(1)).size(), 1u);
+}
+
 TEST(Clock, WithoutAnIersFileUt1IsUtcAndSaysSo) {
   const Clock clock(parse_utc("2018-01-20T23:40:00Z"));
   EXPECT_DOUBLE_EQ(clock.ut1({}).jd2, clock.utc({}).jd2);
