@@ -77,8 +77,8 @@ class ApparentPlaces {
              std::span<Vec<Gcrs>> directions) const;
 
   /// `position_at(dt_s)`: the satellite's GCRS position [m] at the observer's time + dt_s, asked
-  /// for 0 and for one light time (<= 0.3 s inside the Moon's orbit's quarter) before. It shares
-  /// the Earth's motion: aberration is by the observer's geocentric velocity alone.
+  /// for 0 and for one light time before. It shares the Earth's motion: aberration is by the
+  /// observer's geocentric velocity alone. Throws `Error` for a satellite at the observer.
   template <class PositionAt>
   SatellitePlace satellite(PositionAt&& position_at) const {
     const Vec<Gcrs> now_m = position_at(0.0) - observer_.position_m;

@@ -15,13 +15,13 @@ struct SolarSystem {
 /// Rungs of a ladder: accuracy against time.
 enum class Ephemeris {
   almanac,  // Astronomical Almanac, page C5: 0.01 deg, 1950 to 2050
-  epv00,    // ERFA eraEpv00: 5 km (Earth from the Sun 0.01 arcsec), 5 mm/s; 1900 to 2100
+  epv00,    // ERFA eraEpv00: within 13 km (0.02 arcsec of the Sun) and 5 mm/s, 1900 to 2100
 };
 
 /// Geometric Sun by the low-precision formulae of the Astronomical Almanac.
 Vec<Gcrs> sun_by_almanac_m(const Tt& tt);
 
-/// Moon by ERFA eraMoon98 (Meeus after ELP 2000-82): 10 arcsec, 20 km.
+/// Moon by ERFA eraMoon98 (Meeus after ELP 2000-82): 10 arcsec of longitude, 4 of latitude.
 Vec<Gcrs> moon_m(const Tt& tt);
 
 /// Throws `Error` outside 1900 to 2100. The almanac's rung takes the barycentre for the Sun's

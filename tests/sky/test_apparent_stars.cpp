@@ -86,6 +86,45 @@ Observer atlanta(const char* utc) {
                          solar_system(clock.tt({})), Refraction(standard_weather(300.0)));
 }
 
+// Reference: astropy's ICRS to AltAz, tests/reference/apparent_altaz.py: the whole way from a
+// catalogue place to a site's horizon. With air only down to 15 deg, where astropy's model is ours
+// too.
+TEST(ApparentStars, StandOverASitesHorizonWhereAstropySees) {
+  const struct {
+    const char* utc;
+    double ut1_minus_utc_s, pole_x_arcsec, pole_y_arcsec, ra_deg, dec_deg;
+    double azimuth_deg, elevation_deg, air_azimuth_deg, air_elevation_deg;
+  } rows[] = {
+#include "tests/sky/apparent_altaz_reference.inc"
+  };
+  const Site site{33.777, -84.398, 300.0};
+  const Refraction refraction(Weather{800.0, 5.0, 0.3}, 0.7);
+  for (const auto& row : rows) {
+    const Clock clock(parse_utc(row.utc));
+    Ut1 ut1 = clock.ut1({});
+    ut1.jd2 += row.ut1_minus_utc_s / day_s;
+    const EarthOrientation earth = earth_orientation(
+        {}, clock.tt({}), ut1, row.pole_x_arcsec * arcsec, row.pole_y_arcsec * arcsec);
+    const Observer here =
+        ground_observer(site, earth, {}, clock.tt({}), solar_system(clock.tt({})), refraction);
+    const StarPlace star{row.ra_deg * deg, row.dec_deg * deg};
+    const auto seen = [&](const EffectSet& effects) {
+      return enu_from_itrs(site) *
+             (earth.itrs_from_gcrs({}) * ApparentPlaces(here, effects).star(star));
+    };
+    EXPECT_LT(angle_rad(seen(all_but({Effect::refraction})),
+                        from_horizontal({row.azimuth_deg * deg, row.elevation_deg * deg})),
+              2 * mas)
+        << row.utc;
+    if (row.elevation_deg > 15) {
+      EXPECT_LT(angle_rad(seen({}), from_horizontal(
+                                        {row.air_azimuth_deg * deg, row.air_elevation_deg * deg})),
+                5 * mas)
+          << row.utc;
+    }
+  }
+}
+
 // Sizes as in any textbook on positional astronomy.
 TEST(ApparentStars, EachCorrectionHasItsSizeAndItsSwitch) {
   const Observer here = atlanta("2018-01-20T23:40:00Z");
