@@ -33,7 +33,7 @@ struct EarthOrientation {
 
 /// Series for precession and nutation: a knob of accuracy against time.
 enum class Nutation {
-  iau2006_2000a,  // 1358 terms; the celestial pole to 0.3 mas (free core nutation left out)
+  iau2006_2000a,  // 1365 terms; the celestial pole to 0.3 mas (free core nutation left out)
   iau2000b,       // 77 terms; within 1 mas of the full series, 1995 to 2050
 };
 

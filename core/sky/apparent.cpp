@@ -140,9 +140,4 @@ Vec<Gcrs> ApparentPlaces::through_air(const Vec<Gcrs>& direction, double distanc
   return level * (std::cos(apparent) / cosine) + up * std::sin(apparent);
 }
 
-Vec<Gcrs> aberrated(const Vec<Gcrs>& direction, const Vec<Gcrs>& velocity_m_per_s) {
-  const Vec<Gcrs> v_c = velocity_m_per_s / speed_of_light_m_per_s;
-  return aberrated_by(direction, v_c, 1e9, inverse_gamma(v_c));
-}
-
 }  // namespace dmise

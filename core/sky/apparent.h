@@ -117,9 +117,4 @@ class ApparentPlaces {
       refraction_;
 };
 
-/// Direction of light as seen by an observer who moves at `velocity_m_per_s` against the frame in
-/// which it comes from `direction` (unit): special relativity, exact. With the opposite velocity it
-/// is undone.
-Vec<Gcrs> aberrated(const Vec<Gcrs>& direction, const Vec<Gcrs>& velocity_m_per_s);
-
 }  // namespace dmise

@@ -76,14 +76,6 @@ TEST(ApparentSatellites, LightTimeAndAberrationHaveTheirSizes) {
   EXPECT_EQ(still.light_time_s, 0.0);
 }
 
-TEST(ApparentSatellites, AberrationIsUndoneByTheOppositeVelocity) {
-  const Vec<Gcrs> v{-7000, 28000, 12000};
-  for (int i = 0; i < 50; ++i) {
-    const Vec<Gcrs> p = from_spherical<Gcrs>(0.9 * i, std::sin(2.3 * i));
-    EXPECT_LT(angle_rad(aberrated(aberrated(p, v), -v), p), 1e-3 * mas);
-  }
-}
-
 // Reference: rays traced through the standard atmosphere, tests/reference/refraction.py.
 TEST(ApparentSatellites, AreLiftedByTheAirLessThanStars) {
   const Clock clock(parse_utc("2018-01-20T23:40:00Z"));
