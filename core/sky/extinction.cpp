@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/photometry/magnitude.h"
 #include "core/photometry/spectrum.h"
 #include "core/photometry/star_light.h"
 
@@ -87,6 +88,12 @@ Curve air_transmission(const Curve& extinction_mag_per_airmass, double airmass) 
   return curve;
 }
 
+double zenith_extinction_mag(const Band& band, const Curve& extinction_mag_per_airmass) {
+  const Band behind_air = through(band, air_transmission(extinction_mag_per_airmass, 1.0));
+  return magnitude_of_light(photon_rate_per_m2(solar_spectrum(), behind_air) /
+                            photon_rate_per_m2(solar_spectrum(), band));
+}
+
 BandExtinction::BandExtinction(const Band& band, const Curve& extinction_mag_per_airmass) {
   check_curve(extinction_mag_per_airmass, "extinction");
   // The band is narrow against the change of extinction: sums over even steps of wavelength.
@@ -134,7 +141,5 @@ double BandExtinction::of_star(double airmass, double bv) const {
 }
 
 double BandExtinction::of_sunlight(double airmass) const { return of_star(airmass, sun_bv); }
-
-double BandExtinction::zenith_mag() const { return -2.5 * std::log10(of_sunlight(1.0)); }
 
 }  // namespace dmise

@@ -19,6 +19,9 @@ Curve extinction_scaled_to(double k_v);
 /// Transmission of the air from above it to an airmass: 10^(-0.4 k X) every 5 nm.
 Curve air_transmission(const Curve& extinction_mag_per_airmass, double airmass);
 
+/// Extinction of sunlight in a band at the zenith [mag]; the band within 0.2-5 um.
+double zenith_extinction_mag(const Band& band, const Curve& extinction_mag_per_airmass);
+
 /// Beer's law for a whole band: which share of a source's photons in the band arrive. It depends on
 /// the source's colour, and not quite exponentially on airmass: tables of both, within 0.1 % of the
 /// integral.
@@ -31,8 +34,6 @@ class BandExtinction {
   double of_star(double airmass, double bv) const;
   /// For sunlit things: as for a star of the Sun's colour.
   double of_sunlight(double airmass) const;
-  /// Extinction of sunlight at the zenith [mag].
-  double zenith_mag() const;
 
  private:
   std::vector<double> log_of_transmission_;  // colours x airmasses

@@ -19,6 +19,7 @@ TEST(Extinction, SitesHaveTheirObservatoriesCurves) {
   EXPECT_NEAR(extinction_of_site("mauna_kea")->at_or_end(550.0 * nm), 0.106, 0.002);
   EXPECT_FALSE(extinction_of_site("atlantis"));
   EXPECT_EQ(extinction_site_names().size(), 6u);
+  EXPECT_NEAR(zenith_extinction_mag(johnson_v(), *extinction_of_site("lick")), 0.177, 0.006);
   EXPECT_NEAR(extinction_scaled_to(0.3).at_or_end(550 * nm), 0.3, 1e-12);
 }
 

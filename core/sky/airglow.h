@@ -1,0 +1,26 @@
+#pragma once
+#include "core/photometry/spectrum.h"
+
+namespace dmise {
+
+/// Light of the upper atmosphere at night: brightest towards the horizon, where the path through
+/// its layer is longest.
+struct Airglow {
+  double zenith_v_mag_per_arcsec2 = 22.4;  // at the ground; 21.9 to 22.6 over the solar cycle
+  double layer_height_m = 90e3;
+};
+
+/// Path through a thin layer at `layer_height_m` relative to the zenith's; `sin_altitude` is held
+/// at 0 below it. Source: van Rhijn 1921, Publ. Astr. Lab. Groningen 31.
+double van_rhijn(double sin_altitude, double layer_height_m);
+
+/// Brightness at the ground [S10 in V]; `diffuse_extinction_mag` is what the zenith takes from
+/// extended light.
+double airglow_s10(const Airglow& airglow, double sin_altitude, double diffuse_extinction_mag);
+
+/// Its colour, 0.2-2.5 um: lines of oxygen, sodium and OH over a continuum. To 0.97 um the night
+/// sky of La Palma (Benn & Ellison 1998, ING technical note 115) every 10 nm, beyond it by J and H
+/// sky brightness (+-0.4 mag).
+const Spectrum& airglow_spectrum();
+
+}  // namespace dmise

@@ -1,0 +1,17 @@
+#pragma once
+
+namespace dmise {
+
+/// Light of the stars below the catalogue's limit, above the atmosphere, smeared out.
+struct FaintStarlight {
+  double brighter_limit_v_mag = 9.0;  // stars brighter than this are drawn one by one
+};
+
+/// Brightness [S10 in V] by the sine of the galactic latitude, without structure along the Milky
+/// Way (30 %). Fainter than V = 9: a slab of stars and dust, S (1 - exp(-tau / |sin b|)), 20 S10 at
+/// the poles and 165 in the plane, thinning out by half every 2.5 mag of the limit. Between V = 5
+/// and 9: 4.0 + 7.5 exp(-|b| / 17 deg) S10 a magnitude, as counted in the Hipparcos and Tycho
+/// catalogues. Source of the sums over the sky: Leinert et al. 1998, A&AS 127, 1, section 10.
+double faint_starlight_s10(const FaintStarlight& starlight, double sin_galactic_latitude);
+
+}  // namespace dmise

@@ -1,0 +1,24 @@
+#pragma once
+
+namespace dmise {
+
+/// Moonlight scattered by the air.
+struct ScatteredMoonlight {
+  double factor = 1.0;  // for hazier air than that of the source
+};
+
+/// V magnitude of the Moon at its mean distance by its phase angle (Sun-Moon-observer) [rad, 0 at
+/// full Moon]. Source: Krisciunas & Schaefer 1991, PASP 103, 1033, equation 9.
+double moon_v_mag(double phase_rad);
+
+/// Scattering function f at an angle [rad] from the Moon, equations 16, 18 and 19 there. Where 18
+/// and 19 would jump (10 deg) the larger of both is taken, and the pole at 0 is held inside 0.25
+/// deg.
+double moonlight_scattering(double angle_from_moon_rad);
+
+/// Brightness [S10 in V] at the ground, equation 15 there. Below the horizon the Moon's light falls
+/// by 0.9 mag a degree, so that moonrise is continuous. `k_v` in mag/airmass.
+double scattered_moonlight_s10(double angle_from_moon_rad, double sin_altitude,
+                               double sin_moon_altitude, double moon_v_mag, double k_v);
+
+}  // namespace dmise

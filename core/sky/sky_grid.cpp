@@ -1,0 +1,175 @@
+#include "core/sky/sky_grid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace dmise {
+namespace {
+
+constexpr double cell_px = 32.0;
+
+/// One axis cut into equal cells from the first pixel to the last.
+struct Axis {
+  int cells;
+  double width;            // of a cell [px]
+  std::vector<int> first;  // cells + 1: each cell's first pixel; a pixel belongs to one cell
+
+  explicit Axis(int pixels) {
+    cells = std::max(1, int(std::ceil((pixels - 1) / cell_px)));
+    width = pixels > 1 ? double(pixels - 1) / cells : 1.0;
+    for (int c = 0; c < cells; ++c) first.push_back(int(std::ceil(c * width - 1e-9)));
+    first.push_back(pixels);
+  }
+};
+
+/// Coefficients of the cubic of t in [0, 1] between p[1] and p[2] (Catmull & Rom 1974).
+std::array<double, 4> cubic(double p0, double p1, double p2, double p3) {
+  return {p1, 0.5 * (p2 - p0), p0 - 2.5 * p1 + 2 * p2 - 0.5 * p3,
+          0.5 * (p3 - p0) + 1.5 * (p1 - p2)};
+}
+
+double at(const std::array<double, 4>& c, double t) {
+  return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+}
+
+struct Filler {
+  int columns, rows;
+  const PixelFunction& f;
+  double tolerance;
+  float* out;
+  Axis across{columns}, down{rows};
+  int stride = across.cells + 3;  // nodes in a row, with one beyond each end
+  std::vector<double> nodes;
+  SkyGridReport report;
+
+  double evaluate(double x, double y) {
+    ++report.evaluations;
+    return f(x, y);
+  }
+
+  double& node(int i, int j) { return nodes[std::size_t(j + 1) * stride + std::size_t(i + 1)]; }
+
+  /// Values at the grid's corners; those beyond its ends continue the parabola of the last three,
+  /// or the line of two.
+  void make_nodes() {
+    nodes.assign(std::size_t(stride) * std::size_t(down.cells + 3), 0.0);
+    for (int j = 0; j <= down.cells; ++j) {
+      for (int i = 0; i <= across.cells; ++i)
+        node(i, j) = evaluate(std::min(i * across.width, columns - 1.0),
+                              std::min(j * down.width, rows - 1.0));
+      const int n = across.cells;
+      node(-1, j) =
+          n > 1 ? 3 * (node(0, j) - node(1, j)) + node(2, j) : 2 * node(0, j) - node(1, j);
+      node(n + 1, j) = n > 1 ? 3 * (node(n, j) - node(n - 1, j)) + node(n - 2, j)
+                             : 2 * node(n, j) - node(n - 1, j);
+    }
+    const int m = down.cells;
+    for (int i = -1; i <= across.cells + 1; ++i) {
+      node(i, -1) =
+          m > 1 ? 3 * (node(i, 0) - node(i, 1)) + node(i, 2) : 2 * node(i, 0) - node(i, 1);
+      node(i, m + 1) = m > 1 ? 3 * (node(i, m) - node(i, m - 1)) + node(i, m - 2)
+                             : 2 * node(i, m) - node(i, m - 1);
+    }
+  }
+
+  bool agrees(double guess, double exact) const {
+    return std::abs(guess - exact) <= 0.5 * tolerance * std::abs(exact);
+  }
+
+  /// No edge near the nodes of this cell, by fourth differences: a jump in slope makes them large,
+  /// and bicubic values wrong by up to 0.4 of them.
+  bool smooth(int i, int j) {
+    const auto calm = [&](double a, double b, double c, double d, double e) {
+      return 0.4 * std::abs(a - 4 * b + 6 * c - 4 * d + e) <= 0.5 * tolerance * std::abs(c);
+    };
+    for (int q = j; q <= j + 1; ++q)
+      for (int p = i; p <= i + 1; ++p) {
+        if (p >= 1 && p < across.cells &&
+            !calm(node(p - 2, q), node(p - 1, q), node(p, q), node(p + 1, q), node(p + 2, q)))
+          return false;
+        if (q >= 1 && q < down.cells &&
+            !calm(node(p, q - 2), node(p, q - 1), node(p, q), node(p, q + 1), node(p, q + 2)))
+          return false;
+      }
+    return true;
+  }
+
+  void fill_cell(int i, int j) {
+    const auto row_at = [&](int k, double v) {
+      return at(cubic(node(k, j - 1), node(k, j), node(k, j + 1), node(k, j + 2)), v);
+    };
+    const auto cubic_at = [&](double v) {
+      return cubic(row_at(i - 1, v), row_at(i, v), row_at(i + 1, v), row_at(i + 2, v));
+    };
+    const int x0 = across.first[i], x1 = across.first[i + 1];
+    const int y0 = down.first[j], y1 = down.first[j + 1];
+    const double middle = evaluate(std::min((i + 0.5) * across.width, columns - 1.0),
+                                   std::min((j + 0.5) * down.width, rows - 1.0));
+    if (!agrees(at(cubic_at(0.5), 0.5), middle) || !smooth(i, j)) {
+      ++report.refined_cells;
+      const double a = evaluate(x0, y0), b = evaluate(x1 - 1, y0);
+      refine(x0, y0, x1 - 1, y1 - 1, a, b, evaluate(x0, y1 - 1), evaluate(x1 - 1, y1 - 1));
+      return;
+    }
+    const float t0 = float(x0 / across.width - i), dt = float(1.0 / across.width);
+    for (int y = y0; y < y1; ++y) {
+      const auto c = cubic_at(y / down.width - j);
+      const float c0 = float(c[0]), c1 = float(c[1]), c2 = float(c[2]), c3 = float(c[3]);
+      float* to = out + std::size_t(y) * std::size_t(columns) + x0;
+      for (int k = 0; k < x1 - x0; ++k) {
+        const float t = t0 + dt * float(k);
+        to[k] = c0 + t * (c1 + t * (c2 + t * c3));
+      }
+    }
+  }
+
+  /// The pixels x0..x1, y0..y1 (inclusive) from the function's values at their corners, or from
+  /// quarters of them.
+  void refine(int x0, int y0, int x1, int y1, double f00, double f10, double f01, double f11) {
+    const int w = x1 - x0, h = y1 - y0;
+    if (w <= 1 && h <= 1) {
+      set(x0, y0, f00), set(x1, y0, f10), set(x0, y1, f01), set(x1, y1, f11);
+      return;
+    }
+    const int xm = x0 + w / 2, ym = y0 + h / 2;
+    const double middle = evaluate(xm, ym);
+    const double top = evaluate(xm, y0), bottom = evaluate(xm, y1);
+    const double left = evaluate(x0, ym), right = evaluate(x1, ym);
+    const double u = w ? double(xm - x0) / w : 0.0, v = h ? double(ym - y0) / h : 0.0;
+    const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
+    if (w <= 8 && h <= 8 && agrees(mix(f00, f10, u), top) && agrees(mix(f01, f11, u), bottom) &&
+        agrees(mix(f00, f01, v), left) && agrees(mix(f10, f11, v), right) &&
+        agrees(mix(mix(f00, f10, u), mix(f01, f11, u), v), middle)) {
+      for (int y = y0; y <= y1; ++y) {
+        const double b = h ? double(y - y0) / h : 0.0;
+        const double first = mix(f00, f01, b), last = mix(f10, f11, b);
+        for (int x = x0; x <= x1; ++x) set(x, y, w ? mix(first, last, double(x - x0) / w) : first);
+      }
+      return;
+    }
+    refine(x0, y0, xm, ym, f00, top, left, middle);
+    refine(xm, y0, x1, ym, top, f10, middle, right);
+    refine(x0, ym, xm, y1, left, middle, f01, bottom);
+    refine(xm, ym, x1, y1, middle, right, bottom, f11);
+  }
+
+  void set(int x, int y, double value) {
+    out[std::size_t(y) * std::size_t(columns) + std::size_t(x)] = float(value);
+  }
+};
+
+}  // namespace
+
+SkyGridReport fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
+                             float* out) {
+  if (columns <= 0 || rows <= 0) return {};
+  Filler filler{columns, rows, f, tolerance, out};
+  filler.make_nodes();
+  for (int j = 0; j < filler.down.cells; ++j)
+    for (int i = 0; i < filler.across.cells; ++i) filler.fill_cell(i, j);
+  return filler.report;
+}
+
+}  // namespace dmise

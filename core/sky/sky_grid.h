@@ -1,0 +1,23 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+
+namespace dmise {
+
+/// A smooth function of pixel position, > 0: the sky's radiance seen by a camera.
+using PixelFunction = std::function<double(double x, double y)>;
+
+struct SkyGridReport {
+  std::size_t evaluations = 0;    // of the function
+  std::size_t refined_cells = 0;  // that the coarse grid could not hold
+};
+
+/// Fills `out` (columns x rows, row-major) with `f` at every pixel's centre, from a coarse grid:
+/// bicubic between nodes some 32 px apart, checked against `f` at the middle of every cell and by
+/// the nodes' fourth differences. Where the error may exceed `tolerance` (relative) the cell is cut
+/// in four, and so on down to single pixels. `f` is called inside the image only. The same bytes
+/// for the same input.
+SkyGridReport fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
+                             float* out);
+
+}  // namespace dmise

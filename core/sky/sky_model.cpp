@@ -1,0 +1,116 @@
+#include "core/sky/sky_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/units.h"
+#include "core/photometry/magnitude.h"
+#include "core/sky/airmass.h"
+#include "core/sky/extinction.h"
+#include "core/sky/surface_brightness.h"
+
+namespace dmise {
+namespace {
+
+/// Of light from all around, half of what is scattered out of the line of sight is replaced by what
+/// is scattered into it. Noll et al. 2012, A&A 543, A92 find 0.3 to 0.7 for zodiacal light and
+/// airglow.
+constexpr double diffuse_share_of_extinction = 0.5;
+
+}  // namespace
+
+std::optional<SkyParts> sky_parts_named(std::string_view preset) {
+  const std::optional<double> zenith = zenith_brightness_named(preset);
+  if (!zenith) return std::nullopt;
+  SkyParts parts;
+  if (preset == "space") {
+    parts.uniform = UniformSky{*zenith};
+    return parts;
+  }
+  parts.airglow = Airglow{};
+  parts.zodiacal_light = ZodiacalLight{};
+  parts.faint_starlight = FaintStarlight{};
+  parts.scattered_moonlight = ScatteredMoonlight{};
+  parts.twilight = Twilight{};
+  if (preset != "dark") {
+    const double natural_s10 = s10_of_mag_per_arcsec2(*zenith_brightness_named("dark"));
+    parts.light_pollution = LightPollution{};
+    parts.light_pollution->zenith_v_mag_per_arcsec2 =
+        mag_per_arcsec2_of_s10(s10_of_mag_per_arcsec2(*zenith) - natural_s10);
+  }
+  return parts;
+}
+
+SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& band,
+                   const Curve& extinction)
+    : parts_(parts), scene_(scene) {
+  const Rotation<Ecliptic, Gcrs> ecliptic = ecliptic_from_gcrs();
+  ecliptic_from_enu_ = ecliptic * scene.gcrs_from_enu;
+  galactic_pole_ = (galactic_from_gcrs() * scene.gcrs_from_enu).inverse() * Vec<Galactic>{0, 0, 1};
+  sun_longitude_rad_ = to_spherical(ecliptic_from_enu_ * scene.sun)[0];
+  sun_altitude_rad_ = std::asin(std::clamp(scene.sun.z, -1.0, 1.0));
+  moon_v_mag_ = moon_v_mag(scene.moon_phase_rad);
+  if (scene.in_air) {
+    k_v_ = zenith_extinction_mag(johnson_v(), extinction);
+    diffuse_mag_ = diffuse_share_of_extinction * zenith_extinction_mag(band, extinction);
+  } else {
+    parts_.airglow.reset();
+    parts_.scattered_moonlight.reset();
+    parts_.twilight.reset();
+    parts_.light_pollution.reset();
+  }
+  if (parts_.twilight)
+    twilight_zenith_s10_ = parts_.twilight->factor * twilight_zenith_s10(sun_altitude_rad_);
+  const double sunlit = photons_per_s_m2_sr_of_s10(band);
+  photons_of_s10_.fill(sunlit);
+  if (parts_.airglow) photons_of_s10_[1] = photons_per_s_m2_sr_of_s10(band, airglow_spectrum());
+  if (parts_.twilight) photons_of_s10_[5] = photons_per_s_m2_sr_of_s10(band, twilight_spectrum());
+  if (parts_.light_pollution)
+    photons_of_s10_[6] =
+        photons_per_s_m2_sr_of_s10(band, lamp_spectrum(parts_.light_pollution->lamps));
+}
+
+std::array<double, sky_part_count> SkyModel::parts_s10(const Vec<Enu>& direction) const {
+  std::array<double, sky_part_count> s10{};
+  if (parts_.uniform) s10[0] = s10_of_mag_per_arcsec2(parts_.uniform->v_mag_per_arcsec2);
+  const double sin_altitude = direction.z;
+  if (parts_.airglow) s10[1] = airglow_s10(*parts_.airglow, sin_altitude, diffuse_mag_);
+  if (parts_.zodiacal_light || parts_.faint_starlight) {
+    const double arrives =
+        scene_.in_air ? light_of_magnitude(diffuse_mag_ * scattering_airmass(sin_altitude)) : 1.0;
+    if (parts_.zodiacal_light) {
+      const Vec<Ecliptic> e = ecliptic_from_enu_ * direction;
+      s10[2] = arrives * parts_.zodiacal_light->factor *
+               zodiacal_light_s10(std::atan2(e.y, e.x) - sun_longitude_rad_,
+                                  std::asin(std::clamp(e.z, -1.0, 1.0)));
+    }
+    if (parts_.faint_starlight)
+      s10[3] =
+          arrives * faint_starlight_s10(*parts_.faint_starlight, dot(galactic_pole_, direction));
+  }
+  if (parts_.scattered_moonlight)
+    s10[4] = parts_.scattered_moonlight->factor *
+             scattered_moonlight_s10(angle_rad(direction, scene_.moon), sin_altitude, scene_.moon.z,
+                                     moon_v_mag_, k_v_);
+  if (twilight_zenith_s10_ > 0)
+    s10[5] = twilight_zenith_s10_ * twilight_shape(sin_altitude, angle_rad(direction, scene_.sun),
+                                                   sun_altitude_rad_, k_v_);
+  if (parts_.light_pollution)
+    s10[6] = light_pollution_s10(*parts_.light_pollution, direction, k_v_);
+  return s10;
+}
+
+double SkyModel::photons_per_s_m2_sr(const Vec<Enu>& direction) const {
+  const auto s10 = parts_s10(direction);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < s10.size(); ++i) sum += photons_of_s10_[i] * s10[i];
+  return sum;
+}
+
+double SkyModel::v_mag_per_arcsec2(const Vec<Enu>& direction) const {
+  double sum = 0.0;
+  for (const double s10 : parts_s10(direction)) sum += s10;
+  return sum > 0 ? mag_per_arcsec2_of_s10(sum) : 99.0;
+}
+
+}  // namespace dmise

@@ -1,0 +1,82 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "core/frames/vec.h"
+#include "core/sky/airglow.h"
+#include "core/sky/faint_starlight.h"
+#include "core/sky/light_pollution.h"
+#include "core/sky/scattered_moonlight.h"
+#include "core/sky/sky_frames.h"
+#include "core/sky/twilight.h"
+#include "core/sky/zodiacal_light.h"
+
+namespace dmise {
+
+/// The same brightness everywhere, of the Sun's colour: a sky given by one figure.
+struct UniformSky {
+  double v_mag_per_arcsec2 = 21.0;
+};
+
+/// The parts of the sky; each is on where it is given. To add one: write its file pair, list it
+/// here and in sky_model.cpp, test it in tests/sky.
+struct SkyParts {
+  std::optional<UniformSky> uniform;
+  std::optional<Airglow> airglow;
+  std::optional<ZodiacalLight> zodiacal_light;
+  std::optional<FaintStarlight> faint_starlight;
+  std::optional<ScatteredMoonlight> scattered_moonlight;
+  std::optional<Twilight> twilight;
+  std::optional<LightPollution> light_pollution;
+};
+inline constexpr std::size_t sky_part_count = 7;
+/// Names in the order of SkyParts, as in YAML.
+inline constexpr std::array<std::string_view, sky_part_count> sky_part_names = {
+    "uniform",  "airglow",        "zodiacal_light", "faint_starlight", "scattered_moonlight",
+    "twilight", "light_pollution"};
+
+/// The parts that make the sky of a preset: "dark" (all natural ones), "suburban" and "urban"
+/// (these, and lamps that bring the zenith to 20 and 18 mag/arcsec2), "space" (uniform, 21).
+std::optional<SkyParts> sky_parts_named(std::string_view preset);
+
+/// What the sky depends on at one site and time. Directions are apparent, unit.
+struct SkyScene {
+  Vec<Enu> sun{0, 0, -1};
+  Vec<Enu> moon{0, 0, -1};
+  double moon_phase_rad = 3.14159265358979323846;  // Sun-Moon-observer, 0 at full Moon
+  Rotation<Gcrs, Enu> gcrs_from_enu;
+  bool in_air = true;  // false: a camera in space, no extinction
+};
+
+/// The sky of one scene in one band.
+class SkyModel {
+ public:
+  /// `extinction` [mag/airmass] as in extinction.h. Throws `Error` when a part has no spectrum in
+  /// the band.
+  SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& band, const Curve& extinction);
+
+  /// Photons/s/m2/sr from a direction (unit) at the camera; below the horizon what is on it.
+  double photons_per_s_m2_sr(const Vec<Enu>& direction) const;
+
+  /// V brightness of each part [S10], in the order of `sky_part_names`.
+  std::array<double, sky_part_count> parts_s10(const Vec<Enu>& direction) const;
+
+  /// V brightness of the whole [mag/arcsec2]; 99 where there is none.
+  double v_mag_per_arcsec2(const Vec<Enu>& direction) const;
+
+ private:
+  SkyParts parts_;
+  SkyScene scene_;
+  Rotation<Ecliptic, Enu> ecliptic_from_enu_;
+  Vec<Enu> galactic_pole_;
+  double sun_longitude_rad_ = 0.0;
+  double sun_altitude_rad_ = 0.0;
+  double twilight_zenith_s10_ = 0.0;
+  double moon_v_mag_ = 0.0;
+  double k_v_ = 0.0;          // extinction of stars in V [mag/airmass], 0 in space
+  double diffuse_mag_ = 0.0;  // that of extended light in the band [mag/airmass]
+  std::array<double, sky_part_count> photons_of_s10_{};
+};
+
+}  // namespace dmise

@@ -1,0 +1,27 @@
+#pragma once
+#include "core/photometry/spectrum.h"
+
+namespace dmise {
+
+/// Sunlight scattered high up while the Sun is below the horizon: brightest above where it stands.
+struct Twilight {
+  double factor = 1.0;
+};
+
+/// Brightness of the zenith [S10 in V] by the Sun's altitude [rad]. Depression 5-14 deg: 11.84
+/// + 1.518 x - 0.057 x^2 mag/arcsec2, x = depression - 5 deg, the dark sky of 21.7 taken off.
+/// Source: Patat, Ugolnikov & Postylyakov 2006, A&A 455, 385, table 1. Deeper, it goes on falling
+/// at the slope of 14 deg and by the square of the rest (it is gone, below 1 S10, at 18 deg);
+/// higher, it joins 7.2 mag/arcsec2 at sunset (+-0.5 mag) and is held at 4 by day.
+double twilight_zenith_s10(double sun_altitude_rad);
+
+/// Brightness of a direction over that of the zenith. Source: Schaefer 1993, Vistas in Astronomy
+/// 36, 311 (twilight term): more air near the horizon, brighter near the Sun. `k_v` in mag/airmass.
+double twilight_shape(double sin_altitude, double angle_from_sun_rad, double sun_altitude_rad,
+                      double k_v);
+
+/// Colour, 0.2-2.5 um: sunlight, bluer by what the constants of Patat et al. 2006 for UBVRI say of
+/// a Sun 5 deg down.
+const Spectrum& twilight_spectrum();
+
+}  // namespace dmise

@@ -1,0 +1,59 @@
+#include "core/sky/zodiacal_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+#include "core/sky/zodiacal_table.inc"
+
+constexpr int rows = std::size(longitude_deg), columns = std::size(latitude_deg);
+constexpr double one_s10 = 1.28;
+
+/// Place on an ascending axis: node below and fraction to the next, for every 5 degrees looked up
+/// at once.
+struct Place {
+  int node;
+  double fraction;
+};
+
+template <int N>
+Place place_on(const double (&axis)[N], const std::array<int, 37>& node_at_5_deg, double at_deg) {
+  const int node = std::min(node_at_5_deg[std::size_t(at_deg / 5)], N - 2);
+  return {node, (at_deg - axis[node]) / (axis[node + 1] - axis[node])};
+}
+
+template <int N>
+std::array<int, 37> nodes_every_5_deg(const double (&axis)[N]) {
+  std::array<int, 37> nodes{};
+  for (int k = 0; k < 37; ++k) nodes[k] = int(std::upper_bound(axis, axis + N, 5.0 * k) - axis) - 1;
+  return nodes;
+}
+
+}  // namespace
+
+double zodiacal_light_s10(double longitude_from_sun_rad, double latitude_rad) {
+  static const auto row_at = nodes_every_5_deg(longitude_deg);
+  static const auto column_at = nodes_every_5_deg(latitude_deg);
+  static const auto logs = [] {
+    std::array<std::array<double, columns>, rows> values{};
+    for (int i = 0; i < rows; ++i)
+      for (int j = 0; j < columns; ++j) values[i][j] = std::log(table[i][j] / one_s10);
+    return values;
+  }();
+  const double longitude =
+      std::min(std::abs(std::remainder(longitude_from_sun_rad, 2 * pi)) / deg, 180.0);
+  const double latitude = std::min(std::abs(latitude_rad) / deg, 90.0);
+  const auto [i, u] = place_on(longitude_deg, row_at, longitude);
+  const auto [j, v] = place_on(latitude_deg, column_at, latitude);
+  const double low = logs[i][j] + v * (logs[i][j + 1] - logs[i][j]);
+  const double high = logs[i + 1][j] + v * (logs[i + 1][j + 1] - logs[i + 1][j]);
+  return std::exp(low + u * (high - low));
+}
+
+}  // namespace dmise

@@ -1,0 +1,17 @@
+#pragma once
+
+namespace dmise {
+
+/// Sunlight scattered by interplanetary dust, above the atmosphere, of the Sun's colour; its yearly
+/// change (10 %) is left out.
+struct ZodiacalLight {
+  double factor = 1.0;  // on the table
+};
+
+/// Brightness [S10] at 500 nm by ecliptic longitude from the Sun and ecliptic latitude [rad, any].
+/// The table's own values at its nodes, log-linear between them; within 15 deg of the Sun, where
+/// the table ends, the power -2.2 of elongation continues it, held inside 2.5 deg. Source: Leinert
+/// et al. 1998, A&AS 127, 1, table 17; 1 S10 is 1.28e-8 W/m2/sr/um.
+double zodiacal_light_s10(double longitude_from_sun_rad, double latitude_rad);
+
+}  // namespace dmise

@@ -1,0 +1,179 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+#include "core/photometry/magnitude.h"
+#include "core/sky/airglow.h"
+#include "core/sky/faint_starlight.h"
+#include "core/sky/light_pollution.h"
+#include "core/sky/scattered_moonlight.h"
+#include "core/sky/surface_brightness.h"
+#include "core/sky/twilight.h"
+#include "core/sky/zodiacal_light.h"
+
+namespace dmise {
+namespace {
+
+// van Rhijn's factor of a layer at 90 km is 6.02 at the horizon; flat layers would give 2 at 30
+// deg, this one 1.93.
+TEST(Airglow, VanRhijn) {
+  EXPECT_DOUBLE_EQ(van_rhijn(1.0, 90e3), 1.0);
+  EXPECT_NEAR(van_rhijn(0.5, 90e3), 1.92, 0.01);
+  EXPECT_NEAR(van_rhijn(0.0, 90e3), 6.02, 0.02);
+  EXPECT_EQ(van_rhijn(-0.3, 90e3), van_rhijn(0.0, 90e3));
+}
+
+// Leinert et al. 1998, table 16 (S10): 60 at the ecliptic pole, 202 at 90 deg in the ecliptic, 180
+// in the gegenschein, 1930 at 30 deg on the ecliptic, each to the table's rounding.
+TEST(ZodiacalLight, LeinertsTable) {
+  const struct {
+    double longitude_deg, latitude_deg, s10;
+  } table[] = {{0, 90, 60},   {137, 90, 60}, {90, 0, 202},  {-90, 0, 202}, {180, 0, 180},
+               {540, 0, 180}, {30, 0, 1930}, {90, 30, 103}, {60, -60, 82}, {120, 15, 120}};
+  for (const auto& [longitude_deg, latitude_deg, s10] : table)
+    EXPECT_NEAR(zodiacal_light_s10(longitude_deg * deg, latitude_deg * deg), s10, 0.02 * s10)
+        << longitude_deg << " " << latitude_deg;
+}
+
+TEST(ZodiacalLight, ContinuousAndFiniteTowardsTheSun) {
+  double last = zodiacal_light_s10(0, 0);
+  EXPECT_TRUE(std::isfinite(last));
+  for (double longitude = 0; longitude <= 360; longitude += 0.05) {
+    const double here = zodiacal_light_s10(longitude * deg, 3 * deg);
+    EXPECT_NEAR(here / zodiacal_light_s10((longitude - 0.05) * deg, 3 * deg), 1.0, 0.03);
+  }
+}
+
+TEST(FaintStarlight, FallsWithLatitudeAndLimit) {
+  EXPECT_NEAR(faint_starlight_s10({9.0}, 1.0), 20, 0.5);
+  EXPECT_NEAR(faint_starlight_s10({9.0}, 0.0), 165, 1);
+  // Counted in the catalogue: V = 6-9 gives 12.2 S10 at latitudes above 60 deg, 29.5 at 5 to 10
+  // deg.
+  EXPECT_NEAR(faint_starlight_s10({6.0}, std::sin(72 * deg)) -
+                  faint_starlight_s10({9.0}, std::sin(72 * deg)),
+              12.2, 0.8);
+  EXPECT_NEAR(faint_starlight_s10({6.0}, std::sin(7.5 * deg)) -
+                  faint_starlight_s10({9.0}, std::sin(7.5 * deg)),
+              29.5, 4);
+  EXPECT_LT(faint_starlight_s10({12.0}, 1.0), faint_starlight_s10({9.0}, 1.0));
+}
+
+// Reference: tests/reference/moonlight.py. {phase, angle from the Moon, zenith distance, the Moon's
+// [deg], k, nL, mag}
+TEST(ScatteredMoonlight, KrisciunasAndSchaefer) {
+  const struct {
+    double phase, angle, z, z_moon, k, nl, mag;
+  } cases[] = {
+      {0, 60, 0, 60, 0.172, 1089.86, 18.73774},
+      {30, 30, 45, 30, 0.172, 1549.26, 18.35586},
+      {90, 100, 70, 80, 0.3, 119.273, 21.13979},
+      {0, 5, 40, 45, 0.172, 12718.2, 16.07012},
+  };
+  for (const auto& c : cases) {
+    const double s10 =
+        scattered_moonlight_s10(c.angle * deg, std::cos(c.z * deg), std::cos(c.z_moon * deg),
+                                moon_v_mag(c.phase * deg), c.k);
+    EXPECT_NEAR(mag_per_arcsec2_of_s10(s10), c.mag, 1e-4);
+    EXPECT_NEAR(s10 / s10_of_nanolambert(1.0), c.nl, 1e-4 * c.nl);
+  }
+  EXPECT_NEAR(moon_v_mag(0), -12.73, 1e-12);
+}
+
+TEST(ScatteredMoonlight, ContinuousThroughMoonriseAndTowardsTheMoon) {
+  double last = 0;
+  for (double altitude = -10; altitude <= 90; altitude += 0.02) {
+    const double here = scattered_moonlight_s10(1.0, 0.7, std::sin(altitude * deg), -12.7, 0.17);
+    EXPECT_GT(here, last);
+    if (last > 0) {
+      EXPECT_LT(here / last, 1.03);
+    }
+    last = here;
+  }
+  last = moonlight_scattering(0);
+  for (double angle = 0; angle <= 180; angle += 0.001) {
+    const double here = moonlight_scattering(angle * deg);
+    EXPECT_NEAR(here / last, 1.0, 0.01) << angle;
+    last = here;
+  }
+}
+
+// Patat et al. 2006, table 1, V: 11.84 + 1.518 x - 0.057 x^2, with the dark sky in it.
+TEST(Twilight, ZenithByPatat) {
+  const double dark = s10_of_mag_per_arcsec2(21.7);
+  EXPECT_NEAR(mag_per_arcsec2_of_s10(twilight_zenith_s10(-5 * deg) + dark), 11.84, 0.005);
+  EXPECT_NEAR(mag_per_arcsec2_of_s10(twilight_zenith_s10(-10 * deg) + dark), 18.005, 0.005);
+  EXPECT_NEAR(mag_per_arcsec2_of_s10(twilight_zenith_s10(-14 * deg) + dark), 20.885, 0.005);
+  EXPECT_LT(twilight_zenith_s10(-18 * deg), 10);
+}
+
+TEST(Twilight, DawnIsContinuousAndMonotone) {
+  double last = twilight_zenith_s10(-40 * deg);
+  EXPECT_GE(last, 0.0);
+  for (double altitude = -40; altitude <= 20; altitude += 0.01) {
+    const double here = twilight_zenith_s10(altitude * deg);
+    EXPECT_GE(here, last) << altitude;
+    if (last > 0) {
+      EXPECT_LT(here / last, 1.2) << altitude;
+    }
+    last = here;
+  }
+}
+
+TEST(Twilight, BrightestAboveTheSun) {
+  const double sun = -8 * deg;
+  EXPECT_DOUBLE_EQ(twilight_shape(1.0, pi / 2 - sun, sun, 0.17), 1.0);
+  const double solar = twilight_shape(std::sin(10 * deg), 18 * deg, sun, 0.17);
+  const double opposite = twilight_shape(std::sin(10 * deg), 178 * deg, sun, 0.17);
+  EXPECT_GT(solar, 5 * opposite);
+  EXPECT_TRUE(std::isfinite(twilight_shape(-0.1, 0.0, sun, 0.0)));
+}
+
+// Patat et al. 2006: twilight 5 deg down has B-V 0.00, V-R 0.44, V-I 0.91.
+TEST(Twilight, Colours) {
+  const auto mag = [](const char* name) {
+    const Band band = *filter_named(name);
+    return magnitude_of_light(photons_per_s_m2_sr_of_s10(band, twilight_spectrum()) /
+                              zero_point_photons_per_s_m2(band));
+  };
+  EXPECT_NEAR(mag("bessell-B") - mag("bessell-V"), 0.00, 0.1);
+  EXPECT_NEAR(mag("bessell-V") - mag("bessell-R"), 0.44, 0.1);
+  EXPECT_NEAR(mag("bessell-V") - mag("bessell-I"), 0.91, 0.1);
+}
+
+// Photons in Bessell's B and R over V of three lamps measured for the Lamp Spectral Power
+// Distribution Database.
+TEST(LightPollution, LampsHaveTheColoursOfMeasuredOnes) {
+  const struct {
+    LampMix lamp;
+    double b_over_v, r_over_v;
+  } cases[] = {{{1, 0, 0}, 0.0, 2.076}, {{0, 1, 0}, 0.0985, 2.0945}, {{0, 0, 1}, 0.3722, 1.3131}};
+  for (const auto& [lamp, b_over_v, r_over_v] : cases) {
+    const Spectrum spectrum = lamp_spectrum(lamp);
+    const double v = photon_rate_per_m2(spectrum, johnson_v());
+    EXPECT_NEAR(photon_rate_per_m2(spectrum, *filter_named("bessell-B")) / v, b_over_v,
+                0.1 * b_over_v + 1e-6);
+    EXPECT_NEAR(photon_rate_per_m2(spectrum, *filter_named("bessell-R")) / v, r_over_v,
+                0.1 * r_over_v);
+  }
+  EXPECT_THROW(lamp_spectrum({0, 0, 0}), Error);
+  EXPECT_THROW(lamp_spectrum({1, -1, 0}), Error);
+}
+
+TEST(LightPollution, ACityGlowsOnItsSideAndHasNoSeam) {
+  LightPollution site{.zenith_v_mag_per_arcsec2 = 21.0, .cities = {{.azimuth_rad = pi / 2}}};
+  const auto towards = [&](double azimuth_deg, double altitude_deg) {
+    return light_pollution_s10(
+        site, from_spherical<Enu>((90 - azimuth_deg) * deg, altitude_deg * deg), 0.17);
+  };
+  EXPECT_NEAR(mag_per_arcsec2_of_s10(towards(0, 90)), 21.0, 0.02);
+  EXPECT_GT(towards(90, 5), 1.5 * towards(270, 5));
+  for (double altitude = -5; altitude <= 90; altitude += 5) {
+    EXPECT_NEAR(towards(270.001, altitude) / towards(269.999, altitude), 1.0, 1e-3);
+    EXPECT_NEAR(towards(359.999, altitude) / towards(0.001, altitude), 1.0, 1e-3);
+  }
+}
+
+}  // namespace
+}  // namespace dmise
