@@ -1,13 +1,14 @@
 #include "core/photometry/magnitude.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "core/base/units.h"
 #include "core/photometry/spectrum.h"
 
 namespace dmise {
 
-double light_of_magnitude(double mag) { return std::pow(10.0, -0.4 * mag); }
+double light_of_magnitude(double mag) { return std::exp(-mag * (0.4 * std::numbers::ln10)); }
 
 double magnitude_of_light(double light) { return -2.5 * std::log10(light); }
 

@@ -18,8 +18,8 @@ double moon_v_mag(double phase_rad) {
 double moonlight_scattering(double angle_from_moon_rad) {
   const double angle_deg = angle_from_moon_rad / deg;
   const double c = std::cos(angle_from_moon_rad);
-  const double rayleigh = 229086.76527677724 * (1.06 + c * c);  // 10^5.36
-  double mie = std::pow(10.0, 6.15 - angle_deg / 40.0);
+  const double rayleigh = 229086.76527677724 * (1.06 + c * c);        // 10^5.36
+  double mie = light_of_magnitude(-2.5 * (6.15 - angle_deg / 40.0));  // 10^(6.15 - angle/40)
   if (angle_deg < 10.0) {
     const double held_deg = std::max(angle_deg, 0.25);
     mie = std::max(mie, 6.2e7 / (held_deg * held_deg));

@@ -82,7 +82,7 @@ struct Filler {
   /// and bicubic values wrong by up to 0.4 of them.
   bool smooth(int i, int j) {
     const auto calm = [&](double a, double b, double c, double d, double e) {
-      return 0.4 * std::abs(a - 4 * b + 6 * c - 4 * d + e) <= 0.5 * tolerance * std::abs(c);
+      return 0.4 * std::abs(a - 4 * b + 6 * c - 4 * d + e) <= tolerance * std::abs(c);
     };
     for (int q = j; q <= j + 1; ++q)
       for (int p = i; p <= i + 1; ++p) {
@@ -139,7 +139,7 @@ struct Filler {
     const double left = evaluate(x0, ym), right = evaluate(x1, ym);
     const double u = w ? double(xm - x0) / w : 0.0, v = h ? double(ym - y0) / h : 0.0;
     const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
-    if (w <= 8 && h <= 8 && agrees(mix(f00, f10, u), top) && agrees(mix(f01, f11, u), bottom) &&
+    if (w <= 16 && h <= 16 && agrees(mix(f00, f10, u), top) && agrees(mix(f01, f11, u), bottom) &&
         agrees(mix(f00, f01, v), left) && agrees(mix(f10, f11, v), right) &&
         agrees(mix(mix(f00, f10, u), mix(f01, f11, u), v), middle)) {
       for (int y = y0; y <= y1; ++y) {

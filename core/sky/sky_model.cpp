@@ -48,7 +48,7 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
   ecliptic_from_enu_ = ecliptic * scene.gcrs_from_enu;
   galactic_pole_ = (galactic_from_gcrs() * scene.gcrs_from_enu).inverse() * Vec<Galactic>{0, 0, 1};
   sun_longitude_rad_ = to_spherical(ecliptic_from_enu_ * scene.sun)[0];
-  sun_altitude_rad_ = std::asin(std::clamp(scene.sun.z, -1.0, 1.0));
+  const double sun_altitude_rad = std::asin(std::clamp(scene.sun.z, -1.0, 1.0));
   moon_v_mag_ = moon_v_mag(scene.moon_phase_rad);
   if (scene.in_air) {
     k_v_ = zenith_extinction_mag(johnson_v(), extinction);
@@ -60,7 +60,8 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
     parts_.light_pollution.reset();
   }
   if (parts_.twilight)
-    twilight_zenith_s10_ = parts_.twilight->factor * twilight_zenith_s10(sun_altitude_rad_);
+    twilight_scale_s10_ = parts_.twilight->factor * twilight_zenith_s10(sun_altitude_rad) /
+                          twilight_pattern(1.0, pi / 2 - sun_altitude_rad, k_v_);
   const double sunlit = photons_per_s_m2_sr_of_s10(band);
   photons_of_s10_.fill(sunlit);
   if (parts_.airglow) photons_of_s10_[1] = photons_per_s_m2_sr_of_s10(band, airglow_spectrum());
@@ -92,9 +93,9 @@ std::array<double, sky_part_count> SkyModel::parts_s10(const Vec<Enu>& direction
     s10[4] = parts_.scattered_moonlight->factor *
              scattered_moonlight_s10(angle_rad(direction, scene_.moon), sin_altitude, scene_.moon.z,
                                      moon_v_mag_, k_v_);
-  if (twilight_zenith_s10_ > 0)
-    s10[5] = twilight_zenith_s10_ * twilight_shape(sin_altitude, angle_rad(direction, scene_.sun),
-                                                   sun_altitude_rad_, k_v_);
+  if (twilight_scale_s10_ > 0)
+    s10[5] = twilight_scale_s10_ *
+             twilight_pattern(sin_altitude, angle_rad(direction, scene_.sun), k_v_);
   if (parts_.light_pollution)
     s10[6] = light_pollution_s10(*parts_.light_pollution, direction, k_v_);
   return s10;

@@ -71,8 +71,7 @@ class SkyModel {
   Rotation<Ecliptic, Enu> ecliptic_from_enu_;
   Vec<Enu> galactic_pole_;
   double sun_longitude_rad_ = 0.0;
-  double sun_altitude_rad_ = 0.0;
-  double twilight_zenith_s10_ = 0.0;
+  double twilight_scale_s10_ = 0.0;  // brightness over twilight_pattern
   double moon_v_mag_ = 0.0;
   double k_v_ = 0.0;          // extinction of stars in V [mag/airmass], 0 in space
   double diffuse_mag_ = 0.0;  // that of extended light in the band [mag/airmass]

@@ -49,25 +49,19 @@ double zenith_mag_per_arcsec2(double depression_deg) {
   return std::max(sunset + sunset_slope * depression_deg, day);
 }
 
-/// Light by Schaefer's twilight term, up to a factor common to all directions.
-double schaefer(double sin_altitude, double angle_from_sun_deg, double k_v) {
-  const double s = std::clamp(sin_altitude, 0.0, 1.0);
-  const double zenith_distance_deg = std::acos(s) / deg;
-  const double k = std::max(k_v, 0.05);
-  return std::pow(10.0, 0.4 * zenith_distance_deg / (360.0 * k)) /
-         std::max(angle_from_sun_deg, 1.0) * (1.0 - light_of_magnitude(k * scattering_airmass(s)));
-}
-
 }  // namespace
 
 double twilight_zenith_s10(double sun_altitude_rad) {
   return s10_of_mag_per_arcsec2(zenith_mag_per_arcsec2(-sun_altitude_rad / deg));
 }
 
-double twilight_shape(double sin_altitude, double angle_from_sun_rad, double sun_altitude_rad,
-                      double k_v) {
-  return schaefer(sin_altitude, angle_from_sun_rad / deg, k_v) /
-         schaefer(1.0, 90.0 - sun_altitude_rad / deg, k_v);
+double twilight_pattern(double sin_altitude, double angle_from_sun_rad, double k_v) {
+  const double s = std::clamp(sin_altitude, 0.0, 1.0);
+  const double zenith_distance_deg = std::acos(s) / deg;
+  const double k = std::max(k_v, 0.05);
+  return light_of_magnitude(-zenith_distance_deg / (360.0 * k)) /
+         std::max(angle_from_sun_rad / deg, 1.0) *
+         (1.0 - light_of_magnitude(k * scattering_airmass(s)));
 }
 
 const Spectrum& twilight_spectrum() {

@@ -15,10 +15,10 @@ struct Twilight {
 /// higher, it joins 7.2 mag/arcsec2 at sunset (+-0.5 mag) and is held at 4 by day.
 double twilight_zenith_s10(double sun_altitude_rad);
 
-/// Brightness of a direction over that of the zenith. Source: Schaefer 1993, Vistas in Astronomy
-/// 36, 311 (twilight term): more air near the horizon, brighter near the Sun. `k_v` in mag/airmass.
-double twilight_shape(double sin_altitude, double angle_from_sun_rad, double sun_altitude_rad,
-                      double k_v);
+/// Brightness of a direction up to a factor common to all: its ratio to that of the zenith is
+/// meant. More air near the horizon, brighter near the Sun. `k_v` in mag/airmass, held at 0.05 and
+/// more. Source: Schaefer 1993, Vistas in Astronomy 36, 311, twilight term.
+double twilight_pattern(double sin_altitude, double angle_from_sun_rad, double k_v);
 
 /// Colour, 0.2-2.5 um: sunlight, bluer by what the constants of Patat et al. 2006 for UBVRI say of
 /// a Sun 5 deg down.

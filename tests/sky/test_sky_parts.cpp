@@ -6,6 +6,7 @@
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/airglow.h"
+#include "core/sky/airmass.h"
 #include "core/sky/faint_starlight.h"
 #include "core/sky/light_pollution.h"
 #include "core/sky/scattered_moonlight.h"
@@ -121,13 +122,16 @@ TEST(Twilight, DawnIsContinuousAndMonotone) {
   }
 }
 
-TEST(Twilight, BrightestAboveTheSun) {
-  const double sun = -8 * deg;
-  EXPECT_DOUBLE_EQ(twilight_shape(1.0, pi / 2 - sun, sun, 0.17), 1.0);
-  const double solar = twilight_shape(std::sin(10 * deg), 18 * deg, sun, 0.17);
-  const double opposite = twilight_shape(std::sin(10 * deg), 178 * deg, sun, 0.17);
-  EXPECT_GT(solar, 5 * opposite);
-  EXPECT_TRUE(std::isfinite(twilight_shape(-0.1, 0.0, sun, 0.0)));
+// Schaefer 1993 for k = 0.2 at 10 deg altitude and 30 deg from the Sun, over the zenith 100 deg
+// from it, by hand: 10^(0.4 x 80/72) x (100/30) x (1 - 10^(-0.08 x 3.8084)) / (1 - 10^-0.08)
+// = 2.7826 x 3.3333 x 0.50419 / 0.16824.
+TEST(Twilight, PatternBySchaefer) {
+  EXPECT_NEAR(scattering_airmass(std::sin(10 * deg)), 3.8084, 1e-4);
+  EXPECT_NEAR(
+      twilight_pattern(std::sin(10 * deg), 30 * deg, 0.2) / twilight_pattern(1.0, 100 * deg, 0.2),
+      27.79, 0.05);
+  EXPECT_GT(twilight_pattern(0.2, 18 * deg, 0.17), 5 * twilight_pattern(0.2, 178 * deg, 0.17));
+  EXPECT_TRUE(std::isfinite(twilight_pattern(-0.1, 0.0, 0.0)));
 }
 
 // Patat et al. 2006: twilight 5 deg down has B-V 0.00, V-R 0.44, V-I 0.91.
