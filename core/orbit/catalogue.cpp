@@ -39,7 +39,7 @@ void keep_newest(CatalogueFile& file) {
     if (first) continue;
     const MeanElements& other = file.elements[place->second];
     const bool newer =
-        days_between({other.epoch_jd1, other.epoch_jd2}, {e.epoch_jd1, e.epoch_jd2}) >= 0;
+        epoch_days_between({other.epoch_jd1, other.epoch_jd2}, {e.epoch_jd1, e.epoch_jd2}) >= 0;
     dropped[newer ? place->second : i] = true;
     if (newer) place->second = i;
     ++file.superseded;

@@ -2,8 +2,10 @@
 
 #include <erfa.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "core/orbit/text_fields.h"
 
@@ -54,7 +56,7 @@ double julian_midnight(int year, int day_of_year) {
 
 int full_year(int two_digit_year) { return two_digit_year + (two_digit_year >= 57 ? 1900 : 2000); }
 
-std::optional<UtcEpoch> parse_iso_epoch(std::string_view text) {
+std::optional<CalendarTime> parse_calendar_time(std::string_view text) {
   text = trimmed(text);
   if (!text.empty() && text.back() == 'Z') text.remove_suffix(1);
   const std::size_t t = text.find_first_of("T ");
@@ -84,12 +86,33 @@ std::optional<UtcEpoch> parse_iso_epoch(std::string_view text) {
   const auto second = parse_real(time.substr(6));
   if (!second || *second < 0 || *second >= 61) return std::nullopt;
 
-  const double midnight = julian_midnight(*year, ordinal);
-  const double day_length_s = utc_day_length_s(midnight);
-  const double second_of_day = (*hour * 60.0 + *minute) * 60.0 + *second;
   if (*second >= 60 && (*hour != 23 || *minute != 59)) return std::nullopt;
-  if (second_of_day >= day_length_s) return std::nullopt;
-  return UtcEpoch{midnight, second_of_day / day_length_s};
+  return CalendarTime{julian_midnight(*year, ordinal), (*hour * 60.0 + *minute) * 60.0 + *second};
+}
+
+std::optional<Utc> parse_iso_epoch(std::string_view text) {
+  const auto time = parse_calendar_time(text);
+  if (!time) return std::nullopt;
+  const double day_length_s = utc_day_length_s(time->midnight_jd);
+  if (time->second_of_day >= day_length_s) return std::nullopt;
+  return Utc{time->midnight_jd, time->second_of_day / day_length_s};
+}
+
+std::string format_iso_epoch(const Utc& epoch) {
+  int year = 0, month = 0, day = 0, clock[4] = {};
+  double fraction = 0.0;
+  eraJd2cal(epoch.jd1, 0.0, &year, &month, &day, &fraction);
+  const double second_of_day = epoch.jd2 * utc_day_length_s(epoch.jd1);
+  const int ms = static_cast<int>(second_of_day * 1000.0 + 1e-3);
+  const int minute = std::min(ms / 60000, 1439);
+  clock[0] = minute / 60;
+  clock[1] = minute % 60;
+  clock[2] = (ms - minute * 60000) / 1000;
+  clock[3] = ms % 1000;
+  char text[40];
+  std::snprintf(text, sizeof text, "%04d-%02d-%02dT%02d:%02d:%02d.%03d", year, month, day, clock[0],
+                clock[1], clock[2], clock[3]);
+  return text;
 }
 
 }  // namespace dmise

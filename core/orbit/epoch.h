@@ -1,21 +1,14 @@
 #pragma once
 #include <optional>
+#include <string>
 #include <string_view>
+
+#include "core/time/julian_date.h"
 
 namespace dmise {
 
-/// A UTC instant as a two-part Julian date [days]. One double would be good to 40 us only, 0.3 m
-/// along a low orbit. On a day with a leap second jd2 is ERFA's quasi-JD: the day is stretched to
-/// 86401 s.
-struct UtcEpoch {
-  double jd1 = 0.0;  // midnight: ends in .5
-  double jd2 = 0.0;  // fraction of the day, [0, 1)
-
-  bool operator==(const UtcEpoch&) const = default;
-};
-
-/// Later instants are greater; a rounded difference in days.
-inline double days_between(const UtcEpoch& from, const UtcEpoch& to) {
+/// Days from `from` to `to` for putting epochs in order: a leap second between them is left out.
+inline double epoch_days_between(const Utc& from, const Utc& to) {
   return (to.jd1 - from.jd1) + (to.jd2 - from.jd2);
 }
 
@@ -28,9 +21,21 @@ double julian_midnight(int year, int day_of_year);
 /// Century of a two-digit TLE year: 57-99 are 19xx (Sputnik's launch), 00-56 are 20xx.
 int full_year(int two_digit_year);
 
+/// A calendar date and time of day as written, in no particular time scale.
+struct CalendarTime {
+  double midnight_jd = 0.0;    // ends in .5
+  double second_of_day = 0.0;  // [0, 86401): from 86400 on inside a leap second
+};
+
 /// `2018-01-20T23:40:00.123456Z`, or with day of year `2018-020T23:40:00`; 'Z' and the fraction of
-/// the second are optional, second 60 is allowed on a day that has one. Nothing if it is not such a
-/// text.
-std::optional<UtcEpoch> parse_iso_epoch(std::string_view text);
+/// the second are optional. Second 60 is read at 23:59 only. Nothing if it is not such a text.
+/// Source: CCSDS 301.0-B-4, ASCII time codes A and B.
+std::optional<CalendarTime> parse_calendar_time(std::string_view text);
+
+/// The same as UTC; second 60 on a day without a leap second is nothing.
+std::optional<Utc> parse_iso_epoch(std::string_view text);
+
+/// `2018-01-20T23:40:00.123`: UTC with milliseconds, cut off.
+std::string format_iso_epoch(const Utc& epoch);
 
 }  // namespace dmise

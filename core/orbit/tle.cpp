@@ -61,7 +61,7 @@ double exponent_field(std::string_view field, const char* what) {
   return sign == '-' ? -value : value;
 }
 
-UtcEpoch epoch_field(std::string_view field) {
+Utc epoch_field(std::string_view field) {
   const auto year = parse_count(trimmed(field.substr(0, 2)));
   const auto day = parse_count(trimmed(field.substr(2, 3)));
   const auto fraction = parse_real(zeros_for_blanks(trimmed(field.substr(5))));
@@ -151,7 +151,7 @@ MeanElements parse_tle(std::string_view line1, std::string_view line2, bool leni
     throw RecordError("line 2 is of another object than line 1" + got(columns(line2, 3, 7)));
   e.classification = line1[7] == ' ' ? 'U' : line1[7];
   e.designator = trimmed(columns(line1, 10, 17));
-  const UtcEpoch epoch = epoch_field(columns(line1, 19, 32));
+  const Utc epoch = epoch_field(columns(line1, 19, 32));
   e.epoch_jd1 = epoch.jd1;
   e.epoch_jd2 = epoch.jd2;
   e.ephemeris_type = count_or_zero(columns(line1, 63, 63), "ephemeris type");

@@ -1,15 +1,12 @@
 #pragma once
-#include "core/frames/vec.h"
+#include "core/orbit/motion_state.h"
 
 namespace dmise {
 
 /// Geocentric gravitational constant [m^3/s^2]: IERS Conventions 2010, table 1.1 (TT-compatible).
 inline constexpr double earth_gm_m3_per_s2 = 3.986004415e14;
 
-struct TwoBodyState {
-  Vec<Gcrs> position_m;
-  Vec<Gcrs> velocity_m_per_s;
-};
+using TwoBodyState = MotionState<Gcrs>;
 
 /// Osculating elements; `eccentricity` >= 1 with the same fields is a parabola or a hyperbola.
 struct KeplerElements {

@@ -1,0 +1,76 @@
+#pragma once
+#include <variant>
+#include <vector>
+
+#include "core/frames/vec.h"
+
+namespace dmise {
+
+struct Body {};   // axes fixed to an object's body
+struct Panel {};  // axes of a panel: z its normal, x its hinge
+
+/// Unit quaternion of a turn: v_gcrs = q v_body q*.
+struct Quaternion {
+  double w = 1.0, x = 0.0, y = 0.0, z = 0.0;
+};
+
+/// z to the Earth's centre, y against the orbit's normal, x forward (the local orbital frame).
+struct NadirAttitude {};
+
+/// z to the Earth's centre and turned about it until y, the hinge of the panels, is square to the
+/// Sun.
+struct SunYawAttitude {};
+
+/// Keeps its axes to the stars.
+struct InertialAttitude {
+  Rotation<Gcrs, Body> gcrs_from_body;
+};
+
+/// Turns about an axis fixed in the body and to the stars.
+struct SpinningAttitude {
+  Rotation<Gcrs, Body> gcrs_from_body;  // at time 0
+  Vec<Body> axis{0.0, 0.0, 1.0};        // any length > 0
+  double rate_rad_per_s = 0.0;          // right-handed about the axis
+};
+
+/// Great-circle interpolation between attitudes at increasing times.
+struct TableAttitude {
+  std::vector<double> time_s;
+  std::vector<Quaternion> gcrs_from_body;
+};
+
+/// To add a model: list it here, give it an overload in attitude.cpp, test it in tests/orbit.
+using Attitude =
+    std::variant<NadirAttitude, SunYawAttitude, InertialAttitude, SpinningAttitude, TableAttitude>;
+
+/// What an attitude may depend on.
+struct AttitudeScene {
+  double time_s = 0.0;   // since the run's start
+  Vec<Gcrs> position_m;  // geocentric
+  Vec<Gcrs> velocity_m_per_s;
+  Vec<Gcrs> sun_m;  // geocentric
+};
+
+/// Attitude of a body. Where a direction gives no axis (moving straight up, the Sun at the zenith)
+/// the next best one does, so that the result is always a rotation. Throws `Error` for a position
+/// of zero, an axis of zero, and a time outside a table, naming its span.
+Rotation<Gcrs, Body> gcrs_from_body(const Attitude& attitude, const AttitudeScene& scene);
+
+/// Rotation of a unit quaternion.
+Rotation<Gcrs, Body> rotation_of(const Quaternion& q);
+
+/// A flat panel that turns about a hinge to face the Sun as well as it can.
+struct SunTrackingPanel {
+  Vec<Body> hinge{0.0, 1.0, 0.0};
+  Vec<Body> normal{0.0, 0.0, 1.0};  // at angle 0; its part along the hinge is left out
+};
+
+/// Right-handed angle about the hinge [rad, -pi..pi] at which the normal is nearest to
+/// `sun_direction`; 0 with the Sun along the hinge, where all are alike.
+double panel_angle_rad(const SunTrackingPanel& panel, const Vec<Body>& sun_direction);
+
+/// Axes of the panel at that angle.
+Rotation<Body, Panel> body_from_panel(const SunTrackingPanel& panel,
+                                      const Vec<Body>& sun_direction);
+
+}  // namespace dmise

@@ -1,0 +1,224 @@
+#include "core/orbit/oem.h"
+
+#include <erfa.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/base/units.h"
+#include "core/orbit/epoch.h"
+#include "core/orbit/text_fields.h"
+
+namespace dmise {
+
+namespace {
+
+enum class TimeSystem { utc, tai, tt, gps };
+
+constexpr double tt_minus_tai_s = 32.184;
+constexpr double tai_minus_gps_s = 19.0;
+
+/// Reads one file from top to bottom; the state is what has been said so far.
+class OemReader {
+ public:
+  OemReader(std::string_view text, const std::string& source) : lines_(text) {
+    trajectory_.source = source;
+  }
+
+  Trajectory read() {
+    enum class Part { header, metadata, data, covariance } part = Part::header;
+    while (const auto next = lines_.next()) {
+      const std::string_view line = trimmed(*next);
+      if (line.empty() || line.substr(0, 7) == "COMMENT") continue;
+      if (line == "META_START") {
+        finish_segment();
+        segment_.emplace();
+        declared_ = {};
+        part = Part::metadata;
+      } else if (line == "META_STOP") {
+        if (part != Part::metadata) fail("META_STOP without META_START", line);
+        check_metadata();
+        part = Part::data;
+      } else if (line == "COVARIANCE_START") {
+        part = Part::covariance;
+      } else if (line == "COVARIANCE_STOP") {
+        part = Part::data;
+      } else if (part == Part::covariance) {
+        continue;
+      } else if (part == Part::data) {
+        add_state(line);
+      } else {
+        const std::size_t equals = line.find('=');
+        if (equals == std::string_view::npos) fail("neither KEY = value nor a known mark", line);
+        const std::string_view key = trimmed(line.substr(0, equals));
+        const std::string_view value = trimmed(line.substr(equals + 1));
+        if (part == Part::metadata) metadata(key, value);
+        if (key == "CCSDS_OEM_VERS") is_oem_ = true;
+      }
+    }
+    finish_segment();
+    if (!is_oem_) throw ConfigError(trajectory_.source + ": not a CCSDS OEM: no CCSDS_OEM_VERS");
+    if (trajectory_.segments.empty())
+      throw ConfigError(trajectory_.source + ": holds no ephemeris segment");
+    return std::move(trajectory_);
+  }
+
+ private:
+  struct Declared {
+    bool frame = false, time = false, eme2000 = false;
+    TimeSystem system = TimeSystem::utc;
+    std::string usable_start, usable_stop;
+  };
+
+  [[noreturn]] void fail(const std::string& reason, std::string_view value) const {
+    throw ConfigError(trajectory_.source + ":" + std::to_string(lines_.line()) + ": " + reason +
+                      got(value));
+  }
+
+  void metadata(std::string_view key, std::string_view value) {
+    OemSegment& s = *segment_;
+    if (key == "OBJECT_NAME") s.object_name = value;
+    if (key == "OBJECT_ID") s.object_id = value;
+    if (key == "CENTER_NAME" && upper_case(value) != "EARTH")
+      fail("CENTER_NAME is not EARTH", value);
+    if (key == "REF_FRAME") set_frame(upper_case(value));
+    if (key == "TIME_SYSTEM") set_time_system(upper_case(value));
+    if (key == "USEABLE_START_TIME" || key == "USABLE_START_TIME") declared_.usable_start = value;
+    if (key == "USEABLE_STOP_TIME" || key == "USABLE_STOP_TIME") declared_.usable_stop = value;
+    if (key == "INTERPOLATION") {
+      const std::string kind = upper_case(value);
+      if (kind == "LINEAR")
+        s.interpolation = OemInterpolation::linear;
+      else if (kind == "LAGRANGE")
+        s.interpolation = OemInterpolation::lagrange;
+      else if (kind == "HERMITE")
+        s.interpolation = OemInterpolation::hermite;
+      else
+        fail("INTERPOLATION is not LINEAR, LAGRANGE or HERMITE", value);
+    }
+    if (key == "INTERPOLATION_DEGREE") {
+      const auto degree = parse_integer(value);
+      if (!degree || *degree < 1 || *degree > 15)
+        fail("INTERPOLATION_DEGREE is not 1 to 15", value);
+      s.degree = *degree;
+    }
+  }
+
+  void set_frame(const std::string& frame) {
+    declared_.frame = true;
+    if (frame == "EME2000")
+      declared_.eme2000 = true;
+    else if (frame.substr(0, 4) == "ITRF")
+      segment_->frame = OemFrame::itrs;
+    else if (frame == "TEME")
+      segment_->frame = OemFrame::teme;
+    else if (frame != "ICRF" && frame != "GCRF")
+      fail("REF_FRAME is not supported", frame);
+  }
+
+  void set_time_system(const std::string& system) {
+    declared_.time = true;
+    if (system == "UTC")
+      declared_.system = TimeSystem::utc;
+    else if (system == "TAI")
+      declared_.system = TimeSystem::tai;
+    else if (system == "TT")
+      declared_.system = TimeSystem::tt;
+    else if (system == "GPS")
+      declared_.system = TimeSystem::gps;
+    else
+      fail("TIME_SYSTEM is not supported", system);
+  }
+
+  void check_metadata() const {
+    if (!declared_.frame) fail("segment without REF_FRAME", "META_STOP");
+    if (!declared_.time) fail("segment without TIME_SYSTEM", "META_STOP");
+  }
+
+  Tai tai_of(std::string_view text) const {
+    const auto time = parse_calendar_time(text);
+    if (!time) fail("not a time", text);
+    if (declared_.system == TimeSystem::utc) {
+      const auto utc = parse_iso_epoch(text);
+      Tai tai;
+      if (!utc || eraUtctai(utc->jd1, utc->jd2, &tai.jd1, &tai.jd2) < 0) fail("not a time", text);
+      return tai;
+    }
+    double offset_s = 0.0;
+    if (declared_.system == TimeSystem::tt) offset_s = -tt_minus_tai_s;
+    if (declared_.system == TimeSystem::gps) offset_s = tai_minus_gps_s;
+    return {time->midnight_jd, (time->second_of_day + offset_s) / day_s};
+  }
+
+  void add_state(std::string_view line) {
+    OemSegment& s = *segment_;
+    std::array<std::string_view, 7> fields;
+    std::string_view rest = line;
+    std::size_t count = 0;
+    while (!rest.empty()) {
+      const std::size_t end = rest.find_first_of(" \t");
+      if (count < fields.size()) fields[count] = rest.substr(0, end);
+      ++count;
+      rest = end == std::string_view::npos ? std::string_view{} : trimmed(rest.substr(end));
+    }
+    if (count != 7 && count != 10) fail("expected a time and 6 or 9 numbers", line);
+    const Tai time = tai_of(fields[0]);
+    if (trajectory_.segments.empty() && s.time_s.empty()) trajectory_.reference = time;
+    std::array<double, 6> value{};
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto number = parse_real(fields[i + 1]);
+      if (!number) fail("not a number", fields[i + 1]);
+      value[i] = *number * km;
+    }
+    const double t_s = seconds_between(trajectory_.reference, time);
+    if (!s.time_s.empty() && t_s <= s.time_s.back()) fail("times must increase", fields[0]);
+    s.time_s.push_back(t_s);
+    s.position_m.push_back(turned({value[0], value[1], value[2]}));
+    s.velocity_m_per_s.push_back(turned({value[3], value[4], value[5]}));
+  }
+
+  /// EME2000 into GCRS by the constant bias between them (23 mas); the rest as it is.
+  Vec<OemAxes> turned(const Vec<OemAxes>& v) const {
+    if (!declared_.eme2000) return v;
+    double bias[3][3], precession[3][3], both[3][3];
+    eraBp06(2451545.0, 0.0, bias, precession, both);
+    double from[3] = {v.x, v.y, v.z}, to[3];
+    eraTrxp(bias, from, to);
+    return {to[0], to[1], to[2]};
+  }
+
+  void finish_segment() {
+    if (!segment_) return;
+    OemSegment& s = *segment_;
+    if (s.time_s.size() < 2) fail("a segment needs two ephemeris lines", s.object_name);
+    s.usable_start_s = s.time_s.front();
+    s.usable_stop_s = s.time_s.back();
+    if (!declared_.usable_start.empty())
+      s.usable_start_s = std::max(
+          s.usable_start_s, seconds_between(trajectory_.reference, tai_of(declared_.usable_start)));
+    if (!declared_.usable_stop.empty())
+      s.usable_stop_s = std::min(
+          s.usable_stop_s, seconds_between(trajectory_.reference, tai_of(declared_.usable_stop)));
+    trajectory_.segments.push_back(std::move(s));
+    segment_.reset();
+  }
+
+  LineReader lines_;
+  Trajectory trajectory_;
+  std::optional<OemSegment> segment_;
+  Declared declared_;
+  bool is_oem_ = false;
+};
+
+}  // namespace
+
+Trajectory parse_oem(std::string_view text, const std::string& source) {
+  return OemReader(text, source).read();
+}
+
+Trajectory read_oem(const std::string& path) { return parse_oem(read_text_file(path), path); }
+
+}  // namespace dmise
