@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/text_file.h"
 #include "core/orbit/epoch.h"
+#include "core/orbit/omm.h"
 #include "core/orbit/text_fields.h"
 #include "core/orbit/tle.h"
 
@@ -25,6 +26,14 @@ CatalogueFormat format_of(std::string_view text, const std::string& source) {
   if (line.empty()) throw ConfigError(source + ": holds no element sets");
   if (line[0] == '[' && line.size() > 1 && line[1] >= '0' && line[1] <= '9')
     return CatalogueFormat::gpredict;
+  if (line[0] == '[' || line[0] == '{') return CatalogueFormat::omm_json;
+  if (line[0] == '<') return CatalogueFormat::omm_xml;
+  if (line.substr(0, 14) == "CCSDS_OMM_VERS") return CatalogueFormat::omm_kvn;
+  if (line.substr(0, 6) == "CCSDS_")
+    throw ConfigError(source + ": holds no mean elements" + got(line));
+  const std::string header = upper_case(line);
+  if (header.find("NORAD_CAT_ID") != std::string::npos && header.find(',') != std::string::npos)
+    return CatalogueFormat::omm_csv;
   return CatalogueFormat::tle;
 }
 
@@ -87,11 +96,23 @@ CatalogueFile parse_catalogue(std::string_view text, const std::string& source,
   file.source = source;
   file.format = format_of(text, source);
   switch (file.format) {
+    case CatalogueFormat::tle:
+      read_tle(text, options.lenient, file);
+      break;
     case CatalogueFormat::gpredict:
       read_gpredict(text, options.lenient, file);
       break;
-    default:
-      read_tle(text, options.lenient, file);
+    case CatalogueFormat::omm_json:
+      read_omm_json(text, file);
+      break;
+    case CatalogueFormat::omm_csv:
+      read_omm_csv(text, file);
+      break;
+    case CatalogueFormat::omm_xml:
+      read_omm_xml(text, file);
+      break;
+    case CatalogueFormat::omm_kvn:
+      read_omm_kvn(text, file);
       break;
   }
   if (!options.keep_every_epoch) keep_newest(file);

@@ -24,7 +24,7 @@ struct CatalogueOptions {
 
 /// Why one record was refused, or what is odd about one that was read.
 struct CatalogueProblem {
-  int line = 0;        // from 1; in JSON and XML the record's number, from 1
+  int line = 0;        // where the record begins, from 1
   std::string reason;  // `reason, got "value"`
 };
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "core/base/units.h"
 #include "core/orbit/epoch.h"
 #include "core/orbit/text_fields.h"
 
@@ -12,34 +11,12 @@ namespace dmise {
 
 namespace {
 
-constexpr double rev_per_day_in_rad_per_min =
-    1440.0 / (2.0 * pi);  // divides, as the reference does
 constexpr std::size_t full_length = 69;
 
 /// Columns `first` to `last`, both counted from 1 as in the format's description.
 std::string_view columns(std::string_view line, std::size_t first, std::size_t last) {
   if (line.size() < first) return {};
   return line.substr(first - 1, last - first + 1);
-}
-
-double real_field(std::string_view field, const char* what) {
-  const auto value = parse_real(trimmed(field));
-  if (!value) throw RecordError(std::string(what) + " is not a number" + got(field));
-  return *value;
-}
-
-double real_in(std::string_view field, const char* what, double low, double high) {
-  const double value = real_field(field, what);
-  if (value < low || value > high)
-    throw RecordError(std::string(what) + " out of range" + got(field));
-  return value;
-}
-
-int count_or_zero(std::string_view field, const char* what) {
-  if (trimmed(field).empty()) return 0;
-  const auto value = parse_integer(trimmed(field));
-  if (!value || *value < 0) throw RecordError(std::string(what) + " is not a number" + got(field));
-  return *value;
 }
 
 std::string zeros_for_blanks(std::string_view field) {
@@ -155,28 +132,23 @@ MeanElements parse_tle(std::string_view line1, std::string_view line2, bool leni
   e.epoch_jd1 = epoch.jd1;
   e.epoch_jd2 = epoch.jd2;
   e.ephemeris_type = count_or_zero(columns(line1, 63, 63), "ephemeris type");
-  if (e.ephemeris_type != 0 && e.ephemeris_type != 2 && e.ephemeris_type != 3)
-    throw RecordError("ephemeris type is not SGP4's" + got(columns(line1, 63, 63)));
+  check_ephemeris_type(e.ephemeris_type);
   e.element_number = count_or_zero(columns(line1, 65, 68), "element set number");
-
-  const double x = rev_per_day_in_rad_per_min;
-  e.mean_motion_dot_rad_per_min2 =
-      real_field(zeros_for_blanks(trimmed(columns(line1, 34, 43))), "mean motion dot") /
-      (x * 1440.0);
-  e.mean_motion_ddot_rad_per_min3 =
-      exponent_field(columns(line1, 45, 52), "mean motion ddot") / (x * 1440.0 * 1440.0);
   e.bstar_per_earth_radius = exponent_field(columns(line1, 54, 61), "drag term");
-
-  e.inclination_rad = real_in(columns(line2, 9, 16), "inclination", 0, 180) * deg;
-  e.raan_rad = real_in(columns(line2, 18, 25), "right ascension of node", 0, 360) * deg;
-  e.eccentricity = real_in("." + zeros_for_blanks(columns(line2, 27, 33)), "eccentricity", 0, 1);
-  e.argument_of_perigee_rad = real_in(columns(line2, 35, 42), "argument of perigee", 0, 360) * deg;
-  e.mean_anomaly_rad = real_in(columns(line2, 44, 51), "mean anomaly", 0, 360) * deg;
-  const double n_rev_per_day = real_in(columns(line2, 53, 63), "mean motion", 0, 100);
-  if (n_rev_per_day <= 0)
-    throw RecordError("mean motion must be > 0" + got(columns(line2, 53, 63)));
-  e.mean_motion_rad_per_min = n_rev_per_day / x;
   e.revolution = count_or_zero(columns(line2, 64, 68), "revolution number");
+
+  PublishedOrbit orbit;
+  orbit.mean_motion_dot_rev_per_day2 =
+      real_in(zeros_for_blanks(trimmed(columns(line1, 34, 43))), "mean motion dot", -1, 1);
+  orbit.mean_motion_ddot_rev_per_day3 = exponent_field(columns(line1, 45, 52), "mean motion ddot");
+  orbit.inclination_deg = real_in(columns(line2, 9, 16), "inclination", 0, 180);
+  orbit.raan_deg = real_in(columns(line2, 18, 25), "right ascension of node", 0, 360);
+  orbit.eccentricity =
+      real_in("." + zeros_for_blanks(columns(line2, 27, 33)), "eccentricity", 0, 1);
+  orbit.argument_of_perigee_deg = real_in(columns(line2, 35, 42), "argument of perigee", 0, 360);
+  orbit.mean_anomaly_deg = real_in(columns(line2, 44, 51), "mean anomaly", 0, 360);
+  orbit.mean_motion_rev_per_day = real_in(columns(line2, 53, 63), "mean motion", 1e-8, 100);
+  set_orbit(orbit, e);
   return e;
 }
 

@@ -2,7 +2,7 @@
 #include <string_view>
 
 #include "core/orbit/catalogue.h"
-#include "core/orbit/record_error.h"
+#include "core/orbit/record.h"
 
 namespace dmise {
 

@@ -162,7 +162,7 @@ TEST(Tle, NonsenseInAnyFieldNamesTheFieldAndTheValue) {
                {2, 27, "00x6703", "eccentricity"},
                {2, 35, "-30.5360", "argument of perigee"},
                {2, 44, " nan.000", "column 47"},
-               {2, 53, " 0.00000000", "mean motion must be > 0"},
+               {2, 53, " 0.00000000", "mean motion out of range"},
                {2, 3, "25545", "another object"},
                {1, 53, "x", "column 53"},
                {1, 33, "\xa0", "printable ASCII"}};

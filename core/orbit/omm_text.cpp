@@ -1,0 +1,82 @@
+#include "core/orbit/omm.h"
+#include "core/orbit/text_fields.h"
+
+namespace dmise {
+
+namespace {
+
+/// Fields of one line of CSV (RFC 4180; a quoted field ends on its line).
+std::vector<std::string> csv_fields(std::string_view line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"') {
+      fields.back() += '"';
+      ++i;
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+}  // namespace
+
+void read_omm_csv(std::string_view text, CatalogueFile& file) {
+  LineReader lines(text);
+  std::vector<std::string> keys;
+  while (const auto next = lines.next()) {
+    if (trimmed(*next).empty()) continue;
+    const std::vector<std::string> values = csv_fields(*next);
+    if (keys.empty()) {
+      for (const std::string& key : values) keys.push_back(upper_case(trimmed(key)));
+      continue;
+    }
+    if (values.size() != keys.size()) {
+      file.refused.push_back({lines.line(), std::to_string(values.size()) +
+                                                " fields where the header has " +
+                                                std::to_string(keys.size()) + got(*next)});
+      continue;
+    }
+    OmmFields omm;
+    for (std::size_t i = 0; i < keys.size(); ++i) omm.set(keys[i], values[i]);
+    add_omm(omm, lines.line(), file);
+  }
+}
+
+void read_omm_kvn(std::string_view text, CatalogueFile& file) {
+  LineReader lines(text);
+  OmmFields omm;
+  int first_line = 1;
+  const auto finish = [&] {
+    if (!omm.empty()) add_omm(omm, first_line, file);
+    omm.clear();
+  };
+  while (const auto next = lines.next()) {
+    const std::string_view line = trimmed(*next);
+    if (line.empty() || line.substr(0, 7) == "COMMENT" || line[0] == '#') continue;
+    const std::size_t equals = line.find('=');
+    if (equals == std::string_view::npos) {
+      file.refused.push_back({lines.line(), "not KEY = value" + got(line)});
+      continue;
+    }
+    const std::string key = upper_case(trimmed(line.substr(0, equals)));
+    std::string_view value = trimmed(line.substr(equals + 1));
+    if (key == "CCSDS_OMM_VERS") {  // begins the next message
+      finish();
+      first_line = lines.line();
+    }
+    const std::size_t unit = value.rfind('[');
+    if (unit != std::string_view::npos && unit > 0 && value.back() == ']' && key != "OBJECT_NAME")
+      value = trimmed(value.substr(0, unit));
+    omm.set(key, value);
+  }
+  finish();
+}
+
+}  // namespace dmise
