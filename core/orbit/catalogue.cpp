@@ -89,9 +89,7 @@ std::string CatalogueFile::describe(const CatalogueProblem& problem) const {
 
 CatalogueFile parse_catalogue(std::string_view text, const std::string& source,
                               const CatalogueOptions& options) {
-  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-  if (text.substr(0, byte_order_mark.size()) == byte_order_mark)
-    text.remove_prefix(byte_order_mark.size());
+  text = without_byte_order_mark(text);
   CatalogueFile file;
   file.source = source;
   file.format = format_of(text, source);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 
 #include "core/orbit/text_fields.h"
@@ -98,20 +99,29 @@ std::optional<Utc> parse_iso_epoch(std::string_view text) {
   return Utc{time->midnight_jd, time->second_of_day / day_length_s};
 }
 
-std::string format_iso_epoch(const Utc& epoch) {
-  int year = 0, month = 0, day = 0, clock[4] = {};
+std::string format_iso_epoch(const Utc& epoch, int decimals) {
+  decimals = std::clamp(decimals, 0, 6);
+  const std::int64_t unit = std::llround(std::pow(10.0, decimals));  // in a second
+  const std::int64_t day_length = std::llround(utc_day_length_s(epoch.jd1)) * unit;
+  std::int64_t time = std::llround(epoch.jd2 * static_cast<double>(day_length));
+  double midnight = epoch.jd1;
+  if (time >= day_length) {
+    time = 0;
+    midnight += 1.0;
+  }
+  int year = 0, month = 0, day = 0;
   double fraction = 0.0;
-  eraJd2cal(epoch.jd1, 0.0, &year, &month, &day, &fraction);
-  const double second_of_day = epoch.jd2 * utc_day_length_s(epoch.jd1);
-  const int ms = static_cast<int>(second_of_day * 1000.0 + 1e-3);
-  const int minute = std::min(ms / 60000, 1439);
-  clock[0] = minute / 60;
-  clock[1] = minute % 60;
-  clock[2] = (ms - minute * 60000) / 1000;
-  clock[3] = ms % 1000;
-  char text[40];
-  std::snprintf(text, sizeof text, "%04d-%02d-%02dT%02d:%02d:%02d.%03d", year, month, day, clock[0],
-                clock[1], clock[2], clock[3]);
+  eraJd2cal(midnight, 0.0, &year, &month, &day, &fraction);
+  const std::int64_t second_of_day = time / unit;
+  const std::int64_t minute_of_day = std::min<std::int64_t>(second_of_day / 60, 1439);
+  char text[64];
+  int length =
+      std::snprintf(text, sizeof text, "%04d-%02d-%02dT%02d:%02d:%02d", year, month, day,
+                    static_cast<int>(minute_of_day / 60), static_cast<int>(minute_of_day % 60),
+                    static_cast<int>(second_of_day - minute_of_day * 60));
+  if (decimals > 0)
+    std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length), ".%0*d", decimals,
+                  static_cast<int>(time % unit));
   return text;
 }
 

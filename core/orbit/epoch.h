@@ -35,7 +35,8 @@ std::optional<CalendarTime> parse_calendar_time(std::string_view text);
 /// The same as UTC; second 60 on a day without a leap second is nothing.
 std::optional<Utc> parse_iso_epoch(std::string_view text);
 
-/// `2018-01-20T23:40:00.123`: UTC with milliseconds, cut off.
-std::string format_iso_epoch(const Utc& epoch);
+/// `2018-01-20T23:40:00.123` with `decimals` in [0, 6] of a second, nearest: of any year, where
+/// `format_utc` begins with 1972.
+std::string format_iso_epoch(const Utc& epoch, int decimals = 3);
 
 }  // namespace dmise

@@ -3,30 +3,6 @@
 
 namespace dmise {
 
-namespace {
-
-/// Fields of one line of CSV (RFC 4180; a quoted field ends on its line).
-std::vector<std::string> csv_fields(std::string_view line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"') {
-      fields.back() += '"';
-      ++i;
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
-
-}  // namespace
-
 void read_omm_csv(std::string_view text, CatalogueFile& file) {
   LineReader lines(text);
   std::vector<std::string> keys;

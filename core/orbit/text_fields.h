@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 // Small strict readers of text fields, shared by the catalogue formats.
 namespace dmise {
@@ -24,6 +25,12 @@ std::string got(std::string_view text);
 
 /// `text` in upper case (ASCII).
 std::string upper_case(std::string_view text);
+
+/// Fields of one line of CSV (RFC 4180; a quoted field ends on its line).
+std::vector<std::string> csv_fields(std::string_view line);
+
+/// `text` without the UTF-8 byte order mark, if it begins with one.
+std::string_view without_byte_order_mark(std::string_view text);
 
 /// Cuts a text into lines; knows LF and CRLF and counts from 1.
 class LineReader {

@@ -1,0 +1,52 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/orbit/catalogue.h"
+#include "core/time/julian_date.h"
+
+namespace dmise {
+
+/// Elements older than this are marked: in low orbit SGP4 is tens of kilometres off by then.
+inline constexpr double stale_after_days = 30.0;
+
+/// `at` minus the epoch of the elements [days]; < 0 before it.
+double element_age_days(const MeanElements& elements, const Utc& at);
+
+/// Kinds of orbit, by the usual bounds.
+enum class OrbitRegime { low, medium, geosynchronous, highly_elliptic, beyond };
+
+/// "low (period < 127 min)", ...
+const char* name_of(OrbitRegime regime);
+
+OrbitRegime regime_of(const MeanElements& elements);
+
+/// What `dmise catalogue info FILE` says.
+struct CatalogueReport {
+  std::string source;
+  CatalogueFormat format = CatalogueFormat::tle;
+  std::size_t records = 0;
+  std::size_t objects = 0;
+  std::size_t refused = 0;
+  std::size_t superseded = 0;
+  std::size_t warnings = 0;
+  std::size_t deep_space = 0;     // period >= 225 min: SDP4
+  std::size_t stale = 0;          // at `at`
+  std::size_t by_regime[5] = {};  // indexed by OrbitRegime
+  std::optional<Utc> oldest_epoch, newest_epoch;
+  Utc at;                                                   // what ages are counted to
+  double lowest_perigee_km = 0.0, highest_apogee_km = 0.0;  // above 6378.135 km
+  double greatest_eccentricity = 0.0;
+  std::vector<std::string> problems;  // `file:line: reason`, refused first, then warnings
+};
+
+/// `at` counts ages; without it the newest epoch of the file does.
+CatalogueReport report_of(const CatalogueFile& file, const std::optional<Utc>& at = std::nullopt);
+
+/// The report as lines of text, with the first `problems` of its problems and the number of the
+/// rest.
+std::string format(const CatalogueReport& report, std::size_t problems = 10);
+
+}  // namespace dmise

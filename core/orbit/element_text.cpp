@@ -1,0 +1,135 @@
+#include "core/orbit/element_text.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+#include "core/orbit/epoch.h"
+#include "core/orbit/tle.h"
+
+namespace dmise {
+
+namespace {
+
+constexpr double rev_per_day = 1440.0 / (2.0 * pi);  // in one rad/min
+
+/// printf into a string; what is written here is far below its room.
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[200];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+std::string alpha5(std::uint32_t number) {
+  if (number < 100000) return format("%5u", number);
+  if (number > 339999)
+    throw Error("catalogue number does not fit a TLE, got " + std::to_string(number));
+  const char* letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
+  return format("%c%04u", letters[number / 10000 - 10], number % 10000);
+}
+
+/// " 12345-3": five digits after an assumed point and a power of ten.
+std::string exponent_field(double value) {
+  if (value == 0) return " 00000-0";
+  int power = static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
+  long digits = std::lround(std::abs(value) * std::pow(10.0, 5 - power));
+  if (digits >= 100000) {
+    digits /= 10;
+    ++power;
+  }
+  if (power < -9) return " 00000-0";
+  if (power > 9) throw Error("value does not fit a TLE, got " + std::to_string(value));
+  return format("%c%05ld%c%d", value < 0 ? '-' : ' ', digits, power < 0 ? '-' : '+',
+                std::abs(power));
+}
+
+/// Year and day of the year of a midnight.
+struct Ordinal {
+  int year, day;
+};
+Ordinal ordinal_of(double midnight_jd) {
+  int year = static_cast<int>(std::floor((midnight_jd - 1721425.5) / 365.2425)) + 1;
+  while (julian_midnight(year, 1) > midnight_jd) --year;
+  while (julian_midnight(year + 1, 1) <= midnight_jd) ++year;
+  return {year, static_cast<int>(midnight_jd - julian_midnight(year, 1)) + 1};
+}
+
+std::string epoch_field(const MeanElements& e) {
+  long fraction = std::lround(e.epoch_jd2 * 1e8);
+  const double midnight = e.epoch_jd1 + (fraction >= 100000000 ? 1 : 0);
+  fraction %= 100000000;
+  const Ordinal date = ordinal_of(midnight);
+  if (date.year < 1957 || date.year > 2056)
+    throw Error("epoch does not fit a TLE, got year " + std::to_string(date.year));
+  return format("%02d%03d.%08ld", date.year % 100, date.day, fraction);
+}
+
+std::string with_checksum(const std::string& line) {
+  return line + static_cast<char>('0' + tle_checksum(line));
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? "\"\"" : std::string(1, c);
+  return result + "\"";
+}
+
+/// "98067A" as an OMM writes it.
+std::string omm_designator(const std::string& id) {
+  const auto digit = [&](std::size_t i) { return id[i] >= '0' && id[i] <= '9'; };
+  if (id.size() < 6 || !digit(0) || !digit(1) || !digit(2)) return id;
+  return std::to_string(full_year((id[0] - '0') * 10 + id[1] - '0')) + "-" + id.substr(2);
+}
+
+}  // namespace
+
+std::string format_tle(const MeanElements& e) {
+  const double dot = e.mean_motion_dot_rad_per_min2 * (rev_per_day * 1440.0);
+  const double ddot = e.mean_motion_ddot_rad_per_min3 * (rev_per_day * 1440.0 * 1440.0);
+  const std::string dot_text = format("%.8f", std::abs(dot));  // "0.00000184": the zero goes
+  const std::string line1 = "1 " + alpha5(e.catalogue_number) + e.classification + " " +
+                            format("%-8.8s ", e.designator.c_str()) + epoch_field(e) +
+                            (dot < 0 ? " -" : "  ") + dot_text.substr(dot_text.find('.')) + " " +
+                            exponent_field(ddot) + " " + exponent_field(e.bstar_per_earth_radius) +
+                            format(" %d %4d", e.ephemeris_type % 10, e.element_number % 10000);
+  const std::string line2 =
+      "2 " + alpha5(e.catalogue_number) +
+      format(" %8.4f %8.4f %07ld", e.inclination_rad / deg, e.raan_rad / deg,
+             std::min(9999999L, std::lround(e.eccentricity * 1e7))) +
+      format(" %8.4f %8.4f %11.8f%5d", e.argument_of_perigee_rad / deg, e.mean_anomaly_rad / deg,
+             e.mean_motion_rad_per_min * rev_per_day, e.revolution % 100000);
+  return with_checksum(line1) + "\n" + with_checksum(line2) + "\n";
+}
+
+std::string format_3le(std::span<const MeanElements> catalogue) {
+  std::string text;
+  text.reserve(catalogue.size() * 165);
+  for (const MeanElements& e : catalogue) text += "0 " + e.name + "\n" + format_tle(e);
+  return text;
+}
+
+std::string format_omm_csv(std::span<const MeanElements> catalogue) {
+  std::string text =
+      "OBJECT_NAME,OBJECT_ID,EPOCH,MEAN_MOTION,ECCENTRICITY,INCLINATION,RA_OF_ASC_NODE,"
+      "ARG_OF_PERICENTER,MEAN_ANOMALY,EPHEMERIS_TYPE,CLASSIFICATION_TYPE,NORAD_CAT_ID,"
+      "ELEMENT_SET_NO,REV_AT_EPOCH,BSTAR,MEAN_MOTION_DOT,MEAN_MOTION_DDOT\n";
+  text.reserve(catalogue.size() * 180);
+  for (const MeanElements& e : catalogue) {
+    text += quoted(e.name) + "," + omm_designator(e.designator) + ",";
+    text += format_iso_epoch({e.epoch_jd1, e.epoch_jd2}, 6);
+    text += format(",%.8f,%.8f,%.4f,%.4f", e.mean_motion_rad_per_min * rev_per_day, e.eccentricity,
+                   e.inclination_rad / deg, e.raan_rad / deg);
+    text += format(",%.4f,%.4f,%d,%c", e.argument_of_perigee_rad / deg, e.mean_anomaly_rad / deg,
+                   e.ephemeris_type, e.classification);
+    text += format(",%u,%d,%d", e.catalogue_number, e.element_number, e.revolution);
+    text += format(",%.8g,%.8g,%.8g\n", e.bstar_per_earth_radius,
+                   e.mean_motion_dot_rad_per_min2 * (rev_per_day * 1440.0),
+                   e.mean_motion_ddot_rad_per_min3 * (rev_per_day * 1440.0 * 1440.0));
+  }
+  return text;
+}
+
+}  // namespace dmise
