@@ -1,0 +1,31 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "core/base/parallel.h"
+#include "core/orbit/interpolation.h"
+#include "core/orbit/sgp4_batch.h"
+#include "core/time/julian_date.h"
+
+namespace dmise {
+
+struct CatalogueInterpolationOptions {
+  HermiteOrder order = HermiteOrder::cubic;
+  double tick_s = 10.0;
+  int intervals = 4;  // whole ticks, one after another
+  int samples = 8;    // equidistant inner points of each
+};
+
+/// What interpolation between ticks costs each object of a catalogue, against propagating it.
+struct CatalogueInterpolationError {
+  std::vector<double> max_m;       // greatest distance found; 0 where there is a code
+  std::vector<std::uint8_t> code;  // of the first time at which SGP4 had no state, else 0
+};
+
+/// Measures it from `start` on, in TEME, with slopes that are symmetric differences of the
+/// positions.
+CatalogueInterpolationError measure_catalogue_interpolation(
+    const Sgp4Batch& batch, const Utc& start, const CatalogueInterpolationOptions& options,
+    Threads* threads = nullptr);
+
+}  // namespace dmise
