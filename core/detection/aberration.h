@@ -3,6 +3,11 @@
 
 namespace dmise {
 
+/// Direction in which an observer moving at `velocity_m_per_s` sees light that comes from the unit
+/// direction `from`: exact Lorentz transformation, without the Sun's potential (0.4 uas). With the
+/// velocity's sign changed it is its own inverse. Source: Klioner 2003, AJ 125, 1580, section 5.
+Vec<Gcrs> aberrated(const Vec<Gcrs>& from, const Vec<Gcrs>& velocity_m_per_s);
+
 /// Puts right the direction of an Earth satellite that was read off the stars. Catalogue places of
 /// stars map to pixels with the aberration of the observer's whole barycentric velocity V + v (V of
 /// the Earth, v of the sensor about it); the satellite shares V, so its light carries only that of
