@@ -141,7 +141,7 @@ struct Periodic {
 DMISE_INLINE Periodic body_periodics(const BodyTerms<Lanes>& b, int first, Pack t, double rate,
                                      double eccentricity) {
   const Pack mean = madd(t, rate, at(b.phase, first));
-  const SinCos f = coarse_sin_cos(madd(coarse_sin(mean), 2.0 * eccentricity, mean));
+  const SinCos f = sin_cos(madd(sin_cos(mean).sin, 2.0 * eccentricity, mean));
   const Pack half = f.sin * 0.5;
   const Pack f2 = madd(half, f.sin, -0.25);
   const Pack f3 = Pack(0.0) - half * f.cos;

@@ -51,7 +51,7 @@ DMISE_INLINE SinCos sin_cos(Pack x) {
   return {negate_odd(s, q.odd), negate_odd(c, q.odd)};
 }
 
-/// error 1.8e-11 and 1.2e-12: for arguments of small corrections.
+/// error 1.8e-11: for small corrections.
 DMISE_INLINE Pack coarse_sin(Pack x) {
   const Pack shifted = madd(x, inv_pi, round_magic);
   const Pack r = nmadd(shifted - round_magic, 3.141592653589793116, x);
@@ -63,21 +63,6 @@ DMISE_INLINE Pack coarse_sin(Pack x) {
   return negate_odd(madd(s * t, r, r), shifted);
 }
 DMISE_INLINE Pack coarse_cos(Pack x) { return coarse_sin(x + 1.5707963267948966); }
-DMISE_INLINE SinCos coarse_sin_cos(Pack x) {
-  const Pack shifted = madd(x, inv_pi, round_magic);
-  const Pack r = nmadd(shifted - round_magic, 3.141592653589793116, x);
-  const Pack t = r * r;
-  Pack s = madd(t, -2.3846693322029734e-8, 2.75226188374002912e-6);
-  Pack c = madd(t, 1.99749545916496119e-9, -2.75298708463283961e-7);
-  s = madd(s, t, -1.98408040395515355e-4);
-  c = madd(c, t, 2.48011917524850002e-5);
-  s = madd(s, t, 8.33333049568303221e-3);
-  c = madd(c, t, -1.38888862404785406e-3);
-  s = madd(s, t, -1.66666666064676477e-1);
-  c = madd(c, t, 4.16666666024691372e-2);
-  c = madd(c, t, -0.5);
-  return {negate_odd(madd(s * t, r, r), shifted), negate_odd(madd(c, t, 1.0), shifted)};
-}
 
 /// error 1e-16 for |x| <= 1/16.
 constexpr double small_angle = 1.0 / 16.0;

@@ -62,6 +62,7 @@ TEST_P(Sgp4Verification, PublishedStatesToTheirPrintedDigits) {
       continue;
     }
     EXPECT_EQ(s.code, Sgp4Code::ok) << line;
+    if (distance_km(s, r) > 1e-6) printf("%u %g %g\n", elements[object].catalogue_number, t, distance_km(s, r));
     worst_km = std::max(worst_km, distance_km(s, r));
     worst_km_s = std::max(worst_km_s, speed_km_s(s, v));
   }
