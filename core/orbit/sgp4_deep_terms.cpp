@@ -95,7 +95,7 @@ BodyRates body_terms(const Body& b, const MeanElements& el, double n, double sin
 }
 
 double polynomial(double x, double c0, double c1, double c2, double c3) {
-  return c0 + c1 * x + c2 * x * x + c3 * x * x * x;
+  return c0 + c1 * x + c2 * (x * x) + c3 * (x * (x * x));
 }
 
 void half_day_terms(double e, double n, double a_inv, double sin_i, double cos_i,

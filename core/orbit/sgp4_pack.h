@@ -14,145 +14,187 @@ namespace {
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 
-constexpr int pack_lanes = 8;
+constexpr int one_lanes = 8;
 constexpr bool fused = true;
 
-struct Mask {
+struct OneMask {
   __mmask8 m;
 };
-DMISE_INLINE Mask operator&(Mask a, Mask b) { return {__mmask8(a.m & b.m)}; }
-DMISE_INLINE Mask operator|(Mask a, Mask b) { return {__mmask8(a.m | b.m)}; }
-DMISE_INLINE Mask operator~(Mask a) { return {__mmask8(~a.m)}; }
-DMISE_INLINE unsigned bits(Mask a) { return a.m; }
+DMISE_INLINE OneMask operator&(OneMask a, OneMask b) { return {__mmask8(a.m & b.m)}; }
+DMISE_INLINE OneMask operator|(OneMask a, OneMask b) { return {__mmask8(a.m | b.m)}; }
+DMISE_INLINE OneMask operator~(OneMask a) { return {__mmask8(~a.m)}; }
+DMISE_INLINE unsigned bits(OneMask a) { return a.m; }
 
-struct Pack {
+struct One {
   __m512d v;
-  Pack() = default;
-  DMISE_INLINE Pack(__m512d x) : v(x) {}
-  DMISE_INLINE Pack(double x) : v(_mm512_set1_pd(x)) {}
+  One() = default;
+  DMISE_INLINE One(__m512d x) : v(x) {}
+  DMISE_INLINE One(double x) : v(_mm512_set1_pd(x)) {}
 };
-DMISE_INLINE Pack load(const double* p) { return _mm512_load_pd(p); }
-DMISE_INLINE void store(double* p, Pack a) { _mm512_store_pd(p, a.v); }
-DMISE_INLINE Pack operator+(Pack a, Pack b) { return _mm512_add_pd(a.v, b.v); }
-DMISE_INLINE Pack operator-(Pack a, Pack b) { return _mm512_sub_pd(a.v, b.v); }
-DMISE_INLINE Pack operator*(Pack a, Pack b) { return _mm512_mul_pd(a.v, b.v); }
-DMISE_INLINE Pack operator/(Pack a, Pack b) { return _mm512_div_pd(a.v, b.v); }
-DMISE_INLINE Pack madd(Pack a, Pack b, Pack c) { return _mm512_fmadd_pd(a.v, b.v, c.v); }
-DMISE_INLINE Pack nmadd(Pack a, Pack b, Pack c) { return _mm512_fnmadd_pd(a.v, b.v, c.v); }
-DMISE_INLINE Pack sqrt(Pack a) { return _mm512_sqrt_pd(a.v); }
-DMISE_INLINE Pack max(Pack a, Pack b) { return _mm512_max_pd(a.v, b.v); }
-DMISE_INLINE Pack abs(Pack a) { return _mm512_abs_pd(a.v); }
-DMISE_INLINE Mask operator<(Pack a, Pack b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LT_OQ)}; }
-DMISE_INLINE Mask operator<=(Pack a, Pack b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LE_OQ)}; }
-DMISE_INLINE Mask operator==(Pack a, Pack b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_EQ_OQ)}; }
-DMISE_INLINE Pack select(Mask m, Pack yes, Pack no) {
+DMISE_INLINE One load_one(const double* p) { return _mm512_load_pd(p); }
+DMISE_INLINE void store(double* p, One a) { _mm512_store_pd(p, a.v); }
+DMISE_INLINE One operator+(One a, One b) { return _mm512_add_pd(a.v, b.v); }
+DMISE_INLINE One operator-(One a, One b) { return _mm512_sub_pd(a.v, b.v); }
+DMISE_INLINE One operator*(One a, One b) { return _mm512_mul_pd(a.v, b.v); }
+DMISE_INLINE One operator/(One a, One b) { return _mm512_div_pd(a.v, b.v); }
+DMISE_INLINE One madd(One a, One b, One c) { return _mm512_fmadd_pd(a.v, b.v, c.v); }
+DMISE_INLINE One nmadd(One a, One b, One c) { return _mm512_fnmadd_pd(a.v, b.v, c.v); }
+DMISE_INLINE One sqrt(One a) { return _mm512_sqrt_pd(a.v); }
+DMISE_INLINE One max(One a, One b) { return _mm512_max_pd(a.v, b.v); }
+DMISE_INLINE One abs(One a) { return _mm512_abs_pd(a.v); }
+DMISE_INLINE OneMask operator<(One a, One b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LT_OQ)}; }
+DMISE_INLINE OneMask operator<=(One a, One b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LE_OQ)}; }
+DMISE_INLINE OneMask operator==(One a, One b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_EQ_OQ)}; }
+DMISE_INLINE One select(OneMask m, One yes, One no) {
   return _mm512_mask_blend_pd(m.m, no.v, yes.v);
 }
-DMISE_INLINE Pack copy_sign(Pack magnitude, Pack sign) {
+DMISE_INLINE One copy_sign(One magnitude, One sign) {
   const __m512d s = _mm512_set1_pd(-0.0);
   return _mm512_or_pd(_mm512_andnot_pd(s, magnitude.v), _mm512_and_pd(s, sign.v));
 }
 /// -x where the lowest bit of `odd` is set.
-DMISE_INLINE Pack negate_odd(Pack x, Pack odd) {
+DMISE_INLINE One negate_odd(One x, One odd) {
   return _mm512_castsi512_pd(_mm512_xor_si512(
       _mm512_castpd_si512(x.v), _mm512_slli_epi64(_mm512_castpd_si512(odd.v), 63)));
 }
 
 #elif defined(__AVX2__) && defined(__FMA__)
 
-constexpr int pack_lanes = 4;
+constexpr int one_lanes = 4;
 constexpr bool fused = true;
 
-struct Mask {
+struct OneMask {
   __m256d m;
 };
-DMISE_INLINE Mask operator&(Mask a, Mask b) { return {_mm256_and_pd(a.m, b.m)}; }
-DMISE_INLINE Mask operator|(Mask a, Mask b) { return {_mm256_or_pd(a.m, b.m)}; }
-DMISE_INLINE Mask operator~(Mask a) {
+DMISE_INLINE OneMask operator&(OneMask a, OneMask b) { return {_mm256_and_pd(a.m, b.m)}; }
+DMISE_INLINE OneMask operator|(OneMask a, OneMask b) { return {_mm256_or_pd(a.m, b.m)}; }
+DMISE_INLINE OneMask operator~(OneMask a) {
   return {_mm256_xor_pd(a.m, _mm256_castsi256_pd(_mm256_set1_epi64x(-1)))};
 }
-DMISE_INLINE unsigned bits(Mask a) { return unsigned(_mm256_movemask_pd(a.m)); }
+DMISE_INLINE unsigned bits(OneMask a) { return unsigned(_mm256_movemask_pd(a.m)); }
 
-struct Pack {
+struct One {
   __m256d v;
-  Pack() = default;
-  DMISE_INLINE Pack(__m256d x) : v(x) {}
-  DMISE_INLINE Pack(double x) : v(_mm256_set1_pd(x)) {}
+  One() = default;
+  DMISE_INLINE One(__m256d x) : v(x) {}
+  DMISE_INLINE One(double x) : v(_mm256_set1_pd(x)) {}
 };
-DMISE_INLINE Pack load(const double* p) { return _mm256_load_pd(p); }
-DMISE_INLINE void store(double* p, Pack a) { _mm256_store_pd(p, a.v); }
-DMISE_INLINE Pack operator+(Pack a, Pack b) { return _mm256_add_pd(a.v, b.v); }
-DMISE_INLINE Pack operator-(Pack a, Pack b) { return _mm256_sub_pd(a.v, b.v); }
-DMISE_INLINE Pack operator*(Pack a, Pack b) { return _mm256_mul_pd(a.v, b.v); }
-DMISE_INLINE Pack operator/(Pack a, Pack b) { return _mm256_div_pd(a.v, b.v); }
-DMISE_INLINE Pack madd(Pack a, Pack b, Pack c) { return _mm256_fmadd_pd(a.v, b.v, c.v); }
-DMISE_INLINE Pack nmadd(Pack a, Pack b, Pack c) { return _mm256_fnmadd_pd(a.v, b.v, c.v); }
-DMISE_INLINE Pack sqrt(Pack a) { return _mm256_sqrt_pd(a.v); }
-DMISE_INLINE Pack max(Pack a, Pack b) { return _mm256_max_pd(a.v, b.v); }
-DMISE_INLINE Pack abs(Pack a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v); }
-DMISE_INLINE Mask operator<(Pack a, Pack b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_LT_OQ)}; }
-DMISE_INLINE Mask operator<=(Pack a, Pack b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_LE_OQ)}; }
-DMISE_INLINE Mask operator==(Pack a, Pack b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_EQ_OQ)}; }
-DMISE_INLINE Pack select(Mask m, Pack yes, Pack no) { return _mm256_blendv_pd(no.v, yes.v, m.m); }
-DMISE_INLINE Pack copy_sign(Pack magnitude, Pack sign) {
+DMISE_INLINE One load_one(const double* p) { return _mm256_load_pd(p); }
+DMISE_INLINE void store(double* p, One a) { _mm256_store_pd(p, a.v); }
+DMISE_INLINE One operator+(One a, One b) { return _mm256_add_pd(a.v, b.v); }
+DMISE_INLINE One operator-(One a, One b) { return _mm256_sub_pd(a.v, b.v); }
+DMISE_INLINE One operator*(One a, One b) { return _mm256_mul_pd(a.v, b.v); }
+DMISE_INLINE One operator/(One a, One b) { return _mm256_div_pd(a.v, b.v); }
+DMISE_INLINE One madd(One a, One b, One c) { return _mm256_fmadd_pd(a.v, b.v, c.v); }
+DMISE_INLINE One nmadd(One a, One b, One c) { return _mm256_fnmadd_pd(a.v, b.v, c.v); }
+DMISE_INLINE One sqrt(One a) { return _mm256_sqrt_pd(a.v); }
+DMISE_INLINE One max(One a, One b) { return _mm256_max_pd(a.v, b.v); }
+DMISE_INLINE One abs(One a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v); }
+DMISE_INLINE OneMask operator<(One a, One b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_LT_OQ)}; }
+DMISE_INLINE OneMask operator<=(One a, One b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_LE_OQ)}; }
+DMISE_INLINE OneMask operator==(One a, One b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_EQ_OQ)}; }
+DMISE_INLINE One select(OneMask m, One yes, One no) { return _mm256_blendv_pd(no.v, yes.v, m.m); }
+DMISE_INLINE One copy_sign(One magnitude, One sign) {
   const __m256d s = _mm256_set1_pd(-0.0);
   return _mm256_or_pd(_mm256_andnot_pd(s, magnitude.v), _mm256_and_pd(s, sign.v));
 }
-DMISE_INLINE Pack negate_odd(Pack x, Pack odd) {
+DMISE_INLINE One negate_odd(One x, One odd) {
   return _mm256_xor_pd(
       x.v, _mm256_castsi256_pd(_mm256_slli_epi64(_mm256_castpd_si256(odd.v), 63)));
 }
 
 #else
 
-constexpr int pack_lanes = 2;
+constexpr int one_lanes = 2;
 constexpr bool fused = false;
 
-struct Mask {
+struct OneMask {
   __m128d m;
 };
-DMISE_INLINE Mask operator&(Mask a, Mask b) { return {_mm_and_pd(a.m, b.m)}; }
-DMISE_INLINE Mask operator|(Mask a, Mask b) { return {_mm_or_pd(a.m, b.m)}; }
-DMISE_INLINE Mask operator~(Mask a) {
+DMISE_INLINE OneMask operator&(OneMask a, OneMask b) { return {_mm_and_pd(a.m, b.m)}; }
+DMISE_INLINE OneMask operator|(OneMask a, OneMask b) { return {_mm_or_pd(a.m, b.m)}; }
+DMISE_INLINE OneMask operator~(OneMask a) {
   return {_mm_xor_pd(a.m, _mm_castsi128_pd(_mm_set1_epi64x(-1)))};
 }
-DMISE_INLINE unsigned bits(Mask a) { return unsigned(_mm_movemask_pd(a.m)); }
+DMISE_INLINE unsigned bits(OneMask a) { return unsigned(_mm_movemask_pd(a.m)); }
 
-struct Pack {
+struct One {
   __m128d v;
-  Pack() = default;
-  DMISE_INLINE Pack(__m128d x) : v(x) {}
-  DMISE_INLINE Pack(double x) : v(_mm_set1_pd(x)) {}
+  One() = default;
+  DMISE_INLINE One(__m128d x) : v(x) {}
+  DMISE_INLINE One(double x) : v(_mm_set1_pd(x)) {}
 };
-DMISE_INLINE Pack load(const double* p) { return _mm_load_pd(p); }
-DMISE_INLINE void store(double* p, Pack a) { _mm_store_pd(p, a.v); }
-DMISE_INLINE Pack operator+(Pack a, Pack b) { return _mm_add_pd(a.v, b.v); }
-DMISE_INLINE Pack operator-(Pack a, Pack b) { return _mm_sub_pd(a.v, b.v); }
-DMISE_INLINE Pack operator*(Pack a, Pack b) { return _mm_mul_pd(a.v, b.v); }
-DMISE_INLINE Pack operator/(Pack a, Pack b) { return _mm_div_pd(a.v, b.v); }
-DMISE_INLINE Pack madd(Pack a, Pack b, Pack c) { return a * b + c; }
-DMISE_INLINE Pack nmadd(Pack a, Pack b, Pack c) { return c - a * b; }
-DMISE_INLINE Pack sqrt(Pack a) { return _mm_sqrt_pd(a.v); }
-DMISE_INLINE Pack max(Pack a, Pack b) { return _mm_max_pd(a.v, b.v); }
-DMISE_INLINE Pack abs(Pack a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a.v); }
-DMISE_INLINE Mask operator<(Pack a, Pack b) { return {_mm_cmplt_pd(a.v, b.v)}; }
-DMISE_INLINE Mask operator<=(Pack a, Pack b) { return {_mm_cmple_pd(a.v, b.v)}; }
-DMISE_INLINE Mask operator==(Pack a, Pack b) { return {_mm_cmpeq_pd(a.v, b.v)}; }
-DMISE_INLINE Pack select(Mask m, Pack yes, Pack no) {
+DMISE_INLINE One load_one(const double* p) { return _mm_load_pd(p); }
+DMISE_INLINE void store(double* p, One a) { _mm_store_pd(p, a.v); }
+DMISE_INLINE One operator+(One a, One b) { return _mm_add_pd(a.v, b.v); }
+DMISE_INLINE One operator-(One a, One b) { return _mm_sub_pd(a.v, b.v); }
+DMISE_INLINE One operator*(One a, One b) { return _mm_mul_pd(a.v, b.v); }
+DMISE_INLINE One operator/(One a, One b) { return _mm_div_pd(a.v, b.v); }
+DMISE_INLINE One madd(One a, One b, One c) { return a * b + c; }
+DMISE_INLINE One nmadd(One a, One b, One c) { return c - a * b; }
+DMISE_INLINE One sqrt(One a) { return _mm_sqrt_pd(a.v); }
+DMISE_INLINE One max(One a, One b) { return _mm_max_pd(a.v, b.v); }
+DMISE_INLINE One abs(One a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a.v); }
+DMISE_INLINE OneMask operator<(One a, One b) { return {_mm_cmplt_pd(a.v, b.v)}; }
+DMISE_INLINE OneMask operator<=(One a, One b) { return {_mm_cmple_pd(a.v, b.v)}; }
+DMISE_INLINE OneMask operator==(One a, One b) { return {_mm_cmpeq_pd(a.v, b.v)}; }
+DMISE_INLINE One select(OneMask m, One yes, One no) {
   return _mm_or_pd(_mm_and_pd(m.m, yes.v), _mm_andnot_pd(m.m, no.v));
 }
-DMISE_INLINE Pack copy_sign(Pack magnitude, Pack sign) {
+DMISE_INLINE One copy_sign(One magnitude, One sign) {
   const __m128d s = _mm_set1_pd(-0.0);
   return _mm_or_pd(_mm_andnot_pd(s, magnitude.v), _mm_and_pd(s, sign.v));
 }
-DMISE_INLINE Pack negate_odd(Pack x, Pack odd) {
+DMISE_INLINE One negate_odd(One x, One odd) {
   return _mm_xor_pd(x.v, _mm_castsi128_pd(_mm_slli_epi64(_mm_castpd_si128(odd.v), 63)));
 }
 
 #endif
 
+// Two of them in step: one alone waits for its own results most of the time.
+struct Mask {
+  OneMask a, b;
+};
+DMISE_INLINE Mask operator&(Mask x, Mask y) { return {x.a & y.a, x.b & y.b}; }
+DMISE_INLINE Mask operator|(Mask x, Mask y) { return {x.a | y.a, x.b | y.b}; }
+DMISE_INLINE Mask operator~(Mask x) { return {~x.a, ~x.b}; }
+DMISE_INLINE unsigned bits(Mask x) { return bits(x.a) | bits(x.b) << one_lanes; }
+DMISE_INLINE bool any(Mask x) { return bits(x.a | x.b) != 0; }
+
+constexpr int pack_lanes = 2 * one_lanes;
 constexpr unsigned all_lanes = (1u << pack_lanes) - 1u;
-DMISE_INLINE bool any(Mask m) { return bits(m) != 0; }
+
+struct Pack {
+  One a, b;
+  Pack() = default;
+  DMISE_INLINE Pack(One x, One y) : a(x), b(y) {}
+  DMISE_INLINE Pack(double x) : a(x), b(x) {}
+};
+DMISE_INLINE Pack load(const double* p) { return {load_one(p), load_one(p + one_lanes)}; }
+DMISE_INLINE void store(double* p, Pack x) { store(p, x.a), store(p + one_lanes, x.b); }
+DMISE_INLINE Pack operator+(Pack x, Pack y) { return {x.a + y.a, x.b + y.b}; }
+DMISE_INLINE Pack operator-(Pack x, Pack y) { return {x.a - y.a, x.b - y.b}; }
+DMISE_INLINE Pack operator*(Pack x, Pack y) { return {x.a * y.a, x.b * y.b}; }
+DMISE_INLINE Pack operator/(Pack x, Pack y) { return {x.a / y.a, x.b / y.b}; }
+DMISE_INLINE Pack madd(Pack x, Pack y, Pack z) { return {madd(x.a, y.a, z.a), madd(x.b, y.b, z.b)}; }
+DMISE_INLINE Pack nmadd(Pack x, Pack y, Pack z) {
+  return {nmadd(x.a, y.a, z.a), nmadd(x.b, y.b, z.b)};
+}
+DMISE_INLINE Pack sqrt(Pack x) { return {sqrt(x.a), sqrt(x.b)}; }
+DMISE_INLINE Pack max(Pack x, Pack y) { return {max(x.a, y.a), max(x.b, y.b)}; }
+DMISE_INLINE Pack abs(Pack x) { return {abs(x.a), abs(x.b)}; }
+DMISE_INLINE Mask operator<(Pack x, Pack y) { return {x.a < y.a, x.b < y.b}; }
+DMISE_INLINE Mask operator<=(Pack x, Pack y) { return {x.a <= y.a, x.b <= y.b}; }
+DMISE_INLINE Mask operator==(Pack x, Pack y) { return {x.a == y.a, x.b == y.b}; }
+DMISE_INLINE Pack select(Mask m, Pack yes, Pack no) {
+  return {select(m.a, yes.a, no.a), select(m.b, yes.b, no.b)};
+}
+DMISE_INLINE Pack copy_sign(Pack x, Pack sign) {
+  return {copy_sign(x.a, sign.a), copy_sign(x.b, sign.b)};
+}
+DMISE_INLINE Pack negate_odd(Pack x, Pack odd) {
+  return {negate_odd(x.a, odd.a), negate_odd(x.b, odd.b)};
+}
 
 }  // namespace
 }  // namespace dmise::sgp4

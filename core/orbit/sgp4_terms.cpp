@@ -3,12 +3,14 @@
 #include <cmath>
 
 // Equations: Hoots & Roehrich, Spacetrack Report 3 (1980), as revised by Vallado, Crawford, Hujsak &
-// Kelso, AIAA 2006-6753.
+// Kelso, AIAA 2006-6753. Products and sums are taken in the paper's order: the longitude of an object
+// that the atmosphere brakes hard is quadratic in time with a factor of 1e4 and more, so that the last
+// bit of a term is 1e-7 km after a week.
 namespace dmise::sgp4 {
 namespace {
 
 double cube(double x) { return x * x * x; }
-double fourth(double x) { return (x * x) * (x * x); }
+double fourth(double x) { return x * x * x * x; }
 
 /// Greenwich mean sidereal time, IAU 1982 [rad, 0..2 pi), as AIAA 2006-6753 evaluates it. The
 /// published implementation rounds the epoch to one double here (up to 20 us, 1.5e-9 rad, felt only
@@ -43,13 +45,13 @@ Model initialise(const MeanElements& el) {
   const double sin_i = std::sin(el.inclination_rad);
   const double cos2_i = cos_i * cos_i;
   const double cos4_i = cos2_i * cos2_i;
-  const double con41 = 3.0 * cos2_i - 1.0;
   const double con42 = 1.0 - 5.0 * cos2_i;
+  const double con41 = -con42 - cos2_i - cos2_i;
   const double x1mth2 = 1.0 - cos2_i;
 
   // Kozai's mean motion to Brouwer's.
   const double kozai_a = std::pow(xke / el.mean_motion_rad_per_min, 2.0 / 3.0);
-  const double d1 = 0.75 * j2 * con41 / (beta * beta2);
+  const double d1 = 0.75 * j2 * (3.0 * cos2_i - 1.0) / (beta * beta2);
   double del = d1 / (kozai_a * kozai_a);
   const double a1 =
       kozai_a * (1.0 - del * del - del * (1.0 / 3.0 + 134.0 * del * del / 81.0));
@@ -73,14 +75,15 @@ Model initialise(const MeanElements& el) {
   const double eta2 = eta * eta;
   const double e_eta = e * eta;
   const double psi2 = std::fabs(1.0 - eta2);
-  const double coef = qs4 * fourth(tsi);
+  const double coef = qs4 * std::pow(tsi, 4.0);
   const double coef1 = coef / std::pow(psi2, 3.5);
   const double bstar = el.bstar_per_earth_radius;
   const double cos_argp = std::cos(el.argument_of_perigee_rad);
-  const double c1 =
-      bstar * coef1 * n *
+  const double c2 =
+      coef1 * n *
       (a * (1.0 + 1.5 * eta2 + e_eta * (4.0 + eta2)) +
        0.375 * j2 * tsi / psi2 * con41 * (8.0 + 3.0 * eta2 * (8.0 + eta2)));
+  const double c1 = bstar * c2;
   const bool tiny_e = e <= 1e-4;
   const double c3 = tiny_e ? 0.0 : -2.0 * coef * tsi * j3_over_j2 * n * sin_i / e;
   const double c4 =

@@ -29,7 +29,7 @@ inline constexpr double moon_rate = 1.5835218e-4, moon_eccentricity = 0.05490;
 
 /// Objects side by side in one block of terms: the lanes of AVX-512; narrower machines take it in
 /// pieces.
-inline constexpr int block_lanes = 8;
+inline constexpr int block_lanes = 16;
 struct alignas(64) Lanes {
   double lane[block_lanes];
 };
