@@ -230,7 +230,7 @@ DMISE_INLINE States deep_states(const DeepBlock& block, int first, Pack t) {
   }
   m.argp = argp;
   m.longitude = mean_anomaly + argp;
-  m.node = node;
+  m.node = sin_cos(node);
   m.sin_i = inc.sin;
   m.cos_i = inc.cos;
   const Pack one_cos = Pack(1.0) + inc.cos;

@@ -23,7 +23,7 @@ struct Mean {
   Pack e;                   // eccentricity
   Pack argp;                // argument of perigee
   Pack longitude;           // mean anomaly + argument of perigee
-  Pack node;
+  SinCos node;
   Pack sin_i, cos_i;
   Pack long_period;         // coefficient
   Pack a_m, inv_a, inv_sqrt_a;  // semi-major axis [m], [Earth radii^-1], [Earth radii^-1/2]
@@ -44,10 +44,9 @@ struct Anomaly {
   Pack inv_rho;        // 1 / (1 - e cos E)
 };
 
-/// For e below 0.06 or so: three of the reference's evaluations, as turns from `u`. Lanes for which
-/// the reference would go on are in `outside`.
-DMISE_INLINE Anomaly solve_kepler_near_circle(Pack u, Pack ax, Pack ay, Mask& outside) {
-  const SinCos su = sin_cos(u);
+/// For e below 0.06 or so: three of the reference's evaluations, as turns from `u`, given its sine and
+/// cosine. Lanes for which the reference would go on are in `outside`.
+DMISE_INLINE Anomaly solve_kepler_near_circle(SinCos su, Pack ax, Pack ay, Mask& outside) {
   const Pack cos0 = madd(ax, su.cos, ay * su.sin);
   const Pack sin0 = nmadd(ay, su.cos, ax * su.sin);
   const Pack d1 = sin0 / (Pack(1.0) - cos0);
@@ -93,68 +92,77 @@ DMISE_INLINE Anomaly solve_kepler(Pack u, Pack ax, Pack ay) {
   return out;
 }
 
-/// Sine and cosine of a correction that is small except below the Earth's surface.
-DMISE_INLINE SinCos correction_sin_cos(Pack x) {
-  SinCos small = small_sin_cos(x);
-  const Mask large = ~(abs(x) <= small_angle);
+/// `a` turned by a correction: by a tiny one, or by any.
+template <bool Tiny>
+DMISE_INLINE SinCos corrected(SinCos a, Pack by) {
+  if constexpr (Tiny) return turned(a, tiny_sin_cos(by));
+  SinCos turn = small_sin_cos(by);
+  const Mask large = ~(abs(by) <= small_angle);
   if (any(large)) [[unlikely]] {
-    const SinCos full = sin_cos(x);
-    small.sin = select(large, full.sin, small.sin);
-    small.cos = select(large, full.cos, small.cos);
+    const SinCos full = sin_cos(by);
+    turn.sin = select(large, full.sin, turn.sin);
+    turn.cos = select(large, full.cos, turn.cos);
   }
-  return small;
+  return turned(a, turn);
 }
 
 /// Long- and short-period terms and the state. `NearCircle` takes the short cuts that hold for small
-/// eccentricity above the surface and marks in `outside` the lanes for which they don't.
+/// eccentricity above the surface and marks in `outside` the lanes for which they don't. What does not
+/// depend on the anomaly stands before it, to fill the waits of Kepler's iterations.
 template <bool NearCircle>
 DMISE_INLINE States finish(const Mean& m, Mask& outside) {
   // Long-period terms.
   const SinCos argp = sin_cos(m.argp);
+  SinCos longitude;
+  if constexpr (NearCircle) longitude = sin_cos(m.longitude);
   const Pack k = m.inv_a / nmadd(m.e, m.e, 1.0);
   const Pack ax = m.e * argp.cos;
   const Pack ay = madd(m.e, argp.sin, k * (m.sin_i * (-0.5 * j3_over_j2)));
-  const Pack u = madd(k * m.long_period, ax, m.longitude);
+  const Pack long_period = k * m.long_period * ax;
 
-  const Anomaly ea =
-      NearCircle ? solve_kepler_near_circle(u, ax, ay, outside) : solve_kepler(u, ax, ay);
-
-  // Short-period terms.
   const Pack beta2 = nmadd(ay, ay, nmadd(ax, ax, 1.0));
   const Pack beta = sqrt(beta2);
-  const Pack q = ea.e_sin / (Pack(1.0) + beta);
-  const Pack sin_u = ea.inv_rho * (nmadd(ax, q, ea.e.sin) - ay);
-  const Pack cos_u = ea.inv_rho * (madd(ay, q, ea.e.cos) - ax);
-  const Pack two_sin = sin_u + sin_u;
-  const Pack sin_2u = two_sin * cos_u;
-  const Pack cos_2u = nmadd(two_sin, sin_u, 1.0);
   const Pack inv_p = m.inv_a / beta2;
+  const Pack inv_1_beta = Pack(1.0) / (Pack(1.0) + beta);
+
+  Anomaly ea;
+  if constexpr (NearCircle) {
+    ea = solve_kepler_near_circle(corrected<true>(longitude, long_period), ax, ay, outside);
+    outside = outside | ~(abs(long_period) <= tiny_angle);
+  } else {
+    ea = solve_kepler(m.longitude + long_period, ax, ay);
+  }
+
+  // Short-period terms.
+  constexpr double velocity_unit = earth_radius_m * xke / 60.0;
   const Pack k1 = inv_p * (0.5 * j2);
   const Pack k2 = k1 * inv_p;
   const Pack cos2_i = m.cos_i * m.cos_i;
   const Pack con41_15 = madd(cos2_i, 4.5, -1.5);  // 1.5 (3 cos^2 i - 1)
   const Pack sin2_i = Pack(1.0) - cos2_i;
-  const Pack rho = Pack(1.0) - ea.e_cos;
-  const Pack r_m = madd(k1 * (0.5 * earth_radius_m), sin2_i * cos_2u,
-                        m.a_m * rho * nmadd(k2 * beta, con41_15, 1.0));
-  const Pack k2_15 = k2 * 1.5;
-  const Pack d_u = k2 * madd(cos2_i, -1.75, 0.25) * sin_2u;
-  const Pack k2_cos = k2_15 * m.cos_i;
-  const Pack node = madd(k2_cos, sin_2u, m.node);
-  const Pack d_i = k2_cos * m.sin_i * cos_2u;
-  constexpr double velocity_unit = earth_radius_m * xke / 60.0;
+  const Pack k2_cos = k2 * 1.5 * m.cos_i;
   const Pack speed = m.inv_sqrt_a * velocity_unit;
-  const Pack v1 = speed * ea.inv_rho;
   const Pack v2 = speed * m.inv_a * k1;
   const Pack v2_sin2_i = v2 * sin2_i;
+  const Pack r_scale = m.a_m * nmadd(k2 * beta, con41_15, 1.0);
+
+  const Pack q = ea.e_sin * inv_1_beta;
+  const Pack sin_u = ea.inv_rho * (nmadd(ax, q, ea.e.sin) - ay);
+  const Pack cos_u = ea.inv_rho * (madd(ay, q, ea.e.cos) - ax);
+  const Pack two_sin = sin_u + sin_u;
+  const Pack sin_2u = two_sin * cos_u;
+  const Pack cos_2u = nmadd(two_sin, sin_u, 1.0);
+  const Pack r_m = madd(k1 * (0.5 * earth_radius_m) * sin2_i, cos_2u,
+                        nmadd(r_scale, ea.e_cos, r_scale));
+  const Pack v1 = speed * ea.inv_rho;
   const Pack v_radial = nmadd(v2_sin2_i, sin_2u, v1 * ea.e_sin);
   const Pack v_along = madd(v2_sin2_i, cos_2u, madd(v2, con41_15, v1 * beta));
 
   // Orientation.
-  const SinCos su = turned({sin_u, cos_u}, NearCircle ? tiny_sin_cos(d_u) : correction_sin_cos(d_u));
-  const SinCos inc =
-      turned({m.sin_i, m.cos_i}, NearCircle ? tiny_sin_cos(d_i) : correction_sin_cos(d_i));
-  const SinCos nod = sin_cos(node);
+  const SinCos su =
+      corrected<NearCircle>({sin_u, cos_u}, k2 * madd(cos2_i, -1.75, 0.25) * sin_2u);
+  const SinCos inc = corrected<NearCircle>({m.sin_i, m.cos_i}, k2_cos * m.sin_i * cos_2u);
+  const SinCos nod = corrected<NearCircle>(m.node, k2_cos * sin_2u);
   const Pack px = r_m * su.cos, py = r_m * su.sin;
   const Pack wx = nmadd(v_along, su.sin, v_radial * su.cos);
   const Pack wy = madd(v_along, su.cos, v_radial * su.sin);
@@ -167,7 +175,7 @@ DMISE_INLINE States finish(const Mean& m, Mask& outside) {
   out.vy = madd(qy, wy, nod.sin * wx);
   out.vz = inc.sin * wy;
 
-  if constexpr (NearCircle) outside = outside | ~(k2 <= 7e-4);
+  if constexpr (NearCircle) outside = outside | ~(k2 <= tiny_angle / 1.5);
   // Only a lane whose radius is an ordinary number between these is good; not a number is not.
   const Mask in_range = (Pack(earth_radius_m) <= r_m) & (r_m <= m.farthest_m);
   out.bad = m.code1 | m.code2 | m.code3 | ~in_range;
@@ -219,6 +227,9 @@ DMISE_INLINE States near_states(const NearTerms<Lanes>& b, int first, Pack t, bo
   const Pack m0 = madd(at(s.m_dot, first), t, at(s.m, first));
   const Pack argp0 = madd(at(s.argp_dot, first), t, at(s.argp, first));
 
+  Mean m;
+  m.node = sin_cos(
+      madd(at(s.node_t2, first), t2, madd(at(s.node_dot, first), t, at(s.node, first))));
   const Pack c = madd(at(b.eta, first), coarse_cos(m0), 1.0);
   const Pack shift = madd(at(b.m_cubic, first) * c, c * c,
                           madd(at(b.m_linear, first), t, Pack(0.0) - at(b.m_cubic0, first)));
@@ -233,13 +244,11 @@ DMISE_INLINE States near_states(const NearTerms<Lanes>& b, int first, Pack t, bo
   l = madd(l, t, at(b.l_t3, first));
   l = madd(l, t, at(s.l_t2, first));
 
-  Mean m;
   m.code1 = eccentricity_fails(e);
   m.code2 = m.code3 = Pack(1.0) < 0.0;
   m.e = max(e, 1e-6);
   m.argp = argp0 - shift;
   m.longitude = madd(l, t2, m0 + argp0);
-  m.node = madd(at(s.node_t2, first), t2, madd(at(s.node_dot, first), t, at(s.node, first)));
   m.sin_i = at(b.sin_i, first);
   m.cos_i = at(b.cos_i, first);
   m.long_period = at(b.long_period, first);
@@ -286,13 +295,23 @@ DMISE_INLINE void scatter(const BlockStates& from, const std::uint32_t* index, i
   }
 }
 
+/// Asks for the share of `bytes` at `next` that falls to the pack starting at lane `first`: the
+/// processor's own prefetching stops at the end of each page, about one block.
+DMISE_INLINE void prefetch_part(const void* next, std::size_t bytes, int first) {
+  constexpr std::size_t parts = block_lanes / pack_lanes;
+  const char* p = static_cast<const char*>(next) + std::size_t(first / pack_lanes) * 64;
+  for (std::size_t k = 0; k < bytes; k += 64 * parts) __builtin_prefetch(p + k);
+}
+
 void near_blocks(const NearTerms<Lanes>* blocks, const std::uint32_t* index, std::size_t objects,
                  bool eccentric, double jd1, double jd2, const Output& out) {
   BlockStates states;
   for (std::size_t done = 0; done < objects; done += block_lanes, ++blocks, index += block_lanes) {
-    for (int first = 0; first < block_lanes; first += pack_lanes)
+    for (int first = 0; first < block_lanes; first += pack_lanes) {
+      prefetch_part(blocks + 1, sizeof *blocks, first);
       put(near_states(*blocks, first, minutes(blocks->secular, first, jd1, jd2), eccentric), first,
           states);
+    }
     const std::size_t left = objects - done;
     scatter(states, index, left < block_lanes ? int(left) : block_lanes, out);
   }

@@ -30,24 +30,21 @@ DMISE_INLINE Reduced reduce_pi(Pack x) {
   return {minus_k_pi(x, shifted - round_magic), shifted};
 }
 
+// Polynomials in t are taken as two in t^2: a chain half as long.
+
 /// error 1.1e-16 and 3.0e-15.
 DMISE_INLINE SinCos sin_cos(Pack x) {
   const Reduced q = reduce_pi(x);
   const Pack t = q.r * q.r;
-  Pack s = madd(t, -7.36464584423922492e-13, 1.60473011452671512e-10);
+  const Pack t2 = t * t;
+  Pack s = madd(t2, -7.36464584423922492e-13, madd(t, 1.60473011452671512e-10, -2.50518514953321785e-8));
   Pack c = madd(t, -1.1032571550677335e-11, 2.08605293112427602e-9);
-  s = madd(s, t, -2.50518514953321785e-8);
-  c = madd(c, t, -2.75570141224348093e-7);
-  s = madd(s, t, 2.75573160769817326e-6);
-  c = madd(c, t, 2.48015842743742399e-5);
-  s = madd(s, t, -1.9841269820094026e-4);
-  c = madd(c, t, -1.38888888741385679e-3);
-  s = madd(s, t, 8.3333333332628786e-3);
-  c = madd(c, t, 4.16666666663984576e-2);
-  s = madd(s, t, -1.66666666666658121e-1);
-  c = madd(c, t, -0.5);
-  s = madd(s * t, q.r, q.r);
-  c = madd(c, t, 1.0);
+  s = madd(s, t2, madd(t, 2.75573160769817326e-6, -1.9841269820094026e-4));
+  c = madd(c, t2, madd(t, -2.75570141224348093e-7, 2.48015842743742399e-5));
+  s = madd(s, t2, madd(t, 8.3333333332628786e-3, -1.66666666666658121e-1));
+  c = madd(c, t2, madd(t, -1.38888888741385679e-3, 4.16666666663984576e-2));
+  c = madd(c, t2, madd(t, -0.5, 1.0));
+  s = madd(s, t * q.r, q.r);
   return {negate_odd(s, q.odd), negate_odd(c, q.odd)};
 }
 
@@ -56,11 +53,10 @@ DMISE_INLINE Pack coarse_sin(Pack x) {
   const Pack shifted = madd(x, inv_pi, round_magic);
   const Pack r = nmadd(shifted - round_magic, 3.141592653589793116, x);
   const Pack t = r * r;
-  Pack s = madd(t, -2.3846693322029734e-8, 2.75226188374002912e-6);
-  s = madd(s, t, -1.98408040395515355e-4);
-  s = madd(s, t, 8.33333049568303221e-3);
-  s = madd(s, t, -1.66666666064676477e-1);
-  return negate_odd(madd(s * t, r, r), shifted);
+  const Pack t2 = t * t;
+  Pack s = madd(t2, -2.3846693322029734e-8, madd(t, 2.75226188374002912e-6, -1.98408040395515355e-4));
+  s = madd(s, t2, madd(t, 8.33333049568303221e-3, -1.66666666064676477e-1));
+  return negate_odd(madd(s, t * r, r), shifted);
 }
 DMISE_INLINE Pack coarse_cos(Pack x) { return coarse_sin(x + 1.5707963267948966); }
 
@@ -68,18 +64,18 @@ DMISE_INLINE Pack coarse_cos(Pack x) { return coarse_sin(x + 1.5707963267948966)
 constexpr double small_angle = 1.0 / 16.0;
 DMISE_INLINE SinCos small_sin_cos(Pack x) {
   const Pack t = x * x;
-  Pack s = madd(t, -1.0 / 5040.0, 1.0 / 120.0);
-  Pack c = madd(t, 1.0 / 40320.0, -1.0 / 720.0);
-  s = madd(s, t, -1.0 / 6.0);
-  c = madd(c, t, 1.0 / 24.0);
-  c = madd(c, t, -0.5);
-  return {madd(s * t, x, x), madd(c, t, 1.0)};
+  const Pack t2 = t * t;
+  const Pack s = madd(t2, -1.0 / 5040.0, madd(t, 1.0 / 120.0, -1.0 / 6.0));
+  Pack c = madd(t2, 1.0 / 40320.0, madd(t, -1.0 / 720.0, 1.0 / 24.0));
+  c = madd(c, t2, madd(t, -0.5, 1.0));
+  return {madd(s, t * x, x), c};
 }
 
-/// error 1e-14 for |x| <= 1.1e-3.
+/// error 6e-14 for |x| <= tiny_angle.
+constexpr double tiny_angle = 1.1e-3;
 DMISE_INLINE SinCos tiny_sin_cos(Pack x) {
   const Pack t = x * x;
-  return {madd(t * x, -1.0 / 6.0, x), madd(t, madd(t, 1.0 / 24.0, -0.5), 1.0)};
+  return {madd(t * x, -1.0 / 6.0, x), madd(t, -0.5, 1.0)};
 }
 
 /// Sine and cosine of a + b.
