@@ -10,6 +10,7 @@
 #include "nodes/runtime/node.h"
 #include "nodes/runtime/status.h"
 #include "tests/runtime/toy.h"
+#include "tests/support/tsan.h"
 
 namespace dmise {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "nodes/runtime/status.h"
 #include "tests/support/process.h"
+#include "tests/support/tsan.h"
 
 namespace dmise {
 namespace {
