@@ -92,8 +92,8 @@ class Master {
       if (!coordinator_.over()) continue;
       if (!over_since) over_since = now();
       // Of a failure, the heartbeat of a node that hangs hears as well.
-      const bool told =
-          coordinator_.phase() == Phase::ended || now() - *over_since > 2 * heartbeat_;
+      const bool told = coordinator_.phase() == Phase::ended || peers_by_name_.empty() ||
+                        now() - *over_since > 2 * heartbeat_;
       if ((coordinator_.deserted() && told) || now() - *over_since > farewell) break;
     }
     return result();

@@ -19,6 +19,7 @@ using std::chrono::nanoseconds;
 constexpr milliseconds probe_interval{10};
 constexpr milliseconds gap_patience{20};     // a later message is here: this one is late or lost
 constexpr milliseconds quiet_patience{500};  // nothing is here: the producer may be slow
+constexpr milliseconds quiet_patience_limit{8000};  // doubled each time up to this
 constexpr milliseconds idle{1000};
 
 bool is_direct(const std::string& topic) { return topic.starts_with(truth_prefix); }
@@ -162,16 +163,18 @@ class Node {
   /// Until the tick is granted and its inputs are here. False when the run is over.
   bool await(Tick tick) {
     auto asked = now();
+    milliseconds quiet = quiet_patience;
     while (going()) {
       for (const auto& closed : link_.closed()) inbox_.close(closed.topic(), closed.from_tick());
       const bool granted = link_.granted() >= tick;
       if (granted && inbox_.complete(tick)) return true;
       const auto wants = granted ? inbox_.wanted(tick) : std::vector<Inbox::Want>{};
       const bool gap = std::any_of(wants.begin(), wants.end(), [](const auto& w) { return w.gap; });
-      const milliseconds patience = gap ? gap_patience : quiet_patience;
+      const milliseconds patience = gap ? gap_patience : quiet;
       if (!wants.empty() && now() - asked > patience) {
         ask_again(wants);
         asked = now();
+        if (!gap) quiet = std::min(2 * quiet, quiet_patience_limit);
       }
       {
         const Stopwatch watch(&result_->times.waiting_s);

@@ -8,6 +8,7 @@
 #include "nodes/runtime/log.h"
 #include "nodes/runtime/master.h"
 #include "nodes/runtime/node.h"
+#include "nodes/runtime/socket.h"
 #include "nodes/runtime/status.h"
 #include "tests/runtime/toy.h"
 #include "tests/support/tsan.h"
@@ -46,6 +47,47 @@ std::future<NodeResult> start(Participant& participant, const std::string& maste
 std::future<BrokerResult> start_broker(const std::string& master, Event* stop = nullptr) {
   return std::async(std::launch::async,
                     [master, stop] { return run_broker({.master = master, .stop = stop}); });
+}
+
+/// A broker that loses every fifth message, sends every third twice and swaps others.
+int serve_badly(const std::string& master) {
+  zmq::context_t context(1);
+  auto publishers = make_socket(context, zmq::socket_type::xsub, max_data_bytes);
+  auto subscribers = make_socket(context, zmq::socket_type::xpub, max_data_bytes);
+  v1::Join join;
+  join.set_name(broker_name);
+  join.mutable_broker()->set_publish_endpoint(bind_to(publishers, "tcp://127.0.0.1:0"));
+  join.mutable_broker()->set_subscribe_endpoint(bind_to(subscribers, "tcp://127.0.0.1:0"));
+  MasterLink link(context, master, nullptr);
+  link.join(join, std::chrono::seconds(10));
+  link.keep({}, std::nullopt);
+
+  int lost = 0, count = 0;
+  std::shared_ptr<Frames> held;
+  while (!link.over()) {
+    link.wait({&publishers, &subscribers}, std::chrono::milliseconds(100));
+    for (auto m = receive(subscribers); !m.empty(); m = receive(subscribers))
+      publishers.send(m[0], zmq::send_flags::none);
+    for (auto m = receive(publishers); !m.empty(); m = receive(publishers)) {
+      auto frames =
+          std::make_shared<Frames>(Frames{m[0].to_string(), m[1].to_string(), m[2].to_string(),
+                                          m.size() > 3 ? m[3].to_string() : ""});
+      const bool probe = open(views(m)).kind == MessageKind::probe;
+      if (!probe && ++count % 5 == 0) {
+        ++lost;
+        continue;
+      }
+      if (!probe && count % 7 == 0 && !held) {
+        held = frames;
+        continue;
+      }
+      send(subscribers, frames);
+      if (count % 3 == 0) send(subscribers, frames);
+      if (held) send(subscribers, std::exchange(held, nullptr));
+    }
+  }
+  link.leave(false, {});
+  return lost;
 }
 
 MasterOptions run_of(std::vector<std::string> expected, Tick last_tick, int window = 1) {
@@ -90,6 +132,60 @@ TEST(Network, GivesTheBytesOfOneProcess) {
   const std::string expected = recorded_locally(200);
   EXPECT_TRUE(recorded_by_a_network(200, 1) == expected);
   EXPECT_TRUE(recorded_by_a_network(200, 4) == expected);
+}
+
+TEST(Network, LosesNothingWhenTheBrokerDoes) {
+  MasterThread master(run_of({"orbit", "a", "ab", "recorder"}, 60, 4));
+  ToyOrbit orbit(2000);  // frames large enough to be handed over without a copy
+  ToyCamera a("a"), ab("ab");
+  ToyRecorder recorder({"a", "ab"});
+  auto broker = std::async(std::launch::async, [&] { return serve_badly(master.address); });
+  std::vector<std::future<NodeResult>> nodes;
+  for (Participant* participant : std::vector<Participant*>{&recorder, &ab, &a, &orbit})
+    nodes.push_back(start(*participant, master.address));
+  std::uint64_t asked_again = 0;
+  for (auto& node : nodes) {
+    const NodeResult result = node.get();
+    EXPECT_EQ(result.exit_code, 0) << result.reason;
+    asked_again += result.asked_again;
+  }
+  EXPECT_GT(broker.get(), 10);
+  EXPECT_GT(asked_again, 10u);
+
+  ToyOrbit orbit_here(2000);
+  ToyCamera a_here("a"), ab_here("ab");
+  ToyRecorder recorder_here({"a", "ab"});
+  drive({&orbit_here, &a_here, &ab_here, &recorder_here}, 60);
+  EXPECT_TRUE(recorder.record() == recorder_here.record());
+}
+
+// An observer joins nothing and holds nobody up; a gap would show in the sequence numbers.
+TEST(Network, AnObserverHearsTheWholeRunWithoutJoining) {
+  MasterThread master(run_of({"orbit", "a"}, 30));
+  ToyOrbit orbit;
+  ToyCamera camera("a");
+  auto broker = start_broker(master.address);
+  RunStatus status;
+  while (status.observe_endpoint.empty()) status = ask_master(master.address, 5);
+  zmq::context_t context(1);
+  auto observer = make_socket(context, zmq::socket_type::sub, max_data_bytes);
+  observer.set(zmq::sockopt::subscribe, objects_topic);
+  connect_to(observer, status.observe_endpoint);
+  auto nodes = {start(orbit, master.address), start(camera, master.address)};
+
+  std::uint64_t sequence = 0;
+  for (Tick tick = -1; tick < 30;) {
+    std::vector<zmq::pollitem_t> items{{observer.handle(), 0, ZMQ_POLLIN, 0}};
+    wait_for(items, std::chrono::seconds(10));
+    const auto message = receive(observer);
+    ASSERT_FALSE(message.empty()) << "nothing for 10 s";
+    const Envelope envelope = open(views(message));
+    if (envelope.kind == MessageKind::probe) continue;
+    EXPECT_EQ(envelope.sequence, ++sequence);
+    tick = envelope.tick;
+  }
+  EXPECT_EQ(sequence, 32u);  // a roster and 31 states
+  EXPECT_EQ(master.result.get().exit_code, 0);
 }
 
 TEST(Network, RefusesASecondNodeOfOneName) {
