@@ -172,6 +172,30 @@ TEST(Processes, AnInterruptEndsEverybodyWithinTwoSeconds) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(2500));
 }
 
+// docs/wire.md and proto/ are enough: this node shares no code with the others.
+TEST(Processes, APythonNodeTakesPartInTheClock) {
+  setenv("PYTHONPATH", DMISE_SOURCE_DIR "/build/python", 1);
+  Stack stack({"--ticks", "20", "--window", "2"});
+  stack.start_broker();
+  for (const char* name : {"b", "a", "orbit"}) stack.start(name);
+  const std::string node = DMISE_SOURCE_DIR "/clients/python/node.py";
+  stack.nodes["recorder"] = std::make_unique<Child>(std::vector<std::string>{
+      "/usr/bin/python3", node, stack.address, "recorder", "detection/a", "detection/b"});
+  stack.expect_all_exit(0);
+  // Of a toy camera: (tick % 3) sets of (tick % 5) detections, two cameras.
+  EXPECT_THAT(stack.nodes["recorder"]->output(), HasSubstr("tick 14 16 detections\n"));
+  EXPECT_THAT(stack.nodes["recorder"]->output(), HasSubstr("tick 19 8 detections\n"));
+}
+
+TEST(Processes, APythonSubscriberHearsDetectionsWithoutJoining) {
+  setenv("PYTHONPATH", DMISE_SOURCE_DIR "/build/python", 1);
+  Stack stack({"--ticks", "100000000"});
+  Child subscriber(
+      {"/usr/bin/python3", DMISE_SOURCE_DIR "/clients/python/subscriber.py", stack.address});
+  stack.start_all();
+  EXPECT_TRUE(subscriber.says("\na/")) << subscriber.output() << stack.master->output();
+}
+
 TEST(Processes, NobodySurvivesTheMaster) {
   Stack stack({"--ticks", "100000000", "--silent-after", "1"});
   stack.start_all();
