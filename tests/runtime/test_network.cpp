@@ -44,9 +44,10 @@ std::future<NodeResult> start(Participant& participant, const std::string& maste
   });
 }
 
-std::future<BrokerResult> start_broker(const std::string& master, Event* stop = nullptr) {
-  return std::async(std::launch::async,
-                    [master, stop] { return run_broker({.master = master, .stop = stop}); });
+std::future<BrokerResult> start_broker(const std::string& master, int observer_queue = 1000) {
+  return std::async(std::launch::async, [master, observer_queue] {
+    return run_broker({.master = master, .observer_queue = observer_queue});
+  });
 }
 
 /// A broker that loses every fifth message, sends every third twice and swaps others.
@@ -185,6 +186,39 @@ TEST(Network, AnObserverHearsTheWholeRunWithoutJoining) {
     tick = envelope.tick;
   }
   EXPECT_EQ(sequence, 32u);  // a roster and 31 states
+  EXPECT_EQ(master.result.get().exit_code, 0);
+}
+
+TEST(Network, AnObserverThatStopsReadingSlowsNobodyAndSeesItsGap) {
+  constexpr Tick last_tick = 120;
+  MasterThread master(run_of({"orbit", "a"}, last_tick));
+  ToyOrbit orbit(20000);  // 1.5 MB a tick: more than the buffers of a connection hold
+  ToyCamera camera("a");
+  auto broker = start_broker(master.address, 1);
+  RunStatus status;
+  while (status.observe_endpoint.empty()) status = ask_master(master.address, 5);
+  zmq::context_t context(1);
+  auto observer = make_socket(context, zmq::socket_type::sub, max_data_bytes);
+  observer.set(zmq::sockopt::rcvhwm, 1);
+  observer.set(zmq::sockopt::subscribe, objects_topic);
+  connect_to(observer, status.observe_endpoint);
+  auto nodes = {start(orbit, master.address), start(camera, master.address)};
+  while (status.granted < last_tick - 20 && status.phase != Phase::failed)
+    status = ask_master(master.address, 5);  // and does not read
+
+  std::uint64_t missed = 0, next = 1;
+  for (Tick tick = -1; tick < last_tick && missed == 0;) {
+    std::vector<zmq::pollitem_t> items{{observer.handle(), 0, ZMQ_POLLIN, 0}};
+    wait_for(items, std::chrono::seconds(10));
+    const auto message = receive(observer);
+    ASSERT_FALSE(message.empty()) << "nothing for 10 s";
+    const Envelope envelope = open(views(message));
+    if (envelope.kind == MessageKind::probe) continue;
+    missed += envelope.sequence - next;
+    next = envelope.sequence + 1;
+    tick = envelope.tick;
+  }
+  EXPECT_GT(missed, 0u);
   EXPECT_EQ(master.result.get().exit_code, 0);
 }
 

@@ -174,17 +174,20 @@ std::vector<Example> examples(unsigned seed) {
            ObjectStates{.tick = tick, .time = example_run().time_of(tick), .count = 0}}};
 }
 
+Envelope envelope_of(const Example& example, MessageKind kind, std::uint64_t sequence) {
+  return {.run_id = example_run().run_id,
+          .publisher = "source",
+          .sequence = sequence,
+          .kind = kind,
+          .tick = example.tick,
+          .time = example_run().time_of(example.tick),
+          .last_of_tick = true};
+}
+
 Frames sealed(const Example& example, std::uint64_t sequence) {
   Body body = encode(example.state);
-  return seal(example.topic,
-              {.run_id = example_run().run_id,
-               .publisher = "source",
-               .sequence = sequence,
-               .kind = body.kind,
-               .tick = example.tick,
-               .time = example_run().time_of(example.tick),
-               .last_of_tick = true},
-              std::move(body.payload), std::move(body.arrays));
+  return seal(example.topic, envelope_of(example, body.kind, sequence), std::move(body.payload),
+              std::move(body.arrays));
 }
 
 Receiver receiver_of_examples() {

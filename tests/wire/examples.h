@@ -39,6 +39,9 @@ struct Example {
 /// A state of every kind, with numbers that differ with `seed`.
 std::vector<Example> examples(unsigned seed);
 
+/// The envelope in which "source" sends the example.
+Envelope envelope_of(const Example& example, MessageKind kind, std::uint64_t sequence = 1);
+
 /// The example as it is sent by the node "source".
 Frames sealed(const Example& example, std::uint64_t sequence = 1);
 

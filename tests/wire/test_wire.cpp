@@ -33,12 +33,12 @@ std::optional<Refusal> refusal(const Frames& frames) {
 
 Example states_example() { return examples(1)[1]; }
 
-Envelope envelope_of(const Frames& frames) { return open(views_of(frames)); }
+Envelope opened(const Frames& frames) { return open(views_of(frames)); }
 
 /// The example with another envelope, sealed again.
 Frames with_envelope(const Example& example, void (*change)(Envelope&)) {
   Frames frames = sealed(example);
-  Envelope envelope = envelope_of(frames);
+  Envelope envelope = opened(frames);
   change(envelope);
   return seal(frames.topic, envelope, frames.payload, frames.arrays);
 }
@@ -101,7 +101,7 @@ TEST(Wire, MutatedContentUnderAGoodSealIsRefusedOrMeansSomething) {
   for (int trial = 0; trial < 4000; ++trial)
     for (const Example& example : examples(unsigned(trial % 7))) {
       Frames frames = sealed(example);
-      const Envelope envelope = envelope_of(frames);
+      const Envelope envelope = opened(frames);
       for (int changes = 0; changes < 1 + trial % 3; ++changes) {
         std::string& part =
             random() % 4 == 0 && !frames.arrays.empty() ? frames.arrays : frames.payload;
@@ -153,7 +153,7 @@ TEST(Wire, RefusesWhatIsNotOfThisRunPublisherTopicOrTick) {
   EXPECT_EQ(refusal(with_envelope(e, [](Envelope& v) { v.kind = MessageKind::truth_set; })),
             Refusal::payload);
   Frames other = sealed(e);
-  other = seal("state/other", envelope_of(other), other.payload, other.arrays);
+  other = seal("state/other", opened(other), other.payload, other.arrays);
   EXPECT_EQ(refusal(other), Refusal::topic);
 }
 
