@@ -1,0 +1,43 @@
+"""Ctrl-C ends a run within 2 s; what is finished is kept and whole, and nothing is left running.
+
+    ctrl_c.py DMISE
+"""
+
+import json
+
+from harness import Run, check, first_frame, main, write_scenario
+
+DEADLINE_S = 2.0
+FITS_BLOCK = 2880
+
+
+def interrupted(binary, directory, command):
+    out = directory / command
+    with Run(binary, command, write_scenario(directory), "--out", out) as run:
+        first_frame(out, "alpha")
+        run.children()
+        run.interrupt()
+        code, waited_s = run.finish()
+        check(waited_s < DEADLINE_S, f"{command}: ends {waited_s:.2f} s after Ctrl-C")
+        check(code == 130, f"{command}: exit code {code}")
+        run.nothing_left()
+    frames = sorted(out.glob("*/frame-*.fits"))
+    sizes = {path.stat().st_size for path in frames}
+    check(len(frames) >= 1 and len(sizes) == 1 and sizes.pop() % FITS_BLOCK == 0,
+          f"{command}: {len(frames)} frames are kept, all whole")
+    reports = [json.loads(line) for line in (out / "frames.jsonl").read_text().splitlines()]
+    check(len(reports) == len(frames), f"{command}: {len(reports)} frame reports of {len(frames)} frames")
+    for name in ("detections.jsonl", "truth.jsonl"):
+        for line in (out / name).read_text().splitlines():
+            json.loads(line)
+    status = json.loads((out / "run.json").read_text())["status"]
+    check(status == "interrupted", f"{command}: run.json says {status}")
+
+
+def test(binary, directory):
+    interrupted(binary, directory, "launch")
+    interrupted(binary, directory, "run")
+
+
+if __name__ == "__main__":
+    main(test)

@@ -1,0 +1,146 @@
+"""What the system tests share: scenarios of small cameras, a launched run, its processes."""
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+SCENARIO = """\
+simulation: {{start: 2018-01-21T00:15:00Z, duration_s: {duration_s}, tick_s: 5, seed: 1}}
+objects: [{{catalogue: {objects}}}]
+stars: {{catalogue: kstars}}
+sensors:
+  - {{name: {first}, site: atlanta, camera: small.yaml, pointing: zenith, exposure_s: 2, cadence_s: 5}}
+  - {{name: {second}, site: savannah, camera: small.yaml, pointing: zenith, exposure_s: 2, cadence_s: 5}}
+network: {{on_silent_node: {on_silent_node}, silent_after_s: {silent_after_s}}}
+output: {{png: false}}
+"""
+
+CAMERA = """\
+name: small
+optics: {projection: gnomonic, columns: 512, rows: 384, pixel_pitch_m: 5.4e-6, field_of_view_deg: 60,
+         aperture_m: 0.0375, equivalent_aperture: true}
+detector: {full_well_e: 25500, gain_e_per_dn: 0.35, read_noise_e: 9, bias_dn: 100}
+band: {centre_m: 0.55e-6, width_m: 0.128e-6}
+"""
+
+PATIENCE_S = 60.0  # for what has no deadline of its own
+
+
+class Failure(Exception):
+    pass
+
+
+def check(holds, claim):
+    if not holds:
+        raise Failure(claim)
+    print(f"ok: {claim}")
+
+
+def main(test):
+    """Runs test(binary, directory) in a fresh directory; the binary is the first argument."""
+    with tempfile.TemporaryDirectory(prefix="dmise-test-") as directory:
+        try:
+            test(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(directory))
+        except Failure as failure:
+            sys.exit(f"FAIL: {failure}")
+
+
+def write_scenario(directory, duration_s=3600, objects="gpredict", first="alpha", second="beta",
+                   on_silent_node="fail", silent_after_s=5.0, name="scenario.yaml"):
+    directory.mkdir(exist_ok=True)
+    (directory / "small.yaml").write_text(CAMERA)
+    path = directory / name
+    path.write_text(SCENARIO.format(
+        duration_s=duration_s, objects=objects, first=first, second=second,
+        on_silent_node=on_silent_node, silent_after_s=silent_after_s))
+    return path
+
+
+def parent_of(pid):
+    """Parent's pid, or None for a process that is gone or a zombie."""
+    try:
+        fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    except OSError:
+        return None
+    return None if fields[0] in "ZX" else int(fields[1])
+
+
+def command_of(pid):
+    try:
+        return pathlib.Path(f"/proc/{pid}/cmdline").read_bytes().decode().split("\0")[:-1]
+    except OSError:
+        return []
+
+
+def wait_until(condition, what, patience_s=PATIENCE_S):
+    """The first true value of condition(), looked at every 10 ms; Failure after `patience_s`."""
+    deadline = time.monotonic() + patience_s
+    while True:
+        value = condition()
+        if value:
+            return value
+        if time.monotonic() > deadline:
+            raise Failure(f"waited {patience_s:g} s in vain for {what}")
+        time.sleep(0.01)
+
+
+class Run:
+    """`dmise ARGUMENTS` in a session of its own, with all processes that it starts."""
+
+    def __init__(self, *arguments):
+        self.process = subprocess.Popen([str(a) for a in arguments], stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, text=True, start_new_session=True)
+        self.seen = set()
+        self.stdout = self.stderr = ""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        for pid in self.living() | ({self.process.pid} if self.process.poll() is None else set()):
+            os.kill(pid, signal.SIGKILL)
+        self.process.communicate()
+
+    def children(self):
+        """Living children, remembered."""
+        pids = [int(p.name) for p in pathlib.Path("/proc").iterdir() if p.name.isdigit()]
+        self.seen |= {pid for pid in pids if parent_of(pid) == self.process.pid}
+        return self.living()
+
+    def living(self):
+        """Those ever seen that still live."""
+        return {pid for pid in self.seen if parent_of(pid) is not None}
+
+    def node(self, name):
+        """pid of the node of that name, or None."""
+        for pid in self.children():
+            command = command_of(pid)
+            if ("--name", name) in zip(command, command[1:]):
+                return pid
+        return None
+
+    def interrupt(self):
+        """Ctrl-C: SIGINT to all of the terminal's foreground group."""
+        os.killpg(self.process.pid, signal.SIGINT)
+
+    def finish(self, patience_s=PATIENCE_S):
+        """Waits for the end; returns (exit code, seconds waited)."""
+        began = time.monotonic()
+        try:
+            self.stdout, self.stderr = self.process.communicate(timeout=patience_s)
+        except subprocess.TimeoutExpired:
+            raise Failure(f"still runs after {patience_s:g} s") from None
+        return self.process.returncode, time.monotonic() - began
+
+    def nothing_left(self):
+        check(not self.living(), f"of {len(self.seen)} processes {len(self.living())} still run")
+
+
+def first_frame(out, sensor):
+    """Waits for the first frame of a sensor."""
+    path = out / sensor / "frame-000001.fits"
+    return wait_until(lambda: path.exists() and path, f"{path}")

@@ -1,0 +1,53 @@
+"""What stands in the way of a run is said in one clear line, with a code other than 0 and nothing left.
+
+    refusals.py DMISE
+"""
+
+import socket
+
+from harness import Run, check, main, write_scenario
+
+PATIENCE_S = 20.0
+
+
+def refused(run, why, code, *words):
+    """The run ends with `code`; its last line on stderr, and no other but notes, holds `words`."""
+    got, _ = run.finish(PATIENCE_S)
+    said = [line for line in run.stderr.splitlines() if line.strip() and not line.startswith("note: ")
+            and not line.startswith("simulated ")]
+    check(got == code and len(said) == 1 and all(word in said[0] for word in words),
+          f"{why}: code {got}: {' | '.join(said)}")
+    run.nothing_left()
+
+
+def test(binary, directory):
+    good = write_scenario(directory)
+
+    bad = write_scenario(directory, objects=directory / "absent.tle", name="catalogue.yaml")
+    with Run(binary, "launch", bad, "--out", directory / "a") as run:
+        refused(run, "missing catalogue", 2, "catalogue.yaml:2:", "objects[0].catalogue", "absent.tle")
+
+    bad = write_scenario(directory, first="alpha", second="alpha", name="names.yaml")
+    with Run(binary, "launch", bad, "--out", directory / "b") as run:
+        refused(run, "two nodes of one name", 2, "names.yaml:6:", "sensors[1].name", "alpha")
+
+    with Run(binary, "launch", directory / "absent.yaml", "--out", directory / "c") as run:
+        refused(run, "no scenario", 2, "absent.yaml")
+
+    (directory / "file").write_text("")
+    with Run(binary, "launch", good, "--out", directory / "file/out") as run:
+        refused(run, "directory that can't be made", 1, "file/out")
+
+    with Run(binary, "launch", good, "--out", "/proc") as run:
+        refused(run, "directory that can't be written", 1, "/proc")
+
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        address = f"tcp://127.0.0.1:{taken.getsockname()[1]}"
+        with Run(binary, "launch", good, "--out", directory / "d", "--bind", address) as run:
+            refused(run, "port in use", 1, address, "in use")
+
+
+if __name__ == "__main__":
+    main(test)

@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# One process, one process per node, one thread or two, once or again: the products are the same bytes.
+#
+#   run_identity.sh DMISE SCENARIO DURATION_S
+#
+# Runs the scenario, cut to DURATION_S of simulated time, and compares every FITS file,
+# detections.jsonl, truth.jsonl and frames.jsonl with cmp. What is published is also what
+# `dmise detect` finds in the FITS file alone.
+set -euo pipefail
+
+dmise=$1
+work=$(mktemp -d -t dmise-test-XXXXXX)
+trap 'rm -rf "$work"' EXIT
+fail() { echo "FAIL: $*" >&2; exit 1; }
+
+scenario=$work/scenario.yaml
+cp -r "$(dirname "$(readlink -f "$2")")/." "$work/"  # it may name files beside itself
+sed -E "s/duration_s: *[0-9.]+/duration_s: $3/" "$2" >"$scenario"
+
+produce() {  # NAME COMMAND..
+  local name=$1
+  shift
+  "$dmise" "$@" "$scenario" --out "$work/$name" >"$work/$name.log" 2>&1 ||
+    fail "$name: $(tail -n 2 "$work/$name.log")"
+}
+
+products() { (cd "$1" && find . -name 'frame-*.fits' -o -name '*.jsonl' ! -name cost.jsonl | sort); }
+
+produce run-1-thread run --threads 1
+produce run-2-threads run --threads 2
+produce launch launch
+produce launch-again launch
+
+reference=$work/run-1-thread
+frames=$(products "$reference" | grep -c 'fits$') || fail "no frame was made"
+for other in run-2-threads launch launch-again; do
+  diff <(products "$reference") <(products "$work/$other") || fail "$other: other files than one process made"
+  while read -r file; do
+    cmp "$reference/$file" "$work/$other/$file" || fail "$other: $file differs"
+  done < <(products "$reference")
+  echo "ok: $other: $frames frames and all lines are those of one process with one thread"
+done
+
+for frame in "$reference"/*/frame-000001.fits; do
+  sensor=$(basename "$(dirname "$frame")")
+  "$dmise" detect "$frame" >"$work/detected.jsonl"
+  grep "\"sensor\":\"$sensor\",\"frame\":1," "$reference/detections.jsonl" >"$work/published.jsonl" || true
+  cmp "$work/detected.jsonl" "$work/published.jsonl" || fail "$sensor: dmise detect finds other detections"
+  echo "ok: $sensor: dmise detect finds the $(wc -l <"$work/published.jsonl") published detections"
+done
