@@ -1,0 +1,153 @@
+"""Measures, and writes docs/benchmarks.md from what it measured in this run.
+
+    report.py [--only NAME ..] [--output FILE]
+
+Runs every `dmise bench NAME --json`, the demonstration, and the referees on its products. A figure is
+never kept from an earlier run. What fails is reported as failed.
+"""
+
+import argparse
+import collections
+import datetime
+import json
+import os
+import pathlib
+import platform
+import re
+import statistics
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+BINARY = ROOT / "build/release/bin/dmise"
+DEMO = ROOT / "launch/scenarios/demo.yaml"
+RUN = ROOT / "build/benchmark-run"
+REFEREES = ("solve_field", "source_extractor_magnitudes", "skyfield_directions", "fitsverify_frames")
+
+
+def output_of(*command):
+    return subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False,
+                          cwd=ROOT)
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(str(c) for c in row) + " |" for row in rows]) + "\n"
+
+
+def number(x):
+    """Three significant digits, thousands apart."""
+    if x is None or x == "":
+        return ""
+    if not isinstance(x, (int, float)) or isinstance(x, bool):
+        return {True: "yes", False: "no"}.get(x, str(x))
+    return f"{x:,.0f}" if abs(x) >= 1000 or x == int(x) else f"{x:.3g}"
+
+
+def machine():
+    """What the figures depend on."""
+    cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo")
+                if line.startswith("model name")), platform.machine())
+    memory_kb = int(re.search(r"MemTotal: *(\d+)", open("/proc/meminfo").read()).group(1))
+    system = re.search(r'PRETTY_NAME="(.*)"', open("/etc/os-release").read()).group(1)
+    commit = output_of("git", "rev-parse", "--short", "HEAD").stdout.strip() or "unknown"
+    if output_of("git", "status", "--porcelain", "--untracked-files=no").stdout.strip():
+        commit += " and changes"
+    return [("processor", f"{cpu}, {os.cpu_count()} cores"), ("memory", f"{memory_kb / 2**20:.0f} GiB"),
+            ("system", f"{system}, {output_of('g++', '--version').stdout.splitlines()[0]}"),
+            ("date", datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")),
+            ("commit", commit), ("load before", f"{os.getloadavg()[0]:.2f}")]
+
+
+def bench_names():
+    """The subcommands that `dmise bench --help` lists."""
+    listed = output_of(BINARY, "bench", "--help").stdout.partition("Subcommands:")[2]
+    return re.findall(r"^  (\w+)", listed, re.MULTILINE)
+
+
+def benches(names):
+    rows = []
+    for name in names:
+        print(f"measuring {name}", file=sys.stderr)
+        done = output_of(BINARY, "bench", name, "--json")
+        for line in done.stdout.splitlines():
+            if line.startswith("{"):
+                m = json.loads(line)
+                rows.append([m["name"], number(m["value"]), m.get("unit", ""), m.get("anchor", ""),
+                             number(m.get("anchor_value")), number(m.get("ratio")),
+                             number(m.get("target")), number(m.get("met"))])
+        if done.returncode != 0:
+            rows.append([name, "failed", "", done.stderr.strip()[-100:], "", "", "", "no"])
+    return table(("figure", "value", "unit", "anchor", "anchor's", "ratio", "target", "met"), rows)
+
+
+def demonstration():
+    """Runs the demonstration; returns its section."""
+    print("running the demonstration", file=sys.stderr)
+    done = output_of(BINARY, "launch", DEMO, "--out", RUN, "--force")
+    if done.returncode != 0:
+        return f"The demonstration failed: {done.stderr.strip().splitlines()[-1]}\n"
+    record = json.loads((RUN / "run.json").read_text())
+    frames = collections.defaultdict(list)
+    for frame in record["frames"]:
+        frames[frame["sensor"]].append(frame)
+    rows = [[sensor, len(costs), number(statistics.median(c["total_s"] for c in costs)),
+             number(statistics.median(c["detection_s"] for c in costs)),
+             number(max(c["pss_mb"] for c in costs))] for sensor, costs in frames.items()]
+    text = f"`dmise launch launch/scenarios/demo.yaml`: {record['wall_s']:.1f} s (at most 60 s on two cores).\n\n"
+    text += table(("sensor", "frames", "s a frame, median", "of it detection", "largest PSS, MB"), rows)
+    effects = list(record["frames"][0]["effects_s"])
+    shares = [[effect] + [number(1e3 * statistics.median(c["effects_s"][effect] for c in costs))
+                          for costs in frames.values()] for effect in effects]
+    text += "\nMilliseconds a frame by effect, median:\n\n" + table(("effect", *frames), shares)
+    if record["nodes"]:
+        rows = [[n["name"], *(number(n[k]) for k in ("compute_s", "messaging_s", "waiting_s"))]
+                for n in record["nodes"]]
+        text += "\nWhere the nodes' time went, s:\n\n" + table(("node", "compute", "messaging", "waiting"), rows)
+    return text
+
+
+def referees():
+    """What other people's programs say of the demonstration's products."""
+    rows = []
+    for name in REFEREES:
+        print(f"asking {name}", file=sys.stderr)
+        done = output_of("/usr/bin/python3", ROOT / f"tests/reference/{name}.py", RUN)
+        said = [line for line in (done.stdout + done.stderr).splitlines() if line]
+        verdict = {0: "holds", 77: "not measured"}.get(done.returncode, "fails")
+        rows += [[name, re.sub(r"^\w+: ", "", line), "holds" if line.startswith("ok: ") else verdict]
+                 for line in said]
+    return table(("referee", "claim", ""), rows)
+
+
+def continuous_integration():
+    """What .ci/run and the proof of the set-up took when they last ran here."""
+    seconds = ROOT / "build/ci-seconds"
+    cache = pathlib.Path(os.environ.get("XDG_CACHE_HOME", pathlib.Path.home() / ".cache")) / "dmise"
+    proofs = sorted(cache.glob("bare-root-*.proof"), key=lambda p: p.stat().st_mtime)
+    rows = [[".ci/run, last run here", f"{int(seconds.read_text()) / 60:.1f} min (at most 25)"]] if seconds.exists() else []
+    rows += [["./dmise demo in a bare Debian root, last proof", proofs[-1].read_text().strip()]] if proofs else []
+    return table(("what", "result"), rows) if rows else "Not run here.\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="benchmarks to run; default all")
+    parser.add_argument("--output", type=pathlib.Path, default=ROOT / "docs/benchmarks.md")
+    options = parser.parse_args()
+    if not BINARY.exists():
+        sys.exit(f"{BINARY} is not built; run ./dmise build")
+    sections = [("Machine", table(("", ""), machine())),
+                ("Against anchors", benches(options.only or bench_names())),
+                ("The demonstration", demonstration()), ("Referees", referees()),
+                ("Continuous integration", continuous_integration())]
+    text = ("# Benchmarks\n\nWritten by `./dmise bench report`; every figure was measured in that run. An anchor is "
+            "somebody\nelse's program, or a floor of the machine, measured beside ours.\n")
+    text += "".join(f"\n## {title}\n\n{body}" for title, body in sections)
+    options.output.parent.mkdir(exist_ok=True)
+    options.output.write_text(text)
+    print(options.output)
+
+
+if __name__ == "__main__":
+    main()
