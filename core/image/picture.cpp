@@ -1,7 +1,6 @@
 #include "core/image/picture.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -24,8 +23,12 @@ Image<float, struct Averaged> average(const CountImage& counts, int factor) {
   return out;
 }
 
-/// Median and noise (half the distance of the 16 % and 84 % points), from at most 2^16 pixels.
-std::array<float, 2> sky_of(const std::vector<float>& pixels) {
+struct Sky {
+  float median, sigma;
+};
+
+/// Median and noise (from it down to the 16 % point), of at most 2^16 pixels.
+Sky sky_of(const std::vector<float>& pixels) {
   std::vector<float> sample;
   const std::size_t step = pixels.size() / 65536 + 1;
   for (std::size_t i = 0; i < pixels.size(); i += step) sample.push_back(pixels[i]);
@@ -44,11 +47,11 @@ Preview preview(const CountImage& counts, const PictureSettings& settings) {
   const int shrink = std::max(1, (counts.columns + settings.max_width - 1) / settings.max_width);
   const int grow = std::max(1, settings.min_width / std::max(1, counts.columns));
   const auto small = average(counts, shrink);
-  const auto [median, sigma] = sky_of(small.pixels);
+  const Sky sky = sky_of(small.pixels);
   const double white =
       std::asinh((settings.black_sigma + settings.white_sigma) / settings.linear_sigma);
   const auto grey = [&](float value) {
-    const double v = (double(value) - median) / sigma + settings.black_sigma;
+    const double v = (double(value) - sky.median) / sky.sigma + settings.black_sigma;
     const double level = 255.0 * std::asinh(v / settings.linear_sigma) / white;
     return std::uint8_t(std::clamp(std::lround(level), 0l, 255l));
   };
