@@ -6,6 +6,7 @@
 
 #include "core/base/units.h"
 #include "core/detection/aberration.h"
+#include "core/detection/atmosphere.h"
 #include "core/detection/wcs.h"
 
 namespace dmise {
@@ -120,7 +121,8 @@ Detection describe(const Source& source, const FrameHeader& header) {
   d.band = header.band.name;
   d.signal_e = source.trail().flux_e;
   d.snr = source.snr();
-  d.magnitude = header.zero_point_mag - 2.5 * std::log10(d.signal_e / header.exposure_s);
+  d.magnitude = header.zero_point_mag - 2.5 * std::log10(d.signal_e / header.exposure_s) -
+                extinction_mag(header, {source.trail().x_px, source.trail().y_px});
   d.magnitude_sigma = 2.5 / std::log(10.0) / d.snr;
   d.saturated = source.saturated;
   d.at_edge = source.at_edge;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/detection/atmosphere.h"
 #include "core/detection/background.h"
 #include "core/detection/compact_source.h"
 #include "core/detection/components.h"
@@ -11,6 +12,7 @@
 #include "core/detection/long_streak.h"
 #include "core/detection/scene.h"
 #include "core/detection/star_motion.h"
+#include "core/detection/wcs.h"
 
 namespace dmise {
 namespace {
@@ -94,9 +96,8 @@ FrameReport make_report(const CountImage& counts, const FrameHeader& header,
   r.start = header.start;
   r.middle = header.middle;
   r.end = header.end;
-  const Vec<Gcrs> boresight =
-      rotation_of(header.camera_from_gcrs[1]).inverse() * Vec<CameraFrame>{0, 0, 1};
-  const auto place = to_spherical(boresight);
+  const PixelPosition centre{(counts.columns - 1) / 2.0, (counts.rows - 1) / 2.0};
+  const auto place = to_spherical(wcs_direction(header.wcs, centre));
   r.boresight_ra_rad = place[0];
   r.boresight_dec_rad = place[1];
   r.wcs = header.wcs;
@@ -106,7 +107,8 @@ FrameReport make_report(const CountImage& counts, const FrameHeader& header,
   r.noise_e = background.median_sigma_dn() * header.gain_e_per_dn;
   r.zero_point_mag = header.zero_point_mag;
   const double least_e = threshold_snr * r.noise_e / std::sqrt(kernel_square_sum(sigma_px));
-  r.limiting_magnitude = header.zero_point_mag - 2.5 * std::log10(least_e / header.exposure_s);
+  r.limiting_magnitude = header.zero_point_mag - 2.5 * std::log10(least_e / header.exposure_s) -
+                         extinction_mag(header, centre);
   r.saturated_px = count_saturated(counts, header.saturation_dn);
   return r;
 }

@@ -253,7 +253,8 @@ void visit(Visitor& v, FrameHeader& h) {
   v.number("FULLWELL", h.full_well_e, "[e-]");
   v.number("SATURATE", h.saturation_dn, "[DN] counts from here on may be clipped");
   v.number("PSFFWHM", h.psf_fwhm_px, "[px] Gaussian, before pixel integration");
-  v.number("PHOTZP", h.zero_point_mag, "[mag] of 1 e-/s, above the atmosphere");
+  v.number("PHOTZP", h.zero_point_mag, "[mag] of 1 e-/s, without atmosphere");
+  v.number("EXTINCT", h.extinction_mag_per_airmass, "[mag/airmass]");
   v.projection("PROJNAME", h.projection, "of the lens");
   v.number("FOCALPX", h.focal_length_px, "[px] focal length");
   constexpr const char* attitudes[3] = {"QBEG", "QAVG", "QEND"};

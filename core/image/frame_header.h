@@ -50,7 +50,8 @@ struct FrameHeader {
   double saturation_dn = 0.0;  // the lowest count that may be clipped: full well or ADC
   double psf_fwhm_px = 0.0;    // Gaussian, before pixel integration
   Band band;
-  double zero_point_mag = 0.0;  // of a source above the atmosphere that gives 1 e-/s
+  double zero_point_mag = 0.0;  // of a source that gives 1 e-/s, without any atmosphere
+  double extinction_mag_per_airmass = 0.0;  // of the atmosphere in this band; 0 in space
 
   Wcs wcs;
   Projection projection = Projection::gnomonic;

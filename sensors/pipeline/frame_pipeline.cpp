@@ -122,6 +122,7 @@ FrameHeader FramePipeline::Work::header(const View& view) const {
                 .psf_fwhm_px = psf.sigma_px * fwhm_per_sigma,
                 .band = sensor.camera.band,
                 .zero_point_mag = Light(view).zero_point_mag(),
+                .extinction_mag_per_airmass = Light(view).extinction_mag_per_airmass(),
                 .projection = optics.projection,
                 .focal_length_px = optics.focal_length_px(),
                 .sensor_position_m = observer.position_m,

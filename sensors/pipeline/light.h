@@ -16,9 +16,9 @@ class Light {
   double electrons_per_photon_m2() const { return electrons_per_photon_m2_; }
   /// Of the atmosphere along an apparent direction (unit), (0, 1]; 1 in space or without the effect.
   double transmission(const Vec<Gcrs>& apparent) const;
-  /// Magnitude above the atmosphere of a source of V colour that gives 1 e-/s at one airmass less
-  /// its extinction: the frame's zero point.
+  /// V magnitude of a source of the Sun's colour that gives 1 e-/s without any atmosphere.
   double zero_point_mag() const;
+  double extinction_mag_per_airmass() const { return extinction_mag_per_airmass_; }
 
  private:
   double electrons_per_photon_m2_ = 0.0;

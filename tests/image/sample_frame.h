@@ -32,6 +32,7 @@ inline FrameHeader sample_header(int columns = 200, int rows = 150) {
   h.psf_fwhm_px = 1.7;
   h.band = {"V", 0.55e-6, 0.128e-6};
   h.zero_point_mag = 17.3;
+  h.extinction_mag_per_airmass = 0.17;
   h.focal_length_px = 1663.0;
   const double scale_deg = std::atan(1.0 / h.focal_length_px) / deg;
   h.wcs.crpix_x = (columns - 1) / 2.0;
