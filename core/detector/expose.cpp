@@ -71,7 +71,8 @@ class Chain {
         hot_key_(key("hot_pixels")),
         read_key_(key("read_noise")),
         response_key_(fixed("prnu")),
-        adc_{d_.gain_e_per_dn, d_.bias_dn, effects.has(Effect::quantisation) ? d_.adc_bits : 16} {
+        adc_(effects.has(Effect::quantisation) ? Adc{d_.gain_e_per_dn, d_.bias_dn, d_.adc_bits}
+                                               : Adc{}) {
     const double exposure_s = exposure.exposure_s;
     if (effects.has(Effect::dark_current)) {
       if (d_.dark_e_per_s > 0.0) dark_.emplace(d_.dark_e_per_s * exposure_s);

@@ -88,6 +88,14 @@ TEST(Expose, NoDetectorHasNegativeGainOr32Bits) {
   }
 }
 
+TEST(Expose, WithoutQuantisationCountsAreWholeElectrons) {
+  EffectSet effects;
+  for (Effect e :
+       {Effect::photon_noise, Effect::dark_current, Effect::read_noise, Effect::quantisation})
+    effects.set(e, false);
+  for (auto c : read_out(RateImage(40, 30, 123.4f), kaf8300, effects).pixels) EXPECT_EQ(c, 123);
+}
+
 // Bias, gain and well out of the way, electrons are the counts.
 TEST(Expose, AddingAnEffectLeavesTheOthersNoiseUnchanged) {
   Detector d = kaf8300;
