@@ -1,5 +1,6 @@
 #include "bench/benches.h"
 
+#include "bench/bench_frame.h"
 #include "bench/bench_interpolation.h"
 #include "bench/bench_sgp4.h"
 #include "bench/bench_tick.h"
@@ -8,6 +9,7 @@ namespace dmise {
 
 std::vector<Bench> benches() {
   return {
+      {"frame", "stages of a frame on one thread", bench_frame},
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
       {"sgp4", "propagation of whole catalogues against the compiled reference", bench_sgp4},
       {"tick", "lock-step ticks beside the bare ZeroMQ floor", bench_tick},

@@ -5,28 +5,46 @@
 // core/base/rng.h in lanes.
 namespace dmise::DMISE_SIMD {
 
-/// Philox4x32-10 of blocks `first + 0, 1, ...` (as many as wide_lanes), words in pixel order: words
-/// 0, 1 of each block go to `words[0]`, words 2, 3 to `words[1]`.
-DMISE_INLINE void philox(const RngKey& key, std::uint32_t first, std::uint32_t draw, U64 words[2]) {
-  U64 block;
-  for (int i = 0; i < wide_lanes; ++i) block[i] = first + std::uint32_t(i);
-  const U64 zero{};
-  U64 c0 = block, c1 = zero + draw, c2 = zero + key.stream[0], c3 = zero + key.stream[1];
-  std::uint32_t k0 = key.key[0], k1 = key.key[1];
-  for (int round = 0; round < 10; ++round) {
-    const U64 p0 = multiply_low(c0, zero + 0xD2511F53u);
-    const U64 p1 = multiply_low(c2, zero + 0xCD9E8D57u);
-    // The high halves hold rubbish from here on; `multiply_low` ignores them.
-    c0 = (p1 >> 32) ^ c1 ^ (zero + k0);
-    c1 = p1;
-    c2 = (p0 >> 32) ^ c3 ^ (zero + k1);
-    c3 = p0;
-    k0 += 0x9E3779B9u;
-    k1 += 0xBB67AE85u;
+/// Words of `Pixels` consecutive pixels from `first` on, a multiple of rng_group: Philox4x32-10,
+/// several vectors of blocks side by side, for one alone would wait for its own multiplications.
+template <int Pixels>
+DMISE_INLINE void words_of(const RngKey& key, std::uint32_t first, std::uint32_t draw,
+                           std::uint32_t* words) {
+  static_assert(Pixels % int(rng_group) == 0);
+  constexpr int vectors = Pixels / 4 / wide_lanes;
+  constexpr int abreast = vectors < 4 ? vectors : 4;
+  const U64 zero{}, low = zero + 0xffffffffu;
+  U64 lane;
+  for (int i = 0; i < wide_lanes; ++i) lane[i] = std::uint32_t(i);
+  for (int v = 0; v < vectors; v += abreast) {
+    U64 c0[abreast], c1[abreast], c2[abreast], c3[abreast];
+    for (int j = 0; j < abreast; ++j) {
+      c0[j] = lane + (first / 4 + std::uint32_t((v + j) * wide_lanes));
+      c1[j] = zero + draw;
+      c2[j] = zero + key.stream[0];
+      c3[j] = zero + key.stream[1];
+    }
+    std::uint32_t k0 = key.key[0], k1 = key.key[1];
+    for (int round = 0; round < 10; ++round) {
+      for (int j = 0; j < abreast; ++j) {
+        const U64 p0 = multiply_low(c0[j], zero + 0xD2511F53u);
+        const U64 p1 = multiply_low(c2[j], zero + 0xCD9E8D57u);
+        // The high halves hold rubbish from here on; `multiply_low` ignores them.
+        c0[j] = (p1 >> 32) ^ c1[j] ^ (zero + k0);
+        c1[j] = p1;
+        c2[j] = (p0 >> 32) ^ c3[j] ^ (zero + k1);
+        c3[j] = p0;
+      }
+      k0 += 0x9E3779B9u;
+      k1 += 0xBB67AE85u;
+    }
+    for (int j = 0; j < abreast; ++j) {
+      const int block = (v + j) * wide_lanes;
+      std::uint32_t* group = words + block / 8 * int(rng_group) + block % 8 * 2;
+      store(group, (c0[j] & low) | (c1[j] << 32));
+      store(group + 16, (c2[j] & low) | (c3[j] << 32));
+    }
   }
-  const U64 low = zero + 0xffffffffu;
-  words[0] = (c0 & low) | (c1 << 32);
-  words[1] = (c2 & low) | (c3 << 32);
 }
 
 /// Natural logarithm of q in (0, 1], absolute error below 1e-7 (1 + |ln q|).

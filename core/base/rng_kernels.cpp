@@ -6,15 +6,11 @@ namespace dmise::DMISE_SIMD {
 
 void rng_groups(const RngKey& key, std::uint32_t first, std::size_t count, std::uint32_t draw,
                 std::uint32_t* out) {
-  for (std::size_t i = 0; i < count; i += rng_group) {
-    const std::uint32_t block = (first + std::uint32_t(i)) / 4;
-    for (int b = 0; b < 8; b += wide_lanes) {
-      U64 words[2];
-      philox(key, block + std::uint32_t(b), draw, words);
-      store(out + i + 2 * b, words[0]);
-      store(out + i + 16 + 2 * b, words[1]);
-    }
-  }
+  constexpr int most = 4 * rng_group;
+  std::size_t i = 0;
+  for (; i + most <= count; i += most) words_of<most>(key, first + std::uint32_t(i), draw, out + i);
+  for (; i < count; i += rng_group)
+    words_of<rng_group>(key, first + std::uint32_t(i), draw, out + i);
 }
 
 void normals_of(const std::uint32_t* words, std::size_t count, float* out) {

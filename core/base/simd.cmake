@@ -7,9 +7,9 @@ function(dmise_simd_sources target)
   set(flags_avx512 -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512)
   foreach(level sse2 avx2 avx512)
     add_library(${target}_${level} OBJECT ${ARGN})
+    # GCC raises false alarms of uninitialized values in its own intrinsics headers.
     target_compile_options(${target}_${level} PRIVATE -O3 -fno-math-errno -fno-trapping-math -Wno-psabi
-      $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>  # false alarms in its own intrinsics headers
-      ${flags_${level}})
+      "$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-uninitialized>" ${flags_${level}})
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_${level}>)
   endforeach()
 endfunction()

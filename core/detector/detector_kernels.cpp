@@ -5,30 +5,25 @@
 namespace dmise::DMISE_SIMD {
 namespace {
 
-constexpr std::size_t group = rng_group;
-
-// Words of the 32 pixels from `first` on.
-DMISE_INLINE void words_of(const RngKey& key, std::uint32_t first, std::uint32_t draw,
-                           std::uint32_t* words) {
-  for (int b = 0; b < 8; b += wide_lanes) {
-    U64 w[2];
-    philox(key, first / 4 + std::uint32_t(b), draw, w);
-    store(words + 2 * b, w[0]);
-    store(words + 16 + 2 * b, w[1]);
-  }
-}
+constexpr std::size_t group = 4 * rng_group;  // pixels that are worked on together
 
 // One group of pixels; false, and nothing written, when one of the means can't be.
 DMISE_INLINE bool poisson_group(const RngKey& key, std::uint32_t first, const float* mean,
                                 float* out) {
-  I32 fine = I32{} - 1;
+  I32 fine = I32{} - 1, large = fine;
   for (std::size_t i = 0; i < group; i += lanes) {
     const F32 m = load<F32>(mean + i);
     fine &= (m >= 0.0f) & (m <= 1e12f);
+    large &= m >= 24.0f;
   }
   if (!all(fine)) return false;
   alignas(64) std::uint32_t high[group], low[group];
-  words_of(key, first, 0, high);
+  words_of<group>(key, first, 0, high);
+  if (all(large)) {
+    for (std::size_t i = 0; i < group; i += lanes)
+      store(out + i, poisson_large(load<F32>(mean + i), load<U32>(high + i)));
+    return true;
+  }
   bool have_low = false;
   for (std::size_t i = 0; i < group; i += lanes) {
     const F32 m = load<F32>(mean + i);
@@ -36,7 +31,7 @@ DMISE_INLINE bool poisson_group(const RngKey& key, std::uint32_t first, const fl
     F32 n{};
     if (!all(small)) n = poisson_large(max(m, splat(24.0f)), load<U32>(high + i));
     if (any(small)) {
-      if (!have_low) words_of(key, first, 1, low);
+      if (!have_low) words_of<group>(key, first, 1, low);
       have_low = true;
       alignas(64) float few[lanes];
       for (std::size_t h = 0; h < lanes; h += wide_lanes) {
@@ -101,7 +96,7 @@ bool add_exceeded(const RngKey& key, std::uint32_t first, const std::uint32_t* t
   bool ties = false;
   in_groups(sum, count, 0.0f, [&](std::size_t i, float* e) {
     alignas(64) std::uint32_t words[group];
-    words_of(key, first + std::uint32_t(i), 0, words);
+    words_of<group>(key, first + std::uint32_t(i), 0, words);
     for (std::size_t j = 0; j < group; j += lanes) {
       const U32 word = load<U32>(words + j);
       I32 exceeded{}, equal{};
@@ -123,9 +118,13 @@ void add_normal(const RngKey& key, std::uint32_t first, float sigma, float* sum,
                 std::size_t count) {
   in_groups(sum, count, 0.0f, [&](std::size_t i, float* e) {
     alignas(64) std::uint32_t words[group];
-    words_of(key, first + std::uint32_t(i), 0, words);
-    for (std::size_t j = 0; j < group; j += lanes)
-      store(e + j, load<F32>(e + j) + sigma * normal_of_words(load<U32>(words + j)));
+    words_of<group>(key, first + std::uint32_t(i), 0, words);
+    for (std::size_t j = 0; j < group; j += 2 * lanes) {  // two, to hide each other's latency
+      const F32 a = normal_of_words(load<U32>(words + j));
+      const F32 b = normal_of_words(load<U32>(words + j + lanes));
+      store(e + j, load<F32>(e + j) + sigma * a);
+      store(e + j + lanes, load<F32>(e + j + lanes) + sigma * b);
+    }
   });
 }
 

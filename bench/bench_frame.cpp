@@ -1,0 +1,148 @@
+#include "bench/bench_frame.h"
+
+#include <fftw3.h>
+#include <time.h>
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "bench/figure.h"
+#include "core/detector/expose.h"
+#include "core/detector/poisson.h"
+#include "core/optics/convolver.h"
+#include "core/optics/deposit.h"
+
+namespace dmise {
+namespace {
+
+constexpr int repeats = 5;
+constexpr int columns = 3326, rows = 2504;  // the paper's all-sky camera
+
+double thread_s() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+// Median processor seconds of `work`, which runs on this thread alone: what others do on the
+// machine meanwhile counts little.
+double seconds(const std::function<void()>& work) {
+  std::vector<double> times;
+  for (int i = 0; i < repeats; ++i) {
+    const double start = thread_s();
+    work();
+    times.push_back(thread_s() - start);
+  }
+  std::sort(times.begin(), times.end());
+  return times[times.size() / 2];
+}
+
+void measure_poisson(bool json) {
+  const RngKey key = rng_key(1, "bench", 1, "photon_noise");
+  const auto rate = [&](float mean) {
+    // As in a frame: piece by piece, in the cache.
+    constexpr std::size_t piece = 16384, pieces = 256;
+    std::vector<float> means(piece, mean), deviates(piece);
+    const double s = seconds([&] {
+      for (std::size_t i = 0; i < pieces; ++i)
+        poisson(key, std::uint32_t(i * piece), means.data(), piece, deviates.data());
+    });
+    return double(piece * pieces) / s * 1e-6;
+  };
+  print_figure({"poisson_1e4_mpx_per_s", rate(1e4f), "Mpx/s", "", 0, 250}, json);
+  print_figure({"poisson_5_mpx_per_s", rate(5.0f), "Mpx/s", "", 0, 60}, json);
+}
+
+std::vector<Arc> trails() {
+  std::vector<Arc> arcs;
+  const RngKey key = rng_key(1, "bench", 1, "stars");
+  for (std::uint32_t i = 0; i < 15000; ++i) {
+    const auto u = [&](std::uint32_t draw) { return uniform_of(rng_word(key, i, draw)); };
+    const PixelPosition at{u(0) * columns, u(1) * rows}, half{0.5 + u(2), u(3) - 0.5};
+    arcs.push_back({at - half, at, at + half, 1e4});
+  }
+  return arcs;
+}
+
+void measure_deposit(bool json) {
+  Threads one(1);
+  RateImage image(columns, rows, 100.0f);
+  const PsfTable psf = make_psf_table(1.5 / fwhm_per_sigma);
+  const auto arcs = trails();
+  print_figure({"star_trails_15000_ms", 1e3 * seconds([&] { deposit(arcs, psf, image, one); }),
+                "ms", "", 0, 30, true},
+               json);
+  const Arc streak{{100, 100}, {300, 250}, {500, 400}, 1e6};
+  print_figure({"streak_500px_ms", 1e3 * seconds([&] {
+                                     deposit({&streak, 1}, psf, image, one);
+                                   }),
+                "ms"},
+               json);
+}
+
+void measure_detector(bool json) {
+  Threads one(1);
+  const Detector detector{.dark_e_per_s = 0.02,
+                          .read_noise_e = 9.3,
+                          .full_well_e = 25500,
+                          .gain_e_per_dn = 0.35,
+                          .bias_dn = 1000};
+  const RateImage light(columns, rows, 2000.0f);
+  CountImage counts;
+  EffectTimes times;
+  const double s = seconds([&] {
+    expose(light, detector, {.seed = 1, .sensor = "bench", .frame = 1, .exposure_s = 20}, {}, one,
+           counts, &times);
+  });
+  print_figure({"detector_ms", 1e3 * s, "ms"}, json);
+  for (const auto& [name, effect] : {std::pair("photon_noise_ms", Effect::photon_noise),
+                                     {"dark_current_ms", Effect::dark_current},
+                                     {"full_well_ms", Effect::full_well},
+                                     {"read_noise_ms", Effect::read_noise},
+                                     {"quantisation_ms", Effect::quantisation}})
+    print_figure({name, 1e3 * times[effect] / repeats, "ms"}, json);
+}
+
+// The two plain transforms of a padded frame, as a library user would run them.
+double two_transforms_s(int side) {
+  FftBuffer buffer(std::size_t(side) * std::size_t(side + 2));
+  auto* spectrum = reinterpret_cast<fftwf_complex*>(buffer.data());
+  const fftwf_plan there =
+      fftwf_plan_dft_r2c_2d(side, side, buffer.data(), spectrum, FFTW_ESTIMATE);
+  const fftwf_plan back = fftwf_plan_dft_c2r_2d(side, side, spectrum, buffer.data(), FFTW_ESTIMATE);
+  const double s = seconds([&] {
+    fftwf_execute(there);
+    fftwf_execute(back);
+  });
+  fftwf_destroy_plan(there);
+  fftwf_destroy_plan(back);
+  return s;
+}
+
+void measure_optics(bool json) {
+  Threads one(1);
+  constexpr int side = 4096, half = 100;
+  const Blur blur{.wavelength_m = 0.55e-6, .aperture_m = 0.3, .r0_m = 0.1};
+  const PsfKernel kernel = optical_kernel(blur, 0.5 * 0.55e-6 / 0.3, half);
+  Convolver convolver(side, side, kernel, one);
+  RateImage image(side, side);
+  for (std::size_t i = 0; i < image.pixels.size(); i += 997) image.pixels[i] = 1000.0f;
+  const double ours = seconds([&] { convolver.apply(image, one); });
+  const double anchor = two_transforms_s(good_fft_size(side + half, true));
+  print_figure({"full_chain_4096_ms", 1e3 * ours, "ms", "two FFTW transforms [ms]", 1e3 * anchor},
+               json);
+  print_figure({"full_chain_4096_ratio", ours / anchor, "1", "", 0, 2.0, true}, json);
+}
+
+}  // namespace
+
+int bench_frame(bool json) {
+  measure_poisson(json);
+  measure_deposit(json);
+  measure_detector(json);
+  measure_optics(json);
+  return 0;
+}
+
+}  // namespace dmise
