@@ -46,10 +46,10 @@ struct SaturatedPixels {
 /// The image runs through all effects piece by piece, so that nothing of its size is held but light
 /// and counts (and `memory.electrons` for blooming and interpixel coupling). An effect that is off
 /// is left out: without photon noise the expected electrons go on, without quantisation counts are
-/// whole electrons without bias, limited by the image's 16 bits alone. Each effect draws from a stream
-/// of its own: switching one leaves the noise of the others as it was, and the bytes depend on neither
-/// threads nor instruction set. Adds each effect's seconds to `times` (summed over threads) if given.
-/// Throws `Error` naming the pixel when `light` is NaN or negative.
+/// whole electrons without bias, limited by the image's 16 bits alone. Each effect draws from a
+/// stream of its own: switching one leaves the noise of the others as it was, and the bytes depend
+/// on neither threads nor instruction set. Adds each effect's seconds to `times` (summed over
+/// threads) if given. Throws `Error` naming the pixel when `light` is NaN or negative.
 SaturatedPixels expose(const RateImage& light, const Detector& detector, const Exposure& exposure,
                        const EffectSet& effects, Threads& threads, CountImage& counts,
                        EffectTimes* times = nullptr, SimdLevel level = best_simd_level(),
