@@ -1,5 +1,5 @@
 // dmise-time-master: keeps the clock of one run, from the first node that joins to the last tick.
-#include "core/base/error.h"
+#include "core/base/text_file.h"
 #include "nodes/runtime/master.h"
 #include "nodes/runtime/program.h"
 
@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   dmise::CommonFlags flags{.name = "time-master"};
   dmise::MasterOptions options;
   dmise::Tick ticks = 1;
+  std::string report;
   double silent_after_s = 5.0, progress_after_s = 0.0, start_within_s = 0.0;
   CLI::App app("Keeps the clock of one run.", "dmise-time-master");
   dmise::add_common_flags(app, flags);
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--announce", options.announce_file, "file to write the address to");
   app.add_option("--announce-fd", options.announce_fd, "file descriptor to write the address to");
+  app.add_option("--report", report, "file for the outcome of the run, in JSON");
   app.add_option("--expect", options.run.expected, "names of the nodes that keep time: a,b,c")
       ->required()
       ->delimiter(',');
@@ -54,6 +56,8 @@ int main(int argc, char** argv) {
     options.run.start_within = from_seconds(start_within_s);
     options.stop = &dmise::stop_signal();
     if (flags.check) return dmise::Coordinator(options.run).over() ? 1 : 0;
-    return dmise::run_master(options).exit_code;
+    const dmise::MasterResult result = dmise::run_master(options);
+    if (!report.empty()) dmise::write_file_whole(report, dmise::to_json(result) + "\n");
+    return result.exit_code;
   });
 }

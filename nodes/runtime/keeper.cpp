@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "dmise/v1/node.pb.h"
+#include "nodes/runtime/time_split_codec.h"
 
 namespace dmise {
 
@@ -28,6 +29,11 @@ v1::Grant Keeper::latest() {
   const std::lock_guard lock(mutex_);
   news_.clear();
   return latest_;
+}
+
+void Keeper::set_times(const TimeSplit& times) {
+  const std::lock_guard lock(mutex_);
+  times_ = times;
 }
 
 void Keeper::run() {
@@ -59,6 +65,10 @@ void Keeper::beat() {
   heartbeat->set_incarnation(options_.incarnation);
   heartbeat->set_computing(computing_.load(std::memory_order_relaxed));
   heartbeat->set_progress(options_.progress ? options_.progress() : 0);
+  {
+    const std::lock_guard lock(mutex_);
+    put(heartbeat->mutable_times(), times_);
+  }
   heartbeat_.send(to_frame(message), zmq::send_flags::none);
 }
 

@@ -9,6 +9,7 @@
 #include "nodes/runtime/event.h"
 #include "nodes/runtime/outbox.h"
 #include "nodes/runtime/socket.h"
+#include "nodes/runtime/time_split.h"
 
 namespace dmise {
 
@@ -39,6 +40,7 @@ class Keeper {
   Keeper& operator=(const Keeper&) = delete;
 
   void set_computing(bool computing) { computing_.store(computing, std::memory_order_relaxed); }
+  void set_times(const TimeSplit& times);
   /// Set when `latest` has something new; cleared by `latest`.
   const Event& news() const { return news_; }
   v1::Grant latest();
@@ -57,8 +59,9 @@ class Keeper {
   Event quit_;
   Event news_;
   std::atomic<bool> computing_{false};
-  std::mutex mutex_;  // guards latest_
+  std::mutex mutex_;  // guards latest_ and times_
   v1::Grant latest_;
+  TimeSplit times_;
   std::chrono::nanoseconds heard_;
   std::optional<std::chrono::nanoseconds> over_since_;
   bool over_ = false;

@@ -8,8 +8,10 @@
 
 #include "core/base/error.h"
 #include "core/base/text_file.h"
+#include "nodes/runtime/peer_directory.h"
 #include "nodes/runtime/peer_monitor.h"
 #include "nodes/runtime/socket.h"
+#include "nodes/runtime/time_split_codec.h"
 
 namespace dmise {
 namespace {
@@ -63,7 +65,7 @@ class Master {
         coordinator_(with_broker(options), now()),
         router_(make_socket(context_, zmq::socket_type::router, max_control_bytes)),
         ticks_(make_socket(context_, zmq::socket_type::pub, max_control_bytes)),
-        peers_(context_, router_),
+        connections_(context_, router_),
         run_id_(new_run_id()),
         heartbeat_(std::min<nanoseconds>(milliseconds(250), options.run.silent_after / 8)) {
     router_.set(zmq::sockopt::linger, 500);
@@ -78,7 +80,7 @@ class Master {
     std::optional<nanoseconds> over_since;
     while (true) {
       wait(next_check - now());
-      for (const std::string& name : peers_.lost()) coordinator_.suspect(name, now());
+      for (const std::string& name : connections_.lost()) coordinator_.suspect(name, now());
       hear();
       if (options_.stop && options_.stop->is_set()) coordinator_.stop("interrupted");
       if (now() >= next_check) {
@@ -92,7 +94,7 @@ class Master {
       if (!coordinator_.over()) continue;
       if (!over_since) over_since = now();
       // Of a failure, the heartbeat of a node that hangs hears as well.
-      const bool told = coordinator_.phase() == Phase::ended || peers_by_name_.empty() ||
+      const bool told = coordinator_.phase() == Phase::ended || directory_.all().empty() ||
                         now() - *over_since > 2 * heartbeat_;
       if ((coordinator_.deserted() && told) || now() - *over_since > farewell) break;
     }
@@ -100,12 +102,6 @@ class Master {
   }
 
  private:
-  struct Peer {
-    std::string routing_id;
-    std::uint64_t incarnation = 1;
-    v1::Join join;
-  };
-
   void announce() {
     spdlog::debug("listens on {}", address_);
     if (!options_.announce_file.empty()) write_file_whole(options_.announce_file, address_ + "\n");
@@ -118,7 +114,7 @@ class Master {
   }
 
   void wait(nanoseconds at_most) {
-    items_ = {{router_.handle(), 0, ZMQ_POLLIN, 0}, {peers_.handle(), 0, ZMQ_POLLIN, 0}};
+    items_ = {{router_.handle(), 0, ZMQ_POLLIN, 0}, {connections_.handle(), 0, ZMQ_POLLIN, 0}};
     if (options_.stop && !coordinator_.over())
       items_.push_back({nullptr, options_.stop->fd(), ZMQ_POLLIN, 0});
     wait_for(items_, at_most);
@@ -131,30 +127,23 @@ class Master {
       if (!before_welcome && heard_.run_id() != run_id_) continue;
       const std::string_view sender = message[0].to_string_view();
       if (heard_.has_done()) {
-        coordinator_.done(name_of(sender), heard_.done().tick(), now());
+        coordinator_.done(directory_.name_of(sender), heard_.done().tick(), now());
       } else if (heard_.has_heartbeat()) {
         heartbeat(sender, message[1]);
       } else if (heard_.has_join()) {
         join(sender, message[1]);
       } else if (heard_.has_ready()) {
-        coordinator_.ready(name_of(sender), now());
+        coordinator_.ready(directory_.name_of(sender), now());
       } else if (heard_.has_leave()) {
-        leave(name_of(sender));
+        leave(directory_.name_of(sender));
       } else if (heard_.has_failed()) {
-        coordinator_.fail(name_of(sender), heard_.failed().reason());
+        coordinator_.fail(directory_.name_of(sender), heard_.failed().reason());
       } else if (heard_.has_hello()) {
         v1::MasterMessage answer;
         fill(answer.mutable_endpoints());
         reply(sender, answer);
       }
     }
-  }
-
-  /// The node that joined over this connection; "" if none.
-  const std::string& name_of(std::string_view routing_id) const {
-    static const std::string nobody;
-    const auto found = names_.find(routing_id);
-    return found != names_.end() ? found->second : nobody;
   }
 
   void join(std::string_view sender, zmq::message_t& frame) {
@@ -177,10 +166,8 @@ class Master {
       spdlog::warn("refused {}: {}", join.name(), *refusal);
       return;
     }
-    names_[std::string(sender)] = join.name();
-    Peer& peer = peers_by_name_[join.name()];
-    peer = {std::string(sender), ++incarnations_[join.name()], join};
-    peers_.belongs(frame, join.name());
+    const Peer& peer = directory_.add(sender, join);
+    connections_.belongs(frame, join.name());
     auto* welcome = answer.mutable_welcome();
     welcome->set_run_id(run_id_);
     welcome->set_incarnation(peer.incarnation);
@@ -198,10 +185,10 @@ class Master {
 
   void heartbeat(std::string_view sender, zmq::message_t& frame) {
     const auto& heartbeat = heard_.heartbeat();
-    const auto peer = peers_by_name_.find(heartbeat.name());
-    if (peer == peers_by_name_.end() || peer->second.incarnation != heartbeat.incarnation()) return;
-    peers_.belongs(frame, heartbeat.name());
+    if (!directory_.find(heartbeat.name(), heartbeat.incarnation())) return;
+    connections_.belongs(frame, heartbeat.name());
     coordinator_.heartbeat(heartbeat.name(), heartbeat.computing(), heartbeat.progress(), now());
+    times_[heartbeat.name()] = take(heartbeat.times());
     v1::MasterMessage answer;
     *answer.mutable_grant() = grant();
     const auto member = coordinator_.members().find(heartbeat.name());
@@ -215,7 +202,7 @@ class Master {
   void leave(const std::string& name) {
     const auto& leave = heard_.leave();
     if (name.empty()) return;
-    times_[name] = {leave.compute_s(), leave.messaging_s(), leave.waiting_s()};
+    times_[name] = take(leave.times());
     coordinator_.leave(name, leave.interrupted());
     spdlog::debug("{} left", name);
   }
@@ -265,25 +252,8 @@ class Master {
 
   void send_topology() {
     v1::MasterMessage message;
-    auto* topology = message.mutable_topology();
-    for (const auto& [name, peer] : peers_by_name_) {
-      if (peer.join.has_broker()) {
-        topology->set_publish_endpoint(peer.join.broker().publish_endpoint());
-        topology->set_subscribe_endpoint(peer.join.broker().subscribe_endpoint());
-      } else {
-        fill(topology->add_publishers(), peer);
-      }
-    }
-    for (const auto& [name, peer] : peers_by_name_) reply(peer.routing_id, message);
-  }
-
-  static void fill(v1::Publisher* publisher, const Peer& peer) {
-    publisher->set_name(peer.join.name());
-    publisher->set_incarnation(peer.incarnation);
-    *publisher->mutable_topics() = peer.join.produces();
-    *publisher->mutable_direct_topics() = peer.join.produces_direct();
-    publisher->set_direct_endpoint(peer.join.direct_endpoint());
-    publisher->set_resend_endpoint(peer.join.resend_endpoint());
+    *message.mutable_topology() = directory_.topology();
+    for (const auto& [name, peer] : directory_.all()) reply(peer.routing_id, message);
   }
 
   void fill(v1::Endpoints* endpoints) const {
@@ -294,22 +264,14 @@ class Master {
     endpoints->set_last_tick(options_.run.last_tick);
     endpoints->set_tick_ns(options_.tick_length.ns);
     endpoints->set_tick_endpoint(tick_endpoint_);
-    for (const auto& [name, peer] : peers_by_name_) {
-      if (peer.join.has_broker())
-        endpoints->set_observe_endpoint(peer.join.broker().observe_endpoint());
-      else
-        fill(endpoints->add_publishers(), peer);
-    }
+    directory_.describe(endpoints);
     for (const auto& [name, member] : coordinator_.members()) {
       auto* node = endpoints->add_nodes();
       node->set_name(name);
       node->set_done_tick(member.done);
       node->set_alive(member.active() && !member.silent);
       const auto times = times_.find(name);
-      if (times == times_.end()) continue;
-      node->set_compute_s(times->second.compute_s);
-      node->set_messaging_s(times->second.messaging_s);
-      node->set_waiting_s(times->second.waiting_s);
+      if (times != times_.end()) put(node->mutable_times(), times->second);
     }
     for (const std::string& name : coordinator_.missing()) endpoints->add_missing(name);
     for (const std::string& name : coordinator_.holding()) endpoints->add_holding(name);
@@ -345,14 +307,12 @@ class Master {
   Coordinator coordinator_;
   zmq::context_t context_{1};
   zmq::socket_t router_, ticks_;
-  PeerMonitor peers_;
+  PeerMonitor connections_;
   std::uint64_t run_id_;
   nanoseconds heartbeat_;
   std::string address_, tick_endpoint_;
   std::vector<zmq::pollitem_t> items_;
-  std::map<std::string, std::string, std::less<>> names_;  // by routing id
-  std::map<std::string, Peer> peers_by_name_;
-  std::map<std::string, std::uint64_t> incarnations_;
+  PeerDirectory directory_;
   std::map<std::string, TimeSplit> times_;
   v1::NodeMessage heard_;
   v1::Grant grant_;

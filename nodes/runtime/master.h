@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "nodes/runtime/event.h"
-#include "nodes/runtime/master_link.h"
+#include "nodes/runtime/master_result.h"
 #include "time-master/coordinator.h"
 
 namespace dmise {
@@ -21,15 +21,6 @@ struct MasterOptions {
   std::string announce_file;  // the address is written here when bound
   int announce_fd = -1;       // and here, as one line
   std::function<void(const std::string& address)> on_bound;
-};
-
-struct MasterResult {
-  int exit_code = 0;   // 0: every tick was done
-  std::string reason;  // first cause of a code other than 0
-  Tick granted = -1;
-  double wall_s = 0.0;                     // from the first grant to the end
-  std::map<std::string, TimeSplit> times;  // of nodes that said goodbye
-  std::vector<std::string> dropped;
 };
 
 /// Keeps the clock of one run until every tick is done or the run fails. Throws `ConfigError` for

@@ -1,6 +1,7 @@
 #include "nodes/runtime/master_link.h"
 
 #include "core/base/error.h"
+#include "nodes/runtime/time_split_codec.h"
 
 namespace dmise {
 
@@ -67,9 +68,7 @@ void MasterLink::leave(bool interrupted, const TimeSplit& times) {
   v1::NodeMessage message;
   auto* leave = message.mutable_leave();
   leave->set_interrupted(interrupted);
-  leave->set_compute_s(times.compute_s);
-  leave->set_messaging_s(times.messaging_s);
-  leave->set_waiting_s(times.waiting_s);
+  put(leave->mutable_times(), times);
   tell(message);
 }
 

@@ -9,13 +9,6 @@
 
 namespace dmise {
 
-/// How a process spent the time of a run.
-struct TimeSplit {
-  double compute_s = 0.0;    // in steps
-  double messaging_s = 0.0;  // encoding, sending, receiving, checking
-  double waiting_s = 0.0;    // for the clock or for inputs
-};
-
 /// A process's side of the conversation with the time-master: joins, hears grants (published, and
 /// repeated in answers to heartbeats), reports, leaves. Used from one thread.
 class MasterLink {
@@ -28,7 +21,9 @@ class MasterLink {
 
   /// Starts the heartbeat. Only what `join` does not know needs to be set in `options`.
   void keep(KeeperOptions options, std::optional<zmq::socket_t> resend_socket);
+  /// Told to the master with the next heartbeat.
   void set_computing(bool computing) { keeper_->set_computing(computing); }
+  void set_times(const TimeSplit& times) { keeper_->set_times(times); }
 
   void ready();
   void done(Tick tick);

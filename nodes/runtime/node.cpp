@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "nodes/runtime/inbox.h"
+#include "nodes/runtime/master_link.h"
 
 namespace dmise {
 namespace {
@@ -156,6 +157,7 @@ class Node {
       for (const SharedFrames& frames : outbox_->pack(tick, outputs)) publish(frames);
       link_.done(tick);
       result_->done = tick;
+      link_.set_times(result_->times);
     }
     while (!link_.over() && !link_.stopped()) link_.wait({}, idle);
   }

@@ -3,7 +3,7 @@
 
 #include "core/sim/participant.h"
 #include "nodes/runtime/event.h"
-#include "nodes/runtime/master_link.h"
+#include "nodes/runtime/time_split.h"
 
 namespace dmise {
 

@@ -1,7 +1,9 @@
 #include "nodes/runtime/status.h"
 
 #include "core/base/error.h"
+#include "dmise/v1/time.pb.h"
 #include "nodes/runtime/socket.h"
+#include "nodes/runtime/time_split_codec.h"
 
 namespace dmise {
 namespace {
@@ -53,7 +55,7 @@ RunStatus ask_master(const std::string& address, double within_s) {
     status.nodes.push_back({.name = node.name(),
                             .done = node.done_tick(),
                             .alive = node.alive(),
-                            .times = {node.compute_s(), node.messaging_s(), node.waiting_s()}});
+                            .times = take(node.times())});
   return status;
 }
 

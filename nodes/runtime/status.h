@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/base/sim_time.h"
-#include "nodes/runtime/master_link.h"
+#include "nodes/runtime/time_split.h"
 #include "time-master/coordinator.h"
 
 namespace dmise {

@@ -7,6 +7,7 @@
 #include "nodes/runtime/broker.h"
 #include "nodes/runtime/log.h"
 #include "nodes/runtime/master.h"
+#include "nodes/runtime/master_link.h"
 #include "nodes/runtime/node.h"
 #include "nodes/runtime/socket.h"
 #include "nodes/runtime/status.h"

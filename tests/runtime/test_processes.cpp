@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "core/base/text_file.h"
 #include "nodes/runtime/status.h"
 #include "tests/support/process.h"
 #include "tests/support/tsan.h"
@@ -58,10 +59,14 @@ struct Stack {
   }
 };
 
-TEST(Processes, RunToTheEnd) {
-  Stack stack({"--ticks", "20", "--window", "3"});
+TEST(Processes, RunToTheEndAndReportIt) {
+  const std::string report = testing::TempDir() + "dmise-report.json";
+  Stack stack({"--ticks", "20", "--window", "3", "--report", report});
   stack.start_all();
   stack.expect_all_exit(0);
+  const std::string json = read_text_file(report);
+  EXPECT_THAT(json, HasSubstr(R"({"status":"ended","cause":"","granted_tick":19,)"));
+  EXPECT_THAT(json, HasSubstr(R"("recorder":{"compute_s":)"));
 }
 
 // The promise: a dead node is named within `silent_after_s`.

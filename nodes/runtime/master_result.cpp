@@ -1,0 +1,29 @@
+#include "nodes/runtime/master_result.h"
+
+#include "core/base/json.h"
+
+namespace dmise {
+
+std::string to_json(const MasterResult& result) {
+  JsonWriter json;
+  json.begin_object();
+  json.field("status", result.exit_code == 0 ? "ended" : "failed");
+  json.field("cause", result.reason);
+  json.field("granted_tick", std::int64_t(result.granted));
+  json.field("wall_s", result.wall_s);
+  json.key("dropped").begin_array();
+  for (const std::string& name : result.dropped) json.value(name);
+  json.end_array();
+  json.key("nodes").begin_object();
+  for (const auto& [name, times] : result.times) {
+    json.key(name).begin_object();
+    json.field("compute_s", times.compute_s);
+    json.field("messaging_s", times.messaging_s);
+    json.field("waiting_s", times.waiting_s);
+    json.end_object();
+  }
+  json.end_object().end_object();
+  return json.take();
+}
+
+}  // namespace dmise

@@ -1,0 +1,59 @@
+#include "nodes/runtime/peer_directory.h"
+
+namespace dmise {
+namespace {
+
+void fill(v1::Publisher* publisher, const Peer& peer) {
+  publisher->set_name(peer.join.name());
+  publisher->set_incarnation(peer.incarnation);
+  *publisher->mutable_topics() = peer.join.produces();
+  *publisher->mutable_direct_topics() = peer.join.produces_direct();
+  publisher->set_direct_endpoint(peer.join.direct_endpoint());
+  publisher->set_resend_endpoint(peer.join.resend_endpoint());
+}
+
+}  // namespace
+
+const Peer& PeerDirectory::add(std::string_view routing_id, const v1::Join& join) {
+  const auto earlier = peers_.find(join.name());
+  const std::uint64_t incarnation = earlier == peers_.end() ? 1 : earlier->second.incarnation + 1;
+  if (earlier != peers_.end()) names_.erase(earlier->second.routing_id);
+  names_[std::string(routing_id)] = join.name();
+  return peers_[join.name()] = {std::string(routing_id), incarnation, join};
+}
+
+const std::string& PeerDirectory::name_of(std::string_view routing_id) const {
+  static const std::string nobody;
+  const auto found = names_.find(routing_id);
+  return found != names_.end() ? found->second : nobody;
+}
+
+const Peer* PeerDirectory::find(const std::string& name, std::uint64_t incarnation) const {
+  const auto found = peers_.find(name);
+  return found != peers_.end() && found->second.incarnation == incarnation ? &found->second
+                                                                           : nullptr;
+}
+
+v1::Topology PeerDirectory::topology() const {
+  v1::Topology topology;
+  for (const auto& [name, peer] : peers_) {
+    if (peer.join.has_broker()) {
+      topology.set_publish_endpoint(peer.join.broker().publish_endpoint());
+      topology.set_subscribe_endpoint(peer.join.broker().subscribe_endpoint());
+    } else {
+      fill(topology.add_publishers(), peer);
+    }
+  }
+  return topology;
+}
+
+void PeerDirectory::describe(v1::Endpoints* endpoints) const {
+  for (const auto& [name, peer] : peers_) {
+    if (peer.join.has_broker())
+      endpoints->set_observe_endpoint(peer.join.broker().observe_endpoint());
+    else
+      fill(endpoints->add_publishers(), peer);
+  }
+}
+
+}  // namespace dmise
