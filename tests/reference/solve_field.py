@@ -87,7 +87,7 @@ def solve(frame, rows, columns, directory):
     """(WCS by astrometry.net or None, number of sources), in the crop's tangent plane."""
     sources = referee.extract_sources(frame.counts[rows, columns], directory,
                                       aperture_px=6 + frame.trail_px)
-    clean = sources["peak"] < 0.95 * frame.header["SATURATE"]
+    clean = (sources["flags"] == 0) & (sources["peak"] < 0.95 * frame.header["SATURATE"])
     best = np.flatnonzero(clean)[np.argsort(-sources["flux"][clean])[:MOST_SOURCES]]
     plane = TangentPlane(frame, rows, columns)
     x, y = plane.from_pixels(sources["x"][best] + columns.start, sources["y"][best] + rows.start)
@@ -101,7 +101,7 @@ def solve(frame, rows, columns, directory):
         referee.need("solve-field"), "field.xyls", "--width", width, "--height", height,
         "--x-column", "X", "--y-column", "Y", "--sort-column", "FLUX", "--scale-units", "arcsecperpix",
         "--scale-low", f"{scale_arcsec * 0.8:.4f}", "--scale-high", f"{scale_arcsec * 1.25:.4f}",
-        "--no-plots", "--overwrite", "--crpix-center", "--tweak-order", "2", "--cpulimit", str(DEADLINE_S),
+        "--no-plots", "--overwrite", "--crpix-center", "--tweak-order", "1", "--cpulimit", str(DEADLINE_S),
     ]
     done = subprocess.run(["timeout", "--kill-after=5", str(2 * DEADLINE_S), *command], cwd=directory,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)

@@ -29,7 +29,7 @@ def select(frame, stars, aperture_px):
     rows, columns = frame.counts.shape
     light = 10 ** (-0.4 * inside["v_mag"])
     places = np.column_stack([x, y])
-    groups = cKDTree(places).query_ball_point(places, aperture_px + 4)
+    groups = cKDTree(places).query_ball_point(places, aperture_px / 2 + 4)
     others = np.array([light[group].sum() for group in groups]) - light
     away = np.hypot(x - columns / 2, y - rows / 2) * frame.scale_deg
     edge = np.minimum.reduce([x, y, columns - x, rows - y])
