@@ -8,6 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/base/text_file.h"
+#include "core/base/units.h"
+#include "core/detection/wcs.h"
 #include "core/image/fits_cards.h"
 #include "tests/image/sample_frame.h"
 #include "tests/support/data.h"
@@ -125,6 +127,33 @@ TEST(FitsFile, AstropyReadsHeaderAndPixels) {
             "shape 150 200 dtype uint16 corners 0 65535\n"
             "gain 0.35 seed 18446744073709551615 obs 2018-01-20T23:40:10.000\n"
             "frame icrs ctype RA---TAN-SIP DEC--TAN-SIP reference pixel 99.5 74.5\n");
+}
+
+// Reference: astropy 5.2's WCS with SIP. The directions are ours (core/detection/wcs.h).
+TEST(FitsFile, AstropysWcsIsOursToAThousandthOfAPixel) {
+  const std::string python = "/usr/bin/python3";
+  if (std::system((python + " -c 'import astropy.wcs' 2> /dev/null").c_str()) != 0)
+    GTEST_SKIP() << "needs python3-astropy";
+  const std::string path = scratch("wcs.fits"), list = scratch("wcs.txt");
+  for (const double dec_rad : {0.6, -pi / 2 + 1e-9, 1.5}) {
+    auto header = sample_header(3326, 2504);
+    header.wcs.dec_rad = dec_rad;
+    write_frame(path, CountImage(3326, 2504), header);
+    std::string lines;
+    for (int i = 0; i < 100; ++i) {
+      const double x = 36.0 * (i % 10) * 10, y = 27.0 * (i / 10) * 10;
+      const auto place = to_spherical(wcs_direction(header.wcs, {x, y}));
+      char line[128];
+      std::snprintf(line, sizeof line, "%.3f %.3f %.14g %.14g\n", x, y, place[0] / deg,
+                    place[1] / deg);
+      lines += line;
+    }
+    write_file_whole(list, lines);
+    const auto [status, output] = run(
+        python + " " DMISE_SOURCE_DIR "/tests/reference/wcs_with_astropy.py " + path + " " + list);
+    EXPECT_EQ(status, 0) << output;
+    EXPECT_LT(std::stod(output), 0.001) << dec_rad;
+  }
 }
 
 TEST(FitsFile, NamesTheMissingOrWrongKeyword) {
