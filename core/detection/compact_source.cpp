@@ -1,19 +1,14 @@
 #include "core/detection/compact_source.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
+#include "core/detection/source_fit.h"
+#include "core/detection/star_hypothesis.h"
+
 namespace dmise {
 namespace {
-
-constexpr double bent_from_px = 30.0;     // a shorter streak is taken as straight
-constexpr double sloped_from_px = 15.0;   // and as evenly bright
-constexpr int most_rounds = 8;            // of fitting and leaving out
-constexpr double settled_px = 0.5;        // ends that move less stay
-constexpr int most_stars = 4;             // in a row, that may pass for a streak
-constexpr double background_prior = 0.1;  // of the mesh, in units of a pixel's noise
 
 /// The component's pixels and those that touch them, without saturated ones.
 std::vector<FitPixel> pixels_around(const Scene& scene, const Component& component,
@@ -70,177 +65,7 @@ Trail moments(const std::vector<FitPixel>& pixels, double sigma_px) {
   return trail;
 }
 
-/// `count` stars in a row along the line, which share its flux.
-std::vector<Trail> stars_along(const Trail& line, const Trail& star, int count) {
-  std::vector<Trail> out;
-  for (int i = 0; i < count; ++i) {
-    const double along = ((2 * i + 1.0) / count - 1) / 2 * line.length_px;
-    Trail t = star;
-    t.x_px = line.x_px + along * std::cos(line.angle_rad);
-    t.y_px = line.y_px + along * std::sin(line.angle_rad);
-    t.flux_e = line.flux_e / count;
-    out.push_back(t);
-  }
-  return out;
-}
-
-double deviance_of_stars(const std::vector<FitPixel>& pixels, const Trail& line, const Trail& star,
-                         int count, const FitSettings& settings) {
-  const std::vector<unsigned> free(std::size_t(count), trail_place);
-  return fit_trails(pixels, stars_along(line, star, count), free, settings).deviance;
-}
-
-std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double margin_px) {
-  const double c = std::abs(std::cos(trail.angle_rad)), s = std::abs(std::sin(trail.angle_rad));
-  const double reach_x = trail.length_px / 2 * c + margin_px + std::abs(trail.sagitta_px);
-  const double reach_y = trail.length_px / 2 * s + margin_px + std::abs(trail.sagitta_px);
-  const int x0 = std::max(0, int(std::floor(trail.x_px - reach_x)));
-  const int x1 = std::min(scene.counts.columns - 1, int(std::ceil(trail.x_px + reach_x)));
-  const int y0 = std::max(0, int(std::floor(trail.y_px - reach_y)));
-  const int y1 = std::min(scene.counts.rows - 1, int(std::ceil(trail.y_px + reach_y)));
-  std::vector<FitPixel> out;
-  for (int y = y0; y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x)
-      if (lies_on(trail, x, y, margin_px) && !scene.saturated(x, y))
-        out.push_back(scene.pixel(x, y));
-  return out;
-}
-
-/// Drops pixels that stand out of the model, with their neighbours, up or far down.
-std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels, const Trail& trail,
-                                       double background_e, double tolerance, double sigma_px) {
-  std::vector<const FitPixel*> outliers;
-  for (const FitPixel& p : pixels) {
-    const double model = trail_value(trail, sigma_px, p.x, p.y);
-    const double tolerated = tolerance * model;
-    const double limit =
-        4.0 * std::sqrt(p.variance_e2 + std::max(model, 0.0) + tolerated * tolerated);
-    const double residual = p.signal_e - model - background_e;
-    if (residual > limit || residual < -1.5 * limit) outliers.push_back(&p);
-  }
-  if (outliers.empty()) return pixels;
-  std::vector<FitPixel> out;
-  for (const FitPixel& p : pixels) {
-    const bool near = std::any_of(outliers.begin(), outliers.end(), [&](const FitPixel* o) {
-      return std::abs(o->x - p.x) <= 1 && std::abs(o->y - p.y) <= 1;
-    });
-    if (!near) out.push_back(p);
-  }
-  return out;
-}
-
-/// Takes `trail` to `target`, but neither end farther than `limit_px`: the light beyond was not
-/// looked at. Returns how far the farther end wanted to go.
-double move_ends(Trail& trail, const Trail& target, double limit_px) {
-  const auto end = [](const Trail& t, double side) {
-    return PixelPosition{t.x_px + side * t.length_px / 2 * std::cos(t.angle_rad),
-                         t.y_px + side * t.length_px / 2 * std::sin(t.angle_rad)};
-  };
-  double farthest = 0.0;
-  std::array<PixelPosition, 2> ends;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const double side = i == 0 ? -1 : 1;
-    const PixelPosition from = end(trail, side), way = end(target, side) - from;
-    const double distance = std::hypot(way.x_px, way.y_px);
-    farthest = std::max(farthest, distance);
-    ends[i] = from + way * (distance > limit_px ? limit_px / distance : 1.0);
-  }
-  trail = target;
-  if (farthest <= limit_px) return farthest;
-  const PixelPosition chord = ends[1] - ends[0];
-  trail.x_px = (ends[0].x_px + ends[1].x_px) / 2;
-  trail.y_px = (ends[0].y_px + ends[1].y_px) / 2;
-  trail.length_px = std::hypot(chord.x_px, chord.y_px);
-  trail.angle_rad = std::atan2(chord.y_px, chord.x_px);
-  trail.flux_e *= trail.length_px / std::max(target.length_px, 1.0);
-  return farthest;
-}
-
-bool plausible(const Scene& scene, const Trail& t) {
-  return std::isfinite(t.x_px + t.y_px + t.flux_e + t.length_px + t.angle_rad) && t.flux_e > 0 &&
-         t.x_px > -1 && t.y_px > -1 && t.x_px < scene.counts.columns && t.y_px < scene.counts.rows;
-}
-
 }  // namespace
-
-bool lies_on(const Trail& trail, double x_px, double y_px, double margin_px) {
-  const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
-  const double dx = x_px - trail.x_px, dy = y_px - trail.y_px;
-  const double along = dx * c + dy * s, across = dy * c - dx * s, half = trail.length_px / 2;
-  const double r = half > 0 ? std::clamp(along / half, -1.0, 1.0) : 0.0;
-  const double off = across - trail.sagitta_px * (1.0 / 3 - r * r);
-  const double beyond = std::max(std::abs(along) - half, 0.0);
-  return off * off + beyond * beyond <= margin_px * margin_px;
-}
-
-std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool streak,
-                                 double model_error, bool draft) {
-  Source source;
-  source.streak = streak;
-  source.free = !streak                             ? unsigned(trail_place)
-                : start.length_px >= bent_from_px   ? unsigned(trail_bent_line)
-                : start.length_px >= sloped_from_px ? unsigned(trail_line | trail_slope)
-                                                    : unsigned(trail_line);
-  Trail trail = start;
-  if (!streak) trail.length_px = 0.0;
-  const double margin_px = 3 * scene.sigma_px + 2.5;
-  std::vector<FitPixel> pixels;
-  double moved_px = 0.0;
-  const int least_rounds = draft ? 2 : 3, last_round = draft ? 2 : most_rounds;
-  for (int round = 0; round < least_rounds || (round < last_round && moved_px > settled_px);
-       ++round) {
-    if (!plausible(scene, trail)) return std::nullopt;
-    const auto all = pixels_near(scene, trail, margin_px);
-    // Of a start only the brightness is known, and only of a streak's.
-    pixels = round > 0 ? without_outliers(all, trail, source.fit.background_e, 0.15, scene.sigma_px)
-             : streak && start.length_px > sloped_from_px
-                 ? without_outliers(all, trail, 0.0, 1.0, scene.sigma_px)
-                 : all;
-    if (pixels.size() < 12 || pixels.size() < all.size() / 2) return std::nullopt;
-    FitSettings settings;
-    settings.sigma_px = scene.sigma_px;
-    settings.model_error = model_error;
-    settings.background_sigma_e = background_prior * std::sqrt(double(pixels.front().variance_e2));
-    settings.most_steps = 20;
-    source.fit = fit_trails(pixels, {trail}, {source.free}, settings);
-    moved_px = move_ends(trail, source.fit.trails[0], margin_px - 2 * scene.sigma_px);
-  }
-  if ((!draft && moved_px > settled_px) || !plausible(scene, trail) || !(source.fit.cov(2, 2) > 0))
-    return std::nullopt;
-  const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
-  const double edge = 2 * scene.sigma_px;
-  for (const double half : {-trail.length_px / 2, trail.length_px / 2}) {
-    const double x = trail.x_px + half * c, y = trail.y_px + half * s;
-    if (x < edge || y < edge || x > scene.counts.columns - 1 - edge ||
-        y > scene.counts.rows - 1 - edge)
-      source.at_edge = true;
-    const int steps = int(trail.length_px / 2) + 1;
-    for (int i = 0; i <= steps && !source.saturated; ++i) {
-      const int px = int(std::lround(trail.x_px + half * c * i / steps));
-      const int py = int(std::lround(trail.y_px + half * s * i / steps));
-      if (scene.contains(px, py) && scene.saturated(px, py)) source.saturated = true;
-    }
-  }
-  return source;
-}
-
-bool beats_stars(const Scene& scene, const Source& source, const DetectorSettings& settings) {
-  const Trail& line = source.trail();
-  const Trail star = scene.star_trail(line.x_px, line.y_px);
-  const auto pixels = pixels_near(scene, line, 2.5 * scene.sigma_px + 0.5);
-  FitSettings fit_settings;
-  fit_settings.sigma_px = scene.sigma_px;
-  fit_settings.model_error = settings.model_error;
-  fit_settings.most_steps = 15;
-  const double as_line = fit_trails(pixels, {line}, {trail_line}, fit_settings).deviance;
-  // More stars fit better by chance, by about one for each of their parameters beyond the line's.
-  for (int count = 2; count <= most_stars; ++count) {
-    const double freedom = 3.0 * count - 5.0;
-    const double as_stars = deviance_of_stars(pixels, line, star, count, fit_settings) + freedom;
-    if (as_stars < as_line + settings.chain_margin) return false;
-  }
-  return true;
-}
 
 std::optional<Source> judge_compact(const Scene& scene, const Component& component,
                                     const DetectorSettings& settings) {
@@ -259,7 +84,7 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
   const bool stars_trail = star.length_px >= settings.least_difference_px;
   TrailFit as_point;
   if (stars_trail) {
-    Trail point = as_star.trails[0];
+    Trail point = light;  // not where the star's trail ended up, which may be anywhere along it
     point.length_px = 0.0;
     as_point = fit_trails(pixels, {point}, {trail_place}, fit_settings);
   }
@@ -273,7 +98,9 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
       as_point.deviance < as_line.deviance + settings.blend_margin) {
     auto source = fit_source(scene, as_point.trails[0], false, 0.0);
     // A star that the frame's edge cuts has the shape of a point.
-    if (source && !source->at_edge && source->snr() >= settings.least_snr) return source;
+    if (source && !source->at_edge && source->snr() >= settings.least_snr &&
+        point_beats_star(scene, *source, settings))
+      return source;
     return std::nullopt;
   }
   const double as_two = deviance_of_stars(pixels, light, star, 2, fit_settings);
@@ -284,10 +111,9 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
   auto source = fit_source(scene, as_line.trails[0], true, 0.0);
   if (!source || source->snr() < settings.least_snr) return std::nullopt;
   const double sigma_length_px = std::sqrt(source->fit.cov(3, 3));
-  if (trail_difference_px(source->trail(), star) <
-      std::max(settings.least_difference_px, 4 * sigma_length_px))
+  const double tolerance_px = std::max(settings.least_difference_px, 4 * sigma_length_px);
+  if (moves_like_star(*source, star, tolerance_px) || !beats_stars(scene, *source, settings))
     return std::nullopt;
-  if (!beats_stars(scene, *source, settings)) return std::nullopt;
   return source;
 }
 

@@ -11,6 +11,7 @@
 #include "core/detection/describe.h"
 #include "core/detection/long_streak.h"
 #include "core/detection/scene.h"
+#include "core/detection/source_fit.h"
 #include "core/detection/star_motion.h"
 #include "core/detection/wcs.h"
 

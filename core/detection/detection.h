@@ -27,7 +27,9 @@ struct Detection {
   SimTime time;                    // of ra/dec
   double ra_rad = 0.0, dec_rad = 0.0;               // astrometric, through the WCS
   double corrected_ra_rad = 0.0, corrected_dec_rad = 0.0;  // annual aberration put right
-  std::array<double, 3> covariance_rad2{};          // var(ra cos dec), cov, var(dec)
+  // var(ra cos dec), cov, var(dec). Of a streak's centroid it includes along the track what one frame
+  // can't tell: where between the ends the object was at mid exposure (core/detection/describe.h).
+  std::array<double, 3> covariance_rad2{};
   Vec<Gcrs> sensor_position_m;     // at `time`
   Vec<Gcrs> sensor_velocity_m_per_s;
   bool light_time_removed = false;
@@ -36,7 +38,7 @@ struct Detection {
   double magnitude = 0.0;          // in `band`, above the atmosphere, by the header's zero point
   double magnitude_sigma = 0.0;
   std::string band = "V";
-  double snr = 0.0;                // signal_e / sqrt(variance of the sum over its footprint)
+  double snr = 0.0;                // signal_e / its standard error in the fit (a matched filter)
   double x_px = 0.0, y_px = 0.0;   // centroid
   std::array<double, 3> covariance_px2{};           // var x, cov xy, var y
   double signal_e = 0.0;           // electrons above the background
@@ -46,6 +48,8 @@ struct Detection {
   double end1_ra_rad = 0.0, end1_dec_rad = 0.0, end2_ra_rad = 0.0, end2_dec_rad = 0.0;
   SimTime end1_time, end2_time;
   bool direction_known = false;
+  // Errors of the ends, as covariance_rad2. They have times of their own, so nothing is added.
+  std::array<double, 3> end1_covariance_rad2{}, end2_covariance_rad2{};
   double length_px = 0.0;          // between the ends; 0 for a point
   double rate_rad_per_s = 0.0;     // angular, along the streak
   bool saturated = false;          // a pixel of it is at full well or at the ADC's limit

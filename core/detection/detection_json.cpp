@@ -101,6 +101,8 @@ std::string to_json(const Detection& d, const UtcText& utc) {
   line.array("end2_px", std::array<double, 2>{d.end2_x_px, d.end2_y_px});
   line.angle("end1_ra_deg", d.end1_ra_rad).angle("end1_dec_deg", d.end1_dec_rad);
   line.angle("end2_ra_deg", d.end2_ra_rad).angle("end2_dec_deg", d.end2_dec_rad);
+  line.array("end1_covariance_arcsec2", d.end1_covariance_rad2, arcsec2);
+  line.array("end2_covariance_arcsec2", d.end2_covariance_rad2, arcsec2);
   line.time("end1_time", d.end1_time).time("end2_time", d.end2_time);
   line.field("direction_known", d.direction_known).field("length_px", d.length_px);
   line.field("rate_arcsec_per_s", d.rate_rad_per_s / arcsec);

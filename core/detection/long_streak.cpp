@@ -6,7 +6,8 @@
 #include <optional>
 
 #include "core/base/units.h"
-#include "core/detection/compact_source.h"
+#include "core/detection/source_fit.h"
+#include "core/detection/star_hypothesis.h"
 
 namespace dmise {
 namespace {
@@ -15,7 +16,7 @@ constexpr int most_lines = 4;       // in one component
 constexpr int window_px = 16;       // by which a streak grows
 constexpr double growth_snr = 4.0;  // of a window that goes on
 constexpr double gap_snr = 6.0;     // of one beyond a gap
-constexpr double chain_px = 30.0;   // blends of stars are not longer
+constexpr double chain_px = 30.0;   // blends of stars are not longer, but by their own trails
 constexpr int most_rounds = 6;      // of fitting and following
 
 struct Point {
@@ -303,11 +304,13 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
   source = fit_source(scene, source->trail(), true, 0.02);
   if (!source || source->snr() < settings.least_snr) return std::nullopt;
   const Trail& t = source->trail();
-  if (source->fit.reduced_chi2() > (t.length_px < chain_px ? 2.0 : 5.0) || !is_continuous(scene, t))
+  const Trail star = scene.star_trail(t.x_px, t.y_px);
+  if (source->fit.reduced_chi2() > (t.length_px < chain_px + 3 * star.length_px ? 2.0 : 5.0) ||
+      !is_continuous(scene, t))
     return std::nullopt;
-  if (t.length_px < chain_px && !beats_stars(scene, *source, settings)) return std::nullopt;
-  if (trail_difference_px(t, scene.star_trail(t.x_px, t.y_px)) < settings.least_difference_px + 1)
+  if (t.length_px < chain_px + 3 * star.length_px && !beats_stars(scene, *source, settings))
     return std::nullopt;
+  if (moves_like_star(*source, star, settings.least_difference_px + 1)) return std::nullopt;
   return source;
 }
 

@@ -67,6 +67,15 @@ Errors errors_of(const std::vector<Detection>& detections, const std::vector<Pla
   return {e.found, e.mean_x / n, e.mean_y / n, std::sqrt(e.rms / n), e.nees / n, e.mean_flux / n};
 }
 
+/// Squared error of end 1 by its own covariance, against where the pixel `truth` is in the sky.
+double nees_on_the_sky(const Detection& d, const Wcs& wcs, PixelPosition truth) {
+  const auto place = to_spherical(wcs_direction(wcs, truth));
+  const double e = std::remainder(d.end1_ra_rad - place[0], 2 * pi) * std::cos(place[1]);
+  const double n = d.end1_dec_rad - place[1];
+  const auto [ee, en, nn] = d.end1_covariance_rad2;
+  return (e * e * nn - 2 * e * n * en + n * n * ee) / (ee * nn - en * en);
+}
+
 TEST(Detect, PointsAmongTrailedStarsAreUnbiasedAndTheirCovarianceHonest) {
   const auto header = camera_header(1000, 1000, all_sky_focal_px, declination, 20, true);
   SimulatedFrame frame(header, 1000, 1000, sky_e, 7);
@@ -95,14 +104,15 @@ TEST(Detect, StreaksAreUnbiasedAndTheirCovarianceHonest) {
   const auto header = camera_header(2000, 2000, all_sky_focal_px, declination, 20, true);
   SimulatedFrame frame(header, 2000, 2000, sky_e, 8);
   std::vector<Placed> places;
-  std::vector<double> lengths;
+  std::vector<double> lengths, angles;
   const double e_per_px = 400.0;
   for (int j = 0; j < 20; ++j)
     for (int i = 0; i < 20; ++i) {
       places.push_back(
           {60 + 98 * i + frame.uniform(-.5, .5), 60 + 98 * j + frame.uniform(-.5, .5)});
       lengths.push_back(frame.uniform(15, 80));
-      frame.add_streak(places.back().x, places.back().y, lengths.back(), frame.uniform(0, pi),
+      angles.push_back(frame.uniform(0, pi));
+      frame.add_streak(places.back().x, places.back().y, lengths.back(), angles.back(),
                        e_per_px * lengths.back());
     }
   Threads threads;
@@ -113,15 +123,21 @@ TEST(Detect, StreaksAreUnbiasedAndTheirCovarianceHonest) {
   EXPECT_NEAR(e.mean_y, 0.0, 0.03);
   EXPECT_GT(e.nees, 0.9);
   EXPECT_LT(e.nees, 1.1);
-  double length_error = 0, density = 0;
+  double length_error = 0, density = 0, end_nees = 0;
   int n = 0;
   for (std::size_t i = 0; i < places.size(); ++i)
     if (const Detection* d = nearest(result.detections, places[i], 3.0)) {
       length_error += d->length_px - lengths[i];
       density += d->signal_e / lengths[i] / e_per_px;
+      const double c = std::cos(angles[i]) >= 0 ? 1 : -1;  // end 1 is the left one
+      const PixelPosition end = {places[i].x - c * lengths[i] / 2 * std::cos(angles[i]),
+                                 places[i].y - c * lengths[i] / 2 * std::sin(angles[i])};
+      end_nees += nees_on_the_sky(*d, header.wcs, end) / 2;
       ++n;
     }
   EXPECT_NEAR(length_error / n, 0.0, 0.1);
+  EXPECT_GT(end_nees / n, 0.85);
+  EXPECT_LT(end_nees / n, 1.15);
   EXPECT_NEAR(density / n, 1.0, 0.01);
 }
 

@@ -1,0 +1,99 @@
+#include "core/detection/star_hypothesis.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/detection/source_fit.h"
+
+namespace dmise {
+namespace {
+
+constexpr int most_stars = 4;  // in a row, that may pass for a streak
+
+/// `count` stars in a row along the line, which share its flux.
+std::vector<Trail> stars_along(const Trail& line, const Trail& star, int count) {
+  std::vector<Trail> out;
+  for (int i = 0; i < count; ++i) {
+    const double along = ((2 * i + 1.0) / count - 1) / 2 * line.length_px;
+    Trail t = star;
+    t.x_px = line.x_px + along * std::cos(line.angle_rad);
+    t.y_px = line.y_px + along * std::sin(line.angle_rad);
+    t.flux_e = line.flux_e / count;
+    out.push_back(t);
+  }
+  return out;
+}
+
+/// Length of the trail across the direction of another.
+double across_px(const Trail& trail, const Trail& other) {
+  return trail.length_px * std::abs(std::sin(trail.angle_rad - other.angle_rad));
+}
+
+/// Could the line be what noise left of one star's trail, wherever along that it lies?
+bool is_piece_of_star(const Scene& scene, const Trail& line, const Trail& star, double margin_px,
+                      const DetectorSettings& settings, const FitSettings& fit_settings) {
+  const double spare_px = star.length_px - line.length_px;
+  if (spare_px <= 0 || across_px(line, star) > settings.least_difference_px) return false;
+  for (const double side : {-0.5, 0.0, 0.5}) {
+    Trail whole = star;
+    whole.x_px = line.x_px + side * spare_px * std::cos(star.angle_rad);
+    whole.y_px = line.y_px + side * spare_px * std::sin(star.angle_rad);
+    whole.flux_e = line.flux_e * star.length_px / line.length_px;
+    const auto pixels = pixels_near(scene, whole, margin_px);
+    const double as_star = fit_trails(pixels, {whole}, {trail_place}, fit_settings).deviance;
+    const double as_line = fit_trails(pixels, {line}, {trail_line}, fit_settings).deviance;
+    if (as_star < as_line + settings.blend_margin) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+double deviance_of_stars(const std::vector<FitPixel>& pixels, const Trail& line, const Trail& star,
+                         int count, const FitSettings& settings) {
+  const std::vector<unsigned> free(std::size_t(count), trail_place);
+  return fit_trails(pixels, stars_along(line, star, count), free, settings).deviance;
+}
+
+bool moves_like_star(const Source& source, const Trail& star, double tolerance_px) {
+  const Trail& t = source.trail();
+  if (trail_difference_px(t, star) < tolerance_px) return true;
+  return source.at_edge && across_px(t, star) < tolerance_px &&
+         t.length_px < star.length_px + tolerance_px;
+}
+
+bool point_beats_star(const Scene& scene, const Source& source, const DetectorSettings& settings) {
+  const Trail& point = source.trail();
+  Trail star = scene.star_trail(point.x_px, point.y_px);
+  star.flux_e = point.flux_e;
+  const auto pixels = pixels_near(scene, star, 2.5 * scene.sigma_px + 0.5);
+  FitSettings fit_settings;
+  fit_settings.sigma_px = scene.sigma_px;
+  fit_settings.model_error = settings.model_error;
+  fit_settings.most_steps = 15;
+  const double as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings).deviance;
+  const double as_point = fit_trails(pixels, {point}, {trail_place}, fit_settings).deviance;
+  return as_point < as_star - settings.blend_margin;
+}
+
+bool beats_stars(const Scene& scene, const Source& source, const DetectorSettings& settings) {
+  const Trail& line = source.trail();
+  const Trail star = scene.star_trail(line.x_px, line.y_px);
+  const double margin_px = 2.5 * scene.sigma_px + 0.5;
+  const auto pixels = pixels_near(scene, line, margin_px);
+  FitSettings fit_settings;
+  fit_settings.sigma_px = scene.sigma_px;
+  fit_settings.model_error = settings.model_error;
+  fit_settings.most_steps = 15;
+  if (is_piece_of_star(scene, line, star, margin_px, settings, fit_settings)) return false;
+  const double as_line = fit_trails(pixels, {line}, {trail_line}, fit_settings).deviance;
+  // More stars fit better by chance, by about one for each of their parameters beyond the line's.
+  for (int count = 2; count <= most_stars; ++count) {
+    const double freedom = 3.0 * count - 5.0;
+    const double as_stars = deviance_of_stars(pixels, line, star, count, fit_settings) + freedom;
+    if (as_stars < as_line + settings.chain_margin) return false;
+  }
+  return true;
+}
+
+}  // namespace dmise
