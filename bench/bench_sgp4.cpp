@@ -47,7 +47,8 @@ struct Outputs {
   explicit Outputs(std::size_t n) : position(3 * n), velocity(3 * n), code(n) {}
 };
 
-/// Millions of states a second of one thread, whole catalogue per call in the order given, ticks of 10 s.
+/// Millions of states a second of one thread, whole catalogue per call in the order given, ticks of
+/// 10 s.
 double states_m_per_s(const std::vector<MeanElements>& elements, Simd simd, double jd1) {
   const Sgp4Batch batch(elements, nullptr, simd);
   Outputs out(batch.size());
@@ -73,8 +74,8 @@ struct Agreement {
 };
 
 /// Against the states that the anchor wrote: object by object at its own times.
-void compare(const std::vector<MeanElements>& elements, const std::string& stem, int times, int step,
-             Simd simd, Agreement& sum) {
+void compare(const std::vector<MeanElements>& elements, const std::string& stem, int times,
+             int step, Simd simd, Agreement& sum) {
   const Sgp4Batch batch(elements, nullptr, simd);
   const auto when = read_values<double>(stem + ".times");
   const auto states = read_values<double>(stem + ".states");
@@ -90,7 +91,8 @@ void compare(const std::vector<MeanElements>& elements, const std::string& stem,
       ++sum.states;
       if (code == std::uint8_t(Sgp4Code::absurd)) {
         // The reference has no such code: it must be the radius that gives it away.
-        const double a_km = std::cbrt(398600.8 / std::pow(elements[i].mean_motion_rad_per_min / 60.0, 2));
+        const double a_km =
+            std::cbrt(398600.8 / std::pow(elements[i].mean_motion_rad_per_min / 60.0, 2));
         const double far_km = 2.1 * a_km * (1.0 + elements[i].eccentricity);
         sum.mismatches += codes.at(row) != 0 || std::hypot(p[0], p[1], p[2]) < far_km;
         continue;
@@ -99,7 +101,8 @@ void compare(const std::vector<MeanElements>& elements, const std::string& stem,
       if (code != 0 || codes.at(row) != 0) continue;
       const double km = std::hypot(r[0] * 1e-3 - p[0], r[1] * 1e-3 - p[1], r[2] * 1e-3 - p[2]);
       if (getenv("DMISE_BENCH_VERBOSE") && (km > 1e-8))
-        std::fprintf(stderr, "%u n %.4f e %.6f i %.3f bstar %g: %g km at %.1f min\n", elements[i].catalogue_number,
+        std::fprintf(stderr, "%u n %.4f e %.6f i %.3f bstar %g: %g km at %.1f min\n",
+                     elements[i].catalogue_number,
                      elements[i].mean_motion_rad_per_min * 1440 / 2 / pi, elements[i].eccentricity,
                      elements[i].inclination_rad / deg, elements[i].bstar_per_earth_radius, km,
                      batch.minutes_since_epoch(i, when[2 * row], when[2 * row + 1]));
@@ -185,7 +188,8 @@ double cone_ms(const std::vector<MeanElements>& elements, double jd1) {
   Outputs out(objects);
   batch.propagate(jd1, 0.0, out.position, out.velocity, out.code);
   std::vector<Cone> cones;
-  for (std::size_t k = 0; k < sensors; ++k) {  // sites all over the Earth, 10 degrees above the horizon
+  for (std::size_t k = 0; k < sensors;
+       ++k) {  // sites all over the Earth, 10 degrees above the horizon
     const double z = 2.0 * (double(k) + 0.5) / double(sensors) - 1.0;
     const double longitude = 2.399963229728653 * double(k);
     const double x = std::sqrt(1.0 - z * z) * std::cos(longitude);
@@ -217,7 +221,8 @@ int bench_sgp4(bool json) {
     random = test::elements_from_text(read_text_file(directory.path + "/random.tle"));
   const bool real = !catalogue.empty();
   if (!real) catalogue = random;
-  if (catalogue.empty()) throw Error("no catalogue: set DMISE_DATA, or DMISE_PYTHON to one with sgp4");
+  if (catalogue.empty())
+    throw Error("no catalogue: set DMISE_DATA, or DMISE_PYTHON to one with sgp4");
 
   std::vector<MeanElements> near, deep;
   for (const MeanElements& e : catalogue)
@@ -254,8 +259,8 @@ int bench_sgp4(bool json) {
     lines.line("max_error_km", all.worst_km, "km", values, std::nullopt, 1e-8, false);
     lines.line("code_mismatches", all.mismatches, "states", values, std::nullopt, 0.0, false);
   }
-  lines.line("cone_61k_x_100_ms", cone_ms(catalogue, jd1), "ms", "0.14 ns a pair", std::nullopt, 1.5,
-             false);
+  lines.line("cone_61k_x_100_ms", cone_ms(catalogue, jd1), "ms", "0.14 ns a pair", std::nullopt,
+             1.5, false);
   return lines.all_met() ? 0 : 1;
 }
 

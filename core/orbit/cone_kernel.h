@@ -8,9 +8,9 @@ namespace {
 
 using namespace sgp4;
 
-/// Row bits of 64 objects, their coordinates aligned to 64 bytes. Inside a cone of less than 90 degrees: d . axis > 0 and
-/// (d . axis)^2 >= cos^2 d^2, with the axis divided by the cosine. A wider one is what lies not inside
-/// the opposite one, the apex left out.
+/// Row bits of 64 objects, their coordinates aligned to 64 bytes. Inside a cone of less than 90
+/// degrees: d . axis > 0 and (d . axis)^2 >= cos^2 d^2, with the axis divided by the cosine. A
+/// wider one is what lies not inside the opposite one, the apex left out.
 template <bool Wide>
 DMISE_INLINE std::uint64_t word(const double* x, const double* y, const double* z,
                                 const PreparedCone& c) {
@@ -22,8 +22,10 @@ DMISE_INLINE std::uint64_t word(const double* x, const double* y, const double* 
     const Pack along = madd(dz, c.axis[2], madd(dy, c.axis[1], dx * c.axis[0]));
     const Pack d2 = madd(dz, dz, madd(dy, dy, dx * dx));
     Mask inside;
-    if constexpr (Wide) inside = ~((Pack(0.0) < along) & (d2 < along * along)) & (Pack(0.0) < d2);
-    else inside = (Pack(0.0) < along) & (d2 <= along * along);
+    if constexpr (Wide)
+      inside = ~((Pack(0.0) < along) & (d2 < along * along)) & (Pack(0.0) < d2);
+    else
+      inside = (Pack(0.0) < along) & (d2 <= along * along);
     bits64 |= std::uint64_t(bits(inside) & all_lanes) << k;
   }
   return bits64;

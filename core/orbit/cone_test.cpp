@@ -59,8 +59,8 @@ void cone_test(std::span<const double> position_m, std::span<const Cone> cones,
         present[k] = 0;
         for (std::size_t b = 0; b < 64; ++b) {
           const std::size_t i = 64 * k + b;
-          present[k] |= std::uint64_t(chunk[0][i] != 0.0 || chunk[1][i] != 0.0 || chunk[2][i] != 0.0)
-                        << b;
+          present[k] |=
+              std::uint64_t(chunk[0][i] != 0.0 || chunk[1][i] != 0.0 || chunk[2][i] != 0.0) << b;
         }
       }
       for (std::size_t s = 0; s < prepared.size(); ++s) {
@@ -69,8 +69,10 @@ void cone_test(std::span<const double> position_m, std::span<const Cone> cones,
       }
     }
   };
-  if (threads) threads->for_ranges(words, chunk_words * 8, work);
-  else work(0, words);
+  if (threads)
+    threads->for_ranges(words, chunk_words * 8, work);
+  else
+    work(0, words);
 }
 
 std::size_t objects_in(std::span<const std::uint64_t> row, std::span<std::uint32_t> objects) {

@@ -17,9 +17,12 @@ namespace {
 
 const Kernels& kernels_for(Simd simd) {
   switch (simd) {
-    case Simd::avx512: return kernels_avx512;
-    case Simd::avx2: return kernels_avx2;
-    case Simd::sse2: break;
+    case Simd::avx512:
+      return kernels_avx512;
+    case Simd::avx2:
+      return kernels_avx2;
+    case Simd::sse2:
+      break;
   }
   return kernels_sse2;
 }
@@ -47,7 +50,8 @@ struct Group {
 };
 
 constexpr std::size_t group_count = 14;
-constexpr double near_circle_limit = 0.05;   // beyond it the short cuts of small eccentricity rarely hold
+constexpr double near_circle_limit =
+    0.05;  // beyond it the short cuts of small eccentricity rarely hold
 constexpr double low_inclination_rad = 0.22;  // below it Lyddane's terms are likely
 
 std::size_t group_of(const Model& m) {
@@ -130,7 +134,8 @@ struct Sgp4Batch::State {
       return;
     }
     for (std::size_t k = begin; k < end; ++k) {
-      const int objects = static_cast<int>(std::min<std::size_t>(block_lanes, last - k * block_lanes));
+      const int objects =
+          static_cast<int>(std::min<std::size_t>(block_lanes, last - k * block_lanes));
       const std::uint32_t* index = &g.index[k * block_lanes];
       if (g.resonance == Resonance::none) {
         kernels->deep_block_at(g.block(k, nullptr), index, objects, jd1, jd2, out);
@@ -166,10 +171,10 @@ struct Sgp4Batch::State {
       if (!g.deep) {
         kernels.near_block(near, g.eccentric, t, states);
       } else {
-        kernels.deep_block({&far, g.resonance == Resonance::day ? &day : nullptr,
-                            g.resonance == Resonance::half_day ? &half_day : nullptr, &node,
-                            g.eccentric},
-                           t, states);
+        kernels.deep_block(
+            {&far, g.resonance == Resonance::day ? &day : nullptr,
+             g.resonance == Resonance::half_day ? &half_day : nullptr, &node, g.eccentric},
+            t, states);
       }
     }
     void put(int lane, const Output& out, std::size_t i) const {
@@ -184,13 +189,20 @@ struct Sgp4Batch::State {
 
 std::string_view describe(Sgp4Code code) {
   switch (code) {
-    case Sgp4Code::ok: return "ok";
-    case Sgp4Code::eccentricity: return "mean eccentricity outside [0, 1)";
-    case Sgp4Code::mean_motion: return "mean motion not above 0";
-    case Sgp4Code::perturbed_eccentricity: return "perturbed eccentricity outside [0, 1]";
-    case Sgp4Code::semilatus_rectum: return "semilatus rectum below 0";
-    case Sgp4Code::decayed: return "decayed: below the Earth's surface";
-    case Sgp4Code::absurd: return "radius beyond 2.2 a (1 + e), or too far from its epoch";
+    case Sgp4Code::ok:
+      return "ok";
+    case Sgp4Code::eccentricity:
+      return "mean eccentricity outside [0, 1)";
+    case Sgp4Code::mean_motion:
+      return "mean motion not above 0";
+    case Sgp4Code::perturbed_eccentricity:
+      return "perturbed eccentricity outside [0, 1]";
+    case Sgp4Code::semilatus_rectum:
+      return "semilatus rectum below 0";
+    case Sgp4Code::decayed:
+      return "decayed: below the Earth's surface";
+    case Sgp4Code::absurd:
+      return "radius beyond 2.2 a (1 + e), or too far from its epoch";
   }
   return "unknown code";
 }
@@ -203,9 +215,12 @@ Simd best_simd() {
 
 std::string_view name(Simd simd) {
   switch (simd) {
-    case Simd::avx512: return "avx512";
-    case Simd::avx2: return "avx2";
-    case Simd::sse2: break;
+    case Simd::avx512:
+      return "avx512";
+    case Simd::avx2:
+      return "avx2";
+    case Simd::sse2:
+      break;
   }
   return "sse2";
 }
@@ -224,8 +239,10 @@ Sgp4Batch::Sgp4Batch(std::span<const MeanElements> elements, Threads* threads, S
     const auto work = [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) models[k] = initialise(elements[start + k]);
     };
-    if (threads) threads->for_ranges(count, 256, work);
-    else work(0, count);
+    if (threads)
+      threads->for_ranges(count, 256, work);
+    else
+      work(0, count);
     for (std::size_t k = 0; k < count; ++k) {
       const Model& m = models[k];
       State::Place& place = state->places[start + k];
@@ -355,8 +372,9 @@ Sgp4State Sgp4Batch::propagate_one(std::size_t object, double minutes_since_epoc
 
 double Sgp4Batch::minutes_since_epoch(std::size_t object, double jd1, double jd2) const {
   const State::Place& p = state_->places.at(object);
-  if (p.code != 0) throw Error("SGP4: object " + std::to_string(object) + " has no epoch: " +
-                               std::string(describe(static_cast<Sgp4Code>(p.code))));
+  if (p.code != 0)
+    throw Error("SGP4: object " + std::to_string(object) +
+                " has no epoch: " + std::string(describe(static_cast<Sgp4Code>(p.code))));
   return state_->minutes(p, jd1, jd2);
 }
 

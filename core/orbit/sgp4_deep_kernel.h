@@ -15,8 +15,8 @@ struct Slopes {
 };
 
 DMISE_INLINE Slopes slopes(const SynchronousTerms<Lanes>& b, int first, Pack lambda, Pack n, Pack) {
-  // Sines of lambda - 0.13130908, 2 (lambda - 2.8843198) and 3 (lambda - 0.37448087) by multiples of
-  // lambda.
+  // Sines of lambda - 0.13130908, 2 (lambda - 2.8843198) and 3 (lambda - 0.37448087) by multiples
+  // of lambda.
   const SinCos l = sin_cos(lambda);
   const SinCos l2 = turned(l, l);
   const SinCos l3 = turned(l2, l);
@@ -38,7 +38,8 @@ DMISE_INLINE void add_harmonic(SinCos a, Pack d, double sin_g, double cos_g, Pac
   c = madd(d, a.cos * cos_g + a.sin * sin_g, c);
 }
 
-DMISE_INLINE Slopes slopes(const HalfDayTerms<Lanes>& b, int first, Pack lambda, Pack n, Pack time) {
+DMISE_INLINE Slopes slopes(const HalfDayTerms<Lanes>& b, int first, Pack lambda, Pack n,
+                           Pack time) {
   const SinCos l = sin_cos(lambda);
   const SinCos w = sin_cos(madd(at(b.argp_dot, first), time, at(b.argp, first)));
   const SinCos minus_w = {Pack(0.0) - w.sin, w.cos};
@@ -70,9 +71,9 @@ struct Resonant {
   Pack lambda, n;
 };
 
-/// Longitude and mean motion at `t`, by Euler-Maclaurin steps of 720 min on the grid from the epoch:
-/// the last node of the grid is the same whatever was asked before. `node` is a memo of it: used where
-/// it lies between epoch and t, replaced by the one that t needs.
+/// Longitude and mean motion at `t`, by Euler-Maclaurin steps of 720 min on the grid from the
+/// epoch: the last node of the grid is the same whatever was asked before. `node` is a memo of it:
+/// used where it lies between epoch and t, replaced by the one that t needs.
 template <class Terms>
 DMISE_INLINE Resonant integrate(const Terms& b, int first, Pack t, ResonanceNode& node) {
   constexpr double step = resonance_step_min;

@@ -52,12 +52,12 @@ BodyRates body_terms(const Body& b, const MeanElements& el, double n, double sin
   const double z2 = 2.0 * (6.0 * (a1 * a3 + a2 * a4) + z32 * e2) + beta2 * z32;
   const double z3 = 2.0 * (3.0 * (a3 * a3 + a4 * a4) + z33 * e2) + beta2 * z33;
   const double z11 = -6.0 * a1 * a5 + e2 * (-24.0 * x1 * x7 - 6.0 * x3 * x5);
-  const double z12 = -6.0 * (a1 * a6 + a3 * a5) +
-                     e2 * (-24.0 * (x2 * x7 + x1 * x8) - 6.0 * (x3 * x6 + x4 * x5));
+  const double z12 =
+      -6.0 * (a1 * a6 + a3 * a5) + e2 * (-24.0 * (x2 * x7 + x1 * x8) - 6.0 * (x3 * x6 + x4 * x5));
   const double z13 = -6.0 * a3 * a6 + e2 * (-24.0 * x2 * x8 - 6.0 * x4 * x6);
   const double z21 = 6.0 * a2 * a5 + e2 * (24.0 * x1 * x5 - 6.0 * x3 * x7);
-  const double z22 = 6.0 * (a4 * a5 + a2 * a6) +
-                     e2 * (24.0 * (x2 * x5 + x1 * x6) - 6.0 * (x4 * x7 + x3 * x8));
+  const double z22 =
+      6.0 * (a4 * a5 + a2 * a6) + e2 * (24.0 * (x2 * x5 + x1 * x6) - 6.0 * (x4 * x7 + x3 * x8));
   const double z23 = 6.0 * a4 * a6 + e2 * (24.0 * x2 * x6 - 6.0 * x4 * x8);
 
   const double s3 = b.strength / n;
@@ -83,8 +83,8 @@ BodyRates body_terms(const Body& b, const MeanElements& el, double n, double sin
 
   // Within 3 deg of the equator the node's rate is left out.
   constexpr double near_equator = 5.2359877e-2;
-  const bool flat = el.inclination_rad < near_equator ||
-                    el.inclination_rad > two_pi / 2.0 - near_equator;
+  const bool flat =
+      el.inclination_rad < near_equator || el.inclination_rad > two_pi / 2.0 - near_equator;
   BodyRates rates;
   rates.e = s1 * b.rate * s5;
   rates.i = s2 * b.rate * (z11 + z13);
@@ -137,9 +137,8 @@ void half_day_terms(double e, double n, double a_inv, double sin_i, double cos_i
   const double f322 = -1.875 * s * (1.0 + 2.0 * c - 3.0 * c2);
   const double f441 = 35.0 * s2 * f220;
   const double f442 = 39.3750 * s2 * s2;
-  const double f522 = 9.84375 * s *
-                      (s2 * (1.0 - 2.0 * c - 5.0 * c2) +
-                       0.33333333 * (-2.0 + 4.0 * c + 6.0 * c2));
+  const double f522 =
+      9.84375 * s * (s2 * (1.0 - 2.0 * c - 5.0 * c2) + 0.33333333 * (-2.0 + 4.0 * c + 6.0 * c2));
   const double f523 = s * (4.92187512 * s2 * (-2.0 - 4.0 * c + 10.0 * c2) +
                            6.56250012 * (1.0 + 2.0 * c - 3.0 * c2));
   const double f542 = 29.53125 * s * (2.0 - 8.0 * c + c2 * (-12.0 + 8.0 * c + 10.0 * c2));
@@ -193,10 +192,10 @@ void add_deep_space(const MeanElements& el, const Recovered& at, Model& model) {
   const double sin_h = 0.089683511 * sin_mn / moon.sin_i;
   const double cos_h = std::sqrt(1.0 - sin_h * sin_h);
   const double moon_perigee = 5.8351514 + 0.0019443680 * day;
-  const double g = moon_perigee +
-                   std::atan2(0.39785416 * sin_mn / moon.sin_i,
-                              cos_h * cos_mn + 0.91744867 * sin_h * sin_mn) -
-                   moon_node;
+  const double g =
+      moon_perigee +
+      std::atan2(0.39785416 * sin_mn / moon.sin_i, cos_h * cos_mn + 0.91744867 * sin_h * sin_mn) -
+      moon_node;
   moon.sin_g = std::sin(g);
   moon.cos_g = std::cos(g);
   moon.sin_h = sin_node * cos_h - cos_node * sin_h;
@@ -233,15 +232,14 @@ void add_deep_space(const MeanElements& el, const Recovered& at, Model& model) {
     const double g300 = 1.0 + e2 * (-6.0 + 6.60937 * e2);
     const double c1 = 1.0 + at.cos_i;
     const double f220 = 0.75 * c1 * c1;
-    const double f311 =
-        0.9375 * at.sin_i * at.sin_i * (1.0 + 3.0 * at.cos_i) - 0.75 * c1;
+    const double f311 = 0.9375 * at.sin_i * at.sin_i * (1.0 + 3.0 * at.cos_i) - 0.75 * c1;
     const double f330 = 1.875 * c1 * c1 * c1;
     const double k = 3.0 * at.n * at.n * a_inv * a_inv;
     day_terms.del1 = k * f311 * g310 * q31 * a_inv;
     day_terms.del2 = 2.0 * k * f220 * g200 * q22;
     day_terms.del3 = 3.0 * k * f330 * g300 * q33 * a_inv;
-    day_terms.lambda0 = std::fmod(
-        el.mean_anomaly_rad + el.raan_rad + el.argument_of_perigee_rad - at.gst, two_pi);
+    day_terms.lambda0 =
+        std::fmod(el.mean_anomaly_rad + el.raan_rad + el.argument_of_perigee_rad - at.gst, two_pi);
     day_terms.drift = at.m_dot + (at.argp_dot + at.node_dot) - sidereal_rate_rad_per_min + m_dot +
                       argp_dot + node_dot - at.n;
     day_terms.n0 = at.n;
@@ -250,8 +248,7 @@ void add_deep_space(const MeanElements& el, const Recovered& at, Model& model) {
     model.resonance = Resonance::half_day;
     HalfDayTerms<double>& half = model.half_day;
     half_day_terms(e, at.n, a_inv, at.sin_i, at.cos_i, half);
-    half.lambda0 =
-        std::fmod(el.mean_anomaly_rad + 2.0 * el.raan_rad - 2.0 * at.gst, two_pi);
+    half.lambda0 = std::fmod(el.mean_anomaly_rad + 2.0 * el.raan_rad - 2.0 * at.gst, two_pi);
     half.drift =
         at.m_dot + m_dot + 2.0 * (at.node_dot + node_dot - sidereal_rate_rad_per_min) - at.n;
     half.n0 = at.n;

@@ -1,12 +1,13 @@
 // SGP4 on packs of objects, the one source of every instruction set: included by
-// sgp4_kernel_{sse2,avx2,avx512}.cpp alone. Each lane's result depends on that lane alone: where lanes
-// of a pack want different roads, the pack takes both and each lane keeps its own.
+// sgp4_kernel_{sse2,avx2,avx512}.cpp alone. Each lane's result depends on that lane alone: where
+// lanes of a pack want different roads, the pack takes both and each lane keeps its own.
 //
 // Against the reference's scalar code, without changing what is computed:
 // - mean anomaly and argument of perigee are only ever needed as their sum, and the node apart;
 // - (sin u, cos u) of the short-period terms are turned by their small corrections, so that no arc
 //   tangent is taken; sin and cos of the eccentric anomaly are turned from those of the longitude;
-// - Kepler's iterations are the reference's own, including its stop, after which the last correction
+// - Kepler's iterations are the reference's own, including its stop, after which the last
+// correction
 //   is in the anomaly but not in its sine and cosine.
 #pragma once
 #include "core/orbit/sgp4_kernels.h"
@@ -20,12 +21,12 @@ DMISE_INLINE Pack at(const Lanes& lanes, int first) { return load(lanes.lane + f
 
 /// Mean elements at the time, periodic terms of the Sun and Moon included.
 struct Mean {
-  Pack e;                   // eccentricity
-  Pack argp;                // argument of perigee
-  Pack longitude;           // mean anomaly + argument of perigee
+  Pack e;          // eccentricity
+  Pack argp;       // argument of perigee
+  Pack longitude;  // mean anomaly + argument of perigee
   SinCos node;
   Pack sin_i, cos_i;
-  Pack long_period;         // coefficient
+  Pack long_period;             // coefficient
   Pack a_m, inv_a, inv_sqrt_a;  // semi-major axis [m], [Earth radii^-1], [Earth radii^-1/2]
   Pack farthest_m;
   Mask code1, code2, code3;
@@ -40,12 +41,12 @@ struct States {
 /// Kepler's equation solved for the sine and cosine of the eccentric longitude, and what they give.
 struct Anomaly {
   SinCos e;
-  Pack e_sin, e_cos;   // e sin E, e cos E of the eccentric anomaly
-  Pack inv_rho;        // 1 / (1 - e cos E)
+  Pack e_sin, e_cos;  // e sin E, e cos E of the eccentric anomaly
+  Pack inv_rho;       // 1 / (1 - e cos E)
 };
 
-/// For e below 0.06 or so: three of the reference's evaluations, as turns from `u`, given its sine and
-/// cosine. Lanes for which the reference would go on are in `outside`.
+/// For e below 0.06 or so: three of the reference's evaluations, as turns from `u`, given its sine
+/// and cosine. Lanes for which the reference would go on are in `outside`.
 DMISE_INLINE Anomaly solve_kepler_near_circle(SinCos su, Pack ax, Pack ay, Mask& outside) {
   const Pack cos0 = madd(ax, su.cos, ay * su.sin);
   const Pack sin0 = nmadd(ay, su.cos, ax * su.sin);
@@ -106,9 +107,9 @@ DMISE_INLINE SinCos corrected(SinCos a, Pack by) {
   return turned(a, turn);
 }
 
-/// Long- and short-period terms and the state. `NearCircle` takes the short cuts that hold for small
-/// eccentricity above the surface and marks in `outside` the lanes for which they don't. What does not
-/// depend on the anomaly stands before it, to fill the waits of Kepler's iterations.
+/// Long- and short-period terms and the state. `NearCircle` takes the short cuts that hold for
+/// small eccentricity above the surface and marks in `outside` the lanes for which they don't. What
+/// does not depend on the anomaly stands before it, to fill the waits of Kepler's iterations.
 template <bool NearCircle>
 DMISE_INLINE States finish(const Mean& m, Mask& outside) {
   // Long-period terms.
@@ -152,15 +153,14 @@ DMISE_INLINE States finish(const Mean& m, Mask& outside) {
   const Pack two_sin = sin_u + sin_u;
   const Pack sin_2u = two_sin * cos_u;
   const Pack cos_2u = nmadd(two_sin, sin_u, 1.0);
-  const Pack r_m = madd(k1 * (0.5 * earth_radius_m) * sin2_i, cos_2u,
-                        nmadd(r_scale, ea.e_cos, r_scale));
+  const Pack r_m =
+      madd(k1 * (0.5 * earth_radius_m) * sin2_i, cos_2u, nmadd(r_scale, ea.e_cos, r_scale));
   const Pack v1 = speed * ea.inv_rho;
   const Pack v_radial = nmadd(v2_sin2_i, sin_2u, v1 * ea.e_sin);
   const Pack v_along = madd(v2_sin2_i, cos_2u, madd(v2, con41_15, v1 * beta));
 
   // Orientation.
-  const SinCos su =
-      corrected<NearCircle>({sin_u, cos_u}, k2 * madd(cos2_i, -1.75, 0.25) * sin_2u);
+  const SinCos su = corrected<NearCircle>({sin_u, cos_u}, k2 * madd(cos2_i, -1.75, 0.25) * sin_2u);
   const SinCos inc = corrected<NearCircle>({m.sin_i, m.cos_i}, k2_cos * m.sin_i * cos_2u);
   const SinCos nod = corrected<NearCircle>(m.node, k2_cos * sin_2u);
   const Pack px = r_m * su.cos, py = r_m * su.sin;
@@ -228,8 +228,8 @@ DMISE_INLINE States near_states(const NearTerms<Lanes>& b, int first, Pack t, bo
   const Pack argp0 = madd(at(s.argp_dot, first), t, at(s.argp, first));
 
   Mean m;
-  m.node = sin_cos(
-      madd(at(s.node_t2, first), t2, madd(at(s.node_dot, first), t, at(s.node, first))));
+  m.node =
+      sin_cos(madd(at(s.node_t2, first), t2, madd(at(s.node_dot, first), t, at(s.node, first))));
   const Pack c = madd(at(b.eta, first), coarse_cos(m0), 1.0);
   const Pack shift = madd(at(b.m_cubic, first) * c, c * c,
                           madd(at(b.m_linear, first), t, Pack(0.0) - at(b.m_cubic0, first)));
@@ -295,20 +295,11 @@ DMISE_INLINE void scatter(const BlockStates& from, const std::uint32_t* index, i
   }
 }
 
-/// Asks for the share of `bytes` at `next` that falls to the pack starting at lane `first`: the
-/// processor's own prefetching stops at the end of each page, about one block.
-DMISE_INLINE void prefetch_part(const void* next, std::size_t bytes, int first) {
-  constexpr std::size_t parts = block_lanes / pack_lanes;
-  const char* p = static_cast<const char*>(next) + std::size_t(first / pack_lanes) * 64;
-  for (std::size_t k = 0; k < bytes; k += 64 * parts) __builtin_prefetch(p + k);
-}
-
 void near_blocks(const NearTerms<Lanes>* blocks, const std::uint32_t* index, std::size_t objects,
                  bool eccentric, double jd1, double jd2, const Output& out) {
   BlockStates states;
   for (std::size_t done = 0; done < objects; done += block_lanes, ++blocks, index += block_lanes) {
     for (int first = 0; first < block_lanes; first += pack_lanes) {
-      prefetch_part(blocks + 1, sizeof *blocks, first);
       put(near_states(*blocks, first, minutes(blocks->secular, first, jd1, jd2), eccentric), first,
           states);
     }

@@ -4,8 +4,8 @@
 
 #include "core/orbit/sgp4_terms.h"
 
-// What each instruction set's file gives to Sgp4Batch. No header with inline functions of its own may
-// be included here: it would be compiled for a set that the machine may not have.
+// What each instruction set's file gives to Sgp4Batch. No header with inline functions of its own
+// may be included here: it would be compiled for a set that the machine may not have.
 namespace dmise::sgp4 {
 
 /// States of one block [m, m/s], zeros where the code is not 0.

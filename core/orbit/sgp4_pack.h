@@ -54,8 +54,8 @@ DMISE_INLINE One copy_sign(One magnitude, One sign) {
 }
 /// -x where the lowest bit of `odd` is set.
 DMISE_INLINE One negate_odd(One x, One odd) {
-  return _mm512_castsi512_pd(_mm512_xor_si512(
-      _mm512_castpd_si512(x.v), _mm512_slli_epi64(_mm512_castpd_si512(odd.v), 63)));
+  return _mm512_castsi512_pd(_mm512_xor_si512(_mm512_castpd_si512(x.v),
+                                              _mm512_slli_epi64(_mm512_castpd_si512(odd.v), 63)));
 }
 
 #elif defined(__AVX2__) && defined(__FMA__)
@@ -99,8 +99,7 @@ DMISE_INLINE One copy_sign(One magnitude, One sign) {
   return _mm256_or_pd(_mm256_andnot_pd(s, magnitude.v), _mm256_and_pd(s, sign.v));
 }
 DMISE_INLINE One negate_odd(One x, One odd) {
-  return _mm256_xor_pd(
-      x.v, _mm256_castsi256_pd(_mm256_slli_epi64(_mm256_castpd_si256(odd.v), 63)));
+  return _mm256_xor_pd(x.v, _mm256_castsi256_pd(_mm256_slli_epi64(_mm256_castpd_si256(odd.v), 63)));
 }
 
 #else
@@ -176,7 +175,9 @@ DMISE_INLINE Pack operator+(Pack x, Pack y) { return {x.a + y.a, x.b + y.b}; }
 DMISE_INLINE Pack operator-(Pack x, Pack y) { return {x.a - y.a, x.b - y.b}; }
 DMISE_INLINE Pack operator*(Pack x, Pack y) { return {x.a * y.a, x.b * y.b}; }
 DMISE_INLINE Pack operator/(Pack x, Pack y) { return {x.a / y.a, x.b / y.b}; }
-DMISE_INLINE Pack madd(Pack x, Pack y, Pack z) { return {madd(x.a, y.a, z.a), madd(x.b, y.b, z.b)}; }
+DMISE_INLINE Pack madd(Pack x, Pack y, Pack z) {
+  return {madd(x.a, y.a, z.a), madd(x.b, y.b, z.b)};
+}
 DMISE_INLINE Pack nmadd(Pack x, Pack y, Pack z) {
   return {nmadd(x.a, y.a, z.a), nmadd(x.b, y.b, z.b)};
 }

@@ -34,20 +34,20 @@ struct alignas(64) Lanes {
   double lane[block_lanes];
 };
 
-// T is double for one object and Lanes for a block. Every term is a T, so that a block is filled term
-// by term. Times in minutes, angles in radians, lengths in Earth radii where no unit is named.
+// T is double for one object and Lanes for a block. Every term is a T, so that a block is filled
+// term by term. Times in minutes, angles in radians, lengths in Earth radii where no unit is named.
 
 template <class T>
 struct SecularTerms {
   T epoch_jd1, epoch_jd2;
-  T m, m_dot;             // mean anomaly; rates hold the Sun's and Moon's share for deep space
-  T argp, argp_dot;       // argument of perigee
+  T m, m_dot;        // mean anomaly; rates hold the Sun's and Moon's share for deep space
+  T argp, argp_dot;  // argument of perigee
   T node, node_dot, node_t2;
-  T e, e_dot;             // near: e includes B* C5 sin M0
-  T a_t;                  // semi-major axis / a0 = (1 - a_t t - ...)^2
-  T l_t2;                 // mean longitude, drag: l_t2 t^2 + ...
-  T a0_m, inv_sqrt_a0;    // semi-major axis [m]; its inverse square root [Earth radii^-1/2]
-  T farthest_m;           // 2.2 a (1 + e)
+  T e, e_dot;           // near: e includes B* C5 sin M0
+  T a_t;                // semi-major axis / a0 = (1 - a_t t - ...)^2
+  T l_t2;               // mean longitude, drag: l_t2 t^2 + ...
+  T a0_m, inv_sqrt_a0;  // semi-major axis [m]; its inverse square root [Earth radii^-1/2]
+  T farthest_m;         // 2.2 a (1 + e)
 };
 
 template <class T>
@@ -57,7 +57,7 @@ struct NearTerms {
   T eta, m_cubic, m_cubic0, m_linear;    // shift m_cubic (1 + eta cos M)^3 - m_cubic0 + m_linear t
   T e_sin;                               // B* C5
   T sin_i, cos_i;
-  T long_period;                         // coefficient of the long-period term in mean longitude
+  T long_period;  // coefficient of the long-period term in mean longitude
 };
 
 // Coefficients of one body's long-period terms: f2 = sin^2/2 - 1/4 and f3 = -sin cos/2 of its

@@ -1,5 +1,5 @@
-// Sines and cosines of packs. Polynomials: minimax on the reduced range, fitted for these files in 50
-// digits; `error` is the largest absolute error. Included only by sgp4_kernel.h.
+// Sines and cosines of packs. Polynomials: minimax on the reduced range, fitted for these files in
+// 50 digits; `error` is the largest absolute error. Included only by sgp4_kernel.h.
 #pragma once
 #include "core/orbit/sgp4_pack.h"
 
@@ -16,7 +16,8 @@ constexpr double inv_pi = 0.31830988618379067154;
 
 /// x - k pi. Without FMA pi is split so that k times its first two pieces is exact for |k| < 2^20.
 DMISE_INLINE Pack minus_k_pi(Pack x, Pack k) {
-  if constexpr (fused) return nmadd(k, 1.2246467991473532072e-16, nmadd(k, 3.141592653589793116, x));
+  if constexpr (fused)
+    return nmadd(k, 1.2246467991473532072e-16, nmadd(k, 3.141592653589793116, x));
   return x - k * 3.1415926534682512 - k * 1.2154201012607932e-10 - k * 4.044532497591901e-21;
 }
 
@@ -37,13 +38,15 @@ DMISE_INLINE SinCos sin_cos(Pack x) {
   const Reduced q = reduce_pi(x);
   const Pack t = q.r * q.r;
   const Pack t2 = t * t;
-  Pack s = madd(t2, -7.36464584423922492e-13, madd(t, 1.60473011452671512e-10, -2.50518514953321785e-8));
+  Pack s =
+      madd(t2, -7.36464584423922492e-13, madd(t, 1.60473011452671512e-10, -2.50518514953321785e-8));
   Pack c = madd(t, -1.1032571550677335e-11, 2.08605293112427602e-9);
   s = madd(s, t2, madd(t, 2.75573160769817326e-6, -1.9841269820094026e-4));
   c = madd(c, t2, madd(t, -2.75570141224348093e-7, 2.48015842743742399e-5));
   s = madd(s, t2, madd(t, 8.3333333332628786e-3, -1.66666666666658121e-1));
   c = madd(c, t2, madd(t, -1.38888888741385679e-3, 4.16666666663984576e-2));
-  c = madd(c, t2, madd(t, -0.5, 1.0));
+  // Rounded once near 1: at an inclination of 180 degrees SGP4 divides by 1 + cos i.
+  c = madd(madd(c, t, -0.5), t, 1.0);
   s = madd(s, t * q.r, q.r);
   return {negate_odd(s, q.odd), negate_odd(c, q.odd)};
 }
@@ -54,7 +57,8 @@ DMISE_INLINE Pack coarse_sin(Pack x) {
   const Pack r = nmadd(shifted - round_magic, 3.141592653589793116, x);
   const Pack t = r * r;
   const Pack t2 = t * t;
-  Pack s = madd(t2, -2.3846693322029734e-8, madd(t, 2.75226188374002912e-6, -1.98408040395515355e-4));
+  Pack s =
+      madd(t2, -2.3846693322029734e-8, madd(t, 2.75226188374002912e-6, -1.98408040395515355e-4));
   s = madd(s, t2, madd(t, 8.33333049568303221e-3, -1.66666666064676477e-1));
   return negate_odd(madd(s, t * r, r), shifted);
 }

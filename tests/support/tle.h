@@ -8,7 +8,8 @@
 #include "core/base/units.h"
 #include "core/orbit/elements.h"
 
-// The least that turns well-formed TLE lines into mean elements; the product's reader does the rest.
+// The least that turns well-formed TLE lines into mean elements; the product's reader does the
+// rest.
 namespace dmise::test {
 
 inline double tle_exponent(const std::string& field) {  // " 12345-3" is 0.12345e-3
@@ -27,13 +28,14 @@ inline MeanElements elements_from_tle(const std::string& line1, const std::strin
   e.name = name;
   const char first = line1[2];
   const std::string digits = line1.substr(3, 4);
-  int lead = first >= 'A' ? first - 'A' + 10 - (first > 'I') - (first > 'O') : std::atoi(line1.substr(2, 1).c_str());
+  int lead = first >= 'A' ? first - 'A' + 10 - (first > 'I') - (first > 'O')
+                          : std::atoi(line1.substr(2, 1).c_str());
   e.catalogue_number = std::uint32_t(lead * 10000 + std::atoi(digits.c_str()));
   const int year = std::atoi(line1.substr(18, 2).c_str());
   e.epoch_jd1 = julian_date_of_year(year < 57 ? 2000 + year : 1900 + year) +
                 std::atoi(line1.substr(20, 3).c_str());
   e.epoch_jd2 = std::atof(("0" + line1.substr(23, 9)).c_str());
-  e.mean_motion_rad_per_min = std::atof(line2.substr(52, 11).c_str()) * 2.0 * pi / 1440.0;
+  e.mean_motion_rad_per_min = std::atof(line2.substr(52, 11).c_str()) / (1440.0 / (2.0 * pi));
   std::string eccentricity = line2.substr(26, 7);
   for (char& c : eccentricity)
     if (c == ' ') c = '0';
