@@ -283,15 +283,17 @@ DMISE_INLINE void put(const States& s, int first, BlockStates& to) {
 
 DMISE_INLINE void scatter(const BlockStates& from, const std::uint32_t* index, int count,
                           const Output& out) {
-  for (int k = 0; k < count; ++k) {
-    const std::size_t i = index[k];
-    out.code[i] = from.code[k];
-    out.position[i] = from.position[0][k];
-    out.position[i + out.stride] = from.position[1][k];
-    out.position[i + 2 * out.stride] = from.position[2][k];
-    out.velocity[i] = from.velocity[0][k];
-    out.velocity[i + out.stride] = from.velocity[1][k];
-    out.velocity[i + 2 * out.stride] = from.velocity[2][k];
+  const auto put_row = [&](const auto* row, auto* to) {
+    if (count == block_lanes && index[block_lanes - 1] - index[0] == block_lanes - 1) {
+      __builtin_memcpy(to + index[0], row, block_lanes * sizeof *row);  // neighbours, ascending
+      return;
+    }
+    for (int k = 0; k < count; ++k) to[index[k]] = row[k];
+  };
+  put_row(from.code, out.code);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    put_row(from.position[axis], out.position + axis * out.stride);
+    put_row(from.velocity[axis], out.velocity + axis * out.stride);
   }
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Rows of tests/orbit/test_sgp4_hard_cases.cpp: states by Debian's python3-sgp4 (2.21, WGS72, mode 'i')
+"""Rows of tests/orbit/test_sgp4_hard_cases.cpp: states by Debian's python3-sgp4 (2.15, WGS72, mode 'i')
 at the edges of the model's branches. Run with /usr/bin/python3."""
 
 from math import pi
