@@ -3,6 +3,7 @@
 #include "bench/bench_frame.h"
 #include "bench/bench_interpolation.h"
 #include "bench/bench_sgp4.h"
+#include "bench/bench_sky.h"
 #include "bench/bench_tick.h"
 
 namespace dmise {
@@ -12,6 +13,7 @@ std::vector<Bench> benches() {
       {"frame", "stages of a frame on one thread", bench_frame},
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
       {"sgp4", "propagation of whole catalogues against the compiled reference", bench_sgp4},
+      {"sky", "the sky of a frame and the stars of a field", bench_sky},
       {"tick", "lock-step ticks beside the bare ZeroMQ floor", bench_tick},
   };
 }
