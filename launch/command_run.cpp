@@ -1,7 +1,12 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
+#include <mutex>
+#include <thread>
 
 #include "core/base/error.h"
 #include "core/sim/controller.h"
@@ -24,59 +29,119 @@ struct RunOptions {
   bool force = false;
 };
 
+constexpr auto patience_after_stop = std::chrono::milliseconds(1500);
+
+/// One run of a scenario in this process. Steps are made by a thread of their own, so that a request
+/// to stop is met in time also in the middle of a frame.
+class EmbeddedRun {
+ public:
+  EmbeddedRun(const Scenario& scenario, const RunDirectory& directory, int thread_count)
+      : scenario_(scenario), threads_(thread_count) {
+    auto orbit = std::make_unique<OrbitActor>(scenario, make_clock(scenario), threads_);
+    for (const auto& note : orbit->notes()) std::fprintf(stderr, "note: %s\n", note.c_str());
+    check_sensors(scenario, orbit->roster());
+    participants_.push_back(std::move(orbit));
+    participants_.push_back(std::make_unique<EnvironmentActor>(scenario, make_clock(scenario)));
+    const auto stars = load_stars(scenario);
+    for (const auto& sensor : scenario.sensors) {
+      auto evaluator = make_sensor(scenario, sensor.name, directory.digest(), directory.path(),
+                                   stars, threads_);
+      evaluator->stop_when([] { return stop_signal().is_set(); });
+      frames_total_ += static_cast<int>(frames_within(sensor, scenario.duration));
+      sensors_.push_back(evaluator.get());
+      participants_.push_back(std::move(evaluator));
+    }
+  }
+
+  /// Returns when all ticks are done, one failed, or a stop was asked for. In the last case the step
+  /// being made may go on in its thread for a while: `in_step()`.
+  RunOutcome run() {
+    RunOutcome outcome{.how = "one process"};
+    Progress progress;
+    std::thread worker([this] { make_ticks(); });
+    std::unique_lock lock(mutex_);
+    while (!finished_ && !stop_signal().is_set()) {
+      changed_.wait_for(lock, std::chrono::milliseconds(50));
+      progress.show(state_, finished_);
+    }
+    if (!finished_) changed_.wait_for(lock, patience_after_stop, [this] { return finished_; });
+    progress.clear_line();
+    if (stop_signal().is_set() && failure_.empty()) outcome.status = "interrupted";
+    if (!failure_.empty()) {
+      outcome.status = "failed";
+      outcome.reason = failure_;
+    }
+    const bool finished = finished_;
+    lock.unlock();
+    finished ? worker.join() : worker.detach();
+    return outcome;
+  }
+  bool in_step() {
+    std::lock_guard lock(mutex_);
+    return !finished_;
+  }
+
+ private:
+  void make_ticks() {
+    std::string failure;
+    try {
+      SimulationController controller(std::move(participants_));
+      controller.run(scenario_.last_tick(), [this](Tick tick) {
+        std::lock_guard lock(mutex_);
+        state_ = state_after(tick);
+        changed_.notify_one();
+        return !stop_signal().is_set();
+      });
+    } catch (const std::exception& e) {
+      failure = e.what();
+    }
+    std::lock_guard lock(mutex_);
+    failure_ = failure;
+    finished_ = true;
+    changed_.notify_one();
+  }
+
+  ProgressState state_after(Tick tick) const {
+    ProgressState state{
+        .simulated_s = std::min(scenario_.time_of(tick), scenario_.duration).seconds(),
+        .duration_s = scenario_.duration.seconds(),
+        .frames_total = frames_total_};
+    for (const auto* sensor : sensors_) {
+      state.frames += sensor->frames_done();
+      state.detections += sensor->detections_made();
+    }
+    return state;
+  }
+
+  const Scenario& scenario_;
+  Threads threads_;
+  std::vector<std::unique_ptr<Participant>> participants_;
+  std::vector<SensorEvaluator*> sensors_;
+  int frames_total_ = 0;
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable changed_;
+  ProgressState state_;
+  std::string failure_;
+  bool finished_ = false;
+};
+
 void run(const RunOptions& options) {
   const Scenario scenario = load_scenario(options.scenario);
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   if (!prepare_directory(directory, options.force)) return;
   stop_signal();
   const auto start = std::chrono::steady_clock::now();
-  RunOutcome outcome{.how = "one process"};
-  Threads threads(options.threads);
-
-  std::vector<SensorEvaluator*> sensors;
-  int frames_total = 0;
-  std::vector<std::unique_ptr<Participant>> participants;
-  auto orbit = std::make_unique<OrbitActor>(scenario, make_clock(scenario), threads);
-  for (const auto& note : orbit->notes()) std::fprintf(stderr, "note: %s\n", note.c_str());
-  check_sensors(scenario, orbit->roster());
-  participants.push_back(std::move(orbit));
-  participants.push_back(std::make_unique<EnvironmentActor>(scenario, make_clock(scenario)));
-  const auto stars = load_stars(scenario);
-  for (const auto& sensor : scenario.sensors) {
-    auto evaluator =
-        make_sensor(scenario, sensor.name, directory.digest(), directory.path(), stars, threads);
-    evaluator->stop_when([] { return stop_signal().is_set(); });
-    frames_total += static_cast<int>(frames_within(sensor, scenario.duration));
-    sensors.push_back(evaluator.get());
-    participants.push_back(std::move(evaluator));
-  }
-  Progress progress;
-  SimulationController controller(std::move(participants));
-  const auto state_after = [&](Tick tick) {
-    ProgressState state{.simulated_s = std::min(scenario.time_of(tick), scenario.duration).seconds(),
-                        .duration_s = scenario.duration.seconds(),
-                        .frames_total = frames_total};
-    for (const auto* sensor : sensors) {
-      state.frames += sensor->frames_done();
-      state.detections += sensor->detections_made();
-    }
-    return state;
-  };
+  EmbeddedRun embedded(scenario, directory, options.threads);
+  RunOutcome outcome = embedded.run();
+  outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!embedded.in_step()) return finish_run(directory, scenario, outcome);
   try {
-    controller.run(scenario.last_tick(), [&](Tick tick) {
-      const bool stop = stop_signal().is_set();
-      progress.show(state_after(tick), stop || tick == scenario.last_tick());
-      if (stop) outcome.status = "interrupted";
-      return !stop;
-    });
-  } catch (const std::exception& e) {
-    outcome.status = "failed";
-    outcome.reason = e.what();
+    finish_run(directory, scenario, outcome);
+  } catch (const ExitWith&) {
   }
-  progress.clear_line();
-  outcome.wall_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  finish_run(directory, scenario, outcome);
+  // The step that is still being made holds this scope's objects: end without taking them down.
+  std::fflush(nullptr);
+  std::_Exit(exit_code(outcome.status));
 }
 
 }  // namespace

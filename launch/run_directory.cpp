@@ -72,6 +72,10 @@ RunDirectory::Content RunDirectory::content() const {
 
 void RunDirectory::clear() {
   std::error_code ignored;
+  // A sensor's directory, of this run or another, is one with a frames.jsonl in it.
+  for (const auto& entry : fs::directory_iterator(path_, ignored))
+    if (entry.is_directory(ignored) && fs::exists(entry.path() / "frames.jsonl", ignored))
+      fs::remove_all(entry.path(), ignored);
   for (const auto& sensor : scenario_.sensors) fs::remove_all(file(sensor.name), ignored);
   for (const char* name : {"run.json", "detections.jsonl", "truth.jsonl", "frames.jsonl", "index.html"})
     fs::remove(file(name), ignored);
@@ -84,8 +88,9 @@ void RunDirectory::merge_lines() const {
     std::vector<std::tuple<std::int64_t, std::string, std::size_t, std::string>> rows;
     for (const auto& sensor : scenario_.sensors) {
       auto lines = whole_lines(file(sensor.name) + "/" + name);
+      const char* time = name == "detections.jsonl" ? "time_ns" : "middle_ns";
       for (std::size_t i = 0; i < lines.size(); ++i)
-        rows.emplace_back(integer_in(lines[i], "time_ns"), sensor.name, i, std::move(lines[i]));
+        rows.emplace_back(integer_in(lines[i], time), sensor.name, i, std::move(lines[i]));
     }
     std::sort(rows.begin(), rows.end());
     std::string text;

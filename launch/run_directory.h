@@ -18,7 +18,7 @@ class RunDirectory {
   enum class Content { empty, same_run_complete, same_run_unfinished, another_run };
   Content content() const;
 
-  /// Removes what an earlier run left: products of the scenario's sensors, merged files, run.json.
+  /// Removes what an earlier run left, this or another: sensors' products, merged files, run.json.
   void clear();
 
   /// Merges the sensors' lines into detections.jsonl, truth.jsonl and frames.jsonl, sorted by (time,
