@@ -17,11 +17,12 @@ std::string reason(const zmq::error_t& error) {
 
 using Owner = std::shared_ptr<const Frames>;
 
-void release(void*, void* owner) { delete static_cast<Owner*>(owner); }
+void release_frames(void*, void* owner) { delete static_cast<Owner*>(owner); }
 
 zmq::message_t frame_of(const Owner& frames, const std::string& part) {
   if (part.size() < copied_bytes) return zmq::message_t(part.data(), part.size());
-  return zmq::message_t(const_cast<char*>(part.data()), part.size(), release, new Owner(frames));
+  return zmq::message_t(const_cast<char*>(part.data()), part.size(), release_frames,
+                        new Owner(frames));
 }
 
 }  // namespace
