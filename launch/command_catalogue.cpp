@@ -7,7 +7,10 @@
 #include "core/base/error.h"
 #include "core/frames/earth_orientation.h"
 #include "core/orbit/catalogue.h"
+#include "core/orbit/catalogue_report.h"
+#include "core/orbit/element_text.h"
 #include "core/orbit/sgp4_batch.h"
+#include "core/orbit/synthetic_catalogue.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 #include "launch/commands.h"
@@ -87,12 +90,46 @@ void print_states(const StatesOptions& options) {
   }
 }
 
+struct SynthOptions {
+  std::size_t objects = 18470;
+  std::uint64_t seed = 1;
+  std::string format = "3le";
+};
+
+void print_synthetic(const SynthOptions& options) {
+  constexpr std::size_t most_in_a_tle = 339999;  // Alpha-5 ends there
+  const bool omm = options.format == "omm";
+  if (!omm && options.objects > most_in_a_tle)
+    throw ConfigError("--objects: a TLE holds numbers up to 339999; take --format omm, got " +
+                      std::to_string(options.objects));
+  const auto elements = synthetic_catalogue({.objects = options.objects, .seed = options.seed});
+  const std::string text = omm ? format_omm_csv(elements) : format_3le(elements);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
 }  // namespace
 
 void add_catalogue_command(CLI::App& app) {
   auto* command = app.add_subcommand("catalogue", "Element sets: what is in a file, states at a time");
   command->require_subcommand(1);
   auto options = std::make_shared<StatesOptions>();
+  auto path = std::make_shared<std::string>();
+  auto* info = command->add_subcommand("info", "What a file holds: objects, orbits, epochs, what was refused");
+  info->add_option("file", *path, "TLE, 3LE, gpredict or OMM")->required();
+  info->callback([path] { std::fputs(format(report_of(read_catalogue(*path))).c_str(), stdout); });
+
+  auto synthetic = std::make_shared<SynthOptions>();
+  auto* synth = command->add_subcommand(
+      "synth", "A population like the real one (shells, GEO belt, Molniya, debris) on stdout");
+  synth->add_option("--objects", synthetic->objects, "how many")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
+  synth->add_option("--seed", synthetic->seed, "of the random draws")->capture_default_str();
+  synth->add_option("--format", synthetic->format, "3le, or omm (CSV)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"3le", "omm"}));
+  synth->callback([synthetic] { print_synthetic(*synthetic); });
+
   auto* states = command->add_subcommand("states", "States of all objects at one time, as CSV (km, km/s)");
   states->add_option("file", options->path, "TLE, 3LE, gpredict or OMM")->required();
   states->add_option("--at", options->at, "UTC (ISO 8601) or Julian date")->required();

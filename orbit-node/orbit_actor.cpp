@@ -4,16 +4,18 @@
 #include <map>
 
 #include "core/base/error.h"
+#include "core/base/units.h"
 #include "core/config/yaml_reader.h"
 #include "core/frames/earth_orientation.h"
 #include "core/orbit/catalogue.h"
+#include "core/orbit/catalogue_report.h"
 #include "core/orbit/interpolation.h"
+#include "core/orbit/object_facts.h"
 
 namespace dmise {
 namespace {
 
 constexpr std::int64_t half_step_ns = std::int64_t(slope_half_step_s * 1e9);
-constexpr double stale_after_s = 30 * 86400.0;
 
 bool wanted(const ObjectSource& source, const MeanElements& elements) {
   if (source.only.empty()) return true;
@@ -53,21 +55,30 @@ ObjectPopulation load_objects(const Scenario& scenario, const Clock& clock) {
                              ? std::string()
                              : ": " + catalogue.describe(catalogue.refused[0])));
     require_all_found(source, catalogue.elements);
+    const DiffuseSphere unknown{source.radius_m, source.albedo};
+    ObjectFactsFile facts;
+    if (!source.facts_path.empty()) facts = read_object_facts(source.facts_path);
+    for (const auto& problem : facts.refused)
+      population.notes.push_back(source.facts_path + ":" + std::to_string(problem.line) + ": " +
+                                 problem.reason + " (left out)");
     for (const auto& problem : catalogue.refused)
       population.notes.push_back(catalogue.describe(problem) + " (left out)");
     for (const auto& problem : catalogue.warnings)
       population.notes.push_back(catalogue.describe(problem));
     for (const auto& e : catalogue.elements) {
       if (!wanted(source, e) || !taken.emplace(e.catalogue_number, true).second) continue;
-      const double age_s =
-          ((start.jd1 - e.epoch_jd1) + (start.jd2 - e.epoch_jd2)) * 86400.0;
-      stale += std::abs(age_s) > stale_after_s;
+      const double age_days = element_age_days(e, start);
+      stale += std::abs(age_days) > stale_after_days;
+      const auto known = facts.facts.find(e.catalogue_number);
+      const DiffuseSphere sphere = known == facts.facts.end()
+                                       ? unknown
+                                       : sphere_of(known->second, unknown).sphere;
       population.roster.objects.push_back({.catalogue_number = e.catalogue_number,
                                            .name = e.name,
                                            .designator = e.designator,
-                                           .radius_m = source.radius_m,
-                                           .albedo = source.albedo,
-                                           .element_age_s = age_s});
+                                           .radius_m = sphere.radius_m,
+                                           .albedo = sphere.albedo,
+                                           .element_age_s = age_days * day_s});
       population.elements.push_back(e);
     }
   }

@@ -164,6 +164,10 @@ ObjectSource read_object_source(const YamlValue& value) {
   source.radius_m =
       map.number_or("radius_m", 1.0, {.least = 0.0, .most = 1000.0, .least_open = true});
   source.albedo = map.number_or("albedo", 0.2, {.least = 0.0, .most = 1.0, .least_open = true});
+  if (const auto facts = map.find("facts")) {
+    source.facts_path = find_beside(facts->text(), value.file());
+    if (source.facts_path.empty()) facts->fail("there is no such file");
+  }
   if (const auto only = map.find("only"))
     for (const auto& name : only->list()) source.only.push_back(name.text());
   map.done();
