@@ -1,7 +1,6 @@
 #include "sensors/pipeline/frame_pipeline.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
@@ -15,26 +14,10 @@
 #include "sensors/pipeline/light.h"
 #include "sensors/pipeline/object_layer.h"
 #include "sensors/pipeline/sky_layer.h"
+#include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
 namespace {
-
-using WallClock = std::chrono::steady_clock;
-
-double since(WallClock::time_point start) {
-  return std::chrono::duration<double>(WallClock::now() - start).count();
-}
-
-/// Adds the time of its own life to an effect's.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(WallClock::now()) {}
-  ~Stopwatch() { seconds_ += since(start_); }
-
- private:
-  double& seconds_;
-  WallClock::time_point start_;
-};
 
 /// ICRS direction of the star that the camera sees at a pixel in the middle of the exposure: the
 /// apparent place's inverse by iteration, so that refraction and aberration are those of the stars.
@@ -158,37 +141,35 @@ FramePipeline::~FramePipeline() = default;
 FrameProducts FramePipeline::run(const FrameTimes& times, const World& world) {
   Work& w = *work_;
   const auto& sensor = w.settings.sensor;
-  const auto start = WallClock::now();
   FrameProducts frame;
+  Stopwatch whole(frame.total_s);
   const View view(sensor, times, world);
   std::uint32_t stars_drawn = 0;
   {
     Stopwatch timing(frame.times[Effect::sky]);
     fill_sky(view, w.light, w.threads);
   }
-  if (w.stars && w.has(Effect::stars)) {
-    Stopwatch timing(frame.times[Effect::stars]);
+  if (w.stars && w.has(Effect::stars))
     stars_drawn = w.stars->draw(view, w.psf, w.light, w.threads, w.settings.faintest_star_mag,
-                                w.settings.star_truth ? &frame.stars : nullptr);
-  }
-  if (w.has(Effect::objects)) {
-    Stopwatch timing(frame.times[Effect::objects]);
-    frame.truths = draw_objects(view, objects_in_field(view), w.psf, w.light, w.threads);
-  }
+                                w.settings.star_truth ? &frame.stars : nullptr, frame.times);
+  if (w.has(Effect::objects))
+    frame.truths =
+        draw_objects(view, objects_in_field(view), w.psf, w.light, w.threads, frame.times);
   frame.header = w.header(view);
   expose(w.light, sensor.camera.detector,
          {w.settings.seed, sensor.name, times.frame, times.seconds()}, sensor.effects, w.threads,
          frame.counts, &frame.times);
 
-  const auto detecting = WallClock::now();
-  auto result = detect(frame.counts, as_in_file(frame.header), {}, w.threads);
-  frame.detection_s = since(detecting);
+  DetectionResult result;
+  {
+    Stopwatch timing(frame.detection_s);
+    result = detect(frame.counts, as_in_file(frame.header), {}, w.threads);
+  }
   frame.detections = std::move(result.detections);
   frame.report = std::move(result.report);
   frame.report.stars_rendered = stars_drawn;
   for (const auto& truth : frame.truths) frame.report.objects_rendered += truth.in_frame;
   frame.report.plan = w.plan();
-  frame.total_s = since(start);
   return frame;
 }
 

@@ -11,6 +11,7 @@
 #include "core/photometry/magnitude.h"
 #include "core/sky/shadow.h"
 #include "sensors/pipeline/light.h"
+#include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
 namespace {
@@ -55,8 +56,9 @@ struct Instant {
 
 class Painter {
  public:
-  explicit Painter(const View& view)
+  Painter(const View& view, EffectTimes& times)
       : view_(view),
+        times_(times),
         light_(view),
         shadow_(view.environment().sun_m, oblate_earth(view.earth())),
         with_shadow_(view.sensor().effects.has(Effect::shadow)),
@@ -67,10 +69,18 @@ class Painter {
     const auto place = at.places.satellite(motion.position_m, motion.slope_m_per_s);
     Sample s;
     s.pixel = project(view_.sensor().camera.optics, at.camera * place.direction);
-    s.sunlit = with_shadow_ ? shadow_.sunlit_fraction(motion.position_m) : 1.0;
-    if (s.sunlit > 0.0 && !at.hidden.object(motion.position_m, place.direction))
+    {
+      Stopwatch timing(times_[Effect::shadow]);
+      s.sunlit = with_shadow_ ? shadow_.sunlit_fraction(motion.position_m) : 1.0;
+    }
+    bool hidden = false;
+    {
+      Stopwatch timing(times_[Effect::earth_occultation]);
+      hidden = at.hidden.object(motion.position_m, place.direction);
+    }
+    if (s.sunlit > 0.0 && !hidden)
       s.electrons_per_s = zero_mag_ * light_of_magnitude(magnitude(object, motion, at)) * s.sunlit *
-                          light_.transmission(place.direction) * light_.electrons_per_photon_m2();
+                          transmission(place.direction) * light_.electrons_per_photon_m2();
     return s;
   }
 
@@ -90,7 +100,13 @@ class Painter {
   }
 
  private:
+  double transmission(const Vec<Gcrs>& apparent) const {
+    Stopwatch timing(times_[Effect::extinction]);
+    return light_.transmission(apparent);
+  }
+
   const View& view_;
+  EffectTimes& times_;
   Light light_;
   EarthShadow shadow_;
   bool with_shadow_;
@@ -171,10 +187,12 @@ std::vector<std::size_t> objects_in_field(const View& view) {
 }
 
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
-                                const PsfTable& psf, RateImage& image, Threads& threads) {
+                                const PsfTable& psf, RateImage& image, Threads& threads,
+                                EffectTimes& times) {
+  Stopwatch drawing(times[Effect::objects]);
   const auto& exposure = view.times();
   const auto& optics = view.sensor().camera.optics;
-  const Painter painter(view);
+  const Painter painter(view, times);
   // Instants of the finest division; coarser ones take every so manieth.
   std::vector<std::optional<Instant>> instants(2 * changing_arcs + 1);
   const auto instant = [&](std::size_t k) -> const Instant& {
@@ -199,8 +217,10 @@ std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>
     if (changes_abruptly(samples)) samples = samples_of(object, changing_arcs);
     Deposited light;
     const auto arcs = arcs_of(samples, exposure.seconds());
-    if (!arcs.empty())
+    if (!arcs.empty()) {
+      Stopwatch timing(times[Effect::psf]);
       for (const auto& part : deposit(arcs, psf, image, threads)) light = light + part;
+    }
     bool enters = false;
     for (const auto& s : samples) enters = enters || inside(s.pixel, optics);
     if (light.signal_e <= 0.0 && !enters) continue;

@@ -19,6 +19,7 @@ std::vector<std::size_t> objects_in_field(const View& view);
 /// Adds their light to `image` and tells what was drawn. An object of which no light fell inside and
 /// whose path did not enter the frame has no entry.
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
-                                const PsfTable& psf, RateImage& image, Threads& threads);
+                                const PsfTable& psf, RateImage& image, Threads& threads,
+                                EffectTimes& times);
 
 }  // namespace dmise

@@ -25,11 +25,14 @@ class StarLayer {
   StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map);
 
   /// Adds the stars' light to `image`; returns how many left some in the frame. `truth`, if not
-  /// null, gets each of them.
+  /// null, gets each of them. The time spent goes to the effects it was spent for.
   std::uint32_t draw(const View& view, const PsfTable& psf, RateImage& image, Threads& threads,
-                     double faintest_v_mag, std::vector<StarTruth>* truth) const;
+                     double faintest_v_mag, std::vector<StarTruth>* truth,
+                     EffectTimes& times) const;
 
  private:
+  std::vector<std::uint32_t> candidates(const View& view, double faintest_v_mag) const;
+
   std::shared_ptr<const StarMap> map_;
   StarLight light_;
 };

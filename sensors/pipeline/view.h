@@ -34,7 +34,8 @@ class View {
   const EnvironmentState& environment() const { return *environment_; }
   Rotation<CameraFrame, Gcrs> camera_from_gcrs(SimTime t) const;
   /// Where light seems to come from, at `t`, with the sensor's effects.
-  ApparentPlaces places(SimTime t) const;
+  ApparentPlaces places(SimTime t) const { return places(t, sensor_.effects); }
+  ApparentPlaces places(SimTime t, const EffectSet& effects) const;
   /// Normal of the ellipsoid at a ground sensor; for a sensor in orbit, away from the Earth's centre.
   Vec<Gcrs> up(SimTime t) const;
 
