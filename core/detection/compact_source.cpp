@@ -78,6 +78,7 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
   FitSettings fit_settings;
   fit_settings.sigma_px = scene.sigma_px;
   fit_settings.model_error = settings.model_error;
+  fit_settings.settled_chi2 = 0.05;  // small against every margin
   fit_settings.most_steps = 8;
   const TrailFit as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings);
   if (as_star.good(0.5)) return std::nullopt;
@@ -103,11 +104,11 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
       return source;
     return std::nullopt;
   }
-  const double as_two = deviance_of_stars(pixels, light, star, 2, fit_settings);
-  const double best_star = std::min(as_star.deviance - settings.blend_margin, as_two);
-  if (!as_line.good(4.0) || as_line.deviance > best_star - settings.blend_margin ||
+  if (!as_line.good(4.0) || as_line.deviance > as_star.deviance - 2 * settings.blend_margin ||
       !plausible(scene, as_line.trails[0]) || as_line.trails[0].length_px < 1.0)
     return std::nullopt;
+  const double as_two = deviance_of_stars(pixels, light, star, 2, fit_settings);
+  if (as_line.deviance > as_two - settings.blend_margin) return std::nullopt;
   auto source = fit_source(scene, as_line.trails[0], true, 0.0);
   if (!source || source->snr() < settings.least_snr) return std::nullopt;
   const double sigma_length_px = std::sqrt(source->fit.cov(3, 3));

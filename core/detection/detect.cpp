@@ -24,11 +24,33 @@ double effective_sigma_px(double fwhm_px) {
   return std::sqrt(sigma * sigma + 1.0 / 12);
 }
 
-/// Longer than a star's light can be there, however bright.
+/// Ratio of the axes of the component's pixels, whatever their brightness.
+double elongation(const Component& c) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  for (const Run& run : c.runs)
+    for (int px = run.first_x; px <= run.last_x; ++px) {
+      const double dx = px - c.peak_x, dy = run.y - c.peak_y;
+      n += 1;
+      x += dx;
+      y += dy;
+      xx += dx * dx;
+      xy += dx * dy;
+      yy += dy * dy;
+    }
+  xx = xx / n - x / n * x / n;
+  xy = xy / n - x / n * y / n;
+  yy = yy / n - y / n * y / n;
+  const double mean = 0.5 * (xx + yy), half = std::hypot(0.5 * (xx - yy), xy);
+  return std::sqrt((mean + half) / std::max(mean - half, 1.0 / 12));
+}
+
+/// Longer than a star's light can be there; where it is not much longer, not round either, as the
+/// brightest stars are.
 bool is_long(const Scene& scene, const Component& c) {
   const double star_px = scene.star_trail(c.peak_x, c.peak_y).length_px;
   const double extent_px = std::hypot(c.max_x - c.min_x + 1, c.max_y - c.min_y + 1);
-  return extent_px > star_px + 12 * scene.sigma_px + 6;
+  const double limit_px = star_px + 12 * scene.sigma_px + 6;
+  return extent_px > limit_px && (extent_px > limit_px + 20 || elongation(c) > 2);
 }
 
 struct Judged {

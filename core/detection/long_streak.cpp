@@ -12,12 +12,13 @@
 namespace dmise {
 namespace {
 
-constexpr int most_lines = 4;       // in one component
-constexpr int window_px = 16;       // by which a streak grows
-constexpr double growth_snr = 4.0;  // of a window that goes on
-constexpr double gap_snr = 6.0;     // of one beyond a gap
-constexpr double chain_px = 30.0;   // blends of stars are not longer, but by their own trails
-constexpr int most_rounds = 6;      // of fitting and following
+constexpr int most_lines = 4;              // in one component
+constexpr double worth_another_px = 50.0;  // a shorter one whose first line is none holds no other
+constexpr int window_px = 16;              // by which a streak grows
+constexpr double growth_snr = 4.0;         // of a window that goes on
+constexpr double gap_snr = 6.0;            // of one beyond a gap
+constexpr double chain_px = 30.0;  // blends of stars are not longer, but by their own trails
+constexpr int most_rounds = 6;     // of fitting and following
 
 struct Point {
   double x, y;
@@ -226,8 +227,13 @@ Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, doubl
   return {end(middle, extent.from - window_px), end(middle, extent.to + window_px)};
 }
 
-/// Even and complete enough to be one object's path: most pieces of it carry its light.
-bool is_continuous(const Scene& scene, const Trail& t) {
+/// A trail cut into pieces long enough to be seen: shares of those that carry its light, and of
+/// those that carry more than twice of it. None where there are too few pieces to tell.
+struct Evenness {
+  double lit = 0.0, over = 1.0;
+};
+
+Evenness evenness_of(const Scene& scene, const Trail& t) {
   const Line line = line_of(t);
   const double level = t.flux_e / t.length_px;
   const Extent extent = extent_of(line, t.length_px / 2 - scene.sigma_px);
@@ -242,7 +248,7 @@ bool is_continuous(const Scene& scene, const Trail& t) {
     expected.push_back(level * (1 + t.slope * 2 * along / t.length_px));
     noise += s.variance;
   }
-  if (all.size() < 6) return false;
+  if (all.size() < 6) return {};
   noise = std::sqrt(noise / double(all.size()));
   // Pieces long enough to carry 4 sigma each, at least 2 px.
   const auto length = std::size_t(std::clamp(std::ceil(std::pow(4 * noise / level, 2)), 2.0, 1e6));
@@ -257,7 +263,20 @@ bool is_continuous(const Scene& scene, const Trail& t) {
     lit += sum > 0.4 * want;
     over += sum > 2.0 * want;
   }
-  return pieces >= 3 && lit >= 0.8 * pieces && over <= 0.3 * pieces;
+  if (pieces < 3) return {};
+  return {double(lit) / pieces, double(over) / pieces};
+}
+
+/// Even and complete enough to be one object's path.
+bool is_continuous(const Scene& scene, const Trail& t) {
+  const Evenness e = evenness_of(scene, t);
+  return e.lit >= 0.8 && e.over <= 0.3;
+}
+
+/// Not worth a fit: a first guess, off its line and its ends as it may be, is not so uneven.
+bool is_hopeless(const Scene& scene, const Trail& t) {
+  const Evenness e = evenness_of(scene, t);
+  return e.lit < 0.5 || e.over > 0.4;
 }
 
 /// A trail along the line from end to end of the extent.
@@ -280,6 +299,7 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
   for (int round = 0; round < most_rounds; ++round) {
     const double level = median_level(slices(scene, line, extent.from, extent.to, 0.0));
     if (!(level > 0)) return std::nullopt;
+    if (is_hopeless(scene, trail_along(line, extent, level))) return std::nullopt;
     const Extent before = extent;
     grow(scene, line, extent, +1, level);
     grow(scene, line, extent, -1, level);
@@ -345,6 +365,8 @@ void find_long_streaks(const Scene& scene, const Component& component,
   const double rise = std::log(std::max(component.peak_snr / settings.connect_snr, 1.0));
   const double skirt_px = std::max(3.0, 2 * std::sqrt(rise)) * scene.sigma_px + 1.5;
   std::vector<Point> points = free_points(scene, component, skirt_px, found);
+  const double extent_px =
+      std::hypot(component.max_x - component.min_x + 1, component.max_y - component.min_y + 1);
   for (int n = 0; n < most_lines && points.size() >= 2 * std::size_t(least_px); ++n) {
     const auto rough = main_line(points, width_px, least_px);
     if (!rough) break;
@@ -361,7 +383,10 @@ void find_long_streaks(const Scene& scene, const Component& component,
       return std::abs(line.off(p)) < width_px ||
              (source && lies_on(source->trail(), p.x, p.y, skirt_px));
     });
-    if (source) found.push_back(std::move(*source));
+    if (source)
+      found.push_back(std::move(*source));
+    else if (extent_px < worth_another_px)
+      break;
   }
 }
 

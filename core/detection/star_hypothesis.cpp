@@ -70,6 +70,7 @@ bool point_beats_star(const Scene& scene, const Source& source, const DetectorSe
   FitSettings fit_settings;
   fit_settings.sigma_px = scene.sigma_px;
   fit_settings.model_error = settings.model_error;
+  fit_settings.settled_chi2 = 0.05;  // small against every margin
   fit_settings.most_steps = 15;
   const double as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings).deviance;
   const double as_point = fit_trails(pixels, {point}, {trail_place}, fit_settings).deviance;
@@ -84,6 +85,7 @@ bool beats_stars(const Scene& scene, const Source& source, const DetectorSetting
   FitSettings fit_settings;
   fit_settings.sigma_px = scene.sigma_px;
   fit_settings.model_error = settings.model_error;
+  fit_settings.settled_chi2 = 0.05;  // small against every margin
   fit_settings.most_steps = 15;
   if (is_piece_of_star(scene, line, star, margin_px, settings, fit_settings)) return false;
   const double as_line = fit_trails(pixels, {line}, {trail_line}, fit_settings).deviance;

@@ -17,8 +17,8 @@ double deviance_of_stars(const std::vector<FitPixel>& pixels, const Trail& line,
 /// no longer, and along it.
 bool moves_like_star(const Source& source, const Trail& star, double tolerance_px);
 
-/// Is a point a better account of the light around the source than a star's trail, also where only the
-/// trail's ends would be?
+/// Is a point a better account of the light around the source than a star's trail, also where only
+/// the trail's ends would be?
 bool point_beats_star(const Scene& scene, const Source& source, const DetectorSettings& settings);
 
 /// Is a line a better account of the light around the source than two, three or four stars in a

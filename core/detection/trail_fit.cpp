@@ -264,7 +264,7 @@ TrailFit fit_trails(const std::vector<FitPixel>& pixels, std::vector<Trail> star
     Problem::Linear trial =
         problem.linearise(problem.moved(now.state, solve(damped, now.right, n)), &now.variance);
     const double gain = now.chi2 - trial.merit;
-    fit.converged = std::abs(gain) < 1e-4;
+    fit.converged = std::abs(gain) < settings.settled_chi2;
     if (gain < 0 || !std::isfinite(trial.merit)) {
       damping *= 10;
       continue;

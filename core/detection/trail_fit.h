@@ -42,6 +42,7 @@ struct FitSettings {
   double model_error = 0.0;         // relative error of the model, added to the noise
   double background_sigma_e = 0.0;  // > 0: an even background is fitted too, with this prior
   int most_steps = 12;
+  double settled_chi2 = 1e-4;  // a step that gains less is the last
 };
 
 struct TrailFit {
