@@ -200,6 +200,9 @@ void Coordinator::lost(Member& member, const std::string& how) {
 void Coordinator::drop(Member& member) {
   member.left = true;
   member.dropped = true;
+  // It may have died with messages of ticks that it called done: they count for nobody who is
+  // behind.
+  member.closed_from = std::min(member.done, slowest_done()) + 1;
   grant();
 }
 

@@ -57,6 +57,7 @@ class Coordinator {
     bool dropped = false;
     bool computing = false;
     Tick done = -1;
+    Tick closed_from = 0;  // of a dropped node: its topics are empty from this tick on
     std::uint64_t progress = 0;
     Instant heard{0};
     Instant progressed{0};

@@ -240,7 +240,7 @@ class Master {
       for (const std::string& topic : member.node.produces) {
         auto* closed = grant_.add_closed();
         closed->set_topic(topic);
-        closed->set_from_tick(member.done + 1);
+        closed->set_from_tick(member.closed_from);
       }
     }
     if (coordinator_.over())

@@ -189,6 +189,22 @@ TEST(Coordinator, GoesOnWithoutASilentNodeByPolicy) {
   EXPECT_EQ(master.granted(), 1);
 }
 
+// A node may die between saying that a tick is done and its messages leaving the machine.
+TEST(Coordinator, ClosesTheTopicsOfADroppedNodeFromWhereTheSlowestIs) {
+  auto o = options({"camera", "recorder"}, 9, 4);
+  o.on_silent = SilentPolicy::drop;
+  Coordinator master(o);
+  master.join(node("camera", {"detection"}));
+  master.join(node("recorder", {}, {"detection"}));
+  master.ready("camera");
+  master.ready("recorder");
+  for (Tick tick = 0; tick <= 2; ++tick) master.done("camera", tick);
+  master.done("recorder", 0, seconds(8));
+  master.check(seconds(9));
+  EXPECT_TRUE(master.members().at("camera").dropped);
+  EXPECT_EQ(master.members().at("camera").closed_from, 1);
+}
+
 TEST(Coordinator, NeverGoesOnWithoutTheBroker) {
   auto o = options({"broker", "camera"});
   o.on_silent = SilentPolicy::drop;
