@@ -23,7 +23,7 @@ using std::chrono::seconds;
 
 constexpr milliseconds check_interval{50};
 constexpr milliseconds connecting_interval{10};  // grants repeated while subscribers connect
-constexpr seconds farewell{2};  // longest wait for nodes to leave a run that is over
+constexpr milliseconds farewell{1700};  // longest wait for nodes to leave a run that is over
 constexpr seconds complain_interval{5};
 
 std::uint64_t new_run_id() {

@@ -174,7 +174,7 @@ TEST(Processes, AnInterruptEndsEverybodyWithinTwoSeconds) {
   for (auto& [name, node] : stack.nodes) node->kill(SIGINT);
   const auto start = std::chrono::steady_clock::now();
   stack.expect_all_exit(1, "", 5);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(2500));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(2000));
 }
 
 // docs/wire.md and proto/ are enough: this node shares no code with the others.
