@@ -68,7 +68,7 @@ def judge(run, elements_path, dut1_s):
                 referee.check_silently(number in elements, f"{number} is in {elements_path}")
                 satellites[number] = EarthSatellite(*elements[number], ts=timescale)
             direction, range_m = seen_from(site, satellites[number], times[frame], timescale)
-            ra, dec = truth["true_ra_rad"], truth["true_dec_rad"]
+            ra, dec = np.radians([truth["true_ra_deg"], truth["true_dec_deg"]])
             ours = np.array([np.cos(dec) * np.cos(ra), np.cos(dec) * np.sin(ra), np.sin(dec)])
             error_arcsec = np.degrees(np.arcsin(np.linalg.norm(np.cross(ours, direction)))) * 3600
             error_m = abs(truth["true_range_m"] - range_m)

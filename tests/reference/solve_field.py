@@ -5,7 +5,8 @@
 The first frame of every sensor. A field wider than 20 deg is solved in crops: the middle and two
 opposite corners. astrometry.net knows tangent planes only, so each source that source-extractor found in
 a crop is first moved from the lens's projection to the plane that touches the sky at the crop's middle;
-the WCS is not used for that. Tolerance: 0.3 px rms over a grid of the crop, any common shift included.
+the WCS is not used for that. Its index is of J2000 without proper motions, so each source is moved back by
+the motion that build/data/stars.dat gives the star there. Tolerance: 0.3 px rms over a grid of the crop, any common shift included.
 """
 
 import pathlib
@@ -16,6 +17,7 @@ import tempfile
 import numpy as np
 from astropy.io import fits
 from astropy.wcs import WCS
+from scipy.spatial import cKDTree
 
 import referee
 
@@ -23,6 +25,7 @@ TOLERANCE_PX = 0.3
 WIDEST_DEG = 20.0
 MOST_SOURCES = 500
 DEADLINE_S = 60
+NEIGHBOURS = 3  # source-extractor's flags for a blend
 
 # Image height over focal length at an angle from the boresight, and back.
 LENSES = {
@@ -83,14 +86,25 @@ class TangentPlane:
         return direction[:2] * stretch + self.centre[:, None]
 
 
-def solve(frame, rows, columns, directory):
+def motion_since_2000(frame, stars, x, y):
+    """How far [px] the star within 3 px of each place has moved since J2000; 0 without one."""
+    moved, star_x, star_y = referee.stars_in(frame, stars)
+    then_x, then_y = frame.wcs.all_world2pix(moved["ra_deg"], moved["dec_deg"], 0, quiet=True)
+    distance, nearest = cKDTree(np.column_stack([star_x, star_y])).query(np.column_stack([x, y]))
+    nearest, known = np.minimum(nearest, len(moved) - 1), distance < 3
+    return known * (star_x - then_x)[nearest], known * (star_y - then_y)[nearest]
+
+
+def solve(frame, stars, rows, columns, directory):
     """(WCS by astrometry.net or None, number of sources), in the crop's tangent plane."""
     sources = referee.extract_sources(frame.counts[rows, columns], directory,
                                       aperture_px=6 + frame.trail_px)
-    clean = (sources["flags"] == 0) & (sources["peak"] < 0.95 * frame.header["SATURATE"])
+    clean = (sources["flags"] & NEIGHBOURS == 0) & (sources["peak"] < 0.95 * frame.header["SATURATE"])
     best = np.flatnonzero(clean)[np.argsort(-sources["flux"][clean])[:MOST_SOURCES]]
     plane = TangentPlane(frame, rows, columns)
-    x, y = plane.from_pixels(sources["x"][best] + columns.start, sources["y"][best] + rows.start)
+    x, y = sources["x"][best] + columns.start, sources["y"][best] + rows.start
+    dx, dy = motion_since_2000(frame, stars, x, y)
+    x, y = plane.from_pixels(x - dx, y - dy)
     fits.BinTableHDU.from_columns([
         fits.Column("X", "D", array=x + 1), fits.Column("Y", "D", array=y + 1),
         fits.Column("FLUX", "D", array=sources["flux"][best]),
@@ -121,10 +135,11 @@ def disagreement_px(frame, rows, columns, solved):
 
 def judge(run):
     referee.need("solve-field")
+    stars = referee.read_stars()
     for frame in referee.first_frames(run):
         for name, rows, columns in crops(frame):
             with tempfile.TemporaryDirectory() as directory:
-                solved, sources = solve(frame, rows, columns, pathlib.Path(directory))
+                solved, sources = solve(frame, stars, rows, columns, pathlib.Path(directory))
             referee.check(solved is not None,
                           f"{frame.name} ({name}): astrometry.net solves it from {sources} sources")
             error = disagreement_px(frame, rows, columns, solved)

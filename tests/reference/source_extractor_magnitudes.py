@@ -49,7 +49,7 @@ def compare(frame, stars):
     found = np.isfinite(distance)
     alone, match = alone[found], match[found]
     flux, peak = sources["flux"][match], sources["peak"][match]
-    noise = 1.4826 * np.median(np.abs(frame.counts - np.median(frame.counts)))
+    noise = 1.4826 * np.median(np.abs(np.diff(frame.counts))) / np.sqrt(2)  # whatever the sky's slope
     aperture_noise = noise * np.sqrt(np.pi) * aperture_px / 2
     bright = (flux > 50 * aperture_noise) & (peak < 0.8 * frame.header["SATURATE"])
     alone, flux = alone[bright], flux[bright]

@@ -84,8 +84,8 @@ def satellite_truth(number, two_lines, time):
     range_m = float(np.linalg.norm(there - here))
     away = gcrs_m(range_m / skyfield_directions.LIGHT_M_PER_S)[1] - here
     return {"sensor": "camera", "frame": 1, "catalogue_number": number, "true_range_m": range_m,
-            "true_ra_rad": float(np.arctan2(away[1], away[0])),
-            "true_dec_rad": float(np.arcsin(away[2] / np.linalg.norm(away)))}
+            "true_ra_deg": float(np.degrees(np.arctan2(away[1], away[0]))),
+            "true_dec_deg": float(np.degrees(np.arcsin(away[2] / np.linalg.norm(away))))}
 
 
 def write(directory, shift_px=0.0, magnitude_error=0.0, clock_error_s=0.0):

@@ -15,7 +15,7 @@ CASES = [
     ("duration_s: 3600", "duration_s: .nan", 1, None, r"simulation\.duration_s: must be a number, got \.nan"),
     ("duration_s: 3600", "duraton_s: 3600", 1, None,
      r"simulation\.duraton_s: unknown key, did you mean duration_s\?"),
-    ("start: 2018-01-21T00:15:00Z", "start: yesterday", 1, 20,
+    ("start: 2018-01-21T00:15:00Z", "start: yesterday", 1, 21,
      r"simulation\.start: must be a UTC time .*, got yesterday"),
     ("catalogue: gpredict", "catalogue: none.tle", 2, 23,
      r"objects\[0\]\.catalogue: there is no such file, got none\.tle"),

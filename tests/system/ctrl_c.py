@@ -15,7 +15,6 @@ def interrupted(binary, directory, command):
     out = directory / command
     with Run(binary, command, write_scenario(directory), "--out", out) as run:
         first_frame(out, "alpha")
-        run.children()
         run.interrupt()
         code, waited_s = run.finish()
         check(waited_s < DEADLINE_S, f"{command}: ends {waited_s:.2f} s after Ctrl-C")

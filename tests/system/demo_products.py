@@ -7,7 +7,6 @@ import json
 import pathlib
 import sys
 
-SENSORS = ("atlanta", "huntsville", "savannah", "orbiter")
 LONGEST_S = 60.0
 
 
@@ -21,7 +20,10 @@ def problems(run):
         if not (run / name).stat().st_size:
             yield f"{name} is empty"
     reports = [json.loads(line) for line in (run / "frames.jsonl").read_text().splitlines()]
-    for sensor in SENSORS:
+    sensors = [sensor["name"] for sensor in record["scenario"]["sensors"]]
+    if len(sensors) != 4:
+        yield f"{len(sensors)} sensors, not 4"
+    for sensor in sensors:
         frames = sorted((run / sensor).glob("frame-*.fits"))
         if not frames or len(frames) != sum(r["sensor"] == sensor for r in reports):
             yield f"{sensor}: {len(frames)} frames, another number of frame reports"

@@ -60,13 +60,13 @@ def write_scenario(directory, duration_s=3600, objects="gpredict", first="alpha"
     return path
 
 
-def parent_of(pid):
-    """Parent's pid, or None for a process that is gone or a zombie."""
+def session_of(pid):
+    """Session of a process, or None for one that is gone or a zombie."""
     try:
         fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
     except OSError:
         return None
-    return None if fields[0] in "ZX" else int(fields[1])
+    return None if fields[0] in "ZX" else int(fields[3])
 
 
 def command_of(pid):
@@ -94,30 +94,24 @@ class Run:
     def __init__(self, *arguments):
         self.process = subprocess.Popen([str(a) for a in arguments], stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, text=True, start_new_session=True)
-        self.seen = set()
         self.stdout = self.stderr = ""
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        for pid in self.living() | ({self.process.pid} if self.process.poll() is None else set()):
+        for pid in self.living():
             os.kill(pid, signal.SIGKILL)
         self.process.communicate()
 
-    def children(self):
-        """Living children, remembered."""
-        pids = [int(p.name) for p in pathlib.Path("/proc").iterdir() if p.name.isdigit()]
-        self.seen |= {pid for pid in pids if parent_of(pid) == self.process.pid}
-        return self.living()
-
     def living(self):
-        """Those ever seen that still live."""
-        return {pid for pid in self.seen if parent_of(pid) is not None}
+        """All processes of the session that live."""
+        pids = [int(p.name) for p in pathlib.Path("/proc").iterdir() if p.name.isdigit()]
+        return {pid for pid in pids if session_of(pid) == self.process.pid}
 
     def node(self, name):
         """pid of the node of that name, or None."""
-        for pid in self.children():
+        for pid in self.living():
             command = command_of(pid)
             if ("--name", name) in zip(command, command[1:]):
                 return pid
@@ -137,7 +131,8 @@ class Run:
         return self.process.returncode, time.monotonic() - began
 
     def nothing_left(self):
-        check(not self.living(), f"of {len(self.seen)} processes {len(self.living())} still run")
+        left = [" ".join(command_of(pid)) for pid in self.living()]
+        check(not left, f"{len(left)} processes are left running {left}")
 
 
 def first_frame(out, sensor):
