@@ -110,11 +110,13 @@ void print_synthetic(const SynthOptions& options) {
 }  // namespace
 
 void add_catalogue_command(CLI::App& app) {
-  auto* command = app.add_subcommand("catalogue", "Element sets: what is in a file, states at a time");
+  auto* command =
+      app.add_subcommand("catalogue", "Element sets: what is in a file, states at a time");
   command->require_subcommand(1);
   auto options = std::make_shared<StatesOptions>();
   auto path = std::make_shared<std::string>();
-  auto* info = command->add_subcommand("info", "What a file holds: objects, orbits, epochs, what was refused");
+  auto* info = command->add_subcommand(
+      "info", "What a file holds: objects, orbits, epochs, what was refused");
   info->add_option("file", *path, "TLE, 3LE, gpredict or OMM")->required();
   info->callback([path] { std::fputs(format(report_of(read_catalogue(*path))).c_str(), stdout); });
 
@@ -130,7 +132,8 @@ void add_catalogue_command(CLI::App& app) {
       ->check(CLI::IsMember({"3le", "omm"}));
   synth->callback([synthetic] { print_synthetic(*synthetic); });
 
-  auto* states = command->add_subcommand("states", "States of all objects at one time, as CSV (km, km/s)");
+  auto* states =
+      command->add_subcommand("states", "States of all objects at one time, as CSV (km, km/s)");
   states->add_option("file", options->path, "TLE, 3LE, gpredict or OMM")->required();
   states->add_option("--at", options->at, "UTC (ISO 8601) or Julian date")->required();
   states->add_option("--frame", options->frame, "teme, gcrs or itrs")

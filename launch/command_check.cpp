@@ -2,11 +2,11 @@
 #include <cstdio>
 #include <memory>
 
-#include "launch/commands.h"
 #include "core/config/make_clock.h"
+#include "launch/commands.h"
 #include "nodes/environment/environment_actor.h"
-#include "sensors/pipeline/make_sensor.h"
 #include "orbit-node/orbit_actor.h"
+#include "sensors/pipeline/make_sensor.h"
 
 namespace dmise {
 namespace {
@@ -28,7 +28,8 @@ void check(const std::string& path) {
 
 void add_check_command(CLI::App& app) {
   auto path = std::make_shared<std::string>();
-  auto* command = app.add_subcommand("check", "Reads a scenario and all that it names; runs nothing");
+  auto* command =
+      app.add_subcommand("check", "Reads a scenario and all that it names; runs nothing");
   command->add_option("scenario", *path, "scenario (YAML)")->required();
   command->callback([path] { check(*path); });
 }

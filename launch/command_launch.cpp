@@ -7,17 +7,17 @@
 
 #include "core/base/error.h"
 #include "core/base/text_file.h"
-#include "launch/commands.h"
 #include "core/config/make_clock.h"
-#include "nodes/environment/environment_actor.h"
-#include "sensors/pipeline/make_sensor.h"
+#include "launch/commands.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
 #include "launch/run_record.h"
 #include "launch/supervisor.h"
+#include "nodes/environment/environment_actor.h"
 #include "nodes/runtime/event.h"
 #include "nodes/runtime/status.h"
 #include "orbit-node/orbit_actor.h"
+#include "sensors/pipeline/make_sensor.h"
 
 namespace dmise {
 namespace {
@@ -75,22 +75,23 @@ class Launch {
                                                                         : "drop";
     start("time-master", "dmise-time-master",
           {"--bind", options_.bind, "--announce", announcement(), "--expect", expected, "--ticks",
-           std::to_string(scenario_.last_tick() + 1), "--tick-ns", std::to_string(scenario_.tick.ns),
-           "--window", std::to_string(network.window_ticks), "--silent-after",
-           number(network.silent_after_s), "--start-within", number(network.join_within_s),
-           "--on-silent", policy});
+           std::to_string(scenario_.last_tick() + 1), "--tick-ns",
+           std::to_string(scenario_.tick.ns), "--window", std::to_string(network.window_ticks),
+           "--silent-after", number(network.silent_after_s), "--start-within",
+           number(network.join_within_s), "--on-silent", policy});
   }
 
   void start_nodes(const std::string& master) {
     start("broker", "dmise-broker", {"--master", master});
-    const std::vector<std::string> common{"--config", options_.scenario, "--master", master,
+    const std::vector<std::string> common{"--config",  options_.scenario,
+                                          "--master",  master,
                                           "--threads", std::to_string(options_.threads)};
     start("orbit-node", "dmise-orbit-node", common);
     start("environment-node", "dmise-environment-node", common);
     for (const auto& sensor : scenario_.sensors) {
       auto arguments = common;
-      arguments.insert(arguments.end(), {"--name", sensor.name, "--out", directory_.path(), "--digest",
-                                         directory_.digest()});
+      arguments.insert(arguments.end(), {"--name", sensor.name, "--out", directory_.path(),
+                                         "--digest", directory_.digest()});
       start(sensor.name, "dmise-sensor-node", arguments);
     }
   }
@@ -217,10 +218,14 @@ void add_launch_command(CLI::App& app) {
   auto* command = app.add_subcommand(
       "launch", "Runs a scenario as a network: broker, time-master and a process per node");
   command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
-  command->add_option("--out", options->out, "directory of the products")->default_val("out/launch");
-  command->add_option("--bind", options->bind, "address of the time-master; port 0 takes any free one")
+  command->add_option("--out", options->out, "directory of the products")
+      ->default_val("out/launch");
+  command
+      ->add_option("--bind", options->bind, "address of the time-master; port 0 takes any free one")
       ->capture_default_str();
-  command->add_option("--threads", options->threads, "threads of each node; the products do not depend on it")
+  command
+      ->add_option("--threads", options->threads,
+                   "threads of each node; the products do not depend on it")
       ->default_val(1)
       ->check(CLI::Range(1, 256));
   command->add_flag("--force", options->force, "replace what is in the directory");

@@ -9,16 +9,16 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/config/make_clock.h"
 #include "core/sim/controller.h"
 #include "launch/commands.h"
-#include "core/config/make_clock.h"
-#include "nodes/environment/environment_actor.h"
-#include "sensors/pipeline/make_sensor.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
 #include "launch/run_record.h"
+#include "nodes/environment/environment_actor.h"
 #include "nodes/runtime/event.h"
 #include "orbit-node/orbit_actor.h"
+#include "sensors/pipeline/make_sensor.h"
 
 namespace dmise {
 namespace {
@@ -31,8 +31,8 @@ struct RunOptions {
 
 constexpr auto patience_after_stop = std::chrono::milliseconds(1500);
 
-/// One run of a scenario in this process. Steps are made by a thread of their own, so that a request
-/// to stop is met in time also in the middle of a frame.
+/// One run of a scenario in this process. Steps are made by a thread of their own, so that a
+/// request to stop is met in time also in the middle of a frame.
 class EmbeddedRun {
  public:
   EmbeddedRun(const Scenario& scenario, const RunDirectory& directory, int thread_count)
@@ -44,8 +44,8 @@ class EmbeddedRun {
     participants_.push_back(std::make_unique<EnvironmentActor>(scenario, make_clock(scenario)));
     const auto stars = load_stars(scenario);
     for (const auto& sensor : scenario.sensors) {
-      auto evaluator = make_sensor(scenario, sensor.name, directory.digest(), directory.path(),
-                                   stars, threads_);
+      auto evaluator =
+          make_sensor(scenario, sensor.name, directory.digest(), directory.path(), stars, threads_);
       evaluator->stop_when([] { return stop_signal().is_set(); });
       frames_total_ += static_cast<int>(frames_within(sensor, scenario.duration));
       sensors_.push_back(evaluator.get());
@@ -53,8 +53,8 @@ class EmbeddedRun {
     }
   }
 
-  /// Returns when all ticks are done, one failed, or a stop was asked for. In the last case the step
-  /// being made may go on in its thread for a while: `in_step()`.
+  /// Returns when all ticks are done, one failed, or a stop was asked for. In the last case the
+  /// step being made may go on in its thread for a while: `in_step()`.
   RunOutcome run() {
     RunOutcome outcome{.how = "one process"};
     Progress progress;
@@ -151,7 +151,9 @@ void add_run_command(CLI::App& app) {
   auto* command = app.add_subcommand("run", "Runs a scenario in this process, without a network");
   command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
   command->add_option("--out", options->out, "directory of the products")->default_val("out/run");
-  command->add_option("--threads", options->threads, "threads to compute with; the products do not depend on it")
+  command
+      ->add_option("--threads", options->threads,
+                   "threads to compute with; the products do not depend on it")
       ->default_val(1)
       ->check(CLI::Range(1, 256));
   command->add_flag("--force", options->force, "replace what is in the directory");

@@ -7,8 +7,8 @@ class App;
 
 namespace dmise {
 
-// The subcommands of `dmise`. Each adds itself to the command line; its work runs in the callback and
-// throws `ConfigError` (exit 2), `Error` (exit 1) or `ExitWith`.
+// The subcommands of `dmise`. Each adds itself to the command line; its work runs in the callback
+// and throws `ConfigError` (exit 2), `Error` (exit 1) or `ExitWith`.
 
 /// Ends the program with a code of its own; what there was to say has been said.
 struct ExitWith {

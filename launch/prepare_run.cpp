@@ -18,18 +18,21 @@ bool prepare_directory(RunDirectory& directory, bool force) {
       break;
     case RunDirectory::Content::another_run:
       if (!force)
-        throw ConfigError(directory.path() +
-                          ": holds the products of another run; --force replaces them, --out writes "
-                          "elsewhere");
+        throw ConfigError(
+            directory.path() +
+            ": holds the products of another run; --force replaces them, --out writes "
+            "elsewhere");
       break;
     case RunDirectory::Content::empty:
-    case RunDirectory::Content::same_run_unfinished: break;
+    case RunDirectory::Content::same_run_unfinished:
+      break;
   }
   directory.clear();
   return true;
 }
 
-void finish_run(const RunDirectory& directory, const Scenario& scenario, const RunOutcome& outcome) {
+void finish_run(const RunDirectory& directory, const Scenario& scenario,
+                const RunOutcome& outcome) {
   directory.merge_lines();
   write_run_record(directory, scenario, outcome);
   write_index_page(directory, scenario);

@@ -30,9 +30,10 @@ void Progress::show(const ProgressState& s, bool last) {
   shown_ = now;
   char line[512];
   const double wall_s = Seconds(now - start_).count();
-  int used = std::snprintf(line, sizeof line,
-                           "simulated %.0f of %.0f s, frames %d of %d, detections %ld, %.0f s elapsed",
-                           s.simulated_s, s.duration_s, s.frames, s.frames_total, s.detections, wall_s);
+  int used =
+      std::snprintf(line, sizeof line,
+                    "simulated %.0f of %.0f s, frames %d of %d, detections %ld, %.0f s elapsed",
+                    s.simulated_s, s.duration_s, s.frames, s.frames_total, s.detections, wall_s);
   if (!s.waiting_for.empty())
     std::snprintf(line + used, sizeof line - std::size_t(used), ", waiting for %s",
                   s.waiting_for.c_str());

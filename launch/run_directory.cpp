@@ -79,7 +79,8 @@ void RunDirectory::clear() {
     if (entry.is_directory(ignored) && fs::exists(entry.path() / "frames.jsonl", ignored))
       fs::remove_all(entry.path(), ignored);
   for (const auto& sensor : scenario_.sensors) fs::remove_all(file(sensor.name), ignored);
-  for (const char* name : {"run.json", "detections.jsonl", "truth.jsonl", "frames.jsonl", "index.html"})
+  for (const char* name :
+       {"run.json", "detections.jsonl", "truth.jsonl", "frames.jsonl", "index.html"})
     fs::remove(file(name), ignored);
 }
 

@@ -21,8 +21,8 @@ class RunDirectory {
   /// Removes what an earlier run left, this or another: sensors' products, merged files, run.json.
   void clear();
 
-  /// Merges the sensors' lines into detections.jsonl, truth.jsonl and frames.jsonl, sorted by (time,
-  /// sensor, index). A line cut short by an interruption is left out.
+  /// Merges the sensors' lines into detections.jsonl, truth.jsonl and frames.jsonl, sorted by
+  /// (time, sensor, index). A line cut short by an interruption is left out.
   void merge_lines() const;
 
  private:
@@ -32,8 +32,8 @@ class RunDirectory {
   std::string digest_;
 };
 
-/// Digest of all that decides the products: the resolved scenario and the bytes of its catalogues; the
-/// first 128 bits of their SHA-256.
+/// Digest of all that decides the products: the resolved scenario and the bytes of its catalogues;
+/// the first 128 bits of their SHA-256.
 std::string scenario_digest(const Scenario& scenario);
 
 /// Per sensor, summed over its lines in frames.jsonl, detections.jsonl and cost.jsonl.
@@ -41,9 +41,9 @@ struct SensorSummary {
   std::string name;
   int frames = 0;
   int detections = 0;
-  int objects = 0;              // with light in a frame, from the truth
+  int objects = 0;  // with light in a frame, from the truth
   double seconds_per_frame = 0.0;
-  double memory_mb = 0.0;       // largest PSS reported
+  double memory_mb = 0.0;  // largest PSS reported
 };
 std::vector<SensorSummary> summarise(const Scenario& scenario, const std::string& run_path);
 

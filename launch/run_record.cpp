@@ -58,9 +58,9 @@ void write_index_page(const RunDirectory& directory, const Scenario& scenario) {
       "a{color:#8cf}img{max-width:100%;background:#000}table{border-collapse:collapse}"
       "td,th{padding:.2em .8em;text-align:right;border-bottom:1px solid #333}"
       "td:first-child,th:first-child{text-align:left}</style>"
-      "<h1>DMISE run</h1><p>Start " + scenario.start_utc + ", " +
-      std::to_string(static_cast<long>(scenario.duration.seconds())) + " s, seed " +
-      std::to_string(scenario.seed) +
+      "<h1>DMISE run</h1><p>Start " +
+      scenario.start_utc + ", " + std::to_string(static_cast<long>(scenario.duration.seconds())) +
+      " s, seed " + std::to_string(scenario.seed) +
       ". Truth is green, detections are yellow. <a href=detections.jsonl>detections.jsonl</a> "
       "<a href=truth.jsonl>truth.jsonl</a> <a href=run.json>run.json</a></p>"
       "<table><tr><th>sensor<th>frames<th>objects in frame<th>detections<th>s a frame<th>PSS, MB";
@@ -78,9 +78,10 @@ void write_index_page(const RunDirectory& directory, const Scenario& scenario) {
       const std::string base = s.name + "/";
       const std::string marked = base + frame_file(frame, "-marked.png");
       if (!exists(directory.path() + "/" + marked)) continue;
-      html += "<p>frame " + std::to_string(frame) + ": <a href='" + base + frame_file(frame, ".fits") +
-              "'>FITS</a> <a href='" + base + frame_file(frame, ".png") + "'>PNG</a><br><a href='" +
-              marked + "'><img loading=lazy src='" + marked + "'></a></p>";
+      html += "<p>frame " + std::to_string(frame) + ": <a href='" + base +
+              frame_file(frame, ".fits") + "'>FITS</a> <a href='" + base +
+              frame_file(frame, ".png") + "'>PNG</a><br><a href='" + marked +
+              "'><img loading=lazy src='" + marked + "'></a></p>";
     }
   }
   write_file_whole(directory.path() + "/index.html", html + "\n");

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -43,7 +44,7 @@ class OrbitActor : public Participant {
   Threads& threads_;
   ObjectPopulation population_;
   Sgp4Batch batch_;
-  std::uint64_t steps_ = 0;
+  std::atomic<std::uint64_t> steps_{0};
 };
 
 /// States at one time. Slopes are symmetric differences of the propagator (`slope_half_step_s`).

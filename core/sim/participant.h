@@ -23,7 +23,8 @@ class Participant {
   /// (place of the topic in consumes(), order of publication). Returns what is published.
   virtual std::vector<Message> step(Tick tick, std::span<const Message> inputs) = 0;
 
-  /// How far the work of the current tick is, for the progress deadline: any number that grows.
+  /// How far the work of the current tick is, for the progress deadline: any number that grows. Called
+  /// from another thread than `step`.
   virtual std::uint64_t progress() const { return 0; }
 };
 

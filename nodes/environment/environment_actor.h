@@ -1,4 +1,6 @@
 #pragma once
+#include <atomic>
+
 #include "core/config/scenario.h"
 #include "core/sim/participant.h"
 #include "core/time/clock.h"
@@ -20,7 +22,7 @@ class EnvironmentActor : public Participant {
   SimTime tick_length_;
   Clock clock_;
   std::vector<SkyState> skies_;
-  std::uint64_t steps_ = 0;
+  std::atomic<std::uint64_t> steps_{0};
 };
 
 }  // namespace dmise

@@ -33,6 +33,8 @@ void put_detection(v1::Detection* message, const Detection& d) {
   message->set_end2_time_ns(d.end2_time.ns);
   put(message->mutable_covariance_rad2(), d.covariance_rad2);
   put(message->mutable_covariance_px2(), d.covariance_px2);
+  put(message->mutable_end1_covariance_rad2(), d.end1_covariance_rad2);
+  put(message->mutable_end2_covariance_rad2(), d.end2_covariance_rad2);
   put(message->mutable_sensor_position_m(), d.sensor_position_m);
   put(message->mutable_sensor_velocity_m_per_s(), d.sensor_velocity_m_per_s);
 }
@@ -51,6 +53,8 @@ Detection take_detection(const v1::Detection& message) {
   d.end2_time = {message.end2_time_ns()};
   d.covariance_rad2 = take<3>(message.covariance_rad2(), "covariance_rad2");
   d.covariance_px2 = take<3>(message.covariance_px2(), "covariance_px2");
+  d.end1_covariance_rad2 = take<3>(message.end1_covariance_rad2(), "end1_covariance_rad2");
+  d.end2_covariance_rad2 = take<3>(message.end2_covariance_rad2(), "end2_covariance_rad2");
   d.sensor_position_m = take_vec<Gcrs>(message.sensor_position_m(), "sensor_position_m");
   d.sensor_velocity_m_per_s =
       take_vec<Gcrs>(message.sensor_velocity_m_per_s(), "sensor_velocity_m_per_s");

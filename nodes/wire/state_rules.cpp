@@ -177,6 +177,8 @@ void check(const Detection& d) {
   direction(d.end2_ra_rad, d.end2_dec_rad, "end2_ra_rad, end2_dec_rad");
   covariance(d.covariance_rad2, "covariance_rad2");
   covariance(d.covariance_px2, "covariance_px2");
+  covariance(d.end1_covariance_rad2, "end1_covariance_rad2");
+  covariance(d.end2_covariance_rad2, "end2_covariance_rad2");
   vector_within(d.sensor_position_m, distance_limit_m, "sensor_position_m");
   vector_within(d.sensor_velocity_m_per_s, speed_limit_m_per_s, "sensor_velocity_m_per_s");
   finite(d.magnitude, "magnitude");

@@ -71,6 +71,7 @@ struct FramePipeline::Work {
     return text;
   }
 
+  FrameProducts make(const FrameTimes& times, const World& world);
   FrameHeader header(const View& view) const;
 };
 
@@ -114,8 +115,7 @@ FrameHeader FramePipeline::Work::header(const View& view) const {
   if (const auto& site = view.site())
     h.site = SitePlace{site->latitude_deg * deg, site->longitude_deg * deg, site->height_m,
                        itrs_from_geodetic(*site)};
-  const double most_dn =
-      has(Effect::quantisation) ? std::exp2(detector.adc_bits) - 1 : 65535.0;
+  const double most_dn = has(Effect::quantisation) ? std::exp2(detector.adc_bits) - 1 : 65535.0;
   const double well_dn = h.full_well_e / h.gain_e_per_dn + h.bias_dn;
   h.saturation_dn = has(Effect::full_well) ? std::min(most_dn, well_dn) : most_dn;
   const SimTime at[3] = {times.start, times.middle, times.end};
@@ -124,11 +124,10 @@ FrameHeader FramePipeline::Work::header(const View& view) const {
   const auto places = view.places(times.middle);
   const auto gcrs_from_camera = view.camera_from_gcrs(times.middle).inverse();
   const double epoch = 2000.0 + julian_years_since_j2000(settings.clock.tt(times.middle));
-  h.wcs = fit_wcs(optics.columns, optics.rows,
-                  [&](PixelPosition pixel) {
-                    return star_at(optics, places, gcrs_from_camera, epoch, pixel);
-                  },
-                  sip_order(optics));
+  h.wcs = fit_wcs(
+      optics.columns, optics.rows,
+      [&](PixelPosition pixel) { return star_at(optics, places, gcrs_from_camera, epoch, pixel); },
+      sip_order(optics));
   return h;
 }
 
@@ -139,37 +138,44 @@ FramePipeline::FramePipeline(PipelineSettings settings, std::shared_ptr<const St
 FramePipeline::~FramePipeline() = default;
 
 FrameProducts FramePipeline::run(const FrameTimes& times, const World& world) {
-  Work& w = *work_;
-  const auto& sensor = w.settings.sensor;
   FrameProducts frame;
-  Stopwatch whole(frame.total_s);
+  double total_s = 0.0;
+  {
+    Stopwatch timing(total_s);
+    frame = work_->make(times, world);
+  }
+  frame.total_s = total_s;
+  return frame;
+}
+
+FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& world) {
+  const auto& sensor = settings.sensor;
+  FrameProducts frame;
   const View view(sensor, times, world);
   std::uint32_t stars_drawn = 0;
   {
     Stopwatch timing(frame.times[Effect::sky]);
-    fill_sky(view, w.light, w.threads);
+    fill_sky(view, light, threads);
   }
-  if (w.stars && w.has(Effect::stars))
-    stars_drawn = w.stars->draw(view, w.psf, w.light, w.threads, w.settings.faintest_star_mag,
-                                w.settings.star_truth ? &frame.stars : nullptr, frame.times);
-  if (w.has(Effect::objects))
-    frame.truths =
-        draw_objects(view, objects_in_field(view), w.psf, w.light, w.threads, frame.times);
-  frame.header = w.header(view);
-  expose(w.light, sensor.camera.detector,
-         {w.settings.seed, sensor.name, times.frame, times.seconds()}, sensor.effects, w.threads,
-         frame.counts, &frame.times);
+  if (stars && has(Effect::stars))
+    stars_drawn = stars->draw(view, psf, light, threads, settings.faintest_star_mag,
+                              settings.star_truth ? &frame.stars : nullptr, frame.times);
+  if (has(Effect::objects))
+    frame.truths = draw_objects(view, objects_in_field(view), psf, light, threads, frame.times);
+  frame.header = header(view);
+  expose(light, sensor.camera.detector, {settings.seed, sensor.name, times.frame, times.seconds()},
+         sensor.effects, threads, frame.counts, &frame.times);
 
   DetectionResult result;
   {
     Stopwatch timing(frame.detection_s);
-    result = detect(frame.counts, as_in_file(frame.header), {}, w.threads);
+    result = detect(frame.counts, as_in_file(frame.header), {}, threads);
   }
   frame.detections = std::move(result.detections);
   frame.report = std::move(result.report);
   frame.report.stars_rendered = stars_drawn;
   for (const auto& truth : frame.truths) frame.report.objects_rendered += truth.in_frame;
-  frame.report.plan = w.plan();
+  frame.report.plan = plan();
   return frame;
 }
 

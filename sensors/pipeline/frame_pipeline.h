@@ -33,18 +33,17 @@ struct PipelineSettings {
   SensorConfig sensor;
   Clock clock;
   std::uint64_t seed = 1;
-  std::string digest;            // of the run, written into every frame
+  std::string digest;  // of the run, written into every frame
   double faintest_star_mag = 9.5;
   bool star_truth = false;
 };
 
-/// The chain of one sensor: states around an exposure -> stars, objects and sky at the focal plane ->
-/// expected electrons -> electrons -> counts -> detections. Keeps its buffers between frames.
+/// The chain of one sensor: states around an exposure -> stars, objects and sky at the focal plane
+/// -> expected electrons -> electrons -> counts -> detections. Keeps its buffers between frames.
 class FramePipeline {
  public:
   /// `stars` may be null: no stars. `threads` must outlive the pipeline.
-  FramePipeline(PipelineSettings settings, std::shared_ptr<const StarMap> stars,
-                Threads& threads);
+  FramePipeline(PipelineSettings settings, std::shared_ptr<const StarMap> stars, Threads& threads);
   ~FramePipeline();
 
   FrameProducts run(const FrameTimes& exposure, const World& world);

@@ -14,7 +14,8 @@ class Light {
   /// Collecting area x transmission of the optics x quantum efficiency: electrons a second for one
   /// photon/s/m2 in the band [m2].
   double electrons_per_photon_m2() const { return electrons_per_photon_m2_; }
-  /// Of the atmosphere along an apparent direction (unit), (0, 1]; 1 in space or without the effect.
+  /// Of the atmosphere along an apparent direction (unit), (0, 1]; 1 in space or without the
+  /// effect.
   double transmission(const Vec<Gcrs>& apparent) const;
   /// V magnitude of a source of the Sun's colour that gives 1 e-/s without any atmosphere.
   double zero_point_mag() const;
@@ -27,8 +28,8 @@ class Light {
   double zero_mag_photons_per_s_m2_ = 0.0;
 };
 
-/// What the Earth hides from a sensor at one instant: below the apparent horizon on the ground, behind
-/// the ellipsoid in orbit. Nothing is hidden without the effect earth_occultation.
+/// What the Earth hides from a sensor at one instant: below the apparent horizon on the ground,
+/// behind the ellipsoid in orbit. Nothing is hidden without the effect earth_occultation.
 class Hidden {
  public:
   Hidden(const View& view, SimTime t);

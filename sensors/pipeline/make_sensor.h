@@ -15,6 +15,7 @@ std::shared_ptr<const StarMap> load_stars(const Scenario& scenario);
 std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,
                                              const std::string& digest,
                                              const std::string& directory,
-                                             std::shared_ptr<const StarMap> stars, Threads& threads);
+                                             std::shared_ptr<const StarMap> stars,
+                                             Threads& threads);
 
 }  // namespace dmise

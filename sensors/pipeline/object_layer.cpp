@@ -123,16 +123,16 @@ std::vector<Arc> arcs_of(const std::vector<Sample>& samples, double seconds) {
     if (!a.pixel || !m.pixel || !b.pixel) continue;
     const double mean = (a.electrons_per_s + 4 * m.electrons_per_s + b.electrons_per_s) / 6;
     if (mean <= 0.0) continue;
-    const double tilt =
-        std::clamp((b.electrons_per_s - a.electrons_per_s) / (2 * mean), -1.0, 1.0);
+    const double tilt = std::clamp((b.electrons_per_s - a.electrons_per_s) / (2 * mean), -1.0, 1.0);
     arcs.push_back({*a.pixel, *m.pixel, *b.pixel, mean * arc_s, tilt});
   }
   return arcs;
 }
 
 double distance_px(const Sample& a, const Sample& b) {
-  return a.pixel && b.pixel ? std::hypot(a.pixel->x_px - b.pixel->x_px, a.pixel->y_px - b.pixel->y_px)
-                            : 1e9;
+  return a.pixel && b.pixel
+             ? std::hypot(a.pixel->x_px - b.pixel->x_px, a.pixel->y_px - b.pixel->y_px)
+             : 1e9;
 }
 
 bool inside(const std::optional<PixelPosition>& p, const Optics& optics) {
@@ -255,9 +255,8 @@ std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>
                 .whole = inside(start.pixel, optics) && inside(middle.pixel, optics) &&
                          inside(end.pixel, optics)};
     if (view.on_ground())
-      truth.true_elevation_rad =
-          std::asin(std::clamp(dot(view.up(mid.time), unit(motion.position_m - mid.observer.position_m)),
-                               -1.0, 1.0));
+      truth.true_elevation_rad = std::asin(std::clamp(
+          dot(view.up(mid.time), unit(motion.position_m - mid.observer.position_m)), -1.0, 1.0));
     const auto put = [](const Sample& s, double& x, double& y) {
       if (s.pixel) {
         x = s.pixel->x_px;

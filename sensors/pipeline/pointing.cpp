@@ -17,8 +17,7 @@ struct Aim {
   double roll_rad() const { return sensor.roll_deg * deg; }
 
   /// Longitude of ENU runs from east through north.
-  Rotation<CameraFrame, Gcrs> in_enu(double longitude_rad, double latitude_rad,
-                                     double roll) const {
+  Rotation<CameraFrame, Gcrs> in_enu(double longitude_rad, double latitude_rad, double roll) const {
     return camera_at<Enu>(longitude_rad, latitude_rad, roll) * enu_from_itrs(*scene.site) *
            scene.itrs_from_gcrs;
   }
@@ -47,9 +46,12 @@ Rotation<CameraFrame, Gcrs> aim(const SensorConfig& sensor, const PointingScene&
 Rotation<CameraFrame, Gcrs> camera_from_gcrs(const SensorConfig& sensor, const PointingScene& aimed,
                                              const PointingScene& now) {
   switch (sensor.tracking) {
-    case Tracking::sidereal: return aim(sensor, aimed);
-    case Tracking::target: return aim(sensor, now);
-    case Tracking::fixed: break;
+    case Tracking::sidereal:
+      return aim(sensor, aimed);
+    case Tracking::target:
+      return aim(sensor, now);
+    case Tracking::fixed:
+      break;
   }
   if (!now.site) return aim(sensor, now);
   // Fixed to the ground: the attitude to the Earth is that of the instant of aiming.

@@ -6,9 +6,10 @@
 
 namespace dmise {
 
-/// Camera axes for a boresight at (`longitude_rad`, `latitude_rad`) of frame `F`: the image's up (-y)
-/// points along increasing latitude turned by `roll_rad` towards increasing longitude. Defined at the
-/// poles too, where the longitude chooses. Seen from inside the sphere: with north up, east is left.
+/// Camera axes for a boresight at (`longitude_rad`, `latitude_rad`) of frame `F`: the image's up
+/// (-y) points along increasing latitude turned by `roll_rad` towards increasing longitude. Defined
+/// at the poles too, where the longitude chooses. Seen from inside the sphere: with north up, east
+/// is left.
 template <class F>
 Rotation<CameraFrame, F> camera_at(double longitude_rad, double latitude_rad, double roll_rad) {
   const double cl = std::cos(longitude_rad), sl = std::sin(longitude_rad);
@@ -19,7 +20,9 @@ Rotation<CameraFrame, F> camera_at(double longitude_rad, double latitude_rad, do
   const Vec<F> up = north * std::cos(roll_rad) + east * std::sin(roll_rad);
   const Vec<F> right = cross(boresight, up);
   Rotation<CameraFrame, F> r;
-  r.m = {{{right.x, right.y, right.z}, {-up.x, -up.y, -up.z}, {boresight.x, boresight.y, boresight.z}}};
+  r.m = {{{right.x, right.y, right.z},
+          {-up.x, -up.y, -up.z},
+          {boresight.x, boresight.y, boresight.z}}};
   return r;
 }
 
@@ -33,9 +36,9 @@ struct ObserverState {
 struct PointingScene {
   SimTime time;
   ObserverState observer;
-  Vec<Gcrs> target_m;                              // geocentric; used by PointTarget only
+  Vec<Gcrs> target_m;  // geocentric; used by PointTarget only
   Rotation<Itrs, Gcrs> itrs_from_gcrs;
-  const Site* site = nullptr;                      // null aboard a platform
+  const Site* site = nullptr;  // null aboard a platform
 };
 
 /// Attitude with which a camera would point at its goal at the instant of `scene`.

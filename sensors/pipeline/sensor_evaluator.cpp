@@ -3,9 +3,8 @@
 namespace dmise {
 
 SensorEvaluator::SensorEvaluator(PipelineSettings settings, SimTime tick_length, SimTime duration,
-                                 const OutputConfig& output,
-                                 std::shared_ptr<const StarMap> stars, std::string directory,
-                                 Threads& threads)
+                                 const OutputConfig& output, std::shared_ptr<const StarMap> stars,
+                                 std::string directory, Threads& threads)
     : sensor_(settings.sensor),
       tick_length_(tick_length),
       last_frame_(frames_within(settings.sensor, duration)),
@@ -13,7 +12,8 @@ SensorEvaluator::SensorEvaluator(PipelineSettings settings, SimTime tick_length,
       writer_(std::move(directory), output, settings.clock) {}
 
 std::vector<std::string> SensorEvaluator::produces() const {
-  return {frame_prefix + sensor_.name, detection_prefix + sensor_.name, truth_prefix + sensor_.name};
+  return {frame_prefix + sensor_.name, detection_prefix + sensor_.name,
+          truth_prefix + sensor_.name};
 }
 
 std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> inputs) {
@@ -36,14 +36,14 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
     FrameProducts frame = pipeline_.run(exposure, world_);
     writer_.write(frame);
     detections_ += static_cast<long>(frame.detections.size());
-    messages.push_back({frame_prefix + sensor_.name, tick,
-                        std::make_shared<State>(std::move(frame.report))});
+    messages.push_back(
+        {frame_prefix + sensor_.name, tick, std::make_shared<State>(std::move(frame.report))});
     messages.push_back({detection_prefix + sensor_.name, tick,
                         std::make_shared<State>(DetectionSet{sensor_.name, exposure.frame,
                                                              std::move(frame.detections)})});
-    messages.push_back({truth_prefix + sensor_.name, tick,
-                        std::make_shared<State>(
-                            TruthSet{sensor_.name, exposure.frame, std::move(frame.truths)})});
+    messages.push_back(
+        {truth_prefix + sensor_.name, tick,
+         std::make_shared<State>(TruthSet{sensor_.name, exposure.frame, std::move(frame.truths)})});
     ++next_frame_;
     ++progress_;
   }

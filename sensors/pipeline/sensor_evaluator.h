@@ -11,8 +11,8 @@
 
 namespace dmise {
 
-/// A sensor as an Evaluator: gathers the states of the world and, as soon as they cover an exposure,
-/// makes its frame, writes its products and publishes report, detections and truth.
+/// A sensor as an Evaluator: gathers the states of the world and, as soon as they cover an
+/// exposure, makes its frame, writes its products and publishes report, detections and truth.
 class SensorEvaluator : public Participant {
  public:
   SensorEvaluator(PipelineSettings settings, SimTime tick_length, SimTime duration,

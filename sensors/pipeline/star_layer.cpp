@@ -19,7 +19,7 @@ constexpr double widest_shift_rad = 1.3 * deg;
 /// A star's way over the detector.
 struct Trail {
   std::uint32_t star = 0;
-  Vec<Gcrs> middle;                   // apparent direction in mid exposure
+  Vec<Gcrs> middle;                    // apparent direction in mid exposure
   std::array<PixelPosition, 3> pixel;  // start, middle, end
 };
 

@@ -13,7 +13,7 @@ namespace dmise {
 
 /// One star as it was drawn.
 struct StarTruth {
-  std::uint32_t id = 0;           // in its catalogue
+  std::uint32_t id = 0;  // in its catalogue
   double v_mag = 0.0, bv = 0.0;
   double x_px = 0.0, y_px = 0.0;  // centroid of its light in the frame
   double signal_e = 0.0;          // expected electrons deposited in the frame

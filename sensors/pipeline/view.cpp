@@ -54,8 +54,7 @@ ApparentPlaces View::places(SimTime t, const EffectSet& effects) const {
   const auto& e = *environment_;
   const SolarSystem bodies{e.sun_m, e.moon_m, e.earth_barycentric_m, e.earth_velocity_m_per_s};
   const Tt tt{e.tt_jd1, e.tt_jd2 + (t - e.time).seconds() / day_s};
-  if (site_)
-    return {ground_observer(*site_, e.earth, t, tt, bodies, refraction_), effects};
+  if (site_) return {ground_observer(*site_, e.earth, t, tt, bodies, refraction_), effects};
   const ObserverState at = observer(t);
   return {space_observer(at.position_m, at.velocity_m_per_s, tt, bodies), effects};
 }

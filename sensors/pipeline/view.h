@@ -36,7 +36,8 @@ class View {
   /// Where light seems to come from, at `t`, with the sensor's effects.
   ApparentPlaces places(SimTime t) const { return places(t, sensor_.effects); }
   ApparentPlaces places(SimTime t, const EffectSet& effects) const;
-  /// Normal of the ellipsoid at a ground sensor; for a sensor in orbit, away from the Earth's centre.
+  /// Normal of the ellipsoid at a ground sensor; for a sensor in orbit, away from the Earth's
+  /// centre.
   Vec<Gcrs> up(SimTime t) const;
 
   /// Pixel of an apparent direction (observed: aberration and refraction in it); nothing where the

@@ -15,7 +15,8 @@ World::Around World::around(SimTime t) const {
   for (std::size_t k = 1; k < states_.size(); ++k)
     if (t <= states_[k]->time && t >= states_[k - 1]->time)
       return {states_[k - 1].get(), states_[k].get()};
-  if (!states_.empty() && states_.back()->time == t) return {states_.back().get(), states_.back().get()};
+  if (!states_.empty() && states_.back()->time == t)
+    return {states_.back().get(), states_.back().get()};
   throw Error("no object states at " + std::to_string(t.seconds()) + " s");
 }
 
@@ -51,15 +52,16 @@ std::size_t object_index(const ObjectRoster& roster, const std::string& name,
     if (std::to_string(object.catalogue_number) == name) return i;
     if (object.name != name) continue;
     if (found < roster.objects.size())
-      throw ConfigError(what + ": several objects have this name, give the catalogue number, got " + name);
+      throw ConfigError(what + ": several objects have this name, give the catalogue number, got " +
+                        name);
     found = i;
   }
   if (found < roster.objects.size()) return found;
   std::vector<std::string> names;
   for (const auto& object : roster.objects) names.push_back(object.name);
   const std::string hint = nearest_name(name, names);
-  throw ConfigError(what + ": no such object" + (hint.empty() ? "" : ", did you mean " + hint + "?") +
-                    ", got " + name);
+  throw ConfigError(what + ": no such object" +
+                    (hint.empty() ? "" : ", did you mean " + hint + "?") + ", got " + name);
 }
 
 }  // namespace dmise

@@ -17,7 +17,9 @@ class World {
  public:
   void add(std::shared_ptr<const ObjectRoster> roster) { roster_ = std::move(roster); }
   void add(std::shared_ptr<const ObjectStates> states) { states_.push_back(std::move(states)); }
-  void add(std::shared_ptr<const EnvironmentState> state) { environment_.push_back(std::move(state)); }
+  void add(std::shared_ptr<const EnvironmentState> state) {
+    environment_.push_back(std::move(state));
+  }
   /// Forgets what is not needed for times >= `t`.
   void forget_before(SimTime t);
 
@@ -26,8 +28,8 @@ class World {
 
   /// Whether object `i` has a state at both ticks around `t`.
   bool has_state(std::size_t i, SimTime t) const;
-  /// Cubic Hermite between the ticks around `t` on position and slope. `t` must lie within the ticks
-  /// held and the object have a state there.
+  /// Cubic Hermite between the ticks around `t` on position and slope. `t` must lie within the
+  /// ticks held and the object have a state there.
   Motion motion(std::size_t i, SimTime t) const;
 
   /// The environment of the last tick at or before `t`.
@@ -45,8 +47,8 @@ class World {
   std::deque<std::shared_ptr<const EnvironmentState>> environment_;
 };
 
-/// Index of the object with this catalogue number or name. Throws `ConfigError` with `what` first if
-/// there is none or the name belongs to several.
+/// Index of the object with this catalogue number or name. Throws `ConfigError` with `what` first
+/// if there is none or the name belongs to several.
 std::size_t object_index(const ObjectRoster& roster, const std::string& name,
                          const std::string& what);
 

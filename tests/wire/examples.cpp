@@ -120,6 +120,8 @@ Detection detection(Numbers& n, std::uint32_t index) {
   d.snr = n.in(3, 1000);
   d.x_px = n.in(0, 3000), d.y_px = n.in(0, 2000);
   d.covariance_px2 = {n.in(1, 2), n.in(-1, 1), n.in(1, 2)};
+  d.end1_covariance_rad2 = {n.in(1, 2), n.in(-1, 1), n.in(1, 2)};
+  d.end2_covariance_rad2 = {n.in(1, 2), n.in(-1, 1), n.in(1, 2)};
   d.signal_e = n.in(0, 1e6);
   d.end1_x_px = n.in(0, 3000), d.end1_y_px = n.in(0, 3000);
   d.end2_x_px = n.in(0, 3000), d.end2_y_px = n.in(0, 3000);

@@ -1,0 +1,91 @@
+#pragma once
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "core/config/make_clock.h"
+#include "core/config/scenario.h"
+#include "nodes/environment/environment_actor.h"
+#include "orbit-node/orbit_actor.h"
+#include "sensors/pipeline/frame_pipeline.h"
+
+namespace dmise::test {
+
+/// A scenario in a directory of its own, with the world that its actors publish.
+class Stage {
+ public:
+  explicit Stage(const std::string& yaml, const std::string& stars_csv = "",
+                 const std::string& elements = "") {
+    setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
+    directory = std::filesystem::path(testing::TempDir()) /
+                ("stage-" + std::to_string(getpid()) + "-" +
+                 testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(directory);
+    write("scenario.yaml", yaml);
+    write("stars.csv", stars_csv);
+    write("objects.tle", elements);
+    scenario = load_scenario((directory / "scenario.yaml").string());
+    const Clock clock = make_clock(scenario);
+    OrbitActor orbit(scenario, clock, threads);
+    EnvironmentActor environment(scenario, clock);
+    for (Tick tick = 0; tick <= scenario.last_tick(); ++tick) {
+      for (const auto& message : orbit.step(tick, {})) add(message);
+      for (const auto& message : environment.step(tick, {})) add(message);
+    }
+    if (!scenario.star_catalogue_path.empty())
+      stars = std::make_shared<const StarMap>(load_star_map(scenario.star_catalogue_path));
+  }
+  ~Stage() { std::filesystem::remove_all(directory); }
+
+  FrameProducts frame(std::uint32_t number = 1, std::size_t sensor = 0) {
+    const auto& config = scenario.sensors.at(sensor);
+    FramePipeline pipeline({.sensor = config,
+                            .clock = make_clock(scenario),
+                            .seed = scenario.seed,
+                            .digest = "test",
+                            .faintest_star_mag = scenario.faintest_star_mag,
+                            .star_truth = true},
+                           stars, threads);
+    return pipeline.run(frame_times(config, number), world);
+  }
+
+  std::filesystem::path directory;
+  Threads threads{1};
+  Scenario scenario;
+  World world;
+  std::shared_ptr<const StarMap> stars;
+
+ private:
+  void write(const char* name, const std::string& text) { std::ofstream(directory / name) << text; }
+  void add(const Message& message) {
+    std::visit(
+        [&](const auto& state) {
+          using T = std::decay_t<decltype(state)>;
+          if constexpr (std::is_same_v<T, ObjectRoster> || std::is_same_v<T, ObjectStates> ||
+                        std::is_same_v<T, EnvironmentState>)
+            world.add(std::make_shared<const T>(state));
+        },
+        *message.state);
+  }
+};
+
+/// Centroid of the counts within `radius_px` of a place; the frame must have no background.
+inline PixelPosition centroid(const CountImage& counts, PixelPosition at, double radius_px) {
+  double sum = 0, sx = 0, sy = 0;
+  for (int y = std::max(0, int(at.y_px - radius_px));
+       y <= std::min(counts.rows - 1, int(at.y_px + radius_px)); ++y)
+    for (int x = std::max(0, int(at.x_px - radius_px));
+         x <= std::min(counts.columns - 1, int(at.x_px + radius_px)); ++x) {
+      const double c = counts.at(x, y);
+      sum += c;
+      sx += c * x;
+      sy += c * y;
+    }
+  return sum > 0 ? PixelPosition{sx / sum, sy / sum} : PixelPosition{-1e9, -1e9};
+}
+
+}  // namespace dmise::test

@@ -1,0 +1,97 @@
+#include <cmath>
+
+#include "core/image/fits_file.h"
+#include "core/photometry/magnitude.h"
+#include "tests/pipeline/harness.h"
+
+namespace dmise {
+namespace {
+
+const std::string elements =
+    "GOES 16\n"
+    "1 41866U 16071A   18019.87773469 -.00000245  00000-0  00000-0 0  9992\n"
+    "2 41866   0.0069 115.0916 0001074 269.6956 335.2025  1.00271237  4322\n";
+
+std::string scenario(const std::string& effects) {
+  return "simulation: {start: 2018-01-21T00:15:00Z, duration_s: 30, tick_s: 5}\n"
+         "objects: [{catalogue: objects.tle}]\nstars: {catalogue: stars.csv, faintest_mag: 15}\n"
+         "effects: " +
+         effects +
+         "\nsensors:\n"
+         "  - {name: watch, site: savannah, camera: geo-watch, pointing: {azimuth_deg: 168.7,"
+         " elevation_deg: 52}, exposure_s: 5, cadence_s: 10}\n";
+}
+
+const std::string no_noise =
+    "photon_noise: off, dark_current: off, read_noise: off, full_well: off,"
+    " quantisation: off";
+
+TEST(FramePipeline, AStarsElectronsAreItsPhotonsTimesAreaAndEfficiency) {
+  // A V = 6 star of the Sun's colour where the camera looks; the closed form is written out here.
+  test::Stage stage(scenario("{sky: off, extinction: off, " + no_noise + "}"),
+                    "ra_deg,dec_deg,mag_v,bv\n49.7,-5.4,6,0.65\n", elements);
+  const auto frame = stage.frame();
+  ASSERT_EQ(frame.stars.size(), 1u);
+  const auto& camera = stage.scenario.sensors[0].camera;
+  const double area_m2 = 3.14159265358979 / 4 * std::pow(camera.optics.aperture_m, 2);
+  const double expected_e =
+      StarLight(camera.band).photons_per_s_m2(6, 0.65) * area_m2 * 0.80 * 0.54 * 5;
+  EXPECT_NEAR(frame.stars[0].signal_e / expected_e, 1.0, 1e-3);
+  double sum = 0;
+  for (const auto count : frame.counts.pixels) sum += count;
+  EXPECT_NEAR(sum / expected_e, 1.0,
+              2e-2);  // counts are rounded, wings are lost below half an electron
+}
+
+TEST(FramePipeline, ExtinctionDimsByTheAirmass) {
+  const std::string star = "ra_deg,dec_deg,mag_v,bv\n49.7,-5.4,6,0.65\n";
+  test::Stage clear(scenario("{sky: off, extinction: off, " + no_noise + "}"), star, elements);
+  const double without = clear.frame().stars.at(0).signal_e;
+  test::Stage air(scenario("{sky: off, " + no_noise + "}"), star, elements);
+  const double with = air.frame().stars.at(0).signal_e;
+  // 0.17 mag an airmass at about 52 deg elevation: X = 1.267.
+  EXPECT_NEAR(magnitude_of_light(with / without), 0.17 * 1.267, 0.17 * 0.04);
+}
+
+TEST(FramePipeline, SwitchedEffectsLeaveTheFrame) {
+  const std::string star = "ra_deg,dec_deg,mag_v\n49.7,-5.4,6\n";
+  test::Stage none(scenario("{sky: off, stars: off, objects: off, " + no_noise + "}"), star,
+                   elements);
+  const auto frame = none.frame();
+  for (const auto count : frame.counts.pixels) ASSERT_EQ(count, 0);
+  EXPECT_EQ(frame.report.stars_rendered, 0u);
+  EXPECT_EQ(frame.report.plan.find("stars"), std::string::npos);
+  EXPECT_NE(frame.report.plan.find("refraction"), std::string::npos);
+}
+
+TEST(FramePipeline, BytesDoNotDependOnThreads) {
+  test::Stage stage(scenario("{}"), "ra_deg,dec_deg,mag_v\n49.7,-5.4,6\n50.2,-5.9,4\n48.9,-6.3,8\n",
+                    elements);
+  const auto& config = stage.scenario.sensors[0];
+  std::string first;
+  for (const int count : {1, 2, 4}) {
+    Threads threads(count);
+    FramePipeline pipeline(
+        {.sensor = config, .clock = make_clock(stage.scenario), .digest = "test"}, stage.stars,
+        threads);
+    const auto frame = pipeline.run(frame_times(config, 2), stage.world);
+    const std::string bytes = encode_frame(frame.counts, frame.header);
+    if (first.empty()) first = bytes;
+    EXPECT_TRUE(bytes == first) << count << " threads";
+  }
+}
+
+TEST(FramePipeline, TellsTheTimeOfEveryEffect) {
+  test::Stage stage(scenario("{}"), "ra_deg,dec_deg,mag_v\n49.7,-5.4,6\n", elements);
+  const auto frame = stage.frame();
+  for (const auto effect : {Effect::sky, Effect::stars, Effect::objects, Effect::psf,
+                            Effect::shadow, Effect::photon_noise, Effect::dark_current,
+                            Effect::read_noise, Effect::full_well, Effect::quantisation})
+    EXPECT_GT(frame.times[effect], 0.0) << facts(effect).name;
+  double sum = frame.detection_s;
+  for (const double s : frame.times.seconds) sum += s;
+  EXPECT_LE(sum, frame.total_s * 1.1);
+}
+
+}  // namespace
+}  // namespace dmise

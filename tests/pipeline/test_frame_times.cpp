@@ -1,0 +1,31 @@
+#include "sensors/pipeline/frame_times.h"
+
+#include <gtest/gtest.h>
+
+namespace dmise {
+namespace {
+
+SensorConfig every(double exposure_s, double cadence_s, double first_s = 0) {
+  SensorConfig sensor;
+  sensor.exposure_s = exposure_s;
+  sensor.cadence_s = cadence_s;
+  sensor.first_exposure_s = first_s;
+  return sensor;
+}
+
+TEST(FrameTimes, FollowTheCadenceExactly) {
+  const auto times = frame_times(every(0.1, 0.3, 1.0), 1'000'001);
+  EXPECT_EQ(times.start.ns, 1'000'000'000 + 1'000'000LL * 300'000'000);
+  EXPECT_EQ((times.end - times.start).ns, 100'000'000);
+  EXPECT_EQ((times.middle - times.start).ns, 50'000'000);
+}
+
+TEST(FrameTimes, CountOnlyExposuresThatEndWithinTheRun) {
+  EXPECT_EQ(frames_within(every(20, 30), sim_seconds(120)), 4u);
+  EXPECT_EQ(frames_within(every(20, 30), sim_seconds(110)), 4u);
+  EXPECT_EQ(frames_within(every(20, 30), sim_seconds(109.999)), 3u);
+  EXPECT_EQ(frames_within(every(20, 30), sim_seconds(19)), 0u);
+}
+
+}  // namespace
+}  // namespace dmise
