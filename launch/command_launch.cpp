@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "core/base/error.h"
@@ -27,6 +28,7 @@ using Seconds = std::chrono::duration<double>;
 
 struct LaunchOptions {
   std::string scenario, out, bind = "tcp://127.0.0.1:0";
+  std::optional<std::uint64_t> seed;  // in place of the scenario's
   int threads = 1;
   bool force = false;
 };
@@ -90,8 +92,9 @@ class Launch {
     start("environment-node", "dmise-environment-node", common);
     for (const auto& sensor : scenario_.sensors) {
       auto arguments = common;
-      arguments.insert(arguments.end(), {"--name", sensor.name, "--out", directory_.path(),
-                                         "--digest", directory_.digest()});
+      arguments.insert(arguments.end(),
+                       {"--name", sensor.name, "--out", directory_.path(), "--digest",
+                        directory_.digest(), "--seed", std::to_string(scenario_.seed)});
       start(sensor.name, "dmise-sensor-node", arguments);
     }
   }
@@ -199,7 +202,8 @@ class Launch {
 };
 
 void launch(const LaunchOptions& options) {
-  const Scenario scenario = load_scenario(options.scenario);
+  Scenario scenario = load_scenario(options.scenario);
+  if (options.seed) scenario.seed = *options.seed;
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   if (!prepare_directory(directory, options.force)) return;
   stop_signal();
@@ -228,6 +232,8 @@ void add_launch_command(CLI::App& app) {
                    "threads of each node; the products do not depend on it")
       ->default_val(1)
       ->check(CLI::Range(1, 256));
+  command->add_option("--seed", options->seed,
+                      "seed of the random draws, in place of the scenario's");
   command->add_flag("--force", options->force, "replace what is in the directory");
   command->callback([options] { launch(*options); });
 }

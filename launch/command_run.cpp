@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "core/base/error.h"
@@ -25,6 +26,7 @@ namespace {
 
 struct RunOptions {
   std::string scenario, out;
+  std::optional<std::uint64_t> seed;  // in place of the scenario's
   int threads = 1;
   bool force = false;
 };
@@ -126,7 +128,8 @@ class EmbeddedRun {
 };
 
 void run(const RunOptions& options) {
-  const Scenario scenario = load_scenario(options.scenario);
+  Scenario scenario = load_scenario(options.scenario);
+  if (options.seed) scenario.seed = *options.seed;
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   if (!prepare_directory(directory, options.force)) return;
   stop_signal();
@@ -156,6 +159,8 @@ void add_run_command(CLI::App& app) {
                    "threads to compute with; the products do not depend on it")
       ->default_val(1)
       ->check(CLI::Range(1, 256));
+  command->add_option("--seed", options->seed,
+                      "seed of the random draws, in place of the scenario's");
   command->add_flag("--force", options->force, "replace what is in the directory");
   command->callback([options] { run(*options); });
 }

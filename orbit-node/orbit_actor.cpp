@@ -76,8 +76,7 @@ ObjectPopulation load_objects(const Scenario& scenario, const Clock& clock) {
       population.roster.objects.push_back({.catalogue_number = e.catalogue_number,
                                            .name = e.name,
                                            .designator = e.designator,
-                                           .radius_m = sphere.radius_m,
-                                           .albedo = sphere.albedo,
+                                           .geometry = sphere,
                                            .element_age_s = age_days * day_s});
       population.elements.push_back(e);
     }

@@ -25,13 +25,12 @@ struct ObjectPopulation {
 ObjectPopulation load_objects(const Scenario& scenario, const Clock& clock);
 
 /// States of all objects at every tick, in GCRS, by SGP4.
-class OrbitActor : public Participant {
+class OrbitActor : public Actor {
  public:
   OrbitActor(const Scenario& scenario, Clock clock, Threads& threads);
 
   std::string name() const override { return "orbit-node"; }
   std::vector<std::string> produces() const override { return {objects_topic}; }
-  std::vector<std::string> consumes() const override { return {}; }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   std::uint64_t progress() const override { return steps_; }
 

@@ -7,6 +7,8 @@ namespace dmise {
 struct DiffuseSphere {
   double radius_m = 1.0;
   double albedo = 0.2;  // Lambert reflectance, (0, 1]
+
+  bool operator==(const DiffuseSphere&) const = default;
 };
 
 /// Where it is seen from.

@@ -8,8 +8,7 @@
 
 namespace dmise {
 
-/// An Actor (has a state over time) or an Evaluator (asks for state and makes a product). It does not
-/// know whether it runs in one process under the SimulationController or in a process of its own
+/// An Actor or an Evaluator. It does not know whether it runs in one process under the SimulationController or in a process of its own
 /// under nodes/runtime: both call `step` once for each tick 0, 1, 2, ... last, in order.
 class Participant {
  public:
@@ -27,5 +26,14 @@ class Participant {
   /// from another thread than `step`.
   virtual std::uint64_t progress() const { return 0; }
 };
+
+/// Has a state over time and tells it: platforms, Sun, Moon, Earth, skies. Asks nobody.
+class Actor : public Participant {
+ public:
+  std::vector<std::string> consumes() const final { return {}; }
+};
+
+/// Asks for states and makes a product of them: images, tables, detections.
+class Evaluator : public Participant {};
 
 }  // namespace dmise

@@ -6,6 +6,7 @@
 #include "core/base/sim_time.h"
 #include "core/frames/earth_orientation.h"
 #include "core/frames/vec.h"
+#include "core/sim/geometry.h"
 
 // What actors tell evaluators: plain data, the same in one process and across a network.
 namespace dmise {
@@ -15,8 +16,7 @@ struct ObjectInfo {
   std::uint32_t catalogue_number = 0;  // up to 9 digits
   std::string name;
   std::string designator;              // international designator, may be empty
-  double radius_m = 1.0;               // of the equivalent diffuse sphere
-  double albedo = 0.2;                 // Lambert reflectance of that sphere, (0, 1]
+  Geometry geometry;
   double element_age_s = 0.0;          // start of the run minus the epoch of the elements
 
   bool operator==(const ObjectInfo&) const = default;

@@ -8,13 +8,12 @@
 namespace dmise {
 
 /// What all sensors share: Sun, Moon, the Earth's motion and orientation, the sky over each sensor.
-class EnvironmentActor : public Participant {
+class EnvironmentActor : public Actor {
  public:
   EnvironmentActor(const Scenario& scenario, Clock clock);
 
   std::string name() const override { return "environment-node"; }
   std::vector<std::string> produces() const override { return {environment_topic}; }
-  std::vector<std::string> consumes() const override { return {}; }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   std::uint64_t progress() const override { return steps_; }
 

@@ -49,8 +49,9 @@ Body encode_body(const ObjectRoster& roster) {
     o->set_catalogue_number(object.catalogue_number);
     o->set_name(object.name);
     o->set_designator(object.designator);
-    o->set_radius_m(object.radius_m);
-    o->set_albedo(object.albedo);
+    const auto& sphere = std::get<DiffuseSphere>(object.geometry);
+    o->set_radius_m(sphere.radius_m);
+    o->set_albedo(sphere.albedo);
     o->set_element_age_s(object.element_age_s);
   }
   return {MessageKind::object_roster, message.SerializeAsString(), {}};
@@ -64,8 +65,7 @@ ObjectRoster decode_roster(std::string_view payload) {
     roster.objects.push_back({.catalogue_number = o.catalogue_number(),
                               .name = o.name(),
                               .designator = o.designator(),
-                              .radius_m = o.radius_m(),
-                              .albedo = o.albedo(),
+                              .geometry = DiffuseSphere{o.radius_m(), o.albedo()},
                               .element_age_s = o.element_age_s()});
   return roster;
 }

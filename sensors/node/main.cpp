@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
   app.add_option("--digest", digest, "digest of the run, written into every frame");
   app.add_option("--threads", threads, "threads to compute with")->check(CLI::Range(1, 256));
   return dmise::run_program(app, flags, argc, argv, [&] {
-    const dmise::Scenario scenario = dmise::load_scenario(config);
+    dmise::Scenario scenario = dmise::load_scenario(config);
+    if (app.count("--seed")) scenario.seed = flags.seed;
     if (flags.name.empty()) throw dmise::ConfigError("--name: is required: which sensor this is");
     dmise::Threads pool(threads);
     const auto sensor =

@@ -95,8 +95,10 @@ class Painter {
   /// V above the atmosphere, fully lit.
   double magnitude(std::size_t object, const Motion& motion, const Instant& at) const {
     const auto& facts = view_.world().roster().objects[object];
-    return diffuse_sphere_magnitude({facts.radius_m, facts.albedo},
-                                    illumination(motion, at.observer.position_m));
+    const Illumination seen = illumination(motion, at.observer.position_m);
+    return std::visit(
+        [&](const DiffuseSphere& sphere) { return diffuse_sphere_magnitude(sphere, seen); },
+        facts.geometry);
   }
 
  private:

@@ -13,7 +13,7 @@ namespace dmise {
 
 /// A sensor as an Evaluator: gathers the states of the world and, as soon as they cover an
 /// exposure, makes its frame, writes its products and publishes report, detections and truth.
-class SensorEvaluator : public Participant {
+class SensorEvaluator : public Evaluator {
  public:
   SensorEvaluator(PipelineSettings settings, SimTime tick_length, SimTime duration,
                   const OutputConfig& output, std::shared_ptr<const StarMap> stars,
