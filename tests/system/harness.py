@@ -21,8 +21,8 @@ output: {{png: false}}
 
 CAMERA = """\
 name: small
-optics: {projection: gnomonic, columns: 512, rows: 384, pixel_pitch_m: 5.4e-6, field_of_view_deg: 60,
-         aperture_m: 0.0375, equivalent_aperture: true}
+optics: {projection: gnomonic, columns: 512, rows: 384, pixel_pitch_m: 5.4e-6, field_of_view_deg: 15,
+         aperture_m: 0.02}
 detector: {full_well_e: 25500, gain_e_per_dn: 0.35, read_noise_e: 9, bias_dn: 100}
 band: {centre_m: 0.55e-6, width_m: 0.128e-6}
 """
@@ -135,7 +135,6 @@ class Run:
         check(not left, f"{len(left)} processes are left running {left}")
 
 
-def first_frame(out, sensor):
-    """Waits for the first frame of a sensor."""
-    path = out / sensor / "frame-000001.fits"
-    return wait_until(lambda: path.exists() and path, f"{path}")
+def first_frame(out, sensor="*"):
+    """Waits for the first frame of a sensor, or of any."""
+    return wait_until(lambda: list(out.glob(f"{sensor}/frame-000001.fits")), f"a first frame in {out}")
