@@ -73,7 +73,7 @@ def benches(names):
         for line in done.stdout.splitlines():
             if line.startswith("{"):
                 m = json.loads(line)
-                rows.append([m["name"], number(m["value"]), m.get("unit", ""), m.get("anchor", ""),
+                rows.append([m["name"], number(m["value"]), m.get("unit") or "", m.get("anchor") or "",
                              number(m.get("anchor_value")), number(m.get("ratio")),
                              number(m.get("target")), number(m.get("met"))])
         if done.returncode != 0:
@@ -97,11 +97,11 @@ def demonstration():
     text = f"`dmise launch launch/scenarios/demo.yaml`: {record['wall_s']:.1f} s (at most 60 s on two cores).\n\n"
     text += table(("sensor", "frames", "s a frame, median", "of it detection", "largest PSS, MB"), rows)
     effects = list(record["frames"][0]["effects_s"])
-    shares = [[effect] + [number(1e3 * statistics.median(c["effects_s"][effect] for c in costs))
+    shares = [[effect] + [number(round(1e3 * statistics.median(c["effects_s"][effect] for c in costs), 2))
                           for costs in frames.values()] for effect in effects]
     text += "\nMilliseconds a frame by effect, median:\n\n" + table(("effect", *frames), shares)
     if record["nodes"]:
-        rows = [[n["name"], *(number(n[k]) for k in ("compute_s", "messaging_s", "waiting_s"))]
+        rows = [[n["name"], *(number(round(n[k], 2)) for k in ("compute_s", "messaging_s", "waiting_s"))]
                 for n in record["nodes"]]
         text += "\nWhere the nodes' time went, s:\n\n" + table(("node", "compute", "messaging", "waiting"), rows)
     return text
