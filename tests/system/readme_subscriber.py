@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 
-from harness import Failure, Run, check, main, wait_until, write_scenario
+from harness import Failure, Run, check, first_frame, main, write_scenario
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATIENCE_S = 60.0
@@ -20,7 +20,7 @@ def test(binary, directory):
     out = directory / "out"
     announced = out / "logs/master.address"
     with Run(binary, "launch", write_scenario(directory), "--out", out) as run:
-        wait_until(lambda: announced.exists() and announced.read_text().strip(), f"{announced}")
+        first_frame(out)
         with subprocess.Popen([sys.executable, "-u", "-c", code, announced.read_text().strip()],
                               cwd=ROOT, stdout=subprocess.PIPE, text=True) as subscriber:
             guard = threading.Timer(PATIENCE_S, subscriber.kill)
