@@ -11,6 +11,7 @@
 #include "core/photometry/magnitude.h"
 #include "core/sky/shadow.h"
 #include "sensors/pipeline/light.h"
+#include "sensors/pipeline/place_costs.h"
 #include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
@@ -65,6 +66,7 @@ class Painter {
         zero_mag_(object_photons_per_s_m2(0.0, view.sensor().camera.band)) {}
 
   Sample sample(std::size_t object, const Instant& at) const {
+    ++samples_;
     const Motion motion = view_.world().motion(object, at.time);
     const auto place = at.places.satellite(motion.position_m, motion.slope_m_per_s);
     Sample s;
@@ -101,6 +103,9 @@ class Painter {
         facts.geometry);
   }
 
+  /// How many were taken.
+  std::size_t samples() const { return samples_; }
+
  private:
   double transmission(const Vec<Gcrs>& apparent) const {
     Stopwatch timing(times_[Effect::extinction]);
@@ -109,6 +114,7 @@ class Painter {
 
   const View& view_;
   EffectTimes& times_;
+  mutable std::size_t samples_ = 0;
   Light light_;
   EarthShadow shadow_;
   bool with_shadow_;
@@ -188,13 +194,13 @@ std::vector<std::size_t> objects_in_field(const View& view) {
   return found;
 }
 
-std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
-                                const PsfTable& psf, RateImage& image, Threads& threads,
-                                EffectTimes& times) {
-  Stopwatch drawing(times[Effect::objects]);
+namespace {
+
+std::vector<Truth> paint(const View& view, const Painter& painter,
+                         const std::vector<std::size_t>& objects, const PsfTable& psf,
+                         RateImage& image, Threads& threads, EffectTimes& times) {
   const auto& exposure = view.times();
   const auto& optics = view.sensor().camera.optics;
-  const Painter painter(view, times);
   // Instants of the finest division; coarser ones take every so manieth.
   std::vector<std::optional<Instant>> instants(2 * changing_arcs + 1);
   const auto instant = [&](std::size_t k) -> const Instant& {
@@ -270,6 +276,28 @@ std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>
     put(end, truth.end_x_px, truth.end_y_px);
     truths.push_back(std::move(truth));
   }
+  return truths;
+}
+
+}  // namespace
+
+std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
+                                const PsfTable& psf, RateImage& image, Threads& threads,
+                                EffectTimes& times) {
+  EffectTimes inside;
+  double total_s = 0.0;
+  std::vector<Truth> truths;
+  const Painter painter(view, inside);
+  {
+    Stopwatch timing(total_s);
+    truths = paint(view, painter, objects, psf, image, threads, inside);
+  }
+  add_object_place_costs(view, objects, painter.samples(), inside);
+  for (std::size_t i = 0; i < effect_count; ++i) {
+    times.seconds[i] += inside.seconds[i];
+    total_s -= inside.seconds[i];
+  }
+  times[Effect::objects] += std::max(0.0, total_s);
   return truths;
 }
 

@@ -10,22 +10,48 @@ namespace {
 
 constexpr std::size_t sample_size = 256;
 constexpr int repeats = 3;
-constexpr Effect corrections[] = {Effect::proper_motion,      Effect::parallax,
-                                  Effect::light_deflection,   Effect::annual_aberration,
-                                  Effect::diurnal_aberration, Effect::refraction};
+constexpr Effect of_stars[] = {Effect::proper_motion,      Effect::parallax,
+                               Effect::light_deflection,   Effect::annual_aberration,
+                               Effect::diurnal_aberration, Effect::refraction};
+constexpr Effect of_objects[] = {Effect::light_time, Effect::diurnal_aberration,
+                                 Effect::refraction};
 
-double seconds_of(const ApparentPlaces& places, const StarColumns& columns,
-                  std::span<const std::uint32_t> sample, std::span<Vec<Gcrs>> directions) {
+/// Least of some repeats: what the work itself takes.
+template <class Work>
+double seconds_of(const Work& work) {
   double least = 1e9;
   for (int i = 0; i < repeats; ++i) {
     double seconds = 0.0;
     {
       Stopwatch timing(seconds);
-      places.stars(columns, sample, directions);
+      work();
     }
     least = std::min(least, seconds);
   }
   return least;
+}
+
+/// `evaluate(places)` computes a sample of places; `scale` is how many such samples a frame has.
+template <class Evaluate>
+double add_costs(const View& view, std::span<const Effect> effects, double scale,
+                 const Evaluate& evaluate, EffectTimes& times) {
+  const SimTime t = view.times().middle;
+  const EffectSet& all = view.sensor().effects;
+  const auto cost_of = [&](const EffectSet& set) {
+    const ApparentPlaces places = view.places(t, set);
+    return seconds_of([&] { evaluate(places); });
+  };
+  const double with_all_s = cost_of(all);
+  double sum = 0.0;
+  for (const Effect effect : effects) {
+    if (!all.has(effect) || (effect == Effect::refraction && !view.on_ground())) continue;
+    EffectSet others = all;
+    others.set(effect, false);
+    const double cost_s = std::max(0.0, with_all_s - cost_of(others)) * scale;
+    times[effect] += cost_s;
+    sum += cost_s;
+  }
+  return sum;
 }
 
 }  // namespace
@@ -36,21 +62,27 @@ double add_place_costs(const View& view, const StarColumns& columns,
   if (stars.empty()) return 0.0;
   const auto sample = stars.first(std::min(sample_size, stars.size()));
   std::vector<Vec<Gcrs>> directions(sample.size());
-  const SimTime t = view.times().middle;
-  const EffectSet& all = view.sensor().effects;
-  const double with_all_s = seconds_of(view.places(t, all), columns, sample, directions);
-  const double scale = double(evaluations) / double(sample.size());
-  double sum = 0.0;
-  for (const Effect effect : corrections) {
-    if (!all.has(effect) || (effect == Effect::refraction && !view.on_ground())) continue;
-    EffectSet others = all;
-    others.set(effect, false);
-    const double without_s = seconds_of(view.places(t, others), columns, sample, directions);
-    const double cost_s = std::max(0.0, with_all_s - without_s) * scale;
-    times[effect] += cost_s;
-    sum += cost_s;
-  }
-  return sum;
+  return add_costs(
+      view, of_stars, double(evaluations) / double(sample.size()),
+      [&](const ApparentPlaces& places) { places.stars(columns, sample, directions); }, times);
+}
+
+double add_object_place_costs(const View& view, std::span<const std::size_t> objects,
+                              std::size_t evaluations, EffectTimes& times) {
+  if (objects.empty()) return 0.0;
+  const auto sample = objects.first(std::min(sample_size, objects.size()));
+  std::vector<Motion> motions;
+  for (const std::size_t object : sample)
+    motions.push_back(view.world().motion(object, view.times().middle));
+  std::vector<Vec<Gcrs>> directions(sample.size());
+  return add_costs(
+      view, of_objects, double(evaluations) / double(sample.size()),
+      [&](const ApparentPlaces& places) {
+        for (std::size_t i = 0; i < motions.size(); ++i)
+          directions[i] =
+              places.satellite(motions[i].position_m, motions[i].slope_m_per_s).direction;
+      },
+      times);
 }
 
 }  // namespace dmise

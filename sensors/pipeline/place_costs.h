@@ -14,4 +14,8 @@ double add_place_costs(const View& view, const StarColumns& columns,
                        std::span<const std::uint32_t> stars, std::size_t evaluations,
                        EffectTimes& times);
 
+/// The same for space objects: light time, aberration by the sensor's motion, refraction.
+double add_object_place_costs(const View& view, std::span<const std::size_t> objects,
+                              std::size_t evaluations, EffectTimes& times);
+
 }  // namespace dmise

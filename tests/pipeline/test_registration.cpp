@@ -30,6 +30,14 @@ std::string scenario(const std::string& sensor, const std::string& objects = "[]
          "sensors:\n  - " + sensor + "\n";
 }
 
+/// For bench/report.py.
+void record(double worst_px, int sources) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4f", worst_px);
+  testing::Test::RecordProperty("worst_px", text);
+  testing::Test::RecordProperty("sources", sources);
+}
+
 /// Stars of V = 9 (far below saturation) and no motion on a grid around a place.
 std::string star_grid(double ra_deg, double dec_deg, double step_deg, int half) {
   std::string csv = "ra_deg,dec_deg,mag_v,bv,parallax_mas,pm_ra_mas_per_yr,pm_dec_mas_per_yr\n";
@@ -59,6 +67,7 @@ double worst_star_px(test::Stage& stage, double radius_px, int& count) {
     worst = std::max(worst, std::hypot(measured.x_px - at->x_px, measured.y_px - at->y_px));
     ++count;
   }
+  record(worst, count);
   return worst;
 }
 
@@ -106,6 +115,7 @@ TEST(Registration, AGeostationaryPointAmongTrailingStars) {
   EXPECT_TRUE(truth.whole);
   const PixelPosition label{truth.middle_x_px, truth.middle_y_px};
   const auto measured = test::centroid(frame.counts, label, 12);
+  record(std::hypot(measured.x_px - label.x_px, measured.y_px - label.y_px), 1);
   EXPECT_NEAR(measured.x_px, label.x_px, tolerance_px);
   EXPECT_NEAR(measured.y_px, label.y_px, tolerance_px);
   EXPECT_NEAR(truth.rendered_x_px, label.x_px, tolerance_px);
@@ -128,6 +138,7 @@ TEST(Registration, AStreakOfHundredsOfPixels) {
   EXPECT_GT(length, 20);
   const auto measured =
       test::centroid(frame.counts, {truth.rendered_x_px, truth.rendered_y_px}, length);
+  record(std::hypot(measured.x_px - truth.rendered_x_px, measured.y_px - truth.rendered_y_px), 1);
   EXPECT_NEAR(measured.x_px, truth.rendered_x_px, tolerance_px);
   EXPECT_NEAR(measured.y_px, truth.rendered_y_px, tolerance_px);
   // An even motion's centroid is its middle, but for the path's bend and changing brightness.
