@@ -1,0 +1,58 @@
+#include "core/base/text_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <filesystem>
+
+#include "core/base/error.h"
+
+namespace dmise {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TextFile : public testing::Test {
+ protected:
+  fs::path directory = fs::path(testing::TempDir()) / ("text-file-" + std::to_string(getpid()));
+  void SetUp() override { fs::create_directories(directory); }
+  void TearDown() override { fs::remove_all(directory); }
+  std::string path(const char* name) const { return (directory / name).string(); }
+};
+
+TEST_F(TextFile, ReadsWhatWasWrittenAndLeavesNothingElse) {
+  const std::string content("one\0two\n", 8);
+  write_file_whole(path("a"), content);
+  EXPECT_EQ(read_text_file(path("a")), content);
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory), {}), 1);
+}
+
+TEST_F(TextFile, ReadsGzip) {
+  gzFile file = gzopen(path("a.gz").c_str(), "wb");
+  gzputs(file, "packed\n");
+  gzclose(file);
+  EXPECT_EQ(read_text_file(path("a.gz")), "packed\n");
+}
+
+TEST_F(TextFile, NamesTheFileThatItCannotRead) {
+  try {
+    read_text_file(path("none"));
+    FAIL();
+  } catch (const ConfigError& e) {
+    EXPECT_EQ(e.what(), path("none") + ": No such file or directory");
+  }
+  EXPECT_THROW(read_text_file(directory.string()), ConfigError);
+  write_file_whole(path("big"), std::string(100, 'x'));
+  EXPECT_THROW(read_text_file(path("big"), 99), ConfigError);
+}
+
+TEST_F(TextFile, LeavesTheOldFileWhenTheNewOneCannotBeWritten) {
+  write_file_whole(path("a"), "old");
+  fs::create_directory(path("a.partial"));  // stands in the way
+  EXPECT_THROW(write_file_whole(path("a"), "new"), Error);
+  EXPECT_EQ(read_text_file(path("a")), "old");
+}
+
+}  // namespace
+}  // namespace dmise
