@@ -131,7 +131,7 @@ def whole_runs():
     system = ROOT / "tests/system"
     return claims({"run_identity": (system / "run_identity.sh", BINARY, DEMO, "40"),
                    "kill9": ("/usr/bin/python3", system / "kill9.py", BINARY),
-                   "ctrl_c": ("/usr/bin/python3", system / "ctrl_c.py", BINARY)})
+                   "ctrl_c": ("/usr/bin/python3", system / "ctrl_c.py", BINARY, DEMO)})
 
 
 def registration():

@@ -142,7 +142,7 @@ class Launch {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     progress.clear_line();
-    processes_.stop(std::chrono::milliseconds(stop.is_set() ? 1500 : 500));
+    processes_.stop(std::chrono::milliseconds(stop.is_set() ? 1300 : 500));
     for (const auto& node : status.nodes)
       outcome.nodes.push_back(
           {node.name, node.times.compute_s, node.times.messaging_s, node.times.waiting_s});
@@ -164,7 +164,7 @@ class Launch {
   }
 
   ProgressState progress_state(const RunStatus& status) const {
-    Tick done = status.last_tick;
+    Tick done = status.nodes.empty() ? 0 : status.last_tick;
     for (const auto& node : status.nodes)
       if (node.alive && node.name != "broker") done = std::min(done, node.done);
     ProgressState state{

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 #include <thread>
 
 #include "core/base/error.h"
@@ -110,7 +111,9 @@ std::string last_line(const std::string& path) {
   std::string line, last;
   while (std::getline(file, line))
     if (!line.empty()) last = line;
-  return last;
+  constexpr std::string_view before_message = " error: ";  // time, node and level stand before it
+  const auto at = last.find(before_message);
+  return at == std::string::npos ? last : last.substr(at + before_message.size());
 }
 
 std::string program_directory() {

@@ -43,7 +43,7 @@ class Supervisor {
   std::optional<std::size_t> first_failure_;
 };
 
-/// The last line of a log that is not empty, without what stands before the message; for a report.
+/// The message of the last line of a log that is not empty.
 std::string last_line(const std::string& path);
 
 /// Directory of the running program.

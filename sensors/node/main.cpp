@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
     sensor->stop_when([] { return dmise::stop_signal().is_set(); });
     return dmise::run_node(*sensor, {.master = flags.master,
                                      .join_within_s = scenario.network.join_within_s,
-                                     .stop_within_s = 1.5,
+                                     .stop_within_s = 1.0,
                                      .stop = &dmise::stop_signal()})
         .exit_code;
   });
