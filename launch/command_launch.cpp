@@ -164,12 +164,13 @@ class Launch {
   }
 
   ProgressState progress_state(const RunStatus& status) const {
-    Tick done = status.nodes.empty() ? 0 : status.last_tick;
+    std::optional<Tick> done;
     for (const auto& node : status.nodes)
-      if (node.alive && node.name != "broker") done = std::min(done, node.done);
+      if (node.alive && node.name != "broker") done = std::min(done.value_or(node.done), node.done);
     ProgressState state{
         .simulated_s =
-            std::min(scenario_.time_of(std::max<Tick>(done, 0)), scenario_.duration).seconds(),
+            std::min(scenario_.time_of(std::max<Tick>(done.value_or(0), 0)), scenario_.duration)
+                .seconds(),
         .duration_s = scenario_.duration.seconds(),
         .frames_total = frames_total_};
     for (const auto& sensor : summarise(scenario_, directory_.path())) {
