@@ -61,7 +61,8 @@ void write_index_page(const RunDirectory& directory, const Scenario& scenario) {
       "<h1>DMISE run</h1><p>Start " +
       scenario.start_utc + ", " + std::to_string(static_cast<long>(scenario.duration.seconds())) +
       " s, seed " + std::to_string(scenario.seed) +
-      ". Truth is green, streaks found are cyan, points yellow. <a href=detections.jsonl>detections.jsonl</a> "
+      ". Truth is green, streaks found are cyan, points yellow. <a "
+      "href=detections.jsonl>detections.jsonl</a> "
       "<a href=truth.jsonl>truth.jsonl</a> <a href=run.json>run.json</a></p>"
       "<table><tr><th>sensor<th>frames<th>objects in frame<th>detections<th>s a frame<th>PSS, MB";
   const auto summaries = summarise(scenario, directory.path());
