@@ -70,13 +70,13 @@ def benches(names):
     for name in names:
         print(f"measuring {name}", file=sys.stderr)
         done = output_of(BINARY, "bench", name, "--json")
-        for line in done.stdout.splitlines():
-            if line.startswith("{"):
-                m = json.loads(line)
-                rows.append([m["name"], number(m["value"]), m.get("unit") or "", m.get("anchor") or "",
-                             number(m.get("anchor_value")), number(m.get("ratio")),
-                             number(m.get("target")), number(m.get("met"))])
-        if done.returncode != 0:
+        figures = [line for line in done.stdout.splitlines() if line.startswith("{")]
+        for line in figures:
+            m = json.loads(line)
+            rows.append([m["name"], number(m["value"]), m.get("unit") or "", m.get("anchor") or "",
+                         number(m.get("anchor_value")), number(m.get("ratio")),
+                         number(m.get("target")), number(m.get("met"))])
+        if done.returncode != 0 and not figures:
             rows.append([name, "failed", "", done.stderr.strip()[-100:], "", "", "", "no"])
     return table(("figure", "value", "unit", "anchor", "anchor's", "ratio", "target", "met"), rows)
 

@@ -106,7 +106,7 @@ TEST(Registration, AGeostationaryPointAmongTrailingStars) {
   test::Stage stage(
       scenario("{name: watch, site: savannah, camera: geo-watch, pointing: {azimuth_deg: "
                "168.7, elevation_deg: 52}, exposure_s: 10, cadence_s: 30}",
-               "[{catalogue: objects.tle, radius_m: 30}]"),
+               "[{catalogue: objects.tle, radius_m: 20}]"),
       "ra_deg,dec_deg,mag_v\n0,-80,6\n", elements);
   const auto frame = stage.frame();
   ASSERT_EQ(frame.truths.size(), 1u);
@@ -127,7 +127,7 @@ TEST(Registration, AStreakOfHundredsOfPixels) {
       scenario("{name: chaser, platform: \"41866\", camera: wide-field-cmos, pointing: "
                "{target: \"25544\", tracking: sidereal}, exposure_s: 20, cadence_s: 30, "
                "effects: {earth_occultation: off, shadow: off}}",
-               "[{catalogue: objects.tle, radius_m: 300}]"),
+               "[{catalogue: objects.tle, radius_m: 100}]"),
       "ra_deg,dec_deg,mag_v\n0,-80,6\n", elements);
   const auto frame = stage.frame();
   ASSERT_EQ(frame.truths.size(), 1u);
