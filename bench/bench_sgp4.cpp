@@ -17,7 +17,9 @@
 #include "core/base/json.h"
 #include "core/base/text_file.h"
 #include "core/orbit/cone_test.h"
+#include "core/orbit/element_text.h"
 #include "core/orbit/sgp4_batch.h"
+#include "core/orbit/synthetic_catalogue.h"
 #include "tests/support/tle.h"
 
 namespace dmise {
@@ -211,7 +213,9 @@ int bench_sgp4(bool json) {
     write_file_whole(catalogue_path, read_text_file(std::string(data) +
                                                     "/tle/catalog_3le_2019-12-19_18470.txt.gz"));
   else
-    write_file_whole(catalogue_path, "");
+    write_file_whole(catalogue_path,
+                     format_3le(synthetic_catalogue(
+                         {.objects = 18470, .seed = 1, .newest_epoch = {2458837.5, 0.0}})));
   const std::string report = output_of(std::string(python ? python : "python3") + " '" +
                                        DMISE_SOURCE_DIR "/bench/sgp4_anchor.py' '" +
                                        directory.path + "' '" + catalogue_path + "'");
