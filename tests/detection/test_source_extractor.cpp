@@ -8,6 +8,7 @@
 #include "core/detection/detect.h"
 #include "core/image/fits_file.h"
 #include "tests/detection/simulated_frame.h"
+#include "tests/support/data.h"
 
 namespace dmise {
 namespace {
@@ -42,7 +43,7 @@ std::vector<Measured> by_source_extractor(const std::string& fits, const FrameHe
 // Points where stars trail, so that they are published.
 TEST(SourceExtractor, AgreesOnPlacesAndMagnitudes) {
   if (std::system("command -v source-extractor > /dev/null") != 0)
-    GTEST_SKIP() << "needs source-extractor";
+    DMISE_SKIP() << "needs source-extractor";
   const auto header = test::camera_header(1000, 1000, 1663, 34 * deg, 20, true);
   test::SimulatedFrame frame(header, 1000, 1000, 1500, 12);
   for (int i = 0; i < 225; ++i)

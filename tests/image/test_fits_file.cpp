@@ -103,7 +103,7 @@ TEST(FitsFile, EqualFramesAreEqualBytesAndRiceIsSmaller) {
 
 // Reference: fitsverify 4.20 (HEASARC), which knows the FITS standard.
 TEST(FitsFile, FitsverifyFindsNothing) {
-  if (std::system("command -v fitsverify > /dev/null") != 0) GTEST_SKIP() << "needs fitsverify";
+  if (std::system("command -v fitsverify > /dev/null") != 0) DMISE_SKIP() << "needs fitsverify";
   for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
     const std::string path = scratch("verify.fits");
     write_frame(path, sample_counts(), sample_header(), compression);
@@ -117,7 +117,7 @@ TEST(FitsFile, FitsverifyFindsNothing) {
 TEST(FitsFile, AstropyReadsHeaderAndPixels) {
   const std::string python = "/usr/bin/python3";
   if (std::system((python + " -c 'import astropy.wcs' 2> /dev/null").c_str()) != 0)
-    GTEST_SKIP() << "needs python3-astropy";
+    DMISE_SKIP() << "needs python3-astropy";
   const std::string path = scratch("astropy.fits");
   write_frame(path, sample_counts(), sample_header());
   const auto [status, output] = run(
@@ -133,7 +133,7 @@ TEST(FitsFile, AstropyReadsHeaderAndPixels) {
 TEST(FitsFile, AstropysWcsIsOursToAThousandthOfAPixel) {
   const std::string python = "/usr/bin/python3";
   if (std::system((python + " -c 'import astropy.wcs' 2> /dev/null").c_str()) != 0)
-    GTEST_SKIP() << "needs python3-astropy";
+    DMISE_SKIP() << "needs python3-astropy";
   const std::string path = scratch("wcs.fits"), list = scratch("wcs.txt");
   for (const double dec_rad : {0.6, -pi / 2 + 1e-9, 1.5}) {
     auto header = sample_header(3326, 2504);

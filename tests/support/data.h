@@ -26,10 +26,16 @@ inline std::string catalogue_path(const std::string& name) {
 
 }  // namespace dmise::test
 
-#define DMISE_NEEDS_FILE(path)                                                  \
-  do {                                                                          \
-    if (!dmise::test::exists(path)) {                                           \
+/// Skips a test that lacks something; with DMISE_DATA set it fails instead. Streams like
+/// GTEST_SKIP.
+#define DMISE_SKIP()                                                                             \
+  return GTEST_MESSAGE_("", std::getenv("DMISE_DATA") ? ::testing::TestPartResult::kFatalFailure \
+                                                      : ::testing::TestPartResult::kSkip)
+
+#define DMISE_NEEDS_FILE(path)                                                                 \
+  do {                                                                                         \
+    if (!dmise::test::exists(path)) {                                                          \
       if (std::getenv("DMISE_DATA")) FAIL() << "DMISE_DATA is set but there is no " << (path); \
-      GTEST_SKIP() << "needs " << (path);                                       \
-    }                                                                           \
+      GTEST_SKIP() << "needs " << (path);                                                      \
+    }                                                                                          \
   } while (0)
