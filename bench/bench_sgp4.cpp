@@ -51,7 +51,7 @@ struct Outputs {
 
 /// Millions of states a second of one thread, whole catalogue per call in the order given, ticks of
 /// 10 s.
-double states_m_per_s(const std::vector<MeanElements>& elements, Simd simd, double jd1) {
+double states_m_per_s(const std::vector<MeanElements>& elements, SimdLevel simd, double jd1) {
   const Sgp4Batch batch(elements, nullptr, simd);
   Outputs out(batch.size());
   batch.propagate(jd1, 0.0, out.position, out.velocity, out.code);
@@ -77,7 +77,7 @@ struct Agreement {
 
 /// Against the states that the anchor wrote: object by object at its own times.
 void compare(const std::vector<MeanElements>& elements, const std::string& stem, int times,
-             int step, Simd simd, Agreement& sum) {
+             int step, SimdLevel simd, Agreement& sum) {
   const Sgp4Batch batch(elements, nullptr, simd);
   const auto when = read_values<double>(stem + ".times");
   const auto states = read_values<double>(stem + ".states");
@@ -237,12 +237,16 @@ int bench_sgp4(bool json) {
   const char* anchor = "Vallado C++ (PyPI sgp4, SatrecArray)";
   const auto near_anchor = number_in(report, "near_m_per_s");
   const auto deep_anchor = number_in(report, "deep_m_per_s");
-  for (Simd simd : {Simd::avx512, Simd::avx2, Simd::sse2}) {
-    if (simd > best_simd()) continue;
-    const bool best = simd == best_simd();
+  for (SimdLevel simd : {SimdLevel::avx512, SimdLevel::avx2, SimdLevel::sse2}) {
+    if (simd > best_simd_level()) continue;
+    const bool best = simd == best_simd_level();
     const std::string suffix = best ? "" : "_" + std::string(name(simd));
-    const double near_target = simd == Simd::avx512 ? 83.0 : simd == Simd::avx2 ? 40.0 : 8.0;
-    const double deep_target = simd == Simd::avx512 ? 25.0 : simd == Simd::avx2 ? 12.0 : 3.0;
+    const double near_target = simd == SimdLevel::avx512 ? 83.0
+                               : simd == SimdLevel::avx2 ? 40.0
+                                                         : 8.0;
+    const double deep_target = simd == SimdLevel::avx512 ? 25.0
+                               : simd == SimdLevel::avx2 ? 12.0
+                                                         : 3.0;
     lines.line(("near_m_per_s" + suffix).c_str(), states_m_per_s(near, simd, jd1), "M/s", anchor,
                near_anchor, near_target, true);
     if (!deep.empty())
@@ -252,8 +256,8 @@ int bench_sgp4(bool json) {
   if (!report.empty()) {
     const int times = int(*number_in(report, "times"));
     Agreement all;
-    for (Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512}) {
-      if (simd > best_simd()) continue;
+    for (SimdLevel simd : {SimdLevel::sse2, SimdLevel::avx2, SimdLevel::avx512}) {
+      if (simd > best_simd_level()) continue;
       compare(random, directory.path + "/random", times, 1, simd, all);
       if (real)
         compare(catalogue, directory.path + "/catalogue", times,

@@ -9,7 +9,7 @@ namespace {
 
 SimdLevel find_level() {
   SimdLevel best = SimdLevel::sse2;
-  if (__builtin_cpu_supports("avx2")) best = SimdLevel::avx2;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) best = SimdLevel::avx2;
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
     best = SimdLevel::avx512;

@@ -25,15 +25,15 @@ PreparedCone prepare(const Cone& cone) {
   return p;
 }
 
-ConeWords words_for(Simd simd) {
-  if (simd == Simd::avx512) return cone_words_avx512;
-  return simd == Simd::avx2 ? cone_words_avx2 : cone_words_sse2;
+ConeWords words_for(SimdLevel simd) {
+  if (simd == SimdLevel::avx512) return cone_words_avx512;
+  return simd == SimdLevel::avx2 ? cone_words_avx2 : cone_words_sse2;
 }
 
 }  // namespace
 
 void cone_test(std::span<const double> position_m, std::span<const Cone> cones,
-               std::span<std::uint64_t> inside, Threads* threads, Simd simd) {
+               std::span<std::uint64_t> inside, Threads* threads, SimdLevel simd) {
   const std::size_t n = position_m.size() / 3;
   const std::size_t words = cone_words(n);
   if (position_m.size() != 3 * n || inside.size() != words * cones.size())

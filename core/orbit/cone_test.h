@@ -4,8 +4,8 @@
 #include <span>
 
 #include "core/base/parallel.h"
+#include "core/base/simd_level.h"
 #include "core/frames/vec.h"
-#include "core/orbit/sgp4_batch.h"
 
 namespace dmise {
 
@@ -28,7 +28,7 @@ inline std::size_t cone_words(std::size_t objects) { return (objects + 63) / 64;
 /// 1e-12 rad of the edge.
 void cone_test(std::span<const double> position_m, std::span<const Cone> cones,
                std::span<std::uint64_t> inside, Threads* threads = nullptr,
-               Simd simd = best_simd());
+               SimdLevel simd = best_simd_level());
 
 /// Indices of the set bits of one row of `cone_words(n)` words, ascending, into `objects`; returns
 /// how many there are. Writes no more than `objects` holds.

@@ -15,13 +15,13 @@ using namespace sgp4;
 
 namespace {
 
-const Kernels& kernels_for(Simd simd) {
+const Kernels& kernels_for(SimdLevel simd) {
   switch (simd) {
-    case Simd::avx512:
+    case SimdLevel::avx512:
       return kernels_avx512;
-    case Simd::avx2:
+    case SimdLevel::avx2:
       return kernels_avx2;
-    case Simd::sse2:
+    case SimdLevel::sse2:
       break;
   }
   return kernels_sse2;
@@ -107,7 +107,7 @@ struct Sgp4Batch::State {
     std::uint8_t group = 0, code = 0;
     std::uint32_t slot = 0;
   };
-  Simd simd = Simd::sse2;
+  SimdLevel simd = SimdLevel::sse2;
   const Kernels* kernels = nullptr;
   std::vector<Group> groups{group_count};
   std::vector<Place> places;
@@ -207,25 +207,7 @@ std::string_view describe(Sgp4Code code) {
   return "unknown code";
 }
 
-Simd best_simd() {
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return Simd::avx512;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return Simd::avx2;
-  return Simd::sse2;
-}
-
-std::string_view name(Simd simd) {
-  switch (simd) {
-    case Simd::avx512:
-      return "avx512";
-    case Simd::avx2:
-      return "avx2";
-    case Simd::sse2:
-      break;
-  }
-  return "sse2";
-}
-
-Sgp4Batch::Sgp4Batch(std::span<const MeanElements> elements, Threads* threads, Simd simd) {
+Sgp4Batch::Sgp4Batch(std::span<const MeanElements> elements, Threads* threads, SimdLevel simd) {
   auto state = std::make_unique<State>();
   state->simd = simd;
   state->kernels = &kernels_for(simd);
@@ -279,7 +261,7 @@ Sgp4Batch::Sgp4Batch(Sgp4Batch&&) noexcept = default;
 Sgp4Batch& Sgp4Batch::operator=(Sgp4Batch&&) noexcept = default;
 
 std::size_t Sgp4Batch::size() const { return state_->places.size(); }
-Simd Sgp4Batch::simd() const { return state_->simd; }
+SimdLevel Sgp4Batch::simd() const { return state_->simd; }
 
 void Sgp4Batch::propagate(double jd1, double jd2, std::span<double> position_m,
                           std::span<double> velocity_m_per_s, std::span<std::uint8_t> code,

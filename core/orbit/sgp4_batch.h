@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/base/parallel.h"
+#include "core/base/simd_level.h"
 #include "core/frames/vec.h"
 #include "core/orbit/elements.h"
 
@@ -33,11 +34,6 @@ struct Sgp4State {
   Sgp4Code code = Sgp4Code::ok;
 };
 
-/// Instruction sets that the propagator is built for; the best one that the machine has is taken.
-enum class Simd : std::uint8_t { sse2, avx2, avx512 };
-Simd best_simd();
-std::string_view name(Simd simd);
-
 /// SGP4/SDP4 (WGS72, improved mode 'i') for whole catalogues: AIAA 2006-6753, Spacetrack Report 3.
 ///
 /// Every state is a function of the element set and the time alone, to the bit: it depends on no
@@ -48,13 +44,13 @@ class Sgp4Batch {
  public:
   /// Element sets that SGP4 can't start from get their code; nothing throws.
   explicit Sgp4Batch(std::span<const MeanElements> elements, Threads* threads = nullptr,
-                     Simd simd = best_simd());
+                     SimdLevel simd = best_simd_level());
   ~Sgp4Batch();
   Sgp4Batch(Sgp4Batch&&) noexcept;
   Sgp4Batch& operator=(Sgp4Batch&&) noexcept;
 
   std::size_t size() const;
-  Simd simd() const;
+  SimdLevel simd() const;
 
   /// States of all objects at one instant, UTC two-part Julian date `jd1 + jd2` [d], in the order
   /// given to the constructor. `position_m` and `velocity_m_per_s` hold 3 x size(): all x, all y,

@@ -11,7 +11,7 @@
 namespace dmise {
 namespace {
 
-class ConeTest : public testing::TestWithParam<Simd> {};
+class ConeTest : public testing::TestWithParam<SimdLevel> {};
 INSTANTIATE_TEST_SUITE_P(Simd, ConeTest, testing::ValuesIn(test::simd_here()), test::simd_name);
 
 bool bit(const std::vector<std::uint64_t>& bits, std::size_t words, std::size_t cone,

@@ -67,7 +67,7 @@ std::vector<MeanElements> mixture(std::size_t count) {
 }
 constexpr double epoch_jd1 = 2458281.5;
 
-class Sgp4HardCases : public testing::TestWithParam<Simd> {};
+class Sgp4HardCases : public testing::TestWithParam<SimdLevel> {};
 INSTANTIATE_TEST_SUITE_P(Simd, Sgp4HardCases, testing::ValuesIn(test::simd_here()),
                          test::simd_name);
 
@@ -785,7 +785,7 @@ TEST_P(Sgp4HardCases, OneSomeManyTimesAndAllAreTheSameToTheBit) {
 TEST(Sgp4Batch, InstructionSetsAgreeTo1e8Km) {
   const std::vector<MeanElements> elements = mixture(2000);
   const Outputs best = at(Sgp4Batch(elements), epoch_jd1, 6.5);
-  for (Simd simd : test::simd_here()) {
+  for (SimdLevel simd : test::simd_here()) {
     const Outputs other = at(Sgp4Batch(elements, nullptr, simd), epoch_jd1, 6.5);
     EXPECT_EQ(best.code, other.code);
     double worst_m = 0.0;

@@ -24,7 +24,7 @@ double speed_km_s(const Sgp4State& s, const double* v_km_s) {
                     s.velocity_m_per_s.z * 1e-3 - v_km_s[2]);
 }
 
-class Sgp4Verification : public testing::TestWithParam<Simd> {};
+class Sgp4Verification : public testing::TestWithParam<SimdLevel> {};
 INSTANTIATE_TEST_SUITE_P(Simd, Sgp4Verification, testing::ValuesIn(test::simd_here()),
                          test::simd_name);
 

@@ -4,18 +4,18 @@
 #include <string>
 #include <vector>
 
-#include "core/orbit/sgp4_batch.h"
+#include "core/base/simd_level.h"
 
 namespace dmise::test {
 
 /// Instruction sets that this machine has.
-inline std::vector<Simd> simd_here() {
-  std::vector<Simd> sets;
-  for (Simd s : {Simd::sse2, Simd::avx2, Simd::avx512})
-    if (s <= best_simd()) sets.push_back(s);
+inline std::vector<SimdLevel> simd_here() {
+  std::vector<SimdLevel> sets;
+  for (SimdLevel s : {SimdLevel::sse2, SimdLevel::avx2, SimdLevel::avx512})
+    if (s <= best_simd_level()) sets.push_back(s);
   return sets;
 }
-inline std::string simd_name(const testing::TestParamInfo<Simd>& info) {
+inline std::string simd_name(const testing::TestParamInfo<SimdLevel>& info) {
   return std::string(name(info.param));
 }
 
