@@ -1,7 +1,6 @@
 #include "time-master/coordinator.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <set>
 
@@ -12,12 +11,6 @@ namespace {
 
 constexpr Tick no_tick = std::numeric_limits<Tick>::max();
 
-std::string in_seconds(Instant duration) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f s", std::chrono::duration<double>(duration).count());
-  return text;
-}
-
 }  // namespace
 
 std::string joined(const std::vector<std::string>& names) {
@@ -27,9 +20,15 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 Coordinator::Coordinator(CoordinatorOptions options, Instant now)
-    : options_(std::move(options)), started_(now) {
+    : options_(std::move(options)),
+      pace_(options_.pace, options_.first_tick),
+      granted_(options_.first_tick - 1),
+      settled_(options_.first_tick - 1),
+      end_(options_.last_tick),
+      started_(now) {
   if (options_.window_ticks < 1) throw ConfigError("window_ticks: must be >= 1");
-  if (options_.last_tick < 0) throw ConfigError("ticks: must be >= 1");
+  if (options_.first_tick < 0) throw ConfigError("first_tick: must be >= 0");
+  if (options_.last_tick < options_.first_tick) throw ConfigError("ticks: must be >= 1");
   if (options_.expected.empty()) throw ConfigError("expect: must name a node");
   auto names = options_.expected;
   std::sort(names.begin(), names.end());
@@ -40,27 +39,88 @@ Coordinator::Coordinator(CoordinatorOptions options, Instant now)
 std::optional<std::string> Coordinator::join(const Request& request, Instant now) {
   const std::string& name = request.node.name;
   if (over()) return "the run is over";
+  if (request.node.schedule.period < 1 || request.node.schedule.offset < 0 ||
+      request.node.look_back < 0)
+    return "its period must be >= 1, its offset and look-back >= 0";
+  if (request.observer) return observe(request, now);
   if (std::find(options_.expected.begin(), options_.expected.end(), name) ==
       options_.expected.end())
     return "this run has no node named " + name + "; it has " + joined(options_.expected);
-  if (members_.contains(name)) return "a node named " + name + " has already joined";
-  Member& member = members_[name];
-  member.node = request.node;
-  member.keeps_time = request.keeps_time;
-  member.ready = !request.keeps_time;
-  member.progressed = now;
-  heard(member, now);
-  connect_if_complete();
+  if (const auto earlier = members_.find(name); earlier != members_.end()) {
+    const Member& member = earlier->second;
+    const bool gone = member.silent || member.suspected;
+    if (phase_ != Phase::gathering && gone && member.active() &&
+        options_.on_silent == SilentPolicy::wait)
+      return rejoin(earlier->second, request, now);
+    if (phase_ != Phase::gathering || !gone) return "a node named " + name + " has already joined";
+  }
+  add(request, now);
+  connect_if_complete(now);
   return std::nullopt;
 }
 
-void Coordinator::connect_if_complete() {
+Coordinator::Member& Coordinator::add(const Request& request, Instant now) {
+  Member& member = members_[request.node.name] = {};
+  member.node = request.node;
+  member.keeps_time = request.keeps_time && !request.observer;
+  member.observer = request.observer;
+  member.ready = !member.keeps_time;
+  member.incarnation = ++incarnations_[request.node.name];
+  member.resumes_at = settled_ + 1;
+  member.done = settled_;
+  member.progressed = now;
+  heard(member, now);
+  return member;
+}
+
+std::optional<std::string> Coordinator::observe(const Request& request, Instant now) {
+  const std::string& name = request.node.name;
+  const auto& expected = options_.expected;
+  if (std::find(expected.begin(), expected.end(), name) != expected.end())
+    return name + " is a node of this run and can't be the name of an observer";
+  if (members_.contains(name)) return "an observer named " + name + " has already joined";
+  if (!request.node.produces.empty()) return "an observer publishes nothing";
+  add(request, now);
+  if (phase_ != Phase::gathering) ++topology_version_;
+  return std::nullopt;
+}
+
+std::optional<std::string> Coordinator::rejoin(Member& member, const Request& request,
+                                               Instant now) {
+  const std::string& name = request.node.name;
+  const NodeTopics& before = member.node;
+  if (before.produces != request.node.produces || before.consumes != request.node.consumes ||
+      before.look_back != request.node.look_back || !(before.schedule == request.node.schedule) ||
+      member.keeps_time != request.keeps_time)
+    return name + " joins again with other topics than before";
+  if (options_.max_rejoins >= 0 && member.incarnation > std::uint64_t(options_.max_rejoins)) {
+    fail_run(name + " has died " + std::to_string(member.incarnation) + " times");
+    return "the run is over";
+  }
+  member.incarnation = ++incarnations_[name];
+  // It may have died with messages of ticks that it called done: it does again what anybody may
+  // still need. Their tallies stay, to be compared.
+  member.resumes_at = slowest_done() + 1;
+  member.done = member.resumes_at - 1;
+  member.computing = false;
+  member.progress = 0;
+  member.progressed = now;
+  member.ready = !member.keeps_time;
+  heard(member, now);
+  ++topology_version_;
+  start_if_ready(now);
+  return std::nullopt;
+}
+
+void Coordinator::connect_if_complete(Instant now) {
   if (phase_ != Phase::gathering || !missing().empty()) return;
   std::vector<NodeTopics> nodes;
   for (const std::string& name : options_.expected) nodes.push_back(members_.at(name).node);
   if (const auto fault = topic_fault(nodes)) return fail_run(*fault);
+  history_ = history_ticks(nodes);
   phase_ = Phase::connecting;
-  start_if_ready();
+  ++topology_version_;
+  start_if_ready(now);
 }
 
 void Coordinator::ready(const std::string& name, Instant now) {
@@ -68,148 +128,103 @@ void Coordinator::ready(const std::string& name, Instant now) {
   if (!member) return;
   heard(*member, now);
   member->ready = true;
-  start_if_ready();
+  start_if_ready(now);
 }
 
-void Coordinator::start_if_ready() {
+void Coordinator::start_if_ready(Instant now) {
   if (phase_ != Phase::connecting || !holding().empty()) return;
   phase_ = Phase::running;
-  grant();
+  pace_.start(now);
+  grant(now);
 }
 
-void Coordinator::done(const std::string& name, Tick tick, Instant now) {
+void Coordinator::done(const std::string& name, TickTally tally, Instant now) {
   Member* member = active(name);
   if (!member || over()) return;
   heard(*member, now);
-  if (tick <= member->done) return;  // said twice
-  if (tick != member->done + 1 || tick > granted_)
-    return fail_run(name + ": tick " + std::to_string(tick) + " is done, but " +
-                    std::to_string(member->done + 1) + " was next and " + std::to_string(granted_) +
+  if (tally.tick <= member->done) return;  // said twice
+  const Tick next = member->node.schedule.next_after(member->done);
+  if (member->observer) {
+    member->done = tally.tick;
+    return;
+  }
+  if (!member->keeps_time || tally.tick != next || tally.tick > granted_)
+    return fail_run(name + ": tick " + std::to_string(tally.tick) + " is done, but " +
+                    std::to_string(next) + " was next and " + std::to_string(granted_) +
                     " the last granted");
-  member->done = tick;
+  member->done = tally.tick;
   member->progressed = now;
-  grant();
+  if (notes(*member, std::move(tally))) grant(now);
 }
 
-void Coordinator::grant() {
+/// False when a tick that is done again is not what it was: then the run has failed.
+bool Coordinator::notes(Member& member, TickTally tally) {
+  const auto at = std::lower_bound(member.said.begin(), member.said.end(), tally.tick,
+                                   [](const TickTally& t, Tick tick) { return t.tick < tick; });
+  if (at == member.said.end() || at->tick != tally.tick) {
+    member.said.insert(at, std::move(tally));
+    return true;
+  }
+  if (!std::equal(at->topics.begin(), at->topics.end(), tally.topics.begin(), tally.topics.end(),
+                  [](const TopicTally& a, const TopicTally& b) { return a.same_content(b); })) {
+    fail_run(member.node.name + ": tick " + std::to_string(tally.tick) +
+             ", done again after a restart, is not what it was");
+    return false;
+  }
+  *at = std::move(tally);  // the sequence numbers are those of the new process
+  return true;
+}
+
+void Coordinator::grant(Instant now) {
   if (phase_ != Phase::running) return;
   const Tick slowest = slowest_done();
   if (slowest == no_tick) return fail_run("no node is left");
-  if (slowest >= options_.last_tick) {
+  settle(slowest, now);
+  if (slowest >= end_) {
     phase_ = Phase::ended;
     return;
   }
-  granted_ = std::max(granted_, std::min(slowest + options_.window_ticks, options_.last_tick));
+  granted_ =
+      std::max(granted_, std::min({slowest + options_.window_ticks, end_, pace_.limit(now)}));
 }
 
-void Coordinator::heartbeat(const std::string& name, bool computing, std::uint64_t progress,
-                            Instant now) {
-  Member* member = active(name);
-  if (!member) return;
-  heard(*member, now);
-  if (!computing || !member->computing || progress != member->progress) member->progressed = now;
-  member->computing = computing;
-  member->progress = progress;
+void Coordinator::settle(Tick slowest, Instant now) {
+  for (auto& [name, member] : members_)
+    while (!member.said.empty() && member.said.front().tick <= slowest) {
+      for (const TopicTally& topic : member.said.front().topics)
+        member.digest = fold_digest(fold_digest(member.digest, topic.messages), topic.digest);
+      member.said.pop_front();
+    }
+  for (const Tick last = std::min(slowest, end_); settled_ < last;) pace_.finished(++settled_, now);
 }
 
-void Coordinator::heard(Member& member, Instant now) {
-  member.heard = now;
-  member.suspected.reset();
-  member.silent = false;
+void Coordinator::pause(Tick at) {
+  if (!over()) pace_.pause(std::max(at, granted_));
 }
 
-void Coordinator::suspect(const std::string& name, Instant now) {
-  Member* member = active(name);
-  if (member && !member->suspected) member->suspected = now;
+void Coordinator::step(Tick ticks, Instant now) {
+  pace_.step(std::max<Tick>(ticks, 0));
+  grant(now);
 }
 
-void Coordinator::leave(const std::string& name, bool interrupted) {
-  Member* member = active(name);
-  if (!member) return;
-  if (over()) {
-    member->left = true;
-    return;
-  }
-  const std::string how = interrupted ? "was interrupted" : "left before the end";
-  if (phase_ == Phase::gathering) {
-    members_.erase(name);
-    return;
-  }
-  member->left = true;
-  if (options_.on_silent == SilentPolicy::drop && member->keeps_time)
-    drop(*member);
-  else
-    fail_run(name + " " + how + " (last tick done: " + std::to_string(member->done) + " of " +
-             std::to_string(options_.last_tick) + ")");
+void Coordinator::go_on(Instant now) {
+  pace_.go_on(now);
+  grant(now);
 }
 
-void Coordinator::fail(const std::string& name, const std::string& reason) {
-  Member* member = active(name);
-  if (!member) return;
-  member->left = true;
-  if (options_.on_silent == SilentPolicy::drop && member->keeps_time && phase_ == Phase::running)
-    drop(*member);
-  else
-    fail_run(name + ": " + reason);
-}
-
-void Coordinator::stop(const std::string& reason) { fail_run(reason); }
-
-void Coordinator::check(Instant now) {
-  if (!over() && phase_ != Phase::running && options_.start_within.count() > 0 &&
-      now - started_ > options_.start_within)
-    return fail_run("not started within " + in_seconds(options_.start_within) + ": waiting for " +
-                    joined(holding()));
-  std::vector<std::string> names;  // lost() may take a member away
-  for (const auto& [name, member] : members_) names.push_back(name);
-  for (const std::string& name : names) {
-    Member* member = active(name);
-    if (!member || member->silent) continue;
-    const Instant silence = now - member->heard;
-    if (silence > options_.silent_after)
-      lost(*member, "has been silent for " + in_seconds(silence));
-    else if (member->suspected && now - *member->suspected > options_.suspect_after)
-      lost(*member, "has closed its connection");
-    else if (member->computing && options_.progress_after.count() > 0 &&
-             now - member->progressed > options_.progress_after && !over())
-      lost(*member, "has made no progress for " + in_seconds(now - member->progressed));
-  }
-}
-
-void Coordinator::lost(Member& member, const std::string& how) {
-  if (over()) {
-    member.left = true;
-    return;
-  }
-  if (phase_ == Phase::gathering) {
-    members_.erase(std::string(member.node.name));
-    return;
-  }
-  if (!member.keeps_time || options_.on_silent == SilentPolicy::fail ||
-      phase_ == Phase::connecting) {
-    member.left = true;
-    fail_run(member.node.name + " " + how + " (last tick done: " + std::to_string(member.done) +
-             " of " + std::to_string(options_.last_tick) + ")");
-  } else if (options_.on_silent == SilentPolicy::wait) {
-    member.silent = true;
-  } else {
-    drop(member);
-  }
-}
-
-void Coordinator::drop(Member& member) {
-  member.left = true;
-  member.dropped = true;
-  // It may have died with messages of ticks that it called done: they count for nobody who is
-  // behind.
-  member.closed_from = std::min(member.done, slowest_done()) + 1;
-  grant();
-}
-
-void Coordinator::fail_run(const std::string& cause) {
+void Coordinator::end_early(const std::string& reason) {
   if (over()) return;
-  phase_ = Phase::failed;
-  cause_ = cause;
+  if (phase_ != Phase::running) return fail_run(reason);
+  end_ = granted_;
+  cause_ = reason;
+  if (slowest_done() >= end_) phase_ = Phase::ended;
+}
+
+std::optional<Instant> Coordinator::next_due() const {
+  if (phase_ != Phase::running) return std::nullopt;
+  const Tick allowed = std::min(std::min(slowest_done(), end_) + options_.window_ticks, end_);
+  if (granted_ >= allowed) return std::nullopt;
+  return pace_.due_after(granted_);
 }
 
 Coordinator::Member* Coordinator::active(const std::string& name) {
@@ -229,17 +244,17 @@ std::vector<std::string> Coordinator::holding() const {
   std::vector<std::string> names;
   if (phase_ == Phase::connecting) {
     for (const std::string& name : options_.expected)
-      if (!members_.at(name).ready) names.push_back(name);
+      if (!members_.at(name).ready || members_.at(name).silent) names.push_back(name);
     return names;
   }
   if (over()) return names;
   for (const auto& [name, member] : members_)
     if (member.silent) names.push_back(name);
-  if (!names.empty()) return names;
   const Tick slowest = slowest_done();
+  if (!names.empty() || slowest >= granted_) return names;
   std::set<std::string> late_topics;  // of those who are behind
   const auto behind = [&](const Member& member) {
-    return member.keeps_time && member.active() && member.done == slowest;
+    return member.keeps_time && member.active() && member.reaches() == slowest;
   };
   for (const auto& [name, member] : members_)
     if (behind(member))
@@ -258,13 +273,30 @@ std::vector<std::string> Coordinator::holding() const {
 Tick Coordinator::slowest_done() const {
   Tick slowest = no_tick;
   for (const auto& [name, member] : members_)
-    if (member.keeps_time && member.active()) slowest = std::min(slowest, member.done);
+    if (member.keeps_time && member.active()) slowest = std::min(slowest, member.reaches());
   return slowest;
+}
+
+Tick Coordinator::publishes_from(const Member& member) const {
+  const auto history = history_.find(member.node.name);
+  return std::max<Tick>(0, member.resumes_at - (history == history_.end() ? 0 : history->second));
+}
+
+Tick Coordinator::keep_ticks(const std::string& name) const {
+  const auto history = history_.find(name);
+  return options_.window_ticks + 1 + (history == history_.end() ? 0 : history->second);
 }
 
 bool Coordinator::deserted() const {
   return std::none_of(members_.begin(), members_.end(),
                       [](const auto& entry) { return entry.second.active(); });
+}
+
+std::uint64_t Coordinator::digest() const {
+  std::uint64_t digest = 0;
+  for (const auto& [name, member] : members_)
+    if (member.keeps_time) digest = fold_digest(digest, member.digest);
+  return digest;
 }
 
 }  // namespace dmise

@@ -1,11 +1,12 @@
 #pragma once
-#include <chrono>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/base/sim_time.h"
+#include "time-master/pace.h"
+#include "time-master/tally.h"
 #include "time-master/topic_graph.h"
 
 namespace dmise {
@@ -13,7 +14,7 @@ namespace dmise {
 /// What becomes of a run when one of its nodes falls silent.
 enum class SilentPolicy {
   fail,  // the run ends with that as its cause
-  wait,  // the clock stands until the node is heard again
+  wait,  // the clock stands until the node is heard again, or another process joins under its name
   drop,  // the run goes on without it
 };
 
@@ -25,95 +26,145 @@ enum class Phase {
   failed,  // see cause()
 };
 
-/// Wall-clock time since any fixed instant; handed in, never read here.
-using Instant = std::chrono::nanoseconds;
-
 struct CoordinatorOptions {
-  std::vector<std::string> expected;  // names; no other may join
-  Tick last_tick = 0;                 // ticks are 0..last_tick
+  std::vector<std::string> expected;  // names; no other may join but observers
+  Tick first_tick = 0;                // > 0: goes on with a run that was interrupted
+  Tick last_tick = 0;                 // ticks are first_tick..last_tick
   int window_ticks = 1;               // >= 1; 1 is lock-step
+  PaceOptions pace;
   Instant silent_after = std::chrono::seconds(5);
   Instant suspect_after = std::chrono::milliseconds(750);  // after its connection broke
   Instant progress_after{0};                               // longest step without progress; 0: none
   Instant start_within{0};  // longest time until all are ready; 0: none
   SilentPolicy on_silent = SilentPolicy::fail;
+  Instant rejoin_within{0};  // under `wait`, longest time until a lost node is back; 0: none
+  int max_rejoins = -1;      // under `wait`, processes that may follow the first of a name; -1: any
 };
 
 /// The lock-step protocol as a state machine that has never seen a socket: who is in the run, up to
 /// which tick all may process, who holds the clock, how a run ends and why. A grant reaches at most
-/// `window_ticks` beyond what the slowest node has done.
+/// `window_ticks` beyond what the slowest node has done. `model/lockstep.pml` is its model.
 class Coordinator {
  public:
   struct Request {
     NodeTopics node;
     bool keeps_time = true;  // false: the clock does not wait for it (the broker)
+    bool observer = false;   // joins and leaves at any time under a name of its own, holds nobody
   };
   struct Member {
     NodeTopics node;
     bool keeps_time = true;
+    bool observer = false;
     bool ready = false;
     bool silent = false;  // under SilentPolicy::wait
     bool left = false;    // said goodbye, or was dropped
     bool dropped = false;
     bool computing = false;
+    std::uint64_t incarnation = 1;  // of the name: counts its processes
     Tick done = -1;
-    Tick closed_from = 0;  // of a dropped node: its topics are empty from this tick on
+    Tick resumes_at = 0;         // the first tick that this process is to say done
+    Tick closed_from = 0;        // of a dropped node: its topics are empty from this tick on
+    std::deque<TickTally> said;  // of ticks that not all have done
+    std::uint64_t digest = 0;    // of all that it published in ticks that all have done
     std::uint64_t progress = 0;
     Instant heard{0};
     Instant progressed{0};
+    Instant silent_since{0};
     std::optional<Instant> suspected;
 
     bool active() const { return !left; }
+    /// Nobody waits for it up to and with this tick.
+    Tick reaches() const { return node.schedule.next_after(done) - 1; }
   };
 
   explicit Coordinator(CoordinatorOptions options, Instant now = Instant{0});
 
-  /// The reason if the node is refused; nothing is changed then.
+  /// The reason if the node is refused; nothing is changed then. A process that follows a lost one
+  /// takes its place in the next incarnation and does again what not all have done.
   std::optional<std::string> join(const Request& request, Instant now = Instant{0});
   void ready(const std::string& name, Instant now = Instant{0});
-  void done(const std::string& name, Tick tick, Instant now = Instant{0});
+  void done(const std::string& name, Tick tick, Instant now = Instant{0}) {
+    done(name, TickTally{tick, {}}, now);
+  }
+  void done(const std::string& name, TickTally tally, Instant now = Instant{0});
   void heartbeat(const std::string& name, bool computing, std::uint64_t progress, Instant now);
   /// Its connection broke: it has `suspect_after` from now to be heard again.
   void suspect(const std::string& name, Instant now);
-  void leave(const std::string& name, bool interrupted);
+  void leave(const std::string& name, bool interrupted, Instant now = Instant{0});
   void fail(const std::string& name, const std::string& reason);
-  /// Ends a run that has not ended, from outside.
+  /// Ends a run that has not ended, from outside, at once.
   void stop(const std::string& reason);
-  /// Finds who has been silent or without progress for too long. Call it often.
+  /// Finds who has been silent or without progress for too long, and grants what has become due.
+  /// Call it often, and at next_due().
   void check(Instant now);
+
+  /// No tick is granted after `at`, or after the last granted if that is later.
+  void pause(Tick at = -1);
+  void step(Tick ticks, Instant now = Instant{0});
+  void go_on(Instant now = Instant{0});
+  /// The run ends when all have done what is granted: nothing is left half done.
+  void end_early(const std::string& reason);
 
   Phase phase() const { return phase_; }
   bool over() const { return phase_ == Phase::ended || phase_ == Phase::failed; }
-  /// First cause of a failed run.
+  /// First cause of a failed run, or why it ended early.
   const std::string& cause() const { return cause_; }
-  /// Nodes may process up to this tick; -1 before the start.
+  /// Nodes may process up to this tick; first_tick - 1 before the start.
   Tick granted() const { return granted_; }
+  /// All have done this tick and those before.
+  Tick settled() const { return settled_; }
+  /// Paused, and all have done what was granted.
+  bool frozen() const { return pace_.paused() && settled_ >= granted_; }
+  const Pace& pace() const { return pace_; }
+  /// When `check` has something to grant, if time alone brings it.
+  std::optional<Instant> next_due() const;
   /// Expected and not yet joined, in the order of the list.
   std::vector<std::string> missing() const;
   /// Whom everybody waits for: those to join, to be ready, the silent, or the furthest behind who
-  /// wait for nobody's topics themselves.
+  /// wait for nobody's topics themselves. Nobody when the wall clock or a pause holds the clock.
   std::vector<std::string> holding() const;
   /// True when nobody is left.
   bool deserted() const;
+  /// Grows whenever somebody has joined after the start, so that all must hear who is where.
+  std::uint64_t topology_version() const { return topology_version_; }
+  /// First tick whose messages a process of this node publishes: `resumes_at` less what those who
+  /// depend on it may need.
+  Tick publishes_from(const Member& member) const;
+  /// Ticks that a node keeps for whoever asks again.
+  Tick keep_ticks(const std::string& name) const;
+  /// Of all that was published in ticks that all have done: the same for the same run.
+  std::uint64_t digest() const;
   const std::map<std::string, Member>& members() const { return members_; }
   const CoordinatorOptions& options() const { return options_; }
 
  private:
   Member* active(const std::string& name);
+  std::optional<std::string> rejoin(Member& member, const Request& request, Instant now);
+  std::optional<std::string> observe(const Request& request, Instant now);
+  Member& add(const Request& request, Instant now);
   void heard(Member& member, Instant now);
-  void lost(Member& member, const std::string& how);
-  void drop(Member& member);
+  void lost(Member& member, const std::string& how, Instant now);
+  void drop(Member& member, Instant now);
   void fail_run(const std::string& cause);
-  void connect_if_complete();
-  void start_if_ready();
-  void grant();
+  void connect_if_complete(Instant now);
+  void start_if_ready(Instant now);
+  bool notes(Member& member, TickTally tally);
+  void settle(Tick slowest, Instant now);
+  void grant(Instant now);
   Tick slowest_done() const;
+  std::string after_tick(const Member& member) const;
 
   CoordinatorOptions options_;
+  Pace pace_;
   std::map<std::string, Member> members_;
+  std::map<std::string, std::uint64_t> incarnations_;  // of each name, so far
+  std::map<std::string, Tick> history_;
   Phase phase_ = Phase::gathering;
   std::string cause_;
-  Tick granted_ = -1;
+  Tick granted_;
+  Tick settled_;
+  Tick end_;  // last tick, or an earlier one
+  std::uint64_t topology_version_ = 0;
   Instant started_;
 };
 

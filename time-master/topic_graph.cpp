@@ -1,6 +1,7 @@
 #include "time-master/topic_graph.h"
 
-#include <map>
+#include <algorithm>
+#include <functional>
 
 namespace dmise {
 namespace {
@@ -53,6 +54,26 @@ std::optional<std::string> topic_fault(const std::vector<NodeTopics>& nodes) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (auto fault = search.from(i)) return fault;
   return std::nullopt;
+}
+
+std::map<std::string, Tick> history_ticks(const std::vector<NodeTopics>& nodes) {
+  std::map<std::string, Tick> history;
+  const std::function<Tick(const NodeTopics&)> of = [&](const NodeTopics& node) {
+    if (const auto known = history.find(node.name); known != history.end()) return known->second;
+    Tick ticks = 0;
+    for (const NodeTopics& other : nodes) {
+      const bool depends =
+          std::any_of(node.produces.begin(), node.produces.end(), [&](const std::string& topic) {
+            return std::find(other.consumes.begin(), other.consumes.end(), topic) !=
+                   other.consumes.end();
+          });
+      // One that works every n-th tick takes the inputs of the n - 1 ticks before as well.
+      if (depends) ticks = std::max(ticks, other.look_back + other.schedule.period - 1 + of(other));
+    }
+    return history[node.name] = ticks;
+  };
+  for (const NodeTopics& node : nodes) of(node);
+  return history;
 }
 
 }  // namespace dmise

@@ -203,7 +203,7 @@ class Master {
     const auto& leave = heard_.leave();
     if (name.empty()) return;
     times_[name] = take(leave.times());
-    coordinator_.leave(name, leave.interrupted());
+    coordinator_.leave(name, leave.interrupted(), now());
     spdlog::debug("{} left", name);
   }
 

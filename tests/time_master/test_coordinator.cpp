@@ -1,9 +1,8 @@
-#include "time-master/coordinator.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "tests/time_master/coordinators.h"
 
 namespace dmise {
 namespace {
@@ -13,25 +12,7 @@ using std::chrono::seconds;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-Coordinator::Request node(const std::string& name, std::vector<std::string> produces = {},
-                          std::vector<std::string> consumes = {}) {
-  return {.node = {name, std::move(produces), std::move(consumes)}};
-}
-
-CoordinatorOptions options(std::vector<std::string> expected, Tick last_tick = 9, int window = 1) {
-  CoordinatorOptions o;
-  o.expected = std::move(expected);
-  o.last_tick = last_tick;
-  o.window_ticks = window;
-  return o;
-}
-
-Coordinator started(const CoordinatorOptions& o) {
-  Coordinator master(o);
-  for (const std::string& name : o.expected) master.join(node(name));
-  for (const std::string& name : o.expected) master.ready(name);
-  return master;
-}
+using namespace test;
 
 TEST(Coordinator, WaitsForTheSlowestNode) {
   Coordinator master = started(options({"orbit", "camera"}));

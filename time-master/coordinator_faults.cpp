@@ -1,0 +1,143 @@
+// Who dies, hangs, falls silent or leaves, and what becomes of the run.
+#include <algorithm>
+#include <cstdio>
+
+#include "time-master/coordinator.h"
+
+namespace dmise {
+namespace {
+
+std::string in_seconds(Instant duration) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f s", std::chrono::duration<double>(duration).count());
+  return text;
+}
+
+}  // namespace
+
+std::string Coordinator::after_tick(const Member& member) const {
+  return " (last tick done: " + std::to_string(member.done) + " of " +
+         std::to_string(options_.last_tick) + ")";
+}
+
+void Coordinator::heartbeat(const std::string& name, bool computing, std::uint64_t progress,
+                            Instant now) {
+  Member* member = active(name);
+  if (!member) return;
+  heard(*member, now);
+  if (!computing || !member->computing || progress != member->progress) member->progressed = now;
+  member->computing = computing;
+  member->progress = progress;
+}
+
+void Coordinator::heard(Member& member, Instant now) {
+  member.heard = now;
+  member.suspected.reset();
+  member.silent = false;
+}
+
+void Coordinator::suspect(const std::string& name, Instant now) {
+  Member* member = active(name);
+  if (member && !member->suspected) member->suspected = now;
+}
+
+void Coordinator::leave(const std::string& name, bool interrupted, Instant now) {
+  Member* member = active(name);
+  if (!member) return;
+  if (over()) {
+    member->left = true;
+    return;
+  }
+  if (phase_ == Phase::gathering || member->observer) {
+    members_.erase(name);
+    return;
+  }
+  lost(*member, interrupted ? "was interrupted" : "left before the end", now);
+}
+
+void Coordinator::fail(const std::string& name, const std::string& reason) {
+  Member* member = active(name);
+  if (!member) return;
+  if (member->observer) {
+    members_.erase(name);
+    return;
+  }
+  member->left = true;
+  if (options_.on_silent == SilentPolicy::drop && member->keeps_time && phase_ == Phase::running)
+    drop(*member, member->heard);
+  else
+    fail_run(name + ": " + reason);
+}
+
+void Coordinator::stop(const std::string& reason) { fail_run(reason); }
+
+void Coordinator::check(Instant now) {
+  if (!over() && phase_ != Phase::running && options_.start_within.count() > 0 &&
+      now - started_ > options_.start_within)
+    return fail_run("not started within " + in_seconds(options_.start_within) + ": waiting for " +
+                    joined(holding()));
+  std::vector<std::string> names;  // lost() may take a member away
+  for (const auto& [name, member] : members_) names.push_back(name);
+  for (const std::string& name : names) {
+    Member* member = active(name);
+    if (!member) continue;
+    if (member->silent) {
+      const Instant gone = now - member->silent_since;
+      if (options_.rejoin_within.count() > 0 && gone > options_.rejoin_within && !over())
+        fail_run(name + " has not come back within " + in_seconds(options_.rejoin_within) +
+                 after_tick(*member));
+      continue;
+    }
+    const Instant silence = now - member->heard;
+    if (silence > options_.silent_after)
+      lost(*member, "has been silent for " + in_seconds(silence), now);
+    else if (member->suspected && now - *member->suspected > options_.suspect_after)
+      lost(*member, "has closed its connection", now);
+    else if (member->computing && options_.progress_after.count() > 0 &&
+             now - member->progressed > options_.progress_after && !over())
+      lost(*member, "has made no progress for " + in_seconds(now - member->progressed), now);
+  }
+  grant(now);
+}
+
+void Coordinator::lost(Member& member, const std::string& how, Instant now) {
+  if (over()) {
+    member.left = true;
+    return;
+  }
+  if (phase_ == Phase::gathering || member.observer) {
+    members_.erase(std::string(member.node.name));
+    return;
+  }
+  if (options_.on_silent == SilentPolicy::drop && member.keeps_time && phase_ == Phase::running)
+    return drop(member, now);
+  if (options_.on_silent != SilentPolicy::wait) {
+    member.left = true;
+    return fail_run(member.node.name + " " + how + after_tick(member));
+  }
+  if (options_.max_rejoins >= 0 && member.incarnation > std::uint64_t(options_.max_rejoins) &&
+      options_.max_rejoins > 0)
+    return fail_run(member.node.name + " " + how + ", after " +
+                    std::to_string(options_.max_rejoins) + " restarts" + after_tick(member));
+  member.silent = true;
+  member.silent_since = now;
+}
+
+void Coordinator::drop(Member& member, Instant now) {
+  // It may have died with messages of ticks that it called done: they count for nobody who is
+  // behind.
+  member.left = true;
+  member.dropped = true;
+  member.closed_from = std::min(member.done, slowest_done()) + 1;
+  while (!member.said.empty() && member.said.back().tick >= member.closed_from)
+    member.said.pop_back();
+  grant(now);
+}
+
+void Coordinator::fail_run(const std::string& cause) {
+  if (over()) return;
+  phase_ = Phase::failed;
+  cause_ = cause;
+}
+
+}  // namespace dmise

@@ -1,0 +1,58 @@
+#pragma once
+#include <chrono>
+#include <optional>
+
+#include "core/base/sim_time.h"
+
+namespace dmise {
+
+/// Wall-clock time since any fixed instant; handed in, never read here.
+using Instant = std::chrono::nanoseconds;
+
+struct PaceOptions {
+  SimTime tick_length{1'000'000'000};
+  double factor = 0.0;  // simulated seconds a second; 0: as fast as possible
+};
+
+/// How far the clock may go, whatever the nodes have done: real time times a factor, a pause,
+/// single steps. A tick that is late is never left out: the clock catches up, and the overrun is
+/// counted.
+class Pace {
+ public:
+  /// Throws `ConfigError` for a factor that is negative or not finite.
+  explicit Pace(PaceOptions options = {}, Tick first_tick = 0);
+
+  /// `first_tick` is due now.
+  void start(Instant now);
+  /// No tick after `tick` until `step` or `go_on`.
+  void pause(Tick tick) { pause_after_ = tick; }
+  /// Paused: `ticks` more. Otherwise nothing.
+  void step(Tick ticks);
+  /// The ticks left waiting by a pause are due from now on; the pause counts as no overrun.
+  void go_on(Instant now);
+  /// All nodes have done `tick`.
+  void finished(Tick tick, Instant now);
+
+  bool paused() const { return pause_after_.has_value(); }
+  /// Last tick that may be granted.
+  Tick limit(Instant now) const;
+  /// When the tick after `granted` is due; none when the wall clock does not matter.
+  std::optional<Instant> due_after(Tick granted) const;
+
+  /// Ticks that were not over when the next was due, and by how much at most.
+  std::uint64_t overruns() const { return overruns_; }
+  Instant worst_lag() const { return worst_lag_; }
+
+ private:
+  bool timed() const { return options_.factor > 0.0; }
+  Instant due(Tick tick) const;
+
+  PaceOptions options_;
+  Tick first_tick_;
+  std::optional<Instant> epoch_;  // when first_tick_ is due
+  std::optional<Tick> pause_after_;
+  std::uint64_t overruns_ = 0;
+  Instant worst_lag_{0};
+};
+
+}  // namespace dmise

@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/sim_time.h"
+
+namespace dmise {
+
+/// What a node has published on one topic at one tick, as it says itself.
+struct TopicTally {
+  std::string topic;
+  std::uint64_t messages = 0;       // of this tick, a watermark counts
+  std::uint64_t last_sequence = 0;  // of the publisher on this topic
+  std::uint64_t digest = 0;         // of kinds, payloads and arrays; not of envelopes
+
+  /// The same content, whatever process published it: sequences count within an incarnation.
+  bool same_content(const TopicTally& other) const {
+    return topic == other.topic && messages == other.messages && digest == other.digest;
+  }
+};
+
+/// A node's whole manifest of one tick.
+struct TickTally {
+  Tick tick = 0;
+  std::vector<TopicTally> topics;  // in the order of the node's list
+};
+
+/// Joins a value into a running 64-bit digest. Tells runs apart; no defence against forgery.
+constexpr std::uint64_t fold_digest(std::uint64_t digest, std::uint64_t value) {
+  digest = (digest ^ value) * 0x9e3779b97f4a7c15;  // 2^64 / golden ratio: spreads every bit upwards
+  return digest ^ (digest >> 29);
+}
+
+}  // namespace dmise
