@@ -1,0 +1,35 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/config/yaml_reader.h"
+#include "core/materials/material.h"
+
+namespace dmise {
+
+/// Materials by name, from a file of the form of launch/materials/library.yaml.
+class MaterialLibrary {
+ public:
+  MaterialLibrary() = default;
+  /// Throws `ConfigError` with `file:line:column`, also for a material that would reflect more than
+  /// falls in.
+  explicit MaterialLibrary(const std::string& path);
+
+  /// The one that comes with the installation; read once.
+  static const MaterialLibrary& shipped();
+
+  std::optional<Material> find(std::string_view name) const;
+  /// The named one. Throws `ConfigError` at `value` with the nearest name.
+  Material require(const YamlValue& value) const;
+  const std::map<std::string, Material, std::less<>>& all() const { return materials_; }
+
+ private:
+  std::map<std::string, Material, std::less<>> materials_;
+};
+
+/// One material of its mapping.
+Material read_material(const std::string& name, const YamlValue& value);
+
+}  // namespace dmise

@@ -1,0 +1,182 @@
+#include "core/materials/obj_file.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <map>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/materials/line_fields.h"
+#include "core/materials/mesh_repair.h"
+#include "core/materials/polygon.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::size_t most_corners = 1024;  // of one face
+
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& file, const ObjSources& sources)
+      : fields_(text, file), sources_(sources) {
+    lines_.file = file;
+  }
+
+  ObjModel read() {
+    while (fields_.next()) line();
+    if (model_.mesh.triangles.empty()) throw ConfigError(fields_.file() + ": has no face");
+    const auto repairs = repair(model_.mesh, std::move(lines_));
+    model_.notes.insert(model_.notes.end(), repairs.begin(), repairs.end());
+    return std::move(model_);
+  }
+
+ private:
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+
+  void line() {
+    const std::string_view key = fields_.keyword();
+    if (key == "v") {
+      model_.mesh.vertex_m.push_back({fields_.number(1), fields_.number(2), fields_.number(3)});
+      if (model_.mesh.vertex_m.size() > most_facets) fields_.fail("too many vertices");
+    } else if (key == "f" || key == "fo") {
+      face();
+    } else if (key == "usemtl") {
+      use(fields_.rest());
+    } else if (key == "mtllib") {
+      library();
+    } else if (key == "l" || key == "p") {
+      once(left_out_, "lines and points have no area and are left out");
+    } else if (key != "vn" && key != "vt" && key != "o" && key != "g" && key != "s" &&
+               key != "mg" && key != "bevel" && key != "c_interp" && key != "d_interp" &&
+               key != "lod" && key != "usemap" && key != "maplib" && key != "shadow_obj" &&
+               key != "trace_obj") {
+      refuse(key);
+    }
+  }
+
+  [[noreturn]] void refuse(std::string_view key) {
+    for (const std::string_view known :
+         {"vp", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole",
+          "scrv", "sp", "end", "con", "ctech", "stech"})
+      if (key == known) fields_.fail("free-form curves and surfaces cannot be used");
+    if (key == "call" || key == "csh") fields_.fail("commands are not followed");
+    fields_.fail("unknown keyword");
+  }
+
+  void once(bool& told, const char* what) {
+    if (!told) model_.notes.push_back(fields_.where() + ": " + what);
+    told = true;
+  }
+
+  std::uint32_t corner(std::string_view text) const {
+    const std::string_view whole = text;
+    std::uint32_t vertex = none;
+    for (int part = 0; part < 3; ++part) {
+      const std::size_t slash = text.find('/');
+      const std::string_view number = text.substr(0, slash);
+      if (!number.empty() || part == 0) {
+        std::int64_t index = 0;
+        const auto [end, error] =
+            std::from_chars(number.data(), number.data() + number.size(), index);
+        if (error != std::errc{} || end != number.data() + number.size() || index == 0)
+          fields_.fail("corner must be v, v/vt, v//vn or v/vt/vn with numbers from 1 or below 0",
+                       whole);
+        if (part == 0) vertex = vertex_numbered(index, whole);
+      }
+      if (slash == std::string_view::npos) return vertex;
+      text.remove_prefix(slash + 1);
+    }
+    fields_.fail("corner has more than three parts", whole);
+  }
+
+  std::uint32_t vertex_numbered(std::int64_t index, std::string_view shown) const {
+    const auto count = std::int64_t(model_.mesh.vertex_m.size());
+    if (index < -count || index > count)
+      fields_.fail("no such vertex (" + std::to_string(count) + " so far)", shown);
+    return std::uint32_t(index > 0 ? index - 1 : count + index);
+  }
+
+  void face() {
+    const std::size_t corners = fields_.size() - 1;
+    if (corners < 3) fields_.fail("a face needs three corners");
+    if (corners > most_corners)
+      fields_.fail("a face has at most " + std::to_string(most_corners) + " corners");
+    std::vector<std::uint32_t> vertex;
+    for (std::size_t i = 1; i <= corners; ++i) vertex.push_back(corner(fields_[i]));
+    if (material_ == none) {
+      once(grey_, "faces before any usemtl are grey, reflectance 0.2");
+      use_material(Material{});
+    }
+    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      model_.mesh.triangles.push_back({{vertex[a], vertex[b], vertex[c]}, material_});
+      lines_.line.push_back(fields_.line());
+    };
+    if (corners == 3) {
+      add(0, 1, 2);
+    } else {
+      std::vector<Vec<Body>> places;
+      for (const auto v : vertex) places.push_back(model_.mesh.vertex_m[v]);
+      for (const auto& [a, b, c] : triangulate(places)) add(a, b, c);
+    }
+    if (model_.mesh.triangles.size() > most_facets) fields_.fail("too many facets");
+  }
+
+  void use(const std::string& name) {
+    if (const auto found = used_.find(name); found != used_.end()) {
+      material_ = found->second;
+      return;
+    }
+    std::optional<Material> material;
+    if (const auto found = defined_.find(name); found != defined_.end())
+      material = found->second;
+    else
+      material = sources_.library(name);
+    if (!material) fields_.fail("no such material in a material file or in the library", name);
+    use_material(*material);
+    used_[name] = material_;
+  }
+
+  void use_material(const Material& material) {
+    material_ = std::uint32_t(model_.mesh.materials.size());
+    model_.mesh.materials.push_back(material);
+  }
+
+  void library() {
+    const std::string name = fields_.rest();
+    std::string text;
+    try {
+      text = sources_.read_mtl(name);
+    } catch (const Error& error) {
+      fields_.fail(error.what());
+    }
+    // Errors in it name its own lines.
+    const auto path = std::filesystem::path(fields_.file()).parent_path() / name;
+    defined_.merge(parse_mtl(text, path.string(), sources_.library, model_.notes));
+  }
+
+  LineFields fields_;
+  const ObjSources& sources_;
+  ObjModel model_;
+  MeshLines lines_;
+  std::map<std::string, Material> defined_;
+  std::map<std::string, std::uint32_t> used_;
+  std::uint32_t material_ = none;
+  bool left_out_ = false, grey_ = false;
+};
+
+}  // namespace
+
+ObjModel parse_obj(std::string_view text, const std::string& file, const ObjSources& sources) {
+  return Reader(text, file, sources).read();
+}
+
+ObjModel load_obj(const std::string& path, const MaterialByName& library) {
+  const auto folder = std::filesystem::path(path).parent_path();
+  const auto read_mtl = [&](const std::string& name) {
+    return read_text_file((folder / name).string(), std::size_t(1) << 26);
+  };
+  return parse_obj(read_text_file(path), path, {read_mtl, library});
+}
+
+}  // namespace dmise

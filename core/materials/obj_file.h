@@ -1,0 +1,38 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/materials/mesh.h"
+#include "core/materials/mtl_file.h"
+
+namespace dmise {
+
+/// A mesh that was read and what was left out or put right in reading it, one line each.
+struct ObjModel {
+  Mesh mesh;
+  std::vector<std::string> notes;
+};
+
+/// Where an OBJ file finds what it names.
+struct ObjSources {
+  std::function<std::string(const std::string& name)> read_mtl;  // text of a material file
+  MaterialByName library;
+};
+
+/// More facets are refused.
+inline constexpr std::size_t most_facets = 4'000'000;
+
+/// Reads a Wavefront OBJ, lengths in metres: v, f (any number of corners, absolute and negative
+/// numbers, with and without texture and normal), usemtl, mtllib, o, g, s. Vertex normals are not
+/// needed: facets are flat. A material is looked for in the material files, then in the library;
+/// facets before any usemtl are grey (Lambert 0.2), with a note. Lines and points have no area and
+/// are left out; free-form curves and surfaces are refused. The mesh is repaired (mesh_repair.h).
+/// Throws `ConfigError` with `file:line`.
+ObjModel parse_obj(std::string_view text, const std::string& file, const ObjSources& sources);
+
+/// Reads it from a file; material files stand beside it.
+ObjModel load_obj(const std::string& path, const MaterialByName& library);
+
+}  // namespace dmise

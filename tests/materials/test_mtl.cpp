@@ -1,0 +1,77 @@
+#include "core/materials/mtl_file.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+
+namespace dmise {
+namespace {
+
+std::vector<std::string> notes;
+
+std::optional<Material> library(std::string_view name) {
+  if (name != "kapton") return std::nullopt;
+  Material m;
+  m.name = "kapton";
+  m.reflectance = {{0.5e-6}, {0.44}};
+  return m;
+}
+
+std::map<std::string, Material> parse(std::string_view text) {
+  notes.clear();
+  return parse_mtl(text, "a.mtl", library, notes);
+}
+
+std::string complaint(std::string_view text) {
+  try {
+    parse(text);
+    return "";
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+}
+
+TEST(Mtl, ColoursBecomePhongByWavelength) {
+  const auto all = parse("newmtl hull\r\nKd 0.3 0.2 0.1\r\nKs 0.1 0.1 0.1\r\nNs 20\r\nillum 2\r\n");
+  const auto brdf = std::get<Phong>(brdf_at(all.at("hull"), 0.45e-6));
+  EXPECT_DOUBLE_EQ(brdf.diffuse, 0.1);
+  EXPECT_DOUBLE_EQ(brdf.specular, 0.1);
+  EXPECT_DOUBLE_EQ(brdf.exponent, 20);
+  EXPECT_DOUBLE_EQ(std::get<Phong>(brdf_at(all.at("hull"), 0.61e-6)).diffuse, 0.3);
+  EXPECT_TRUE(notes.empty());
+}
+
+TEST(Mtl, ThatReflectsMoreThanFallsInIsScaledDownWithANote) {
+  const auto all = parse("newmtl shiny\nKd 0.8 0.8 0.8\nKs 0.8 0.8 0.8\n");
+  const auto brdf = std::get<Phong>(brdf_at(all.at("shiny"), 0.55e-6));
+  EXPECT_NEAR(brdf.diffuse + brdf.specular, 1.0, 1e-12);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0].substr(0, 23), "a.mtl:1: newmtl shiny: ");
+}
+
+TEST(Mtl, TakesANamedMaterialAndItsWarmth) {
+  const auto all =
+      parse("newmtl foil\nKd 1 0 0\nbrdf kapton\ntemperature_k 330\nthermal_emissivity 0.7\n");
+  EXPECT_DOUBLE_EQ(std::get<Lambert>(brdf_at(all.at("foil"), 0.5e-6)).reflectance, 0.44);
+  EXPECT_DOUBLE_EQ(all.at("foil").temperature_k, 330);
+  EXPECT_DOUBLE_EQ(all.at("foil").thermal_emissivity, 0.7);
+}
+
+TEST(Mtl, WhatCannotBeUsedPointsAtItsLine) {
+  EXPECT_EQ(complaint("\n# x\nKd 1 1 1\n"), "a.mtl:3: Kd: stands before any newmtl");
+  EXPECT_EQ(complaint("newmtl a\nKd 1 x 1\n"), "a.mtl:2: Kd: must be a number, got x");
+  EXPECT_EQ(complaint("newmtl a\nKd nan 0 0\n"), "a.mtl:2: Kd: number too large, got nan");
+  EXPECT_EQ(complaint("newmtl a\nbrdf kaptn\n"),
+            "a.mtl:2: brdf: no such material in the library, got kaptn");
+  EXPECT_EQ(complaint("newmtl a\nshine 3\n"), "a.mtl:2: shine: unknown keyword");
+  EXPECT_EQ(complaint("newmtl a\nnewmtl a\n"), "a.mtl:2: newmtl: defined twice, got a");
+  EXPECT_EQ(complaint("newmtl\n"), "a.mtl:1: newmtl: needs a name");
+}
+
+TEST(Mtl, TexturesAreLeftOutWithANote) {
+  parse("newmtl a\nmap_Kd hull.png\n");
+  EXPECT_EQ(notes, std::vector<std::string>{"a.mtl:2: map_Kd: textures are left out"});
+}
+
+}  // namespace
+}  // namespace dmise
