@@ -53,9 +53,12 @@ DMISE_INLINE I32 to_i32(F32 v) { return __builtin_convertvector(v, I32); }  // t
 
 DMISE_INLINE F32 max(F32 a, F32 b) { return a > b ? a : b; }
 DMISE_INLINE F32 min(F32 a, F32 b) { return a < b ? a : b; }
+DMISE_INLINE F64 max(F64 a, F64 b) { return a > b ? a : b; }
+DMISE_INLINE F64 min(F64 a, F64 b) { return a < b ? a : b; }
 
 #if defined(__AVX512F__)
 DMISE_INLINE F32 sqrt(F32 v) { return (F32)_mm512_sqrt_ps((__m512)v); }
+DMISE_INLINE F64 sqrt(F64 v) { return (F64)_mm512_sqrt_pd((__m512d)v); }
 /// Product of the low halves of each 64-bit lane.
 DMISE_INLINE U64 multiply_low(U64 a, U64 b) {
   return (U64)_mm512_mul_epu32((__m512i)a, (__m512i)b);
@@ -64,6 +67,7 @@ DMISE_INLINE bool any(I32 m) { return _mm512_movepi32_mask((__m512i)m) != 0; }
 DMISE_INLINE bool any(I64 m) { return _mm512_movepi64_mask((__m512i)m) != 0; }
 #elif defined(__AVX2__)
 DMISE_INLINE F32 sqrt(F32 v) { return (F32)_mm256_sqrt_ps((__m256)v); }
+DMISE_INLINE F64 sqrt(F64 v) { return (F64)_mm256_sqrt_pd((__m256d)v); }
 DMISE_INLINE U64 multiply_low(U64 a, U64 b) {
   return (U64)_mm256_mul_epu32((__m256i)a, (__m256i)b);
 }
@@ -71,6 +75,7 @@ DMISE_INLINE bool any(I32 m) { return _mm256_movemask_epi8((__m256i)m) != 0; }
 DMISE_INLINE bool any(I64 m) { return _mm256_movemask_epi8((__m256i)m) != 0; }
 #else
 DMISE_INLINE F32 sqrt(F32 v) { return (F32)_mm_sqrt_ps((__m128)v); }
+DMISE_INLINE F64 sqrt(F64 v) { return (F64)_mm_sqrt_pd((__m128d)v); }
 DMISE_INLINE U64 multiply_low(U64 a, U64 b) { return (U64)_mm_mul_epu32((__m128i)a, (__m128i)b); }
 DMISE_INLINE bool any(I32 m) { return _mm_movemask_epi8((__m128i)m) != 0; }
 DMISE_INLINE bool any(I64 m) { return _mm_movemask_epi8((__m128i)m) != 0; }

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/materials/mesh.h"
+
+namespace dmise {
+
+/// The facets of a mesh with what they do to light of one band, as arrays for the kernels. All
+/// models run through one formula, of Sandford-Robertson, whose diffuse part with grazing 0 is
+/// Lambert's; Phong's lobe is added where there is one.
+struct FacetSet {
+  std::size_t count = 0;  // facets; the arrays go on to a multiple of 8 with facets of no area
+  std::vector<double> normal_x, normal_y, normal_z;
+  std::vector<double> area_m2;
+  std::vector<double> diffuse;   // rho_D / (pi G^2) [1/sr]
+  std::vector<double> taken;     // (eps + rho_D) / G; 1: no lobe
+  std::vector<double> grazing2;  // b^2
+  std::vector<double> lobe2;     // e^2
+  std::vector<double> emitted;   // photons/s/m2/sr in the band
+
+  struct PhongLobe {
+    std::uint32_t facet;
+    double scale;  // ks (n + 2) / (2 pi) [1/sr]
+    double exponent;
+  };
+  std::vector<PhongLobe> lobes;
+
+  Vec<Body> normal(std::size_t i) const { return {normal_x[i], normal_y[i], normal_z[i]}; }
+};
+
+/// Facet i is the mesh's triangle i.
+FacetSet facet_set(const Mesh& mesh, const Band& band);
+
+}  // namespace dmise
