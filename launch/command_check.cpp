@@ -20,7 +20,7 @@ void check(const std::string& path) {
   for (const auto& warning : clock.warnings(scenario.duration))
     std::printf("note: %s\n", warning.c_str());
   std::printf("%s: %zu objects, %zu sensors, %lld ticks of %g s: no errors\n", path.c_str(),
-              population.elements.size(), scenario.sensors.size(),
+              population.roster.objects.size(), scenario.sensors.size(),
               static_cast<long long>(scenario.last_tick()), scenario.tick.seconds());
 }
 

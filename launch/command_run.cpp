@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
@@ -41,6 +42,10 @@ class EmbeddedRun {
       : scenario_(scenario), threads_(thread_count) {
     auto orbit = std::make_unique<OrbitActor>(scenario, make_clock(scenario), threads_);
     for (const auto& note : orbit->notes()) std::fprintf(stderr, "note: %s\n", note.c_str());
+    orbit->on_absence([this](const std::string& line) {
+      std::lock_guard lock(mutex_);
+      absences_.push_back(line);
+    });
     check_sensors(scenario, orbit->roster());
     participants_.push_back(std::move(orbit));
     participants_.push_back(std::make_unique<EnvironmentActor>(scenario, make_clock(scenario)));
@@ -64,6 +69,10 @@ class EmbeddedRun {
     std::unique_lock lock(mutex_);
     while (!finished_ && !stop_signal().is_set()) {
       changed_.wait_for(lock, std::chrono::milliseconds(50));
+      for (const auto& line : std::exchange(absences_, {})) {
+        progress.clear_line();
+        std::fprintf(stderr, "note: %s\n", line.c_str());
+      }
       progress.show(state_, finished_);
     }
     if (!finished_) changed_.wait_for(lock, patience_after_stop, [this] { return finished_; });
@@ -123,6 +132,7 @@ class EmbeddedRun {
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   ProgressState state_;
+  std::vector<std::string> absences_;  // to be told, one line for each object that left
   std::string failure_;
   bool finished_ = false;
 };

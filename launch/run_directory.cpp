@@ -41,9 +41,8 @@ std::vector<std::string> whole_lines(const std::string& path) {
 
 std::string scenario_digest(const Scenario& scenario) {
   std::string all = physics_json(scenario);
-  for (const auto& source : scenario.objects)
-    for (const auto& path : {source.path, source.facts_path})
-      all += "\n" + (path.empty() ? std::string("none") : sha256_hex(read_text_file(path)));
+  for (const auto& path : files_of(scenario.objects, scenario.own_objects))
+    all += "\n" + (path.empty() ? std::string("none") : sha256_hex(read_text_file(path)));
   for (const auto& path : {scenario.star_catalogue_path, scenario.earth_orientation_path})
     all += "\n" + (path.empty() ? std::string("none") : sha256_hex(read_text_file(path)));
   return sha256_hex(all).substr(0, 32);

@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
     dmise::Threads pool(threads);
     dmise::OrbitActor actor(scenario, dmise::make_clock(scenario), pool);
     for (const auto& note : actor.notes()) spdlog::info("{}", note);
+    actor.on_absence([](const std::string& line) { spdlog::info("{}", line); });
     if (flags.check) return 0;
     if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
     return dmise::run_node(actor, {.master = flags.master,

@@ -69,14 +69,7 @@ std::string physics_json(const Scenario& scenario) {
   json.begin_object().key("simulation").begin_object();
   json.field("start", scenario.start_utc).field("duration_ns", scenario.duration.ns);
   json.field("tick_ns", scenario.tick.ns).field("seed", scenario.seed).end_object();
-  json.key("objects").begin_array();
-  for (const auto& source : scenario.objects) {
-    json.begin_object().field("catalogue", source.named).field("radius_m", source.radius_m);
-    json.field("albedo", source.albedo).key("only").begin_array();
-    for (const auto& name : source.only) json.value(name);
-    json.end_array().end_object();
-  }
-  json.end_array();
+  write_objects(json, scenario.objects, scenario.own_objects);
   json.key("stars").begin_object().field("catalogue", scenario.star_catalogue_named);
   json.field("faintest_mag", scenario.faintest_star_mag).end_object();
   json.key("sensors").begin_array();

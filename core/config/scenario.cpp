@@ -150,30 +150,6 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTi
   return sensor;
 }
 
-ObjectSource read_object_source(const YamlValue& value) {
-  YamlMap map(value);
-  ObjectSource source;
-  const auto catalogue = map.require("catalogue");
-  source.named = catalogue.text();
-  source.path = source.named == "gpredict" ? find_catalogue("satellites.dat")
-                                           : find_beside(source.named, value.file());
-  if (source.path.empty())
-    catalogue.fail(source.named == "gpredict"
-                       ? "Debian's gpredict catalogue is not there; ./dmise setup fetches it"
-                       : "there is no such file");
-  source.radius_m =
-      map.number_or("radius_m", 1.0, {.least = 0.0, .most = 1000.0, .least_open = true});
-  source.albedo = map.number_or("albedo", 0.2, {.least = 0.0, .most = 1.0, .least_open = true});
-  if (const auto facts = map.find("facts")) {
-    source.facts_path = find_beside(facts->text(), value.file());
-    if (source.facts_path.empty()) facts->fail("there is no such file");
-  }
-  if (const auto only = map.find("only"))
-    for (const auto& name : only->list()) source.only.push_back(name.text());
-  map.done();
-  return source;
-}
-
 void read_simulation(const YamlValue& value, Scenario& scenario) {
   YamlMap map(value);
   const auto start = map.require("start");
@@ -240,9 +216,11 @@ Scenario load_scenario(const std::string& path) {
   Scenario scenario;
   scenario.path = path;
   read_simulation(map.require("simulation"), scenario);
-  if (const auto objects = map.find("objects"))
-    for (const auto& source : objects->list())
-      scenario.objects.push_back(read_object_source(source));
+  if (const auto objects = map.find("objects")) {
+    auto read = read_objects(*objects, parse_utc(scenario.start_utc));
+    scenario.objects = std::move(read.catalogues);
+    scenario.own_objects = std::move(read.own);
+  }
   if (const auto stars = map.find("stars")) read_stars(*stars, scenario);
   EffectSet effects;
   if (const auto value = map.find("effects")) read_effects(*value, effects);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/sim_time.h"
+#include "core/config/object_config.h"
 #include "core/detector/detector.h"
 #include "core/effects/effects.h"
 #include "core/optics/camera.h"
@@ -29,7 +30,7 @@ struct SiteConfig {
   double height_m = 0.0;       // above the ellipsoid, [-500, 9000]
 };
 
-/// A sensor aboard an object of the catalogue, named by number or name.
+/// A sensor aboard an object, named by number or name.
 struct PlatformConfig {
   std::string object;
 };
@@ -71,15 +72,6 @@ struct SensorConfig {
   EffectSet effects;
 };
 
-struct ObjectSource {
-  std::string path;               // resolved
-  std::string named;              // as in the scenario: "gpredict" or a path
-  double radius_m = 1.0;          // of the equivalent diffuse sphere, where nothing better is known
-  double albedo = 0.2;
-  std::string facts_path;         // CSV of brightness facts by catalogue number, may be empty
-  std::vector<std::string> only;  // catalogue numbers or names; empty: all
-};
-
 enum class OnSilentNode { fail, wait, drop };
 
 struct NetworkConfig {
@@ -105,7 +97,8 @@ struct Scenario {
   SimTime tick;
   std::uint64_t seed = 1;
   std::string earth_orientation_path;  // IERS finals file, may be empty
-  std::vector<ObjectSource> objects;
+  std::vector<ObjectSource> objects;   // catalogues
+  std::vector<OwnObject> own_objects;  // the scenario's own
   std::string star_catalogue_path;     // empty: no stars
   std::string star_catalogue_named;
   double faintest_star_mag = 9.5;

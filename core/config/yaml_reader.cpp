@@ -86,8 +86,10 @@ YamlValue YamlValue::parse(const std::string& text, const std::string& file) {
   }
 }
 
+std::string YamlValue::where() const { return place(*file_, node_.Mark()); }
+
 void YamlValue::fail(const std::string& reason, bool show_value) const {
-  std::string text = place(*file_, node_.Mark()) + ": " + (path_.empty() ? "" : path_ + ": ") + reason;
+  std::string text = where() + ": " + (path_.empty() ? "" : path_ + ": ") + reason;
   if (show_value) {
     text += ", got ";
     if (node_.IsScalar()) {
@@ -152,6 +154,14 @@ std::vector<YamlValue> YamlValue::list() const {
   std::vector<YamlValue> values;
   for (std::size_t i = 0; i < node_.size(); ++i)
     values.push_back({node_[i], file_, path_ + "[" + std::to_string(i) + "]"});
+  return values;
+}
+
+std::vector<double> YamlValue::numbers(std::size_t count, Bounds bounds) const {
+  std::vector<double> values;
+  if (is_list())
+    for (const auto& value : list()) values.push_back(value.number(bounds));
+  if (values.size() != count) fail("must be a list of " + std::to_string(count) + " numbers");
   return values;
 }
 

@@ -36,6 +36,7 @@ class YamlValue {
   bool is_scalar() const { return node_.IsScalar(); }
   const std::string& file() const { return *file_; }
   const std::string& path() const { return path_; }
+  std::string where() const;  // file:line:column
 
   double number(Bounds bounds = {}) const;
   std::int64_t integer(std::int64_t least, std::int64_t most) const;
@@ -44,6 +45,8 @@ class YamlValue {
   /// One of `choices`; the nearest is suggested.
   std::string choice(std::initializer_list<std::string_view> choices) const;
   std::vector<YamlValue> list() const;
+  /// A list of `count` numbers.
+  std::vector<double> numbers(std::size_t count, Bounds bounds = {}) const;
 
   [[noreturn]] void fail(const std::string& reason, bool show_value = true) const;
 

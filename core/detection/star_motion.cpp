@@ -10,9 +10,9 @@ StarMotion::StarMotion(const FrameHeader& header, int columns, int rows)
     : projection_(header.projection),
       focal_length_px_(header.focal_length_px),
       centre_{(columns - 1) / 2.0, (rows - 1) / 2.0} {
-  const auto gcrs_from_middle = rotation_of(header.camera_from_gcrs[1]).inverse();
-  start_from_middle_ = rotation_of(header.camera_from_gcrs[0]) * gcrs_from_middle;
-  end_from_middle_ = rotation_of(header.camera_from_gcrs[2]) * gcrs_from_middle;
+  const auto gcrs_from_middle = rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[1]).inverse();
+  start_from_middle_ = rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[0]) * gcrs_from_middle;
+  end_from_middle_ = rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[2]) * gcrs_from_middle;
 }
 
 std::optional<Vec<CameraFrame>> StarMotion::direction(PixelPosition pixel) const {

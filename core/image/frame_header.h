@@ -6,18 +6,12 @@
 
 #include "core/base/sim_time.h"
 #include "core/detection/detection.h"
+#include "core/frames/quaternion.h"
 #include "core/frames/vec.h"
 #include "core/optics/camera.h"
 #include "core/photometry/band.h"
 
 namespace dmise {
-
-/// Unit quaternion of a rotation of axes, scalar first: v_to = q v_from q*.
-struct Quaternion {
-  double w = 1.0, x = 0.0, y = 0.0, z = 0.0;
-
-  bool operator==(const Quaternion&) const = default;
-};
 
 /// Where a ground sensor stands.
 struct SitePlace {
@@ -65,10 +59,6 @@ struct FrameHeader {
 
   bool operator==(const FrameHeader&) const = default;
 };
-
-Quaternion quaternion_of(const Rotation<CameraFrame, Gcrs>& rotation);
-/// `q` is normalised first; its length must not be zero.
-Rotation<CameraFrame, Gcrs> rotation_of(const Quaternion& q);
 
 /// "gnomonic", ... as in FITS headers and configuration.
 const char* projection_name(Projection projection);

@@ -100,27 +100,16 @@ Rotation<Gcrs, Body> attitude_of(const TableAttitude& table, const AttitudeScene
                 " s; the table spans " + std::to_string(times.front()) + " to " +
                 std::to_string(times.back()) + " s");
   const auto after = std::upper_bound(times.begin(), times.end(), scene.time_s);
-  if (after == times.end()) return rotation_of(table.gcrs_from_body.back());
+  if (after == times.end()) return rotation_of<Gcrs, Body>(table.gcrs_from_body.back());
   const std::size_t i = static_cast<std::size_t>(after - times.begin()) - 1;
   const double u = (scene.time_s - times[i]) / (times[i + 1] - times[i]);
-  return rotation_of(between(table.gcrs_from_body[i], table.gcrs_from_body[i + 1], u));
+  return rotation_of<Gcrs, Body>(between(table.gcrs_from_body[i], table.gcrs_from_body[i + 1], u));
 }
 
 }  // namespace
 
 Rotation<Gcrs, Body> gcrs_from_body(const Attitude& attitude, const AttitudeScene& scene) {
   return std::visit([&](const auto& model) { return attitude_of(model, scene); }, attitude);
-}
-
-Rotation<Gcrs, Body> rotation_of(const Quaternion& q) {
-  const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-  if (!(length > 0)) throw Error("attitude: a quaternion must not be zero");
-  const double w = q.w / length, x = q.x / length, y = q.y / length, z = q.z / length;
-  Rotation<Gcrs, Body> r;
-  r.m = {{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
-          {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
-          {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
-  return r;
 }
 
 double panel_angle_rad(const SunTrackingPanel& panel, const Vec<Body>& sun_direction) {

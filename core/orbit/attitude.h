@@ -2,17 +2,13 @@
 #include <variant>
 #include <vector>
 
+#include "core/frames/quaternion.h"
 #include "core/frames/vec.h"
 
 namespace dmise {
 
 struct Body {};   // axes fixed to an object's body
 struct Panel {};  // axes of a panel: z its normal, x its hinge
-
-/// Unit quaternion of a turn: v_gcrs = q v_body q*.
-struct Quaternion {
-  double w = 1.0, x = 0.0, y = 0.0, z = 0.0;
-};
 
 /// z to the Earth's centre, y against the orbit's normal, x forward (the local orbital frame).
 struct NadirAttitude {};
@@ -56,13 +52,12 @@ struct AttitudeScene {
 /// of zero, an axis of zero, and a time outside a table, naming its span.
 Rotation<Gcrs, Body> gcrs_from_body(const Attitude& attitude, const AttitudeScene& scene);
 
-/// Rotation of a unit quaternion.
-Rotation<Gcrs, Body> rotation_of(const Quaternion& q);
-
 /// A flat panel that turns about a hinge to face the Sun as well as it can.
 struct SunTrackingPanel {
   Vec<Body> hinge{0.0, 1.0, 0.0};
   Vec<Body> normal{0.0, 0.0, 1.0};  // at angle 0; its part along the hinge is left out
+
+  bool operator==(const SunTrackingPanel&) const = default;
 };
 
 /// Right-handed angle about the hinge [rad, -pi..pi] at which the normal is nearest to

@@ -41,7 +41,23 @@ struct Trajectory {
 Trajectory read_oem(const std::string& path);
 Trajectory parse_oem(std::string_view text, const std::string& source);
 
+/// Whether a segment covers `time`; its ends do, to a nanosecond.
+bool covers(const Trajectory& trajectory, const Tai& time);
+
+/// First and last time that any segment covers.
+struct TrajectorySpan {
+  Tai start, stop;
+};
+TrajectorySpan span_of(const Trajectory& trajectory);
+
+/// "2018-01-21T00:00:00.000 to 2018-01-21T02:00:00.000 UTC", for messages.
+std::string span_text(const Trajectory& trajectory);
+
 /// Throws `Error` that names the object and the span when `time` lies outside it.
 FramedState state_at(const Trajectory& trajectory, const Tai& time);
+
+/// The same, but the velocity is the slope of the interpolated position: what interpolation between
+/// ticks needs. They differ where the file asks for Lagrange or linear interpolation.
+FramedState path_at(const Trajectory& trajectory, const Tai& time);
 
 }  // namespace dmise

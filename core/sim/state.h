@@ -1,11 +1,13 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/sim_time.h"
 #include "core/frames/earth_orientation.h"
 #include "core/frames/vec.h"
+#include "core/orbit/attitude_interpolation.h"
 #include "core/sim/geometry.h"
 
 // What actors tell evaluators: plain data, the same in one process and across a network.
@@ -18,6 +20,7 @@ struct ObjectInfo {
   std::string designator;              // international designator, may be empty
   Geometry geometry;
   double element_age_s = 0.0;          // start of the run minus the epoch of the elements
+  std::optional<SunTrackingPanel> panel;  // of an object with an attitude
 
   bool operator==(const ObjectInfo&) const = default;
 };
@@ -31,7 +34,8 @@ struct ObjectRoster {
 
 /// States of all objects at one tick in GCRS, structure of arrays. Slope is the derivative of the
 /// position (symmetric difference of the propagator), for interpolation; velocity is the model's own.
-/// An object with `code` != 0 has no state: its numbers are 0.
+/// An object with `code` != 0 has no state: its numbers are 0. Few objects have an attitude: theirs
+/// stand in arrays of their own, in the order of `attitude_object`.
 struct ObjectStates {
   Tick tick = 0;
   SimTime time;
@@ -40,6 +44,9 @@ struct ObjectStates {
   std::vector<double> slope_m_per_s;      // 3 x count
   std::vector<double> velocity_m_per_s;   // 3 x count
   std::vector<std::uint8_t> code;         // count; 0 or the error code of the motion model
+  std::vector<std::uint32_t> attitude_object;   // m indices of objects, ascending
+  std::vector<double> gcrs_from_body;           // 4 x m: all w, x, y, z of unit quaternions
+  std::vector<double> attitude_rate_rad_per_s;  // 3 x m: angular velocity, GCRS axes
 
   Vec<Gcrs> position(std::size_t i) const {
     return {position_m[i], position_m[count + i], position_m[2 * count + i]};
@@ -47,6 +54,9 @@ struct ObjectStates {
   Vec<Gcrs> slope(std::size_t i) const {
     return {slope_m_per_s[i], slope_m_per_s[count + i], slope_m_per_s[2 * count + i]};
   }
+  /// Attitude of object `i`; nothing if it has none.
+  std::optional<AttitudeState> attitude(std::size_t i) const;
+
   bool operator==(const ObjectStates&) const = default;
 };
 

@@ -38,7 +38,7 @@ std::vector<SharedFrames> Outbox::pack(Tick tick, const std::vector<Message>& me
 
   std::vector<SharedFrames> packed;
   std::vector<Kept> kept;
-  const auto add = [&](const std::string& topic, bool is_last, Body body) {
+  const auto add = [&](const std::string& topic, bool is_last, Encoded body) {
     const std::uint64_t sequence = ++sequence_[topic];
     const Envelope envelope{.run_id = run_.run_id,
                             .publisher = publisher_,

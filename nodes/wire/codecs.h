@@ -8,12 +8,12 @@
 // One pair of functions for each state: core type <-> message of proto/. Private to nodes/wire.
 namespace dmise {
 
-Body encode_body(const ObjectRoster&);
-Body encode_body(const ObjectStates&);
-Body encode_body(const EnvironmentState&);
-Body encode_body(const FrameReport&);
-Body encode_body(const DetectionSet&);
-Body encode_body(const TruthSet&);
+Encoded encode_body(const ObjectRoster&);
+Encoded encode_body(const ObjectStates&);
+Encoded encode_body(const EnvironmentState&);
+Encoded encode_body(const FrameReport&);
+Encoded encode_body(const DetectionSet&);
+Encoded encode_body(const TruthSet&);
 
 ObjectRoster decode_roster(std::string_view payload);
 ObjectStates decode_states(std::string_view payload, std::string_view arrays);

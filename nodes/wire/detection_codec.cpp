@@ -63,7 +63,7 @@ Detection take_detection(const v1::Detection& message) {
 
 }  // namespace
 
-Body encode_body(const DetectionSet& set) {
+Encoded encode_body(const DetectionSet& set) {
   v1::DetectionSet message;
   message.set_sensor(set.sensor);
   message.set_frame(set.frame);
@@ -79,7 +79,7 @@ DetectionSet decode_detections(std::string_view payload) {
   return set;
 }
 
-Body encode_body(const TruthSet& set) {
+Encoded encode_body(const TruthSet& set) {
   v1::TruthSet message;
   message.set_sensor(set.sensor);
   message.set_frame(set.frame);

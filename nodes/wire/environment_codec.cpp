@@ -19,7 +19,7 @@ Rotation<To, From> take_rotation(const Repeated& field, const char* name) {
 
 }  // namespace
 
-Body encode_body(const EnvironmentState& state) {
+Encoded encode_body(const EnvironmentState& state) {
   v1::EnvironmentState message;
   message.set_tick(state.tick);
   message.set_time_ns(state.time.ns);

@@ -46,7 +46,7 @@ Wcs take_wcs(const v1::Wcs& message) {
 
 }  // namespace
 
-Body encode_body(const FrameReport& report) {
+Encoded encode_body(const FrameReport& report) {
   v1::FrameReport message;
 #define X(field) message.set_##field(report.field);
   DMISE_REPORT_FIELDS(X)

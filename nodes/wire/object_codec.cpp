@@ -1,5 +1,6 @@
 #include <bit>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include "dmise/v1/state.pb.h"
@@ -11,11 +12,14 @@ namespace dmise {
 namespace {
 
 template <class T>
+constexpr const char* type_name = sizeof(T) == 1 ? "uint8" : sizeof(T) == 4 ? "uint32" : "float64";
+
+template <class T>
 void append_array(v1::ObjectStates* message, std::string* bytes, const char* name,
                   std::initializer_list<std::size_t> shape, const std::vector<T>& values) {
   auto* layout = message->add_arrays();
   layout->set_name(name);
-  layout->set_type(sizeof(T) == 1 ? "uint8" : "float64");
+  layout->set_type(type_name<T>);
   for (const std::size_t extent : shape) layout->add_shape(extent);
   layout->set_offset_bytes(bytes->size());
   bytes->append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
@@ -26,7 +30,7 @@ std::vector<T> take_array(const v1::ObjectStates& message, std::string_view byte
                           std::initializer_list<std::size_t> shape) {
   for (const auto& layout : message.arrays()) {
     if (layout.name() != name) continue;
-    if (layout.type() != (sizeof(T) == 1 ? "uint8" : "float64") ||
+    if (layout.type() != type_name<T> ||
         !std::equal(layout.shape().begin(), layout.shape().end(), shape.begin(), shape.end()))
       throw Refused(Refusal::payload, std::string(name) + ": wrong type or shape");
     std::size_t size = sizeof(T);
@@ -40,9 +44,34 @@ std::vector<T> take_array(const v1::ObjectStates& message, std::string_view byte
   throw Refused(Refusal::payload, std::string(name) + ": no such array");
 }
 
+void encode_panel(const SunTrackingPanel& panel, v1::SunTrackingPanel* p) {
+  p->set_hinge_x(panel.hinge.x);
+  p->set_hinge_y(panel.hinge.y);
+  p->set_hinge_z(panel.hinge.z);
+  p->set_normal_x(panel.normal.x);
+  p->set_normal_y(panel.normal.y);
+  p->set_normal_z(panel.normal.z);
+}
+
+std::optional<SunTrackingPanel> decode_panel(const v1::SunTrackingPanel& p) {
+  return SunTrackingPanel{.hinge = {p.hinge_x(), p.hinge_y(), p.hinge_z()},
+                          .normal = {p.normal_x(), p.normal_y(), p.normal_z()}};
+}
+
+/// How many objects have an attitude: the extent of their list of indices, 0 without one.
+std::size_t attitude_count(const v1::ObjectStates& message) {
+  for (const auto& layout : message.arrays()) {
+    if (layout.name() != "attitude_object") continue;
+    if (layout.shape_size() != 1 || layout.shape(0) > message.count())
+      throw Refused(Refusal::payload, "attitude_object: wrong type or shape");
+    return layout.shape(0);
+  }
+  return 0;
+}
+
 }  // namespace
 
-Body encode_body(const ObjectRoster& roster) {
+Encoded encode_body(const ObjectRoster& roster) {
   v1::ObjectRoster message;
   for (const ObjectInfo& object : roster.objects) {
     auto* o = message.add_objects();
@@ -53,6 +82,7 @@ Body encode_body(const ObjectRoster& roster) {
     o->set_radius_m(sphere.radius_m);
     o->set_albedo(sphere.albedo);
     o->set_element_age_s(object.element_age_s);
+    if (object.panel) encode_panel(*object.panel, o->mutable_panel());
   }
   return {MessageKind::object_roster, message.SerializeAsString(), {}};
 }
@@ -66,11 +96,12 @@ ObjectRoster decode_roster(std::string_view payload) {
                               .name = o.name(),
                               .designator = o.designator(),
                               .geometry = DiffuseSphere{o.radius_m(), o.albedo()},
-                              .element_age_s = o.element_age_s()});
+                              .element_age_s = o.element_age_s(),
+                              .panel = o.has_panel() ? decode_panel(o.panel()) : std::nullopt});
   return roster;
 }
 
-Body encode_body(const ObjectStates& states) {
+Encoded encode_body(const ObjectStates& states) {
   v1::ObjectStates message;
   message.set_tick(states.tick);
   message.set_time_ns(states.time.ns);
@@ -81,6 +112,12 @@ Body encode_body(const ObjectStates& states) {
   append_array(&message, &arrays, "slope_m_per_s", {3, states.count}, states.slope_m_per_s);
   append_array(&message, &arrays, "velocity_m_per_s", {3, states.count}, states.velocity_m_per_s);
   append_array(&message, &arrays, "code", {states.count}, states.code);
+  if (const std::size_t m = states.attitude_object.size(); m > 0) {
+    append_array(&message, &arrays, "attitude_object", {m}, states.attitude_object);
+    append_array(&message, &arrays, "gcrs_from_body", {4, m}, states.gcrs_from_body);
+    append_array(&message, &arrays, "attitude_rate_rad_per_s", {3, m},
+                 states.attitude_rate_rad_per_s);
+  }
   return {MessageKind::object_states, message.SerializeAsString(), std::move(arrays)};
 }
 
@@ -97,6 +134,12 @@ ObjectStates decode_states(std::string_view payload, std::string_view arrays) {
   states.velocity_m_per_s =
       take_array<double>(message, arrays, "velocity_m_per_s", {3, states.count});
   states.code = take_array<std::uint8_t>(message, arrays, "code", {states.count});
+  if (const std::size_t m = attitude_count(message); m > 0) {
+    states.attitude_object = take_array<std::uint32_t>(message, arrays, "attitude_object", {m});
+    states.gcrs_from_body = take_array<double>(message, arrays, "gcrs_from_body", {4, m});
+    states.attitude_rate_rad_per_s =
+        take_array<double>(message, arrays, "attitude_rate_rad_per_s", {3, m});
+  }
   return states;
 }
 

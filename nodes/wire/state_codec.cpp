@@ -5,7 +5,7 @@
 
 namespace dmise {
 
-Body encode(const State& state) {
+Encoded encode(const State& state) {
   check(state);
   return std::visit([](const auto& s) { return encode_body(s); }, state);
 }

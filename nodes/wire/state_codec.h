@@ -9,7 +9,7 @@
 namespace dmise {
 
 /// A state as it travels: third and fourth frame.
-struct Body {
+struct Encoded {
   MessageKind kind = MessageKind::watermark;
   std::string payload;
   std::string arrays;
@@ -17,7 +17,7 @@ struct Body {
 
 /// Any state; `decode` gives it back bit by bit. Throws `Refused` (reason `value`, naming the
 /// field) when the state breaks the rules of `state_rules.h`: what would be refused is not sent.
-Body encode(const State& state);
+Encoded encode(const State& state);
 
 /// Throws `Refused`.
 State decode(MessageKind kind, std::string_view payload, std::string_view arrays);

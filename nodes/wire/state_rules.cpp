@@ -12,6 +12,7 @@ constexpr double angle_limit_rad = 2 * pi;  // right ascensions may be counted f
 constexpr double latitude_limit_rad = pi / 2 * (1 + 1e-12);
 constexpr double distance_limit_m = 1e15;  // 6,700 au
 constexpr double speed_limit_m_per_s = speed_of_light_m_per_s;
+constexpr double rate_limit_rad_per_s = 1e6;
 constexpr std::size_t name_limit_bytes = 256;
 constexpr std::size_t text_limit_bytes = 16384;
 
@@ -92,6 +93,13 @@ void exposure(SimTime start, SimTime middle, SimTime end) {
   if (start > middle || middle > end) refuse("exposure", "start, middle and end must be in order");
 }
 
+void check(const SunTrackingPanel& panel) {
+  vector_within(panel.hinge, 1e9, "panel.hinge");
+  vector_within(panel.normal, 1e9, "panel.normal");
+  if (!(norm(cross(panel.hinge, panel.normal)) > 0))
+    refuse("panel", "hinge and normal must span a plane");
+}
+
 void check(const ObjectRoster& roster) {
   for (const ObjectInfo& object : roster.objects) {
     if (object.catalogue_number > 999999999) refuse("catalogue_number", "has up to 9 digits");
@@ -101,7 +109,26 @@ void check(const ObjectRoster& roster) {
     in_range(sphere.radius_m, std::numeric_limits<double>::min(), 1e9, "radius_m");
     in_range(sphere.albedo, std::numeric_limits<double>::min(), 1.0, "albedo");
     finite(object.element_age_s, "element_age_s");
+    if (object.panel) check(*object.panel);
   }
+}
+
+void check_attitudes(const ObjectStates& s) {
+  const std::size_t m = s.attitude_object.size();
+  if (s.gcrs_from_body.size() != 4 * m || s.attitude_rate_rad_per_s.size() != 3 * m)
+    refuse("attitude_object", "arrays have another size");
+  for (std::size_t k = 0; k < m; ++k) {
+    const std::size_t object = s.attitude_object[k];
+    if (object >= s.count || (k > 0 && object <= s.attitude_object[k - 1]))
+      refuse("attitude_object", "must be ascending indices of objects");
+    const double wanted = s.code[object] == 0 ? 1.0 : 0.0;
+    double square = 0.0;
+    for (std::size_t i = k; i < 4 * m; i += m) square += s.gcrs_from_body[i] * s.gcrs_from_body[i];
+    if (!(std::abs(square - wanted) < 1e-9))
+      refuse("gcrs_from_body", "must be unit quaternions, or 0 without a state");
+  }
+  for (const double rate : s.attitude_rate_rad_per_s)
+    in_range(rate, -rate_limit_rad_per_s, rate_limit_rad_per_s, "attitude_rate_rad_per_s");
 }
 
 void check(const ObjectStates& states) {
@@ -115,6 +142,7 @@ void check(const ObjectStates& states) {
     in_range(v, -speed_limit_m_per_s, speed_limit_m_per_s, "slope_m_per_s");
   for (const double v : states.velocity_m_per_s)
     in_range(v, -speed_limit_m_per_s, speed_limit_m_per_s, "velocity_m_per_s");
+  check_attitudes(states);
 }
 
 void check(const EnvironmentState& state) {

@@ -38,6 +38,16 @@ Motion World::motion(std::size_t i, SimTime t) const {
           (p1 - p0) * a + s0 * ((1 - u) * (1 - 3 * u)) + s1 * (u * (3 * u - 2))};
 }
 
+std::optional<Rotation<Gcrs, Body>> World::gcrs_from_body(std::size_t i, SimTime t) const {
+  const auto [before, after] = around(t);
+  const auto start = before->attitude(i), end = after->attitude(i);
+  if (!start || !end) return std::nullopt;
+  if (before == after) return rotation_of<Gcrs, Body>(start->gcrs_from_body);
+  const double tick_s = (after->time - before->time).seconds();
+  return rotation_of<Gcrs, Body>(
+      interpolate_attitude((t - before->time).seconds() / tick_s, tick_s, *start, *end));
+}
+
 const EnvironmentState& World::environment(SimTime t) const {
   for (auto state = environment_.rbegin(); state != environment_.rend(); ++state)
     if ((*state)->time <= t) return **state;

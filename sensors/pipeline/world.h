@@ -1,6 +1,7 @@
 #pragma once
 #include <deque>
 #include <memory>
+#include <optional>
 
 #include "core/sim/state.h"
 
@@ -31,6 +32,8 @@ class World {
   /// Cubic Hermite between the ticks around `t` on position and slope. `t` must lie within the
   /// ticks held and the object have a state there.
   Motion motion(std::size_t i, SimTime t) const;
+  /// Attitude between the ticks around `t`; nothing for an object without one. `t` as for `motion`.
+  std::optional<Rotation<Gcrs, Body>> gcrs_from_body(std::size_t i, SimTime t) const;
 
   /// The environment of the last tick at or before `t`.
   const EnvironmentState& environment(SimTime t) const;

@@ -35,7 +35,7 @@ TEST(StarMotion, RollTurnsTheImageInEveryProjection) {
   const auto rolled = [&](double angle_rad) {
     const double c = std::cos(angle_rad), s = std::sin(angle_rad);
     const Rotation<CameraFrame, CameraFrame> turn{{{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}}};
-    return quaternion_of(turn * rotation_of(header.camera_from_gcrs[1]));
+    return quaternion_of(turn * rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[1]));
   };
   header.camera_from_gcrs = {rolled(-roll_rad / 2), rolled(0), rolled(roll_rad / 2)};
   for (const auto projection : {Projection::gnomonic, Projection::equidistant,

@@ -36,7 +36,7 @@ void append(std::string& bytes, std::string_view frame) {
 void use(const std::optional<Received>& received) {
   if (!received || !received->state) return;
   check(*received->state);
-  const Body body = encode(*received->state);
+  const Encoded body = encode(*received->state);
   if (!(decode(body.kind, body.payload, body.arrays) == *received->state)) __builtin_trap();
 }
 

@@ -56,7 +56,7 @@ TEST(Attitude, DegenerateDirectionsStillGiveARotation) {
 }
 
 TEST(Attitude, InertialStaysAndSpinningTurnsAtItsRate) {
-  const Rotation<Gcrs, Body> start = rotation_of({0.5, 0.1, -0.7, 0.2});
+  const Rotation<Gcrs, Body> start = rotation_of<Gcrs, Body>({0.5, 0.1, -0.7, 0.2});
   EXPECT_EQ(gcrs_from_body(InertialAttitude{start}, scene), start);
   const SpinningAttitude spin{start, {0, 0, 2}, 0.01};
   const auto r = gcrs_from_body(spin, scene);  // 1 rad after 100 s

@@ -171,9 +171,9 @@ TEST(Oem, FaultsPointAtTheirLine) {
 }
 
 TEST(Motion, EveryModelAnswersThroughOneCall) {
-  const Motion models[] = {ConstantPosition<Itrs>{{6378137, 0, 0}},
-                           ConstantPosition<Gcrs>{{4e7, 0, 0}}, TwoBodyMotion{at(100), start},
-                           parse_oem(header + meta() + lines(0, 20), "t")};
+  const MotionModel models[] = {ConstantPosition<Itrs>{{6378137, 0, 0}},
+                                ConstantPosition<Gcrs>{{4e7, 0, 0}}, TwoBodyMotion{at(100), start},
+                                parse_oem(header + meta() + lines(0, 20), "t")};
   EXPECT_EQ(std::get<MotionState<Itrs>>(state_at(models[0], at(5))).position_m.x, 6378137);
   EXPECT_EQ(std::get<MotionState<Gcrs>>(state_at(models[1], at(5))).velocity_m_per_s.x, 0);
   const auto two_body = std::get<MotionState<Gcrs>>(state_at(models[2], at(700)));

@@ -74,7 +74,7 @@ std::vector<std::string> ToyRecorder::consumes() const {
 std::vector<Message> ToyRecorder::step(Tick tick, std::span<const Message> inputs) {
   record_ += "tick " + std::to_string(tick) + "\n";
   for (const Message& message : inputs) {
-    const Body body = encode(*message.state);
+    const Encoded body = encode(*message.state);
     record_ += message.topic + " " + std::to_string(message.tick) + " " + body.payload +
                body.arrays + "\n";
   }

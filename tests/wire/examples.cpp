@@ -22,6 +22,7 @@ ObjectRoster roster(Numbers& n) {
                          .designator = i % 2 ? "" : "1998-067A",
                          .geometry = DiffuseSphere{n.in(0.01, 50), n.in(0.01, 1)},
                          .element_age_s = n.in(-1e7, 1e7)});
+  r.objects[2].panel = SunTrackingPanel{.hinge = {n.in(1, 2), 0, 0}, .normal = {0, n.in(1, 2), 0}};
   return r;
 }
 
@@ -36,6 +37,9 @@ ObjectStates states(Numbers& n, Tick tick) {
     s.velocity_m_per_s.push_back(n.in(-8e3, 8e3));
   }
   s.code = {0, 1, 2, 3, 4, 6, 255};
+  s.attitude_object = {0, 5};  // one with a state, one without
+  s.gcrs_from_body = {0.5, 0, -0.5, 0, 0.5, 0, 0.5, 0};
+  s.attitude_rate_rad_per_s = {n.in(-9, 9), 0, n.in(-9, 9), 0, n.in(-9, 9), 0};
   return s;
 }
 
@@ -186,7 +190,7 @@ Envelope envelope_of(const Example& example, MessageKind kind, std::uint64_t seq
 }
 
 Frames sealed(const Example& example, std::uint64_t sequence) {
-  Body body = encode(example.state);
+  Encoded body = encode(example.state);
   return seal(example.topic, envelope_of(example, body.kind, sequence), std::move(body.payload),
               std::move(body.arrays));
 }

@@ -51,7 +51,7 @@ TEST(Wire, EveryStateComesBackBitByBit) {
       const auto received = receiver.receive(views_of(frames));
       ASSERT_TRUE(received) << receiver.last_refusal();
       ASSERT_TRUE(*received->state == example.state) << example.topic;
-      const Body again = encode(*received->state);  // bits that == does not see, such as -0
+      const Encoded again = encode(*received->state);  // bits that == does not see, such as -0
       ASSERT_TRUE(again.payload == frames.payload && again.arrays == frames.arrays);
       EXPECT_EQ(received->envelope.sequence, seed + 1);
       EXPECT_TRUE(received->envelope.last_of_tick);
@@ -214,11 +214,42 @@ TEST(Wire, ArraysLieInTheStatedOrder) {
   const Example example = states_example();
   const auto& states = std::get<ObjectStates>(example.state);
   const Frames frames = sealed(example);
-  ASSERT_EQ(frames.arrays.size(), states.count * 73);
+  const std::size_t m = states.attitude_object.size(), attitudes = states.count * 73;
+  ASSERT_EQ(frames.arrays.size(), attitudes + m * 60);
   double y_of_second = 0;
   std::memcpy(&y_of_second, frames.arrays.data() + 8 * (states.count + 1), 8);
   EXPECT_EQ(y_of_second, states.position(1).y);
-  EXPECT_EQ(static_cast<unsigned char>(frames.arrays.back()), 255);
+  EXPECT_EQ(static_cast<unsigned char>(frames.arrays[attitudes - 1]), 255);
+  std::uint32_t second_with_attitude = 0;
+  std::memcpy(&second_with_attitude, frames.arrays.data() + attitudes + 4, 4);
+  EXPECT_EQ(second_with_attitude, states.attitude_object[1]);
+  double x_of_first = 0;  // after the w of all
+  std::memcpy(&x_of_first, frames.arrays.data() + attitudes + 4 * m + 8 * m, 8);
+  EXPECT_EQ(x_of_first, states.gcrs_from_body[m]);
+}
+
+TEST(Wire, AttitudesMustBeRotationsOfObjectsThatAreThere) {
+  expect_unsent<ObjectStates>([](auto& s) { s.attitude_object[1] = 7; });                  // of 7
+  expect_unsent<ObjectStates>([](auto& s) { s.attitude_object[1] = 0; });                  // not ascending
+  expect_unsent<ObjectStates>([](auto& s) { s.gcrs_from_body[0] = 0.6; });                 // not of length 1
+  expect_unsent<ObjectStates>([](auto& s) { s.gcrs_from_body[1] = 1.0; });                 // of an object without a state
+  expect_unsent<ObjectStates>([](auto& s) { s.gcrs_from_body.pop_back(); });
+  expect_unsent<ObjectStates>([](auto& s) { s.attitude_rate_rad_per_s[0] = 1e300; });
+}
+
+TEST(Wire, StatesWithoutAttitudesTravelAsBefore) {
+  Example example = states_example();
+  auto states = std::get<ObjectStates>(example.state);
+  states.attitude_object.clear();
+  states.gcrs_from_body.clear();
+  states.attitude_rate_rad_per_s.clear();
+  example.state = states;
+  const Frames frames = sealed(example);
+  EXPECT_EQ(frames.arrays.size(), states.count * 73);
+  Receiver receiver = receiver_of_examples();
+  const auto received = receiver.receive(views_of(frames));
+  ASSERT_TRUE(received) << receiver.last_refusal();
+  EXPECT_TRUE(*received->state == example.state);
 }
 
 // A tag of Protocol Buffers is field << 3 | wire type; 5 is fixed32.

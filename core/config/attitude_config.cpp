@@ -1,0 +1,96 @@
+#include "core/config/attitude_config.h"
+
+#include <cmath>
+
+#include "core/base/units.h"
+#include "core/config/search_path.h"
+#include "core/orbit/attitude_table.h"
+
+namespace dmise {
+namespace {
+
+constexpr double most_rpm = 6000.0;
+constexpr double least_sine = 1e-6;  // between a panel's hinge and its normal
+
+Vec<Body> read_direction(const YamlValue& value) {
+  const auto v = value.numbers(3, Bounds::between(-1e9, 1e9));
+  const Vec<Body> direction{v[0], v[1], v[2]};
+  if (!(norm(direction) > 0)) value.fail("must not be zero", false);
+  return unit(direction);
+}
+
+Rotation<Gcrs, Body> read_quaternion(const YamlValue& value) {
+  const auto q = value.numbers(4, Bounds::between(-2, 2));
+  const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+  if (!(length > 0.5 && length < 2.0))
+    value.fail("must be a unit quaternion [w, x, y, z], its length is " + std::to_string(length),
+               false);
+  return rotation_of<Gcrs, Body>({q[0], q[1], q[2], q[3]});
+}
+
+InertialAttitude read_inertial(const YamlValue& value) {
+  YamlMap map(value);
+  const InertialAttitude attitude{read_quaternion(map.require("gcrs_from_body"))};
+  map.done();
+  return attitude;
+}
+
+SpinningAttitude read_spinning(const YamlValue& value) {
+  YamlMap map(value);
+  SpinningAttitude attitude;
+  if (const auto axis = map.find("axis")) attitude.axis = read_direction(*axis);
+  attitude.rate_rad_per_s =
+      map.number("rate_rpm", Bounds::between(-most_rpm, most_rpm)) * 2 * pi / 60;
+  if (const auto start = map.find("gcrs_from_body"))
+    attitude.gcrs_from_body = read_quaternion(*start);
+  const double phase_rad = map.number_or("phase_deg", 0.0, Bounds::between(-360, 360)) * deg;
+  map.done();
+  // The phase is what the body has turned by at the start.
+  SpinningAttitude turn{.axis = attitude.axis, .rate_rad_per_s = phase_rad};
+  const auto ahead = gcrs_from_body(Attitude(turn), {.time_s = 1.0});
+  Rotation<Body, Body> in_body;
+  in_body.m = ahead.m;
+  attitude.gcrs_from_body = attitude.gcrs_from_body * in_body;
+  return attitude;
+}
+
+}  // namespace
+
+AttitudeConfig read_attitude(const YamlValue& value) {
+  AttitudeConfig attitude;
+  if (value.is_scalar()) {
+    if (value.choice({"nadir", "sun_tracking"}) == "nadir")
+      attitude.model = NadirAttitude{};
+    else
+      attitude.model = SunYawAttitude{};
+    return attitude;
+  }
+  YamlMap map(value);
+  const auto inertial = map.find("inertial"), spinning = map.find("spinning"),
+             table = map.find("table");
+  map.done();
+  if (map.keys().size() != 1)
+    value.fail("give nadir, sun_tracking, or one of inertial, spinning, table", false);
+  if (inertial) attitude.model = read_inertial(*inertial);
+  if (spinning) attitude.model = read_spinning(*spinning);
+  if (table) {
+    attitude.table_path = find_beside(table->text(), table->file());
+    if (attitude.table_path.empty()) table->fail("there is no such file");
+    attitude.model = read_attitude_table(attitude.table_path);
+  }
+  return attitude;
+}
+
+SunTrackingPanel read_panel(const YamlValue& value) {
+  YamlMap map(value);
+  SunTrackingPanel panel;
+  if (const auto hinge = map.find("hinge")) panel.hinge = read_direction(*hinge);
+  const auto normal = map.find("normal");
+  if (normal) panel.normal = read_direction(*normal);
+  if (norm(cross(panel.hinge, panel.normal)) < least_sine)
+    value.fail("hinge and normal must not be parallel", false);
+  map.done();
+  return panel;
+}
+
+}  // namespace dmise

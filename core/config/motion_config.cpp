@@ -1,0 +1,153 @@
+#include "core/config/motion_config.h"
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+#include "core/config/search_path.h"
+#include "core/frames/geodesy.h"
+#include "core/frames/oblate_earth.h"
+#include "core/orbit/kepler.h"
+#include "core/orbit/tle.h"
+#include "core/time/clock.h"
+#include "core/time/iso8601.h"
+
+namespace dmise {
+namespace {
+
+constexpr double farthest_m = 1e12;
+constexpr double least_height_m = 0.01;  // of a fixed object over the ellipsoid
+constexpr Bounds within_reach = {.least = -farthest_m, .most = farthest_m};
+
+template <class F>
+Vec<F> read_vector(const YamlValue& value, Bounds bounds = {}) {
+  const auto v = value.numbers(3, bounds);
+  return {v[0], v[1], v[2]};
+}
+
+template <class F>
+void require_outside_earth(const YamlValue& value, const Vec<F>& position_m) {
+  if (norm(OblateEarth{}.stretched(Vec<Gcrs>{position_m.x, position_m.y, position_m.z})) <
+      wgs84.equatorial_radius_m)
+    value.fail("is inside the Earth");
+}
+
+KeplerElements read_elements(YamlMap& map) {
+  KeplerElements k;
+  const auto eccentricity = map.require("eccentricity");
+  k.eccentricity = eccentricity.number({.least = 0.0, .most = 1000.0});
+  const auto axis = map.find("semi_major_axis_m"), periapsis = map.find("periapsis_m");
+  if (bool(axis) == bool(periapsis))
+    map.value().fail("needs either semi_major_axis_m or periapsis_m (from the Earth's centre)",
+                     false);
+  if (axis && k.eccentricity >= 1)
+    eccentricity.fail("must be < 1 with semi_major_axis_m; open orbits take periapsis_m");
+  const Bounds size = {.least = 0.0, .most = farthest_m, .least_open = true};
+  k.periapsis_m = axis ? axis->number(size) * (1 - k.eccentricity) : periapsis->number(size);
+  k.inclination_rad = map.number("inclination_deg", Bounds::between(0, 180)) * deg;
+  const auto angle = [&](const char* key) {
+    return map.number_or(key, 0.0, Bounds::between(-360, 360)) * deg;
+  };
+  k.raan_rad = angle("raan_deg");
+  k.argument_of_perigee_rad = angle("argument_of_perigee_deg");
+  k.true_anomaly_rad = angle("true_anomaly_deg");
+  if (!(1 + k.eccentricity * std::cos(k.true_anomaly_rad) > 0))
+    map.require("true_anomaly_deg").fail("must be inside the asymptotes");
+  if (const auto mean = map.find("mean_anomaly_deg")) {
+    if (map.find("true_anomaly_deg"))
+      mean->fail("give either true_anomaly_deg or mean_anomaly_deg", false);
+    if (k.eccentricity >= 1) mean->fail("open orbits take true_anomaly_deg", false);
+    const double e_rad =
+        eccentric_anomaly_rad(mean->number(Bounds::between(-360, 360)) * deg, k.eccentricity);
+    k.true_anomaly_rad =
+        std::atan2(std::sqrt((1 - k.eccentricity) * (1 + k.eccentricity)) * std::sin(e_rad),
+                   std::cos(e_rad) - k.eccentricity);
+  }
+  return k;
+}
+
+TwoBodyMotion read_two_body(const YamlValue& value, const Utc& start) {
+  YamlMap map(value);
+  TwoBodyMotion motion;
+  Utc epoch = start;
+  if (const auto text = map.find("epoch")) {
+    try {
+      epoch = parse_utc(text->text());
+    } catch (const Error&) {
+      text->fail("must be a UTC time such as 2018-01-21T00:30:00Z");
+    }
+  }
+  motion.epoch = Clock(epoch).tai({0});
+  motion.gm_m3_per_s2 = map.number_or("gm_m3_per_s2", earth_gm_m3_per_s2, Bounds::positive());
+  const auto position = map.find("position_m"), velocity = map.find("velocity_m_per_s");
+  if (position || velocity) {
+    motion.state.position_m = read_vector<Gcrs>(map.require("position_m"), within_reach);
+    motion.state.velocity_m_per_s =
+        read_vector<Gcrs>(map.require("velocity_m_per_s"), Bounds::between(-1e6, 1e6));
+    require_outside_earth(*position, motion.state.position_m);
+  } else {
+    motion.state = state_of(read_elements(map), motion.gm_m3_per_s2);
+  }
+  map.done();
+  return motion;
+}
+
+MotionModel read_fixed(const YamlValue& value) {
+  YamlMap map(value);
+  const auto itrs = map.find("itrs_m"), gcrs = map.find("gcrs_m");
+  const auto latitude = map.find("latitude_deg");
+  if (int(bool(itrs)) + int(bool(gcrs)) + int(bool(latitude)) != 1)
+    value.fail("give one of latitude_deg with longitude_deg and height_m, itrs_m, gcrs_m", false);
+  MotionModel model;
+  if (itrs) {
+    const auto place = read_vector<Itrs>(*itrs, within_reach);
+    require_outside_earth(*itrs, place);
+    model = ConstantPosition<Itrs>{place};
+  } else if (gcrs) {
+    const auto place = read_vector<Gcrs>(*gcrs, within_reach);
+    require_outside_earth(*gcrs, place);
+    model = ConstantPosition<Gcrs>{place};
+  } else {
+    model = ConstantPosition<Itrs>{itrs_from_geodetic(
+        {.latitude_deg = latitude->number(Bounds::between(-90, 90)),
+         .longitude_deg = map.number("longitude_deg", Bounds::between(-180, 360)),
+         .height_m = map.number("height_m", Bounds::between(least_height_m, farthest_m))})};
+  }
+  map.done();
+  return model;
+}
+
+MeanElements read_sgp4(const YamlValue& value) {
+  YamlMap map(value);
+  const auto line1 = map.require("line1"), line2 = map.require("line2");
+  map.done();
+  try {
+    return parse_tle(line1.text(), line2.text());
+  } catch (const ConfigError& e) {
+    value.fail(e.what(), false);
+  }
+}
+
+Trajectory read_trajectory(const YamlValue& value, std::string& path) {
+  path = find_beside(value.text(), value.file());
+  if (path.empty()) value.fail("there is no such file");
+  return read_oem(path);
+}
+
+}  // namespace
+
+MotionConfig read_motion(const YamlValue& value, const Utc& start) {
+  YamlMap map(value);
+  MotionConfig motion;
+  const auto two_body = map.find("two_body"), oem = map.find("oem"), fixed = map.find("fixed"),
+             sgp4 = map.find("sgp4");
+  map.done();
+  if (map.keys().size() != 1) value.fail("give one of two_body, oem, fixed, sgp4", false);
+  if (two_body) motion.model = MotionModel(read_two_body(*two_body, start));
+  if (oem) motion.model = MotionModel(read_trajectory(*oem, motion.oem_path));
+  if (fixed) motion.model = read_fixed(*fixed);
+  if (sgp4) motion.model = read_sgp4(*sgp4);
+  return motion;
+}
+
+}  // namespace dmise

@@ -1,0 +1,90 @@
+#include "core/config/object_config.h"
+
+#include <set>
+
+#include "core/base/error.h"
+#include "core/config/search_path.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::size_t longest_name_bytes = 64;
+
+void read_sphere(YamlMap& map, double& radius_m, double& albedo) {
+  radius_m = map.number_or("radius_m", 1.0, {.least = 0.0, .most = 1000.0, .least_open = true});
+  albedo = map.number_or("albedo", 0.2, {.least = 0.0, .most = 1.0, .least_open = true});
+}
+
+ObjectSource read_object_source(const YamlValue& value) {
+  YamlMap map(value);
+  ObjectSource source;
+  const auto catalogue = map.require("catalogue");
+  source.named = catalogue.text();
+  source.path = source.named == "gpredict" ? find_catalogue("satellites.dat")
+                                           : find_beside(source.named, value.file());
+  if (source.path.empty())
+    catalogue.fail(source.named == "gpredict"
+                       ? "Debian's gpredict catalogue is not there; ./dmise setup fetches it"
+                       : "there is no such file");
+  read_sphere(map, source.radius_m, source.albedo);
+  if (const auto facts = map.find("facts")) {
+    source.facts_path = find_beside(facts->text(), value.file());
+    if (source.facts_path.empty()) facts->fail("there is no such file");
+  }
+  if (const auto only = map.find("only"))
+    for (const auto& name : only->list()) source.only.push_back(name.text());
+  map.done();
+  return source;
+}
+
+OwnObject read_own_object(const YamlValue& value, const Utc& start) {
+  YamlMap map(value);
+  OwnObject object;
+  const auto name = map.require("name");
+  object.where = name.where() + ": " + name.path();
+  object.name = name.text();
+  if (object.name.empty() || object.name.size() > longest_name_bytes)
+    name.fail("must have 1 to 64 characters");
+  object.catalogue_number =
+      static_cast<std::uint32_t>(map.integer_or("catalogue_number", 0, 1, 999'999'999));
+  object.motion = read_motion(map.require("motion"), start);
+  if (const auto attitude = map.find("attitude")) object.attitude = read_attitude(*attitude);
+  if (const auto panel = map.find("panel")) {
+    if (!object.attitude) panel->fail("needs an attitude, to know where the Sun is", false);
+    object.panel = read_panel(*panel);
+  }
+  read_sphere(map, object.sphere.radius_m, object.sphere.albedo);
+  map.done();
+  if (const auto* elements = std::get_if<MeanElements>(&object.motion.model))
+    if (object.catalogue_number == 0) object.catalogue_number = elements->catalogue_number;
+  return object;
+}
+
+}  // namespace
+
+ObjectsConfig read_objects(const YamlValue& value, const Utc& start) {
+  ObjectsConfig objects;
+  std::set<std::string> names;
+  std::set<std::uint32_t> numbers;
+  for (const auto& entry : value.list()) {
+    YamlMap map(entry);
+    if (map.find("catalogue")) {
+      objects.catalogues.push_back(read_object_source(entry));
+      continue;
+    }
+    if (!map.find("name") && !map.find("motion"))
+      entry.fail("needs a catalogue, or a name and a motion", false);
+    objects.own.push_back(read_own_object(entry, start));
+    const OwnObject& object = objects.own.back();
+    if (!names.insert(object.name).second) map.require("name").fail("another object has this name");
+    if (object.catalogue_number != 0 && !numbers.insert(object.catalogue_number).second)
+      entry.fail("another object has the number " + std::to_string(object.catalogue_number), false);
+  }
+  std::uint32_t next = first_own_number;
+  for (auto& object : objects.own)
+    while (object.catalogue_number == 0)
+      if (numbers.insert(next++).second) object.catalogue_number = next - 1;
+  return objects;
+}
+
+}  // namespace dmise

@@ -1,0 +1,56 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/attitude_config.h"
+#include "core/config/motion_config.h"
+#include "core/config/yaml_reader.h"
+#include "core/photometry/diffuse_sphere.h"
+
+namespace dmise {
+
+/// A catalogue of element sets: `{catalogue: gpredict}`.
+struct ObjectSource {
+  std::string path;       // resolved
+  std::string named;      // as in the scenario: "gpredict" or a path
+  double radius_m = 1.0;  // of the equivalent diffuse sphere, where nothing better is known
+  double albedo = 0.2;
+  std::string facts_path;         // CSV of brightness facts by catalogue number, may be empty
+  std::vector<std::string> only;  // catalogue numbers or names; empty: all
+};
+
+/// An object of the scenario's own: `{name: inspector, motion: {..}, attitude: nadir}`.
+struct OwnObject {
+  std::string name;
+  std::string where;                   // `file:line:column: objects[2]`, for messages
+  std::uint32_t catalogue_number = 0;  // 0: it gets one, see `first_own_number`
+  MotionConfig motion;
+  std::optional<AttitudeConfig> attitude;
+  std::optional<SunTrackingPanel> panel;
+  DiffuseSphere sphere;
+};
+
+/// Numbers from here on are given to objects without one, in the scenario's order: products name
+/// objects by number, and no catalogue goes so far.
+inline constexpr std::uint32_t first_own_number = 990'000'001;
+
+struct ObjectsConfig {
+  std::vector<ObjectSource> catalogues;
+  std::vector<OwnObject> own;
+};
+
+/// Reads `objects:`, a list of both kinds. Throws `ConfigError` `file:line:column: key: reason`.
+ObjectsConfig read_objects(const YamlValue& value, const Utc& start);
+
+class JsonWriter;
+/// What of them decides the products, without the content of files.
+void write_objects(JsonWriter& json, const std::vector<ObjectSource>& catalogues,
+                   const std::vector<OwnObject>& own);
+
+/// Every file that they name, in order; an empty path where one may be named and is not.
+std::vector<std::string> files_of(const std::vector<ObjectSource>& catalogues,
+                                  const std::vector<OwnObject>& own);
+
+}  // namespace dmise

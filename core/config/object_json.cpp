@@ -1,0 +1,103 @@
+#include "core/base/json.h"
+#include "core/config/object_config.h"
+
+namespace dmise {
+namespace {
+
+template <class F>
+void write(JsonWriter& json, const char* key, const Vec<F>& v) {
+  json.key(key).begin_array().value(v.x).value(v.y).value(v.z).end_array();
+}
+
+template <class To, class From>
+void write(JsonWriter& json, const char* key, const Rotation<To, From>& r) {
+  json.key(key).begin_array();
+  for (const auto& row : r.m)
+    for (const double x : row) json.value(x);
+  json.end_array();
+}
+
+struct MotionWriter {
+  JsonWriter& json;
+  void operator()(const ConstantPosition<Itrs>& m) const { write(json, "itrs_m", m.position_m); }
+  void operator()(const ConstantPosition<Gcrs>& m) const { write(json, "gcrs_m", m.position_m); }
+  void operator()(const TwoBodyMotion& m) const {
+    json.key("two_body").begin_object();
+    json.field("epoch_tai_jd1", m.epoch.jd1).field("epoch_tai_jd2", m.epoch.jd2);
+    write(json, "position_m", m.state.position_m);
+    write(json, "velocity_m_per_s", m.state.velocity_m_per_s);
+    json.field("gm_m3_per_s2", m.gm_m3_per_s2).end_object();
+  }
+  void operator()(const Trajectory&) const { json.field("oem", true); }  // the file has a digest
+  void operator()(const MotionModel& m) const { std::visit(*this, m); }
+  void operator()(const MeanElements& e) const {
+    json.key("sgp4").begin_array();
+    for (const double x :
+         {e.epoch_jd1, e.epoch_jd2, e.mean_motion_rad_per_min, e.eccentricity, e.inclination_rad,
+          e.raan_rad, e.argument_of_perigee_rad, e.mean_anomaly_rad, e.bstar_per_earth_radius})
+      json.value(x);
+    json.end_array();
+  }
+};
+
+struct AttitudeWriter {
+  JsonWriter& json;
+  void operator()(const NadirAttitude&) const { json.field("attitude", "nadir"); }
+  void operator()(const SunYawAttitude&) const { json.field("attitude", "sun_tracking"); }
+  void operator()(const InertialAttitude& a) const {
+    json.key("attitude").begin_object();
+    write(json, "gcrs_from_body", a.gcrs_from_body);
+    json.end_object();
+  }
+  void operator()(const SpinningAttitude& a) const {
+    json.key("attitude").begin_object();
+    write(json, "gcrs_from_body", a.gcrs_from_body);
+    write(json, "axis", a.axis);
+    json.field("rate_rad_per_s", a.rate_rad_per_s).end_object();
+  }
+  void operator()(const TableAttitude&) const { json.field("attitude", "table"); }
+};
+
+void write_own(JsonWriter& json, const OwnObject& object) {
+  json.begin_object().field("name", object.name);
+  json.field("catalogue_number", object.catalogue_number);
+  json.field("radius_m", object.sphere.radius_m).field("albedo", object.sphere.albedo);
+  std::visit(MotionWriter{json}, object.motion.model);
+  if (object.attitude) std::visit(AttitudeWriter{json}, object.attitude->model);
+  if (object.panel) {
+    write(json, "panel_hinge", object.panel->hinge);
+    write(json, "panel_normal", object.panel->normal);
+  }
+  json.end_object();
+}
+
+}  // namespace
+
+void write_objects(JsonWriter& json, const std::vector<ObjectSource>& catalogues,
+                   const std::vector<OwnObject>& own) {
+  json.key("objects").begin_array();
+  for (const auto& source : catalogues) {
+    json.begin_object().field("catalogue", source.named).field("radius_m", source.radius_m);
+    json.field("albedo", source.albedo).key("only").begin_array();
+    for (const auto& name : source.only) json.value(name);
+    json.end_array().end_object();
+  }
+  for (const auto& object : own) write_own(json, object);
+  json.end_array();
+}
+
+std::vector<std::string> files_of(const std::vector<ObjectSource>& catalogues,
+                                  const std::vector<OwnObject>& own) {
+  std::vector<std::string> files;
+  for (const auto& source : catalogues) {
+    files.push_back(source.path);
+    files.push_back(source.facts_path);
+  }
+  for (const auto& object : own) {
+    files.push_back(object.motion.oem_path);
+    files.push_back(object.attitude ? object.attitude->table_path : "");
+  }
+  return files;
+}
+
+}  // namespace dmise

@@ -1,0 +1,82 @@
+#include "core/orbit/attitude_interpolation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/units.h"
+
+namespace dmise {
+
+namespace {
+
+Quaternion product(const Quaternion& a, const Quaternion& b) {
+  return {
+      a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+      a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+
+Quaternion conjugate(const Quaternion& q) { return {q.w, -q.x, -q.y, -q.z}; }
+
+Quaternion normalised(const Quaternion& q) {
+  double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  if (q.w < 0) length = -length;
+  return {q.w / length, q.x / length, q.y / length, q.z / length};
+}
+
+/// Turn by |v| about v.
+Quaternion turn(const Vec<Gcrs>& v) {
+  const double angle_rad = norm(v);
+  const double s = angle_rad > 1e-12 ? std::sin(angle_rad / 2) / angle_rad : 0.5;
+  return {std::cos(angle_rad / 2), v.x * s, v.y * s, v.z * s};
+}
+
+/// The inverse, by the short way: |v| <= pi.
+Vec<Gcrs> turn_vector(const Quaternion& any) {
+  const Quaternion q = normalised(any);
+  const Vec<Gcrs> v{q.x, q.y, q.z};
+  const double sine = norm(v);
+  return v * (sine > 1e-12 ? 2 * std::atan2(sine, q.w) / sine : 2.0);
+}
+
+Vec<Gcrs> turned(const Quaternion& q, const Vec<Gcrs>& v) {
+  const Vec<Gcrs> axis{q.x, q.y, q.z};
+  const Vec<Gcrs> t = 2.0 * cross(axis, v);
+  return v + q.w * t + cross(axis, t);
+}
+
+/// Slope of the turn vector `v` when the turn's own angular velocity is `rate`.
+Vec<Gcrs> turn_vector_slope(const Vec<Gcrs>& v, const Vec<Gcrs>& rate) {
+  const double a = norm(v);
+  const double c = a > 1e-4 ? (1 - a / 2 / std::tan(a / 2)) / (a * a) : 1.0 / 12;
+  return rate - 0.5 * cross(v, rate) + c * cross(v, cross(v, rate));
+}
+
+}  // namespace
+
+AttitudeState attitude_state(const Attitude& attitude, const AttitudeScene& before,
+                             const AttitudeScene& now, const AttitudeScene& after) {
+  const Rotation<Gcrs, Body> r = gcrs_from_body(attitude, now);
+  AttitudeState state{.gcrs_from_body = normalised(quaternion_of(r))};
+  if (const auto* spin = std::get_if<SpinningAttitude>(&attitude)) {
+    state.rate_rad_per_s = r * (unit(spin->axis) * spin->rate_rad_per_s);
+  } else if (after.time_s > before.time_s) {
+    const Quaternion moved = product(quaternion_of(gcrs_from_body(attitude, after)),
+                                     conjugate(quaternion_of(gcrs_from_body(attitude, before))));
+    state.rate_rad_per_s = turn_vector(moved) / (after.time_s - before.time_s);
+  }
+  return state;
+}
+
+Quaternion interpolate_attitude(double u, double tick_s, const AttitudeState& start,
+                                const AttitudeState& end) {
+  const Quaternion steady = product(turn(start.rate_rad_per_s * tick_s), start.gcrs_from_body);
+  const Quaternion left_over = product(end.gcrs_from_body, conjugate(steady));
+  const Vec<Gcrs> rest = turn_vector(left_over);
+  const Vec<Gcrs> rest_slope =
+      turn_vector_slope(rest, end.rate_rad_per_s - turned(left_over, start.rate_rad_per_s));
+  const Vec<Gcrs> part = rest * (u * u * (3 - 2 * u)) + rest_slope * (u * u * (u - 1) * tick_s);
+  return normalised(product(
+      turn(part), product(turn(start.rate_rad_per_s * (u * tick_s)), start.gcrs_from_body)));
+}
+
+}  // namespace dmise

@@ -1,0 +1,180 @@
+#include "orbit-node/object_population.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+#include "core/config/yaml_reader.h"
+#include "core/orbit/catalogue.h"
+#include "core/orbit/catalogue_report.h"
+#include "core/orbit/object_facts.h"
+#include "core/time/iso8601.h"
+
+namespace dmise {
+namespace {
+
+bool wanted(const ObjectSource& source, const MeanElements& elements) {
+  if (source.only.empty()) return true;
+  const std::string number = std::to_string(elements.catalogue_number);
+  for (const auto& name : source.only)
+    if (name == number || name == elements.name) return true;
+  return false;
+}
+
+void require_all_found(const ObjectSource& source, const std::vector<MeanElements>& elements) {
+  for (const auto& name : source.only) {
+    bool found = false;
+    std::vector<std::string> names;
+    for (const auto& e : elements) {
+      found = found || name == e.name || name == std::to_string(e.catalogue_number);
+      names.push_back(e.name);
+    }
+    if (found) continue;
+    const std::string hint = nearest_name(name, names);
+    throw ConfigError(source.path + ": no object is named or numbered " + name +
+                      (hint.empty() ? "" : ", did you mean " + hint + "?"));
+  }
+}
+
+/// Adds objects one by one; the state is what is there already.
+class Loader {
+ public:
+  Loader(const Scenario& scenario, const Clock& clock)
+      : scenario_(scenario), clock_(clock), start_(clock.utc({0})) {
+    for (const auto& object : scenario.own_objects) taken_.insert(object.catalogue_number);
+  }
+
+  ObjectPopulation load() {
+    for (const auto& source : scenario_.objects) add(source);
+    for (const auto& object : scenario_.own_objects) require_name_of_its_own(object);
+    for (const auto& object : scenario_.own_objects)
+      if (const auto* elements = std::get_if<MeanElements>(&object.motion.model)) {
+        population_.elements.push_back(*elements);
+        add(object, element_age_days(*elements, start_));
+      }
+    for (const auto& object : scenario_.own_objects)
+      if (const auto* model = std::get_if<MotionModel>(&object.motion.model)) {
+        if (const auto* path = std::get_if<Trajectory>(model)) check_span(object, *path);
+        population_.models.push_back(*model);
+        add(object, 0.0);
+      }
+    if (stale_ > 0)
+      note(std::to_string(stale_) + " of " + std::to_string(population_.elements.size()) +
+           " objects have elements more than 30 days from the start of the run");
+    return std::move(population_);
+  }
+
+ private:
+  void note(const std::string& text) { population_.notes.push_back(text); }
+
+  void add(const ObjectSource& source) {
+    const auto catalogue = read_catalogue(source.path);
+    if (catalogue.elements.empty())
+      throw ConfigError(source.path + ": no element set could be read" +
+                        (catalogue.refused.empty()
+                             ? std::string()
+                             : ": " + catalogue.describe(catalogue.refused[0])));
+    require_all_found(source, catalogue.elements);
+    const DiffuseSphere unknown{source.radius_m, source.albedo};
+    ObjectFactsFile facts;
+    if (!source.facts_path.empty()) facts = read_object_facts(source.facts_path);
+    for (const auto& problem : facts.refused)
+      note(source.facts_path + ":" + std::to_string(problem.line) + ": " + problem.reason +
+           " (left out)");
+    for (const auto& problem : catalogue.refused) note(catalogue.describe(problem) + " (left out)");
+    for (const auto& problem : catalogue.warnings) note(catalogue.describe(problem));
+    for (const auto& e : catalogue.elements) {
+      // Number 0 (not catalogued) is no one object.
+      if (!wanted(source, e) ||
+          (e.catalogue_number != 0 && !taken_.insert(e.catalogue_number).second))
+        continue;
+      const auto known = facts.facts.find(e.catalogue_number);
+      const DiffuseSphere sphere =
+          known == facts.facts.end() ? unknown : sphere_of(known->second, unknown).sphere;
+      population_.roster.objects.push_back({.catalogue_number = e.catalogue_number,
+                                            .name = e.name,
+                                            .designator = e.designator,
+                                            .geometry = sphere,
+                                            .element_age_s = aged(element_age_days(e, start_))});
+      population_.elements.push_back(e);
+    }
+  }
+
+  void add(const OwnObject& object, double age_days) {
+    if (object.attitude) {
+      check_span(object, object.attitude->model);
+      population_.attitudes.push_back({population_.roster.objects.size(), object.attitude->model});
+    }
+    population_.roster.objects.push_back({.catalogue_number = object.catalogue_number,
+                                          .name = object.name,
+                                          .geometry = object.sphere,
+                                          .element_age_s = aged(age_days),
+                                          .panel = object.panel});
+  }
+
+  double aged(double age_days) {
+    stale_ += std::abs(age_days) > stale_after_days;
+    return age_days * day_s;
+  }
+
+  void require_name_of_its_own(const OwnObject& object) const {
+    for (const auto& other : population_.roster.objects)
+      if (other.name == object.name)
+        throw ConfigError(object.where + ": a catalogue's object has this name, got " +
+                          object.name + " (give it the number " +
+                          std::to_string(other.catalogue_number) + " to take its place)");
+  }
+
+  /// A trajectory must have to do with the run, and cover it where a sensor depends on it.
+  void check_span(const OwnObject& object, const Trajectory& path) {
+    const TrajectorySpan span = span_of(path);
+    const SimTime end = scenario_.time_of(scenario_.last_tick());
+    const auto after = [](const Tai& a, const Tai& b) { return seconds_between(b, a) > 1e-9; };
+    const std::string told = object.motion.oem_path + ": the trajectory of " + object.name +
+                             " spans " + span_text(path) + ", the run " + format_utc(start_) +
+                             " to " + format_utc(clock_.utc(end));
+    if (after(clock_.tai({0}), span.stop) || after(span.start, clock_.tai(end)))
+      throw ConfigError(object.where + ": " + told);
+    if (!after(span.start, clock_.tai({0})) && !after(clock_.tai(end), span.stop)) return;
+    for (const auto& sensor : scenario_.sensors)
+      if (depends_on(sensor, object))
+        throw ConfigError(object.where + ": sensor " + sensor.name + " depends on it, but " + told);
+    note(told + ": it is in the scene while it has a state");
+  }
+
+  void check_span(const OwnObject& object, const Attitude& attitude) const {
+    const auto* table = std::get_if<TableAttitude>(&attitude);
+    const double end_s = scenario_.time_of(scenario_.last_tick()).seconds();
+    if (!table || (table->time_s.front() <= 0.0 && table->time_s.back() >= end_s)) return;
+    throw ConfigError(object.where + ": " + object.attitude->table_path + ": the attitudes of " +
+                      object.name + " span " + std::to_string(table->time_s.front()) + " to " +
+                      std::to_string(table->time_s.back()) + " s of the run, its ticks 0 to " +
+                      std::to_string(end_s) + " s");
+  }
+
+  static bool depends_on(const SensorConfig& sensor, const OwnObject& object) {
+    const auto is_it = [&](const std::string& name) {
+      return name == object.name || name == std::to_string(object.catalogue_number);
+    };
+    const auto* platform = std::get_if<PlatformConfig>(&sensor.place);
+    const auto* target = std::get_if<PointTarget>(&sensor.pointing);
+    return (platform && is_it(platform->object)) || (target && is_it(target->object));
+  }
+
+  const Scenario& scenario_;
+  const Clock& clock_;
+  const Utc start_;
+  ObjectPopulation population_;
+  std::set<std::uint32_t> taken_;
+  int stale_ = 0;
+};
+
+}  // namespace
+
+ObjectPopulation load_objects(const Scenario& scenario, const Clock& clock) {
+  return Loader(scenario, clock).load();
+}
+
+}  // namespace dmise

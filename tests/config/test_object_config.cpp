@@ -1,0 +1,174 @@
+#include "core/config/object_config.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/base/json.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+const Utc start{2458139.5, 0.0};
+
+ObjectsConfig read(const std::string& text) {
+  return read_objects(YamlMap(YamlValue::parse("objects:\n" + text, "s.yaml")).require("objects"),
+                      start);
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    read(text);
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+OwnObject object(const std::string& motion, const std::string& rest = "") {
+  return read("- {name: x, motion: " + motion + rest + "}").own.at(0);
+}
+
+template <class T>
+T model(const OwnObject& object) {
+  return std::get<T>(std::get<MotionModel>(object.motion.model));
+}
+
+TEST(ObjectConfig, TwoBodyByElementsOrByState) {
+  // Circular speed at 7000 km: sqrt(3.986004415e14 / 7e6) = 7546.0533 m/s.
+  const auto circular = model<TwoBodyMotion>(object(
+      "{two_body: {semi_major_axis_m: 7e6, eccentricity: 0, inclination_deg: 90, raan_deg: 90}}"));
+  EXPECT_NEAR(circular.state.position_m.y, 7e6, 1e-3);
+  EXPECT_NEAR(circular.state.velocity_m_per_s.z, 7546.0533, 1e-4);
+  // The epoch is the run's start: TAI - UTC = 37 s in 2018.
+  EXPECT_NEAR(seconds_between({2458139.5, 0.0}, circular.epoch), 37.0, 1e-6);
+  const auto by_state = model<TwoBodyMotion>(
+      object("{two_body: {position_m: [7e6, 0, 0], velocity_m_per_s: [0, 7.5e3, 1],"
+             " epoch: 2018-01-21T00:01:00Z}}"));
+  EXPECT_EQ(by_state.state.velocity_m_per_s.y, 7500.0);
+  EXPECT_NEAR(seconds_between({2458139.5, 0.0}, by_state.epoch), 97.0, 1e-6);
+}
+
+// Root of Kepler's equation at M = 90 deg, e = 0.2 by mpmath.findroot.
+TEST(ObjectConfig, MeanAnomalyIsTurnedIntoTheTrueOne) {
+  const auto mean =
+      model<TwoBodyMotion>(object("{two_body: {periapsis_m: 8e6, eccentricity: 0.2, "
+                                  "inclination_deg: 0, mean_anomaly_deg: 90}}"));
+  const auto& r = mean.state.position_m;
+  const double e_rad = 1.766960608;  // root of E - 0.2 sin E = pi / 2
+  EXPECT_NEAR(e_rad - 0.2 * std::sin(e_rad), pi / 2, 1e-6);
+  EXPECT_NEAR(norm(r), 1e7 * (1 - 0.2 * std::cos(e_rad)), 1e-2);
+  EXPECT_NEAR(std::atan2(r.y, r.x), 2 * std::atan(std::sqrt(1.2 / 0.8) * std::tan(e_rad / 2)),
+              1e-6);
+}
+
+TEST(ObjectConfig, FixedPlaces) {
+  const auto pole = model<ConstantPosition<Itrs>>(
+      object("{fixed: {latitude_deg: 90, longitude_deg: 0, height_m: 1000}}"));
+  EXPECT_NEAR(pole.position_m.z, 6356752.3142 + 1000, 1e-3);  // WGS 84 polar radius
+  EXPECT_EQ(model<ConstantPosition<Gcrs>>(object("{fixed: {gcrs_m: [1e7, 2, 3]}}")).position_m.y,
+            2);
+  EXPECT_EQ(model<ConstantPosition<Itrs>>(object("{fixed: {itrs_m: [1e7, 2, 3]}}")).position_m.z,
+            3);
+}
+
+TEST(ObjectConfig, AttitudesOfEveryKind) {
+  const auto attitude = [](const std::string& text) {
+    return object("{fixed: {gcrs_m: [1e7, 0, 0]}}", ", attitude: " + text).attitude->model;
+  };
+  EXPECT_TRUE(std::holds_alternative<NadirAttitude>(attitude("nadir")));
+  EXPECT_TRUE(std::holds_alternative<SunYawAttitude>(attitude("sun_tracking")));
+  const auto inertial =
+      std::get<InertialAttitude>(attitude("{inertial: {gcrs_from_body: [0.5, 0.5, 0.5, 0.5]}}"));
+  EXPECT_NEAR((inertial.gcrs_from_body * Vec<Body>{1, 0, 0}).y, 1.0, 1e-15);  // x to y to z to x
+  const auto spin = std::get<SpinningAttitude>(
+      attitude("{spinning: {axis: [0, 0, 2], rate_rpm: 30, phase_deg: 90}}"));
+  EXPECT_NEAR(spin.rate_rad_per_s, pi, 1e-15);
+  const auto now = gcrs_from_body(spin, {.time_s = 0.0, .position_m = {1e7, 0, 0}});
+  EXPECT_NEAR((now * Vec<Body>{1, 0, 0}).y, 1.0, 1e-15);  // a quarter turn about z
+  const auto later = gcrs_from_body(spin, {.time_s = 0.5, .position_m = {1e7, 0, 0}});
+  EXPECT_NEAR((later * Vec<Body>{1, 0, 0}).x, -1.0, 1e-15);
+}
+
+TEST(ObjectConfig, ObjectsWithoutANumberGetOneInOrder) {
+  const auto own =
+      read(
+          "- {name: a, motion: {fixed: {gcrs_m: [1e7, 0, 0]}}}\n"
+          "- {name: b, catalogue_number: 990000001, motion: {fixed: {gcrs_m: [1e7, 0, 0]}}}\n"
+          "- {name: c, motion: {fixed: {gcrs_m: [1e7, 0, 0]}}}\n")
+          .own;
+  EXPECT_EQ(own[0].catalogue_number, 990000002u);
+  EXPECT_EQ(own[1].catalogue_number, 990000001u);
+  EXPECT_EQ(own[2].catalogue_number, 990000003u);
+}
+
+TEST(ObjectConfig, SaysWhereAndWhy) {
+  const std::string fixed = "motion: {fixed: {gcrs_m: [1e7, 0, 0]}}";
+  EXPECT_EQ(complaint("- {name: x}"), "s.yaml:2:3: objects[0].motion: is missing");
+  EXPECT_EQ(complaint("- {radius_m: 2}"),
+            "s.yaml:2:3: objects[0]: needs a catalogue, or a name and a motion");
+  EXPECT_EQ(complaint("- {name: x, " + fixed + ", albdo: 1}"),
+            "s.yaml:2:53: objects[0].albdo: unknown key, did you mean albedo?");
+  EXPECT_EQ(complaint("- {name: x, motion: {flying: {}}}"),
+            "s.yaml:2:22: objects[0].motion.flying: unknown key");
+  EXPECT_EQ(complaint("- {name: x, motion: {}}"),
+            "s.yaml:2:21: objects[0].motion: give one of two_body, oem, fixed, sgp4");
+  EXPECT_EQ(complaint("- {name: x, motion: {oem: none.oem}}"),
+            "s.yaml:2:27: objects[0].motion.oem: there is no such file, got none.oem");
+  EXPECT_EQ(complaint("- {name: x, motion: {fixed: {itrs_m: [1, 2]}}}"),
+            "s.yaml:2:38: objects[0].motion.fixed.itrs_m: must be a list of 3 numbers, got a list");
+  EXPECT_EQ(complaint("- {name: x, motion: {fixed: {itrs_m: [1, 2, 3]}}}"),
+            "s.yaml:2:38: objects[0].motion.fixed.itrs_m: is inside the Earth, got a list");
+  EXPECT_EQ(
+      complaint("- {name: x, motion: {fixed: {latitude_deg: 91, longitude_deg: 0, height_m: 1}}}"),
+      "s.yaml:2:44: objects[0].motion.fixed.latitude_deg: must be <= 90, got 91");
+  EXPECT_EQ(
+      complaint("- {name: x, motion: {two_body: {semi_major_axis_m: 7e6, eccentricity: 1, "
+                "inclination_deg: 0}}}"),
+      "s.yaml:2:71: objects[0].motion.two_body.eccentricity: must be < 1 with semi_major_axis_m; "
+      "open orbits take periapsis_m, got 1");
+  EXPECT_EQ(complaint("- {name: x, motion: {two_body: {periapsis_m: 7e6, eccentricity: 2, "
+                      "inclination_deg: 0, true_anomaly_deg: 121}}}"),
+            "s.yaml:2:106: objects[0].motion.two_body.true_anomaly_deg: must be inside the asymptotes, got 121");
+  EXPECT_EQ(complaint("- {name: x, motion: {sgp4: {line1: abc, line2: def}}}").substr(0, 37),
+            "s.yaml:2:28: objects[0].motion.sgp4: ");
+  EXPECT_EQ(complaint("- {name: x, " + fixed + ", attitude: nadr}"),
+            "s.yaml:2:63: objects[0].attitude: must be one of nadir, sun_tracking, got nadr");
+  EXPECT_EQ(
+      complaint("- {name: x, " + fixed + ", attitude: {inertial: {gcrs_from_body: [0, 0, 0, 0]}}}"),
+      "s.yaml:2:91: objects[0].attitude.inertial.gcrs_from_body: must be a unit quaternion [w, x, "
+      "y, "
+      "z], its length is 0.000000");
+  EXPECT_EQ(complaint("- {name: x, " + fixed + ", panel: {hinge: [0, 1, 0]}}"),
+            "s.yaml:2:60: objects[0].panel: needs an attitude, to know where the Sun is");
+  EXPECT_EQ(complaint("- {name: x, " + fixed + "}\n- {name: x, " + fixed + "}"),
+            "s.yaml:3:10: objects[1].name: another object has this name, got x");
+}
+
+// What changes an object's motion or attitude changes the run's digest.
+TEST(ObjectConfig, EveryChangeShowsInThePhysicsDigest) {
+  const auto json = [](const std::string& text) {
+    JsonWriter writer;
+    const auto objects = read(text);
+    writer.begin_object();
+    write_objects(writer, objects.catalogues, objects.own);
+    return writer.end_object().take();
+  };
+  const std::string good =
+      "- {name: x, motion: {two_body: {semi_major_axis_m: 7e6, eccentricity: 0.1, "
+      "inclination_deg: 10}}, attitude: {spinning: {rate_rpm: 3}}, panel: {hinge: [0, 1, 0]}}";
+  for (const auto& [what, with] : {std::pair{"7e6", "7.1e6"},
+                                   {"0.1", "0.2"},
+                                   {"rate_rpm: 3", "rate_rpm: 4"},
+                                   {"x", "y"},
+                                   {"[0, 1, 0]", "[1, 0, 0]"},
+                                   {"spinning: {rate", "spinning: {phase_deg: 1, rate"}}) {
+    std::string other = good;
+    other.replace(other.find(what), std::string(what).size(), with);
+    EXPECT_NE(json(good), json(other)) << with;
+  }
+  EXPECT_EQ(json(good), json(good));
+}
+
+}  // namespace
+}  // namespace dmise

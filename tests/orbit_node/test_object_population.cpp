@@ -1,0 +1,106 @@
+#include "orbit-node/object_population.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/orbit_node/scenario_directory.h"
+
+namespace dmise {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string goes =
+    "GOES 13\n"
+    "1 29155U 06018A   18020.76993589 -.00000277  00000-0  00000+0 0  9990\n"
+    "2 29155   0.3033 103.4554 0011344  94.0749 132.0880  1.00469224 42737\n";
+
+class ObjectPopulationTest : public test::ScenarioDirectory {
+ protected:
+  void SetUp() override {
+    ScenarioDirectory::SetUp();
+    write("goes.tle", goes);
+    std::filesystem::copy_file(DMISE_SOURCE_DIR "/launch/scenarios/inspector.oem",
+                               directory / "inspector.oem");
+  }
+  ObjectPopulation population(const std::string& objects,
+                              const std::string& place = "site: atlanta") {
+    const Scenario scenario = load(objects, place);
+    return load_objects(scenario, make_clock(scenario));
+  }
+};
+
+TEST_F(ObjectPopulationTest, CataloguesComeFirstThenElementsThenTheOtherModels) {
+  const auto p = population(
+      "  - {name: mast, motion: {fixed: {gcrs_m: [7e6, 0, 0]}}, attitude: nadir,\n"
+      "     panel: {hinge: [0, 2, 0], normal: [0, 0, 1]}}\n"
+      "  - {name: own, motion: {sgp4: {line1: 1 29156U 06018A   18020.76993589 -.00000277  00000-0 "
+      " "
+      "00000+0 0  9991, line2: 2 29156   0.3033 103.4554 0011344  94.0749 132.0880  1.00469224 "
+      "42738}}}\n"
+      "  - {catalogue: goes.tle}\n");
+  ASSERT_EQ(p.roster.objects.size(), 3u);
+  EXPECT_EQ(p.roster.objects[0].name, "GOES 13");
+  EXPECT_EQ(p.roster.objects[1].name, "own");
+  EXPECT_EQ(p.roster.objects[1].catalogue_number, 29156u);
+  EXPECT_NEAR(p.roster.objects[1].element_age_s / 3600, 5.77, 0.01);  // of day 20.770
+  EXPECT_EQ(p.roster.objects[2].name, "mast");
+  EXPECT_EQ(p.roster.objects[2].catalogue_number, first_own_number);
+  ASSERT_TRUE(p.roster.objects[2].panel);
+  EXPECT_EQ(p.roster.objects[2].panel->hinge.y, 1.0);
+  EXPECT_EQ(p.elements.size(), 2u);
+  EXPECT_EQ(p.models.size(), 1u);
+  ASSERT_EQ(p.attitudes.size(), 1u);
+  EXPECT_EQ(p.attitudes[0].object, 2u);
+}
+
+TEST_F(ObjectPopulationTest, OnesOwnObjectTakesThePlaceOfACataloguesWithItsNumber) {
+  const std::string own = "motion: {fixed: {gcrs_m: [7e6, 0, 0]}}}\n";
+  const auto p = population(
+      "  - {catalogue: goes.tle}\n"
+      "  - {name: GOES 13, catalogue_number: 29155, " +
+      own);
+  ASSERT_EQ(p.roster.objects.size(), 1u);
+  EXPECT_EQ(p.models.size(), 1u);
+  EXPECT_EQ(complaint([&] { population("  - {catalogue: goes.tle}\n  - {name: GOES 13, " + own); }),
+            "scenario.yaml:4:12: objects[1].name: a catalogue's object has this name, got GOES 13 "
+            "(give it the number 29155 to take its place)");
+}
+
+TEST_F(ObjectPopulationTest, ATrajectoryThatMissesTheRunIsRefused) {
+  std::ifstream file(directory / "inspector.oem");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  for (auto at = text.find("-21T"); at != text.npos; at = text.find("-21T"))
+    text.replace(at, 4, "-22T");
+  write("tomorrow.oem", text);
+  const auto said =
+      complaint([&] { population("  - {name: probe, motion: {oem: tomorrow.oem}}\n"); });
+  EXPECT_THAT(said,
+              HasSubstr("scenario.yaml:3:12: objects[0].name: tomorrow.oem: the trajectory of "
+                        "probe spans 2018-01-22T00:13:00.000 to 2018-01-22T00:19:00.000 UTC"));
+  EXPECT_THAT(said, HasSubstr("the run 2018-01-21T00:15:00.000Z to 2018-01-21T00:16:00.000Z"));
+}
+
+TEST_F(ObjectPopulationTest, ATrajectoryThatEndsWithinTheRunIsRefusedWhereASensorDependsOnIt) {
+  std::ifstream file(directory / "inspector.oem");
+  std::string text, line;
+  while (std::getline(file, line))
+    if (line.find("00:1") == line.npos || line < "2018-01-21T00:15:30") text += line + "\n";
+  write("short.oem", text);
+  const std::string probe = "  - {name: probe, motion: {oem: short.oem}}\n";
+  EXPECT_EQ(population(probe).notes.size(), 1u);
+  EXPECT_THAT(complaint([&] { population(probe, "platform: probe"); }),
+              HasSubstr("sensor a depends on it"));
+}
+
+TEST_F(ObjectPopulationTest, ATableOfAttitudesMustCoverTheRun) {
+  write("turns.csv", "time_s,w,x,y,z\n0,1,0,0,0\n59,0,0,1,0\n");
+  EXPECT_THAT(complaint([&] {
+                population(
+                    "  - {name: x, attitude: {table: turns.csv}, motion: {fixed: {gcrs_m: "
+                    "[7e6, 0, 0]}}}\n");
+              }),
+              HasSubstr("turns.csv: the attitudes of x span 0.000000 to 59.000000 s"));
+}
+
+}  // namespace
+}  // namespace dmise
