@@ -1,4 +1,5 @@
 #include "core/base/json.h"
+#include "core/config/optics_config.h"
 #include "core/config/scenario.h"
 
 namespace dmise {
@@ -38,6 +39,7 @@ void write_camera(JsonWriter& json, const Camera& camera) {
   json.field("aperture_m", o.aperture_m).field("obscuration", o.obscuration);
   json.field("pixel_pitch_m", o.pixel_pitch_m).field("columns", o.columns).field("rows", o.rows);
   json.field("transmission", o.transmission).field("psf_fwhm_px", o.psf_fwhm_px);
+  write_optics_json(json, o);
   json.field("quantum_efficiency", d.quantum_efficiency).field("dark_e_per_s", d.dark_e_per_s);
   json.field("read_noise_e", d.read_noise_e).field("full_well_e", d.full_well_e);
   json.field("gain_e_per_dn", d.gain_e_per_dn).field("bias_dn", d.bias_dn);
@@ -56,6 +58,7 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   json.field("first_exposure_s", s.first_exposure_s);
   json.field("sky_zenith_mag_per_arcsec2", s.sky_zenith_mag_per_arcsec2);
   json.field("extinction_mag_per_airmass", s.extinction_mag_per_airmass);
+  if (s.seeing) write_seeing_json(json, *s.seeing);
   json.key("effects").begin_array();
   for (std::size_t i = 0; i < effect_count; ++i)
     if (s.effects.has(static_cast<Effect>(i))) json.value(facts(static_cast<Effect>(i)).name);

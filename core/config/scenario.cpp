@@ -6,8 +6,10 @@
 
 #include "core/base/error.h"
 #include "core/config/camera_config.h"
+#include "core/config/optics_config.h"
 #include "core/config/search_path.h"
 #include "core/config/yaml_reader.h"
+#include "core/optics/psf_plan.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
@@ -145,6 +147,16 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTi
   sensor.sky_zenith_mag_per_arcsec2 = sky ? read_sky(*sky) : (site ? 21.9 : 21.0);
   sensor.extinction_mag_per_airmass =
       map.number_or("extinction_mag_per_airmass", site ? 0.17 : 0.0, Bounds::between(0.0, 5.0));
+  if (const auto seeing = map.find("seeing")) {
+    if (sensor.camera.optics.spread.model == PointSpread::Model::gaussian)
+      seeing->fail("needs a camera with psf: diffraction", false);
+    sensor.seeing = read_seeing(*seeing);
+  }
+  try {
+    plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing, sensor.exposure_s);
+  } catch (const ConfigError& e) {
+    map.require("camera").fail(e.what(), false);
+  }
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
   map.done();
   return sensor;

@@ -10,6 +10,7 @@
 #include "core/detector/detector.h"
 #include "core/effects/effects.h"
 #include "core/optics/camera.h"
+#include "core/optics/seeing.h"
 #include "core/photometry/band.h"
 
 namespace dmise {
@@ -69,6 +70,7 @@ struct SensorConfig {
   double first_exposure_s = 0.0;  // after the start of the run
   double sky_zenith_mag_per_arcsec2 = 21.9;
   double extinction_mag_per_airmass = 0.0;
+  std::optional<SensorSeeing> seeing;  // none: no turbulence
   EffectSet effects;
 };
 

@@ -1,6 +1,9 @@
 #pragma once
 #include <string>
 
+#include "core/optics/point_spread.h"
+#include "core/optics/vignetting.h"
+
 namespace dmise {
 
 enum class Projection { gnomonic, equidistant, equisolid, stereographic };
@@ -17,6 +20,8 @@ struct Optics {
   int rows = 0;
   double transmission = 1.0;  // (0, 1]
   double psf_fwhm_px = 1.5;   // of the lens and focus (Gaussian), before pixel integration; >= 0
+  PointSpread spread;         // how points are blurred, and by which method
+  Vignetting vignetting;
   bool equivalent_aperture = false;  // allows N < 0.5: the aperture is a collecting area only
 
   /// Area of the entrance pupil less its obscuration [m2].

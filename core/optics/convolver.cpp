@@ -30,7 +30,7 @@ Convolver::Convolver(int columns, int rows, const PsfKernel& kernel, Threads& th
 void Convolver::apply(RateImage& image, Threads& threads) {
   if (image.columns != columns_ || image.rows != rows_) throw Error("convolver: size of the image");
   const auto columns = std::size_t(columns_), stride = std::size_t(fft_.stride());
-  std::vector<char> lit(image.pixels.size() / columns);
+  std::vector<char> lit(std::size_t(fft_.rows()));
   threads.for_ranges(std::size_t(rows_), row_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
       const float* in = image.row(int(y));
@@ -42,12 +42,12 @@ void Convolver::apply(RateImage& image, Threads& threads) {
   });
   if (std::none_of(lit.begin(), lit.end(), [](char row) { return row; })) return;
 
-  fft_.convolve(padded_, rows_, spectrum_, threads);
+  fft_.convolve(padded_, lit, 0, rows_, spectrum_, threads);
 
   struct Sums {
     double all = 0.0, dark = 0.0;
   };
-  std::vector<Sums> sums(lit.size());
+  std::vector<Sums> sums(static_cast<std::size_t>(rows_));
   threads.for_ranges(std::size_t(rows_), row_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
       const float* in = padded_.data() + y * stride;

@@ -52,9 +52,9 @@ Box bounds(const Motion& m, double tau0, double tau1) {
 }
 
 // The part of the image plane whose light reaches rows [begin, end).
-Box reach(const PsfTable& psf, const RateImage& image, int begin, int end) {
+Box reach(const PsfTable& psf, const DepositView& view, int begin, int end) {
   const double r = psf.size;
-  return {-r, begin - r, image.columns + r, end + r};
+  return {-r, begin - r, view.columns + r, end + r};
 }
 
 // Calls `use(panel)` for the panels of an arc that meet `box`, in the order of time.
@@ -98,8 +98,9 @@ void for_panels(const Arc& arc, const PsfTable& psf, const Box& box, const Use& 
   visit(visit, 0.0, count);
 }
 
-// Sum and first moment of a node's shares on one axis over the pixels [0, pixels).
-std::array<double, 2> shares_inside(const PsfTable& psf, int at, float phase, int pixels) {
+// Sum and first moment of a node's shares on one axis over `pixels` pixels from `from` on.
+std::array<double, 2> shares_inside(const PsfTable& psf, int at, float phase, int from,
+                                    int pixels) {
   const float position = phase * float(psf.phases);
   const int p = std::min(int(position), psf.phases - 1);
   const double f = position - float(p);
@@ -107,7 +108,7 @@ std::array<double, 2> shares_inside(const PsfTable& psf, int at, float phase, in
   const float* b = a + psf.stride;
   const int first = at + psf.first;
   double sum = 0.0, moment = 0.0;
-  const int begin = std::max(0, -first), end = std::min(psf.size, pixels - first);
+  const int begin = std::max(0, from - first), end = std::min(psf.size, from + pixels - first);
   for (int i = begin; i < end; ++i) {
     const double share = a[i] + f * (double(b[i]) - double(a[i]));
     sum += share;
@@ -116,13 +117,15 @@ std::array<double, 2> shares_inside(const PsfTable& psf, int at, float phase, in
   return {sum, moment + sum * first};
 }
 
-Deposited inside(const Arc& arc, const PsfTable& psf, const RateImage& image) {
+Deposited inside(const Arc& arc, const PsfTable& psf, const DepositView& view) {
   double signal = 0.0, x = 0.0, y = 0.0;
-  for_panels(arc, psf, reach(psf, image, 0, image.rows), [&](const PanelView& panel) {
+  for_panels(arc, psf, reach(psf, view, 0, view.rows), [&](const PanelView& panel) {
     for (int k = 0; k < panel.nodes; ++k) {
       const double w = panel.weight[k];
-      const auto [sx, mx] = shares_inside(psf, panel.column[k], panel.phase_x[k], image.columns);
-      const auto [sy, my] = shares_inside(psf, panel.row[k], panel.phase_y[k], image.rows);
+      const auto [sx, mx] =
+          shares_inside(psf, panel.column[k], panel.phase_x[k], view.left, view.told_columns);
+      const auto [sy, my] =
+          shares_inside(psf, panel.row[k], panel.phase_y[k], view.top, view.told_rows);
       signal += w * sx * sy;
       x += w * mx * sy;
       y += w * sx * my;
@@ -151,6 +154,36 @@ Deposited operator+(const Deposited& a, const Deposited& b) {
 
 std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf, RateImage& image,
                                Threads& threads, SimdLevel level) {
+  return deposit(arcs, psf,
+                 DepositView{.pixels = image.pixels.data(),
+                             .columns = image.columns,
+                             .rows = image.rows,
+                             .stride = image.columns,
+                             .told_columns = image.columns,
+                             .told_rows = image.rows},
+                 threads, level);
+}
+
+Deposited told(const Arc& arc, const PsfTable& psf, const DepositView& view) {
+  return inside(arc, psf, view);
+}
+
+Arc part_of(const Arc& arc, double tau_begin, double tau_end) {
+  const Motion m(arc);
+  const double length = tau_end - tau_begin;
+  const double brightness = 1.0 + arc.tilt * (tau_begin + tau_end - 1.0);
+  return {m.at(tau_begin), m.at(0.5 * (tau_begin + tau_end)), m.at(tau_end),
+          arc.signal_e * length * brightness,
+          brightness > 0.0 ? std::clamp(arc.tilt * length / brightness, -1.0, 1.0) : 0.0};
+}
+
+Extent extent(const Arc& arc) {
+  const Box b = bounds(Motion(arc), 0.0, 1.0);
+  return {b.left, b.top, b.right, b.bottom};
+}
+
+std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
+                               const DepositView& image, Threads& threads, SimdLevel level) {
   const auto add = level == SimdLevel::avx512 ? avx512::add_panel
                    : level == SimdLevel::avx2 ? avx2::add_panel
                                               : sse2::add_panel;
@@ -175,7 +208,7 @@ std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf, R
     for (std::size_t b = begin; b < end; ++b) {
       const int row_begin = int(b) * band_rows,
                 row_end = std::min(image.rows, row_begin + band_rows);
-      const BandView band{image.pixels.data(), image.columns, row_begin, row_end};
+      const BandView band{image.pixels, image.columns, row_begin, row_end, image.stride};
       const Box box = reach(psf, image, row_begin, row_end);
       for (std::uint32_t i : of_band[b])
         for_panels(arcs[i], psf, box,

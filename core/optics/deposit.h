@@ -31,6 +31,15 @@ struct Deposited {
 /// Both together, as one source.
 Deposited operator+(const Deposited& a, const Deposited& b);
 
+/// Where light is put: `rows` rows of `columns` floats, `stride` apart. What is told of an arc is
+/// what falls on the part that starts at (left, top), in coordinates of the view.
+struct DepositView {
+  float* pixels = nullptr;
+  int columns = 0, rows = 0;
+  std::ptrdiff_t stride = 0;
+  int left = 0, top = 0, told_columns = 0, told_rows = 0;
+};
+
 /// Adds arcs to `image` [e-] and tells what of each fell inside. Light per pixel is right to 2e-6
 /// of the arc's brightest pixel, the sum over pixels to 1e-6, whatever the length (0 to 1e12 px):
 /// along the path, panels of 2 sigma with five Gauss-Legendre nodes. The bytes do not depend on the
@@ -38,6 +47,22 @@ Deposited operator+(const Deposited& a, const Deposited& b);
 /// not finite or the signal is negative.
 std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf, RateImage& image,
                                Threads& threads, SimdLevel level = best_simd_level());
+
+std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
+                               const DepositView& view, Threads& threads,
+                               SimdLevel level = best_simd_level());
+
+/// What of an arc falls on the told part of a view, whose pixels are not touched.
+Deposited told(const Arc& arc, const PsfTable& psf, const DepositView& view);
+
+/// The part of an arc between two of its times, 0..1.
+Arc part_of(const Arc& arc, double tau_begin, double tau_end);
+
+/// Rectangle that holds the arc's path [px].
+struct Extent {
+  double left, top, right, bottom;
+};
+Extent extent(const Arc& arc);
 
 /// Cuts a source's arc into one a step of `brightness`: its values, relative, at equally spaced
 /// times from start to end (at least 2, each >= 0), linear in between. The arcs' signals sum to

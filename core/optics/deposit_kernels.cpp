@@ -58,7 +58,7 @@ DMISE_INLINE void add(const PanelView& panel, const PsfTableView& t, const BandV
         for (int k = 1; k < Nodes; ++k) s += share[k] * along_x[k * width + x + j];
         sum[x + j] = s;
       }
-    float* out = band.pixels + std::ptrdiff_t(top + y) * band.columns + left;
+    float* out = band.pixels + std::ptrdiff_t(top + y) * band.stride + left;
     for (int x = x_begin; x < x_end; ++x) out[x] += sum[x];
   }
 }

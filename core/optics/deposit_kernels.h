@@ -18,10 +18,11 @@ struct PsfTableView {
   int phases, first, size, stride;
 };
 
-/// Rows [row_begin, row_end) of an image whose pixel (0, 0) is `pixels`.
+/// Rows [row_begin, row_end) of an image whose pixel (0, 0) is `pixels`, rows `stride` apart.
 struct BandView {
   float* pixels;
   int columns, row_begin, row_end;
+  std::ptrdiff_t stride;
 };
 
 #define DMISE_DEPOSIT_KERNELS(level)                                                      \

@@ -84,74 +84,137 @@ RealFft2::RealFft2(int columns, int rows) : plans_(new Plans), columns_(columns)
 
 RealFft2::~RealFft2() = default;
 
-void RealFft2::transform_rows(FftBuffer& image, int used_rows, bool forward,
-                              Threads& threads) const {
-  threads.for_ranges(std::size_t(used_rows), row_group, [&](std::size_t begin, std::size_t end) {
-    const bool whole = end - begin == row_group;
-    for (std::size_t y = begin; y < end; y += whole ? row_group : 1) {
+// Whole groups of rows of which one holds light, so that the plan, and with it every bit, is the
+// same whatever the others hold.
+void RealFft2::forward_rows(FftBuffer& image, const std::vector<char>& lit,
+                            Threads& threads) const {
+  threads.for_ranges(std::size_t(rows_), row_group, [&](std::size_t begin, std::size_t end) {
+    if (std::none_of(&lit[begin], &lit[begin] + (end - begin), [](char l) { return l; })) return;
+    for (std::size_t y = begin; y < end; ++y) {
       float* row = image.data() + y * std::size_t(stride_);
-      if (forward)
-        fftwf_execute_dft_r2c(whole ? plans_->rows_forward : plans_->row_forward, row,
-                              as_fftw(row));
-      else
-        fftwf_execute_dft_c2r(whole ? plans_->rows_inverse : plans_->row_inverse, as_fftw(row),
-                              row);
+      if (!lit[y]) std::fill(row, row + stride_, 0.0f);
+      if (end - begin < row_group) fftwf_execute_dft_r2c(plans_->row_forward, row, as_fftw(row));
     }
+    float* first = image.data() + begin * std::size_t(stride_);
+    if (end - begin == row_group)
+      fftwf_execute_dft_r2c(plans_->rows_forward, first, as_fftw(first));
   });
 }
 
-// Gathers each group of columns, calls use(group, work) and puts the result back.
+void RealFft2::inverse_rows(FftBuffer& image, int wanted_begin, int wanted_end,
+                            Threads& threads) const {
+  threads.for_ranges(std::size_t(rows_), row_group, [&](std::size_t begin, std::size_t end) {
+    if (int(begin) >= wanted_end || int(end) <= wanted_begin) return;
+    for (std::size_t y = begin; y < end; ++y) {
+      float* row = image.data() + y * std::size_t(stride_);
+      if (int(y) < wanted_begin || int(y) >= wanted_end) std::fill(row, row + stride_, 0.0f);
+      if (end - begin < row_group) fftwf_execute_dft_c2r(plans_->row_inverse, as_fftw(row), row);
+    }
+    float* first = image.data() + begin * std::size_t(stride_);
+    if (end - begin == row_group)
+      fftwf_execute_dft_c2r(plans_->rows_inverse, as_fftw(first), first);
+  });
+}
+
+// Calls use(group, work) for each group of columns; `work` is the thread's, kept between calls.
 template <class Use>
-void RealFft2::column_groups(FftBuffer& image, int used_rows, Threads& threads,
-                             const Use& use) const {
+void RealFft2::column_groups(Threads& threads, const Use& use) const {
   const auto groups = std::size_t(stride_ / (2 * column_group));
-  constexpr std::size_t width = 2 * column_group;
+  const std::size_t floats = 2 * column_group * std::size_t(rows_);
   threads.for_ranges(groups, 1, [&](std::size_t begin, std::size_t end) {
-    FftBuffer work(width * std::size_t(rows_));
-    for (std::size_t g = begin; g < end; ++g) {
-      for (int y = 0; y < used_rows; ++y)
-        std::memcpy(work.data() + std::size_t(y) * width,
-                    image.data() + std::size_t(y) * std::size_t(stride_) + g * width,
-                    width * sizeof(float));
-      std::fill(work.data() + std::size_t(used_rows) * width, work.data() + work.size(), 0.0f);
-      if (!use(g, work)) continue;
-      for (int y = 0; y < used_rows; ++y)
-        std::memcpy(image.data() + std::size_t(y) * std::size_t(stride_) + g * width,
-                    work.data() + std::size_t(y) * width, width * sizeof(float));
-    }
+    thread_local FftBuffer work;
+    if (work.size() < floats) work = FftBuffer(floats);
+    for (std::size_t g = begin; g < end; ++g) use(g, work.data());
   });
 }
 
-std::vector<std::complex<float>> RealFft2::spectrum(FftBuffer& image, Threads& threads) const {
-  transform_rows(image, rows_, true, threads);
+void RealFft2::gather(const FftBuffer& image, std::size_t group, const std::vector<char>& lit,
+                      float* work) const {
+  constexpr std::size_t width = 2 * column_group;
+  for (std::size_t y = 0; y < std::size_t(rows_); ++y) {
+    float* to = work + y * width;
+    if (lit[y])
+      std::memcpy(to, image.data() + y * std::size_t(stride_) + group * width,
+                  width * sizeof(float));
+    else
+      std::fill(to, to + width, 0.0f);
+  }
+}
+
+void RealFft2::scatter(const float* work, std::size_t group, int begin, int end,
+                       FftBuffer& image) const {
+  constexpr std::size_t width = 2 * column_group;
+  for (std::size_t y = std::size_t(begin); y < std::size_t(end); ++y)
+    std::memcpy(image.data() + y * std::size_t(stride_) + group * width, work + y * width,
+                width * sizeof(float));
+}
+
+void RealFft2::multiply(float* w, std::size_t group, const Spectrum& spectrum) const {
   const std::size_t each = std::size_t(column_group) * std::size_t(rows_);
-  std::vector<std::complex<float>> result(each * std::size_t(stride_ / (2 * column_group)));
-  const float scale = float(1.0 / (double(columns_) * rows_));
-  column_groups(image, rows_, threads, [&](std::size_t g, FftBuffer& work) {
-    fftwf_execute_dft(plans_->columns_forward, as_fftw(work.data()), as_fftw(work.data()));
-    for (std::size_t i = 0; i < each; ++i) result[g * each + i] = work.complex_data()[i] * scale;
-    return false;
-  });
+  const auto* s = reinterpret_cast<const float*>(spectrum.data() + group * each);
+  for (std::size_t i = 0; i < 2 * each; i += 2) {
+    const float re = w[i] * s[i] - w[i + 1] * s[i + 1];
+    w[i + 1] = w[i] * s[i + 1] + w[i + 1] * s[i];
+    w[i] = re;
+  }
+}
+
+RealFft2::Spectrum RealFft2::spectrum(FftBuffer& image, Threads& threads) const {
+  Spectrum result;
+  spectrum(image, threads, result);
   return result;
 }
 
-void RealFft2::convolve(FftBuffer& image, int used_rows,
-                        const std::vector<std::complex<float>>& spectrum, Threads& threads) const {
-  transform_rows(image, used_rows, true, threads);
+void RealFft2::spectrum(FftBuffer& image, Threads& threads, Spectrum& result) const {
+  const std::vector<char> lit(std::size_t(rows_), 1);
+  forward_rows(image, lit, threads);
   const std::size_t each = std::size_t(column_group) * std::size_t(rows_);
-  column_groups(image, used_rows, threads, [&](std::size_t g, FftBuffer& work) {
-    fftwf_execute_dft(plans_->columns_forward, as_fftw(work.data()), as_fftw(work.data()));
-    const auto* s = reinterpret_cast<const float*>(spectrum.data() + g * each);
-    float* w = work.data();
-    for (std::size_t i = 0; i < 2 * each; i += 2) {
-      const float re = w[i] * s[i] - w[i + 1] * s[i + 1];
-      w[i + 1] = w[i] * s[i + 1] + w[i + 1] * s[i];
-      w[i] = re;
-    }
-    fftwf_execute_dft(plans_->columns_inverse, as_fftw(w), as_fftw(w));
-    return true;
+  result.resize(each * std::size_t(stride_ / (2 * column_group)));
+  const float scale = float(1.0 / (double(columns_) * rows_));
+  column_groups(threads, [&](std::size_t g, float* work) {
+    gather(image, g, lit, work);
+    fftwf_execute_dft(plans_->columns_forward, as_fftw(work), as_fftw(work));
+    const auto* values = reinterpret_cast<const std::complex<float>*>(work);
+    for (std::size_t i = 0; i < each; ++i) result[g * each + i] = values[i] * scale;
   });
-  transform_rows(image, used_rows, false, threads);
+}
+
+void RealFft2::convolve(FftBuffer& image, const std::vector<char>& lit, int wanted_begin,
+                        int wanted_end, const Spectrum& spectrum, Threads& threads) const {
+  forward_rows(image, lit, threads);
+  column_groups(threads, [&](std::size_t g, float* work) {
+    gather(image, g, lit, work);
+    fftwf_execute_dft(plans_->columns_forward, as_fftw(work), as_fftw(work));
+    multiply(work, g, spectrum);
+    fftwf_execute_dft(plans_->columns_inverse, as_fftw(work), as_fftw(work));
+    scatter(work, g, wanted_begin, wanted_end, image);
+  });
+  inverse_rows(image, wanted_begin, wanted_end, threads);
+}
+
+void RealFft2::add_product(FftBuffer& image, const std::vector<char>& lit, const Spectrum& spectrum,
+                           FftBuffer& sum, Threads& threads) const {
+  forward_rows(image, lit, threads);
+  constexpr std::size_t width = 2 * column_group;
+  column_groups(threads, [&](std::size_t g, float* work) {
+    gather(image, g, lit, work);
+    fftwf_execute_dft(plans_->columns_forward, as_fftw(work), as_fftw(work));
+    multiply(work, g, spectrum);
+    for (std::size_t y = 0; y < std::size_t(rows_); ++y) {
+      float* to = sum.data() + y * std::size_t(stride_) + g * width;
+      for (std::size_t i = 0; i < width; ++i) to[i] += work[y * width + i];
+    }
+  });
+}
+
+void RealFft2::invert(FftBuffer& sum, int wanted_begin, int wanted_end, Threads& threads) const {
+  const std::vector<char> lit(std::size_t(rows_), 1);
+  column_groups(threads, [&](std::size_t g, float* work) {
+    gather(sum, g, lit, work);
+    fftwf_execute_dft(plans_->columns_inverse, as_fftw(work), as_fftw(work));
+    scatter(work, g, wanted_begin, wanted_end, sum);
+  });
+  inverse_rows(sum, wanted_begin, wanted_end, threads);
 }
 
 ComplexFft2::ComplexFft2(int side) : side_(side) {

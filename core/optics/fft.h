@@ -51,17 +51,30 @@ class RealFft2 {
   /// Half spectrum of the image, as `spectrum` for `convolve`: columns in groups, scaled so that
   /// `convolve` with the spectrum of a unit impulse at (0, 0) changes nothing. Overwrites the
   /// image.
-  std::vector<std::complex<float>> spectrum(FftBuffer& image, Threads& threads) const;
+  using Spectrum = std::vector<std::complex<float>>;
+  Spectrum spectrum(FftBuffer& image, Threads& threads) const;
+  void spectrum(FftBuffer& image, Threads& threads, Spectrum& result) const;
 
-  /// Circular convolution in place with the image whose spectrum is given. Rows from `used_rows` on
-  /// are known to be zero before and are not wanted after.
-  void convolve(FftBuffer& image, int used_rows, const std::vector<std::complex<float>>& spectrum,
-                Threads& threads) const;
+  /// Circular convolution in place with the image whose spectrum is given. Rows that are not `lit`
+  /// are taken as zero whatever they hold; only rows [wanted_begin, wanted_end) are made.
+  void convolve(FftBuffer& image, const std::vector<char>& lit, int wanted_begin, int wanted_end,
+                const Spectrum& spectrum, Threads& threads) const;
+
+  /// The same in two halves, so that images with kernels of their own share one inverse transform:
+  /// adds the product of two spectra to `sum`, which starts as zeros, and transforms back.
+  void add_product(FftBuffer& image, const std::vector<char>& lit, const Spectrum& spectrum,
+                   FftBuffer& sum, Threads& threads) const;
+  void invert(FftBuffer& sum, int wanted_begin, int wanted_end, Threads& threads) const;
 
  private:
   template <class Use>
-  void column_groups(FftBuffer& image, int used_rows, Threads& threads, const Use& use) const;
-  void transform_rows(FftBuffer& image, int used_rows, bool forward, Threads& threads) const;
+  void column_groups(Threads& threads, const Use& use) const;
+  void gather(const FftBuffer& image, std::size_t group, const std::vector<char>& lit,
+              float* work) const;
+  void scatter(const float* work, std::size_t group, int begin, int end, FftBuffer& image) const;
+  void multiply(float* work, std::size_t group, const Spectrum& spectrum) const;
+  void forward_rows(FftBuffer& image, const std::vector<char>& lit, Threads& threads) const;
+  void inverse_rows(FftBuffer& image, int begin, int end, Threads& threads) const;
 
   struct Plans;
   std::unique_ptr<Plans> plans_;

@@ -32,12 +32,26 @@ double kolmogorov_structure(double separation, double r0) {
   return 6.88 * std::pow(separation / r0, alpha);
 }
 
-KolmogorovScreens::KolmogorovScreens(int side)
+double von_karman_structure(double separation, double r0, double outer_scale) {
+  if (!std::isfinite(outer_scale)) return kolmogorov_structure(separation, r0);
+  // Below this the difference of the two terms loses its digits.
+  const double x = 2 * pi * separation / outer_scale;
+  if (x < 1e-6) return kolmogorov_structure(separation, r0);
+  const double scale = 2 * std::tgamma(11.0 / 6) /
+                       (std::pow(2.0, 5.0 / 6) * std::pow(pi, 8.0 / 3)) *
+                       std::pow(24.0 / 5 * std::tgamma(6.0 / 5), 5.0 / 6);
+  const double bessel = x < 600 ? std::pow(x, 5.0 / 6) * std::cyl_bessel_k(5.0 / 6, x) : 0.0;
+  return scale * std::pow(outer_scale / r0, alpha) *
+         (std::tgamma(5.0 / 6) / std::pow(2.0, 1.0 / 6) - bessel);
+}
+
+KolmogorovScreens::KolmogorovScreens(int side, double outer_scale)
     : side_(side),
       torus_(torus_side(std::sqrt(2.0) * side)),
       unit_(std::sqrt(2.0) * side),
       fft_(torus_) {
   if (side < 2 || side > 1024) throw Error("phase screen: side must be 2..1024 samples");
+  if (!(outer_scale > 0.0)) throw Error("phase screen: the outer scale must be > 0");
   field_ = FftBuffer(2 * std::size_t(torus_) * std::size_t(torus_));
   // Eigenvalues: the cosine transform of the covariance, in double precision, for they span more
   // than seven digits.
@@ -54,10 +68,22 @@ KolmogorovScreens::KolmogorovScreens(int side)
   amplitude_.resize(lambda.size());
   for (std::size_t i = 0; i < lambda.size(); ++i)
     amplitude_[i] = float(std::sqrt(std::max(0.0, lambda[i])) / torus_);
+  tilt_ = std::sqrt(2 * c2) / unit_;
+  if (!std::isfinite(outer_scale)) return;
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const double k2 = (double(x) * x + double(y) * y) / (double(torus_) * torus_);
+      amplitude_[std::size_t(y) * std::size_t(n) + std::size_t(x)] *=
+          float(std::pow(k2 / (k2 + 1 / (outer_scale * outer_scale)), 11.0 / 12));
+    }
+  tilt_ = 0.0;
+  const int third = std::max(1, side / 3);
+  const double lacking =
+      von_karman_structure(third, 1.0, outer_scale) - expected_structure(third, 0);
+  tilt_ = std::sqrt(std::max(0.0, lacking / (0.5 * kolmogorov_structure(unit_, 1.0)))) / third;
 }
 
-std::array<PhaseScreen, 2> KolmogorovScreens::draw(const RngKey& key, std::uint32_t draw,
-                                                   double r0_samples) {
+void KolmogorovScreens::transform_noise(const RngKey& key, std::uint32_t draw) {
   const auto torus = std::size_t(torus_), n = torus / 2 + 1;
   std::vector<std::uint32_t> words(2 * torus);
   for (std::size_t y = 0; y < torus; ++y) {
@@ -72,16 +98,25 @@ std::array<PhaseScreen, 2> KolmogorovScreens::draw(const RngKey& key, std::uint3
     }
   }
   fft_.transform(field_);
+}
 
-  // Real and imaginary part are independent fields; each gets a tilt that puts c2 r^2 right.
+// Real and imaginary part are independent fields; each has a tilt that puts c2 r^2 right.
+KolmogorovScreens::Tilt KolmogorovScreens::tilt(const RngKey& key, std::uint32_t draw,
+                                                std::uint32_t part) const {
+  const auto along = [&](std::uint32_t axis) {
+    return tilt_ * normal_of(rng_word(key, 2 * part + axis, 2 * draw + 1));
+  };
+  return {along(0), along(1)};
+}
+
+std::array<PhaseScreen, 2> KolmogorovScreens::draw(const RngKey& key, std::uint32_t draw,
+                                                   double r0_samples) {
+  transform_noise(key, draw);
+  const auto torus = std::size_t(torus_);
   const double scale = std::sqrt(0.5 * kolmogorov_structure(unit_, r0_samples));
   std::array<PhaseScreen, 2> screens;
   for (std::size_t part = 0; part < 2; ++part) {
-    const auto tilt = [&](std::uint32_t axis) {
-      const std::uint32_t item = std::uint32_t(2 * part) + axis;
-      return std::sqrt(2 * c2) / unit_ * normal_of(rng_word(key, item, 2 * draw + 1));
-    };
-    const double tilt_x = tilt(0), tilt_y = tilt(1);
+    const Tilt slope = tilt(key, draw, std::uint32_t(part));
     PhaseScreen& screen = screens[part];
     screen.side = side_;
     screen.phase_rad.resize(std::size_t(side_) * std::size_t(side_));
@@ -89,10 +124,27 @@ std::array<PhaseScreen, 2> KolmogorovScreens::draw(const RngKey& key, std::uint3
       for (int x = 0; x < side_; ++x) {
         const double field = field_.data()[2 * (std::size_t(y) * torus + std::size_t(x)) + part];
         screen.phase_rad[std::size_t(y) * std::size_t(side_) + std::size_t(x)] =
-            float(scale * (field + tilt_x * x + tilt_y * y));
+            float(scale * (field + slope.x * x + slope.y * y));
       }
   }
   return screens;
+}
+
+std::array<KolmogorovScreens::Tilt, 2> KolmogorovScreens::draw_fields(const RngKey& key,
+                                                                      std::uint32_t draw,
+                                                                      std::vector<float>& first,
+                                                                      std::vector<float>& second) {
+  transform_noise(key, draw);
+  const auto size = std::size_t(torus_) * std::size_t(torus_);
+  const double scale = std::sqrt(0.5 * kolmogorov_structure(unit_, 1.0));
+  first.resize(size);
+  second.resize(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    first[i] = float(scale * field_.data()[2 * i]);
+    second[i] = float(scale * field_.data()[2 * i + 1]);
+  }
+  const Tilt a = tilt(key, draw, 0), b = tilt(key, draw, 1);
+  return {Tilt{scale * a.x, scale * a.y}, Tilt{scale * b.x, scale * b.y}};
 }
 
 double KolmogorovScreens::expected_structure(int dx, int dy) const {
@@ -108,7 +160,7 @@ double KolmogorovScreens::expected_structure(int dx, int dy) const {
       sum += weight(j) * weight(k) * a * a * (1 - cosine_x[std::size_t(k)] * cosine_y);
     }
   }
-  const double tilt = 2 * c2 * (double(dx) * dx + double(dy) * dy) / (unit_ * unit_);
+  const double tilt = tilt_ * tilt_ * (double(dx) * dx + double(dy) * dy);
   return 0.5 * kolmogorov_structure(unit_, 1.0) * (2 * sum + tilt);
 }
 

@@ -6,9 +6,10 @@
 #include "core/base/error.h"
 
 namespace dmise {
+namespace {
 
-PsfKernel kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad, int half,
-                    double* lost) {
+PsfKernel make(const TransferFunction& otf, double cutoff_per_rad, double cell_rad, int half,
+               bool point_spread, double* lost) {
   if (!(cell_rad > 0.0) || half < 0 || half > 2048) throw Error("psf kernel: cell or size");
   // Fine grid: an odd number of samples a cell, so that a sample is each cell's centre, and enough
   // that the transfer function ends before its Nyquist frequency. Its period is twice the kernel's
@@ -23,7 +24,8 @@ PsfKernel kernel_of(const TransferFunction& otf, double cutoff_per_rad, double c
   const auto frequency = [&](int i) { return step * (i <= n / 2 ? i : i - n); };
   // Even in both axes: a quarter is enough.
   std::vector<double> cell(std::size_t(n) / 2 + 1);
-  for (int i = 0; i <= n / 2; ++i) cell[std::size_t(i)] = pixel_otf(frequency(i), cell_rad);
+  for (int i = 0; i <= n / 2; ++i)
+    cell[std::size_t(i)] = point_spread ? pixel_otf(frequency(i), cell_rad) : 1.0;
   for (int y = 0; y <= n / 2; ++y)
     for (int x = 0; x <= n / 2; ++x) {
       const auto value = float(otf(frequency(x), frequency(y)) * cell[std::size_t(x)] *
@@ -40,13 +42,26 @@ PsfKernel kernel_of(const TransferFunction& otf, double cutoff_per_rad, double c
   for (int dy = -half; dy <= half; ++dy)
     for (int dx = -half; dx <= half; ++dx) {
       const auto v = std::size_t((dy * fine + n) % n), u = std::size_t((dx * fine + n) % n);
-      const float share = std::max(0.0f, data.data()[2 * (v * std::size_t(n) + u)]);
+      const float value = data.data()[2 * (v * std::size_t(n) + u)];
+      const float share = point_spread ? std::max(0.0f, value) : value;
       kernel.values[std::size_t((dy + half) * kernel.side() + dx + half)] = share;
       sum += share;
     }
   if (lost) *lost = 1.0 - sum;
   for (float& share : kernel.values) share = float(share / sum);
   return kernel;
+}
+
+}  // namespace
+
+PsfKernel kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad, int half,
+                    double* lost) {
+  return make(otf, cutoff_per_rad, cell_rad, half, true, lost);
+}
+
+PsfKernel signed_kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad,
+                           int half, double* lost) {
+  return make(otf, cutoff_per_rad, cell_rad, half, false, lost);
 }
 
 PsfKernel optical_kernel(const Blur& blur, double cell_rad, int half, double* lost) {

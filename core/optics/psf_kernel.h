@@ -27,6 +27,11 @@ using TransferFunction = std::function<double(double nu_x, double nu_y)>;
 PsfKernel kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad, int half,
                     double* lost = nullptr);
 
+/// The same without integrating over cells and with negative values kept, for functions that are
+/// not those of a point spread alone.
+PsfKernel signed_kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad,
+                           int half, double* lost = nullptr);
+
 /// Kernel of the optics: diffraction, long exposure, jitter, defocus, cell integration.
 PsfKernel optical_kernel(const Blur& blur, double cell_rad, int half, double* lost = nullptr);
 

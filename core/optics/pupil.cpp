@@ -63,13 +63,13 @@ double zernike(int noll, double rho, double theta_rad) {
 }
 
 PupilGrid pupil_grid(const Pupil& pupil, double wavelength_m, double cell_rad, int half,
-                     double r0_m) {
+                     double r0_m, int samples) {
   PupilGrid g;
   // Intensity ends at D / lambda: two samples for each lambda / D.
   const int fine = int(std::ceil(2.0 * pupil.aperture_m / wavelength_m * cell_rad));
   g.fine = std::max(1, fine + (fine + 1) % 2);
   // step = lambda / (side cell / fine): more samples make finer steps and a wider image.
-  const double finest_m = std::min(pupil.aperture_m / 32, r0_m / 3);
+  const double finest_m = std::min(pupil.aperture_m / samples, r0_m / 3);
   const double field_rad = std::max(2.0 * (2 * half + 1) * cell_rad, wavelength_m / finest_m);
   const int cells = good_fft_size(int(std::ceil(field_rad / cell_rad)), true);
   g.side = cells * g.fine;
@@ -86,29 +86,73 @@ int aperture_samples(const Pupil& pupil, const PupilGrid& grid) {
 
 PsfKernel short_exposure_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
                                 const PhaseScreen* screen, int first_x, int first_y) {
-  const int across = aperture_samples(pupil, grid), n = grid.side;
-  if (across > n) throw Error("pupil: the grid is smaller than the aperture");
+  const int across = aperture_samples(pupil, grid);
   if (screen && (first_x < 0 || first_y < 0 || first_x + across > screen->side ||
                  first_y + across > screen->side))
     throw Error("pupil: the screen does not cover the aperture");
-  FftBuffer field(2 * std::size_t(n) * std::size_t(n));
+  PhaseScreen window;
+  if (screen) {
+    window = {across, {}};
+    for (int y = 0; y < across; ++y)
+      for (int x = 0; x < across; ++x)
+        window.phase_rad.push_back(screen->at(first_x + x, first_y + y));
+  }
+  PsfKernel kernel = pupil_kernel(
+      pupil, grid, half, {screen ? &window : nullptr, grid.step_m}, [&](double nu_x, double nu_y) {
+        return pixel_otf(nu_x, grid.cell_rad) * pixel_otf(nu_y, grid.cell_rad);
+      });
+  double sum = 0.0;
+  for (float& share : kernel.values) sum += share = std::max(0.0f, share);
+  for (float& share : kernel.values) share = float(share / sum);
+  return kernel;
+}
+
+namespace {
+
+// Phase at sample (i, j) of the pupil's grid, steps of `ratio` screen samples.
+double phase_of(const PhaseScreen& s, double ratio, int i, int j) {
+  const double x = std::min(i * ratio, s.side - 1.0), y = std::min(j * ratio, s.side - 1.0);
+  const int u = std::min(int(x), s.side - 2), v = std::min(int(y), s.side - 2);
+  const double f = x - u, g = y - v;
+  return (1 - g) * ((1 - f) * s.at(u, v) + f * s.at(u + 1, v)) +
+         g * ((1 - f) * s.at(u, v + 1) + f * s.at(u + 1, v + 1));
+}
+
+// Complex amplitude over the aperture, in the first corner of `field` (n x n, zero before).
+void fill_amplitude(const Pupil& pupil, const PupilGrid& grid, const ScreenAhead& ahead,
+                    FftBuffer& field) {
+  const int across = aperture_samples(pupil, grid), n = grid.side;
   const double step = grid.step_m / pupil.aperture_m;
+  const double ratio = ahead.screen ? grid.step_m / ahead.step_m : 1.0;
+  if (ahead.screen && ratio * (across - 3) > ahead.screen->side - 1)
+    throw Error("pupil: the screen does not cover the aperture");
   for (int j = 0; j < across; ++j)
     for (int i = 0; i < across; ++i) {
       const double x = (i - 0.5 * (across - 1)) * step, y = (j - 0.5 * (across - 1)) * step;
       const double open = open_share(pupil, x, y, step);
       if (open == 0.0) continue;
-      double phase = screen ? screen->at(first_x + i, first_y + j) : 0.0;
+      double phase = ahead.screen ? ahead.scale * phase_of(*ahead.screen, ratio, i, j) : 0.0;
       const double rho = std::min(1.0, 2 * std::hypot(x, y)), theta = std::atan2(y, x);
       for (const ZernikeTerm& t : pupil.wavefront) phase += t.rms_rad * zernike(t.noll, rho, theta);
       const auto at = 2 * (std::size_t(j) * std::size_t(n) + std::size_t(i));
       field.data()[at] = float(open * std::cos(phase));
       field.data()[at + 1] = float(open * std::sin(phase));
     }
+}
+
+}  // namespace
+
+PsfKernel pupil_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
+                       const ScreenAhead& ahead, const TransferFunction& extra) {
+  const int n = grid.side;
+  if (aperture_samples(pupil, grid) > n)
+    throw Error("pupil: the grid is smaller than the aperture");
+  FftBuffer field(2 * std::size_t(n) * std::size_t(n));
+  fill_amplitude(pupil, grid, ahead, field);
   const ComplexFft2 fft(n);
   fft.transform(field);
 
-  // Intensity, then its transfer function times the cell's, then back.
+  // Intensity, then its transfer function times the rest's, then back.
   double light = 0.0;
   for (std::size_t i = 0; i < field.size(); i += 2) {
     const double e = double(field.data()[i]) * field.data()[i] +
@@ -118,17 +162,15 @@ PsfKernel short_exposure_kernel(const Pupil& pupil, const PupilGrid& grid, int h
     field.data()[i + 1] = 0.0f;
   }
   fft.transform(field);
-  std::vector<double> cell(static_cast<std::size_t>(n));
-  for (int i = 0; i < n; ++i) {
-    const double nu = (i <= n / 2 ? i : i - n) * double(grid.fine) / (n * grid.cell_rad);
-    cell[std::size_t(i)] = pixel_otf(nu, grid.cell_rad);
-  }
+  const auto frequency = [&](int i) {
+    return (i <= n / 2 ? i : i - n) * double(grid.fine) / (n * grid.cell_rad);
+  };
   // Forward once more instead of back: the image comes out mirrored, so conjugate first.
   const double scale = double(grid.fine) * grid.fine / (light * double(n) * n);
-  for (std::size_t y = 0; y < std::size_t(n); ++y)
-    for (std::size_t x = 0; x < std::size_t(n); ++x) {
-      float* v = field.data() + 2 * (y * std::size_t(n) + x);
-      const double h = cell[x] * cell[y] * scale;
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      float* v = field.data() + 2 * (std::size_t(y) * std::size_t(n) + std::size_t(x));
+      const double h = scale * extra(frequency(x), frequency(y));
       v[0] = float(v[0] * h);
       v[1] = float(-v[1] * h);
     }
@@ -140,12 +182,28 @@ PsfKernel short_exposure_kernel(const Pupil& pupil, const PupilGrid& grid, int h
     for (int dx = -half; dx <= half; ++dx) {
       const auto v = std::size_t((dy * grid.fine + n) % n),
                  u = std::size_t((dx * grid.fine + n) % n);
-      const float share = std::max(0.0f, field.data()[2 * (v * std::size_t(n) + u)]);
+      const float share = field.data()[2 * (v * std::size_t(n) + u)];
       kernel.values[std::size_t((dy + half) * kernel.side() + dx + half)] = share;
       sum += share;
     }
   for (float& share : kernel.values) share = float(share / sum);
   return kernel;
+}
+
+std::array<ZernikeTerm, 2> centring_tilt(const Pupil& pupil) {
+  // Only terms of azimuthal order 1 have a mean slope; on the edge of radius rho their cosine (or
+  // sine) has the amplitude zernike(noll, rho, 0 or 90 deg).
+  std::array<ZernikeTerm, 2> tilt{{{2, 0.0}, {3, 0.0}}};
+  const double e = pupil.obscuration;
+  for (const ZernikeTerm& t : pupil.wavefront) {
+    const auto [n, m] = orders(t.noll);
+    if (std::abs(m) != 1) continue;
+    const double theta = m > 0 ? 0.0 : pi / 2;
+    const double slope =
+        (zernike(t.noll, 1.0, theta) - e * zernike(t.noll, e, theta)) / (1 - e * e);
+    tilt[m > 0 ? 0 : 1].rms_rad -= 0.5 * t.rms_rad * slope;
+  }
+  return tilt;
 }
 
 PsfKernel mean_of(const std::vector<PsfKernel>& kernels) {

@@ -37,9 +37,9 @@ struct PupilGrid {
 };
 
 /// Finest useful grid for cells of `cell_rad`, kernels of `half` cells and turbulence of `r0_m`
-/// (may be infinite): at least three samples in r0 and 32 across the aperture.
+/// (may be infinite): at least three samples in r0 and `samples` across the aperture.
 PupilGrid pupil_grid(const Pupil& pupil, double wavelength_m, double cell_rad, int half,
-                     double r0_m);
+                     double r0_m, int samples = 32);
 
 /// Instantaneous kernel |F{A exp(i phi)}|^2 through a screen sampled at the grid's step, integrated
 /// over cells. `screen` may be smaller than the grid as long as it covers the aperture; null: no
@@ -47,6 +47,23 @@ PupilGrid pupil_grid(const Pupil& pupil, double wavelength_m, double cell_rad, i
 /// one (frozen flow).
 PsfKernel short_exposure_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
                                 const PhaseScreen* screen, int first_x = 0, int first_y = 0);
+
+/// A screen in front of the aperture, whose first corner meets the screen's sample (0, 0); between
+/// samples the phase is linear.
+struct ScreenAhead {
+  const PhaseScreen* screen = nullptr;  // null: no turbulence
+  double step_m = 0.0;                  // between samples
+  double scale = 1.0;  // of its phase: wavelength of the screen / that of the light
+};
+
+/// Kernel of the pupil through a screen, its transfer function multiplied by `extra` (what blurs
+/// besides, real and even). Sums to 1; negative values are kept.
+PsfKernel pupil_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
+                       const ScreenAhead& ahead, const TransferFunction& extra);
+
+/// Tilt [rad rms of Noll's terms 2 and 3] that puts the light's centroid back on the axis against
+/// the pupil's own terms: the mean slope of the wavefront over the open annulus.
+std::array<ZernikeTerm, 2> centring_tilt(const Pupil& pupil);
 
 /// Samples across the aperture, the side a screen needs.
 int aperture_samples(const Pupil& pupil, const PupilGrid& grid);

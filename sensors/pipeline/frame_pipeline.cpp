@@ -13,6 +13,7 @@
 #include "core/time/iso8601.h"
 #include "sensors/pipeline/light.h"
 #include "sensors/pipeline/object_layer.h"
+#include "sensors/pipeline/optics_stage.h"
 #include "sensors/pipeline/sky_layer.h"
 #include "sensors/pipeline/stopwatch.h"
 
@@ -46,16 +47,13 @@ struct FramePipeline::Work {
   PipelineSettings settings;
   Threads& threads;
   std::optional<StarLayer> stars;
-  PsfTable psf;
+  OpticsStage optics;
   RateImage light;  // kept between frames
 
   Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)
-      : settings(std::move(s)), threads(t) {
+      : settings(std::move(s)), threads(t), optics(settings.sensor, settings.seed, t) {
     const auto& camera = settings.sensor.camera;
     if (map) stars.emplace(settings.sensor, std::move(map));
-    psf = make_psf_table(settings.sensor.effects.has(Effect::psf)
-                             ? psf_sigma_px(camera.optics, camera.band.centre_m)
-                             : 0.0);
     light = RateImage(camera.optics.columns, camera.optics.rows);
   }
 
@@ -69,6 +67,16 @@ struct FramePipeline::Work {
       if (runs) text += (text.empty() ? "" : " ") + std::string(facts(effect).name);
     }
     return text;
+  }
+
+  /// Electrons of a source that just stands out of a pixel's noise of sky, dark current and
+  /// read-out; `light` holds the sky.
+  double faintest_e(const FrameTimes& times) const {
+    const auto& d = settings.sensor.camera.detector;
+    const double sky_e = light.at(light.columns / 2, light.rows / 2);
+    const double noise_e = std::sqrt(sky_e + d.dark_e_per_s * times.seconds() +
+                                     d.read_noise_e * d.read_noise_e);
+    return 10.0 * std::max(1.0, noise_e);
   }
 
   FrameProducts make(const FrameTimes& times, const World& world);
@@ -103,7 +111,7 @@ FrameHeader FramePipeline::Work::header(const View& view) const {
                 .read_noise_e = has(Effect::read_noise) ? detector.read_noise_e : 0.0,
                 .dark_e_per_s = has(Effect::dark_current) ? detector.dark_e_per_s : 0.0,
                 .full_well_e = detector.full_well_e,
-                .psf_fwhm_px = psf.sigma_px * fwhm_per_sigma,
+                .psf_fwhm_px = this->optics.fwhm_px(),
                 .band = sensor.camera.band,
                 .zero_point_mag = Light(view).zero_point_mag(),
                 .extinction_mag_per_airmass = Light(view).extinction_mag_per_airmass(),
@@ -157,11 +165,19 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     Stopwatch timing(frame.times[Effect::sky]);
     fill_sky(view, light, threads);
   }
+  {
+    Stopwatch timing(frame.times[Effect::psf]);
+    optics.begin(times, faintest_e(times));
+  }
   if (stars && has(Effect::stars))
-    stars_drawn = stars->draw(view, psf, light, threads, settings.faintest_star_mag,
+    stars_drawn = stars->draw(view, optics, light, settings.faintest_star_mag,
                               settings.star_truth ? &frame.stars : nullptr, frame.times);
   if (has(Effect::objects))
-    frame.truths = draw_objects(view, objects_in_field(view), psf, light, threads, frame.times);
+    frame.truths = draw_objects(view, objects_in_field(view), optics, light, frame.times);
+  {
+    Stopwatch timing(frame.times[Effect::psf]);
+    optics.finish(light);
+  }
   frame.header = header(view);
   expose(light, sensor.camera.detector, {settings.seed, sensor.name, times.frame, times.seconds()},
          sensor.effects, threads, frame.counts, &frame.times);

@@ -82,7 +82,9 @@ class Painter {
     }
     if (s.sunlit > 0.0 && !hidden)
       s.electrons_per_s = zero_mag_ * light_of_magnitude(magnitude(object, motion, at)) * s.sunlit *
-                          transmission(place.direction) * light_.electrons_per_photon_m2();
+                          transmission(place.direction) * light_.electrons_per_photon_m2() *
+                          (s.pixel ? relative_illumination(view_.sensor().camera.optics, *s.pixel)
+                                   : 1.0);
     return s;
   }
 
@@ -197,8 +199,8 @@ std::vector<std::size_t> objects_in_field(const View& view) {
 namespace {
 
 std::vector<Truth> paint(const View& view, const Painter& painter,
-                         const std::vector<std::size_t>& objects, const PsfTable& psf,
-                         RateImage& image, Threads& threads, EffectTimes& times) {
+                         const std::vector<std::size_t>& objects, OpticsStage& stage,
+                         RateImage& image, EffectTimes& times) {
   const auto& exposure = view.times();
   const auto& optics = view.sensor().camera.optics;
   // Instants of the finest division; coarser ones take every so manieth.
@@ -227,7 +229,7 @@ std::vector<Truth> paint(const View& view, const Painter& painter,
     const auto arcs = arcs_of(samples, exposure.seconds());
     if (!arcs.empty()) {
       Stopwatch timing(times[Effect::psf]);
-      for (const auto& part : deposit(arcs, psf, image, threads)) light = light + part;
+      for (const auto& part : stage.add(arcs, image)) light = light + part;
     }
     bool enters = false;
     for (const auto& s : samples) enters = enters || inside(s.pixel, optics);
@@ -282,7 +284,7 @@ std::vector<Truth> paint(const View& view, const Painter& painter,
 }  // namespace
 
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
-                                const PsfTable& psf, RateImage& image, Threads& threads,
+                                OpticsStage& optics, RateImage& image,
                                 EffectTimes& times) {
   EffectTimes inside;
   double total_s = 0.0;
@@ -290,7 +292,7 @@ std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>
   const Painter painter(view, inside);
   {
     Stopwatch timing(total_s);
-    truths = paint(view, painter, objects, psf, image, threads, inside);
+    truths = paint(view, painter, objects, optics, image, inside);
   }
   add_object_place_costs(view, objects, painter.samples(), inside);
   for (std::size_t i = 0; i < effect_count; ++i) {

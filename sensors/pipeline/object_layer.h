@@ -4,7 +4,7 @@
 #include "core/base/image.h"
 #include "core/base/parallel.h"
 #include "core/detection/truth.h"
-#include "core/optics/psf_table.h"
+#include "sensors/pipeline/optics_stage.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -19,7 +19,7 @@ std::vector<std::size_t> objects_in_field(const View& view);
 /// Adds their light to `image` and tells what was drawn. An object of which no light fell inside
 /// and whose path did not enter the frame has no entry.
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
-                                const PsfTable& psf, RateImage& image, Threads& threads,
+                                OpticsStage& optics, RateImage& image,
                                 EffectTimes& times);
 
 }  // namespace dmise

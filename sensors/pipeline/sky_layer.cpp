@@ -43,7 +43,8 @@ void fill_sky(const View& view, RateImage& image, Threads& threads) {
         if (!direction || (view.on_ground() && hidden.direction(gcrs_from_camera * *direction)))
           continue;
         node[j * std::size_t(nodes_x) + std::size_t(i)] =
-            static_cast<float>(electrons_per_sr * pixel_solid_angle_sr(optics, pixel));
+            static_cast<float>(electrons_per_sr * pixel_solid_angle_sr(optics, pixel) *
+                               relative_illumination(optics, pixel));
       }
   });
 

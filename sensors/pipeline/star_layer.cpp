@@ -71,8 +71,8 @@ std::vector<std::uint32_t> StarLayer::candidates(const View& view, double fainte
 StarLayer::StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map)
     : map_(std::move(map)), light_(sensor.camera.band) {}
 
-std::uint32_t StarLayer::draw(const View& view, const PsfTable& psf, RateImage& image,
-                              Threads& threads, double faintest_v_mag,
+std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, RateImage& image,
+                              double faintest_v_mag,
                               std::vector<StarTruth>* truth, EffectTimes& times) const {
   const auto& exposure = view.times();
   const auto& stars = map_->stars;
@@ -107,18 +107,20 @@ std::uint32_t StarLayer::draw(const View& view, const PsfTable& psf, RateImage& 
   {
     Stopwatch timing(times[Effect::stars]);
     const double electrons_per_rate = light.electrons_per_photon_m2() * exposure.seconds();
+    const auto& camera = view.sensor().camera.optics;
     arcs.reserve(trails.size());
     for (std::size_t i = 0; i < trails.size(); ++i) {
       const auto& t = trails[i];
       arcs.push_back({t.pixel[0], t.pixel[1], t.pixel[2],
                       light_.photons_per_s_m2(stars.v_mag[t.star], stars.bv[t.star]) *
-                          electrons_per_rate * transmission[i]});
+                          electrons_per_rate * transmission[i] *
+                          relative_illumination(camera, t.pixel[1])});
     }
   }
   std::vector<Deposited> deposited;
   {
     Stopwatch timing(times[Effect::psf]);
-    deposited = deposit(arcs, psf, image, threads);
+    deposited = optics.add(arcs, image);
   }
   std::uint32_t inside = 0;
   for (std::size_t i = 0; i < arcs.size(); ++i) {

@@ -4,9 +4,9 @@
 
 #include "core/base/image.h"
 #include "core/base/parallel.h"
-#include "core/optics/psf_table.h"
 #include "core/photometry/star_light.h"
 #include "core/sky/star_cache.h"
+#include "sensors/pipeline/optics_stage.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -26,7 +26,7 @@ class StarLayer {
 
   /// Adds the stars' light to `image`; returns how many left some in the frame. `truth`, if not
   /// null, gets each of them. The time spent goes to the effects it was spent for.
-  std::uint32_t draw(const View& view, const PsfTable& psf, RateImage& image, Threads& threads,
+  std::uint32_t draw(const View& view, OpticsStage& optics, RateImage& image,
                      double faintest_v_mag, std::vector<StarTruth>* truth,
                      EffectTimes& times) const;
 

@@ -1,0 +1,19 @@
+#pragma once
+#include "core/base/json.h"
+#include "core/config/yaml_reader.h"
+#include "core/optics/camera.h"
+#include "core/optics/seeing.h"
+
+namespace dmise {
+
+/// Reads `optics:` of a camera; the keys are those of docs/models/optics.md.
+Optics read_optics(const YamlValue& value);
+
+/// Reads `seeing:` of a sensor.
+SensorSeeing read_seeing(const YamlValue& value);
+
+/// What of them decides a frame, beside the camera's geometry; nothing for the defaults.
+void write_optics_json(JsonWriter& json, const Optics& optics);
+void write_seeing_json(JsonWriter& json, const SensorSeeing& seeing);
+
+}  // namespace dmise

@@ -1,0 +1,206 @@
+#include "core/optics/blur_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/optics/resample.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::size_t row_grain = 8;
+
+// Weight of node `node` of `count` equally spaced from the first to the last of `length` pixels:
+// 1 there, falling to 0 at the next ones. One node weighs 1 everywhere.
+float hat(int node, int count, double at, double length) {
+  if (count == 1) return 1.0f;
+  const double x = std::clamp(at / (length - 1.0), 0.0, 1.0) * (count - 1);
+  return float(std::max(0.0, 1.0 - std::abs(x - node)));
+}
+
+}  // namespace
+
+BlurGrid::BlurGrid(int columns, int rows, int oversampling, int half_cells, int field_columns,
+                   int field_rows)
+    : columns_(columns),
+      rows_(rows),
+      oversampling_(oversampling),
+      half_(half_cells),
+      field_columns_(columns > 1 ? field_columns : 1),
+      field_rows_(rows > 1 ? field_rows : 1),
+      fft_(good_fft_size(columns * oversampling + 2 * half_cells, true),
+           good_fft_size(rows * oversampling + 2 * half_cells)),
+      cells_(fft_.floats()),
+      lit_(std::size_t(fft_.rows())),
+      of_row_(std::size_t(rows)) {}
+
+void BlurGrid::set_kernels(const std::vector<PsfKernel>& kernels, Threads& threads) {
+  if (int(kernels.size()) != field_columns_ * field_rows_) throw Error("blur: number of kernels");
+  spectra_.resize(kernels.size());
+  for (std::size_t i = 0; i < kernels.size(); ++i) {
+    const PsfKernel& kernel = kernels[i];
+    if (kernel.half != half_) throw Error("blur: size of a kernel");
+    empty_ = false;
+    clear(threads);
+    for (int dy = -half_; dy <= half_; ++dy)
+      for (int dx = -half_; dx <= half_; ++dx) {
+        const int y = (dy + fft_.rows()) % fft_.rows(), x = (dx + fft_.columns()) % fft_.columns();
+        cells_.data()[std::size_t(y) * std::size_t(fft_.stride()) + std::size_t(x)] =
+            kernel.at(dx, dy);
+      }
+    fft_.spectrum(cells_, threads, spectra_[i]);
+  }
+  if (kernels.size() > 1 && !part_.data()) {
+    part_ = FftBuffer(fft_.floats());
+    sum_ = FftBuffer(fft_.floats());
+  }
+  empty_ = false;
+  clear(threads);
+}
+
+void BlurGrid::clear(Threads& threads) {
+  if (empty_) return;
+  const auto stride = std::size_t(fft_.stride());
+  threads.for_ranges(std::size_t(fft_.rows()), row_grain, [&](std::size_t begin, std::size_t end) {
+    std::fill(cells_.data() + begin * stride, cells_.data() + end * stride, 0.0f);
+  });
+  empty_ = true;
+}
+
+DepositView BlurGrid::cells() {
+  empty_ = false;
+  return {.pixels = cells_.data(),
+          .columns = columns_ * oversampling_ + 2 * half_,
+          .rows = rows_ * oversampling_ + 2 * half_,
+          .stride = fft_.stride(),
+          .left = half_,
+          .top = half_,
+          .told_columns = columns_ * oversampling_,
+          .told_rows = rows_ * oversampling_};
+}
+
+PixelPosition BlurGrid::cell_of(PixelPosition p) const {
+  const double k = oversampling_, shift = 0.5 * (k - 1) + half_;
+  return {k * p.x_px + shift, k * p.y_px + shift};
+}
+
+PixelPosition BlurGrid::pixel_of(PixelPosition c) const {
+  const double k = oversampling_, shift = 0.5 * (k - 1) + half_;
+  return {(c.x_px - shift) / k, (c.y_px - shift) / k};
+}
+
+Arc BlurGrid::on_cells(const Arc& arc) const {
+  Arc a = arc;
+  a.start = cell_of(arc.start);
+  a.middle = cell_of(arc.middle);
+  a.end = cell_of(arc.end);
+  return a;
+}
+
+void BlurGrid::find_lit_rows(Threads& threads) {
+  threads.for_ranges(lit_.size(), row_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      const float* row = cells_.data() + y * std::size_t(fft_.stride());
+      lit_[y] = std::any_of(row, row + fft_.columns(), [](float e) { return e != 0.0f; });
+    }
+  });
+}
+
+// Light near one node of the field, weighed by its share of the linear interpolation.
+void BlurGrid::weigh(int node, Threads& threads) {
+  const int node_x = node % field_columns_, node_y = node / field_columns_;
+  const auto stride = std::size_t(fft_.stride());
+  threads.for_ranges(lit_.size(), row_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      if (!lit_[y]) continue;
+      const double row = pixel_of({0.0, double(y)}).y_px;
+      const float share = hat(node_y, field_rows_, row, rows_);
+      const float* in = cells_.data() + y * stride;
+      float* out = part_.data() + y * stride;
+      for (int x = 0; x < fft_.columns(); ++x)
+        out[x] = in[x] == 0.0f
+                     ? 0.0f
+                     : in[x] * share *
+                           hat(node_x, field_columns_, pixel_of({double(x), 0.0}).x_px, columns_);
+    }
+  });
+}
+
+FftBuffer& BlurGrid::blur(Threads& threads) {
+  const int begin = half_, end = half_ + rows_ * oversampling_;
+  if (spectra_.size() == 1) {
+    fft_.convolve(cells_, lit_, begin, end, spectra_[0], threads);
+    return cells_;
+  }
+  std::fill(sum_.data(), sum_.data() + sum_.size(), 0.0f);
+  for (int node = 0; node < int(spectra_.size()); ++node) {
+    weigh(node, threads);
+    fft_.add_product(part_, lit_, spectra_[std::size_t(node)], sum_, threads);
+  }
+  fft_.invert(sum_, begin, end, threads);
+  return sum_;
+}
+
+// Puts each pixel's light at the start of its first row of cells, and sums what is above and below
+// 0.
+void BlurGrid::resample(FftBuffer& cells, PointSpread::Resampling resampling, Threads& threads) {
+  const int k = oversampling_;
+  const auto stride = std::size_t(fft_.stride());
+  const ResamplingCells taken = resampling_cells(k, resampling);
+  threads.for_ranges(std::size_t(rows_), row_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      float* rows = cells.data() + (std::size_t(half_) + y * std::size_t(k)) * stride;
+      const float* frame = rows + half_;
+      double bright = 0.0, dark = 0.0;
+      for (int x = 0; x < columns_; ++x) {
+        float sum = 0.0f;
+        for (int j = taken.first; j < taken.first + taken.count; ++j)
+          for (int i = taken.first; i < taken.first + taken.count; ++i)
+            sum += frame[std::size_t(j) * stride + std::size_t(x * k + i)];
+        sum *= taken.scale;
+        rows[x] = sum;
+        bright += sum > 0.0f ? sum : 0.0f;
+        dark += sum > 0.0f ? 0.0f : sum;
+      }
+      of_row_[y] = {bright, dark};
+    }
+  });
+}
+
+void BlurGrid::add_positive(const FftBuffer& cells, RateImage& light, Threads& threads) const {
+  Light total;
+  for (const Light& row : of_row_) {
+    total.bright += row.bright;
+    total.dark += row.dark;
+  }
+  if (!(total.bright > 0.0)) return;
+  const auto scale = float(std::max(0.0, (total.bright + total.dark) / total.bright));
+  threads.for_ranges(std::size_t(rows_), row_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      const float* in = cells.data() + (std::size_t(half_) + y * std::size_t(oversampling_)) *
+                                           std::size_t(fft_.stride());
+      float* out = light.row(int(y));
+      for (int x = 0; x < columns_; ++x) out[x] += in[x] > 0.0f ? scale * in[x] : 0.0f;
+    }
+  });
+}
+
+void BlurGrid::blur_into(RateImage& light, PointSpread::Resampling resampling, Threads& threads) {
+  if (light.columns != columns_ || light.rows != rows_) throw Error("blur: size of the image");
+  if (spectra_.empty()) throw Error("blur: no kernel was set");
+  find_lit_rows(threads);
+  if (std::none_of(lit_.begin(), lit_.end(), [](char lit) { return lit; })) return;
+  FftBuffer& blurred = blur(threads);
+  resample(blurred, resampling, threads);
+  add_positive(blurred, light, threads);
+  empty_ = false;
+}
+
+std::size_t BlurGrid::memory_bytes() const {
+  std::size_t bytes = (cells_.size() + part_.size() + sum_.size()) * sizeof(float);
+  for (const auto& s : spectra_) bytes += s.size() * sizeof(s[0]);
+  return bytes;
+}
+
+}  // namespace dmise

@@ -1,0 +1,151 @@
+#include "core/optics/direct_blur.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/optics/psf_plan.h"
+#include "core/optics/resample.h"
+
+namespace dmise {
+namespace {
+
+constexpr int band_rows = 128;
+constexpr double piece_px = 16.0;
+
+bool meet(const Extent& a, const Extent& b) {
+  return a.left <= b.right && b.left <= a.right && a.top <= b.bottom && b.top <= a.bottom;
+}
+
+double size_of(const Extent& e) { return std::max(e.right - e.left, e.bottom - e.top); }
+
+int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+
+}  // namespace
+
+DirectBlur::DirectBlur(int oversampling, int half_cells, PointSpread::Resampling resampling)
+    : k_(oversampling),
+      half_(half_cells),
+      reach_px_((half_cells + oversampling - 1) / oversampling + 1),
+      side_(2 * reach_px_ + 1),
+      resampling_(resampling),
+      table_(make_psf_table(grid_sigma_cells)) {}
+
+// shares_[phase][dy][dx]: what a cell of that phase within its pixel gives to the pixel dx, dy
+// away.
+void DirectBlur::set_kernel(const PsfKernel& kernel) {
+  if (kernel.half != half_) throw Error("blur: size of the kernel");
+  const auto each = std::size_t(side_) * std::size_t(side_);
+  shares_.assign(each * std::size_t(k_ * k_), 0.0f);
+  const ResamplingCells taken = resampling_cells(k_, resampling_);
+  for (int phase = 0; phase < k_ * k_; ++phase) {
+    float* share = shares_.data() + std::size_t(phase) * each;
+    for (int dy = -reach_px_; dy <= reach_px_; ++dy)
+      for (int dx = -reach_px_; dx <= reach_px_; ++dx) {
+        double sum = 0.0;
+        for (int j = taken.first; j < taken.first + taken.count; ++j)
+          for (int i = taken.first; i < taken.first + taken.count; ++i) {
+            const int v = dy * k_ + j - phase / k_, u = dx * k_ + i - phase % k_;
+            if (std::abs(u) <= half_ && std::abs(v) <= half_) sum += kernel.at(u, v);
+          }
+        share[std::size_t((dy + reach_px_) * side_ + dx + reach_px_)] = float(taken.scale * sum);
+      }
+  }
+}
+
+Arc DirectBlur::on_cells(const Arc& arc) const {
+  const auto cell = [&](PixelPosition p) {
+    return PixelPosition{k_ * p.x_px + 0.5 * (k_ - 1), k_ * p.y_px + 0.5 * (k_ - 1)};
+  };
+  Arc a = arc;
+  a.start = cell(arc.start);
+  a.middle = cell(arc.middle);
+  a.end = cell(arc.end);
+  return a;
+}
+
+// Calls use(piece) for short pieces of the arc that meet `reach`, in the order of time.
+template <class Use>
+void DirectBlur::for_pieces(const Arc& arc, const Extent& reach, const Use& use) const {
+  const auto visit = [&](const auto& self, double begin, double end, int depth) -> void {
+    const Arc piece = part_of(arc, begin, end);
+    const Extent e = extent(piece);
+    if (!meet(e, reach)) return;
+    if (size_of(e) <= piece_px || depth > 60) return use(piece);
+    const double middle = 0.5 * (begin + end);
+    self(self, begin, middle, depth + 1);
+    self(self, middle, end, depth + 1);
+  };
+  visit(visit, 0.0, 1.0, 0);
+}
+
+void DirectBlur::add(const Arc& piece, int row_begin, int row_end, RateImage& light) const {
+  // The piece on cells of its own, from the first cell of a pixel on.
+  Arc arc = on_cells(piece);
+  const Extent e = extent(arc);
+  const int margin = table_.size / 2 + 1;
+  const int left_px = floor_div(int(std::floor(e.left)) - margin, k_),
+            top_px = floor_div(int(std::floor(e.top)) - margin, k_);
+  const int columns = int(std::ceil(e.right)) + margin + 1 - left_px * k_,
+            rows = int(std::ceil(e.bottom)) + margin + 1 - top_px * k_;
+  const PixelPosition origin{double(left_px * k_), double(top_px * k_)};
+  arc.start = arc.start - origin;
+  arc.middle = arc.middle - origin;
+  arc.end = arc.end - origin;
+  thread_local std::vector<float> patch;
+  patch.assign(std::size_t(columns) * std::size_t(rows), 0.0f);
+  thread_local Threads alone(1);
+  dmise::deposit(std::span(&arc, 1), table_, DepositView{patch.data(), columns, rows, columns},
+                 alone);
+
+  const auto each = std::size_t(side_) * std::size_t(side_);
+  for (int v = 0; v < rows; ++v)
+    for (int u = 0; u < columns; ++u) {
+      const float e_here = patch[std::size_t(v) * std::size_t(columns) + std::size_t(u)];
+      if (e_here == 0.0f) continue;
+      const int x0 = left_px + u / k_ - reach_px_, y0 = top_px + v / k_ - reach_px_;
+      const float* share = shares_.data() + std::size_t(v % k_ * k_ + u % k_) * each;
+      const int i0 = std::max(0, -x0), i1 = std::min(side_, light.columns - x0);
+      const int j0 = std::max(0, row_begin - y0), j1 = std::min(side_, row_end - y0);
+      for (int j = j0; j < j1; ++j) {
+        float* out = light.row(y0 + j) + x0;
+        const float* in = share + j * side_;
+        for (int i = i0; i < i1; ++i) out[i] += e_here * in[i];
+      }
+    }
+}
+
+std::vector<Deposited> DirectBlur::deposit(std::span<const Arc> arcs, RateImage& light,
+                                           Threads& threads) {
+  if (shares_.empty()) throw Error("blur: no kernel was set");
+  const double reach = reach_px_ + double(table_.size) / k_ + 1.0;
+  const auto bands = std::size_t((light.rows + band_rows - 1) / band_rows);
+  threads.for_ranges(bands, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      const int first = int(b) * band_rows, last = std::min(light.rows, first + band_rows);
+      const Extent near{-reach, first - reach, light.columns + reach, last + reach};
+      for (const Arc& arc : arcs) {
+        if (!meet(extent(arc), near)) continue;
+        for_pieces(arc, near, [&](const Arc& piece) { add(piece, first, last, light); });
+      }
+    }
+  });
+  std::vector<Deposited> result(arcs.size());
+  const DepositView frame{.columns = light.columns * k_,
+                          .rows = light.rows * k_,
+                          .told_columns = light.columns * k_,
+                          .told_rows = light.rows * k_};
+  threads.for_ranges(arcs.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Deposited d = told(on_cells(arcs[i]), table_, frame);
+      if (d.signal_e > 0.0) {
+        d.x_px = (d.x_px - 0.5 * (k_ - 1)) / k_;
+        d.y_px = (d.y_px - 0.5 * (k_ - 1)) / k_;
+      }
+      result[i] = d;
+    }
+  });
+  return result;
+}
+
+}  // namespace dmise

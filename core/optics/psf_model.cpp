@@ -1,0 +1,148 @@
+#include "core/optics/psf_model.h"
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+#include "core/optics/psf_table.h"
+
+namespace dmise {
+namespace {
+
+using Model = PointSpread::Model;
+
+bool has_screens(const PsfPlan& plan) {
+  return plan.exposure == ExposureKind::brief || plan.exposure == ExposureKind::between;
+}
+
+/// Samples across the aperture of a pupil without turbulence: the kernel is right to 1e-3 of its
+/// peak.
+constexpr int still_samples = 128, turbulent_samples = 48;
+
+}  // namespace
+
+PsfModel::PsfModel(const Optics& optics, std::vector<WavelengthShare> band, const PsfPlan& plan,
+                   const std::optional<SensorSeeing>& seeing, const RngKey& turbulence)
+    : optics_(optics),
+      band_(std::move(band)),
+      plan_(plan),
+      cell_rad_(optics.pixel_angle_rad() / plan.oversampling) {
+  if (band_.empty()) throw Error("psf: no wavelength");
+  if (plan.exposure != ExposureKind::none) seeing_ = seeing;
+  if (optics.spread.model == Model::gaussian) return;
+  const bool screens = has_screens(plan);
+  for (const WavelengthShare& w : band_)
+    grids_.push_back(pupil_grid(
+        pupil({}, w.wavelength_m), w.wavelength_m, cell_rad_, plan.half_cells,
+        screens ? seeing_->r0_at_m(w.wavelength_m) : std::numeric_limits<double>::infinity(),
+        screens ? turbulent_samples : still_samples));
+  if (screens) {
+    const int across = aperture_samples(pupil({}, band_[0].wavelength_m), grids_[0]);
+    if (across > 1024) throw Error("psf: turbulence too strong for the aperture");
+    flow_.emplace(across, seeing_->outer_scale_m / grids_[0].step_m, turbulence);
+  }
+}
+
+Pupil PsfModel::pupil(const FieldPlace& place, double wavelength_m) const {
+  const PointSpread& s = optics_.spread;
+  const double rad_per_m = 2 * pi / wavelength_m;
+  Pupil p{.aperture_m = optics_.aperture_m,
+          .obscuration = optics_.obscuration,
+          .spiders = s.spiders,
+          .spider_width_m = s.spider_width_m};
+  const auto add = [&](int noll, double rms_m) {
+    if (rms_m != 0.0) p.wavefront.push_back({noll, rms_m * rad_per_m});
+  };
+  for (const WavefrontTerm& t : s.wavefront) add(t.noll, t.rms_m);
+  // A detector off the focus sees rho^2 delta / (8 N^2) of path, and Noll's term 4 is sqrt(3) (2
+  // rho^2 - 1).
+  const double n = optics_.f_number();
+  add(4, s.defocus_m / (16 * std::sqrt(3.0) * n * n));
+  const double r = place.radius, a = place.angle_rad;
+  add(8, s.field.coma_m * r * std::cos(a));
+  add(7, s.field.coma_m * r * std::sin(a));
+  add(6, s.field.astigmatism_m * r * r * std::cos(2 * a));
+  add(5, s.field.astigmatism_m * r * r * std::sin(2 * a));
+  add(4, s.field.curvature_m * r * r);
+  for (const ZernikeTerm& t : centring_tilt(p))
+    if (t.rms_rad != 0.0) p.wavefront.push_back(t);
+  return p;
+}
+
+bool PsfModel::is_round(const FieldPlace& place) const {
+  const PointSpread& s = optics_.spread;
+  return s.model == Model::gaussian ||
+         (!flow_ && s.spiders == 0 && s.wavefront.empty() && s.defocus_m == 0.0 &&
+          (place.radius == 0.0 || !s.field.any()));
+}
+
+double PsfModel::air_otf(double nu, double wavelength_m) const {
+  if (plan_.exposure != ExposureKind::lasting) return 1.0;
+  return std::exp(-0.5 * von_karman_structure(nu * wavelength_m, seeing_->r0_at_m(wavelength_m),
+                                              seeing_->outer_scale_m));
+}
+
+double PsfModel::extra_otf(double nu_x, double nu_y, double wavelength_m) const {
+  // The grid holds nothing beyond half a cycle a cell.
+  if (std::max(std::abs(nu_x), std::abs(nu_y)) * cell_rad_ > 0.5 + 1e-9) return 0.0;
+  const double nu = std::hypot(nu_x, nu_y);
+  double h = jitter_otf(nu, optics_.spread.jitter_rad) * air_otf(nu, wavelength_m) /
+             jitter_otf(nu, grid_sigma_cells * cell_rad_);
+  if (optics_.spread.resampling == PointSpread::Resampling::bilinear) {
+    const double pixel_rad = cell_rad_ * plan_.oversampling;
+    for (const double axis : {nu_x, nu_y})
+      h *= pixel_otf(axis, pixel_rad) / pixel_otf(axis, cell_rad_);
+  }
+  return h;
+}
+
+PsfKernel PsfModel::round_kernel(double wavelength_m) {
+  const bool gaussian = optics_.spread.model == Model::gaussian;
+  const double sigma_rad = psf_sigma_px(optics_, wavelength_m) * optics_.pixel_angle_rad();
+  const auto otf = [&](double nu_x, double nu_y) {
+    const double nu = std::hypot(nu_x, nu_y);
+    const double blur =
+        gaussian ? jitter_otf(nu, sigma_rad)
+                 : diffraction_otf(nu, wavelength_m, optics_.aperture_m, optics_.obscuration);
+    return blur == 0.0 ? 0.0 : blur * extra_otf(nu_x, nu_y, wavelength_m);
+  };
+  return signed_kernel_of(otf, 0.5 / cell_rad_, cell_rad_, plan_.half_cells, &lost_);
+}
+
+PsfKernel PsfModel::pupil_kernel_at(const FieldPlace& place, double wavelength_m,
+                                    const PhaseScreen* screen) const {
+  std::size_t i = 0;
+  while (band_[i].wavelength_m != wavelength_m) ++i;
+  const ScreenAhead ahead{screen, grids_[0].step_m, band_[0].wavelength_m / wavelength_m};
+  return pupil_kernel(
+      pupil(place, wavelength_m), grids_[i], plan_.half_cells, ahead,
+      [&](double nu_x, double nu_y) { return extra_otf(nu_x, nu_y, wavelength_m); });
+}
+
+PsfKernel PsfModel::kernel(const FieldPlace& place, double start_s, double exposure_s) {
+  const auto side = std::size_t(2 * plan_.half_cells + 1);
+  std::vector<double> sum(side * side);
+  const auto add = [&](const PsfKernel& k, double share) {
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += share * double(k.values[i]);
+  };
+  if (is_round(place)) {
+    for (const WavelengthShare& w : band_) add(round_kernel(w.wavelength_m), w.share);
+  } else if (!flow_) {
+    for (const WavelengthShare& w : band_)
+      add(pupil_kernel_at(place, w.wavelength_m, nullptr), w.share);
+  } else {
+    const double r0_samples = seeing_->r0_at_m(band_[0].wavelength_m) / grids_[0].step_m;
+    for (int i = 0; i < plan_.screens; ++i) {
+      const double t = start_s + exposure_s * (i + 0.5) / plan_.screens;
+      const PhaseScreen screen = flow_->at(seeing_->wind_m_per_s * t / grids_[0].step_m,
+                                           seeing_->wind_direction_deg * deg, r0_samples);
+      for (const WavelengthShare& w : band_)
+        add(pupil_kernel_at(place, w.wavelength_m, &screen), w.share / plan_.screens);
+    }
+  }
+  PsfKernel kernel{plan_.half_cells, std::vector<float>(sum.size())};
+  for (std::size_t i = 0; i < sum.size(); ++i) kernel.values[i] = float(sum[i]);
+  return kernel;
+}
+
+}  // namespace dmise

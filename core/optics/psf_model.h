@@ -1,0 +1,64 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "core/optics/frozen_flow.h"
+#include "core/optics/psf_plan.h"
+#include "core/optics/pupil.h"
+
+namespace dmise {
+
+/// A wavelength and its share of the light; the shares of a band sum to 1.
+struct WavelengthShare {
+  double wavelength_m = 0.0;
+  double share = 1.0;
+};
+
+/// A place in the field: distance and angle (from +x to +y) from the principal point, 1 at the
+/// frame's farthest corner.
+struct FieldPlace {
+  double radius = 0.0;
+  double angle_rad = 0.0;
+};
+
+/// Makes the kernels that a plan asks for, on the cells of its oversampled grid:
+///   diffraction (obscuration, spiders, wavefront) x turbulence x jitter, over the wavelengths,
+/// divided by the Gaussian of `grid_sigma_cells` that deposits on the grid have, and not integrated
+/// over cells, which deposits are. With bilinear resampling times pixel / cell.
+class PsfModel {
+ public:
+  /// `turbulence` names the random numbers of this sensor's air. The first wavelength share is the
+  /// one screens are sampled for. Throws `Error` where the pupil's grid would be too large.
+  PsfModel(const Optics& optics, std::vector<WavelengthShare> band, const PsfPlan& plan,
+           const std::optional<SensorSeeing>& seeing, const RngKey& turbulence);
+
+  /// True when each exposure has kernels of its own.
+  bool changes() const { return flow_.has_value(); }
+
+  /// Kernel of an exposure that starts at `start_s` of simulation time and lasts `exposure_s`.
+  PsfKernel kernel(const FieldPlace& place, double start_s, double exposure_s);
+
+  /// Share of the light beyond the kernel's end, given back by scaling; of the last symmetric
+  /// kernel made.
+  double lost() const { return lost_; }
+
+ private:
+  bool is_round(const FieldPlace& place) const;
+  double air_otf(double nu_per_rad, double wavelength_m) const;
+  double extra_otf(double nu_x, double nu_y, double wavelength_m) const;
+  Pupil pupil(const FieldPlace& place, double wavelength_m) const;
+  PsfKernel round_kernel(double wavelength_m);
+  PsfKernel pupil_kernel_at(const FieldPlace& place, double wavelength_m,
+                            const PhaseScreen* screen) const;
+
+  Optics optics_;
+  std::vector<WavelengthShare> band_;
+  PsfPlan plan_;
+  std::optional<SensorSeeing> seeing_;
+  double cell_rad_;
+  std::vector<PupilGrid> grids_;  // one a wavelength
+  std::optional<FrozenFlow> flow_;
+  double lost_ = 0.0;
+};
+
+}  // namespace dmise

@@ -1,0 +1,135 @@
+#include "core/optics/psf_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/optics/psf_table.h"
+
+namespace dmise {
+namespace {
+
+using Method = PointSpread::Method;
+using Model = PointSpread::Model;
+
+// Where exp(-3.44 x^(5/3)) and a Gaussian of unit width have fallen to 1e-4.
+constexpr double long_exposure_end = 1.806;  // lambda nu / r0
+constexpr double gaussian_end = 0.683;       // sigma nu
+constexpr double narrow_px = 0.25;
+
+bool is_aberrated(const PointSpread& s) {
+  return !s.wavefront.empty() || s.field.any() || s.defocus_m != 0.0;
+}
+
+// Widths and frequencies of the blur, in pixels.
+struct Measures {
+  double airy_px, seeing_px, jitter_px, defocus_px, cutoff_per_px;
+};
+
+Measures measure(const Optics& o, double wavelength_m, const SensorSeeing* seeing, bool lasting) {
+  const PointSpread& s = o.spread;
+  const double pixel_rad = o.pixel_angle_rad();
+  Measures m{};
+  if (s.model == Model::gaussian) {
+    m.airy_px = fwhm_per_sigma * psf_sigma_px(o, wavelength_m);
+    m.cutoff_per_px = gaussian_end / psf_sigma_px(o, wavelength_m);
+    return m;
+  }
+  m.airy_px = 1.029 * wavelength_m / o.aperture_m / pixel_rad;
+  m.jitter_px = fwhm_per_sigma * s.jitter_rad / pixel_rad;
+  m.defocus_px = std::abs(s.defocus_m) / o.f_number() / o.pixel_pitch_m;
+  m.cutoff_per_px = o.aperture_m / wavelength_m * pixel_rad;
+  if (seeing) {
+    const double r0_m = seeing->r0_at_m(wavelength_m);
+    m.seeing_px = 0.976 * wavelength_m / r0_m / pixel_rad;
+    if (lasting)
+      m.cutoff_per_px =
+          std::min(m.cutoff_per_px, long_exposure_end * r0_m / wavelength_m * pixel_rad);
+  }
+  if (s.jitter_rad > 0.0)
+    m.cutoff_per_px = std::min(m.cutoff_per_px, gaussian_end / s.jitter_rad * pixel_rad);
+  return m;
+}
+
+[[noreturn]] void refuse(const char* key, const std::string& reason) {
+  throw ConfigError(std::string("optics.") + key + ": " + reason);
+}
+
+}  // namespace
+
+const char* name(Method method) {
+  switch (method) {
+    case Method::automatic:
+      return "auto";
+    case Method::deposit:
+      return "deposit";
+    case Method::direct:
+      return "direct";
+    case Method::transform:
+      return "transform";
+  }
+  return "?";
+}
+
+PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<SensorSeeing>& seeing,
+                 double exposure_s) {
+  const PointSpread& s = o.spread;
+  const SensorSeeing* air = seeing && std::isfinite(seeing->r0_m) ? &*seeing : nullptr;
+  PsfPlan plan;
+  if (s.model == Model::gaussian) air = nullptr;
+  if (air) {
+    const double screens = std::ceil(exposure_s / air->tau0_s(wavelength_m));
+    plan.exposure = screens <= 1.0              ? ExposureKind::brief
+                    : screens <= s.most_screens ? ExposureKind::between
+                                                : ExposureKind::lasting;
+    plan.screens = plan.exposure == ExposureKind::lasting ? 0 : std::max(1, int(screens));
+  }
+  const Measures m = measure(o, wavelength_m, air, plan.exposure == ExposureKind::lasting);
+  plan.cutoff_per_px = m.cutoff_per_px;
+  plan.fwhm_px =
+      std::hypot(std::hypot(m.airy_px, m.seeing_px), std::hypot(m.jitter_px, m.defocus_px));
+
+  const bool plain = s.model == Model::gaussian;
+  const bool narrow = !plain && plan.fwhm_px < narrow_px && !is_aberrated(s);
+  if (s.method == Method::deposit && !plain && !narrow)
+    refuse("method", "deposit is for psf: gaussian, or a blur below 0.25 px");
+  if (s.method == Method::deposit || (s.method == Method::automatic && (plain || narrow))) {
+    plan.method = Method::deposit;
+    // Airy wings beyond a pixel's half side carry about 0.2 (lambda / D) / radius of the light.
+    plan.error = plain ? 2e-6 : 0.2 * m.airy_px / 0.5;
+    plan.why = plain ? "Gaussian model" : "blur far below a pixel";
+    return plan;
+  }
+
+  const int least = std::max(1, int(std::ceil(2 * m.cutoff_per_px - 1e-9)));
+  plan.oversampling = s.oversampling > 0 ? s.oversampling : least;
+  if (plan.oversampling > largest_oversampling)
+    refuse("oversampling", "the blur needs " + std::to_string(plan.oversampling) +
+                               " cells a pixel, more than " + std::to_string(largest_oversampling) +
+                               "; add jitter or take psf: gaussian");
+  if (plan.oversampling < least)
+    refuse("oversampling", "must be at least " + std::to_string(least) +
+                               " to sample the blur, got " + std::to_string(plan.oversampling));
+  const double core_px = plan.fwhm_px;
+  const double support_px = s.support_px > 0 ? s.support_px
+                            : plain          ? 2.5 * core_px
+                                             : std::max({12.0 * m.airy_px, 4.0 * core_px, 8.0});
+  plan.half_cells = std::clamp(int(std::ceil(support_px * plan.oversampling)), 8, 512);
+  const double cells = double(plan.oversampling) * plan.oversampling *
+                       (o.columns + 2 * support_px) * (o.rows + 2 * support_px);
+  const bool fits = cells <= largest_grid_cells;
+  plan.method = s.method != Method::automatic ? s.method
+                : fits                        ? Method::transform
+                                              : Method::direct;
+  if (s.grid_columns * s.grid_rows > 1 && plan.method == Method::direct)
+    refuse("psf_grid", "kernels over the field go with method: transform");
+  plan.error = 1e-4;
+  char text[160];
+  std::snprintf(text, sizeof text, "%.2f px wide, %d cells a pixel, %.1f million cells",
+                plan.fwhm_px, plan.oversampling, 1e-6 * cells);
+  plan.why = text;
+  return plan;
+}
+
+}  // namespace dmise

@@ -1,0 +1,25 @@
+#pragma once
+#include "core/base/pixel.h"
+
+namespace dmise {
+
+struct Optics;
+
+/// Light lost off the axis, besides what the projection does to a pixel's solid angle.
+struct Vignetting {
+  /// The entrance pupil is seen foreshortened: cos theta. With a gnomonic lens, whose pixels' solid
+  /// angle goes as cos^3 theta, the sky falls off as cos^4 theta.
+  bool natural = false;
+  /// Transmission in the farthest corner relative to the centre, (0, 1], of stops and lens rims; it
+  /// falls as the `power` of the distance from the principal point.
+  double corner = 1.0;
+  double power = 2.0;  // 1..16
+
+  bool any() const { return natural || corner < 1.0; }
+  bool operator==(const Vignetting&) const = default;
+};
+
+/// Light that reaches a pixel, relative to the boresight's: (0, 1]; anywhere in the image plane.
+double relative_illumination(const Optics& optics, PixelPosition pixel);
+
+}  // namespace dmise

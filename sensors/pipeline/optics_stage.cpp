@@ -1,0 +1,166 @@
+#include "sensors/pipeline/optics_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/optics/projection.h"
+#include "core/photometry/curve.h"
+
+namespace dmise {
+namespace {
+
+using Method = PointSpread::Method;
+
+PsfPlan plan_of(const SensorConfig& sensor) {
+  const Camera& camera = sensor.camera;
+  if (sensor.effects.has(Effect::psf))
+    return plan_psf(camera.optics, camera.band.centre_m, sensor.seeing, sensor.exposure_s);
+  return {.why = "off"};
+}
+
+FieldPlace field_place(const Optics& o, PixelPosition pixel) {
+  const PixelPosition d = pixel - principal_point(o);
+  return {std::hypot(d.x_px, d.y_px) / (0.5 * std::hypot(o.columns, o.rows)),
+          std::atan2(d.y_px, d.x_px)};
+}
+
+/// Places of the kernels over the field, row by row.
+std::vector<FieldPlace> field_places(const Optics& o) {
+  const PointSpread& s = o.spread;
+  const auto along = [](int i, int count, int length) {
+    return count == 1 ? 0.5 * (length - 1) : i * (length - 1.0) / (count - 1);
+  };
+  std::vector<FieldPlace> places;
+  for (int j = 0; j < s.grid_rows; ++j)
+    for (int i = 0; i < s.grid_columns; ++i)
+      places.push_back(
+          field_place(o, {along(i, s.grid_columns, o.columns), along(j, s.grid_rows, o.rows)}));
+  return places;
+}
+
+}  // namespace
+
+std::vector<WavelengthShare> wavelengths_of(const Band& band, int count) {
+  if (count == 1) return {{band.centre_m, 1.0}};
+  std::vector<WavelengthShare> all;
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const double at = band.low_m() + (band.high_m() - band.low_m()) * (i + 0.5) / count;
+    const double share = band.response.at_or_zero(at);
+    if (share <= 0.0) continue;
+    all.push_back({at, share});
+    sum += share;
+  }
+  for (WavelengthShare& w : all) w.share /= sum;
+  // The one nearest to the centre first: screens are sampled for it.
+  const auto middle = std::min_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
+    return std::abs(a.wavelength_m - band.centre_m) < std::abs(b.wavelength_m - band.centre_m);
+  });
+  std::iter_swap(all.begin(), middle);
+  return all;
+}
+
+OpticsStage::OpticsStage(const SensorConfig& sensor, std::uint64_t seed, Threads& threads)
+    : optics_(sensor.camera.optics),
+      blurs_(sensor.effects.has(Effect::psf)),
+      plan_(plan_of(sensor)),
+      threads_(threads) {
+  const Band& band = sensor.camera.band;
+  if (plan_.method == Method::deposit) {
+    const double sigma_px = !blurs_ ? 0.0
+                            : optics_.spread.model == PointSpread::Model::gaussian
+                                ? psf_sigma_px(optics_, band.centre_m)
+                                : plan_.fwhm_px / fwhm_per_sigma;
+    table_ = make_psf_table(sigma_px);
+    plan_.fwhm_px = table_.sigma_px * fwhm_per_sigma;
+    return;
+  }
+  table_ = make_psf_table(grid_sigma_cells);
+  model_ =
+      std::make_unique<PsfModel>(optics_, wavelengths_of(band, optics_.spread.wavelengths), plan_,
+                                 sensor.seeing, rng_key(seed, sensor.name, 0, "turbulence"));
+  direct_ =
+      std::make_unique<DirectBlur>(plan_.oversampling, plan_.half_cells, optics_.spread.resampling);
+  if (plan_.method == Method::transform)
+    grid_ = std::make_unique<BlurGrid>(optics_.columns, optics_.rows, plan_.oversampling,
+                                       plan_.half_cells, optics_.spread.grid_columns,
+                                       optics_.spread.grid_rows);
+}
+
+void OpticsStage::make_kernels() {
+  std::vector<PsfKernel> kernels;
+  if (grid_) {
+    for (const FieldPlace& place : field_places(optics_))
+      kernels.push_back(model_->kernel(place, exposure_start_s_, exposure_s_));
+    grid_->set_kernels(kernels, threads_);
+  }
+  central_ = kernels.size() == 1 ? std::move(kernels[0])
+                                 : model_->kernel({}, exposure_start_s_, exposure_s_);
+  direct_ready_ = false;
+  has_kernels_ = true;
+}
+
+std::vector<Deposited> OpticsStage::sum_directly(std::span<const Arc> arcs, RateImage& light) {
+  if (optics_.spread.grid_columns * optics_.spread.grid_rows == 1) {
+    if (!direct_ready_) direct_->set_kernel(central_);
+    direct_ready_ = true;
+    return direct_->deposit(arcs, light, threads_);
+  }
+  // Each with the kernel of its own place.
+  std::vector<Deposited> result;
+  for (const Arc& arc : arcs) {
+    direct_->set_kernel(
+        model_->kernel(field_place(optics_, arc.middle), exposure_start_s_, exposure_s_));
+    result.push_back(direct_->deposit({&arc, 1}, light, threads_)[0]);
+  }
+  return result;
+}
+
+void OpticsStage::begin(const FrameTimes& exposure, double limit_e) {
+  if (!model_) return;
+  bright_e_ = bright_ratio * limit_e;
+  exposure_start_s_ = exposure.start.seconds();
+  exposure_s_ = exposure.seconds();
+  if (!has_kernels_ || model_->changes()) make_kernels();
+  if (grid_) grid_->clear(threads_);
+}
+
+std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, RateImage& light) {
+  if (!model_) return deposit(arcs, table_, light, threads_);
+  const auto is_bright = [&](const Arc& arc) { return !grid_ || arc.signal_e > bright_e_; };
+  if (!grid_) return sum_directly(arcs, light);
+
+  std::vector<Arc> bright, others;
+  for (const Arc& arc : arcs) (is_bright(arc) ? bright : others).push_back(arc);
+  for (Arc& arc : others) arc = grid_->on_cells(arc);
+  std::vector<Deposited> direct, on_grid;
+  if (!bright.empty()) direct = sum_directly(bright, light);
+  if (!others.empty()) on_grid = deposit(others, table_, grid_->cells(), threads_);
+  std::vector<Deposited> result;
+  std::size_t b = 0, o = 0;
+  for (const Arc& arc : arcs) {
+    if (is_bright(arc)) {
+      result.push_back(direct[b++]);
+      continue;
+    }
+    Deposited d = on_grid[o++];
+    if (d.signal_e > 0.0) {
+      const PixelPosition at = grid_->pixel_of({d.x_px, d.y_px});
+      d = {d.signal_e, at.x_px, at.y_px};
+    }
+    result.push_back(d);
+  }
+  return result;
+}
+
+void OpticsStage::finish(RateImage& light) {
+  if (!model_) return;
+  if (grid_) grid_->blur_into(light, optics_.spread.resampling, threads_);
+  threads_.for_ranges(light.pixels.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      light.pixels[i] = light.pixels[i] < 0.0f ? 0.0f : light.pixels[i];
+  });
+}
+
+}  // namespace dmise

@@ -1,0 +1,60 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/config/scenario.h"
+#include "core/optics/blur_grid.h"
+#include "core/optics/deposit.h"
+#include "core/optics/direct_blur.h"
+#include "core/optics/psf_model.h"
+#include "sensors/pipeline/frame_times.h"
+
+namespace dmise {
+
+/// Puts the light of sources on the focal plane of one sensor, blurred by its optics and the air by
+/// the method that its plan chose. Keeps kernels and memory between frames.
+///
+/// With the transform, sources above `bright_ratio` times the frame's limit are summed directly:
+/// they would drown the others in single precision.
+class OpticsStage {
+ public:
+  static constexpr double bright_ratio = 1e4;
+
+  OpticsStage(const SensorConfig& sensor, std::uint64_t seed, Threads& threads);
+
+  const PsfPlan& plan() const { return plan_; }
+  /// Full width at half maximum before pixel integration.
+  double fwhm_px() const { return plan_.fwhm_px; }
+
+  /// Starts a frame: the exposure's kernels, where they differ from the last. `limit_e`: electrons
+  /// of the faintest source that matters.
+  void begin(const FrameTimes& exposure, double limit_e);
+  /// Puts light on the plane and tells what of each arc fell inside the frame.
+  std::vector<Deposited> add(std::span<const Arc> arcs, RateImage& light);
+  /// Blurs what was not yet and adds it; the frame's light is complete and nowhere negative.
+  void finish(RateImage& light);
+
+ private:
+  void make_kernels();
+  std::vector<Deposited> sum_directly(std::span<const Arc> arcs, RateImage& light);
+
+  Optics optics_;
+  bool blurs_;  // the effect psf is on
+  PsfPlan plan_;
+  PsfTable table_;  // of deposits: the Gaussian's, or the grid's
+  Threads& threads_;
+  std::unique_ptr<PsfModel> model_;
+  std::unique_ptr<BlurGrid> grid_;
+  std::unique_ptr<DirectBlur> direct_;
+  PsfKernel central_;          // of the boresight
+  bool direct_ready_ = false;  // `direct_` holds `central_`
+  bool has_kernels_ = false;
+  double bright_e_ = 0.0, exposure_start_s_ = 0.0, exposure_s_ = 0.0;
+};
+
+/// Wavelengths in the middle of `count` equal parts of a band, with the parts' shares of its
+/// response.
+std::vector<WavelengthShare> wavelengths_of(const Band& band, int count);
+
+}  // namespace dmise
