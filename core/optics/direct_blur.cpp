@@ -98,21 +98,35 @@ void DirectBlur::add(const Arc& piece, int row_begin, int row_end, RateImage& li
   dmise::deposit(std::span(&arc, 1), table_, DepositView{patch.data(), columns, rows, columns},
                  alone);
 
+  // Summed in double precision: a thousand small parts make a pixel.
+  const int x_begin = std::max(0, left_px - reach_px_),
+            x_end = std::min(light.columns, left_px + (columns - 1) / k_ + reach_px_ + 1);
+  const int y_begin = std::max(row_begin, top_px - reach_px_),
+            y_end = std::min(row_end, top_px + (rows - 1) / k_ + reach_px_ + 1);
+  if (x_begin >= x_end || y_begin >= y_end) return;
+  const auto width = std::size_t(x_end - x_begin);
+  thread_local std::vector<double> sums;
+  sums.assign(width * std::size_t(y_end - y_begin), 0.0);
   const auto each = std::size_t(side_) * std::size_t(side_);
   for (int v = 0; v < rows; ++v)
     for (int u = 0; u < columns; ++u) {
-      const float e_here = patch[std::size_t(v) * std::size_t(columns) + std::size_t(u)];
-      if (e_here == 0.0f) continue;
+      const double e_here = patch[std::size_t(v) * std::size_t(columns) + std::size_t(u)];
+      if (e_here == 0.0) continue;
       const int x0 = left_px + u / k_ - reach_px_, y0 = top_px + v / k_ - reach_px_;
       const float* share = shares_.data() + std::size_t(v % k_ * k_ + u % k_) * each;
-      const int i0 = std::max(0, -x0), i1 = std::min(side_, light.columns - x0);
-      const int j0 = std::max(0, row_begin - y0), j1 = std::min(side_, row_end - y0);
+      const int i0 = std::max(0, x_begin - x0), i1 = std::min(side_, x_end - x0);
+      const int j0 = std::max(0, y_begin - y0), j1 = std::min(side_, y_end - y0);
       for (int j = j0; j < j1; ++j) {
-        float* out = light.row(y0 + j) + x0;
+        double* out = sums.data() + std::ptrdiff_t(width) * (y0 + j - y_begin) + (x0 - x_begin);
         const float* in = share + j * side_;
         for (int i = i0; i < i1; ++i) out[i] += e_here * in[i];
       }
     }
+  for (int y = y_begin; y < y_end; ++y) {
+    const double* in = sums.data() + width * std::size_t(y - y_begin);
+    float* out = light.row(y) + x_begin;
+    for (std::size_t x = 0; x < width; ++x) out[x] = float(out[x] + in[x]);
+  }
 }
 
 std::vector<Deposited> DirectBlur::deposit(std::span<const Arc> arcs, RateImage& light,

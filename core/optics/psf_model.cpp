@@ -1,5 +1,6 @@
 #include "core/optics/psf_model.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -18,6 +19,25 @@ bool has_screens(const PsfPlan& plan) {
 /// Samples across the aperture of a pupil without turbulence: the kernel is right to 1e-3 of its
 /// peak.
 constexpr int still_samples = 128, turbulent_samples = 48;
+
+/// The kernel brought to nothing over its outer half: cut off at once, what the deposits'
+/// Gaussian was divided out of would ring along the edge. Sums to 1.
+PsfKernel tapered(const std::vector<double>& values, int half) {
+  PsfKernel kernel{half, std::vector<float>(values.size())};
+  const double inner = 0.5 * half;
+  std::vector<double> weighed(values.size());
+  double sum = 0.0;
+  for (int dy = -half; dy <= half; ++dy)
+    for (int dx = -half; dx <= half; ++dx) {
+      const double r = std::hypot(dx, dy);
+      const double edge = std::clamp((r - inner) / (half + 1.0 - inner), 0.0, 1.0);
+      const double c = std::cos(0.5 * pi * edge);
+      const auto i = std::size_t((dy + half) * kernel.side() + dx + half);
+      sum += weighed[i] = values[i] * c * c;
+    }
+  for (std::size_t i = 0; i < weighed.size(); ++i) kernel.values[i] = float(weighed[i] / sum);
+  return kernel;
+}
 
 }  // namespace
 
@@ -140,9 +160,7 @@ PsfKernel PsfModel::kernel(const FieldPlace& place, double start_s, double expos
         add(pupil_kernel_at(place, w.wavelength_m, &screen), w.share / plan_.screens);
     }
   }
-  PsfKernel kernel{plan_.half_cells, std::vector<float>(sum.size())};
-  for (std::size_t i = 0; i < sum.size(); ++i) kernel.values[i] = float(sum[i]);
-  return kernel;
+  return tapered(sum, plan_.half_cells);
 }
 
 }  // namespace dmise

@@ -24,7 +24,8 @@ struct FieldPlace {
 /// Makes the kernels that a plan asks for, on the cells of its oversampled grid:
 ///   diffraction (obscuration, spiders, wavefront) x turbulence x jitter, over the wavelengths,
 /// divided by the Gaussian of `grid_sigma_cells` that deposits on the grid have, and not integrated
-/// over cells, which deposits are. With bilinear resampling times pixel / cell.
+/// over cells, which deposits are. With bilinear resampling times pixel / cell. A kernel fades out
+/// over the outer half of its radius.
 class PsfModel {
  public:
   /// `turbulence` names the random numbers of this sensor's air. The first wavelength share is the

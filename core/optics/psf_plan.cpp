@@ -17,6 +17,8 @@ using Model = PointSpread::Model;
 constexpr double long_exposure_end = 1.806;  // lambda nu / r0
 constexpr double gaussian_end = 0.683;       // sigma nu
 constexpr double narrow_px = 0.25;
+// Beyond it deposits on the grid alias by more than 1e-4 of the peak.
+constexpr double most_cycles_per_cell = 0.40;
 
 bool is_aberrated(const PointSpread& s) {
   return !s.wavefront.empty() || s.field.any() || s.defocus_m != 0.0;
@@ -102,7 +104,7 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
     return plan;
   }
 
-  const int least = std::max(1, int(std::ceil(2 * m.cutoff_per_px - 1e-9)));
+  const int least = std::max(1, int(std::ceil(m.cutoff_per_px / most_cycles_per_cell - 1e-9)));
   plan.oversampling = s.oversampling > 0 ? s.oversampling : least;
   if (plan.oversampling > largest_oversampling)
     refuse("oversampling", "the blur needs " + std::to_string(plan.oversampling) +
@@ -113,8 +115,8 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
                                " to sample the blur, got " + std::to_string(plan.oversampling));
   const double core_px = plan.fwhm_px;
   const double support_px = s.support_px > 0 ? s.support_px
-                            : plain          ? 2.5 * core_px
-                                             : std::max({12.0 * m.airy_px, 4.0 * core_px, 8.0});
+                            : plain          ? 5.0 * core_px
+                                             : std::max({16.0 * m.airy_px, 5.0 * core_px, 8.0});
   plan.half_cells = std::clamp(int(std::ceil(support_px * plan.oversampling)), 8, 512);
   const double cells = double(plan.oversampling) * plan.oversampling *
                        (o.columns + 2 * support_px) * (o.rows + 2 * support_px);

@@ -31,7 +31,7 @@ struct PsfPlan {
 /// Chooses by the width of the blur against the pixel:
 /// - a Gaussian model, or a diffraction-limited one narrower than a quarter of a pixel without
 ///   aberrations: analytic deposit;
-/// - otherwise the least oversampling that leaves nothing beyond half a cycle a cell; up to
+/// - otherwise the least oversampling that leaves nothing beyond 0.4 cycles a cell; up to
 ///   `largest_grid_cells` the transform, beyond them direct summation.
 /// What the camera itself asks for goes first. Throws `ConfigError` "optics.KEY: reason" for what
 /// cannot be combined.
