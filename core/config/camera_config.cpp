@@ -1,26 +1,11 @@
 #include "core/config/camera_config.h"
 
+#include "core/config/detector_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/search_path.h"
 
 namespace dmise {
 namespace {
-
-Detector read_detector(const YamlValue& value) {
-  YamlMap map(value);
-  Detector d;
-  d.quantum_efficiency =
-      map.number_or("quantum_efficiency", 1.0, {.least = 0.0, .most = 1.0, .least_open = true});
-  d.dark_e_per_s = map.number_or("dark_e_per_s", 0.0, Bounds::between(0.0, 1e9));
-  d.read_noise_e = map.number_or("read_noise_e", 0.0, Bounds::between(0.0, 1e6));
-  d.full_well_e = map.number("full_well_e", {.least = 0.0, .most = 1e9, .least_open = true});
-  d.gain_e_per_dn = map.number("gain_e_per_dn", {.least = 0.0, .most = 1e6, .least_open = true});
-  d.bias_dn = map.number_or("bias_dn", 0.0, Bounds::between(0.0, 65535.0));
-  if (const auto bits = map.find("adc_bits"))
-    d.adc_bits = static_cast<int>(bits->integer(1, 16));
-  map.done();
-  return d;
-}
 
 Band read_band(const YamlValue& value) {
   YamlMap map(value);

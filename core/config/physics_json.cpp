@@ -1,6 +1,7 @@
 #include "core/base/json.h"
 #include "core/config/optics_config.h"
 #include "core/config/scenario.h"
+#include "core/detector/detector_figures.h"
 
 namespace dmise {
 namespace {
@@ -40,9 +41,8 @@ void write_camera(JsonWriter& json, const Camera& camera) {
   json.field("pixel_pitch_m", o.pixel_pitch_m).field("columns", o.columns).field("rows", o.rows);
   json.field("transmission", o.transmission).field("psf_fwhm_px", o.psf_fwhm_px);
   write_optics_json(json, o);
-  json.field("quantum_efficiency", d.quantum_efficiency).field("dark_e_per_s", d.dark_e_per_s);
-  json.field("read_noise_e", d.read_noise_e).field("full_well_e", d.full_well_e);
-  json.field("gain_e_per_dn", d.gain_e_per_dn).field("bias_dn", d.bias_dn);
+  for (const auto& figure : detector_figures()) json.field(figure.key, d.*figure.value);
+  json.field("reference_px", d.reference_px).field("blooming", d.blooming);
   json.field("adc_bits", d.adc_bits).field("band", camera.band.name);
   json.field("band_centre_m", camera.band.centre_m).field("band_width_m", camera.band.width_m);
   json.end_object();

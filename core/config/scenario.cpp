@@ -6,6 +6,8 @@
 
 #include "core/base/error.h"
 #include "core/config/camera_config.h"
+#include "core/config/detector_config.h"
+#include "core/config/output_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/search_path.h"
 #include "core/config/yaml_reader.h"
@@ -139,6 +141,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTi
   sensor.cadence_s = map.number("cadence_s", {.least = 1e-3, .most = 86400.0});
   if (sensor.cadence_s < sensor.exposure_s)
     exposure.fail("must be <= cadence_s");
+  check_exposure(sensor.camera, exposure);
   const auto first = map.find("first_exposure_s");
   if (first) sensor.first_exposure_s = first->number(Bounds::not_negative());
   if (sim_seconds(sensor.first_exposure_s + sensor.exposure_s) > duration)
@@ -211,16 +214,6 @@ void read_network(const YamlValue& value, NetworkConfig& network) {
   map.done();
 }
 
-void read_output(const YamlValue& value, OutputConfig& output) {
-  YamlMap map(value);
-  output.fits = map.flag_or("fits", true);
-  output.png = map.flag_or("png", true);
-  output.truth = map.flag_or("truth", true);
-  output.star_truth = map.flag_or("star_truth", false);
-  output.preview_width_px = static_cast<int>(map.integer_or("preview_width_px", 1663, 16, 32768));
-  map.done();
-}
-
 }  // namespace
 
 Scenario load_scenario(const std::string& path) {
@@ -245,7 +238,7 @@ Scenario load_scenario(const std::string& path) {
   }
   if (scenario.sensors.empty()) sensors.fail("needs at least one sensor", false);
   if (const auto network = map.find("network")) read_network(*network, scenario.network);
-  if (const auto output = map.find("output")) read_output(*output, scenario.output);
+  if (const auto output = map.find("output")) scenario.output = read_output(*output);
   map.done();
   return scenario;
 }

@@ -83,12 +83,18 @@ struct NetworkConfig {
   double join_within_s = 30.0;
 };
 
+/// What a sensor writes of every frame.
 struct OutputConfig {
   bool fits = true;
+  bool fits_rice = false;   // compressed without loss
+  bool saturation = false;  // the pixels' flags, a second image in the FITS file
   bool png = true;
   bool truth = true;
   bool star_truth = false;        // frame-NNNNNN.stars.csv: every star drawn
   int preview_width_px = 1663;
+  bool radiance_exr = false;  // frame-NNNNNN-radiance.exr
+  // frame-NNNNNN-PLANE.fits: what the counts were drawn from.
+  bool sources = false, background = false, noise = false;
 };
 
 /// A whole scenario, resolved: presets read, paths found, defaults filled in, everything checked.

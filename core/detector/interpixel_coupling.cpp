@@ -1,20 +1,31 @@
 #include "core/detector/interpixel_coupling.h"
 
+#include <algorithm>
+
 namespace dmise {
 
 void interpixel_coupling(double coupling, const ElectronImage& electrons, std::size_t first,
                          std::span<float> signal) {
-  const auto columns = std::size_t(electrons.columns), all = electrons.pixels.size();
-  const float* e = electrons.pixels.data();
+  const auto columns = std::size_t(electrons.columns), rows = std::size_t(electrons.rows);
   const auto share = float(coupling);
-  for (std::size_t i = 0; i < signal.size(); ++i) {
-    const std::size_t p = first + i, x = p % columns;
-    float gained = 0.0f;
-    if (x > 0) gained += e[p - 1] - e[p];
-    if (x + 1 < columns) gained += e[p + 1] - e[p];
-    if (p >= columns) gained += e[p - columns] - e[p];
-    if (p + columns < all) gained += e[p + columns] - e[p];
-    signal[i] = e[p] + share * gained;
+  // Row by row: where a neighbour is missing, the pixel itself stands for it and gains nothing.
+  for (std::size_t i = 0; i < signal.size();) {
+    const std::size_t y = (first + i) / columns, begin = (first + i) % columns;
+    const std::size_t end = std::min(columns, begin + signal.size() - i);
+    const float* here = electrons.row(int(y));
+    const float* above = y > 0 ? here - columns : here;
+    const float* below = y + 1 < rows ? here + columns : here;
+    const auto couple = [&](std::size_t x, std::size_t left, std::size_t right) {
+      const float e = here[x];
+      signal[i + (x - begin)] =
+          e + share * ((here[left] - e) + (here[right] - e) + (above[x] - e) + (below[x] - e));
+    };
+    std::size_t x = begin;
+    if (x == 0) couple(0, 0, std::min<std::size_t>(1, columns - 1)), ++x;
+    for (const std::size_t inner = std::min(end, columns - 1); x < inner; ++x)
+      couple(x, x - 1, x + 1);
+    if (x < end) couple(x, x - 1, x);
+    i += end - begin;
   }
 }
 

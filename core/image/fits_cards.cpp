@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/detector/detector_figures.h"
 
 namespace dmise {
 namespace {
@@ -38,10 +39,13 @@ class CardWriter {
     number(key, degrees, comment);
   }
   template <class Integer>
-  void integer(const std::string& key, Integer& value, const char* comment) {
+  void integer(const std::string& key, const Integer& value, const std::string& comment) {
     add(key, std::to_string(value), comment);
   }
-  void text(const std::string& key, std::string& value, const char* comment) {
+  void flag(const std::string& key, bool& value, const char* comment) {
+    add(key, value ? "T" : "F", comment);
+  }
+  void text(const std::string& key, const std::string& value, const std::string& comment) {
     if (value.size() > longest_text)
       throw Error("FITS header: " + key + ": longer than 60 characters: " + value);
     std::string quoted;
@@ -125,6 +129,11 @@ class CardReader {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size())
       fail(key, "must be an integer in range, got " + text);
+  }
+  void flag(const std::string& key, bool& value, const char*) {
+    const std::string& text = find(key);
+    if (text != "T" && text != "F") fail(key, "must be T or F, got " + text);
+    value = text == "T";
   }
   void text(const std::string& key, std::string& value, const char*) { value = find(key); }
   void utc(const std::string& key, std::string& value, const char*) { value = find(key); }
@@ -229,6 +238,24 @@ void visit_vector(Visitor& v, const std::string& key, Vec<Frame>& vector, const 
   v.number(key + "Z", vector.z, "");
 }
 
+// Those of the figures that every frame states are copied from there, not written twice.
+template <class Visitor>
+void visit_detector(Visitor& v, FrameHeader& h) {
+  if (!v.present("ADCBITS", h.detector.has_value())) return;
+  if (!h.detector) h.detector.emplace();
+  Detector& d = *h.detector;
+  for (const DetectorFigure& figure : detector_figures())
+    if (*figure.keyword) v.number(figure.keyword, d.*figure.value, figure.comment);
+  v.integer("ADCBITS", d.adc_bits, "bits of the ADC");
+  v.integer("REFPIX", d.reference_px, "[px] border without light");
+  v.flag("BLOOMING", d.blooming, "charge above the full well runs along columns");
+  d.dark_e_per_s = h.dark_e_per_s;
+  d.read_noise_e = h.read_noise_e;
+  d.full_well_e = h.full_well_e;
+  d.gain_e_per_dn = h.gain_e_per_dn;
+  d.bias_dn = h.bias_dn;
+}
+
 template <class Visitor>
 void visit(Visitor& v, FrameHeader& h) {
   v.text("INSTRUME", h.sensor, "sensor");
@@ -251,6 +278,7 @@ void visit(Visitor& v, FrameHeader& h) {
   v.number("RDNOISE", h.read_noise_e, "[e-] rms");
   v.number("DARKCUR", h.dark_e_per_s, "[e-/s/px]");
   v.number("FULLWELL", h.full_well_e, "[e-]");
+  visit_detector(v, h);
   v.number("SATURATE", h.saturation_dn, "[DN] counts from here on may be clipped");
   v.number("PSFFWHM", h.psf_fwhm_px, "[px] Gaussian, before pixel integration");
   v.number("PHOTZP", h.zero_point_mag, "[mag] of 1 e-/s, without atmosphere");
@@ -307,6 +335,19 @@ std::vector<std::string> fits_cards(const FrameHeader& header) {
   CardWriter writer;
   visit(writer, copy);
   return std::move(writer.cards);
+}
+
+std::string text_card(const std::string& key, const std::string& value,
+                      const std::string& comment) {
+  CardWriter writer;
+  writer.text(key, value, comment);
+  return writer.cards.front();
+}
+
+std::string integer_card(const std::string& key, std::int64_t value, const std::string& comment) {
+  CardWriter writer;
+  writer.integer(key, value, comment);
+  return writer.cards.front();
 }
 
 void add_card(FitsValues& values, const std::string& card) {

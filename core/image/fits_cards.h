@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -11,6 +12,10 @@ namespace dmise {
 /// BZERO). Numbers are the shortest text that reads back to the same bits. Throws `Error` with the
 /// keyword when a value is not finite or a text does not fit.
 std::vector<std::string> fits_cards(const FrameHeader& header);
+
+/// One card. Throws `Error` as `fits_cards` does.
+std::string text_card(const std::string& key, const std::string& value, const std::string& comment);
+std::string integer_card(const std::string& key, std::int64_t value, const std::string& comment);
 
 /// Keyword -> value of cards; texts without quotes, comments dropped, of doubles the first.
 using FitsValues = std::map<std::string, std::string>;

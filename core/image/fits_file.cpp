@@ -1,14 +1,14 @@
 #include "core/image/fits_file.h"
 
-#include <fitsio.h>
-
 #include <array>
+#include <bit>
 #include <cstdlib>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/base/text_file.h"
 #include "core/image/fits_cards.h"
+#include "core/image/fits_memory.h"
 #include "core/image/rice.h"
 
 namespace dmise {
@@ -18,41 +18,6 @@ constexpr std::size_t fits_block = 2880;
 constexpr long widest_side = 1 << 16;
 // The best that Rice's code does is a few bits for 32 pixels: a file that claims more is a bomb.
 constexpr std::size_t most_pixels_per_byte = 128;
-
-/// An open FITS file; closed on the way out whatever happens.
-struct Fits {
-  fitsfile* file = nullptr;
-  int status = 0;
-
-  Fits() = default;
-  Fits(const Fits&) = delete;
-  Fits& operator=(const Fits&) = delete;
-  ~Fits() {
-    int ignored = 0;
-    if (file) fits_close_file(file, &ignored);
-    fits_clear_errmsg();
-  }
-  std::string reason() const {
-    char text[FLEN_STATUS] = "";
-    fits_get_errstatus(status, text);
-    return text;
-  }
-};
-
-/// Memory that CFITSIO writes a file into, zeros at first. It can't seek beyond what it takes for
-/// the file's end, which is the memory's: so there is room for the whole file from the start, and
-/// where the file ends is asked afterwards.
-struct FitsMemory {
-  void* data = nullptr;
-  std::size_t size = 0;
-
-  explicit FitsMemory(std::size_t size_) : data(std::calloc(1, size_)), size(size_) {
-    if (!data) throw Error("FITS can't be written: out of memory");
-  }
-  FitsMemory(const FitsMemory&) = delete;
-  FitsMemory& operator=(const FitsMemory&) = delete;
-  ~FitsMemory() { std::free(data); }
-};
 
 std::array<long, 2> image_shape(Fits& fits, std::size_t file_bytes, const std::string& name) {
   int bits = 0, axes = 0, type = 0;
@@ -144,34 +109,37 @@ void require_unsigned_counts(const FitsValues& values, const std::string& name) 
     throw ConfigError(name + ": BSCALE: must be 1, got " + bscale->second);
 }
 
+/// What each bit of a pixel's flags says.
+std::vector<std::string> flag_cards(const FrameHeader& header) {
+  std::vector<std::string> cards = {text_card("EXTNAME", "FLAGS", "what befell each pixel"),
+                                    text_card("INSTRUME", header.sensor, "sensor"),
+                                    integer_card("FRAMENUM", header.frame, "")};
+  for (const auto& [flag, name] : pixel_flag_names) {
+    const int bit = std::countr_zero(std::uint8_t(flag));
+    cards.push_back(
+        text_card("FLAG" + std::to_string(bit), name, "value " + std::to_string(int(flag))));
+  }
+  return cards;
+}
+
 }  // namespace
 
 std::string encode_frame(const CountImage& counts, const FrameHeader& header,
-                         FitsCompression compression) {
+                         FitsCompression compression, const FlagImage* flags) {
   const auto cards = fits_cards(header);
-  const std::size_t whole = (cards.size() + 64) * 80 + 2 * counts.pixels.size() + 3 * fits_block;
+  const std::size_t whole =
+      2 * (cards.size() + 64) * 80 + 3 * counts.pixels.size() + 6 * fits_block;
   // Rice adds a table to a header and may leave noise larger than it was, but never twice.
-  FitsMemory memory(compression == FitsCompression::none ? whole : 2 * whole);
-  Fits fits;
-  fits_create_memfile(&fits.file, &memory.data, &memory.size, std::size_t(1) << 20, std::realloc,
-                      &fits.status);
-  if (compression == FitsCompression::rice)
-    fits_set_compression_type(fits.file, RICE_1, &fits.status);
-  std::array<long, 2> shape = {counts.columns, counts.rows};
-  fits_create_img(fits.file, USHORT_IMG, 2, shape.data(), &fits.status);
-  for (const std::string& card : cards) fits_write_record(fits.file, card.c_str(), &fits.status);
-  // CFITSIO only reads the pixels; its interface predates const.
-  auto* pixels = const_cast<std::uint16_t*>(counts.pixels.data());
-  fits_write_img(fits.file, TUSHORT, 1, LONGLONG(counts.pixels.size()), pixels, &fits.status);
-  fits_flush_file(fits.file, &fits.status);
-  LONGLONG end = 0;
-  fits_get_hduaddrll(fits.file, nullptr, nullptr, &end, &fits.status);
-  if (fits.status == 0) {
-    fits_close_file(fits.file, &fits.status);
-    fits.file = nullptr;
+  FitsWriter fits(compression == FitsCompression::none ? whole : 2 * whole);
+  if (compression == FitsCompression::rice) fits.compress_by_rice();
+  fits.image(USHORT_IMG, counts.columns, counts.rows, cards, TUSHORT, counts.pixels.data());
+  if (flags) {
+    if (flags->columns != counts.columns || flags->rows != counts.rows)
+      throw Error("FITS can't be written: flags of another shape than the counts");
+    fits.image(BYTE_IMG, flags->columns, flags->rows, flag_cards(header), TBYTE,
+               flags->pixels.data());
   }
-  if (fits.status != 0) throw Error("FITS can't be written: " + fits.reason());
-  return std::string(static_cast<const char*>(memory.data), std::size_t(end));
+  return fits.bytes();
 }
 
 Frame decode_frame(std::string_view bytes, const std::string& name) {
@@ -205,10 +173,10 @@ Frame decode_frame(std::string_view bytes, const std::string& name) {
 }
 
 void write_frame(const std::string& path, const CountImage& counts, const FrameHeader& header,
-                 FitsCompression compression) {
+                 FitsCompression compression, const FlagImage* flags) {
   std::string bytes;
   try {
-    bytes = encode_frame(counts, header, compression);
+    bytes = encode_frame(counts, header, compression, flags);
   } catch (const Error& error) {
     throw Error(path + ": " + error.what());
   }

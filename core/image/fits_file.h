@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "core/base/image.h"
+#include "core/detector/pixel_flags.h"
 #include "core/image/frame_header.h"
 
 namespace dmise {
@@ -15,18 +16,21 @@ struct Frame {
 enum class FitsCompression { none, rice };
 
 /// A FITS file in memory: 16-bit unsigned (BZERO 32768), row 0 first; with Rice compression a tiled
-/// image (RICE_1) in the first extension. Equal input gives equal bytes. Throws `Error`.
+/// image (RICE_1) in the first extension. `flags` follow as an 8-bit image in an extension of the
+/// name FLAGS, compressed as the counts are. Equal input gives equal bytes. Throws `Error`.
 std::string encode_frame(const CountImage& counts, const FrameHeader& header,
-                         FitsCompression compression = FitsCompression::none);
+                         FitsCompression compression = FitsCompression::none,
+                         const FlagImage* flags = nullptr);
 
-/// Reads what `encode_frame` wrote, or any FITS file with the same keywords. `name` stands in
-/// messages. Throws `ConfigError` "NAME: KEYWORD: reason" for anything else, hostile input
-/// included.
+/// Reads the counts that `encode_frame` wrote, or any FITS file with the same keywords. `name`
+/// stands in messages. Throws `ConfigError` "NAME: KEYWORD: reason" for anything else, hostile
+/// input included.
 Frame decode_frame(std::string_view bytes, const std::string& name);
 
 /// Whole or not at all; an `Error` names the file.
 void write_frame(const std::string& path, const CountImage& counts, const FrameHeader& header,
-                 FitsCompression compression = FitsCompression::none);
+                 FitsCompression compression = FitsCompression::none,
+                 const FlagImage* flags = nullptr);
 /// Also a gzipped file.
 Frame read_frame(const std::string& path);
 

@@ -49,6 +49,7 @@ struct FramePipeline::Work {
   std::optional<StarLayer> stars;
   OpticsStage optics;
   RateImage light;  // kept between frames
+  DetectorMemory detector_memory;
 
   Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)
       : settings(std::move(s)), threads(t), optics(settings.sensor, settings.seed, t) {
@@ -64,7 +65,8 @@ struct FramePipeline::Work {
     for (std::size_t i = 0; i < effect_count; ++i) {
       const auto effect = static_cast<Effect>(i);
       const bool runs = effect == Effect::stars ? has(effect) && stars : has(effect);
-      if (runs) text += (text.empty() ? "" : " ") + std::string(facts(effect).name);
+      if (runs && has_figure(settings.sensor.camera.detector, effect))
+        text += (text.empty() ? "" : " ") + std::string(facts(effect).name);
     }
     return text;
   }
@@ -81,12 +83,21 @@ struct FramePipeline::Work {
 
   FrameProducts make(const FrameTimes& times, const World& world);
   FrameHeader header(const View& view) const;
+  std::uint32_t first_to_expose(std::uint32_t frame);
 };
+
+/// The frame that must be made first for the detector to be in the state in which `frame` finds it.
+std::uint32_t FramePipeline::Work::first_to_expose(std::uint32_t frame) {
+  auto& traps = detector_memory.persistence;
+  if (!has(Effect::persistence) || traps.next_frame == frame) return frame;
+  traps = {};
+  return persistence_first_frame(settings.sensor.camera.detector, settings.sensor.cadence_s, frame);
+}
 
 FrameHeader FramePipeline::Work::header(const View& view) const {
   const auto& sensor = settings.sensor;
   const auto& optics = sensor.camera.optics;
-  const auto& detector = sensor.camera.detector;
+  const Detector detector = in_effect(sensor.camera.detector, sensor.effects);
   const auto& times = view.times();
   const auto& environment = view.environment();
   const ObserverState observer = view.observer(times.middle);
@@ -106,11 +117,12 @@ FrameHeader FramePipeline::Work::header(const View& view) const {
                 .software = software_name(),
                 .scenario_digest = settings.digest,
                 .seed = settings.seed,
-                .gain_e_per_dn = has(Effect::quantisation) ? detector.gain_e_per_dn : 1.0,
-                .bias_dn = has(Effect::quantisation) ? detector.bias_dn : 0.0,
-                .read_noise_e = has(Effect::read_noise) ? detector.read_noise_e : 0.0,
-                .dark_e_per_s = has(Effect::dark_current) ? detector.dark_e_per_s : 0.0,
+                .gain_e_per_dn = detector.gain_e_per_dn,
+                .bias_dn = detector.bias_dn,
+                .read_noise_e = detector.read_noise_e,
+                .dark_e_per_s = detector.dark_e_per_s,
                 .full_well_e = detector.full_well_e,
+                .detector = detector,
                 .psf_fwhm_px = this->optics.fwhm_px(),
                 .band = sensor.camera.band,
                 .zero_point_mag = Light(view).zero_point_mag(),
@@ -123,8 +135,10 @@ FrameHeader FramePipeline::Work::header(const View& view) const {
   if (const auto& site = view.site())
     h.site = SitePlace{site->latitude_deg * deg, site->longitude_deg * deg, site->height_m,
                        itrs_from_geodetic(*site)};
-  const double most_dn = has(Effect::quantisation) ? std::exp2(detector.adc_bits) - 1 : 65535.0;
-  const double well_dn = h.full_well_e / h.gain_e_per_dn + h.bias_dn;
+  const double most_dn = std::exp2(detector.adc_bits) - 1;
+  const double well_e = h.full_well_e * (1.0 - detector.nonlinearity) *
+                        (1.0 - 4.0 * detector.interpixel_coupling);  // what is left of a full one
+  const double well_dn = well_e / h.gain_e_per_dn + h.bias_dn;
   h.saturation_dn = has(Effect::full_well) ? std::min(most_dn, well_dn) : most_dn;
   const SimTime at[3] = {times.start, times.middle, times.end};
   for (int k = 0; k < 3; ++k) h.camera_from_gcrs[k] = quaternion_of(view.camera_from_gcrs(at[k]));
@@ -150,6 +164,8 @@ FrameProducts FramePipeline::run(const FrameTimes& times, const World& world) {
   double total_s = 0.0;
   {
     Stopwatch timing(total_s);
+    for (auto earlier = work_->first_to_expose(times.frame); earlier < times.frame; ++earlier)
+      work_->make(frame_times(work_->settings.sensor, earlier), world);
     frame = work_->make(times, world);
   }
   frame.total_s = total_s;
@@ -165,6 +181,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     Stopwatch timing(frame.times[Effect::sky]);
     fill_sky(view, light, threads);
   }
+  keep_background(settings.output, light, frame.planes);
   {
     Stopwatch timing(frame.times[Effect::psf]);
     optics.begin(times, faintest_e(times));
@@ -179,8 +196,15 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     optics.finish(light);
   }
   frame.header = header(view);
-  expose(light, sensor.camera.detector, {settings.seed, sensor.name, times.frame, times.seconds()},
-         sensor.effects, threads, frame.counts, &frame.times);
+  const Exposure exposure{.seed = settings.seed,
+                          .sensor = sensor.name,
+                          .frame = times.frame,
+                          .exposure_s = times.seconds(),
+                          .idle_s = sensor.cadence_s - sensor.exposure_s};
+  make_planes(settings.output, view, exposure, light, threads, frame.planes);
+  expose(
+      light, sensor.camera.detector, exposure, sensor.effects, threads, frame.counts, &frame.times,
+      {.memory = &detector_memory, .flags = settings.output.saturation ? &frame.flags : nullptr});
 
   DetectionResult result;
   {

@@ -10,6 +10,7 @@
 #include "core/image/frame_header.h"
 #include "core/sky/star_cache.h"
 #include "core/time/clock.h"
+#include "sensors/pipeline/frame_planes.h"
 #include "sensors/pipeline/frame_times.h"
 #include "sensors/pipeline/star_layer.h"
 #include "sensors/pipeline/world.h"
@@ -23,7 +24,9 @@ struct FrameProducts {
   FrameReport report;
   std::vector<Detection> detections;
   std::vector<Truth> truths;
-  std::vector<StarTruth> stars;  // only when asked for
+  std::vector<StarTruth> stars;  // only when asked for, as are
+  FlagImage flags;
+  FramePlanes planes;
   EffectTimes times;             // wall clock, never part of a repeatable product
   double detection_s = 0.0, total_s = 0.0;
 };
@@ -36,6 +39,7 @@ struct PipelineSettings {
   std::string digest;  // of the run, written into every frame
   double faintest_star_mag = 9.5;
   bool star_truth = false;
+  OutputConfig output;  // flags and planes that are wanted
 };
 
 /// The chain of one sensor: states around an exposure -> stars, objects and sky at the focal plane
@@ -46,6 +50,8 @@ class FramePipeline {
   FramePipeline(PipelineSettings settings, std::shared_ptr<const StarMap> stars, Threads& threads);
   ~FramePipeline();
 
+  /// With persistence a frame depends on the ones before it: where those were not made here, they
+  /// are made first, and the world must cover them.
   FrameProducts run(const FrameTimes& exposure, const World& world);
 
  private:

@@ -27,7 +27,8 @@ std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std
                        .seed = scenario.seed,
                        .digest = digest,
                        .faintest_star_mag = scenario.faintest_star_mag,
-                       .star_truth = scenario.output.star_truth},
+                       .star_truth = scenario.output.star_truth,
+                       .output = scenario.output},
       scenario.tick, scenario.duration, scenario.output, std::move(stars), directory + "/" + name,
       threads);
 }

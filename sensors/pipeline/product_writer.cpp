@@ -10,12 +10,41 @@
 #include "core/base/json.h"
 #include "core/base/text_file.h"
 #include "core/detection/detection_json.h"
+#include "core/image/exr_file.h"
 #include "core/image/fits_file.h"
 #include "core/image/marked_picture.h"
+#include "core/image/plane_file.h"
 #include "core/image/png_file.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
+
+namespace {
+
+template <class Carrier>
+Plane plane(const char* name, const char* unit, const char* what,
+            const Image<float, Carrier>& image) {
+  return {name, unit, what, image.pixels.data(), image.columns, image.rows};
+}
+
+ExrImage radiance_exr(const RadianceMap& map, const FrameHeader& h) {
+  return {.pixels = map.pixels.data(),
+          .columns = map.columns,
+          .rows = map.rows,
+          .attributes = {{"quantity", "radiance in the band, at the aperture"},
+                         {"unit", "photon s-1 m-2 sr-1"},
+                         {"band", h.band.name},
+                         {"band_centre_m", h.band.centre_m},
+                         {"band_width_m", h.band.width_m},
+                         {"sensor", h.sensor},
+                         {"frame", double(h.frame)},
+                         {"exposure_s", h.exposure_s},
+                         {"start_utc", h.start_utc},
+                         {"scenario_digest", h.scenario_digest},
+                         {"software", h.software}}};
+}
+
+}  // namespace
 
 double pss_mb() {
   std::ifstream file("/proc/self/smaps_rollup");
@@ -39,6 +68,22 @@ std::string ProductWriter::frame_path(std::uint32_t frame, const char* ending) c
   return directory_ + name;
 }
 
+void ProductWriter::write_planes(const FrameProducts& f) const {
+  const auto path = [&](const char* ending) { return frame_path(f.report.frame, ending); };
+  const FramePlanes& p = f.planes;
+  if (output_.sources)
+    write_plane(path("-sources.fits"),
+                plane("SOURCES", "electron/s", "expected of stars and objects", p.sources),
+                f.header);
+  if (output_.background)
+    write_plane(path("-background.fits"),
+                plane("BACKGROUND", "electron/s", "expected of the sky", p.background), f.header);
+  if (output_.noise)
+    write_plane(path("-noise.fits"),
+                plane("NOISE", "electron", "expected standard deviation", p.noise), f.header);
+  if (output_.radiance_exr) write_exr(path("-radiance.exr"), radiance_exr(p.radiance, f.header));
+}
+
 void ProductWriter::append(const char* name, const std::string& lines) const {
   const std::string path = directory_ + "/" + name;
   std::ofstream file(path, std::ios::app);
@@ -48,7 +93,11 @@ void ProductWriter::append(const char* name, const std::string& lines) const {
 
 void ProductWriter::write(const FrameProducts& f) {
   const auto number = f.report.frame;
-  if (output_.fits) write_frame(frame_path(number, ".fits"), f.counts, f.header);
+  if (output_.fits)
+    write_frame(frame_path(number, ".fits"), f.counts, f.header,
+                output_.fits_rice ? FitsCompression::rice : FitsCompression::none,
+                output_.saturation ? &f.flags : nullptr);
+  write_planes(f);
   if (output_.png) {
     const auto picture = preview(f.counts, {.max_width = output_.preview_width_px});
     write_png(frame_path(number, ".png"), picture.picture);

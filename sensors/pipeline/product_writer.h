@@ -9,9 +9,10 @@
 
 namespace dmise {
 
-/// Writes the products of one sensor into its own directory: frame-000001.fits and pictures whole
-/// or not at all, then its lines in frames.jsonl, detections.jsonl, truth.jsonl. A frame is done
-/// when its line in frames.jsonl is whole. Nothing here depends on the wall clock but cost.jsonl.
+/// Writes the products of one sensor into its own directory: frame-000001.fits, planes and pictures
+/// whole or not at all, then its lines in frames.jsonl, detections.jsonl, truth.jsonl. A frame is
+/// done when its line in frames.jsonl is whole. Nothing here depends on the wall clock but
+/// cost.jsonl.
 class ProductWriter {
  public:
   ProductWriter(std::string directory, const OutputConfig& output, Clock clock);
@@ -20,6 +21,7 @@ class ProductWriter {
 
  private:
   std::string frame_path(std::uint32_t frame, const char* ending) const;
+  void write_planes(const FrameProducts& frame) const;
   void append(const char* name, const std::string& lines) const;
 
   std::string directory_;

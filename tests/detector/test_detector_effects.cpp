@@ -27,7 +27,7 @@ CountImage read_out(const RateImage& light, const Detector& d, std::uint32_t fra
   Threads two(2);
   CountImage counts;
   expose(light, d, {.seed = 1, .sensor = "s", .frame = frame, .exposure_s = 10, .idle_s = 5},
-         effects, two, counts, nullptr, best_simd_level(), memory);
+         effects, two, counts, nullptr, {.memory = memory});
   return counts;
 }
 
@@ -201,7 +201,7 @@ TEST(Detector, AllItsEffectsTogetherGiveTheSameBytesOnAnyNumberOfThreads) {
     Threads threads(n);
     CountImage counts;
     for (SimdLevel level : {SimdLevel::sse2, best_simd_level()}) {
-      expose(light, d, {1, "s", 1, 10, 5}, {}, threads, counts, nullptr, level);
+      expose(light, d, {1, "s", 1, 10, 5}, {}, threads, counts, nullptr, {.level = level});
       if (reference.pixels.empty()) reference = counts;
       ASSERT_EQ(counts.pixels, reference.pixels) << n;
     }

@@ -126,12 +126,13 @@ TEST(Expose, TheBytesDependOnNeitherThreadsNorInstructionSet) {
   CountImage reference, counts;
   Threads one(1);
   const auto saturated =
-      expose(light, kaf8300, exposure, {}, one, reference, nullptr, SimdLevel::sse2);
+      expose(light, kaf8300, exposure, {}, one, reference, nullptr, {.level = SimdLevel::sse2});
   for (int n : {1, 2, 4})
     for (SimdLevel level : {SimdLevel::sse2, SimdLevel::avx2, SimdLevel::avx512}) {
       if (level > best_simd_level()) continue;
       Threads threads(n);
-      EXPECT_EQ(expose(light, kaf8300, exposure, {}, threads, counts, nullptr, level), saturated);
+      EXPECT_EQ(expose(light, kaf8300, exposure, {}, threads, counts, nullptr, {.level = level}),
+                saturated);
       ASSERT_EQ(counts.pixels, reference.pixels) << n << name(level);
     }
 }

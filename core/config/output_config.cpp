@@ -1,0 +1,37 @@
+#include "core/config/output_config.h"
+
+namespace dmise {
+
+OutputConfig read_output(const YamlValue& value) {
+  YamlMap map(value);
+  OutputConfig output;
+  if (const auto fits = map.find("fits")) {
+    if (fits->is_map()) {
+      YamlMap how(*fits);
+      output.fits_rice = how.require("compression").choice({"none", "rice"}) == "rice";
+      how.done();
+    } else {
+      output.fits = fits->flag();
+    }
+  }
+  const auto saturation = map.find("saturation");
+  if (saturation) output.saturation = saturation->flag();
+  if (output.saturation && !output.fits)
+    saturation->fail("its place is in the FITS file: needs fits");
+  output.png = map.flag_or("png", true);
+  output.truth = map.flag_or("truth", true);
+  output.star_truth = map.flag_or("star_truth", false);
+  output.preview_width_px = static_cast<int>(map.integer_or("preview_width_px", 1663, 16, 32768));
+  output.radiance_exr = map.flag_or("radiance_exr", false);
+  if (const auto planes = map.find("planes"))
+    for (const auto& plane : planes->list()) {
+      const std::string name = plane.choice({"sources", "background", "noise"});
+      (name == "sources"      ? output.sources
+       : name == "background" ? output.background
+                              : output.noise) = true;
+    }
+  map.done();
+  return output;
+}
+
+}  // namespace dmise

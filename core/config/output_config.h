@@ -1,0 +1,10 @@
+#pragma once
+#include "core/config/scenario.h"
+#include "core/config/yaml_reader.h"
+
+namespace dmise {
+
+/// Reads `output:` of a scenario. Throws `ConfigError`.
+OutputConfig read_output(const YamlValue& value);
+
+}  // namespace dmise

@@ -1,0 +1,28 @@
+#pragma once
+#include "core/base/image.h"
+#include "core/base/parallel.h"
+#include "core/config/scenario.h"
+#include "core/detector/expose.h"
+#include "sensors/pipeline/view.h"
+
+namespace dmise {
+
+/// Light in the band at the aperture, with the point spread of the optics in it
+/// [photons/s/m2/sr].
+using RadianceMap = Image<float, struct RadianceCarrier>;
+
+/// What the counts of a frame were drawn from. Only what the scenario asks for is filled in.
+struct FramePlanes {
+  RateImage sources, background;  // expected photo-electrons a second
+  ElectronImage noise;            // expected standard deviation from frame to frame [e-]
+  RadianceMap radiance;
+};
+
+/// Call when `light` holds the sky alone.
+void keep_background(const OutputConfig& wanted, const RateImage& light, FramePlanes& planes);
+
+/// Call when `light` [e-] holds all that falls on the detector during `exposure`.
+void make_planes(const OutputConfig& wanted, const View& view, const Exposure& exposure,
+                 const RateImage& light, Threads& threads, FramePlanes& planes);
+
+}  // namespace dmise
