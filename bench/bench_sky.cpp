@@ -83,8 +83,9 @@ void whole_sky(bool json) {
         unit(Vec<Enu>{x - (columns - 1) / 2.0, y - (rows - 1) / 2.0, focal_px}));
   };
   std::vector<float> image(std::size_t(columns) * rows);
+  Threads one(1);
   const double ms =
-      median_ms(7, [&] { fill_from_grid(columns, rows, radiance, 0.005, image.data()); });
+      median_ms(7, [&] { fill_from_grid(columns, rows, radiance, 0.005, image.data(), one); });
   double worst = 0.0;
   const double exact_ms = sampled * sampled * median_ms(1, [&] {
                             for (int y = 0; y < rows; y += sampled)

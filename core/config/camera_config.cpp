@@ -1,5 +1,7 @@
 #include "core/config/camera_config.h"
 
+#include "core/base/error.h"
+#include "core/config/band_config.h"
 #include "core/config/detector_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/search_path.h"
@@ -7,15 +9,16 @@
 namespace dmise {
 namespace {
 
-Band read_band(const YamlValue& value) {
-  YamlMap map(value);
-  Band band;
-  band.name = map.text_or("name", "V");
-  band.centre_m = map.number("centre_m", Bounds::between(0.1e-6, 30e-6));
-  band.width_m =
-      map.number("width_m", {.least = 0.0, .most = 2 * band.centre_m, .least_open = true});
-  map.done();
-  return band;
+/// The band as the detector sees it: one spectral integral for filter and quantum efficiency.
+void apply_quantum_efficiency(const YamlValue& value, Camera& camera) {
+  const QuantumEfficiency efficiency = read_quantum_efficiency(value);
+  camera.detector.quantum_efficiency = efficiency.peak;
+  if (efficiency.relative.empty()) return;
+  try {
+    camera.band = through(camera.band, efficiency.relative);
+  } catch (const Error& e) {
+    value.fail(e.what());
+  }
 }
 
 }  // namespace
@@ -40,6 +43,8 @@ Camera read_camera(const YamlValue& value) {
   camera.optics = read_optics(map.require("optics"));
   camera.detector = read_detector(map.require("detector"));
   camera.band = read_band(map.require("band"));
+  if (const auto efficiency = YamlMap(map.require("detector")).find("quantum_efficiency"))
+    apply_quantum_efficiency(*efficiency, camera);
   map.done();
   return camera;
 }

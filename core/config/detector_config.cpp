@@ -9,6 +9,10 @@ Detector read_detector(const YamlValue& value) {
   YamlMap map(value);
   Detector d;
   for (const DetectorFigure& figure : detector_figures()) {
+    if (figure.value == &Detector::quantum_efficiency) {
+      map.find(figure.key);  // read with the band: it may be a curve
+      continue;
+    }
     double& v = d.*figure.value;
     if (figure.value == &Detector::temperature_c) v = d.dark_reference_c;  // unless it says more
     const Bounds bounds{figure.least, figure.most, figure.least_open};

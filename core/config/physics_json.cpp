@@ -1,6 +1,7 @@
 #include "core/base/json.h"
 #include "core/config/optics_config.h"
 #include "core/config/scenario.h"
+#include "core/config/surroundings_json.h"
 #include "core/detector/detector_figures.h"
 
 namespace dmise {
@@ -36,7 +37,8 @@ void write_camera(JsonWriter& json, const Camera& camera) {
   const auto& o = camera.optics;
   const auto& d = camera.detector;
   json.key("camera").begin_object().field("name", camera.name);
-  json.field("projection", static_cast<int>(o.projection)).field("focal_length_m", o.focal_length_m);
+  json.field("projection", static_cast<int>(o.projection))
+      .field("focal_length_m", o.focal_length_m);
   json.field("aperture_m", o.aperture_m).field("obscuration", o.obscuration);
   json.field("pixel_pitch_m", o.pixel_pitch_m).field("columns", o.columns).field("rows", o.rows);
   json.field("transmission", o.transmission).field("psf_fwhm_px", o.psf_fwhm_px);
@@ -45,6 +47,7 @@ void write_camera(JsonWriter& json, const Camera& camera) {
   json.field("reference_px", d.reference_px).field("blooming", d.blooming);
   json.field("adc_bits", d.adc_bits).field("band", camera.band.name);
   json.field("band_centre_m", camera.band.centre_m).field("band_width_m", camera.band.width_m);
+  write_curve(json, "band_response", camera.band.response);
   json.end_object();
 }
 
@@ -56,9 +59,7 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   json.field("tracking", static_cast<int>(s.tracking)).field("roll_deg", s.roll_deg);
   json.field("exposure_s", s.exposure_s).field("cadence_s", s.cadence_s);
   json.field("first_exposure_s", s.first_exposure_s);
-  json.field("sky_zenith_mag_per_arcsec2", s.sky_zenith_mag_per_arcsec2);
-  json.field("extinction_mag_per_airmass", s.extinction_mag_per_airmass);
-  if (s.seeing) write_seeing_json(json, *s.seeing);
+  write_surroundings(json, s);
   json.key("effects").begin_array();
   for (std::size_t i = 0; i < effect_count; ++i)
     if (s.effects.has(static_cast<Effect>(i))) json.value(facts(static_cast<Effect>(i)).name);
@@ -73,6 +74,9 @@ std::string physics_json(const Scenario& scenario) {
   json.field("start", scenario.start_utc).field("duration_ns", scenario.duration.ns);
   json.field("tick_ns", scenario.tick.ns).field("seed", scenario.seed).end_object();
   write_objects(json, scenario.objects, scenario.own_objects);
+  json.key("environment").begin_object();
+  json.field("common_every_s", scenario.environment.common_every_s);
+  json.field("site_every_s", scenario.environment.site_every_s).end_object();
   json.key("stars").begin_object().field("catalogue", scenario.star_catalogue_named);
   json.field("faintest_mag", scenario.faintest_star_mag).end_object();
   json.key("sensors").begin_array();

@@ -7,8 +7,8 @@
 #include "core/base/error.h"
 #include "core/config/camera_config.h"
 #include "core/config/detector_config.h"
-#include "core/config/output_config.h"
 #include "core/config/optics_config.h"
+#include "core/config/output_config.h"
 #include "core/config/search_path.h"
 #include "core/config/yaml_reader.h"
 #include "core/optics/psf_plan.h"
@@ -16,27 +16,6 @@
 
 namespace dmise {
 namespace {
-
-struct SkyPreset {
-  const char* name;
-  double zenith_mag_per_arcsec2;
-};
-// V at the zenith: a city like Atlanta, a suburb, a good dark site, and zodiacal light seen from space.
-constexpr SkyPreset sky_presets[] = {
-    {"urban", 18.0}, {"suburban", 20.0}, {"dark", 21.9}, {"space", 21.0}};
-
-double read_sky(const YamlValue& value) {
-  if (value.is_map()) {
-    YamlMap map(value);
-    const double mag = map.number("zenith_mag_per_arcsec2", Bounds::between(-10.0, 30.0));
-    map.done();
-    return mag;
-  }
-  const std::string name = value.choice({"urban", "suburban", "dark", "space"});
-  for (const auto& preset : sky_presets)
-    if (name == preset.name) return preset.zenith_mag_per_arcsec2;
-  return 21.9;
-}
 
 SiteConfig read_site(const YamlValue& value) {
   if (value.is_scalar()) {
@@ -54,6 +33,7 @@ SiteConfig read_site(const YamlValue& value) {
   site.latitude_deg = map.number("latitude_deg", Bounds::between(-90.0, 90.0));
   site.longitude_deg = map.number("longitude_deg", Bounds::between(-180.0, 360.0));
   site.height_m = map.number_or("height_m", 0.0, Bounds::between(-500.0, 9000.0));
+  read_surroundings(map, site.surroundings);
   map.done();
   return site;
 }
@@ -113,6 +93,22 @@ void read_effects(const YamlValue& value, EffectSet& effects) {
   map.done();
 }
 
+/// Sky, air and weather: the sensor's own, else its site's, else the usual ones.
+void read_sensor_surroundings(YamlMap& map, SensorConfig& sensor) {
+  const auto* site = std::get_if<SiteConfig>(&sensor.place);
+  Surroundings around = site ? site->surroundings : Surroundings{};
+  const auto old_key = map.find("extinction_mag_per_airmass");
+  if (!site)
+    for (const auto& ground_only : {map.find("atmosphere"), map.find("weather")})
+      if (ground_only) ground_only->fail("is for a sensor on the ground", false);
+  if (old_key) around.atmosphere = standard_atmosphere(old_key->number(Bounds::between(0.0, 5.0)));
+  read_surroundings(map, around);
+  sensor.sky = around.sky ? *around.sky : sky_preset(site ? "dark" : "space");
+  sensor.atmosphere = around.atmosphere ? *around.atmosphere : standard_atmosphere(0.17);
+  sensor.weather = around.weather.value_or(WeatherConfig{});
+  check_sky_in_band(map.value(), sensor.sky, sensor.camera.band, bool(site));
+}
+
 SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTime duration) {
   YamlMap map(value);
   SensorConfig sensor;
@@ -139,17 +135,12 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTi
   const auto exposure = map.require("exposure_s");
   sensor.exposure_s = exposure.number({.least = 1e-6, .most = 3600.0});
   sensor.cadence_s = map.number("cadence_s", {.least = 1e-3, .most = 86400.0});
-  if (sensor.cadence_s < sensor.exposure_s)
-    exposure.fail("must be <= cadence_s");
+  if (sensor.cadence_s < sensor.exposure_s) exposure.fail("must be <= cadence_s");
   check_exposure(sensor.camera, exposure);
   const auto first = map.find("first_exposure_s");
   if (first) sensor.first_exposure_s = first->number(Bounds::not_negative());
   if (sim_seconds(sensor.first_exposure_s + sensor.exposure_s) > duration)
     exposure.fail("the first exposure ends after the run does");
-  const auto sky = map.find("sky");
-  sensor.sky_zenith_mag_per_arcsec2 = sky ? read_sky(*sky) : (site ? 21.9 : 21.0);
-  sensor.extinction_mag_per_airmass =
-      map.number_or("extinction_mag_per_airmass", site ? 0.17 : 0.0, Bounds::between(0.0, 5.0));
   if (const auto seeing = map.find("seeing")) {
     if (sensor.camera.optics.spread.model == PointSpread::Model::gaussian)
       seeing->fail("needs a camera with psf: diffraction", false);
@@ -160,6 +151,9 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTi
   } catch (const ConfigError& e) {
     map.require("camera").fail(e.what(), false);
   }
+  read_sensor_surroundings(map, sensor);
+  if (sensor.atmosphere.refraction)
+    sensor.effects.set(Effect::refraction, *sensor.atmosphere.refraction);
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
   map.done();
   return sensor;
@@ -200,6 +194,14 @@ void read_stars(const YamlValue& value, Scenario& scenario) {
   map.done();
 }
 
+void read_environment(const YamlValue& value, EnvironmentConfig& environment) {
+  YamlMap map(value);
+  const Bounds period = Bounds::between(0.0, 3600.0);
+  environment.common_every_s = map.number_or("common_every_s", 0.0, period);
+  environment.site_every_s = map.number_or("site_every_s", 60.0, period);
+  map.done();
+}
+
 void read_network(const YamlValue& value, NetworkConfig& network) {
   YamlMap map(value);
   network.window_ticks = static_cast<int>(map.integer_or("window_ticks", 4, 1, 10000));
@@ -237,6 +239,8 @@ Scenario load_scenario(const std::string& path) {
       YamlMap(value).require("name").fail("another node has this name");
   }
   if (scenario.sensors.empty()) sensors.fail("needs at least one sensor", false);
+  if (const auto environment = map.find("environment"))
+    read_environment(*environment, scenario.environment);
   if (const auto network = map.find("network")) read_network(*network, scenario.network);
   if (const auto output = map.find("output")) scenario.output = read_output(*output);
   map.done();

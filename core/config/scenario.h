@@ -7,6 +7,7 @@
 
 #include "core/base/sim_time.h"
 #include "core/config/object_config.h"
+#include "core/config/sky_config.h"
 #include "core/detector/detector.h"
 #include "core/effects/effects.h"
 #include "core/optics/camera.h"
@@ -29,6 +30,7 @@ struct SiteConfig {
   double latitude_deg = 0.0;   // geodetic, [-90, 90]
   double longitude_deg = 0.0;  // east, [-180, 360)
   double height_m = 0.0;       // above the ellipsoid, [-500, 9000]
+  Surroundings surroundings;   // the site's own; the sensor's come first
 };
 
 /// A sensor aboard an object, named by number or name.
@@ -39,14 +41,14 @@ struct PlatformConfig {
 /// Where the boresight points. On the ground "up" is the zenith; in orbit away from the Earth.
 struct PointUp {};
 struct PointHorizon {
-  double azimuth_deg = 0.0;    // from north through east
+  double azimuth_deg = 0.0;  // from north through east
   double elevation_deg = 0.0;
 };
 struct PointSky {
   double ra_deg = 0.0, dec_deg = 0.0;  // ICRS
 };
 struct PointTarget {
-  std::string object;          // catalogue number or name
+  std::string object;  // catalogue number or name
 };
 using Pointing = std::variant<PointUp, PointHorizon, PointSky, PointTarget>;
 
@@ -68,13 +70,20 @@ struct SensorConfig {
   double exposure_s = 0.0;
   double cadence_s = 0.0;
   double first_exposure_s = 0.0;  // after the start of the run
-  double sky_zenith_mag_per_arcsec2 = 21.9;
-  double extinction_mag_per_airmass = 0.0;
+  SkyConfig sky;
+  AtmosphereConfig atmosphere;         // of a sensor on the ground
+  WeatherConfig weather;               // likewise
   std::optional<SensorSeeing> seeing;  // none: no turbulence
   EffectSet effects;
 };
 
 enum class OnSilentNode { fail, wait, drop };
+
+/// How often the environment is told [s]; rounded up to whole ticks.
+struct EnvironmentConfig {
+  double common_every_s = 0.0;  // Sun, Moon, Earth; 0: every tick
+  double site_every_s = 60.0;   // weather of each site
+};
 
 struct NetworkConfig {
   int window_ticks = 4;
@@ -90,7 +99,7 @@ struct OutputConfig {
   bool saturation = false;  // the pixels' flags, a second image in the FITS file
   bool png = true;
   bool truth = true;
-  bool star_truth = false;        // frame-NNNNNN.stars.csv: every star drawn
+  bool star_truth = false;  // frame-NNNNNN.stars.csv: every star drawn
   int preview_width_px = 1663;
   bool radiance_exr = false;  // frame-NNNNNN-radiance.exr
   // frame-NNNNNN-PLANE.fits: what the counts were drawn from.
@@ -100,7 +109,7 @@ struct OutputConfig {
 /// A whole scenario, resolved: presets read, paths found, defaults filled in, everything checked.
 struct Scenario {
   std::string path;
-  std::string start_utc;          // ISO 8601
+  std::string start_utc;  // ISO 8601
   SimTime duration;
   SimTime tick;
   std::uint64_t seed = 1;
@@ -111,6 +120,7 @@ struct Scenario {
   std::string star_catalogue_named;
   double faintest_star_mag = 9.5;
   std::vector<SensorConfig> sensors;
+  EnvironmentConfig environment;
   NetworkConfig network;
   OutputConfig output;
 
@@ -119,7 +129,8 @@ struct Scenario {
   SimTime time_of(Tick k) const { return {k * tick.ns}; }
 };
 
-/// Reads and checks a scenario. Throws `ConfigError` with `file:line:column: key: reason, got value`.
+/// Reads and checks a scenario. Throws `ConfigError` with `file:line:column: key: reason, got
+/// value`.
 Scenario load_scenario(const std::string& path);
 
 /// What decides the products, in a fixed order: the same text gives the same bytes.

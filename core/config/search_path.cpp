@@ -39,7 +39,8 @@ std::string find_preset(const std::string& kind, const std::string& name,
 std::vector<std::string> preset_names(const std::string& kind) {
   std::vector<std::string> names;
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(fs::path(home_directory()) / "launch" / kind, ignored))
+  for (const auto& entry :
+       fs::directory_iterator(fs::path(home_directory()) / "launch" / kind, ignored))
     if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
@@ -50,7 +51,8 @@ std::string find_catalogue(const std::string& file_name) {
   for (const auto& directory :
        {fs::path(home_directory()) / "build/data", fs::path(home_directory()) / "data",
         fs::path("/usr/share/kstars"), fs::path("/usr/share/gpredict/data/satdata")})
-    if (fs::is_regular_file(directory / file_name, ignored)) return (directory / file_name).string();
+    if (fs::is_regular_file(directory / file_name, ignored))
+      return (directory / file_name).string();
   return "";
 }
 

@@ -4,7 +4,8 @@
 
 namespace dmise {
 
-/// Root of the installation or checkout: `$DMISE_HOME`, else found upwards from the running program.
+/// Root of the installation or checkout: `$DMISE_HOME`, else found upwards from the running
+/// program.
 std::string home_directory();
 
 /// `name` looked for as a path beside `from_file` and as it stands, then as a preset

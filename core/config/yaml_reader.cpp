@@ -26,9 +26,8 @@ void refuse_repeated_keys(const YAML::Node& node, const std::string& file,
   if (node.IsMap()) {
     std::set<std::string> seen;
     for (const auto& entry : node) {
-      const std::string inner =
-          path + (path.empty() ? "" : ".") +
-          (entry.first.IsScalar() ? entry.first.Scalar() : std::string("?"));
+      const std::string inner = path + (path.empty() ? "" : ".") +
+                                (entry.first.IsScalar() ? entry.first.Scalar() : std::string("?"));
       if (!entry.first.IsScalar())
         throw ConfigError(place(file, entry.first.Mark()) + ": " + inner + ": key must be a word");
       if (!seen.insert(entry.first.Scalar()).second)

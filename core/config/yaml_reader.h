@@ -60,8 +60,8 @@ class YamlValue {
   std::string path_;
 };
 
-/// The keys of a YAML mapping. Each model reads its own; `done()` refuses those that nobody read and
-/// suggests the nearest one that would have been.
+/// The keys of a YAML mapping. Each model reads its own; `done()` refuses those that nobody read
+/// and suggests the nearest one that would have been.
 class YamlMap {
  public:
   explicit YamlMap(const YamlValue& value);

@@ -30,7 +30,8 @@ struct TruthSet {
 /// The State interface: everything that actors and evaluators tell each other. To add one: list it
 /// here, give it a message in proto/ and a pair of functions in nodes/wire.
 using State =
-    std::variant<ObjectRoster, ObjectStates, EnvironmentState, FrameReport, DetectionSet, TruthSet>;
+    std::variant<ObjectRoster, ObjectStates, EnvironmentState, FrameReport, DetectionSet, TruthSet,
+                 SiteState>;
 
 /// One state, published on a topic for a tick. A topic may carry none, one or several a tick.
 struct Message {
@@ -42,6 +43,7 @@ struct Message {
 // Topics. A sensor's own are `prefix + sensor name`.
 inline constexpr const char* objects_topic = "state/objects";  // roster (tick 0), then states
 inline constexpr const char* environment_topic = "env/common";
+inline constexpr const char* site_prefix = "env/site/";        // the air over a ground sensor
 inline constexpr const char* frame_prefix = "frame/";
 inline constexpr const char* detection_prefix = "detection/";
 inline constexpr const char* truth_prefix = "truth/";          // own endpoint, own security domain

@@ -60,12 +60,21 @@ struct ObjectStates {
   bool operator==(const ObjectStates&) const = default;
 };
 
-/// Sky over one sensor's site.
-struct SkyState {
+/// The air over one ground sensor, at one tick; it holds until the next one is told.
+struct SiteState {
+  Tick tick = 0;
+  SimTime time;
   std::string sensor;
-  double zenith_mag_per_arcsec2 = 21.9;  // V, Johnson
+  double extinction_mag_per_airmass = 0.0;  // of light at 550 nm
+  double pressure_hpa = 0.0, temperature_c = 0.0, humidity = 0.0;
+  double cloud_transmission = 1.0;  // at the zenith now, [0, 1]
+  // Turbulence towards the zenith at 500 nm; all 0 where no profile is given.
+  double r0_m = 0.0;
+  double isoplanatic_angle_rad = 0.0;
+  double tau0_s = 0.0;
+  double turbulence_m_per_s = 0.0;
 
-  bool operator==(const SkyState&) const = default;
+  bool operator==(const SiteState&) const = default;
 };
 
 /// The world that all sensors share, at one tick.
@@ -78,7 +87,6 @@ struct EnvironmentState {
   Vec<Gcrs> earth_barycentric_m;         // of the Earth's centre, ICRS axes
   Vec<Gcrs> earth_velocity_m_per_s;      // barycentric, for annual aberration
   double tt_jd1 = 0.0, tt_jd2 = 0.0;     // two-part TT Julian date of `time` [days]
-  std::vector<SkyState> skies;           // one a sensor, in scenario order
 
   bool operator==(const EnvironmentState&) const = default;
 };

@@ -10,6 +10,8 @@ namespace dmise {
 struct UniformCloud {
   double transmission =
       1.0;  // at the zenith, [0, 1]; towards the horizon to the power of the airmass
+
+  bool operator==(const UniformCloud&) const = default;
 };
 
 /// Patches of cloud in a thin layer, drifting with the wind.
@@ -21,6 +23,8 @@ struct PatchyClouds {
   double wind_east_m_per_s = 8.0;
   double wind_north_m_per_s = 0.0;
   std::uint64_t seed = 1;
+
+  bool operator==(const PatchyClouds&) const = default;
 };
 
 /// To add clouds: list them here, give them a pattern in clouds.cpp, test them in

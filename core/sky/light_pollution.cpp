@@ -43,7 +43,7 @@ Spectrum spectrum_of(std::span<const Line> lines) {
 }  // namespace
 
 Spectrum lamp_spectrum(const LampMix& lamps) {
-  const double shares[] = {lamps.low_pressure_sodium, lamps.high_pressure_sodium, lamps.led_4000_k};
+  const double shares[] = {lamps.lps, lamps.hps, lamps.led};
   const Spectrum each[] = {spectrum_of(low_pressure_sodium), spectrum_of(high_pressure_sodium),
                            spectrum_of(led_4000_k)};
   double sum = 0.0;

@@ -8,9 +8,9 @@ namespace dmise {
 
 /// Which lamps light the ground: shares of the light in V.
 struct LampMix {
-  double low_pressure_sodium = 0.1;
-  double high_pressure_sodium = 0.5;
-  double led_4000_k = 0.4;
+  double lps = 0.1;  // low-pressure sodium
+  double hps = 0.5;  // high-pressure sodium
+  double led = 0.4;  // white, 4000 K
 };
 
 /// The glow of one city on the horizon, over the even part.

@@ -34,7 +34,8 @@ double at(const std::array<double, 4>& c, double t) {
   return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
 }
 
-struct Filler {
+/// The nodes of the coarse grid.
+struct Grid {
   int columns, rows;
   const PixelFunction& f;
   double tolerance;
@@ -42,29 +43,28 @@ struct Filler {
   Axis across{columns}, down{rows};
   int stride = across.cells + 3;  // nodes in a row, with one beyond each end
   std::vector<double> nodes;
-  SkyGridReport report;
-
-  double evaluate(double x, double y) {
-    ++report.evaluations;
-    return f(x, y);
-  }
 
   double& node(int i, int j) { return nodes[std::size_t(j + 1) * stride + std::size_t(i + 1)]; }
+  double node(int i, int j) const {
+    return nodes[std::size_t(j + 1) * stride + std::size_t(i + 1)];
+  }
 
   /// Values at the grid's corners; those beyond its ends continue the parabola of the last three,
   /// or the line of two.
-  void make_nodes() {
+  void make_nodes(Threads& threads) {
     nodes.assign(std::size_t(stride) * std::size_t(down.cells + 3), 0.0);
-    for (int j = 0; j <= down.cells; ++j) {
-      for (int i = 0; i <= across.cells; ++i)
-        node(i, j) = evaluate(std::min(i * across.width, columns - 1.0),
-                              std::min(j * down.width, rows - 1.0));
-      const int n = across.cells;
-      node(-1, j) =
-          n > 1 ? 3 * (node(0, j) - node(1, j)) + node(2, j) : 2 * node(0, j) - node(1, j);
-      node(n + 1, j) = n > 1 ? 3 * (node(n, j) - node(n - 1, j)) + node(n - 2, j)
-                             : 2 * node(n, j) - node(n - 1, j);
-    }
+    threads.for_ranges(std::size_t(down.cells) + 1, 2, [&](std::size_t first, std::size_t last) {
+      for (int j = int(first); j < int(last); ++j) {
+        for (int i = 0; i <= across.cells; ++i)
+          node(i, j) =
+              f(std::min(i * across.width, columns - 1.0), std::min(j * down.width, rows - 1.0));
+        const int n = across.cells;
+        node(-1, j) =
+            n > 1 ? 3 * (node(0, j) - node(1, j)) + node(2, j) : 2 * node(0, j) - node(1, j);
+        node(n + 1, j) = n > 1 ? 3 * (node(n, j) - node(n - 1, j)) + node(n - 2, j)
+                               : 2 * node(n, j) - node(n - 1, j);
+      }
+    });
     const int m = down.cells;
     for (int i = -1; i <= across.cells + 1; ++i) {
       node(i, -1) =
@@ -80,7 +80,7 @@ struct Filler {
 
   /// No edge near the nodes of this cell, by fourth differences: a jump in slope makes them large,
   /// and bicubic values wrong by up to 0.4 of them.
-  bool smooth(int i, int j) {
+  bool smooth(int i, int j) const {
     const auto calm = [&](double a, double b, double c, double d, double e) {
       return 0.4 * std::abs(a - 4 * b + 6 * c - 4 * d + e) <= tolerance * std::abs(c);
     };
@@ -95,19 +95,32 @@ struct Filler {
       }
     return true;
   }
+};
+
+/// The cells of some rows: what each thread counts is its own.
+struct Piece {
+  const Grid& grid;
+  SkyGridReport report;
+
+  double evaluate(double x, double y) {
+    ++report.evaluations;
+    return grid.f(x, y);
+  }
 
   void fill_cell(int i, int j) {
+    const Axis &across = grid.across, &down = grid.down;
     const auto row_at = [&](int k, double v) {
-      return at(cubic(node(k, j - 1), node(k, j), node(k, j + 1), node(k, j + 2)), v);
+      return at(
+          cubic(grid.node(k, j - 1), grid.node(k, j), grid.node(k, j + 1), grid.node(k, j + 2)), v);
     };
     const auto cubic_at = [&](double v) {
       return cubic(row_at(i - 1, v), row_at(i, v), row_at(i + 1, v), row_at(i + 2, v));
     };
     const int x0 = across.first[i], x1 = across.first[i + 1];
     const int y0 = down.first[j], y1 = down.first[j + 1];
-    const double middle = evaluate(std::min((i + 0.5) * across.width, columns - 1.0),
-                                   std::min((j + 0.5) * down.width, rows - 1.0));
-    if (!agrees(at(cubic_at(0.5), 0.5), middle) || !smooth(i, j)) {
+    const double middle = evaluate(std::min((i + 0.5) * across.width, grid.columns - 1.0),
+                                   std::min((j + 0.5) * down.width, grid.rows - 1.0));
+    if (!grid.agrees(at(cubic_at(0.5), 0.5), middle) || !grid.smooth(i, j)) {
       ++report.refined_cells;
       const double a = evaluate(x0, y0), b = evaluate(x1 - 1, y0);
       refine(x0, y0, x1 - 1, y1 - 1, a, b, evaluate(x0, y1 - 1), evaluate(x1 - 1, y1 - 1));
@@ -117,7 +130,7 @@ struct Filler {
     for (int y = y0; y < y1; ++y) {
       const auto c = cubic_at(y / down.width - j);
       const float c0 = float(c[0]), c1 = float(c[1]), c2 = float(c[2]), c3 = float(c[3]);
-      float* to = out + std::size_t(y) * std::size_t(columns) + x0;
+      float* to = grid.out + std::size_t(y) * std::size_t(grid.columns) + x0;
       for (int k = 0; k < x1 - x0; ++k) {
         const float t = t0 + dt * float(k);
         to[k] = c0 + t * (c1 + t * (c2 + t * c3));
@@ -139,9 +152,10 @@ struct Filler {
     const double left = evaluate(x0, ym), right = evaluate(x1, ym);
     const double u = w ? double(xm - x0) / w : 0.0, v = h ? double(ym - y0) / h : 0.0;
     const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
-    if (w <= 16 && h <= 16 && agrees(mix(f00, f10, u), top) && agrees(mix(f01, f11, u), bottom) &&
-        agrees(mix(f00, f01, v), left) && agrees(mix(f10, f11, v), right) &&
-        agrees(mix(mix(f00, f10, u), mix(f01, f11, u), v), middle)) {
+    if (w <= 16 && h <= 16 && grid.agrees(mix(f00, f10, u), top) &&
+        grid.agrees(mix(f01, f11, u), bottom) && grid.agrees(mix(f00, f01, v), left) &&
+        grid.agrees(mix(f10, f11, v), right) &&
+        grid.agrees(mix(mix(f00, f10, u), mix(f01, f11, u), v), middle)) {
       for (int y = y0; y <= y1; ++y) {
         const double b = h ? double(y - y0) / h : 0.0;
         const double first = mix(f00, f01, b), last = mix(f10, f11, b);
@@ -156,20 +170,32 @@ struct Filler {
   }
 
   void set(int x, int y, double value) {
-    out[std::size_t(y) * std::size_t(columns) + std::size_t(x)] = float(value);
+    grid.out[std::size_t(y) * std::size_t(grid.columns) + std::size_t(x)] = float(value);
   }
 };
 
 }  // namespace
 
 SkyGridReport fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
-                             float* out) {
+                             float* out, Threads& threads) {
   if (columns <= 0 || rows <= 0) return {};
-  Filler filler{columns, rows, f, tolerance, out};
-  filler.make_nodes();
-  for (int j = 0; j < filler.down.cells; ++j)
-    for (int i = 0; i < filler.across.cells; ++i) filler.fill_cell(i, j);
-  return filler.report;
+  Grid grid{columns, rows, f, tolerance, out};
+  grid.make_nodes(threads);
+  const auto cell_rows = std::size_t(grid.down.cells);
+  std::vector<SkyGridReport> reports(cell_rows);
+  threads.for_ranges(cell_rows, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t j = first; j < last; ++j) {
+      Piece piece{grid};
+      for (int i = 0; i < grid.across.cells; ++i) piece.fill_cell(i, int(j));
+      reports[j] = piece.report;
+    }
+  });
+  SkyGridReport sum{.evaluations = std::size_t(grid.across.cells + 1) * (cell_rows + 1)};
+  for (const SkyGridReport& report : reports) {
+    sum.evaluations += report.evaluations;
+    sum.refined_cells += report.refined_cells;
+  }
+  return sum;
 }
 
 }  // namespace dmise

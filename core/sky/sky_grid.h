@@ -2,9 +2,11 @@
 #include <cstddef>
 #include <functional>
 
+#include "core/base/parallel.h"
+
 namespace dmise {
 
-/// A smooth function of pixel position, > 0: the sky's radiance seen by a camera.
+/// A smooth function of pixel position, >= 0: the sky's radiance seen by a camera.
 using PixelFunction = std::function<double(double x, double y)>;
 
 struct SkyGridReport {
@@ -15,9 +17,9 @@ struct SkyGridReport {
 /// Fills `out` (columns x rows, row-major) with `f` at every pixel's centre, from a coarse grid:
 /// bicubic between nodes some 32 px apart, checked against `f` at the middle of every cell and by
 /// the nodes' fourth differences. Where the error may exceed `tolerance` (relative) the cell is cut
-/// in four, and so on down to single pixels. `f` is called inside the image only. The same bytes
-/// for the same input.
+/// in four, and so on down to single pixels. `f` is called inside the image only, by any of
+/// `threads`. The same bytes for the same input, on any number of them.
 SkyGridReport fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
-                             float* out);
+                             float* out, Threads& threads);
 
 }  // namespace dmise

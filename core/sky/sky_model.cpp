@@ -49,7 +49,8 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
   galactic_pole_ = (galactic_from_gcrs() * scene.gcrs_from_enu).inverse() * Vec<Galactic>{0, 0, 1};
   sun_longitude_rad_ = to_spherical(ecliptic_from_enu_ * scene.sun)[0];
   const double sun_altitude_rad = std::asin(std::clamp(scene.sun.z, -1.0, 1.0));
-  moon_v_mag_ = moon_v_mag(scene.moon_phase_rad);
+  moon_v_mag_ = moon_v_mag(scene.moon_phase_rad) +
+                5.0 * std::log10(scene.moon_distance_m / mean_moon_distance_m);
   if (scene.in_air) {
     k_v_ = zenith_extinction_mag(johnson_v(), extinction);
     diffuse_mag_ = diffuse_share_of_extinction * zenith_extinction_mag(band, extinction);
@@ -71,33 +72,64 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
         photons_per_s_m2_sr_of_s10(band, lamp_spectrum(parts_.light_pollution->lamps));
 }
 
-std::array<double, sky_part_count> SkyModel::parts_s10(const Vec<Enu>& direction) const {
-  std::array<double, sky_part_count> s10{};
-  if (parts_.uniform) s10[0] = s10_of_mag_per_arcsec2(parts_.uniform->v_mag_per_arcsec2);
-  const double sin_altitude = direction.z;
-  if (parts_.airglow) s10[1] = airglow_s10(*parts_.airglow, sin_altitude, diffuse_mag_);
-  if (parts_.zodiacal_light || parts_.faint_starlight) {
-    const double arrives =
-        scene_.in_air ? light_of_magnitude(diffuse_mag_ * scattering_airmass(sin_altitude)) : 1.0;
-    if (parts_.zodiacal_light) {
-      const Vec<Ecliptic> e = ecliptic_from_enu_ * direction;
-      s10[2] = arrives * parts_.zodiacal_light->factor *
-               zodiacal_light_s10(std::atan2(e.y, e.x) - sun_longitude_rad_,
-                                  std::asin(std::clamp(e.z, -1.0, 1.0)));
-    }
-    if (parts_.faint_starlight)
-      s10[3] =
-          arrives * faint_starlight_s10(*parts_.faint_starlight, dot(galactic_pole_, direction));
-  }
-  if (parts_.scattered_moonlight)
-    s10[4] = parts_.scattered_moonlight->factor *
-             scattered_moonlight_s10(angle_rad(direction, scene_.moon), sin_altitude, scene_.moon.z,
+double SkyModel::above_air_s10(SkyPart part, const Vec<Enu>& direction) const {
+  if (part == SkyPart::faint_starlight)
+    return faint_starlight_s10(*parts_.faint_starlight, dot(galactic_pole_, direction));
+  const Vec<Ecliptic> e = ecliptic_from_enu_ * direction;
+  return parts_.zodiacal_light->factor *
+         zodiacal_light_s10(std::atan2(e.y, e.x) - sun_longitude_rad_,
+                            std::asin(std::clamp(e.z, -1.0, 1.0)));
+}
+
+double SkyModel::above_clouds_s10(SkyPart part, const Vec<Enu>& direction) const {
+  switch (part) {
+    case SkyPart::airglow:
+      return parts_.airglow ? airglow_s10(*parts_.airglow, direction.z, diffuse_mag_) : 0.0;
+    case SkyPart::zodiacal_light:
+      if (!parts_.zodiacal_light) return 0.0;
+      break;
+    case SkyPart::faint_starlight:
+      if (!parts_.faint_starlight) return 0.0;
+      break;
+    case SkyPart::scattered_moonlight:
+      if (!parts_.scattered_moonlight) return 0.0;
+      return parts_.scattered_moonlight->factor *
+             scattered_moonlight_s10(angle_rad(direction, scene_.moon), direction.z, scene_.moon.z,
                                      moon_v_mag_, k_v_);
-  if (twilight_scale_s10_ > 0)
-    s10[5] = twilight_scale_s10_ *
-             twilight_pattern(sin_altitude, angle_rad(direction, scene_.sun), k_v_);
-  if (parts_.light_pollution)
-    s10[6] = light_pollution_s10(*parts_.light_pollution, direction, k_v_);
+    case SkyPart::twilight:
+      if (!(twilight_scale_s10_ > 0)) return 0.0;
+      return twilight_scale_s10_ *
+             twilight_pattern(direction.z, angle_rad(direction, scene_.sun), k_v_);
+    default:
+      return 0.0;
+  }
+  const double arrives =
+      scene_.in_air ? light_of_magnitude(diffuse_mag_ * scattering_airmass(direction.z)) : 1.0;
+  return arrives * above_air_s10(part, direction);
+}
+
+double SkyModel::part_s10(SkyPart part, const Vec<Enu>& direction) const {
+  if (part == SkyPart::uniform)
+    return parts_.uniform ? s10_of_mag_per_arcsec2(parts_.uniform->v_mag_per_arcsec2) : 0.0;
+  if (part == SkyPart::light_pollution)
+    return parts_.light_pollution ? light_pollution_s10(*parts_.light_pollution, direction, k_v_)
+                                  : 0.0;
+  return above_clouds_s10(part, direction) * cloud_transmission(direction);
+}
+
+double SkyModel::cloud_transmission(const Vec<Enu>& direction) const {
+  return scene_.clouds ? scene_.clouds->transmission(direction, scene_.time_s) : 1.0;
+}
+
+std::array<double, sky_part_count> SkyModel::parts_s10(const Vec<Enu>& direction) const {
+  std::array<double, sky_part_count> s10;
+  const double clouds = cloud_transmission(direction);
+  for (std::size_t i = 0; i < sky_part_count; ++i) {
+    const auto part = static_cast<SkyPart>(i);
+    s10[i] = part == SkyPart::uniform || part == SkyPart::light_pollution
+                 ? part_s10(part, direction)
+                 : clouds * above_clouds_s10(part, direction);
+  }
   return s10;
 }
 

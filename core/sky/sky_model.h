@@ -1,10 +1,12 @@
 #pragma once
 #include <array>
+#include <memory>
 #include <optional>
 #include <string_view>
 
 #include "core/frames/vec.h"
 #include "core/sky/airglow.h"
+#include "core/sky/clouds.h"
 #include "core/sky/faint_starlight.h"
 #include "core/sky/light_pollution.h"
 #include "core/sky/scattered_moonlight.h"
@@ -30,8 +32,18 @@ struct SkyParts {
   std::optional<Twilight> twilight;
   std::optional<LightPollution> light_pollution;
 };
-inline constexpr std::size_t sky_part_count = 7;
-/// Names in the order of SkyParts, as in YAML.
+enum class SkyPart {
+  uniform,
+  airglow,
+  zodiacal_light,
+  faint_starlight,
+  scattered_moonlight,
+  twilight,
+  light_pollution,
+  count
+};
+inline constexpr std::size_t sky_part_count = static_cast<std::size_t>(SkyPart::count);
+/// Names in the order of SkyPart, as in YAML.
 inline constexpr std::array<std::string_view, sky_part_count> sky_part_names = {
     "uniform",  "airglow",        "zodiacal_light", "faint_starlight", "scattered_moonlight",
     "twilight", "light_pollution"};
@@ -40,13 +52,21 @@ inline constexpr std::array<std::string_view, sky_part_count> sky_part_names = {
 /// (these, and lamps that bring the zenith to 20 and 18 mag/arcsec2), "space" (uniform, 21).
 std::optional<SkyParts> sky_parts_named(std::string_view preset);
 
-/// What the sky depends on at one site and time. Directions are apparent, unit.
+inline constexpr double mean_moon_distance_m = 384.4e6;
+
+/// What the sky depends on at one site and time. Directions are unit: the Sun's without refraction,
+/// as twilight is told by its true depression, the Moon's apparent.
 struct SkyScene {
   Vec<Enu> sun{0, 0, -1};
   Vec<Enu> moon{0, 0, -1};
   double moon_phase_rad = 3.14159265358979323846;  // Sun-Moon-observer, 0 at full Moon
+  double moon_distance_m = mean_moon_distance_m;
   Rotation<Gcrs, Enu> gcrs_from_enu;
   bool in_air = true;  // false: a camera in space, no extinction
+  /// Dim what comes from above them; null: none. Lamps below are neither dimmed nor mirrored, and a
+  /// `UniformSky` is as it is given.
+  std::shared_ptr<const CloudMap> clouds;
+  double time_s = 0.0;  // for the clouds' drift
 };
 
 /// The sky of one scene in one band.
@@ -59,13 +79,19 @@ class SkyModel {
   /// Photons/s/m2/sr from a direction (unit) at the camera; below the horizon what is on it.
   double photons_per_s_m2_sr(const Vec<Enu>& direction) const;
 
-  /// V brightness of each part [S10], in the order of `sky_part_names`.
+  /// V brightness of one part [S10]; 0 where it is off.
+  double part_s10(SkyPart part, const Vec<Enu>& direction) const;
+  /// V brightness of each part [S10], in the order of `SkyPart`.
   std::array<double, sky_part_count> parts_s10(const Vec<Enu>& direction) const;
 
   /// V brightness of the whole [mag/arcsec2]; 99 where there is none.
   double v_mag_per_arcsec2(const Vec<Enu>& direction) const;
 
  private:
+  double above_air_s10(SkyPart part, const Vec<Enu>& direction) const;
+  double above_clouds_s10(SkyPart part, const Vec<Enu>& direction) const;
+  double cloud_transmission(const Vec<Enu>& direction) const;
+
   SkyParts parts_;
   SkyScene scene_;
   Rotation<Ecliptic, Enu> ecliptic_from_enu_;

@@ -74,8 +74,8 @@ double layer_speed_m_per_s(const TurbulenceWind& wind, double height_m, double a
   return std::hypot(blown, wind.slew_rad_per_s * height_m * airmass);
 }
 
-Seeing seeing(const TurbulenceProfile& profile, double wavelength_m, double airmass,
-              const TurbulenceWind& wind) {
+Turbulence turbulence(const TurbulenceProfile& profile, double wavelength_m, double airmass,
+                      const TurbulenceWind& wind) {
   if (const auto* table = std::get_if<Cn2Table>(&profile)) check(*table);
   if (!(wavelength_m > 0)) throw Error("turbulence: wavelength must be > 0");
   if (!(airmass >= 0.99) || !std::isfinite(airmass))
@@ -86,7 +86,7 @@ Seeing seeing(const TurbulenceProfile& profile, double wavelength_m, double airm
   const double by_speed = integrate(profile, [&](double h) {
     return std::pow(layer_speed_m_per_s(wind, h, airmass), 5.0 / 3.0);
   });
-  Seeing result;
+  Turbulence result;
   result.r0_m = std::pow(0.423 * k2 * airmass * whole, -0.6);
   result.isoplanatic_angle_rad =
       std::pow(2.914 * k2 * std::pow(airmass, 8.0 / 3.0) * by_height, -0.6);

@@ -35,7 +35,7 @@ struct TurbulenceWind {
 double layer_speed_m_per_s(const TurbulenceWind& wind, double height_m, double airmass = 1.0);
 
 /// What a profile does to an image.
-struct Seeing {
+struct Turbulence {
   double r0_m = 0.0;  // Fried's parameter
   double isoplanatic_angle_rad = 0.0;
   double wind_m_per_s = 0.0;      // speed of the turbulence, its mean by the power 5/3
@@ -50,8 +50,8 @@ struct Seeing {
 /// gives infinite r0. Throws `Error` for a table that doesn't ascend or holds nonsense, wavelength
 /// <= 0, airmass < 0.99. Source: Fried 1966, JOSA 56, 1372; Fried 1982, JOSA 72, 52; Greenwood
 /// 1977, JOSA 67, 390.
-Seeing seeing(const TurbulenceProfile& profile, double wavelength_m, double airmass = 1.0,
-              const TurbulenceWind& wind = {});
+Turbulence turbulence(const TurbulenceProfile& profile, double wavelength_m, double airmass = 1.0,
+                      const TurbulenceWind& wind = {});
 
 /// r0 known at one wavelength and airmass, at another: it goes as wavelength^(6/5) airmass^(-3/5).
 double scale_r0(double r0_m, double from_wavelength_m, double to_wavelength_m,

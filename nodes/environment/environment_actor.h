@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <map>
 
 #include "core/config/scenario.h"
 #include "core/sim/participant.h"
@@ -7,20 +8,26 @@
 
 namespace dmise {
 
-/// What all sensors share: Sun, Moon, the Earth's motion and orientation, the sky over each sensor.
+/// What all sensors share (Sun, Moon, the Earth's motion and orientation) and the air over each
+/// ground sensor; each at a rate of its own, first at tick 0.
 class EnvironmentActor : public Actor {
  public:
   EnvironmentActor(const Scenario& scenario, Clock clock);
 
   std::string name() const override { return "environment-node"; }
-  std::vector<std::string> produces() const override { return {environment_topic}; }
+  std::vector<std::string> produces() const override;
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   std::uint64_t progress() const override { return steps_; }
 
  private:
+  EnvironmentState common(Tick tick) const;
+  SiteState site(const SensorConfig& sensor, Tick tick) const;
+
   SimTime tick_length_;
+  Tick common_period_, site_period_;
   Clock clock_;
-  std::vector<SkyState> skies_;
+  std::vector<SensorConfig> ground_sensors_;
+  std::map<std::string, Turbulence> turbulence_;  // towards the zenith at 500 nm, by sensor
   std::atomic<std::uint64_t> steps_{0};
 };
 

@@ -11,6 +11,7 @@ namespace dmise {
 Encoded encode_body(const ObjectRoster&);
 Encoded encode_body(const ObjectStates&);
 Encoded encode_body(const EnvironmentState&);
+Encoded encode_body(const SiteState&);
 Encoded encode_body(const FrameReport&);
 Encoded encode_body(const DetectionSet&);
 Encoded encode_body(const TruthSet&);
@@ -18,6 +19,7 @@ Encoded encode_body(const TruthSet&);
 ObjectRoster decode_roster(std::string_view payload);
 ObjectStates decode_states(std::string_view payload, std::string_view arrays);
 EnvironmentState decode_environment(std::string_view payload);
+SiteState decode_site(std::string_view payload);
 FrameReport decode_report(std::string_view payload);
 DetectionSet decode_detections(std::string_view payload);
 TruthSet decode_truths(std::string_view payload);

@@ -25,6 +25,7 @@ enum class MessageKind : std::uint8_t {
   frame_report = 6,
   detection_set = 7,
   truth_set = 8,
+  site_state = 9,
 };
 
 struct Envelope {

@@ -37,11 +37,6 @@ Encoded encode_body(const EnvironmentState& state) {
   put(message.mutable_earth_velocity_m_per_s(), state.earth_velocity_m_per_s);
   message.set_tt_jd1_days(state.tt_jd1);
   message.set_tt_jd2_days(state.tt_jd2);
-  for (const SkyState& sky : state.skies) {
-    auto* s = message.add_skies();
-    s->set_sensor(sky.sensor);
-    s->set_zenith_mag_per_arcsec2(sky.zenith_mag_per_arcsec2);
-  }
   return {MessageKind::environment_state, message.SerializeAsString(), {}};
 }
 
@@ -67,10 +62,40 @@ EnvironmentState decode_environment(std::string_view payload) {
       take_vec<Gcrs>(message.earth_velocity_m_per_s(), "earth_velocity_m_per_s");
   state.tt_jd1 = message.tt_jd1_days();
   state.tt_jd2 = message.tt_jd2_days();
-  for (const auto& s : message.skies())
-    state.skies.push_back(
-        {.sensor = s.sensor(), .zenith_mag_per_arcsec2 = s.zenith_mag_per_arcsec2()});
   return state;
+}
+
+Encoded encode_body(const SiteState& state) {
+  v1::SiteState message;
+  message.set_tick(state.tick);
+  message.set_time_ns(state.time.ns);
+  message.set_sensor(state.sensor);
+  message.set_extinction_mag_per_airmass(state.extinction_mag_per_airmass);
+  message.set_pressure_hpa(state.pressure_hpa);
+  message.set_temperature_c(state.temperature_c);
+  message.set_humidity(state.humidity);
+  message.set_cloud_transmission(state.cloud_transmission);
+  message.set_r0_m(state.r0_m);
+  message.set_isoplanatic_angle_rad(state.isoplanatic_angle_rad);
+  message.set_tau0_s(state.tau0_s);
+  message.set_turbulence_m_per_s(state.turbulence_m_per_s);
+  return {MessageKind::site_state, message.SerializeAsString(), {}};
+}
+
+SiteState decode_site(std::string_view payload) {
+  const auto message = parse<v1::SiteState>(payload);
+  return {.tick = message.tick(),
+          .time = {message.time_ns()},
+          .sensor = message.sensor(),
+          .extinction_mag_per_airmass = message.extinction_mag_per_airmass(),
+          .pressure_hpa = message.pressure_hpa(),
+          .temperature_c = message.temperature_c(),
+          .humidity = message.humidity(),
+          .cloud_transmission = message.cloud_transmission(),
+          .r0_m = message.r0_m(),
+          .isoplanatic_angle_rad = message.isoplanatic_angle_rad(),
+          .tau0_s = message.tau0_s(),
+          .turbulence_m_per_s = message.turbulence_m_per_s()};
 }
 
 }  // namespace dmise

@@ -12,7 +12,9 @@ namespace dmise {
 namespace {
 
 template <class T>
-constexpr const char* type_name = sizeof(T) == 1 ? "uint8" : sizeof(T) == 4 ? "uint32" : "float64";
+constexpr const char* type_name = sizeof(T) == 1   ? "uint8"
+                                  : sizeof(T) == 4 ? "uint32"
+                                                   : "float64";
 
 template <class T>
 void append_array(v1::ObjectStates* message, std::string* bytes, const char* name,

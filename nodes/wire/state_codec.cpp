@@ -21,6 +21,8 @@ State decode(MessageKind kind, std::string_view payload, std::string_view arrays
         return decode_states(payload, arrays);
       case MessageKind::environment_state:
         return decode_environment(payload);
+      case MessageKind::site_state:
+        return decode_site(payload);
       case MessageKind::frame_report:
         return decode_report(payload);
       case MessageKind::detection_set:

@@ -158,10 +158,19 @@ void check(const EnvironmentState& state) {
   vector_within(state.earth_velocity_m_per_s, speed_limit_m_per_s, "earth_velocity_m_per_s");
   in_range(state.tt_jd1, -1e8, 1e8, "tt_jd1_days");
   in_range(state.tt_jd2, -1e8, 1e8, "tt_jd2_days");
-  for (const SkyState& sky : state.skies) {
-    name_text(sky.sensor, "skies.sensor");
-    in_range(sky.zenith_mag_per_arcsec2, -30, 60, "skies.zenith_mag_per_arcsec2");
-  }
+}
+
+void check(const SiteState& state) {
+  name_text(state.sensor, "sensor");
+  in_range(state.extinction_mag_per_airmass, 0, 10, "extinction_mag_per_airmass");
+  in_range(state.pressure_hpa, 0, 10000, "pressure_hpa");
+  in_range(state.temperature_c, -150, 200, "temperature_c");
+  in_range(state.humidity, 0, 1, "humidity");
+  in_range(state.cloud_transmission, 0, 1, "cloud_transmission");
+  not_negative(state.r0_m, "r0_m");
+  not_negative(state.isoplanatic_angle_rad, "isoplanatic_angle_rad");
+  not_negative(state.tau0_s, "tau0_s");
+  in_range(state.turbulence_m_per_s, 0, speed_limit_m_per_s, "turbulence_m_per_s");
 }
 
 void check(const Wcs& wcs) {
@@ -260,6 +269,7 @@ struct Place {
 Place place(const ObjectRoster&) { return {objects_topic}; }
 Place place(const ObjectStates& s) { return {objects_topic, &s.tick, &s.time}; }
 Place place(const EnvironmentState& s) { return {environment_topic, &s.tick, &s.time}; }
+Place place(const SiteState& s) { return {site_prefix + s.sensor, &s.tick, &s.time}; }
 Place place(const FrameReport& report) { return {frame_prefix + report.sensor}; }
 Place place(const DetectionSet& set) { return {detection_prefix + set.sensor}; }
 Place place(const TruthSet& set) { return {truth_prefix + set.sensor}; }

@@ -76,8 +76,8 @@ struct FramePipeline::Work {
   double faintest_e(const FrameTimes& times) const {
     const auto& d = settings.sensor.camera.detector;
     const double sky_e = light.at(light.columns / 2, light.rows / 2);
-    const double noise_e = std::sqrt(sky_e + d.dark_e_per_s * times.seconds() +
-                                     d.read_noise_e * d.read_noise_e);
+    const double noise_e =
+        std::sqrt(sky_e + d.dark_e_per_s * times.seconds() + d.read_noise_e * d.read_noise_e);
     return 10.0 * std::max(1.0, noise_e);
   }
 
@@ -175,12 +175,9 @@ FrameProducts FramePipeline::run(const FrameTimes& times, const World& world) {
 FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& world) {
   const auto& sensor = settings.sensor;
   FrameProducts frame;
-  const View view(sensor, times, world);
+  const View view(sensor, times, world, settings.seed);
   std::uint32_t stars_drawn = 0;
-  {
-    Stopwatch timing(frame.times[Effect::sky]);
-    fill_sky(view, light, threads);
-  }
+  fill_sky(view, light, threads, frame.times);
   keep_background(settings.output, light, frame.planes);
   {
     Stopwatch timing(frame.times[Effect::psf]);

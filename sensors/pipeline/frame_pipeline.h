@@ -27,7 +27,7 @@ struct FrameProducts {
   std::vector<StarTruth> stars;  // only when asked for, as are
   FlagImage flags;
   FramePlanes planes;
-  EffectTimes times;             // wall clock, never part of a repeatable product
+  EffectTimes times;  // wall clock, never part of a repeatable product
   double detection_s = 0.0, total_s = 0.0;
 };
 

@@ -81,10 +81,11 @@ class Painter {
       hidden = at.hidden.object(motion.position_m, place.direction);
     }
     if (s.sunlit > 0.0 && !hidden)
-      s.electrons_per_s = zero_mag_ * light_of_magnitude(magnitude(object, motion, at)) * s.sunlit *
-                          transmission(place.direction) * light_.electrons_per_photon_m2() *
-                          (s.pixel ? relative_illumination(view_.sensor().camera.optics, *s.pixel)
-                                   : 1.0);
+      s.electrons_per_s =
+          zero_mag_ * light_of_magnitude(magnitude(object, motion, at)) * s.sunlit *
+          transmission(place.direction) * flicker(object, place.direction) *
+          light_.electrons_per_photon_m2() *
+          (s.pixel ? relative_illumination(view_.sensor().camera.optics, *s.pixel) : 1.0);
     return s;
   }
 
@@ -112,6 +113,11 @@ class Painter {
   double transmission(const Vec<Gcrs>& apparent) const {
     Stopwatch timing(times_[Effect::extinction]);
     return light_.transmission(apparent);
+  }
+  double flicker(std::size_t object, const Vec<Gcrs>& apparent) const {
+    Stopwatch timing(times_[Effect::scintillation]);
+    return light_.flicker(apparent, Light::Flickering::object,
+                          view_.world().roster().objects[object].catalogue_number);
   }
 
   const View& view_;
@@ -284,8 +290,7 @@ std::vector<Truth> paint(const View& view, const Painter& painter,
 }  // namespace
 
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
-                                OpticsStage& optics, RateImage& image,
-                                EffectTimes& times) {
+                                OpticsStage& optics, RateImage& image, EffectTimes& times) {
   EffectTimes inside;
   double total_s = 0.0;
   std::vector<Truth> truths;

@@ -19,7 +19,6 @@ std::vector<std::size_t> objects_in_field(const View& view);
 /// Adds their light to `image` and tells what was drawn. An object of which no light fell inside
 /// and whose path did not enter the frame has no entry.
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
-                                OpticsStage& optics, RateImage& image,
-                                EffectTimes& times);
+                                OpticsStage& optics, RateImage& image, EffectTimes& times);
 
 }  // namespace dmise

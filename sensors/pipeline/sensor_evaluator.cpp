@@ -16,6 +16,20 @@ std::vector<std::string> SensorEvaluator::produces() const {
           truth_prefix + sensor_.name};
 }
 
+std::vector<std::string> SensorEvaluator::consumes() const {
+  const EffectSet& effects = sensor_.effects;
+  const bool on_ground = std::holds_alternative<SiteConfig>(sensor_.place);
+  std::vector<std::string> topics;
+  if (effects.has(Effect::objects) || !on_ground ||
+      std::holds_alternative<PointTarget>(sensor_.pointing))
+    topics.push_back(objects_topic);
+  topics.push_back(environment_topic);
+  if (on_ground && (effects.has(Effect::refraction) || effects.has(Effect::extinction) ||
+                    effects.has(Effect::sky) || sensor_.atmosphere.turbulence))
+    topics.push_back(site_prefix + sensor_.name);
+  return topics;
+}
+
 std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> inputs) {
   for (const auto& message : inputs) {
     if (const auto* roster = std::get_if<ObjectRoster>(message.state.get()))
@@ -24,6 +38,8 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
       world_.add(std::shared_ptr<const ObjectStates>(message.state, states));
     if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
       world_.add(std::shared_ptr<const EnvironmentState>(message.state, state));
+    if (const auto* state = std::get_if<SiteState>(message.state.get()))
+      world_.add(std::shared_ptr<const SiteState>(message.state, state));
   }
   std::vector<Message> messages;
   const SimTime now{tick * tick_length_.ns};

@@ -21,7 +21,9 @@ class SensorEvaluator : public Evaluator {
 
   std::string name() const override { return sensor_.name; }
   std::vector<std::string> produces() const override;
-  std::vector<std::string> consumes() const override { return {objects_topic, environment_topic}; }
+  /// What the plan needs: objects where they are drawn, carry the sensor or are pointed at; the air
+  /// where something of it is on.
+  std::vector<std::string> consumes() const override;
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   std::uint64_t progress() const override { return progress_; }
 

@@ -1,70 +1,125 @@
 #include "sensors/pipeline/sky_layer.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
-#include "core/base/error.h"
 #include "core/optics/projection.h"
-#include "core/sky/surface_brightness.h"
+#include "core/optics/vignetting.h"
+#include "core/sky/sky_grid.h"
 #include "sensors/pipeline/light.h"
+#include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
 namespace {
 
-constexpr int cell_px = 16;
+constexpr std::array<Effect, sky_part_count> effect_of_part = {Effect::sky,
+                                                               Effect::airglow,
+                                                               Effect::zodiacal_light,
+                                                               Effect::faint_starlight,
+                                                               Effect::scattered_moonlight,
+                                                               Effect::twilight,
+                                                               Effect::light_pollution};
 
-double zenith_mag(const View& view) {
-  for (const auto& sky : view.environment().skies)
-    if (sky.sensor == view.sensor().name) return sky.zenith_mag_per_arcsec2;
-  throw Error(view.sensor().name + ": the environment has no sky for this sensor");
+SkyParts parts_switched_on(const SensorConfig& sensor) {
+  SkyParts parts = sensor.sky.parts;
+  const auto keep = [&](Effect effect, auto& part) {
+    if (!sensor.effects.has(effect)) part.reset();
+  };
+  keep(Effect::airglow, parts.airglow);
+  keep(Effect::zodiacal_light, parts.zodiacal_light);
+  keep(Effect::faint_starlight, parts.faint_starlight);
+  keep(Effect::scattered_moonlight, parts.scattered_moonlight);
+  keep(Effect::twilight, parts.twilight);
+  keep(Effect::light_pollution, parts.light_pollution);
+  return parts;
+}
+
+SkyScene scene_of(const View& view) {
+  const SimTime t = view.times().middle;
+  const auto& environment = view.environment();
+  const auto enu_from_gcrs = view.enu_from_gcrs(t);
+  const Vec<Gcrs> here_m = view.observer(t).position_m;
+  const Vec<Gcrs> to_moon = environment.moon_m - here_m;
+  const Vec<Gcrs> still{0, 0, 0};
+  SkyScene scene{
+      .sun = enu_from_gcrs * unit(environment.sun_m - here_m),
+      .moon = enu_from_gcrs * view.places(t).satellite(environment.moon_m, still).direction,
+      .moon_phase_rad = angle_rad(environment.sun_m - environment.moon_m, -to_moon),
+      .moon_distance_m = norm(to_moon),
+      .gcrs_from_enu = enu_from_gcrs.inverse(),
+      .in_air = view.on_ground(),
+      .time_s = t.seconds()};
+  const auto& clouds = view.sensor().weather.clouds;
+  if (view.on_ground() && clouds && view.sensor().effects.has(Effect::clouds))
+    scene.clouds = std::make_shared<const CloudMap>(*clouds);
+  return scene;
+}
+
+/// Moves the time that each part took from the whole's to its own.
+void share_out(const SkyModel& sky, const std::vector<Vec<Enu>>& sample, std::size_t evaluations,
+               double whole_s, EffectTimes& times) {
+  double sum_s = 0.0;
+  std::array<double, sky_part_count> part_s{};
+  double s10 = 0.0;
+  for (std::size_t i = 0; i < sky_part_count; ++i) {
+    Stopwatch timing(part_s[i]);
+    for (const auto& direction : sample) s10 += sky.part_s10(static_cast<SkyPart>(i), direction);
+  }
+  if (!(s10 >= 0)) return;
+  for (double& s : part_s) {
+    s *= double(evaluations) / double(sample.size());
+    sum_s += s;
+  }
+  const double scale = std::min(1.0, whole_s / std::max(sum_s, 1e-12));
+  for (std::size_t i = 1; i < sky_part_count; ++i) {
+    times[effect_of_part[i]] += scale * part_s[i];
+    times[Effect::sky] -= scale * part_s[i];
+  }
+  times[Effect::sky] = std::max(0.0, times[Effect::sky]);
 }
 
 }  // namespace
 
-void fill_sky(const View& view, RateImage& image, Threads& threads) {
+SkyModel sky_over(const View& view) {
+  return SkyModel(parts_switched_on(view.sensor()), scene_of(view), view.sensor().camera.band,
+                  extinction_over(view));
+}
+
+void fill_sky(const View& view, RateImage& image, Threads& threads, EffectTimes& times) {
   const auto& optics = view.sensor().camera.optics;
-  std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
-  if (!view.sensor().effects.has(Effect::sky)) return;
-  const double electrons_per_sr =
-      sky_photons_per_s_m2_sr(zenith_mag(view), view.sensor().camera.band) *
-      Light(view).electrons_per_photon_m2() * view.times().seconds();
-
-  // Expected electrons at the nodes of a grid that covers the frame.
-  const int nodes_x = (optics.columns + cell_px - 1) / cell_px + 1;
-  const int nodes_y = (optics.rows + cell_px - 1) / cell_px + 1;
+  if (!view.sensor().effects.has(Effect::sky)) {
+    std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
+    return;
+  }
+  double whole_s = 0.0;
+  std::optional<SkyModel> sky;
+  SkyGridReport report;
   const auto gcrs_from_camera = view.camera_from_gcrs(view.times().middle).inverse();
-  const Hidden hidden(view, view.times().middle);
-  std::vector<float> node(std::size_t(nodes_x) * std::size_t(nodes_y));
-  threads.for_ranges(std::size_t(nodes_y), 8, [&](std::size_t first, std::size_t last) {
-    for (std::size_t j = first; j < last; ++j)
-      for (int i = 0; i < nodes_x; ++i) {
-        const PixelPosition pixel{double(i * cell_px), double(j * cell_px)};
-        const auto direction = unproject(optics, pixel);
-        if (!direction || (view.on_ground() && hidden.direction(gcrs_from_camera * *direction)))
-          continue;
-        node[j * std::size_t(nodes_x) + std::size_t(i)] =
-            static_cast<float>(electrons_per_sr * pixel_solid_angle_sr(optics, pixel) *
-                               relative_illumination(optics, pixel));
-      }
-  });
-
-  threads.for_ranges(std::size_t(optics.rows), 64, [&](std::size_t first, std::size_t last) {
-    std::vector<float> line(static_cast<std::size_t>(nodes_x));
-    for (std::size_t y = first; y < last; ++y) {
-      const std::size_t j = y / cell_px;
-      const float v = float(y % cell_px) / cell_px;
-      for (std::size_t i = 0; i < line.size(); ++i) {
-        const float upper = node[j * line.size() + i];
-        line[i] = upper + v * (node[(j + 1) * line.size() + i] - upper);
-      }
-      float* out = image.row(int(y));
-      for (int x = 0; x < optics.columns; ++x) {
-        const std::size_t i = std::size_t(x) / cell_px;
-        const float u = float(x % cell_px) / cell_px;
-        out[x] = line[i] + u * (line[i + 1] - line[i]);
-      }
-    }
-  });
+  const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) * gcrs_from_camera;
+  {
+    Stopwatch timing(whole_s);
+    sky.emplace(sky_over(view));
+    const Hidden hidden(view, view.times().middle);
+    const double electrons_per_photon_m2 =
+        Light(view).electrons_per_photon_m2() * view.times().seconds();
+    const PixelFunction electrons = [&](double x, double y) {
+      const auto direction = unproject(optics, {x, y});
+      if (!direction || hidden.direction(gcrs_from_camera * *direction)) return 0.0;
+      return sky->photons_per_s_m2_sr(enu_from_camera * *direction) * electrons_per_photon_m2 *
+             pixel_solid_angle_sr(optics, {x, y}) * relative_illumination(optics, {x, y});
+    };
+    report = fill_from_grid(optics.columns, optics.rows, electrons, sky_tolerance,
+                            image.pixels.data(), threads);
+  }
+  times[Effect::sky] += whole_s;
+  std::vector<Vec<Enu>> sample;
+  constexpr int side = 8;
+  for (int i = 0; i < side * side; ++i)
+    if (const auto direction = unproject(optics, {(i % side + 0.5) / side * (optics.columns - 1.0),
+                                                  (i / side + 0.5) / side * (optics.rows - 1.0)}))
+      sample.push_back(enu_from_camera * *direction);
+  if (!sample.empty()) share_out(*sky, sample, report.evaluations, whole_s, times);
 }
 
 }  // namespace dmise

@@ -1,14 +1,21 @@
 #pragma once
 #include "core/base/image.h"
 #include "core/base/parallel.h"
+#include "core/sky/sky_model.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
 
-/// Fills `image` with the expected electrons of the sky: uniform radiance at the zenith's
-/// brightness, each pixel by its own solid angle; 0 below the apparent horizon of a ground sensor.
-/// With the effect off, all zero. Solid angle and horizon are evaluated every 16 px and
-/// interpolated (error below 1e-5 of the sky over a 90 deg field).
-void fill_sky(const View& view, RateImage& image, Threads& threads);
+/// The sky over a sensor in its band in the middle of its exposure: the parts that are on, Sun and
+/// Moon where the environment says.
+SkyModel sky_over(const View& view);
+
+/// Fills `image` with the expected electrons of the sky: `sky_over` at each pixel's centre times
+/// the pixel's own solid angle; 0 where the Earth hides it. From a grid, within `sky_tolerance` of
+/// the evaluation of every pixel. With the effect off, all zero. The time goes to `sky` and to its
+/// parts; that of a part is measured on a sample.
+void fill_sky(const View& view, RateImage& image, Threads& threads, EffectTimes& times);
+
+inline constexpr double sky_tolerance = 0.005;  // relative
 
 }  // namespace dmise

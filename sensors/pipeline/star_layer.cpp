@@ -72,8 +72,8 @@ StarLayer::StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> 
     : map_(std::move(map)), light_(sensor.camera.band) {}
 
 std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, RateImage& image,
-                              double faintest_v_mag,
-                              std::vector<StarTruth>* truth, EffectTimes& times) const {
+                              double faintest_v_mag, std::vector<StarTruth>* truth,
+                              EffectTimes& times) const {
   const auto& exposure = view.times();
   const auto& stars = map_->stars;
   const StarColumns columns{.epoch_jyear = stars.epoch_jyear,
@@ -102,7 +102,18 @@ std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, RateImage& 
   {
     Stopwatch timing(times[Effect::extinction]);
     for (std::size_t i = 0; i < trails.size(); ++i)
-      transmission[i] = light.transmission(trails[i].middle);
+      transmission[i] = light.air_transmission(trails[i].middle, stars.bv[trails[i].star]);
+  }
+  {
+    Stopwatch timing(times[Effect::clouds]);
+    for (std::size_t i = 0; i < trails.size(); ++i)
+      transmission[i] *= light.cloud_transmission(trails[i].middle);
+  }
+  {
+    Stopwatch timing(times[Effect::scintillation]);
+    for (std::size_t i = 0; i < trails.size(); ++i)
+      transmission[i] *=
+          light.flicker(trails[i].middle, Light::Flickering::star, stars.id[trails[i].star]);
   }
   {
     Stopwatch timing(times[Effect::stars]);

@@ -26,9 +26,8 @@ class StarLayer {
 
   /// Adds the stars' light to `image`; returns how many left some in the frame. `truth`, if not
   /// null, gets each of them. The time spent goes to the effects it was spent for.
-  std::uint32_t draw(const View& view, OpticsStage& optics, RateImage& image,
-                     double faintest_v_mag, std::vector<StarTruth>* truth,
-                     EffectTimes& times) const;
+  std::uint32_t draw(const View& view, OpticsStage& optics, RateImage& image, double faintest_v_mag,
+                     std::vector<StarTruth>* truth, EffectTimes& times) const;
 
  private:
   std::vector<std::uint32_t> candidates(const View& view, double faintest_v_mag) const;

@@ -6,15 +6,20 @@
 
 namespace dmise {
 
-View::View(const SensorConfig& sensor, const FrameTimes& times, const World& world)
+View::View(const SensorConfig& sensor, const FrameTimes& times, const World& world,
+           std::uint64_t seed)
     : sensor_(sensor),
       times_(times),
       world_(world),
-      environment_(&world.environment(times.middle)) {
+      seed_(seed),
+      environment_(&world.environment(times.middle)),
+      air_(world.site(sensor.name, times.middle)) {
   if (const auto* site = std::get_if<SiteConfig>(&sensor.place)) {
     site_ = Site{site->latitude_deg, site->longitude_deg, site->height_m};
     site_m_ = itrs_from_geodetic(*site_);
-    refraction_ = Refraction(standard_weather(site->height_m), sensor.camera.band.centre_m * 1e6);
+    const Weather air = air_ ? Weather{air_->pressure_hpa, air_->temperature_c, air_->humidity}
+                             : standard_weather(site->height_m);
+    refraction_ = Refraction(air, sensor.camera.band.centre_m * 1e6);
   } else {
     platform_ = object_index(world.roster(), std::get<PlatformConfig>(sensor.place).object,
                              sensor.name + ": platform");
@@ -62,6 +67,15 @@ ApparentPlaces View::places(SimTime t, const EffectSet& effects) const {
 Vec<Gcrs> View::up(SimTime t) const {
   if (!site_) return unit(observer(t).position_m);
   return (enu_from_itrs(*site_) * earth().itrs_from_gcrs(t)).inverse() * Vec<Enu>{0, 0, 1};
+}
+
+Rotation<Enu, Gcrs> View::enu_from_gcrs(SimTime t) const {
+  if (site_) return enu_from_itrs(*site_) * earth().itrs_from_gcrs(t);
+  const auto [ra, dec] = to_spherical(up(t));
+  const double ca = std::cos(ra), sa = std::sin(ra), cd = std::cos(dec), sd = std::sin(dec);
+  Rotation<Enu, Gcrs> r;
+  r.m = {{{-sa, ca, 0}, {-ca * sd, -sa * sd, cd}, {ca * cd, sa * cd, sd}}};
+  return r;
 }
 
 std::optional<PixelPosition> View::pixel(const Vec<Gcrs>& apparent, SimTime t) const {

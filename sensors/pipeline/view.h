@@ -17,13 +17,15 @@ namespace dmise {
 class View {
  public:
   /// `world` must cover the exposure and outlive the view.
-  View(const SensorConfig& sensor, const FrameTimes& times, const World& world);
+  View(const SensorConfig& sensor, const FrameTimes& times, const World& world,
+       std::uint64_t seed = 1);
   View(const View&) = delete;
   View& operator=(const View&) = delete;
 
   const SensorConfig& sensor() const { return sensor_; }
   const FrameTimes& times() const { return times_; }
   const World& world() const { return world_; }
+  std::uint64_t seed() const { return seed_; }
   bool on_ground() const { return site_.has_value(); }
   const std::optional<Site>& site() const { return site_; }
   /// The object that carries the sensor; it does not see itself.
@@ -32,6 +34,8 @@ class View {
   ObserverState observer(SimTime t) const;
   const EarthOrientation& earth() const { return environment_->earth; }
   const EnvironmentState& environment() const { return *environment_; }
+  /// The air over a ground sensor; null where the sensor did not ask for it.
+  const SiteState* air() const { return air_; }
   Rotation<CameraFrame, Gcrs> camera_from_gcrs(SimTime t) const;
   /// Where light seems to come from, at `t`, with the sensor's effects.
   ApparentPlaces places(SimTime t) const { return places(t, sensor_.effects); }
@@ -39,6 +43,8 @@ class View {
   /// Normal of the ellipsoid at a ground sensor; for a sensor in orbit, away from the Earth's
   /// centre.
   Vec<Gcrs> up(SimTime t) const;
+  /// East, north and `up` at `t`; in space any east and north.
+  Rotation<Enu, Gcrs> enu_from_gcrs(SimTime t) const;
 
   /// Pixel of an apparent direction (observed: aberration and refraction in it); nothing where the
   /// projection has no image.
@@ -50,7 +56,9 @@ class View {
   const SensorConfig& sensor_;
   const FrameTimes times_;
   const World& world_;
+  std::uint64_t seed_;
   const EnvironmentState* environment_;  // of mid exposure
+  const SiteState* air_;                 // likewise
   std::optional<Site> site_;
   Vec<Itrs> site_m_;
   std::optional<std::size_t> platform_, target_;

@@ -9,6 +9,8 @@ namespace dmise {
 void World::forget_before(SimTime t) {
   while (states_.size() > 1 && states_[1]->time <= t) states_.pop_front();
   while (environment_.size() > 1 && environment_[1]->time <= t) environment_.pop_front();
+  while (sites_.size() > 1 && sites_[1]->time <= t && sites_[1]->sensor == sites_[0]->sensor)
+    sites_.pop_front();
 }
 
 World::Around World::around(SimTime t) const {
@@ -52,6 +54,12 @@ const EnvironmentState& World::environment(SimTime t) const {
   for (auto state = environment_.rbegin(); state != environment_.rend(); ++state)
     if ((*state)->time <= t) return **state;
   throw Error("no environment at " + std::to_string(t.seconds()) + " s");
+}
+
+const SiteState* World::site(const std::string& sensor, SimTime t) const {
+  for (auto state = sites_.rbegin(); state != sites_.rend(); ++state)
+    if ((*state)->sensor == sensor && (*state)->time <= t) return state->get();
+  return nullptr;
 }
 
 std::size_t object_index(const ObjectRoster& roster, const std::string& name,

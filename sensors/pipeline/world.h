@@ -21,6 +21,7 @@ class World {
   void add(std::shared_ptr<const EnvironmentState> state) {
     environment_.push_back(std::move(state));
   }
+  void add(std::shared_ptr<const SiteState> state) { sites_.push_back(std::move(state)); }
   /// Forgets what is not needed for times >= `t`.
   void forget_before(SimTime t);
 
@@ -37,6 +38,8 @@ class World {
 
   /// The environment of the last tick at or before `t`.
   const EnvironmentState& environment(SimTime t) const;
+  /// The air over a ground sensor as last told at or before `t`; null if it never was.
+  const SiteState* site(const std::string& sensor, SimTime t) const;
 
  private:
   struct Around {
@@ -48,6 +51,7 @@ class World {
   std::shared_ptr<const ObjectRoster> roster_;
   std::deque<std::shared_ptr<const ObjectStates>> states_;
   std::deque<std::shared_ptr<const EnvironmentState>> environment_;
+  std::deque<std::shared_ptr<const SiteState>> sites_;
 };
 
 /// Index of the object with this catalogue number or name. Throws `ConfigError` with `what` first

@@ -57,7 +57,8 @@ TEST_F(ScenarioFile, ResolvesPresetsAndDefaults) {
   // 90 deg across 3326 pixels of 5.4 um.
   EXPECT_NEAR(sensor.camera.optics.focal_length_m, 8.98e-3, 0.005e-3);
   EXPECT_EQ(sensor.tracking, Tracking::fixed);
-  EXPECT_EQ(sensor.sky_zenith_mag_per_arcsec2, 21.9);
+  EXPECT_EQ(sensor.sky.preset, "dark");
+  EXPECT_EQ(sensor.sky.zenith_mag_per_arcsec2, 21.9);
   EXPECT_EQ(physics_json(scenario), physics_json(load(good)));
 }
 

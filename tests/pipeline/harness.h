@@ -66,7 +66,7 @@ class Stage {
         [&](const auto& state) {
           using T = std::decay_t<decltype(state)>;
           if constexpr (std::is_same_v<T, ObjectRoster> || std::is_same_v<T, ObjectStates> ||
-                        std::is_same_v<T, EnvironmentState>)
+                        std::is_same_v<T, EnvironmentState> || std::is_same_v<T, SiteState>)
             world.add(std::make_shared<const T>(state));
         },
         *message.state);

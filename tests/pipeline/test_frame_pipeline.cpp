@@ -23,7 +23,7 @@ std::string scenario(const std::string& effects) {
 }
 
 const std::string no_noise =
-    "photon_noise: off, dark_current: off, read_noise: off, full_well: off,"
+    "scintillation: off, photon_noise: off, dark_current: off, read_noise: off, full_well: off,"
     " quantisation: off";
 
 TEST(FramePipeline, AStarsElectronsAreItsPhotonsTimesAreaAndEfficiency) {

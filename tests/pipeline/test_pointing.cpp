@@ -26,9 +26,7 @@ TEST(Pointing, IsARotationAtThePole) {
 /// ENU direction of a camera axis for a ground sensor on an Earth that is not turned.
 Vec<Enu> on_the_ground(const Pointing& pointing, double roll_deg, const Vec<CameraFrame>& axis) {
   const Site site{40.0, -70.0, 0.0};
-  SensorConfig sensor;
-  sensor.pointing = pointing;
-  sensor.roll_deg = roll_deg;
+  const SensorConfig sensor{.pointing = pointing, .roll_deg = roll_deg};
   PointingScene scene;
   scene.site = &site;
   return enu_from_itrs(site) * (scene.itrs_from_gcrs * (aim(sensor, scene).inverse() * axis));

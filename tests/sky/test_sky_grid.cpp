@@ -15,7 +15,8 @@ namespace {
 
 double worst_error(int columns, int rows, const PixelFunction& f, SkyGridReport* report = nullptr) {
   std::vector<float> image(std::size_t(columns) * std::size_t(rows), -1.0F);
-  const SkyGridReport made = fill_from_grid(columns, rows, f, 0.005, image.data());
+  Threads one(1);
+  const SkyGridReport made = fill_from_grid(columns, rows, f, 0.005, image.data(), one);
   if (report) *report = made;
   double worst = 0.0;
   for (int y = 0; y < rows; ++y)

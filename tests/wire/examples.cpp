@@ -60,8 +60,22 @@ EnvironmentState environment(Numbers& n, Tick tick) {
   e.earth_velocity_m_per_s = n.vec<Gcrs>(3e4);
   e.tt_jd1 = 2458139.5;
   e.tt_jd2 = n.in(0, 1);
-  e.skies = {{sensor, n.in(15, 22)}, {"b", n.in(15, 22)}};
   return e;
+}
+
+SiteState site(Numbers& n, Tick tick) {
+  return {.tick = tick,
+          .time = example_run().time_of(tick),
+          .sensor = sensor,
+          .extinction_mag_per_airmass = n.in(0, 1),
+          .pressure_hpa = n.in(500, 1100),
+          .temperature_c = n.in(-40, 40),
+          .humidity = n.in(0, 1),
+          .cloud_transmission = n.in(0, 1),
+          .r0_m = n.in(0.01, 1),
+          .isoplanatic_angle_rad = n.in(1e-6, 1e-4),
+          .tau0_s = n.in(1e-4, 1e-1),
+          .turbulence_m_per_s = n.in(1, 100)};
 }
 
 FrameReport report(Numbers& n) {
@@ -171,6 +185,7 @@ std::vector<Example> examples(unsigned seed) {
   return {{objects_topic, tick, roster(n)},
           {objects_topic, tick, states(n, tick)},
           {environment_topic, tick, environment(n, tick)},
+          {std::string(site_prefix) + sensor, tick, site(n, tick)},
           {std::string(frame_prefix) + sensor, tick, report(n)},
           {std::string(detection_prefix) + sensor, tick, detections},
           {std::string(detection_prefix) + sensor, tick, DetectionSet{sensor, 4, {}}},
@@ -199,8 +214,8 @@ Receiver receiver_of_examples() {
   Receiver receiver(example_run());
   for (const std::string& topic :
        {std::string(objects_topic), std::string(environment_topic),
-        std::string(frame_prefix) + sensor, std::string(detection_prefix) + sensor,
-        std::string(truth_prefix) + sensor})
+        std::string(site_prefix) + sensor, std::string(frame_prefix) + sensor,
+        std::string(detection_prefix) + sensor, std::string(truth_prefix) + sensor})
     receiver.allow(topic, "source", 1);
   return receiver;
 }

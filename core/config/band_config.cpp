@@ -1,0 +1,76 @@
+#include "core/config/band_config.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/config/search_path.h"
+#include "core/photometry/curve_file.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::size_t most_bytes = 4u << 20;
+
+Curve curve_beside(const YamlValue& value) {
+  const std::string path = find_beside(value.text(), value.file());
+  if (path.empty()) value.fail("there is no such file");
+  return parse_curve(read_text_file(path, most_bytes), path);
+}
+
+Band read_filter(const YamlValue& value) {
+  const std::string name = value.text();
+  if (auto band = filter_named(name)) return *band;
+  if (!find_beside(name, value.file()).empty()) {
+    const std::size_t slash = name.find_last_of('/');
+    std::string stem = name.substr(slash == std::string::npos ? 0 : slash + 1);
+    stem.resize(std::min(stem.find_last_of('.'), stem.size()));
+    try {
+      return band_of(std::move(stem), curve_beside(value));
+    } catch (const ConfigError&) {
+      throw;
+    } catch (const Error& e) {
+      value.fail(e.what());
+    }
+  }
+  std::string all;
+  for (const auto& known : filter_names()) all += (all.empty() ? "" : ", ") + known;
+  const std::string hint = nearest_name(name, filter_names());
+  value.fail("no such filter" + (hint.empty() ? "" : ", did you mean " + hint + "?") +
+             " (a path to a CSV file, or one of " + all + ")");
+}
+
+}  // namespace
+
+Band read_band(const YamlValue& value) {
+  if (value.is_scalar()) return read_filter(value);
+  YamlMap map(value);
+  if (const auto filter = map.find("filter")) {
+    Band band = read_filter(*filter);
+    band.name = map.text_or("name", band.name);
+    map.done();
+    return band;
+  }
+  Band band;
+  band.name = map.text_or("name", "V");
+  band.centre_m = map.number("centre_m", Bounds::between(0.1e-6, 30e-6));
+  band.width_m =
+      map.number("width_m", {.least = 0.0, .most = 2 * band.centre_m, .least_open = true});
+  map.done();
+  return band;
+}
+
+QuantumEfficiency read_quantum_efficiency(const YamlValue& value) {
+  const std::string text = value.is_scalar() ? value.text() : "";
+  const bool is_number = text.find_first_not_of("+-.0123456789eE") == std::string::npos;
+  if (is_number)
+    return {.peak = value.number({.least = 0.0, .most = 1.0, .least_open = true}), .relative = {}};
+  QuantumEfficiency efficiency{.relative = curve_beside(value)};
+  auto& values = efficiency.relative.value;
+  efficiency.peak = *std::max_element(values.begin(), values.end());
+  if (!(efficiency.peak > 0)) value.fail("the curve lets no light through");
+  for (double& v : values) v /= efficiency.peak;
+  return efficiency;
+}
+
+}  // namespace dmise
