@@ -31,7 +31,7 @@ const Kernels& kernels_for(SimdLevel simd) {
 struct Group {
   bool deep = false;
   Resonance resonance = Resonance::none;
-  bool eccentric = false;
+  Shape shape = Shape::circle;
   std::vector<std::uint32_t> index;  // of the object in each lane
   std::vector<NearTerms<Lanes>> near;
   std::vector<DeepTerms<Lanes>> far;
@@ -43,22 +43,40 @@ struct Group {
   std::unique_ptr<std::atomic_flag[]> busy;
 
   std::size_t blocks() const { return deep ? far.size() : near.size(); }
+  /// The first block whose first object is not before `object`.
+  std::size_t first_block_from(std::size_t object) const {
+    std::size_t low = 0, high = blocks();
+    while (low < high) {
+      const std::size_t middle = (low + high) / 2;
+      if (index[middle * block_lanes] < object)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    return low;
+  }
   DeepBlock block(std::size_t k, ResonanceNode* node) const {
     return {&far[k], resonance == Resonance::day ? &day[k] : nullptr,
-            resonance == Resonance::half_day ? &half_day[k] : nullptr, node, eccentric};
+            resonance == Resonance::half_day ? &half_day[k] : nullptr, node, shape};
   }
 };
 
-constexpr std::size_t group_count = 14;
-constexpr double near_circle_limit =
-    0.05;  // beyond it the short cuts of small eccentricity rarely hold
+constexpr std::size_t tile_states = 4096;  // of output: 57 bytes each
+constexpr std::size_t tile_of_thread = 1024;
+constexpr std::size_t shapes = 3;
+constexpr std::size_t group_count = shapes * 7;
 constexpr double low_inclination_rad = 0.22;  // below it Lyddane's terms are likely
 
+Shape shape_of(double eccentricity) {
+  if (eccentricity < 0.025) return Shape::circle;
+  return eccentricity < 0.18 ? Shape::oval : Shape::any;
+}
+
 std::size_t group_of(const Model& m) {
-  const std::size_t eccentric = m.eccentricity >= near_circle_limit;
-  if (!m.deep) return eccentric;
+  const auto shape = static_cast<std::size_t>(shape_of(m.eccentricity));
+  if (!m.deep) return shape;
   const std::size_t low = m.inclination_rad < low_inclination_rad;
-  return 2 + 4 * static_cast<std::size_t>(m.resonance) + 2 * low + eccentric;
+  return shape + shapes * (1 + 2 * static_cast<std::size_t>(m.resonance) + low);
 }
 
 void add_to_group(Group& g, const Model& m, std::uint32_t object) {
@@ -125,28 +143,43 @@ struct Sgp4Batch::State {
            (jd2 - s.epoch_jd2.lane[lane]) * minutes_per_day;
   }
 
-  void run(const Group& g, std::size_t begin, std::size_t end, double jd1, double jd2,
+  void run(const Group& g, std::size_t begin, std::size_t end, const Instants& times,
            const Output& out) const {
     const std::size_t last = std::min(end * block_lanes, g.index.size());
+    if (begin == end) return;
     if (!g.deep) {
       kernels->near_blocks(&g.near[begin], &g.index[begin * block_lanes],
-                           last - begin * block_lanes, g.eccentric, jd1, jd2, out);
+                           last - begin * block_lanes, g.shape, times, out);
       return;
     }
     for (std::size_t k = begin; k < end; ++k) {
-      const int objects =
-          static_cast<int>(std::min<std::size_t>(block_lanes, last - k * block_lanes));
+      const std::size_t objects = last - k * block_lanes;
       const std::uint32_t* index = &g.index[k * block_lanes];
       if (g.resonance == Resonance::none) {
-        kernels->deep_block_at(g.block(k, nullptr), index, objects, jd1, jd2, out);
+        kernels->deep_block_at(g.block(k, nullptr), index, objects, times, out);
       } else if (!g.busy[k].test_and_set(std::memory_order_acquire)) {
-        kernels->deep_block_at(g.block(k, &g.nodes[k]), index, objects, jd1, jd2, out);
+        kernels->deep_block_at(g.block(k, &g.nodes[k]), index, objects, times, out);
         g.busy[k].clear(std::memory_order_release);
       } else {
         ResonanceNode own = no_node();
-        kernels->deep_block_at(g.block(k, &own), index, objects, jd1, jd2, out);
+        kernels->deep_block_at(g.block(k, &own), index, objects, times, out);
       }
     }
+  }
+
+  /// Tile by tile of the output, so that it stays in the cache while the groups fill it.
+  void run_all(const Instants& times, const Output& out, Threads* threads) const {
+    const std::size_t tile = std::max<std::size_t>(tile_states / times.count, block_lanes);
+    const auto work = [&](std::size_t begin, std::size_t end) {
+      for (const Group& g : groups)
+        run(g, g.first_block_from(begin), g.first_block_from(end), times, out);
+    };
+    if (threads && threads->count() > 1) {
+      threads->for_ranges(places.size(), std::min(tile, tile_of_thread), work);
+      return;
+    }
+    for (std::size_t begin = 0; begin < places.size(); begin += tile)
+      work(begin, std::min(begin + tile, places.size()));
   }
 
   /// Eight lanes put together from anywhere in one group.
@@ -169,11 +202,11 @@ struct Sgp4Batch::State {
     }
     void propagate(const Group& g, const Kernels& kernels) {
       if (!g.deep) {
-        kernels.near_block(near, g.eccentric, t, states);
+        kernels.near_block(near, g.shape, t, states);
       } else {
         kernels.deep_block(
             {&far, g.resonance == Resonance::day ? &day : nullptr,
-             g.resonance == Resonance::half_day ? &half_day : nullptr, &node, g.eccentric},
+             g.resonance == Resonance::half_day ? &half_day : nullptr, &node, g.shape},
             t, states);
       }
     }
@@ -239,7 +272,7 @@ Sgp4Batch::Sgp4Batch(std::span<const MeanElements> elements, Threads* threads, S
       place.slot = static_cast<std::uint32_t>(g.index.size());
       g.deep = m.deep;
       g.resonance = m.resonance;
-      g.eccentric = m.eccentricity >= near_circle_limit;
+      g.shape = shape_of(m.eccentricity);
       add_to_group(g, m, object);
     }
   }
@@ -266,20 +299,31 @@ SimdLevel Sgp4Batch::simd() const { return state_->simd; }
 void Sgp4Batch::propagate(double jd1, double jd2, std::span<double> position_m,
                           std::span<double> velocity_m_per_s, std::span<std::uint8_t> code,
                           Threads* threads) const {
-  check_sizes(size(), position_m, velocity_m_per_s, code);
-  const Output out{position_m.data(), velocity_m_per_s.data(), code.data(), size()};
-  constexpr std::size_t grain = 64;  // blocks
-  for (const Group& g : state_->groups) {
-    if (g.index.empty()) continue;
-    if (!threads || threads->count() == 1) {
-      state_->run(g, 0, g.blocks(), jd1, jd2, out);
-    } else {
-      threads->for_ranges(g.blocks(), grain, [&](std::size_t begin, std::size_t end) {
-        state_->run(g, begin, end, jd1, jd2, out);
-      });
-    }
+  const Utc time{jd1, jd2};
+  propagate({&time, 1}, position_m, velocity_m_per_s, code, threads);
+}
+
+void Sgp4Batch::propagate(std::span<const Utc> times, std::span<double> position_m,
+                          std::span<double> velocity_m_per_s, std::span<std::uint8_t> code,
+                          Threads* threads) const {
+  const std::size_t n = size();
+  check_sizes(times.size() * n, position_m, velocity_m_per_s, code);
+  // Some at once: enough to leave the terms in the first cache, few enough streams of output.
+  constexpr std::size_t times_at_once = 8;
+  for (std::size_t start = 0; start < times.size(); start += times_at_once) {
+    const std::size_t count = std::min(times_at_once, times.size() - start);
+    Instant instants[times_at_once];
+    for (std::size_t k = 0; k < count; ++k)
+      instants[k] = {times[start + k].jd1, times[start + k].jd2};
+    const Output out{position_m.data() + 3 * n * start, velocity_m_per_s.data() + 3 * n * start,
+                     code.data() + n * start, n};
+    std::fill_n(out.code, n * count, std::uint8_t{0});
+    state_->run_all({instants, count}, out, threads);
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::uint32_t i : state_->failed)
+        put_failure({out.position + 3 * n * k, out.velocity + 3 * n * k, out.code + n * k, n}, i,
+                    state_->places[i].code);
   }
-  for (std::uint32_t i : state_->failed) put_failure(out, i, state_->places[i].code);
 }
 
 void Sgp4Batch::propagate_some(std::span<const std::uint32_t> objects, double jd1, double jd2,

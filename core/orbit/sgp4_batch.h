@@ -9,6 +9,7 @@
 #include "core/base/simd_level.h"
 #include "core/frames/vec.h"
 #include "core/orbit/elements.h"
+#include "core/time/julian_date.h"
 
 namespace dmise {
 
@@ -56,6 +57,13 @@ class Sgp4Batch {
   /// given to the constructor. `position_m` and `velocity_m_per_s` hold 3 x size(): all x, all y,
   /// all z in TEME; `code` holds size() values of Sgp4Code. Throws `Error` on a wrong size.
   void propagate(double jd1, double jd2, std::span<double> position_m,
+                 std::span<double> velocity_m_per_s, std::span<std::uint8_t> code,
+                 Threads* threads = nullptr) const;
+
+  /// The same at several instants: those of `times[k]` begin at [3 k size()] and [k size()], and
+  /// are to the bit those of a call of their own. Cheaper than that: a block's terms are read once
+  /// for some of the times.
+  void propagate(std::span<const Utc> times, std::span<double> position_m,
                  std::span<double> velocity_m_per_s, std::span<std::uint8_t> code,
                  Threads* threads = nullptr) const;
 

@@ -161,11 +161,11 @@ DMISE_INLINE States deep_states(const DeepBlock& block, int first, Pack t) {
   Pack argp = madd(at(s.argp_dot, first), t, at(s.argp, first));
   Pack node = madd(at(s.node_t2, first), t2, madd(at(s.node_dot, first), t, at(s.node, first)));
   const Pack a = nmadd(at(s.a_t, first), t, 1.0);
-  const Pack inv_a = Pack(1.0) / abs(a);
+  const Pack sqrt_a = at(s.sqrt_a0, first) * a;
 
   Mean m;
-  m.a_m = at(s.a0_m, first) * a * a;
-  m.inv_sqrt_a = at(s.inv_sqrt_a0, first) * inv_a;
+  m.a_m = sqrt_a * sqrt_a * earth_radius_m;
+  m.inv_sqrt_a = Pack(1.0) / abs(sqrt_a);
   m.code2 = Pack(1.0) < 0.0;
   Pack mean_anomaly;
   if (block.day || block.half_day) {
@@ -237,7 +237,15 @@ DMISE_INLINE States deep_states(const DeepBlock& block, int first, Pack t) {
   const Pack one_cos = Pack(1.0) + inc.cos;
   m.long_period = inc.sin * (-0.25 * j3_over_j2) * madd(inc.cos, 5.0, 3.0) /
                   select(Pack(1.5e-12) < abs(one_cos), one_cos, 1.5e-12);
-  return finish_each(m, block.eccentric);
+  switch (block.shape) {
+    case Shape::circle:
+      return finish_each<Shape::circle>(m);
+    case Shape::oval:
+      return finish_each<Shape::oval>(m);
+    case Shape::any:
+      break;
+  }
+  return finish_each<Shape::any>(m);
 }
 
 void deep_block(const DeepBlock& block, const Lanes& t, BlockStates& out) {
@@ -245,12 +253,16 @@ void deep_block(const DeepBlock& block, const Lanes& t, BlockStates& out) {
     put(deep_states(block, first, at(t, first)), first, out);
 }
 
-void deep_block_at(const DeepBlock& block, const std::uint32_t* index, int objects, double jd1,
-                   double jd2, const Output& out) {
-  BlockStates states;
-  for (int first = 0; first < block_lanes; first += pack_lanes)
-    put(deep_states(block, first, minutes(block.terms->secular, first, jd1, jd2)), first, states);
-  scatter(states, index, objects, out);
+void deep_block_at(const DeepBlock& block, const std::uint32_t* index, std::size_t objects,
+                   const Instants& times, const Output& out) {
+  const BlockPlaces places = block_places(index, objects);
+  for (std::size_t k = 0; k < times.count; ++k) {
+    const Output to = of_time(out, k);
+    for (int first = 0; first < block_lanes; first += pack_lanes) {
+      const Pack t = minutes(block.terms->secular, first, times.at[k].jd1, times.at[k].jd2);
+      put(deep_states(block, first, t), first, places, to);
+    }
+  }
 }
 
 }  // namespace

@@ -6,11 +6,15 @@
 // - mean anomaly and argument of perigee are only ever needed as their sum, and the node apart;
 // - (sin u, cos u) of the short-period terms are turned by their small corrections, so that no arc
 //   tangent is taken; sin and cos of the eccentric anomaly are turned from those of the longitude;
+// - near a circle, inverses and roots close to 1 are short series: what bounds a pack is the chain
+//   of its divisions, not their number of operations;
 // - Kepler's iterations are the reference's own, including its stop, after which the last
 // correction
 //   is in the anomaly but not in its sine and cosine.
 #pragma once
+#include "core/orbit/sgp4_kepler.h"
 #include "core/orbit/sgp4_kernels.h"
+#include "core/orbit/sgp4_store.h"
 #include "core/orbit/sgp4_terms.h"
 #include "core/orbit/sgp4_trig.h"
 
@@ -18,6 +22,17 @@ namespace dmise::sgp4 {
 namespace {
 
 DMISE_INLINE Pack at(const Lanes& lanes, int first) { return load(lanes.lane + first); }
+
+/// What of the next block to ask for while this one is worked on: in four places, since the cache
+/// has room for few requests at once, and more would hold up this block's own.
+struct Ahead {
+  const char* from = nullptr;
+  std::size_t quarter_bytes = 0;
+};
+DMISE_INLINE void fetch(const Ahead& a, std::size_t quarter) {
+  const char* from = a.from + quarter * a.quarter_bytes;
+  for (std::size_t k = 0; k < a.quarter_bytes; k += 64) _mm_prefetch(from + k, _MM_HINT_T0);
+}
 
 /// Mean elements at the time, periodic terms of the Sun and Moon included.
 struct Mean {
@@ -30,6 +45,7 @@ struct Mean {
   Pack a_m, inv_a, inv_sqrt_a;  // semi-major axis [m], [Earth radii^-1], [Earth radii^-1/2]
   Pack farthest_m;
   Mask code1, code2, code3;
+  Ahead ahead;
 };
 
 struct States {
@@ -37,61 +53,6 @@ struct States {
   Mask bad;
   Pack code;  // where bad
 };
-
-/// Kepler's equation solved for the sine and cosine of the eccentric longitude, and what they give.
-struct Anomaly {
-  SinCos e;
-  Pack e_sin, e_cos;  // e sin E, e cos E of the eccentric anomaly
-  Pack inv_rho;       // 1 / (1 - e cos E)
-};
-
-/// For e below 0.06 or so: three of the reference's evaluations, as turns from `u`, given its sine
-/// and cosine. Lanes for which the reference would go on are in `outside`.
-DMISE_INLINE Anomaly solve_kepler_near_circle(SinCos su, Pack ax, Pack ay, Mask& outside) {
-  const Pack cos0 = madd(ax, su.cos, ay * su.sin);
-  const Pack sin0 = nmadd(ay, su.cos, ax * su.sin);
-  const Pack d1 = sin0 / (Pack(1.0) - cos0);
-  SinCos turn = small_sin_cos(d1);
-  Pack e_sin = madd(sin0, turn.cos, cos0 * turn.sin);
-  Pack e_cos = nmadd(sin0, turn.sin, cos0 * turn.cos);
-  const Pack step = (e_sin - d1) / (Pack(1.0) - e_cos);
-  const Pack d = select(abs(step) < 1e-12, d1, d1 + step);
-  turn = small_sin_cos(d);
-  e_sin = madd(sin0, turn.cos, cos0 * turn.sin);
-  e_cos = nmadd(sin0, turn.sin, cos0 * turn.cos);
-  const Pack inv_rho = Pack(1.0) / (Pack(1.0) - e_cos);
-  const Mask settled = abs((e_sin - d) * inv_rho) < 1e-12;
-  outside = ~(settled & (abs(d1) <= small_angle));
-  return {turned(su, turn), e_sin, e_cos, inv_rho};
-}
-
-/// Any eccentricity: the reference's iteration, lane by lane to its own stop.
-DMISE_INLINE Anomaly solve_kepler(Pack u, Pack ax, Pack ay) {
-  const Pack turns = madd(u, 0.5 * inv_pi, round_magic) - round_magic;
-  u = minus_k_pi(u, turns + turns);
-  Anomaly out;
-  out.e = {0.0, 0.0};
-  out.e_sin = out.e_cos = out.inv_rho = 0.0;
-  Pack anomaly = u;
-  Mask active = u == u;
-  for (int k = 0; k < 10 && any(active); ++k) {
-    const SinCos e = sin_cos(anomaly);
-    const Pack e_cos = madd(ax, e.cos, ay * e.sin);
-    const Pack e_sin = nmadd(ay, e.cos, ax * e.sin);
-    const Pack rho = Pack(1.0) - e_cos;
-    Pack step = (u + e_sin - anomaly) / rho;
-    step = select(Pack(0.95) <= abs(step), copy_sign(0.95, step), step);
-    out.e.sin = select(active, e.sin, out.e.sin);
-    out.e.cos = select(active, e.cos, out.e.cos);
-    out.e_sin = select(active, e_sin, out.e_sin);
-    out.e_cos = select(active, e_cos, out.e_cos);
-    out.inv_rho = select(active, rho, out.inv_rho);
-    anomaly = anomaly + step;
-    active = active & (Pack(1e-12) <= abs(step));
-  }
-  out.inv_rho = Pack(1.0) / out.inv_rho;
-  return out;
-}
 
 /// `a` turned by a correction: by a tiny one, or by any.
 template <bool Tiny>
@@ -107,33 +68,49 @@ DMISE_INLINE SinCos corrected(SinCos a, Pack by) {
   return turned(a, turn);
 }
 
-/// Long- and short-period terms and the state. `NearCircle` takes the short cuts that hold for
-/// small eccentricity above the surface and marks in `outside` the lanes for which they don't. What
-/// does not depend on the anomaly stands before it, to fill the waits of Kepler's iterations.
-template <bool NearCircle>
+/// Long- and short-period terms and the state. All shapes but `any` take the short cuts that hold
+/// for small eccentricity above the surface and mark in `outside` the lanes for which they don't.
+/// What does not depend on the anomaly stands before it, to fill the waits of Kepler's iterations.
+template <Shape shape>
 DMISE_INLINE States finish(const Mean& m, Mask& outside) {
+  constexpr bool turns = shape != Shape::any;
   // Long-period terms.
   const SinCos argp = sin_cos(m.argp);
   SinCos longitude;
-  if constexpr (NearCircle) longitude = sin_cos(m.longitude);
-  const Pack k = m.inv_a / nmadd(m.e, m.e, 1.0);
+  if constexpr (turns) longitude = sin_cos(m.longitude);
+  // 1 / (1 - e^2) is a factor of terms of 1e-3: to 4e-13 where the series stands for it.
+  constexpr bool series = shape == Shape::circle;
+  const Pack k =
+      series ? m.inv_a * inverse_of_one_minus(m.e * m.e) : m.inv_a / nmadd(m.e, m.e, 1.0);
   const Pack ax = m.e * argp.cos;
   const Pack ay = madd(m.e, argp.sin, k * (m.sin_i * (-0.5 * j3_over_j2)));
   const Pack long_period = k * m.long_period * ax;
 
-  const Pack beta2 = nmadd(ay, ay, nmadd(ax, ax, 1.0));
-  const Pack beta = sqrt(beta2);
-  const Pack inv_p = m.inv_a / beta2;
-  const Pack inv_1_beta = Pack(1.0) / (Pack(1.0) + beta);
+  const Pack e2 = madd(ay, ay, ax * ax);
+  const Pack beta2 = Pack(1.0) - e2;
+  const Pack inv_p = series ? m.inv_a * inverse_of_one_minus(e2) : m.inv_a / beta2;
+  Pack beta, inv_1_beta;
+  if constexpr (series) {
+    // Series of 1 / (1 + beta) = (1 - beta) / e^2 in e^2, error 2e-17.
+    inv_1_beta = madd(e2, 5.0 / 128.0, 1.0 / 16.0);
+    inv_1_beta = madd(madd(inv_1_beta, e2, 1.0 / 8.0), e2, 0.5);
+    beta = nmadd(e2, inv_1_beta, 1.0);
+  } else {
+    beta = sqrt(beta2);
+    inv_1_beta = Pack(1.0) / (Pack(1.0) + beta);
+  }
 
+  fetch(m.ahead, 2);
   Anomaly ea;
-  if constexpr (NearCircle) {
-    ea = solve_kepler_near_circle(corrected<true>(longitude, long_period), ax, ay, outside);
-    outside = outside | ~(abs(long_period) <= tiny_angle);
+  if constexpr (turns) {
+    ea = solve_kepler_by_turns<shape>(corrected<true>(longitude, long_period), ax, ay, outside);
+    constexpr double e_limit = shape == Shape::circle ? 0.027 : 0.19;
+    outside = outside | ~(abs(long_period) <= tiny_angle) | ~(e2 <= e_limit * e_limit);
   } else {
     ea = solve_kepler(m.longitude + long_period, ax, ay);
   }
 
+  fetch(m.ahead, 3);
   // Short-period terms.
   constexpr double velocity_unit = earth_radius_m * xke / 60.0;
   const Pack k1 = inv_p * (0.5 * j2);
@@ -160,9 +137,9 @@ DMISE_INLINE States finish(const Mean& m, Mask& outside) {
   const Pack v_along = madd(v2_sin2_i, cos_2u, madd(v2, con41_15, v1 * beta));
 
   // Orientation.
-  const SinCos su = corrected<NearCircle>({sin_u, cos_u}, k2 * madd(cos2_i, -1.75, 0.25) * sin_2u);
-  const SinCos inc = corrected<NearCircle>({m.sin_i, m.cos_i}, k2_cos * m.sin_i * cos_2u);
-  const SinCos nod = corrected<NearCircle>(m.node, k2_cos * sin_2u);
+  const SinCos su = corrected<turns>({sin_u, cos_u}, k2 * madd(cos2_i, -1.75, 0.25) * sin_2u);
+  const SinCos inc = corrected<turns>({m.sin_i, m.cos_i}, k2_cos * m.sin_i * cos_2u);
+  const SinCos nod = corrected<turns>(m.node, k2_cos * sin_2u);
   const Pack px = r_m * su.cos, py = r_m * su.sin;
   const Pack wx = nmadd(v_along, su.sin, v_radial * su.cos);
   const Pack wy = madd(v_along, su.cos, v_radial * su.sin);
@@ -175,7 +152,7 @@ DMISE_INLINE States finish(const Mean& m, Mask& outside) {
   out.vy = madd(qy, wy, nod.sin * wx);
   out.vz = inc.sin * wy;
 
-  if constexpr (NearCircle) outside = outside | ~(k2 <= tiny_angle / 1.5);
+  if constexpr (turns) outside = outside | ~(k2 <= tiny_angle / 1.5);
   // Only a lane whose radius is an ordinary number between these is good; not a number is not.
   const Mask in_range = (Pack(earth_radius_m) <= r_m) & (r_m <= m.farthest_m);
   out.bad = m.code1 | m.code2 | m.code3 | ~in_range;
@@ -189,22 +166,32 @@ DMISE_INLINE States finish(const Mean& m, Mask& outside) {
   return out;
 }
 
-/// `finish`, each lane by the road that holds for it. `eccentric`: none takes the short cuts.
-DMISE_INLINE States finish_each(const Mean& m, bool eccentric) {
+/// Puts the general road's states in the lanes of `outside`.
+[[gnu::noinline]] void replace_outside(const Mean& m, Mask outside, States& s) {
+  Mask unused;
+  const States full = finish<Shape::any>(m, unused);
+  s.code = select(outside & full.bad, full.code, s.code);
+  s.bad = (outside & full.bad) | (~outside & s.bad);
+  s.x = select(outside, full.x, s.x);
+  s.y = select(outside, full.y, s.y);
+  s.z = select(outside, full.z, s.z);
+  s.vx = select(outside, full.vx, s.vx);
+  s.vy = select(outside, full.vy, s.vy);
+  s.vz = select(outside, full.vz, s.vz);
+}
+
+/// `finish`, each lane by the road that holds for it.
+template <Shape shape>
+DMISE_INLINE States finish_each(const Mean& m) {
   Mask outside;
-  if (eccentric) return finish<false>(m, outside);
-  States s = finish<true>(m, outside);
-  if (any(outside)) [[unlikely]] {
-    Mask unused;
-    const States full = finish<false>(m, unused);
-    s.code = select(outside & full.bad, full.code, s.code);
-    s.bad = (outside & full.bad) | (~outside & s.bad);
-    s.x = select(outside, full.x, s.x);
-    s.y = select(outside, full.y, s.y);
-    s.z = select(outside, full.z, s.z);
-    s.vx = select(outside, full.vx, s.vx);
-    s.vy = select(outside, full.vy, s.vy);
-    s.vz = select(outside, full.vz, s.vz);
+  States s = finish<shape>(m, outside);
+  if constexpr (shape != Shape::any) {
+    if (any(outside)) [[unlikely]] {
+      const Mean in_memory = m;
+      States replaced = s;
+      replace_outside(in_memory, outside, replaced);
+      s = replaced;
+    }
   }
   return s;
 }
@@ -220,7 +207,8 @@ DMISE_INLINE Pack within_span(Pack t) {
   return select(abs(t) <= longest_span_min, t, __builtin_nan(""));
 }
 
-DMISE_INLINE States near_states(const NearTerms<Lanes>& b, int first, Pack t, bool eccentric) {
+template <Shape shape>
+DMISE_INLINE States near_states(const NearTerms<Lanes>& b, int first, Pack t, const Ahead& ahead) {
   t = within_span(t);
   const SecularTerms<Lanes>& s = b.secular;
   const Pack t2 = t * t;
@@ -228,9 +216,12 @@ DMISE_INLINE States near_states(const NearTerms<Lanes>& b, int first, Pack t, bo
   const Pack argp0 = madd(at(s.argp_dot, first), t, at(s.argp, first));
 
   Mean m;
+  m.ahead = ahead;
+  fetch(ahead, 0);
   m.node =
       sin_cos(madd(at(s.node_t2, first), t2, madd(at(s.node_dot, first), t, at(s.node, first))));
   const Pack c = madd(at(b.eta, first), coarse_cos(m0), 1.0);
+  fetch(ahead, 1);
   const Pack shift = madd(at(b.m_cubic, first) * c, c * c,
                           madd(at(b.m_linear, first), t, Pack(0.0) - at(b.m_cubic0, first)));
   Pack e = madd(at(s.e_dot, first), t, at(s.e, first));
@@ -252,11 +243,12 @@ DMISE_INLINE States near_states(const NearTerms<Lanes>& b, int first, Pack t, bo
   m.sin_i = at(b.sin_i, first);
   m.cos_i = at(b.cos_i, first);
   m.long_period = at(b.long_period, first);
-  m.a_m = at(s.a0_m, first) * a * a;
-  m.inv_sqrt_a = at(s.inv_sqrt_a0, first) / abs(a);
+  const Pack sqrt_a = at(s.sqrt_a0, first) * a;
+  m.a_m = sqrt_a * sqrt_a * earth_radius_m;
+  m.inv_sqrt_a = Pack(1.0) / abs(sqrt_a);
   m.inv_a = m.inv_sqrt_a * m.inv_sqrt_a;
   m.farthest_m = at(s.farthest_m, first);
-  return finish_each(m, eccentric);
+  return finish_each<shape>(m);
 }
 
 /// Writes a pack's states to `to`, codes included; zeros where there is none.
@@ -281,38 +273,92 @@ DMISE_INLINE void put(const States& s, int first, BlockStates& to) {
   }
 }
 
-DMISE_INLINE void scatter(const BlockStates& from, const std::uint32_t* index, int count,
-                          const Output& out) {
-  const auto put_row = [&](const auto* row, auto* to) {
-    if (count == block_lanes && index[block_lanes - 1] - index[0] == block_lanes - 1) {
-      __builtin_memcpy(to + index[0], row, block_lanes * sizeof *row);  // neighbours, ascending
-      return;
+struct BlockPlaces {
+  Places of[block_lanes / one_lanes];
+};
+DMISE_INLINE BlockPlaces block_places(const std::uint32_t* index, std::size_t objects) {
+  BlockPlaces places;
+  for (std::size_t k = 0; k < block_lanes; k += one_lanes)
+    places.of[k / one_lanes] = places_of(index + k, objects > k ? objects - k : 0);
+  return places;
+}
+
+/// Writes a pack's states, zeros and a code where there is none. `out` is that of the time.
+DMISE_INLINE void put(States s, int first, const BlockPlaces& places, const Output& out) {
+  const Places& a = places.of[first / one_lanes];
+  const Places& b = places.of[first / one_lanes + 1];
+  const unsigned bad = bits(s.bad) & ((1u << (a.count + b.count)) - 1u);
+  if (bad) [[unlikely]] {
+    alignas(64) double code[pack_lanes];
+    store(code, s.code);
+    for (unsigned k = 0; k < pack_lanes; ++k)
+      if (bad >> k & 1u) out.code[a.index[k]] = std::uint8_t(code[k]);
+    s.x = select(s.bad, 0.0, s.x), s.y = select(s.bad, 0.0, s.y), s.z = select(s.bad, 0.0, s.z);
+    s.vx = select(s.bad, 0.0, s.vx), s.vy = select(s.bad, 0.0, s.vy);
+    s.vz = select(s.bad, 0.0, s.vz);
+  }
+  put({{s.x.a, s.y.a, s.z.a, s.vx.a, s.vy.a, s.vz.a}}, a, out);
+  put({{s.x.b, s.y.b, s.z.b, s.vx.b, s.vy.b, s.vz.b}}, b, out);
+}
+
+DMISE_INLINE Output of_time(const Output& out, std::size_t k) {
+  return {out.position + 3 * k * out.stride, out.velocity + 3 * k * out.stride,
+          out.code + k * out.stride, out.stride};
+}
+
+/// One of `parts` pieces of a block.
+DMISE_INLINE Ahead part_of(const NearTerms<Lanes>* block, std::size_t part, std::size_t parts) {
+  constexpr std::size_t lines = sizeof *block / 64;
+  const std::size_t quarter = (lines + 4 * parts - 1) / (4 * parts) * 64;
+  const std::size_t start = 4 * quarter * part;
+  return {reinterpret_cast<const char*>(block) + start, start < sizeof *block ? quarter : 0};
+}
+
+template <Shape shape>
+void near_blocks_of(const NearTerms<Lanes>* blocks, const std::uint32_t* index, std::size_t objects,
+                    const Instants& times, const Output& out) {
+  constexpr std::size_t packs = block_lanes / pack_lanes;
+  for (std::size_t done = 0; done < objects; done += block_lanes, ++blocks) {
+    const BlockPlaces places = block_places(index + done, objects - done);
+    for (std::size_t k = 0; k < times.count; ++k) {
+      const Output to = of_time(out, k);
+      for (std::size_t pack = 0; pack < packs; ++pack) {
+        const int first = int(pack) * pack_lanes;
+        const Pack t = minutes(blocks->secular, first, times.at[k].jd1, times.at[k].jd2);
+        const Ahead ahead = part_of(blocks + 1, k * packs + pack, times.count * packs);
+        put(near_states<shape>(*blocks, first, t, ahead), first, places, to);
+      }
     }
-    for (int k = 0; k < count; ++k) to[index[k]] = row[k];
-  };
-  put_row(from.code, out.code);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    put_row(from.position[axis], out.position + axis * out.stride);
-    put_row(from.velocity[axis], out.velocity + axis * out.stride);
   }
 }
 
 void near_blocks(const NearTerms<Lanes>* blocks, const std::uint32_t* index, std::size_t objects,
-                 bool eccentric, double jd1, double jd2, const Output& out) {
-  BlockStates states;
-  for (std::size_t done = 0; done < objects; done += block_lanes, ++blocks, index += block_lanes) {
-    for (int first = 0; first < block_lanes; first += pack_lanes) {
-      put(near_states(*blocks, first, minutes(blocks->secular, first, jd1, jd2), eccentric), first,
-          states);
-    }
-    const std::size_t left = objects - done;
-    scatter(states, index, left < block_lanes ? int(left) : block_lanes, out);
+                 Shape shape, const Instants& times, const Output& out) {
+  switch (shape) {
+    case Shape::circle:
+      return near_blocks_of<Shape::circle>(blocks, index, objects, times, out);
+    case Shape::oval:
+      return near_blocks_of<Shape::oval>(blocks, index, objects, times, out);
+    case Shape::any:
+      return near_blocks_of<Shape::any>(blocks, index, objects, times, out);
   }
 }
 
-void near_block(const NearTerms<Lanes>& block, bool eccentric, const Lanes& t, BlockStates& out) {
+template <Shape shape>
+void near_block_of(const NearTerms<Lanes>& block, const Lanes& t, BlockStates& out) {
   for (int first = 0; first < block_lanes; first += pack_lanes)
-    put(near_states(block, first, at(t, first), eccentric), first, out);
+    put(near_states<shape>(block, first, at(t, first), {}), first, out);
+}
+
+void near_block(const NearTerms<Lanes>& block, Shape shape, const Lanes& t, BlockStates& out) {
+  switch (shape) {
+    case Shape::circle:
+      return near_block_of<Shape::circle>(block, t, out);
+    case Shape::oval:
+      return near_block_of<Shape::oval>(block, t, out);
+    case Shape::any:
+      return near_block_of<Shape::any>(block, t, out);
+  }
 }
 
 }  // namespace

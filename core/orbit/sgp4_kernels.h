@@ -15,7 +15,8 @@ struct alignas(64) BlockStates {
   unsigned char code[block_lanes];
 };
 
-/// The caller's arrays: x at [i], y at [i + stride], z at [i + 2 stride].
+/// The caller's arrays: x at [i], y at [i + stride], z at [i + 2 stride], one time after the other.
+/// Codes are 0 already: kernels write the others.
 struct Output {
   double* position;
   double* velocity;
@@ -23,27 +24,39 @@ struct Output {
   std::size_t stride;
 };
 
+/// UTC two-part Julian dates [d].
+struct Instant {
+  double jd1, jd2;
+};
+struct Instants {
+  const Instant* at;
+  std::size_t count;
+};
+
+/// How far an orbit is from a circle: which road through Kepler's equation is likely to hold.
+enum class Shape : std::uint8_t { circle, oval, any };
+
 /// Terms of one block of deep-space objects; those of its resonance or null.
 struct DeepBlock {
   const DeepTerms<Lanes>* terms;
   const SynchronousTerms<Lanes>* day;
   const HalfDayTerms<Lanes>* half_day;
   ResonanceNode* node;  // where to start from and what is left behind, with a resonance
-  bool eccentric;
+  Shape shape;
 };
 
 struct Kernels {
-  /// `objects` near-Earth objects in blocks, at one time; object k of them goes to `index[k]`.
+  /// `objects` near-Earth objects in blocks, each block at all times before the next; object k of
+  /// them goes to `index[k]`, which ascend.
   void (*near_blocks)(const NearTerms<Lanes>* blocks, const std::uint32_t* index,
-                      std::size_t objects, bool eccentric, double jd1, double jd2,
-                      const Output& out);
+                      std::size_t objects, Shape shape, const Instants& times, const Output& out);
+  /// One block of deep-space objects at all times.
+  void (*deep_block_at)(const DeepBlock& block, const std::uint32_t* index, std::size_t objects,
+                        const Instants& times, const Output& out);
   /// One block, each lane at its own minutes from epoch.
-  void (*near_block)(const NearTerms<Lanes>& block, bool eccentric, const Lanes& minutes,
+  void (*near_block)(const NearTerms<Lanes>& block, Shape shape, const Lanes& minutes,
                      BlockStates& out);
   void (*deep_block)(const DeepBlock& block, const Lanes& minutes, BlockStates& out);
-  /// One block of deep-space objects at one time, written to `index`.
-  void (*deep_block_at)(const DeepBlock& block, const std::uint32_t* index, int objects, double jd1,
-                        double jd2, const Output& out);
 };
 
 extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;

@@ -33,6 +33,11 @@ struct One {
 };
 DMISE_INLINE One load_one(const double* p) { return _mm512_load_pd(p); }
 DMISE_INLINE void store(double* p, One a) { _mm512_store_pd(p, a.v); }
+DMISE_INLINE void store_anywhere(double* p, One a) { _mm512_storeu_pd(p, a.v); }
+/// The lanes of `mask` alone, to an address aligned to nothing.
+DMISE_INLINE void store_some(double* p, One a, unsigned mask) {
+  _mm512_mask_storeu_pd(p, __mmask8(mask), a.v);
+}
 DMISE_INLINE One operator+(One a, One b) { return _mm512_add_pd(a.v, b.v); }
 DMISE_INLINE One operator-(One a, One b) { return _mm512_sub_pd(a.v, b.v); }
 DMISE_INLINE One operator*(One a, One b) { return _mm512_mul_pd(a.v, b.v); }
@@ -81,6 +86,12 @@ struct One {
 };
 DMISE_INLINE One load_one(const double* p) { return _mm256_load_pd(p); }
 DMISE_INLINE void store(double* p, One a) { _mm256_store_pd(p, a.v); }
+DMISE_INLINE void store_anywhere(double* p, One a) { _mm256_storeu_pd(p, a.v); }
+DMISE_INLINE void store_some(double* p, One a, unsigned mask) {
+  const __m256i lane = _mm256_set_epi64x(8, 4, 2, 1);
+  _mm256_maskstore_pd(p, _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(mask), lane), lane),
+                      a.v);
+}
 DMISE_INLINE One operator+(One a, One b) { return _mm256_add_pd(a.v, b.v); }
 DMISE_INLINE One operator-(One a, One b) { return _mm256_sub_pd(a.v, b.v); }
 DMISE_INLINE One operator*(One a, One b) { return _mm256_mul_pd(a.v, b.v); }
@@ -125,6 +136,11 @@ struct One {
 };
 DMISE_INLINE One load_one(const double* p) { return _mm_load_pd(p); }
 DMISE_INLINE void store(double* p, One a) { _mm_store_pd(p, a.v); }
+DMISE_INLINE void store_anywhere(double* p, One a) { _mm_storeu_pd(p, a.v); }
+DMISE_INLINE void store_some(double* p, One a, unsigned mask) {
+  if (mask & 1u) _mm_storel_pd(p, a.v);
+  if (mask & 2u) _mm_storeh_pd(p + 1, a.v);
+}
 DMISE_INLINE One operator+(One a, One b) { return _mm_add_pd(a.v, b.v); }
 DMISE_INLINE One operator-(One a, One b) { return _mm_sub_pd(a.v, b.v); }
 DMISE_INLINE One operator*(One a, One b) { return _mm_mul_pd(a.v, b.v); }

@@ -126,9 +126,8 @@ Model initialise(const MeanElements& el) {
   sec.e_dot = -bstar * c4;
   sec.a_t = c1;
   sec.l_t2 = n * 1.5 * c1;
-  sec.a0_m = a * earth_radius_m;
-  sec.inv_sqrt_a0 = 1.0 / std::sqrt(a);
-  sec.farthest_m = 2.2 * sec.a0_m * (1.0 + e);
+  sec.sqrt_a0 = std::sqrt(a);
+  sec.farthest_m = 2.2 * a * earth_radius_m * (1.0 + e);
   model.eccentricity = e;
   model.inclination_rad = el.inclination_rad;
 

@@ -46,7 +46,7 @@ struct SecularTerms {
   T e, e_dot;           // near: e includes B* C5 sin M0
   T a_t;                // semi-major axis / a0 = (1 - a_t t - ...)^2
   T l_t2;               // mean longitude, drag: l_t2 t^2 + ...
-  T a0_m, inv_sqrt_a0;  // semi-major axis [m]; its inverse square root [Earth radii^-1/2]
+  T sqrt_a0;            // square root of the semi-major axis at epoch [Earth radii^1/2]
   T farthest_m;         // 2.2 a (1 + e)
 };
 

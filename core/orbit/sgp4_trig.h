@@ -75,6 +75,27 @@ DMISE_INLINE SinCos small_sin_cos(Pack x) {
   return {madd(s, t * x, x), c};
 }
 
+/// error 6e-15 for |x| <= 1/32.
+constexpr double short_angle = 1.0 / 32.0;
+DMISE_INLINE SinCos short_sin_cos(Pack x) {
+  const Pack t = x * x;
+  const Pack s = madd(t, 1.0 / 120.0, -1.0 / 6.0);
+  const Pack c = madd(t, madd(t, -1.0 / 720.0, 1.0 / 24.0), -0.5);
+  return {madd(s, t * x, x), madd(c, t, 1.0)};
+}
+
+/// error 5e-16 for |x| <= 1/5.
+constexpr double medium_angle = 0.2;
+DMISE_INLINE SinCos medium_sin_cos(Pack x) {
+  const Pack t = x * x;
+  const Pack t2 = t * t;
+  Pack s = madd(t, 1.0 / 362880.0, -1.0 / 5040.0);
+  Pack c = madd(t2, -1.0 / 3628800.0, madd(t, 1.0 / 40320.0, -1.0 / 720.0));
+  s = madd(s, t2, madd(t, 1.0 / 120.0, -1.0 / 6.0));
+  c = madd(c, t2, madd(t, 1.0 / 24.0, -0.5));
+  return {madd(s, t * x, x), madd(c, t, 1.0)};
+}
+
 /// error 6e-14 for |x| <= tiny_angle.
 constexpr double tiny_angle = 1.1e-3;
 DMISE_INLINE SinCos tiny_sin_cos(Pack x) {

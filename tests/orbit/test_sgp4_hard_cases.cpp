@@ -782,6 +782,50 @@ TEST_P(Sgp4HardCases, OneSomeManyTimesAndAllAreTheSameToTheBit) {
   }
 }
 
+TEST_P(Sgp4HardCases, ManyTimesInOneCallEqualCallsOfTheirOwnToTheBit) {
+  const Sgp4Batch batch(mixture(3000), nullptr, GetParam());
+  const std::size_t n = batch.size();
+  std::vector<Utc> times;
+  for (int k = 0; k < 19; ++k) times.push_back({epoch_jd1 + 7.0 * (k * 5 % 19) - 60.0, 0.05 * k});
+  Threads three(3);
+  for (Threads* threads : {static_cast<Threads*>(nullptr), &three}) {
+    Outputs together(n * times.size());
+    batch.propagate(times, together.position, together.velocity, together.code, threads);
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const Outputs alone = at(batch, times[k].jd1, times[k].jd2);
+      EXPECT_TRUE(std::equal(alone.position.begin(), alone.position.end(),
+                             together.position.begin() + std::ptrdiff_t(3 * n * k)));
+      EXPECT_TRUE(std::equal(alone.velocity.begin(), alone.velocity.end(),
+                             together.velocity.begin() + std::ptrdiff_t(3 * n * k)));
+      EXPECT_TRUE(std::equal(alone.code.begin(), alone.code.end(),
+                             together.code.begin() + std::ptrdiff_t(n * k)));
+    }
+  }
+}
+
+TEST_P(Sgp4HardCases, AnyNumberOfObjectsIsWrittenWholeAndNothingBeside) {
+  for (std::size_t n = 1; n < 70; ++n) {
+    const Sgp4Batch batch(mixture(n), nullptr, GetParam());
+    constexpr double untouched = -1.0;
+    std::vector<double> position(3 * n + 2, untouched), velocity(3 * n + 2, untouched);
+    std::vector<std::uint8_t> code(n + 2, 99);
+    batch.propagate(epoch_jd1, 0.25, {&position[1], 3 * n}, {&velocity[1], 3 * n}, {&code[1], n});
+    EXPECT_EQ(position.front(), untouched);
+    EXPECT_EQ(position.back(), untouched);
+    EXPECT_EQ(velocity.front(), untouched);
+    EXPECT_EQ(velocity.back(), untouched);
+    EXPECT_EQ(code.front(), 99);
+    EXPECT_EQ(code.back(), 99);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Sgp4State one = batch.propagate_one(i, batch.minutes_since_epoch(i, epoch_jd1, 0.25));
+      EXPECT_EQ(std::uint8_t(one.code), code[1 + i]);
+      EXPECT_EQ(one.position_m.x, position[1 + i]);
+      EXPECT_EQ(one.position_m.z, position[1 + i + 2 * n]);
+      EXPECT_EQ(one.velocity_m_per_s.y, velocity[1 + i + n]);
+    }
+  }
+}
+
 TEST(Sgp4Batch, InstructionSetsAgreeTo1e8Km) {
   const std::vector<MeanElements> elements = mixture(2000);
   const Outputs best = at(Sgp4Batch(elements), epoch_jd1, 6.5);
