@@ -2,6 +2,7 @@
 dmise_library(core_orbit_sgp4
   SOURCES
     sgp4_batch.cpp
+    sgp4_groups.cpp
     sgp4_terms.cpp
     sgp4_deep_terms.cpp
     sgp4_kernel_sse2.cpp

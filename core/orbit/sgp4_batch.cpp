@@ -1,12 +1,12 @@
 #include "core/orbit/sgp4_batch.h"
 
-#include <atomic>
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/orbit/sgp4_groups.h"
 #include "core/orbit/sgp4_kernels.h"
 
 namespace dmise {
@@ -27,81 +27,8 @@ const Kernels& kernels_for(SimdLevel simd) {
   return kernels_sse2;
 }
 
-/// Objects that go the same road through the model, in blocks, in the order given.
-struct Group {
-  bool deep = false;
-  Resonance resonance = Resonance::none;
-  Shape shape = Shape::circle;
-  std::vector<std::uint32_t> index;  // of the object in each lane
-  std::vector<NearTerms<Lanes>> near;
-  std::vector<DeepTerms<Lanes>> far;
-  std::vector<SynchronousTerms<Lanes>> day;
-  std::vector<HalfDayTerms<Lanes>> half_day;
-  // A memo of each block's integrator: whoever holds the block's lock starts from it and leaves its
-  // own behind; who doesn't starts from the epoch and finds the same, later.
-  mutable std::vector<ResonanceNode> nodes;
-  std::unique_ptr<std::atomic_flag[]> busy;
-
-  std::size_t blocks() const { return deep ? far.size() : near.size(); }
-  /// The first block whose first object is not before `object`.
-  std::size_t first_block_from(std::size_t object) const {
-    std::size_t low = 0, high = blocks();
-    while (low < high) {
-      const std::size_t middle = (low + high) / 2;
-      if (index[middle * block_lanes] < object)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    return low;
-  }
-  DeepBlock block(std::size_t k, ResonanceNode* node) const {
-    return {&far[k], resonance == Resonance::day ? &day[k] : nullptr,
-            resonance == Resonance::half_day ? &half_day[k] : nullptr, node, shape};
-  }
-};
-
 constexpr std::size_t tile_states = 4096;  // of output: 57 bytes each
 constexpr std::size_t tile_of_thread = 1024;
-constexpr std::size_t shapes = 3;
-constexpr std::size_t group_count = shapes * 7;
-constexpr double low_inclination_rad = 0.22;  // below it Lyddane's terms are likely
-
-Shape shape_of(double eccentricity) {
-  if (eccentricity < 0.025) return Shape::circle;
-  return eccentricity < 0.18 ? Shape::oval : Shape::any;
-}
-
-std::size_t group_of(const Model& m) {
-  const auto shape = static_cast<std::size_t>(shape_of(m.eccentricity));
-  if (!m.deep) return shape;
-  const std::size_t low = m.inclination_rad < low_inclination_rad;
-  return shape + shapes * (1 + 2 * static_cast<std::size_t>(m.resonance) + low);
-}
-
-void add_to_group(Group& g, const Model& m, std::uint32_t object) {
-  const int lane = static_cast<int>(g.index.size() % block_lanes);
-  g.index.push_back(object);
-  if (lane == 0) {
-    if (!m.deep) g.near.emplace_back();
-    if (m.deep) g.far.emplace_back();
-    if (m.resonance == Resonance::day) g.day.emplace_back();
-    if (m.resonance == Resonance::half_day) g.half_day.emplace_back();
-  }
-  // A new block holds its first object in every lane, so that no lane computes on nothing.
-  for (int k = lane; k < (lane == 0 ? block_lanes : lane + 1); ++k) {
-    if (!m.deep) set_lane(g.near.back(), k, m.near);
-    if (m.deep) set_lane(g.far.back(), k, m.far);
-    if (m.resonance == Resonance::day) set_lane(g.day.back(), k, m.day);
-    if (m.resonance == Resonance::half_day) set_lane(g.half_day.back(), k, m.half_day);
-  }
-}
-
-ResonanceNode no_node() {
-  ResonanceNode node{};
-  for (double& t : node.time.lane) t = std::numeric_limits<double>::quiet_NaN();
-  return node;
-}
 
 void check_sizes(std::size_t n, std::span<const double> position, std::span<const double> velocity,
                  std::span<const std::uint8_t> code) {
@@ -131,6 +58,20 @@ struct Sgp4Batch::State {
   std::vector<Place> places;
   std::vector<std::uint32_t> failed;
 
+  void add(const Model& m) {
+    const auto object = static_cast<std::uint32_t>(places.size());
+    Place place{.code = m.code};
+    if (m.code != 0) {
+      failed.push_back(object);
+    } else {
+      place.group = static_cast<std::uint8_t>(group_of(m));
+      Group& g = groups[place.group];
+      place.slot = static_cast<std::uint32_t>(g.index.size());
+      g.add(m, object);
+    }
+    places.push_back(place);
+  }
+
   const SecularTerms<Lanes>& secular(const Place& p) const {
     const Group& g = groups[p.group];
     return g.deep ? g.far[p.slot / block_lanes].secular : g.near[p.slot / block_lanes].secular;
@@ -143,36 +84,12 @@ struct Sgp4Batch::State {
            (jd2 - s.epoch_jd2.lane[lane]) * minutes_per_day;
   }
 
-  void run(const Group& g, std::size_t begin, std::size_t end, const Instants& times,
-           const Output& out) const {
-    const std::size_t last = std::min(end * block_lanes, g.index.size());
-    if (begin == end) return;
-    if (!g.deep) {
-      kernels->near_blocks(&g.near[begin], &g.index[begin * block_lanes],
-                           last - begin * block_lanes, g.shape, times, out);
-      return;
-    }
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::size_t objects = last - k * block_lanes;
-      const std::uint32_t* index = &g.index[k * block_lanes];
-      if (g.resonance == Resonance::none) {
-        kernels->deep_block_at(g.block(k, nullptr), index, objects, times, out);
-      } else if (!g.busy[k].test_and_set(std::memory_order_acquire)) {
-        kernels->deep_block_at(g.block(k, &g.nodes[k]), index, objects, times, out);
-        g.busy[k].clear(std::memory_order_release);
-      } else {
-        ResonanceNode own = no_node();
-        kernels->deep_block_at(g.block(k, &own), index, objects, times, out);
-      }
-    }
-  }
-
   /// Tile by tile of the output, so that it stays in the cache while the groups fill it.
   void run_all(const Instants& times, const Output& out, Threads* threads) const {
     const std::size_t tile = std::max<std::size_t>(tile_states / times.count, block_lanes);
     const auto work = [&](std::size_t begin, std::size_t end) {
       for (const Group& g : groups)
-        run(g, g.first_block_from(begin), g.first_block_from(end), times, out);
+        g.run(*kernels, g.first_block_from(begin), g.first_block_from(end), times, out);
     };
     if (threads && threads->count() > 1) {
       threads->for_ranges(places.size(), std::min(tile, tile_of_thread), work);
@@ -240,12 +157,17 @@ std::string_view describe(Sgp4Code code) {
   return "unknown code";
 }
 
-Sgp4Batch::Sgp4Batch(std::span<const MeanElements> elements, Threads* threads, SimdLevel simd) {
-  auto state = std::make_unique<State>();
-  state->simd = simd;
-  state->kernels = &kernels_for(simd);
-  state->places.resize(elements.size());
+Sgp4Batch::Sgp4Batch(SimdLevel simd) : state_(std::make_unique<State>()) {
+  state_->simd = simd;
+  state_->kernels = &kernels_for(simd);
+}
 
+Sgp4Batch::Sgp4Batch(std::span<const MeanElements> elements, Threads* threads, SimdLevel simd)
+    : Sgp4Batch(simd) {
+  append(elements, threads);
+}
+
+void Sgp4Batch::append(std::span<const MeanElements> elements, Threads* threads) {
   // In pieces, so that the models of a large catalogue never all lie side by side.
   constexpr std::size_t piece = 4096;
   std::vector<Model> models(std::min(piece, elements.size()));
@@ -258,35 +180,9 @@ Sgp4Batch::Sgp4Batch(std::span<const MeanElements> elements, Threads* threads, S
       threads->for_ranges(count, 256, work);
     else
       work(0, count);
-    for (std::size_t k = 0; k < count; ++k) {
-      const Model& m = models[k];
-      State::Place& place = state->places[start + k];
-      const auto object = static_cast<std::uint32_t>(start + k);
-      place.code = m.code;
-      if (m.code != 0) {
-        state->failed.push_back(object);
-        continue;
-      }
-      place.group = static_cast<std::uint8_t>(group_of(m));
-      Group& g = state->groups[place.group];
-      place.slot = static_cast<std::uint32_t>(g.index.size());
-      g.deep = m.deep;
-      g.resonance = m.resonance;
-      g.shape = shape_of(m.eccentricity);
-      add_to_group(g, m, object);
-    }
+    for (std::size_t k = 0; k < count; ++k) state_->add(models[k]);
   }
-  for (Group& g : state->groups) {
-    g.index.shrink_to_fit();
-    g.near.shrink_to_fit();
-    g.far.shrink_to_fit();
-    g.day.shrink_to_fit();
-    g.half_day.shrink_to_fit();
-    if (g.resonance == Resonance::none) continue;
-    g.nodes.assign(g.blocks(), no_node());
-    g.busy = std::make_unique<std::atomic_flag[]>(g.blocks());
-  }
-  state_ = std::move(state);
+  for (Group& g : state_->groups) g.make_memos();
 }
 
 Sgp4Batch::~Sgp4Batch() = default;

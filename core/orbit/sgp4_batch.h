@@ -46,9 +46,15 @@ class Sgp4Batch {
   /// Element sets that SGP4 can't start from get their code; nothing throws.
   explicit Sgp4Batch(std::span<const MeanElements> elements, Threads* threads = nullptr,
                      SimdLevel simd = best_simd_level());
+  /// Of no objects yet.
+  explicit Sgp4Batch(SimdLevel simd);
   ~Sgp4Batch();
   Sgp4Batch(Sgp4Batch&&) noexcept;
   Sgp4Batch& operator=(Sgp4Batch&&) noexcept;
+
+  /// Adds objects behind those that it holds, so that a great catalogue need not lie in memory
+  /// beside its terms. Alone among the calls, not while another thread is in one.
+  void append(std::span<const MeanElements> elements, Threads* threads = nullptr);
 
   std::size_t size() const;
   SimdLevel simd() const;
@@ -86,7 +92,7 @@ class Sgp4Batch {
 
  private:
   struct State;
-  std::unique_ptr<const State> state_;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace dmise

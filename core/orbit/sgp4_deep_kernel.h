@@ -153,7 +153,7 @@ DMISE_INLINE Periodic body_periodics(const BodyTerms<Lanes>& b, int first, Pack 
           madd(at(b.h2, first), f2, at(b.h3, first) * f3)};
 }
 
-DMISE_INLINE States deep_states(const DeepBlock& block, int first, Pack t) {
+DMISE_INLINE States deep_states(const DeepBlock& block, int first, Pack t, const Ahead& ahead) {
   t = within_span(t);
   const DeepTerms<Lanes>& b = *block.terms;
   const SecularTerms<Lanes>& s = b.secular;
@@ -164,6 +164,8 @@ DMISE_INLINE States deep_states(const DeepBlock& block, int first, Pack t) {
   const Pack sqrt_a = at(s.sqrt_a0, first) * a;
 
   Mean m;
+  m.ahead = ahead;
+  fetch(ahead, 0);
   m.a_m = sqrt_a * sqrt_a * earth_radius_m;
   m.inv_sqrt_a = Pack(1.0) / abs(sqrt_a);
   m.code2 = Pack(1.0) < 0.0;
@@ -197,6 +199,7 @@ DMISE_INLINE States deep_states(const DeepBlock& block, int first, Pack t) {
 
   const Periodic sun = body_periodics(b.sun, first, t, sun_rate, sun_eccentricity);
   const Periodic moon = body_periodics(b.moon, first, t, moon_rate, moon_eccentricity);
+  fetch(ahead, 1);
   const Pack d_i = sun.i + moon.i;
   Pack h = sun.h + moon.h;
   Pack gh = sun.gh + moon.gh;
@@ -250,17 +253,21 @@ DMISE_INLINE States deep_states(const DeepBlock& block, int first, Pack t) {
 
 void deep_block(const DeepBlock& block, const Lanes& t, BlockStates& out) {
   for (int first = 0; first < block_lanes; first += pack_lanes)
-    put(deep_states(block, first, at(t, first)), first, out);
+    put(deep_states(block, first, at(t, first), {}), first, out);
 }
 
 void deep_block_at(const DeepBlock& block, const std::uint32_t* index, std::size_t objects,
                    const Instants& times, const Output& out) {
+  constexpr std::size_t packs = block_lanes / pack_lanes;
   const BlockPlaces places = block_places(index, objects);
   for (std::size_t k = 0; k < times.count; ++k) {
     const Output to = of_time(out, k);
-    for (int first = 0; first < block_lanes; first += pack_lanes) {
+    for (std::size_t pack = 0; pack < packs; ++pack) {
+      const int first = int(pack) * pack_lanes;
       const Pack t = minutes(block.terms->secular, first, times.at[k].jd1, times.at[k].jd2);
-      put(deep_states(block, first, t), first, places, to);
+      const Ahead ahead =
+          block.next ? part_of(block.next, k * packs + pack, times.count * packs) : Ahead{};
+      put(deep_states(block, first, t, ahead), first, places, to);
     }
   }
 }

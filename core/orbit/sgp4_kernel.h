@@ -34,6 +34,15 @@ DMISE_INLINE void fetch(const Ahead& a, std::size_t quarter) {
   for (std::size_t k = 0; k < a.quarter_bytes; k += 64) _mm_prefetch(from + k, _MM_HINT_T0);
 }
 
+/// One of `parts` pieces of a block.
+template <class Block>
+DMISE_INLINE Ahead part_of(const Block* block, std::size_t part, std::size_t parts) {
+  constexpr std::size_t lines = sizeof *block / 64;
+  const std::size_t quarter = (lines + 4 * parts - 1) / (4 * parts) * 64;
+  const std::size_t start = 4 * quarter * part;
+  return {reinterpret_cast<const char*>(block) + start, start < sizeof *block ? quarter : 0};
+}
+
 /// Mean elements at the time, periodic terms of the Sun and Moon included.
 struct Mean {
   Pack e;          // eccentricity
@@ -304,14 +313,6 @@ DMISE_INLINE void put(States s, int first, const BlockPlaces& places, const Outp
 DMISE_INLINE Output of_time(const Output& out, std::size_t k) {
   return {out.position + 3 * k * out.stride, out.velocity + 3 * k * out.stride,
           out.code + k * out.stride, out.stride};
-}
-
-/// One of `parts` pieces of a block.
-DMISE_INLINE Ahead part_of(const NearTerms<Lanes>* block, std::size_t part, std::size_t parts) {
-  constexpr std::size_t lines = sizeof *block / 64;
-  const std::size_t quarter = (lines + 4 * parts - 1) / (4 * parts) * 64;
-  const std::size_t start = 4 * quarter * part;
-  return {reinterpret_cast<const char*>(block) + start, start < sizeof *block ? quarter : 0};
 }
 
 template <Shape shape>

@@ -43,6 +43,7 @@ struct DeepBlock {
   const HalfDayTerms<Lanes>* half_day;
   ResonanceNode* node;  // where to start from and what is left behind, with a resonance
   Shape shape;
+  const DeepTerms<Lanes>* next = nullptr;  // the block to come, or null
 };
 
 struct Kernels {

@@ -147,15 +147,17 @@ const Family& family_at(double share) {
 }  // namespace
 
 std::vector<MeanElements> synthetic_catalogue(const SyntheticCatalogueOptions& options) {
-  if (options.objects > 1'000'000)
+  constexpr std::size_t most = 1'000'000;
+  if (options.objects > most || options.first > most - options.objects)
     throw Error("synthetic catalogue: at most 1000000 objects, got " +
-                std::to_string(options.objects));
+                std::to_string(options.objects) + " from number " + std::to_string(options.first));
   const RngKey key = rng_key(options.seed, "catalogue", 0, "synthetic");
   std::vector<MeanElements> catalogue(options.objects);
-  for (std::size_t i = 0; i < options.objects; ++i) {
+  for (std::size_t k = 0; k < options.objects; ++k) {
+    const std::size_t i = options.first + k;
     Draws draws(key, static_cast<std::uint32_t>(i));
     const Family& family = family_at(draws.uniform());
-    MeanElements& e = catalogue[i];
+    MeanElements& e = catalogue[k];
     e.catalogue_number = static_cast<std::uint32_t>(i + 1);
     e.name = family.name;
     const double age_days = draws.uniform(0, 3);

@@ -10,6 +10,7 @@ namespace dmise {
 
 struct SyntheticCatalogueOptions {
   std::size_t objects = 0;  // up to 1,000,000
+  std::size_t first = 0;    // objects first .. first + objects - 1 of the population
   std::uint64_t seed = 1;
   Utc newest_epoch{2458138.5, 0.0};  // 2018-01-20; epochs lie within the three days before it
 };
@@ -23,7 +24,7 @@ struct SyntheticCatalogueOptions {
 /// 30 % debris of break-ups (700-1500 km at 65, 74-83 and 98.6 deg, exponential apogees), 2.5 %
 /// navigation (19,130 and 20,200 km), 5.5 % geostationary (belt and graveyard, inclined to 15 deg),
 /// 1 % Molniya (12 h, 63.4 deg, e 0.68-0.74), 4 % transfer orbits. Nodes and anomalies are uniform.
-/// Throws `Error` for more than 1,000,000 objects.
+/// Throws `Error` for objects beyond the first 1,000,000.
 std::vector<MeanElements> synthetic_catalogue(const SyntheticCatalogueOptions& options);
 
 }  // namespace dmise
