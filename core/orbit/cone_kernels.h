@@ -10,11 +10,16 @@ struct PreparedCone {
   bool wide;       // more than 90 degrees: axis and angle are those of the opposite cone
 };
 
-/// Words of one cone over 64 objects each; `present` masks out objects without a state.
-using ConeWords = void (*)(const double* x, const double* y, const double* z, std::size_t words,
-                           const PreparedCone& cone, const std::uint64_t* present,
-                           std::uint64_t* inside);
+/// On `words` times 64 objects, their coordinates aligned to 64 bytes.
+struct ConeKernels {
+  /// Which objects are not at the origin.
+  void (*present)(const double* x, const double* y, const double* z, std::size_t words,
+                  std::uint64_t* present);
+  /// Which of those that `present` marks are in one cone.
+  void (*inside)(const double* x, const double* y, const double* z, std::size_t words,
+                 const PreparedCone& cone, const std::uint64_t* present, std::uint64_t* inside);
+};
 
-extern const ConeWords cone_words_sse2, cone_words_avx2, cone_words_avx512;
+extern const ConeKernels cone_kernels_sse2, cone_kernels_avx2, cone_kernels_avx512;
 
 }  // namespace dmise

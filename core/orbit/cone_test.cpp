@@ -25,9 +25,9 @@ PreparedCone prepare(const Cone& cone) {
   return p;
 }
 
-ConeWords words_for(SimdLevel simd) {
-  if (simd == SimdLevel::avx512) return cone_words_avx512;
-  return simd == SimdLevel::avx2 ? cone_words_avx2 : cone_words_sse2;
+const ConeKernels& kernels_for(SimdLevel simd) {
+  if (simd == SimdLevel::avx512) return cone_kernels_avx512;
+  return simd == SimdLevel::avx2 ? cone_kernels_avx2 : cone_kernels_sse2;
 }
 
 }  // namespace
@@ -42,11 +42,11 @@ void cone_test(std::span<const double> position_m, std::span<const Cone> cones,
                 std::to_string(inside.size()) + " words");
   std::vector<PreparedCone> prepared(cones.size());
   std::transform(cones.begin(), cones.end(), prepared.begin(), prepare);
-  const ConeWords run = words_for(simd);
+  const ConeKernels& kernels = kernels_for(simd);
 
   const auto work = [&](std::size_t begin, std::size_t end) {
     alignas(64) double chunk[3][64 * chunk_words];
-    std::uint64_t present[chunk_words], row[chunk_words];
+    std::uint64_t present[chunk_words];
     for (std::size_t w = begin; w < end; w += chunk_words) {
       const std::size_t count = std::min(chunk_words, end - w);
       const std::size_t objects = std::min(64 * count, n - 64 * w);
@@ -55,17 +55,10 @@ void cone_test(std::span<const double> position_m, std::span<const Cone> cones,
         std::copy(from, from + objects, chunk[a]);
         std::fill(chunk[a] + objects, chunk[a] + 64 * count, 0.0);
       }
-      for (std::size_t k = 0; k < count; ++k) {
-        present[k] = 0;
-        for (std::size_t b = 0; b < 64; ++b) {
-          const std::size_t i = 64 * k + b;
-          present[k] |=
-              std::uint64_t(chunk[0][i] != 0.0 || chunk[1][i] != 0.0 || chunk[2][i] != 0.0) << b;
-        }
-      }
+      kernels.present(chunk[0], chunk[1], chunk[2], count, present);
       for (std::size_t s = 0; s < prepared.size(); ++s) {
-        run(chunk[0], chunk[1], chunk[2], count, prepared[s], present, row);
-        std::copy(row, row + count, inside.begin() + std::ptrdiff_t(s * words + w));
+        kernels.inside(chunk[0], chunk[1], chunk[2], count, prepared[s], present,
+                       &inside[s * words + w]);
       }
     }
   };

@@ -1,5 +1,5 @@
 #include "core/orbit/cone_kernel.h"
 
 namespace dmise {
-const ConeWords cone_words_avx512 = cone_words;
+const ConeKernels cone_kernels_avx512 = {present_words, cone_words};
 }  // namespace dmise

@@ -1,5 +1,5 @@
 #include "core/orbit/cone_kernel.h"
 
 namespace dmise {
-const ConeWords cone_words_sse2 = cone_words;
+const ConeKernels cone_kernels_sse2 = {present_words, cone_words};
 }  // namespace dmise

@@ -5,6 +5,8 @@
 #pragma once
 #include <immintrin.h>
 
+#include <cstdint>
+
 #define DMISE_INLINE __attribute__((always_inline)) inline
 
 namespace dmise::sgp4 {
@@ -24,6 +26,7 @@ DMISE_INLINE OneMask operator&(OneMask a, OneMask b) { return {__mmask8(a.m & b.
 DMISE_INLINE OneMask operator|(OneMask a, OneMask b) { return {__mmask8(a.m | b.m)}; }
 DMISE_INLINE OneMask operator~(OneMask a) { return {__mmask8(~a.m)}; }
 DMISE_INLINE unsigned bits(OneMask a) { return a.m; }
+DMISE_INLINE void store_bits(std::uint8_t* to, OneMask a) { _store_mask8(to, a.m); }
 
 struct One {
   __m512d v;
@@ -50,6 +53,13 @@ DMISE_INLINE One abs(One a) { return _mm512_abs_pd(a.v); }
 DMISE_INLINE OneMask operator<(One a, One b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LT_OQ)}; }
 DMISE_INLINE OneMask operator<=(One a, One b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LE_OQ)}; }
 DMISE_INLINE OneMask operator==(One a, One b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_EQ_OQ)}; }
+/// m & (a <= b), m & (a < b)
+DMISE_INLINE OneMask and_at_most(OneMask m, One a, One b) {
+  return {_mm512_mask_cmp_pd_mask(m.m, a.v, b.v, _CMP_LE_OQ)};
+}
+DMISE_INLINE OneMask and_less(OneMask m, One a, One b) {
+  return {_mm512_mask_cmp_pd_mask(m.m, a.v, b.v, _CMP_LT_OQ)};
+}
 DMISE_INLINE One select(OneMask m, One yes, One no) {
   return _mm512_mask_blend_pd(m.m, no.v, yes.v);
 }
@@ -166,6 +176,11 @@ DMISE_INLINE One negate_odd(One x, One odd) {
 
 #endif
 
+#if !defined(__AVX512F__)
+DMISE_INLINE OneMask and_at_most(OneMask m, One a, One b) { return m & (a <= b); }
+DMISE_INLINE OneMask and_less(OneMask m, One a, One b) { return m & (a < b); }
+#endif
+
 // Two of them in step: one alone waits for its own results most of the time.
 struct Mask {
   OneMask a, b;
@@ -203,6 +218,12 @@ DMISE_INLINE Pack abs(Pack x) { return {abs(x.a), abs(x.b)}; }
 DMISE_INLINE Mask operator<(Pack x, Pack y) { return {x.a < y.a, x.b < y.b}; }
 DMISE_INLINE Mask operator<=(Pack x, Pack y) { return {x.a <= y.a, x.b <= y.b}; }
 DMISE_INLINE Mask operator==(Pack x, Pack y) { return {x.a == y.a, x.b == y.b}; }
+DMISE_INLINE Mask and_at_most(Mask m, Pack x, Pack y) {
+  return {and_at_most(m.a, x.a, y.a), and_at_most(m.b, x.b, y.b)};
+}
+DMISE_INLINE Mask and_less(Mask m, Pack x, Pack y) {
+  return {and_less(m.a, x.a, y.a), and_less(m.b, x.b, y.b)};
+}
 DMISE_INLINE Pack select(Mask m, Pack yes, Pack no) {
   return {select(m.a, yes.a, no.a), select(m.b, yes.b, no.b)};
 }
