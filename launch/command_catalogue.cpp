@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <memory>
@@ -102,9 +103,17 @@ void print_synthetic(const SynthOptions& options) {
   if (!omm && options.objects > most_in_a_tle)
     throw ConfigError("--objects: a TLE holds numbers up to 339999; take --format omm, got " +
                       std::to_string(options.objects));
-  const auto elements = synthetic_catalogue({.objects = options.objects, .seed = options.seed});
-  const std::string text = omm ? format_omm_csv(elements) : format_3le(elements);
-  std::fwrite(text.data(), 1, text.size(), stdout);
+  // Piece by piece: a million objects take no more memory than a few thousand.
+  constexpr std::size_t piece = 4096;
+  for (std::size_t first = 0; first < options.objects; first += piece) {
+    const auto elements = synthetic_catalogue({.objects = std::min(piece, options.objects - first),
+                                               .first = first,
+                                               .seed = options.seed});
+    const std::string text = omm ? format_omm_csv(elements) : format_3le(elements);
+    const std::size_t begin = omm && first > 0 ? text.find('\n') + 1 : 0;  // one header
+    if (std::fwrite(text.data() + begin, 1, text.size() - begin, stdout) != text.size() - begin)
+      throw Error("catalogue synth: could not write to standard output");
+  }
 }
 
 }  // namespace

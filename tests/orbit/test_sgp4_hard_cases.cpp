@@ -826,6 +826,20 @@ TEST_P(Sgp4HardCases, AnyNumberOfObjectsIsWrittenWholeAndNothingBeside) {
   }
 }
 
+TEST_P(Sgp4HardCases, ACatalogueTakenPieceByPieceIsTheSameToTheBit) {
+  const std::vector<MeanElements> elements = mixture(1000);
+  const Sgp4Batch whole(elements, nullptr, GetParam());
+  Sgp4Batch pieces(GetParam());
+  const std::span<const MeanElements> all = elements;
+  for (std::size_t first = 0, count = 1; first < all.size();
+       first += count, count = 2 * count + 1) {
+    pieces.append(all.subspan(first, std::min(count, all.size() - first)));
+    at(pieces, epoch_jd1, 12.0);  // leaves memos of resonance behind
+  }
+  for (double days : {0.25, 12.0, -40.0})
+    EXPECT_TRUE(at(whole, epoch_jd1, days) == at(pieces, epoch_jd1, days)) << days;
+}
+
 TEST(Sgp4Batch, InstructionSetsAgreeTo1e8Km) {
   const std::vector<MeanElements> elements = mixture(2000);
   const Outputs best = at(Sgp4Batch(elements), epoch_jd1, 6.5);

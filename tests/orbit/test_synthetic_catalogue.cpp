@@ -26,6 +26,8 @@ TEST(SyntheticCatalogue, ObjectIsAFunctionOfSeedAndIndexAlone) {
     same += few[i].raan_rad == others[i].raan_rad;
   }
   EXPECT_LE(same, 1u);
+  const auto middle = synthetic_catalogue({.objects = 50, .first = 700, .seed = 7});
+  for (std::size_t i = 0; i < middle.size(); ++i) EXPECT_TRUE(middle[i] == many[700 + i]);
 }
 
 // Shares are those of the header, to 4 sigmas of 100,000 draws.
@@ -69,6 +71,7 @@ TEST(SyntheticCatalogue, NumbersAreUniqueAndAMillionIsTheLimit) {
   for (const auto& e : catalogue) numbers.insert(e.catalogue_number);
   EXPECT_EQ(numbers.size(), 5000u);
   EXPECT_THROW(synthetic_catalogue({.objects = 1000001}), Error);
+  EXPECT_THROW(synthetic_catalogue({.objects = 2, .first = 999999}), Error);
 }
 
 TEST(ElementText, WrittenTleReadsBackToTheSameBits) {
