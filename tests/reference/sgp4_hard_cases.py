@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Rows of tests/orbit/test_sgp4_hard_cases.cpp: states by Debian's python3-sgp4 (2.15, WGS72, mode 'i')
+"""Rows of tests/orbit/sgp4_branches_reference.inc: states by Debian's python3-sgp4 (2.15, WGS72, mode 'i')
 at the edges of the model's branches. Run with /usr/bin/python3."""
 
 from math import pi
@@ -35,4 +35,4 @@ for e, i, n, bstar, name in CASES:
     for t in (-1450.0, 0.0, 725.0, 10080.0):
         code, r, v = sat.sgp4_tsince(t)
         r = r if code == 0 else (0, 0, 0)
-        print('    {%r, %r, %r, %r, %r, %d, {%.10f, %.10f, %.10f}, "%s"},' % (e, i, n, bstar, t, code, *r, name))
+        print('{%r, %r, %r, %r, %r, %d, {%.10f, %.10f, %.10f}, "%s"},' % (e, i, n, bstar, t, code, *r, name))
