@@ -19,8 +19,30 @@
 namespace dmise {
 namespace {
 
+struct FileOptions {
+  std::string path;  // "-" is standard input
+  bool lenient = false;
+};
+
+CatalogueFile read(const FileOptions& options) {
+  const std::string path = options.path == "-" ? "/dev/stdin" : options.path;
+  return read_catalogue(path, {.lenient = options.lenient});
+}
+
+void add_file_options(CLI::App& command, FileOptions& options) {
+  command
+      .add_option("file", options.path,
+                  "TLE, 3LE, gpredict or OMM (JSON, CSV, XML, KVN), gzip too; - is standard input")
+      ->required();
+  command.add_flag(
+      "--lenient", options.lenient,
+      "read lines with a wrong or missing checksum or cut short after the last element, "
+      "with a warning each");
+}
+
 struct StatesOptions {
-  std::string path, at, frame;
+  FileOptions file;
+  std::string at, frame, earth_orientation;
 };
 
 /// A Julian date such as 2458837.5, or an ISO 8601 time.
@@ -36,7 +58,12 @@ Utc parse_instant(const std::string& text) {
         point == std::string::npos ? 0.0 : std::strtod(("0" + text.substr(point)).c_str(), nullptr);
     return part >= 0.5 ? Utc{days + 0.5, part - 0.5} : Utc{days - 0.5, part + 0.5};
   }
-  return parse_utc(text);
+  try {
+    return parse_utc(text);
+  } catch (const ConfigError&) {
+    throw ConfigError(
+        "--at: must be a UTC time such as 2018-01-21T00:30:00Z or a Julian date, got " + text);
+  }
 }
 
 void append(std::string& row, double x) {
@@ -55,11 +82,21 @@ void append(std::string& row, const Vec<F>& position_m, const Vec<F>& velocity_m
 }
 
 void print_states(const StatesOptions& options) {
-  const auto catalogue = read_catalogue(options.path);
+  const Utc utc = parse_instant(options.at);
+  const auto catalogue = read(options.file);
+  if (catalogue.elements.empty())
+    throw ConfigError(catalogue.describe(catalogue.refused.at(0)) + " (no element set is left)");
   for (const auto& problem : catalogue.refused)
     std::fprintf(stderr, "note: %s (left out)\n", catalogue.describe(problem).c_str());
-  const Utc utc = parse_instant(options.at);
-  const Clock clock(utc);
+  for (const auto& problem : catalogue.warnings)
+    std::fprintf(stderr, "note: %s\n", catalogue.describe(problem).c_str());
+  const Clock clock(utc, options.earth_orientation.empty()
+                             ? nullptr
+                             : std::make_shared<const IersTable>(
+                                   IersTable::read_finals2000a(options.earth_orientation)));
+  if (options.frame != "teme")  // which needs no Earth
+    for (const auto& warning : clock.warnings({0}))
+      std::fprintf(stderr, "note: %s\n", warning.c_str());
   const EarthOrientation earth = earth_orientation(clock, {0});
   const Sgp4Batch batch(catalogue.elements);
   const std::size_t n = batch.size();
@@ -94,12 +131,13 @@ void print_states(const StatesOptions& options) {
 struct SynthOptions {
   std::size_t objects = 18470;
   std::uint64_t seed = 1;
-  std::string format = "3le";
+  std::string format;  // empty: 3le as far as its numbers go
 };
 
 void print_synthetic(const SynthOptions& options) {
   constexpr std::size_t most_in_a_tle = 339999;  // Alpha-5 ends there
-  const bool omm = options.format == "omm";
+  const bool omm =
+      options.format.empty() ? options.objects > most_in_a_tle : options.format == "omm";
   if (!omm && options.objects > most_in_a_tle)
     throw ConfigError("--objects: a TLE holds numbers up to 339999; take --format omm, got " +
                       std::to_string(options.objects));
@@ -123,11 +161,12 @@ void add_catalogue_command(CLI::App& app) {
       app.add_subcommand("catalogue", "Element sets: what is in a file, states at a time");
   command->require_subcommand(1);
   auto options = std::make_shared<StatesOptions>();
-  auto path = std::make_shared<std::string>();
+  auto info_options = std::make_shared<FileOptions>();
   auto* info = command->add_subcommand(
       "info", "What a file holds: objects, orbits, epochs, what was refused");
-  info->add_option("file", *path, "TLE, 3LE, gpredict or OMM")->required();
-  info->callback([path] { std::fputs(format(report_of(read_catalogue(*path))).c_str(), stdout); });
+  add_file_options(*info, *info_options);
+  info->callback(
+      [info_options] { std::fputs(format(report_of(read(*info_options))).c_str(), stdout); });
 
   auto synthetic = std::make_shared<SynthOptions>();
   auto* synth = command->add_subcommand(
@@ -136,18 +175,22 @@ void add_catalogue_command(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
   synth->add_option("--seed", synthetic->seed, "of the random draws")->capture_default_str();
-  synth->add_option("--format", synthetic->format, "3le, or omm (CSV)")
-      ->capture_default_str()
+  synth
+      ->add_option(
+          "--format", synthetic->format,
+          "3le, or omm (CSV); by itself omm above 339999 objects, where a TLE's numbers end")
       ->check(CLI::IsMember({"3le", "omm"}));
   synth->callback([synthetic] { print_synthetic(*synthetic); });
 
   auto* states =
       command->add_subcommand("states", "States of all objects at one time, as CSV (km, km/s)");
-  states->add_option("file", options->path, "TLE, 3LE, gpredict or OMM")->required();
+  add_file_options(*states, options->file);
   states->add_option("--at", options->at, "UTC (ISO 8601) or Julian date")->required();
   states->add_option("--frame", options->frame, "teme, gcrs or itrs")
       ->default_val("teme")
       ->check(CLI::IsMember({"teme", "gcrs", "itrs"}));
+  states->add_option("--earth-orientation", options->earth_orientation,
+                     "IERS finals file; without it UT1 is UTC and the pole at rest");
   states->callback([options] { print_states(*options); });
 }
 

@@ -23,7 +23,7 @@ std::string format(const char* pattern, Values... values) {
 }
 
 std::string alpha5(std::uint32_t number) {
-  if (number < 100000) return format("%5u", number);
+  if (number < 100000) return format("%05u", number);
   if (number > 339999)
     throw Error("catalogue number does not fit a TLE, got " + std::to_string(number));
   const char* letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
