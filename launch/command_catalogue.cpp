@@ -85,7 +85,9 @@ void print_states(const StatesOptions& options) {
   const Utc utc = parse_instant(options.at);
   const auto catalogue = read(options.file);
   if (catalogue.elements.empty())
-    throw ConfigError(catalogue.describe(catalogue.refused.at(0)) + " (no element set is left)");
+    throw ConfigError(catalogue.refused.empty()
+                          ? catalogue.source + ": holds no element sets"
+                          : catalogue.describe(catalogue.refused[0]) + " (no element set is left)");
   for (const auto& problem : catalogue.refused)
     std::fprintf(stderr, "note: %s (left out)\n", catalogue.describe(problem).c_str());
   for (const auto& problem : catalogue.warnings)

@@ -93,6 +93,10 @@ def test(binary, directory):
     _, err = dmise("states", directory / "none.tle", "--at", "2458139.75", code=2)
     check("none.tle:1: " in err and err.count("\n") == 1, "a file without a set is refused with its line")
 
+    (directory / "empty.json").write_text("[]")
+    _, err = dmise("states", directory / "empty.json", "--at", "2458139.75", code=2)
+    check("empty.json: holds no element sets" in err, "an empty list is refused")
+
     for arguments, said in ((("states", path, "--at", "tomorrow"), "--at: must be a UTC time"),
                             (("states", path, "--at", "1e9"), "--at: Julian date out of range, got 1e9"),
                             (("states", path), "--at is required"),
