@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "bench/bench_all_sky.h"
 #include "bench/figure.h"
 #include "core/detector/expose.h"
 #include "core/detector/poisson.h"
@@ -138,6 +139,7 @@ void measure_optics(bool json) {
 }  // namespace
 
 int bench_frame(bool json) {
+  measure_all_sky(json);  // first: the memory is the process's own
   measure_poisson(json);
   measure_deposit(json);
   measure_detector(json);

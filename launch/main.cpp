@@ -2,10 +2,12 @@
 #include <cstdio>
 
 #include "core/base/error.h"
+#include "core/base/memory.h"
 #include "core/base/version.h"
 #include "launch/commands.h"
 
 int main(int argc, char** argv) {
+  dmise::return_large_blocks();
   CLI::App app{"Simulates a network of optical sensors that watch near-Earth space.", "dmise"};
   app.set_version_flag("--version", dmise::software_name());
   app.require_subcommand(1);

@@ -1,10 +1,12 @@
 // dmise-sensor-node: one sensor of a scenario as a process of its own: renders, detects, publishes.
 #include "core/base/error.h"
+#include "core/base/memory.h"
 #include "nodes/runtime/node.h"
 #include "nodes/runtime/program.h"
 #include "sensors/pipeline/make_sensor.h"
 
 int main(int argc, char** argv) {
+  dmise::return_large_blocks();
   dmise::CommonFlags flags;
   std::string config, out = "out/node", digest;
   int threads = 1;

@@ -48,14 +48,12 @@ struct FramePipeline::Work {
   Threads& threads;
   std::optional<StarLayer> stars;
   OpticsStage optics;
-  RateImage light;  // kept between frames
+  RateImage light;  // only while a frame is made: products are written beside the counts
   DetectorMemory detector_memory;
 
   Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)
       : settings(std::move(s)), threads(t), optics(settings.sensor, settings.seed, t) {
-    const auto& camera = settings.sensor.camera;
     if (map) stars.emplace(settings.sensor, std::move(map));
-    light = RateImage(camera.optics.columns, camera.optics.rows);
   }
 
   bool has(Effect effect) const { return settings.sensor.effects.has(effect); }
@@ -176,6 +174,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   const auto& sensor = settings.sensor;
   FrameProducts frame;
   const View view(sensor, times, world, settings.seed);
+  light = RateImage(sensor.camera.optics.columns, sensor.camera.optics.rows);
   std::uint32_t stars_drawn = 0;
   fill_sky(view, light, threads, frame.times);
   keep_background(settings.output, light, frame.planes);
@@ -202,9 +201,10 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   expose(
       light, sensor.camera.detector, exposure, sensor.effects, threads, frame.counts, &frame.times,
       {.memory = &detector_memory, .flags = settings.output.saturation ? &frame.flags : nullptr});
+  light = {};
 
   DetectionResult result;
-  {
+  if (settings.detect) {
     Stopwatch timing(frame.detection_s);
     result = detect(frame.counts, as_in_file(frame.header), {}, threads);
   }

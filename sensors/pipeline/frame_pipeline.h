@@ -40,6 +40,7 @@ struct PipelineSettings {
   double faintest_star_mag = 9.5;
   bool star_truth = false;
   OutputConfig output;  // flags and planes that are wanted
+  bool detect = true;
 };
 
 /// The chain of one sensor: states around an exposure -> stars, objects and sky at the focal plane

@@ -1,0 +1,192 @@
+#include "bench/bench_all_sky.h"
+
+#include <malloc.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bench/figure.h"
+#include "core/base/text_file.h"
+#include "core/config/make_clock.h"
+#include "core/config/search_path.h"
+#include "core/image/fits_file.h"
+#include "core/orbit/element_text.h"
+#include "core/orbit/synthetic_catalogue.h"
+#include "nodes/environment/environment_actor.h"
+#include "orbit-node/orbit_actor.h"
+#include "sensors/pipeline/make_sensor.h"
+
+namespace dmise {
+namespace {
+
+constexpr int repeats = 7;
+
+double thread_s() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+double wall_s() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(now).count();
+}
+
+template <class T>
+T median(std::vector<T> values) {
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+/// The real catalogue of December 2019 where there is one, or one like it.
+struct Elements {
+  std::string path, start;
+};
+Elements elements(const std::filesystem::path& directory) {
+  if (const char* data = std::getenv("DMISE_DATA")) {
+    const std::string path = std::string(data) + "/tle/catalog_3le_2019-12-19_18470.txt.gz";
+    if (std::filesystem::exists(path)) return {path, "2019-12-20T00:15:00Z"};
+  }
+  std::ofstream(directory / "objects.tle")
+      << format_3le(synthetic_catalogue({.objects = 18470, .seed = 1}));
+  return {(directory / "objects.tle").string(), "2018-01-20T00:15:00Z"};
+}
+
+std::string scenario_text(const Elements& elements, const std::string& name) {
+  return "simulation: {start: " + elements.start +
+         ", duration_s: 20, tick_s: 5}\n"
+         "objects: [{catalogue: " + elements.path + "}]\n"
+         "stars: {catalogue: kstars, faintest_mag: 9}\n"
+         "sensors:\n  - {name: " + name +
+         ", site: atlanta, camera: omnissa, pointing: zenith, exposure_s: 20, cadence_s: 20, sky: "
+         "dark}\n";
+}
+
+/// What a sensor hears from the others over the exposure. They are gone when it starts.
+World world_of(const Scenario& scenario, Threads& threads) {
+  World world;
+  const Clock clock = make_clock(scenario);
+  OrbitActor orbit(scenario, clock, threads);
+  EnvironmentActor environment(scenario, clock);
+  for (Tick tick = 0; tick <= scenario.last_tick(); ++tick) {
+    const auto add = [&](const Message& message) {
+      if (const auto* roster = std::get_if<ObjectRoster>(message.state.get()))
+        world.add(std::shared_ptr<const ObjectRoster>(message.state, roster));
+      if (const auto* states = std::get_if<ObjectStates>(message.state.get()))
+        world.add(std::shared_ptr<const ObjectStates>(message.state, states));
+      if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
+        world.add(std::shared_ptr<const EnvironmentState>(message.state, state));
+    };
+    for (const auto& message : orbit.step(tick, {})) add(message);
+    for (const auto& message : environment.step(tick, {})) add(message);
+  }
+  return world;
+}
+
+/// Most memory of this process [MB] while `work` runs, by looking every 2 ms.
+template <class Work>
+double peak_pss_mb(const Work& work) {
+  std::atomic<bool> done = false;
+  double most = 0.0;
+  std::thread watch([&] {
+    while (!done) {
+      most = std::max(most, pss_mb());
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  });
+  work();
+  done = true;
+  watch.join();
+  return most;
+}
+
+struct Measured {
+  std::vector<double> cpu_s, wall_s, writing_s;
+  std::vector<EffectTimes> effects;
+};
+
+/// Stages are timed by the wall clock: those of the frame that others on the machine held up least.
+void print_stages(const Measured& m, bool json) {
+  const auto best = std::size_t(std::min_element(m.wall_s.begin(), m.wall_s.end()) -
+                                m.wall_s.begin());
+  const double total_s = m.wall_s[best];
+  double rest_s = total_s;
+  const auto print = [&](const std::string& stage, double seconds) {
+    rest_s -= seconds;
+    print_figure({"all_sky_" + stage + "_ms", 1e3 * seconds, "ms", "whole frame [ms]",
+                  1e3 * total_s},
+                 json);
+  };
+  for (std::size_t i = 0; i < effect_count; ++i)
+    if (const double s = m.effects[best].seconds[i]; s > 0.0)
+      print(std::string(facts(static_cast<Effect>(i)).name), s);
+  print("fits", m.writing_s[best]);
+  print("rest", std::max(0.0, rest_s));
+}
+
+}  // namespace
+
+void measure_all_sky(bool json) {
+  const auto directory =
+      std::filesystem::temp_directory_path() / ("dmise-bench-" + std::to_string(getpid()));
+  std::filesystem::create_directories(directory);
+  if (find_catalogue("stars.dat").empty()) return;  // as on a machine without Debian's catalogues
+  const std::string path = (directory / "all-sky.yaml").string();
+  std::ofstream(path) << scenario_text(elements(directory), "all-sky");
+  {
+    const Scenario scenario = load_scenario(path);
+    Threads one(1);
+    const World world = world_of(scenario, one);
+    FramePipeline pipeline({.sensor = scenario.sensors[0],
+                            .clock = make_clock(scenario),
+                            .seed = 1,
+                            .digest = "bench",
+                            .faintest_star_mag = scenario.faintest_star_mag,
+                            .detect = false},
+                           load_stars(scenario), one);
+    malloc_trim(0);
+    print_figure({"all_sky_resting_mb", pss_mb(), "MB"}, json);  // states, stars, programs
+    const FrameTimes exposure = frame_times(scenario.sensors[0], 1);
+    const std::string fits = (directory / "frame.fits").string();
+    Measured measured;
+    std::uint32_t stars = 0, objects = 0;
+    const auto make = [&] {
+      const double cpu = thread_s(), wall = wall_s();
+      const FrameProducts frame = pipeline.run(exposure, world);
+      const double writing = thread_s();
+      write_frame(fits, frame.counts, frame.header);
+      measured.writing_s.push_back(thread_s() - writing);
+      measured.cpu_s.push_back(thread_s() - cpu);
+      measured.wall_s.push_back(wall_s() - wall);
+      measured.effects.push_back(frame.times);
+      stars = frame.report.stars_rendered;
+      objects = frame.report.objects_rendered;
+    };
+    for (int i = 0; i < repeats; ++i) make();
+    const double s = median(measured.cpu_s);
+    print_figure({"all_sky_s", s, "s", "", 0, 0.25, true}, json);
+    print_figure({"all_sky_wall_s", median(measured.wall_s), "s"}, json);
+    print_stages(measured, json);
+    print_figure({"all_sky_stars", double(stars), "1"}, json);
+    print_figure({"all_sky_objects", double(objects), "1"}, json);
+    print_figure({"all_sky_peak_mb", peak_pss_mb([&] {
+                    make();
+                    make();
+                  }),
+                  "MB", "", 0, 80, true},
+                 json);
+  }
+  std::filesystem::remove_all(directory);
+}
+
+}  // namespace dmise

@@ -1,0 +1,9 @@
+#include "core/base/memory.h"
+
+#include <malloc.h>
+
+namespace dmise {
+
+void return_large_blocks() { mallopt(M_MMAP_THRESHOLD, 1 << 20); }
+
+}  // namespace dmise
