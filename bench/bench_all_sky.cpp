@@ -65,9 +65,12 @@ Elements elements(const std::filesystem::path& directory) {
 std::string scenario_text(const Elements& elements, const std::string& name) {
   return "simulation: {start: " + elements.start +
          ", duration_s: 20, tick_s: 5}\n"
-         "objects: [{catalogue: " + elements.path + "}]\n"
+         "objects: [{catalogue: " +
+         elements.path +
+         "}]\n"
          "stars: {catalogue: kstars, faintest_mag: 9}\n"
-         "sensors:\n  - {name: " + name +
+         "sensors:\n  - {name: " +
+         name +
          ", site: atlanta, camera: omnissa, pointing: zenith, exposure_s: 20, cadence_s: 20, sky: "
          "dark}\n";
 }
@@ -117,15 +120,14 @@ struct Measured {
 
 /// Stages are timed by the wall clock: those of the frame that others on the machine held up least.
 void print_stages(const Measured& m, bool json) {
-  const auto best = std::size_t(std::min_element(m.wall_s.begin(), m.wall_s.end()) -
-                                m.wall_s.begin());
+  const auto best =
+      std::size_t(std::min_element(m.wall_s.begin(), m.wall_s.end()) - m.wall_s.begin());
   const double total_s = m.wall_s[best];
   double rest_s = total_s;
   const auto print = [&](const std::string& stage, double seconds) {
     rest_s -= seconds;
-    print_figure({"all_sky_" + stage + "_ms", 1e3 * seconds, "ms", "whole frame [ms]",
-                  1e3 * total_s},
-                 json);
+    print_figure(
+        {"all_sky_" + stage + "_ms", 1e3 * seconds, "ms", "whole frame [ms]", 1e3 * total_s}, json);
   };
   for (std::size_t i = 0; i < effect_count; ++i)
     if (const double s = m.effects[best].seconds[i]; s > 0.0)

@@ -22,7 +22,8 @@ constexpr int still_samples = 128, turbulent_samples = 48;
 
 /// The kernel brought to nothing over its outer half: cut off at once, what the deposits'
 /// Gaussian was divided out of would ring along the edge. Sums to 1.
-PsfKernel tapered(const std::vector<double>& values, int half) {
+template <class T>
+PsfKernel tapered(const std::vector<T>& values, int half) {
   PsfKernel kernel{half, std::vector<float>(values.size())};
   const double inner = 0.5 * half;
   std::vector<double> weighed(values.size());
@@ -38,6 +39,16 @@ PsfKernel tapered(const std::vector<double>& values, int half) {
   for (std::size_t i = 0; i < weighed.size(); ++i) kernel.values[i] = float(weighed[i] / sum);
   return kernel;
 }
+PsfKernel tapered(const PsfKernel& kernel) { return tapered(kernel.values, kernel.half); }
+
+constexpr std::size_t most_places = 256;  // whose centring is remembered
+
+/// Noll's terms that are odd about the centre.
+bool has_odd_order(int noll) {
+  int n = 0;
+  for (int first = 1; noll >= first + n + 1;) first += ++n;
+  return n % 2 == 1;
+}
 
 }  // namespace
 
@@ -49,8 +60,8 @@ PsfModel::PsfModel(const Optics& optics, std::vector<WavelengthShare> band, cons
       cell_rad_(optics.pixel_angle_rad() / plan.oversampling) {
   if (band_.empty()) throw Error("psf: no wavelength");
   if (plan.exposure != ExposureKind::none) seeing_ = seeing;
-  if (optics.spread.model == Model::gaussian) return;
   const bool screens = has_screens(plan);
+  if (!screens && is_round({}) && !optics.spread.field.any()) return;  // no pupil is sampled
   for (const WavelengthShare& w : band_)
     grids_.push_back(pupil_grid(
         pupil({}, w.wavelength_m), w.wavelength_m, cell_rad_, plan.half_cells,
@@ -84,9 +95,37 @@ Pupil PsfModel::pupil(const FieldPlace& place, double wavelength_m) const {
   add(6, s.field.astigmatism_m * r * r * std::cos(2 * a));
   add(5, s.field.astigmatism_m * r * r * std::sin(2 * a));
   add(4, s.field.curvature_m * r * r);
-  for (const ZernikeTerm& t : centring_tilt(p))
-    if (t.rms_rad != 0.0) p.wavefront.push_back(t);
   return p;
+}
+
+// The tilts that put the centroid of the kernel without air, as far as it reaches, on the axis:
+// first by the wavefront's mean slope, then by what is seen to be left.
+std::array<ZernikeTerm, 2> PsfModel::centring(const FieldPlace& place,
+                                              std::size_t wavelength) const {
+  const double wavelength_m = band_[wavelength].wavelength_m;
+  const Pupil own = pupil(place, wavelength_m);
+  std::array<ZernikeTerm, 2> tilt = centring_tilt(own);
+  const bool symmetric = std::none_of(own.wavefront.begin(), own.wavefront.end(),
+                                      [](const ZernikeTerm& t) { return has_odd_order(t.noll); });
+  if (symmetric && own.spiders % 2 == 0) return tilt;
+  // A tilt of a [rad rms] displaces by 2 a lambda / (pi D).
+  const double rad_per_cell = 0.5 * pi * own.aperture_m / wavelength_m * cell_rad_;
+  for (int i = 0; i < 3; ++i) {
+    Pupil p = own;
+    p.wavefront.insert(p.wavefront.end(), tilt.begin(), tilt.end());
+    const PsfKernel k = tapered(pupil_kernel(
+        p, grids_[wavelength], plan_.half_cells, {},
+        [&](double nu_x, double nu_y) { return extra_otf(nu_x, nu_y, wavelength_m); }));
+    double x = 0.0, y = 0.0;
+    for (int dy = -k.half; dy <= k.half; ++dy)
+      for (int dx = -k.half; dx <= k.half; ++dx) {
+        x += double(k.at(dx, dy)) * dx;
+        y += double(k.at(dx, dy)) * dy;
+      }
+    tilt[0].rms_rad -= rad_per_cell * x;
+    tilt[1].rms_rad -= rad_per_cell * y;
+  }
+  return tilt;
 }
 
 bool PsfModel::is_round(const FieldPlace& place) const {
@@ -129,13 +168,21 @@ PsfKernel PsfModel::round_kernel(double wavelength_m) {
   return signed_kernel_of(otf, 0.5 / cell_rad_, cell_rad_, plan_.half_cells, &lost_);
 }
 
-PsfKernel PsfModel::pupil_kernel_at(const FieldPlace& place, double wavelength_m,
-                                    const PhaseScreen* screen) const {
-  std::size_t i = 0;
-  while (band_[i].wavelength_m != wavelength_m) ++i;
+PsfKernel PsfModel::pupil_kernel_at(const FieldPlace& place, std::size_t wavelength,
+                                    const PhaseScreen* screen) {
+  const double wavelength_m = band_[wavelength].wavelength_m;
+  const auto known = std::find_if(centred_.begin(), centred_.end(), [&](const Centred& c) {
+    return c.place == place && c.wavelength == wavelength;
+  });
+  const std::array<ZernikeTerm, 2> tilt =
+      known != centred_.end() ? known->tilt : centring(place, wavelength);
+  if (known == centred_.end() && centred_.size() < most_places)
+    centred_.push_back({place, wavelength, tilt});
+  Pupil p = pupil(place, wavelength_m);
+  p.wavefront.insert(p.wavefront.end(), tilt.begin(), tilt.end());
   const ScreenAhead ahead{screen, grids_[0].step_m, band_[0].wavelength_m / wavelength_m};
   return pupil_kernel(
-      pupil(place, wavelength_m), grids_[i], plan_.half_cells, ahead,
+      p, grids_[wavelength], plan_.half_cells, ahead,
       [&](double nu_x, double nu_y) { return extra_otf(nu_x, nu_y, wavelength_m); });
 }
 
@@ -148,16 +195,16 @@ PsfKernel PsfModel::kernel(const FieldPlace& place, double start_s, double expos
   if (is_round(place)) {
     for (const WavelengthShare& w : band_) add(round_kernel(w.wavelength_m), w.share);
   } else if (!flow_) {
-    for (const WavelengthShare& w : band_)
-      add(pupil_kernel_at(place, w.wavelength_m, nullptr), w.share);
+    for (std::size_t w = 0; w < band_.size(); ++w)
+      add(pupil_kernel_at(place, w, nullptr), band_[w].share);
   } else {
     const double r0_samples = seeing_->r0_at_m(band_[0].wavelength_m) / grids_[0].step_m;
     for (int i = 0; i < plan_.screens; ++i) {
       const double t = start_s + exposure_s * (i + 0.5) / plan_.screens;
       const PhaseScreen screen = flow_->at(seeing_->wind_m_per_s * t / grids_[0].step_m,
                                            seeing_->wind_direction_deg * deg, r0_samples);
-      for (const WavelengthShare& w : band_)
-        add(pupil_kernel_at(place, w.wavelength_m, &screen), w.share / plan_.screens);
+      for (std::size_t w = 0; w < band_.size(); ++w)
+        add(pupil_kernel_at(place, w, &screen), band_[w].share / plan_.screens);
     }
   }
   return tapered(sum, plan_.half_cells);

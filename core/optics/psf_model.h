@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -19,13 +20,16 @@ struct WavelengthShare {
 struct FieldPlace {
   double radius = 0.0;
   double angle_rad = 0.0;
+
+  bool operator==(const FieldPlace&) const = default;
 };
 
 /// Makes the kernels that a plan asks for, on the cells of its oversampled grid:
 ///   diffraction (obscuration, spiders, wavefront) x turbulence x jitter, over the wavelengths,
 /// divided by the Gaussian of `grid_sigma_cells` that deposits on the grid have, and not integrated
 /// over cells, which deposits are. With bilinear resampling times pixel / cell. A kernel fades out
-/// over the outer half of its radius.
+/// over the outer half of its radius. The pupil's own aberrations leave the light's centroid where
+/// a point is: what they displace is part of a camera's plate solution.
 class PsfModel {
  public:
   /// `turbulence` names the random numbers of this sensor's air. The first wavelength share is the
@@ -48,9 +52,10 @@ class PsfModel {
   double air_otf(double nu_per_rad, double wavelength_m) const;
   double extra_otf(double nu_x, double nu_y, double wavelength_m) const;
   Pupil pupil(const FieldPlace& place, double wavelength_m) const;
+  std::array<ZernikeTerm, 2> centring(const FieldPlace& place, std::size_t wavelength) const;
   PsfKernel round_kernel(double wavelength_m);
-  PsfKernel pupil_kernel_at(const FieldPlace& place, double wavelength_m,
-                            const PhaseScreen* screen) const;
+  PsfKernel pupil_kernel_at(const FieldPlace& place, std::size_t wavelength,
+                            const PhaseScreen* screen);
 
   Optics optics_;
   std::vector<WavelengthShare> band_;
@@ -58,6 +63,12 @@ class PsfModel {
   std::optional<SensorSeeing> seeing_;
   double cell_rad_;
   std::vector<PupilGrid> grids_;  // one a wavelength
+  struct Centred {
+    FieldPlace place;
+    std::size_t wavelength;
+    std::array<ZernikeTerm, 2> tilt;
+  };
+  std::vector<Centred> centred_;  // of the places asked for
   std::optional<FrozenFlow> flow_;
   double lost_ = 0.0;
 };

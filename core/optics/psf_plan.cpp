@@ -113,17 +113,23 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
   if (plan.oversampling < least)
     refuse("oversampling", "must be at least " + std::to_string(least) +
                                " to sample the blur, got " + std::to_string(plan.oversampling));
-  const double core_px = plan.fwhm_px;
-  const double support_px = s.support_px > 0 ? s.support_px
-                            : plain          ? 5.0 * core_px
-                                             : std::max({16.0 * m.airy_px, 5.0 * core_px, 8.0});
-  plan.half_cells = std::clamp(int(std::ceil(support_px * plan.oversampling)), 8, 512);
-  const double cells = double(plan.oversampling) * plan.oversampling *
-                       (o.columns + 2 * support_px) * (o.rows + 2 * support_px);
-  const bool fits = cells <= largest_grid_cells;
+  const double cells = double(plan.oversampling) * plan.oversampling * o.columns * o.rows;
   plan.method = s.method != Method::automatic ? s.method
-                : fits                        ? Method::transform
+                : cells <= largest_grid_cells ? Method::transform
                                               : Method::direct;
+  // Wide kernels cost a transform little and sums much.
+  const double airy_widths = plan.method == Method::transform ? 64.0 : 16.0;
+  const double widest_px = std::max({8.0, 1.0 * o.columns, 1.0 * o.rows});
+  const double support_px =
+      s.support_px > 0 ? s.support_px
+      : plain          ? 5.0 * plan.fwhm_px
+                       : std::max(std::min(airy_widths * m.airy_px, widest_px), 5.0 * plan.fwhm_px);
+  plan.half_cells = std::clamp(int(std::ceil(support_px * plan.oversampling)), 8, 512);
+  // Beyond r: 0.2 (lambda / D) / r of an Airy pattern, more by the edge of an obscuration; the
+  // kernel fades out around three quarters of its radius.
+  if (!plain)
+    plan.beyond = std::min(1.0, 0.2 * m.airy_px / (1.0 - o.obscuration) /
+                                    (0.75 * plan.half_cells / plan.oversampling));
   if (s.grid_columns * s.grid_rows > 1 && plan.method == Method::direct)
     refuse("psf_grid", "kernels over the field go with method: transform");
   plan.error = 1e-4;

@@ -25,6 +25,7 @@ struct PsfPlan {
   double fwhm_px = 0.0;      // of diffraction, seeing, jitter and defocus in quadrature
   double cutoff_per_px = 0;  // frequency above which nothing is left, or less than 1e-4
   double error = 0.0;        // bound or measure of what the method leaves out, share of the peak
+  double beyond = 0.0;       // light beyond the kernel's end, which goes back to the rest
   std::string why;           // one line for people
 };
 

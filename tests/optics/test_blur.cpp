@@ -39,6 +39,7 @@ Optics telescope(int columns, int rows) {
            .columns = columns,
            .rows = rows};
   o.spread.model = PointSpread::Model::diffraction;
+  o.spread.support_px = 20;
   return o;
 }
 
