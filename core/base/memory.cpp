@@ -4,6 +4,6 @@
 
 namespace dmise {
 
-void return_large_blocks() { mallopt(M_MMAP_THRESHOLD, 1 << 20); }
+void return_large_blocks() { mallopt(M_MMAP_THRESHOLD, 1 << 18); }
 
 }  // namespace dmise
