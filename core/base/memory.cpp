@@ -1,9 +1,20 @@
 #include "core/base/memory.h"
 
 #include <malloc.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdint>
 
 namespace dmise {
 
 void return_large_blocks() { mallopt(M_MMAP_THRESHOLD, 1 << 18); }
+
+void release_pages(void* begin, std::size_t bytes) {
+  static const auto page = std::uintptr_t(sysconf(_SC_PAGESIZE));
+  const auto at = reinterpret_cast<std::uintptr_t>(begin);
+  const std::uintptr_t first = (at + page - 1) / page * page, last = (at + bytes) / page * page;
+  if (last > first) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
+}
 
 }  // namespace dmise

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 
 namespace dmise {
 
@@ -6,5 +7,9 @@ namespace dmise {
 /// back at once: the C library would otherwise keep it once the first was freed. To be called
 /// before threads start.
 void return_large_blocks();
+
+/// Gives the memory of a range back while it stays allocated: whole pages of it are zero
+/// afterwards, what is left at its ends as it was.
+void release_pages(void* begin, std::size_t bytes);
 
 }  // namespace dmise

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/base/error.h"
+#include "core/base/memory.h"
 #include "core/detector/blooming.h"
 #include "core/detector/chain.h"
 #include "core/detector/effect_watch.h"
@@ -71,9 +72,16 @@ SaturatedPixels expose(const RateImage& light, const Detector& figures, const Ex
     return chain.read(begin, e, counts.pixels.data() + begin, flags_of(begin, e.size()), watch);
   };
 
+  const auto collect = [&](std::size_t begin, std::span<float> e, EffectWatch& watch) {
+    const std::size_t full = chain.collect(begin, e, flags_of(begin, e.size()), watch);
+    if (options.spent_light)
+      release_pages(options.spent_light->pixels.data() + begin, e.size() * sizeof(float));
+    return full;
+  };
+
   if (!chain.needs_neighbours()) {
     by_pieces([&](std::size_t begin, std::span<float> e, EffectWatch& watch) {
-      const std::size_t full = chain.collect(begin, e, flags_of(begin, e.size()), watch);
+      const std::size_t full = collect(begin, e, watch);
       return SaturatedPixels{full, read(begin, e, watch)};
     });
   } else {
@@ -83,7 +91,7 @@ SaturatedPixels expose(const RateImage& light, const Detector& figures, const Ex
     collected.pixels.resize(light.pixels.size());
     by_pieces([&](std::size_t begin, std::span<float> e, EffectWatch& watch) {
       const auto part = std::span(collected.pixels).subspan(begin, e.size());
-      return SaturatedPixels{chain.collect(begin, part, flags_of(begin, e.size()), watch), 0};
+      return SaturatedPixels{collect(begin, part, watch), 0};
     });
     if (detector.blooming) {
       EffectWatch watch(all);

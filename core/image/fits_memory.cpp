@@ -1,9 +1,11 @@
 #include "core/image/fits_memory.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 
 #include "core/base/error.h"
+#include "core/base/memory.h"
 
 namespace dmise {
 
@@ -62,7 +64,17 @@ std::string FitsWriter::bytes() {
   fits_close_file(fits_.file, &fits_.status);
   fits_.file = nullptr;
   check();
-  return std::string(static_cast<const char*>(data_), std::size_t(end));
+  // Moved piece by piece: a frame is not held twice.
+  constexpr std::size_t piece = std::size_t(1) << 20;
+  std::string bytes;
+  bytes.reserve(std::size_t(end));
+  auto* from = static_cast<char*>(data_);
+  for (std::size_t done = 0; done < std::size_t(end); done += piece) {
+    const std::size_t count = std::min(piece, std::size_t(end) - done);
+    bytes.append(from + done, count);
+    release_pages(from + done, count);
+  }
+  return bytes;
 }
 
 }  // namespace dmise

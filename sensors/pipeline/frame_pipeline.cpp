@@ -200,7 +200,9 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   make_planes(settings.output, view, exposure, light, threads, frame.planes);
   expose(
       light, sensor.camera.detector, exposure, sensor.effects, threads, frame.counts, &frame.times,
-      {.memory = &detector_memory, .flags = settings.output.saturation ? &frame.flags : nullptr});
+      {.memory = &detector_memory,
+       .flags = settings.output.saturation ? &frame.flags : nullptr,
+       .spent_light = &light});
   light = {};
 
   DetectionResult result;
