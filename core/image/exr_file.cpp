@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -99,6 +100,10 @@ std::string zipped(const char* raw, std::size_t size) {
 std::string encode_exr(const ExrImage& image) {
   if (image.columns < 1 || image.rows < 1 || !image.pixels)
     throw Error("EXR can't be written: no pixels");
+  const std::size_t count = std::size_t(image.columns) * std::size_t(image.rows);
+  for (std::size_t i = 0; i < count; ++i)
+    if (!std::isfinite(image.pixels[i]))
+      throw Error("EXR can't be written: not a finite number at pixel " + std::to_string(i));
   std::string bytes = header_of(image);
   const int blocks = (image.rows + rows_in_block - 1) / rows_in_block;
   const std::size_t table = bytes.size();

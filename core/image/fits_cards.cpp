@@ -42,7 +42,7 @@ class CardWriter {
   void integer(const std::string& key, const Integer& value, const std::string& comment) {
     add(key, std::to_string(value), comment);
   }
-  void flag(const std::string& key, bool& value, const char* comment) {
+  void flag(const std::string& key, const bool& value, const std::string& comment) {
     add(key, value ? "T" : "F", comment);
   }
   void text(const std::string& key, const std::string& value, const std::string& comment) {
@@ -341,6 +341,12 @@ std::string text_card(const std::string& key, const std::string& value,
                       const std::string& comment) {
   CardWriter writer;
   writer.text(key, value, comment);
+  return writer.cards.front();
+}
+
+std::string flag_card(const std::string& key, bool value, const std::string& comment) {
+  CardWriter writer;
+  writer.flag(key, value, comment);
   return writer.cards.front();
 }
 

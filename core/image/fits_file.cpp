@@ -10,6 +10,7 @@
 #include "core/image/fits_cards.h"
 #include "core/image/fits_memory.h"
 #include "core/image/rice.h"
+#include "core/image/tiled_image.h"
 
 namespace dmise {
 namespace {
@@ -127,18 +128,19 @@ std::vector<std::string> flag_cards(const FrameHeader& header) {
 std::string encode_frame(const CountImage& counts, const FrameHeader& header,
                          FitsCompression compression, const FlagImage* flags) {
   const auto cards = fits_cards(header);
-  const std::size_t whole =
-      2 * (cards.size() + 64) * 80 + 3 * counts.pixels.size() + 6 * fits_block;
-  // Rice adds a table to a header and may leave noise larger than it was, but never twice.
-  FitsWriter fits(compression == FitsCompression::none ? whole : 2 * whole);
-  if (compression == FitsCompression::rice) fits.compress_by_rice();
+  if (flags && (flags->columns != counts.columns || flags->rows != counts.rows))
+    throw Error("FITS can't be written: flags of another shape than the counts");
+  if (compression == FitsCompression::rice) {
+    std::string file = empty_primary();
+    append_rice_image(file, counts.pixels, counts.columns, cards);
+    if (flags) append_rice_image(file, flags->pixels, flags->columns, flag_cards(header));
+    return file;
+  }
+  FitsWriter fits(2 * (cards.size() + 64) * 80 + 3 * counts.pixels.size() + 6 * fits_block);
   fits.image(USHORT_IMG, counts.columns, counts.rows, cards, TUSHORT, counts.pixels.data());
-  if (flags) {
-    if (flags->columns != counts.columns || flags->rows != counts.rows)
-      throw Error("FITS can't be written: flags of another shape than the counts");
+  if (flags)
     fits.image(BYTE_IMG, flags->columns, flags->rows, flag_cards(header), TBYTE,
                flags->pixels.data());
-  }
   return fits.bytes();
 }
 

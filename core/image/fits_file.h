@@ -13,6 +13,7 @@ struct Frame {
   FrameHeader header;
 };
 
+/// How pixels are stored: as they are, or by Rice's code without loss.
 enum class FitsCompression { none, rice };
 
 /// A FITS file in memory: 16-bit unsigned (BZERO 32768), row 0 first; with Rice compression a tiled

@@ -8,7 +8,6 @@
 #include "core/base/memory.h"
 
 namespace dmise {
-
 Fits::~Fits() {
   int ignored = 0;
   if (file) fits_close_file(file, &ignored);
@@ -21,8 +20,8 @@ std::string Fits::reason() const {
   return text;
 }
 
-// CFITSIO can't seek beyond what it takes for the file's end, which is the memory's: so there is
-// room for the whole file, zeros, from the start, and where the file ends is asked afterwards.
+// CFITSIO takes the memory's end for the file's and can't seek beyond it: so there is room for the
+// whole file, zeros, from the start, and where the file ends is asked afterwards.
 FitsWriter::FitsWriter(std::size_t most_bytes)
     : data_(std::calloc(1, most_bytes)), size_(most_bytes) {
   if (!data_) throw Error("FITS can't be written: out of memory");
@@ -39,10 +38,6 @@ FitsWriter::~FitsWriter() {
 
 void FitsWriter::check() {
   if (fits_.status != 0) throw Error("FITS can't be written: " + fits_.reason());
-}
-
-void FitsWriter::compress_by_rice() {
-  fits_set_compression_type(fits_.file, RICE_1, &fits_.status);
 }
 
 void FitsWriter::image(int image_type, int columns, int rows, std::span<const std::string> cards,

@@ -28,7 +28,6 @@ class FitsWriter {
   FitsWriter& operator=(const FitsWriter&) = delete;
   ~FitsWriter();
 
-  void compress_by_rice();
   /// A new image of CFITSIO's type `image_type` with pixels of `pixel_type`, first row first.
   void image(int image_type, int columns, int rows, std::span<const std::string> cards,
              int pixel_type, const void* pixels);

@@ -12,26 +12,18 @@
 #include "core/detection/wcs.h"
 #include "core/image/fits_cards.h"
 #include "tests/image/sample_frame.h"
+#include "tests/support/command.h"
 #include "tests/support/data.h"
 
 namespace dmise {
 namespace {
 
+using test::command_output;
 using test::sample_counts;
 using test::sample_header;
 using testing::HasSubstr;
 
 std::string scratch(const std::string& name) { return testing::TempDir() + "/fits-" + name; }
-
-/// Exit status and output of a command.
-std::pair<int, std::string> run(const std::string& command) {
-  std::string output;
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  if (!pipe) return {-1, ""};
-  char buffer[4096];
-  while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) output.append(buffer, n);
-  return {pclose(pipe), output};
-}
 
 std::string error_of(std::string_view bytes) {
   try {
@@ -107,7 +99,7 @@ TEST(FitsFile, FitsverifyFindsNothing) {
   for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
     const std::string path = scratch("verify.fits");
     write_frame(path, sample_counts(), sample_header(), compression);
-    const auto [status, output] = run("fitsverify " + path);
+    const auto [status, output] = command_output("fitsverify " + path);
     EXPECT_EQ(status, 0) << output;
     EXPECT_THAT(output, HasSubstr("0 warning(s) and 0 error(s)"));
   }
@@ -120,7 +112,7 @@ TEST(FitsFile, AstropyReadsHeaderAndPixels) {
     DMISE_SKIP() << "needs python3-astropy";
   const std::string path = scratch("astropy.fits");
   write_frame(path, sample_counts(), sample_header());
-  const auto [status, output] = run(
+  const auto [status, output] = command_output(
       python + " -W error " DMISE_SOURCE_DIR "/tests/reference/read_frame_with_astropy.py " + path);
   EXPECT_EQ(status, 0) << output;
   EXPECT_EQ(output,
@@ -149,7 +141,7 @@ TEST(FitsFile, AstropysWcsIsOursToAThousandthOfAPixel) {
       lines += line;
     }
     write_file_whole(list, lines);
-    const auto [status, output] = run(
+    const auto [status, output] = command_output(
         python + " " DMISE_SOURCE_DIR "/tests/reference/wcs_with_astropy.py " + path + " " + list);
     EXPECT_EQ(status, 0) << output;
     EXPECT_LT(std::stod(output), 0.001) << dec_rad;

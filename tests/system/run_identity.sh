@@ -3,7 +3,7 @@
 #
 #   run_identity.sh DMISE SCENARIO DURATION_S
 #
-# Runs the scenario, cut to DURATION_S of simulated time, and compares every FITS file,
+# Runs the scenario, cut to DURATION_S of simulated time, and compares every FITS and EXR file,
 # detections.jsonl, truth.jsonl and frames.jsonl with cmp. What is published is also what
 # `dmise detect` finds in the FITS file alone.
 set -euo pipefail
@@ -24,7 +24,7 @@ produce() {  # NAME COMMAND..
     fail "$name: $(tail -n 2 "$work/$name.log")"
 }
 
-products() { (cd "$1" && find . -name 'frame-*.fits' -o -name '*.jsonl' ! -name cost.jsonl | sort); }
+products() { (cd "$1" && find . -name 'frame-*.fits' -o -name '*.exr' -o -name '*.jsonl' ! -name cost.jsonl | sort); }
 
 produce run-1-thread run --threads 1
 produce run-2-threads run --threads 2
@@ -32,7 +32,7 @@ produce launch launch
 produce launch-again launch
 
 reference=$work/run-1-thread
-frames=$(products "$reference" | grep -c 'fits$') || fail "no frame was made"
+frames=$(products "$reference" | grep -cE 'frame-[0-9]+.fits$') || fail "no frame was made"
 for other in run-2-threads launch launch-again; do
   diff <(products "$reference") <(products "$work/$other") || fail "$other: other files than one process made"
   while read -r file; do

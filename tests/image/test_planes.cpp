@@ -1,0 +1,206 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <numeric>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/image/exr_file.h"
+#include "core/image/fits_cards.h"
+#include "core/image/fits_file.h"
+#include "core/image/plane_file.h"
+#include "tests/image/sample_frame.h"
+#include "tests/support/command.h"
+#include "tests/support/data.h"
+
+namespace dmise {
+namespace {
+
+using test::command_output;
+using test::sample_counts;
+using test::sample_header;
+using testing::HasSubstr;
+
+std::string scratch(const std::string& name) { return testing::TempDir() + "/planes-" + name; }
+
+FlagImage sample_flags(int columns = 200, int rows = 150) {
+  FlagImage flags(columns, rows);
+  for (std::size_t i = 0; i < flags.pixels.size(); i += 37) flags.pixels[i] = std::uint8_t(i % 128);
+  return flags;
+}
+
+RateImage sample_plane(int columns = 200, int rows = 150) {
+  RateImage image(columns, rows);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = 1000.0f + float(i % 977) / 7.0f;
+  return image;
+}
+
+Plane as_plane(const RateImage& image) {
+  return {"SOURCES", "electron/s", "expected", image.pixels.data(), image.columns, image.rows};
+}
+
+double sum_of(const auto& pixels) { return std::accumulate(pixels.begin(), pixels.end(), 0.0); }
+
+std::string number(double v) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", v);
+  return text;
+}
+
+TEST(FlagsInFits, DoNotChangeWhatADetectorReads) {
+  const auto flags = sample_flags();
+  for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
+    const auto header = as_in_file(sample_header());
+    const std::string bytes = encode_frame(sample_counts(), header, compression, &flags);
+    const Frame frame = decode_frame(bytes, "frame.fits");
+    EXPECT_EQ(frame.counts.pixels, sample_counts().pixels);
+    EXPECT_EQ(frame.header, header);
+    EXPECT_EQ(bytes, encode_frame(sample_counts(), header, compression, &flags));
+  }
+  const FlagImage other(3, 3);
+  EXPECT_THROW(encode_frame(sample_counts(), sample_header(), FitsCompression::none, &other),
+               Error);
+}
+
+// Reference: fitsverify 4.20 (HEASARC).
+TEST(Planes, FitsverifyFindsNothing) {
+  if (std::system("command -v fitsverify > /dev/null") != 0) DMISE_SKIP() << "needs fitsverify";
+  const auto flags = sample_flags();
+  const std::string frame = scratch("frame.fits"), plane = scratch("plane.fits");
+  for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
+    write_frame(frame, sample_counts(), sample_header(), compression, &flags);
+    write_plane(plane, as_plane(sample_plane()), sample_header());
+    for (const auto& path : {frame, plane}) {
+      const auto [status, output] = command_output("fitsverify " + path);
+      EXPECT_EQ(status, 0) << output;
+      EXPECT_THAT(output, HasSubstr("0 warning(s) and 0 error(s)"));
+    }
+  }
+}
+
+// Reference: astropy 5.2 through its own decoder of Rice's code.
+TEST(Planes, AstropyReadsCompressedCountsFlagsAndPlanes) {
+  const std::string python = "/usr/bin/python3";
+  if (std::system((python + " -c 'import astropy.wcs' 2> /dev/null").c_str()) != 0)
+    DMISE_SKIP() << "needs python3-astropy";
+  auto counts = sample_counts();
+  auto flags = sample_flags();
+  std::uint32_t state = 1;  // half of the frame is nothing that can be compressed
+  for (std::size_t i = counts.pixels.size() / 2; i + 1 < counts.pixels.size(); ++i) {
+    state = state * 1664525u + 1013904223u;
+    counts.pixels[i] = std::uint16_t(state >> 16);
+    flags.pixels[i] = std::uint8_t(state >> 24);
+  }
+  const auto plane = sample_plane();
+  write_frame(scratch("rice.fits"), counts, sample_header(), FitsCompression::rice, &flags);
+  write_plane(scratch("sources.fits"), as_plane(plane), sample_header());
+  const auto [status, output] =
+      command_output(python + " " DMISE_SOURCE_DIR "/tests/reference/read_planes_with_astropy.py " +
+                     scratch("rice.fits") + " " + scratch("sources.fits"));
+  EXPECT_EQ(status, 0) << output;
+  EXPECT_EQ(output, "counts 150 200 uint16 sum " + number(sum_of(counts.pixels)) +
+                        " by RICE_1\nflags 150 200 uint8 sum " + number(sum_of(flags.pixels)) +
+                        " full well / cosmic ray\nprnu 0.01 blooming True bits 14\n"
+                        "plane SOURCES 150 200 float32 sum " +
+                        number(sum_of(plane.pixels)) + " electron / s RA---TAN-SIP\n");
+}
+
+// Reference: the OpenEXR library's own Python module. Odd sizes; a block that can't be compressed.
+TEST(Exr, OpenExrReadsEveryPixel) {
+  const std::string python = test::python_with("OpenEXR");
+  if (python.empty()) DMISE_SKIP() << "needs OpenEXR from PyPI: ./dmise setup --tests";
+  for (const auto& [columns, rows] : {std::pair{1, 1}, {3, 17}, {701, 503}, {64, 16}}) {
+    RateImage image(columns, rows);
+    std::uint32_t state = 1;
+    for (float& v : image.pixels) {
+      state = state * 1664525u + 1013904223u;
+      v = columns == 64 ? float(state) * 1e-3f : 300.0f + float(state >> 28);
+    }
+    image.pixels.front() = 1e12f;
+    write_exr(scratch("map.exr"), {.pixels = image.pixels.data(),
+                                   .columns = columns,
+                                   .rows = rows,
+                                   .attributes = {{"unit", "photon"}, {"frame", 7.0}}});
+    const auto [status, output] = command_output(
+        python + " " DMISE_SOURCE_DIR "/tests/reference/read_exr.py " + scratch("map.exr"));
+    EXPECT_EQ(status, 0) << output;
+    char corners[160];
+    std::snprintf(corners, sizeof corners,
+                  "channel Y shape %d %d float32 corners %.9g %.9g %.9g %.9g\n", rows, columns,
+                  image.at(0, 0), image.at(columns - 1, 0), image.at(0, rows - 1),
+                  image.at(columns - 1, rows - 1));
+    EXPECT_EQ(output, corners + ("sum " + number(sum_of(image.pixels))) +
+                          " unit photon frame 7 Compression.ZIP_COMPRESSION\n");
+  }
+}
+
+TEST(Exr, EqualImagesAreEqualBytesAndSmoothOnesAreSmaller) {
+  const RateImage image = sample_plane();
+  const ExrImage exr{.pixels = image.pixels.data(), .columns = 200, .rows = 150};
+  EXPECT_EQ(encode_exr(exr), encode_exr(exr));
+  EXPECT_LT(encode_exr(exr).size(), 200 * 150 * 4 * 0.7);
+}
+
+TEST(Exr, RefusesWhatNoFileHolds) {
+  const RateImage image = sample_plane();
+  EXPECT_THROW(encode_exr({.columns = 2, .rows = 2}), Error);
+  EXPECT_THROW(encode_exr({.pixels = image.pixels.data(), .columns = 0, .rows = 2}), Error);
+  EXPECT_THROW(encode_exr({.pixels = image.pixels.data(),
+                           .columns = 2,
+                           .rows = 2,
+                           .attributes = {{std::string(32, 'x'), 1.0}}}),
+               Error);
+}
+
+TEST(Exr, NoNanLeaves) {
+  RateImage image = sample_plane();
+  image.at(0, 1) = std::numeric_limits<float>::infinity();
+  EXPECT_THROW(encode_exr({.pixels = image.pixels.data(), .columns = 200, .rows = 150}), Error);
+}
+
+TEST(Planes, NoNanLeaves) {
+  RateImage image = sample_plane();
+  image.at(3, 0) = std::numeric_limits<float>::quiet_NaN();
+  const std::string path = scratch("nan.fits");
+  try {
+    write_plane(path, as_plane(image), sample_header());
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.what(), path + ": FITS can't be written: SOURCES: not a finite number at pixel 3");
+  }
+  EXPECT_FALSE(test::exists(path));
+}
+
+// A device that is always full stands for a full disk.
+TEST(Planes, FullDiskLeavesNoHalfFileAndIsNamed) {
+  const RateImage image = sample_plane();
+  const auto flags = sample_flags();
+  const auto write = [&](const std::string& path) {
+    if (path.ends_with("plane.fits")) write_plane(path, as_plane(image), sample_header());
+    if (path.ends_with("map.exr"))
+      write_exr(path, {.pixels = image.pixels.data(), .columns = 200, .rows = 150});
+    if (path.ends_with("frame.fits"))
+      write_frame(path, sample_counts(), sample_header(), FitsCompression::rice, &flags);
+  };
+  for (const char* name : {"full-plane.fits", "full-map.exr", "full-frame.fits"}) {
+    const std::string path = scratch(name), link = path + ".partial";
+    std::remove(path.c_str());
+    std::remove(link.c_str());
+    ASSERT_EQ(std::system(("ln -s /dev/full " + link).c_str()), 0);
+    try {
+      write(path);
+      FAIL() << name;
+    } catch (const Error& e) {
+      EXPECT_THAT(e.what(), HasSubstr(path + ": can't be written: No space left"));
+    }
+    EXPECT_FALSE(test::exists(path));
+  }
+}
+
+}  // namespace
+}  // namespace dmise
