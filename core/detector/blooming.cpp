@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <vector>
 
 namespace dmise {
 namespace {
 
-constexpr std::size_t column_grain = 64;
+constexpr std::size_t column_grain = 16, row_grain = 64, pixel_grain = 16384;
 
 // Moves `excess` (one value a row) along a column in one direction, and fills it up on the way.
 template <class Pixel>
@@ -24,41 +25,67 @@ void run(int rows, int step, float well, const std::vector<float>& excess, const
   }
 }
 
+// Shares out what is above the well in one column; `excess` has room for each row.
+void bloom_column(int x, float well, ElectronImage& electrons, std::vector<float>& excess,
+                  FlagImage* flags) {
+  const int rows = electrons.rows;
+  const auto pixel = [&](int y) -> float& { return electrons.at(x, y); };
+  std::vector<float> own(flags ? excess.size() : 0);  // what a pixel holds of its own
+  for (int y = 0; y < rows; ++y) {
+    float& e = pixel(y);
+    excess[std::size_t(y)] = 0.5f * std::max(0.0f, e - well);
+    e = std::min(e, well);
+    if (flags) own[std::size_t(y)] = e;
+  }
+  run(rows, 1, well, excess, pixel);
+  run(rows, -1, well, excess, pixel);
+  for (int y = 0; flags && y < rows; ++y)
+    if (pixel(y) > own[std::size_t(y)]) flags->at(x, y) |= flag_bloomed;
+}
+
+// Columns in which a pixel is above the well.
+std::vector<std::size_t> overfull_columns(float well, const ElectronImage& electrons,
+                                          Threads& threads) {
+  const auto columns = std::size_t(electrons.columns);
+  std::vector<float> most(columns, 0.0f);
+  std::mutex merging;
+  threads.for_ranges(std::size_t(electrons.rows), row_grain,
+                     [&](std::size_t begin, std::size_t end) {
+                       std::vector<float> here(columns, 0.0f);
+                       for (std::size_t y = begin; y < end; ++y) {
+                         const float* row = electrons.row(int(y));
+                         for (std::size_t x = 0; x < columns; ++x)
+                           here[x] = row[x] > here[x] ? row[x] : here[x];
+                       }
+                       std::lock_guard lock(merging);
+                       for (std::size_t x = 0; x < columns; ++x)
+                         most[x] = std::max(most[x], here[x]);
+                     });
+  std::vector<std::size_t> found;
+  for (std::size_t x = 0; x < columns; ++x)
+    if (most[x] > well) found.push_back(x);
+  return found;
+}
+
 }  // namespace
 
 std::size_t blooming(double full_well_e, ElectronImage& electrons, Threads& threads,
                      FlagImage* flags) {
   const auto well = float(full_well_e);
-  const int rows = electrons.rows;
+  const auto overfull = overfull_columns(well, electrons, threads);
+  threads.for_ranges(overfull.size(), column_grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> excess(static_cast<std::size_t>(electrons.rows));
+    for (std::size_t i = begin; i < end; ++i)
+      bloom_column(int(overfull[i]), well, electrons, excess, flags);
+  });
   std::atomic<std::size_t> full{0};
-  threads.for_ranges(
-      std::size_t(electrons.columns), column_grain, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> excess(electrons.pixels.size() / std::size_t(electrons.columns));
-        std::vector<float> own(flags ? excess.size() : 0);  // what a pixel holds of its own
-        std::size_t here = 0;
-        for (std::size_t x = begin; x < end; ++x) {
-          const auto pixel = [&](int y) -> float& { return electrons.at(int(x), y); };
-          bool any = false;
-          for (int y = 0; y < rows; ++y) {
-            float& e = pixel(y);
-            const float above = std::max(0.0f, e - well);
-            excess[std::size_t(y)] = 0.5f * above;
-            any = any || above > 0.0f;
-            e = std::min(e, well);
-            if (flags) own[std::size_t(y)] = e;
-          }
-          if (any) {
-            run(rows, 1, well, excess, pixel);
-            run(rows, -1, well, excess, pixel);
-          }
-          for (int y = 0; y < rows; ++y) here += pixel(y) >= well;
-          for (int y = 0; flags && y < rows; ++y) {
-            if (pixel(y) >= well) flags->at(int(x), y) |= flag_full_well;
-            if (pixel(y) > own[std::size_t(y)]) flags->at(int(x), y) |= flag_bloomed;
-          }
-        }
-        full += here;
-      });
+  threads.for_ranges(electrons.pixels.size(), pixel_grain, [&](std::size_t begin, std::size_t end) {
+    std::size_t here = 0;
+    for (std::size_t i = begin; i < end; ++i) here += electrons.pixels[i] >= well;
+    full += here;
+    for (std::size_t i = begin; flags && here > 0 && i < end; ++i)
+      if (electrons.pixels[i] >= well) flags->pixels[i] |= flag_full_well;
+  });
   return full;
 }
 
