@@ -1,0 +1,273 @@
+#include "sensors/pipeline/sky_layer.h"
+
+#include <cmath>
+
+#include "core/optics/projection.h"
+#include "core/photometry/magnitude.h"
+#include "core/sky/airmass.h"
+#include "sensors/pipeline/light.h"
+#include "tests/pipeline/harness.h"
+
+namespace dmise {
+namespace {
+
+/// A fisheye that sees the horizon all around, and a narrow camera.
+const std::string fisheye =
+    "{optics: {projection: equidistant, columns: 97, rows: 83, pixel_pitch_m: 10e-6,"
+    " field_of_view_deg: 200, aperture_m: 0.001, equivalent_aperture: true},"
+    " detector: {full_well_e: 1e9, gain_e_per_dn: 1}, band: {filter: bessell-V}}";
+const std::string narrow =
+    "{optics: {columns: 65, rows: 49, pixel_pitch_m: 100e-6, field_of_view_deg: 5, aperture_m: "
+    "0.05},"
+    " detector: {full_well_e: 1e9, gain_e_per_dn: 1}, band: {filter: bessell-V}}";
+
+std::string scenario(const std::string& start, int minutes, const std::string& camera,
+                     const std::string& pointing, const std::string& more) {
+  return "simulation: {start: " + start + ", duration_s: " + std::to_string(60 * minutes) +
+         ", tick_s: 30}\nstars: {catalogue: stars.csv, faintest_mag: 15}\n"
+         "sensors: [{name: a, site: atlanta, camera: " +
+         camera + ", pointing: " + pointing + ", exposure_s: 1, cadence_s: 60" + more + "}]\n";
+}
+
+RateImage sky_of(test::Stage& stage, std::uint32_t frame, std::size_t sensor = 0) {
+  const auto& config = stage.scenario.sensors.at(sensor);
+  const View view(config, frame_times(config, frame), stage.world);
+  RateImage image(config.camera.optics.columns, config.camera.optics.rows);
+  EffectTimes times;
+  fill_sky(view, image, stage.threads, times);
+  return image;
+}
+
+double sum_of(const RateImage& image) {
+  double sum = 0;
+  for (const float e : image.pixels) sum += e;
+  return sum;
+}
+
+/// Largest change of any pixel's logarithm from one frame to the next, and largest change of that
+/// change: a step would show as large in the second as in the first.
+struct Steps {
+  double first = 0.0, second = 0.0, growth = 0.0;
+};
+Steps steps_over(test::Stage& stage, std::uint32_t frames) {
+  Steps steps;
+  std::vector<RateImage> last;
+  for (std::uint32_t frame = 1; frame <= frames; ++frame) {
+    RateImage image = sky_of(stage, frame);
+    if (frame == 1) steps.growth = -sum_of(image);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      const float here = image.pixels[i];
+      EXPECT_TRUE(std::isfinite(here) && here >= 0) << frame << " " << i;
+      if (last.size() < 2 || here == 0 || last[0].pixels[i] == 0) continue;
+      const double now = std::log(here / last[1].pixels[i]);
+      const double before = std::log(last[1].pixels[i] / last[0].pixels[i]);
+      steps.first = std::max(steps.first, std::abs(now));
+      steps.second = std::max(steps.second, std::abs(now - before));
+    }
+    last.push_back(std::move(image));
+    if (last.size() > 2) last.erase(last.begin());
+  }
+  steps.growth = sum_of(last.back()) / -steps.growth;
+  return steps;
+}
+
+// The Moon, 95 % lit, comes over the horizon between 01:10 and 01:20 UTC. It rises by 0.2 deg a
+// minute; within 10 deg of it the scattering function itself changes by a few percent in that.
+TEST(SkyOverTime, TheMoonRisesWithoutAStep) {
+  test::Stage stage(scenario("2018-02-03T00:45:00Z", 60, fisheye, "zenith", ", sky: dark"),
+                    "ra_deg,dec_deg,mag_v\n0,90,6\n");
+  const Steps steps = steps_over(stage, 60);
+  RecordProperty("first", std::to_string(steps.first));
+  RecordProperty("second", std::to_string(steps.second));
+  EXPECT_GT(steps.growth, 1.5);
+  EXPECT_LT(steps.first, 0.6);
+  EXPECT_LT(steps.second, 0.05);
+}
+
+// From night, the Sun 19 deg down, to its rising.
+TEST(SkyOverTime, DawnIsContinuous) {
+  test::Stage stage(scenario("2018-02-18T10:50:00Z", 95, fisheye, "zenith", ", sky: dark"),
+                    "ra_deg,dec_deg,mag_v\n0,90,6\n");
+  const Steps steps = steps_over(stage, 95);
+  RecordProperty("first", std::to_string(steps.first));
+  RecordProperty("second", std::to_string(steps.second));
+  EXPECT_GT(steps.growth, 1e4);
+  EXPECT_LT(steps.first, 0.4);
+  EXPECT_LT(steps.second, 0.15);
+}
+
+// A camera that follows a star through the zenith: the sky over it hardly changes, and the star
+// stays on its pixel but for refraction, which has no direction there.
+TEST(SkyOverTime, ATransitOfTheZenithByTheCamerasAxis) {
+  // Local sidereal time at Atlanta, 2018-01-21T04:00 UTC: 96.4 deg.
+  test::Stage stage(scenario("2018-01-21T03:50:00Z", 20, narrow, "{ra_deg: 96.4, dec_deg: 33.777}",
+                             ", sky: dark, effects: {scintillation: off}"),
+                    "ra_deg,dec_deg,mag_v\n96.4,33.777,6\n");
+  const Steps steps = steps_over(stage, 20);
+  EXPECT_LT(steps.first, 0.01);
+  EXPECT_LT(steps.second, 0.01);
+  PixelPosition first{};
+  double least_zenith_deg = 90;
+  for (std::uint32_t frame = 1; frame <= 20; ++frame) {
+    const auto made = stage.frame(frame);
+    ASSERT_EQ(made.stars.size(), 1u);
+    const PixelPosition at{made.stars[0].x_px, made.stars[0].y_px};
+    if (frame == 1) first = at;
+    EXPECT_NEAR(at.x_px, first.x_px, 0.02) << frame;
+    EXPECT_NEAR(at.y_px, first.y_px, 0.02) << frame;
+    const auto& config = stage.scenario.sensors[0];
+    const View view(config, frame_times(config, frame), stage.world);
+    const auto axis =
+        view.camera_from_gcrs(view.times().middle).inverse() * Vec<CameraFrame>{0, 0, 1};
+    least_zenith_deg =
+        std::min(least_zenith_deg, angle_rad(axis, view.up(view.times().middle)) / deg);
+  }
+  EXPECT_LT(least_zenith_deg, 0.5);
+}
+
+TEST(SkyLayer, BelowTheHorizonIsDarkAndNothingIsNan) {
+  test::Stage stage(scenario("2018-01-21T04:00:00Z", 2, fisheye, "zenith", ", sky: urban"),
+                    "ra_deg,dec_deg,mag_v\n0,90,6\n");
+  const auto& config = stage.scenario.sensors[0];
+  const RateImage image = sky_of(stage, 1);
+  int below = 0;
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.columns; ++x) {
+      const auto direction = unproject(config.camera.optics, {double(x), double(y)});
+      ASSERT_TRUE(std::isfinite(image.at(x, y)));
+      if (!direction || direction->z < 0) {
+        EXPECT_EQ(image.at(x, y), 0.0f) << x << " " << y;
+        ++below;
+      } else {
+        EXPECT_GT(image.at(x, y), 0.0f) << x << " " << y;
+      }
+    }
+  EXPECT_GT(below, 500);
+}
+
+// Every projection: the image is the model at each pixel, within the stated tolerance.
+TEST(SkyLayer, IsWithinItsToleranceInEveryProjection) {
+  for (const std::string projection : {"gnomonic", "equidistant", "equisolid", "stereographic"}) {
+    const std::string camera =
+        "{optics: {projection: " + projection +
+        ", columns: 333, rows: 251, pixel_pitch_m: 10e-6, field_of_view_deg: 120, aperture_m: "
+        "0.001,"
+        " equivalent_aperture: true},"
+        " detector: {full_well_e: 1e9, gain_e_per_dn: 1}, band: {filter: sdss-g}}";
+    test::Stage stage(
+        scenario("2018-01-26T00:10:00Z", 2, camera, "{azimuth_deg: 200, elevation_deg: 45}",
+                 ", sky: {preset: urban, cities: [{azimuth_deg: 230}]}"),
+        "ra_deg,dec_deg,mag_v\n0,90,6\n");
+    const auto& config = stage.scenario.sensors[0];
+    const View view(config, frame_times(config, 1), stage.world);
+    const SkyModel sky = sky_over(view);
+    const RateImage image = sky_of(stage, 1);
+    const SimTime t = view.times().middle;
+    const auto enu_from_camera = view.enu_from_gcrs(t) * view.camera_from_gcrs(t).inverse();
+    const double scale = Light(view).electrons_per_photon_m2() * view.times().seconds();
+    double worst = 0;
+    for (int y = 0; y < image.rows; y += 2)
+      for (int x = 0; x < image.columns; x += 2) {
+        const PixelPosition pixel{double(x), double(y)};
+        const auto direction = enu_from_camera * *unproject(config.camera.optics, pixel);
+        if (direction.z < 1e-6) continue;
+        const double exact = sky.photons_per_s_m2_sr(direction) * scale *
+                             pixel_solid_angle_sr(config.camera.optics, pixel);
+        worst = std::max(worst, std::abs(image.at(x, y) / exact - 1));
+      }
+    EXPECT_LT(worst, sky_tolerance) << projection;
+  }
+}
+
+TEST(SkyLayer, EachPartIsSwitchedByNameAndHasItsTime) {
+  const auto with = [](const std::string& effects) {
+    test::Stage stage(scenario("2018-01-26T00:10:00Z", 2, fisheye, "zenith",
+                               ", sky: urban, effects: {" + effects + "}"),
+                      "ra_deg,dec_deg,mag_v\n0,90,6\n");
+    return sum_of(sky_of(stage, 1));
+  };
+  const double whole = with("sky: on");
+  double parts = 0;
+  for (const std::string part : {"airglow", "zodiacal_light", "faint_starlight",
+                                 "scattered_moonlight", "twilight", "light_pollution"}) {
+    const double without = with(part + ": off");
+    EXPECT_LT(without, whole) << part;
+    parts += whole - without;
+  }
+  EXPECT_NEAR(parts / whole, 1.0, 0.01);
+  EXPECT_EQ(with("sky: off"), 0.0);
+  test::Stage stage(scenario("2018-01-26T00:10:00Z", 2, fisheye, "zenith", ", sky: urban"),
+                    "ra_deg,dec_deg,mag_v\n0,90,6\n");
+  const auto frame = stage.frame();
+  for (const Effect part :
+       {Effect::sky, Effect::airglow, Effect::twilight, Effect::light_pollution})
+    EXPECT_GT(frame.times[part], 0.0) << facts(part).name;
+}
+
+// A veil of transmission 0.5 at the zenith takes as much from the star there as from the airglow
+// behind it, and nothing from the lamps below.
+TEST(Air, CloudsDimStarsAndSkyAlike) {
+  const auto look = [](const std::string& sky, const std::string& clouds) {
+    test::Stage stage(
+        scenario(
+            "2018-01-21T04:00:00Z", 2, narrow, "zenith",
+            sky + clouds + ", effects: {scintillation: off, photon_noise: off, dark_current: off}"),
+        "ra_deg,dec_deg,mag_v\n96.4,33.777,6\n");
+    const auto frame = stage.frame();
+    return std::pair(frame.stars.at(0).signal_e, sum_of(sky_of(stage, 1)));
+  };
+  const std::string glow = ", sky: {preset: dark, parts: {light_pollution: off}}";
+  const auto [star, sky] = look(glow, "");
+  const auto [dim_star, dim_sky] = look(glow, ", weather: {clouds: 0.5}");
+  EXPECT_NEAR(dim_star / star, 0.5, 0.002);
+  EXPECT_NEAR(dim_sky / sky, 0.5, 0.002);
+}
+
+// Young's formula for 0.05 m, 1 s, at the zenith and 300 m: sigma = sqrt(10e-6 x 0.05^(-4/3) x
+// exp(-0.075)) = 2.244 %. 2,000 frames of one star: the deviation is known to 1.6 %.
+TEST(Air, ScintillationHasYoungsDeviationAndMeanOne) {
+  test::Stage stage(scenario("2018-01-21T04:00:00Z", 1, narrow, "zenith", ""),
+                    "ra_deg,dec_deg,mag_v\n96.4,33.777,6\n");
+  const auto& config = stage.scenario.sensors[0];
+  double sum = 0, squares = 0;
+  constexpr int frames = 2000;
+  for (std::uint32_t frame = 1; frame <= frames; ++frame) {
+    FrameTimes times = frame_times(config, 1);
+    times.frame = frame;
+    const View view(config, times, stage.world, 7);
+    const double f = Light(view).flicker(view.up(times.middle), Light::Flickering::star, 42);
+    sum += f, squares += f * f;
+    EXPECT_EQ(f, Light(view).flicker(view.up(times.middle), Light::Flickering::star, 42));
+  }
+  const double mean = sum / frames;
+  EXPECT_NEAR(mean, 1.0, 3 * 0.0224 / std::sqrt(frames));
+  EXPECT_NEAR(std::sqrt(squares / frames - mean * mean), 0.02244, 3 * 0.016 * 0.02244);
+}
+
+// Beer's law in the band, for a blue and a red star at 60 deg from the zenith: Kitt Peak's curve
+// takes more from the blue one in a wide band.
+TEST(Air, ExtinctionIsByBandColourAndAirmass) {
+  test::Stage stage(scenario("2018-01-21T04:00:00Z", 1, narrow, "zenith",
+                             ", atmosphere: {extinction: kitt_peak}"),
+                    "ra_deg,dec_deg,mag_v\n0,90,6\n");
+  const auto& config = stage.scenario.sensors[0];
+  const View view(config, frame_times(config, 1), stage.world);
+  const Light light(view);
+  const auto down = [&](double zenith_deg) {
+    const Vec<Gcrs> up = view.up(view.times().middle);
+    const Vec<Gcrs> side = unit(cross(up, {0.1, 0.2, 0.9}));
+    return up * std::cos(zenith_deg * deg) + side * std::sin(zenith_deg * deg);
+  };
+  const double k_zenith = magnitude_of_light(light.air_transmission(down(0), 0.65));
+  EXPECT_NEAR(k_zenith, 0.153, 0.004);  // the curve has 0.150 at 550 nm, 0.161 at 525
+  EXPECT_NEAR(magnitude_of_light(light.air_transmission(down(60), 0.65)) / k_zenith,
+              airmass(30 * deg), 0.01);
+  EXPECT_LT(light.air_transmission(down(60), -0.3), light.air_transmission(down(60), 1.8));
+  for (const double zenith_deg : {89.0, 90.0, 91.0, 120.0, 180.0}) {
+    const double t = light.air_transmission(down(zenith_deg), 0.65);
+    EXPECT_TRUE(t > 0 && t < 0.1) << zenith_deg;
+  }
+}
+
+}  // namespace
+}  // namespace dmise
