@@ -283,6 +283,11 @@ void visit(Visitor& v, FrameHeader& h) {
   v.number("PSFFWHM", h.psf_fwhm_px, "[px] Gaussian, before pixel integration");
   v.number("PHOTZP", h.zero_point_mag, "[mag] of 1 e-/s, without atmosphere");
   v.number("EXTINCT", h.extinction_mag_per_airmass, "[mag/airmass]");
+  if (v.present("R0", h.r0_m > 0)) {
+    v.number("R0", h.r0_m, "[m] Fried parameter, zenith, 500 nm");
+    v.number("ISOPLAN", h.isoplanatic_angle_rad, "[rad] isoplanatic angle, likewise");
+    v.number("TAU0", h.tau0_s, "[s] coherence time r0 / wind, likewise");
+  }
   v.projection("PROJNAME", h.projection, "of the lens");
   v.number("FOCALPX", h.focal_length_px, "[px] focal length");
   constexpr const char* attitudes[3] = {"QBEG", "QAVG", "QEND"};

@@ -48,6 +48,8 @@ struct FrameHeader {
   Band band;
   double zero_point_mag = 0.0;  // of a source that gives 1 e-/s, without any atmosphere
   double extinction_mag_per_airmass = 0.0;  // of the atmosphere in this band; 0 in space
+  // Turbulence towards the zenith at 500 nm; all 0 where none is given.
+  double r0_m = 0.0, isoplanatic_angle_rad = 0.0, tau0_s = 0.0;
 
   Wcs wcs;
   Projection projection = Projection::gnomonic;

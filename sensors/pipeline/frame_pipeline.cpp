@@ -130,6 +130,11 @@ FrameHeader FramePipeline::Work::header(const View& view) const {
                 .sensor_position_m = observer.position_m,
                 .sensor_velocity_m_per_s = observer.velocity_m_per_s,
                 .earth_velocity_m_per_s = environment.earth_velocity_m_per_s};
+  if (const SiteState* air = view.air()) {
+    h.r0_m = air->r0_m;
+    h.isoplanatic_angle_rad = air->isoplanatic_angle_rad;
+    h.tau0_s = air->tau0_s;
+  }
   if (const auto& site = view.site())
     h.site = SitePlace{site->latitude_deg * deg, site->longitude_deg * deg, site->height_m,
                        itrs_from_geodetic(*site)};

@@ -154,7 +154,7 @@ def main():
             print(band, "  ".join(f"{key} {value:.3f}" for key, value in row.items() if value is not None))
     rate = {band: row["rate"] for band, row in result.items()}
     if not rate["B"] > rate["R"] > rate["G"]:
-        print("order is " + " > ".join(sorted(rate, key=rate.get, reverse=True)), file=sys.stderr)
+        raise SystemExit("order is " + " > ".join(sorted(rate, key=rate.get, reverse=True)))
 
 
 if __name__ == "__main__":

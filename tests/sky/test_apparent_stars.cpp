@@ -125,6 +125,49 @@ TEST(ApparentStars, StandOverASitesHorizonWhereAstropySees) {
   }
 }
 
+// A thousand random stars, the pole among them, from catalogue to refracted place over a horizon.
+TEST(ApparentStars, AThousandAboveTwentyDegreesAgreeWithAstropyThroughTheAir) {
+  const std::string python = "/usr/bin/python3";
+  DMISE_NEEDS_FILE(python);
+  FILE* pipe = popen((python + " -W ignore " DMISE_SOURCE_DIR
+                               "/tests/reference/apparent_altaz.py 1000 3 2>/dev/null")
+                         .c_str(),
+                     "r");
+  ASSERT_TRUE(pipe);
+  const Site site{33.777, -84.398, 300.0};
+  const Refraction refraction(Weather{800.0, 5.0, 0.3}, 0.7);
+  int count = 0;
+  double worst_air = 0.0, worst_plain = 0.0;
+  char utc[64];
+  double v[9];
+  while (std::fscanf(pipe, "%63s", utc) == 1) {
+    for (double& value : v) ASSERT_EQ(std::fscanf(pipe, "%lf", &value), 1);
+    const Clock clock(parse_utc(utc));
+    Ut1 ut1 = clock.ut1({});
+    ut1.jd2 += v[0] / day_s;
+    const EarthOrientation earth =
+        earth_orientation({}, clock.tt({}), ut1, v[1] * arcsec, v[2] * arcsec);
+    const Observer here =
+        ground_observer(site, earth, {}, clock.tt({}), solar_system(clock.tt({})), refraction);
+    const auto off = [&](const EffectSet& effects, double azimuth_deg, double elevation_deg) {
+      const Vec<Enu> seen =
+          enu_from_itrs(site) *
+          (earth.itrs_from_gcrs({}) * ApparentPlaces(here, effects).star({v[3] * deg, v[4] * deg}));
+      return angle_rad(seen, from_horizontal({azimuth_deg * deg, elevation_deg * deg}));
+    };
+    worst_plain = std::max(worst_plain, off(all_but({Effect::refraction}), v[5], v[6]));
+    worst_air = std::max(worst_air, off({}, v[7], v[8]));
+    ++count;
+  }
+  const int status = pclose(pipe);
+  if (count == 0) DMISE_SKIP() << "python3-astropy is not there (status " << status << ")";
+  EXPECT_EQ(count, 1000);
+  EXPECT_LT(worst_plain, 5 * mas);
+  EXPECT_LT(worst_air, 0.5 * arcsec);
+  RecordProperty("worst_plain_uas", static_cast<int>(worst_plain / mas * 1000));
+  RecordProperty("worst_air_uas", static_cast<int>(worst_air / mas * 1000));
+}
+
 // Sizes as in any textbook on positional astronomy.
 TEST(ApparentStars, EachCorrectionHasItsSizeAndItsSwitch) {
   const Observer here = atlanta("2018-01-20T23:40:00Z");

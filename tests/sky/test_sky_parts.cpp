@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <string>
 
 #include "core/base/error.h"
 #include "core/base/units.h"
@@ -13,6 +15,7 @@
 #include "core/sky/surface_brightness.h"
 #include "core/sky/twilight.h"
 #include "core/sky/zodiacal_light.h"
+#include "tests/support/data.h"
 
 namespace dmise {
 namespace {
@@ -38,6 +41,28 @@ TEST(ZodiacalLight, LeinertsTable) {
         << longitude_deg << " " << latitude_deg;
 }
 
+// Leinert et al. 1998, table 17 as EXOSIMS keeps it (1e-8 W/m2/sr/um; 1e6 stands for no value): at
+// all its nodes, to its own rounding.
+TEST(ZodiacalLight, EveryValueOfLeinertsTable) {
+  const std::string path = test::data_path("sky/Leinert98_table17.txt");
+  DMISE_NEEDS_FILE(path);
+  const double longitude[] = {0,  5,  10, 15,  20,  25,  30,  35,  40, 45,
+                              60, 75, 90, 105, 120, 135, 150, 165, 180};
+  const double latitude[] = {0, 5, 10, 15, 20, 25, 30, 45, 60, 75, 90};
+  std::ifstream file(path);
+  int compared = 0;
+  for (const double l : longitude)
+    for (const double b : latitude) {
+      double value = 0;
+      ASSERT_TRUE(file >> value);
+      if (value > 9e5) continue;
+      EXPECT_NEAR(zodiacal_light_s10(l * deg, b * deg) * 1.28, value, 1e-6 * value)
+          << l << " " << b;
+      ++compared;
+    }
+  EXPECT_EQ(compared, 201);
+}
+
 TEST(ZodiacalLight, ContinuousAndFiniteTowardsTheSun) {
   double last = zodiacal_light_s10(0, 0);
   EXPECT_TRUE(std::isfinite(last));
@@ -61,23 +86,26 @@ TEST(FaintStarlight, FallsWithLatitudeAndLimit) {
   EXPECT_LT(faint_starlight_s10({12.0}, 1.0), faint_starlight_s10({9.0}, 1.0));
 }
 
-// Reference: tests/reference/moonlight.py. {phase, angle from the Moon, zenith distance, the Moon's
-// [deg], k, nL, mag}
+// Reference: tests/reference/moonlight.py, and beyond 10 deg from the Moon the same magnitudes from
+// specsim 1.0 (`krisciunas_schaefer`), whose documentation gives 19.855 for the fifth. {phase,
+// angle from the Moon, zenith distance, the Moon's [deg], k, nL, mag}
 TEST(ScatteredMoonlight, KrisciunasAndSchaefer) {
   const struct {
     double phase, angle, z, z_moon, k, nl, mag;
   } cases[] = {
-      {0, 60, 0, 60, 0.172, 1089.86, 18.73774},
-      {30, 30, 45, 30, 0.172, 1549.26, 18.35586},
-      {90, 100, 70, 80, 0.3, 119.273, 21.13979},
-      {0, 5, 40, 45, 0.172, 12718.2, 16.07012},
+      {0, 60, 0, 60, 0.172, 1089.86, 18.73774},  {30, 30, 45, 30, 0.172, 1549.26, 18.35586},
+      {90, 100, 70, 80, 0.3, 119.273, 21.13979}, {0, 5, 40, 45, 0.172, 12718.2, 16.07012},
+      {45, 50, 20, 70, 0.15, 0, 19.85484},       {135, 65, 60, 10, 0.2, 0, 22.78840},
+      {18, 120, 75, 45, 0.12, 0, 18.45246},
   };
   for (const auto& c : cases) {
     const double s10 =
         scattered_moonlight_s10(c.angle * deg, std::cos(c.z * deg), std::cos(c.z_moon * deg),
                                 moon_v_mag(c.phase * deg), c.k);
     EXPECT_NEAR(mag_per_arcsec2_of_s10(s10), c.mag, 1e-4);
-    EXPECT_NEAR(s10 / s10_of_nanolambert(1.0), c.nl, 1e-4 * c.nl);
+    if (c.nl > 0) {
+      EXPECT_NEAR(s10 / s10_of_nanolambert(1.0), c.nl, 1e-4 * c.nl);
+    }
   }
   EXPECT_NEAR(moon_v_mag(0), -12.73, 1e-12);
 }
@@ -163,6 +191,38 @@ TEST(LightPollution, LampsHaveTheColoursOfMeasuredOnes) {
   }
   EXPECT_THROW(lamp_spectrum({0, 0, 0}), Error);
   EXPECT_THROW(lamp_spectrum({1, -1, 0}), Error);
+}
+
+// The same, from the measured spectra themselves.
+TEST(LightPollution, LampsAgreeWithTheMeasuredSpectra) {
+  const struct {
+    LampMix lamp;
+    const char* file;
+  } cases[] = {{{1, 0, 0}, "LPS_Dline.spct"},
+               {{0, 1, 0}, "HPS_Helios.spct"},
+               {{0, 0, 1}, "4LED_LED-4000K-Philips.spct"}};
+  for (const auto& [lamp, name] : cases) {
+    const std::string path = test::data_path(std::string("sky/lamps/") + name);
+    DMISE_NEEDS_FILE(path);
+    std::ifstream file(path);
+    std::string header;
+    std::getline(file, header);
+    Spectrum measured;
+    for (double at_nm, value; file >> at_nm >> value;) {
+      measured.irradiance.wavelength_m.push_back(at_nm * nm);
+      measured.irradiance.value.push_back(value);
+    }
+    // It ends before the red tail of R, where these lamps have next to nothing.
+    measured.irradiance.wavelength_m.push_back(1000 * nm);
+    measured.irradiance.value.push_back(0.0);
+    for (const char* band : {"bessell-B", "bessell-R"}) {
+      const auto over_v = [&](const Spectrum& s) {
+        return photon_rate_per_m2(s, *filter_named(band)) / photon_rate_per_m2(s, johnson_v());
+      };
+      EXPECT_NEAR(over_v(lamp_spectrum(lamp)), over_v(measured), 0.1 * over_v(measured) + 1e-4)
+          << name << " " << band;
+    }
+  }
 }
 
 TEST(LightPollution, ACityGlowsOnItsSideAndHasNoSeam) {

@@ -1,0 +1,77 @@
+#include <gmock/gmock.h>
+
+#include "sensors/pipeline/make_sensor.h"
+#include "tests/pipeline/harness.h"
+
+namespace dmise {
+namespace {
+
+std::string scenario(const std::string& environment, const std::string& sensors) {
+  return "simulation: {start: 2018-01-21T04:00:00Z, duration_s: 300, tick_s: 10}\n" + environment +
+         "sensors:\n" + sensors;
+}
+const std::string ground =
+    "  - {name: a, site: atlanta, camera: geo-watch, pointing: zenith, exposure_s: 5, cadence_s: "
+    "10";
+
+TEST(Environment, TellsTheSkyEveryTickAndTheAirAtItsOwnRate) {
+  test::Stage stage(scenario("environment: {site_every_s: 45}\n", ground + "}\n"));
+  EnvironmentActor actor(stage.scenario, make_clock(stage.scenario));
+  EXPECT_THAT(actor.produces(), testing::ElementsAre("env/common", "env/site/a"));
+  std::vector<Tick> common, site;
+  for (Tick tick = 0; tick <= 12; ++tick)
+    for (const auto& message : actor.step(tick, {}))
+      (message.topic == "env/common" ? common : site).push_back(message.tick);
+  EXPECT_EQ(common.size(), 13u);
+  EXPECT_THAT(site, testing::ElementsAre(0, 5, 10));  // 45 s are five ticks of 10 s
+}
+
+// The 5/7 model: r0 4.96 cm and an isoplanatic angle of 6.89 urad at 0.5 um. The frame says so too.
+TEST(Environment, TellsTheTurbulenceOfASite) {
+  test::Stage stage(scenario("", ground + ", atmosphere: {turbulence: hv57}}\n"));
+  const SiteState* air = stage.world.site("a", {});
+  ASSERT_TRUE(air);
+  EXPECT_NEAR(air->r0_m, 0.0496, 0.005 * 0.0496);
+  EXPECT_NEAR(air->isoplanatic_angle_rad, 6.89e-6, 0.005 * 6.89e-6);
+  EXPECT_NEAR(air->tau0_s * air->turbulence_m_per_s, air->r0_m, 1e-12);
+  const auto frame = stage.frame();
+  EXPECT_EQ(frame.header.r0_m, air->r0_m);
+  EXPECT_EQ(frame.header.tau0_s, air->tau0_s);
+}
+
+TEST(Environment, ASensorAsksForWhatItsPlanNeeds) {
+  std::string plain = ground;
+  plain.replace(plain.find("name: a"), 7, "name: b");
+  test::Stage stage(
+      scenario("", ground + "}\n" + plain +
+                       ", effects: {objects: off, sky: off, extinction: off, refraction: off}}\n"));
+  Threads one(1);
+  const auto consumes = [&](const char* name) {
+    return make_sensor(stage.scenario, name, "", stage.directory / "out", nullptr, one)->consumes();
+  };
+  EXPECT_THAT(consumes("a"), testing::ElementsAre("state/objects", "env/common", "env/site/a"));
+  EXPECT_THAT(consumes("b"), testing::ElementsAre("env/common"));
+}
+
+// What the weather says bends the light: none without air.
+TEST(Environment, RefractionIsThatOfTheSitesWeather) {
+  const auto lift = [](const std::string& weather) {
+    test::Stage stage(scenario("", ground + weather + "}\n"));
+    const auto& config = stage.scenario.sensors[0];
+    const View view(config, frame_times(config, 1), stage.world);
+    const SimTime t = view.times().middle;
+    const Vec<Gcrs> low = view.enu_from_gcrs(t).inverse() * from_horizontal({1.0, 20 * deg});
+    const auto [ra, dec] = to_spherical(low);
+    EffectSet none = config.effects;
+    none.set(Effect::refraction, false);
+    const StarPlace star{.ra_rad = ra, .dec_rad = dec};
+    return angle_rad(view.places(t).star(star), view.places(t, none).star(star)) / arcsec;
+  };
+  EXPECT_NEAR(lift(", weather: {pressure_hpa: 0}"), 0.0, 1e-9);
+  EXPECT_NEAR(lift(", weather: {pressure_hpa: 500, temperature_c: 15}") /
+                  lift(", weather: {pressure_hpa: 1000, temperature_c: 15}"),
+              0.5, 0.005);
+}
+
+}  // namespace
+}  // namespace dmise
