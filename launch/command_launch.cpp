@@ -12,6 +12,7 @@
 #include "launch/commands.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
+#include "launch/restarts.h"
 #include "launch/run_record.h"
 #include "launch/supervisor.h"
 #include "nodes/environment/environment_actor.h"
@@ -42,8 +43,9 @@ std::string number(double x) {
 /// One launch of a scenario as a process per node.
 class Launch {
  public:
-  Launch(const LaunchOptions& options, const Scenario& scenario, const RunDirectory& directory)
-      : options_(options), scenario_(scenario), directory_(directory) {
+  Launch(const LaunchOptions& options, const Scenario& scenario, const RunDirectory& directory,
+         Tick first_tick)
+      : options_(options), scenario_(scenario), directory_(directory), first_tick_(first_tick) {
     for (const auto& sensor : scenario.sensors)
       frames_total_ += static_cast<int>(frames_within(sensor, scenario.duration));
   }
@@ -64,6 +66,7 @@ class Launch {
   std::string log_of(const std::string& name) const {
     return directory_.path() + "/logs/" + name + ".log";
   }
+  std::string report() const { return directory_.path() + "/logs/master.json"; }
   std::string announcement() const { return directory_.path() + "/logs/master.address"; }
 
   void start_master() {
@@ -72,15 +75,25 @@ class Launch {
     std::string expected = "orbit-node,environment-node";
     for (const auto& sensor : scenario_.sensors) expected += "," + sensor.name;
     const auto& network = scenario_.network;
+    const bool restart = network.on_silent_node == OnSilentNode::restart;
     const char* policy = network.on_silent_node == OnSilentNode::fail   ? "fail"
-                         : network.on_silent_node == OnSilentNode::wait ? "wait"
-                                                                        : "drop";
+                         : network.on_silent_node == OnSilentNode::drop ? "drop"
+                                                                        : "wait";
     start("time-master", "dmise-time-master",
-          {"--bind", options_.bind, "--announce", announcement(), "--expect", expected, "--ticks",
-           std::to_string(scenario_.last_tick() + 1), "--tick-ns",
-           std::to_string(scenario_.tick.ns), "--window", std::to_string(network.window_ticks),
-           "--silent-after", number(network.silent_after_s), "--start-within",
-           number(network.join_within_s), "--on-silent", policy});
+          {"--first-tick",    std::to_string(first_tick_),
+           "--real-time",     number(network.real_time),
+           "--rejoin-within", number(restart ? network.join_within_s : 0.0),
+           "--max-rejoins",   std::to_string(restart ? network.restarts : -1),
+           "--report",        report(),
+           "--bind",          options_.bind,
+           "--announce",      announcement(),
+           "--expect",        expected,
+           "--ticks",         std::to_string(scenario_.last_tick() + 1),
+           "--tick-ns",       std::to_string(scenario_.tick.ns),
+           "--window",        std::to_string(network.window_ticks),
+           "--silent-after",  number(network.silent_after_s),
+           "--start-within",  number(network.join_within_s),
+           "--on-silent",     policy});
   }
 
   void start_nodes(const std::string& master) {
@@ -125,6 +138,7 @@ class Launch {
     const Event& stop = stop_signal();
     Progress progress;
     RunStatus status;
+    Restarts restarts(processes_, scenario_.network);
     std::optional<Clock_::time_point> first_death;
     auto asked = Clock_::now() - std::chrono::hours(1);
     bool running = true;
@@ -139,6 +153,10 @@ class Launch {
         ask(master, status);
         progress.show(progress_state(status));
       }
+      for (const auto& line : restarts.look(status, Clock_::now())) {
+        progress.clear_line();
+        std::fprintf(stderr, "note: %s\n", line.c_str());
+      }
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     progress.clear_line();
@@ -146,7 +164,7 @@ class Launch {
     for (const auto& node : status.nodes)
       outcome.nodes.push_back(
           {node.name, node.times.compute_s, node.times.messaging_s, node.times.waiting_s});
-    const Child* clock = find("time-master");
+    const Child* clock = processes_.find("time-master");
     if (stop.is_set()) {
       outcome.status = "interrupted";
     } else if (clock->exit_code != 0) {
@@ -182,12 +200,6 @@ class Launch {
     return state;
   }
 
-  const Child* find(const std::string& name) const {
-    for (const auto& child : processes_.children())
-      if (child.name == name) return &child;
-    return nullptr;
-  }
-
   /// The first cause of a failure: what the node that failed first says, else what the master says.
   std::string reason(const RunStatus& status) const {
     const std::string cause =
@@ -198,6 +210,7 @@ class Launch {
   const LaunchOptions& options_;
   const Scenario& scenario_;
   const RunDirectory& directory_;
+  Tick first_tick_;
   Supervisor processes_;
   int frames_total_ = 0;
 };
@@ -206,13 +219,14 @@ void launch(const LaunchOptions& options) {
   Scenario scenario = load_scenario(options.scenario);
   if (options.seed) scenario.seed = *options.seed;
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
-  if (!prepare_directory(directory, options.force)) return;
+  const RunStart begin = prepare_directory(directory, scenario, options.force);
+  if (!begin.needed) return;
   stop_signal();
   // What a node would complain of is better said here, once, before anything starts.
   const auto population = load_objects(scenario, make_clock(scenario));
   check_sensors(scenario, population.roster);
   for (const auto& note : population.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
-  const RunOutcome outcome = Launch(options, scenario, directory).run();
+  const RunOutcome outcome = Launch(options, scenario, directory, begin.first_tick).run();
   finish_run(directory, scenario, outcome);
 }
 

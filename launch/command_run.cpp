@@ -38,8 +38,9 @@ constexpr auto patience_after_stop = std::chrono::milliseconds(1500);
 /// request to stop is met in time also in the middle of a frame.
 class EmbeddedRun {
  public:
-  EmbeddedRun(const Scenario& scenario, const RunDirectory& directory, int thread_count)
-      : scenario_(scenario), threads_(thread_count) {
+  EmbeddedRun(const Scenario& scenario, const RunDirectory& directory, int thread_count,
+              Tick first_tick)
+      : scenario_(scenario), threads_(thread_count), first_tick_(first_tick) {
     auto orbit = std::make_unique<OrbitActor>(scenario, make_clock(scenario), threads_);
     for (const auto& note : orbit->notes()) std::fprintf(stderr, "note: %s\n", note.c_str());
     orbit->on_absence([this](const std::string& line) {
@@ -97,12 +98,15 @@ class EmbeddedRun {
     std::string failure;
     try {
       SimulationController controller(std::move(participants_));
-      controller.run(scenario_.last_tick(), [this](Tick tick) {
-        std::lock_guard lock(mutex_);
-        state_ = state_after(tick);
-        changed_.notify_one();
-        return !stop_signal().is_set();
-      });
+      controller.run(
+          scenario_.last_tick(),
+          [this](Tick tick) {
+            std::lock_guard lock(mutex_);
+            state_ = state_after(tick);
+            changed_.notify_one();
+            return !stop_signal().is_set();
+          },
+          first_tick_);
     } catch (const std::exception& e) {
       failure = e.what();
     }
@@ -126,6 +130,7 @@ class EmbeddedRun {
 
   const Scenario& scenario_;
   Threads threads_;
+  Tick first_tick_;
   std::vector<std::unique_ptr<Participant>> participants_;
   std::vector<SensorEvaluator*> sensors_;
   int frames_total_ = 0;
@@ -141,10 +146,11 @@ void run(const RunOptions& options) {
   Scenario scenario = load_scenario(options.scenario);
   if (options.seed) scenario.seed = *options.seed;
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
-  if (!prepare_directory(directory, options.force)) return;
+  const RunStart begin = prepare_directory(directory, scenario, options.force);
+  if (!begin.needed) return;
   stop_signal();
   const auto start = std::chrono::steady_clock::now();
-  EmbeddedRun embedded(scenario, directory, options.threads);
+  EmbeddedRun embedded(scenario, directory, options.threads, begin.first_tick);
   RunOutcome outcome = embedded.run();
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!embedded.in_step()) return finish_run(directory, scenario, outcome);

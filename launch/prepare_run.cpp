@@ -4,16 +4,18 @@
 
 #include "core/base/error.h"
 #include "launch/commands.h"
+#include "launch/resume_point.h"
 
 namespace dmise {
 
-bool prepare_directory(RunDirectory& directory, bool force) {
+RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bool force) {
+  RunStart start;
   switch (directory.content()) {
     case RunDirectory::Content::same_run_complete:
       if (!force) {
         std::printf("%s holds this run, complete; --force does it again\n%s%s/index.html\n",
                     directory.path().c_str(), "open ", directory.path().c_str());
-        return false;
+        return {.needed = false};
       }
       break;
     case RunDirectory::Content::another_run:
@@ -23,12 +25,21 @@ bool prepare_directory(RunDirectory& directory, bool force) {
             ": holds the products of another run; --force replaces them, --out writes "
             "elsewhere");
       break;
-    case RunDirectory::Content::empty:
     case RunDirectory::Content::same_run_unfinished:
+      if (!force) start.first_tick = resume_tick(scenario, directory);
+      break;
+    case RunDirectory::Content::empty:
       break;
   }
-  directory.clear();
-  return true;
+  if (start.first_tick > 0) {
+    std::printf("%s holds this run, cut short: going on at tick %ld of %ld; --force starts anew\n",
+                directory.path().c_str(), long(start.first_tick), long(scenario.last_tick()));
+    std::fflush(stdout);
+  } else {
+    directory.clear();
+  }
+  mark_begun(directory);
+  return start;
 }
 
 void finish_run(const RunDirectory& directory, const Scenario& scenario,

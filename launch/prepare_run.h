@@ -6,10 +6,15 @@
 
 namespace dmise {
 
-/// Decides what a run does with its directory. True: go on, the directory is clear. False: the same
-/// run is complete there and there is nothing to do (said on stdout). Throws `ConfigError` when
-/// another run is there and `force` is off.
-bool prepare_directory(RunDirectory& directory, bool force);
+/// What a run finds to do.
+struct RunStart {
+  bool needed = true;   // false: the same run is complete (said on stdout)
+  Tick first_tick = 0;  // > 0: an earlier run of the same was cut short here
+};
+
+/// Decides what a run does with its directory: goes on with the same run if it was cut short, else
+/// clears it. Throws `ConfigError` when another run is there and `force` is off.
+RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bool force);
 
 /// Merges the lines, writes run.json and index.html and prints the summary; throws `ExitWith` or
 /// the failure itself unless the run is complete.

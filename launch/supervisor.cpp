@@ -22,10 +22,11 @@ using Milliseconds = std::chrono::milliseconds;
 
 /// In the child: becomes the program, or tells `report` why not.
 [[noreturn]] void become(const std::vector<std::string>& arguments, const std::string& log_path,
-                         pid_t parent, int report) {
+                         bool keep_log, pid_t parent, int report) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(1);
-  const int log = open(log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND, 0644);
+  const int log =
+      open(log_path.c_str(), O_WRONLY | O_CREAT | O_APPEND | (keep_log ? 0 : O_TRUNC), 0644);
   const int in = open("/dev/null", O_RDONLY);
   if (log >= 0 && in >= 0) {
     dup2(in, STDIN_FILENO);
@@ -47,6 +48,36 @@ Supervisor::~Supervisor() { stop(Milliseconds(1000)); }
 
 void Supervisor::start(const std::string& name, const std::vector<std::string>& arguments,
                        const std::string& log_path) {
+  children_.push_back({.name = name,
+                       .arguments = arguments,
+                       .pid = spawn(name, arguments, log_path, false),
+                       .exit_code = std::nullopt,
+                       .log_path = log_path});
+}
+
+const Child* Supervisor::find(const std::string& name) const {
+  for (const auto& child : children_)
+    if (child.name == name) return &child;
+  return nullptr;
+}
+
+void Supervisor::restart(const std::string& name) {
+  for (std::size_t i = 0; i < children_.size(); ++i) {
+    Child& child = children_[i];
+    if (child.name != name) continue;
+    if (!child.exit_code) {
+      kill(child.pid, SIGKILL);
+      waitpid(child.pid, nullptr, 0);
+    }
+    child.exit_code.reset();
+    if (first_failure_ == i) first_failure_.reset();
+    child.pid = spawn(name, child.arguments, child.log_path, true);
+    ++child.starts;
+  }
+}
+
+pid_t Supervisor::spawn(const std::string& name, const std::vector<std::string>& arguments,
+                        const std::string& log_path, bool keep_log) {
   int report[2];
   if (pipe2(report, O_CLOEXEC) != 0) throw Error(name + ": no pipe: " + std::strerror(errno));
   const pid_t parent = getpid();
@@ -57,7 +88,7 @@ void Supervisor::start(const std::string& name, const std::vector<std::string>& 
     close(report[1]);
     throw Error(name + ": can't start a process: " + std::strerror(reason));
   }
-  if (pid == 0) become(arguments, log_path, parent, report[1]);
+  if (pid == 0) become(arguments, log_path, keep_log, parent, report[1]);
   close(report[1]);
   int reason = 0;
   ssize_t got = 0;
@@ -69,7 +100,7 @@ void Supervisor::start(const std::string& name, const std::vector<std::string>& 
     waitpid(pid, nullptr, 0);
     throw Error(arguments[0] + ": can't be started: " + std::strerror(reason));
   }
-  children_.push_back({name, pid, std::nullopt, log_path});
+  return pid;
 }
 
 bool Supervisor::poll() {

@@ -11,7 +11,9 @@ namespace dmise {
 /// A child process and how it ended.
 struct Child {
   std::string name;
+  std::vector<std::string> arguments;
   pid_t pid = 0;
+  int starts = 1;
   std::optional<int> exit_code;  // 128 + signal when killed by one
   std::string log_path;          // what it wrote to stderr
 };
@@ -29,16 +31,25 @@ class Supervisor {
   void start(const std::string& name, const std::vector<std::string>& arguments,
              const std::string& log_path);
 
+  /// Starts a child that has ended, or kills one that has not and starts it, once more. Its log
+  /// goes on.
+  void restart(const std::string& name);
+
   /// Takes note of who has ended. True while somebody runs.
   bool poll();
   /// SIGTERM to all that run; SIGKILL to those that still do `patience` later.
   void stop(std::chrono::milliseconds patience);
 
   const std::vector<Child>& children() const { return children_; }
+  /// Null when there is no child of that name.
+  const Child* find(const std::string& name) const;
   /// The first child seen to end with a code other than 0.
   const Child* first_failure() const;
 
  private:
+  pid_t spawn(const std::string& name, const std::vector<std::string>& arguments,
+              const std::string& log_path, bool keep_log);
+
   std::vector<Child> children_;
   std::optional<std::size_t> first_failure_;
 };

@@ -18,6 +18,7 @@ class OrbitActor : public Actor {
   std::string name() const override { return "orbit-node"; }
   std::vector<std::string> produces() const override { return {objects_topic}; }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
+  std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
   std::uint64_t progress() const override { return steps_; }
 
   /// Calls `tell` with one line for each object that has no state, at the first tick where that is

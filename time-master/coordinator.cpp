@@ -159,6 +159,7 @@ void Coordinator::done(const std::string& name, TickTally tally, Instant now) {
 
 /// False when a tick that is done again is not what it was: then the run has failed.
 bool Coordinator::notes(Member& member, TickTally tally) {
+  tally.incarnation = member.incarnation;
   const auto at = std::lower_bound(member.said.begin(), member.said.end(), tally.tick,
                                    [](const TickTally& t, Tick tick) { return t.tick < tick; });
   if (at == member.said.end() || at->tick != tally.tick) {

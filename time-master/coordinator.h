@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/sim/topic_graph.h"
 #include "time-master/pace.h"
 #include "time-master/tally.h"
-#include "time-master/topic_graph.h"
 
 namespace dmise {
 

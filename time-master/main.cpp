@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
   dmise::MasterOptions options;
   dmise::Tick ticks = 1;
   std::string report;
-  double silent_after_s = 5.0, progress_after_s = 0.0, start_within_s = 0.0;
+  double silent_after_s = 5.0, progress_after_s = 0.0, start_within_s = 0.0, rejoin_within_s = 0.0;
   CLI::App app("Keeps the clock of one run.", "dmise-time-master");
   dmise::add_common_flags(app, flags);
   app.add_option("--bind", options.address, "the address that everybody must know; port 0: any")
@@ -47,13 +47,27 @@ int main(int argc, char** argv) {
                                                             {"wait", dmise::SilentPolicy::wait},
                                                             {"drop", dmise::SilentPolicy::drop}};
   app.add_option("--on-silent", options.run.on_silent,
-                 "what a lost node means: fail, wait or drop (go on without it)")
+                 "what a lost node means: fail, wait (for it, or another process of its name) or "
+                 "drop (go on without it)")
       ->transform(CLI::CheckedTransformer(policies));
+  app.add_option("--rejoin-within", rejoin_within_s,
+                 "longest wait for a lost node [s]; 0: no limit")
+      ->capture_default_str();
+  app.add_option("--max-rejoins", options.run.max_rejoins,
+                 "processes that may follow the first of a name; -1: any number")
+      ->capture_default_str();
+  app.add_option("--first-tick", options.run.first_tick,
+                 "tick to start at: goes on with a run that was interrupted")
+      ->capture_default_str();
+  app.add_option("--real-time", options.run.pace.factor,
+                 "simulated seconds a second; 0: as fast as possible")
+      ->capture_default_str();
   return dmise::run_program(app, flags, argc, argv, [&] {
     options.run.last_tick = ticks - 1;
     options.run.silent_after = from_seconds(silent_after_s);
     options.run.progress_after = from_seconds(progress_after_s);
     options.run.start_within = from_seconds(start_within_s);
+    options.run.rejoin_within = from_seconds(rejoin_within_s);
     options.stop = &dmise::stop_signal();
     if (flags.check) return dmise::Coordinator(options.run).over() ? 1 : 0;
     const dmise::MasterResult result = dmise::run_master(options);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/fold_digest.h"
 #include "core/base/sim_time.h"
 
 namespace dmise {
@@ -24,12 +25,7 @@ struct TopicTally {
 struct TickTally {
   Tick tick = 0;
   std::vector<TopicTally> topics;  // in the order of the node's list
+  std::uint64_t incarnation = 0;   // of the process that said so
 };
-
-/// Joins a value into a running 64-bit digest. Tells runs apart; no defence against forgery.
-constexpr std::uint64_t fold_digest(std::uint64_t digest, std::uint64_t value) {
-  digest = (digest ^ value) * 0x9e3779b97f4a7c15;  // 2^64 / golden ratio: spreads every bit upwards
-  return digest ^ (digest >> 29);
-}
 
 }  // namespace dmise

@@ -206,12 +206,15 @@ void read_network(const YamlValue& value, NetworkConfig& network) {
   YamlMap map(value);
   network.window_ticks = static_cast<int>(map.integer_or("window_ticks", 4, 1, 10000));
   if (const auto policy = map.find("on_silent_node")) {
-    const std::string name = policy->choice({"fail", "wait", "drop"});
+    const std::string name = policy->choice({"fail", "wait", "drop", "restart"});
     network.on_silent_node = name == "fail"   ? OnSilentNode::fail
                              : name == "wait" ? OnSilentNode::wait
-                                              : OnSilentNode::drop;
+                             : name == "drop" ? OnSilentNode::drop
+                                              : OnSilentNode::restart;
   }
   network.silent_after_s = map.number_or("silent_after_s", 5.0, Bounds::between(0.1, 3600.0));
+  network.restarts = static_cast<int>(map.integer_or("restarts", 5, 1, 1000000));
+  network.real_time = map.number_or("real_time", 0.0, Bounds::between(0.0, 1e6));
   network.join_within_s = map.number_or("join_within_s", 30.0, Bounds::between(0.1, 86400.0));
   map.done();
 }

@@ -77,7 +77,7 @@ struct SensorConfig {
   EffectSet effects;
 };
 
-enum class OnSilentNode { fail, wait, drop };
+enum class OnSilentNode { fail, wait, drop, restart };
 
 /// How often the environment is told [s]; rounded up to whole ticks.
 struct EnvironmentConfig {
@@ -90,6 +90,8 @@ struct NetworkConfig {
   OnSilentNode on_silent_node = OnSilentNode::fail;
   double silent_after_s = 5.0;
   double join_within_s = 30.0;
+  int restarts = 5;        // of each node, under `restart`
+  double real_time = 0.0;  // simulated seconds a second; 0: as fast as possible
 };
 
 /// What a sensor writes of every frame.

@@ -5,6 +5,8 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/sim/said_once.h"
+#include "core/sim/topic_graph.h"
 
 namespace dmise {
 namespace {
@@ -43,17 +45,58 @@ std::vector<std::unique_ptr<Participant>> in_running_order(
 SimulationController::SimulationController(std::vector<std::unique_ptr<Participant>> participants)
     : participants_(in_running_order(std::move(participants))) {}
 
-void SimulationController::run(Tick last, const std::function<bool(Tick)>& after_tick) {
-  for (Tick tick = 0; tick <= last; ++tick) {
-    std::map<std::string, std::vector<Message>> published;
-    for (const auto& participant : participants_) {
-      std::vector<Message> inputs;
-      for (const auto& topic : participant->consumes())
-        inputs.insert(inputs.end(), published[topic].begin(), published[topic].end());
-      for (auto& message : participant->step(tick, inputs))
-        published[message.topic].push_back(std::move(message));
+void SimulationController::run(Tick last, const std::function<bool(Tick)>& after_tick, Tick first) {
+  std::vector<NodeTopics> nodes;
+  for (const auto& p : participants_)
+    nodes.push_back({p->name(), p->produces(), p->consumes(), p->look_back(), p->schedule()});
+  const auto history = history_ticks(nodes);
+  const auto starts_at = [&](const NodeTopics& node) {
+    return std::max<Tick>(0, first - history.at(node.name));
+  };
+  Tick tick = first;
+  for (const NodeTopics& node : nodes) tick = std::min(tick, starts_at(node));
+
+  std::vector<std::map<std::string, std::vector<Message>>> waiting(nodes.size());  // by topic
+  for (; tick <= last; ++tick) {
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const NodeTopics& node = nodes[i];
+      const Tick start = starts_at(node);
+      const auto take = [&] {
+        std::vector<Message> inputs;
+        for (const auto& topic : node.consumes) {
+          auto& messages = waiting[i][topic];
+          // What is left of ticks that nobody looks back to.
+          const Tick needed = start - node.look_back - (node.schedule.period - 1);
+          std::erase_if(messages,
+                        [&](const Message& m) { return m.tick < needed && !said_once(*m.state); });
+          std::move(messages.begin(), messages.end(), std::back_inserter(inputs));
+          messages.clear();
+        }
+        return inputs;
+      };
+      if (tick < start) continue;
+      std::vector<Message> outputs;
+      if (tick == start && first > 0) {
+        std::map<std::string, std::vector<Message>> now;  // this tick's are not past
+        for (auto& [topic, messages] : waiting[i]) {
+          const auto at = std::stable_partition(messages.begin(), messages.end(),
+                                                [&](const Message& m) { return m.tick < tick; });
+          now[topic].assign(at, messages.end());
+          messages.erase(at, messages.end());
+        }
+        outputs = participants_[i]->resume(tick, take());
+        waiting[i] = std::move(now);
+      }
+      if (node.schedule.due(tick))
+        for (auto& message : participants_[i]->step(tick, take()))
+          outputs.push_back(std::move(message));
+      for (const auto& message : outputs)
+        for (std::size_t other = 0; other < nodes.size(); ++other)
+          if (std::find(nodes[other].consumes.begin(), nodes[other].consumes.end(),
+                        message.topic) != nodes[other].consumes.end())
+            waiting[other][message.topic].push_back(message);
     }
-    if (!after_tick(tick)) return;
+    if (tick >= first && !after_tick(tick)) return;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/sim/message.h"
+#include "core/sim/schedule.h"
 
 namespace dmise {
 
@@ -18,9 +19,23 @@ class Participant {
   virtual std::vector<std::string> produces() const = 0;  // topics, whole names
   virtual std::vector<std::string> consumes() const = 0;  // topics, whole names
 
-  /// The work of one tick. `inputs`: all messages of the consumed topics for this tick, ordered by
+  /// The ticks at which it works; `step` is called for no other.
+  virtual Schedule schedule() const { return {}; }
+
+  /// The work of one tick. `inputs`: all messages of the consumed topics since the last step, ordered by
   /// (place of the topic in consumes(), order of publication). Returns what is published.
   virtual std::vector<Message> step(Tick tick, std::span<const Message> inputs) = 0;
+
+  /// Ticks before the one at which it resumes whose inputs it needs to go on as if nothing had happened.
+  virtual Tick look_back() const { return 0; }
+
+  /// Takes up the work of an earlier process: the next `step` is that of `tick` or the first of its
+  /// schedule after. `past`: what was consumed in the look_back() ticks before, and what was said once
+  /// and for all. Returns what it has said once and for all itself (a roster), to be published again.
+  virtual std::vector<Message> resume(Tick tick, std::span<const Message> past) {
+    static_cast<void>(tick), static_cast<void>(past);
+    return {};
+  }
 
   /// How far the work of the current tick is, for the progress deadline: any number that grows. Called
   /// from another thread than `step`.

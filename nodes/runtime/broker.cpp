@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "nodes/runtime/master.h"
 #include "nodes/runtime/master_link.h"
+#include "nodes/runtime/status.h"
 
 namespace dmise {
 namespace {
@@ -34,6 +35,25 @@ int pass(zmq::socket_t& from, zmq::socket_t& to) {
   return messages;
 }
 
+/// Where an earlier broker of this run was bound, so that nobody has to look for the new one.
+BrokerEndpoints earlier_broker(const BrokerOptions& options) {
+  try {
+    return ask_master(options.master, std::min(options.join_within_s, 2.0)).broker;
+  } catch (const Error&) {
+    return {};  // the master is starting; joining will tell
+  }
+}
+
+std::string bind_again(zmq::socket_t& socket, const std::string& earlier,
+                       const std::string& configured) {
+  if (!earlier.empty()) try {
+      return bind_to(socket, earlier);
+    } catch (const Error&) {
+      // Taken by somebody else: all will be told the new address.
+    }
+  return bind_to(socket, configured);
+}
+
 void serve(const BrokerOptions& options, BrokerResult* result) {
   zmq::context_t context(1);
   zmq::socket_t publishers = make_socket(context, zmq::socket_type::xsub, max_data_bytes);
@@ -43,12 +63,13 @@ void serve(const BrokerOptions& options, BrokerResult* result) {
   // The limit on a queue is that of the moment when its endpoint is bound.
   v1::Join join;
   join.set_name(broker_name);
+  const BrokerEndpoints earlier = earlier_broker(options);
   auto* endpoints = join.mutable_broker();
   subscribers.set(zmq::sockopt::sndhwm, options.observer_queue);
-  endpoints->set_observe_endpoint(bind_to(subscribers, options.observe));
+  endpoints->set_observe_endpoint(bind_again(subscribers, earlier.observe, options.observe));
   subscribers.set(zmq::sockopt::sndhwm, 0);
-  endpoints->set_subscribe_endpoint(bind_to(subscribers, options.subscribe));
-  endpoints->set_publish_endpoint(bind_to(publishers, options.publish));
+  endpoints->set_subscribe_endpoint(bind_again(subscribers, earlier.subscribe, options.subscribe));
+  endpoints->set_publish_endpoint(bind_again(publishers, earlier.publish, options.publish));
 
   MasterLink link(context, options.master, options.stop);
   link.join(join, duration_cast<nanoseconds>(duration<double>(options.join_within_s)));

@@ -102,7 +102,7 @@ void Keeper::answer() {
     if (message.size() != 2 || !from_frame(message[1], &request) ||
         request.run_id() != options_.run_id)
       continue;
-    for (const SharedFrames& frames : options_.resend(request.topic(), request.from_sequence()))
+    for (const SharedFrames& frames : options_.resend(request))
       send(*resend_, frames, message[0].to_string_view());
   }
 }

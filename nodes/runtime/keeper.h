@@ -5,6 +5,7 @@
 #include <optional>
 #include <thread>
 
+#include "dmise/v1/node.pb.h"
 #include "dmise/v1/time.pb.h"
 #include "nodes/runtime/event.h"
 #include "nodes/runtime/outbox.h"
@@ -24,7 +25,7 @@ struct KeeperOptions {
                                             // run or `stop` ends the process; 0: never
   const Event* stop = nullptr;              // may be null
   std::function<std::uint64_t()> progress;  // of the step; called from the keeper's thread
-  std::function<std::vector<SharedFrames>(const std::string&, std::uint64_t)> resend;
+  std::function<std::vector<SharedFrames>(const v1::ResendRequest&)> resend;
 };
 
 /// A node's second thread: tells the master that the process lives and how far its step is, hears

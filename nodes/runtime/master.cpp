@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text_file.h"
+#include "nodes/runtime/master_words.h"
 #include "nodes/runtime/peer_directory.h"
 #include "nodes/runtime/peer_monitor.h"
 #include "nodes/runtime/socket.h"
@@ -33,25 +34,10 @@ std::uint64_t new_run_id() {
   return id;
 }
 
-v1::Phase to_wire(Phase phase) {
-  switch (phase) {
-    case Phase::gathering:
-      return v1::PHASE_GATHERING;
-    case Phase::connecting:
-      return v1::PHASE_CONNECTING;
-    case Phase::running:
-      return v1::PHASE_RUNNING;
-    case Phase::ended:
-      return v1::PHASE_ENDED;
-    case Phase::failed:
-      break;
-  }
-  return v1::PHASE_FAILED;
-}
-
 CoordinatorOptions with_broker(const MasterOptions& options) {
   CoordinatorOptions run = options.run;
   if (run.expected.empty()) throw ConfigError("expect: must name a node");
+  run.pace.tick_length = options.tick_length;
   if (options.with_broker) run.expected.insert(run.expected.begin(), broker_name);
   return run;
 }
@@ -79,10 +65,12 @@ class Master {
     auto next_check = now();
     std::optional<nanoseconds> over_since;
     while (true) {
-      wait(next_check - now());
+      wait(std::min(next_check, coordinator_.next_due().value_or(next_check)) - now());
       for (const std::string& name : connections_.lost()) coordinator_.suspect(name, now());
       hear();
       if (options_.stop && options_.stop->is_set()) coordinator_.stop("interrupted");
+      const auto due = coordinator_.next_due();
+      if (due && now() >= *due) coordinator_.check(now());
       if (now() >= next_check) {
         coordinator_.check(now());
         complain();
@@ -90,7 +78,9 @@ class Master {
         next_check = now() + (connecting ? connecting_interval : check_interval);
         if (connecting || coordinator_.over()) publish();
       }
-      if (coordinator_.phase() != phase_ || coordinator_.granted() != granted_) advance();
+      if (coordinator_.phase() != phase_ || coordinator_.granted() != granted_ ||
+          coordinator_.topology_version() != topology_version_ || !fresh_.published().empty())
+        advance();
       if (!coordinator_.over()) continue;
       if (!over_since) over_since = now();
       // Of a failure, the heartbeat of a node that hangs hears as well.
@@ -123,22 +113,24 @@ class Master {
   void hear() {
     for (auto message = receive(router_); !message.empty(); message = receive(router_)) {
       if (message.size() != 2 || !from_frame(message[1], &heard_)) continue;
-      const bool before_welcome = heard_.has_hello() || heard_.has_join();
+      const bool before_welcome = heard_.has_hello() || heard_.has_join() || heard_.has_control();
       if (!before_welcome && heard_.run_id() != run_id_) continue;
       const std::string_view sender = message[0].to_string_view();
+      const std::string& name = directory_.name_of(sender);
       if (heard_.has_done()) {
-        coordinator_.done(directory_.name_of(sender), heard_.done().tick(), now());
+        done(name);
       } else if (heard_.has_heartbeat()) {
         heartbeat(sender, message[1]);
       } else if (heard_.has_join()) {
         join(sender, message[1]);
       } else if (heard_.has_ready()) {
-        coordinator_.ready(directory_.name_of(sender), now());
+        coordinator_.ready(name, now());
       } else if (heard_.has_leave()) {
-        leave(directory_.name_of(sender));
+        leave(name);
       } else if (heard_.has_failed()) {
-        coordinator_.fail(directory_.name_of(sender), heard_.failed().reason());
-      } else if (heard_.has_hello()) {
+        coordinator_.fail(name, heard_.failed().reason());
+      } else if (heard_.has_hello() || heard_.has_control()) {
+        if (heard_.has_control()) control();
         v1::MasterMessage answer;
         fill(answer.mutable_endpoints());
         reply(sender, answer);
@@ -146,15 +138,24 @@ class Master {
     }
   }
 
+  void done(const std::string& name) {
+    coordinator_.done(name, tally_of(heard_.done()), now());
+    if (heard_.done().published().empty()) return;
+    const auto member = coordinator_.members().find(name);
+    if (member == coordinator_.members().end() || member->second.observer) return;
+    TickTally tally = tally_of(heard_.done());
+    tally.incarnation = member->second.incarnation;
+    add_published(&fresh_, consumed_, tally);
+  }
+
+  void control() {
+    spdlog::info("asked to {}", v1::Control::Action_Name(heard_.control().action()));
+    apply(heard_.control(), coordinator_, now());
+  }
+
   void join(std::string_view sender, zmq::message_t& frame) {
     const v1::Join& join = heard_.join();
-    Coordinator::Request request;
-    request.node = {join.name(),
-                    {join.produces().begin(), join.produces().end()},
-                    {join.consumes().begin(), join.consumes().end()}};
-    request.node.produces.insert(request.node.produces.end(), join.produces_direct().begin(),
-                                 join.produces_direct().end());
-    request.keeps_time = !join.has_broker();
+    const Coordinator::Request request = request_of(join);
     v1::MasterMessage answer;
     const bool is_broker = join.name() == broker_name;
     const auto refusal = join.has_broker() == is_broker
@@ -166,11 +167,12 @@ class Master {
       spdlog::warn("refused {}: {}", join.name(), *refusal);
       return;
     }
-    const Peer& peer = directory_.add(sender, join);
+    const std::uint64_t incarnation = coordinator_.members().at(join.name()).incarnation;
+    directory_.add(sender, incarnation, join);
     connections_.belongs(frame, join.name());
     auto* welcome = answer.mutable_welcome();
     welcome->set_run_id(run_id_);
-    welcome->set_incarnation(peer.incarnation);
+    welcome->set_incarnation(incarnation);
     welcome->set_tick_ns(options_.tick_length.ns);
     welcome->set_last_tick(options_.run.last_tick);
     welcome->set_window_ticks(std::uint32_t(options_.run.window_ticks));
@@ -179,24 +181,42 @@ class Master {
     welcome->set_tick_endpoint(tick_endpoint_);
     reply(sender, answer);
     const auto missing = coordinator_.missing();
-    spdlog::info("{} joined{}", join.name(),
+    spdlog::info("{} joined{}{}", join.name(),
+                 incarnation == 1 ? "" : fmt::format(", process {} of its name", incarnation),
                  missing.empty() ? "" : "; waiting for " + joined(missing));
   }
 
   void heartbeat(std::string_view sender, zmq::message_t& frame) {
     const auto& heartbeat = heard_.heartbeat();
-    if (!directory_.find(heartbeat.name(), heartbeat.incarnation())) return;
+    v1::MasterMessage answer;
+    const auto member = coordinator_.members().find(heartbeat.name());
+    if (!directory_.find(heartbeat.name(), heartbeat.incarnation())) {
+      if (directory_.knows(heartbeat.name()))
+        reply(sender, expelled("another process has taken the name " + heartbeat.name()));
+      return;
+    }
     connections_.belongs(frame, heartbeat.name());
     coordinator_.heartbeat(heartbeat.name(), heartbeat.computing(), heartbeat.progress(), now());
     times_[heartbeat.name()] = take(heartbeat.times());
+    if (member == coordinator_.members().end() || member->second.dropped)
+      return reply(sender, expelled("the run goes on without " + heartbeat.name()));
+    *answer.mutable_grant() = grant();
+    const auto& needs = member->second.node.consumes;
+    const std::set<std::string, std::less<>> wanted(needs.begin(), needs.end());
+    for (const auto& [name, other] : coordinator_.members())
+      for (const TickTally& tally : other.said)
+        if (tally.incarnation == other.incarnation)
+          add_published(answer.mutable_grant(), wanted, tally);
+    reply(sender, answer);
+  }
+
+  /// The run's last word to a process that is no longer part of it.
+  v1::MasterMessage expelled(const std::string& cause) {
     v1::MasterMessage answer;
     *answer.mutable_grant() = grant();
-    const auto member = coordinator_.members().find(heartbeat.name());
-    if (member == coordinator_.members().end() || member->second.dropped) {
-      answer.mutable_grant()->set_phase(v1::PHASE_FAILED);
-      answer.mutable_grant()->set_cause("the run goes on without " + heartbeat.name());
-    }
-    reply(sender, answer);
+    answer.mutable_grant()->set_phase(v1::PHASE_FAILED);
+    answer.mutable_grant()->set_cause(cause);
+    return answer;
   }
 
   void leave(const std::string& name) {
@@ -217,8 +237,8 @@ class Master {
     const Phase before = phase_;
     phase_ = coordinator_.phase();
     granted_ = coordinator_.granted();
+    if (coordinator_.topology_version() != topology_version_) send_topology();
     if (phase_ != before) {
-      if (phase_ == Phase::connecting) send_topology();
       if (phase_ == Phase::running) started_ = now();
       if (before == Phase::running) ended_ = now();
       if (phase_ == Phase::failed) spdlog::error("{}", coordinator_.cause());
@@ -227,7 +247,12 @@ class Master {
     publish();
   }
 
-  void publish() { ticks_.send(to_frame(grant()), zmq::send_flags::none); }
+  void publish() {
+    grant();
+    grant_.mutable_published()->Swap(fresh_.mutable_published());
+    fresh_.clear_published();
+    ticks_.send(to_frame(grant_), zmq::send_flags::none);
+  }
 
   const v1::Grant& grant() {
     grant_.Clear();
@@ -251,30 +276,25 @@ class Master {
   }
 
   void send_topology() {
-    v1::MasterMessage message;
-    *message.mutable_topology() = directory_.topology();
-    for (const auto& [name, peer] : directory_.all()) reply(peer.routing_id, message);
+    topology_version_ = coordinator_.topology_version();
+    consumed_ = directory_.consumed();
+    const v1::Topology topology = directory_.topology();
+    for (const auto& [name, peer] : directory_.all()) {
+      v1::MasterMessage message;
+      *message.mutable_topology() = topology_for(name, topology, coordinator_);
+      reply(peer.routing_id, message);
+    }
   }
 
   void fill(v1::Endpoints* endpoints) const {
     endpoints->set_run_id(run_id_);
-    endpoints->set_phase(to_wire(coordinator_.phase()));
-    endpoints->set_cause(coordinator_.cause());
-    endpoints->set_granted_tick(coordinator_.granted());
-    endpoints->set_last_tick(options_.run.last_tick);
     endpoints->set_tick_ns(options_.tick_length.ns);
     endpoints->set_tick_endpoint(tick_endpoint_);
     directory_.describe(endpoints);
-    for (const auto& [name, member] : coordinator_.members()) {
-      auto* node = endpoints->add_nodes();
-      node->set_name(name);
-      node->set_done_tick(member.done);
-      node->set_alive(member.active() && !member.silent);
-      const auto times = times_.find(name);
-      if (times != times_.end()) put(node->mutable_times(), times->second);
-    }
-    for (const std::string& name : coordinator_.missing()) endpoints->add_missing(name);
-    for (const std::string& name : coordinator_.holding()) endpoints->add_holding(name);
+    describe(endpoints, coordinator_);
+    for (auto& node : *endpoints->mutable_nodes())
+      if (const auto times = times_.find(node.name()); times != times_.end())
+        put(node.mutable_times(), times->second);
   }
 
   /// Names whom everybody waits for when nothing has moved for a while.
@@ -285,21 +305,29 @@ class Master {
       complained_about_ = state;
       quiet_since_ = now();
     } else if (now() - quiet_since_ >= complain_interval) {
-      spdlog::info("tick {} of {}: waiting for {}", coordinator_.granted(), options_.run.last_tick,
-                   joined(coordinator_.holding()));
+      const auto& pace = coordinator_.pace();
+      spdlog::info("tick {} of {}: {}", coordinator_.granted(), options_.run.last_tick,
+                   !coordinator_.holding().empty() ? "waiting for " + joined(coordinator_.holding())
+                   : pace.paused()                 ? std::string("paused")
+                                                   : std::string("real time holds the clock"));
       quiet_since_ = now();
     }
   }
 
   MasterResult result() const {
     MasterResult result;
-    result.exit_code = coordinator_.phase() == Phase::ended ? 0 : 1;
     result.reason = coordinator_.cause();
+    result.exit_code = coordinator_.phase() == Phase::ended && result.reason.empty() ? 0 : 1;
+    result.digest = coordinator_.digest();
+    result.overruns = coordinator_.pace().overruns();
+    result.worst_lag_s = as_seconds(coordinator_.pace().worst_lag());
     result.granted = coordinator_.granted();
     if (started_) result.wall_s = as_seconds(ended_.value_or(now()) - *started_);
     result.times = times_;
     for (const auto& [name, member] : coordinator_.members())
       if (member.dropped) result.dropped.push_back(name);
+    for (const auto& [name, member] : coordinator_.members())
+      if (member.incarnation > 1) result.restarts[name] = int(member.incarnation) - 1;
     return result;
   }
 
@@ -316,7 +344,10 @@ class Master {
   std::map<std::string, TimeSplit> times_;
   v1::NodeMessage heard_;
   v1::Grant grant_;
-  Phase phase_ = Phase::gathering;  // as last told
+  v1::Grant fresh_;                              // `published` that has not been told yet
+  std::set<std::string, std::less<>> consumed_;  // topics that somebody consumes
+  std::uint64_t topology_version_ = 0;           // as last told
+  Phase phase_ = Phase::gathering;               // as last told
   Tick granted_ = -1;
   std::optional<nanoseconds> started_, ended_;
   std::pair<Tick, std::vector<std::string>> complained_about_;

@@ -58,9 +58,16 @@ void MasterLink::ready() {
   tell(message);
 }
 
-void MasterLink::done(Tick tick) {
+void MasterLink::done(const TickTally& tally) {
   v1::NodeMessage message;
-  message.mutable_done()->set_tick(tick);
+  message.mutable_done()->set_tick(tally.tick);
+  for (const TopicTally& topic : tally.topics) {
+    auto* published = message.mutable_done()->add_published();
+    published->set_topic(topic.topic);
+    published->set_messages(topic.messages);
+    published->set_last_sequence(topic.last_sequence);
+    published->set_digest(topic.digest);
+  }
   tell(message);
 }
 
@@ -110,8 +117,10 @@ void MasterLink::hear_control() {
     if (!from_frame(*frame, &message)) continue;
     if (message.has_welcome() || message.has_refuse())
       answer_ = message;
-    else if (message.has_topology())
+    else if (message.has_topology()) {
       topology_ = message.topology();
+      ++topology_version_;
+    }
   }
 }
 
@@ -123,6 +132,7 @@ void MasterLink::take(const v1::Grant& grant) {
     if (later) phase_ = grant.phase();
     if (phase_ == v1::PHASE_FAILED) cause_ = grant.cause();
   }
+  published_.insert(published_.end(), grant.published().begin(), grant.published().end());
   if (std::size_t(grant.closed_size()) > closed_.size())
     closed_.assign(grant.closed().begin(), grant.closed().end());
 }

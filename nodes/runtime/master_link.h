@@ -1,11 +1,13 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dmise/v1/node.pb.h"
 #include "dmise/v1/time.pb.h"
 #include "nodes/runtime/keeper.h"
+#include "time-master/tally.h"
 
 namespace dmise {
 
@@ -26,7 +28,7 @@ class MasterLink {
   void set_times(const TimeSplit& times) { keeper_->set_times(times); }
 
   void ready();
-  void done(Tick tick);
+  void done(const TickTally& tally);
   void leave(bool interrupted, const TimeSplit& times);
   void failed(const std::string& reason);
 
@@ -42,7 +44,12 @@ class MasterLink {
   bool stopped() const { return stop_ && stop_->is_set(); }
   /// A grant came over the published channel: none will be missed.
   bool hears_ticks() const { return hears_ticks_; }
+  const std::string& name() const { return name_; }
   const std::optional<v1::Topology>& topology() const { return topology_; }
+  /// Grows with every topology heard.
+  std::uint64_t topology_version() const { return topology_version_; }
+  /// What publishers have told the master since the last call.
+  std::vector<v1::TopicTally> take_published() { return std::exchange(published_, {}); }
   const std::vector<v1::ClosedTopic>& closed() const { return closed_; }
 
  private:
@@ -63,7 +70,9 @@ class MasterLink {
   v1::Welcome welcome_;
   std::optional<v1::MasterMessage> answer_;  // to Join
   std::optional<v1::Topology> topology_;
+  std::uint64_t topology_version_ = 0;
   std::vector<v1::ClosedTopic> closed_;
+  std::vector<v1::TopicTally> published_;
   v1::Grant scratch_;
   Tick granted_ = -1;
   v1::Phase phase_ = v1::PHASE_GATHERING;

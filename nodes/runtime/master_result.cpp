@@ -1,5 +1,7 @@
 #include "nodes/runtime/master_result.h"
 
+#include <cstdio>
+
 #include "core/base/json.h"
 
 namespace dmise {
@@ -11,9 +13,16 @@ std::string to_json(const MasterResult& result) {
   json.field("cause", result.reason);
   json.field("granted_tick", std::int64_t(result.granted));
   json.field("wall_s", result.wall_s);
+  char digest[17];
+  std::snprintf(digest, sizeof digest, "%016llx", static_cast<unsigned long long>(result.digest));
+  json.field("digest", digest);
+  json.field("overruns", result.overruns).field("worst_lag_s", result.worst_lag_s);
   json.key("dropped").begin_array();
   for (const std::string& name : result.dropped) json.value(name);
   json.end_array();
+  json.key("restarts").begin_object();
+  for (const auto& [name, count] : result.restarts) json.field(name, std::int64_t(count));
+  json.end_object();
   json.key("nodes").begin_object();
   for (const auto& [name, times] : result.times) {
     json.key(name).begin_object();

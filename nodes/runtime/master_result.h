@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -16,9 +17,14 @@ struct MasterResult {
   double wall_s = 0.0;                     // from the first grant to the end
   std::map<std::string, TimeSplit> times;  // of each process, as of its last word
   std::vector<std::string> dropped;        // nodes that the run went on without
+  std::map<std::string, int> restarts;  // processes that followed the first, where there were any
+  std::uint64_t digest = 0;             // of all that was published; the same for the same run
+  std::uint64_t overruns = 0;           // of real time: ticks not over when the next was due
+  double worst_lag_s = 0.0;
 };
 
-/// One JSON object: status, cause, granted_tick, wall_s, dropped, and the time split of each node.
+/// One JSON object: status, cause, granted_tick, wall_s, digest, overruns, worst_lag_s, dropped,
+/// restarts, and the time split of each node.
 std::string to_json(const MasterResult& result);
 
 }  // namespace dmise

@@ -3,11 +3,10 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <map>
 
 #include "core/base/error.h"
-#include "nodes/runtime/inbox.h"
 #include "nodes/runtime/master_link.h"
+#include "nodes/runtime/node_inputs.h"
 
 namespace dmise {
 namespace {
@@ -18,9 +17,6 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 constexpr milliseconds probe_interval{10};
-constexpr milliseconds gap_patience{20};     // a later message is here: this one is late or lost
-constexpr milliseconds quiet_patience{500};  // nothing is here: the producer may be slow
-constexpr milliseconds quiet_patience_limit{8000};  // doubled each time up to this
 constexpr milliseconds idle{1000};
 
 bool is_direct(const std::string& topic) { return topic.starts_with(truth_prefix); }
@@ -41,15 +37,16 @@ class Node {
   Node(Participant& participant, const NodeOptions& options)
       : participant_(participant),
         options_(options),
+        schedule_(participant.schedule()),
         produces_(participant.produces()),
         consumes_(participant.consumes()),
         link_(control_context_, options.master, options.stop),
         publish_(make_socket(data_context_, zmq::socket_type::pub, max_data_bytes)),
         direct_(make_socket(data_context_, zmq::socket_type::pub, max_data_bytes)),
-        subscribe_(make_socket(data_context_, zmq::socket_type::sub, max_data_bytes)),
-        inbox_(consumes_) {
+        inputs_(data_context_, consumes_) {
     publish_.set(zmq::sockopt::linger, 1000);
     direct_.set(zmq::sockopt::linger, 1000);
+    inputs_.set_may_miss(options.observer);
   }
 
   void run(NodeResult* result) {
@@ -68,10 +65,14 @@ class Node {
  private:
   void join() {
     v1::Join request;
-    request.set_name(participant_.name());
+    request.set_name(options_.name.empty() ? participant_.name() : options_.name);
     for (const std::string& topic : produces_)
       *(is_direct(topic) ? request.add_produces_direct() : request.add_produces()) = topic;
     for (const std::string& topic : consumes_) request.add_consumes(topic);
+    request.set_observer(options_.observer);
+    request.set_look_back_ticks(std::uint64_t(participant_.look_back()));
+    request.set_period_ticks(std::uint64_t(schedule_.period));
+    request.set_offset_ticks(std::uint64_t(schedule_.offset));
     if (request.produces_direct_size() > 0)
       request.set_direct_endpoint(bind_to(direct_, options_.host));
     std::optional<zmq::socket_t> resend;
@@ -83,31 +84,43 @@ class Node {
     const auto within = duration_cast<nanoseconds>(duration<double>(options_.join_within_s));
     const v1::Welcome welcome = link_.join(request, within);
     run_ = {welcome.run_id(), {welcome.tick_ns()}, welcome.last_tick()};
-    receiver_.emplace(run_);
-    outbox_.emplace(run_, participant_.name(), welcome.incarnation(), produces_,
+    incarnation_ = welcome.incarnation();
+    result_->incarnation = incarnation_;
+    inputs_.start(run_);
+    outbox_.emplace(run_, request.name(), incarnation_, produces_,
                     Tick(welcome.window_ticks()) + 1);
     KeeperOptions keeper;
     keeper.stop_within = duration_cast<nanoseconds>(duration<double>(options_.stop_within_s));
     keeper.progress = [this] { return participant_.progress(); };
-    keeper.resend = [this](const std::string& topic, std::uint64_t from) {
-      return outbox_->since(topic, from);
+    keeper.resend = [this](const v1::ResendRequest& request) {
+      return request.catch_up() ? outbox_->catch_up(request.topic(), request.from_tick())
+                                : outbox_->since(request.topic(), request.from_sequence());
     };
     link_.keep(std::move(keeper), std::move(resend));
     spdlog::debug("joined {}", options_.master);
   }
 
-  /// Connects to everybody and waits for the first grant. False when the run is over before.
+  /// Connects to everybody and waits for the start, or catches up with a run that has started.
+  /// False when the run is over before.
   bool gather() {
     while (!link_.topology() && going()) link_.wait({}, idle);
     if (!going()) return false;
+    const v1::Topology first = *link_.topology();
+    resume_tick_ = first.resume_tick();
+    from_tick_ = first.from_tick();
+    for (const auto& publisher : first.publishers())
+      if (publisher.incarnation() == incarnation_ && publisher.name() == link_.name())
+        outbox_->keep(Tick(publisher.keep_ticks()));
     connect_data();
+    inputs_.begin_at(first_input(), first.running());
     const auto probes = outbox_->probes();
     bool said_ready = false;
-    while (link_.granted() < 0 && going()) {
+    while (link_.phase() != v1::PHASE_RUNNING && going()) {
       for (const SharedFrames& probe : probes) publish(probe);
-      link_.wait(sockets_, probe_interval);
+      link_.wait(inputs_.sockets(), probe_interval);
+      follow_topology();
       receive_data();
-      if (!said_ready && inbox_.probed() && link_.hears_ticks()) {
+      if (!said_ready && (inputs_.probed() || first.running()) && link_.hears_ticks()) {
         link_.ready();
         said_ready = true;
       }
@@ -115,110 +128,90 @@ class Node {
     return going();
   }
 
+  Tick first_input() const {
+    return std::max<Tick>(0, from_tick_ - participant_.look_back() - (schedule_.period - 1));
+  }
+
   void connect_data() {
     const v1::Topology& topology = *link_.topology();
-    const auto consumed = [&](const std::string& topic) {
-      return std::find(consumes_.begin(), consumes_.end(), topic) != consumes_.end();
-    };
-    bool through_broker = false;
-    for (const auto& publisher : topology.publishers()) {
-      bool direct = false, any = false;
-      const auto allow = [&](const std::string& topic) {
-        receiver_->allow(topic, publisher.name(), publisher.incarnation());
-        resend_of_[topic] = publisher.resend_endpoint();
-        any = true;
-      };
-      for (const std::string& topic : publisher.topics())
-        if (consumed(topic)) allow(topic), through_broker = true;
-      for (const std::string& topic : publisher.direct_topics())
-        if (consumed(topic)) allow(topic), direct = true;
-      if (direct) connect_to(subscribe_, publisher.direct_endpoint());
-    }
-    for (const std::string& topic : consumes_) subscribe_.set(zmq::sockopt::subscribe, topic);
-    if (through_broker) connect_to(subscribe_, topology.subscribe_endpoint());
-    if (!consumes_.empty()) sockets_.push_back(&subscribe_);
-    if (std::any_of(produces_.begin(), produces_.end(),
-                    [](const std::string& topic) { return !is_direct(topic); }))
-      connect_to(publish_, topology.publish_endpoint());
+    topology_version_ = link_.topology_version();
+    inputs_.connect(topology);
+    const bool through_broker =
+        std::any_of(produces_.begin(), produces_.end(),
+                    [](const std::string& topic) { return !is_direct(topic); });
+    if (!through_broker || topology.publish_endpoint() == publish_endpoint_) return;
+    if (!publish_endpoint_.empty()) publish_.disconnect(publish_endpoint_);
+    publish_endpoint_ = topology.publish_endpoint();
+    connect_to(publish_, publish_endpoint_);
+  }
+
+  void follow_topology() {
+    if (link_.topology_version() != topology_version_) connect_data();
   }
 
   void work() {
-    for (Tick tick = 0; tick <= run_.last_tick; ++tick) {
+    std::vector<Message> carried = take_up();  // published with the first step's
+    for (Tick tick = schedule_.next_after(from_tick_ - 1); tick <= run_.last_tick;
+         tick = schedule_.next_after(tick)) {
       if (!await(tick)) return;
-      const std::vector<Message> inputs = inbox_.take(tick);
-      std::vector<Message> outputs;
+      const std::vector<Message> inputs = inputs_.take(tick);
+      std::vector<Message> outputs = std::move(carried);
+      carried.clear();
+      for (Message& message : outputs) message.tick = tick;
       {
         const Stopwatch watch(&result_->times.compute_s);
         link_.set_computing(true);
-        outputs = participant_.step(tick, inputs);
+        for (Message& message : participant_.step(tick, inputs))
+          outputs.push_back(std::move(message));
         link_.set_computing(false);
       }
+      if (link_.stopped()) return;  // a step that was asked to stop may be half done
       const Stopwatch watch(&result_->times.messaging_s);
       for (const SharedFrames& frames : outbox_->pack(tick, outputs)) publish(frames);
-      link_.done(tick);
+      if (tick >= resume_tick_) link_.done(outbox_->tally());
       result_->done = tick;
       link_.set_times(result_->times);
     }
-    while (!link_.over() && !link_.stopped()) link_.wait({}, idle);
+    while (!link_.over() && !link_.stopped()) {
+      link_.wait({}, idle);
+      follow_topology();
+    }
+  }
+
+  /// After a restart, or where an earlier run stopped: gives the participant what it needs to go
+  /// on.
+  std::vector<Message> take_up() {
+    if (incarnation_ == 1 && from_tick_ == 0) return {};
+    std::vector<Message> past;
+    if (!consumes_.empty() && first_input() < from_tick_) {
+      if (!await(from_tick_ - 1)) return {};
+      past = inputs_.take(from_tick_ - 1);
+    }
+    spdlog::info("takes up its work at tick {}", from_tick_);
+    return participant_.resume(from_tick_, past);
   }
 
   /// Until the tick is granted and its inputs are here. False when the run is over.
   bool await(Tick tick) {
-    auto asked = now();
-    milliseconds quiet = quiet_patience;
+    inputs_.be_patient_again();
     while (going()) {
-      for (const auto& closed : link_.closed()) inbox_.close(closed.topic(), closed.from_tick());
-      const bool granted = link_.granted() >= tick;
-      if (granted && inbox_.complete(tick)) return true;
-      const auto wants = granted ? inbox_.wanted(tick) : std::vector<Inbox::Want>{};
-      const bool gap = std::any_of(wants.begin(), wants.end(), [](const auto& w) { return w.gap; });
-      const milliseconds patience = gap ? gap_patience : quiet;
-      if (!wants.empty() && now() - asked > patience) {
-        ask_again(wants);
-        asked = now();
-        if (!gap) quiet = std::min(2 * quiet, quiet_patience_limit);
-      }
+      follow_topology();
+      inputs_.hear(link_.closed(), link_.take_published());
+      const bool granted = link_.granted() >= tick || tick < resume_tick_;
+      if (granted && inputs_.complete(tick)) return true;
+      const nanoseconds patience = granted ? inputs_.ask_for(tick) : nanoseconds(idle);
       {
         const Stopwatch watch(&result_->times.waiting_s);
-        link_.wait(sockets_, wants.empty() ? idle : patience);
+        link_.wait(inputs_.sockets(), patience);
       }
       receive_data();
     }
     return false;
   }
 
-  void ask_again(const std::vector<Inbox::Want>& wants) {
-    for (const Inbox::Want& want : wants) {
-      const std::string& address = resend_of_[want.topic];
-      auto [socket, fresh] = askers_.try_emplace(address);
-      if (fresh) {
-        socket->second = make_socket(data_context_, zmq::socket_type::dealer, max_data_bytes);
-        connect_to(socket->second, address);
-        sockets_.push_back(&socket->second);
-      }
-      v1::ResendRequest request;
-      request.set_run_id(run_.run_id);
-      request.set_topic(want.topic);
-      request.set_from_sequence(want.from_sequence);
-      socket->second.send(to_frame(request), zmq::send_flags::none);
-      ++result_->asked_again;
-    }
-  }
-
   void receive_data() {
-    if (sockets_.empty()) return;
     const Stopwatch watch(&result_->times.messaging_s);
-    for (zmq::socket_t* socket : sockets_)
-      for (auto message = receive(*socket); !message.empty(); message = receive(*socket)) {
-        // A subscription also matches topics that only begin like it.
-        if (!resend_of_.contains(message[0].to_string_view())) continue;
-        if (const auto received = receiver_->receive(views(message)))
-          inbox_.accept(*received);
-        else
-          spdlog::warn("refused a message: {}", receiver_->last_refusal());
-      }
-    result_->refused = receiver_->refused();
-    result_->last_refusal = receiver_->last_refusal();
+    inputs_.receive();
   }
 
   void publish(const SharedFrames& frames) {
@@ -228,10 +221,14 @@ class Node {
   bool going() const { return !link_.over() && !link_.stopped(); }
 
   void finish() {
+    result_->refused = inputs_.refused();
+    result_->last_refusal = inputs_.last_refusal();
+    result_->asked_again = inputs_.asked_again();
+    result_->missed = inputs_.missed();
     const bool interrupted = link_.stopped() && link_.phase() != v1::PHASE_ENDED;
-    for (auto* socket : {&publish_, &direct_, &subscribe_}) socket->close();
-    sockets_.clear();
-    askers_.clear();
+    publish_.close();
+    direct_.close();
+    inputs_.close();
     data_context_.close();  // everything published is on its way before the node leaves
     link_.leave(interrupted, result_->times);
     if (link_.phase() == v1::PHASE_FAILED) throw Error(link_.cause());
@@ -241,17 +238,17 @@ class Node {
   Participant& participant_;
   const NodeOptions& options_;
   NodeResult* result_ = nullptr;
+  Schedule schedule_;
   std::vector<std::string> produces_, consumes_;
   zmq::context_t control_context_{1}, data_context_{1};
   std::optional<Outbox> outbox_;  // used by the link's keeper: outlives it
   MasterLink link_;
-  zmq::socket_t publish_, direct_, subscribe_;
-  std::map<std::string, zmq::socket_t> askers_;                // by resend endpoint
-  std::map<std::string, std::string, std::less<>> resend_of_;  // of each consumed topic
-  std::vector<zmq::socket_t*> sockets_;                        // that data arrive on
+  zmq::socket_t publish_, direct_;
+  std::string publish_endpoint_;
+  NodeInputs inputs_;
   RunFacts run_;
-  std::optional<Receiver> receiver_;
-  Inbox inbox_;
+  std::uint64_t incarnation_ = 1, topology_version_ = 0;
+  Tick resume_tick_ = 0, from_tick_ = 0;
 };
 
 }  // namespace

@@ -13,6 +13,8 @@ struct NodeOptions {
   double join_within_s = 30.0;             // longest wait for the master's first answer
   double stop_within_s = 0.0;              // > 0: a step that is not over so long after the run or
                                            // `stop` ends the process
+  std::string name;                        // in the run; empty: the participant's
+  bool observer = false;                   // joins and leaves at any time, holds nobody's time
   Event* stop = nullptr;                   // asks the node to leave; see stop_signal()
 };
 
@@ -24,6 +26,8 @@ struct NodeResult {
   std::uint64_t refused = 0;  // messages that failed a check
   std::string last_refusal;
   std::uint64_t asked_again = 0;  // requests for messages that were missing
+  std::uint64_t missed = 0;       // messages that nobody kept any more; of an observer
+  std::uint64_t incarnation = 1;  // of its name in the run
 };
 
 /// Runs a participant as a node of a network: joins at the master, waits until every consumed topic

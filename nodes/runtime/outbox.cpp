@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/sim/said_once.h"
+#include "nodes/wire/content_digest.h"
 #include "nodes/wire/state_codec.h"
 
 namespace dmise {
@@ -38,8 +40,14 @@ std::vector<SharedFrames> Outbox::pack(Tick tick, const std::vector<Message>& me
 
   std::vector<SharedFrames> packed;
   std::vector<Kept> kept;
+  std::map<std::string, SharedFrames> lasting;
+  std::map<std::string, TopicTally> tallies;
   const auto add = [&](const std::string& topic, bool is_last, Encoded body) {
     const std::uint64_t sequence = ++sequence_[topic];
+    TopicTally& tally = tallies[topic];
+    ++tally.messages;
+    tally.last_sequence = sequence;
+    tally.digest = fold_digest(tally.digest, fold_content(0, body.kind, body.payload, body.arrays));
     const Envelope envelope{.run_id = run_.run_id,
                             .publisher = publisher_,
                             .incarnation = incarnation_,
@@ -52,12 +60,23 @@ std::vector<SharedFrames> Outbox::pack(Tick tick, const std::vector<Message>& me
         seal(topic, envelope, std::move(body.payload), std::move(body.arrays))));
     kept.push_back({sequence, tick, packed.back()});
   };
-  for (const Message& message : messages)
+  for (const Message& message : messages) {
     add(message.topic, last.at(message.topic) == &message, encode(*message.state));
+    if (said_once(*message.state)) lasting[message.topic] = packed.back();
+  }
   for (const std::string& topic : topics_)
     if (!last.contains(topic)) add(topic, true, {});
 
+  tally_ = {tick, {}};
+  for (const std::string& topic : topics_) {
+    tally_.topics.push_back(tallies.at(topic));
+    tally_.topics.back().topic = topic;
+  }
+
   const std::lock_guard lock(mutex_);
+  for (auto& [topic, frames] : lasting) lasting_[topic] = frames;
+  for (const auto& [topic, sequence] : sequence_) next_[topic] = sequence + 1;
+  next_tick_ = tick + 1;
   for (Kept& entry : kept) kept_[entry.frames->topic].push_back(std::move(entry));
   forget_before(tick - keep_ticks_ + 1);
   return packed;
@@ -75,6 +94,34 @@ std::vector<SharedFrames> Outbox::since(const std::string& topic, std::uint64_t 
   if (found == kept_.end()) return frames;
   for (const Kept& entry : found->second)
     if (entry.sequence >= sequence) frames.push_back(entry.frames);
+  return frames;
+}
+
+std::vector<SharedFrames> Outbox::catch_up(const std::string& topic, Tick from_tick) const {
+  std::vector<SharedFrames> frames;
+  if (std::find(topics_.begin(), topics_.end(), topic) == topics_.end()) return frames;
+  const std::lock_guard lock(mutex_);
+  if (const auto once = lasting_.find(topic); once != lasting_.end())
+    frames.push_back(once->second);
+  const auto next = next_.find(topic);
+  Envelope position{.run_id = run_.run_id,
+                    .publisher = publisher_,
+                    .incarnation = incarnation_,
+                    .sequence = next == next_.end() ? 1 : next->second,
+                    .kind = MessageKind::position,
+                    .tick = std::min(std::max(from_tick, next_tick_), run_.last_tick)};
+  std::vector<SharedFrames> messages;
+  if (const auto kept = kept_.find(topic); kept != kept_.end())
+    for (const Kept& entry : kept->second) {
+      if (entry.tick < from_tick) continue;
+      if (messages.empty()) position.sequence = entry.sequence, position.tick = entry.tick;
+      messages.push_back(entry.frames);
+    }
+  if (from_tick < position.tick && !messages.empty() && next_tick_ - keep_ticks_ <= from_tick)
+    position.tick = from_tick;  // nothing was forgotten: it has worked at no tick between
+  position.time = run_.time_of(position.tick);
+  frames.push_back(std::make_shared<const Frames>(seal(topic, position)));
+  frames.insert(frames.end(), messages.begin(), messages.end());
   return frames;
 }
 

@@ -1,5 +1,7 @@
 #include "nodes/runtime/peer_directory.h"
 
+#include <algorithm>
+
 namespace dmise {
 namespace {
 
@@ -10,16 +12,25 @@ void fill(v1::Publisher* publisher, const Peer& peer) {
   *publisher->mutable_direct_topics() = peer.join.produces_direct();
   publisher->set_direct_endpoint(peer.join.direct_endpoint());
   publisher->set_resend_endpoint(peer.join.resend_endpoint());
+  publisher->set_period_ticks(std::max<std::uint64_t>(1, peer.join.period_ticks()));
+  publisher->set_offset_ticks(peer.join.offset_ticks());
 }
 
 }  // namespace
 
-const Peer& PeerDirectory::add(std::string_view routing_id, const v1::Join& join) {
-  const auto earlier = peers_.find(join.name());
-  const std::uint64_t incarnation = earlier == peers_.end() ? 1 : earlier->second.incarnation + 1;
-  if (earlier != peers_.end()) names_.erase(earlier->second.routing_id);
+const Peer& PeerDirectory::add(std::string_view routing_id, std::uint64_t incarnation,
+                               const v1::Join& join) {
+  if (const auto earlier = peers_.find(join.name()); earlier != peers_.end())
+    names_.erase(earlier->second.routing_id);
   names_[std::string(routing_id)] = join.name();
   return peers_[join.name()] = {std::string(routing_id), incarnation, join};
+}
+
+std::set<std::string, std::less<>> PeerDirectory::consumed() const {
+  std::set<std::string, std::less<>> topics;
+  for (const auto& [name, peer] : peers_)
+    topics.insert(peer.join.consumes().begin(), peer.join.consumes().end());
+  return topics;
 }
 
 const std::string& PeerDirectory::name_of(std::string_view routing_id) const {
@@ -48,9 +59,11 @@ v1::Topology PeerDirectory::topology() const {
 }
 
 void PeerDirectory::describe(v1::Endpoints* endpoints) const {
+  if (const auto broker = peers_.find("broker"); broker != peers_.end())
+    endpoints->set_observe_endpoint(broker->second.join.broker().observe_endpoint());
   for (const auto& [name, peer] : peers_) {
     if (peer.join.has_broker())
-      endpoints->set_observe_endpoint(peer.join.broker().observe_endpoint());
+      *endpoints->mutable_broker() = peer.join.broker();
     else
       fill(endpoints->add_publishers(), peer);
   }

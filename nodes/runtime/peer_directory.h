@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -18,17 +19,21 @@ struct Peer {
 /// Who has joined a run, over which connection, and where each is to be reached.
 class PeerDirectory {
  public:
-  /// A later process of the same name takes the place of the earlier, with the next incarnation.
-  const Peer& add(std::string_view routing_id, const v1::Join& join);
+  /// A later process of the same name takes the place of the earlier.
+  const Peer& add(std::string_view routing_id, std::uint64_t incarnation, const v1::Join& join);
 
   /// The name behind a connection; "" if none.
   const std::string& name_of(std::string_view routing_id) const;
   /// Null when no such process has joined.
   const Peer* find(const std::string& name, std::uint64_t incarnation) const;
+  bool knows(const std::string& name) const { return peers_.contains(name); }
   const std::map<std::string, Peer>& all() const { return peers_; }
 
+  /// Who publishes what, and where; not what depends on whom it is for.
   v1::Topology topology() const;
-  /// Sets `publishers` and `observe_endpoint`.
+  /// Topics that somebody consumes.
+  std::set<std::string, std::less<>> consumed() const;
+  /// Sets `publishers`, `observe_endpoint` and `broker`.
   void describe(v1::Endpoints* endpoints) const;
 
  private:

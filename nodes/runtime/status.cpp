@@ -23,14 +23,26 @@ Phase from_wire(v1::Phase phase) {
   }
 }
 
-}  // namespace
+v1::Control::Action to_wire(ClockAction action) {
+  switch (action) {
+    case ClockAction::pause:
+      return v1::Control::ACTION_PAUSE;
+    case ClockAction::step:
+      return v1::Control::ACTION_STEP;
+    case ClockAction::go_on:
+      return v1::Control::ACTION_GO_ON;
+    case ClockAction::end_early:
+      return v1::Control::ACTION_END_EARLY;
+    case ClockAction::abort:
+      break;
+  }
+  return v1::Control::ACTION_ABORT;
+}
 
-RunStatus ask_master(const std::string& address, double within_s) {
+RunStatus ask(const std::string& address, double within_s, const v1::NodeMessage& question) {
   zmq::context_t context(1);
   zmq::socket_t socket = make_socket(context, zmq::socket_type::dealer, max_control_bytes);
   connect_to(socket, address);
-  v1::NodeMessage question;
-  question.mutable_hello();
   socket.send(to_frame(question), zmq::send_flags::none);
   const auto within = std::chrono::duration<double>(within_s);
   std::vector<zmq::pollitem_t> items{{socket.handle(), 0, ZMQ_POLLIN, 0}};
@@ -47,7 +59,14 @@ RunStatus ask_master(const std::string& address, double within_s) {
                    .granted = e.granted_tick(),
                    .last_tick = e.last_tick(),
                    .tick_length = {e.tick_ns()},
+                   .settled = e.settled_tick(),
+                   .paused = e.paused(),
+                   .overruns = e.overruns(),
+                   .worst_lag_s = e.worst_lag_s(),
+                   .digest = e.digest(),
                    .observe_endpoint = e.observe_endpoint(),
+                   .broker = {e.broker().publish_endpoint(), e.broker().subscribe_endpoint(),
+                              e.broker().observe_endpoint()},
                    .nodes = {},
                    .missing = {e.missing().begin(), e.missing().end()},
                    .holding = {e.holding().begin(), e.holding().end()}};
@@ -55,8 +74,27 @@ RunStatus ask_master(const std::string& address, double within_s) {
     status.nodes.push_back({.name = node.name(),
                             .done = node.done_tick(),
                             .alive = node.alive(),
+                            .observer = node.observer(),
+                            .incarnation = node.incarnation(),
                             .times = take(node.times())});
   return status;
+}
+
+}  // namespace
+
+RunStatus ask_master(const std::string& address, double within_s) {
+  v1::NodeMessage question;
+  question.mutable_hello();
+  return ask(address, within_s, question);
+}
+
+RunStatus control_master(const std::string& address, double within_s, ClockAction action, Tick tick,
+                         const std::string& reason) {
+  v1::NodeMessage question;
+  question.mutable_control()->set_action(to_wire(action));
+  question.mutable_control()->set_tick(tick);
+  question.mutable_control()->set_reason(reason);
+  return ask(address, within_s, question);
 }
 
 }  // namespace dmise

@@ -12,7 +12,14 @@ struct NodeStatus {
   std::string name;
   Tick done = -1;
   bool alive = true;
+  bool observer = false;
+  std::uint64_t incarnation = 1;
   TimeSplit times;
+};
+
+/// Where a broker is bound.
+struct BrokerEndpoints {
+  std::string publish, subscribe, observe;
 };
 
 /// What the time-master tells anybody who asks.
@@ -23,11 +30,24 @@ struct RunStatus {
   Tick granted = -1;
   Tick last_tick = 0;
   SimTime tick_length;
+  Tick settled = -1;  // all have done it
+  bool paused = false;
+  std::uint64_t overruns = 0;  // of real time
+  double worst_lag_s = 0.0;
+  std::uint64_t digest = 0;      // of all that was published in settled ticks
   std::string observe_endpoint;  // subscribe here; empty while there is no broker
+  BrokerEndpoints broker;        // of the last broker; empty before the first
   std::vector<NodeStatus> nodes;
   std::vector<std::string> missing;
   std::vector<std::string> holding;  // who holds the clock
 };
+
+enum class ClockAction { pause, step, go_on, end_early, abort };
+
+/// Asks the clock to do something and returns what became of it. `tick`: to pause after, or how
+/// many to step.
+RunStatus control_master(const std::string& address, double within_s, ClockAction action,
+                         Tick tick = 0, const std::string& reason = "");
 
 /// Asks the master at `address`. Throws `Error` when it does not answer in time.
 RunStatus ask_master(const std::string& address, double within_s);

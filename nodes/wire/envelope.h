@@ -26,6 +26,7 @@ enum class MessageKind : std::uint8_t {
   detection_set = 7,
   truth_set = 8,
   site_state = 9,
+  position = 100,  // where a topic is, in an answer to a resend request
 };
 
 struct Envelope {

@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "nodes/wire/content_digest.h"
 #include "nodes/wire/state_codec.h"
 #include "nodes/wire/state_rules.h"
 
@@ -27,7 +28,7 @@ std::uint64_t Receiver::refused() const {
 }
 
 Received Receiver::accept(std::span<const std::string_view> frames) const {
-  Received message{{}, open(frames), nullptr};
+  Received message{{}, open(frames), nullptr, 0};
   const Envelope& envelope = message.envelope;
   if (envelope.run_id != run_.run_id) throw Refused(Refusal::run, "message of another run");
   const auto source = sources_.find(frames[0]);
@@ -38,10 +39,11 @@ Received Receiver::accept(std::span<const std::string_view> frames) const {
 
   const std::string_view payload = frames[2];
   const std::string_view arrays = frames.size() == 4 ? frames[3] : std::string_view{};
-  const bool stateless =
-      envelope.kind == MessageKind::probe || envelope.kind == MessageKind::watermark;
+  const bool stateless = envelope.kind == MessageKind::probe ||
+                         envelope.kind == MessageKind::watermark ||
+                         envelope.kind == MessageKind::position;
   if (stateless && !(payload.empty() && arrays.empty()))
-    throw Refused(Refusal::payload, "a probe or watermark with content");
+    throw Refused(Refusal::payload, "a message without a state has content");
   if (envelope.kind == MessageKind::probe) return message;
 
   if (envelope.tick < 0 || envelope.tick > run_.last_tick ||
@@ -49,6 +51,7 @@ Received Receiver::accept(std::span<const std::string_view> frames) const {
     throw Refused(Refusal::tick, "tick " + std::to_string(envelope.tick) + " at " +
                                      std::to_string(envelope.time.ns) + " ns");
   if (envelope.sequence == 0) throw Refused(Refusal::envelope, "sequence counts from 1");
+  message.content_digest = fold_content(0, envelope.kind, payload, arrays);
   if (!stateless) {
     auto state = std::make_shared<const State>(decode(envelope.kind, payload, arrays));
     check_place(message.topic, envelope, *state);

@@ -22,11 +22,12 @@ struct RunFacts {
   bool operator==(const RunFacts&) const = default;
 };
 
-/// A message that passed every check. `state` is empty in probes and watermarks.
+/// A message that passed every check. `state` is empty in probes, watermarks and positions.
 struct Received {
   std::string topic;
   Envelope envelope;
   std::shared_ptr<const State> state;
+  std::uint64_t content_digest = 0;  // of kind, payload and arrays
 };
 
 /// The gate behind every subscription: frames in, messages out; what fails a check is counted by

@@ -31,6 +31,7 @@ State decode(MessageKind kind, std::string_view payload, std::string_view arrays
         return decode_truths(payload);
       case MessageKind::probe:
       case MessageKind::watermark:
+      case MessageKind::position:
         break;
     }
     throw Refused(Refusal::payload, "this kind carries no state");

@@ -81,14 +81,11 @@ struct FramePipeline::Work {
 
   FrameProducts make(const FrameTimes& times, const World& world);
   FrameHeader header(const View& view) const;
-  std::uint32_t first_to_expose(std::uint32_t frame);
+  std::uint32_t first_frame_for(std::uint32_t frame) const;
 };
 
-/// The frame that must be made first for the detector to be in the state in which `frame` finds it.
-std::uint32_t FramePipeline::Work::first_to_expose(std::uint32_t frame) {
-  auto& traps = detector_memory.persistence;
-  if (!has(Effect::persistence) || traps.next_frame == frame) return frame;
-  traps = {};
+std::uint32_t FramePipeline::Work::first_frame_for(std::uint32_t frame) const {
+  if (!has(Effect::persistence) || detector_memory.persistence.next_frame == frame) return frame;
   return persistence_first_frame(settings.sensor.camera.detector, settings.sensor.cadence_s, frame);
 }
 
@@ -162,12 +159,25 @@ FramePipeline::FramePipeline(PipelineSettings settings, std::shared_ptr<const St
 
 FramePipeline::~FramePipeline() = default;
 
+std::uint32_t FramePipeline::first_frame_for(std::uint32_t frame) const {
+  return work_->first_frame_for(frame);
+}
+
+std::uint32_t FramePipeline::most_frames_made_again() const {
+  const auto& sensor = work_->settings.sensor;
+  const auto& detector = sensor.camera.detector;
+  if (!work_->has(Effect::persistence) || !(detector.persistence_fraction > 0.0)) return 0;
+  return 2 * std::min(persistence_window(detector.persistence_s, sensor.cadence_s), 1u << 30);
+}
+
 FrameProducts FramePipeline::run(const FrameTimes& times, const World& world) {
   FrameProducts frame;
   double total_s = 0.0;
   {
     Stopwatch timing(total_s);
-    for (auto earlier = work_->first_to_expose(times.frame); earlier < times.frame; ++earlier)
+    auto earlier = first_frame_for(times.frame);
+    if (earlier < times.frame) work_->detector_memory.persistence = {};
+    for (; earlier < times.frame; ++earlier)
       work_->make(frame_times(work_->settings.sensor, earlier), world);
     frame = work_->make(times, world);
   }
@@ -203,11 +213,11 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
                           .exposure_s = times.seconds(),
                           .idle_s = sensor.cadence_s - sensor.exposure_s};
   make_planes(settings.output, view, exposure, light, threads, frame.planes);
-  expose(
-      light, sensor.camera.detector, exposure, sensor.effects, threads, frame.counts, &frame.times,
-      {.memory = &detector_memory,
-       .flags = settings.output.saturation ? &frame.flags : nullptr,
-       .spent_light = &light});
+  expose(light, sensor.camera.detector, exposure, sensor.effects, threads, frame.counts,
+         &frame.times,
+         {.memory = &detector_memory,
+          .flags = settings.output.saturation ? &frame.flags : nullptr,
+          .spent_light = &light});
   light = {};
 
   DetectionResult result;

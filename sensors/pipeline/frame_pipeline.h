@@ -53,7 +53,15 @@ class FramePipeline {
 
   /// With persistence a frame depends on the ones before it: where those were not made here, they
   /// are made first, and the world must cover them.
+  /// Makes one frame. `world` holds the states from the exposure of `first_frame_for` it on.
   FrameProducts run(const FrameTimes& exposure, const World& world);
+
+  /// The frame that must be exposed first for the detector to be in the state in which `frame`
+  /// finds it: `frame` itself, unless an earlier one left charge in traps and was made elsewhere.
+  std::uint32_t first_frame_for(std::uint32_t frame) const;
+
+  /// Frames before any frame that a pipeline which starts with it must expose first, at most.
+  std::uint32_t most_frames_made_again() const;
 
  private:
   struct Work;

@@ -1,5 +1,6 @@
 #include "sensors/pipeline/make_sensor.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "core/config/make_clock.h"
@@ -29,8 +30,9 @@ std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std
                        .faintest_star_mag = scenario.faintest_star_mag,
                        .star_truth = scenario.output.star_truth,
                        .output = scenario.output},
-      scenario.tick, scenario.duration, scenario.output, std::move(stars), directory + "/" + name,
-      threads);
+      scenario.tick, scenario.duration,
+      sim_seconds(std::max(scenario.environment.common_every_s, scenario.environment.site_every_s)),
+      scenario.output, std::move(stars), directory + "/" + name, threads);
 }
 
 }  // namespace dmise

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -133,6 +134,22 @@ void ProductWriter::write(const FrameProducts& f) {
   cost.end_object().end_object();
   append("cost.jsonl", cost.take() + "\n");
   append("frames.jsonl", to_json(f.report, utc) + "\n");
+}
+
+void ProductWriter::keep_frames(std::uint32_t last) const {
+  for (const char* name : {"detections.jsonl", "truth.jsonl", "cost.jsonl", "frames.jsonl"}) {
+    const std::string path = directory_ + "/" + name;
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) continue;
+    std::ifstream file(path);
+    std::string line, kept;
+    while (std::getline(file, line)) {
+      const auto at = line.find("\"frame\":");  // as JsonWriter writes it
+      if (file.eof() || at == std::string::npos) continue;
+      if (std::strtoul(line.c_str() + at + 8, nullptr, 10) <= last) kept += line + "\n";
+    }
+    write_file_whole(path, kept);
+  }
 }
 
 }  // namespace dmise

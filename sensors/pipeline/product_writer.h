@@ -18,6 +18,9 @@ class ProductWriter {
   ProductWriter(std::string directory, const OutputConfig& output, Clock clock);
 
   void write(const FrameProducts& frame);
+  /// Takes the lines of frames after `last` out again, and lines that were cut short: an earlier
+  /// process was in the middle of them.
+  void keep_frames(std::uint32_t last) const;
 
  private:
   std::string frame_path(std::uint32_t frame, const char* ending) const;

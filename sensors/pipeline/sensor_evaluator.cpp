@@ -1,12 +1,16 @@
 #include "sensors/pipeline/sensor_evaluator.h"
 
+#include <algorithm>
+
 namespace dmise {
 
 SensorEvaluator::SensorEvaluator(PipelineSettings settings, SimTime tick_length, SimTime duration,
-                                 const OutputConfig& output, std::shared_ptr<const StarMap> stars,
-                                 std::string directory, Threads& threads)
+                                 SimTime told_every, const OutputConfig& output,
+                                 std::shared_ptr<const StarMap> stars, std::string directory,
+                                 Threads& threads)
     : sensor_(settings.sensor),
       tick_length_(tick_length),
+      told_every_(told_every),
       last_frame_(frames_within(settings.sensor, duration)),
       pipeline_(settings, std::move(stars), threads),
       writer_(std::move(directory), output, settings.clock) {}
@@ -30,7 +34,7 @@ std::vector<std::string> SensorEvaluator::consumes() const {
   return topics;
 }
 
-std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> inputs) {
+void SensorEvaluator::take_in(std::span<const Message> inputs) {
   for (const auto& message : inputs) {
     if (const auto* roster = std::get_if<ObjectRoster>(message.state.get()))
       world_.add(std::shared_ptr<const ObjectRoster>(message.state, roster));
@@ -41,12 +45,33 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
     if (const auto* state = std::get_if<SiteState>(message.state.get()))
       world_.add(std::shared_ptr<const SiteState>(message.state, state));
   }
+}
+
+Tick SensorEvaluator::look_back() const {
+  const SimTime exposure = frame_times(sensor_, 1).end - frame_times(sensor_, 1).start;
+  const auto frames = std::min(pipeline_.most_frames_made_again(), last_frame_);
+  const SimTime earlier{frames * sim_seconds(sensor_.cadence_s).ns};
+  const std::int64_t ns = exposure.ns + earlier.ns + told_every_.ns;
+  return (ns + tick_length_.ns - 1) / tick_length_.ns + 1;
+}
+
+std::vector<Message> SensorEvaluator::resume(Tick tick, std::span<const Message> past) {
+  take_in(past);
+  // Frames that end after the last tick made before are still to be made.
+  next_frame_ = tick == 0 ? 1 : frames_within(sensor_, {(tick - 1) * tick_length_.ns}) + 1;
+  next_frame_ = std::min(next_frame_, last_frame_ + 1);
+  writer_.keep_frames(next_frame_ - 1);
+  return {};
+}
+
+std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> inputs) {
+  take_in(inputs);
   std::vector<Message> messages;
   const SimTime now{tick * tick_length_.ns};
   while (next_frame_ <= last_frame_ && !stop_asked_()) {
     const FrameTimes exposure = frame_times(sensor_, next_frame_);
     if (exposure.end > now) {
-      world_.forget_before(exposure.start);
+      world_.forget_before(frame_times(sensor_, pipeline_.first_frame_for(next_frame_)).start);
       break;
     }
     FrameProducts frame = pipeline_.run(exposure, world_);

@@ -15,9 +15,10 @@ namespace dmise {
 /// exposure, makes its frame, writes its products and publishes report, detections and truth.
 class SensorEvaluator : public Evaluator {
  public:
+  /// `told_every`: the longest time between two states of the environment.
   SensorEvaluator(PipelineSettings settings, SimTime tick_length, SimTime duration,
-                  const OutputConfig& output, std::shared_ptr<const StarMap> stars,
-                  std::string directory, Threads& threads);
+                  SimTime told_every, const OutputConfig& output,
+                  std::shared_ptr<const StarMap> stars, std::string directory, Threads& threads);
 
   std::string name() const override { return sensor_.name; }
   std::vector<std::string> produces() const override;
@@ -25,6 +26,10 @@ class SensorEvaluator : public Evaluator {
   /// where something of it is on.
   std::vector<std::string> consumes() const override;
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
+  /// The ticks around the exposure that is open when it resumes, those around the frames that must
+  /// be made again before it, and back to when the environment was last told.
+  Tick look_back() const override;
+  std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
   std::uint64_t progress() const override { return progress_; }
 
   /// Asked between frames: true leaves the rest of a step undone.
@@ -33,8 +38,10 @@ class SensorEvaluator : public Evaluator {
   long detections_made() const { return detections_; }
 
  private:
+  void take_in(std::span<const Message> inputs);
+
   SensorConfig sensor_;
-  SimTime tick_length_;
+  SimTime tick_length_, told_every_;
   std::uint32_t last_frame_;
   FramePipeline pipeline_;
   ProductWriter writer_;

@@ -33,7 +33,7 @@ CASES = [
     ("name: beta", "name: time-master", 6, 12, r"sensors\[1\]\.name: another node has this name, got time-master"),
     ("name: beta", "name: ../beta", 6, 12, r"sensors\[1\]\.name: must be at most 64 letters.*, got \.\./beta"),
     ("on_silent_node: fail", "on_silent_node: panic", 7, None,
-     r"network\.on_silent_node: must be one of fail, wait, drop, got panic"),
+     r"network\.on_silent_node: must be one of fail, wait, drop, restart, got panic"),
     ("output: {png: false}", "output: {png: maybe}", 8, 15, r"output\.png: must be on or off, got maybe"),
     ("output: {png: false}", "output: {png: false", 9, None, r"not valid YAML: .+"),
     ("output: {png: false}", "effects: {abberation: off}", 8, 11,

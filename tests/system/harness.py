@@ -15,7 +15,7 @@ stars: {{catalogue: kstars}}
 sensors:
   - {{name: {first}, site: atlanta, camera: small.yaml, pointing: zenith, exposure_s: 2, cadence_s: 5}}
   - {{name: {second}, site: savannah, camera: small.yaml, pointing: zenith, exposure_s: 2, cadence_s: 5}}
-network: {{on_silent_node: {on_silent_node}, silent_after_s: {silent_after_s}}}
+network: {{on_silent_node: {on_silent_node}, silent_after_s: {silent_after_s}{network}}}
 output: {{png: false}}
 """
 
@@ -50,13 +50,14 @@ def main(test):
 
 
 def write_scenario(directory, duration_s=3600, objects="gpredict", first="alpha", second="beta",
-                   on_silent_node="fail", silent_after_s=5.0, name="scenario.yaml"):
+                   on_silent_node="fail", silent_after_s=5.0, network="", name="scenario.yaml"):
+    """`network`: further keys of that section, ", key: value"."""
     directory.mkdir(exist_ok=True)
     (directory / "small.yaml").write_text(CAMERA)
     path = directory / name
     path.write_text(SCENARIO.format(
         duration_s=duration_s, objects=objects, first=first, second=second,
-        on_silent_node=on_silent_node, silent_after_s=silent_after_s))
+        on_silent_node=on_silent_node, silent_after_s=silent_after_s, network=network))
     return path
 
 
@@ -110,10 +111,12 @@ class Run:
         return {pid for pid in pids if session_of(pid) == self.process.pid}
 
     def node(self, name):
-        """pid of the node of that name, or None."""
+        """pid of the sensor of that name, or of the program dmise-NAME; None if it does not run."""
         for pid in self.living():
             command = command_of(pid)
             if ("--name", name) in zip(command, command[1:]):
+                return pid
+            if command and command[0].endswith(f"/dmise-{name}"):
                 return pid
         return None
 
@@ -133,6 +136,18 @@ class Run:
     def nothing_left(self):
         left = [" ".join(command_of(pid)) for pid in self.living()]
         check(not left, f"{len(left)} processes are left running {left}")
+
+
+def products(out):
+    """The bytes of everything that must not depend on how a run went, by path."""
+    paths = [*out.glob("*/frame-*.fits"), *out.glob("*/*.jsonl"), *out.glob("*.jsonl")]
+    return {str(p.relative_to(out)): p.read_bytes() for p in paths if p.name != "cost.jsonl"}
+
+
+def check_same(out, reference, claim):
+    ours, theirs = products(out), products(reference)
+    differ = sorted(p for p in ours.keys() | theirs.keys() if ours.get(p) != theirs.get(p))
+    check(not differ and theirs, f"{claim}: {len(theirs)} files, {len(differ)} differ {differ[:3]}")
 
 
 def first_frame(out, sensor="*"):

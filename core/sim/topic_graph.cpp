@@ -1,4 +1,4 @@
-#include "time-master/topic_graph.h"
+#include "core/sim/topic_graph.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,0 +1,43 @@
+#include "launch/restarts.h"
+
+#include <cstring>
+
+namespace dmise {
+
+std::vector<std::string> Restarts::look(const RunStatus& status, Instant now) {
+  std::vector<std::string> lines;
+  if (network_.on_silent_node != OnSilentNode::restart || status.phase == Phase::failed ||
+      status.phase == Phase::ended)
+    return lines;
+  std::vector<std::string> names;
+  for (const Child& child : processes_.children()) names.push_back(child.name);
+  for (const std::string& name : names) {
+    const Child& child = *processes_.find(name);
+    const std::string why = reason(child, status, now);
+    if (why.empty() || child.starts > network_.restarts) continue;
+    processes_.restart(name);
+    last_[name] = now;
+    lines.push_back(name + " " + why + " and was started again (" +
+                    std::to_string(child.starts - 1) + " of " + std::to_string(network_.restarts) +
+                    ")");
+  }
+  return lines;
+}
+
+/// Empty when the child need not be started again.
+std::string Restarts::reason(const Child& child, const RunStatus& status, Instant now) const {
+  if (child.name == "time-master") return "";  // nobody survives it
+  constexpr int killed = 128;                  // codes above stand for signals
+  if (child.exit_code && *child.exit_code > killed)
+    return std::string("was killed (") + strsignal(*child.exit_code - killed) + ")";
+  // A process that has just been started takes its time to join.
+  const auto last = last_.find(child.name);
+  if (last != last_.end() &&
+      std::chrono::duration<double>(now - last->second).count() < network_.join_within_s)
+    return "";
+  for (const NodeStatus& node : status.nodes)
+    if (node.name == child.name && !node.alive) return child.exit_code ? "has ended" : "was silent";
+  return "";
+}
+
+}  // namespace dmise

@@ -1,0 +1,116 @@
+#include "nodes/runtime/master_words.h"
+
+#include <algorithm>
+
+namespace dmise {
+
+v1::Phase to_wire(Phase phase) {
+  switch (phase) {
+    case Phase::gathering:
+      return v1::PHASE_GATHERING;
+    case Phase::connecting:
+      return v1::PHASE_CONNECTING;
+    case Phase::running:
+      return v1::PHASE_RUNNING;
+    case Phase::ended:
+      return v1::PHASE_ENDED;
+    case Phase::failed:
+      break;
+  }
+  return v1::PHASE_FAILED;
+}
+
+Coordinator::Request request_of(const v1::Join& join) {
+  // What is larger than any run is nonsense and will be refused as negative.
+  const auto ticks = [](std::uint64_t n) { return n > (1ull << 62) ? Tick(-1) : Tick(n); };
+  Coordinator::Request request;
+  request.node = {.name = join.name(),
+                  .produces = {join.produces().begin(), join.produces().end()},
+                  .consumes = {join.consumes().begin(), join.consumes().end()},
+                  .look_back = ticks(join.look_back_ticks()),
+                  .schedule = {.period = ticks(std::max<std::uint64_t>(1, join.period_ticks())),
+                               .offset = ticks(join.offset_ticks())}};
+  request.node.produces.insert(request.node.produces.end(), join.produces_direct().begin(),
+                               join.produces_direct().end());
+  request.keeps_time = !join.has_broker() && !join.observer();
+  request.observer = join.observer();
+  return request;
+}
+
+TickTally tally_of(const v1::Done& done) {
+  TickTally tally{done.tick(), {}, 0};
+  for (const auto& topic : done.published())
+    tally.topics.push_back(
+        {topic.topic(), topic.messages(), topic.last_sequence(), topic.digest()});
+  return tally;
+}
+
+void add_published(v1::Grant* grant, const std::set<std::string, std::less<>>& wanted,
+                   const TickTally& tally) {
+  for (const TopicTally& topic : tally.topics) {
+    if (!wanted.contains(topic.topic)) continue;
+    auto* published = grant->add_published();
+    published->set_topic(topic.topic);
+    published->set_tick(tally.tick);
+    published->set_messages(topic.messages);
+    published->set_last_sequence(topic.last_sequence);
+    published->set_digest(topic.digest);
+    published->set_incarnation(tally.incarnation);
+  }
+}
+
+v1::Topology topology_for(const std::string& name, v1::Topology topology,
+                          const Coordinator& coordinator) {
+  const auto member = coordinator.members().find(name);
+  if (member != coordinator.members().end()) {
+    topology.set_resume_tick(member->second.resumes_at);
+    topology.set_from_tick(coordinator.publishes_from(member->second));
+  }
+  topology.set_running(coordinator.phase() == Phase::running);
+  for (auto& publisher : *topology.mutable_publishers())
+    publisher.set_keep_ticks(std::uint64_t(coordinator.keep_ticks(publisher.name())));
+  return topology;
+}
+
+void describe(v1::Endpoints* endpoints, const Coordinator& coordinator) {
+  endpoints->set_phase(to_wire(coordinator.phase()));
+  endpoints->set_cause(coordinator.cause());
+  endpoints->set_granted_tick(coordinator.granted());
+  endpoints->set_settled_tick(coordinator.settled());
+  endpoints->set_last_tick(coordinator.options().last_tick);
+  endpoints->set_paused(coordinator.pace().paused());
+  endpoints->set_overruns(coordinator.pace().overruns());
+  endpoints->set_worst_lag_s(std::chrono::duration<double>(coordinator.pace().worst_lag()).count());
+  endpoints->set_digest(coordinator.digest());
+  for (const auto& [name, member] : coordinator.members()) {
+    auto* node = endpoints->add_nodes();
+    node->set_name(name);
+    node->set_done_tick(member.done);
+    node->set_alive(member.active() && !member.silent);
+    node->set_incarnation(member.incarnation);
+    node->set_observer(member.observer);
+  }
+  for (const std::string& name : coordinator.missing()) endpoints->add_missing(name);
+  for (const std::string& name : coordinator.holding()) endpoints->add_holding(name);
+}
+
+void apply(const v1::Control& control, Coordinator& coordinator, Instant now) {
+  const std::string why =
+      control.reason().empty() ? "ended on request" : "ended on request: " + control.reason();
+  switch (control.action()) {
+    case v1::Control::ACTION_PAUSE:
+      return coordinator.pause(control.tick());
+    case v1::Control::ACTION_STEP:
+      return coordinator.step(control.tick(), now);
+    case v1::Control::ACTION_GO_ON:
+      return coordinator.go_on(now);
+    case v1::Control::ACTION_END_EARLY:
+      return coordinator.end_early(why);
+    case v1::Control::ACTION_ABORT:
+      return coordinator.stop(why);
+    default:
+      return;
+  }
+}
+
+}  // namespace dmise

@@ -1,0 +1,80 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dmise/v1/time.pb.h"
+#include "nodes/runtime/inbox.h"
+#include "nodes/runtime/socket.h"
+
+namespace dmise {
+
+/// All that a node hears from other nodes: what is published through the broker or on a publisher's
+/// own socket, and what it has asked for again. Used from one thread.
+class NodeInputs {
+ public:
+  NodeInputs(zmq::context_t& context, std::vector<std::string> topics);
+
+  void start(const RunFacts& run) { run_ = run, receiver_.emplace(run); }
+  /// Connects to everybody; again when somebody has taken the place of another.
+  void connect(const v1::Topology& topology);
+  /// See Inbox; to catch up is to ask every publisher for what it keeps.
+  void begin_at(Tick tick, bool catch_up);
+  /// What the clock says of topics.
+  void hear(const std::vector<v1::ClosedTopic>& closed, const std::vector<v1::TopicTally>& said);
+
+  /// Takes in all that has arrived.
+  void receive();
+  /// Asks again for what keeps `tick` from being complete, if it is time to. Returns how long to
+  /// wait for an answer at most.
+  std::chrono::nanoseconds ask_for(Tick tick);
+  /// The next wait is for another tick.
+  void be_patient_again();
+
+  bool probed() const { return inbox_.probed(); }
+  bool complete(Tick tick) const { return inbox_.complete(tick); }
+  std::vector<Message> take(Tick tick) { return inbox_.take(tick); }
+  /// Whether a question asks for all from a tick on, whatever is lost before: that of who holds
+  /// nobody's time.
+  void set_may_miss(bool may_miss) { may_miss_ = may_miss; }
+
+  const std::vector<zmq::socket_t*>& sockets() const { return sockets_; }
+  std::uint64_t refused() const { return receiver_ ? receiver_->refused() : 0; }
+  std::string last_refusal() const { return receiver_ ? receiver_->last_refusal() : ""; }
+  std::uint64_t asked_again() const { return asked_again_; }
+  std::uint64_t missed() const { return inbox_.missed(); }
+  void close();
+
+ private:
+  struct Source {  // a publisher of consumed topics
+    std::uint64_t incarnation = 0;
+    std::string resend_endpoint;
+    std::vector<std::string> topics;
+    std::optional<zmq::socket_t> direct;  // SUB to its own socket
+    std::optional<zmq::socket_t> asker;   // DEALER to its resend endpoint
+  };
+  bool consumes(const std::string& topic) const;
+  void follow(const v1::Publisher& publisher);
+  void receive_from(zmq::socket_t& socket, const std::string* publisher);
+  void ask(const std::string& topic, std::uint64_t from_sequence, std::optional<Tick> from_tick);
+  void list_sockets();
+
+  zmq::context_t& context_;
+  std::vector<std::string> topics_;
+  RunFacts run_;
+  std::optional<Receiver> receiver_;
+  Inbox inbox_;
+  zmq::socket_t subscribe_;
+  std::string broker_;                               // where subscribe_ is connected
+  std::map<std::string, Source> sources_;            // by name of the publisher
+  std::map<std::string, std::string> publisher_of_;  // each consumed topic
+  std::vector<zmq::socket_t*> sockets_;              // that data arrive on
+  Tick begin_ = 0;
+  bool may_miss_ = false;
+  std::chrono::nanoseconds asked_{0};
+  std::chrono::nanoseconds quiet_{0};
+  std::uint64_t asked_again_ = 0;
+};
+
+}  // namespace dmise

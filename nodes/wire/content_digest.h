@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+#include <string_view>
+
+#include "core/base/crc32c.h"
+#include "core/base/fold_digest.h"
+#include "nodes/wire/envelope.h"
+
+namespace dmise {
+
+/// Joins one message into the digest of its topic and tick: what it says, not who sent it when.
+inline std::uint64_t fold_content(std::uint64_t digest, MessageKind kind, std::string_view payload,
+                                  std::string_view arrays) {
+  const auto crc = [](std::string_view bytes) {
+    return std::uint64_t(crc32c(bytes.data(), bytes.size())) << 32 ^ bytes.size();
+  };
+  digest = fold_digest(digest, std::uint64_t(kind));
+  return fold_digest(fold_digest(digest, crc(payload)), crc(arrays));
+}
+
+}  // namespace dmise

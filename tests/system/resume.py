@@ -1,0 +1,53 @@
+"""A run that is cut short goes on where it stopped, and gives the same bytes: in one process and in many,
+interrupted, killed with -9, and the one going on with what the other has left.
+
+    resume.py DMISE
+"""
+
+import os
+import signal
+
+from harness import Run, check, check_same, main, wait_until, write_scenario
+
+
+def whole_lines(path):
+    return path.read_text().count("\n") if path.exists() else 0
+
+
+def cut_short(binary, command, scenario, out, how, frames):
+    with Run(binary, command, scenario, "--out", out) as run:
+        wait_until(lambda: whole_lines(out / "beta/frames.jsonl") >= frames, f"{frames} frames in {out}")
+        if how == signal.SIGINT:
+            run.interrupt()
+        else:
+            for pid in run.living():
+                os.kill(pid, how)
+        code, _ = run.finish()
+        check(code != 0, f"{command}: {how.name} after {frames} frames ends it with code {code}")
+
+
+def goes_on(binary, command, scenario, out, reference):
+    with Run(binary, command, scenario, "--out", out) as run:
+        code, _ = run.finish()
+        check(code == 0 and "going on at tick" in run.stdout, f"{command}: {run.stdout.splitlines()[0]}")
+    check_same(out, reference, f"{command}: the products are those of a run that was not cut short")
+
+
+def test(binary, directory):
+    scenario = write_scenario(directory, duration_s=200)
+    reference = directory / "reference"
+    with Run(binary, "run", scenario, "--out", reference) as run:
+        check(run.finish()[0] == 0, "the undisturbed run is complete")
+    cases = (("run", signal.SIGINT, "launch"), ("launch", signal.SIGKILL, "run"),
+             ("launch", signal.SIGINT, "launch"), ("run", signal.SIGKILL, "run"))
+    for number, (first, how, second) in enumerate(cases):
+        out = directory / f"case-{number}"
+        cut_short(binary, first, scenario, out, how, 4 + 7 * number)
+        # A line that was being written when the power went.
+        with open(out / "alpha/detections.jsonl", "a") as file:
+            file.write('{"id":"alpha/')
+        goes_on(binary, second, scenario, out, reference)
+
+
+if __name__ == "__main__":
+    main(test)
