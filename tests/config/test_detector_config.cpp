@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/config/camera_config.h"
 #include "core/config/output_config.h"
 #include "core/detector/detector_figures.h"
 
@@ -31,7 +32,7 @@ std::string complaint(const std::string& what, const std::string& with) {
 }
 
 TEST(DetectorConfig, ReadsEveryFigureByItsName) {
-  const Detector expected{.quantum_efficiency = 0.5,
+  const Detector expected{.quantum_efficiency = 1.0,  // read with the band
                           .dark_e_per_s = 20,
                           .dark_reference_c = 20,
                           .temperature_c = -10,
@@ -57,6 +58,15 @@ TEST(DetectorConfig, ReadsEveryFigureByItsName) {
   EXPECT_EQ(read(all), expected);
   for (const DetectorFigure& figure : detector_figures())
     EXPECT_NE(all.find(std::string(figure.key) + ":"), std::string::npos) << figure.key;
+}
+
+TEST(DetectorConfig, TheEfficiencyIsReadWithTheBand) {
+  const Camera camera = read_camera(YamlValue::parse(
+      "optics: {columns: 8, rows: 8, pixel_pitch_m: 5e-6, focal_length_m: 0.1, aperture_m: 0.05}\n"
+      "detector: {full_well_e: 20000, gain_e_per_dn: 0.4, quantum_efficiency: 0.5}\n"
+      "band: {filter: bessell-V}\n",
+      "c.yaml"));
+  EXPECT_EQ(camera.detector.quantum_efficiency, 0.5);
 }
 
 TEST(DetectorConfig, TheRestOfADetectorDoesNothing) {

@@ -129,7 +129,8 @@ TEST(ObjectConfig, SaysWhereAndWhy) {
       "open orbits take periapsis_m, got 1");
   EXPECT_EQ(complaint("- {name: x, motion: {two_body: {periapsis_m: 7e6, eccentricity: 2, "
                       "inclination_deg: 0, true_anomaly_deg: 121}}}"),
-            "s.yaml:2:106: objects[0].motion.two_body.true_anomaly_deg: must be inside the asymptotes, got 121");
+            "s.yaml:2:106: objects[0].motion.two_body.true_anomaly_deg: must be inside the "
+            "asymptotes, got 121");
   EXPECT_EQ(complaint("- {name: x, motion: {sgp4: {line1: abc, line2: def}}}").substr(0, 37),
             "s.yaml:2:28: objects[0].motion.sgp4: ");
   EXPECT_EQ(complaint("- {name: x, " + fixed + ", attitude: nadr}"),

@@ -14,7 +14,8 @@
 namespace dmise {
 namespace {
 
-const std::string good = R"(simulation: {start: 2018-01-21T00:30:00Z, duration_s: 120, tick_s: 5, seed: 1}
+const std::string good =
+    R"(simulation: {start: 2018-01-21T00:30:00Z, duration_s: 120, tick_s: 5, seed: 1}
 sensors:
   - name: atlanta
     site: {latitude_deg: 33.777, longitude_deg: -84.398, height_m: 300}
@@ -27,7 +28,8 @@ sensors:
 class ScenarioFile : public testing::Test {
  protected:
   std::string path = (std::filesystem::path(testing::TempDir()) /
-                      ("scenario-" + std::to_string(getpid()) + ".yaml")).string();
+                      ("scenario-" + std::to_string(getpid()) + ".yaml"))
+                         .string();
   void SetUp() override { setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1); }
   void TearDown() override { std::remove(path.c_str()); }
 
@@ -65,14 +67,16 @@ TEST_F(ScenarioFile, ResolvesPresetsAndDefaults) {
 TEST_F(ScenarioFile, SaysWhereAndWhy) {
   EXPECT_EQ(complaint(good, "exposure_s: 20", "exposure_s: -1"),
             "7:17: sensors[0].exposure_s: must be >= 1e-06, got -1");
-  EXPECT_EQ(complaint(good, "exposure_s: 20", "exposur_s: 20"), "7:5: sensors[0].exposur_s: unknown key, did you mean exposure_s?");
+  EXPECT_EQ(complaint(good, "exposure_s: 20", "exposur_s: 20"),
+            "7:5: sensors[0].exposur_s: unknown key, did you mean exposure_s?");
   EXPECT_EQ(complaint(good, "    exposure_s: 20\n", ""), "3:5: sensors[0].exposure_s: is missing");
   EXPECT_EQ(complaint(good, "cadence_s: 30", "cadence_s: 30\n    roll_dg: 2"),
             "9:5: sensors[0].roll_dg: unknown key");
   EXPECT_EQ(complaint(good, "latitude_deg: 33.777", "latitude_deg: 133.777"),
             "4:26: sensors[0].site.latitude_deg: must be <= 90, got 133.777");
-  EXPECT_EQ(complaint(good, "2018-01-21T00:30:00Z", "yesterday"),
-            "1:21: simulation.start: must be a UTC time such as 2018-01-21T00:30:00Z, got yesterday");
+  EXPECT_EQ(
+      complaint(good, "2018-01-21T00:30:00Z", "yesterday"),
+      "1:21: simulation.start: must be a UTC time such as 2018-01-21T00:30:00Z, got yesterday");
   EXPECT_TRUE(complaint(good, "omnissa", "omnisa")
                   .starts_with("5:13: sensors[0].camera: no such camera, did you mean omnissa?"));
   EXPECT_EQ(complaint(good, "exposure_s: 20", "exposure_s: 40"),

@@ -33,7 +33,9 @@ TEST(YamlReader, ReadsWhatIsThere) {
 }
 
 TEST(YamlReader, PointsAtTheValueThatIsWrong) {
-  const auto read = [](YamlMap& m) { YamlMap(m.require("camera")).number("exposure_s", Bounds::positive()); };
+  const auto read = [](YamlMap& m) {
+    YamlMap(m.require("camera")).number("exposure_s", Bounds::positive());
+  };
   EXPECT_EQ(complaint("camera:\n  exposure_s: -1\n", read),
             "s.yaml:2:15: camera.exposure_s: must be > 0, got -1");
   EXPECT_EQ(complaint("camera:\n  exposure_s: fast\n", read),

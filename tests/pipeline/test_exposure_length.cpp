@@ -21,7 +21,7 @@ std::string scenario(const std::string& start, double tick_s, double first_s, do
          ", tick_s: " + text(tick_s) +
          ", seed: 1}\n"
          "objects: [{catalogue: objects.tle}]\nstars: {catalogue: stars.csv}\n"
-         "effects: {extinction: off}\n"
+         "effects: {extinction: off, scintillation: off}\n"
          "sensors:\n  - {name: s, site: savannah, camera: geo-watch, pointing: {ra_deg: 83.63,"
          " dec_deg: 22.01}, first_exposure_s: " +
          text(first_s) + ", exposure_s: " + text(exposure_s) +

@@ -63,8 +63,8 @@ TEST_P(Presets, SeesAStarWithTheElectronsOfItsPhotons) {
   camera.optics.columns = std::min(camera.optics.columns, 256);
   camera.optics.rows = std::min(camera.optics.rows, 200);
   // The mount points at the place of the catalogue; a field of seconds of arc needs the star there.
-  for (Effect e : {Effect::extinction, Effect::refraction, Effect::annual_aberration,
-                   Effect::diurnal_aberration, Effect::light_deflection})
+  for (Effect e : {Effect::extinction, Effect::scintillation, Effect::refraction,
+                   Effect::annual_aberration, Effect::diurnal_aberration, Effect::light_deflection})
     stage.scenario.sensors[0].effects.set(e, false);
   const auto frame = stage.frame();
   const double area_m2 =
