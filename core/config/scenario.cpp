@@ -154,6 +154,10 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTi
   read_sensor_surroundings(map, sensor);
   if (sensor.atmosphere.refraction)
     sensor.effects.set(Effect::refraction, *sensor.atmosphere.refraction);
+  if (const auto mask = map.find("mask_deg")) {
+    if (platform) mask->fail("a mask is for a sensor on the ground", false);
+    sensor.mask_deg = mask->number(Bounds::between(0.0, 89.0));
+  }
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
   map.done();
   return sensor;

@@ -74,6 +74,7 @@ struct SensorConfig {
   AtmosphereConfig atmosphere;         // of a sensor on the ground
   WeatherConfig weather;               // likewise
   std::optional<SensorSeeing> seeing;  // none: no turbulence
+  double mask_deg = 0.0;  // least elevation for `dmise visible`, on the ground, [0, 89]
   EffectSet effects;
 };
 

@@ -81,6 +81,8 @@ TEST_F(ScenarioFile, SaysWhereAndWhy) {
                   .starts_with("5:13: sensors[0].camera: no such camera, did you mean omnissa?"));
   EXPECT_EQ(complaint(good, "exposure_s: 20", "exposure_s: 40"),
             "7:17: sensors[0].exposure_s: must be <= cadence_s, got 40");
+  EXPECT_EQ(complaint(good, "cadence_s: 30", "cadence_s: 30\n    mask_deg: 95"),
+            "9:15: sensors[0].mask_deg: must be <= 89, got 95");
   EXPECT_EQ(complaint(good, "duration_s: 120", "duration_s: 10"),
             "7:17: sensors[0].exposure_s: the first exposure ends after the run does, got 20");
 }
