@@ -16,6 +16,8 @@ class FreeSight {
   /// The same without an end, for stars. `direction` of any length > 0.
   bool clear_direction(const Vec<Gcrs>& direction) const;
 
+  const OblateEarth& earth() const { return earth_; }
+
  private:
   bool passes(const Vec<Gcrs>& line, double along) const;
 

@@ -13,6 +13,7 @@
 #include "core/time/iso8601.h"
 #include "sensors/pipeline/light.h"
 #include "sensors/pipeline/object_layer.h"
+#include "sensors/pipeline/objects_in_field.h"
 #include "sensors/pipeline/optics_stage.h"
 #include "sensors/pipeline/sky_layer.h"
 #include "sensors/pipeline/stopwatch.h"

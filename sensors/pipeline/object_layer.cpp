@@ -17,21 +17,6 @@
 namespace dmise {
 namespace {
 
-/// Light time, aberration and refraction move an object by less than this.
-constexpr double widest_shift_rad = 1.0 * deg;
-
-/// Least angle between `axis` and the shorter great-circle arc from `a` to `b`; all unit vectors.
-double angle_to_arc(const Vec<Gcrs>& axis, const Vec<Gcrs>& a, const Vec<Gcrs>& b) {
-  const double ends = std::min(angle_rad(axis, a), angle_rad(axis, b));
-  const Vec<Gcrs> n = cross(a, b);
-  const double length = norm(n);
-  if (length < 1e-12) return ends;
-  const Vec<Gcrs> foot = axis - n * (dot(axis, n) / (length * length));
-  const bool between = dot(cross(a, foot), n) >= 0 && dot(cross(foot, b), n) >= 0;
-  return between && norm(foot) > 1e-12 ? std::asin(std::min(1.0, std::abs(dot(axis, n)) / length))
-                                       : ends;
-}
-
 /// An object at one time of the exposure.
 struct Sample {
   std::optional<PixelPosition> pixel;
@@ -171,38 +156,6 @@ bool changes_abruptly(const std::vector<Sample>& samples) {
   }
   return least < abrupt_ratio * most;
 }
-
-}  // namespace
-
-std::vector<std::size_t> objects_in_field(const View& view) {
-  const auto& exposure = view.times();
-  const auto& world = view.world();
-  const SimTime times[3] = {exposure.start, exposure.middle, exposure.end};
-  // Directions are compared in the camera's frame, brought back to GCRS axes of mid exposure.
-  Rotation<Gcrs, Gcrs> held[3];
-  Vec<Gcrs> observer[3];
-  const auto gcrs_from_camera = view.camera_from_gcrs(exposure.middle).inverse();
-  for (int k = 0; k < 3; ++k) {
-    held[k] = gcrs_from_camera * view.camera_from_gcrs(times[k]);
-    observer[k] = view.observer(times[k]).position_m;
-  }
-  const Vec<Gcrs> axis = gcrs_from_camera * Vec<CameraFrame>{0, 0, 1};
-  const double radius = half_diagonal_rad(view.sensor().camera.optics) + widest_shift_rad;
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < world.object_count(); ++i) {
-    if (view.platform() == i || !world.has_state(i, times[0]) || !world.has_state(i, times[2]) ||
-        !world.has_state(i, times[1]))
-      continue;
-    Vec<Gcrs> d[3];
-    for (int k = 0; k < 3; ++k)
-      d[k] = held[k] * unit(world.motion(i, times[k]).position_m - observer[k]);
-    if (std::min(angle_to_arc(axis, d[0], d[1]), angle_to_arc(axis, d[1], d[2])) < radius)
-      found.push_back(i);
-  }
-  return found;
-}
-
-namespace {
 
 std::vector<Truth> paint(const View& view, const Painter& painter,
                          const std::vector<std::size_t>& objects, OpticsStage& stage,

@@ -12,10 +12,6 @@ namespace dmise {
 // Space objects as streaks: those that the field, the horizon, the Earth and its shadow leave, each
 // along its own path with its own brightness over the exposure.
 
-/// Objects whose path over the exposure may touch the frame: their directions at its start, middle
-/// and end and the arcs between, against the field of view. The sensor's own platform is left out.
-std::vector<std::size_t> objects_in_field(const View& view);
-
 /// Adds their light to `image` and tells what was drawn. An object of which no light fell inside
 /// and whose path did not enter the frame has no entry.
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,

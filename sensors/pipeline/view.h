@@ -6,8 +6,8 @@
 #include "core/config/scenario.h"
 #include "core/frames/geodesy.h"
 #include "core/sky/apparent.h"
+#include "core/visibility/pointing.h"
 #include "sensors/pipeline/frame_times.h"
-#include "sensors/pipeline/pointing.h"
 #include "sensors/pipeline/world.h"
 
 namespace dmise {

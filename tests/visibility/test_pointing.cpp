@@ -1,4 +1,4 @@
-#include "sensors/pipeline/pointing.h"
+#include "core/visibility/pointing.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,39 @@
+#pragma once
+#include <array>
+
+#include "core/frames/vec.h"
+#include "core/optics/camera.h"
+
+namespace dmise {
+
+/// Which directions fall on a camera's frame, and how far a place is from all those that do.
+class FieldOfView {
+ public:
+  explicit FieldOfView(const Optics& optics);
+
+  /// Whether light along `line` (any length > 0) meets the frame; its edge counts.
+  bool contains(const Vec<CameraFrame>& line) const;
+
+  /// The place `from_camera_m` is at least this far [m] from every place in the field; <= 0 when it
+  /// may be in it. Changes by no more than the place moves. Exact beside the edges of a gnomonic
+  /// frame; for other projections it is that of the cone around the frame.
+  double outside_m(const Vec<CameraFrame>& from_camera_m) const;
+
+ private:
+  Optics optics_;
+  bool flat_ = false;                         // gnomonic: the edges are planes through the camera
+  std::array<Vec<CameraFrame>, 4> outwards_;  // unit normals of those planes
+  double cone_cos_ = 0.0, cone_sin_ = 0.0;    // of the half angle around the others
+  bool everything_ = false;                   // that cone is the whole sphere
+};
+
+/// The same for a cone around `axis` (unit): distance to it, <= 0 inside.
+template <class F>
+double outside_cone_m(const Vec<F>& from_apex_m, const Vec<F>& axis, double cos_half,
+                      double sin_half) {
+  const double along = dot(from_apex_m, axis);
+  const double square = dot(from_apex_m, from_apex_m) - along * along;
+  return std::sqrt(square > 0.0 ? square : 0.0) * cos_half - along * sin_half;
+}
+
+}  // namespace dmise

@@ -1,0 +1,241 @@
+#include "core/visibility/passes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr double top_error_s = 0.05;
+
+/// Where one object and the camera are at one instant.
+struct Place {
+  CameraMoment camera;
+  Sgp4State state;
+
+  SimTime time() const { return camera.time; }
+  bool ok() const { return camera.there && state.code == Sgp4Code::ok; }
+  Vec<Teme> line_m() const { return state.position_m - camera.apex_m; }
+  double range_m() const { return ok() ? norm(line_m()) : 1e300; }
+};
+
+/// One object as a sensor has it, at any instants.
+class Follower {
+ public:
+  Follower(const Sgp4Batch& batch, const SensorTrack& track, const Sight& sight,
+           std::uint32_t object)
+      : batch_(batch), track_(track), sight_(sight), object_(object) {}
+
+  std::vector<Place> along(const std::vector<SimTime>& times) const {
+    const std::size_t n = times.size();
+    std::vector<Place> places(n);
+    std::vector<double> minutes(n), position(3 * n), velocity(3 * n);
+    std::vector<std::uint8_t> code(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      places[k].camera = track_.at(times[k]);
+      const Utc& utc = places[k].camera.utc;
+      minutes[k] = batch_.minutes_since_epoch(object_, utc.jd1, utc.jd2);
+    }
+    batch_.propagate_times(object_, minutes, position, velocity, code);
+    for (std::size_t k = 0; k < n; ++k)
+      places[k].state = {{position[k], position[n + k], position[2 * n + k]},
+                         {velocity[k], velocity[n + k], velocity[2 * n + k]},
+                         static_cast<Sgp4Code>(code[k])};
+    return places;
+  }
+
+  bool visible(const Place& p) const {
+    return p.ok() && sight_.visible(p.camera, p.state.position_m);
+  }
+  bool lit(const Place& p) const { return sunlit(p) >= lit_fraction; }
+  double sunlit(const Place& p) const {
+    return p.ok() ? Sunlight(track_.sky(), p.time()).fraction(p.state.position_m) : 0.0;
+  }
+  /// Greatest at the top of a pass.
+  double height(const Place& p) const {
+    if (!p.ok()) return -1e300;
+    return track_.site() ? dot(p.camera.up, p.line_m()) / p.range_m() : -p.range_m();
+  }
+  double sun_elevation_rad(const CameraMoment& camera) const {
+    const Sunlight light(track_.sky(), camera.time);
+    const Vec<Gcrs> to_sun = light.sun_m() - light.gcrs_from_teme() * camera.apex_m;
+    return std::asin(std::clamp(dot(light.gcrs_from_teme() * camera.up, unit(to_sun)), -1.0, 1.0));
+  }
+
+  PassMoment moment(SimTime t) const {
+    constexpr std::int64_t half_ns = 50'000'000;
+    const auto places = along({{t.ns - half_ns}, t, {t.ns + half_ns}});
+    const Place &a = places[0], &p = places[1], &b = places[2];
+    PassMoment m{.time = t};
+    if (track_.site()) m.sun_elevation_rad = sun_elevation_rad(p.camera);
+    if (!p.ok()) return m;
+    m.range_m = p.range_m();
+    m.sunlit = sunlit(p);
+    if (a.ok() && b.ok())
+      m.rate_rad_per_s = angle_rad(a.camera.from_camera_m(a.state.position_m),
+                                   b.camera.from_camera_m(b.state.position_m)) /
+                         (2e-9 * double(half_ns));
+    if (track_.site())
+      m.horizontal = horizontal(enu_from_itrs(*track_.site()) *
+                                (track_.sky().earth(t).itrs_from_teme(t) * p.line_m()));
+    return m;
+  }
+
+  /// Where `test` turns between two instants for which it differs.
+  template <class Test>
+  SimTime turning(SimTime a, SimTime b, bool at_a, Test&& test) const {
+    while ((b - a).seconds() > event_error_s) {
+      const auto times = between(a, b);
+      const auto places = along(times);
+      std::size_t k = 0;
+      while (k < places.size() && test(places[k]) == at_a) ++k;
+      if (k < places.size()) b = times[k];
+      if (k > 0) a = times[k - 1];
+    }
+    return {a.ns + (b.ns - a.ns) / 2};
+  }
+
+  /// Where `value` is greatest between two instants around its peak.
+  template <class Value>
+  Place peak(SimTime a, SimTime b, Value&& value) const {
+    for (;;) {
+      const auto times = between(a, b);
+      auto places = along(times);
+      std::size_t best = 0;
+      for (std::size_t k = 1; k < places.size(); ++k)
+        if (value(places[k]) > value(places[best])) best = k;
+      if ((b - a).seconds() < top_error_s) return places[best];
+      if (best > 0) a = times[best - 1];
+      if (best + 1 < times.size()) b = times[best + 1];
+    }
+  }
+
+ private:
+  /// As many instants inside as the propagator takes at a time, evenly.
+  static std::vector<SimTime> between(SimTime a, SimTime b) {
+    constexpr int parts = 17;
+    std::vector<SimTime> times;
+    for (int k = 1; k < parts; ++k) times.push_back({a.ns + (b.ns - a.ns) * k / parts});
+    return times;
+  }
+
+  const Sgp4Batch& batch_;
+  const SensorTrack& track_;
+  const Sight& sight_;
+  std::uint32_t object_;
+};
+
+/// Instants along a pass, ends included: at least 17, at most some 1500 between grid steps.
+std::vector<SimTime> instants_along(SimTime rise, SimTime set, double step_s) {
+  const double length_s = (set - rise).seconds();
+  const double spacing_s = std::min(length_s / 16.0, std::max(step_s, length_s / 1500.0));
+  const int count = length_s > 0 ? int(std::ceil(length_s / spacing_s)) : 1;
+  std::vector<SimTime> times;
+  for (int k = 0; k <= count; ++k)
+    times.push_back({rise.ns + std::llround(double(set.ns - rise.ns) * k / count)});
+  return times;
+}
+
+/// When it is sunlit, from places along the pass.
+void find_light(const Follower& object, const std::vector<Place>& places, Pass& pass) {
+  bool was_lit = false;
+  SimTime since{};
+  const auto ends = [&](SimTime t) {
+    pass.lit_to = t;
+    pass.lit_s += (t - since).seconds();
+  };
+  const auto is_lit = [&](const Place& p) { return object.lit(p); };
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const SimTime t = places[k].time();
+    const bool lit = is_lit(places[k]);
+    if (lit && !was_lit) {
+      since = k == 0 ? t : object.turning(places[k - 1].time(), t, false, is_lit);
+      if (!pass.lit_from) pass.lit_from = since;
+    }
+    if (!lit && was_lit) ends(object.turning(places[k - 1].time(), t, true, is_lit));
+    if (lit && k + 1 == places.size()) ends(t);
+    was_lit = lit;
+  }
+}
+
+/// Looks along a pass from its rise to its set and fills in the rest.
+void describe(const Follower& object, SimTime rise, SimTime set, double step_s, Pass& pass) {
+  const auto places = object.along(instants_along(rise, set, step_s));
+  find_light(object, places, pass);
+  const auto greatest = [&](auto&& value) {
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < places.size(); ++k)
+      if (value(places[k]) > value(places[best])) best = k;
+    const SimTime a = places[best > 0 ? best - 1 : 0].time();
+    const SimTime b = places[std::min(best + 1, places.size() - 1)].time();
+    const Place inner = object.peak(a, b, value);
+    return value(inner) > value(places[best]) ? inner : places[best];
+  };
+  pass.rise = object.moment(rise);
+  pass.top = object.moment(greatest([&](const Place& p) { return object.height(p); }).time());
+  pass.set = object.moment(set);
+  pass.least_range_m = greatest([](const Place& p) { return -p.range_m(); }).range_m();
+  if (!pass.top.sun_elevation_rad) return;
+  pass.least_sun_elevation_rad = *pass.top.sun_elevation_rad;
+  for (std::size_t k = 0; k <= 16; ++k)
+    pass.least_sun_elevation_rad =
+        std::min(pass.least_sun_elevation_rad,
+                 object.sun_elevation_rad(places[(places.size() - 1) * k / 16].camera));
+}
+
+/// A stay known by instants of the grid, or by one instant between two of them.
+struct Stay {
+  std::uint32_t object = 0;
+  std::size_t first = 0, last = 0;  // visible at these steps, or not at all of them: `between`
+  std::optional<SimTime> between;
+};
+
+std::vector<Stay> stays(const Sightings& sightings) {
+  std::vector<Stay> all;
+  for (const Sighting& s : sightings.seen) {
+    if (!all.empty() && all.back().object == s.object && all.back().last + 1 == s.step)
+      ++all.back().last;
+    else
+      all.push_back({s.object, s.step, s.step, std::nullopt});
+  }
+  for (const Crossing& c : sightings.crossings)
+    all.push_back({c.object, c.step, c.step + 1, c.time});
+  std::sort(all.begin(), all.end(), [](const Stay& a, const Stay& b) {
+    return a.object != b.object ? a.object < b.object : a.first < b.first;
+  });
+  return all;
+}
+
+}  // namespace
+
+std::vector<Pass> passes_of(const Sgp4Batch& batch, const SensorTrack& track, const TimeGrid& grid,
+                            const Sightings& sightings, Threads& threads) {
+  const Sight sight(track.sensor());
+  const std::vector<Stay> all = stays(sightings);
+  std::vector<Pass> passes(all.size());
+  threads.for_ranges(all.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Stay& stay = all[k];
+      const Follower object(batch, track, sight, stay.object);
+      const auto visible = [&](const Place& p) { return object.visible(p); };
+      Pass& pass = passes[k];
+      pass.object = stay.object;
+      SimTime rise = grid.at(stay.first), set = grid.at(stay.last);
+      if (stay.between) {
+        rise = object.turning(grid.at(stay.first), *stay.between, false, visible);
+        set = object.turning(*stay.between, grid.at(stay.last), true, visible);
+      } else {
+        pass.open_start = stay.first == 0;
+        pass.open_end = stay.last == grid.steps;
+        if (!pass.open_start) rise = object.turning(grid.at(stay.first - 1), rise, false, visible);
+        if (!pass.open_end) set = object.turning(set, grid.at(stay.last + 1), true, visible);
+      }
+      describe(object, rise, set, grid.step.seconds(), pass);
+    }
+  });
+  return passes;
+}
+
+}  // namespace dmise

@@ -1,0 +1,70 @@
+#include "core/visibility/sensor_track.h"
+
+namespace dmise {
+
+SensorTrack::SensorTrack(const SensorConfig& sensor, const SkyHours& sky, const Sgp4Batch& batch,
+                         std::optional<std::size_t> platform, std::optional<std::size_t> target)
+    : sensor_(sensor), sky_(sky), batch_(batch), platform_(platform), target_(target) {
+  const auto* site = std::get_if<SiteConfig>(&sensor.place);
+  if (!site) return;
+  site_ = Site{site->latitude_deg, site->longitude_deg, site->height_m};
+  site_m_ = itrs_from_geodetic(*site_);
+  up_ = enu_from_itrs(*site_).inverse() * Vec<Enu>{0, 0, 1};
+  if (std::holds_alternative<PointUp>(sensor.pointing) ||
+      std::holds_alternative<PointHorizon>(sensor.pointing)) {
+    // With ITRS in the place of GCRS: such a pointing depends on the Earth's axes alone.
+    const auto camera = aim(sensor, PointingScene{.site = &*site_});
+    fixed_.emplace();
+    fixed_->m = camera.m;
+  }
+}
+
+std::optional<ObserverState> SensorTrack::state_of(
+    std::size_t object, const CameraMoment& now, const Rotation<Gcrs, Teme>& gcrs_from_teme) const {
+  const std::uint32_t index = std::uint32_t(object);
+  double r[3], v[3];
+  std::uint8_t code;
+  batch_.propagate_some({&index, 1}, now.utc.jd1, now.utc.jd2, r, v, {&code, 1});
+  if (code != 0) return std::nullopt;
+  return ObserverState{gcrs_from_teme * Vec<Teme>{r[0], r[1], r[2]},
+                       gcrs_from_teme * Vec<Teme>{v[0], v[1], v[2]}};
+}
+
+CameraMoment SensorTrack::at(SimTime t) const {
+  CameraMoment now{.time = t, .utc = sky_.clock().utc(t)};
+  const EarthOrientation& earth = sky_.earth(t);
+  const Rotation<Itrs, Teme> itrs_from_teme = earth.itrs_from_teme(t);
+  if (site_) {
+    now.apex_m = itrs_from_teme.inverse() * site_m_;
+    now.up = itrs_from_teme.inverse() * up_;
+    if (fixed_) {
+      now.camera_from_teme = *fixed_ * itrs_from_teme;
+      return now;
+    }
+  }
+  const Rotation<Itrs, Gcrs> itrs_from_gcrs = earth.itrs_from_gcrs(t);
+  const Rotation<Gcrs, Teme> gcrs_from_teme = itrs_from_gcrs.inverse() * itrs_from_teme;
+  PointingScene scene{
+      .time = t, .itrs_from_gcrs = itrs_from_gcrs, .site = site_ ? &*site_ : nullptr};
+  now.gcrs_from_teme = gcrs_from_teme;
+  if (site_) {
+    scene.observer = {gcrs_from_teme * now.apex_m, earth.velocity_of_fixed_point(site_m_, t)};
+  } else {
+    const auto host = state_of(*platform_, now, gcrs_from_teme);
+    now.there = host.has_value();
+    if (!now.there) return now;
+    scene.observer = *host;
+    now.apex_m = gcrs_from_teme.inverse() * host->position_m;
+    now.sight.emplace(host->position_m, oblate_earth(earth));
+  }
+  if (target_) {
+    const auto target = state_of(*target_, now, gcrs_from_teme);
+    now.there = target.has_value();
+    if (!now.there) return now;
+    scene.target_m = target->position_m;
+  }
+  now.camera_from_teme = aim(sensor_, scene) * gcrs_from_teme;
+  return now;
+}
+
+}  // namespace dmise

@@ -1,0 +1,63 @@
+#pragma once
+#include <optional>
+
+#include "core/config/scenario.h"
+#include "core/orbit/sgp4_batch.h"
+#include "core/sky/occultation.h"
+#include "core/visibility/pointing.h"
+#include "core/visibility/sky_hours.h"
+
+namespace dmise {
+
+/// Where a camera is and looks at one instant, in the frame of SGP4's states.
+struct CameraMoment {
+  SimTime time;
+  Utc utc;
+  bool there = true;  // false when the platform, or the target to point at, has no state
+  Vec<Teme> apex_m;
+  Rotation<CameraFrame, Teme> camera_from_teme;
+  Vec<Teme> up;                         // unit: zenith of a ground site; 0 in orbit
+  std::optional<FreeSight> sight;       // in orbit
+  Rotation<Gcrs, Teme> gcrs_from_teme;  // in orbit
+
+  Vec<CameraFrame> from_camera_m(const Vec<Teme>& position_m) const {
+    return camera_from_teme * (position_m - apex_m);
+  }
+};
+
+/// A sensor's place and attitude over time. The camera is taken as aimed at every instant: a
+/// pointing at the zenith or by azimuth and elevation turns with the Earth, one at the sky or a
+/// target follows it.
+class SensorTrack {
+ public:
+  /// `platform` and `target` are objects of `batch`, where the sensor has them. What is given must
+  /// outlive the track.
+  SensorTrack(const SensorConfig& sensor, const SkyHours& sky, const Sgp4Batch& batch,
+              std::optional<std::size_t> platform, std::optional<std::size_t> target);
+
+  const SensorConfig& sensor() const { return sensor_; }
+  const SkyHours& sky() const { return sky_; }
+  const std::optional<Site>& site() const { return site_; }
+  /// The object that carries the sensor; it does not see itself.
+  std::optional<std::size_t> platform() const { return platform_; }
+  /// Whether the camera is fixed to the turning Earth.
+  bool fixed_to_earth() const { return fixed_.has_value(); }
+  /// Whether its axes keep their attitude to the stars.
+  bool fixed_to_stars() const { return std::holds_alternative<PointSky>(sensor_.pointing); }
+
+  CameraMoment at(SimTime t) const;
+
+ private:
+  std::optional<ObserverState> state_of(std::size_t object, const CameraMoment& now,
+                                        const Rotation<Gcrs, Teme>& gcrs_from_teme) const;
+
+  const SensorConfig& sensor_;
+  const SkyHours& sky_;
+  const Sgp4Batch& batch_;
+  std::optional<std::size_t> platform_, target_;
+  std::optional<Site> site_;
+  Vec<Itrs> site_m_, up_;
+  std::optional<Rotation<CameraFrame, Itrs>> fixed_;
+};
+
+}  // namespace dmise

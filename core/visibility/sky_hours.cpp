@@ -1,0 +1,50 @@
+#include "core/visibility/sky_hours.h"
+
+#include <algorithm>
+
+namespace dmise {
+namespace {
+
+constexpr std::int64_t hour_ns = 3'600'000'000'000;
+
+std::int64_t hour_of(SimTime t) {
+  return t.ns >= 0 ? t.ns / hour_ns : -((-t.ns + hour_ns - 1) / hour_ns);
+}
+
+}  // namespace
+
+SkyHours::SkyHours(const Clock& clock, SimTime from, SimTime to) : clock_(clock) {
+  const auto sun_at = [&](std::int64_t k) { return solar_system(clock.tt({k * hour_ns})).sun_m; };
+  Vec<Gcrs> sun = sun_at(hour_of(from));
+  for (std::int64_t k = hour_of(from); k <= hour_of(to); ++k) {
+    const Vec<Gcrs> next = sun_at(k + 1);
+    hours_.push_back(
+        {{k * hour_ns}, earth_orientation(clock, {k * hour_ns + hour_ns / 2}), sun, next - sun});
+    sun = next;
+  }
+}
+
+const SkyHours::Hour& SkyHours::hour(SimTime t) const {
+  const std::int64_t k = (t.ns - hours_.front().start.ns) / hour_ns;
+  return hours_[std::size_t(std::clamp<std::int64_t>(k, 0, std::int64_t(hours_.size()) - 1))];
+}
+
+Vec<Gcrs> SkyHours::sun_m(SimTime t) const {
+  const Hour& h = hour(t);
+  return h.sun_m + h.sun_step_m * (double((t - h.start).ns) / double(hour_ns));
+}
+
+Sunlight::Sunlight(const SkyHours& sky, SimTime t)
+    : gcrs_from_teme_(sky.earth(t).gcrs_from_teme(t)),
+      sun_m_(sky.sun_m(t)),
+      shadow_(sun_m_, oblate_earth(sky.earth(t))) {}
+
+double Sunlight::fraction(const Vec<Teme>& position_m) const {
+  const Vec<Gcrs> p = gcrs_from_teme_ * position_m;
+  const double components[3] = {p.x, p.y, p.z};
+  double fraction = 0.0;
+  shadow_.sunlit_fractions(components, {&fraction, 1});
+  return fraction;
+}
+
+}  // namespace dmise

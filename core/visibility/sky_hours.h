@@ -1,0 +1,54 @@
+#pragma once
+#include <vector>
+
+#include "core/frames/earth_orientation.h"
+#include "core/sky/shadow.h"
+#include "core/sky/sun_moon.h"
+#include "core/time/clock.h"
+
+namespace dmise {
+
+/// Earth and Sun over a span of time, worked out once an hour: what is given for an instant is a
+/// function of the instant alone. Precession and nutation are held for the hour (4 mas at its
+/// ends), the Sun moves straight between its ends (0.02 arcsec). Immutable.
+class SkyHours {
+ public:
+  /// For instants in [from, to].
+  SkyHours(const Clock& clock, SimTime from, SimTime to);
+
+  const Clock& clock() const { return clock_; }
+  const EarthOrientation& earth(SimTime t) const { return hour(t).earth; }
+  Vec<Gcrs> sun_m(SimTime t) const;
+
+ private:
+  struct Hour {
+    SimTime start;
+    EarthOrientation earth;
+    Vec<Gcrs> sun_m, sun_step_m;  // at its start, and from there to its end
+  };
+  const Hour& hour(SimTime t) const;
+
+  Clock clock_;
+  std::vector<Hour> hours_;
+};
+
+/// An object counts as sunlit from half of the Sun's disc on.
+inline constexpr double lit_fraction = 0.5;
+
+/// The Sun's light at one instant, for states as SGP4 gives them.
+class Sunlight {
+ public:
+  Sunlight(const SkyHours& sky, SimTime t);
+
+  /// Fraction of the Sun's disc seen past the oblate Earth, 0..1; 0 inside the Earth.
+  double fraction(const Vec<Teme>& position_m) const;
+  const Vec<Gcrs>& sun_m() const { return sun_m_; }
+  const Rotation<Gcrs, Teme>& gcrs_from_teme() const { return gcrs_from_teme_; }
+
+ private:
+  Rotation<Gcrs, Teme> gcrs_from_teme_;
+  Vec<Gcrs> sun_m_;
+  EarthShadow shadow_;
+};
+
+}  // namespace dmise

@@ -1,0 +1,112 @@
+#include "sensors/pipeline/objects_in_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/base/units.h"
+#include "core/optics/projection.h"
+#include "core/visibility/field_of_view.h"
+#include "core/visibility/touch.h"
+
+namespace dmise {
+namespace {
+
+/// Light time, aberration and refraction move an object by less than this.
+constexpr double widest_shift_rad = 1.0 * deg;
+
+/// Accelerations of object and observer together: twice that at the Earth's surface.
+constexpr double greatest_pull_m_per_s2 = 20.0;
+
+/// A path that touches the field for no longer than this part of the exposure may be missed.
+constexpr double shortest_share = 1e-3;
+
+/// Directions that may touch the frame, around a camera that moves and turns during an exposure.
+class FieldCone {
+ public:
+  explicit FieldCone(const View& view) : view_(view) {
+    const auto& exposure = view.times();
+    const double half =
+        std::min(pi, half_diagonal_rad(view.sensor().camera.optics) + widest_shift_rad);
+    cos_ = std::cos(half);
+    sin_ = std::sin(half);
+    for (const SimTime t : {exposure.start, exposure.middle, exposure.end})
+      moments_.emplace(t.ns, at(t));
+    half_s_ = 0.5 * exposure.seconds();
+    // A quarter more than the attitudes at start, middle and end show.
+    const auto turned = [&](SimTime a, SimTime b) {
+      const auto turn = moment(a).camera * moment(b).camera.inverse();
+      const auto& m = turn.m;
+      return std::atan2(std::hypot(m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]),
+                        m[0][0] + m[1][1] + m[2][2] - 1.0);
+    };
+    turn_rad_per_s_ =
+        1.25 / half_s_ *
+        std::max(turned(exposure.start, exposure.middle), turned(exposure.middle, exposure.end));
+  }
+
+  bool touched_by(std::size_t object) {
+    const auto& exposure = view_.times();
+    const Motion motion = view_.world().motion(object, exposure.middle);
+    const ObserverState& observer = moment(exposure.middle).observer;
+    const double range_m = norm(motion.position_m - observer.position_m);
+    const double speed =
+        norm(motion.slope_m_per_s - observer.velocity_m_per_s) + greatest_pull_m_per_s2 * half_s_;
+    const double speed_in_axes = speed + turn_rad_per_s_ * (range_m + speed * half_s_);
+    const double middle_m = outside_m(object, exposure.middle);
+    if (middle_m <= 0.0) return true;
+    if (middle_m > speed_in_axes * half_s_) return false;
+    const double start_m = outside_m(object, exposure.start);
+    const double end_m = outside_m(object, exposure.end);
+    if (start_m <= 0.0 || end_m <= 0.0) return true;
+    const auto may_touch = [&](double a_m, double b_m, double s) {
+      return a_m + b_m <= speed_in_axes * s;
+    };
+    const auto distance_m = [&](SimTime t) { return outside_m(object, t); };
+    const double shortest_s = shortest_share * exposure.seconds();
+    return touch_between(exposure.start, start_m, exposure.middle, middle_m, shortest_s, may_touch,
+                         distance_m) ||
+           touch_between(exposure.middle, middle_m, exposure.end, end_m, shortest_s, may_touch,
+                         distance_m);
+  }
+
+ private:
+  struct Moment {
+    Rotation<CameraFrame, Gcrs> camera;
+    ObserverState observer;
+  };
+  Moment at(SimTime t) const { return {view_.camera_from_gcrs(t), view_.observer(t)}; }
+  /// Worked out once for each instant that is asked for.
+  const Moment& moment(SimTime t) {
+    const auto found = moments_.find(t.ns);
+    return found != moments_.end() ? found->second : moments_.emplace(t.ns, at(t)).first->second;
+  }
+  double outside_m(std::size_t object, SimTime t) {
+    const Moment& now = moment(t);
+    const Vec<CameraFrame> line =
+        now.camera * (view_.world().motion(object, t).position_m - now.observer.position_m);
+    return outside_cone_m(line, Vec<CameraFrame>{0, 0, 1}, cos_, sin_);
+  }
+
+  const View& view_;
+  double cos_ = 1.0, sin_ = 0.0, half_s_ = 0.0, turn_rad_per_s_ = 0.0;
+  std::map<std::int64_t, Moment> moments_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> objects_in_field(const View& view) {
+  const auto& exposure = view.times();
+  const auto& world = view.world();
+  FieldCone cone(view);
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < world.object_count(); ++i) {
+    if (view.platform() == i || !world.has_state(i, exposure.start) ||
+        !world.has_state(i, exposure.end) || !world.has_state(i, exposure.middle))
+      continue;
+    if (cone.touched_by(i)) found.push_back(i);
+  }
+  return found;
+}
+
+}  // namespace dmise

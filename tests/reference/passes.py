@@ -1,0 +1,93 @@
+"""Passes of satellites over Atlanta by skyfield, for tests/visibility/test_passes.cpp.
+
+Usage: passes.py satellites.dat. UT1 is taken for UTC, as without an Earth orientation file. Events are
+skyfield's `find_events` at 10 deg of elevation over a day, each then found to 1 ms by bisection of skyfield's own
+altitude. A row: catalogue number; rise, culmination and set [s from the start], elevation [rad], azimuth
+[rad] and range [m] at the culmination; when skyfield's `is_sunlit` (a point-like Sun, here by ERFA, and a
+round Earth) changes within the pass [s], or -1; whether it is sunlit at its rise.
+"""
+import sys
+from types import SimpleNamespace
+
+import erfa
+import numpy as np
+from skyfield.api import EarthSatellite, load, wgs84
+from skyfield.constants import AU_M
+
+MASK_DEG = 10.0
+NUMBERS = [25544, 20580, 27386, 27376, 27704, 17589, 41572, 36119, 42707, 42705, 42728, 43054]
+
+ts = load.timescale(delta_t=69.184, builtin=True)  # TT - UTC from 2017 on
+site = wgs84.latlon(33.777, -84.398, elevation_m=300.0)
+start = ts.utc(2018, 1, 21)
+
+
+class SunFromEarth:
+    """What `is_sunlit` asks of an ephemeris: (sun - earth).at(t).position.m."""
+
+    def __getitem__(self, name):
+        return self
+
+    def __sub__(self, other):
+        return self
+
+    def at(self, t):
+        earth = erfa.epv00(t.whole, t.tt_fraction)[0]["p"]
+        return SimpleNamespace(position=SimpleNamespace(m=-np.asarray(earth) * AU_M))
+
+
+ephemeris = SunFromEarth()
+
+
+def after(seconds):
+    return ts.tt_jd(start.whole, start.tt_fraction + seconds / 86400.0)
+
+
+def bisect(test, a, b):
+    """Where test(seconds) turns between a and b."""
+    at_a = test(a)
+    if test(b) == at_a:
+        return None
+    while b - a > 1e-3:
+        middle = 0.5 * (a + b)
+        a, b = (middle, b) if test(middle) == at_a else (a, middle)
+    return 0.5 * (a + b)
+
+
+elements, entry = {}, {}
+with open(sys.argv[1]) as catalogue:  # gpredict's: NAME=, TLE1=, TLE2= lines
+    for line in catalogue:
+        if "=" in line:
+            key, value = line.rstrip().split("=", 1)
+            entry[key] = value
+            if key == "TLE2":
+                elements[int(value[2:7])] = (entry["NAME"], entry["TLE1"], value)
+
+for number in NUMBERS:
+    if number not in elements:
+        sys.exit(f"no {number} in the catalogue")
+    name, one, two = elements[number]
+    satellite = EarthSatellite(one, two, name, ts)
+    pair = satellite - site
+    times, events = satellite.find_events(site, start, after(86400), altitude_degrees=MASK_DEG)
+    seconds = [((t.whole - start.whole) + (t.tt_fraction - start.tt_fraction)) * 86400 for t in times]
+
+    def altitude(s):
+        return pair.at(after(s)).altaz()[0].degrees
+
+    for k in range(len(events) - 2):
+        if list(events[k:k + 3]) != [0, 1, 2]:
+            continue
+        rise = bisect(lambda s: altitude(s) > MASK_DEG, seconds[k] - 5.0, seconds[k + 1])
+        fall = bisect(lambda s: altitude(s) > MASK_DEG, seconds[k + 1], seconds[k + 2] + 5.0)
+        a, b = seconds[k + 1] - 2.0, seconds[k + 1] + 2.0
+        top = bisect(lambda s: altitude(s + 0.05) < altitude(s - 0.05), a, b)
+        high, azimuth, distance = pair.at(after(top)).altaz()
+
+        def lit(s):
+            return bool(satellite.at(after(s)).is_sunlit(ephemeris))
+
+        change = bisect(lit, rise, fall)
+        print(f"    {{{number}, {rise:.3f}, {top:.3f}, {fall:.3f}, {high.radians:.9f}, {azimuth.radians:.9f}, "
+              f"{distance.m:.1f}, {-1 if change is None else change:.3f}, "
+              f"{str(lit(rise)).lower()}}},  // {name}")

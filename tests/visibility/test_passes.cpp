@@ -1,0 +1,192 @@
+#include "core/visibility/passes.h"
+
+#include <algorithm>
+
+#include "core/base/units.h"
+#include "core/orbit/synthetic_catalogue.h"
+#include "tests/visibility/watch.h"
+
+namespace dmise {
+namespace {
+
+using test::Watch;
+
+struct SkyfieldPass {
+  std::uint32_t number;
+  double rise_s, top_s, set_s, elevation_rad, azimuth_rad, range_m, shadow_s;
+  bool lit_at_rise;
+};
+// tests/reference/passes.py: find_events of skyfield 1.45 at 10 deg over Atlanta, 2018-01-21.
+constexpr SkyfieldPass skyfield[] = {
+#include "tests/visibility/passes_reference.inc"
+};
+
+class AgainstSkyfield : public testing::Test {
+ protected:
+  struct Pair {
+    SkyfieldPass theirs;
+    Pass ours;
+  };
+  void SetUp() override {
+    DMISE_NEEDS_FILE(test::catalogue_path("satellites.dat"));
+    std::vector<MeanElements> elements;
+    for (const MeanElements& e : test::debian_catalogue())
+      for (const SkyfieldPass& s : skyfield)
+        if (e.catalogue_number == s.number) {
+          elements.push_back(e);
+          break;
+        }
+    Watch watch(test::at_atlanta(test::all_sky_camera(), 10.0), elements, "2018-01-21T00:00:00Z",
+                86400, 10);
+    passes = watch.passes();
+    for (const SkyfieldPass& s : skyfield) {
+      const auto found = std::find_if(passes.begin(), passes.end(), [&](const Pass& p) {
+        return elements[p.object].catalogue_number == s.number &&
+               std::abs(p.top.time.seconds() - s.top_s) < 60;
+      });
+      ASSERT_NE(found, passes.end()) << s.number << " at " << s.top_s;
+      pairs.push_back({s, *found});
+    }
+  }
+  std::vector<Pass> passes;
+  std::vector<Pair> pairs;
+};
+
+TEST_F(AgainstSkyfield, RiseAndSetAgreeWithinATenthOfASecond) {
+  double worst = 0;
+  for (const auto& [theirs, ours] : pairs) {
+    EXPECT_NEAR(ours.rise.time.seconds(), theirs.rise_s, 0.1) << theirs.number;
+    EXPECT_NEAR(ours.set.time.seconds(), theirs.set_s, 0.1) << theirs.number;
+    worst = std::max({worst, std::abs(ours.rise.time.seconds() - theirs.rise_s),
+                      std::abs(ours.set.time.seconds() - theirs.set_s)});
+  }
+  RecordProperty("worst_s", std::to_string(worst));
+}
+
+TEST_F(AgainstSkyfield, CulminationAgrees) {
+  for (const auto& [theirs, ours] : pairs) {
+    const bool high_orbit = theirs.range_m > 1e7;  // a flat maximum
+    EXPECT_NEAR(ours.top.time.seconds(), theirs.top_s, high_orbit ? 1.0 : 0.2) << theirs.number;
+    EXPECT_NEAR(ours.top.horizontal->elevation_rad, theirs.elevation_rad, 2e-5);
+    EXPECT_NEAR(ours.top.range_m, theirs.range_m, high_orbit ? 500.0 : 200.0);
+    const double azimuth =
+        std::remainder(ours.top.horizontal->azimuth_rad - theirs.azimuth_rad, 2 * pi);
+    // A tenth of a second near the zenith turns the azimuth by degrees.
+    EXPECT_LT(std::abs(azimuth) * std::cos(theirs.elevation_rad), 2.5e-3) << theirs.number;
+  }
+}
+
+// No pass that they don't know: the same number for each object, those cut by the span aside.
+TEST_F(AgainstSkyfield, TheNumberOfPassesAgrees) {
+  std::size_t whole = 0;
+  for (const Pass& p : passes) whole += !p.open_start && !p.open_end;
+  EXPECT_EQ(whole, std::size(skyfield));
+}
+
+// Skyfield's Earth is a sphere of the equatorial radius and its Sun a point: half the disc is gone
+// at most 21 km of Earth's radius, or a few seconds, from there.
+TEST_F(AgainstSkyfield, LightAndShadowAgreeWithinTheModels) {
+  int changes = 0;
+  for (const auto& [theirs, ours] : pairs) {
+    EXPECT_EQ(ours.rise.sunlit >= lit_fraction, theirs.lit_at_rise) << theirs.number;
+    if (theirs.shadow_s < 0) {
+      const double lit_s = theirs.lit_at_rise ? (ours.set.time - ours.rise.time).seconds() : 0.0;
+      EXPECT_NEAR(ours.lit_s, lit_s, 8.0) << theirs.number << " at " << theirs.rise_s;
+      continue;
+    }
+    ++changes;
+    ASSERT_TRUE(ours.lit_from && ours.lit_to);
+    const SimTime change = theirs.lit_at_rise ? *ours.lit_to : *ours.lit_from;
+    EXPECT_NEAR(change.seconds(), theirs.shadow_s, 8.0) << theirs.number;
+  }
+  EXPECT_GE(changes, 3);
+}
+
+TEST(Passes, AGeostationaryObjectIsOneOpenPass) {
+  MeanElements geo = synthetic_catalogue({.objects = 4, .seed = 1})[3];
+  geo.inclination_rad = 0.001;
+  geo.eccentricity = 1e-4;
+  // Its mean longitude over Atlanta's meridian: tried all round.
+  for (int k = 0; k < 24; ++k) {
+    geo.mean_anomaly_rad = k * 2 * pi / 24;
+    Watch watch(test::at_atlanta(test::all_sky_camera(), 20.0), {geo}, "2018-01-20T00:00:00Z",
+                86400, 60);
+    const auto passes = watch.passes();
+    if (passes.empty()) continue;
+    ASSERT_EQ(passes.size(), 1u);
+    if (!passes[0].open_start || !passes[0].open_end) continue;
+    EXPECT_EQ(passes[0].rise.time.ns, 0);
+    EXPECT_EQ(passes[0].set.time, watch.grid.last());
+    EXPECT_GT(passes[0].least_range_m, 35.7e6);
+    EXPECT_GT(passes[0].lit_s, 0.94 * 86400);
+    EXPECT_LT(passes[0].top.rate_rad_per_s, 1e-6);  // it stands in the frame
+    return;
+  }
+  FAIL() << "no longitude is in sight all day";
+}
+
+// A field of 3 deg, instants a minute apart: in for a second or two, out at both.
+TEST(Passes, AFastCrosserOutsideAtBothInstantsHasItsTimesToATenthOfASecond) {
+  const auto sensor = test::at_atlanta(test::flat_camera(3, 3));
+  const auto elements = synthetic_catalogue({.objects = 6000, .seed = 1});
+  Watch coarse(sensor, elements, "2018-01-20T06:00:00Z", 2400, 60);
+  Watch fine(sensor, elements, "2018-01-20T06:00:00Z", 2400, 0.25);
+  int crossings = 0;
+  const auto reference = fine.one_by_one();
+  for (const Pass& p : coarse.passes()) {
+    if (p.set.time - p.rise.time > sim_seconds(50)) continue;
+    double first = 1e9, last = -1e9;
+    for (const Sighting& s : reference.seen) {
+      const double t = fine.grid.at(s.step).seconds();
+      if (s.object != p.object || std::abs(t - p.top.time.seconds()) > 60) continue;
+      first = std::min(first, t);
+      last = std::max(last, t);
+    }
+    if (first > 1e8) {  // shorter than the fine grid's step
+      EXPECT_LT((p.set.time - p.rise.time).seconds(), 0.25);
+      continue;
+    }
+    EXPECT_NEAR(p.rise.time.seconds(), first - 0.125, 0.135) << p.object;
+    EXPECT_NEAR(p.set.time.seconds(), last + 0.125, 0.135) << p.object;
+    ++crossings;
+  }
+  EXPECT_GE(crossings, 5);
+}
+
+TEST(Passes, AzimuthRunsThroughNorthWithoutAJumpInTheTimes) {
+  // Tilted to the north, where azimuth wraps from 360 to 0 deg.
+  SensorConfig sensor = test::at_atlanta(test::flat_camera(40, 40));
+  sensor.pointing = PointHorizon{.azimuth_deg = 0, .elevation_deg = 40};
+  Watch watch(sensor, synthetic_catalogue({.objects = 1500, .seed = 1}), "2018-01-20T06:00:00Z",
+              7200, 10);
+  int through = 0;
+  for (const Pass& p : watch.passes()) {
+    const double a = p.rise.horizontal->azimuth_rad, b = p.set.horizontal->azimuth_rad;
+    for (const double azimuth : {a, b}) {
+      EXPECT_GE(azimuth, 0.0);
+      EXPECT_LT(azimuth, 2 * pi);
+    }
+    through += std::abs(a - b) > pi;
+    EXPECT_LE(p.rise.time, p.top.time);
+    EXPECT_LE(p.top.time, p.set.time);
+  }
+  EXPECT_GE(through, 5);
+}
+
+// astropy 5.2.1, get_sun in AltAz without air and with UT1 = UTC: -0.8599 deg (its Sun is the
+// apparent one, 20 arcsec from the geometric).
+TEST(Passes, TheSunsElevationAtTheSiteIsTold) {
+  MeanElements geo = synthetic_catalogue({.objects = 4, .seed = 1})[3];
+  for (int k = 0; k < 24; ++k) {
+    geo.mean_anomaly_rad = k * 2 * pi / 24;
+    Watch watch(test::at_atlanta(test::all_sky_camera()), {geo}, "2018-01-20T22:57:00Z", 60, 10);
+    const auto passes = watch.passes();
+    if (passes.empty()) continue;
+    EXPECT_NEAR(*passes[0].rise.sun_elevation_rad / deg, -0.8599, 0.01);
+    return;
+  }
+  FAIL();
+}
+
+}  // namespace
+}  // namespace dmise

@@ -1,0 +1,143 @@
+#include "core/visibility/sightings.h"
+
+#include <set>
+
+#include "core/base/units.h"
+#include "core/orbit/synthetic_catalogue.h"
+#include "tests/visibility/watch.h"
+
+namespace dmise {
+namespace {
+
+using test::Watch;
+
+std::vector<MeanElements> population(std::size_t objects) {
+  return synthetic_catalogue({.objects = objects, .seed = 1});
+}
+
+void expect_equal(const Sightings& fast, const Sightings& slow) {
+  ASSERT_EQ(fast.seen.size(), slow.seen.size());
+  for (std::size_t k = 0; k < fast.seen.size(); ++k) {
+    ASSERT_EQ(fast.seen[k].object, slow.seen[k].object) << k;
+    ASSERT_EQ(fast.seen[k].step, slow.seen[k].step) << k;
+    ASSERT_EQ(fast.seen[k].range_m, slow.seen[k].range_m) << k;
+    ASSERT_EQ(fast.seen[k].sunlit, slow.seen[k].sunlit) << k;
+  }
+}
+
+// The whole catalogue of December 2019 over an hour and a half, every 10 s.
+TEST(Sightings, SkippingWorkFindsWhatAskingForEveryObjectFinds) {
+  const std::string path = test::data_path("tle/catalog_3le_2019-12-19_18470.txt.gz");
+  DMISE_NEEDS_FILE(path);
+  Watch watch(test::at_atlanta(test::flat_camera(74, 90)), read_catalogue(path).elements,
+              "2019-12-20T00:00:00Z", 5400, 10);
+  const Sightings fast = watch.sightings(), slow = watch.one_by_one();
+  EXPECT_GT(slow.seen.size(), 50000u);
+  expect_equal(fast, slow);
+}
+
+TEST(Sightings, TheSameForAFisheyeAMaskAndATiltedCamera) {
+  SensorConfig tilted = test::at_atlanta(test::flat_camera(20, 10), 25.0);
+  tilted.pointing = PointHorizon{.azimuth_deg = 200, .elevation_deg = 30};
+  for (const SensorConfig& sensor : {test::at_atlanta(test::all_sky_camera(), 10.0), tilted}) {
+    Watch watch(sensor, population(2000), "2018-01-20T06:00:00Z", 7200, 10);
+    const Sightings slow = watch.one_by_one();
+    EXPECT_GT(slow.seen.size(), 500u);
+    expect_equal(watch.sightings(), slow);
+  }
+}
+
+TEST(Sightings, TheSameForACameraOnTheStarsAndOneThatFollowsATarget) {
+  for (const Pointing& pointing :
+       {Pointing{PointSky{.ra_deg = 80, .dec_deg = 10}}, Pointing{PointTarget{"7"}}}) {
+    SensorConfig sensor = test::at_atlanta(test::flat_camera(20, 20));
+    sensor.pointing = pointing;
+    const bool follows = std::holds_alternative<PointTarget>(pointing);
+    constexpr std::size_t target = 6;  // 1300 km, up for a part of the time
+    Watch watch(sensor, population(1000), "2018-01-20T06:00:00Z", 7200, 10, std::nullopt,
+                follows ? std::optional<std::size_t>(target) : std::nullopt);
+    const Sightings slow = watch.one_by_one();
+    EXPECT_GT(slow.seen.size(), 100u) << follows;
+    expect_equal(watch.sightings(), slow);
+  }
+}
+
+TEST(Sightings, TheSameForACameraInOrbitThatTheEarthBlocks) {
+  for (const Pointing& pointing :
+       {Pointing{PointSky{.ra_deg = 80, .dec_deg = 10}}, Pointing{PointUp{}}}) {
+    SensorConfig sensor{.name = "imager", .place = PlatformConfig{"3"}};
+    sensor.camera.optics = test::flat_camera(60, 60);
+    sensor.pointing = pointing;
+    Watch watch(sensor, population(1000), "2018-01-20T06:00:00Z", 6000, 10, 0);
+    const Sightings slow = watch.one_by_one();
+    EXPECT_GT(slow.seen.size(), 1000u) << pointing.index();
+    expect_equal(watch.sightings(), slow);
+  }
+}
+
+TEST(Sightings, AnyNumberOfThreadsFindsTheSame) {
+  const auto sensor = test::at_atlanta(test::flat_camera(74, 90));
+  Watch one(sensor, population(3000), "2018-01-20T06:00:00Z", 7200, 10);
+  Watch four(sensor, population(3000), "2018-01-20T06:00:00Z", 7200, 10, std::nullopt, std::nullopt,
+             4);
+  const Sightings a = one.sightings(), b = four.sightings();
+  expect_equal(a, b);
+  ASSERT_EQ(a.crossings.size(), b.crossings.size());
+  for (std::size_t k = 0; k < a.crossings.size(); ++k)
+    EXPECT_EQ(a.crossings[k].time.ns, b.crossings[k].time.ns);
+}
+
+// What is found on a grid of one second, between the instants of a grid of one minute.
+TEST(Sightings, AnObjectThatOnlyCrossesBetweenInstantsIsFound) {
+  const auto sensor = test::at_atlanta(test::flat_camera(8, 8));
+  Watch fine(sensor, population(4000), "2018-01-20T06:00:00Z", 7200, 1);
+  Watch coarse(sensor, population(4000), "2018-01-20T06:00:00Z", 7200, 60);
+  const Sightings every_second = fine.one_by_one(), found = coarse.sightings();
+  std::set<std::pair<std::uint32_t, std::uint32_t>> minutes;  // object, minute
+  for (const Sighting& s : found.seen) {
+    minutes.insert({s.object, s.step});
+    if (s.step > 0) minutes.insert({s.object, s.step - 1});
+  }
+  const std::size_t at_instants = minutes.size();
+  for (const Crossing& c : found.crossings) minutes.insert({c.object, c.step});
+  EXPECT_GT(minutes.size(), at_instants + 20);
+  for (const Sighting& s : every_second.seen)
+    EXPECT_TRUE(minutes.count({s.object, s.step / 60})) << s.object << " at " << s.step << " s";
+}
+
+TEST(Sightings, TheCamerasOwnHostIsLeftOut) {
+  auto elements = population(50);
+  elements.push_back(elements[3]);  // a second element set of the host, at range 0
+  SensorConfig sensor{.name = "imager", .place = PlatformConfig{"3"}};
+  sensor.camera.optics = test::flat_camera(90, 90);
+  sensor.pointing = PointUp{};
+  Watch watch(sensor, elements, "2018-01-20T06:00:00Z", 600, 10, 3);
+  for (const Sighting& s : watch.sightings().seen) {
+    EXPECT_NE(s.object, 3u);
+    EXPECT_NE(s.object, 50u);
+    EXPECT_GT(s.range_m, 1.0);
+  }
+}
+
+TEST(Sightings, ADecayedObjectLeavesWithItsCodeAndTakesNoOtherWithIt) {
+  auto elements = population(50);
+  const Sightings before =
+      Watch(test::at_atlanta(test::all_sky_camera()), elements, "2018-01-20T06:00:00Z", 3600, 10)
+          .sightings();
+  MeanElements falling = elements[0];
+  falling.bstar_per_earth_radius = 0.5;
+  falling.mean_motion_rad_per_min = 16.4 * 2 * pi / 1440;
+  falling.eccentricity = 0.0005;
+  elements.push_back(falling);
+  Watch watch(test::at_atlanta(test::all_sky_camera()), elements, "2018-01-20T06:00:00Z", 3600, 10);
+  const Sightings after = watch.sightings();
+  ASSERT_EQ(after.lost.size(), 1u);
+  EXPECT_EQ(after.lost[0].object, 50u);
+  EXPECT_NE(after.lost[0].code, Sgp4Code::ok);
+  std::size_t others = 0;
+  for (const Sighting& s : after.seen) others += s.object != 50;
+  EXPECT_EQ(others, before.seen.size());
+}
+
+}  // namespace
+}  // namespace dmise
