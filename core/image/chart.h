@@ -1,0 +1,58 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/image/drawing.h"
+
+namespace dmise {
+
+struct ChartPoint {
+  double x = 0.0, y = 0.0;  // in the units of the axes
+};
+
+/// Lines of one kind, drawn in one colour.
+struct ChartSeries {
+  std::string label;  // in the legend
+  Colour colour;
+  std::vector<std::vector<ChartPoint>> lines;
+};
+
+struct ChartTick {
+  double at = 0.0;
+  std::string label;  // empty: a short tick without a grid line
+};
+
+struct ChartAxis {
+  std::string label;
+  double least = 0.0, most = 1.0;
+  bool logarithmic = false;  // `least` > 0 then
+  std::vector<ChartTick> ticks;
+};
+
+/// A part of the x axis shaded from top to bottom.
+struct ChartBand {
+  double from = 0.0, to = 0.0;
+};
+
+/// Lines over two axes with a legend, for a picture or a page. Plain data.
+struct Chart {
+  std::string title, subtitle;
+  ChartAxis x, y;
+  std::vector<ChartSeries> series;  // the first at the bottom
+  std::vector<ChartBand> bands;
+  std::string bands_label;  // in the legend
+  int width_px = 1400, height_px = 820;
+};
+
+/// Ticks at 1, 2 and 5 times powers of ten, with labels such as "20,000", and short ones at the
+/// other multiples: for a logarithmic axis over [least, most].
+std::vector<ChartTick> logarithmic_ticks(double least, double most);
+
+/// Scalable Vector Graphics 1.1. Equal charts give equal text.
+std::string chart_svg(const Chart& chart);
+
+/// The same in pixels, edges smoothed.
+Picture chart_picture(const Chart& chart);
+
+}  // namespace dmise
