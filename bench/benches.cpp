@@ -1,5 +1,6 @@
 #include "bench/benches.h"
 
+#include "bench/bench_figure5.h"
 #include "bench/bench_frame.h"
 #include "bench/bench_interpolation.h"
 #include "bench/bench_sgp4.h"
@@ -12,7 +13,8 @@ std::vector<Bench> benches() {
   return {
       {"frame", "stages of a frame on one thread", bench_frame},
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
-      {"sgp4", "propagation of whole catalogues against the compiled reference", bench_sgp4},
+      {"sgp4", "propagation of whole catalogues against the compiled reference",
+       [](bool json) { return bench_sgp4(json) | bench_figure5(json); }},
       {"sky", "the sky of a frame and the stars of a field", bench_sky},
       {"tick", "lock-step ticks beside the bare ZeroMQ floor", bench_tick},
   };
