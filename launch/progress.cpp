@@ -24,12 +24,28 @@ void Progress::clear_line() {
   open_line_ = false;
 }
 
-void Progress::show(const ProgressState& s, bool last) {
+bool Progress::due(bool last) {
   const auto now = std::chrono::steady_clock::now();
-  if (!last && Seconds(now - shown_).count() < interval_s_) return;
+  if (!last && Seconds(now - shown_).count() < interval_s_) return false;
   shown_ = now;
+  return true;
+}
+
+void Progress::show_share(double share, const std::string& what) {
+  // Work that ends before a line would be due elsewhere than on a terminal says nothing.
+  if (!terminal_ && Seconds(std::chrono::steady_clock::now() - start_).count() < interval_s_)
+    return;
+  if (!due(false)) return;
+  char line[256];
+  std::snprintf(line, sizeof line, "%s: %.0f %%, %.0f s elapsed", what.c_str(), 100.0 * share,
+                Seconds(shown_ - start_).count());
+  draw(share, line, false);
+}
+
+void Progress::show(const ProgressState& s, bool last) {
+  if (!due(last)) return;
   char line[512];
-  const double wall_s = Seconds(now - start_).count();
+  const double wall_s = Seconds(shown_ - start_).count();
   int used =
       std::snprintf(line, sizeof line,
                     "simulated %.0f of %.0f s, frames %d of %d, detections %ld, %.0f s elapsed",
@@ -37,9 +53,12 @@ void Progress::show(const ProgressState& s, bool last) {
   if (!s.waiting_for.empty())
     std::snprintf(line + used, sizeof line - std::size_t(used), ", waiting for %s",
                   s.waiting_for.c_str());
+  draw(s.duration_s > 0 ? s.simulated_s / s.duration_s : 0.0, line, last);
+}
+
+void Progress::draw(double share, const char* line, bool last) {
   if (terminal_) {
     constexpr int width = 20;
-    const double share = s.duration_s > 0 ? s.simulated_s / s.duration_s : 0.0;
     const int full = std::clamp(static_cast<int>(share * width), 0, width);
     std::fprintf(stderr, "\r\033[K[%.*s%.*s] %s", full, "####################", width - full,
                  "....................", line);

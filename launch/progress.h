@@ -19,10 +19,15 @@ class Progress {
   explicit Progress(double interval_s = 5.0);
   ~Progress();
   void show(const ProgressState& state, bool last = false);
+  /// The same for other work, `share` of it in [0, 1] done.
+  void show_share(double share, const std::string& what);
   /// Ends the line being redrawn, so that other text can follow.
   void clear_line();
 
  private:
+  bool due(bool last);
+  void draw(double share, const char* line, bool last);
+
   std::chrono::steady_clock::time_point start_, shown_;
   double interval_s_;
   bool terminal_ = false;

@@ -1,0 +1,214 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/base/units.h"
+#include "core/config/make_clock.h"
+#include "core/image/png_file.h"
+#include "core/time/iso8601.h"
+#include "launch/commands.h"
+#include "launch/pass_list.h"
+#include "launch/progress.h"
+#include "launch/range_figure.h"
+#include "orbit-node/orbit_actor.h"
+#include "sensors/pipeline/world.h"
+
+namespace dmise {
+namespace {
+
+struct VisibleOptions {
+  std::string scenario, from, out = "out/visible";
+  std::vector<std::string> sensors;
+  std::optional<double> duration_s;
+  double step_s = 10.0;
+  bool csv = false, jsonl = false, sunlit = false, dark = false, print_only = false;
+  std::optional<double> night_deg;
+  std::size_t rows = 40;
+  int threads = 1;
+};
+
+constexpr double most_steps = 5e6;
+
+TimeGrid time_grid(const VisibleOptions& options, const Scenario& scenario, const Clock& clock) {
+  TimeGrid grid{.step = sim_seconds(options.step_s)};
+  if (!options.from.empty()) {
+    try {
+      grid.from = clock.sim_time(parse_utc(options.from));
+    } catch (const Error& e) {
+      throw ConfigError("--from: " + std::string(e.what()));
+    }
+  }
+  const double duration_s = options.duration_s.value_or(scenario.duration.seconds());
+  const double steps = duration_s / options.step_s;
+  if (steps > most_steps)
+    throw ConfigError("--step: " + std::to_string(std::llround(steps)) +
+                      " instants, more than 5000000: take a longer step or a shorter --duration");
+  grid.steps = std::size_t(std::max(1.0, std::floor(steps + 1e-9)));
+  return grid;
+}
+
+bool wanted(const Pass& pass, const VisibleOptions& options) {
+  const double length_s = (pass.set.time - pass.rise.time).seconds();
+  if (options.sunlit && !(pass.lit_s > 0.0)) return false;
+  if (options.dark && pass.lit_s >= length_s - 2 * event_error_s) return false;
+  return !options.night_deg || !pass.top.sun_elevation_rad ||
+         pass.least_sun_elevation_rad < *options.night_deg * deg;
+}
+
+/// The first few; `where` the others are told.
+void say_notes(const std::vector<std::string>& notes, const char* where) {
+  constexpr std::size_t most = 5;
+  for (std::size_t k = 0; k < std::min(most, notes.size()); ++k)
+    std::fprintf(stderr, "note: %s\n", notes[k].c_str());
+  if (notes.size() > most)
+    std::fprintf(stderr, "note: and %zu more%s\n", notes.size() - most, where);
+}
+
+std::vector<std::string> lost_notes(const Sightings& sightings, const ObjectPopulation& population,
+                                    const Clock& clock) {
+  std::vector<std::string> notes;
+  for (const LostObject& lost : sightings.lost) {
+    const MeanElements& e = population.elements[lost.object];
+    notes.push_back(std::to_string(e.catalogue_number) + " " + e.name + " leaves at " +
+                    format_utc(clock.utc(lost.time), 0) + ": SGP4 code " +
+                    std::to_string(int(lost.code)) + ", " + std::string(describe(lost.code)));
+  }
+  return notes;
+}
+
+void write_products(const std::string& directory, const PassList& list, const Chart& chart) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw Error(directory + ": " + error.message());
+  write_file_whole(directory + "/passes.csv", pass_csv(list));
+  write_file_whole(directory + "/passes.jsonl", pass_jsonl(list));
+  write_file_whole(directory + "/figure.svg", chart_svg(chart));
+  write_png(directory + "/figure.png", chart_picture(chart));
+}
+
+void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
+                 const ObjectPopulation& population, const Sgp4Batch& batch, const SkyHours& sky,
+                 const TimeGrid& grid, Threads& threads, bool first) {
+  std::optional<std::size_t> platform, target;
+  if (const auto* p = std::get_if<PlatformConfig>(&sensor.place))
+    platform = object_index(population.roster, p->object, sensor.name + ": platform");
+  if (const auto* p = std::get_if<PointTarget>(&sensor.pointing))
+    target = object_index(population.roster, p->object, sensor.name + ": pointing.target");
+  const SensorTrack track(sensor, sky, batch, platform, target);
+  const Clock& clock = sky.clock();
+
+  Progress progress;
+  const auto found =
+      find_sightings(batch, track, grid, threads, {.progress = [&](double share) {
+                       progress.show_share(share, sensor.name + ": looking for objects in sight");
+                     }});
+  progress.show_share(1.0, sensor.name + ": following passes");
+  std::vector<Pass> passes = passes_of(batch, track, grid, found, threads);
+  progress.clear_line();
+  std::erase_if(passes, [&](const Pass& p) { return !wanted(p, options); });
+  std::sort(passes.begin(), passes.end(), [&](const Pass& a, const Pass& b) {
+    return a.rise.time != b.rise.time ? a.rise.time < b.rise.time : a.object < b.object;
+  });
+  if (first) say_notes(lost_notes(found, population, clock), " without a state");
+
+  const PassList list{sensor, clock, population.elements, passes};
+  if (options.csv) {
+    std::fputs(pass_csv(list, first).c_str(), stdout);
+  } else if (options.jsonl) {
+    std::fputs(pass_jsonl(list).c_str(), stdout);
+  } else {
+    std::vector<std::uint32_t> objects;
+    for (const Pass& p : passes) objects.push_back(p.object);
+    std::sort(objects.begin(), objects.end());
+    objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
+    std::printf("%s%s, %s to %s: %zu passes of %zu objects%s\n", first ? "" : "\n",
+                sensor.name.c_str(), format_utc(clock.utc(grid.from), 0).c_str(),
+                format_utc(clock.utc(grid.last()), 0).c_str(), passes.size(), objects.size(),
+                options.sunlit ? ", sunlit for a part"
+                : options.dark ? ", dark for a part"
+                               : "");
+    std::fputs(pass_table(list, options.rows).c_str(), stdout);
+  }
+  if (options.print_only) return;
+  RangeFigureOptions figure{.dark = options.dark};
+  if (options.night_deg) figure.night_below_rad = *options.night_deg * deg;
+  const std::string directory = options.out + "/" + sensor.name;
+  write_products(directory, list, range_figure(track, grid, population.elements, found, figure));
+  if (!options.csv && !options.jsonl)
+    std::printf("-> %s/passes.csv, passes.jsonl, figure.svg, figure.png\n", directory.c_str());
+}
+
+void visible(const VisibleOptions& options) {
+  const Scenario scenario = load_scenario(options.scenario);
+  std::vector<const SensorConfig*> sensors;
+  for (const std::string& name : options.sensors) sensors.push_back(&sensor_named(scenario, name));
+  if (sensors.empty())
+    for (const SensorConfig& sensor : scenario.sensors) sensors.push_back(&sensor);
+  const Clock clock = make_clock(scenario);
+  const TimeGrid grid = time_grid(options, scenario, clock);
+  const ObjectPopulation population = load_objects(scenario, clock);
+  say_notes(population.notes, "; dmise check tells all");
+  Threads threads(options.threads);
+  const Sgp4Batch batch(population.elements, &threads);
+  const SkyHours sky(clock, grid.from, grid.last());
+  bool first = true;
+  for (const SensorConfig* sensor : sensors) {
+    show_sensor(*sensor, options, population, batch, sky, grid, threads, first);
+    first = false;
+  }
+}
+
+}  // namespace
+
+void add_visible_command(CLI::App& app) {
+  auto o = std::make_shared<VisibleOptions>();
+  auto* command = app.add_subcommand(
+      "visible", "Who passes through the sensors' fields, when, how far and how lit");
+  command->add_option("scenario", o->scenario, "scenario (YAML)")->required();
+  command->add_option("--sensor", o->sensors, "of this sensor alone (may be given several times)")
+      ->allow_extra_args(false);
+  command->add_option("--from", o->from, "UTC (ISO 8601); the scenario's start otherwise");
+  command->add_option("--duration", o->duration_s, "seconds; the scenario's otherwise")
+      ->check(CLI::Range(1e-3, 3.2e8));
+  command
+      ->add_option("--step", o->step_s,
+                   "seconds between the instants of the figure; passes are found between them, too")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-3, 3600.0));
+  auto* sunlit = command->add_flag("--sunlit", o->sunlit, "passes that are sunlit for a part");
+  command
+      ->add_flag("--dark", o->dark,
+                 "passes that are in the Earth's shadow for a part; draws that part")
+      ->excludes(sunlit);
+  command
+      ->add_option("--night", o->night_deg,
+                   "only while the Sun is lower than this over the site [deg]; -6 without a value")
+      ->expected(0, 1)
+      ->default_str("-6")
+      ->check(CLI::Range(-90.0, 90.0));
+  command->add_option("--rows", o->rows, "passes shown in the table; 0 for all")
+      ->capture_default_str();
+  auto* csv = command->add_flag("--csv", o->csv, "prints CSV in place of the table");
+  command->add_flag("--jsonl", o->jsonl, "prints one JSON object a line in place of the table")
+      ->excludes(csv);
+  command->add_option("--out", o->out, "directory of passes.csv, passes.jsonl, figure.svg and .png")
+      ->capture_default_str();
+  command->add_flag("--print-only", o->print_only, "writes no files");
+  command
+      ->add_option("--threads", o->threads,
+                   "threads to compute with; the products do not depend on it")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 256));
+  command->footer(
+      "An object is visible when it stands in the camera's frame, above the sensor's mask_deg and "
+      "not behind\nthe Earth; '<' and '>' mark passes cut by the span. docs/models/visibility.md");
+  command->callback([o] { visible(*o); });
+}
+
+}  // namespace dmise

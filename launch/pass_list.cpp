@@ -1,0 +1,200 @@
+#include "launch/pass_list.h"
+
+#include <cstdio>
+#include <functional>
+
+#include "core/base/json.h"
+#include "core/base/units.h"
+#include "core/orbit/catalogue_report.h"
+#include "core/time/iso8601.h"
+
+namespace dmise {
+namespace {
+
+std::string printed(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+/// One value of a pass: a text, a number with so many decimals, a truth, or nothing.
+struct Value {
+  enum class Kind { none, text, number, flag } kind = Kind::none;
+  std::string text;  // as CSV shows it, quotes aside
+};
+Value of(const std::string& text) { return {Value::Kind::text, text}; }
+Value of(bool flag) { return {Value::Kind::flag, flag ? "true" : "false"}; }
+Value of(double value, const char* format) { return {Value::Kind::number, printed(format, value)}; }
+
+struct Column {
+  const char* name;
+  std::function<Value(const PassList&, const Pass&)> value;
+};
+
+Value utc(const PassList& list, const std::optional<SimTime>& t) {
+  return t ? of(format_utc(list.clock.utc(*t), 2)) : Value{};
+}
+Value azimuth(const PassMoment& m) {
+  return m.horizontal ? of(m.horizontal->azimuth_rad / deg, "%.3f") : Value{};
+}
+Value elevation(const PassMoment& m) {
+  return m.horizontal ? of(m.horizontal->elevation_rad / deg, "%.3f") : Value{};
+}
+
+const std::vector<Column>& columns() {
+  using L = const PassList&;
+  using P = const Pass&;
+  static const std::vector<Column> all = {
+      {"sensor", [](L l, P) { return of(l.sensor.name); }},
+      {"catalogue_number",
+       [](L l, P p) { return of(double(l.elements[p.object].catalogue_number), "%.0f"); }},
+      {"name", [](L l, P p) { return of(l.elements[p.object].name); }},
+      {"orbit", [](L l, P p) { return of(std::string(orbit_class(l.elements[p.object]))); }},
+      {"rise_utc", [](L l, P p) { return utc(l, p.rise.time); }},
+      {"top_utc", [](L l, P p) { return utc(l, p.top.time); }},
+      {"set_utc", [](L l, P p) { return utc(l, p.set.time); }},
+      {"open_start", [](L, P p) { return of(p.open_start); }},
+      {"open_end", [](L, P p) { return of(p.open_end); }},
+      {"rise_azimuth_deg", [](L, P p) { return azimuth(p.rise); }},
+      {"rise_elevation_deg", [](L, P p) { return elevation(p.rise); }},
+      {"top_azimuth_deg", [](L, P p) { return azimuth(p.top); }},
+      {"top_elevation_deg", [](L, P p) { return elevation(p.top); }},
+      {"set_azimuth_deg", [](L, P p) { return azimuth(p.set); }},
+      {"set_elevation_deg", [](L, P p) { return elevation(p.set); }},
+      {"least_range_km", [](L, P p) { return of(p.least_range_m / 1e3, "%.3f"); }},
+      {"top_rate_deg_per_s", [](L, P p) { return of(p.top.rate_rad_per_s / deg, "%.6f"); }},
+      {"top_sunlit", [](L, P p) { return of(p.top.sunlit, "%.3f"); }},
+      {"lit_from_utc", [](L l, P p) { return utc(l, p.lit_from); }},
+      {"lit_to_utc", [](L l, P p) { return utc(l, p.lit_to); }},
+      {"lit_s", [](L, P p) { return of(p.lit_s, "%.2f"); }},
+      {"top_sun_elevation_deg",
+       [](L, P p) {
+         return p.top.sun_elevation_rad ? of(*p.top.sun_elevation_rad / deg, "%.2f") : Value{};
+       }},
+  };
+  return all;
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + "\"";
+}
+
+/// hh:mm:ss.s
+std::string of_day(const Clock& clock, SimTime t) {
+  return format_utc(clock.utc(t), 1).substr(11, 10);
+}
+
+/// "all", "no", or from when to when.
+std::string light(const PassList& list, const Pass& p) {
+  const double length_s = (p.set.time - p.rise.time).seconds();
+  if (!p.lit_from) return "no";
+  if (p.lit_s >= length_s - 2 * event_error_s) return "all";
+  return of_day(list.clock, *p.lit_from).substr(0, 8) + "-" +
+         of_day(list.clock, *p.lit_to).substr(0, 8);
+}
+
+}  // namespace
+
+const char* orbit_class(const MeanElements& elements) {
+  switch (regime_of(elements)) {
+    case OrbitRegime::low:
+      return "LEO";
+    case OrbitRegime::medium:
+      return "MEO";
+    case OrbitRegime::geosynchronous:
+      return "GEO";
+    case OrbitRegime::highly_elliptic:
+      return "HEO";
+    case OrbitRegime::beyond:
+      break;
+  }
+  return "far";
+}
+
+std::string pass_table(const PassList& list, std::size_t rows) {
+  if (list.passes.empty()) return {};
+  const bool ground = std::holds_alternative<SiteConfig>(list.sensor.place);
+  std::string text =
+      ground
+          ? "   number  name                      orbit  rise (UTC)               top         set"
+            "         highest    azimuth  nearest     rate      sunlit             Sun\n"
+          : "   number  name                      orbit  rise (UTC)               nearest     set"
+            "         nearest     rate      sunlit\n";
+  std::size_t told = 0;
+  for (const Pass& p : list.passes) {
+    if (rows && told++ == rows) break;
+    const MeanElements& e = list.elements[p.object];
+    char row[320];
+    int used =
+        std::snprintf(row, sizeof row, "%9u  %-24.24s  %-5s %c%s  %s  %s%c", e.catalogue_number,
+                      e.name.c_str(), orbit_class(e), p.open_start ? '<' : ' ',
+                      format_utc(list.clock.utc(p.rise.time), 1).substr(0, 21).c_str(),
+                      of_day(list.clock, p.top.time).c_str(),
+                      of_day(list.clock, p.set.time).c_str(), p.open_end ? '>' : ' ');
+    text.append(row, std::size_t(used));
+    if (p.top.horizontal) {
+      used =
+          std::snprintf(row, sizeof row, "  %5.1f deg  %5.1f deg",
+                        p.top.horizontal->elevation_rad / deg, p.top.horizontal->azimuth_rad / deg);
+      text.append(row, std::size_t(used));
+    }
+    used = std::snprintf(row, sizeof row, "  %7.0f km  %5.3f d/s  %-17s", p.least_range_m / 1e3,
+                         p.top.rate_rad_per_s / deg, light(list, p).c_str());
+    text.append(row, std::size_t(used));
+    if (p.top.sun_elevation_rad) text += printed("  %5.1f", *p.top.sun_elevation_rad / deg);
+    text += '\n';
+  }
+  if (rows && list.passes.size() > rows)
+    text += "  ... and " + std::to_string(list.passes.size() - rows) +
+            " more (--rows 0 shows all; passes.csv has them)\n";
+  return text;
+}
+
+std::string pass_csv(const PassList& list, bool with_header) {
+  std::string text;
+  if (with_header) {
+    for (const Column& c : columns()) text += (text.empty() ? "" : ",") + std::string(c.name);
+    text += '\n';
+  }
+  for (const Pass& p : list.passes) {
+    const char* comma = "";
+    for (const Column& c : columns()) {
+      text += comma + quoted(c.value(list, p).text);
+      comma = ",";
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string pass_jsonl(const PassList& list) {
+  std::string text;
+  for (const Pass& p : list.passes) {
+    JsonWriter w;
+    w.begin_object();
+    for (const Column& c : columns()) {
+      const Value v = c.value(list, p);
+      w.key(c.name);
+      switch (v.kind) {
+        case Value::Kind::none:
+          w.null();
+          break;
+        case Value::Kind::text:
+          w.value(v.text);
+          break;
+        case Value::Kind::number:
+        case Value::Kind::flag:
+          w.raw(v.text);
+          break;
+      }
+    }
+    w.end_object();
+    text += w.text() + '\n';
+  }
+  return text;
+}
+
+}  // namespace dmise
