@@ -82,6 +82,16 @@ std::vector<std::string> lost_notes(const Sightings& sightings, const ObjectPopu
   return notes;
 }
 
+/// Index of an object that SGP4 moves.
+std::size_t followed(const ObjectPopulation& population, const std::string& name,
+                     const std::string& what) {
+  const std::size_t i = object_index(population.roster, name, what);
+  if (i >= population.elements.size())
+    throw ConfigError(what + ": " + name +
+                      " has no element set; dmise visible follows objects by SGP4 alone");
+  return i;
+}
+
 void write_products(const std::string& directory, const PassList& list, const Chart& chart) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
@@ -97,9 +107,9 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
                  const TimeGrid& grid, Threads& threads, bool first) {
   std::optional<std::size_t> platform, target;
   if (const auto* p = std::get_if<PlatformConfig>(&sensor.place))
-    platform = object_index(population.roster, p->object, sensor.name + ": platform");
+    platform = followed(population, p->object, sensor.name + ": platform");
   if (const auto* p = std::get_if<PointTarget>(&sensor.pointing))
-    target = object_index(population.roster, p->object, sensor.name + ": pointing.target");
+    target = followed(population, p->object, sensor.name + ": pointing.target");
   const SensorTrack track(sensor, sky, batch, platform, target);
   const Clock& clock = sky.clock();
 
@@ -154,6 +164,9 @@ void visible(const VisibleOptions& options) {
   const TimeGrid grid = time_grid(options, scenario, clock);
   const ObjectPopulation population = load_objects(scenario, clock);
   say_notes(population.notes, "; dmise check tells all");
+  if (const std::size_t others = population.roster.objects.size() - population.elements.size())
+    std::fprintf(stderr, "note: %zu of %zu objects are left out: no element sets\n", others,
+                 population.roster.objects.size());
   Threads threads(options.threads);
   const Sgp4Batch batch(population.elements, &threads);
   const SkyHours sky(clock, grid.from, grid.last());

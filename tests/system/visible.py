@@ -67,6 +67,18 @@ def test(binary, directory):
     check(done.returncode == 2 and re.search(r"bad\.yaml:5:\d+: sensors\[0\]\.mask_deg: must be <= 89, got 90",
                                              done.stderr), done.stderr.strip())
 
+    own = directory / "own.yaml"
+    own.write_text(scenario.read_text().replace(
+        "objects: [", "objects: [{name: inspector, motion: {two_body: {position_m: [7.0e6, 0, 0], "
+        "velocity_m_per_s: [0, 5.3e3, 5.3e3]}}}, ", 1))
+    done = call(binary, own, "--print-only", "--duration", "60")
+    check(done.returncode == 0 and "note: 1 of 980 objects are left out: no element sets" in done.stderr,
+          "an object of another motion model is left out with a note")
+    own.write_text(own.read_text().replace("site: atlanta", "platform: inspector", 1))
+    done = call(binary, own, "--print-only", "--duration", "60")
+    check(done.returncode == 2 and "alpha: platform: inspector has no element set" in done.stderr,
+          done.stderr.splitlines()[-1])
+
 
 def check_row(row):
     what = f"{row['catalogue_number']} at {row['rise_utc']}"
