@@ -169,6 +169,23 @@ TEST(FitsFile, NamesTheMissingOrWrongKeyword) {
             "frame.fits: BITPIX: must be 16, got -32");
 }
 
+// CFITSIO divides by the sizes of tiles and blocks while it opens a compressed image.
+TEST(FitsFile, RefusesTilesAndBlocksOfNoSize) {
+  for (const std::string key : {"ZVAL1   =", "ZTILE1  ="}) {
+    std::string bytes =
+        encode_frame(sample_counts(16, 12), sample_header(16, 12), FitsCompression::rice);
+    const std::size_t at = bytes.find(key);
+    ASSERT_NE(at, bytes.npos);
+    bytes.replace(at + key.size(), 21, std::string(20, ' ') + "0");
+    try {
+      decode_frame(bytes, "hostile.fits");
+      ADD_FAILURE() << key;
+    } catch (const ConfigError& error) {
+      EXPECT_EQ(error.what(), "hostile.fits: " + key.substr(0, key.find(' ')) + ": must be > 0");
+    }
+  }
+}
+
 TEST(FitsFile, RefusesEveryTruncation) {
   for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
     const std::string good = encode_frame(sample_counts(), sample_header(), compression);

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
+#include <string>
 
 namespace dmise {
 namespace {
@@ -23,7 +25,8 @@ std::string code_of(const std::string& line) {
 
 // A float holds a position in low orbit to 0.5 m.
 TEST(Sources, NoSinglePrecisionWherePositionsAreComputed) {
-  const std::regex single(R"(\bfloat\b|\b__m(128|256|512)\b|_ps\(|[0-9]\.[0-9]*f\b|\bstrtof\b|\bsqrtf\b)");
+  const std::regex single(
+      R"(\bfloat\b|\b__m(128|256|512)\b|_ps\(|[0-9]\.[0-9]*f\b|\bstrtof\b|\bsqrtf\b)");
   int files = 0;
   for (const char* directory : {"core/time", "core/frames", "core/orbit", "orbit-node"})
     for (const auto& entry : fs::directory_iterator(fs::path(DMISE_SOURCE_DIR) / directory)) {
@@ -37,6 +40,36 @@ TEST(Sources, NoSinglePrecisionWherePositionsAreComputed) {
             << entry.path() << ":" << number << ": " << line;
     }
   EXPECT_GT(files, 50);
+}
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(Sources, EveryTestThatTheTableOfHardCasesNamesExists) {
+  const fs::path root(DMISE_SOURCE_DIR);
+  std::set<std::string> tests;
+  const std::regex test(R"(TEST(_F|_P)?\(\s*(\w+),\s*(\w+)\))");
+  std::string scripts;
+  for (const auto& entry : fs::recursive_directory_iterator(root / "tests")) {
+    if (entry.path().filename() == "CMakeLists.txt") scripts += text_of(entry.path());
+    if (entry.path().extension() != ".cpp") continue;
+    const std::string text = text_of(entry.path());
+    for (std::sregex_iterator m(text.begin(), text.end(), test), end; m != end; ++m)
+      tests.insert((*m)[2].str() + "." + (*m)[3].str());
+  }
+  const std::string table = text_of(root / "docs/hard-cases.md");
+  const std::regex name(R"(`(\w+)\.(\w+)`)");
+  int named = 0;
+  for (std::sregex_iterator m(table.begin(), table.end(), name), end; m != end; ++m, ++named) {
+    const std::string suite = (*m)[1], rest = (*m)[2];
+    if (suite == "system" || suite == "reference")
+      EXPECT_NE(scripts.find(rest), scripts.npos) << m->str();
+    else
+      EXPECT_TRUE(tests.contains(suite + "." + rest)) << m->str();
+  }
+  EXPECT_GT(named, 40);
 }
 
 }  // namespace
