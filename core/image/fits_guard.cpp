@@ -1,0 +1,64 @@
+#include "core/image/fits_guard.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "core/base/error.h"
+
+namespace dmise {
+
+namespace {
+
+constexpr std::size_t card_size = 80, value_at = 10, block_size = 2880;
+constexpr std::size_t longest_number = 30;
+constexpr double largest_file = 1e15;
+
+std::string keyword_of(std::string_view card) {
+  return std::string(card.substr(0, std::min<std::size_t>(8, card.find_first_of(" ="))));
+}
+
+/// Throws for a card that does harm; gives its value as a number, 0 if it is none.
+double checked_value(std::string_view card, const std::string& name) {
+  const auto fail = [&](const std::string& reason) {
+    throw ConfigError(name + ": " + keyword_of(card) + ": " + reason);
+  };
+  if (std::any_of(card.begin(), card.end(), [](char c) { return c < ' ' || c > '~'; }))
+    throw ConfigError(name + ": a header holds bytes that are not printable ASCII");
+  if (card.substr(8, 1) != "=") return 0.0;
+  std::string_view value = card.substr(value_at - 1);
+  value.remove_prefix(std::min(value.size(), value.find_first_not_of(' ')));
+  if (value.starts_with('\'')) return 0.0;
+  value = value.substr(0, value.find('/'));
+  while (value.ends_with(' ')) value.remove_suffix(1);
+  if (value.size() > longest_number) fail("is too long for a number");
+  const double number = std::strtod(std::string(value).c_str(), nullptr);
+  if ((card.starts_with("ZVAL") || card.starts_with("ZTILE")) && !(number > 0)) fail("must be > 0");
+  return number;
+}
+
+}  // namespace
+
+void require_harmless_headers(std::string_view bytes, const std::string& name) {
+  std::size_t at = 0;
+  while (at + card_size <= bytes.size()) {
+    double bits = 8, elements = 0, extra = 0, groups = 1;
+    bool ended = false;
+    for (; !ended && at + card_size <= bytes.size(); at += card_size) {
+      const std::string_view card = bytes.substr(at, card_size);
+      const double value = checked_value(card, name);
+      const std::string key = keyword_of(card);
+      ended = key == "END";
+      if (key == "BITPIX") bits = std::abs(value);
+      if (key == "PCOUNT") extra = value;
+      if (key == "GCOUNT") groups = value;
+      if (key == "NAXIS") elements = value > 0 ? 1 : 0;
+      if (key.starts_with("NAXIS") && key.size() > 5) elements *= value;
+    }
+    const double data = bits / 8 * groups * (extra + elements);
+    if (!ended || !(data >= 0 && data < largest_file)) return;
+    at = (at + block_size - 1) / block_size * block_size;
+    at += (static_cast<std::size_t>(data) + block_size - 1) / block_size * block_size;
+  }
+}
+
+}  // namespace dmise
