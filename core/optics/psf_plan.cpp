@@ -117,8 +117,9 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
   plan.method = s.method != Method::automatic ? s.method
                 : cells <= largest_grid_cells ? Method::transform
                                               : Method::direct;
-  // Wide kernels cost a transform little and sums much.
-  const double airy_widths = plan.method == Method::transform ? 64.0 : 16.0;
+  // Wide kernels cost a transform little, sums and screens much.
+  const bool cheap = plan.method == Method::transform && plan.screens == 0;
+  const double airy_widths = cheap ? 64.0 : 24.0;
   const double widest_px = std::max({8.0, 1.0 * o.columns, 1.0 * o.rows});
   const double support_px =
       s.support_px > 0 ? s.support_px

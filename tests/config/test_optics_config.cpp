@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/config/optics_config.h"
+
+namespace dmise {
+namespace {
+
+const std::string plain =
+    "columns: 64\nrows: 48\npixel_pitch_m: 5.0e-6\nfocal_length_m: 4\naperture_m: 0.4\n";
+
+Optics read(const std::string& more) {
+  return read_optics(YamlValue::parse(plain + more, "camera.yaml"));
+}
+
+std::string refusal(const std::string& more) {
+  try {
+    read(more);
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(OpticsConfig, ReadsThePupilAndWhatBlurs) {
+  const Optics o = read(
+      "psf: diffraction\nzernike_nm: {4: 50, 7: -30}\nspiders: {count: 3, width_m: 0.01}\n"
+      "defocus_m: 1.0e-4\njitter_arcsec: 0.1\nwavelengths: 5\noversampling: 4\nmethod: transform\n"
+      "resampling: bilinear\npsf_grid: {columns: 3, rows: 3}\nfield_nm: {coma: 40}\n"
+      "vignetting: {natural: true, corner: 0.6}\n");
+  EXPECT_EQ(o.spread.model, PointSpread::Model::diffraction);
+  ASSERT_EQ(o.spread.wavefront.size(), 2u);
+  EXPECT_EQ(o.spread.wavefront[1].noll, 7);
+  EXPECT_NEAR(o.spread.wavefront[1].rms_m, -30e-9, 1e-20);
+  EXPECT_EQ(o.spread.spiders, 3);
+  EXPECT_NEAR(o.spread.jitter_rad, 0.1 / 206264.806, 1e-12);
+  EXPECT_EQ(o.spread.wavelengths, 5);
+  EXPECT_EQ(o.spread.method, PointSpread::Method::transform);
+  EXPECT_EQ(o.spread.grid_columns, 3);
+  EXPECT_NEAR(o.spread.field.coma_m, 40e-9, 1e-20);
+  EXPECT_TRUE(o.vignetting.natural);
+}
+
+TEST(OpticsConfig, RefusesWhatDoesNotGoTogetherAtItsPlace) {
+  EXPECT_EQ(refusal("psf: diffraction\npsf_fwhm_px: 2\n"),
+            "camera.yaml:7:14: psf_fwhm_px: goes with psf: gaussian, got 2");
+  EXPECT_EQ(refusal("jitter_px: 0.5\n").find("camera.yaml:6:12: jitter_px: goes with psf: "), 0u);
+  EXPECT_NE(refusal("psf: diffraction\nzernike_nm: {3: 10}\n").find("4..66"), std::string::npos);
+  EXPECT_NE(refusal("psf: diffraction\nzernike_nm: {four: 10}\n").find("4..66"), std::string::npos);
+  EXPECT_NE(refusal("psf: diffraction\njitter_px: 1\njitter_arcsec: 1\n").find("give one of"),
+            std::string::npos);
+  EXPECT_NE(refusal("psf: diffraction\nfield_nm: {coma: 40}\n").find("psf_grid"),
+            std::string::npos);
+  EXPECT_NE(refusal("psf: airy\n").find("psf"), std::string::npos);
+  EXPECT_NE(refusal("oversampling: 17\n").find("camera.yaml:6:15: oversampling"),
+            std::string::npos);
+  EXPECT_NE(refusal("vignetting: {corner: 0}\n").find("corner"), std::string::npos);
+  EXPECT_NE(refusal("psf: diffraction\nspider: 4\n").find("did you mean"), std::string::npos);
+}
+
+TEST(OpticsConfig, ReadsSeeing) {
+  const SensorSeeing s = read_seeing(
+      YamlValue::parse("{r0_m: 0.08, outer_scale_m: 25, wind_m_per_s: 12}", "scenario.yaml"));
+  EXPECT_EQ(s.r0_m, 0.08);
+  EXPECT_EQ(s.outer_scale_m, 25.0);
+  EXPECT_THROW(read_seeing(YamlValue::parse("{r0_m: 0}", "s.yaml")), ConfigError);
+}
+
+}  // namespace
+}  // namespace dmise
