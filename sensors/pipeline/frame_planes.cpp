@@ -2,6 +2,7 @@
 
 #include "core/detector/expected_noise.h"
 #include "core/optics/projection.h"
+#include "core/optics/vignetting.h"
 #include "sensors/pipeline/light.h"
 
 namespace dmise {
@@ -15,8 +16,10 @@ RadianceMap radiance_of(const View& view, double exposure_s, const RateImage& li
   threads.for_ranges(std::size_t(light.rows), 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t y = first; y < last; ++y)
       for (int x = 0; x < light.columns; ++x) {
-        const double sr = pixel_solid_angle_sr(optics, {double(x), double(y)});
-        const double per_photon = electrons_per_photon_m2 * sr;
+        const PixelPosition pixel{double(x), double(y)};
+        const double sr = pixel_solid_angle_sr(optics, pixel);
+        const double per_photon =
+            electrons_per_photon_m2 * sr * relative_illumination(optics, pixel);
         if (per_photon > 0.0) map.row(int(y))[x] = float(light.row(int(y))[x] / per_photon);
       }
   });
