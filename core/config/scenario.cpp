@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/units.h"
 #include "core/config/camera_config.h"
 #include "core/config/detector_config.h"
 #include "core/config/optics_config.h"
@@ -12,6 +13,7 @@
 #include "core/config/search_path.h"
 #include "core/config/yaml_reader.h"
 #include "core/optics/psf_plan.h"
+#include "core/sky/airmass.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
@@ -93,6 +95,12 @@ void read_effects(const YamlValue& value, EffectSet& effects) {
   map.done();
 }
 
+/// Of a camera fixed to the horizon's grid; of one that follows the sky the zenith's, 1.
+double airmass_of(const Pointing& pointing) {
+  const auto* fixed = std::get_if<PointHorizon>(&pointing);
+  return fixed ? std::max(1.0, airmass(fixed->elevation_deg * deg)) : 1.0;
+}
+
 /// Sky, air and weather: the sensor's own, else its site's, else the usual ones.
 void read_sensor_surroundings(YamlMap& map, SensorConfig& sensor) {
   const auto* site = std::get_if<SiteConfig>(&sensor.place);
@@ -144,7 +152,10 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTi
   if (const auto seeing = map.find("seeing")) {
     if (sensor.camera.optics.spread.model == PointSpread::Model::gaussian)
       seeing->fail("needs a camera with psf: diffraction", false);
-    sensor.seeing = read_seeing(*seeing);
+    sensor.seeing = names_profile(*seeing)
+                        ? read_seeing_profile(*seeing, airmass_of(sensor.pointing),
+                                              sensor.atmosphere.turbulence)
+                        : read_seeing(*seeing);
   }
   try {
     plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing, sensor.exposure_s);

@@ -130,17 +130,22 @@ TurbulenceProfile read_profile(YamlMap& map) {
   return parse_cn2(read_text_file(path, 4u << 20), path);
 }
 
+TurbulenceConfig read_turbulence_keys(YamlMap& map) {
+  const TurbulenceWind usual;
+  TurbulenceConfig config{.profile = read_profile(map), .wind = {}};
+  const Bounds speed = Bounds::between(0.0, 200.0);
+  config.wind.ground_m_per_s = map.number_or("ground_wind_m_per_s", usual.ground_m_per_s, speed);
+  config.wind.jet_m_per_s = map.number_or("jet_wind_m_per_s", usual.jet_m_per_s, speed);
+  return config;
+}
+
 TurbulenceConfig read_turbulence(const YamlValue& value) {
   if (value.is_scalar()) {
     value.choice({"hv57"});
     return {};
   }
   YamlMap map(value);
-  const TurbulenceWind usual;
-  TurbulenceConfig config{.profile = read_profile(map), .wind = {}};
-  const Bounds speed = Bounds::between(0.0, 200.0);
-  config.wind.ground_m_per_s = map.number_or("ground_wind_m_per_s", usual.ground_m_per_s, speed);
-  config.wind.jet_m_per_s = map.number_or("jet_wind_m_per_s", usual.jet_m_per_s, speed);
+  TurbulenceConfig config = read_turbulence_keys(map);
   map.done();
   return config;
 }
@@ -231,6 +236,28 @@ void read_surroundings(YamlMap& map, Surroundings& known) {
         *atmosphere, known.atmosphere ? *known.atmosphere : standard_atmosphere(usual_k_v));
   if (const auto weather = map.find("weather"))
     known.weather = read_weather(*weather, known.weather.value_or(WeatherConfig{}));
+}
+
+bool names_profile(const YamlValue& seeing) {
+  return seeing.is_map() && YamlMap(seeing).find("profile").has_value();
+}
+
+SensorSeeing read_seeing_profile(const YamlValue& value, double airmass,
+                                 std::optional<TurbulenceConfig>& turbulence_over) {
+  constexpr double wavelength_m = 500 * nm;  // that of `SensorSeeing::r0_m`
+  YamlMap map(value);
+  turbulence_over = read_turbulence_keys(map);
+  SensorSeeing seeing;
+  if (const auto v = map.find("outer_scale_m"))
+    seeing.outer_scale_m = v->number(Bounds::between(0.1, 1e6));
+  seeing.wind_direction_deg =
+      map.number_or("wind_direction_deg", 0.0, Bounds::between(-360.0, 360.0));
+  map.done();
+  const Turbulence t =
+      turbulence(turbulence_over->profile, wavelength_m, airmass, turbulence_over->wind);
+  seeing.r0_m = t.r0_m;
+  seeing.wind_m_per_s = t.wind_m_per_s;
+  return seeing;
 }
 
 void check_sky_in_band(const YamlValue& where, const SkyConfig& sky, const Band& band,

@@ -4,6 +4,7 @@
 
 #include "core/config/yaml_reader.h"
 #include "core/effects/effects.h"
+#include "core/optics/seeing.h"
 #include "core/photometry/curve.h"
 #include "core/sky/clouds.h"
 #include "core/sky/refraction.h"
@@ -56,6 +57,13 @@ AtmosphereConfig standard_atmosphere(double k_v_mag_per_airmass);
 /// Reads `sky`, `atmosphere` and `weather` of a site's or sensor's mapping; what is not there is
 /// left as it is in `known`.
 void read_surroundings(YamlMap& map, Surroundings& known);
+
+/// Whether a sensor's `seeing:` names a profile of turbulence: then it is read here.
+bool names_profile(const YamlValue& seeing);
+/// `seeing: {profile: hv57 | FILE.csv, ...}`: r0 and wind of the profile's turbulence towards a
+/// pointing at this airmass; the profile itself goes to `turbulence_over`.
+SensorSeeing read_seeing_profile(const YamlValue& value, double airmass,
+                                 std::optional<TurbulenceConfig>& turbulence_over);
 
 /// Throws `ConfigError` at `where` when a part of the sky has no spectrum in the band.
 void check_sky_in_band(const YamlValue& where, const SkyConfig& sky, const Band& band, bool in_air);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 
 #include "core/config/make_clock.h"
 
@@ -14,6 +15,8 @@ std::shared_ptr<const StarMap> load_stars(const Scenario& scenario) {
     cache = std::string(xdg) + "/dmise";
   else if (const char* home = std::getenv("HOME"))
     cache = std::string(home) + "/.cache/dmise";
+  std::error_code ignored;  // without the directory nothing is kept, that is all
+  if (!cache.empty()) std::filesystem::create_directories(cache, ignored);
   return std::make_shared<const StarMap>(load_star_map(scenario.star_catalogue_path, cache));
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -93,6 +94,22 @@ TEST(SkyConfig, SaysWhereAndWhy) {
             "s.yaml:1:19: weather.clouds: must be <= 1, got 1.5");
   EXPECT_EQ(complaint("weather: {humidity: 0.5}"),
             "s.yaml:1:10: weather: temperature and humidity need pressure_hpa beside them");
+}
+
+// The 5/7 model at 0.5 um: 4.96 cm; towards 30 deg elevation X^(-3/5) of it.
+TEST(SkyConfig, ASeeingOfAProfile) {
+  const auto seeing =
+      YamlMap(YamlValue::parse("seeing: {profile: hv57, outer_scale_m: 25}", "s.yaml"))
+          .require("seeing");
+  ASSERT_TRUE(names_profile(seeing));
+  std::optional<TurbulenceConfig> over;
+  const SensorSeeing zenith = read_seeing_profile(seeing, 1.0, over);
+  EXPECT_NEAR(zenith.r0_m, 0.0496, 0.005 * 0.0496);
+  EXPECT_EQ(zenith.outer_scale_m, 25);
+  EXPECT_TRUE(over);
+  EXPECT_NEAR(read_seeing_profile(seeing, 2.0, over).r0_m / zenith.r0_m, std::pow(2, -0.6), 1e-9);
+  EXPECT_FALSE(
+      names_profile(YamlMap(YamlValue::parse("seeing: {r0_m: 0.1}", "s.yaml")).require("seeing")));
 }
 
 class CurveFile : public testing::Test {

@@ -53,6 +53,20 @@ TEST(Environment, ASensorAsksForWhatItsPlanNeeds) {
   EXPECT_THAT(consumes("b"), testing::ElementsAre("env/common"));
 }
 
+TEST(Stars, TheCacheIsKeptInTheUsersDirectoryAlsoTheFirstTime) {
+  test::Stage stage(
+      "simulation: {start: 2018-01-21T04:00:00Z, duration_s: 300, tick_s: 10}\n"
+      "stars: {catalogue: stars.csv}\nsensors:\n" +
+          ground + "}\n",
+      "ra_deg,dec_deg,mag_v\n0,90,6\n");
+  const char* before = std::getenv("XDG_CACHE_HOME");
+  const std::string kept = before ? before : "";
+  setenv("XDG_CACHE_HOME", (stage.directory / "not/there/yet").c_str(), 1);
+  EXPECT_FALSE(load_stars(stage.scenario)->from_cache);
+  EXPECT_TRUE(load_stars(stage.scenario)->from_cache);
+  before ? setenv("XDG_CACHE_HOME", kept.c_str(), 1) : unsetenv("XDG_CACHE_HOME");
+}
+
 // What the weather says bends the light: none without air.
 TEST(Environment, RefractionIsThatOfTheSitesWeather) {
   const auto lift = [](const std::string& weather) {
