@@ -3,6 +3,7 @@
 #include "bench/bench_figure5.h"
 #include "bench/bench_frame.h"
 #include "bench/bench_interpolation.h"
+#include "bench/bench_render.h"
 #include "bench/bench_sgp4.h"
 #include "bench/bench_sky.h"
 #include "bench/bench_tick.h"
@@ -13,6 +14,7 @@ std::vector<Bench> benches() {
   return {
       {"frame", "stages of a frame on one thread", bench_frame},
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
+      {"render", "pictures and light of objects with a shape", bench_render},
       {"sgp4", "propagation of whole catalogues against the compiled reference",
        [](bool json) { return bench_sgp4(json) | bench_figure5(json); }},
       {"sky", "the sky of a frame and the stars of a field", bench_sky},

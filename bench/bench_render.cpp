@@ -1,0 +1,97 @@
+#include "bench/bench_render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <vector>
+
+#include "bench/figure.h"
+#include "core/base/error.h"
+#include "core/base/units.h"
+#include "core/materials/shapes.h"
+#include "sensors/render/render_module.h"
+
+namespace dmise {
+namespace {
+
+/// Of processor time of all threads, so that other work on the machine does not count.
+template <class Work>
+double median_ms(int repeats, Work&& work) {
+  std::vector<double> ms;
+  for (int i = 0; i < repeats; ++i) {
+    const std::clock_t start = std::clock();
+    work();
+    ms.push_back(1e3 * double(std::clock() - start) / CLOCKS_PER_SEC);
+  }
+  std::sort(ms.begin(), ms.end());
+  return ms[ms.size() / 2];
+}
+
+Vec<Body> direction(int i) { return from_spherical<Body>(0.7 * i, std::asin(std::sin(1.3 * i))); }
+
+/// A satellite of 10,000 facets that shade each other: a tank and a ball beside it.
+Mesh ten_thousand_facets(const Material& material) {
+  return merged(sphere(1.0, 9700, material),
+                moved(cylinder(0.5, 2.0, 80, material), {1.4, 0, 0.3}));
+}
+
+Material paint() { return sandford_robertson_of("paint", {{0.55e-6}, {0.5}}, 0.4, 0.3, 0.3); }
+
+/// 1,000 convex bodies of 100 facets, each lit and seen from a side of its own: milliseconds.
+double unresolved_ms(double& light) {
+  std::vector<FacetLight> objects;
+  for (int i = 0; i < 1000; ++i)
+    objects.emplace_back(cylinder(0.5 + 1e-3 * i, 2.0, 25, paint()), Band{});
+  return median_ms(21, [&] {
+    for (int i = 0; i < 1000; ++i)
+      light += objects[std::size_t(i)].reflected_m2_per_sr(direction(i), direction(i + 1));
+  });
+}
+
+/// One tile of 512 x 512 pixels, 4 x 4 samples each, that the object fills: light sources, shadow,
+/// drawing, reading back and the mean over each pixel.
+double tile_ms(Renderer& renderer, double& light) {
+  const FacetLight object(ten_thousand_facets(paint()), Band{});
+  const double range_m = 5000.0;
+  const TileScene scene{.mesh = &object.mesh(),
+                        .bands = {{&object.facets(), 1.0}},
+                        .camera_from_body = {},
+                        .object_m = {-0.4, 0, range_m},
+                        .sources = {{unit(Vec<Body>{0.8, 0.3, -0.7}), 1.0}},
+                        .camera = {.focal_px = 512 / 3.0 * range_m,
+                                   .principal_x_px = 255.5,
+                                   .principal_y_px = 255.5,
+                                   .columns = 512,
+                                   .rows = 512}};
+  light += renderer.draw(scene).at(256, 256, 0);
+  return median_ms(9, [&] { light += renderer.draw(scene).at(256, 256, 0); });
+}
+
+}  // namespace
+
+int bench_render(bool json) {
+  double light = 0.0;  // so that nothing is left out
+  print_figure({.name = "unresolved_1000_ms",
+                .value = unresolved_ms(light),
+                .unit = "ms",
+                .target = 5,
+                .less_is_better = true},
+               json);
+  try {
+    const auto renderer = load_renderer();
+    std::fprintf(stderr, "bench render: %s\n", renderer->description().c_str());
+    print_figure({.name = "tile_ms",
+                  .value = tile_ms(*renderer, light),
+                  .unit = "ms",
+                  .target = 200,
+                  .less_is_better = true},
+                 json);
+  } catch (const Error& error) {
+    std::fprintf(stderr, "bench render: %s: the tile is left out\n", error.what());
+  }
+  if (!(light > 0)) std::fprintf(stderr, "bench render: no light\n");
+  return 0;
+}
+
+}  // namespace dmise

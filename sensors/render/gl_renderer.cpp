@@ -1,0 +1,206 @@
+#include "sensors/render/gl_renderer.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "core/base/error.h"
+#include "sensors/render/box_filter.h"
+#include "sensors/render/gl.h"
+#include "sensors/render/gl_context.h"
+#include "sensors/render/shaders.h"
+#include "sensors/render/tile_mesh.h"
+
+namespace dmise {
+namespace {
+
+/// Samples of one piece per axis: 4 MB of colour.
+constexpr int piece_samples = 512;
+
+class GlRenderer final : public Renderer {
+ public:
+  GlRenderer() : context_(open_gl()), gl_(load_gl(*context_)) {
+    link();
+    make_target();
+    make_arrays();
+    samples_.resize(std::size_t(piece_samples) * piece_samples * 4);
+  }
+
+  std::string description() const override {
+    return context_->name() + ", " + reinterpret_cast<const char*>(gl_.GetString(GL_RENDERER)) +
+           ", OpenGL " + reinterpret_cast<const char*>(gl_.GetString(GL_VERSION));
+  }
+
+  Tile draw(const TileScene& scene) override {
+    check(scene);
+    context_->make_current();
+    Tile tile{.columns = scene.camera.columns,
+              .rows = scene.camera.rows,
+              .bands = int(scene.bands.size())};
+    const std::size_t pixels = std::size_t(tile.columns) * std::size_t(tile.rows);
+    tile.radiance.assign(pixels * scene.bands.size(), 0.0f);
+    tile.coverage.assign(pixels, 0.0f);
+    const bool convex = is_convex(*scene.mesh);
+    bool first = true;
+    for (const auto& source : scene.sources) {
+      const LitPieces lit = lit_pieces(*scene.mesh, source.to_source, convex);
+      for (std::size_t band = 0; band < scene.bands.size(); band += 3)
+        draw_pass(scene, source, tile_mesh(scene, source, lit, band, first), band,
+                  first && band == 0, tile);
+      first = false;
+    }
+    return tile;
+  }
+
+ private:
+  static void check(const TileScene& scene) {
+    const auto& camera = scene.camera;
+    if (camera.columns < 1 || camera.rows < 1 || camera.columns > 16384 || camera.rows > 16384)
+      throw Error("tile must have from 1 to 16384 pixels a side");
+    if (scene.bands.empty() || scene.bands.size() > 16)
+      throw Error("tile must have from 1 to 16 bands");
+    if (scene.oversampling < 1 || scene.oversampling > 64)
+      throw Error("oversampling must be from 1 to 64");
+    if (scene.sources.empty()) throw Error("tile needs a source of light");
+    check_outside(*scene.mesh, scene.camera_from_body, scene.object_m);
+  }
+
+  unsigned compiled(unsigned kind, const char* text) {
+    const unsigned shader = gl_.CreateShader(kind);
+    gl_.ShaderSource(shader, 1, &text, nullptr);
+    gl_.CompileShader(shader);
+    int ok = 0;
+    gl_.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    if (!ok) {
+      char log[1024] = "";
+      gl_.GetShaderInfoLog(shader, sizeof log, nullptr, log);
+      throw Error(std::string("shader: ") + log);
+    }
+    return shader;
+  }
+
+  void link() {
+    const unsigned program = gl_.CreateProgram();
+    for (const unsigned shader : {compiled(GL_VERTEX_SHADER, vertex_shader),
+                                  compiled(GL_FRAGMENT_SHADER, fragment_shader)}) {
+      gl_.AttachShader(program, shader);
+      gl_.DeleteShader(shader);
+    }
+    gl_.LinkProgram(program);
+    int ok = 0;
+    gl_.GetProgramiv(program, GL_LINK_STATUS, &ok);
+    if (!ok) throw Error("shaders do not link");
+    gl_.UseProgram(program);
+    piece_uniform_ = gl_.GetUniformLocation(program, "piece");
+    source_uniform_ = gl_.GetUniformLocation(program, "source");
+  }
+
+  void make_target() {
+    unsigned frame = 0, buffers[2];
+    gl_.GenFramebuffers(1, &frame);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, frame);
+    gl_.GenRenderbuffers(2, buffers);
+    constexpr unsigned format[2] = {GL_RGBA32F, GL_DEPTH_COMPONENT32F};
+    constexpr unsigned place[2] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
+    for (int i = 0; i < 2; ++i) {
+      gl_.BindRenderbuffer(GL_RENDERBUFFER, buffers[i]);
+      gl_.RenderbufferStorage(GL_RENDERBUFFER, format[i], piece_samples, piece_samples);
+      gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, place[i], GL_RENDERBUFFER, buffers[i]);
+    }
+    if (gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+      throw Error("OpenGL cannot draw into RGBA32F");
+    // Depth runs from 1 at the nearest to 0: floats are finest where perspective is coarsest.
+    gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl_.Enable(GL_DEPTH_TEST);
+    gl_.DepthFunc(GL_GREATER);
+    // Snapped corners move a plane by 1/256 of a sample's slope; this is more.
+    gl_.PolygonOffset(-0.05f, -4.0f);
+    gl_.ClearDepth(0.0);
+    gl_.ClearColor(0, 0, 0, 0);
+    gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
+  }
+
+  void make_arrays() {
+    unsigned arrays = 0, buffers[2];
+    gl_.CreateVertexArrays(1, &arrays);
+    gl_.BindVertexArray(arrays);
+    gl_.GenBuffers(2, buffers);
+    gl_.BindBuffer(GL_ARRAY_BUFFER, buffers[0]);
+    gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers[1]);
+    const auto attribute = [this](unsigned location, int floats, std::size_t offset) {
+      gl_.VertexAttribPointer(location, floats, GL_FLOAT, GL_FALSE, sizeof(TileVertex),
+                              reinterpret_cast<const void*>(offset));
+      gl_.EnableVertexAttribArray(location);
+    };
+    attribute(0, 4, offsetof(TileVertex, clip));
+    attribute(1, 3, offsetof(TileVertex, view));
+    attribute(2, 3, offsetof(TileVertex, normal));
+    attribute(3, 4, offsetof(TileVertex, diffuse));
+    attribute(4, 4, offsetof(TileVertex, specular));
+    attribute(5, 4, offsetof(TileVertex, emitted));
+  }
+
+  void draw_pass(const TileScene& scene, const LightSource& source, const TileMesh& mesh,
+                 std::size_t first_band, bool with_coverage, Tile& tile) {
+    gl_.BufferData(GL_ARRAY_BUFFER, std::ptrdiff_t(mesh.vertices.size() * sizeof(TileVertex)),
+                   mesh.vertices.data(), GL_STREAM_DRAW);
+    const Vec<CameraFrame> to_source = scene.camera_from_body * source.to_source;
+    gl_.Uniform4f(source_uniform_, float(to_source.x), float(to_source.y), float(to_source.z), 0);
+    const int step = std::max(1, piece_samples / scene.oversampling);
+    for (int top = 0; top < tile.rows; top += step)
+      for (int left = 0; left < tile.columns; left += step) {
+        const PixelBox box{left, top, std::min(step, tile.columns - left),
+                           std::min(step, tile.rows - top)};
+        if (!draw_piece(mesh, tile, box, scene.oversampling)) continue;
+        add_box_means(samples_.data(), box, scene.oversampling, first_band, with_coverage, tile);
+      }
+    if (const unsigned error = gl_.GetError(); error != GL_NO_ERROR)
+      throw Error("OpenGL error " + std::to_string(error));
+  }
+
+  /// Leaves the samples in `samples_`; false when nothing lies in the box.
+  bool draw_piece(const TileMesh& mesh, const Tile& tile, const PixelBox& box, int oversampling) {
+    indices_.clear();
+    const float x0 = float(box.left) - 0.5f, x1 = x0 + float(box.columns);
+    const float y0 = float(box.top) - 0.5f, y1 = y0 + float(box.rows);
+    std::size_t underlays = 0;
+    for (std::uint32_t t = 0; t < mesh.bounds.size(); ++t) {
+      if (t == mesh.underlays) underlays = indices_.size();
+      const auto& b = mesh.bounds[t];
+      if (b.x1 >= x0 && b.x0 <= x1 && b.y1 >= y0 && b.y0 <= y1)
+        for (std::uint32_t i = 0; i < 3; ++i) indices_.push_back(3 * t + i);
+    }
+    if (indices_.empty()) return false;
+    gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, std::ptrdiff_t(indices_.size() * 4), indices_.data(),
+                   GL_STREAM_DRAW);
+    const int width = box.columns * oversampling, height = box.rows * oversampling;
+    gl_.Viewport(0, 0, width, height);
+    const float scale_x = float(tile.columns) / float(box.columns);
+    const float scale_y = float(tile.rows) / float(box.rows);
+    gl_.Uniform4f(piece_uniform_, scale_x, scale_y,
+                  float(tile.columns - 2 * box.left - box.columns) / float(box.columns),
+                  float(tile.rows - 2 * box.top - box.rows) / float(box.rows));
+    gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    if (mesh.underlays == mesh.bounds.size()) underlays = indices_.size();
+    if (underlays > 0) {
+      gl_.Enable(GL_POLYGON_OFFSET_FILL);
+      gl_.DrawElements(GL_TRIANGLES, int(underlays), GL_UNSIGNED_INT, nullptr);
+      gl_.Disable(GL_POLYGON_OFFSET_FILL);
+    }
+    gl_.DrawElements(GL_TRIANGLES, int(indices_.size() - underlays), GL_UNSIGNED_INT,
+                     reinterpret_cast<const void*>(underlays * 4));
+    gl_.ReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, samples_.data());
+    return true;
+  }
+
+  std::unique_ptr<GlContext> context_;
+  Gl gl_;
+  int piece_uniform_ = -1, source_uniform_ = -1;
+  std::vector<float> samples_;
+  std::vector<std::uint32_t> indices_;
+};
+
+}  // namespace
+
+std::unique_ptr<Renderer> make_gl_renderer() { return std::make_unique<GlRenderer>(); }
+
+}  // namespace dmise

@@ -1,0 +1,13 @@
+#pragma once
+#include <memory>
+
+#include "sensors/render/renderer.h"
+
+namespace dmise {
+
+/// Loads the renderer's shared object (lib/libdmise_render.so beside the programs' bin, or the path
+/// in `DMISE_RENDER_MODULE`) at the first call, and makes a renderer. Costs nothing before that.
+/// Throws `Error` with the reason when it cannot be had.
+std::unique_ptr<Renderer> load_renderer();
+
+}  // namespace dmise

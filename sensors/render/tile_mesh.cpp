@@ -1,0 +1,302 @@
+#include "sensors/render/tile_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "core/base/units.h"
+#include "core/materials/brdf.h"
+
+namespace dmise {
+namespace {
+
+/// The camera's mapping to clip space: linear, so that what lies behind the camera is clipped.
+class ClipSpace {
+ public:
+  explicit ClipSpace(const TileScene& scene)
+      : camera_(scene.camera), rotation_(scene.camera_from_body), object_m_(scene.object_m) {
+    const double size = radius_m(*scene.mesh);
+    near_ = 1e300;
+    far_ = -1e300;
+    for (const auto& v : scene.mesh->vertex_m) {
+      const double z = (rotation_ * v + object_m_).z;
+      near_ = std::min(near_, z);
+      far_ = std::max(far_, z);
+    }
+    far_ += 0.01 * size;
+    near_ = std::max(near_ - 0.01 * size, 1e-3 * size);
+    far_ = std::max(far_, 2.0 * near_ * 1e-6 + near_);
+    scale_ = 1.0 / std::max(norm(object_m_), size);
+  }
+
+  Vec<CameraFrame> place(const Vec<Body>& v) const { return rotation_ * v + object_m_; }
+  double near_m() const { return near_; }
+
+  void put(const Vec<CameraFrame>& p, TileVertex& out) const {
+    const double columns = camera_.columns, rows = camera_.rows;
+    const double x0 = 2.0 * (camera_.principal_x_px - camera_.left + 0.5) / columns - 1.0;
+    const double y0 = 2.0 * (camera_.principal_y_px - camera_.top + 0.5) / rows - 1.0;
+    out.clip[0] = float(x0 * p.z + 2.0 * camera_.focal_px / columns * p.x);
+    out.clip[1] = float(y0 * p.z + 2.0 * camera_.focal_px / rows * p.y);
+    out.clip[2] = float((far_ - p.z) * near_ / (far_ - near_));
+    out.clip[3] = float(p.z);
+    out.view[0] = float(-p.x * scale_);
+    out.view[1] = float(-p.y * scale_);
+    out.view[2] = float(-p.z * scale_);
+  }
+
+ private:
+  TileCamera camera_;
+  Rotation<CameraFrame, Body> rotation_;
+  Vec<CameraFrame> object_m_;
+  double near_ = 0, far_ = 0, scale_ = 1;
+};
+
+TileMesh::Bounds bounds_of(const std::array<TileVertex, 3>& v, const TileCamera& camera,
+                           double near_m) {
+  float x0 = 1e30f, y0 = 1e30f, x1 = -1e30f, y1 = -1e30f;
+  for (const auto& corner : v) {
+    if (!(corner.clip[3] > near_m)) return {-1e30f, -1e30f, 1e30f, 1e30f};
+    const float x = (corner.clip[0] / corner.clip[3] + 1) * 0.5f * float(camera.columns) - 0.5f;
+    const float y = (corner.clip[1] / corner.clip[3] + 1) * 0.5f * float(camera.rows) - 0.5f;
+    x0 = std::min(x0, x);
+    y0 = std::min(y0, y);
+    x1 = std::max(x1, x);
+    y1 = std::max(y1, y);
+  }
+  return {x0, y0, x1, y1};
+}
+
+/// Samples of the tile that a rasteriser gives to triangles, against their areas: the grid sees a
+/// little more or less of a narrow shape than there is, which is put right by its radiance.
+class SampleCount {
+ public:
+  using Triangle = std::array<Vec<CameraFrame>, 3>;
+
+  SampleCount(const TileCamera& camera, int oversampling)
+      : camera_(camera), oversampling_(oversampling) {}
+
+  void add(const Triangle& p) {
+    std::array<double, 3> x, y;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!(p[i].z > 0.0)) inside_ = false;
+      x[i] = camera_.principal_x_px - camera_.left + 0.5 + camera_.focal_px * p[i].x / p[i].z;
+      y[i] = camera_.principal_y_px - camera_.top + 0.5 + camera_.focal_px * p[i].y / p[i].z;
+      if (!(x[i] >= 0.0 && y[i] >= 0.0 && x[i] <= camera_.columns && y[i] <= camera_.rows))
+        inside_ = false;
+      x[i] *= oversampling_;
+      y[i] *= oversampling_;
+    }
+    if (!inside_) return;
+    const double twice = std::abs((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]));
+    for (std::size_t i = 0; i < 3; ++i)
+      longest_ = std::max(longest_, std::hypot(x[(i + 1) % 3] - x[i], y[(i + 1) % 3] - y[i]));
+    area_ += twice / 2.0;
+    // Rasterisers snap corners to 1/256 of a sample.
+    for (std::size_t i = 0; i < 3; ++i) {
+      x[i] = std::round(x[i] * 256.0) / 256.0;
+      y[i] = std::round(y[i] * 256.0) / 256.0;
+    }
+    const auto [low, high] = std::minmax({y[0], y[1], y[2]});
+    for (double row = std::ceil(low - 0.5) + 0.5; row < high; row += 1.0) add_row(x, y, row);
+  }
+
+  /// Of triangles that are long and at most 32 samples wide.
+  bool narrow() const {
+    const double width = longest_ > 0.0 ? 2.0 * area_ / longest_ : 0.0;
+    return width < 32.0 && longest_ > 2.5 * width;
+  }
+
+  /// Area over samples; 1 for what is not wholly in the tile or has too few samples to tell.
+  double correction() const {
+    constexpr double fewest = 12.0;
+    return inside_ && count_ >= fewest ? area_ / count_ : 1.0;
+  }
+
+ private:
+  void add_row(const std::array<double, 3>& x, const std::array<double, 3>& y, double row) {
+    double left = 1e300, right = -1e300;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3;
+      if ((y[i] <= row) == (y[j] <= row)) continue;
+      const double at = x[i] + (x[j] - x[i]) * (row - y[i]) / (y[j] - y[i]);
+      left = std::min(left, at);
+      right = std::max(right, at);
+    }
+    if (right > left) count_ += std::ceil(right - 0.5) - std::ceil(left - 0.5);
+  }
+
+  TileCamera camera_;
+  double oversampling_;
+  double area_ = 0.0, count_ = 0.0, longest_ = 0.0;
+  bool inside_ = true;
+};
+
+class Builder {
+ public:
+  Builder(const TileScene& scene, const LightSource& source, std::size_t first_band, bool emission)
+      : scene_(scene),
+        source_(source),
+        first_(first_band),
+        bands_(std::min<std::size_t>(3, scene.bands.size() - first_band)),
+        emission_(emission),
+        clip_(scene) {
+    for (std::size_t k = 0; k < bands_; ++k) {
+      lobe_of_[k].assign(scene.mesh->triangles.size(), -1);
+      const auto& lobes = facets(k).lobes;
+      for (std::size_t i = 0; i < lobes.size(); ++i) lobe_of_[k][lobes[i].facet] = int(i);
+    }
+  }
+
+  TileMesh build(const LitPieces& lit) {
+    const auto& mesh = *scene_.mesh;
+    place_.resize(mesh.vertex_m.size());
+    for (std::size_t i = 0; i < place_.size(); ++i) place_[i] = clip_.place(mesh.vertex_m[i]);
+    const auto for_facing = [&](auto&& work) {
+      for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+        if (faces_camera(f)) work(f);
+    };
+    for_facing([&](std::size_t f) {
+      if (lit.state[f] == LitPieces::partly) add_whole(f, false);
+    });
+    out_.underlays = out_.bounds.size();
+    for_facing([&](std::size_t f) {
+      if (lit.state[f] == LitPieces::partly)
+        add_parts(f, std::span(lit.pieces).subspan(lit.begin[f], lit.begin[f + 1] - lit.begin[f]));
+      else
+        add_whole(f, lit.state[f] == LitPieces::lit);
+    });
+    return std::move(out_);
+  }
+
+ private:
+  const FacetSet& facets(std::size_t k) const { return *scene_.bands[first_ + k].facets; }
+
+  Vec<CameraFrame> corner(std::size_t facet, int i) const {
+    return place_[scene_.mesh->triangles[facet].corner[std::size_t(i)]];
+  }
+
+  bool faces_camera(std::size_t f) const {
+    const Vec<CameraFrame> normal = scene_.camera_from_body * facets(0).normal(f);
+    return dot(normal, corner(f, 0)) < 0.0;
+  }
+
+  /// Everything of a corner that does not depend on its place.
+  TileVertex surface(std::size_t f, bool lit) const {
+    TileVertex v{};
+    const Vec<Body> normal = facets(0).normal(f);
+    const Vec<CameraFrame> n = scene_.camera_from_body * normal;
+    v.normal[0] = float(n.x);
+    v.normal[1] = float(n.y);
+    v.normal[2] = float(n.z);
+    v.diffuse[3] = float(facets(0).grazing2[f]);
+    v.specular[3] = float(facets(0).lobe2[f]);
+    v.emitted[3] = -1.0f;
+    const double in = dot(normal, source_.to_source);
+    for (std::size_t k = 0; k < bands_; ++k) {
+      const FacetSet& set = facets(k);
+      if (emission_) v.emitted[k] = float(set.emitted[f]);
+      if (!lit || !(in > 0.0)) continue;
+      const double irradiance = scene_.bands[first_ + k].sun_irradiance * source_.share * in;
+      const double falloff = sandford_robertson_falloff(in, std::sqrt(set.grazing2[f]));
+      v.diffuse[k] = float(irradiance * set.diffuse[f] * falloff);
+      if (const int lobe = lobe_of_[k][f]; lobe >= 0) {
+        v.specular[k] = float(irradiance * set.lobes[std::size_t(lobe)].scale);
+        v.emitted[3] = float(set.lobes[std::size_t(lobe)].exponent);
+      } else {
+        const double norm = sandford_robertson_lobe_norm(in, std::sqrt(set.lobe2[f]));
+        v.specular[k] =
+            float(irradiance * std::max(0.0, 1.0 - set.taken[f] * falloff) / (4.0 * pi * norm));
+      }
+    }
+    return v;
+  }
+
+  void add(const TileVertex& surface, const std::array<Vec<CameraFrame>, 3>& p) {
+    std::array<TileVertex, 3> v{surface, surface, surface};
+    for (std::size_t i = 0; i < 3; ++i) clip_.put(p[i], v[i]);
+    out_.bounds.push_back(bounds_of(v, scene_.camera, clip_.near_m()));
+    out_.vertices.insert(out_.vertices.end(), v.begin(), v.end());
+  }
+
+  void scale(TileVertex& look, double factor) const {
+    for (std::size_t k = 0; k < bands_; ++k)
+      for (float* light : {look.diffuse, look.specular, look.emitted})
+        light[k] = float(light[k] * factor);
+  }
+
+  void add_whole(std::size_t f, bool lit) {
+    const SampleCount::Triangle p{corner(f, 0), corner(f, 1), corner(f, 2)};
+    TileVertex look = surface(f, lit);
+    if (lit) {
+      SampleCount samples(scene_.camera, scene_.oversampling);
+      samples.add(p);
+      if (samples.narrow()) scale(look, samples.correction());
+    }
+    add(look, p);
+  }
+
+  void add_parts(std::size_t f, std::span<const FacetPiece> pieces) {
+    const Vec<CameraFrame> o = corner(f, 0), e1 = corner(f, 1) - o, e2 = corner(f, 2) - o;
+    std::vector<SampleCount::Triangle> parts;
+    SampleCount samples(scene_.camera, scene_.oversampling);
+    for (const auto& piece : pieces) {
+      const auto at = [&](int i) {
+        return o + e1 * piece.corner[std::size_t(i)].s + e2 * piece.corner[std::size_t(i)].t;
+      };
+      for (int i = 1; i + 1 < piece.corners; ++i) {
+        parts.push_back({at(0), at(i), at(i + 1)});
+        samples.add(parts.back());
+      }
+    }
+    TileVertex look = surface(f, true);
+    scale(look, samples.correction());
+    for (const auto& part : parts) add(look, part);
+  }
+
+  const TileScene& scene_;
+  const LightSource& source_;
+  std::size_t first_, bands_;
+  bool emission_;
+  ClipSpace clip_;
+  std::array<std::vector<int>, 3> lobe_of_;
+  std::vector<Vec<CameraFrame>> place_;
+  TileMesh out_;
+};
+
+}  // namespace
+
+LitPieces lit_pieces(const Mesh& mesh, const Vec<Body>& to_source, bool convex) {
+  const std::size_t count = mesh.triangles.size();
+  LitPieces lit;
+  lit.state.assign(count, LitPieces::dark);
+  lit.begin.assign(count + 1, 0);
+  const FacetShadow shadow(mesh, to_source);
+  std::vector<FacetPiece> pieces;
+  for (std::size_t f = 0; f < count; ++f) {
+    if (shadow.cosine(f) > 0.0) {
+      lit.state[f] = LitPieces::lit;
+      if (!convex && shadow.may_be_hidden(f)) {
+        pieces.assign(1, FacetPiece::whole());
+        shadow.cut(f, pieces);
+        double share = 0.0;
+        for (const auto& piece : pieces) share += area_share(piece);
+        lit.state[f] = share > 1.0 - 1e-9 ? LitPieces::lit
+                       : share < 1e-9     ? LitPieces::dark
+                                          : LitPieces::partly;
+        if (lit.state[f] == LitPieces::partly)
+          lit.pieces.insert(lit.pieces.end(), pieces.begin(), pieces.end());
+      }
+    }
+    lit.begin[f + 1] = std::uint32_t(lit.pieces.size());
+  }
+  return lit;
+}
+
+TileMesh tile_mesh(const TileScene& scene, const LightSource& source, const LitPieces& lit,
+                   std::size_t first_band, bool with_emission) {
+  return Builder(scene, source, first_band, with_emission).build(lit);
+}
+
+}  // namespace dmise

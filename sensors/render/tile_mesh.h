@@ -1,0 +1,45 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "core/photometry/facet_shadow.h"
+#include "sensors/render/renderer.h"
+
+namespace dmise {
+
+/// One corner as the shader takes it. All but `clip` and `view` is the same for the whole triangle.
+struct TileVertex {
+  float clip[4];      // in the whole tile; depth 1 at the nearest corner, 0 at the farthest
+  float view[3];      // to the camera, any length
+  float normal[3];    // unit, camera axes
+  float diffuse[4];   // of up to three bands, b^2
+  float specular[4];  // of up to three bands, e^2
+  float emitted[4];   // of up to three bands, exponent of Phong's lobe or -1
+};
+
+/// The triangles of an object that face the camera, lit by one source. A facet that is partly in
+/// shadow comes twice: whole and dark, as an underlay to be pushed back a little so that no seam
+/// shows through, and in its lit parts.
+struct TileMesh {
+  std::vector<TileVertex> vertices;
+  struct Bounds {
+    float x0, y0, x1, y1;  // of the tile [px], pixel centres are whole
+  };
+  std::vector<Bounds> bounds;  // one a triangle, of three vertices
+  std::size_t underlays = 0;   // the first triangles
+};
+
+/// What of each facet a source reaches; no pieces: all of it.
+struct LitPieces {
+  std::vector<std::uint32_t> begin;  // facets + 1, into `pieces`
+  std::vector<FacetPiece> pieces;
+  enum State : char { dark, lit, partly };
+  std::vector<State> state;  // one a facet
+};
+LitPieces lit_pieces(const Mesh& mesh, const Vec<Body>& to_source, bool convex);
+
+/// `first_band`: up to three bands from there on. `with_emission`: add what the facets radiate.
+TileMesh tile_mesh(const TileScene& scene, const LightSource& source, const LitPieces& lit,
+                   std::size_t first_band, bool with_emission);
+
+}  // namespace dmise
