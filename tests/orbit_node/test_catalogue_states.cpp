@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "orbit-node/object_states.h"
-#include "sensors/pipeline/object_layer.h"
+#include "sensors/pipeline/objects_in_field.h"
 #include "sensors/pipeline/view.h"
 #include "tests/orbit_node/scenario_directory.h"
 #include "tests/pipeline/harness.h"
