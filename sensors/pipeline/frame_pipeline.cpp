@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/base/memory.h"
 #include "core/base/version.h"
 #include "core/detection/detect.h"
 #include "core/detector/expose.h"
@@ -49,11 +50,13 @@ struct FramePipeline::Work {
   Threads& threads;
   std::optional<StarLayer> stars;
   OpticsStage optics;
-  RateImage light;  // only while a frame is made: products are written beside the counts
+  RateImage light;  // kept between frames without the memory behind it
   DetectorMemory detector_memory;
 
   Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)
       : settings(std::move(s)), threads(t), optics(settings.sensor, settings.seed, t) {
+    light = RateImage(settings.sensor.camera.optics.columns, settings.sensor.camera.optics.rows);
+    release_pages(light.pixels.data(), light.pixels.size() * sizeof(float));
     if (map) stars.emplace(settings.sensor, std::move(map));
   }
 
@@ -190,7 +193,9 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   const auto& sensor = settings.sensor;
   FrameProducts frame;
   const View view(sensor, times, world, settings.seed);
-  light = RateImage(sensor.camera.optics.columns, sensor.camera.optics.rows);
+  // Its pages come as they are filled, while those of the light go.
+  frame.counts = CountImage(light.columns, light.rows);
+  release_pages(frame.counts.pixels.data(), frame.counts.pixels.size() * sizeof(std::uint16_t));
   std::uint32_t stars_drawn = 0;
   fill_sky(view, light, threads, frame.times);
   keep_background(settings.output, light, frame.planes);
@@ -219,7 +224,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
          {.memory = &detector_memory,
           .flags = settings.output.saturation ? &frame.flags : nullptr,
           .spent_light = &light});
-  light = {};
+  release_pages(light.pixels.data(), light.pixels.size() * sizeof(float));
 
   DetectionResult result;
   if (settings.detect) {

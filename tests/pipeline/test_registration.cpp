@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr double tolerance_px = 0.02;
+constexpr double tolerance_px = 0.01;
 
 // GOES 16 and the ISS, element sets of 2018-01-20 as in Debian's gpredict.
 const std::string elements =
