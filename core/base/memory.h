@@ -12,4 +12,8 @@ void return_large_blocks();
 /// afterwards, what is left at its ends as it was.
 void release_pages(void* begin, std::size_t bytes);
 
+/// Asks for large pages behind a range from its next touch on: an image is mapped in tens of faults
+/// instead of thousands.
+void prefer_large_pages(void* begin, std::size_t bytes);
+
 }  // namespace dmise

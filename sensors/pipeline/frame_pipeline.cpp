@@ -57,6 +57,7 @@ struct FramePipeline::Work {
       : settings(std::move(s)), threads(t), optics(settings.sensor, settings.seed, t) {
     light = RateImage(settings.sensor.camera.optics.columns, settings.sensor.camera.optics.rows);
     release_pages(light.pixels.data(), light.pixels.size() * sizeof(float));
+    prefer_large_pages(light.pixels.data(), light.pixels.size() * sizeof(float));
     if (map) stars.emplace(settings.sensor, std::move(map));
   }
 

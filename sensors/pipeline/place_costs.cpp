@@ -8,7 +8,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t sample_size = 256;
+constexpr std::size_t sample_size = 64;
 constexpr int repeats = 3;
 constexpr Effect of_stars[] = {Effect::proper_motion,      Effect::parallax,
                                Effect::light_deflection,   Effect::annual_aberration,
