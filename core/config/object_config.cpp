@@ -53,6 +53,10 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start) {
     if (!object.attitude) panel->fail("needs an attitude, to know where the Sun is", false);
     object.panel = read_panel(*panel);
   }
+  if (const auto geometry = map.find("geometry")) {
+    if (!object.attitude) geometry->fail("needs an attitude, to know how it is turned", false);
+    object.geometry = read_geometry(*geometry);
+  }
   read_sphere(map, object.sphere.radius_m, object.sphere.albedo);
   map.done();
   if (const auto* elements = std::get_if<MeanElements>(&object.motion.model))

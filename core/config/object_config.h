@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/config/attitude_config.h"
+#include "core/config/geometry_config.h"
 #include "core/config/motion_config.h"
 #include "core/config/yaml_reader.h"
 #include "core/photometry/diffuse_sphere.h"
@@ -29,7 +30,8 @@ struct OwnObject {
   MotionConfig motion;
   std::optional<AttitudeConfig> attitude;
   std::optional<SunTrackingPanel> panel;
-  DiffuseSphere sphere;
+  std::optional<GeometryConfig> geometry;
+  DiffuseSphere sphere;  // where there is no geometry
 };
 
 /// Numbers from here on are given to objects without one, in the scenario's order: products name

@@ -64,6 +64,7 @@ void write_own(JsonWriter& json, const OwnObject& object) {
   json.field("radius_m", object.sphere.radius_m).field("albedo", object.sphere.albedo);
   std::visit(MotionWriter{json}, object.motion.model);
   if (object.attitude) std::visit(AttitudeWriter{json}, object.attitude->model);
+  if (object.geometry) json.field("geometry", object.geometry->digest);
   if (object.panel) {
     write(json, "panel_hinge", object.panel->hinge);
     write(json, "panel_normal", object.panel->normal);
@@ -96,6 +97,8 @@ std::vector<std::string> files_of(const std::vector<ObjectSource>& catalogues,
   for (const auto& object : own) {
     files.push_back(object.motion.oem_path);
     files.push_back(object.attitude ? object.attitude->table_path : "");
+    files.push_back(object.geometry ? object.geometry->obj_path : "");
+    files.push_back(object.geometry ? object.geometry->materials_path : "");
   }
   return files;
 }

@@ -144,7 +144,7 @@ std::string to_json(const Truth& t, const UtcText& utc) {
   line.array("start_px", std::array<double, 2>{t.start_x_px, t.start_y_px});
   line.array("middle_px", std::array<double, 2>{t.middle_x_px, t.middle_y_px});
   line.array("end_px", std::array<double, 2>{t.end_x_px, t.end_y_px});
-  line.field("in_frame", t.in_frame).field("whole", t.whole);
+  line.field("in_frame", t.in_frame).field("whole", t.whole).field("resolved", t.resolved);
   return line.end();
 }
 

@@ -27,6 +27,7 @@ struct Truth {
          end_x_px = 0.0, end_y_px = 0.0;  // where the object is; may lie outside the frame
   bool in_frame = false;                // some of its light fell inside
   bool whole = false;                   // start, middle and end are inside
+  bool resolved = false;                // drawn with its shape, not as a point
 
   bool operator==(const Truth&) const = default;
 };

@@ -19,7 +19,7 @@
   X(name) X(true_range_m) X(true_ra_rad) X(true_dec_rad) X(apparent_ra_rad) X(apparent_dec_rad) \
       X(true_elevation_rad) X(phase_angle_rad) X(sunlit) X(true_magnitude) X(rendered_signal_e) \
           X(rendered_x_px) X(rendered_y_px) X(start_x_px) X(start_y_px) X(middle_x_px)          \
-              X(middle_y_px) X(end_x_px) X(end_y_px) X(in_frame) X(whole)
+              X(middle_y_px) X(end_x_px) X(end_y_px) X(in_frame) X(whole) X(resolved)
 
 namespace dmise {
 namespace {

@@ -208,7 +208,8 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     stars_drawn = stars->draw(view, optics, light, settings.faintest_star_mag,
                               settings.star_truth ? &frame.stars : nullptr, frame.times);
   if (has(Effect::objects))
-    frame.truths = draw_objects(view, objects_in_field(view), optics, light, frame.times);
+    frame.truths = draw_objects(view, objects_in_field(view), settings.shapes.get(), optics, light,
+                                frame.times);
   {
     Stopwatch timing(frame.times[Effect::psf]);
     optics.finish(light);

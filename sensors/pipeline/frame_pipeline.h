@@ -12,6 +12,7 @@
 #include "core/time/clock.h"
 #include "sensors/pipeline/frame_planes.h"
 #include "sensors/pipeline/frame_times.h"
+#include "sensors/pipeline/object_shapes.h"
 #include "sensors/pipeline/star_layer.h"
 #include "sensors/pipeline/world.h"
 
@@ -41,6 +42,7 @@ struct PipelineSettings {
   bool star_truth = false;
   OutputConfig output;  // flags and planes that are wanted
   bool detect = true;
+  std::shared_ptr<const ObjectShapes> shapes;  // null: all objects are points
 };
 
 /// The chain of one sensor: states around an exposure -> stars, objects and sky at the focal plane

@@ -32,7 +32,9 @@ std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std
                        .digest = digest,
                        .faintest_star_mag = scenario.faintest_star_mag,
                        .star_truth = scenario.output.star_truth,
-                       .output = scenario.output},
+                       .output = scenario.output,
+                       .shapes = std::make_shared<const ObjectShapes>(
+                           scenario.own_objects, sensor_named(scenario, name).camera.band)},
       scenario.tick, scenario.duration,
       sim_seconds(std::max(scenario.environment.common_every_s, scenario.environment.site_every_s)),
       scenario.output, std::move(stars), directory + "/" + name, threads);

@@ -4,6 +4,7 @@
 #include "core/base/image.h"
 #include "core/base/parallel.h"
 #include "core/detection/truth.h"
+#include "sensors/pipeline/object_shapes.h"
 #include "sensors/pipeline/optics_stage.h"
 #include "sensors/pipeline/view.h"
 
@@ -15,6 +16,7 @@ namespace dmise {
 /// Adds their light to `image` and tells what was drawn. An object of which no light fell inside
 /// and whose path did not enter the frame has no entry.
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
-                                OpticsStage& optics, RateImage& image, EffectTimes& times);
+                                const ObjectShapes* shapes, OpticsStage& optics, RateImage& image,
+                                EffectTimes& times);
 
 }  // namespace dmise

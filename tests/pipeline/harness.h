@@ -48,7 +48,9 @@ class Stage {
                             .seed = scenario.seed,
                             .digest = "test",
                             .faintest_star_mag = scenario.faintest_star_mag,
-                            .star_truth = true},
+                            .star_truth = true,
+                            .shapes = std::make_shared<const ObjectShapes>(scenario.own_objects,
+                                                                           config.camera.band)},
                            stars, threads);
     return pipeline.run(frame_times(config, number), world);
   }

@@ -1,0 +1,132 @@
+#include "core/config/geometry_config.h"
+
+#include <filesystem>
+
+#include "core/base/digest.h"
+#include "core/base/error.h"
+#include "core/base/json.h"
+#include "core/config/material_config.h"
+#include "core/config/search_path.h"
+#include "core/materials/obj_file.h"
+#include "core/materials/shapes.h"
+
+namespace dmise {
+namespace {
+
+constexpr Bounds size_bounds{.least = 0.0, .most = 1e5, .least_open = true};
+
+std::vector<double> sizes(YamlMap& map, std::string_view key, std::size_t count,
+                          std::vector<double> otherwise) {
+  const auto value = map.find(key);
+  if (!value) return otherwise;
+  std::vector<double> all;
+  for (const auto& item : value->list()) all.push_back(item.number(size_bounds));
+  if (all.size() != count)
+    value->fail(
+        "must have " + std::to_string(count) + " lengths, got " + std::to_string(all.size()),
+        false);
+  return all;
+}
+
+class Reader {
+ public:
+  Reader(YamlMap& map, const MaterialLibrary& library) : map_(map), library_(library) {}
+
+  Mesh model(const std::string& name) {
+    if (name == "sphere")
+      return sphere(map_.number_or("radius_m", 1.0, size_bounds),
+                    std::size_t(map_.integer_or("facets", 1280, 20, 200000)), material("material"));
+    if (name == "cylinder")
+      return cylinder(map_.number_or("radius_m", 1.0, size_bounds),
+                      map_.number_or("length_m", 2.0, size_bounds),
+                      int(map_.integer_or("sides", 48, 3, 10000)), material("material"));
+    if (name == "plate") {
+      const auto size = sizes(map_, "size_m", 2, {1.0, 1.0});
+      return plate(size[0], size[1], material("front"), material("back"));
+    }
+    if (name == "box-wing") return wings();
+    if (name == "starlink-like")
+      return starlink_like(material("chassis", "starlink-chassis"),
+                           material("front", "starlink-array"), material("back", "starlink-array"));
+    const auto size = sizes(map_, "size_m", 3, {1.0, 1.0, 1.0});
+    return box({size[0], size[1], size[2]}, material("material"));
+  }
+
+ private:
+  Mesh wings() {
+    BoxWing size;
+    const auto body = sizes(map_, "body_m", 3, {size.body_m.x, size.body_m.y, size.body_m.z});
+    size.body_m = {body[0], body[1], body[2]};
+    size.wing_length_m = map_.number_or("wing_length_m", size.wing_length_m, size_bounds);
+    size.wing_width_m = map_.number_or("wing_width_m", size.wing_width_m, size_bounds);
+    size.gap_m = map_.number_or("gap_m", size.gap_m, Bounds::between(0.0, 1e5));
+    return box_wing(size, material("body", "kapton"), material("front", "silicon-cell"),
+                    material("back", "white-paint"));
+  }
+
+  Material material(std::string_view key, std::string_view otherwise = "grey") {
+    if (const auto value = map_.find(key)) return library_.require(*value);
+    return library_.find(otherwise).value_or(Material{});
+  }
+
+  YamlMap& map_;
+  const MaterialLibrary& library_;
+};
+
+std::string digest_of(const Mesh& mesh) {
+  JsonWriter json;
+  json.begin_array();
+  for (const auto& v : mesh.vertex_m) json.value(v.x).value(v.y).value(v.z);
+  for (const auto& t : mesh.triangles)
+    json.value(t.corner[0]).value(t.corner[1]).value(t.corner[2]).value(t.material);
+  const auto write = [&](const Curve& curve) {
+    for (const double x : curve.wavelength_m) json.value(x);
+    for (const double x : curve.value) json.value(x);
+  };
+  for (const auto& m : mesh.materials) {
+    json.value(int(m.model));
+    for (const Curve* curve : {&m.reflectance, &m.emissivity, &m.diffuse, &m.specular})
+      write(*curve);
+    json.value(m.grazing).value(m.lobe_width).value(m.exponent);
+    json.value(m.temperature_k).value(m.thermal_emissivity);
+  }
+  return sha256_hex(json.end_array().text());
+}
+
+}  // namespace
+
+GeometryConfig read_geometry(const YamlValue& value) {
+  YamlMap map(value);
+  GeometryConfig geometry;
+  geometry.materials_path = find_preset("materials", "library", "");
+  if (const auto materials = map.find("materials")) {
+    geometry.materials_path = find_beside(materials->text(), value.file());
+    if (geometry.materials_path.empty()) materials->fail("there is no such file");
+  }
+  const MaterialLibrary library = geometry.materials_path.empty()
+                                      ? MaterialLibrary()
+                                      : MaterialLibrary(geometry.materials_path);
+  const auto obj = map.find("obj"), model = map.find("model");
+  if (bool(obj) == bool(model)) value.fail("needs either an obj file or a model", false);
+  Mesh mesh;
+  if (obj) {
+    geometry.obj_path = find_beside(obj->text(), value.file());
+    if (geometry.obj_path.empty()) obj->fail("there is no such file");
+    auto read =
+        load_obj(geometry.obj_path, [&](std::string_view name) { return library.find(name); });
+    mesh = std::move(read.mesh);
+    geometry.notes = std::move(read.notes);
+  } else {
+    mesh = Reader(map, library)
+               .model(model->choice(
+                   {"box", "plate", "sphere", "cylinder", "box-wing", "starlink-like"}));
+  }
+  mesh = scaled(std::move(mesh),
+                map.number_or("scale", 1.0, {.least = 0.0, .most = 1e6, .least_open = true}));
+  map.done();
+  geometry.digest = digest_of(mesh);
+  geometry.mesh = std::make_shared<const Mesh>(std::move(mesh));
+  return geometry;
+}
+
+}  // namespace dmise

@@ -1,0 +1,79 @@
+#include "sensors/pipeline/object_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/units.h"
+#include "core/photometry/diffuse_sphere.h"
+#include "core/photometry/magnitude.h"
+#include "sensors/render/render_module.h"
+
+namespace dmise {
+
+ObjectShapes::ObjectShapes(const std::vector<OwnObject>& objects, const Band& band)
+    : sun_photons_(object_photons_per_s_m2(sun_v_mag, band)) {
+  for (const auto& object : objects)
+    if (object.geometry)
+      shapes_.emplace(object.catalogue_number,
+                      ObjectShape{FacetLight(*object.geometry->mesh, band),
+                                  dmise::radius_m(*object.geometry->mesh)});
+}
+
+const ObjectShape* ObjectShapes::of(std::uint32_t catalogue_number) const {
+  const auto found = shapes_.find(catalogue_number);
+  return found == shapes_.end() ? nullptr : &found->second;
+}
+
+Renderer& ObjectShapes::renderer() const {
+  if (!renderer_) renderer_ = load_renderer();
+  return *renderer_;
+}
+
+std::string ObjectShapes::renderer_description() const {
+  return renderer_ ? renderer_->description() : "";
+}
+
+std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTime t,
+                                    const Vec<Gcrs>& observer_m) {
+  const auto attitude = view.world().gcrs_from_body(object, t);
+  if (!attitude) return std::nullopt;
+  const Vec<Gcrs> position_m = view.world().motion(object, t).position_m;
+  const Vec<Gcrs> to_sun = view.environment().sun_m - position_m;
+  const Vec<Gcrs> to_viewer = observer_m - position_m;
+  const auto body_from_gcrs = attitude->inverse();
+  return ShapePose{.gcrs_from_body = *attitude,
+                   .to_sun = unit(body_from_gcrs * to_sun),
+                   .to_viewer = unit(body_from_gcrs * to_viewer),
+                   .range_m = norm(to_viewer),
+                   .sun_distance_au = norm(to_sun) / au_m};
+}
+
+double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
+                              const ShapePose& pose, double sunlit) {
+  double photons_per_s_sr = shape.light.emitted_photons_per_s_sr(pose.to_viewer);
+  if (sunlit > 0.0)
+    photons_per_s_sr += shapes.sun_photons() * sunlit /
+                        (pose.sun_distance_au * pose.sun_distance_au) *
+                        shape.light.reflected_m2_per_sr(pose.to_sun, pose.to_viewer);
+  return photons_per_s_sr / (pose.range_m * pose.range_m);
+}
+
+double shape_magnitude(const ObjectShape& shape, const ShapePose& pose) {
+  const double light = shape.light.reflected_m2_per_sr(pose.to_sun, pose.to_viewer) /
+                       (pose.range_m * pose.range_m * pose.sun_distance_au * pose.sun_distance_au);
+  return light > 0.0 ? std::min(darkest_mag, sun_v_mag + magnitude_of_light(light)) : darkest_mag;
+}
+
+double turn_rad(const View& view, std::size_t object) {
+  const auto& exposure = view.times();
+  const double step = std::min(1.0, 0.01 / exposure.seconds());  // of the exposure: 10 ms at most
+  const auto a = view.world().gcrs_from_body(object, exposure.at(1.0 - step));
+  const auto b = view.world().gcrs_from_body(object, exposure.end);
+  if (!a || !b) return 0.0;
+  double trace = 0.0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) trace += a->m[i][j] * b->m[i][j];
+  return std::acos(std::clamp((trace - 1.0) / 2.0, -1.0, 1.0)) / step;
+}
+
+}  // namespace dmise

@@ -1,0 +1,67 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/config/object_config.h"
+#include "core/photometry/facet_light.h"
+#include "sensors/pipeline/view.h"
+#include "sensors/render/renderer.h"
+
+namespace dmise {
+
+/// Surface of an object in one sensor's band.
+struct ObjectShape {
+  FacetLight light;
+  double radius_m = 0.0;  // of the sphere about its origin that holds it
+};
+
+/// How a shape is turned and lit at one instant, as the observer sees it.
+struct ShapePose {
+  Rotation<Gcrs, Body> gcrs_from_body;
+  Vec<Body> to_sun, to_viewer;  // unit
+  double range_m = 0.0;
+  double sun_distance_au = 1.0;
+};
+
+/// The objects of a scenario that have a shape, for one sensor. The renderer is loaded when the
+/// first of them is near enough to show it.
+class ObjectShapes {
+ public:
+  ObjectShapes(const std::vector<OwnObject>& objects, const Band& band);
+
+  /// Null for an object without a shape.
+  const ObjectShape* of(std::uint32_t catalogue_number) const;
+
+  /// Throws `Error` where there is no OpenGL.
+  Renderer& renderer() const;
+  /// What draws; empty before anything was drawn.
+  std::string renderer_description() const;
+
+  /// Photons/s/m2 of the Sun at 1 au in the band.
+  double sun_photons() const { return sun_photons_; }
+
+ private:
+  std::map<std::uint32_t, ObjectShape> shapes_;
+  mutable std::unique_ptr<Renderer> renderer_;
+  double sun_photons_ = 0.0;
+};
+
+/// Pose at `t`; nothing for an object without an attitude there.
+std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTime t,
+                                    const Vec<Gcrs>& observer_m);
+
+/// Photons/s/m2 above the atmosphere at the observer, in the band: sunlight of which `sunlit`
+/// reaches the object, and what it emits.
+double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
+                              const ShapePose& pose, double sunlit);
+
+/// V magnitude of the sunlight alone when fully sunlit, `darkest_mag` at most.
+double shape_magnitude(const ObjectShape& shape, const ShapePose& pose);
+
+/// Angle that the object turns by over the exposure [rad], by its rate at the end; 0 without an
+/// attitude.
+double turn_rad(const View& view, std::size_t object);
+
+}  // namespace dmise
