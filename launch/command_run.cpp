@@ -45,7 +45,7 @@ class EmbeddedRun {
     for (const auto& note : orbit->notes()) std::fprintf(stderr, "note: %s\n", note.c_str());
     orbit->on_absence([this](const std::string& line) {
       std::lock_guard lock(mutex_);
-      absences_.push_back(line);
+      notes_.push_back(line);
     });
     check_sensors(scenario, orbit->roster());
     participants_.push_back(std::move(orbit));
@@ -70,7 +70,7 @@ class EmbeddedRun {
     std::unique_lock lock(mutex_);
     while (!finished_ && !stop_signal().is_set()) {
       changed_.wait_for(lock, std::chrono::milliseconds(50));
-      for (const auto& line : std::exchange(absences_, {})) {
+      for (const auto& line : std::exchange(notes_, {})) {
         progress.clear_line();
         std::fprintf(stderr, "note: %s\n", line.c_str());
       }
@@ -78,6 +78,8 @@ class EmbeddedRun {
     }
     if (!finished_) changed_.wait_for(lock, patience_after_stop, [this] { return finished_; });
     progress.clear_line();
+    for (const auto& line : std::exchange(notes_, {}))
+      std::fprintf(stderr, "note: %s\n", line.c_str());
     if (stop_signal().is_set() && failure_.empty()) outcome.status = "interrupted";
     if (!failure_.empty()) {
       outcome.status = "failed";
@@ -107,6 +109,11 @@ class EmbeddedRun {
             return !stop_signal().is_set();
           },
           first_tick_);
+      for (const auto* sensor : sensors_)
+        if (const std::string renderer = sensor->renderer(); !renderer.empty()) {
+          std::lock_guard lock(mutex_);
+          notes_.push_back(sensor->name() + ": shapes drawn by " + renderer);
+        }
     } catch (const std::exception& e) {
       failure = e.what();
     }
@@ -137,7 +144,7 @@ class EmbeddedRun {
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   ProgressState state_;
-  std::vector<std::string> absences_;  // to be told, one line for each object that left
+  std::vector<std::string> notes_;  // to be told: objects that left, what draws
   std::string failure_;
   bool finished_ = false;
 };

@@ -103,6 +103,8 @@ class Loader {
   }
 
   void add(const OwnObject& object, double age_days) {
+    if (object.geometry)
+      for (const auto& note : object.geometry->notes) population_.notes.push_back(note);
     if (object.attitude) {
       check_span(object, object.attitude->model);
       population_.attitudes.push_back({population_.roster.objects.size(), object.attitude->model});

@@ -63,7 +63,9 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   json.key("effects").begin_array();
   for (std::size_t i = 0; i < effect_count; ++i)
     if (s.effects.has(static_cast<Effect>(i))) json.value(facts(static_cast<Effect>(i)).name);
-  json.end_array().end_object();
+  json.end_array();
+  if (s.effects.snapshots() > 0) json.field("snapshots", s.effects.snapshots());
+  json.end_object();
 }
 
 }  // namespace

@@ -92,6 +92,12 @@ void read_effects(const YamlValue& value, EffectSet& effects) {
     effects.set(Effect::annual_aberration, both->flag());
     effects.set(Effect::diurnal_aberration, both->flag());
   }
+  if (const auto integration = map.find("integration"))
+    effects.set_snapshots(integration->choice({"analytic", "snapshots"}) == "snapshots" ? 16 : 0);
+  if (const auto count = map.find("snapshots")) {
+    if (effects.snapshots() == 0) count->fail("needs integration: snapshots", false);
+    effects.set_snapshots(int(count->integer(1, 100000)));
+  }
   map.done();
 }
 

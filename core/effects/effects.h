@@ -66,10 +66,14 @@ class EffectSet {
   EffectSet() { on_.fill(true); }
   bool has(Effect e) const { return on_[static_cast<std::size_t>(e)]; }
   void set(Effect e, bool on) { on_[static_cast<std::size_t>(e)] = on; }
+  /// Snapshots along an exposure in which light is integrated; 0: along the path, exactly.
+  int snapshots() const { return snapshots_; }
+  void set_snapshots(int count) { snapshots_ = count; }
   bool operator==(const EffectSet&) const = default;
 
  private:
   std::array<bool, effect_count> on_;
+  int snapshots_ = 0;
 };
 
 /// Seconds spent in each effect over one frame. Never part of a product whose bytes must repeat.

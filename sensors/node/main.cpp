@@ -1,4 +1,6 @@
 // dmise-sensor-node: one sensor of a scenario as a process of its own: renders, detects, publishes.
+#include <spdlog/spdlog.h>
+
 #include "core/base/error.h"
 #include "core/base/memory.h"
 #include "nodes/runtime/node.h"
@@ -28,10 +30,11 @@ int main(int argc, char** argv) {
     if (flags.check) return 0;
     if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
     sensor->stop_when([] { return dmise::stop_signal().is_set(); });
-    return dmise::run_node(*sensor, {.master = flags.master,
-                                     .join_within_s = scenario.network.join_within_s,
-                                     .stop_within_s = 1.0,
-                                     .stop = &dmise::stop_signal()})
-        .exit_code;
+    const auto end = dmise::run_node(*sensor, {.master = flags.master,
+                                               .join_within_s = scenario.network.join_within_s,
+                                               .stop_within_s = 1.0,
+                                               .stop = &dmise::stop_signal()});
+    if (!sensor->renderer().empty()) spdlog::info("shapes drawn by {}", sensor->renderer());
+    return end.exit_code;
   });
 }

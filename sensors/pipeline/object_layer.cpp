@@ -6,6 +6,7 @@
 
 #include "core/base/units.h"
 #include "core/optics/deposit.h"
+#include "core/optics/snapshots.h"
 #include "core/optics/projection.h"
 #include "core/photometry/diffuse_sphere.h"
 #include "core/photometry/magnitude.h"
@@ -297,9 +298,10 @@ std::vector<Truth> paint(const View& view, const Painter& painter,
     const bool shaped = painter.shape(object) != nullptr;
     if (shaped && turn_rad(view, object) > still_enough_rad)
       samples = samples_of(object, changing_arcs);
-    const auto arcs = resolved ? std::vector<Arc>{}
-                      : shaped ? shape_arcs(view, painter, object, samples)
-                               : arcs_of(samples, exposure.seconds());
+    auto arcs = resolved ? std::vector<Arc>{}
+                : shaped ? shape_arcs(view, painter, object, samples)
+                         : arcs_of(samples, exposure.seconds());
+    if (const int count = view.sensor().effects.snapshots()) arcs = as_snapshots(arcs, count);
     if (resolved)
       light = draw_shape(painter.shapes(), snapshots_of(view, painter, object, samples), optics,
                          stage, image);

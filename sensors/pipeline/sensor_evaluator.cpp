@@ -12,6 +12,7 @@ SensorEvaluator::SensorEvaluator(PipelineSettings settings, SimTime tick_length,
       tick_length_(tick_length),
       told_every_(told_every),
       last_frame_(frames_within(settings.sensor, duration)),
+      shapes_(settings.shapes),
       pipeline_(settings, std::move(stars), threads),
       writer_(std::move(directory), output, settings.clock) {}
 

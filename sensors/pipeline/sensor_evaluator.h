@@ -36,6 +36,8 @@ class SensorEvaluator : public Evaluator {
   void stop_when(std::function<bool()> asked) { stop_asked_ = std::move(asked); }
   int frames_done() const { return static_cast<int>(next_frame_) - 1; }
   long detections_made() const { return detections_; }
+  /// What draws objects with a shape ("OSMesa, llvmpipe ..."); empty if none was near enough.
+  std::string renderer() const { return shapes_ ? shapes_->renderer_description() : ""; }
 
  private:
   void take_in(std::span<const Message> inputs);
@@ -43,6 +45,7 @@ class SensorEvaluator : public Evaluator {
   SensorConfig sensor_;
   SimTime tick_length_, told_every_;
   std::uint32_t last_frame_;
+  std::shared_ptr<const ObjectShapes> shapes_;
   FramePipeline pipeline_;
   ProductWriter writer_;
   World world_;

@@ -5,6 +5,7 @@
 
 #include "core/optics/deposit.h"
 #include "core/optics/projection.h"
+#include "core/optics/snapshots.h"
 #include "sensors/pipeline/light.h"
 #include "sensors/pipeline/place_costs.h"
 #include "sensors/pipeline/stopwatch.h"
@@ -131,7 +132,14 @@ std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, RateImage& 
   std::vector<Deposited> deposited;
   {
     Stopwatch timing(times[Effect::psf]);
-    deposited = optics.add(arcs, image);
+    if (const int count = view.sensor().effects.snapshots())
+      for (const Arc& arc : arcs) {
+        deposited.emplace_back();
+        for (const auto& part : optics.add(as_snapshots({&arc, 1}, count), image))
+          deposited.back() = deposited.back() + part;
+      }
+    else
+      deposited = optics.add(arcs, image);
   }
   std::uint32_t inside = 0;
   for (std::size_t i = 0; i < arcs.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/photometry/magnitude.h"
+#include "sensors/pipeline/light.h"
 #include "tests/pipeline/harness.h"
 
 namespace dmise::test {
@@ -92,6 +93,47 @@ TEST(Shapes, ASpinningShapeShinesDifferentlyFromFrameToFrame) {
   const double second = target_of(stage.frame(2)).rendered_signal_e;
   EXPECT_GT(first, 0.0);
   EXPECT_GT(std::abs(first / second - 1.0), 0.02);
+}
+
+// A panel that turns once a second flashes for some 10 ms: far less than one of four snapshots of
+// the exposure. Against the light at 20,000 instants.
+TEST(Shapes, AGlintShorterThanASnapshotIsNotLost) {
+  Stage stage(scenario(
+      "    geometry: {model: plate, scale: 0.001, front: silicon-cell, back: silicon-cell}", wide,
+      "{spinning: {axis: [0.1, 1, 0], rate_rpm: 60}}"));
+  const auto& sensor = stage.scenario.sensors.at(0);
+  const ObjectShapes shapes(stage.scenario.own_objects, sensor.camera.band);
+  for (const std::uint32_t number : {1u, 2u}) {
+    const FrameTimes times = frame_times(sensor, number);
+    const View view(sensor, times, stage.world);
+    const std::size_t target = object_index(stage.world.roster(), "target", "test");
+    const ObjectShape& shape = *shapes.of(stage.world.roster().objects[target].catalogue_number);
+    constexpr int steps = 20000;
+    double mean = 0, most = 0;
+    for (int i = 0; i < steps; ++i) {
+      const SimTime t = times.at((i + 0.5) / steps);
+      const double light = shape_photons_per_s_m2(
+          shapes, shape, *shape_pose(view, target, t, view.observer(t).position_m), 1.0);
+      mean += light / steps;
+      most = std::max(most, light);
+    }
+    const double expected = mean * times.seconds() * Light(view).electrons_per_photon_m2();
+    const auto frame = stage.frame(number);
+    EXPECT_NEAR(target_of(frame).rendered_signal_e / expected, 1.0, 0.02) << number;
+    EXPECT_GT(most, 3 * mean) << number;  // there is a glint
+  }
+}
+
+TEST(Shapes, SnapshotsKeepTheLight) {
+  const std::string text = scenario("    geometry: {model: box-wing, scale: 0.001}", wide);
+  Stage path(text);
+  std::string cut = text;
+  cut.replace(cut.find("effects: {"), 10, "effects: {integration: snapshots, snapshots: 8, ");
+  Stage snapshots(cut);
+  EXPECT_EQ(snapshots.scenario.sensors[0].effects.snapshots(), 8);
+  EXPECT_NEAR(
+      target_of(snapshots.frame()).rendered_signal_e / target_of(path.frame()).rendered_signal_e,
+      1.0, 1e-4);
 }
 
 TEST(Shapes, WrongGeometryPointsAtItsLine) {
