@@ -1,9 +1,9 @@
 // Draws the pictures of docs/gallery and the figures behind docs/models/rendering.md:
 //   draw-gallery FOLDER
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 
 #include "core/base/units.h"
@@ -80,12 +80,15 @@ void snapshots(const std::string& path) {
   Threads one;
   const auto drawn = [&](const std::vector<Arc>& arcs, double& us) {
     RateImage image(96, 48);
-    const auto start = std::chrono::steady_clock::now();
-    for (int i = 0; i < 50; ++i) {
-      std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
-      deposit(arcs, psf, image, one);
+    us = 1e9;
+    for (int repeat = 0; repeat < 20; ++repeat) {
+      const std::clock_t start = std::clock();  // of processor time
+      for (int i = 0; i < 50; ++i) {
+        std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
+        deposit(arcs, psf, image, one);
+      }
+      us = std::min(us, double(std::clock() - start) / CLOCKS_PER_SEC / 50 * 1e6);
     }
-    us = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 50 * 1e6;
     return image;
   };
   std::ofstream file(path);
@@ -107,17 +110,17 @@ void draw_all(const std::string& folder) {
                               [](std::string_view name) { return library().find(name); });
   for (const auto& note : model.notes) std::printf("%s\n", note.c_str());
   draw_picture(folder + "/inspector.png", model.mesh, unit(Vec<Body>{0.75, 0.35, 0.6}),
-               unit(Vec<Body>{0.3, 0.75, 0.8}), {0, 0, -7000e3}, 1.2, 1.25);
+               unit(Vec<Body>{0.3, 0.75, 0.8}), {0, 0, -7000e3}, 1.2, 1.05);
   draw_picture(folder + "/box-wing.png",
                box_wing({}, named("kapton"), named("silicon-cell"), named("white-paint")),
                unit(Vec<Body>{0.8, -0.3, 0.5}), unit(Vec<Body>{-0.15, 0.75, 0.7}), {0, 0, -7000e3},
-               1.2, 1.3);
+               1.2, 0.95);
   draw_picture(folder + "/starlink-like.png",
                moved(starlink_like(named("starlink-chassis"), named("starlink-array"),
                                    named("starlink-array")),
                      {0, 0, 4.1}),
                unit(Vec<Body>{0.7, 0.5, 0.45}), unit(Vec<Body>{0.5, 0.75, -0.1}), {0, 0, 7000e3},
-               0.0, 1.1);
+               0.0, 0.72);
   light_curve(folder + "/light-curve.csv");
   snapshots(folder + "/snapshots.csv");
 }
