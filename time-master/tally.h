@@ -8,7 +8,8 @@
 
 namespace dmise {
 
-/// What a node has published on one topic at one tick, as it says itself.
+/// What a node has published on one topic at one tick, as it says itself. What is said once and for all
+/// (a roster) does not count: a process that follows another says it again.
 struct TopicTally {
   std::string topic;
   std::uint64_t messages = 0;       // of this tick, a watermark counts

@@ -1,6 +1,7 @@
 #include "nodes/runtime/inbox.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/sim/said_once.h"
@@ -40,6 +41,7 @@ void Inbox::restart(const std::string& name) {
   Topic* topic = find(name);
   if (!topic) return;
   topic->next_sequence = 1;
+  topic->positioned = false;
   topic->early.clear();
   topic->ready.erase(topic->ready.upper_bound(topic->complete_to), topic->ready.end());
   topic->heard.erase(topic->heard.upper_bound(topic->complete_to), topic->heard.end());
@@ -73,7 +75,7 @@ void Inbox::position(Topic& topic, const Envelope& envelope) {
   topic.complete_to = std::max(topic.complete_to, envelope.tick - 1);
   while (!topic.early.empty() && topic.early.begin()->first < topic.next_sequence) {
     const Received& message = topic.early.begin()->second;
-    if (message.state && said_once(*message.state))
+    if (message.state && said_once(*message.state) && !std::exchange(topic.has_lasting, true))
       topic.lasting.push_back({topic.name, message.envelope.tick, message.state});
     topic.early.erase(topic.early.begin());
   }
@@ -91,14 +93,18 @@ void Inbox::deliver(Topic& topic, const Received& message) {
   const Envelope& envelope = message.envelope;
   ++topic.next_sequence;
   const Tick tick = envelope.tick;
-  if (tick > topic.complete_to) {
-    if (message.state && tick < topic.closed_from)
-      topic.ready[tick].push_back({topic.name, tick, message.state});
+  const bool once = message.state && said_once(*message.state);
+  if (once && std::exchange(topic.has_lasting, true)) {
+    // Known: a process that follows another says it again.
+  } else if (once && tick <= topic.complete_to) {
+    topic.lasting.push_back({topic.name, tick, message.state});
+  } else if (tick > topic.complete_to && tick < topic.closed_from && message.state) {
+    topic.ready[tick].push_back({topic.name, tick, message.state});
+  }
+  if (tick > topic.complete_to && !once) {
     TopicTally& heard = topic.heard[tick];
     ++heard.messages;
     heard.digest = fold_digest(heard.digest, message.content_digest);
-  } else if (message.state && said_once(*message.state)) {
-    topic.lasting.push_back({topic.name, tick, message.state});
   }
   if (envelope.last_of_tick && tick > topic.complete_to) {
     topic.complete_to = tick;
@@ -168,6 +174,7 @@ std::vector<Inbox::Want> Inbox::wanted(Tick tick) const {
     };
     wants.push_back(
         {topic.name, topic.next_sequence,
+         topic.positioned ? std::nullopt : std::optional(topic.complete_to + 1),
          !topic.early.empty() || std::any_of(topic.said.begin(), topic.said.end(), lost)});
   }
   return wants;

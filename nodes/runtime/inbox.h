@@ -20,7 +20,8 @@ class Inbox {
   struct Want {
     std::string topic;
     std::uint64_t from_sequence = 0;
-    bool gap = false;  // known to be published: this one is lost or late
+    std::optional<Tick> from_tick;  // instead: it is not known where the topic is
+    bool gap = false;               // known to be published: this one is lost or late
   };
 
   explicit Inbox(std::vector<std::string> topics);
@@ -29,8 +30,8 @@ class Inbox {
   /// is. With `catch_up` nothing counts before a POSITION has said where each topic is.
   void begin_at(Tick tick, bool catch_up);
   void set_schedule(const std::string& topic, Schedule schedule);
-  /// Another process publishes on `topic` from now on: its numbers start again, and what it says of
-  /// ticks that are complete is known already.
+  /// Another process publishes on `topic` from now on: its numbers start again, so that it must be
+  /// asked where it is, and what it says of ticks that are complete is known already.
   void restart(const std::string& topic);
 
   /// Takes a message that passed the receiver; duplicates and probes change nothing but `probed`.
@@ -62,6 +63,7 @@ class Inbox {
     Schedule schedule;
     bool probed = false;
     bool positioned = true;
+    bool has_lasting = false;  // heard what is said once and for all
     std::uint64_t next_sequence = 1;
     Tick complete_to = -1;  // watermark
     Tick closed_from = INT64_MAX;

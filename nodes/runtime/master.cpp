@@ -300,6 +300,11 @@ class Master {
   /// Names whom everybody waits for when nothing has moved for a while.
   void complain() {
     if (coordinator_.over()) return;
+    for (const auto& [name, member] : coordinator_.members()) {
+      if (!member.silent) silent_.erase(name);
+      if (member.silent && silent_.insert(name).second)
+        spdlog::warn("{} is lost: waiting for it (last tick done: {})", name, member.done);
+    }
     const auto state = std::pair(coordinator_.granted(), coordinator_.holding());
     if (state != complained_about_) {
       complained_about_ = state;
@@ -352,6 +357,7 @@ class Master {
   std::optional<nanoseconds> started_, ended_;
   std::pair<Tick, std::vector<std::string>> complained_about_;
   nanoseconds quiet_since_{0};
+  std::set<std::string> silent_;  // as last said
 };
 
 }  // namespace

@@ -60,7 +60,9 @@ void NodeInputs::follow(const v1::Publisher& publisher) {
     publisher_of_[topic] = publisher.name();
     inbox_.set_schedule(
         topic, {std::max<Tick>(1, Tick(publisher.period_ticks())), Tick(publisher.offset_ticks())});
-    if (follows_another) inbox_.restart(topic);
+    if (!follows_another) continue;
+    inbox_.restart(topic);
+    asked_ = nanoseconds{0};  // ask where it is without delay
   }
   if (!direct.empty()) {
     source.direct = make_socket(context_, zmq::socket_type::sub, max_data_bytes);
@@ -78,7 +80,6 @@ void NodeInputs::list_sockets() {
 }
 
 void NodeInputs::begin_at(Tick tick, bool catch_up) {
-  begin_ = tick;
   inbox_.begin_at(tick, catch_up);
   if (catch_up)
     for (const std::string& topic : topics_) ask(topic, 1, tick);
@@ -127,12 +128,9 @@ nanoseconds NodeInputs::ask_for(Tick tick) {
   const bool gap = std::any_of(wants.begin(), wants.end(), [](const auto& w) { return w.gap; });
   const nanoseconds patience = gap ? nanoseconds(gap_patience) : quiet_;
   if (now() - asked_ > patience) {
-    std::optional<Tick> from_tick;
-    if (!inbox_.positioned())
-      from_tick = begin_;
-    else if (may_miss_)
-      from_tick = tick;
-    for (const Inbox::Want& want : wants) ask(want.topic, want.from_sequence, from_tick);
+    for (const Inbox::Want& want : wants)
+      ask(want.topic, want.from_sequence,
+          want.from_tick || !may_miss_ ? want.from_tick : std::optional(tick));
     asked_ = now();
     if (!gap) quiet_ = std::min<nanoseconds>(2 * quiet_, quiet_patience_limit);
   }

@@ -70,7 +70,6 @@ class NodeInputs {
   std::map<std::string, Source> sources_;            // by name of the publisher
   std::map<std::string, std::string> publisher_of_;  // each consumed topic
   std::vector<zmq::socket_t*> sockets_;              // that data arrive on
-  Tick begin_ = 0;
   bool may_miss_ = false;
   std::chrono::nanoseconds asked_{0};
   std::chrono::nanoseconds quiet_{0};

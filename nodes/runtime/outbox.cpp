@@ -42,12 +42,14 @@ std::vector<SharedFrames> Outbox::pack(Tick tick, const std::vector<Message>& me
   std::vector<Kept> kept;
   std::map<std::string, SharedFrames> lasting;
   std::map<std::string, TopicTally> tallies;
-  const auto add = [&](const std::string& topic, bool is_last, Encoded body) {
+  const auto add = [&](const std::string& topic, bool is_last, bool once, Encoded body) {
     const std::uint64_t sequence = ++sequence_[topic];
     TopicTally& tally = tallies[topic];
-    ++tally.messages;
+    if (!once) ++tally.messages;
     tally.last_sequence = sequence;
-    tally.digest = fold_digest(tally.digest, fold_content(0, body.kind, body.payload, body.arrays));
+    if (!once)
+      tally.digest =
+          fold_digest(tally.digest, fold_content(0, body.kind, body.payload, body.arrays));
     const Envelope envelope{.run_id = run_.run_id,
                             .publisher = publisher_,
                             .incarnation = incarnation_,
@@ -61,11 +63,12 @@ std::vector<SharedFrames> Outbox::pack(Tick tick, const std::vector<Message>& me
     kept.push_back({sequence, tick, packed.back()});
   };
   for (const Message& message : messages) {
-    add(message.topic, last.at(message.topic) == &message, encode(*message.state));
+    add(message.topic, last.at(message.topic) == &message, said_once(*message.state),
+        encode(*message.state));
     if (said_once(*message.state)) lasting[message.topic] = packed.back();
   }
   for (const std::string& topic : topics_)
-    if (!last.contains(topic)) add(topic, true, {});
+    if (!last.contains(topic)) add(topic, true, false, {});
 
   tally_ = {tick, {}};
   for (const std::string& topic : topics_) {

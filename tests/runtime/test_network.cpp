@@ -2,15 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <future>
-
-#include "nodes/runtime/broker.h"
-#include "nodes/runtime/log.h"
-#include "nodes/runtime/master.h"
 #include "nodes/runtime/master_link.h"
-#include "nodes/runtime/node.h"
 #include "nodes/runtime/socket.h"
-#include "nodes/runtime/status.h"
+#include "tests/runtime/network_threads.h"
 #include "tests/runtime/toy.h"
 #include "tests/support/tsan.h"
 
@@ -20,36 +14,6 @@ namespace {
 using namespace test;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-/// A master in a thread; `address` once it is bound.
-struct MasterThread {
-  explicit MasterThread(MasterOptions options) {
-    std::promise<std::string> bound;
-    auto address_future = bound.get_future();
-    options.on_bound = [&](const std::string& where) { bound.set_value(where); };
-    options.stop = &stop;
-    result = std::async(std::launch::async, [options] { return run_master(options); });
-    address = address_future.get();
-  }
-  ~MasterThread() { stop.set(); }
-
-  Event stop;
-  std::string address;
-  std::future<MasterResult> result;
-};
-
-std::future<NodeResult> start(Participant& participant, const std::string& master,
-                              Event* stop = nullptr) {
-  return std::async(std::launch::async, [&participant, master, stop] {
-    return run_node(participant, {.master = master, .stop = stop});
-  });
-}
-
-std::future<BrokerResult> start_broker(const std::string& master, int observer_queue = 1000) {
-  return std::async(std::launch::async, [master, observer_queue] {
-    return run_broker({.master = master, .observer_queue = observer_queue});
-  });
-}
 
 /// A broker that loses every fifth message, sends every third twice and swaps others.
 int serve_badly(const std::string& master) {
@@ -90,14 +54,6 @@ int serve_badly(const std::string& master) {
   }
   link.leave(false, {});
   return lost;
-}
-
-MasterOptions run_of(std::vector<std::string> expected, Tick last_tick, int window = 1) {
-  MasterOptions options;
-  options.run.expected = std::move(expected);
-  options.run.last_tick = last_tick;
-  options.run.window_ticks = window;
-  return options;
 }
 
 std::string recorded_locally(Tick last_tick) {

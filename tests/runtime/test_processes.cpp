@@ -116,6 +116,44 @@ TEST(Processes, TheRunWaitsForAStoppedNodeByPolicy) {
   stack.expect_all_exit(0, "", 30);
 }
 
+/// "digest" of a master's report.
+std::string digest_in(const std::string& report) {
+  const std::string json = read_text_file(report);
+  const auto at = json.find("\"digest\":\"");
+  return at == std::string::npos ? "" : json.substr(at + 10, 16);
+}
+
+TEST(Processes, ARestartedNodeLeavesTheRunAsItWas) {
+  const std::string report = testing::TempDir() + "dmise-restart-report.json";
+  const std::vector<std::string> flags{"--ticks",     "3000", "--window",        "3",
+                                       "--on-silent", "wait", "--rejoin-within", "20",
+                                       "--report",    report};
+  std::string undisturbed;
+  {
+    Stack stack(flags);
+    stack.start_all();
+    stack.expect_all_exit(0, "", 30);
+    undisturbed = digest_in(report);
+  }
+  Stack stack(flags);
+  stack.start_all();
+  int at = 100;
+  for (const std::string victim : {"a", "orbit", "broker", "recorder"}) {
+    ASSERT_TRUE(stack.nodes["b"]->says("step " + std::to_string(at) + "\n"));
+    at += 400;
+    stack.nodes[victim]->kill(SIGKILL);
+    for (bool gone = false; !gone;)
+      for (const NodeStatus& node : ask_master(stack.address, 5).nodes)
+        gone = gone || (node.name == victim && !node.alive);
+    victim == "broker" ? stack.start_broker() : static_cast<void>(stack.start(victim));
+  }
+  stack.expect_all_exit(0, "", 30);
+  EXPECT_EQ(digest_in(report), undisturbed);
+  EXPECT_EQ(undisturbed.size(), 16u);
+  EXPECT_THAT(read_text_file(report),
+              HasSubstr(R"("restarts":{"a":1,"broker":1,"orbit":1,"recorder":1})"));
+}
+
 TEST(Processes, AHungStepIsNamedByItsProgressDeadline) {
   Stack stack({"--ticks", "100", "--progress-after", "1"});
   stack.start_broker();

@@ -7,16 +7,23 @@
 
 namespace dmise::test {
 
+Message ToyOrbit::roster(Tick tick) const {
+  ObjectRoster roster;
+  for (std::size_t i = 0; i < objects_; ++i)
+    roster.objects.push_back({.catalogue_number = std::uint32_t(i + 1),
+                              .name = "OBJECT " + std::to_string(i),
+                              .designator = "98067A"});
+  return {objects_topic, tick, std::make_shared<const State>(std::move(roster))};
+}
+
+std::vector<Message> ToyOrbit::resume(Tick tick, std::span<const Message>) {
+  if (tick == 0) return {};
+  return {roster(tick)};
+}
+
 std::vector<Message> ToyOrbit::step(Tick tick, std::span<const Message>) {
   std::vector<Message> messages;
-  if (tick == 0) {
-    ObjectRoster roster;
-    for (std::size_t i = 0; i < objects_; ++i)
-      roster.objects.push_back({.catalogue_number = std::uint32_t(i + 1),
-                                .name = "OBJECT " + std::to_string(i),
-                                .designator = "98067A"});
-    messages.push_back({objects_topic, tick, std::make_shared<const State>(std::move(roster))});
-  }
+  if (tick == 0) messages.push_back(roster(tick));
   ObjectStates states;
   states.tick = tick;
   states.time = {tick * tick_ns_};
@@ -30,6 +37,12 @@ std::vector<Message> ToyOrbit::step(Tick tick, std::span<const Message>) {
   states.code.assign(objects_, 0);
   messages.push_back({objects_topic, tick, std::make_shared<const State>(std::move(states))});
   return messages;
+}
+
+std::vector<Message> ToyCamera::resume(Tick tick, std::span<const Message>) {
+  frame_ = 0;
+  for (Tick before = 0; before < tick; ++before) frame_ += std::uint32_t(before % 3);
+  return {};
 }
 
 std::vector<Message> ToyCamera::step(Tick tick, std::span<const Message> inputs) {

@@ -18,8 +18,11 @@ class ToyOrbit : public Participant {
   std::vector<std::string> produces() const override { return {objects_topic}; }
   std::vector<std::string> consumes() const override { return {}; }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
+  std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
 
  private:
+  Message roster(Tick tick) const;
+
   std::size_t objects_;
   std::int64_t tick_ns_;
 };
@@ -34,6 +37,8 @@ class ToyCamera : public Participant {
   }
   std::vector<std::string> consumes() const override { return {objects_topic}; }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
+
+  std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
 
   std::function<void(Tick)> on_step;  // may be empty
 

@@ -26,6 +26,10 @@ class Telling : public dmise::Participant {
       for (;;) poll(nullptr, 0, -1);
     return participant_.step(tick, inputs);
   }
+  std::vector<dmise::Message> resume(dmise::Tick tick,
+                                     std::span<const dmise::Message> past) override {
+    return participant_.resume(tick, past);
+  }
 
  private:
   dmise::Participant& participant_;

@@ -1,0 +1,204 @@
+// How a process finds its place in what is being said already, and how a lost message is known.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "nodes/runtime/inbox.h"
+#include "nodes/runtime/outbox.h"
+
+namespace dmise {
+namespace {
+
+const RunFacts run{.run_id = 7, .tick_length = {1000}, .last_tick = 100};
+
+Message states(Tick tick) {
+  ObjectStates states{.tick = tick, .time = run.time_of(tick), .count = 1};
+  states.position_m = {7e6, double(tick), 0};
+  states.slope_m_per_s = states.velocity_m_per_s = {0, 7e3, 0};
+  states.code = {0};
+  return {objects_topic, tick, std::make_shared<const State>(states)};
+}
+
+Message roster(Tick tick) {
+  ObjectRoster roster;
+  roster.objects.push_back({.catalogue_number = 5, .name = "VANGUARD 1"});
+  return {objects_topic, tick, std::make_shared<const State>(roster)};
+}
+
+/// A publisher of states, roster first, that keeps three ticks.
+struct Publisher {
+  explicit Publisher(std::uint64_t incarnation = 1, Tick first = 0)
+      : outbox(run, "orbit", incarnation, {objects_topic}, 3), receiver(run), next(first) {
+    receiver.allow(objects_topic, "orbit", incarnation);
+  }
+  Received received(const SharedFrames& frames) {
+    std::vector<std::string_view> views{frames->topic, frames->envelope, frames->payload};
+    if (!frames->arrays.empty()) views.push_back(frames->arrays);
+    const auto message = receiver.receive(views);
+    EXPECT_TRUE(message) << receiver.last_refusal();
+    return *message;
+  }
+  /// Publishes the next tick.
+  std::vector<Received> step() {
+    std::vector<Message> messages;
+    if (first_step) messages.push_back(roster(next));
+    first_step = false;
+    messages.push_back(states(next));
+    std::vector<Received> all;
+    for (const auto& frames : outbox.pack(next++, messages)) all.push_back(received(frames));
+    return all;
+  }
+  void answer(Inbox& inbox, Tick from_tick) {
+    for (const auto& frames : outbox.catch_up(objects_topic, from_tick))
+      inbox.accept(received(frames));
+  }
+  Outbox outbox;
+  Receiver receiver;
+  Tick next;
+  bool first_step = true;
+};
+
+std::vector<Tick> ticks_of(const std::vector<Message>& messages) {
+  std::vector<Tick> ticks;
+  for (const Message& m : messages) ticks.push_back(m.tick);
+  return ticks;
+}
+
+using testing::ElementsAre;
+
+TEST(CatchUp, BringsTheRosterAndTheTicksAskedFor) {
+  Publisher orbit;
+  for (int i = 0; i < 10; ++i) orbit.step();  // ticks 7, 8, 9 are kept
+  Inbox inbox({objects_topic});
+  inbox.begin_at(8, true);
+  EXPECT_FALSE(inbox.complete(7));
+  orbit.answer(inbox, 8);
+  EXPECT_TRUE(inbox.complete(9));
+  EXPECT_FALSE(inbox.complete(10));
+  const auto messages = inbox.take(9);
+  EXPECT_THAT(ticks_of(messages), ElementsAre(0, 8, 9));
+  EXPECT_TRUE(std::holds_alternative<ObjectRoster>(*messages[0].state));
+}
+
+TEST(CatchUp, JoinsWithoutAGapOrADoubleToWhatIsPublishedMeanwhile) {
+  for (const bool answer_first : {true, false}) {
+    Publisher orbit;
+    for (int i = 0; i < 10; ++i) orbit.step();
+    Inbox inbox({objects_topic});
+    inbox.begin_at(8, true);
+    const auto answer = orbit.outbox.catch_up(objects_topic, 8);
+    if (!answer_first)
+      for (const auto& m : orbit.step()) inbox.accept(m);  // tick 10 comes before the answer
+    for (const auto& frames : answer) inbox.accept(orbit.received(frames));
+    if (answer_first)
+      for (const auto& m : orbit.step()) inbox.accept(m);
+    EXPECT_THAT(ticks_of(inbox.take(10)), ElementsAre(0, 8, 9, 10));
+  }
+}
+
+TEST(CatchUp, WithAPublisherThatIsJustBeginningAgain) {
+  Publisher orbit(2, 6);
+  Inbox inbox({objects_topic});
+  inbox.begin_at(8, true);
+  orbit.answer(inbox, 8);  // it has said nothing yet
+  for (int i = 0; i < 4; ++i)
+    for (const auto& m : orbit.step()) inbox.accept(m);
+  EXPECT_TRUE(inbox.complete(9));
+  EXPECT_THAT(ticks_of(inbox.take(9)), ElementsAre(6, 8, 9));  // 6: the roster
+}
+
+TEST(CatchUp, WhoMayMissGoesOnWhereThePublisherStillIs) {
+  Publisher orbit;
+  for (int i = 0; i < 10; ++i) orbit.step();
+  Inbox inbox({objects_topic});
+  orbit.answer(inbox, 2);
+  EXPECT_EQ(inbox.missed(), 7u);  // states of ticks 0 to 6
+  EXPECT_THAT(ticks_of(inbox.take(9)), ElementsAre(0, 7, 8, 9));
+}
+
+TEST(Restart, OfAPublisherChangesNothingOfWhatWasTaken) {
+  Publisher first;
+  Inbox inbox({objects_topic});
+  for (int i = 0; i < 4; ++i)
+    for (const auto& m : first.step()) inbox.accept(m);
+  EXPECT_EQ(inbox.take(2).size(), 4u);
+  inbox.restart(objects_topic);
+  Publisher second(2, 1);                     // does ticks 1.. again, for somebody who is behind
+  for (int i = 0; i < 2; ++i) second.step();  // not heard
+  EXPECT_EQ(inbox.wanted(4).at(0).from_tick, 4);
+  second.answer(inbox, 4);
+  for (int i = 0; i < 2; ++i)
+    for (const auto& m : second.step()) inbox.accept(m);
+  EXPECT_TRUE(inbox.complete(4));
+  EXPECT_FALSE(inbox.complete(5));
+  EXPECT_THAT(ticks_of(inbox.take(4)), ElementsAre(3, 4));  // the roster is known
+}
+
+// It has forgotten the ticks with which it began: they were for others.
+TEST(Restart, OfAPublisherThatHasMovedOn) {
+  Publisher first;
+  Inbox inbox({objects_topic});
+  for (int i = 0; i < 8; ++i)
+    for (const auto& m : first.step()) inbox.accept(m);
+  inbox.take(7);
+  inbox.restart(objects_topic);
+  Publisher second(2, 4);
+  for (int i = 0; i < 6; ++i) second.step();  // to tick 9; 7, 8, 9 are kept
+  second.answer(inbox, *inbox.wanted(8).at(0).from_tick);
+  EXPECT_THAT(ticks_of(inbox.take(9)), ElementsAre(8, 9));
+}
+
+TEST(Manifest, ShowsALostMessageThatNothingFollows) {
+  Publisher orbit;
+  Inbox inbox({objects_topic});
+  const auto messages = orbit.step();
+  inbox.accept(messages[0]);  // the last of the tick is lost
+  EXPECT_FALSE(inbox.wanted(0).at(0).gap);
+  inbox.published(orbit.outbox.tally().topics.at(0), 0);
+  EXPECT_TRUE(inbox.wanted(0).at(0).gap);
+  EXPECT_EQ(inbox.wanted(0).at(0).from_sequence, 2u);
+  inbox.accept(messages[1]);
+  EXPECT_TRUE(inbox.wanted(0).empty());
+}
+
+TEST(Manifest, RefusesATickThatIsNotWhatWasPublished) {
+  for (const bool said_before : {true, false}) {
+    Publisher orbit;
+    Inbox inbox({objects_topic});
+    const auto messages = orbit.step();
+    TopicTally tally = orbit.outbox.tally().topics.at(0);
+    EXPECT_EQ(tally.messages, 1u);  // the roster is not of this tick alone
+    tally.digest ^= 1;
+    const auto hear = [&] {
+      if (said_before) inbox.published(tally, 0);
+      for (const auto& m : messages) inbox.accept(m);
+      if (!said_before) inbox.published(tally, 0);
+    };
+    EXPECT_THROW(hear(), Error);
+  }
+}
+
+TEST(Manifest, IsTheSameWhateverProcessPublishes) {
+  Publisher first, second(2);
+  first.step();
+  second.step();
+  const auto& a = first.outbox.tally().topics.at(0);
+  const auto& b = second.outbox.tally().topics.at(0);
+  EXPECT_TRUE(a.same_content(b));
+  second.step();
+  EXPECT_FALSE(a.same_content(second.outbox.tally().topics.at(0)));
+}
+
+TEST(Schedule, ATopicIsCompleteBetweenTheTicksOfItsPublisher) {
+  Inbox inbox({objects_topic});
+  inbox.set_schedule(objects_topic, {.period = 4, .offset = 2});
+  EXPECT_TRUE(inbox.complete(1));
+  EXPECT_FALSE(inbox.complete(2));
+  Publisher orbit(1, 2);
+  for (const auto& m : orbit.step()) inbox.accept(m);
+  EXPECT_TRUE(inbox.complete(5));
+  EXPECT_FALSE(inbox.complete(6));
+}
+
+}  // namespace
+}  // namespace dmise
