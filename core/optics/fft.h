@@ -8,7 +8,7 @@
 // Transforms by FFTW in single precision. Plans are estimated, never measured, and every thread
 // transforms whole groups of a fixed number of rows or columns: the bytes depend neither on timing
 // nor on the number of threads. On another instruction set FFTW may choose other code, and results
-// differ by rounding, about 1e-7 of the largest value.
+// differ by rounding, below 3e-7 of the largest value.
 namespace dmise {
 
 /// Smallest n >= at_least whose prime factors are 2, 3, 5 and 7; even if asked for. at_least >= 1.

@@ -31,6 +31,9 @@ struct Facts {
   double aperture_m, pixel_arcsec, field_deg;  // across the columns
   double field_tolerance_deg;
 };
+
+void PrintTo(const Facts& facts, std::ostream* out) { *out << facts.name; }
+
 constexpr Facts presets[] = {
     {"geo-watch", 0.075, 8.25, 7.6, 0.05},
     {"gt-sort", 0.5, 0.67, 0.19, 0.002},
