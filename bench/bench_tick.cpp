@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "nodes/runtime/log.h"
 #include "nodes/runtime/master.h"
 #include "nodes/runtime/node.h"
+#include "nodes/runtime/security.h"
 #include "nodes/runtime/socket.h"
 
 namespace dmise {
@@ -21,6 +23,7 @@ namespace {
 
 constexpr int repeats = 5;
 constexpr double target_ratio = 0.70;
+constexpr double curve_target_ratio = 0.65;
 
 /// A node that does nothing, so that only the clock is measured.
 class Idle : public Participant {
@@ -75,10 +78,38 @@ struct Tock {
   std::int64_t node;
 };
 
-int bare_worker(int index, const std::string& line) {
+/// CURVE as bare as the floor: one key for the publisher, one for all who answer, no list.
+struct BareKeys {
+  char server_public[41] = "", server_secret[41] = "", client_public[41] = "",
+       client_secret[41] = "";
+  bool on = false;
+
+  static BareKeys make() {
+    BareKeys keys{.on = true};
+    if (zmq_curve_keypair(keys.server_public, keys.server_secret) != 0 ||
+        zmq_curve_keypair(keys.client_public, keys.client_secret) != 0)
+      throw Error("this build of ZeroMQ has no CURVE");
+    return keys;
+  }
+  void serve(zmq::socket_t& socket) const {
+    if (!on) return;
+    socket.set(zmq::sockopt::curve_server, 1);
+    socket.set(zmq::sockopt::curve_secretkey, std::string(server_secret));
+  }
+  void call(zmq::socket_t& socket) const {
+    if (!on) return;
+    socket.set(zmq::sockopt::curve_serverkey, std::string(server_public));
+    socket.set(zmq::sockopt::curve_publickey, std::string(client_public));
+    socket.set(zmq::sockopt::curve_secretkey, std::string(client_secret));
+  }
+};
+
+int bare_worker(int index, const std::string& line, const BareKeys& keys) {
   const auto blank = line.find(' ');
   zmq::context_t context(1);
   zmq::socket_t ticks(context, zmq::socket_type::sub), acks(context, zmq::socket_type::push);
+  keys.call(ticks);
+  keys.call(acks);
   ticks.set(zmq::sockopt::subscribe, "");
   ticks.connect(line.substr(0, blank));
   acks.connect(line.substr(blank + 1));
@@ -94,10 +125,13 @@ int bare_worker(int index, const std::string& line) {
 }
 
 /// Ticks per second of a bare publisher that waits for all answers before the next tick.
-double floor_per_s(int nodes, int ticks) {
-  Children children(nodes, bare_worker);
+double floor_per_s(int nodes, int ticks, const BareKeys& keys = {}) {
+  Children children(
+      nodes, [&](int index, const std::string& line) { return bare_worker(index, line, keys); });
   zmq::context_t context(1);
   zmq::socket_t publisher(context, zmq::socket_type::pub), acks(context, zmq::socket_type::pull);
+  keys.serve(publisher);
+  keys.serve(acks);
   publisher.bind("tcp://127.0.0.1:*");
   acks.bind("tcp://127.0.0.1:*");
   children.tell(publisher.get(zmq::sockopt::last_endpoint) + " " +
@@ -121,12 +155,13 @@ double floor_per_s(int nodes, int ticks) {
 }
 
 /// Ticks per second of the time-master with nodes that do nothing.
-double ours_per_s(int nodes, int ticks) {
-  Children children(nodes, [](int index, const std::string& line) {
+double ours_per_s(int nodes, int ticks, const std::string& keys = "") {
+  Children children(nodes, [&](int index, const std::string& line) {
     Idle idle(index);
-    return run_node(idle, {.master = line}).exit_code;
+    return run_node(idle, {.master = line, .keys = keys}).exit_code;
   });
   MasterOptions options;
+  options.keys = keys;
   options.with_broker = false;
   for (int i = 0; i < nodes; ++i) options.run.expected.push_back(Idle(i).name());
   options.run.last_tick = ticks - 1;
@@ -135,6 +170,26 @@ double ours_per_s(int nodes, int ticks) {
   if (result.exit_code != 0) throw Error(result.reason);
   return ticks / result.wall_s;
 }
+
+/// A directory of keys for the time-master and its nodes, that goes away again.
+class KeyDirectory {
+ public:
+  explicit KeyDirectory(int nodes) {
+    std::string path = std::filesystem::temp_directory_path() / "dmise-bench-XXXXXX";
+    if (!mkdtemp(path.data())) throw Error(path + ": can't be made");
+    path_ = path;
+    make_key(path_, master_name, false);
+    for (int i = 0; i < nodes; ++i) make_key(path_, Idle(i).name(), false);
+  }
+  ~KeyDirectory() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -195,6 +250,18 @@ int bench_tick(bool json) {
           json);
     std::fflush(stdout);
   }
+  constexpr int nodes = 16;
+  const BareKeys bare_keys = BareKeys::make();
+  const KeyDirectory keys(nodes);
+  std::vector<double> ours, floors, ratios;
+  for (int i = 0; i < repeats; ++i) {
+    floors.push_back(floor_per_s(nodes, 24000 / nodes, bare_keys));
+    ours.push_back(ours_per_s(nodes, 24000 / nodes, keys.path()));
+    ratios.push_back(ours.back() / floors.back());
+  }
+  const std::string anchor = "bare ZeroMQ PUB + PUSH, tcp, CURVE";
+  print({"curve_ticks_16_per_s", median(ours), "ticks/s", anchor, median(floors), 0}, json);
+  print({"curve_ratio_16", median(ratios), "1", anchor, 1.0, curve_target_ratio}, json);
   return 0;
 }
 

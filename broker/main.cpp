@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   return dmise::run_program(app, flags, argc, argv, [&] {
     if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
     options.master = flags.master;
+    options.keys = flags.keys;
     options.stop = &dmise::stop_signal();
     return flags.check ? 0 : dmise::run_broker(options).exit_code;
   });

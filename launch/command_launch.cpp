@@ -28,7 +28,7 @@ using Clock_ = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 struct LaunchOptions {
-  std::string scenario, out, bind = "tcp://127.0.0.1:0";
+  std::string scenario, out, bind = "tcp://127.0.0.1:0", keys;
   std::optional<std::uint64_t> seed;  // in place of the scenario's
   int threads = 1;
   bool force = false;
@@ -115,6 +115,7 @@ class Launch {
   void start(const std::string& name, const std::string& program,
              std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), program_directory() + "/" + program);
+    if (!options_.keys.empty()) arguments.insert(arguments.end(), {"--keys", options_.keys});
     processes_.start(name, arguments, log_of(name));
   }
 
@@ -175,7 +176,7 @@ class Launch {
 
   void ask(const std::string& master, RunStatus& status) {
     try {
-      status = ask_master(master, 0.5);
+      status = ask_master(master, 0.5, Security(options_.keys, operator_name));
     } catch (const Error&) {
       // It is starting, busy or gone; its exit code will tell.
     }
@@ -249,6 +250,9 @@ void add_launch_command(CLI::App& app) {
       ->check(CLI::Range(1, 256));
   command->add_option("--seed", options->seed,
                       "seed of the random draws, in place of the scenario's");
+  command->add_option(
+      "--keys", options->keys,
+      "directory of keys (dmise keygen); without it all is plain, on loopback alone");
   command->add_flag("--force", options->force, "replace what is in the directory");
   command->callback([options] { launch(*options); });
 }

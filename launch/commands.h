@@ -21,6 +21,9 @@ void add_launch_command(CLI::App& app);
 void add_detect_command(CLI::App& app);
 void add_visible_command(CLI::App& app);
 void add_catalogue_command(CLI::App& app);
+void add_keygen_command(CLI::App& app);
+void add_status_command(CLI::App& app);
+void add_clock_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 
 }  // namespace dmise

@@ -17,6 +17,9 @@ int main(int argc, char** argv) {
   dmise::add_detect_command(app);
   dmise::add_visible_command(app);
   dmise::add_catalogue_command(app);
+  dmise::add_keygen_command(app);
+  dmise::add_status_command(app);
+  dmise::add_clock_command(app);
   dmise::add_bench_command(app);
   try {
     app.parse(argc, argv);

@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
     if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
     return dmise::run_node(actor, {.master = flags.master,
                                    .join_within_s = scenario.network.join_within_s,
+                                   .keys = flags.keys,
                                    .stop = &dmise::stop_signal()})
         .exit_code;
   });

@@ -68,6 +68,7 @@ int main(int argc, char** argv) {
     options.run.progress_after = from_seconds(progress_after_s);
     options.run.start_within = from_seconds(start_within_s);
     options.run.rejoin_within = from_seconds(rejoin_within_s);
+    options.keys = flags.keys;
     options.stop = &dmise::stop_signal();
     if (flags.check) return dmise::Coordinator(options.run).over() ? 1 : 0;
     const dmise::MasterResult result = dmise::run_master(options);

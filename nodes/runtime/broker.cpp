@@ -6,6 +6,7 @@
 #include "nodes/runtime/master.h"
 #include "nodes/runtime/master_link.h"
 #include "nodes/runtime/status.h"
+#include "nodes/wire/refusal.h"
 
 namespace dmise {
 namespace {
@@ -38,24 +39,53 @@ int pass(zmq::socket_t& from, zmq::socket_t& to) {
 /// Where an earlier broker of this run was bound, so that nobody has to look for the new one.
 BrokerEndpoints earlier_broker(const BrokerOptions& options) {
   try {
-    return ask_master(options.master, std::min(options.join_within_s, 2.0)).broker;
+    return ask_master(options.master, std::min(options.join_within_s, 2.0),
+                      Security(options.keys, broker_name))
+        .broker;
   } catch (const Error&) {
     return {};  // the master is starting; joining will tell
   }
 }
 
 std::string bind_again(zmq::socket_t& socket, const std::string& earlier,
-                       const std::string& configured) {
+                       const std::string& configured, const Security& security) {
   if (!earlier.empty()) try {
-      return bind_to(socket, earlier);
+      return bind_to(socket, earlier, security, Domain::data);
     } catch (const Error&) {
       // Taken by somebody else: all will be told the new address.
     }
-  return bind_to(socket, configured);
+  return bind_to(socket, configured, security, Domain::data);
+}
+
+/// Whether the sender of a message, known by its key, is the publisher that its envelope names.
+bool in_own_name(std::vector<zmq::message_t>& message) {
+  try {
+    return sender_of(message[0]) == open(views(message)).publisher;
+  } catch (const Refused&) {
+    return false;
+  }
+}
+
+/// As `pass`, from publishers whose names are proved.
+int pass_checked(zmq::socket_t& from, zmq::socket_t& to, std::uint64_t* refused) {
+  int messages = 0;
+  for (auto message = receive(from); !message.empty(); message = receive(from)) {
+    if (in_own_name(message)) {
+      for (std::size_t i = 0; i < message.size(); ++i)
+        to.send(message[i],
+                i + 1 < message.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
+    } else if ((*refused)++ == 0) {
+      spdlog::warn("refused a message of {} in another name", sender_of(message[0]));
+    }
+    if (++messages >= burst) break;
+  }
+  return messages;
 }
 
 void serve(const BrokerOptions& options, BrokerResult* result) {
+  const Security security(options.keys, broker_name);
   zmq::context_t context(1);
+  const Doorkeeper door(context, security);
   zmq::socket_t publishers = make_socket(context, zmq::socket_type::xsub, max_data_bytes);
   zmq::socket_t subscribers = make_socket(context, zmq::socket_type::xpub, max_data_bytes);
   subscribers.set(zmq::sockopt::linger, 500);
@@ -66,12 +96,15 @@ void serve(const BrokerOptions& options, BrokerResult* result) {
   const BrokerEndpoints earlier = earlier_broker(options);
   auto* endpoints = join.mutable_broker();
   subscribers.set(zmq::sockopt::sndhwm, options.observer_queue);
-  endpoints->set_observe_endpoint(bind_again(subscribers, earlier.observe, options.observe));
+  endpoints->set_observe_endpoint(
+      bind_again(subscribers, earlier.observe, options.observe, security));
   subscribers.set(zmq::sockopt::sndhwm, 0);
-  endpoints->set_subscribe_endpoint(bind_again(subscribers, earlier.subscribe, options.subscribe));
-  endpoints->set_publish_endpoint(bind_again(publishers, earlier.publish, options.publish));
+  endpoints->set_subscribe_endpoint(
+      bind_again(subscribers, earlier.subscribe, options.subscribe, security));
+  endpoints->set_publish_endpoint(
+      bind_again(publishers, earlier.publish, options.publish, security));
 
-  MasterLink link(context, options.master, options.stop);
+  MasterLink link(context, options.master, options.stop, security);
   link.join(join, duration_cast<nanoseconds>(duration<double>(options.join_within_s)));
   link.keep({}, std::nullopt);
 
@@ -83,7 +116,8 @@ void serve(const BrokerOptions& options, BrokerResult* result) {
   };
   while (!finished()) {
     link.wait(sockets, link.deserted() ? drained : milliseconds(1000));
-    const int forward = pass(publishers, subscribers);
+    const int forward = security.on() ? pass_checked(publishers, subscribers, &result->refused)
+                                      : pass(publishers, subscribers);
     const int back = pass(subscribers, publishers);  // subscriptions
     result->messages += std::uint64_t(forward);
     if (forward + back > 0) busy = now();

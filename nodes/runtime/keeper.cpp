@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "core/sim/message.h"
 #include "dmise/v1/node.pb.h"
 #include "nodes/runtime/time_split_codec.h"
 
@@ -16,7 +17,7 @@ Keeper::Keeper(zmq::context_t& context, KeeperOptions options,
       heartbeat_(make_socket(context, zmq::socket_type::dealer, max_control_bytes)),
       resend_(std::move(resend_socket)),
       heard_(now()) {
-  connect_to(heartbeat_, options_.master);
+  connect_to(heartbeat_, options_.master, options_.security, master_name);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -101,6 +102,9 @@ void Keeper::answer() {
     v1::ResendRequest request;
     if (message.size() != 2 || !from_frame(message[1], &request) ||
         request.run_id() != options_.run_id)
+      continue;
+    if (options_.security.on() && request.topic().starts_with(truth_prefix) &&
+        !may_hear_truth(message[1]))
       continue;
     for (const SharedFrames& frames : options_.resend(request))
       send(*resend_, frames, message[0].to_string_view());

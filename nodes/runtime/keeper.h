@@ -16,6 +16,7 @@ namespace dmise {
 
 struct KeeperOptions {
   std::string master;  // address of its ROUTER
+  Security security;
   std::string name;
   std::uint64_t run_id = 0;
   std::uint64_t incarnation = 0;

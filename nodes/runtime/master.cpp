@@ -49,6 +49,8 @@ class Master {
   explicit Master(const MasterOptions& options)
       : options_(options),
         coordinator_(with_broker(options), now()),
+        security_(options.keys, master_name),
+        door_(context_, security_),
         router_(make_socket(context_, zmq::socket_type::router, max_control_bytes)),
         ticks_(make_socket(context_, zmq::socket_type::pub, max_control_bytes)),
         connections_(context_, router_),
@@ -56,8 +58,8 @@ class Master {
         heartbeat_(std::min<nanoseconds>(milliseconds(250), options.run.silent_after / 8)) {
     router_.set(zmq::sockopt::linger, 500);
     ticks_.set(zmq::sockopt::linger, 500);
-    address_ = bind_to(router_, options.address);
-    tick_endpoint_ = bind_to(ticks_, any_port(options.address));
+    address_ = bind_to(router_, options.address, security_);
+    tick_endpoint_ = bind_to(ticks_, any_port(options.address), security_);
     announce();
   }
 
@@ -116,6 +118,7 @@ class Master {
       const bool before_welcome = heard_.has_hello() || heard_.has_join() || heard_.has_control();
       if (!before_welcome && heard_.run_id() != run_id_) continue;
       const std::string_view sender = message[0].to_string_view();
+      if (security_.on() && !in_own_name(sender_of(message[1]))) continue;
       const std::string& name = directory_.name_of(sender);
       if (heard_.has_done()) {
         done(name);
@@ -136,6 +139,16 @@ class Master {
         reply(sender, answer);
       }
     }
+  }
+
+  /// With keys: whether `who` may say what was heard.
+  bool in_own_name(const std::string& who) {
+    const bool own = heard_.has_join()        ? heard_.join().name() == who
+                     : heard_.has_heartbeat() ? heard_.heartbeat().name() == who
+                     : heard_.has_control()   ? who == operator_name
+                                              : true;  // goes by its connection
+    if (!own) spdlog::warn("refused a message of {} in another name", who);
+    return own;
   }
 
   void done(const std::string& name) {
@@ -339,6 +352,8 @@ class Master {
   const MasterOptions& options_;
   Coordinator coordinator_;
   zmq::context_t context_{1};
+  Security security_;
+  Doorkeeper door_;
   zmq::socket_t router_, ticks_;
   PeerMonitor connections_;
   std::uint64_t run_id_;

@@ -9,14 +9,16 @@ using std::chrono::duration;
 using std::chrono::duration_cast;
 using std::chrono::nanoseconds;
 
-MasterLink::MasterLink(zmq::context_t& context, std::string master, const Event* stop)
+MasterLink::MasterLink(zmq::context_t& context, std::string master, const Event* stop,
+                       const Security& security)
     : context_(context),
       master_(std::move(master)),
+      security_(security),
       stop_(stop),
       control_(make_socket(context, zmq::socket_type::dealer, max_control_bytes)),
       ticks_(make_socket(context, zmq::socket_type::sub, max_control_bytes)) {
   control_.set(zmq::sockopt::linger, 1000);  // last words
-  connect_to(control_, master_);
+  connect_to(control_, master_, security_, master_name);
 }
 
 MasterLink::~MasterLink() = default;
@@ -37,12 +39,13 @@ v1::Welcome MasterLink::join(const v1::Join& request, nanoseconds within) {
     throw Error("refused by the time-master at " + master_ + ": " + answer_->refuse().reason());
   welcome_ = answer_->welcome();
   ticks_.set(zmq::sockopt::subscribe, "");
-  connect_to(ticks_, welcome_.tick_endpoint());
+  connect_to(ticks_, welcome_.tick_endpoint(), security_, master_name);
   return welcome_;
 }
 
 void MasterLink::keep(KeeperOptions options, std::optional<zmq::socket_t> resend_socket) {
   options.master = master_;
+  options.security = security_;
   options.name = name_;
   options.run_id = welcome_.run_id();
   options.incarnation = welcome_.incarnation();

@@ -15,7 +15,8 @@ namespace dmise {
 /// repeated in answers to heartbeats), reports, leaves. Used from one thread.
 class MasterLink {
  public:
-  MasterLink(zmq::context_t& context, std::string master, const Event* stop);
+  MasterLink(zmq::context_t& context, std::string master, const Event* stop,
+             const Security& security = {});
   ~MasterLink();
 
   /// Throws `Error` when refused or when there is no answer within the time.
@@ -60,6 +61,7 @@ class MasterLink {
 
   zmq::context_t& context_;
   std::string master_;
+  Security security_;
   const Event* stop_;
   std::string name_;
   zmq::socket_t control_;

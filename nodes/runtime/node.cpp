@@ -40,10 +40,14 @@ class Node {
         schedule_(participant.schedule()),
         produces_(participant.produces()),
         consumes_(participant.consumes()),
-        link_(control_context_, options.master, options.stop),
+        name_(options.name.empty() ? participant.name() : options.name),
+        security_(options.keys, name_),
+        control_door_(control_context_, security_),
+        data_door_(std::in_place, data_context_, security_),
+        link_(control_context_, options.master, options.stop, security_),
         publish_(make_socket(data_context_, zmq::socket_type::pub, max_data_bytes)),
         direct_(make_socket(data_context_, zmq::socket_type::pub, max_data_bytes)),
-        inputs_(data_context_, consumes_) {
+        inputs_(data_context_, consumes_, security_) {
     publish_.set(zmq::sockopt::linger, 1000);
     direct_.set(zmq::sockopt::linger, 1000);
     inputs_.set_may_miss(options.observer);
@@ -65,7 +69,7 @@ class Node {
  private:
   void join() {
     v1::Join request;
-    request.set_name(options_.name.empty() ? participant_.name() : options_.name);
+    request.set_name(name_);
     for (const std::string& topic : produces_)
       *(is_direct(topic) ? request.add_produces_direct() : request.add_produces()) = topic;
     for (const std::string& topic : consumes_) request.add_consumes(topic);
@@ -74,11 +78,11 @@ class Node {
     request.set_period_ticks(std::uint64_t(schedule_.period));
     request.set_offset_ticks(std::uint64_t(schedule_.offset));
     if (request.produces_direct_size() > 0)
-      request.set_direct_endpoint(bind_to(direct_, options_.host));
+      request.set_direct_endpoint(bind_to(direct_, options_.host, security_, Domain::truth));
     std::optional<zmq::socket_t> resend;
     if (!produces_.empty()) {
       resend = make_socket(control_context_, zmq::socket_type::router, max_control_bytes);
-      request.set_resend_endpoint(bind_to(*resend, options_.host));
+      request.set_resend_endpoint(bind_to(*resend, options_.host, security_, Domain::data));
     }
 
     const auto within = duration_cast<nanoseconds>(duration<double>(options_.join_within_s));
@@ -142,7 +146,7 @@ class Node {
     if (!through_broker || topology.publish_endpoint() == publish_endpoint_) return;
     if (!publish_endpoint_.empty()) publish_.disconnect(publish_endpoint_);
     publish_endpoint_ = topology.publish_endpoint();
-    connect_to(publish_, publish_endpoint_);
+    connect_to(publish_, publish_endpoint_, security_, "broker");
   }
 
   void follow_topology() {
@@ -229,6 +233,7 @@ class Node {
     publish_.close();
     direct_.close();
     inputs_.close();
+    data_door_.reset();
     data_context_.close();  // everything published is on its way before the node leaves
     link_.leave(interrupted, result_->times);
     if (link_.phase() == v1::PHASE_FAILED) throw Error(link_.cause());
@@ -240,7 +245,11 @@ class Node {
   NodeResult* result_ = nullptr;
   Schedule schedule_;
   std::vector<std::string> produces_, consumes_;
+  std::string name_;
+  Security security_;
   zmq::context_t control_context_{1}, data_context_{1};
+  Doorkeeper control_door_;
+  std::optional<Doorkeeper> data_door_;
   std::optional<Outbox> outbox_;  // used by the link's keeper: outlives it
   MasterLink link_;
   zmq::socket_t publish_, direct_;

@@ -13,6 +13,7 @@ struct NodeOptions {
   double join_within_s = 30.0;             // longest wait for the master's first answer
   double stop_within_s = 0.0;              // > 0: a step that is not over so long after the run or
                                            // `stop` ends the process
+  std::string keys;                        // directory of keys; empty: plain, loopback alone
   std::string name;                        // in the run; empty: the participant's
   bool observer = false;                   // joins and leaves at any time, holds nobody's time
   Event* stop = nullptr;                   // asks the node to leave; see stop_signal()

@@ -19,8 +19,10 @@ constexpr milliseconds idle{1000};
 
 }  // namespace
 
-NodeInputs::NodeInputs(zmq::context_t& context, std::vector<std::string> topics)
+NodeInputs::NodeInputs(zmq::context_t& context, std::vector<std::string> topics,
+                       const Security& security)
     : context_(context),
+      security_(security),
       topics_(topics),
       inbox_(std::move(topics)),
       subscribe_(make_socket(context, zmq::socket_type::sub, max_data_bytes)),
@@ -38,7 +40,7 @@ void NodeInputs::connect(const v1::Topology& topology) {
     else
       subscribe_.disconnect(broker_);
     broker_ = topology.subscribe_endpoint();
-    connect_to(subscribe_, broker_);
+    connect_to(subscribe_, broker_, security_, "broker");
   }
   list_sockets();
 }
@@ -67,7 +69,7 @@ void NodeInputs::follow(const v1::Publisher& publisher) {
   if (!direct.empty()) {
     source.direct = make_socket(context_, zmq::socket_type::sub, max_data_bytes);
     for (const std::string& topic : direct) source.direct->set(zmq::sockopt::subscribe, topic);
-    connect_to(*source.direct, publisher.direct_endpoint());
+    connect_to(*source.direct, publisher.direct_endpoint(), security_, publisher.name());
   }
 }
 
@@ -149,7 +151,7 @@ void NodeInputs::ask(const std::string& topic, std::uint64_t from_sequence,
   Source& source = sources_.at(publisher->second);
   if (!source.asker) {
     source.asker = make_socket(context_, zmq::socket_type::dealer, max_data_bytes);
-    connect_to(*source.asker, source.resend_endpoint);
+    connect_to(*source.asker, source.resend_endpoint, security_, publisher->second);
     list_sockets();
   }
   v1::ResendRequest request;

@@ -14,7 +14,7 @@ namespace dmise {
 /// own socket, and what it has asked for again. Used from one thread.
 class NodeInputs {
  public:
-  NodeInputs(zmq::context_t& context, std::vector<std::string> topics);
+  NodeInputs(zmq::context_t& context, std::vector<std::string> topics, const Security& security);
 
   void start(const RunFacts& run) { run_ = run, receiver_.emplace(run); }
   /// Connects to everybody; again when somebody has taken the place of another.
@@ -61,6 +61,7 @@ class NodeInputs {
   void list_sockets();
 
   zmq::context_t& context_;
+  Security security_;
   std::vector<std::string> topics_;
   RunFacts run_;
   std::optional<Receiver> receiver_;

@@ -10,6 +10,7 @@ namespace dmise {
 struct CommonFlags {
   std::string name;
   std::string master;  // address of the time-master
+  std::string keys;    // directory of keys; empty: plain, loopback alone
   std::string log_level = "info";
   std::uint64_t seed = 0;
   bool check = false;  // look at the flags and files, do nothing

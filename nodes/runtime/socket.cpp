@@ -40,7 +40,9 @@ zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
   return socket;
 }
 
-std::string bind_to(zmq::socket_t& socket, const std::string& address) {
+std::string bind_to(zmq::socket_t& socket, const std::string& address, const Security& security,
+                    Domain domain) {
+  security.serve(socket, address, domain);
   try {
     socket.bind(address);
   } catch (const zmq::error_t& error) {
@@ -49,7 +51,9 @@ std::string bind_to(zmq::socket_t& socket, const std::string& address) {
   return socket.get(zmq::sockopt::last_endpoint);
 }
 
-void connect_to(zmq::socket_t& socket, const std::string& address) {
+void connect_to(zmq::socket_t& socket, const std::string& address, const Security& security,
+                const std::string& peer) {
+  security.call(socket, address, peer);
   try {
     socket.connect(address);
   } catch (const zmq::error_t& error) {

@@ -6,6 +6,7 @@
 #include <vector>
 #include <zmq.hpp>
 
+#include "nodes/runtime/security.h"
 #include "nodes/wire/envelope.h"
 
 // Sockets as this project uses them: sizes capped, handshakes timed, no lingering but for last
@@ -19,11 +20,15 @@ inline constexpr std::int64_t max_data_bytes = max_array_bytes + (1 << 20);
 zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
                           std::int64_t max_message_bytes);
 
-/// Binds and returns the address with its real port. Throws `Error` "ADDRESS: reason".
-std::string bind_to(zmq::socket_t& socket, const std::string& address);
+/// Binds and returns the address with its real port. Throws `Error` "ADDRESS: reason", and
+/// `ConfigError` when `security` does not allow it.
+std::string bind_to(zmq::socket_t& socket, const std::string& address,
+                    const Security& security = {}, Domain domain = Domain::control);
 
-/// Throws `Error` "ADDRESS: reason" when the address can't be one.
-void connect_to(zmq::socket_t& socket, const std::string& address);
+/// `peer`: who is there. Throws `Error` "ADDRESS: reason" when the address can't be one, and
+/// `ConfigError` when `security` does not allow it.
+void connect_to(zmq::socket_t& socket, const std::string& address, const Security& security = {},
+                const std::string& peer = "");
 
 /// `address` ("tcp://HOST:PORT") with port 0: any free one on the same host.
 std::string any_port(const std::string& address);

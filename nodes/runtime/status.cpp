@@ -39,10 +39,11 @@ v1::Control::Action to_wire(ClockAction action) {
   return v1::Control::ACTION_ABORT;
 }
 
-RunStatus ask(const std::string& address, double within_s, const v1::NodeMessage& question) {
+RunStatus ask(const std::string& address, double within_s, const v1::NodeMessage& question,
+              const Security& security) {
   zmq::context_t context(1);
   zmq::socket_t socket = make_socket(context, zmq::socket_type::dealer, max_control_bytes);
-  connect_to(socket, address);
+  connect_to(socket, address, security, master_name);
   socket.send(to_frame(question), zmq::send_flags::none);
   const auto within = std::chrono::duration<double>(within_s);
   std::vector<zmq::pollitem_t> items{{socket.handle(), 0, ZMQ_POLLIN, 0}};
@@ -82,19 +83,19 @@ RunStatus ask(const std::string& address, double within_s, const v1::NodeMessage
 
 }  // namespace
 
-RunStatus ask_master(const std::string& address, double within_s) {
+RunStatus ask_master(const std::string& address, double within_s, const Security& security) {
   v1::NodeMessage question;
   question.mutable_hello();
-  return ask(address, within_s, question);
+  return ask(address, within_s, question, security);
 }
 
 RunStatus control_master(const std::string& address, double within_s, ClockAction action, Tick tick,
-                         const std::string& reason) {
+                         const std::string& reason, const Security& security) {
   v1::NodeMessage question;
   question.mutable_control()->set_action(to_wire(action));
   question.mutable_control()->set_tick(tick);
   question.mutable_control()->set_reason(reason);
-  return ask(address, within_s, question);
+  return ask(address, within_s, question, security);
 }
 
 }  // namespace dmise

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/base/sim_time.h"
+#include "nodes/runtime/security.h"
 #include "nodes/runtime/time_split.h"
 #include "time-master/coordinator.h"
 
@@ -47,9 +48,10 @@ enum class ClockAction { pause, step, go_on, end_early, abort };
 /// Asks the clock to do something and returns what became of it. `tick`: to pause after, or how
 /// many to step.
 RunStatus control_master(const std::string& address, double within_s, ClockAction action,
-                         Tick tick = 0, const std::string& reason = "");
+                         Tick tick = 0, const std::string& reason = "",
+                         const Security& security = {});
 
 /// Asks the master at `address`. Throws `Error` when it does not answer in time.
-RunStatus ask_master(const std::string& address, double within_s);
+RunStatus ask_master(const std::string& address, double within_s, const Security& security = {});
 
 }  // namespace dmise

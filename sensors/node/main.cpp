@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
     const auto end = dmise::run_node(*sensor, {.master = flags.master,
                                                .join_within_s = scenario.network.join_within_s,
                                                .stop_within_s = 1.0,
+                                               .keys = flags.keys,
                                                .stop = &dmise::stop_signal()});
     if (!sensor->renderer().empty()) spdlog::info("shapes drawn by {}", sensor->renderer());
     return end.exit_code;

@@ -56,7 +56,10 @@ int main(int argc, char** argv) {
     Telling telling(participant, hang_at);
     return dmise::run_node(
                telling,
-               {.master = flags.master, .stop_within_s = 1.5, .stop = &dmise::stop_signal()})
+               {.master = flags.master,
+                .stop_within_s = 1.5,
+                .keys = flags.keys,
+                .stop = &dmise::stop_signal()})
         .exit_code;
   });
 }

@@ -1,0 +1,49 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "core/config/scenario.h"
+#include "launch/commands.h"
+#include "nodes/runtime/security.h"
+
+namespace dmise {
+namespace {
+
+struct KeygenOptions {
+  std::string directory, scenario;
+  std::vector<std::string> names;
+  bool truth = false;
+};
+
+void keygen(const KeygenOptions& options) {
+  std::vector<std::string> names = options.names;
+  if (!options.scenario.empty()) {
+    for (const char* name :
+         {"time-master", "broker", "orbit-node", "environment-node", operator_name})
+      names.push_back(name);
+    for (const auto& sensor : load_scenario(options.scenario).sensors) names.push_back(sensor.name);
+  }
+  if (names.empty()) names.push_back(operator_name);
+  for (const auto& name : names) {
+    make_key(options.directory, name, options.truth);
+    std::printf("%s/%s.key\n", options.directory.c_str(), name.c_str());
+  }
+}
+
+}  // namespace
+
+void add_keygen_command(CLI::App& app) {
+  auto options = std::make_shared<KeygenOptions>();
+  auto* command =
+      app.add_subcommand("keygen",
+                         "Makes keys: NAME.key, which its owner alone may read, and NAME.pub, "
+                         "which lets it in. Remove "
+                         "NAME.pub from where a process looks, and the key opens nothing any more");
+  command->add_option("directory", options->directory, "directory of keys")->required();
+  command->add_option("names", options->names, "whose keys: nodes of a run, observers, operator");
+  command->add_option("--scenario", options->scenario, "also for every process of this scenario");
+  command->add_flag("--truth", options->truth, "these may hear truth");
+  command->callback([options] { keygen(*options); });
+}
+
+}  // namespace dmise

@@ -1,0 +1,145 @@
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include "core/base/error.h"
+#include "launch/commands.h"
+#include "nodes/runtime/event.h"
+#include "nodes/runtime/status.h"
+
+namespace dmise {
+namespace {
+
+struct StatusOptions {
+  std::string master, keys, reason;
+  bool once = false, healthy = false;
+  Tick tick = 0;
+};
+
+constexpr double patience_s = 2.0;
+constexpr auto interval = std::chrono::milliseconds(500);
+
+Security security_of(const StatusOptions& options) { return {options.keys, operator_name}; }
+
+const char* name_of(Phase phase) {
+  switch (phase) {
+    case Phase::gathering:
+      return "gathering";
+    case Phase::connecting:
+      return "connecting";
+    case Phase::running:
+      return "running";
+    case Phase::ended:
+      return "ended";
+    case Phase::failed:
+      break;
+  }
+  return "failed";
+}
+
+std::string table(const RunStatus& status) {
+  char row[256];
+  std::snprintf(row, sizeof row, "run %016llx  %s%s  tick %ld of %ld  %.1f s simulated\n",
+                static_cast<unsigned long long>(status.run_id), name_of(status.phase),
+                status.paused ? ", paused" : "", long(status.settled), long(status.last_tick),
+                double(std::max<Tick>(status.settled, 0)) * status.tick_length.seconds());
+  std::string text = row;
+  if (!status.cause.empty()) text += "cause: " + status.cause + "\n";
+  if (!status.missing.empty()) text += "missing: " + joined(status.missing) + "\n";
+  if (!status.holding.empty()) text += "holds the clock: " + joined(status.holding) + "\n";
+  if (status.overruns > 0) {
+    std::snprintf(row, sizeof row, "overruns: %llu, at most %.2f s late\n",
+                  static_cast<unsigned long long>(status.overruns), status.worst_lag_s);
+    text += row;
+  }
+  std::snprintf(row, sizeof row, "%-24s %-8s %6s %5s %10s %10s %10s\n", "node", "state", "tick",
+                "start", "compute s", "message s", "wait s");
+  text += row;
+  for (const auto& node : status.nodes) {
+    std::snprintf(row, sizeof row, "%-24s %-8s %6ld %5llu %10.2f %10.2f %10.2f\n",
+                  node.name.c_str(),
+                  !node.alive     ? "lost"
+                  : node.observer ? "observes"
+                                  : "alive",
+                  long(node.done), static_cast<unsigned long long>(node.incarnation),
+                  node.times.compute_s, node.times.messaging_s, node.times.waiting_s);
+    text += row;
+  }
+  return text;
+}
+
+/// Healthy: the clock runs, or waits for the start or its end, and nobody is lost.
+bool healthy(const RunStatus& status) {
+  for (const auto& node : status.nodes)
+    if (!node.alive && status.phase == Phase::running) return false;
+  return status.phase != Phase::failed;
+}
+
+void show(const StatusOptions& options) {
+  const Security security = security_of(options);
+  RunStatus status = ask_master(options.master, patience_s, security);
+  if (options.healthy) {
+    if (!healthy(status)) throw Error(status.cause.empty() ? "a node is lost" : status.cause);
+    return;
+  }
+  if (options.once || !isatty(STDOUT_FILENO)) {
+    std::fputs(table(status).c_str(), stdout);
+    return;
+  }
+  const Event& stop = stop_signal();
+  while (!stop.is_set()) {
+    std::printf("\x1b[H\x1b[2J%s", table(status).c_str());
+    std::fflush(stdout);
+    if (status.phase == Phase::ended || status.phase == Phase::failed) return;
+    std::this_thread::sleep_for(interval);
+    status = ask_master(options.master, patience_s, security);
+  }
+}
+
+}  // namespace
+
+void add_status_command(CLI::App& app) {
+  auto options = std::make_shared<StatusOptions>();
+  auto* command = app.add_subcommand(
+      "status", "Shows a run under way: its clock and its nodes; live on a terminal");
+  command->add_option("master", options->master, "address of the time-master")->required();
+  command->add_option("--keys", options->keys, "directory with operator.key");
+  command->add_flag("--once", options->once, "once, also on a terminal");
+  command->add_flag("--healthy", options->healthy,
+                    "say nothing; exit with 0 when the run has not failed and no node is lost");
+  command->callback([options] { show(*options); });
+}
+
+void add_clock_command(CLI::App& app) {
+  auto* command = app.add_subcommand("clock", "Pauses, steps or ends a run, on a tick boundary");
+  command->require_subcommand(1);
+  const std::map<std::string, std::pair<ClockAction, std::string>> actions{
+      {"pause", {ClockAction::pause, "no tick after the last granted, or after --tick"}},
+      {"step", {ClockAction::step, "--tick ticks more (1), then pause again"}},
+      {"go-on", {ClockAction::go_on, "ends a pause"}},
+      {"end", {ClockAction::end_early, "ends the run when all have done what is granted"}},
+      {"abort", {ClockAction::abort, "ends the run at once"}}};
+  for (const auto& [name, action] : actions) {
+    auto options = std::make_shared<StatusOptions>();
+    options->tick = action.first == ClockAction::step ? 1 : 0;
+    auto* verb = command->add_subcommand(name, action.second);
+    verb->add_option("master", options->master, "address of the time-master")->required();
+    verb->add_option("--keys", options->keys, "directory with operator.key");
+    verb->add_option("--tick", options->tick, "tick, or number of ticks");
+    verb->add_option("--reason", options->reason, "to be named as the cause");
+    verb->callback([options, what = action.first] {
+      std::fputs(table(control_master(options->master, patience_s, what, options->tick,
+                                      options->reason, security_of(*options)))
+                     .c_str(),
+                 stdout);
+    });
+  }
+}
+
+}  // namespace dmise

@@ -1,0 +1,43 @@
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+
+namespace dmise {
+
+/// What a process may connect to. A public key without `truth` is refused where truth is served.
+enum class Domain { control, data, truth };
+
+/// A CURVE key pair, each in Z85 (ZeroMQ RFC 32): 40 characters.
+struct KeyPair {
+  std::string public_key;
+  std::string secret_key;  // empty: only the public half is known
+};
+
+/// One who may take part: NAME.pub in the directory of keys.
+struct AllowedKey {
+  std::string name;
+  std::string public_key;
+  bool truth = false;
+};
+
+/// Makes NAME.key (mode 0600: both keys) and NAME.pub (public key, and "truth" if granted) in
+/// `directory`, which is made with mode 0700 if it is not there. Throws `ConfigError` when there is
+/// such a key already, `Error` when it can't be written.
+void make_key(const std::string& directory, const std::string& name, bool truth);
+
+/// Reads NAME.key. Throws `ConfigError` when it is not there, is none, or others may read it.
+KeyPair read_key(const std::string& directory, const std::string& name);
+
+/// All NAME.pub of a directory, by public key. A file that is none is left out: its owner is
+/// refused.
+std::map<std::string, AllowedKey> read_allowed(const std::string& directory);
+
+/// The public key of `name`. Throws `ConfigError` when there is none.
+std::string public_key_of(const std::string& directory, const std::string& name);
+
+/// Whether only processes of this machine reach an address: "tcp://127.x.y.z:PORT",
+/// "tcp://[::1]:PORT", "tcp://localhost:PORT", "ipc://", "inproc://".
+bool is_loopback(const std::string& address);
+
+}  // namespace dmise

@@ -1,0 +1,146 @@
+#include "nodes/runtime/security.h"
+
+#include <spdlog/spdlog.h>
+
+#include <cstring>
+#include <thread>
+#include <vector>
+
+#include "core/base/error.h"
+#include "nodes/runtime/event.h"
+
+namespace dmise {
+namespace {
+
+constexpr const char* door = "inproc://zeromq.zap.01";
+constexpr const char* truth_property = "X-Truth";
+
+const char* name_of(Domain domain) {
+  switch (domain) {
+    case Domain::control:
+      return "control";
+    case Domain::data:
+      return "data";
+    case Domain::truth:
+      break;
+  }
+  return "truth";
+}
+
+/// One property as ZMTP writes it: length, name, length in four bytes, value.
+std::string property(std::string_view name, std::string_view value) {
+  std::string text(1, static_cast<char>(name.size()));
+  text += name;
+  for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>(value.size() >> shift);
+  return text += value;
+}
+
+std::string property_of(zmq::message_t& frame, const char* name) {
+  const char* value = zmq_msg_gets(frame.handle(), name);
+  return value ? value : "";
+}
+
+}  // namespace
+
+Security::Security(std::string directory, const std::string& name)
+    : directory_(std::move(directory)) {
+  if (on()) key_ = read_key(directory_, name);
+}
+
+void Security::require_for(const std::string& address) const {
+  if (!on() && !is_loopback(address))
+    throw ConfigError(
+        address +
+        ": not loopback, and there are no keys: dmise keygen makes them, --keys names "
+        "their directory");
+}
+
+void Security::serve(zmq::socket_t& socket, const std::string& address, Domain domain) const {
+  require_for(address);
+  if (!on()) return;
+  socket.set(zmq::sockopt::curve_server, 1);
+  socket.set(zmq::sockopt::curve_secretkey, key_.secret_key);
+  socket.set(zmq::sockopt::zap_domain, name_of(domain));
+}
+
+void Security::call(zmq::socket_t& socket, const std::string& address,
+                    const std::string& peer) const {
+  require_for(address);
+  if (!on()) return;
+  socket.set(zmq::sockopt::curve_serverkey, public_key_of(directory_, peer));
+  socket.set(zmq::sockopt::curve_publickey, key_.public_key);
+  socket.set(zmq::sockopt::curve_secretkey, key_.secret_key);
+}
+
+struct Doorkeeper::Work {
+  Work(zmq::context_t& context, std::string directory)
+      : directory(std::move(directory)), requests(context, zmq::socket_type::rep) {
+    requests.set(zmq::sockopt::linger, 0);
+    requests.bind(door);
+    thread = std::thread([this] { run(); });
+  }
+  ~Work() {
+    quit.set();
+    thread.join();
+  }
+
+  void run() {
+    while (!quit.is_set()) {
+      std::vector<zmq::pollitem_t> items{{nullptr, quit.fd(), ZMQ_POLLIN, 0},
+                                         {requests.handle(), 0, ZMQ_POLLIN, 0}};
+      try {
+        zmq::poll(items, std::chrono::milliseconds(-1));
+      } catch (const zmq::error_t& error) {
+        if (error.num() == EINTR) continue;
+        return;
+      }
+      if (items[1].revents) answer();
+    }
+  }
+
+  /// Frames: version, request, domain, address, identity, mechanism, credentials.
+  void answer() {
+    std::vector<std::string> request;
+    zmq::message_t frame;
+    do {
+      if (!requests.recv(frame, zmq::recv_flags::none)) return;
+      request.push_back(frame.to_string());
+    } while (frame.more());
+    const bool whole = request.size() == 7 && request[5] == "CURVE" && request[6].size() == 32;
+    char key[41] = "";
+    if (whole) zmq_z85_encode(key, reinterpret_cast<const std::uint8_t*>(request[6].data()), 32);
+    const auto allowed = read_allowed(directory);
+    const auto who = allowed.find(key);
+    const bool welcome =
+        whole && who != allowed.end() && (request[2] != "truth" || who->second.truth);
+    if (!welcome)
+      spdlog::warn("refused a connection to {} from {}: {}",
+                   request.size() > 2 ? request[2] : "nothing",
+                   request.size() > 3 ? request[3] : "nowhere",
+                   who == allowed.end() ? "no such key is allowed" : who->second.name + " may not");
+    const std::string properties =
+        welcome && who->second.truth ? property(truth_property, "1") : "";
+    for (const std::string& part :
+         {std::string("1.0"), request.size() > 1 ? request[1] : std::string(),
+          std::string(welcome ? "200" : "400"), std::string(welcome ? "OK" : "not allowed"),
+          welcome ? who->second.name : std::string()})
+      requests.send(zmq::buffer(part), zmq::send_flags::sndmore);
+    requests.send(zmq::buffer(properties), zmq::send_flags::none);
+  }
+
+  std::string directory;
+  zmq::socket_t requests;
+  Event quit;
+  std::thread thread;
+};
+
+Doorkeeper::Doorkeeper(zmq::context_t& context, const Security& security)
+    : work_(security.on() ? std::make_unique<Work>(context, security.directory()) : nullptr) {}
+
+Doorkeeper::~Doorkeeper() = default;
+
+std::string sender_of(zmq::message_t& frame) { return property_of(frame, "User-Id"); }
+
+bool may_hear_truth(zmq::message_t& frame) { return property_of(frame, truth_property) == "1"; }
+
+}  // namespace dmise

@@ -1,0 +1,61 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <zmq.hpp>
+
+#include "nodes/runtime/keys.h"
+
+namespace dmise {
+
+// Names of keys beside those of nodes.
+inline constexpr const char* master_name = "time-master";
+inline constexpr const char* operator_name = "operator";  // may ask the clock to do something
+
+/// What one process needs to prove who it is and to know others: CURVE (ZeroMQ RFC 26) with an
+/// allow-list (ZAP, RFC 27). Without keys everything is plain, and nothing but loopback may be
+/// used.
+class Security {
+ public:
+  Security() = default;
+  /// `directory`: of keys as `dmise keygen` makes them; empty: plain. `name`: whose key this
+  /// process holds. Throws `ConfigError`.
+  Security(std::string directory, const std::string& name);
+
+  bool on() const { return !directory_.empty(); }
+
+  /// A socket that others connect to. Throws `ConfigError` for an address that is not loopback when
+  /// there are no keys.
+  void serve(zmq::socket_t& socket, const std::string& address, Domain domain) const;
+  /// A socket that connects to the process `peer`. Throws `ConfigError` as well when it is not
+  /// known.
+  void call(zmq::socket_t& socket, const std::string& address, const std::string& peer) const;
+
+  const std::string& directory() const { return directory_; }
+
+ private:
+  void require_for(const std::string& address) const;
+
+  std::string directory_;
+  KeyPair key_;
+};
+
+/// Answers for one context who may connect, reading the list anew each time: a file that is added,
+/// replaced or removed counts from the next connection on. Outlives the sockets that serve.
+class Doorkeeper {
+ public:
+  Doorkeeper(zmq::context_t& context, const Security& security);
+  ~Doorkeeper();
+  Doorkeeper(const Doorkeeper&) = delete;
+  Doorkeeper& operator=(const Doorkeeper&) = delete;
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;  // null when there are no keys
+};
+
+/// The name that the sender of a message has proved, "" without keys.
+std::string sender_of(zmq::message_t& frame);
+/// Whether its key may hear truth.
+bool may_hear_truth(zmq::message_t& frame);
+
+}  // namespace dmise

@@ -1,0 +1,56 @@
+"""A run with keys: every connection by CURVE, the same bytes, and nobody without a key is let in.
+
+    keys.py DMISE
+"""
+
+import pathlib
+import subprocess
+
+from harness import Run, check, check_same, main, wait_until, write_scenario
+
+
+def says(binary, *arguments):
+    done = subprocess.run([str(binary), *map(str, arguments)], capture_output=True, text=True, timeout=20)
+    return done.returncode, done.stdout, done.stderr.strip()
+
+
+def test(binary, directory):
+    scenario = write_scenario(directory, duration_s=60, network=", real_time: 12")
+    keys = directory / "keys"
+    code, out, _ = says(binary, "keygen", keys, "--scenario", scenario)
+    check(code == 0 and len(out.splitlines()) == 7, f"keygen makes {len(out.splitlines())} keys")
+    modes = {oct(p.stat().st_mode & 0o777) for p in keys.glob("*.key")}
+    check(modes == {"0o600"}, f"their owner alone may read them: {modes}")
+    code, _, err = says(binary, "keygen", keys, "alpha")
+    check(code == 2 and "already" in err, f"none is replaced unasked: {err}")
+
+    reference, out = directory / "reference", directory / "out"
+    with Run(binary, "run", scenario, "--out", reference) as run:
+        check(run.finish()[0] == 0, "a run without a network is complete")
+    with Run(binary, "launch", scenario, "--out", out, "--keys", keys) as run:
+        wait_until(lambda: list(out.glob("*/frames.jsonl")), "a first frame")
+        master = (out / "logs/master.address").read_text().strip()
+        code, table, err = says(binary, "status", master, "--once", "--keys", keys)
+        check(code == 0 and "alpha" in table and "running" in table, f"the operator is told: {err or table.splitlines()[0]}")
+        check(says(binary, "status", master, "--healthy", "--keys", keys)[0] == 0, "the run is healthy")
+        code, _, err = says(binary, "status", master, "--once")
+        check(code == 1 and "no time-master answers" in err, f"nobody else is: {err}")
+        code, _, err = says(binary, "clock", "abort", master)
+        check(code == 1, f"nor obeyed: {err}")
+        code, table, err = says(binary, "clock", "pause", master, "--keys", keys)
+        check(code == 0 and "paused" in table, f"the operator pauses the run: {err or table.splitlines()[0]}")
+        check(says(binary, "clock", "go-on", master, "--keys", keys)[0] == 0, "and lets it go on")
+        code, _ = run.finish()
+        check(code == 0, f"the run ends with code {code} {run.stderr[-300:] if code else ''}")
+        run.nothing_left()
+    check_same(out, reference, "with keys")
+
+    with Run(binary, "launch", scenario, "--out", directory / "open", "--bind", "tcp://0.0.0.0:0") as run:
+        code, waited_s = run.finish()
+        last = run.stderr.strip().splitlines()[-1]
+        check(code != 0 and "not loopback" in last, f"no keys, no other address than loopback: {last}")
+        run.nothing_left()
+
+
+if __name__ == "__main__":
+    main(test)
