@@ -108,12 +108,6 @@ void compare(const std::vector<MeanElements>& elements, const std::string& stem,
       sum.mismatches += code != codes.at(row);
       if (code != 0 || codes.at(row) != 0) continue;
       const double km = std::hypot(r[0] * 1e-3 - p[0], r[1] * 1e-3 - p[1], r[2] * 1e-3 - p[2]);
-      if (getenv("DMISE_BENCH_VERBOSE") && (km > 1e-8))
-        std::fprintf(stderr, "%u n %.4f e %.6f i %.3f bstar %g: %g km at %.1f min\n",
-                     elements[i].catalogue_number,
-                     elements[i].mean_motion_rad_per_min * 1440 / 2 / pi, elements[i].eccentricity,
-                     elements[i].inclination_rad / deg, elements[i].bstar_per_earth_radius, km,
-                     batch.minutes_since_epoch(i, when[2 * row], when[2 * row + 1]));
       sum.worst_km = std::max(sum.worst_km, km);
     }
   }

@@ -10,6 +10,7 @@
 #include "core/base/json.h"
 #include "core/base/units.h"
 #include "core/config/search_path.h"
+#include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/star_light.h"
 #include "core/sky/apparent.h"
@@ -17,6 +18,7 @@
 #include "core/sky/sky_grid.h"
 #include "core/sky/sky_model.h"
 #include "core/sky/star_cache.h"
+#include "core/time/iso8601.h"
 
 namespace dmise {
 namespace {
@@ -72,15 +74,21 @@ void print(const Figure& figure, bool json) {
 /// sky.
 void whole_sky(bool json) {
   constexpr int columns = 3326, rows = 2504, sampled = 7;
-  constexpr double focal_px = columns / 2.0;
+  const Optics optics{.focal_length_m = columns / 2.0 * 5.4e-6,
+                      .aperture_m = 0.0375,
+                      .pixel_pitch_m = 5.4e-6,
+                      .columns = columns,
+                      .rows = rows};
   SkyScene scene;
   scene.moon = from_spherical<Enu>(1.0, 60 * deg);
   scene.moon_phase_rad = 0.4;
   scene.sun = from_spherical<Enu>(2.5, -10 * deg);
   const SkyModel sky(*sky_parts_named("urban"), scene, johnson_v(), *extinction_of_site("lick"));
   const PixelFunction radiance = [&](double x, double y) {
-    return sky.photons_per_s_m2_sr(
-        unit(Vec<Enu>{x - (columns - 1) / 2.0, y - (rows - 1) / 2.0, focal_px}));
+    const auto seen = unproject(optics, {x, y});
+    if (!seen || seen->z <= 0) return 0.0;
+    return sky.photons_per_s_m2_sr({seen->x, seen->y, seen->z}) *
+           pixel_solid_angle_sr(optics, {x, y});
   };
   std::vector<float> image(std::size_t(columns) * rows);
   Threads one(1);
@@ -98,7 +106,8 @@ void whole_sky(bool json) {
   print({"all_parts_error", worst, "1", 0.005, "", 0}, json);
 }
 
-/// Stars of one field as a frame needs them: found, their apparent places, their photon rates.
+/// Stars of one field as a frame needs them: found, their apparent places through the air, their
+/// photon rates.
 void stars(bool json) {
   const std::string path = find_catalogue("stars.dat");
   if (path.empty()) {
@@ -107,18 +116,20 @@ void stars(bool json) {
   }
   const StarMap map = load_star_map(path);
   const StarCatalogue& c = map.stars;
-  const Tt time{2458139.5, 0.5};
-  const Observer observer = space_observer({7e6, 0, 0}, {0, 7.5e3, 0}, time, solar_system(time));
+  const Clock clock(parse_utc("2018-01-21T03:00:00Z"));
+  const Observer observer =
+      ground_observer({33.777, -84.398, 300.0}, earth_orientation(clock, {}), {}, clock.tt({}),
+                      solar_system(clock.tt({})), Refraction(standard_weather(300.0)));
   const StarLight light{Band{}};
   double rate_sum = 0.0;  // so that nothing is left out
   std::size_t drawn = 0;
+  const Vec<Gcrs> zenith = unit(observer.position_m);
   const auto field_ms = [&](double radius_deg, double faintest_v_mag) {
     std::vector<std::uint32_t> found;
     std::vector<Vec<Gcrs>> places;
     return median_ms(21, [&] {
       found.clear();
-      query_cone(c, map.index, from_spherical<Gcrs>(1.0, 0.5), radius_deg * deg, faintest_v_mag,
-                 found);
+      query_cone(c, map.index, zenith, radius_deg * deg, faintest_v_mag, found);
       places.resize(found.size());
       const ApparentPlaces apparent(observer, EffectSet{});
       apparent.stars({c.epoch_jyear,

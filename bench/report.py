@@ -22,7 +22,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 BINARY = ROOT / "build/release/bin/dmise"
 DEMO = ROOT / "launch/scenarios/demo.yaml"
 RUN = ROOT / "build/benchmark-run"
-REFEREES = ("solve_field", "source_extractor_magnitudes", "skyfield_directions", "fitsverify_frames")
+REFEREES = ("solve_field", "source_extractor_magnitudes", "skyfield_directions", "erfa_directions",
+            "fitsverify_frames")
 
 
 def output_of(*command):
@@ -122,8 +123,11 @@ def claims(commands):
 
 def referees():
     """What other people's programs say of the demonstration's products."""
-    return claims({name: ("/usr/bin/python3", ROOT / f"tests/reference/{name}.py", RUN)
-                   for name in REFEREES})
+    judges = {name: ("/usr/bin/python3", ROOT / f"tests/reference/{name}.py", RUN)
+              for name in REFEREES}
+    judges["erfa_directions"] += ("--platform", "metop=29499")
+    judges["streak_contrast"] = ("/usr/bin/python3", ROOT / "tests/reference/streak_contrast.py", BINARY)
+    return claims(judges)
 
 
 def whole_runs():

@@ -1,12 +1,24 @@
 #include "core/sky/star_catalogue.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include "core/base/units.h"
 #include "core/frames/vec.h"
 
 namespace dmise {
+
+double faintest_filled_v_mag(const StarCatalogue& catalogue) {
+  std::map<int, std::size_t> count;  // by half magnitude
+  for (const float v_mag : catalogue.v_mag) ++count[int(std::floor(2.0 * v_mag))];
+  if (count.empty()) return -std::numeric_limits<double>::infinity();
+  const auto fullest = std::max_element(
+      count.begin(), count.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return 0.5 * (fullest->first + 1);
+}
 
 std::optional<double> bv_of_spectral_type(std::string_view type) {
   static constexpr std::string_view classes = "OBAFGKM";

@@ -52,6 +52,11 @@ struct StarRecord {
 /// arcsec/yr.
 const char* append_star(StarCatalogue& catalogue, const StarRecord& star);
 
+/// V to which the catalogue goes: the faint edge of the half magnitude that holds most stars.
+/// Counts grow by half in half a magnitude until stars begin to be missing. -infinity without
+/// stars.
+double faintest_filled_v_mag(const StarCatalogue& catalogue);
+
 /// Mean B-V of a main-sequence star of a spectral type such as "K2V" or "A?"; none for classes
 /// without one (carbon stars, white dwarfs). Source: Fitzgerald 1970, A&A 4, 234, every fifth
 /// subclass.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/base/memory.h"
@@ -82,6 +83,12 @@ struct FramePipeline::Work {
     const double noise_e =
         std::sqrt(sky_e + d.dark_e_per_s * times.seconds() + d.read_noise_e * d.read_noise_e);
     return 10.0 * std::max(1.0, noise_e);
+  }
+
+  /// Stars are drawn one by one as far as they are asked for and the catalogue goes.
+  double drawn_to_v_mag() const {
+    if (!stars || !has(Effect::stars)) return -std::numeric_limits<double>::infinity();
+    return std::min(settings.faintest_star_mag, stars->faintest_filled_v_mag());
   }
 
   FrameProducts make(const FrameTimes& times, const World& world);
@@ -198,7 +205,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   frame.counts = CountImage(light.columns, light.rows);
   release_pages(frame.counts.pixels.data(), frame.counts.pixels.size() * sizeof(std::uint16_t));
   std::uint32_t stars_drawn = 0;
-  fill_sky(view, light, threads, frame.times);
+  fill_sky(view, drawn_to_v_mag(), light, threads, frame.times);
   keep_background(settings.output, light, frame.planes);
   {
     Stopwatch timing(frame.times[Effect::psf]);

@@ -6,8 +6,8 @@
 
 #include "core/base/units.h"
 #include "core/optics/deposit.h"
-#include "core/optics/snapshots.h"
 #include "core/optics/projection.h"
+#include "core/optics/snapshots.h"
 #include "core/photometry/diffuse_sphere.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/shadow.h"

@@ -21,8 +21,9 @@ constexpr std::array<Effect, sky_part_count> effect_of_part = {Effect::sky,
                                                                Effect::twilight,
                                                                Effect::light_pollution};
 
-SkyParts parts_switched_on(const SensorConfig& sensor) {
+SkyParts parts_switched_on(const SensorConfig& sensor, double drawn_to_v_mag) {
   SkyParts parts = sensor.sky.parts;
+  if (parts.faint_starlight) parts.faint_starlight->brighter_limit_v_mag = drawn_to_v_mag;
   const auto keep = [&](Effect effect, auto& part) {
     if (!sensor.effects.has(effect)) part.reset();
   };
@@ -81,12 +82,13 @@ void share_out(const SkyModel& sky, const std::vector<Vec<Enu>>& sample, std::si
 
 }  // namespace
 
-SkyModel sky_over(const View& view) {
-  return SkyModel(parts_switched_on(view.sensor()), scene_of(view), view.sensor().camera.band,
-                  extinction_over(view));
+SkyModel sky_over(const View& view, double drawn_to_v_mag) {
+  return SkyModel(parts_switched_on(view.sensor(), drawn_to_v_mag), scene_of(view),
+                  view.sensor().camera.band, extinction_over(view));
 }
 
-void fill_sky(const View& view, RateImage& image, Threads& threads, EffectTimes& times) {
+void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads,
+              EffectTimes& times) {
   const auto& optics = view.sensor().camera.optics;
   if (!view.sensor().effects.has(Effect::sky)) {
     std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
@@ -99,7 +101,7 @@ void fill_sky(const View& view, RateImage& image, Threads& threads, EffectTimes&
   const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) * gcrs_from_camera;
   {
     Stopwatch timing(whole_s);
-    sky.emplace(sky_over(view));
+    sky.emplace(sky_over(view, drawn_to_v_mag));
     const Hidden hidden(view, view.times().middle);
     const double electrons_per_photon_m2 =
         Light(view).electrons_per_photon_m2() * view.times().seconds();

@@ -7,14 +7,15 @@
 namespace dmise {
 
 /// The sky over a sensor in its band in the middle of its exposure: the parts that are on, Sun and
-/// Moon where the environment says.
-SkyModel sky_over(const View& view);
+/// Moon where the environment says. Stars to `drawn_to_v_mag` are drawn one by one and left out.
+SkyModel sky_over(const View& view, double drawn_to_v_mag);
 
 /// Fills `image` with the expected electrons of the sky: `sky_over` at each pixel's centre times
 /// the pixel's own solid angle; 0 where the Earth hides it. From a grid, within `sky_tolerance` of
 /// the evaluation of every pixel. With the effect off, all zero. The time goes to `sky` and to its
 /// parts; that of a part is measured on a sample.
-void fill_sky(const View& view, RateImage& image, Threads& threads, EffectTimes& times);
+void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads,
+              EffectTimes& times);
 
 inline constexpr double sky_tolerance = 0.005;  // relative
 

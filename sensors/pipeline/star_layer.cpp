@@ -70,7 +70,9 @@ std::vector<std::uint32_t> StarLayer::candidates(const View& view, double fainte
 }
 
 StarLayer::StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map)
-    : map_(std::move(map)), light_(sensor.camera.band) {}
+    : map_(std::move(map)),
+      light_(sensor.camera.band),
+      faintest_filled_v_mag_(dmise::faintest_filled_v_mag(map_->stars)) {}
 
 std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, RateImage& image,
                               double faintest_v_mag, std::vector<StarTruth>* truth,

@@ -24,6 +24,9 @@ class StarLayer {
  public:
   StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map);
 
+  /// V to which the catalogue goes.
+  double faintest_filled_v_mag() const { return faintest_filled_v_mag_; }
+
   /// Adds the stars' light to `image`; returns how many left some in the frame. `truth`, if not
   /// null, gets each of them. The time spent goes to the effects it was spent for.
   std::uint32_t draw(const View& view, OpticsStage& optics, RateImage& image, double faintest_v_mag,
@@ -34,6 +37,7 @@ class StarLayer {
 
   std::shared_ptr<const StarMap> map_;
   StarLight light_;
+  double faintest_filled_v_mag_;
 };
 
 }  // namespace dmise

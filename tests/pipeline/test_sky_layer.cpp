@@ -7,9 +7,12 @@
 #include "core/sky/airmass.h"
 #include "sensors/pipeline/light.h"
 #include "tests/pipeline/harness.h"
+#include "tests/support/data.h"
 
 namespace dmise {
 namespace {
+
+constexpr double drawn_to_v_mag = 9.0;
 
 /// A fisheye that sees the horizon all around, and a narrow camera.
 const std::string fisheye =
@@ -34,7 +37,7 @@ RateImage sky_of(test::Stage& stage, std::uint32_t frame, std::size_t sensor = 0
   const View view(config, frame_times(config, frame), stage.world);
   RateImage image(config.camera.optics.columns, config.camera.optics.rows);
   EffectTimes times;
-  fill_sky(view, image, stage.threads, times);
+  fill_sky(view, drawn_to_v_mag, image, stage.threads, times);
   return image;
 }
 
@@ -160,7 +163,7 @@ TEST(SkyLayer, IsWithinItsToleranceInEveryProjection) {
         "ra_deg,dec_deg,mag_v\n0,90,6\n");
     const auto& config = stage.scenario.sensors[0];
     const View view(config, frame_times(config, 1), stage.world);
-    const SkyModel sky = sky_over(view);
+    const SkyModel sky = sky_over(view, drawn_to_v_mag);
     const RateImage image = sky_of(stage, 1);
     const SimTime t = view.times().middle;
     const auto enu_from_camera = view.enu_from_gcrs(t) * view.camera_from_gcrs(t).inverse();
@@ -266,6 +269,35 @@ TEST(Air, ExtinctionIsByBandColourAndAirmass) {
   for (const double zenith_deg : {89.0, 90.0, 91.0, 120.0, 180.0}) {
     const double t = light.air_transmission(down(zenith_deg), 0.65);
     EXPECT_TRUE(t > 0 && t < 0.1) << zenith_deg;
+  }
+}
+
+// Stars are drawn one by one to a limit and smeared out beyond it: where the limit lies changes
+// only the model's 30 % of structure along the Milky Way, by the share of the sky between both
+// limits.
+TEST(StarlightInAll, IsTheSameForAnyLimitOfTheStarsDrawn) {
+  DMISE_NEEDS_FILE(test::catalogue_path("stars.dat"));
+  for (const char* pointing : {"{ra_deg: 90, dec_deg: 25}", "{ra_deg: 190, dec_deg: 30}"}) {
+    const auto counted = [&](const std::string& stars) {
+      const std::string camera =
+          "{optics: {columns: 401, rows: 401, pixel_pitch_m: 10e-6, field_of_view_deg: 20,"
+          " aperture_m: 0.01},"
+          " detector: {full_well_e: 1e9, gain_e_per_dn: 1}, band: {filter: bessell-V}}";
+      test::Stage stage("simulation: {start: 2018-01-16T05:00:00Z, duration_s: 30, tick_s: 30}\n" +
+                        stars + "sensors: [{name: a, site: atlanta, camera: " + camera +
+                        ", pointing: " + pointing +
+                        ", exposure_s: 1, cadence_s: 30, sky: dark, effects: {scintillation: off,"
+                        " photon_noise: off, read_noise: off}}]\n");
+      double sum = 0;
+      const auto frame = stage.frame();
+      for (const auto count : frame.counts.pixels) sum += double(count) - frame.header.bias_dn;
+      return sum;
+    };
+    const std::string kstars = test::catalogue_path("stars.dat");
+    const double to_9 = counted("stars: {catalogue: " + kstars + ", faintest_mag: 9}\n");
+    const double to_6 = counted("stars: {catalogue: " + kstars + ", faintest_mag: 6}\n");
+    EXPECT_NEAR(to_6 / to_9, 1.0, 0.02) << pointing;
+    EXPECT_NEAR(counted("") / to_9, 1.0, 0.04) << pointing;  // but for stars brighter than V = 5
   }
 }
 
