@@ -20,6 +20,7 @@
 #include "nodes/runtime/status.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/make_sensor.h"
+#include "sensors/positions/positions_evaluator.h"
 
 namespace dmise {
 namespace {
@@ -74,6 +75,7 @@ class Launch {
     std::filesystem::remove(announcement(), ignored);
     std::string expected = "orbit-node,environment-node";
     for (const auto& sensor : scenario_.sensors) expected += "," + sensor.name;
+    if (scenario_.output.positions()) expected += std::string(",") + positions_node;
     const auto& network = scenario_.network;
     const bool restart = network.on_silent_node == OnSilentNode::restart;
     const char* policy = network.on_silent_node == OnSilentNode::fail   ? "fail"
@@ -103,6 +105,11 @@ class Launch {
                                           "--threads", std::to_string(options_.threads)};
     start("orbit-node", "dmise-orbit-node", common);
     start("environment-node", "dmise-environment-node", common);
+    if (scenario_.output.positions()) {
+      auto arguments = common;
+      arguments.insert(arguments.end(), {"--out", directory_.path()});
+      start(positions_node, "dmise-positions-node", arguments);
+    }
     for (const auto& sensor : scenario_.sensors) {
       auto arguments = common;
       arguments.insert(arguments.end(),

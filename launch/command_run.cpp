@@ -21,6 +21,7 @@
 #include "nodes/runtime/event.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/make_sensor.h"
+#include "sensors/positions/positions_evaluator.h"
 
 namespace dmise {
 namespace {
@@ -59,6 +60,9 @@ class EmbeddedRun {
       sensors_.push_back(evaluator.get());
       participants_.push_back(std::move(evaluator));
     }
+    if (scenario.output.positions())
+      participants_.push_back(
+          std::make_unique<PositionsEvaluator>(scenario, make_clock(scenario), directory.path()));
   }
 
   /// Returns when all ticks are done, one failed, or a stop was asked for. In the last case the

@@ -7,6 +7,7 @@
 #include "core/base/json.h"
 #include "core/base/text_file.h"
 #include "sensors/pipeline/frame_times.h"
+#include "sensors/positions/position_files.h"
 
 namespace dmise {
 namespace {
@@ -42,6 +43,9 @@ Tick resume_tick(const Scenario& scenario, const RunDirectory& directory) {
     const SimTime end = frame_times(sensor, frames + 1).end;
     first = std::min(first, (end.ns + scenario.tick.ns - 1) / scenario.tick.ns);
   }
+  // What is written of the last tick may be a part of it.
+  if (scenario.output.positions())
+    first = std::min(first, std::max<Tick>(0, last_tick_written(directory.path())));
   return finished == 0 ? 0 : first;
 }
 

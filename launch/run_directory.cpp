@@ -78,9 +78,12 @@ void RunDirectory::clear() {
     if (entry.is_directory(ignored) && fs::exists(entry.path() / "frames.jsonl", ignored))
       fs::remove_all(entry.path(), ignored);
   for (const auto& sensor : scenario_.sensors) fs::remove_all(file(sensor.name), ignored);
-  for (const char* name :
-       {"run.json", "detections.jsonl", "truth.jsonl", "frames.jsonl", "index.html"})
+  for (const char* name : {"run.json", "detections.jsonl", "truth.jsonl", "frames.jsonl",
+                           "positions.csv", "positions.jsonl", "index.html"})
     fs::remove(file(name), ignored);
+  for (const auto& entry : fs::directory_iterator(file("positions"), ignored))
+    if (entry.path().extension() == ".oem") fs::remove(entry.path(), ignored);
+  fs::remove(file("positions"), ignored);  // unless there is anything else in it
 }
 
 void RunDirectory::merge_lines() const {

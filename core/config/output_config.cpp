@@ -30,6 +30,13 @@ OutputConfig read_output(const YamlValue& value) {
        : name == "background" ? output.background
                               : output.noise) = true;
     }
+  if (const auto positions = map.find("positions"))
+    for (const auto& format : positions->list()) {
+      const std::string name = format.choice({"csv", "jsonl", "oem"});
+      (name == "csv"     ? output.positions_csv
+       : name == "jsonl" ? output.positions_jsonl
+                         : output.positions_oem) = true;
+    }
   map.done();
   return output;
 }

@@ -256,7 +256,8 @@ Scenario load_scenario(const std::string& path) {
   EffectSet effects;
   if (const auto value = map.find("effects")) read_effects(*value, effects);
   const auto sensors = map.require("sensors");
-  std::set<std::string> names{"orbit-node", "environment-node", "time-master", "broker"};
+  std::set<std::string> names{"orbit-node", "environment-node", "positions-node", "time-master",
+                              "broker"};
   for (const auto& value : sensors.list()) {
     scenario.sensors.push_back(read_sensor(value, effects, scenario.duration));
     if (!names.insert(scenario.sensors.back().name).second)

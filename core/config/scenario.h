@@ -107,6 +107,9 @@ struct OutputConfig {
   bool radiance_exr = false;  // frame-NNNNNN-radiance.exr
   // frame-NNNNNN-PLANE.fits: what the counts were drawn from.
   bool sources = false, background = false, noise = false;
+  // Of cameras, platforms, own objects, Sun and Moon at every tick.
+  bool positions_csv = false, positions_jsonl = false, positions_oem = false;
+  bool positions() const { return positions_csv || positions_jsonl || positions_oem; }
 };
 
 /// A whole scenario, resolved: presets read, paths found, defaults filled in, everything checked.

@@ -3,7 +3,7 @@
 #
 #   run_identity.sh DMISE SCENARIO DURATION_S
 #
-# Runs the scenario, cut to DURATION_S of simulated time, and compares every FITS and EXR file,
+# Runs the scenario, cut to DURATION_S of simulated time, and compares every FITS and EXR file, positions,
 # detections.jsonl, truth.jsonl and frames.jsonl with cmp. What is published is also what
 # `dmise detect` finds in the FITS file alone.
 set -euo pipefail
@@ -24,7 +24,7 @@ produce() {  # NAME COMMAND..
     fail "$name: $(tail -n 2 "$work/$name.log")"
 }
 
-products() { (cd "$1" && find . -name 'frame-*.fits' -o -name '*.exr' -o -name '*.jsonl' ! -name cost.jsonl | sort); }
+products() { (cd "$1" && find . -name 'frame-*.fits' -o -name '*.exr' -o -name '*.oem' -o -name '*.csv' -o -name '*.jsonl' ! -name cost.jsonl | sort); }
 
 produce run-1-thread run --threads 1
 produce run-2-threads run --threads 2

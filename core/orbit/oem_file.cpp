@@ -1,0 +1,114 @@
+#include "core/orbit/oem_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr const char* stop_key = "STOP_TIME = ";
+
+std::string state_line(const std::string& utc, const Vec<Gcrs>& r, const Vec<Gcrs>& v) {
+  char numbers[256];
+  std::snprintf(numbers, sizeof numbers, " %.9f %.9f %.9f %.12f %.12f %.12f\n", r.x / km, r.y / km,
+                r.z / km, v.x / km, v.y / km, v.z / km);
+  return utc + numbers;
+}
+
+}  // namespace
+
+OemFile::OemFile(std::string path, OemSubject subject)
+    : path_(std::move(path)), subject_(std::move(subject)) {}
+
+OemFile::~OemFile() {
+  if (file_) std::fclose(file_);
+}
+
+void OemFile::fail() const { throw Error(path_ + ": can't be written: " + std::strerror(errno)); }
+
+void OemFile::open(const char* mode) {
+  if (file_) std::fclose(file_);
+  file_ = std::fopen(path_.c_str(), mode);
+  if (!file_) fail();
+}
+
+void OemFile::begin() {
+  open("w+b");
+  held_utc_.clear();
+  last_utc_.clear();
+  write("CCSDS_OEM_VERS = 2.0\nCREATION_DATE = " + subject_.creation_date +
+        "\nORIGINATOR = DMISE\n");
+}
+
+void OemFile::keep_before(const std::string& utc) {
+  if (!std::filesystem::exists(path_)) return begin();
+  const std::string text = read_text_file(path_);
+  std::size_t keep = 0, meta = 0, stop = 0;
+  std::string last;
+  for (std::size_t at = 0, end; (end = text.find('\n', at)) != std::string::npos; at = end + 1) {
+    const std::string line = text.substr(at, end - at);
+    if (line == "META_START") {
+      meta = at;
+      last.clear();
+    }
+    if (line.starts_with(stop_key)) stop = at + std::strlen(stop_key);
+    const bool is_state = !line.empty() && line[0] >= '0' && line[0] <= '9';
+    if (is_state && line.substr(0, utc.size()) >= utc) break;
+    if (is_state) last = line.substr(0, utc.size());
+    keep = end + 1;
+  }
+  if (keep == 0) return begin();
+  if (last.empty() && meta > 0) keep = meta;  // nothing is left of its last segment
+  write_file_whole(path_, text.substr(0, keep));
+  open("r+b");
+  held_utc_.clear();
+  last_utc_ = last;
+  stop_at_ = long(stop);
+  if (!last.empty()) overwrite_stop_time(last);
+}
+
+void OemFile::add(const std::string& utc, const std::string& previous_utc, const Vec<Gcrs>& r,
+                  const Vec<Gcrs>& v) {
+  const std::string line = state_line(utc, r, v);
+  if (!last_utc_.empty() && last_utc_ == previous_utc) {
+    write(line);
+    overwrite_stop_time(utc);
+    last_utc_ = utc;
+    return;
+  }
+  last_utc_.clear();
+  if (held_utc_.empty() || held_utc_ != previous_utc) {
+    held_utc_ = utc;
+    held_line_ = line;
+    return;
+  }
+  std::string text =
+      "META_START\nOBJECT_NAME = " + subject_.object_name + "\nOBJECT_ID = " + subject_.object_id +
+      "\nCENTER_NAME = EARTH\nREF_FRAME = GCRF\nTIME_SYSTEM = UTC\nSTART_TIME = " + held_utc_ +
+      "\n" + stop_key;
+  if (std::fseek(file_, 0, SEEK_END) != 0) fail();
+  stop_at_ = std::ftell(file_) + long(text.size());
+  text += utc + "\nINTERPOLATION = HERMITE\nINTERPOLATION_DEGREE = 7\nMETA_STOP\n";
+  write(text + held_line_ + line);
+  last_utc_ = utc;
+  held_utc_.clear();
+}
+
+void OemFile::write(const std::string& text) {
+  if (std::fseek(file_, 0, SEEK_END) != 0 ||
+      std::fwrite(text.data(), 1, text.size(), file_) != text.size() || std::fflush(file_) != 0)
+    fail();
+}
+
+void OemFile::overwrite_stop_time(const std::string& utc) {
+  if (std::fseek(file_, stop_at_, SEEK_SET) != 0 ||
+      std::fwrite(utc.data(), 1, utc.size(), file_) != utc.size() || std::fflush(file_) != 0)
+    fail();
+}
+
+}  // namespace dmise

@@ -1,0 +1,50 @@
+#pragma once
+#include <cstdio>
+#include <string>
+
+#include "core/frames/vec.h"
+
+namespace dmise {
+
+/// Whose ephemeris a file holds.
+struct OemSubject {
+  std::string object_name;
+  std::string object_id;      // international designator, or whatever names it
+  std::string creation_date;  // of a simulation: its start, so that the bytes repeat
+};
+
+/// A CCSDS Orbit Ephemeris Message (502.0-B) in KVN that grows by a state at a time, in GCRF and
+/// UTC; after each it is whole, with a right STOP_TIME. A segment begins with its second state: one
+/// alone is no ephemeris and is left out.
+class OemFile {
+ public:
+  /// Writes nothing yet. Times are texts of one length that sort as they run (`format_utc`).
+  OemFile(std::string path, OemSubject subject);
+  ~OemFile();
+  OemFile(const OemFile&) = delete;
+  OemFile& operator=(const OemFile&) = delete;
+
+  /// Begins anew. Throws `Error` "PATH: reason", as all do.
+  void begin();
+  /// Takes up what an earlier process wrote, without the states at `utc` and later.
+  void keep_before(const std::string& utc);
+  /// `previous_utc`: the time of the state before, had there been one: if it is not that of the
+  /// last one added, a new segment begins.
+  void add(const std::string& utc, const std::string& previous_utc, const Vec<Gcrs>& position_m,
+           const Vec<Gcrs>& slope_m_per_s);
+
+ private:
+  void open(const char* mode);
+  void write(const std::string& text);
+  void overwrite_stop_time(const std::string& utc);
+  [[noreturn]] void fail() const;
+
+  std::string path_;
+  OemSubject subject_;
+  std::FILE* file_ = nullptr;
+  std::string held_utc_, held_line_;  // the first state of a segment, until there is a second
+  std::string last_utc_;              // of the open segment; empty: none is open
+  long stop_at_ = 0;                  // where its STOP_TIME stands
+};
+
+}  // namespace dmise

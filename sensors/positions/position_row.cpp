@@ -1,0 +1,82 @@
+#include "sensors/positions/position_row.h"
+
+#include <charconv>
+
+#include "core/base/json.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::string_view json_start = "{\"tick\":";
+
+std::string number(double x) {
+  char text[64];
+  return {text, std::to_chars(text, text + sizeof text, x).ptr};
+}
+
+/// As RFC 4180 has it.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string csv_vector(const std::optional<Vec<Gcrs>>& v) {
+  if (!v) return ",,,";
+  return "," + number(v->x / km) + "," + number(v->y / km) + "," + number(v->z / km);
+}
+
+void json_vector(JsonWriter& json, const char* key, const Vec<Gcrs>& v) {
+  json.key(key).begin_array().value(v.x / km).value(v.y / km).value(v.z / km).end_array();
+}
+
+}  // namespace
+
+std::string csv_header() {
+  return "tick,time_utc,kind,name,catalogue_number,x_km,y_km,z_km,vx_km_per_s,vy_km_per_s,"
+         "vz_km_per_s,qw,qx,qy,qz\n";
+}
+
+std::string csv_line(const PositionRow& row) {
+  std::string line =
+      std::to_string(row.tick) + "," + row.time_utc + "," + row.kind + "," + field(row.name) + ",";
+  if (row.catalogue_number > 0) line += std::to_string(row.catalogue_number);
+  line += csv_vector(row.position_m) + csv_vector(row.slope_m_per_s);
+  if (const auto& q = row.gcrs_from_axes)
+    line += "," + number(q->w) + "," + number(q->x) + "," + number(q->y) + "," + number(q->z);
+  else
+    line += ",,,,";
+  return line + "\n";
+}
+
+std::string json_line(const PositionRow& row) {
+  JsonWriter json;
+  json.begin_object().field("tick", row.tick).field("time_utc", row.time_utc);
+  json.field("kind", row.kind).field("name", row.name);
+  if (row.catalogue_number > 0) json.field("catalogue_number", row.catalogue_number);
+  json_vector(json, "position_km", row.position_m);
+  if (row.slope_m_per_s) json_vector(json, "velocity_km_per_s", *row.slope_m_per_s);
+  if (const auto& q = row.gcrs_from_axes)
+    json.key("quaternion")
+        .begin_array()
+        .value(q->w)
+        .value(q->x)
+        .value(q->y)
+        .value(q->z)
+        .end_array();
+  return json.end_object().take() + "\n";
+}
+
+std::optional<Tick> tick_of_line(const std::string& line) {
+  const char* begin = line.data();
+  if (line.starts_with(json_start)) begin += json_start.size();
+  Tick tick = 0;
+  const auto read = std::from_chars(begin, line.data() + line.size(), tick);
+  if (read.ec != std::errc{} || read.ptr == line.data() + line.size() || *read.ptr != ',')
+    return std::nullopt;
+  return tick;
+}
+
+}  // namespace dmise

@@ -1,0 +1,59 @@
+#pragma once
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/config/scenario.h"
+#include "core/sim/participant.h"
+#include "core/time/clock.h"
+#include "core/visibility/pointing.h"
+#include "sensors/positions/position_files.h"
+
+namespace dmise {
+
+inline constexpr const char* positions_node = "positions-node";
+
+/// Writes at every tick where cameras, their platforms and targets, the scenario's own objects, Sun
+/// and Moon are, in GCRS. A camera's attitude is the one with which it would be aimed at that
+/// instant, whether or not its shutter is open.
+class PositionsEvaluator : public Evaluator {
+ public:
+  /// Throws `Error` when `directory` can't be written.
+  PositionsEvaluator(const Scenario& scenario, Clock clock, const std::string& directory);
+
+  std::string name() const override { return positions_node; }
+  std::vector<std::string> produces() const override { return {}; }
+  std::vector<std::string> consumes() const override { return {objects_topic, environment_topic}; }
+  std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
+  /// The tick before, whose state may be the first of an ephemeris, and back to when the
+  /// environment was last told.
+  Tick look_back() const override;
+  std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
+  std::uint64_t progress() const override { return steps_; }
+
+ private:
+  struct Mount {
+    std::optional<std::size_t> platform, target;  // objects
+  };
+  void take_in(const Message& message);
+  void meet(const ObjectRoster& roster);
+  void write(Tick tick);
+  std::vector<PositionRow> rows(Tick tick) const;
+  std::optional<PositionRow> camera(std::size_t sensor, Tick tick) const;
+  std::string utc(Tick tick) const;
+
+  Scenario scenario_;
+  Clock clock_;
+  PositionFiles files_;
+  std::shared_ptr<const State> keep_roster_, keep_states_, keep_environment_;
+  const ObjectRoster* roster_ = nullptr;
+  const ObjectStates* states_ = nullptr;
+  const EnvironmentState* environment_ = nullptr;
+  std::vector<std::size_t> objects_;  // in the table, ascending
+  std::vector<Mount> mounts_;         // by sensor
+  bool begun_ = false;
+  std::atomic<std::uint64_t> steps_{0};
+};
+
+}  // namespace dmise

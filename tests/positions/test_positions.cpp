@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/base/text_file.h"
+#include "core/base/units.h"
+#include "core/orbit/oem.h"
+#include "sensors/positions/positions_evaluator.h"
+#include "tests/pipeline/harness.h"
+
+namespace dmise {
+namespace {
+
+const std::string yaml =
+    "simulation: {start: 2018-01-21T00:15:00Z, duration_s: 40, tick_s: 5}\n"
+    "objects:\n"
+    "  - name: platform\n"
+    "    motion: {two_body: {semi_major_axis_m: 7178137, eccentricity: 0, inclination_deg: 98.6,"
+    " raan_deg: 0, true_anomaly_deg: 0}}\n"
+    "    attitude: nadir\n"
+    "sensors:\n"
+    "  - {name: eye, platform: platform, camera: raven, pointing: {ra_deg: 30, dec_deg: -20},"
+    " exposure_s: 1, cadence_s: 10}\n"
+    "  - {name: site, site: atlanta, camera: raven, pointing: zenith, exposure_s: 1, cadence_s: "
+    "10}\n"
+    "output: {positions: [csv, jsonl, oem]}\n";
+
+/// Runs the evaluator over the actors' states, from `first` on, telling it the tick before.
+void run(test::Stage& stage, const std::string& out, Tick first, Tick last) {
+  const Clock clock = make_clock(stage.scenario);
+  OrbitActor orbit(stage.scenario, clock, stage.threads);
+  EnvironmentActor environment(stage.scenario, clock);
+  PositionsEvaluator evaluator(stage.scenario, clock, out);
+  std::vector<Message> past;
+  for (Tick tick = 0; tick <= last; ++tick) {
+    std::vector<Message> inputs = orbit.step(tick, {});
+    for (auto& message : environment.step(tick, {}))
+      if (message.topic == environment_topic) inputs.push_back(message);
+    if (tick >= first) {
+      if (first > 0 && tick == first) evaluator.resume(first, past);
+      evaluator.step(tick, inputs);
+    } else {
+      for (auto& message : inputs)
+        if (tick + 1 == first || std::holds_alternative<ObjectRoster>(*message.state))
+          past.push_back(message);
+    }
+  }
+}
+
+std::vector<std::string> rows_of(const std::string& path, const std::string& what) {
+  std::vector<std::string> rows;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);)
+    if (line.find(what) != std::string::npos) rows.push_back(line);
+  return rows;
+}
+
+std::vector<double> numbers(const std::string& row) {
+  std::vector<double> values;
+  std::stringstream fields(row);
+  for (std::string field; std::getline(fields, field, ',');)
+    values.push_back(std::strtod(field.c_str(), nullptr));
+  return values;
+}
+
+TEST(Positions, AreThoseOfTheMotionTheSkyAndTheGround) {
+  test::Stage stage(yaml);
+  const std::string out = stage.directory.string();
+  run(stage, out, 0, stage.scenario.last_tick());
+  const std::string csv = out + "/positions.csv";
+  const auto platform = rows_of(csv, ",object,platform,");
+  ASSERT_EQ(platform.size(), 9u);
+  const auto last = numbers(platform.back());  // 40 s at the root of mu / a^3
+  const double u = std::sqrt(3.986004418e14 / std::pow(7178137.0, 3)) * 40;
+  EXPECT_NEAR(last[5], 7178.137 * std::cos(u), 1e-5);
+  EXPECT_NEAR(last[7], 7178.137 * std::sin(u) * std::sin(98.6 * deg), 1e-5);
+  EXPECT_EQ(platform[0].substr(0, 33), "0,2018-01-21T00:15:00.000000000Z,");
+  // z of a nadir attitude looks down: from its quaternion, v' = 2 (x z + w y), 2 (y z - w x), ..
+  const double w = last[11], x = last[12], y = last[13], z = last[14];
+  EXPECT_NEAR(2 * (x * z + w * y), -std::cos(u), 1e-9);
+  EXPECT_NEAR(1 - 2 * (x * x + y * y), -std::sin(u) * std::sin(98.6 * deg), 1e-9);
+  // z of the camera's axes is its boresight.
+  const auto eye = numbers(rows_of(csv, ",camera,eye,").at(3));
+  EXPECT_NEAR(2 * (eye[12] * eye[14] + eye[11] * eye[13]), std::cos(30 * deg) * std::cos(20 * deg),
+              1e-12);
+  EXPECT_NEAR(1 - 2 * (eye[12] * eye[12] + eye[13] * eye[13]), -std::sin(20 * deg), 1e-12);
+  // A site keeps its distance from the Earth's centre and goes round with it.
+  const auto site = numbers(rows_of(csv, ",camera,site,").at(0));
+  const auto later = numbers(rows_of(csv, ",camera,site,").at(8));
+  EXPECT_NEAR(std::hypot(site[5], site[6], site[7]), std::hypot(later[5], later[6], later[7]),
+              1e-6);
+  const double sin_latitude = std::sin(33.777 * deg);
+  const double from_axis_km =
+      (6378.137 / std::sqrt(1 - 0.00669437999014 * sin_latitude * sin_latitude) + 0.3) *
+      std::cos(33.777 * deg);
+  EXPECT_NEAR(std::hypot(later[5] - site[5], later[6] - site[6], later[7] - site[7]),
+              7.292115e-5 * 40 * from_axis_km, 1e-4);
+  const auto sun = numbers(rows_of(csv, ",sun,").at(0)),
+             moon = numbers(rows_of(csv, ",moon,").at(0));
+  // The U.S. Naval Observatory's approximation, good to 3e-4 au.
+  const double g = (357.529 + 0.98560028 * (2458139.510417 - 2451545.0)) * deg;
+  EXPECT_NEAR(std::hypot(sun[5], sun[6], sun[7]) / 149597870.7,
+              1.00014 - 0.01671 * std::cos(g) - 0.00014 * std::cos(2 * g), 3e-4);
+  EXPECT_GT(std::hypot(moon[5], moon[6], moon[7]), 356e3);
+  EXPECT_LT(std::hypot(moon[5], moon[6], moon[7]), 407e3);
+}
+
+TEST(Positions, OfAPlatformAreAnEphemerisThatBringsItBack) {
+  test::Stage stage(yaml);
+  const std::string out = stage.directory.string();
+  run(stage, out, 0, stage.scenario.last_tick());
+  const Trajectory path = read_oem(out + "/positions/platform-990000001.oem");
+  const Clock clock = make_clock(stage.scenario);
+  for (const double t_s : {0.0, 2.5, 17.3, 38.9}) {
+    const auto state = std::get<MotionState<Gcrs>>(path_at(path, clock.tai(sim_seconds(t_s))));
+    const Motion there = stage.world.motion(0, sim_seconds(t_s));
+    EXPECT_LT(norm(state.position_m - there.position_m), 0.01) << t_s;
+  }
+}
+
+TEST(Positions, TakenUpAtAnyTickTheyBecomeTheSameBytes) {
+  test::Stage stage(yaml);
+  const std::string out = (stage.directory / "out").string();
+  const std::vector<std::string> names{"/positions.csv", "/positions.jsonl",
+                                       "/positions/platform-990000001.oem"};
+  run(stage, out, 0, stage.scenario.last_tick());
+  std::vector<std::string> whole;
+  for (const auto& name : names) whole.push_back(read_text_file(out + name));
+  for (const Tick tick : {1, 2, 5, 8}) {
+    run(stage, out, tick, stage.scenario.last_tick());
+    for (std::size_t k = 0; k < names.size(); ++k)
+      EXPECT_EQ(read_text_file(out + names[k]), whole[k]) << names[k] << " at tick " << tick;
+  }
+  EXPECT_EQ(last_tick_written(out), 8);
+}
+
+}  // namespace
+}  // namespace dmise
