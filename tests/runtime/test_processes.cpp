@@ -104,7 +104,7 @@ TEST(Processes, TheRunGoesOnWithoutAKilledNodeByPolicy) {
 }
 
 TEST(Processes, TheRunWaitsForAStoppedNodeByPolicy) {
-  Stack stack({"--ticks", "3000", "--silent-after", "1", "--on-silent", "wait"});
+  Stack stack({"--ticks", "1000", "--silent-after", "1", "--on-silent", "wait"});
   stack.start_all();
   ASSERT_TRUE(stack.nodes["b"]->says("step 5\n"));
   stack.nodes["a"]->kill(SIGSTOP);
