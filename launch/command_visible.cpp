@@ -36,10 +36,10 @@ struct VisibleOptions {
 constexpr double most_steps = 5e6;
 
 TimeGrid time_grid(const VisibleOptions& options, const Scenario& scenario, const Clock& clock) {
-  TimeGrid grid{.step = sim_seconds(options.step_s)};
+  SimTime from;
   if (!options.from.empty()) {
     try {
-      grid.from = clock.sim_time(parse_utc(options.from));
+      from = clock.sim_time(parse_utc(options.from));
     } catch (const Error& e) {
       throw ConfigError("--from: " + std::string(e.what()));
     }
@@ -49,8 +49,7 @@ TimeGrid time_grid(const VisibleOptions& options, const Scenario& scenario, cons
   if (steps > most_steps)
     throw ConfigError("--step: " + std::to_string(std::llround(steps)) +
                       " instants, more than 5000000: take a longer step or a shorter --duration");
-  grid.steps = std::size_t(std::max(1.0, std::floor(steps + 1e-9)));
-  return grid;
+  return covering_grid(from, sim_seconds(duration_s), sim_seconds(options.step_s));
 }
 
 bool wanted(const Pass& pass, const VisibleOptions& options) {
@@ -119,7 +118,7 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
                        progress.show_share(share, sensor.name + ": looking for objects in sight");
                      }});
   progress.show_share(1.0, sensor.name + ": following passes");
-  std::vector<Pass> passes = passes_of(batch, track, grid, found, threads);
+  std::vector<Pass> passes = passes_of(batch, track, found.stays, threads);
   progress.clear_line();
   std::erase_if(passes, [&](const Pass& p) { return !wanted(p, options); });
   std::sort(passes.begin(), passes.end(), [&](const Pass& a, const Pass& b) {
@@ -190,8 +189,10 @@ void add_visible_command(CLI::App& app) {
   command->add_option("--duration", o->duration_s, "seconds; the scenario's otherwise")
       ->check(CLI::Range(1e-3, 3.2e8));
   command
-      ->add_option("--step", o->step_s,
-                   "seconds between the instants of the figure; passes are found between them, too")
+      ->add_option(
+          "--step", o->step_s,
+          "seconds between the instants of the figure, the last of them the span's end; passes do "
+          "not depend on it")
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 3600.0));
   auto* sunlit = command->add_flag("--sunlit", o->sunlit, "passes that are sunlit for a part");

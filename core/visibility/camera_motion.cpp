@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace dmise {
 namespace {
@@ -17,21 +18,19 @@ double angle_between(const Rotation<CameraFrame, Teme>& a, const Rotation<Camera
 
 }  // namespace
 
-CameraMotion camera_motion(const SensorTrack& track, std::span<const CameraMoment> moments,
-                           double step_s) {
-  if (track.fixed_to_earth()) return {.with_earth = true};
-  CameraMotion motion;
-  for (std::size_t k = 0; k + 1 < moments.size(); ++k) {
-    const CameraMoment &a = moments[k], &b = moments[k + 1];
-    if (!a.there || !b.there) continue;
-    motion.speed_m_per_s =
-        std::max(motion.speed_m_per_s, margin * norm(b.apex_m - a.apex_m) / step_s);
-    if (!track.fixed_to_stars())
-      motion.turn_rad_per_s =
-          std::max(motion.turn_rad_per_s,
-                   margin * angle_between(a.camera_from_teme, b.camera_from_teme) / step_s);
-  }
+CameraMotion camera_motion(const SensorTrack& track, const CameraMoment& a, const CameraMoment& b) {
+  if (track.fixed_to_earth() || (!a.there && !b.there)) return {};
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  if (!a.there || !b.there) return {.speed_m_per_s = infinite, .turn_rad_per_s = infinite};
+  const double share = margin / (b.time - a.time).seconds();
+  CameraMotion motion{.speed_m_per_s = share * norm(b.apex_m - a.apex_m)};
+  if (!track.fixed_to_stars())
+    motion.turn_rad_per_s = share * angle_between(a.camera_from_teme, b.camera_from_teme);
   return motion;
+}
+
+CameraMotion either(const CameraMotion& a, const CameraMotion& b) {
+  return {std::max(a.speed_m_per_s, b.speed_m_per_s), std::max(a.turn_rad_per_s, b.turn_rad_per_s)};
 }
 
 }  // namespace dmise

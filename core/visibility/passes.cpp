@@ -127,10 +127,11 @@ class Follower {
   std::uint32_t object_;
 };
 
-/// Instants along a pass, ends included: at least 17, at most some 1500 between grid steps.
-std::vector<SimTime> instants_along(SimTime rise, SimTime set, double step_s) {
+/// Instants along a pass, ends included: at least 17, no closer than 10 s beyond them and at most
+/// some 1500.
+std::vector<SimTime> instants_along(SimTime rise, SimTime set) {
   const double length_s = (set - rise).seconds();
-  const double spacing_s = std::min(length_s / 16.0, std::max(step_s, length_s / 1500.0));
+  const double spacing_s = std::min(length_s / 16.0, std::max(10.0, length_s / 1500.0));
   const int count = length_s > 0 ? int(std::ceil(length_s / spacing_s)) : 1;
   std::vector<SimTime> times;
   for (int k = 0; k <= count; ++k)
@@ -161,8 +162,8 @@ void find_light(const Follower& object, const std::vector<Place>& places, Pass& 
 }
 
 /// Looks along a pass from its rise to its set and fills in the rest.
-void describe(const Follower& object, SimTime rise, SimTime set, double step_s, Pass& pass) {
-  const auto places = object.along(instants_along(rise, set, step_s));
+void describe(const Follower& object, SimTime rise, SimTime set, Pass& pass) {
+  const auto places = object.along(instants_along(rise, set));
   find_light(object, places, pass);
   const auto greatest = [&](auto&& value) {
     std::size_t best = 0;
@@ -185,54 +186,25 @@ void describe(const Follower& object, SimTime rise, SimTime set, double step_s, 
                  object.sun_elevation_rad(places[(places.size() - 1) * k / 16].camera));
 }
 
-/// A stay known by instants of the grid, or by one instant between two of them.
-struct Stay {
-  std::uint32_t object = 0;
-  std::size_t first = 0, last = 0;  // visible at these steps, or not at all of them: `between`
-  std::optional<SimTime> between;
-};
-
-std::vector<Stay> stays(const Sightings& sightings) {
-  std::vector<Stay> all;
-  for (const Sighting& s : sightings.seen) {
-    if (!all.empty() && all.back().object == s.object && all.back().last + 1 == s.step)
-      ++all.back().last;
-    else
-      all.push_back({s.object, s.step, s.step, std::nullopt});
-  }
-  for (const Crossing& c : sightings.crossings)
-    all.push_back({c.object, c.step, c.step + 1, c.time});
-  std::sort(all.begin(), all.end(), [](const Stay& a, const Stay& b) {
-    return a.object != b.object ? a.object < b.object : a.first < b.first;
-  });
-  return all;
-}
-
 }  // namespace
 
-std::vector<Pass> passes_of(const Sgp4Batch& batch, const SensorTrack& track, const TimeGrid& grid,
-                            const Sightings& sightings, Threads& threads) {
+std::vector<Pass> passes_of(const Sgp4Batch& batch, const SensorTrack& track,
+                            const std::vector<Stay>& stays, Threads& threads) {
   const Sight sight(track.sensor());
-  const std::vector<Stay> all = stays(sightings);
-  std::vector<Pass> passes(all.size());
-  threads.for_ranges(all.size(), 16, [&](std::size_t begin, std::size_t end) {
+  std::vector<Pass> passes(stays.size());
+  threads.for_ranges(stays.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Stay& stay = all[k];
+      const Stay& stay = stays[k];
       const Follower object(batch, track, sight, stay.object);
       const auto visible = [&](const Place& p) { return object.visible(p); };
       Pass& pass = passes[k];
       pass.object = stay.object;
-      SimTime rise = grid.at(stay.first), set = grid.at(stay.last);
-      if (stay.between) {
-        rise = object.turning(grid.at(stay.first), *stay.between, false, visible);
-        set = object.turning(*stay.between, grid.at(stay.last), true, visible);
-      } else {
-        pass.open_start = stay.first == 0;
-        pass.open_end = stay.last == grid.steps;
-        if (!pass.open_start) rise = object.turning(grid.at(stay.first - 1), rise, false, visible);
-        if (!pass.open_end) set = object.turning(set, grid.at(stay.last + 1), true, visible);
-      }
-      describe(object, rise, set, grid.step.seconds(), pass);
+      pass.open_start = stay.open_start;
+      pass.open_end = stay.open_end;
+      SimTime rise = stay.in_first, set = stay.in_last;
+      if (!stay.open_start) rise = object.turning(stay.out_before, rise, false, visible);
+      if (!stay.open_end) set = object.turning(set, stay.out_after, true, visible);
+      describe(object, rise, set, pass);
     }
   });
   return passes;

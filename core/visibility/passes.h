@@ -31,9 +31,9 @@ struct Pass {
 /// Rise, set and shadow are found to this, the top within a tenth of a second.
 inline constexpr double event_error_s = 0.01;
 
-/// The passes that sightings belong to, by object, then time: events refined between the grid's
-/// instants, within its span. An absence between two neighbouring sightings is not noticed.
-std::vector<Pass> passes_of(const Sgp4Batch& batch, const SensorTrack& track, const TimeGrid& grid,
-                            const Sightings& sightings, Threads& threads);
+/// The passes that stays are: rise and set refined, the rest looked up along the way. In the order
+/// of the stays.
+std::vector<Pass> passes_of(const Sgp4Batch& batch, const SensorTrack& track,
+                            const std::vector<Stay>& stays, Threads& threads);
 
 }  // namespace dmise

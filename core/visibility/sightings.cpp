@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/visibility/batch_states.h"
 #include "core/visibility/camera_motion.h"
 #include "core/visibility/orbit_bound.h"
 #include "core/visibility/touch.h"
@@ -11,25 +12,15 @@
 namespace dmise {
 namespace {
 
+/// Neighbouring instants lie no farther apart than this: a camera's motion is taken from them.
+constexpr double longest_look_s = 10.0;
 /// Instants of the whole catalogue lie about this far apart, and bounds on speed hold this long.
 constexpr double stride_s = 300.0;
 constexpr double bound_holds_s = 3600.0;
 
-/// States of a whole catalogue at one instant.
-struct States {
-  std::vector<double> position, velocity;
-  std::vector<std::uint8_t> code;
-
-  explicit States(std::size_t n) : position(3 * n), velocity(3 * n), code(n) {}
-  static Vec<Teme> vec(const std::vector<double>& v, std::size_t i) {
-    const std::size_t n = v.size() / 3;
-    return {v[i], v[n + i], v[2 * n + i]};
-  }
-  Vec<Teme> place(std::size_t i) const { return vec(position, i); }
-  OrbitBound bound(std::size_t i) const {
-    return code[i] ? OrbitBound{} : orbit_bound(place(i), vec(velocity, i));
-  }
-};
+OrbitBound bound_of(const BatchStates& states, std::size_t i) {
+  return states.code[i] ? OrbitBound{} : orbit_bound(states.place_m(i), states.speed_m_per_s(i));
+}
 
 class Search {
  public:
@@ -38,8 +29,8 @@ class Search {
       : batch_(batch),
         track_(track),
         sight_(track.sensor()),
-        grid_(grid),
-        step_s_(grid.step.seconds()),
+        grid_(grid, sim_seconds(longest_look_s)),
+        step_s_(grid_.step_s()),
         threads_(threads),
         options_(options),
         before_(batch.size()),
@@ -55,13 +46,13 @@ class Search {
     const std::size_t part =
         stride * std::max<std::size_t>(1, std::size_t(bound_holds_s / (step_s_ * double(stride))));
     propagate(0, before_);
-    for (std::size_t i = 0; i < batch_.size(); ++i) bound_before_[i] = before_.bound(i);
+    for (std::size_t i = 0; i < batch_.size(); ++i) bound_before_[i] = bound_of(before_, i);
     for (std::size_t first = 0;; first += part) {
-      const std::size_t last = std::min(first + part, grid_.steps);
+      const std::size_t last = std::min(first + part, grid_.steps());
       search_part(first, last, stride);
       if (options_.progress)
-        options_.progress(double(last) / double(std::max<std::size_t>(1, grid_.steps)));
-      if (last == grid_.steps) break;
+        options_.progress(double(last) / double(std::max<std::size_t>(1, grid_.steps())));
+      if (last == grid_.steps()) break;
     }
     return sorted();
   }
@@ -70,13 +61,14 @@ class Search {
   /// What one range of objects found.
   struct Found {
     std::vector<Sighting> seen;
-    std::vector<Crossing> crossings;
-    std::vector<LostObject> lost;
+    std::vector<SeenRun> runs;
+    std::vector<Stay> crossings;
   };
 
-  void propagate(std::size_t step, States& states) const {
+  void propagate(std::size_t step, BatchStates& states) const {
     const Utc utc = track_.sky().clock().utc(grid_.at(step));
-    batch_.propagate(utc.jd1, utc.jd2, states.position, states.velocity, states.code, &threads_);
+    batch_.propagate(utc.jd1, utc.jd2, states.position_m, states.velocity_m_per_s, states.code,
+                     &threads_);
   }
 
   void search_part(std::size_t first, std::size_t last, std::size_t stride) {
@@ -87,14 +79,15 @@ class Search {
       cameras_.push_back(track_.at(grid_.at(k)));
       lights_.emplace_back(track_.sky(), grid_.at(k));
     }
-    motion_ = camera_motion(track_, cameras_, step_s_);
+    motions_.clear();
+    for (std::size_t k = 0; k + 1 < cameras_.size(); ++k)
+      motions_.push_back(camera_motion(track_, cameras_[k], cameras_[k + 1]));
     propagate(last, ahead_);
     for (std::size_t i = 0; i < batch_.size(); ++i) {
-      const OrbitBound bound_ahead = ahead_.bound(i);
+      const OrbitBound bound_ahead = bound_of(ahead_, i);
       const OrbitBound b = either(bound_before_[i], bound_ahead);
       bound_before_[i] = bound_ahead;
-      reach_[i] =
-          motion_.with_earth ? b.turning_speed_m_per_s : b.speed_m_per_s + motion_.speed_m_per_s;
+      reach_[i] = track_.fixed_to_earth() ? b.turning_speed_m_per_s : b.speed_m_per_s;
     }
     hide(first, before_, hidden_before_);
     std::size_t from = first;
@@ -113,35 +106,42 @@ class Search {
   }
 
   /// Distances of all objects from being visible at one instant.
-  void hide(std::size_t step, const States& states, std::vector<double>& hidden) const {
+  void hide(std::size_t step, const BatchStates& states, std::vector<double>& hidden) const {
     const CameraMoment& now = camera(step);
     threads_.for_ranges(batch_.size(), 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        hidden[i] = states.code[i] || !now.there ? 0.0 : sight_.hidden_m(now, states.place(i));
+        hidden[i] = states.code[i] || !now.there ? 0.0 : sight_.hidden_m(now, states.place_m(i));
     });
   }
 
   const CameraMoment& camera(std::size_t step) const { return cameras_[step - first_instant_]; }
+  /// Of the camera from one instant to the next.
+  const CameraMotion& motion(std::size_t step) const { return motions_[step - first_instant_]; }
   const Sunlight& light(std::size_t step) const { return lights_[step - first_instant_]; }
 
-  /// Whether an object this far from being visible at two instants can be so between them.
-  bool may_come(std::size_t i, double hidden_a, double hidden_b, double range_m, double s) const {
+  /// Whether an object this far from being visible at two instants can be so between them, with a
+  /// camera that moves so.
+  bool may_come(std::size_t i, double hidden_a, double hidden_b, double range_m, double s,
+                const CameraMotion& motion) const {
     if (!(hidden_a > 0.0) || !(hidden_b > 0.0)) return true;
-    const double turn = motion_.turn_rad_per_s;
-    const double speed = turn > 0.0 ? reach_[i] + turn * (range_m + reach_[i] * s) : reach_[i];
-    return !(hidden_a + hidden_b > speed * s);
+    const double speed = reach_[i] + motion.speed_m_per_s;
+    const double turning =
+        motion.turn_rad_per_s > 0.0 ? motion.turn_rad_per_s * (range_m + speed * s) : 0.0;
+    return !(hidden_a + hidden_b > (speed + turning) * s);
   }
 
   void search_stride(std::size_t from, std::size_t to) {
     candidates_.clear();
+    motion_ = {};
+    for (std::size_t k = from; k < to; ++k) motion_ = either(motion_, motion(k));
     const double s = double(to - from) * step_s_;
     for (std::size_t i = 0; i < batch_.size(); ++i) {
       if (track_.platform() == i || (before_.code[i] && after_.code[i] && to > from)) continue;
       const double range_m = motion_.turn_rad_per_s > 0.0 && !before_.code[i]
-                                 ? norm(before_.place(i) - camera(from).apex_m)
+                                 ? norm(before_.place_m(i) - camera(from).apex_m)
                                  : 0.0;
       if (before_.code[i] || after_.code[i] ||
-          may_come(i, hidden_before_[i], hidden_after_[i], range_m, s))
+          may_come(i, hidden_before_[i], hidden_after_[i], range_m, s, motion_))
         candidates_.push_back(std::uint32_t(i));
     }
     constexpr std::size_t grain = 64;
@@ -181,7 +181,7 @@ class Search {
       if (!s.before_.code[object] && !s.after_.code[object] && !(s.motion_.turn_rad_per_s > 0.0)) {
         // It needs so many steps to come into sight from either end; one more on each side, so that
         // crossings are seen between neighbours.
-        const double step_m = s.reach_[object] * s.step_s_;
+        const double step_m = (s.reach_[object] + s.motion_.speed_m_per_s) * s.step_s_;
         begin += std::size_t(std::clamp(s.hidden_before_[object] / step_m, 0.0, double(to - from)));
         end -= std::size_t(std::clamp(s.hidden_after_[object] / step_m, 0.0, double(to - from)));
         if (begin > end) std::swap(begin, end);
@@ -198,35 +198,46 @@ class Search {
       double range_m = 0.0;
       for (std::size_t k = 0; k < count; ++k) {
         const CameraMoment& now = s.camera(begin + k);
-        const Vec<Teme> p = States::vec(position, k);
+        const Vec<Teme> p = BatchStates::vec(position, k);
         hidden[k] = code[k] || !now.there ? 0.0 : s.sight_.hidden_m(now, p);
         visible[k] = !code[k] && !(hidden[k] > 0.0) && s.sight_.visible(now, p);
         if (code[k]) continue;
         const double range = norm(p - now.apex_m);
         range_m = std::max(range_m, range);
         if (visible[k] && (begin + k > from || from == 0))
-          found.seen.push_back(
-              {object, std::uint32_t(begin + k), range, s.light(begin + k).fraction(p)});
+          note(object, begin + k, range, [&] { return s.light(begin + k).fraction(p); });
       }
-      if (!s.options_.crossings) return;
-      for (std::size_t k = 0; k + 1 < count; ++k)
-        if (!visible[k] && !visible[k + 1]) {
-          const double a = hidden[k], b = hidden[k + 1];
-          if (!s.may_come(object, a, b, range_m, s.step_s_)) continue;
-          const SimTime t = s.grid_.at(begin + k);
-          if (const auto when = crossing(object, t, a, t + s.grid_.step, b, range_m))
-            found.crossings.push_back({object, std::uint32_t(begin + k), *when});
-        }
+      if (!s.options_.stays) return;
+      for (std::size_t k = 0; k + 1 < count; ++k) {
+        const bool none = code[k] && code[k + 1];
+        const bool there = s.camera(begin + k).there || s.camera(begin + k + 1).there;
+        if (!visible[k] && !visible[k + 1] && !none && there)
+          look_between(object, begin + k, hidden[k], hidden[k + 1], range_m);
+      }
     }
 
-    /// An instant strictly between two at which it is visible, if there is one.
-    std::optional<SimTime> crossing(std::uint32_t object, SimTime a, double hidden_a, SimTime b,
-                                    double hidden_b, double range_m) const {
+    /// It is visible at this instant.
+    template <class Sunlit>
+    void note(std::uint32_t object, std::size_t step, double range_m, Sunlit&& sunlit) {
+      if (const auto of_grid = search.grid_.of_grid(step))
+        found.seen.push_back({object, *of_grid, range_m, sunlit()});
+      if (!search.options_.stays) return;
+      auto& runs = found.runs;
+      if (!runs.empty() && runs.back().object == object && runs.back().last + 1 == step)
+        ++runs.back().last;
+      else
+        runs.push_back({object, step, step});
+    }
+
+    /// Looks for an instant strictly between two neighbours at which it is visible.
+    void look_between(std::uint32_t object, std::size_t step, double hidden_a_m, double hidden_b_m,
+                      double range_m) {
       const Search& s = search;
-      return touch_between(
-          a, std::max(hidden_a, 0.0), b, std::max(hidden_b, 0.0), shortest_crossing_s,
+      const SimTime a = s.grid_.at(step), b = s.grid_.at(step + 1);
+      const auto when = touch_between(
+          a, std::max(hidden_a_m, 0.0), b, std::max(hidden_b_m, 0.0), shortest_crossing_s,
           [&](double from_m, double to_m, double seconds) {
-            return s.may_come(object, from_m, to_m, range_m, seconds);
+            return s.may_come(object, from_m, to_m, range_m, seconds, s.motion(step));
           },
           [&](SimTime t) {
             const CameraMoment now = s.track_.at(t);
@@ -236,6 +247,7 @@ class Search {
             if (s.sight_.visible(now, state.position_m)) return -1.0;
             return std::max(0.0, s.sight_.hidden_m(now, state.position_m));
           });
+      if (when) found.crossings.push_back({object, a, *when, *when, b});
     }
   };
 
@@ -249,10 +261,13 @@ class Search {
     all.seen.resize(place.back());
     for (const Found& f : found_)
       for (const Sighting& s : f.seen) all.seen[place[s.object]++] = s;
-    for (const Found& f : found_)
-      all.crossings.insert(all.crossings.end(), f.crossings.begin(), f.crossings.end());
-    std::stable_sort(all.crossings.begin(), all.crossings.end(),
-                     [](const Crossing& a, const Crossing& b) { return a.object < b.object; });
+    std::vector<SeenRun> runs;
+    std::vector<Stay> crossings;
+    for (const Found& f : found_) {
+      runs.insert(runs.end(), f.runs.begin(), f.runs.end());
+      crossings.insert(crossings.end(), f.crossings.begin(), f.crossings.end());
+    }
+    all.stays = stays_of(std::move(runs), std::move(crossings), grid_);
     for (const auto& [object, lost] : lost_) all.lost.push_back(lost);
     return all;
   }
@@ -260,19 +275,20 @@ class Search {
   const Sgp4Batch& batch_;
   const SensorTrack& track_;
   const Sight sight_;
-  const TimeGrid grid_;
+  const FineGrid grid_;
   const double step_s_;
   Threads& threads_;
   const SightingOptions& options_;
 
-  States before_, after_, ahead_;  // at both ends of a stride, and at the end of the part
+  BatchStates before_, after_, ahead_;  // at both ends of a stride, and at the end of the part
   std::vector<double> hidden_before_, hidden_after_;
-  std::vector<double> reach_;  // farthest that an object can move in the camera's axes [m/s]
+  std::vector<double> reach_;  // how fast objects can be in the axes of the bounds [m/s]
   std::vector<OrbitBound> bound_before_;
   std::vector<CameraMoment> cameras_;  // of the part, from step `first_instant_`
   std::vector<Sunlight> lights_;       // the same
   std::size_t first_instant_ = 0;
-  CameraMotion motion_;
+  std::vector<CameraMotion> motions_;  // of the part, between its instants
+  CameraMotion motion_;                // the greatest of the stride
   std::vector<std::uint32_t> candidates_;
   std::vector<Found> found_;
   std::map<std::uint32_t, LostObject> lost_;
@@ -283,28 +299,6 @@ class Search {
 Sightings find_sightings(const Sgp4Batch& batch, const SensorTrack& track, const TimeGrid& grid,
                          Threads& threads, const SightingOptions& options) {
   return Search(batch, track, grid, threads, options).run();
-}
-
-Sightings find_sightings_one_by_one(const Sgp4Batch& batch, const SensorTrack& track,
-                                    const TimeGrid& grid) {
-  const Sight sight(track.sensor());
-  Sightings all;
-  States states(batch.size());
-  for (std::size_t k = 0; k <= grid.steps; ++k) {
-    const CameraMoment now = track.at(grid.at(k));
-    const Sunlight light(track.sky(), grid.at(k));
-    batch.propagate(now.utc.jd1, now.utc.jd2, states.position, states.velocity, states.code);
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      if (states.code[i] || track.platform() == i) continue;
-      const Vec<Teme> p = states.place(i);
-      if (sight.visible(now, p))
-        all.seen.push_back(
-            {std::uint32_t(i), std::uint32_t(k), norm(p - now.apex_m), light.fraction(p)});
-    }
-  }
-  std::stable_sort(all.seen.begin(), all.seen.end(),
-                   [](const Sighting& a, const Sighting& b) { return a.object < b.object; });
-  return all;
 }
 
 }  // namespace dmise

@@ -4,17 +4,10 @@
 
 #include "core/base/parallel.h"
 #include "core/visibility/sight.h"
+#include "core/visibility/stays.h"
+#include "core/visibility/time_grid.h"
 
 namespace dmise {
-
-/// Instants `from + k step`, k = 0 .. steps.
-struct TimeGrid {
-  SimTime from, step;
-  std::size_t steps = 0;
-
-  SimTime at(std::size_t k) const { return {from.ns + std::int64_t(k) * step.ns}; }
-  SimTime last() const { return at(steps); }
-};
 
 /// An object that is visible at one instant of the grid.
 struct Sighting {
@@ -26,13 +19,6 @@ struct Sighting {
   bool operator==(const Sighting&) const = default;
 };
 
-/// An object that comes into sight and leaves between two instants of the grid.
-struct Crossing {
-  std::uint32_t object = 0;
-  std::uint32_t step = 0;  // the instant before
-  SimTime time;            // when it is visible
-};
-
 /// An object that the propagator has no state for at some instant looked at.
 struct LostObject {
   std::uint32_t object = 0;
@@ -41,27 +27,29 @@ struct LostObject {
 };
 
 struct Sightings {
-  std::vector<Sighting> seen;       // by object, then time
-  std::vector<Crossing> crossings;  // by object, then time
-  std::vector<LostObject> lost;     // by object
+  std::vector<Sighting> seen;    // by object, then time
+  std::vector<Stay> stays;       // by object, then time
+  std::vector<LostObject> lost;  // by object
 };
 
 struct SightingOptions {
-  bool crossings = true;
+  bool stays = true;
   std::function<void(double share)> progress;  // called from the calling thread, share in [0, 1]
 };
 
-/// A crossing that lasts no longer than this may be missed.
+/// A stay that lasts no longer than this may be missed.
 inline constexpr double shortest_crossing_s = 0.02;
 
 /// Who is visible when: equal, to the bit, to asking `Sight` about every object at every instant,
 /// for a small part of the work. States some minutes apart and a bound on each object's speed
 /// (`orbit_bound`) say between which instants it can't come into sight; only the rest is looked at,
-/// and cut in halves between instants, so that what crosses between them is found as well.
+/// and cut in halves between instants, so that what crosses between them is found as well. Stays
+/// are looked for every 10 s where the grid is coarser, so that they do not depend on it; an
+/// absence shorter than that is not noticed.
 Sightings find_sightings(const Sgp4Batch& batch, const SensorTrack& track, const TimeGrid& grid,
                          Threads& threads, const SightingOptions& options = {});
 
-/// The same by asking for every object at every instant: slow, for comparison. No crossings.
+/// The same by asking for every object at every instant: slow, for comparison. No stays.
 Sightings find_sightings_one_by_one(const Sgp4Batch& batch, const SensorTrack& track,
                                     const TimeGrid& grid);
 

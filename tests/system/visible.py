@@ -44,6 +44,9 @@ def test(binary, directory):
     both = list(csv.DictReader(io.StringIO(printed)))
     check([x for x in both if x["sensor"] == "alpha"] == rows, "three threads find the same passes, to the byte")
     check({x["sensor"] for x in both} == {"alpha", "beta"}, "without --sensor all sensors are told, one header")
+    coarse = call(binary, scenario, "--csv", "--print-only", "--step", 3500).stdout
+    check(list(csv.DictReader(io.StringIO(coarse))) == both,
+          "instants 3500 s apart, the last step shorter, have the same passes")
     lit = list(csv.DictReader(io.StringIO(call(binary, scenario, "--csv", "--print-only", "--sunlit").stdout)))
     check(lit == [x for x in both if float(x["lit_s"]) > 0], "--sunlit leaves the passes with light")
     night = list(csv.DictReader(io.StringIO(call(binary, scenario, "--csv", "--print-only", "--night").stdout)))

@@ -82,9 +82,22 @@ TEST(Sightings, AnyNumberOfThreadsFindsTheSame) {
              4);
   const Sightings a = one.sightings(), b = four.sightings();
   expect_equal(a, b);
-  ASSERT_EQ(a.crossings.size(), b.crossings.size());
-  for (std::size_t k = 0; k < a.crossings.size(); ++k)
-    EXPECT_EQ(a.crossings[k].time.ns, b.crossings[k].time.ns);
+  EXPECT_GT(a.stays.size(), 100u);
+  EXPECT_EQ(a.stays, b.stays);
+}
+
+/// Every sighting of `every_second` lies within one of the stays.
+void expect_covered(const std::vector<Stay>& stays, const std::vector<Sighting>& every_second) {
+  auto stay = stays.begin();
+  for (const Sighting& s : every_second) {
+    const SimTime t = sim_seconds(s.step);
+    while (stay != stays.end() &&
+           (stay->object < s.object || (stay->object == s.object && stay->out_after < t)))
+      ++stay;
+    ASSERT_NE(stay, stays.end()) << s.object << " at " << s.step << " s";
+    EXPECT_TRUE(stay->object == s.object && stay->out_before <= t && t <= stay->out_after)
+        << s.object << " at " << s.step << " s";
+  }
 }
 
 // What is found on a grid of one second, between the instants of a grid of one minute.
@@ -92,17 +105,81 @@ TEST(Sightings, AnObjectThatOnlyCrossesBetweenInstantsIsFound) {
   const auto sensor = test::at_atlanta(test::flat_camera(8, 8));
   Watch fine(sensor, population(4000), "2018-01-20T06:00:00Z", 7200, 1);
   Watch coarse(sensor, population(4000), "2018-01-20T06:00:00Z", 7200, 60);
-  const Sightings every_second = fine.one_by_one(), found = coarse.sightings();
-  std::set<std::pair<std::uint32_t, std::uint32_t>> minutes;  // object, minute
-  for (const Sighting& s : found.seen) {
-    minutes.insert({s.object, s.step});
-    if (s.step > 0) minutes.insert({s.object, s.step - 1});
+  const Sightings found = coarse.sightings();
+  std::set<std::pair<std::uint32_t, std::uint32_t>> at_instants;  // object, minute
+  for (const Sighting& s : found.seen) at_instants.insert({s.object, s.step});
+  std::size_t between = 0;
+  for (const Stay& s : found.stays) {
+    const auto minute = std::uint32_t(s.in_last.seconds() / 60);
+    between += s.in_first.seconds() > minute * 60.0 && !at_instants.count({s.object, minute});
   }
-  const std::size_t at_instants = minutes.size();
-  for (const Crossing& c : found.crossings) minutes.insert({c.object, c.step});
-  EXPECT_GT(minutes.size(), at_instants + 20);
-  for (const Sighting& s : every_second.seen)
-    EXPECT_TRUE(minutes.count({s.object, s.step / 60})) << s.object << " at " << s.step << " s";
+  EXPECT_GT(between, 20u);
+  expect_covered(found.stays, fine.one_by_one().seen);
+}
+
+struct MovingCamera {
+  const char* name;
+  SensorConfig sensor;
+  std::optional<std::size_t> platform, target;
+};
+
+/// One that keeps to the stars and one that follows a low object from the ground, and three ways to
+/// point from a low orbit.
+std::vector<MovingCamera> moving_cameras() {
+  constexpr std::size_t low = 0, host = 2, other = 6;
+  SensorConfig ground = test::at_atlanta(test::flat_camera(20, 20));
+  SensorConfig space{.name = "imager", .place = PlatformConfig{"3"}};
+  space.camera.optics = test::flat_camera(20, 20);
+  std::vector<MovingCamera> all;
+  ground.pointing = PointSky{.ra_deg = 80, .dec_deg = 10};
+  all.push_back({"stars", ground, std::nullopt, std::nullopt});
+  ground.camera.optics = test::flat_camera(60, 60);
+  ground.pointing = PointTarget{"1"};
+  all.push_back({"follows", ground, std::nullopt, low});
+  space.pointing = PointUp{};
+  all.push_back({"orbit, zenith", space, host, std::nullopt});
+  space.pointing = PointSky{.ra_deg = 80, .dec_deg = 10};
+  all.push_back({"orbit, stars", space, host, std::nullopt});
+  space.pointing = PointTarget{"7"};
+  all.push_back({"orbit, follows", space, host, other});
+  return all;
+}
+
+TEST(Sightings, AMovingCameraHasTheSameStaysOnAnyGrid) {
+  for (const MovingCamera& c : moving_cameras()) {
+    const auto stays = [&](double step_s) {
+      Watch watch(c.sensor, population(800), "2018-01-20T06:00:00Z", 43200, step_s, c.platform,
+                  c.target);
+      return watch.sightings().stays;
+    };
+    const auto every_10_s = stays(10);
+    EXPECT_GT(every_10_s.size(), 100u) << c.name;
+    for (const double step_s : {60.0, 300.0, 3000.0, 3600.0})  // 3000 s: the last is 1200 s
+      EXPECT_EQ(stays(step_s), every_10_s) << c.name << ", " << step_s;
+  }
+}
+
+TEST(Sightings, AMovingCameraMissesNothingBetweenInstantsAnHourApart) {
+  for (const MovingCamera& c : moving_cameras()) {
+    Watch hours(c.sensor, population(800), "2018-01-20T06:00:00Z", 10800, 3600, c.platform,
+                c.target);
+    Watch seconds(c.sensor, population(800), "2018-01-20T06:00:00Z", 10800, 1, c.platform,
+                  c.target);
+    const auto every_second = seconds.one_by_one().seen;
+    EXPECT_GT(every_second.size(), 500u) << c.name;
+    expect_covered(hours.sightings().stays, every_second);
+  }
+}
+
+TEST(Sightings, TheSameObjectIsFoundAsOftenAsItComesWithinAStep) {
+  const auto sensor = test::at_atlanta(test::all_sky_camera(), 10.0);
+  Watch day(sensor, population(300), "2018-01-20T06:00:00Z", 86400, 86400);
+  const auto stays = day.sightings().stays;
+  std::size_t again = 0;
+  for (std::size_t k = 1; k < stays.size(); ++k) again += stays[k].object == stays[k - 1].object;
+  EXPECT_GT(again, 300u);
+  Watch fine(sensor, population(300), "2018-01-20T06:00:00Z", 86400, 10);
+  EXPECT_EQ(stays, fine.sightings().stays);
 }
 
 TEST(Sightings, TheCamerasOwnHostIsLeftOut) {

@@ -52,7 +52,7 @@ struct Watch {
         std::optional<std::size_t> platform = std::nullopt,
         std::optional<std::size_t> target = std::nullopt, int thread_count = 1)
       : sensor(sensor_),
-        grid{{0}, sim_seconds(step_s), std::size_t(std::lround(duration_s / step_s))},
+        grid(covering_grid({0}, sim_seconds(duration_s), sim_seconds(step_s))),
         sky(Clock(parse_utc(start)), grid.from, grid.last()),
         batch(elements),
         track(sensor, sky, batch, platform, target),
@@ -61,7 +61,7 @@ struct Watch {
 
   Sightings sightings() { return find_sightings(batch, track, grid, threads); }
   Sightings one_by_one() { return find_sightings_one_by_one(batch, track, grid); }
-  std::vector<Pass> passes() { return passes_of(batch, track, grid, sightings(), threads); }
+  std::vector<Pass> passes() { return passes_of(batch, track, sightings().stays, threads); }
 };
 
 inline std::vector<MeanElements> debian_catalogue() {
