@@ -18,8 +18,13 @@ constexpr double widest_shift_rad = 1.0 * deg;
 /// Accelerations of object and observer together: twice that at the Earth's surface.
 constexpr double greatest_pull_m_per_s2 = 20.0;
 
-/// A path that touches the field for no longer than this part of the exposure may be missed.
+/// A path that touches the field for no longer than this part of the exposure, or than this, may be
+/// missed.
 constexpr double shortest_share = 1e-3;
+constexpr double shortest_touch_s = 0.02;
+
+/// The camera's turning is taken from attitudes no farther apart than this.
+constexpr double longest_look_s = 10.0;
 
 /// Directions that may touch the frame, around a camera that moves and turns during an exposure.
 class FieldCone {
@@ -33,16 +38,19 @@ class FieldCone {
     for (const SimTime t : {exposure.start, exposure.middle, exposure.end})
       moments_.emplace(t.ns, at(t));
     half_s_ = 0.5 * exposure.seconds();
-    // A quarter more than the attitudes at start, middle and end show.
+    // A quarter more than attitudes show: those at start, middle and end, and more in a long
+    // exposure, in which the camera may turn there and back.
     const auto turned = [&](SimTime a, SimTime b) {
       const auto turn = moment(a).camera * moment(b).camera.inverse();
       const auto& m = turn.m;
       return std::atan2(std::hypot(m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]),
                         m[0][0] + m[1][1] + m[2][2] - 1.0);
     };
-    turn_rad_per_s_ =
-        1.25 / half_s_ *
-        std::max(turned(exposure.start, exposure.middle), turned(exposure.middle, exposure.end));
+    const int halves = std::max(1, int(std::ceil(half_s_ / longest_look_s)));
+    for (int k = 0; k < 2 * halves; ++k) {
+      const SimTime a = looked_at(k, halves), b = looked_at(k + 1, halves);
+      turn_rad_per_s_ = std::max(turn_rad_per_s_, 1.25 * halves / half_s_ * turned(a, b));
+    }
   }
 
   bool touched_by(std::size_t object) {
@@ -63,7 +71,7 @@ class FieldCone {
       return a_m + b_m <= speed_in_axes * s;
     };
     const auto distance_m = [&](SimTime t) { return outside_m(object, t); };
-    const double shortest_s = shortest_share * exposure.seconds();
+    const double shortest_s = std::min(shortest_touch_s, shortest_share * exposure.seconds());
     return touch_between(exposure.start, start_m, exposure.middle, middle_m, shortest_s, may_touch,
                          distance_m) ||
            touch_between(exposure.middle, middle_m, exposure.end, end_m, shortest_s, may_touch,
@@ -75,6 +83,12 @@ class FieldCone {
     Rotation<CameraFrame, Gcrs> camera;
     ObserverState observer;
   };
+  /// Instant `k` of 2 `halves`, evenly before and after the middle.
+  SimTime looked_at(int k, int halves) const {
+    const auto& [frame, start, middle, end] = view_.times();
+    if (k <= halves) return {start.ns + (middle.ns - start.ns) * k / halves};
+    return {middle.ns + (end.ns - middle.ns) * (k - halves) / halves};
+  }
   Moment at(SimTime t) const { return {view_.camera_from_gcrs(t), view_.observer(t)}; }
   /// Worked out once for each instant that is asked for.
   const Moment& moment(SimTime t) {

@@ -1,0 +1,62 @@
+#include "sensors/pipeline/objects_in_field.h"
+
+#include <algorithm>
+#include <set>
+
+#include "sensors/pipeline/view.h"
+#include "tests/pipeline/harness.h"
+#include "tests/support/data.h"
+
+namespace dmise {
+namespace {
+
+std::string from_orbit(const std::string& pointing, double exposure_s) {
+  const std::string length = std::to_string(exposure_s);
+  return "simulation: {start: 2018-01-21T00:15:00Z, duration_s: " + length +
+         ", tick_s: 30}\n"
+         "objects: [{catalogue: gpredict}]\n"
+         "sensors: [{name: a, platform: '25544', camera: geo-watch, pointing: {" +
+         pointing + "}, exposure_s: " + length + ", cadence_s: " + length + "}]\n";
+}
+
+/// Objects whose direction falls on the frame at one second of the exposure at least.
+std::set<std::size_t> asked_for_every_second(const View& view) {
+  const auto& world = view.world();
+  const Optics& optics = view.sensor().camera.optics;
+  std::set<std::size_t> found;
+  for (SimTime t = view.times().start; t < view.times().end; t.ns += 1'000'000'000) {
+    const auto camera = view.camera_from_gcrs(t);
+    const Vec<Gcrs> from_m = view.observer(t).position_m;
+    for (std::size_t i = 0; i < world.object_count(); ++i) {
+      if (view.platform() == i || !world.has_state(i, view.times().start) ||
+          !world.has_state(i, view.times().middle) || !world.has_state(i, view.times().end))
+        continue;
+      const Vec<CameraFrame> line = camera * (world.motion(i, t).position_m - from_m);
+      if (!(line.z > 0.0)) continue;
+      const double f = optics.focal_length_px();
+      if (std::abs(line.x) * f <= 0.5 * optics.columns * line.z &&
+          std::abs(line.y) * f <= 0.5 * optics.rows * line.z)
+        found.insert(i);
+    }
+  }
+  return found;
+}
+
+// A camera in low orbit turns by 230 deg in an hour, and much faster for a while where it follows
+// what passes near: its attitudes at start, middle and end do not bound that.
+TEST(ObjectsInField, AnHoursExposureOfATurningCameraMissesNoObject) {
+  DMISE_NEEDS_FILE(test::catalogue_path("satellites.dat"));
+  for (const char* pointing : {"tracking: fixed", "target: '29499', tracking: target"}) {
+    test::Stage stage(from_orbit(pointing, 3600.0));
+    const auto& sensor = stage.scenario.sensors[0];
+    const View view(sensor, frame_times(sensor, 1), stage.world);
+    const auto every_second = asked_for_every_second(view);
+    const auto found = objects_in_field(view);
+    EXPECT_GE(every_second.size(), 5u) << pointing;
+    for (const std::size_t i : every_second)
+      EXPECT_TRUE(std::binary_search(found.begin(), found.end(), i)) << pointing << ", " << i;
+  }
+}
+
+}  // namespace
+}  // namespace dmise
