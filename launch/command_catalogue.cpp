@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -45,12 +46,15 @@ struct StatesOptions {
   std::string at, frame, earth_orientation;
 };
 
-/// A Julian date such as 2458837.5, or an ISO 8601 time.
+/// A Julian date in plain decimals such as 2458837.5, or an ISO 8601 time.
 Utc parse_instant(const std::string& text) {
   double jd = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), jd);
   if (error == std::errc{} && end == text.data() + text.size()) {
+    if (!std::isfinite(jd)) throw ConfigError("--at: must be a finite Julian date, got " + text);
     if (jd < 2.3e6 || jd > 2.6e6) throw ConfigError("--at: Julian date out of range, got " + text);
+    if (text.find_first_of("eE") != std::string::npos)
+      throw ConfigError("--at: must be a Julian date without an exponent, got " + text);
     // Digits before the point and after it apart, so that no precision is lost.
     const auto point = text.find('.');
     const double days = std::strtod(text.substr(0, point).c_str(), nullptr);
@@ -64,6 +68,20 @@ Utc parse_instant(const std::string& text) {
     throw ConfigError(
         "--at: must be a UTC time such as 2018-01-21T00:30:00Z or a Julian date, got " + text);
   }
+}
+
+void need_elements(const CatalogueFile& catalogue) {
+  if (catalogue.elements.empty())
+    throw ConfigError(catalogue.refused.empty()
+                          ? catalogue.source + ": holds no element sets"
+                          : catalogue.describe(catalogue.refused[0]) + " (no element set is left)");
+}
+
+/// The report comes before the refusal: it says what was found instead.
+void print_info(const FileOptions& options) {
+  const auto catalogue = read(options);
+  std::fputs(format(report_of(catalogue)).c_str(), stdout);
+  need_elements(catalogue);
 }
 
 void append(std::string& row, double x) {
@@ -84,10 +102,7 @@ void append(std::string& row, const Vec<F>& position_m, const Vec<F>& velocity_m
 void print_states(const StatesOptions& options) {
   const Utc utc = parse_instant(options.at);
   const auto catalogue = read(options.file);
-  if (catalogue.elements.empty())
-    throw ConfigError(catalogue.refused.empty()
-                          ? catalogue.source + ": holds no element sets"
-                          : catalogue.describe(catalogue.refused[0]) + " (no element set is left)");
+  need_elements(catalogue);
   for (const auto& problem : catalogue.refused)
     std::fprintf(stderr, "note: %s (left out)\n", catalogue.describe(problem).c_str());
   for (const auto& problem : catalogue.warnings)
@@ -167,8 +182,7 @@ void add_catalogue_command(CLI::App& app) {
   auto* info = command->add_subcommand(
       "info", "What a file holds: objects, orbits, epochs, what was refused");
   add_file_options(*info, *info_options);
-  info->callback(
-      [info_options] { std::fputs(format(report_of(read(*info_options))).c_str(), stdout); });
+  info->callback([info_options] { print_info(*info_options); });
 
   auto synthetic = std::make_shared<SynthOptions>();
   auto* synth = command->add_subcommand(

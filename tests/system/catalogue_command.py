@@ -93,12 +93,19 @@ def test(binary, directory):
     _, err = dmise("states", directory / "none.tle", "--at", "2458139.75", code=2)
     check("none.tle:1: " in err and err.count("\n") == 1, "a file without a set is refused with its line")
 
+    out, err = dmise("info", directory / "none.tle", code=2)
+    check("refused               1" in out and "none.tle:1: " in err, "info reports on it and refuses it as well")
+
     (directory / "empty.json").write_text("[]")
     _, err = dmise("states", directory / "empty.json", "--at", "2458139.75", code=2)
     check("empty.json: holds no element sets" in err, "an empty list is refused")
 
     for arguments, said in ((("states", path, "--at", "tomorrow"), "--at: must be a UTC time"),
                             (("states", path, "--at", "1e9"), "--at: Julian date out of range, got 1e9"),
+                            (("states", path, "--at", "nan"), "--at: must be a finite Julian date, got nan"),
+                            (("states", path, "--at", "inf"), "--at: must be a finite Julian date, got inf"),
+                            (("states", path, "--at", "2.4588375e6"),
+                             "--at: must be a Julian date without an exponent, got 2.4588375e6"),
                             (("states", path), "--at is required"),
                             (("states", path, "--at", "2458139.75", "--frame", "j2000"), "--frame: j2000 not in"),
                             (("info", directory / "absent"), "absent: No such file"),
