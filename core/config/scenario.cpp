@@ -14,6 +14,8 @@
 #include "core/config/yaml_reader.h"
 #include "core/optics/psf_plan.h"
 #include "core/sky/airmass.h"
+#include "core/sky/sun_moon.h"
+#include "core/time/clock.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
@@ -180,13 +182,26 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTi
   return sensor;
 }
 
+/// Both ends of the run must have a Sun, so that no run stops on the way for want of one.
+void check_span(const Scenario& scenario, const YamlValue& start, const YamlValue& duration) {
+  const Clock clock(parse_utc(scenario.start_utc));
+  const std::string span = std::to_string(ephemeris_first_year) + " to " +
+                           std::to_string(ephemeris_last_year) + ", the years of the ephemeris";
+  if (!ephemeris_covers(clock.tt({0}))) start.fail("must be within " + span);
+  const SimTime margin = sim_seconds(1.0);  // slopes look a little beyond the last tick
+  if (!ephemeris_covers(clock.tt(scenario.time_of(scenario.last_tick()) + margin)))
+    duration.fail("the run must end within " + span);
+}
+
 void read_simulation(const YamlValue& value, Scenario& scenario) {
   YamlMap map(value);
   const auto start = map.require("start");
   scenario.start_utc = start.text();
   try {
     parse_utc(scenario.start_utc);
-  } catch (const Error& e) {
+  } catch (const BeforeLeapSeconds&) {
+    start.fail("must not be before 1972, when UTC was not yet whole seconds from TAI");
+  } catch (const Error&) {
     start.fail("must be a UTC time such as 2018-01-21T00:30:00Z");
   }
   scenario.duration = sim_seconds(map.number("duration_s", {.least = 1e-3, .most = 3.2e8}));
@@ -197,6 +212,7 @@ void read_simulation(const YamlValue& value, Scenario& scenario) {
     scenario.earth_orientation_path = find_beside(eop->text(), value.file());
     if (scenario.earth_orientation_path.empty()) eop->fail("there is no such file");
   }
+  check_span(scenario, start, map.require("duration_s"));
   map.done();
 }
 

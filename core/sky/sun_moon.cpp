@@ -45,9 +45,9 @@ Vec<Gcrs> moon_m(const Tt& tt) {
 }
 
 SolarSystem solar_system(const Tt& tt, Ephemeris ephemeris) {
-  const double years = julian_years_since_j2000(tt);
-  if (!(std::abs(years) <= 100.0))
-    throw Error("the Sun's ephemeris covers 1900 to 2100, got " + std::to_string(2000 + years));
+  if (!ephemeris_covers(tt))
+    throw Error("the Sun's ephemeris covers 1900 to 2100, got " +
+                std::to_string(2000 + julian_years_since_j2000(tt)));
 
   SolarSystem s{.moon_m = moon_m(tt)};
   if (ephemeris == Ephemeris::almanac) {

@@ -12,6 +12,14 @@ struct SolarSystem {
   Vec<Gcrs> earth_velocity_m_per_s;  // barycentric
 };
 
+/// Years that `solar_system` covers.
+inline constexpr int ephemeris_first_year = 1900, ephemeris_last_year = 2100;
+
+inline bool ephemeris_covers(const Tt& tt) {
+  const double year = 2000.0 + julian_years_since_j2000(tt);
+  return year >= ephemeris_first_year && year <= ephemeris_last_year;
+}
+
 /// Rungs of a ladder: accuracy against time.
 enum class Ephemeris {
   almanac,  // Astronomical Almanac, page C5: 0.01 deg, 1950 to 2050

@@ -67,7 +67,10 @@ Utc parse_utc(std::string_view text) {
   const int day = in.number(2);
   double zero = 0.0, mjd = 0.0;
   if (eraCal2jd(year, month, day, &zero, &mjd) != 0) in.fail("no such day");
-  if (year < 1972) in.fail("before 1972");
+  if (year < 1972)
+    throw BeforeLeapSeconds(
+        "not a UTC time: before 1972, when UTC was not yet whole seconds from TAI, got \"" +
+        std::string(text) + "\"");
   UtcInstant utc{static_cast<std::int64_t>(mjd), 0};
   if (in.at_end()) return to_julian_date(utc);
 

@@ -2,13 +2,20 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/error.h"
 #include "core/time/julian_date.h"
 
 namespace dmise {
 
+/// A well-formed time before 1972, when UTC began to differ from TAI by whole seconds.
+struct BeforeLeapSeconds : ConfigError {
+  using ConfigError::ConfigError;
+};
+
 /// Reads `2018-01-20T23:40:00Z` or with up to nine decimals of a second; the `Z` may be left out, a
 /// blank may stand for the `T`, and a date alone is its midnight. `23:59:60` is a time on days that
-/// end with a leap second only. Throws `ConfigError` with the reason and the text.
+/// end with a leap second only. Throws `ConfigError` with the reason and the text;
+/// `BeforeLeapSeconds` before 1972.
 Utc parse_utc(std::string_view text);
 
 /// `2018-01-20T23:40:00.000Z` with `decimals` in [0, 9] of a second, rounded down to them so that

@@ -87,6 +87,20 @@ TEST_F(ScenarioFile, SaysWhereAndWhy) {
             "7:17: sensors[0].exposure_s: the first exposure ends after the run does, got 20");
 }
 
+// eraEpv00 covers 1900 to 2100; UTC runs in whole leap seconds from 1972 on (IERS Bulletin C).
+TEST_F(ScenarioFile, RefusesARunBeyondTheEphemerisOrBeforeLeapSeconds) {
+  EXPECT_EQ(complaint(good, "2018-01-21T00:30:00Z", "2150-01-21T00:30:00Z"),
+            "1:21: simulation.start: must be within 1900 to 2100, the years of the ephemeris, got "
+            "2150-01-21T00:30:00Z");
+  EXPECT_EQ(complaint(good, "2018-01-21T00:30:00Z, duration_s: 120",
+                      "2099-12-31T00:30:00Z, duration_s: 8640000"),
+            "1:55: simulation.duration_s: the run must end within 1900 to 2100, the years of the "
+            "ephemeris, got 8640000");
+  EXPECT_EQ(complaint(good, "2018-01-21T00:30:00Z", "1971-12-31T00:30:00Z"),
+            "1:21: simulation.start: must not be before 1972, when UTC was not yet whole seconds "
+            "from TAI, got 1971-12-31T00:30:00Z");
+}
+
 TEST_F(ScenarioFile, RefusesTwoNodesOfOneName) {
   const std::string second = good.substr(good.find("  - name"));
   EXPECT_EQ(complaint(good + second, "seed: 1", "seed: 1"),
