@@ -17,9 +17,9 @@ namespace dmise {
 struct ObjectInfo {
   std::uint32_t catalogue_number = 0;  // up to 9 digits
   std::string name;
-  std::string designator;              // international designator, may be empty
+  std::string designator;  // international designator, may be empty
   Geometry geometry;
-  double element_age_s = 0.0;          // start of the run minus the epoch of the elements
+  double element_age_s = 0.0;             // start of the run minus the epoch of the elements
   std::optional<SunTrackingPanel> panel;  // of an object with an attitude
 
   bool operator==(const ObjectInfo&) const = default;
@@ -33,17 +33,17 @@ struct ObjectRoster {
 };
 
 /// States of all objects at one tick in GCRS, structure of arrays. Slope is the derivative of the
-/// position (symmetric difference of the propagator), for interpolation; velocity is the model's own.
-/// An object with `code` != 0 has no state: its numbers are 0. Few objects have an attitude: theirs
-/// stand in arrays of their own, in the order of `attitude_object`.
+/// position (symmetric difference of the propagator), for interpolation; velocity is the model's
+/// own. An object with `code` != 0 has no state: its numbers are 0. Few objects have an attitude:
+/// theirs stand in arrays of their own, in the order of `attitude_object`.
 struct ObjectStates {
   Tick tick = 0;
   SimTime time;
   std::size_t count = 0;
-  std::vector<double> position_m;         // 3 x count: all x, all y, all z
-  std::vector<double> slope_m_per_s;      // 3 x count
-  std::vector<double> velocity_m_per_s;   // 3 x count
-  std::vector<std::uint8_t> code;         // count; 0 or the error code of the motion model
+  std::vector<double> position_m;               // 3 x count: all x, all y, all z
+  std::vector<double> slope_m_per_s;            // 3 x count
+  std::vector<double> velocity_m_per_s;         // 3 x count
+  std::vector<std::uint8_t> code;               // count; 0 or the error code of the motion model
   std::vector<std::uint32_t> attitude_object;   // m indices of objects, ascending
   std::vector<double> gcrs_from_body;           // 4 x m: all w, x, y, z of unit quaternions
   std::vector<double> attitude_rate_rad_per_s;  // 3 x m: angular velocity, GCRS axes
@@ -82,11 +82,12 @@ struct EnvironmentState {
   Tick tick = 0;
   SimTime time;
   EarthOrientation earth;
-  Vec<Gcrs> sun_m;                       // geocentric, geometric, of date in GCRS
-  Vec<Gcrs> moon_m;                      // geocentric
-  Vec<Gcrs> earth_barycentric_m;         // of the Earth's centre, ICRS axes
-  Vec<Gcrs> earth_velocity_m_per_s;      // barycentric, for annual aberration
-  double tt_jd1 = 0.0, tt_jd2 = 0.0;     // two-part TT Julian date of `time` [days]
+  Vec<Gcrs> sun_m;                    // geocentric, geometric, of date in GCRS
+  Vec<Gcrs> moon_m;                   // geocentric
+  Vec<Gcrs> earth_barycentric_m;      // of the Earth's centre, ICRS axes
+  Vec<Gcrs> earth_velocity_m_per_s;   // barycentric, for annual aberration
+  double tt_jd1 = 0.0, tt_jd2 = 0.0;  // two-part TT Julian date of `time` [days]
+  Vec<Gcrs> moon_velocity_m_per_s;    // geocentric: the derivative of `moon_m`
 
   bool operator==(const EnvironmentState&) const = default;
 };

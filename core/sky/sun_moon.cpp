@@ -44,12 +44,18 @@ Vec<Gcrs> moon_m(const Tt& tt) {
   return from_au(pv[0]);
 }
 
+Vec<Gcrs> moon_velocity_m_per_s(const Tt& tt) {
+  double pv[2][3];
+  eraMoon98(tt.jd1, tt.jd2, pv);
+  return from_au_per_day(pv[1]);
+}
+
 SolarSystem solar_system(const Tt& tt, Ephemeris ephemeris) {
   if (!ephemeris_covers(tt))
     throw Error("the Sun's ephemeris covers 1900 to 2100, got " +
                 std::to_string(2000 + julian_years_since_j2000(tt)));
 
-  SolarSystem s{.moon_m = moon_m(tt)};
+  SolarSystem s{.moon_m = moon_m(tt), .moon_velocity_m_per_s = moon_velocity_m_per_s(tt)};
   if (ephemeris == Ephemeris::almanac) {
     s.sun_m = sun_by_almanac_m(tt);
     s.earth_barycentric_m = -s.sun_m;

@@ -10,6 +10,7 @@ struct SolarSystem {
   Vec<Gcrs> moon_m;                  // from the Earth's centre
   Vec<Gcrs> earth_barycentric_m;     // the Earth's centre from the barycentre
   Vec<Gcrs> earth_velocity_m_per_s;  // barycentric
+  Vec<Gcrs> moon_velocity_m_per_s;   // from the Earth's centre
 };
 
 /// Years that `solar_system` covers.
@@ -31,6 +32,8 @@ Vec<Gcrs> sun_by_almanac_m(const Tt& tt);
 
 /// Moon by ERFA eraMoon98 (Meeus after ELP 2000-82): 10 arcsec of longitude, 4 of latitude.
 Vec<Gcrs> moon_m(const Tt& tt);
+/// Its derivative, by the same.
+Vec<Gcrs> moon_velocity_m_per_s(const Tt& tt);
 
 /// Throws `Error` outside 1900 to 2100. The almanac's rung takes the barycentre for the Sun's
 /// centre: its velocity is good to 30 m/s (20 mas of aberration).

@@ -50,7 +50,8 @@ EnvironmentState EnvironmentActor::common(Tick tick) const {
           .earth_barycentric_m = bodies.earth_barycentric_m,
           .earth_velocity_m_per_s = bodies.earth_velocity_m_per_s,
           .tt_jd1 = tt.jd1,
-          .tt_jd2 = tt.jd2};
+          .tt_jd2 = tt.jd2,
+          .moon_velocity_m_per_s = bodies.moon_velocity_m_per_s};
 }
 
 SiteState EnvironmentActor::site(const SensorConfig& sensor, Tick tick) const {

@@ -35,6 +35,7 @@ Encoded encode_body(const EnvironmentState& state) {
   put(message.mutable_moon_m(), state.moon_m);
   put(message.mutable_earth_barycentric_m(), state.earth_barycentric_m);
   put(message.mutable_earth_velocity_m_per_s(), state.earth_velocity_m_per_s);
+  put(message.mutable_moon_velocity_m_per_s(), state.moon_velocity_m_per_s);
   message.set_tt_jd1_days(state.tt_jd1);
   message.set_tt_jd2_days(state.tt_jd2);
   return {MessageKind::environment_state, message.SerializeAsString(), {}};
@@ -60,6 +61,8 @@ EnvironmentState decode_environment(std::string_view payload) {
   state.earth_barycentric_m = take_vec<Gcrs>(message.earth_barycentric_m(), "earth_barycentric_m");
   state.earth_velocity_m_per_s =
       take_vec<Gcrs>(message.earth_velocity_m_per_s(), "earth_velocity_m_per_s");
+  state.moon_velocity_m_per_s =
+      take_vec<Gcrs>(message.moon_velocity_m_per_s(), "moon_velocity_m_per_s");
   state.tt_jd1 = message.tt_jd1_days();
   state.tt_jd2 = message.tt_jd2_days();
   return state;

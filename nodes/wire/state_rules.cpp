@@ -156,6 +156,7 @@ void check(const EnvironmentState& state) {
   vector_within(state.moon_m, distance_limit_m, "moon_m");
   vector_within(state.earth_barycentric_m, distance_limit_m, "earth_barycentric_m");
   vector_within(state.earth_velocity_m_per_s, speed_limit_m_per_s, "earth_velocity_m_per_s");
+  vector_within(state.moon_velocity_m_per_s, speed_limit_m_per_s, "moon_velocity_m_per_s");
   in_range(state.tt_jd1, -1e8, 1e8, "tt_jd1_days");
   in_range(state.tt_jd2, -1e8, 1e8, "tt_jd2_days");
 }

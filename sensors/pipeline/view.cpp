@@ -12,7 +12,7 @@ View::View(const SensorConfig& sensor, const FrameTimes& times, const World& wor
       times_(times),
       world_(world),
       seed_(seed),
-      environment_(&world.environment(times.middle)),
+      environment_(world.environment(times.middle)),
       air_(world.site(sensor.name, times.middle)) {
   if (const auto* site = std::get_if<SiteConfig>(&sensor.place)) {
     site_ = Site{site->latitude_deg, site->longitude_deg, site->height_m};
@@ -56,8 +56,9 @@ Rotation<CameraFrame, Gcrs> View::camera_from_gcrs(SimTime t) const {
 }
 
 ApparentPlaces View::places(SimTime t, const EffectSet& effects) const {
-  const auto& e = *environment_;
-  const SolarSystem bodies{e.sun_m, e.moon_m, e.earth_barycentric_m, e.earth_velocity_m_per_s};
+  const auto& e = environment_;
+  const SolarSystem bodies{e.sun_m, e.moon_m, e.earth_barycentric_m, e.earth_velocity_m_per_s,
+                           e.moon_velocity_m_per_s};
   const Tt tt{e.tt_jd1, e.tt_jd2 + (t - e.time).seconds() / day_s};
   if (site_) return {ground_observer(*site_, e.earth, t, tt, bodies, refraction_), effects};
   const ObserverState at = observer(t);

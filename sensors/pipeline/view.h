@@ -32,8 +32,8 @@ class View {
   std::optional<std::size_t> platform() const { return platform_; }
 
   ObserverState observer(SimTime t) const;
-  const EarthOrientation& earth() const { return environment_->earth; }
-  const EnvironmentState& environment() const { return *environment_; }
+  const EarthOrientation& earth() const { return environment_.earth; }
+  const EnvironmentState& environment() const { return environment_; }
   /// The air over a ground sensor; null where the sensor did not ask for it.
   const SiteState* air() const { return air_; }
   Rotation<CameraFrame, Gcrs> camera_from_gcrs(SimTime t) const;
@@ -57,8 +57,8 @@ class View {
   const FrameTimes times_;
   const World& world_;
   std::uint64_t seed_;
-  const EnvironmentState* environment_;  // of mid exposure
-  const SiteState* air_;                 // likewise
+  EnvironmentState environment_;  // of mid exposure
+  const SiteState* air_;          // likewise
   std::optional<Site> site_;
   Vec<Itrs> site_m_;
   std::optional<std::size_t> platform_, target_;

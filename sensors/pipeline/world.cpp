@@ -1,10 +1,18 @@
 #include "sensors/pipeline/world.h"
 
 #include "core/base/error.h"
+#include "core/base/units.h"
 #include "core/config/yaml_reader.h"
 #include "core/orbit/interpolation.h"
 
 namespace dmise {
+namespace {
+
+// Nominal mass parameters of IAU 2015 Resolution B3; the Moon is 1/81.3 of the Earth.
+constexpr double sun_gm_m3_per_s2 = 1.3271244e20;
+constexpr double earth_and_moon_gm_m3_per_s2 = 3.986004e14 * (1.0 + 1.0 / 81.3);
+
+}  // namespace
 
 void World::forget_before(SimTime t) {
   while (states_.size() > 1 && states_[1]->time <= t) states_.pop_front();
@@ -50,9 +58,29 @@ std::optional<Rotation<Gcrs, Body>> World::gcrs_from_body(std::size_t i, SimTime
       interpolate_attitude((t - before->time).seconds() / tick_s, tick_s, *start, *end));
 }
 
-const EnvironmentState& World::environment(SimTime t) const {
+EnvironmentState run_on(EnvironmentState state, SimTime t) {
+  const double dt_s = (t - state.time).seconds();
+  const auto pull = [](const Vec<Gcrs>& towards_m, double gm_m3_per_s2) {
+    const double r_m = norm(towards_m);
+    return r_m > 0.0 ? towards_m * (gm_m3_per_s2 / (r_m * r_m * r_m)) : Vec<Gcrs>{};
+  };
+  const Vec<Gcrs> earth_m_per_s2 = pull(state.sun_m, sun_gm_m3_per_s2);
+  const Vec<Gcrs> moon_m_per_s2 = pull(-state.moon_m, earth_and_moon_gm_m3_per_s2);
+  const Vec<Gcrs> moved_m =
+      state.earth_velocity_m_per_s * dt_s + earth_m_per_s2 * (0.5 * dt_s * dt_s);
+  state.earth_barycentric_m += moved_m;
+  state.sun_m += -moved_m;  // the Sun's own 13 m/s about the barycentre are left out
+  state.earth_velocity_m_per_s += earth_m_per_s2 * dt_s;
+  state.moon_m += state.moon_velocity_m_per_s * dt_s + moon_m_per_s2 * (0.5 * dt_s * dt_s);
+  state.moon_velocity_m_per_s += moon_m_per_s2 * dt_s;
+  state.tt_jd2 += dt_s / day_s;
+  state.time = t;
+  return state;
+}
+
+EnvironmentState World::environment(SimTime t) const {
   for (auto state = environment_.rbegin(); state != environment_.rend(); ++state)
-    if ((*state)->time <= t) return **state;
+    if ((*state)->time <= t) return run_on(**state, t);
   throw Error("no environment at " + std::to_string(t.seconds()) + " s");
 }
 

@@ -13,6 +13,12 @@ struct Motion {
   Vec<Gcrs> slope_m_per_s;
 };
 
+/// The environment at `t`, up to an hour after `state`: Sun, Moon and Earth go on with their
+/// velocities and the pull of the nearest great mass. After an hour the Sun is within 0.1 arcsec,
+/// the Moon within 1 arcsec, the Earth's velocity within 5 mm/s of the ephemeris; the orientation
+/// keeps its own time and runs on by its own rates.
+EnvironmentState run_on(EnvironmentState state, SimTime t);
+
 /// The published states around an exposure: the last few ticks of what actors said, interpolated.
 class World {
  public:
@@ -36,8 +42,8 @@ class World {
   /// Attitude between the ticks around `t`; nothing for an object without one. `t` as for `motion`.
   std::optional<Rotation<Gcrs, Body>> gcrs_from_body(std::size_t i, SimTime t) const;
 
-  /// The environment of the last tick at or before `t`.
-  const EnvironmentState& environment(SimTime t) const;
+  /// The environment at `t`: that last told at or before it, run on by its rates (`run_on`).
+  EnvironmentState environment(SimTime t) const;
   /// The air over a ground sensor as last told at or before `t`; null if it never was.
   const SiteState* site(const std::string& sensor, SimTime t) const;
 

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include "core/base/units.h"
+#include "core/sky/sun_moon.h"
 #include "sensors/pipeline/make_sensor.h"
 #include "tests/pipeline/harness.h"
 
@@ -24,6 +26,30 @@ TEST(Environment, TellsTheSkyEveryTickAndTheAirAtItsOwnRate) {
       (message.topic == "env/common" ? common : site).push_back(message.tick);
   EXPECT_EQ(common.size(), 13u);
   EXPECT_THAT(site, testing::ElementsAre(0, 5, 10));  // 45 s are five ticks of 10 s
+}
+
+// Told once an hour, the bodies go on moving: against ERFA's eraEpv00 and eraMoon98 at the time
+// itself. Held, the Moon would be 0.5 deg off. And nothing jumps where the next state is told.
+TEST(Environment, GoesOnBetweenTwoStates) {
+  const auto told = [](const std::string& every) {
+    return "simulation: {start: 2018-01-28T04:00:00Z, duration_s: 7200, tick_s: 60}\n" + every +
+           "sensors:\n" + ground + "}\n";
+  };
+  test::Stage stage(told("environment: {common_every_s: 3600}\n"));
+  const Clock clock = make_clock(stage.scenario);
+  for (const double t_s : {0.0, 30.0, 1800.0, 3480.0, 3599.9, 3600.0, 7190.0}) {
+    const SimTime t = sim_seconds(t_s);
+    const EnvironmentState state = stage.world.environment(t);
+    const SolarSystem exact = solar_system(clock.tt(t));
+    EXPECT_LT(angle_rad(state.sun_m, exact.sun_m), 0.1 * arcsec) << t_s;
+    EXPECT_LT(angle_rad(state.moon_m, exact.moon_m), 1.0 * arcsec) << t_s;
+    EXPECT_LT(norm(state.moon_m - exact.moon_m), 3e3) << t_s;
+    EXPECT_LT(norm(state.earth_velocity_m_per_s - exact.earth_velocity_m_per_s), 5e-3) << t_s;
+    EXPECT_NEAR(days_between(Tt{state.tt_jd1, state.tt_jd2}, clock.tt(t)), 0.0, 1e-9) << t_s;
+  }
+  const auto before = stage.world.environment(sim_seconds(3599.999));
+  const auto after = stage.world.environment(sim_seconds(3600));
+  EXPECT_LT(angle_rad(before.moon_m, after.moon_m), 1.0 * arcsec);
 }
 
 // The 5/7 model: r0 4.96 cm and an isoplanatic angle of 6.89 urad at 0.5 um. The frame says so too.

@@ -58,6 +58,7 @@ EnvironmentState environment(Numbers& n, Tick tick) {
   e.moon_m = n.vec<Gcrs>(4e8);
   e.earth_barycentric_m = n.vec<Gcrs>(1.5e11);
   e.earth_velocity_m_per_s = n.vec<Gcrs>(3e4);
+  e.moon_velocity_m_per_s = n.vec<Gcrs>(1e3);
   e.tt_jd1 = 2458139.5;
   e.tt_jd2 = n.in(0, 1);
   return e;
