@@ -75,7 +75,7 @@ int bench_interpolation(bool json) {
   for (const HermiteOrder order :
        {HermiteOrder::cubic, HermiteOrder::quintic, HermiteOrder::septic}) {
     const double ns = cost_ns(order, elements.size());
-    for (const double tick_s : {5.0, 10.0, 20.0, 30.0, 60.0, 120.0}) {
+    for (const double tick_s : {5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 180.0, 240.0, 300.0}) {
       const auto error =
           measure_catalogue_interpolation(batch, start, {.order = order, .tick_s = tick_s});
       std::vector<double> mm;

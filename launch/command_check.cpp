@@ -4,6 +4,7 @@
 
 #include "core/config/make_clock.h"
 #include "core/optics/psf_plan.h"
+#include "core/orbit/interpolation_error.h"
 #include "launch/commands.h"
 #include "nodes/environment/environment_actor.h"
 #include "orbit-node/orbit_actor.h"
@@ -23,9 +24,11 @@ void check(const std::string& path) {
   for (const auto& sensor : scenario.sensors) {
     const PsfPlan plan = plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing,
                                   sensor.exposure_s);
-    std::printf("%s: points by %s: %s\n", sensor.name.c_str(), name(plan.method),
-                plan.why.c_str());
+    std::printf("%s: points by %s: %s\n", sensor.name.c_str(), name(plan.method), plan.why.c_str());
   }
+  if (!population.roster.objects.empty())
+    std::printf("objects between ticks: %s\n",
+                interpolation_text(scenario.interpolation, scenario.tick.seconds()).c_str());
   std::printf("%s: %zu objects, %zu sensors, %lld ticks of %g s: no errors\n", path.c_str(),
               population.roster.objects.size(), scenario.sensors.size(),
               static_cast<long long>(scenario.last_tick()), scenario.tick.seconds());

@@ -41,7 +41,8 @@ Tick resume_tick(const Scenario& scenario, const RunDirectory& directory) {
     finished += frames;
     if (frames >= frames_within(sensor, scenario.duration)) continue;
     const SimTime end = frame_times(sensor, frames + 1).end;
-    first = std::min(first, (end.ns + scenario.tick.ns - 1) / scenario.tick.ns);
+    first = std::min(first,
+                     tick_needed(scenario.interpolation, end, scenario.tick, scenario.last_tick()));
   }
   // What is written of the last tick may be a part of it.
   if (scenario.output.positions())

@@ -7,6 +7,7 @@
 #include "core/base/json.h"
 #include "core/base/text_file.h"
 #include "core/base/version.h"
+#include "core/orbit/interpolation_error.h"
 
 namespace dmise {
 namespace {
@@ -24,6 +25,16 @@ bool exists(const std::string& path) {
   return fs::exists(path, ignored);
 }
 
+/// What objects between ticks are off by, as measured on a catalogue.
+void write_interpolation(JsonWriter& json, const Scenario& scenario) {
+  const double tick_s = scenario.tick.seconds();
+  const auto error = stated_interpolation_error(scenario.interpolation, tick_s);
+  json.key("interpolation").begin_object();
+  json.field("order", static_cast<int>(scenario.interpolation)).field("tick_s", tick_s);
+  if (error) json.field("median_m", error->median_m).field("worst_m", error->worst_m);
+  json.end_object();
+}
+
 }  // namespace
 
 void write_run_record(const RunDirectory& directory, const Scenario& scenario,
@@ -33,6 +44,7 @@ void write_run_record(const RunDirectory& directory, const Scenario& scenario,
   if (!outcome.reason.empty()) json.field("reason", outcome.reason);
   json.field("software", software_name()).field("digest", directory.digest());
   json.field("seed", scenario.seed).field("wall_s", outcome.wall_s);
+  write_interpolation(json, scenario);
   json.key("scenario").raw(physics_json(scenario));
   json.key("nodes").begin_array();
   for (const auto& node : outcome.nodes) {

@@ -13,6 +13,7 @@
 #include "core/config/search_path.h"
 #include "core/config/yaml_reader.h"
 #include "core/optics/psf_plan.h"
+#include "core/orbit/interpolation_error.h"
 #include "core/sky/airmass.h"
 #include "core/sky/sun_moon.h"
 #include "core/time/clock.h"
@@ -208,12 +209,30 @@ void read_simulation(const YamlValue& value, Scenario& scenario) {
   scenario.tick = sim_seconds(map.number("tick_s", {.least = 1e-6, .most = 3600.0}));
   scenario.seed = static_cast<std::uint64_t>(
       map.integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
+  if (const auto order = map.find("interpolation"))
+    scenario.interpolation = order_within(
+        static_cast<HermiteOrder>(std::stoi(order->choice({"3", "5", "7"}))), scenario.last_tick());
   if (const auto eop = map.find("earth_orientation")) {
     scenario.earth_orientation_path = find_beside(eop->text(), value.file());
     if (scenario.earth_orientation_path.empty()) eop->fail("there is no such file");
   }
   check_span(scenario, start, map.require("duration_s"));
   map.done();
+}
+
+/// Objects between ticks must be where they are to about a metre.
+void check_tick(const Scenario& scenario, const YamlValue& tick) {
+  if (scenario.objects.empty() && scenario.own_objects.empty()) return;
+  const double longest_s = longest_tick_s(scenario.interpolation);
+  if (scenario.tick <= sim_seconds(longest_s)) return;
+  const auto limit = [](HermiteOrder order) {
+    return std::to_string(static_cast<int>(longest_tick_s(order))) + " s";
+  };
+  tick.fail("objects between ticks longer than " + limit(scenario.interpolation) +
+            " are metres off by interpolation of order " +
+            std::to_string(static_cast<int>(scenario.interpolation)) +
+            " (simulation.interpolation: 5 allows " + limit(HermiteOrder::quintic) + ", 7 " +
+            limit(HermiteOrder::septic) + ", in runs of that many ticks)");
 }
 
 void read_stars(const YamlValue& value, Scenario& scenario) {
@@ -267,6 +286,7 @@ Scenario load_scenario(const std::string& path) {
     auto read = read_objects(*objects, parse_utc(scenario.start_utc));
     scenario.objects = std::move(read.catalogues);
     scenario.own_objects = std::move(read.own);
+    check_tick(scenario, YamlMap(map.require("simulation")).require("tick_s"));
   }
   if (const auto stars = map.find("stars")) read_stars(*stars, scenario);
   EffectSet effects;

@@ -12,6 +12,7 @@
 #include "core/effects/effects.h"
 #include "core/optics/camera.h"
 #include "core/optics/seeing.h"
+#include "core/orbit/interpolation.h"
 #include "core/photometry/band.h"
 
 namespace dmise {
@@ -118,6 +119,7 @@ struct Scenario {
   std::string start_utc;  // ISO 8601
   SimTime duration;
   SimTime tick;
+  HermiteOrder interpolation = HermiteOrder::cubic;  // of objects between ticks
   std::uint64_t seed = 1;
   std::string earth_orientation_path;  // IERS finals file, may be empty
   std::vector<ObjectSource> objects;   // catalogues

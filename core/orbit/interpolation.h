@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/sim_time.h"
 #include "core/frames/vec.h"
 
 namespace dmise {
@@ -24,6 +25,31 @@ constexpr int ticks_before(HermiteOrder order) { return order == HermiteOrder::c
 constexpr int ticks_behind(HermiteOrder order) { return order == HermiteOrder::septic ? 2 : 1; }
 constexpr int knots(HermiteOrder order) { return (static_cast<int>(order) + 1) / 2; }
 
+/// First and last of the ticks that an order takes.
+struct KnotTicks {
+  Tick first = 0, last = 0;
+};
+
+/// Those for the interval that begins at tick `interval`, of a run of ticks 0 to `last_tick` >= 1:
+/// where one would lie outside the run, all move inwards. With too few ticks, all there are.
+constexpr KnotTicks knot_ticks(HermiteOrder order, Tick interval, Tick last_tick) {
+  const Tick count = std::min<Tick>(knots(order), last_tick + 1);
+  const Tick first =
+      std::clamp<Tick>(interval - ticks_before(order), 0, std::max<Tick>(0, last_tick + 1 - count));
+  return {first, first + count - 1};
+}
+
+/// The last tick that must be known before the state at `t` within the run can be told.
+constexpr Tick tick_needed(HermiteOrder order, SimTime t, SimTime tick_length, Tick last_tick) {
+  const Tick after = std::max<Tick>(1, (t.ns + tick_length.ns - 1) / tick_length.ns);
+  return knot_ticks(order, after - 1, last_tick).last;
+}
+
+/// `order`, or the highest that the ticks 0 to `last_tick` >= 1 allow.
+constexpr HermiteOrder order_within(HermiteOrder order, Tick last_tick) {
+  return static_cast<HermiteOrder>(std::min<Tick>(static_cast<Tick>(order), 2 * last_tick + 1));
+}
+
 /// Half the step of the symmetric difference that gives a slope [s]. 3 mm/s^3 of jerk over a low
 /// orbit make 2e-5 m/s of error; the rounding of a time a year from its epoch makes as much.
 inline constexpr double slope_half_step_s = 0.125;
@@ -41,10 +67,14 @@ struct HermiteWeights {
   int count = 0;
   std::array<double, 4> position{};  // factors of the positions
   std::array<double, 4> slope_s{};   // factors of the slopes
+  // Derivatives of both by the time.
+  std::array<double, 4> position_per_s{}, slope{};
 };
 
 /// Weights of the position at the fraction `u` of the interval, [0, 1], of `tick_s` length.
 HermiteWeights hermite_weights(HermiteOrder order, double u, double tick_s);
+/// The same on `count` knots, [2, 4], from tick `first` on.
+HermiteWeights hermite_weights(int first, int count, double u, double tick_s);
 
 /// Sum of `positions_m` and `slopes_m_per_s`, those of ticks first, first + 1, ...
 template <class F>

@@ -35,8 +35,11 @@ std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std
                        .output = scenario.output,
                        .shapes = std::make_shared<const ObjectShapes>(
                            scenario.own_objects, sensor_named(scenario, name).camera.band)},
-      scenario.tick, scenario.duration,
-      sim_seconds(std::max(scenario.environment.common_every_s, scenario.environment.site_every_s)),
+      RunGrid{.tick_length = scenario.tick,
+              .duration = scenario.duration,
+              .told_every = sim_seconds(
+                  std::max(scenario.environment.common_every_s, scenario.environment.site_every_s)),
+              .interpolation = scenario.interpolation},
       scenario.output, std::move(stars), directory + "/" + name, threads);
 }
 

@@ -4,17 +4,21 @@
 
 namespace dmise {
 
-SensorEvaluator::SensorEvaluator(PipelineSettings settings, SimTime tick_length, SimTime duration,
-                                 SimTime told_every, const OutputConfig& output,
-                                 std::shared_ptr<const StarMap> stars, std::string directory,
-                                 Threads& threads)
+SensorEvaluator::SensorEvaluator(PipelineSettings settings, const RunGrid& grid,
+                                 const OutputConfig& output, std::shared_ptr<const StarMap> stars,
+                                 std::string directory, Threads& threads)
     : sensor_(settings.sensor),
-      tick_length_(tick_length),
-      told_every_(told_every),
-      last_frame_(frames_within(settings.sensor, duration)),
+      grid_(grid),
+      last_frame_(frames_within(settings.sensor, grid.duration)),
       shapes_(settings.shapes),
       pipeline_(settings, std::move(stars), threads),
-      writer_(std::move(directory), output, settings.clock) {}
+      writer_(std::move(directory), output, settings.clock),
+      world_(grid.interpolation, grid.last_tick()) {}
+
+Tick SensorEvaluator::ready_at(std::uint32_t frame) const {
+  return tick_needed(grid_.interpolation, frame_times(sensor_, frame).end, grid_.tick_length,
+                     grid_.last_tick());
+}
 
 std::vector<std::string> SensorEvaluator::produces() const {
   return {frame_prefix + sensor_.name, detection_prefix + sensor_.name,
@@ -52,15 +56,18 @@ Tick SensorEvaluator::look_back() const {
   const SimTime exposure = frame_times(sensor_, 1).end - frame_times(sensor_, 1).start;
   const auto frames = std::min(pipeline_.most_frames_made_again(), last_frame_);
   const SimTime earlier{frames * sim_seconds(sensor_.cadence_s).ns};
-  const std::int64_t ns = exposure.ns + earlier.ns + told_every_.ns;
-  return (ns + tick_length_.ns - 1) / tick_length_.ns + 1;
+  const std::int64_t ns = exposure.ns + earlier.ns + grid_.told_every.ns;
+  const Tick beyond = knots(grid_.interpolation) - 2;  // on either side of the exposure
+  return (ns + grid_.tick_length.ns - 1) / grid_.tick_length.ns + 1 + 2 * beyond;
 }
 
 std::vector<Message> SensorEvaluator::resume(Tick tick, std::span<const Message> past) {
   take_in(past);
-  // Frames that end after the last tick made before are still to be made.
-  next_frame_ = tick == 0 ? 1 : frames_within(sensor_, {(tick - 1) * tick_length_.ns}) + 1;
+  // Frames that were not ready at the last tick made before are still to be made: none that ends
+  // after it is.
+  next_frame_ = tick == 0 ? 1 : frames_within(sensor_, {(tick - 1) * grid_.tick_length.ns}) + 1;
   next_frame_ = std::min(next_frame_, last_frame_ + 1);
+  while (next_frame_ > 1 && ready_at(next_frame_ - 1) >= tick) --next_frame_;
   writer_.keep_frames(next_frame_ - 1);
   return {};
 }
@@ -68,10 +75,9 @@ std::vector<Message> SensorEvaluator::resume(Tick tick, std::span<const Message>
 std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> inputs) {
   take_in(inputs);
   std::vector<Message> messages;
-  const SimTime now{tick * tick_length_.ns};
   while (next_frame_ <= last_frame_ && !stop_asked_()) {
     const FrameTimes exposure = frame_times(sensor_, next_frame_);
-    if (exposure.end > now) {
+    if (ready_at(next_frame_) > tick) {
       world_.forget_before(frame_times(sensor_, pipeline_.first_frame_for(next_frame_)).start);
       break;
     }

@@ -11,13 +11,20 @@
 
 namespace dmise {
 
+/// The grid of a run, as far as a sensor must know it.
+struct RunGrid {
+  SimTime tick_length, duration;
+  SimTime told_every;  // the longest time between two states of the environment
+  HermiteOrder interpolation = HermiteOrder::cubic;
+
+  Tick last_tick() const { return (duration.ns + tick_length.ns - 1) / tick_length.ns; }
+};
+
 /// A sensor as an Evaluator: gathers the states of the world and, as soon as they cover an
 /// exposure, makes its frame, writes its products and publishes report, detections and truth.
 class SensorEvaluator : public Evaluator {
  public:
-  /// `told_every`: the longest time between two states of the environment.
-  SensorEvaluator(PipelineSettings settings, SimTime tick_length, SimTime duration,
-                  SimTime told_every, const OutputConfig& output,
+  SensorEvaluator(PipelineSettings settings, const RunGrid& grid, const OutputConfig& output,
                   std::shared_ptr<const StarMap> stars, std::string directory, Threads& threads);
 
   std::string name() const override { return sensor_.name; }
@@ -27,7 +34,8 @@ class SensorEvaluator : public Evaluator {
   std::vector<std::string> consumes() const override;
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   /// The ticks around the exposure that is open when it resumes, those around the frames that must
-  /// be made again before it, and back to when the environment was last told.
+  /// be made again before it, those beyond them that interpolation takes, and back to when the
+  /// environment was last told.
   Tick look_back() const override;
   std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
   std::uint64_t progress() const override { return progress_; }
@@ -40,10 +48,12 @@ class SensorEvaluator : public Evaluator {
   std::string renderer() const { return shapes_ ? shapes_->renderer_description() : ""; }
 
  private:
+  /// The tick at which all is known that a frame needs.
+  Tick ready_at(std::uint32_t frame) const;
   void take_in(std::span<const Message> inputs);
 
   SensorConfig sensor_;
-  SimTime tick_length_, told_every_;
+  RunGrid grid_;
   std::uint32_t last_frame_;
   std::shared_ptr<const ObjectShapes> shapes_;
   FramePipeline pipeline_;

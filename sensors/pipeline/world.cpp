@@ -15,7 +15,11 @@ constexpr double earth_and_moon_gm_m3_per_s2 = 3.986004e14 * (1.0 + 1.0 / 81.3);
 }  // namespace
 
 void World::forget_before(SimTime t) {
-  while (states_.size() > 1 && states_[1]->time <= t) states_.pop_front();
+  // Ticks before the last at or before `t`: a time on a tick belongs to the interval that ends
+  // there.
+  const bool cubic = order_ == HermiteOrder::cubic;
+  const std::size_t beyond = cubic ? 0 : static_cast<std::size_t>(knots(order_)) - 1;
+  while (states_.size() > beyond + 1 && states_[beyond + 1]->time <= t) states_.pop_front();
   while (environment_.size() > 1 && environment_[1]->time <= t) environment_.pop_front();
   while (sites_.size() > 1 && sites_[1]->time <= t && sites_[1]->sensor == sites_[0]->sensor)
     sites_.pop_front();
@@ -24,22 +28,57 @@ void World::forget_before(SimTime t) {
 World::Around World::around(SimTime t) const {
   for (std::size_t k = 1; k < states_.size(); ++k)
     if (t <= states_[k]->time && t >= states_[k - 1]->time)
-      return {states_[k - 1].get(), states_[k].get()};
+      return {states_[k - 1].get(), states_[k].get(), k - 1};
   if (!states_.empty() && states_.back()->time == t)
-    return {states_.back().get(), states_.back().get()};
+    return {states_.back().get(), states_.back().get(), states_.size() - 1};
   throw Error("no object states at " + std::to_string(t.seconds()) + " s");
 }
 
 bool World::has_state(std::size_t i, SimTime t) const {
-  const auto [before, after] = around(t);
+  const auto [before, after, index] = around(t);
   return before->code[i] == 0 && after->code[i] == 0;
 }
 
+const ObjectStates& World::at_tick(const Around& interval, Tick tick) const {
+  const Tick index = static_cast<Tick>(interval.index) + tick - interval.before->tick;
+  if (index < 0 || index >= static_cast<Tick>(states_.size()) ||
+      states_[static_cast<std::size_t>(index)]->tick != tick)
+    throw Error("no object states of tick " + std::to_string(tick));
+  return *states_[static_cast<std::size_t>(index)];
+}
+
+bool World::has_states(std::size_t i, const Around& interval, const KnotTicks& knots) const {
+  for (Tick tick = knots.first; tick <= knots.last; ++tick)
+    if (at_tick(interval, tick).code[i] != 0) return false;
+  return true;
+}
+
+Motion World::of_higher_order(std::size_t i, const Around& interval, const KnotTicks& knots,
+                              double u) const {
+  const double tick_s = (interval.after->time - interval.before->time).seconds();
+  const HermiteWeights w =
+      hermite_weights(static_cast<int>(knots.first - interval.before->tick),
+                      static_cast<int>(knots.last - knots.first) + 1, u, tick_s);
+  Motion motion;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(w.count); ++k) {
+    const ObjectStates& knot = at_tick(interval, knots.first + static_cast<Tick>(k));
+    const Vec<Gcrs> position_m = knot.position(i), slope_m_per_s = knot.slope(i);
+    motion.position_m += position_m * w.position[k] + slope_m_per_s * w.slope_s[k];
+    motion.slope_m_per_s += position_m * w.position_per_s[k] + slope_m_per_s * w.slope[k];
+  }
+  return motion;
+}
+
 Motion World::motion(std::size_t i, SimTime t) const {
-  const auto [before, after] = around(t);
+  const Around interval = around(t);
+  const auto [before, after, index] = interval;
   if (before == after) return {before->position(i), before->slope(i)};
   const double tick_s = (after->time - before->time).seconds();
   const double u = (t - before->time).seconds() / tick_s;
+  if (order_ != HermiteOrder::cubic) {
+    const KnotTicks knots = knot_ticks(order_, before->tick, last_tick_);
+    if (has_states(i, interval, knots)) return of_higher_order(i, interval, knots, u);
+  }
   const auto p0 = before->position(i), p1 = after->position(i);
   const auto s0 = before->slope(i), s1 = after->slope(i);
   // The derivative of the cubic, so that a sensor's velocity agrees with its path.
@@ -49,7 +88,7 @@ Motion World::motion(std::size_t i, SimTime t) const {
 }
 
 std::optional<Rotation<Gcrs, Body>> World::gcrs_from_body(std::size_t i, SimTime t) const {
-  const auto [before, after] = around(t);
+  const auto [before, after, index] = around(t);
   const auto start = before->attitude(i), end = after->attitude(i);
   if (!start || !end) return std::nullopt;
   if (before == after) return rotation_of<Gcrs, Body>(start->gcrs_from_body);

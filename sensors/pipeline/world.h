@@ -1,8 +1,10 @@
 #pragma once
 #include <deque>
+#include <limits>
 #include <memory>
 #include <optional>
 
+#include "core/orbit/interpolation.h"
 #include "core/sim/state.h"
 
 namespace dmise {
@@ -22,6 +24,10 @@ EnvironmentState run_on(EnvironmentState state, SimTime t);
 /// The published states around an exposure: the last few ticks of what actors said, interpolated.
 class World {
  public:
+  World() = default;
+  /// `last_tick`: of the run, where higher orders find no ticks beyond.
+  World(HermiteOrder order, Tick last_tick) : order_(order), last_tick_(last_tick) {}
+
   void add(std::shared_ptr<const ObjectRoster> roster) { roster_ = std::move(roster); }
   void add(std::shared_ptr<const ObjectStates> states) { states_.push_back(std::move(states)); }
   void add(std::shared_ptr<const EnvironmentState> state) {
@@ -36,8 +42,9 @@ class World {
 
   /// Whether object `i` has a state at both ticks around `t`.
   bool has_state(std::size_t i, SimTime t) const;
-  /// Cubic Hermite between the ticks around `t` on position and slope. `t` must lie within the
-  /// ticks held and the object have a state there.
+  /// Hermite interpolation of the run's order on position and slope; cubic where the object has no
+  /// state at one of the ticks beyond those around `t`. `t` must lie within the ticks held, with
+  /// those of `knot_ticks`, and the object have a state there.
   Motion motion(std::size_t i, SimTime t) const;
   /// Attitude between the ticks around `t`; nothing for an object without one. `t` as for `motion`.
   std::optional<Rotation<Gcrs, Body>> gcrs_from_body(std::size_t i, SimTime t) const;
@@ -51,9 +58,16 @@ class World {
   struct Around {
     const ObjectStates* before;
     const ObjectStates* after;
+    std::size_t index = 0;  // of `before` in `states_`
   };
   Around around(SimTime t) const;
+  Motion of_higher_order(std::size_t i, const Around& interval, const KnotTicks& knots,
+                         double u) const;
+  bool has_states(std::size_t i, const Around& interval, const KnotTicks& knots) const;
+  const ObjectStates& at_tick(const Around& interval, Tick tick) const;
 
+  HermiteOrder order_ = HermiteOrder::cubic;
+  Tick last_tick_ = std::numeric_limits<Tick>::max() / 2;
   std::shared_ptr<const ObjectRoster> roster_;
   std::deque<std::shared_ptr<const ObjectStates>> states_;
   std::deque<std::shared_ptr<const EnvironmentState>> environment_;

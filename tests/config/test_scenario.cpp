@@ -101,6 +101,32 @@ TEST_F(ScenarioFile, RefusesARunBeyondTheEphemerisOrBeforeLeapSeconds) {
             "from TAI, got 1971-12-31T00:30:00Z");
 }
 
+// 10 min of cubic put objects kilometres away: 2.5 km against ticks of 5 s.
+TEST_F(ScenarioFile, RefusesTicksBetweenWhichObjectsAreMetresOff) {
+  const std::string own_object =
+      "{name: x, motion: {fixed: {latitude_deg: 0, longitude_deg: -75.3, height_m: 35786000}}}";
+  const std::string long_ticks = "simulation: {start: 2018-01-21T00:30:00Z, duration_s: 7200, ";
+  const auto simulation = [&](const std::string& rest) {
+    return long_ticks + rest + "}\nobjects: [" + own_object + "]\n" +
+           good.substr(good.find("sensors"));
+  };
+  EXPECT_EQ(complaint(simulation("tick_s: 600"), "600", "600"),
+            "1:69: simulation.tick_s: objects between ticks longer than 60 s are metres off by "
+            "interpolation of order 3 (simulation.interpolation: 5 allows 120 s, 7 180 s, in runs "
+            "of that many ticks), got 600");
+  EXPECT_EQ(load(simulation("tick_s: 60")).interpolation, HermiteOrder::cubic);
+  EXPECT_EQ(load(simulation("tick_s: 120, interpolation: 5")).interpolation, HermiteOrder::quintic);
+  EXPECT_EQ(load(simulation("tick_s: 180, interpolation: 7")).interpolation, HermiteOrder::septic);
+  EXPECT_NE(complaint(simulation("tick_s: 181, interpolation: 7"), "181", "181"), "");
+  EXPECT_NE(physics_json(load(simulation("tick_s: 60"))),
+            physics_json(load(simulation("tick_s: 60, interpolation: 5"))));
+  EXPECT_TRUE(complaint(simulation("tick_s: 60, interpolation: 4"), "4", "4")
+                  .find("simulation.interpolation: must be one of 3, 5, 7, got 4") !=
+              std::string::npos);
+  // Without objects nothing is interpolated.
+  EXPECT_NO_THROW(load(long_ticks + "tick_s: 600}\n" + good.substr(good.find("sensors"))));
+}
+
 TEST_F(ScenarioFile, RefusesTwoNodesOfOneName) {
   const std::string second = good.substr(good.find("  - name"));
   EXPECT_EQ(complaint(good + second, "seed: 1", "seed: 1"),

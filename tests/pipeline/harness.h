@@ -29,6 +29,7 @@ class Stage {
     write("stars.csv", stars_csv);
     write("objects.tle", elements);
     scenario = load_scenario((directory / "scenario.yaml").string());
+    world = World(scenario.interpolation, scenario.last_tick());
     const Clock clock = make_clock(scenario);
     OrbitActor orbit(scenario, clock, threads);
     EnvironmentActor environment(scenario, clock);
@@ -43,15 +44,15 @@ class Stage {
 
   FrameProducts frame(std::uint32_t number = 1, std::size_t sensor = 0) {
     const auto& config = scenario.sensors.at(sensor);
-    FramePipeline pipeline({.sensor = config,
-                            .clock = make_clock(scenario),
-                            .seed = scenario.seed,
-                            .digest = "test",
-                            .faintest_star_mag = scenario.faintest_star_mag,
-                            .star_truth = true,
-                            .shapes = std::make_shared<const ObjectShapes>(scenario.own_objects,
-                                                                           config.camera.band)},
-                           stars, threads);
+    FramePipeline pipeline(
+        {.sensor = config,
+         .clock = make_clock(scenario),
+         .seed = scenario.seed,
+         .digest = "test",
+         .faintest_star_mag = scenario.faintest_star_mag,
+         .star_truth = true,
+         .shapes = std::make_shared<const ObjectShapes>(scenario.own_objects, config.camera.band)},
+        stars, threads);
     return pipeline.run(frame_times(config, number), world);
   }
 

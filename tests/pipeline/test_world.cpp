@@ -34,6 +34,56 @@ TEST(World, InterpolatesBetweenTicksToTheCubicsError) {
   EXPECT_LT(norm(motion.slope_m_per_s - exact->slope(0)), 1e-4);
 }
 
+// On a circle the remainders are r (n h)^6 / 6! and r (n h)^8 / 8! times the product of the squared
+// distances from the ticks: at most 0.148 and, at the run's edges, 1.0. Against the circle itself.
+TEST(World, HigherOrdersMeetLongTicksAlsoAtTheEdgesOfTheRun) {
+  const double h_s = 120, nh = 1.08e-3 * h_s;
+  for (const auto& [order, bound_m] :
+       {std::pair(HermiteOrder::quintic, 7e6 * std::pow(nh, 6) / 720 * 0.15),
+        std::pair(HermiteOrder::septic, 7e6 * std::pow(nh, 8) / 40320 * 1.01)}) {
+    World world(order, 6);
+    for (Tick k = 0; k <= 6; ++k) world.add(circle(k, sim_seconds(h_s * double(k))));
+    for (double t_s = 0; t_s <= 720; t_s += 7.5) {
+      const auto motion = world.motion(0, sim_seconds(t_s));
+      const auto exact = circle(0, sim_seconds(t_s));
+      EXPECT_LT(norm(motion.position_m - exact->position(0)), bound_m + 1e-8) << t_s;
+      EXPECT_LT(norm(motion.slope_m_per_s - exact->slope(0)), 0.1 * bound_m + 1e-8) << t_s;
+    }
+  }
+}
+
+// What is forgotten changes nothing: the ticks that the order takes stay.
+TEST(World, KeepsTheTicksBeyondTheInterval) {
+  for (const auto order : {HermiteOrder::quintic, HermiteOrder::septic}) {
+    World all(order, 9), few(order, 9);
+    for (Tick k = 0; k <= 9; ++k) {
+      const SimTime time = sim_seconds(60.0 * double(k));
+      all.add(circle(k, time));
+      few.add(circle(k, time));
+      for (Tick half = 1; half <= 2 * k; ++half) {  // whatever is ready now, on ticks and between
+        const SimTime asked = sim_seconds(30.0 * double(half));
+        if (tick_needed(order, asked, sim_seconds(60), 9) != k) continue;
+        few.forget_before(asked);
+        EXPECT_EQ(few.motion(0, asked).position_m, all.motion(0, asked).position_m)
+            << k << " " << half;
+      }
+    }
+  }
+}
+
+// A neighbour without a state (the end of a trajectory) leaves the cubic of the two around.
+TEST(World, FallsBackToTheCubicWhereANeighbourHasNoState) {
+  World septic(HermiteOrder::septic, 3), cubic;
+  for (Tick k = 0; k <= 3; ++k) {
+    auto state = std::make_shared<ObjectStates>(*circle(k, sim_seconds(10.0 * double(k))));
+    if (k == 3) state->code = {1};
+    septic.add(state);
+    cubic.add(state);
+  }
+  const SimTime t = sim_seconds(14);
+  EXPECT_EQ(septic.motion(0, t).position_m, cubic.motion(0, t).position_m);
+}
+
 TEST(World, RefusesTimesItDoesNotHold) {
   World world;
   world.add(circle(0, {0}));
