@@ -10,7 +10,8 @@ namespace {
 
 // Nominal mass parameters of IAU 2015 Resolution B3; the Moon is 1/81.3 of the Earth.
 constexpr double sun_gm_m3_per_s2 = 1.3271244e20;
-constexpr double earth_and_moon_gm_m3_per_s2 = 3.986004e14 * (1.0 + 1.0 / 81.3);
+constexpr double moon_gm_m3_per_s2 = 3.986004e14 / 81.3;
+constexpr double earth_and_moon_gm_m3_per_s2 = 3.986004e14 + moon_gm_m3_per_s2;
 
 }  // namespace
 
@@ -103,7 +104,8 @@ EnvironmentState run_on(EnvironmentState state, SimTime t) {
     const double r_m = norm(towards_m);
     return r_m > 0.0 ? towards_m * (gm_m3_per_s2 / (r_m * r_m * r_m)) : Vec<Gcrs>{};
   };
-  const Vec<Gcrs> earth_m_per_s2 = pull(state.sun_m, sun_gm_m3_per_s2);
+  const Vec<Gcrs> earth_m_per_s2 =
+      pull(state.sun_m, sun_gm_m3_per_s2) + pull(state.moon_m, moon_gm_m3_per_s2);
   const Vec<Gcrs> moon_m_per_s2 = pull(-state.moon_m, earth_and_moon_gm_m3_per_s2);
   const Vec<Gcrs> moved_m =
       state.earth_velocity_m_per_s * dt_s + earth_m_per_s2 * (0.5 * dt_s * dt_s);
