@@ -1,5 +1,6 @@
 #include "core/base/json.h"
 #include "core/config/optics_config.h"
+#include "core/config/pointing_config.h"
 #include "core/config/scenario.h"
 #include "core/config/surroundings_json.h"
 #include "core/detector/detector_figures.h"
@@ -15,22 +16,6 @@ struct PlaceWriter {
     json.field("height_m", site.height_m).end_object();
   }
   void operator()(const PlatformConfig& platform) const { json.field("platform", platform.object); }
-};
-
-struct PointingWriter {
-  JsonWriter& json;
-  void operator()(PointUp) const { json.field("pointing", "zenith"); }
-  void operator()(const PointHorizon& p) const {
-    json.key("pointing").begin_object();
-    json.field("azimuth_deg", p.azimuth_deg).field("elevation_deg", p.elevation_deg).end_object();
-  }
-  void operator()(const PointSky& p) const {
-    json.key("pointing").begin_object();
-    json.field("ra_deg", p.ra_deg).field("dec_deg", p.dec_deg).end_object();
-  }
-  void operator()(const PointTarget& p) const {
-    json.key("pointing").begin_object().field("target", p.object).end_object();
-  }
 };
 
 void write_camera(JsonWriter& json, const Camera& camera) {
@@ -55,7 +40,8 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   json.begin_object().field("name", s.name);
   std::visit(PlaceWriter{json}, s.place);
   write_camera(json, s.camera);
-  std::visit(PointingWriter{json}, s.pointing);
+  json.key("pointing");
+  write_pointing(json, s.pointing);
   json.field("tracking", static_cast<int>(s.tracking)).field("roll_deg", s.roll_deg);
   json.field("exposure_s", s.exposure_s).field("cadence_s", s.cadence_s);
   json.field("first_exposure_s", s.first_exposure_s);

@@ -10,6 +10,7 @@
 #include "core/config/detector_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/output_config.h"
+#include "core/config/pointing_config.h"
 #include "core/config/search_path.h"
 #include "core/config/yaml_reader.h"
 #include "core/optics/psf_plan.h"
@@ -43,48 +44,6 @@ SiteConfig read_site(const YamlValue& value) {
   return site;
 }
 
-void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor) {
-  if (value.is_scalar()) {
-    value.choice({"zenith"});
-    sensor.pointing = PointUp{};
-    return;
-  }
-  YamlMap map(value);
-  const bool horizon = map.find("azimuth_deg") || map.find("elevation_deg");
-  const bool sky = map.find("ra_deg") || map.find("dec_deg");
-  const auto target = map.find("target");
-  if (int(horizon) + int(sky) + int(bool(target)) > 1)
-    value.fail("give one of azimuth_deg and elevation_deg, ra_deg and dec_deg, target", false);
-  Tracking natural = Tracking::fixed;
-  if (horizon) {
-    if (!on_ground) value.fail("azimuth and elevation are for a sensor on the ground", false);
-    sensor.pointing = PointHorizon{map.number("azimuth_deg", Bounds::between(-360.0, 360.0)),
-                                   map.number("elevation_deg", Bounds::between(-90.0, 90.0))};
-  } else if (sky) {
-    sensor.pointing = PointSky{map.number("ra_deg", Bounds::between(-360.0, 360.0)),
-                               map.number("dec_deg", Bounds::between(-90.0, 90.0))};
-    natural = Tracking::sidereal;
-  } else if (target) {
-    sensor.pointing = PointTarget{target->text()};
-    natural = Tracking::target;
-  } else {
-    sensor.pointing = PointUp{};
-  }
-  sensor.tracking = natural;
-  if (const auto tracking = map.find("tracking")) {
-    const std::string name = tracking->choice({"fixed", "sidereal", "target"});
-    sensor.tracking = name == "fixed"      ? Tracking::fixed
-                      : name == "sidereal" ? Tracking::sidereal
-                                           : Tracking::target;
-    if (sensor.tracking == Tracking::target && !target)
-      tracking->fail("there is no target to follow", false);
-    if (sensor.tracking == Tracking::fixed && !on_ground && (sky || target))
-      tracking->fail("in orbit, fixed goes with zenith only; take sidereal or target");
-  }
-  sensor.roll_deg = map.number_or("roll_deg", 0.0, Bounds::between(-360.0, 360.0));
-  map.done();
-}
-
 void read_effects(const YamlValue& value, EffectSet& effects) {
   YamlMap map(value);
   for (std::size_t i = 0; i < effect_count; ++i) {
@@ -103,6 +62,9 @@ void read_effects(const YamlValue& value, EffectSet& effects) {
   }
   map.done();
 }
+
+/// Trails are one parabola each: over 10 deg they are still within 1e-4 of a focal length.
+constexpr double most_turn_deg = 10.0;
 
 /// Of a camera fixed to the horizon's grid; of one that follows the sky the zenith's, 1.
 double airmass_of(const Pointing& pointing) {
@@ -154,6 +116,8 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTi
   sensor.cadence_s = map.number("cadence_s", {.least = 1e-3, .most = 86400.0});
   if (sensor.cadence_s < sensor.exposure_s) exposure.fail("must be <= cadence_s");
   check_exposure(sensor.camera, exposure);
+  if (turn_rate_deg_per_s(sensor.pointing) * sensor.exposure_s > most_turn_deg)
+    exposure.fail("the camera must turn by no more than 10 deg within an exposure");
   const auto first = map.find("first_exposure_s");
   if (first) sensor.first_exposure_s = first->number(Bounds::not_negative());
   if (sim_seconds(sensor.first_exposure_s + sensor.exposure_s) > duration)

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -42,22 +43,36 @@ struct PlatformConfig {
 /// Where the boresight points. On the ground "up" is the zenith; in orbit away from the Earth.
 struct PointUp {};
 struct PointHorizon {
-  double azimuth_deg = 0.0;  // from north through east
+  double azimuth_deg = 0.0;  // from north through east; at the start of the run
   double elevation_deg = 0.0;
+  double azimuth_rate_deg_per_s = 0.0, elevation_rate_deg_per_s = 0.0;
 };
 struct PointSky {
-  double ra_deg = 0.0, dec_deg = 0.0;  // ICRS
+  double ra_deg = 0.0, dec_deg = 0.0;  // ICRS; at the start of the run
+  double ra_rate_deg_per_s = 0.0, dec_rate_deg_per_s = 0.0;
 };
 struct PointTarget {
   std::string object;  // catalogue number or name
 };
-using Pointing = std::variant<PointUp, PointHorizon, PointSky, PointTarget>;
+/// Fixed to the body of the platform.
+struct PointBody {
+  Rotation<Body, CameraFrame> body_from_camera;
+};
+/// Turns evenly about an axis, which keeps to the stars or, with a start on the horizon's grid, to
+/// the ground.
+struct PointScan {
+  std::variant<PointSky, PointHorizon> start;
+  std::array<double, 3> axis{0, 0, 1};  // unit; GCRS axes, or east, north, up
+  double rate_deg_per_s = 0.0;          // right-handed about it
+};
+using Pointing = std::variant<PointUp, PointHorizon, PointSky, PointTarget, PointBody, PointScan>;
 
 /// What the camera does while the shutter is open.
 enum class Tracking {
   fixed,     // turns with the Earth (ground), or keeps its attitude to the local vertical (orbit)
   sidereal,  // keeps its attitude to the stars
   target,    // follows the target
+  moving,    // moves as its pointing does
 };
 
 struct SensorConfig {

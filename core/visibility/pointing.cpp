@@ -1,6 +1,8 @@
 #include "core/visibility/pointing.h"
 
+#include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/frames/quaternion.h"
 
 namespace dmise {
 namespace {
@@ -8,6 +10,13 @@ namespace {
 Rotation<CameraFrame, Gcrs> at_direction(const Vec<Gcrs>& direction, double roll_rad) {
   const auto [ra, dec] = to_spherical(direction);
   return camera_at<Gcrs>(ra, dec, roll_rad);
+}
+
+/// Turns vectors about `axis` (unit), right-handed.
+template <class F>
+Rotation<F, F> turned(const std::array<double, 3>& axis, double angle_rad) {
+  const double half = 0.5 * angle_rad, s = std::sin(half);
+  return rotation_of<F, F>({std::cos(half), s * axis[0], s * axis[1], s * axis[2]});
 }
 
 struct Aim {
@@ -27,10 +36,27 @@ struct Aim {
     return at_direction(scene.observer.position_m, roll_rad());
   }
   Rotation<CameraFrame, Gcrs> operator()(const PointHorizon& p) const {
-    return in_enu(pi / 2 - p.azimuth_deg * deg, p.elevation_deg * deg, -roll_rad());
+    const double t_s = scene.time.seconds();
+    const double azimuth_deg = p.azimuth_deg + p.azimuth_rate_deg_per_s * t_s;
+    const double elevation_deg = p.elevation_deg + p.elevation_rate_deg_per_s * t_s;
+    return in_enu(pi / 2 - azimuth_deg * deg, elevation_deg * deg, -roll_rad());
   }
   Rotation<CameraFrame, Gcrs> operator()(const PointSky& p) const {
-    return camera_at<Gcrs>(p.ra_deg * deg, p.dec_deg * deg, roll_rad());
+    const double t_s = scene.time.seconds();
+    return camera_at<Gcrs>((p.ra_deg + p.ra_rate_deg_per_s * t_s) * deg,
+                           (p.dec_deg + p.dec_rate_deg_per_s * t_s) * deg, roll_rad());
+  }
+  Rotation<CameraFrame, Gcrs> operator()(const PointBody& p) const {
+    if (!scene.gcrs_from_body) throw Error("pointing.body: the platform has no attitude here");
+    return (*scene.gcrs_from_body * p.body_from_camera).inverse();
+  }
+  Rotation<CameraFrame, Gcrs> operator()(const PointScan& p) const {
+    const double angle_rad = p.rate_deg_per_s * deg * scene.time.seconds();
+    if (const auto* sky = std::get_if<PointSky>(&p.start))
+      return (*this)(*sky) * turned<Gcrs>(p.axis, -angle_rad);
+    const auto enu_from_gcrs = enu_from_itrs(*scene.site) * scene.itrs_from_gcrs;
+    return (*this)(std::get<PointHorizon>(p.start)) * enu_from_gcrs.inverse() *
+           turned<Enu>(p.axis, -angle_rad) * enu_from_gcrs;
   }
   Rotation<CameraFrame, Gcrs> operator()(const PointTarget&) const {
     return at_direction(scene.target_m - scene.observer.position_m, roll_rad());
@@ -49,6 +75,7 @@ Rotation<CameraFrame, Gcrs> camera_from_gcrs(const SensorConfig& sensor, const P
     case Tracking::sidereal:
       return aim(sensor, aimed);
     case Tracking::target:
+    case Tracking::moving:
       return aim(sensor, now);
     case Tracking::fixed:
       break;

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "core/config/scenario.h"
 #include "core/frames/earth_orientation.h"
 #include "core/frames/geodesy.h"
@@ -38,10 +40,12 @@ struct PointingScene {
   ObserverState observer;
   Vec<Gcrs> target_m;  // geocentric; used by PointTarget only
   Rotation<Itrs, Gcrs> itrs_from_gcrs;
-  const Site* site = nullptr;  // null aboard a platform
+  const Site* site = nullptr;                          // null aboard a platform
+  std::optional<Rotation<Gcrs, Body>> gcrs_from_body;  // of the platform; for PointBody only
 };
 
-/// Attitude with which a camera would point at its goal at the instant of `scene`.
+/// Attitude with which a camera would point at its goal at the instant of `scene`. Throws `Error`
+/// for one that is fixed to a body without an attitude.
 Rotation<CameraFrame, Gcrs> aim(const SensorConfig& sensor, const PointingScene& scene);
 
 /// Attitude at the instant `now` of an exposure aimed at the instant `aimed`, as the tracking says.

@@ -1,5 +1,7 @@
 #include "core/visibility/sensor_track.h"
 
+#include "core/config/pointing_config.h"
+
 namespace dmise {
 
 SensorTrack::SensorTrack(const SensorConfig& sensor, const SkyHours& sky, const Sgp4Batch& batch,
@@ -11,12 +13,18 @@ SensorTrack::SensorTrack(const SensorConfig& sensor, const SkyHours& sky, const 
   site_m_ = itrs_from_geodetic(*site_);
   up_ = enu_from_itrs(*site_).inverse() * Vec<Enu>{0, 0, 1};
   if (std::holds_alternative<PointUp>(sensor.pointing) ||
-      std::holds_alternative<PointHorizon>(sensor.pointing)) {
+      (std::holds_alternative<PointHorizon>(sensor.pointing) &&
+       turn_rate_deg_per_s(sensor.pointing) == 0.0)) {
     // With ITRS in the place of GCRS: such a pointing depends on the Earth's axes alone.
     const auto camera = aim(sensor, PointingScene{.site = &*site_});
     fixed_.emplace();
     fixed_->m = camera.m;
   }
+}
+
+bool SensorTrack::fixed_to_stars() const {
+  return std::holds_alternative<PointSky>(sensor_.pointing) &&
+         turn_rate_deg_per_s(sensor_.pointing) == 0.0;
 }
 
 std::optional<ObserverState> SensorTrack::state_of(

@@ -43,7 +43,7 @@ class SensorTrack {
   /// Whether the camera is fixed to the turning Earth.
   bool fixed_to_earth() const { return fixed_.has_value(); }
   /// Whether its axes keep their attitude to the stars.
-  bool fixed_to_stars() const { return std::holds_alternative<PointSky>(sensor_.pointing); }
+  bool fixed_to_stars() const;
 
   CameraMoment at(SimTime t) const;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/error.h"
+
 namespace dmise {
 
 SensorEvaluator::SensorEvaluator(PipelineSettings settings, const RunGrid& grid,
@@ -102,8 +104,17 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
 void check_sensors(const Scenario& scenario, const ObjectRoster& roster) {
   for (const auto& sensor : scenario.sensors) {
     const std::string where = scenario.path + ": sensors." + sensor.name;
-    if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place))
-      object_index(roster, platform->object, where + ".platform");
+    if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place)) {
+      const auto index = object_index(roster, platform->object, where + ".platform");
+      const auto has_attitude = [&](const OwnObject& own) {
+        return own.attitude && own.catalogue_number == roster.objects[index].catalogue_number;
+      };
+      if (std::holds_alternative<PointBody>(sensor.pointing) &&
+          std::none_of(scenario.own_objects.begin(), scenario.own_objects.end(), has_attitude))
+        throw ConfigError(where +
+                          ".pointing.body: the platform must be an object with an attitude, got " +
+                          platform->object);
+    }
     if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
       object_index(roster, target->object, where + ".pointing.target");
   }

@@ -48,6 +48,8 @@ PointingScene View::pointing_scene(SimTime t) const {
                       .itrs_from_gcrs = earth().itrs_from_gcrs(t),
                       .site = site_ ? &*site_ : nullptr};
   if (target_) scene.target_m = world_.motion(*target_, t).position_m;
+  if (platform_ && std::holds_alternative<PointBody>(sensor_.pointing))
+    scene.gcrs_from_body = world_.gcrs_from_body(*platform_, t);
   return scene;
 }
 

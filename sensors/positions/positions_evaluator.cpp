@@ -87,6 +87,9 @@ std::optional<PositionRow> PositionsEvaluator::camera(std::size_t index, Tick ti
     scene.observer = {states_->position(*mount.platform), states_->slope(*mount.platform)};
   }
   if (mount.target) scene.target_m = states_->position(*mount.target);
+  if (mount.platform)
+    if (const auto attitude = states_->attitude(*mount.platform))
+      scene.gcrs_from_body = rotation_of<Gcrs, Body>(attitude->gcrs_from_body);
   return PositionRow{.tick = tick,
                      .time_utc = utc(tick),
                      .kind = "camera",

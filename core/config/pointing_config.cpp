@@ -1,0 +1,187 @@
+#include "core/config/pointing_config.h"
+
+#include <cmath>
+
+#include "core/base/json.h"
+
+namespace dmise {
+namespace {
+
+const Bounds any_angle = Bounds::between(-360.0, 360.0);
+const Bounds latitude = Bounds::between(-90.0, 90.0);
+const Bounds any_rate = Bounds::between(-60.0, 60.0);
+constexpr double least_sine = 1e-6;  // between boresight and up
+
+Vec<Body> read_axis(const YamlValue& value) {
+  const auto v = value.numbers(3, Bounds::between(-1e9, 1e9));
+  const Vec<Body> axis{v[0], v[1], v[2]};
+  if (!(norm(axis) > 0)) value.fail("must not be zero", false);
+  return unit(axis);
+}
+
+PointHorizon read_horizon(YamlMap& map) {
+  return {.azimuth_deg = map.number("azimuth_deg", any_angle),
+          .elevation_deg = map.number("elevation_deg", latitude),
+          .azimuth_rate_deg_per_s = map.number_or("azimuth_rate_deg_per_s", 0.0, any_rate),
+          .elevation_rate_deg_per_s = map.number_or("elevation_rate_deg_per_s", 0.0, any_rate)};
+}
+
+PointSky read_sky_place(YamlMap& map) {
+  return {.ra_deg = map.number("ra_deg", any_angle),
+          .dec_deg = map.number("dec_deg", latitude),
+          .ra_rate_deg_per_s = map.number_or("ra_rate_deg_per_s", 0.0, any_rate),
+          .dec_rate_deg_per_s = map.number_or("dec_rate_deg_per_s", 0.0, any_rate)};
+}
+
+PointBody read_body(const YamlValue& value) {
+  YamlMap map(value);
+  const auto quaternion = map.find("body_from_camera");
+  const auto boresight = map.find("boresight"), up = map.find("up");
+  map.done();
+  if (bool(quaternion) == bool(boresight))
+    value.fail("give either boresight (and up) or body_from_camera", false);
+  if (quaternion) {
+    if (up) up->fail("goes with boresight", false);
+    const auto q = quaternion->numbers(4, Bounds::between(-2, 2));
+    const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+    if (!(length > 0.5 && length < 2.0))
+      quaternion->fail("must be a unit quaternion [w, x, y, z]", false);
+    return {rotation_of<Body, CameraFrame>({q[0], q[1], q[2], q[3]})};
+  }
+  const Vec<Body> z = read_axis(*boresight);
+  const Vec<Body> least = std::abs(z.z) < 0.9 ? Vec<Body>{0, 0, 1} : Vec<Body>{0, 1, 0};
+  const Vec<Body> upwards = up ? read_axis(*up) : least;
+  if (norm(cross(z, upwards)) < least_sine) up->fail("must not be along boresight", false);
+  const Vec<Body> x = unit(cross(z, upwards)), y = cross(z, x);
+  PointBody body;
+  body.body_from_camera.m = {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+  return body;
+}
+
+PointScan read_scan(const YamlValue& value, bool on_ground) {
+  YamlMap map(value);
+  const bool horizon = map.find("azimuth_deg") || map.find("elevation_deg");
+  if (horizon && !on_ground)
+    value.fail("azimuth and elevation are for a sensor on the ground", false);
+  PointScan scan;
+  if (horizon)
+    scan.start = PointHorizon{.azimuth_deg = map.number("azimuth_deg", any_angle),
+                              .elevation_deg = map.number("elevation_deg", latitude)};
+  else
+    scan.start = PointSky{.ra_deg = map.number("ra_deg", any_angle),
+                          .dec_deg = map.number("dec_deg", latitude)};
+  const auto axis = map.require("axis");
+  const Vec<Body> direction = read_axis(axis);
+  scan.axis = {direction.x, direction.y, direction.z};
+  scan.rate_deg_per_s = map.number("rate_deg_per_s", any_rate);
+  map.done();
+  return scan;
+}
+
+}  // namespace
+
+double turn_rate_deg_per_s(const Pointing& pointing) {
+  if (const auto* p = std::get_if<PointHorizon>(&pointing))
+    return std::hypot(p->azimuth_rate_deg_per_s, p->elevation_rate_deg_per_s);
+  if (const auto* p = std::get_if<PointSky>(&pointing))
+    return std::hypot(p->ra_rate_deg_per_s, p->dec_rate_deg_per_s);
+  const auto* scan = std::get_if<PointScan>(&pointing);
+  return scan ? std::abs(scan->rate_deg_per_s) : 0.0;
+}
+
+void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor) {
+  if (value.is_scalar()) {
+    value.choice({"zenith"});
+    sensor.pointing = PointUp{};
+    return;
+  }
+  YamlMap map(value);
+  const bool horizon = map.find("azimuth_deg") || map.find("elevation_deg");
+  const bool sky = map.find("ra_deg") || map.find("dec_deg");
+  const auto target = map.find("target"), body = map.find("body"), scan = map.find("scan");
+  if (int(horizon) + int(sky) + int(bool(target)) + int(bool(body)) + int(bool(scan)) > 1)
+    value.fail("give one of azimuth_deg and elevation_deg, ra_deg and dec_deg, target, body, scan",
+               false);
+  Tracking natural = Tracking::fixed;
+  if (horizon) {
+    if (!on_ground) value.fail("azimuth and elevation are for a sensor on the ground", false);
+    sensor.pointing = read_horizon(map);
+  } else if (sky) {
+    sensor.pointing = read_sky_place(map);
+    natural = Tracking::sidereal;
+  } else if (target) {
+    sensor.pointing = PointTarget{target->text()};
+    natural = Tracking::target;
+  } else if (body) {
+    if (on_ground) body->fail("is for a sensor aboard a platform", false);
+    sensor.pointing = read_body(*body);
+  } else if (scan) {
+    sensor.pointing = read_scan(*scan, on_ground);
+  } else {
+    sensor.pointing = PointUp{};
+  }
+  const bool moves = turn_rate_deg_per_s(sensor.pointing) > 0.0;
+  sensor.tracking = moves || scan ? Tracking::moving : natural;
+  if (const auto tracking = map.find("tracking")) {
+    const std::string name = tracking->choice({"fixed", "sidereal", "target", "moving"});
+    sensor.tracking = name == "fixed"      ? Tracking::fixed
+                      : name == "sidereal" ? Tracking::sidereal
+                      : name == "target"   ? Tracking::target
+                                           : Tracking::moving;
+    if (sensor.tracking == Tracking::target && !target)
+      tracking->fail("there is no target to follow", false);
+    if (sensor.tracking == Tracking::moving && !moves && !scan)
+      tracking->fail("needs a pointing that moves: rates or scan", false);
+    if (sensor.tracking == Tracking::fixed && !on_ground && (sky || target || scan))
+      tracking->fail("in orbit, fixed goes with zenith and body only; take sidereal or target");
+  }
+  sensor.roll_deg = map.number_or("roll_deg", 0.0, any_angle);
+  if (body && sensor.roll_deg != 0.0)
+    map.require("roll_deg").fail("a camera fixed to a body is turned by up", false);
+  map.done();
+}
+
+namespace {
+
+struct PointingWriter {
+  JsonWriter& json;
+
+  void operator()(PointUp) const { json.value("zenith"); }
+  void operator()(const PointHorizon& p) const {
+    json.begin_object().field("azimuth_deg", p.azimuth_deg).field("elevation_deg", p.elevation_deg);
+    if (turn_rate_deg_per_s(p) > 0.0)
+      json.field("azimuth_rate_deg_per_s", p.azimuth_rate_deg_per_s)
+          .field("elevation_rate_deg_per_s", p.elevation_rate_deg_per_s);
+    json.end_object();
+  }
+  void operator()(const PointSky& p) const {
+    json.begin_object().field("ra_deg", p.ra_deg).field("dec_deg", p.dec_deg);
+    if (turn_rate_deg_per_s(p) > 0.0)
+      json.field("ra_rate_deg_per_s", p.ra_rate_deg_per_s)
+          .field("dec_rate_deg_per_s", p.dec_rate_deg_per_s);
+    json.end_object();
+  }
+  void operator()(const PointTarget& p) const {
+    json.begin_object().field("target", p.object).end_object();
+  }
+  void operator()(const PointBody& p) const {
+    json.begin_object().key("body_from_camera").begin_array();
+    for (const auto& row : p.body_from_camera.m)
+      for (const double x : row) json.value(x);
+    json.end_array().end_object();
+  }
+  void operator()(const PointScan& p) const {
+    json.begin_object().key("scan");
+    std::visit(*this, p.start);
+    json.key("axis").begin_array().value(p.axis[0]).value(p.axis[1]).value(p.axis[2]).end_array();
+    json.field("rate_deg_per_s", p.rate_deg_per_s).end_object();
+  }
+};
+
+}  // namespace
+
+void write_pointing(JsonWriter& json, const Pointing& pointing) {
+  std::visit(PointingWriter{json}, pointing);
+}
+
+}  // namespace dmise
