@@ -1,0 +1,112 @@
+#include "sensors/pipeline/object_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/units.h"
+#include "core/optics/projection.h"
+#include "core/photometry/magnitude.h"
+#include "sensors/pipeline/stopwatch.h"
+
+namespace dmise {
+
+ObjectSampler::ObjectSampler(const View& view, const ObjectShapes* shapes, EffectTimes& times)
+    : view_(view),
+      shapes_(shapes),
+      times_(times),
+      light_(view),
+      shadow_(view.environment().sun_m, oblate_earth(view.earth())),
+      with_shadow_(view.sensor().effects.has(Effect::shadow)),
+      zero_mag_(object_photons_per_s_m2(0.0, view.sensor().camera.band)) {}
+
+ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at) const {
+  ++samples_;
+  const Motion motion = view_.world().motion(object, at.time);
+  const auto place = at.places.satellite(motion.position_m, motion.slope_m_per_s);
+  ObjectSample s;
+  s.pixel = project(view_.sensor().camera.optics, at.camera * place.direction);
+  {
+    Stopwatch timing(times_[Effect::shadow]);
+    s.sunlit = with_shadow_ ? shadow_.sunlit_fraction(motion.position_m) : 1.0;
+  }
+  bool hidden = false;
+  {
+    Stopwatch timing(times_[Effect::earth_occultation]);
+    hidden = at.hidden.object(motion.position_m, place.direction);
+  }
+  const ObjectShape* own_shape = shape(object);
+  if (hidden || (s.sunlit <= 0.0 && !own_shape)) return s;
+  s.electrons_per_photon_m2 =
+      transmission(place.direction) * flicker(object, place.direction) *
+      light_.electrons_per_photon_m2() *
+      (s.pixel ? relative_illumination(view_.sensor().camera.optics, *s.pixel) : 1.0);
+  const double photons =
+      own_shape ? shape_photons(object, *own_shape, at.time, at.observer, s.sunlit)
+                : zero_mag_ * light_of_magnitude(magnitude(object, motion, at)) * s.sunlit;
+  s.electrons_per_s = photons * s.electrons_per_photon_m2;
+  return s;
+}
+
+Illumination ObjectSampler::illumination(const Motion& motion, const Vec<Gcrs>& observer_m) const {
+  const Vec<Gcrs> to_sun = view_.environment().sun_m - motion.position_m;
+  const Vec<Gcrs> to_observer = observer_m - motion.position_m;
+  return {.range_m = norm(to_observer),
+          .phase_rad = angle_rad(to_sun, to_observer),
+          .sun_distance_au = norm(to_sun) / au_m};
+}
+
+double ObjectSampler::magnitude(std::size_t object, const Motion& motion,
+                                const ExposureInstant& at) const {
+  const auto& facts = view_.world().roster().objects[object];
+  if (const ObjectShape* own_shape = shape(object))
+    if (const auto pose = shape_pose(view_, object, at.time, at.observer.position_m))
+      return shape_magnitude(*own_shape, *pose);
+  const Illumination seen = illumination(motion, at.observer.position_m);
+  return std::visit(
+      [&](const DiffuseSphere& sphere) { return diffuse_sphere_magnitude(sphere, seen); },
+      facts.geometry);
+}
+
+const ObjectShape* ObjectSampler::shape(std::size_t object) const {
+  return shapes_ ? shapes_->of(view_.world().roster().objects[object].catalogue_number) : nullptr;
+}
+
+double ObjectSampler::shape_photons(std::size_t object, const ObjectShape& shape, SimTime t,
+                                    const ObserverState& observer, double sunlit) const {
+  const auto pose = shape_pose(view_, object, t, observer.position_m);
+  return pose ? shape_photons_per_s_m2(*shapes_, shape, *pose, sunlit) : 0.0;
+}
+
+double ObjectSampler::transmission(const Vec<Gcrs>& apparent) const {
+  Stopwatch timing(times_[Effect::extinction]);
+  return light_.transmission(apparent);
+}
+
+double ObjectSampler::flicker(std::size_t object, const Vec<Gcrs>& apparent) const {
+  Stopwatch timing(times_[Effect::scintillation]);
+  return light_.flicker(apparent, Light::Flickering::object,
+                        view_.world().roster().objects[object].catalogue_number);
+}
+
+std::vector<Arc> arcs_of(const std::vector<ObjectSample>& samples, double seconds) {
+  std::vector<Arc> arcs;
+  const std::size_t count = (samples.size() - 1) / 2;
+  const double arc_s = seconds / double(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const ObjectSample &a = samples[2 * k], &m = samples[2 * k + 1], &b = samples[2 * k + 2];
+    if (!a.pixel || !m.pixel || !b.pixel) continue;
+    const double mean = (a.electrons_per_s + 4 * m.electrons_per_s + b.electrons_per_s) / 6;
+    if (mean <= 0.0) continue;
+    const double tilt = std::clamp((b.electrons_per_s - a.electrons_per_s) / (2 * mean), -1.0, 1.0);
+    arcs.push_back({*a.pixel, *m.pixel, *b.pixel, mean * arc_s, tilt});
+  }
+  return arcs;
+}
+
+double distance_px(const ObjectSample& a, const ObjectSample& b) {
+  return a.pixel && b.pixel
+             ? std::hypot(a.pixel->x_px - b.pixel->x_px, a.pixel->y_px - b.pixel->y_px)
+             : 1e9;
+}
+
+}  // namespace dmise

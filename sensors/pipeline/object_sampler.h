@@ -1,0 +1,82 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "core/optics/deposit.h"
+#include "core/photometry/diffuse_sphere.h"
+#include "core/sky/shadow.h"
+#include "sensors/pipeline/light.h"
+#include "sensors/pipeline/object_shapes.h"
+#include "sensors/pipeline/view.h"
+
+namespace dmise {
+
+/// An object at one time of the exposure.
+struct ObjectSample {
+  std::optional<PixelPosition> pixel;
+  double electrons_per_s = 0.0;  // expected at the detector; 0 when dark or hidden
+  double sunlit = 0.0;
+  double electrons_per_photon_m2 = 0.0;  // of the way from above the atmosphere; 0 when hidden
+};
+
+/// One instant of the exposure with all that does not depend on the object.
+struct ExposureInstant {
+  SimTime time;
+  ApparentPlaces places;
+  Rotation<CameraFrame, Gcrs> camera;
+  Hidden hidden;
+  ObserverState observer;
+
+  ExposureInstant(const View& view, SimTime t)
+      : time(t),
+        places(view.places(t)),
+        camera(view.camera_from_gcrs(t)),
+        hidden(view, t),
+        observer(view.observer(t)) {}
+};
+
+/// Works out where objects are seen in one exposure, and how bright.
+class ObjectSampler {
+ public:
+  ObjectSampler(const View& view, const ObjectShapes* shapes, EffectTimes& times);
+
+  /// Place and light of an object at an instant.
+  ObjectSample sample(std::size_t object, const ExposureInstant& at) const;
+
+  Illumination illumination(const Motion& motion, const Vec<Gcrs>& observer_m) const;
+
+  /// V above the atmosphere, fully lit.
+  double magnitude(std::size_t object, const Motion& motion, const ExposureInstant& at) const;
+
+  /// Null for an object without a shape.
+  const ObjectShape* shape(std::size_t object) const;
+  const ObjectShapes& shapes() const { return *shapes_; }
+
+  /// Photons/s/m2 above the atmosphere of an object with a shape.
+  double shape_photons(std::size_t object, const ObjectShape& shape, SimTime t,
+                       const ObserverState& observer, double sunlit) const;
+
+  /// How many were taken.
+  std::size_t samples() const { return samples_; }
+
+ private:
+  double transmission(const Vec<Gcrs>& apparent) const;
+  double flicker(std::size_t object, const Vec<Gcrs>& apparent) const;
+
+  const View& view_;
+  const ObjectShapes* shapes_;
+  EffectTimes& times_;
+  mutable std::size_t samples_ = 0;
+  Light light_;
+  EarthShadow shadow_;
+  bool with_shadow_;
+  double zero_mag_;
+};
+
+/// Arcs between samples at even times, an odd number of them: each arc takes three.
+std::vector<Arc> arcs_of(const std::vector<ObjectSample>& samples, double seconds);
+
+/// Between two samples in the image; 1e9 where one has no place there.
+double distance_px(const ObjectSample& a, const ObjectSample& b);
+
+}  // namespace dmise
