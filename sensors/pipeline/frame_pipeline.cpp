@@ -215,7 +215,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     stars_drawn = stars->draw(view, optics, light, settings.faintest_star_mag,
                               settings.star_truth ? &frame.stars : nullptr, frame.times);
   if (has(Effect::objects))
-    frame.truths = draw_objects(view, objects_in_field(view), settings.shapes.get(), optics, light,
+    frame.truths = draw_objects(view, objects_in_field(view, settings.shapes.get()), settings.shapes.get(), optics, light,
                                 frame.times);
   {
     Stopwatch timing(frame.times[Effect::psf]);

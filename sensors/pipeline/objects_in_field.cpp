@@ -53,7 +53,9 @@ class FieldCone {
     }
   }
 
-  bool touched_by(std::size_t object) {
+  /// `radius_m`: of the sphere about the object that holds it.
+  bool touched_by(std::size_t object, double radius_m) {
+    radius_m_ = radius_m;
     const auto& exposure = view_.times();
     const Motion motion = view_.world().motion(object, exposure.middle);
     const ObserverState& observer = moment(exposure.middle).observer;
@@ -99,17 +101,17 @@ class FieldCone {
     const Moment& now = moment(t);
     const Vec<CameraFrame> line =
         now.camera * (view_.world().motion(object, t).position_m - now.observer.position_m);
-    return outside_cone_m(line, Vec<CameraFrame>{0, 0, 1}, cos_, sin_);
+    return outside_cone_m(line, Vec<CameraFrame>{0, 0, 1}, cos_, sin_) - radius_m_;
   }
 
   const View& view_;
-  double cos_ = 1.0, sin_ = 0.0, half_s_ = 0.0, turn_rad_per_s_ = 0.0;
+  double cos_ = 1.0, sin_ = 0.0, half_s_ = 0.0, turn_rad_per_s_ = 0.0, radius_m_ = 0.0;
   std::map<std::int64_t, Moment> moments_;
 };
 
 }  // namespace
 
-std::vector<std::size_t> objects_in_field(const View& view) {
+std::vector<std::size_t> objects_in_field(const View& view, const ObjectShapes* shapes) {
   const auto& exposure = view.times();
   const auto& world = view.world();
   FieldCone cone(view);
@@ -118,7 +120,9 @@ std::vector<std::size_t> objects_in_field(const View& view) {
     if (view.platform() == i || !world.has_state(i, exposure.start) ||
         !world.has_state(i, exposure.end) || !world.has_state(i, exposure.middle))
       continue;
-    if (cone.touched_by(i)) found.push_back(i);
+    const ObjectShape* shape =
+        shapes ? shapes->of(world.roster().objects[i].catalogue_number) : nullptr;
+    if (cone.touched_by(i, shape ? shape->radius_m : 0.0)) found.push_back(i);
   }
   return found;
 }
