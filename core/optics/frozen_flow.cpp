@@ -8,7 +8,7 @@
 namespace dmise {
 
 FrozenFlow::FrozenFlow(int side, double outer_scale, const RngKey& key)
-    : screens_(side, outer_scale), key_(key) {
+    : screens_(side, outer_scale), length_((screens_.torus() - side) / 2), key_(key) {
   for (Field& f : kept_) f.block = std::numeric_limits<std::int64_t>::min();
 }
 
@@ -37,8 +37,8 @@ PhaseScreen FrozenFlow::at(double distance, double direction_rad, double r0_samp
   };
   const std::int64_t left = around(distance * std::cos(direction_rad)),
                      up = around(distance * std::sin(direction_rad));
-  const auto block = std::int64_t(std::floor(distance / torus));
-  const double fade = 0.5 * pi * (distance / torus - double(block));
+  const auto block = std::int64_t(std::floor(distance / length_));
+  const double fade = 0.5 * pi * (distance / length_ - double(block));
   const double scale = std::pow(r0_samples, -5.0 / 6);  // of the phase: D goes as r0^(-5/3)
   PhaseScreen window{side, std::vector<float>(std::size_t(side) * std::size_t(side))};
   const auto add = [&](const Field& f, double weight) {
