@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/config/band_wavelengths.h"
 #include "core/config/camera_config.h"
 #include "core/config/detector_config.h"
 #include "core/config/optics_config.h"
@@ -15,6 +16,7 @@
 #include "core/config/yaml_reader.h"
 #include "core/optics/psf_plan.h"
 #include "core/orbit/interpolation_error.h"
+#include "core/optics/pupil_sampling.h"
 #include "core/sky/airmass.h"
 #include "core/sky/sun_moon.h"
 #include "core/time/clock.h"
@@ -88,6 +90,32 @@ void read_sensor_surroundings(YamlMap& map, SensorConfig& sensor) {
   check_sky_in_band(map.value(), sensor.sky, sensor.camera.band, bool(site));
 }
 
+// Refuses what no kernel can be made of: a complaint "a.b: reason" at that key, or at the last one
+// on the way to it that this file has (a camera may be a preset).
+void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
+  const Camera& camera = sensor.camera;
+  try {
+    const PsfPlan plan =
+        plan_psf(camera.optics, camera.band.centre_m, sensor.seeing, sensor.exposure_s);
+    if (plan.method != PointSpread::Method::deposit)
+      sample_pupils(camera.optics, wavelengths_of(camera.band, camera.optics.spread.wavelengths),
+                    plan, sensor.seeing);
+  } catch (const ConfigError& e) {
+    const std::string complaint = e.what(), key = complaint.substr(0, complaint.find(':'));
+    const std::string path = key.starts_with("optics.") ? "camera." + key : key;
+    YamlValue at = value;
+    std::size_t begin = 0;
+    while (begin < path.size() && at.is_map()) {
+      const std::size_t end = std::min(path.find('.', begin), path.size());
+      const auto next = YamlMap(at).find(path.substr(begin, end - begin));
+      if (!next) break;
+      at = *next;
+      begin = end + 1;
+    }
+    at.fail(begin > path.size() ? complaint.substr(key.size() + 2) : complaint, false);
+  }
+}
+
 SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTime duration) {
   YamlMap map(value);
   SensorConfig sensor;
@@ -130,11 +158,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTi
                                               sensor.atmosphere.turbulence)
                         : read_seeing(*seeing);
   }
-  try {
-    plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing, sensor.exposure_s);
-  } catch (const ConfigError& e) {
-    map.require("camera").fail(e.what(), false);
-  }
+  check_point_spread(value, sensor);
   read_sensor_surroundings(map, sensor);
   if (sensor.atmosphere.refraction)
     sensor.effects.set(Effect::refraction, *sensor.atmosphere.refraction);

@@ -321,7 +321,7 @@ void require_sense(const CardReader& v, const FrameHeader& h) {
   v.require(h.gain_e_per_dn > 0, "GAIN", "must be > 0");
   v.require(h.read_noise_e >= 0, "RDNOISE", "must be >= 0");
   v.require(h.saturation_dn > 0, "SATURATE", "must be > 0");
-  v.require(h.psf_fwhm_px > 0 && h.psf_fwhm_px <= 100, "PSFFWHM", "must be in (0, 100]");
+  v.require(h.psf_fwhm_px > 0 && h.psf_fwhm_px <= 1e4, "PSFFWHM", "must be in (0, 1e4]");
   v.require(h.focal_length_px > 0, "FOCALPX", "must be > 0");
   const auto& cd = h.wcs.cd_deg;
   v.require(cd[0] * cd[3] - cd[1] * cd[2] != 0, "CD1_1", "the CD matrix must have an inverse");

@@ -12,14 +12,6 @@ namespace {
 
 using Model = PointSpread::Model;
 
-bool has_screens(const PsfPlan& plan) {
-  return plan.exposure == ExposureKind::brief || plan.exposure == ExposureKind::between;
-}
-
-/// Samples across the aperture of a pupil without turbulence: the kernel is right to 1e-3 of its
-/// peak.
-constexpr int still_samples = 128, turbulent_samples = 48;
-
 /// The kernel brought to nothing over its outer half: cut off at once, what the deposits'
 /// Gaussian was divided out of would ring along the edge. Sums to 1.
 template <class T>
@@ -60,42 +52,10 @@ PsfModel::PsfModel(const Optics& optics, std::vector<WavelengthShare> band, cons
       cell_rad_(optics.pixel_angle_rad() / plan.oversampling) {
   if (band_.empty()) throw Error("psf: no wavelength");
   if (plan.exposure != ExposureKind::none) seeing_ = seeing;
-  const bool screens = has_screens(plan);
-  if (!screens && is_round({}) && !optics.spread.field.any()) return;  // no pupil is sampled
-  for (const WavelengthShare& w : band_)
-    grids_.push_back(pupil_grid(
-        pupil({}, w.wavelength_m), w.wavelength_m, cell_rad_, plan.half_cells,
-        screens ? seeing_->r0_at_m(w.wavelength_m) : std::numeric_limits<double>::infinity(),
-        screens ? turbulent_samples : still_samples));
-  if (screens) {
-    const int across = aperture_samples(pupil({}, band_[0].wavelength_m), grids_[0]);
-    if (across > 1024) throw Error("psf: turbulence too strong for the aperture");
-    flow_.emplace(across, seeing_->outer_scale_m / grids_[0].step_m, turbulence);
-  }
-}
-
-Pupil PsfModel::pupil(const FieldPlace& place, double wavelength_m) const {
-  const PointSpread& s = optics_.spread;
-  const double rad_per_m = 2 * pi / wavelength_m;
-  Pupil p{.aperture_m = optics_.aperture_m,
-          .obscuration = optics_.obscuration,
-          .spiders = s.spiders,
-          .spider_width_m = s.spider_width_m};
-  const auto add = [&](int noll, double rms_m) {
-    if (rms_m != 0.0) p.wavefront.push_back({noll, rms_m * rad_per_m});
-  };
-  for (const WavefrontTerm& t : s.wavefront) add(t.noll, t.rms_m);
-  // A detector off the focus sees rho^2 delta / (8 N^2) of path, and Noll's term 4 is sqrt(3) (2
-  // rho^2 - 1).
-  const double n = optics_.f_number();
-  add(4, s.defocus_m / (16 * std::sqrt(3.0) * n * n));
-  const double r = place.radius, a = place.angle_rad;
-  add(8, s.field.coma_m * r * std::cos(a));
-  add(7, s.field.coma_m * r * std::sin(a));
-  add(6, s.field.astigmatism_m * r * r * std::cos(2 * a));
-  add(5, s.field.astigmatism_m * r * r * std::sin(2 * a));
-  add(4, s.field.curvature_m * r * r);
-  return p;
+  grids_ = sample_pupils(optics_, band_, plan_, seeing_);
+  if (has_screens(plan_))
+    flow_.emplace(aperture_samples(pupil_at(optics_, {}, band_[0].wavelength_m), grids_[0]),
+                  seeing_->outer_scale_m / grids_[0].step_m, turbulence);
 }
 
 // The tilts that put the centroid of the kernel without air, as far as it reaches, on the axis:
@@ -103,7 +63,7 @@ Pupil PsfModel::pupil(const FieldPlace& place, double wavelength_m) const {
 std::array<ZernikeTerm, 2> PsfModel::centring(const FieldPlace& place,
                                               std::size_t wavelength) const {
   const double wavelength_m = band_[wavelength].wavelength_m;
-  const Pupil own = pupil(place, wavelength_m);
+  const Pupil own = pupil_at(optics_, place, wavelength_m);
   std::array<ZernikeTerm, 2> tilt = centring_tilt(own);
   const bool symmetric = std::none_of(own.wavefront.begin(), own.wavefront.end(),
                                       [](const ZernikeTerm& t) { return has_odd_order(t.noll); });
@@ -178,7 +138,7 @@ PsfKernel PsfModel::pupil_kernel_at(const FieldPlace& place, std::size_t wavelen
       known != centred_.end() ? known->tilt : centring(place, wavelength);
   if (known == centred_.end() && centred_.size() < most_places)
     centred_.push_back({place, wavelength, tilt});
-  Pupil p = pupil(place, wavelength_m);
+  Pupil p = pupil_at(optics_, place, wavelength_m);
   p.wavefront.insert(p.wavefront.end(), tilt.begin(), tilt.end());
   const ScreenAhead ahead{screen, grids_[0].step_m, band_[0].wavelength_m / wavelength_m};
   return pupil_kernel(

@@ -5,24 +5,9 @@
 
 #include "core/optics/frozen_flow.h"
 #include "core/optics/psf_plan.h"
-#include "core/optics/pupil.h"
+#include "core/optics/pupil_sampling.h"
 
 namespace dmise {
-
-/// A wavelength and its share of the light; the shares of a band sum to 1.
-struct WavelengthShare {
-  double wavelength_m = 0.0;
-  double share = 1.0;
-};
-
-/// A place in the field: distance and angle (from +x to +y) from the principal point, 1 at the
-/// frame's farthest corner.
-struct FieldPlace {
-  double radius = 0.0;
-  double angle_rad = 0.0;
-
-  bool operator==(const FieldPlace&) const = default;
-};
 
 /// Makes the kernels that a plan asks for, on the cells of its oversampled grid:
 ///   diffraction (obscuration, spiders, wavefront) x turbulence x jitter, over the wavelengths,
@@ -33,7 +18,7 @@ struct FieldPlace {
 class PsfModel {
  public:
   /// `turbulence` names the random numbers of this sensor's air. The first wavelength share is the
-  /// one screens are sampled for. Throws `Error` where the pupil's grid would be too large.
+  /// one screens are sampled for. Throws as `sample_pupils` does.
   PsfModel(const Optics& optics, std::vector<WavelengthShare> band, const PsfPlan& plan,
            const std::optional<SensorSeeing>& seeing, const RngKey& turbulence);
 
@@ -51,7 +36,6 @@ class PsfModel {
   bool is_round(const FieldPlace& place) const;
   double air_otf(double nu_per_rad, double wavelength_m) const;
   double extra_otf(double nu_x, double nu_y, double wavelength_m) const;
-  Pupil pupil(const FieldPlace& place, double wavelength_m) const;
   std::array<ZernikeTerm, 2> centring(const FieldPlace& place, std::size_t wavelength) const;
   PsfKernel round_kernel(double wavelength_m);
   PsfKernel pupil_kernel_at(const FieldPlace& place, std::size_t wavelength,

@@ -20,6 +20,9 @@ constexpr double narrow_px = 0.25;
 // Beyond it deposits on the grid alias by more than 1e-4 of the peak.
 constexpr double most_cycles_per_cell = 0.40;
 
+// Of kernels: without and with a disc of defocus.
+constexpr int usual_half_cells = 512, widest_half_cells = 1024;
+
 bool is_aberrated(const PointSpread& s) {
   return !s.wavefront.empty() || s.field.any() || s.defocus_m != 0.0;
 }
@@ -125,7 +128,15 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
       s.support_px > 0 ? s.support_px
       : plain          ? 5.0 * plan.fwhm_px
                        : std::max(std::min(airy_widths * m.airy_px, widest_px), 5.0 * plan.fwhm_px);
-  plan.half_cells = std::clamp(int(std::ceil(support_px * plan.oversampling)), 8, 512);
+  // The disc of a defocus lies within the inner half, which does not fade.
+  const double disc_cells = s.support_px > 0 ? 0.0 : 1.05 * m.defocus_px * plan.oversampling;
+  if (disc_cells > widest_half_cells)
+    refuse("defocus_m", "its disc of " + std::to_string(std::lround(m.defocus_px)) +
+                            " px is wider than a kernel holds, " +
+                            std::to_string(int(widest_half_cells / 1.05 / plan.oversampling)) +
+                            " px");
+  const int half = std::clamp(int(std::ceil(support_px * plan.oversampling)), 8, usual_half_cells);
+  plan.half_cells = std::max(half, int(std::ceil(disc_cells)));
   // Beyond r: 0.2 (lambda / D) / r of an Airy pattern, more by the edge of an obscuration; the
   // kernel fades out around three quarters of its radius.
   if (!plain)

@@ -53,8 +53,4 @@ class OpticsStage {
   double bright_e_ = 0.0, exposure_start_s_ = 0.0, exposure_s_ = 0.0;
 };
 
-/// Wavelengths in the middle of `count` equal parts of a band, with the parts' shares of its
-/// response.
-std::vector<WavelengthShare> wavelengths_of(const Band& band, int count);
-
 }  // namespace dmise

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -94,6 +95,66 @@ TEST(PsfModel, DefocusIsTheGeometricalDisc) {
                 defocus_otf(nu, disc_rad) * diffraction_otf(nu, lambda, o.aperture_m), 0.03)
         << cycles;
   }
+}
+
+/// Radius that holds half of the light, in pixels.
+double half_light_radius_px(const PsfKernel& k, int cells) {
+  std::vector<std::pair<double, double>> rings;
+  for (int dy = -k.half; dy <= k.half; ++dy)
+    for (int dx = -k.half; dx <= k.half; ++dx)
+      rings.emplace_back(std::hypot(dx, dy) / cells, k.at(dx, dy));
+  std::sort(rings.begin(), rings.end());
+  double light = 0;
+  for (const auto& [radius, share] : rings)
+    if ((light += share) >= 0.5) return radius;
+  return 0;
+}
+
+// Geometrical optics: half of a uniform disc of diameter defocus / N lies within its radius / root
+// of 2. 18 waves over the pupil of the second are more than 128 samples could tell.
+TEST(PsfModel, HalfTheLightOfADefocusLiesWhereGeometryPutsIt) {
+  for (double defocus_m : {4e-3, 10e-3}) {
+    Optics o = telescope();
+    o.pixel_pitch_m = 5e-6;
+    o.spread.support_px = 0;
+    o.spread.defocus_m = defocus_m;
+    const double disc_px = defocus_m / o.f_number() / o.pixel_pitch_m;
+    const int cells = plan_psf(o, lambda, {}, 1.0).oversampling;
+    EXPECT_NEAR(half_light_radius_px(kernel_of_camera(o), cells) / (disc_px / std::sqrt(8.0)), 1.0,
+                0.01)
+        << defocus_m;
+  }
+}
+
+std::string refusal_of(const Optics& o, const std::optional<SensorSeeing>& seeing = {}) {
+  try {
+    sample_pupils(o, {{lambda, 1.0}}, plan_psf(o, lambda, seeing, 1.0), seeing);
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+// Noll 1976: term 4 is sqrt(3) (2 rho^2 - 1), term 6 sqrt(6) rho^2 cos 2 theta.
+TEST(PsfModel, WavefrontsTooSteepForTheirSamplesAreRefusedAtTheirKey) {
+  EXPECT_NEAR(steepest_slope({.wavefront = {{4, 1.0}}}), 4 * std::sqrt(3), 1e-2);
+  EXPECT_NEAR(steepest_slope({.wavefront = {{6, 1.0}}}), 2 * std::sqrt(6), 1e-2);
+  Optics o = telescope();
+  EXPECT_EQ(refusal_of(o), "");
+  o.spread.wavefront = {{8, 1e-4}};
+  EXPECT_EQ(refusal_of(o).find("optics.zernike_nm: "), 0u) << refusal_of(o);
+  o.spread.wavefront = {{8, 100e-9}};
+  EXPECT_EQ(refusal_of(o), "");
+  o.spread.grid_columns = 3;
+  o.spread.field.astigmatism_m = 1e-4;
+  EXPECT_EQ(refusal_of(o).find("optics.field_nm: "), 0u) << refusal_of(o);
+  o = telescope();
+  o.spread.defocus_m = 0.09;
+  EXPECT_EQ(refusal_of(o).find("optics.defocus_m: "), 0u) << refusal_of(o);
+  o = telescope();
+  EXPECT_EQ(refusal_of(o, SensorSeeing{.r0_m = 1e-3, .wind_m_per_s = 0}).find("seeing.r0_m: "), 0u);
+  for (const PupilGrid& grid : sample_pupils(o, {{lambda, 1.0}}, plan_psf(o, lambda, {}, 1.0), {}))
+    EXPECT_LT(grid.step_m, o.aperture_m / 127);
 }
 
 TEST(PsfModel, JitterIsAGaussian) {

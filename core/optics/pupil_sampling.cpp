@@ -1,0 +1,141 @@
+#include "core/optics/pupil_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+using Model = PointSpread::Model;
+
+/// Samples across the aperture of a pupil without turbulence: the kernel is right to 1e-3 of its
+/// peak.
+constexpr int still_samples = 128, turbulent_samples = 48;
+
+bool needs_pupil(const PointSpread& s, const PsfPlan& plan) {
+  const bool aberrated = s.spiders != 0 || !s.wavefront.empty() || s.defocus_m != 0.0;
+  return has_screens(plan) || (s.model != Model::gaussian && (aberrated || s.field.any()));
+}
+
+/// The steepest slope over the field. Its terms grow outwards: the centre and the corners do.
+double steepest_in_field(const Optics& optics, double wavelength_m) {
+  double steepest = steepest_slope(pupil_at(optics, {}, wavelength_m));
+  if (!optics.spread.field.any()) return steepest;
+  constexpr int directions = 8;
+  for (int i = 0; i < directions; ++i)
+    steepest = std::max(
+        steepest, steepest_slope(pupil_at(optics, {1.0, 2 * pi * i / directions}, wavelength_m)));
+  return steepest;
+}
+
+/// The key of what makes most of the slope.
+std::string steepest_key(const Optics& optics, double wavelength_m) {
+  Optics wavefront = optics, field = optics, defocus = optics;
+  wavefront.spread.field = field.spread.field = defocus.spread.field = {};
+  wavefront.spread.defocus_m = field.spread.defocus_m = 0.0;
+  field.spread.wavefront = defocus.spread.wavefront = {};
+  field.spread.field = optics.spread.field;
+  const double of_wavefront = steepest_in_field(wavefront, wavelength_m),
+               of_field = steepest_in_field(field, wavelength_m),
+               of_defocus = steepest_in_field(defocus, wavelength_m);
+  if (of_wavefront >= std::max(of_field, of_defocus)) return "optics.zernike_nm";
+  return of_field >= of_defocus ? "optics.field_nm" : "optics.defocus_m";
+}
+
+}  // namespace
+
+bool has_screens(const PsfPlan& plan) {
+  return plan.exposure == ExposureKind::brief || plan.exposure == ExposureKind::between;
+}
+
+Pupil pupil_at(const Optics& optics, const FieldPlace& place, double wavelength_m) {
+  const PointSpread& s = optics.spread;
+  const double rad_per_m = 2 * pi / wavelength_m;
+  Pupil p{.aperture_m = optics.aperture_m,
+          .obscuration = optics.obscuration,
+          .spiders = s.spiders,
+          .spider_width_m = s.spider_width_m};
+  const auto add = [&](int noll, double rms_m) {
+    if (rms_m != 0.0) p.wavefront.push_back({noll, rms_m * rad_per_m});
+  };
+  for (const WavefrontTerm& t : s.wavefront) add(t.noll, t.rms_m);
+  // A detector off the focus sees rho^2 delta / (8 N^2) of path, and Noll's term 4 is sqrt(3) (2
+  // rho^2 - 1).
+  const double n = optics.f_number();
+  add(4, s.defocus_m / (16 * std::sqrt(3.0) * n * n));
+  const double r = place.radius, a = place.angle_rad;
+  add(8, s.field.coma_m * r * std::cos(a));
+  add(7, s.field.coma_m * r * std::sin(a));
+  add(6, s.field.astigmatism_m * r * r * std::cos(2 * a));
+  add(5, s.field.astigmatism_m * r * r * std::sin(2 * a));
+  add(4, s.field.curvature_m * r * r);
+  return p;
+}
+
+double steepest_slope(const Pupil& pupil) {
+  if (pupil.wavefront.empty()) return 0.0;
+  constexpr int radii = 16, angles = 64;  // Noll's 66 has ten periods around the edge
+  constexpr double h = 1e-4;
+  std::vector<ZernikeTerm> terms = pupil.wavefront;
+  const auto tilt = centring_tilt(pupil);
+  terms.insert(terms.end(), tilt.begin(), tilt.end());
+  double steepest = 0.0;
+  for (int i = 1; i <= radii; ++i)
+    for (int j = 0; j < angles; ++j) {
+      const double rho = double(i) / radii, theta = 2 * pi * j / angles;
+      double outwards = 0.0, around = 0.0;
+      for (const ZernikeTerm& t : terms) {
+        const double here = zernike(t.noll, rho, theta);
+        outwards += t.rms_rad * (here - zernike(t.noll, rho - h, theta)) / h;
+        around += t.rms_rad * (zernike(t.noll, rho, theta + h) - here) / (h * rho);
+      }
+      steepest = std::max(steepest, std::hypot(outwards, around));
+    }
+  return steepest;
+}
+
+std::vector<PupilGrid> sample_pupils(const Optics& optics, const std::vector<WavelengthShare>& band,
+                                     const PsfPlan& plan,
+                                     const std::optional<SensorSeeing>& seeing) {
+  std::vector<PupilGrid> grids;
+  if (!needs_pupil(optics.spread, plan)) return grids;
+  const bool screens = has_screens(plan);
+  const double cell_rad = optics.pixel_angle_rad() / plan.oversampling;
+  for (const WavelengthShare& w : band) {
+    constexpr double margin = 1.05;  // for what lies between the places asked
+    const double slope = steepest_in_field(optics, w.wavelength_m);
+    const double steep = std::ceil(margin * 2 * slope / pi);
+    if (steep > most_pupil_samples)
+      throw ConfigError(steepest_key(optics, w.wavelength_m) + ": a wavefront of " +
+                        std::to_string(std::lround(slope / (2 * pi))) +
+                        " waves over the aperture's radius is too steep to sample: needs " +
+                        std::to_string(std::llround(steep)) + " samples across, more than " +
+                        std::to_string(most_pupil_samples));
+    const double r0_m =
+        screens ? seeing->r0_at_m(w.wavelength_m) : std::numeric_limits<double>::infinity();
+    const int samples = std::max(screens ? turbulent_samples : still_samples, int(steep));
+    const Pupil pupil = pupil_at(optics, {}, w.wavelength_m);
+    try {
+      grids.push_back(pupil_grid(pupil, w.wavelength_m, cell_rad, plan.half_cells, r0_m, samples));
+    } catch (const Error& e) {
+      throw ConfigError(
+          (screens ? std::string("seeing.r0_m") : std::string("optics.oversampling")) + ": " +
+          e.what());
+    }
+  }
+  if (screens) {
+    const int across = aperture_samples(pupil_at(optics, {}, band[0].wavelength_m), grids[0]);
+    if (across > most_pupil_samples)
+      throw ConfigError("seeing.r0_m: turbulence too strong for the aperture: needs a screen of " +
+                        std::to_string(across) + " samples across, more than " +
+                        std::to_string(most_pupil_samples));
+  }
+  return grids;
+}
+
+}  // namespace dmise
