@@ -147,7 +147,7 @@ def registration():
     tests = json.loads(results.read_text())["testsuites"][0]["testsuite"]
     rows = [[t["name"], t.get("sources", ""), t.get("worst_px", ""),
              "fails" if "failures" in t else "holds"] for t in tests]
-    return table(("light of", "sources", "worst, px (< 0.02)", ""), rows)
+    return table(("light of", "sources", "worst, px (< 0.01)", ""), rows)
 
 
 def continuous_integration():
