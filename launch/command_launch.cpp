@@ -10,7 +10,6 @@
 #include "core/base/text_file.h"
 #include "core/config/make_clock.h"
 #include "launch/commands.h"
-#include "launch/file_lock.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
 #include "launch/restarts.h"
@@ -34,7 +33,6 @@ struct LaunchOptions {
   std::optional<std::uint64_t> seed;  // in place of the scenario's
   int threads = 1;
   bool force = false;
-  bool nodes_elsewhere = false;  // in other containers: they join by themselves
 };
 
 std::string number(double x) {
@@ -59,7 +57,7 @@ class Launch {
     std::filesystem::create_directories(directory_.path() + "/logs");
     start_master();
     const std::string master = master_address();
-    if (!options_.nodes_elsewhere) start_nodes(master);
+    start_nodes(master);
     watch(master, outcome);
     outcome.wall_s = Seconds(Clock_::now() - start).count();
     return outcome;
@@ -229,13 +227,9 @@ void launch(const LaunchOptions& options) {
   Scenario scenario = load_scenario(options.scenario);
   if (options.seed) scenario.seed = *options.seed;
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
-  std::optional<FileLock> lock;  // told to nodes elsewhere: the directory is ready
-  if (options.nodes_elsewhere && lock.emplace(run_lock_path(options.out)).held_elsewhere())
-    throw Error(options.out + ": another run is being made there");
   const RunStart begin = prepare_directory(directory, scenario, options.force);
   if (!begin.needed) return;
   stop_signal();
-  if (lock && !lock->take()) throw Error(options.out + ": another run is being made there");
   // What a node would complain of is better said here, once, before anything starts.
   const auto population = load_objects(scenario, make_clock(scenario));
   check_sensors(scenario, population.roster);
@@ -266,8 +260,6 @@ void add_launch_command(CLI::App& app) {
   command->add_option(
       "--keys", options->keys,
       "directory of keys (dmise keygen); without it all is plain, on loopback alone");
-  command->add_flag("--nodes-elsewhere", options->nodes_elsewhere,
-                    "start the time-master alone; the nodes are started by `dmise join`");
   command->add_flag("--force", options->force, "replace what is in the directory");
   command->callback([options] { launch(*options); });
 }
