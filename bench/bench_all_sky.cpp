@@ -1,7 +1,6 @@
 #include "bench/bench_all_sky.h"
 
 #include <malloc.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "bench/figure.h"
+#include "bench/timing.h"
 #include "core/base/text_file.h"
 #include "core/config/make_clock.h"
 #include "core/config/search_path.h"
@@ -29,12 +29,6 @@ namespace dmise {
 namespace {
 
 constexpr int repeats = 7;
-
-double thread_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
 
 double wall_s() {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
@@ -163,12 +157,12 @@ void measure_all_sky(bool json) {
     Measured measured;
     std::uint32_t stars = 0, objects = 0;
     const auto make = [&] {
-      const double cpu = thread_s(), wall = wall_s();
+      const double cpu = thread_seconds(), wall = wall_s();
       const FrameProducts frame = pipeline.run(exposure, world);
-      const double writing = thread_s();
+      const double writing = thread_seconds();
       write_frame(fits, frame.counts, frame.header);
-      measured.writing_s.push_back(thread_s() - writing);
-      measured.cpu_s.push_back(thread_s() - cpu);
+      measured.writing_s.push_back(thread_seconds() - writing);
+      measured.cpu_s.push_back(thread_seconds() - cpu);
       measured.wall_s.push_back(wall_s() - wall);
       measured.effects.push_back(frame.times);
       stars = frame.report.stars_rendered;

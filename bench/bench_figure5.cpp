@@ -1,7 +1,5 @@
 #include "bench/bench_figure5.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "bench/figure.h"
+#include "bench/timing.h"
 #include "core/base/units.h"
 #include "core/orbit/catalogue.h"
 #include "core/orbit/synthetic_catalogue.h"
@@ -17,12 +16,6 @@
 
 namespace dmise {
 namespace {
-
-double thread_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
 
 std::vector<MeanElements> catalogue() {
   if (const char* data = std::getenv("DMISE_DATA"))

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <vector>
 
 #include "bench/figure.h"
+#include "bench/timing.h"
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/materials/shapes.h"
@@ -14,19 +14,6 @@
 
 namespace dmise {
 namespace {
-
-/// Of processor time of all threads, so that other work on the machine does not count.
-template <class Work>
-double median_ms(int repeats, Work&& work) {
-  std::vector<double> ms;
-  for (int i = 0; i < repeats; ++i) {
-    const std::clock_t start = std::clock();
-    work();
-    ms.push_back(1e3 * double(std::clock() - start) / CLOCKS_PER_SEC);
-  }
-  std::sort(ms.begin(), ms.end());
-  return ms[ms.size() / 2];
-}
 
 Vec<Body> direction(int i) { return from_spherical<Body>(0.7 * i, std::asin(std::sin(1.3 * i))); }
 
@@ -43,10 +30,11 @@ double unresolved_ms(double& light) {
   std::vector<FacetLight> objects;
   for (int i = 0; i < 1000; ++i)
     objects.emplace_back(cylinder(0.5 + 1e-3 * i, 2.0, 25, paint()), Band{});
-  return median_ms(21, [&] {
+  const auto all = [&] {
     for (int i = 0; i < 1000; ++i)
       light += objects[std::size_t(i)].reflected_m2_per_sr(direction(i), direction(i + 1));
-  });
+  };
+  return 1e3 * median_seconds(21, all, process_seconds);
 }
 
 /// One tile of 512 x 512 pixels, 4 x 4 samples each, that the object fills: light sources, shadow,
@@ -65,7 +53,8 @@ double tile_ms(Renderer& renderer, double& light) {
                                    .columns = 512,
                                    .rows = 512}};
   light += renderer.draw(scene).at(256, 256, 0);
-  return median_ms(9, [&] { light += renderer.draw(scene).at(256, 256, 0); });
+  const auto draw = [&] { light += renderer.draw(scene).at(256, 256, 0); };
+  return 1e3 * median_seconds(9, draw, process_seconds);
 }
 
 }  // namespace

@@ -1,19 +1,17 @@
 #include "bench/bench_sgp4.h"
 
 #include <stdlib.h>
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bench/sgp4_scale.h"
+#include "bench/timing.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/text_file.h"
@@ -25,24 +23,6 @@
 
 namespace dmise {
 namespace {
-
-double thread_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
-
-/// Median thread CPU time of one call [s].
-double median_s(int repeats, const std::function<void(int)>& work) {
-  std::vector<double> times;
-  for (int k = 0; k < repeats; ++k) {
-    const double start = thread_seconds();
-    work(k);
-    times.push_back(thread_seconds() - start);
-  }
-  std::nth_element(times.begin(), times.begin() + repeats / 2, times.end());
-  return times[std::size_t(repeats) / 2];
-}
 
 struct Outputs {
   std::vector<double> position, velocity;
@@ -63,7 +43,7 @@ double states_m_per_s(const std::vector<MeanElements>& elements, SimdLevel simd,
     batch.propagate(ticks, out.position, out.velocity, out.code);
   };
   propagate(0);
-  const double s = median_s(times == 1 ? 101 : 25, propagate);
+  const double s = median_seconds(times == 1 ? 101 : 25, propagate);
   return double(batch.size() * times) / s * 1e-6;
 }
 
@@ -203,7 +183,7 @@ double cone_ms(const std::vector<MeanElements>& elements, double jd1) {
     cones.push_back({{6378137.0 * x, 6378137.0 * y, 6378137.0 * z}, {x, y, z}, 80.0 * deg});
   }
   std::vector<std::uint64_t> visible(cone_words(objects) * sensors);
-  return 1e3 * median_s(15, [&](int) { cone_test(out.position, cones, visible); });
+  return 1e3 * median_seconds(15, [&](int) { cone_test(out.position, cones, visible); });
 }
 
 }  // namespace

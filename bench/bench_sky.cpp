@@ -1,13 +1,12 @@
 #include "bench/bench_sky.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <string>
 #include <vector>
 
-#include "core/base/json.h"
+#include "bench/figure.h"
+#include "bench/timing.h"
 #include "core/base/units.h"
 #include "core/config/search_path.h"
 #include "core/optics/projection.h"
@@ -22,53 +21,6 @@
 
 namespace dmise {
 namespace {
-
-/// Of processor time, so that other work on the machine does not count.
-template <class Work>
-double median_ms(int repeats, Work&& work) {
-  std::vector<double> ms;
-  for (int i = 0; i < repeats; ++i) {
-    const std::clock_t start = std::clock();
-    work();
-    ms.push_back(1e3 * double(std::clock() - start) / CLOCKS_PER_SEC);
-  }
-  std::sort(ms.begin(), ms.end());
-  return ms[ms.size() / 2];
-}
-
-struct Figure {
-  std::string name;
-  double value = 0.0;
-  std::string unit;
-  double target = 0.0;  // at most; 0: none
-  std::string anchor;
-  double anchor_value = 0.0;
-};
-
-void print(const Figure& figure, bool json) {
-  const bool met = figure.value <= figure.target;
-  if (!json) {
-    std::printf("%-24s %10.4g %-6s", figure.name.c_str(), figure.value, figure.unit.c_str());
-    if (figure.target > 0) std::printf("  %s %g", met ? "within" : "beyond", figure.target);
-    std::printf("\n");
-    return;
-  }
-  JsonWriter line;
-  const auto number_or_null = [&](const char* key, double number) {
-    line.key(key);
-    number > 0 ? line.value(number) : line.null();
-  };
-  line.begin_object().field("name", figure.name).field("value", figure.value);
-  line.field("unit", figure.unit).key("anchor");
-  figure.anchor.empty() ? line.null() : line.value(figure.anchor);
-  number_or_null("anchor_value", figure.anchor_value);
-  number_or_null("ratio", figure.anchor_value > 0 ? figure.value / figure.anchor_value : 0.0);
-  number_or_null("target", figure.target);
-  line.key("met");
-  figure.target > 0 ? line.value(met) : line.null();
-  line.end_object();
-  std::printf("%s\n", line.text().c_str());
-}
 
 /// The paper's all-sky camera, 90 deg across 3326 px, gnomonic, at the zenith; Moon and dawn in the
 /// sky.
@@ -92,18 +44,19 @@ void whole_sky(bool json) {
   };
   std::vector<float> image(std::size_t(columns) * rows);
   Threads one(1);
-  const double ms =
-      median_ms(7, [&] { fill_from_grid(columns, rows, radiance, 0.005, image.data(), one); });
+  const double ms = 1e3 * median_seconds(7, [&] {
+                      fill_from_grid(columns, rows, radiance, 0.005, image.data(), one);
+                    });
   double worst = 0.0;
-  const double exact_ms = sampled * sampled * median_ms(1, [&] {
+  const double exact_ms = sampled * sampled * 1e3 * median_seconds(1, [&] {
                             for (int y = 0; y < rows; y += sampled)
                               for (int x = 0; x < columns; x += sampled) {
                                 const double got = image[std::size_t(y) * columns + std::size_t(x)];
                                 worst = std::max(worst, std::abs(got / radiance(x, y) - 1));
                               }
                           });
-  print({"all_parts_ms", ms, "ms", 40, "every pixel evaluated", exact_ms}, json);
-  print({"all_parts_error", worst, "1", 0.005, "", 0}, json);
+  print_figure({"all_parts_ms", ms, "ms", "every pixel evaluated", exact_ms, 40, true}, json);
+  print_figure({"all_parts_error", worst, "1", "", 0, 0.005, true}, json);
 }
 
 /// Stars of one field as a frame needs them: found, their apparent places through the air, their
@@ -127,28 +80,31 @@ void stars(bool json) {
   const auto field_ms = [&](double radius_deg, double faintest_v_mag) {
     std::vector<std::uint32_t> found;
     std::vector<Vec<Gcrs>> places;
-    return median_ms(21, [&] {
-      found.clear();
-      query_cone(c, map.index, zenith, radius_deg * deg, faintest_v_mag, found);
-      places.resize(found.size());
-      const ApparentPlaces apparent(observer, EffectSet{});
-      apparent.stars({c.epoch_jyear,
-                      c.ra_rad,
-                      c.dec_rad,
-                      c.pm_ra_cosdec_rad_per_yr,
-                      c.pm_dec_rad_per_yr,
-                      c.parallax_rad,
-                      {}},
-                     found, places);
-      for (const std::uint32_t i : found) rate_sum += light.photons_per_s_m2(c.v_mag[i], c.bv[i]);
-      drawn = found.size();
-    });
+    return 1e3 * median_seconds(21, [&] {
+             found.clear();
+             query_cone(c, map.index, zenith, radius_deg * deg, faintest_v_mag, found);
+             places.resize(found.size());
+             const ApparentPlaces apparent(observer, EffectSet{});
+             apparent.stars({c.epoch_jyear,
+                             c.ra_rad,
+                             c.dec_rad,
+                             c.pm_ra_cosdec_rad_per_yr,
+                             c.pm_dec_rad_per_yr,
+                             c.parallax_rad,
+                             {}},
+                            found, places);
+             for (const std::uint32_t i : found)
+               rate_sum += light.photons_per_s_m2(c.v_mag[i], c.bv[i]);
+             drawn = found.size();
+           });
   };
   const double wide_ms = field_ms(52.0, 8.1);
   const auto wide = double(drawn);
-  print({"stars_90deg_ms", wide_ms * 1e4 / wide, "ms", 5, "", 0}, json);
-  print({"stars_1deg_ms", field_ms(0.71, 9.0), "ms", 0.2, "", 0}, json);
-  print({"catalogue_read_ms", median_ms(3, [&] { load_star_map(path); }), "ms", 0, "", 0}, json);
+  print_figure({"stars_90deg_ms", wide_ms * 1e4 / wide, "ms", "", 0, 5, true}, json);
+  print_figure({"stars_1deg_ms", field_ms(0.71, 9.0), "ms", "", 0, 0.2, true}, json);
+  print_figure({"catalogue_read_ms", 1e3 * median_seconds(3, [&] { load_star_map(path); }), "ms",
+                "", 0, 0, true},
+               json);
   if (!(rate_sum > 0)) std::fprintf(stderr, "bench sky: no star in the field\n");
 }
 

@@ -1,7 +1,7 @@
 #include "bench/sgp4_scale.h"
+#include "bench/timing.h"
 
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,12 +17,6 @@
 
 namespace dmise {
 namespace {
-
-double thread_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
 
 double peak_mb() {
   const std::string status = read_text_file("/proc/self/status");

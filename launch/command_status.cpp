@@ -1,3 +1,4 @@
+#include <poll.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -6,7 +7,6 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <thread>
 
 #include "core/base/error.h"
 #include "launch/commands.h"
@@ -97,7 +97,9 @@ void show(const StatusOptions& options) {
     std::printf("\x1b[H\x1b[2J%s", table(status).c_str());
     std::fflush(stdout);
     if (status.phase == Phase::ended || status.phase == Phase::failed) return;
-    std::this_thread::sleep_for(interval);
+    pollfd until_stopped{.fd = stop.fd(), .events = POLLIN, .revents = 0};
+    poll(&until_stopped, 1, int(interval.count()));
+    if (stop.is_set()) return;
     status = ask_master(options.master, patience_s, security);
   }
 }
