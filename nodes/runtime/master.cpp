@@ -68,8 +68,12 @@ class Master {
     std::optional<nanoseconds> over_since;
     while (true) {
       wait(std::min(next_check, coordinator_.next_due().value_or(next_check)) - now());
-      for (const std::string& name : connections_.lost()) coordinator_.suspect(name, now());
+      const std::vector<int> broken = connections_.broken();
+      for (const std::string& name : connections_.names_of(broken))
+        coordinator_.suspect(name, now());
       hear();
+      // What came over a connection before it broke is no sign of life after it.
+      for (const std::string& name : connections_.forget(broken)) coordinator_.suspect(name, now());
       if (options_.stop && options_.stop->is_set()) coordinator_.stop("interrupted");
       const auto due = coordinator_.next_due();
       if (due && now() >= *due) coordinator_.check(now());

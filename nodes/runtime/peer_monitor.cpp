@@ -1,5 +1,6 @@
 #include "nodes/runtime/peer_monitor.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <cstring>
@@ -23,18 +24,33 @@ void PeerMonitor::belongs(zmq::message_t& frame, const std::string& name) {
   if (connection >= 0) name_of_[connection] = name;
 }
 
-std::vector<std::string> PeerMonitor::lost() {
-  std::vector<std::string> names;
+std::vector<int> PeerMonitor::broken() {
+  std::vector<int> connections;
   for (auto event = receive(events_); !event.empty(); event = receive(events_)) {
     // First frame: uint16 event, uint32 file descriptor, in the order of this machine.
     if (event[0].size() < 6) continue;
     std::uint32_t connection = 0;
     std::memcpy(&connection, event[0].data<char>() + 2, sizeof connection);
-    const auto found = name_of_.find(int(connection));
-    if (found == name_of_.end()) continue;
-    names.push_back(found->second);
-    name_of_.erase(found);
+    connections.push_back(int(connection));
   }
+  return connections;
+}
+
+std::vector<std::string> PeerMonitor::names_of(const std::vector<int>& connections) const {
+  std::vector<std::string> names;
+  for (const int connection : connections)
+    if (const auto found = name_of_.find(connection); found != name_of_.end())
+      names.push_back(found->second);
+  return names;
+}
+
+std::vector<std::string> PeerMonitor::forget(const std::vector<int>& connections) {
+  std::vector<std::string> names = names_of(connections);
+  for (const int connection : connections) name_of_.erase(connection);
+  std::erase_if(names, [this](const std::string& name) {
+    return std::any_of(name_of_.begin(), name_of_.end(),
+                       [&](const auto& entry) { return entry.second == name; });
+  });
   return names;
 }
 

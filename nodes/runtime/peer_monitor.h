@@ -14,8 +14,13 @@ class PeerMonitor {
 
   /// `frame` came from the node `name`.
   void belongs(zmq::message_t& frame, const std::string& name);
-  /// Nodes that have lost a connection since the last call.
-  std::vector<std::string> lost();
+  /// Connections that broke since the last call. What they brought before is with the watched
+  /// socket by then: hear it, then forget them.
+  std::vector<int> broken();
+  /// Whose connections these are.
+  std::vector<std::string> names_of(const std::vector<int>& connections) const;
+  /// Forgets them, and gives the nodes that have none left.
+  std::vector<std::string> forget(const std::vector<int>& connections);
   void* handle() { return events_.handle(); }
 
  private:
