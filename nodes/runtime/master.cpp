@@ -8,6 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/base/text_file.h"
+#include "nodes/runtime/clock_watch.h"
+#include "nodes/runtime/master_voice.h"
 #include "nodes/runtime/master_words.h"
 #include "nodes/runtime/peer_directory.h"
 #include "nodes/runtime/peer_monitor.h"
@@ -20,12 +22,10 @@ namespace {
 using std::chrono::duration;
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
-using std::chrono::seconds;
 
 constexpr milliseconds check_interval{50};
 constexpr milliseconds connecting_interval{10};  // grants repeated while subscribers connect
 constexpr milliseconds farewell{1700};  // longest wait for nodes to leave a run that is over
-constexpr seconds complain_interval{5};
 
 std::uint64_t new_run_id() {
   std::random_device device;
@@ -55,7 +55,8 @@ class Master {
         ticks_(make_socket(context_, zmq::socket_type::pub, max_control_bytes)),
         connections_(context_, router_),
         run_id_(new_run_id()),
-        heartbeat_(std::min<nanoseconds>(milliseconds(250), options.run.silent_after / 8)) {
+        heartbeat_(std::min<nanoseconds>(milliseconds(250), options.run.silent_after / 8)),
+        voice_(router_, ticks_, run_id_, coordinator_, directory_) {
     router_.set(zmq::sockopt::linger, 500);
     ticks_.set(zmq::sockopt::linger, 500);
     address_ = bind_to(router_, options.address, security_);
@@ -79,14 +80,12 @@ class Master {
       if (due && now() >= *due) coordinator_.check(now());
       if (now() >= next_check) {
         coordinator_.check(now());
-        complain();
+        watch_.look(coordinator_, now());
         const bool connecting = coordinator_.phase() == Phase::connecting;
         next_check = now() + (connecting ? connecting_interval : check_interval);
-        if (connecting || coordinator_.over()) publish();
+        if (connecting || coordinator_.over()) voice_.publish();
       }
-      if (coordinator_.phase() != phase_ || coordinator_.granted() != granted_ ||
-          coordinator_.topology_version() != topology_version_ || !fresh_.published().empty())
-        advance();
+      advance();
       if (!coordinator_.over()) continue;
       if (!over_since) over_since = now();
       // Of a failure, the heartbeat of a node that hangs hears as well.
@@ -140,7 +139,7 @@ class Master {
         if (heard_.has_control()) control();
         v1::MasterMessage answer;
         fill(answer.mutable_endpoints());
-        reply(sender, answer);
+        voice_.reply(sender, answer);
       }
     }
   }
@@ -162,7 +161,7 @@ class Master {
     if (member == coordinator_.members().end() || member->second.observer) return;
     TickTally tally = tally_of(heard_.done());
     tally.incarnation = member->second.incarnation;
-    add_published(&fresh_, consumed_, tally);
+    voice_.note(tally);
   }
 
   void control() {
@@ -180,7 +179,7 @@ class Master {
                              : std::optional<std::string>("only the broker is named broker");
     if (refusal) {
       answer.mutable_refuse()->set_reason(*refusal);
-      reply(sender, answer);
+      voice_.reply(sender, answer);
       spdlog::warn("refused {}: {}", join.name(), *refusal);
       return;
     }
@@ -196,7 +195,7 @@ class Master {
     welcome->set_heartbeat_s(as_seconds(heartbeat_));
     welcome->set_silent_after_s(as_seconds(options_.run.silent_after));
     welcome->set_tick_endpoint(tick_endpoint_);
-    reply(sender, answer);
+    voice_.reply(sender, answer);
     const auto missing = coordinator_.missing();
     spdlog::info("{} joined{}{}", join.name(),
                  incarnation == 1 ? "" : fmt::format(", process {} of its name", incarnation),
@@ -205,35 +204,19 @@ class Master {
 
   void heartbeat(std::string_view sender, zmq::message_t& frame) {
     const auto& heartbeat = heard_.heartbeat();
-    v1::MasterMessage answer;
     const auto member = coordinator_.members().find(heartbeat.name());
     if (!directory_.find(heartbeat.name(), heartbeat.incarnation())) {
       if (directory_.knows(heartbeat.name()))
-        reply(sender, expelled("another process has taken the name " + heartbeat.name()));
+        voice_.reply(sender,
+                     voice_.expelled("another process has taken the name " + heartbeat.name()));
       return;
     }
     connections_.belongs(frame, heartbeat.name());
     coordinator_.heartbeat(heartbeat.name(), heartbeat.computing(), heartbeat.progress(), now());
     times_[heartbeat.name()] = take(heartbeat.times());
     if (member == coordinator_.members().end() || member->second.dropped)
-      return reply(sender, expelled("the run goes on without " + heartbeat.name()));
-    *answer.mutable_grant() = grant();
-    const auto& needs = member->second.node.consumes;
-    const std::set<std::string, std::less<>> wanted(needs.begin(), needs.end());
-    for (const auto& [name, other] : coordinator_.members())
-      for (const TickTally& tally : other.said)
-        if (tally.incarnation == other.incarnation)
-          add_published(answer.mutable_grant(), wanted, tally);
-    reply(sender, answer);
-  }
-
-  /// The run's last word to a process that is no longer part of it.
-  v1::MasterMessage expelled(const std::string& cause) {
-    v1::MasterMessage answer;
-    *answer.mutable_grant() = grant();
-    answer.mutable_grant()->set_phase(v1::PHASE_FAILED);
-    answer.mutable_grant()->set_cause(cause);
-    return answer;
+      return voice_.reply(sender, voice_.expelled("the run goes on without " + heartbeat.name()));
+    voice_.reply(sender, voice_.grant_for(member->second));
   }
 
   void leave(const std::string& name) {
@@ -244,63 +227,15 @@ class Master {
     spdlog::debug("{} left", name);
   }
 
-  void reply(std::string_view routing_id, const v1::MasterMessage& message) {
-    router_.send(zmq::buffer(routing_id), zmq::send_flags::sndmore);
-    router_.send(to_frame(message), zmq::send_flags::none);
-  }
-
-  /// Something changed: says so to everybody.
+  /// Says what has changed to everybody.
   void advance() {
-    const Phase before = phase_;
-    phase_ = coordinator_.phase();
-    granted_ = coordinator_.granted();
-    if (coordinator_.topology_version() != topology_version_) send_topology();
-    if (phase_ != before) {
-      if (phase_ == Phase::running) started_ = now();
-      if (before == Phase::running) ended_ = now();
-      if (phase_ == Phase::failed) spdlog::error("{}", coordinator_.cause());
-      if (phase_ == Phase::running) spdlog::info("all are ready");
-    }
-    publish();
-  }
-
-  void publish() {
-    grant();
-    grant_.mutable_published()->Swap(fresh_.mutable_published());
-    fresh_.clear_published();
-    ticks_.send(to_frame(grant_), zmq::send_flags::none);
-  }
-
-  const v1::Grant& grant() {
-    grant_.Clear();
-    grant_.set_run_id(run_id_);
-    grant_.set_tick(coordinator_.granted());
-    grant_.set_phase(to_wire(coordinator_.phase()));
-    grant_.set_cause(coordinator_.cause());
-    for (const auto& [name, member] : coordinator_.members()) {
-      if (!member.dropped) continue;
-      for (const std::string& topic : member.node.produces) {
-        auto* closed = grant_.add_closed();
-        closed->set_topic(topic);
-        closed->set_from_tick(member.closed_from);
-      }
-    }
-    if (coordinator_.over())
-      grant_.set_deserted(std::none_of(
-          coordinator_.members().begin(), coordinator_.members().end(),
-          [](const auto& entry) { return entry.second.keeps_time && entry.second.active(); }));
-    return grant_;
-  }
-
-  void send_topology() {
-    topology_version_ = coordinator_.topology_version();
-    consumed_ = directory_.consumed();
-    const v1::Topology topology = directory_.topology();
-    for (const auto& [name, peer] : directory_.all()) {
-      v1::MasterMessage message;
-      *message.mutable_topology() = topology_for(name, topology, coordinator_);
-      reply(peer.routing_id, message);
-    }
+    const Phase before = voice_.phase();
+    if (!voice_.say_news() || voice_.phase() == before) return;
+    const Phase phase = voice_.phase();
+    if (phase == Phase::running) started_ = now();
+    if (before == Phase::running) ended_ = now();
+    if (phase == Phase::failed) spdlog::error("{}", coordinator_.cause());
+    if (phase == Phase::running) spdlog::info("all are ready");
   }
 
   void fill(v1::Endpoints* endpoints) const {
@@ -314,42 +249,10 @@ class Master {
         put(node.mutable_times(), times->second);
   }
 
-  /// Names whom everybody waits for when nothing has moved for a while.
-  void complain() {
-    if (coordinator_.over()) return;
-    for (const auto& [name, member] : coordinator_.members()) {
-      if (!member.silent) silent_.erase(name);
-      if (member.silent && silent_.insert(name).second)
-        spdlog::warn("{} is lost: waiting for it (last tick done: {})", name, member.done);
-    }
-    const auto state = std::pair(coordinator_.granted(), coordinator_.holding());
-    if (state != complained_about_) {
-      complained_about_ = state;
-      quiet_since_ = now();
-    } else if (now() - quiet_since_ >= complain_interval) {
-      const auto& pace = coordinator_.pace();
-      spdlog::info("tick {} of {}: {}", coordinator_.granted(), options_.run.last_tick,
-                   !coordinator_.holding().empty() ? "waiting for " + joined(coordinator_.holding())
-                   : pace.paused()                 ? std::string("paused")
-                                                   : std::string("real time holds the clock"));
-      quiet_since_ = now();
-    }
-  }
-
   MasterResult result() const {
-    MasterResult result;
-    result.reason = coordinator_.cause();
-    result.exit_code = coordinator_.phase() == Phase::ended && result.reason.empty() ? 0 : 1;
-    result.digest = coordinator_.digest();
-    result.overruns = coordinator_.pace().overruns();
-    result.worst_lag_s = as_seconds(coordinator_.pace().worst_lag());
-    result.granted = coordinator_.granted();
+    MasterResult result = result_of(coordinator_);
     if (started_) result.wall_s = as_seconds(ended_.value_or(now()) - *started_);
     result.times = times_;
-    for (const auto& [name, member] : coordinator_.members())
-      if (member.dropped) result.dropped.push_back(name);
-    for (const auto& [name, member] : coordinator_.members())
-      if (member.incarnation > 1) result.restarts[name] = int(member.incarnation) - 1;
     return result;
   }
 
@@ -365,18 +268,11 @@ class Master {
   std::string address_, tick_endpoint_;
   std::vector<zmq::pollitem_t> items_;
   PeerDirectory directory_;
+  MasterVoice voice_;
   std::map<std::string, TimeSplit> times_;
   v1::NodeMessage heard_;
-  v1::Grant grant_;
-  v1::Grant fresh_;                              // `published` that has not been told yet
-  std::set<std::string, std::less<>> consumed_;  // topics that somebody consumes
-  std::uint64_t topology_version_ = 0;           // as last told
-  Phase phase_ = Phase::gathering;               // as last told
-  Tick granted_ = -1;
+  ClockWatch watch_;
   std::optional<nanoseconds> started_, ended_;
-  std::pair<Tick, std::vector<std::string>> complained_about_;
-  nanoseconds quiet_since_{0};
-  std::set<std::string> silent_;  // as last said
 };
 
 }  // namespace

@@ -6,6 +6,21 @@
 
 namespace dmise {
 
+MasterResult result_of(const Coordinator& coordinator) {
+  MasterResult result;
+  result.reason = coordinator.cause();
+  result.exit_code = coordinator.phase() == Phase::ended && result.reason.empty() ? 0 : 1;
+  result.digest = coordinator.digest();
+  result.overruns = coordinator.pace().overruns();
+  result.worst_lag_s = std::chrono::duration<double>(coordinator.pace().worst_lag()).count();
+  result.granted = coordinator.granted();
+  for (const auto& [name, member] : coordinator.members()) {
+    if (member.dropped) result.dropped.push_back(name);
+    if (member.incarnation > 1) result.restarts[name] = int(member.incarnation) - 1;
+  }
+  return result;
+}
+
 std::string to_json(const MasterResult& result) {
   JsonWriter json;
   json.begin_object();

@@ -6,6 +6,7 @@
 
 #include "core/base/sim_time.h"
 #include "nodes/runtime/time_split.h"
+#include "time-master/coordinator.h"
 
 namespace dmise {
 
@@ -22,6 +23,9 @@ struct MasterResult {
   std::uint64_t overruns = 0;           // of real time: ticks not over when the next was due
   double worst_lag_s = 0.0;
 };
+
+/// All but `wall_s` and `times`.
+MasterResult result_of(const Coordinator& coordinator);
 
 /// One JSON object: status, cause, granted_tick, wall_s, digest, overruns, worst_lag_s, dropped,
 /// restarts, and the time split of each node.

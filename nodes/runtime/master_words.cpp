@@ -72,6 +72,26 @@ v1::Topology topology_for(const std::string& name, v1::Topology topology,
   return topology;
 }
 
+void describe(v1::Grant* grant, std::uint64_t run_id, const Coordinator& coordinator) {
+  grant->Clear();
+  grant->set_run_id(run_id);
+  grant->set_tick(coordinator.granted());
+  grant->set_phase(to_wire(coordinator.phase()));
+  grant->set_cause(coordinator.cause());
+  for (const auto& [name, member] : coordinator.members()) {
+    if (!member.dropped) continue;
+    for (const std::string& topic : member.node.produces) {
+      auto* closed = grant->add_closed();
+      closed->set_topic(topic);
+      closed->set_from_tick(member.closed_from);
+    }
+  }
+  if (coordinator.over())
+    grant->set_deserted(std::none_of(
+        coordinator.members().begin(), coordinator.members().end(),
+        [](const auto& entry) { return entry.second.keeps_time && entry.second.active(); }));
+}
+
 void describe(v1::Endpoints* endpoints, const Coordinator& coordinator) {
   endpoints->set_phase(to_wire(coordinator.phase()));
   endpoints->set_cause(coordinator.cause());

@@ -21,6 +21,9 @@ void add_published(v1::Grant* grant, const std::set<std::string, std::less<>>& w
 v1::Topology topology_for(const std::string& name, v1::Topology topology,
                           const Coordinator& coordinator);
 
+/// Sets the grant as it is now, without manifests.
+void describe(v1::Grant* grant, std::uint64_t run_id, const Coordinator& coordinator);
+
 /// Sets what `status` and observers want to know of the clock and its nodes.
 void describe(v1::Endpoints* endpoints, const Coordinator& coordinator);
 

@@ -1,0 +1,68 @@
+#include "nodes/runtime/master_voice.h"
+
+#include "nodes/runtime/master_words.h"
+#include "nodes/runtime/socket.h"
+
+namespace dmise {
+
+void MasterVoice::reply(std::string_view routing_id, const v1::MasterMessage& message) {
+  router_.send(zmq::buffer(routing_id), zmq::send_flags::sndmore);
+  router_.send(to_frame(message), zmq::send_flags::none);
+}
+
+void MasterVoice::note(const TickTally& tally) { add_published(&fresh_, consumed_, tally); }
+
+bool MasterVoice::say_news() {
+  if (coordinator_.phase() == phase_ && coordinator_.granted() == granted_ &&
+      coordinator_.topology_version() == topology_version_ && fresh_.published().empty())
+    return false;
+  phase_ = coordinator_.phase();
+  granted_ = coordinator_.granted();
+  if (coordinator_.topology_version() != topology_version_) send_topology();
+  publish();
+  return true;
+}
+
+void MasterVoice::publish() {
+  describe(&grant_, run_id_, coordinator_);
+  grant_.mutable_published()->Swap(fresh_.mutable_published());
+  fresh_.clear_published();
+  ticks_.send(to_frame(grant_), zmq::send_flags::none);
+}
+
+v1::MasterMessage MasterVoice::grant() const {
+  v1::MasterMessage answer;
+  describe(answer.mutable_grant(), run_id_, coordinator_);
+  return answer;
+}
+
+v1::MasterMessage MasterVoice::grant_for(const Coordinator::Member& member) const {
+  v1::MasterMessage answer = grant();
+  const auto& needs = member.node.consumes;
+  const std::set<std::string, std::less<>> wanted(needs.begin(), needs.end());
+  for (const auto& [name, other] : coordinator_.members())
+    for (const TickTally& tally : other.said)
+      if (tally.incarnation == other.incarnation)
+        add_published(answer.mutable_grant(), wanted, tally);
+  return answer;
+}
+
+v1::MasterMessage MasterVoice::expelled(const std::string& cause) const {
+  v1::MasterMessage answer = grant();
+  answer.mutable_grant()->set_phase(v1::PHASE_FAILED);
+  answer.mutable_grant()->set_cause(cause);
+  return answer;
+}
+
+void MasterVoice::send_topology() {
+  topology_version_ = coordinator_.topology_version();
+  consumed_ = directory_.consumed();
+  const v1::Topology topology = directory_.topology();
+  for (const auto& [name, peer] : directory_.all()) {
+    v1::MasterMessage message;
+    *message.mutable_topology() = topology_for(name, topology, coordinator_);
+    reply(peer.routing_id, message);
+  }
+}
+
+}  // namespace dmise

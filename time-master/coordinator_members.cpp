@@ -1,0 +1,110 @@
+// Who joins, takes another's place, watches, and when all are there.
+#include <algorithm>
+
+#include "time-master/coordinator.h"
+
+namespace dmise {
+
+std::optional<std::string> Coordinator::join(const Request& request, Instant now) {
+  const std::string& name = request.node.name;
+  if (over()) return "the run is over";
+  if (request.node.schedule.period < 1 || request.node.schedule.offset < 0 ||
+      request.node.look_back < 0)
+    return "its period must be >= 1, its offset and look-back >= 0";
+  if (request.observer) return observe(request, now);
+  if (std::find(options_.expected.begin(), options_.expected.end(), name) ==
+      options_.expected.end())
+    return "this run has no node named " + name + "; it has " + joined(options_.expected);
+  if (const auto earlier = members_.find(name); earlier != members_.end()) {
+    const Member& member = earlier->second;
+    const bool gone = member.silent || member.suspected;
+    if (phase_ != Phase::gathering && gone && member.active() &&
+        options_.on_silent == SilentPolicy::wait)
+      return rejoin(earlier->second, request, now);
+    if (phase_ != Phase::gathering || !gone) return "a node named " + name + " has already joined";
+  }
+  add(request, now);
+  connect_if_complete(now);
+  return std::nullopt;
+}
+
+Coordinator::Member& Coordinator::add(const Request& request, Instant now) {
+  Member& member = members_[request.node.name] = {};
+  member.node = request.node;
+  member.keeps_time = request.keeps_time && !request.observer;
+  member.observer = request.observer;
+  member.ready = !member.keeps_time;
+  member.incarnation = ++incarnations_[request.node.name];
+  member.resumes_at = settled_ + 1;
+  member.done = settled_;
+  member.progressed = now;
+  heard(member, now);
+  return member;
+}
+
+std::optional<std::string> Coordinator::observe(const Request& request, Instant now) {
+  const std::string& name = request.node.name;
+  const auto& expected = options_.expected;
+  if (std::find(expected.begin(), expected.end(), name) != expected.end())
+    return name + " is a node of this run and can't be the name of an observer";
+  if (members_.contains(name)) return "an observer named " + name + " has already joined";
+  if (!request.node.produces.empty()) return "an observer publishes nothing";
+  add(request, now);
+  if (phase_ != Phase::gathering) ++topology_version_;
+  return std::nullopt;
+}
+
+std::optional<std::string> Coordinator::rejoin(Member& member, const Request& request,
+                                               Instant now) {
+  const std::string& name = request.node.name;
+  const NodeTopics& before = member.node;
+  if (before.produces != request.node.produces || before.consumes != request.node.consumes ||
+      before.look_back != request.node.look_back || !(before.schedule == request.node.schedule) ||
+      member.keeps_time != request.keeps_time)
+    return name + " joins again with other topics than before";
+  if (options_.max_rejoins >= 0 && member.incarnation > std::uint64_t(options_.max_rejoins)) {
+    fail_run(name + " has died " + std::to_string(member.incarnation) + " times");
+    return "the run is over";
+  }
+  member.incarnation = ++incarnations_[name];
+  // It may have died with messages of ticks that it called done: it does again what anybody may
+  // still need. Their tallies stay, to be compared.
+  member.resumes_at = slowest_done() + 1;
+  member.done = member.resumes_at - 1;
+  member.computing = false;
+  member.progress = 0;
+  member.progressed = now;
+  member.ready = !member.keeps_time;
+  heard(member, now);
+  ++topology_version_;
+  start_if_ready(now);
+  return std::nullopt;
+}
+
+void Coordinator::connect_if_complete(Instant now) {
+  if (phase_ != Phase::gathering || !missing().empty()) return;
+  std::vector<NodeTopics> nodes;
+  for (const std::string& name : options_.expected) nodes.push_back(members_.at(name).node);
+  if (const auto fault = topic_fault(nodes)) return fail_run(*fault);
+  history_ = history_ticks(nodes);
+  phase_ = Phase::connecting;
+  ++topology_version_;
+  start_if_ready(now);
+}
+
+void Coordinator::ready(const std::string& name, Instant now) {
+  Member* member = active(name);
+  if (!member) return;
+  heard(*member, now);
+  member->ready = true;
+  start_if_ready(now);
+}
+
+void Coordinator::start_if_ready(Instant now) {
+  if (phase_ != Phase::connecting || !holding().empty()) return;
+  phase_ = Phase::running;
+  pace_.start(now);
+  grant(now);
+}
+
+}  // namespace dmise
