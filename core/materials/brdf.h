@@ -49,15 +49,17 @@ struct Phong {
 /// tests/materials.
 using Brdf = std::variant<Lambert, SandfordRobertson, Phong>;
 
-/// Below this cosine of the viewing angle f is held: the lobe of Sandford-Robertson has a pole at
-/// grazing, f cos_out has none.
-inline constexpr double least_cos_out = 1e-6;
+/// Below this cosine of the viewing angle (88.9 deg) the 1/cos_out of Sandford-Robertson's lobe is
+/// held where light is summed or drawn, so that a facet's light goes to 0 as it turns edge-on
+/// instead of ending at its brightest. Of a lobe as wide as the hemisphere at normal incidence that
+/// takes 1 % of the light, of narrower ones less. A knob of this system, not of the model.
+inline constexpr double least_cos_out = 0.02;
 
-/// f [1/sr]; 0 from behind the surface on either side.
+/// f [1/sr], the model's own; 0 from behind the surface on either side. Held only below 1e-6.
 double brdf_per_sr(const Brdf& brdf, const Reflection& at);
 
-/// f cos_in cos_out: radiant intensity of a unit area in a unit irradiance [1/sr]. Finite
-/// everywhere.
+/// f cos_in cos_out: radiant intensity of a unit area in a unit irradiance [1/sr], with
+/// `least_cos_out`. Finite everywhere, continuous to 0 at grazing exit.
 double reflected_per_sr(const Brdf& brdf, const Reflection& at);
 
 /// Share of light from one direction that is reflected into all, [0, 1]. In closed form for Lambert

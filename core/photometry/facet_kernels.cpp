@@ -6,7 +6,7 @@ namespace dmise::DMISE_SIMD {
 namespace {
 
 constexpr double four_pi = 12.566370614359172;
-constexpr double least_cosine = 1e-6;  // least_cos_out of core/materials/brdf.h
+constexpr double least_cosine = 0.02;  // least_cos_out of core/materials/brdf.h
 
 DMISE_INLINE F64 along(const FacetArrays& f, std::size_t i, const double* direction) {
   return load<F64>(f.normal_x + i) * direction[0] + load<F64>(f.normal_y + i) * direction[1] +

@@ -3,7 +3,8 @@
 namespace dmise {
 
 // The models of core/materials/brdf.h with what depends on the source alone taken out: a facet's
-// radiance is diffuse g(out) + specular lobe / cos_out + emitted.
+// radiance is diffuse g(out) + specular lobe / max(cos_out,
+// least_cos_out) + emitted.
 
 inline constexpr const char* vertex_shader = R"(#version 450 core
 layout(location = 0) in vec4 clip;
@@ -48,7 +49,7 @@ void main() {
     vec3 s = cross(normal, h);
     float sin2 = min(1.0, dot(s, s) / max(dot(h, h), 1e-30));
     float root = specular.a * cos2 + sin2;
-    light += specular.rgb / (root * root * c);
+    light += specular.rgb / (root * root * max(c, 0.02));  // least_cos_out
   } else {
     float mirror = clamp(2.0 * dot(normal, source.xyz) * c - dot(v, source.xyz), 0.0, 1.0);
     if (mirror > 0.0) light += specular.rgb * exp2(emitted.a * log2(mirror));

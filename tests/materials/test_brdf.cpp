@@ -120,16 +120,48 @@ TEST(Brdf, IsFiniteAndNotNegativeAtEveryGeometry) {
               -1.0, 1.0);
           const double f = brdf_per_sr(brdf, {cos_in, cos_out, cos_phase});
           EXPECT_TRUE(std::isfinite(f) && f >= 0) << cos_in << " " << cos_out << " " << cos_phase;
-          if (cos_in <= 0 || cos_out <= 0) { EXPECT_EQ(f, 0.0); }
+          if (cos_in <= 0 || cos_out <= 0) {
+            EXPECT_EQ(f, 0.0);
+          }
         }
 }
 
-// Grazing exit: f grows as 1/cos, the light that leaves does not.
-TEST(SandfordRobertson, LightThatLeavesHasALimitAtGrazingExit) {
-  const SandfordRobertson m{0.3, 0.2, 0.3, 0.4};
-  const double near_pole = reflected_per_sr(m, {0.5, 1e-5, 0.5});
-  EXPECT_NEAR(reflected_per_sr(m, {0.5, 1e-6, 0.5}), near_pole, 1e-4 * near_pole);
-  EXPECT_GT(near_pole, 0.0);
+// Grazing exit: f grows as 1/cos, so that the light that leaves would end at its brightest.
+TEST(SandfordRobertson, LightThatLeavesGoesContinuouslyToNothingAtGrazingExit) {
+  for (const double e : {0.1, 0.4, 1.0}) {
+    const SandfordRobertson m{0.3, 0.2, 0.3, e};
+    const auto at = [&](double cos_out) {  // viewer in the plane of incidence, towards the mirror
+      const double cos_in = 0.3;
+      const double sines = std::sqrt((1 - cos_in * cos_in) * (1 - cos_out * cos_out));
+      return reflected_per_sr(m, {cos_in, cos_out, cos_in * cos_out - sines});
+    };
+    double most = 0;
+    for (int i = 1; i <= 1000; ++i) most = std::max(most, at(i / 1000.0));
+    for (double angle_deg = 80; angle_deg < 90; angle_deg += 0.01)
+      EXPECT_NEAR(at(std::cos((angle_deg + 0.01) * deg)), at(std::cos(angle_deg * deg)),
+                  0.02 * most)
+          << e << " " << angle_deg;
+    EXPECT_LT(at(1e-6), 1e-3 * most);
+    // Elsewhere it is the model's own.
+    const Reflection usual{0.3, 0.03, 0.2};
+    EXPECT_DOUBLE_EQ(reflected_per_sr(m, usual), brdf_per_sr(m, usual) * 0.3 * 0.03);
+  }
+}
+
+// What the held pole takes of the light: 1 % of the widest lobe.
+TEST(SandfordRobertson, HoldingThePoleTakesNoMoreThanAPercent) {
+  for (const double e : {0.1, 0.4, 1.0}) {
+    const SandfordRobertson m{0.0, 0.0, 0.3, e};  // reflects all
+    constexpr int steps = 1000;
+    double sum = 0;
+    for (int i = 0; i < steps; ++i)
+      for (int j = 0; j < steps; ++j) {
+        const double cos_out = (i + 0.5) / steps;
+        sum += reflected_per_sr(m, {1.0, cos_out, cos_out}) * 2 * pi / (double(steps) * steps);
+      }
+    EXPECT_LE(sum, 1.0 + 1e-4) << e;
+    EXPECT_GE(sum, 0.989) << e;
+  }
 }
 
 TEST(Phong, ConservesEnergyForAnyExponent) {

@@ -156,6 +156,18 @@ TEST(FacetLight, AFacetEdgeOnAddsNothing) {
   EXPECT_EQ(sheet.reflected_m2_per_sr({0, 0, 1}, {1, 0, 0}), 0.0);
 }
 
+// Over the last degree before a plate turns edge-on its light falls to nothing without a jump.
+TEST(FacetLight, FadesAsItTurnsEdgeOn) {
+  const FacetLight sheet(plate(1, 1, shiny(), shiny()), Band{});
+  const auto seen = [&](double angle_deg) {
+    return sheet.reflected_m2_per_sr(at_angle(-60 * deg), at_angle(angle_deg * deg));
+  };
+  const double most = seen(80);
+  EXPECT_LT(seen(89.9999), 1e-3 * most);
+  EXPECT_GT(seen(88.5), 0.1 * most);
+  EXPECT_EQ(seen(90.0001), 0.0);
+}
+
 // Warm panels: emitted light is the projected area times the radiance.
 TEST(FacetLight, EmitsByTheAreaThatItShows) {
   Material warm = lambert(0.1);
