@@ -27,8 +27,10 @@ struct Sky {
   float median, sigma;
 };
 
-/// Median and noise (from it down to the 16 % point), of at most 2^16 pixels.
-Sky sky_of(const std::vector<float>& pixels) {
+/// Median and noise (from it down to the 16 % point), of at most 2^16 pixels. Where more than a few
+/// pixels would be white, an object fills a part of the frame: the noise is then taken as large as
+/// keeps all but the brightest of them below white.
+Sky sky_of(const std::vector<float>& pixels, const PictureSettings& settings) {
   std::vector<float> sample;
   const std::size_t step = pixels.size() / 65536 + 1;
   for (std::size_t i = 0; i < pixels.size(); i += step) sample.push_back(pixels[i]);
@@ -38,7 +40,13 @@ Sky sky_of(const std::vector<float>& pixels) {
     return *at;
   };
   const float low = quantile(0.1587), median = quantile(0.5);
-  return {median, std::max(median - low, 1e-3f * std::max(1.0f, std::abs(median)))};
+  const float sigma = std::max(median - low, 1e-3f * std::max(1.0f, std::abs(median)));
+  const float white = median + float(settings.white_sigma) * sigma;
+  const auto beyond =
+      std::count_if(sample.begin(), sample.end(), [&](float v) { return v > white; });
+  if (double(beyond) <= settings.white_share * double(sample.size())) return {median, sigma};
+  const double brightest = 0.01 * double(beyond) / double(sample.size());  // of those
+  return {median, float((quantile(1.0 - brightest) - median) / settings.white_sigma)};
 }
 
 }  // namespace
@@ -47,7 +55,7 @@ Preview preview(const CountImage& counts, const PictureSettings& settings) {
   const int shrink = std::max(1, (counts.columns + settings.max_width - 1) / settings.max_width);
   const int grow = std::max(1, settings.min_width / std::max(1, counts.columns));
   const auto small = average(counts, shrink);
-  const Sky sky = sky_of(small.pixels);
+  const Sky sky = sky_of(small.pixels, settings);
   const double white =
       std::asinh((settings.black_sigma + settings.white_sigma) / settings.linear_sigma);
   const auto grey = [&](float value) {

@@ -10,6 +10,7 @@ struct PictureSettings {
   int min_width = 640;         // smaller ones are drawn with larger pixels
   double black_sigma = 2.5;    // of the sky's noise, below the median
   double white_sigma = 250.0;  // above it
+  double white_share = 0.005;  // of the pixels may be beyond; more stretch the scale
   double linear_sigma = 4.0;   // where asinh turns from linear to logarithmic
 };
 

@@ -57,6 +57,22 @@ TEST(Preview, SkyIsDarkNoiseAndStarsShow) {
   EXPECT_EQ(p.picture.pixels[100 * 800 + 100], 255);
 }
 
+// A satellite that fills a tenth of a frame without sky: its brighter half must not look like its
+// darker one, nor be lost beside a glint of a few pixels.
+TEST(Preview, AnObjectThatFillsAPartOfTheFrameKeepsItsShades) {
+  CountImage counts(640, 480, 100);
+  for (int y = 150; y < 300; ++y)
+    for (int x = 200; x < 400; ++x) counts.at(x, y) = x < 300 ? 8000 : 20000;
+  for (int x = 200; x < 220; ++x) counts.at(x, 200) = 60000;
+  const Preview p = preview(counts);
+  const int sky = p.picture.pixels[10 * 640 + 10], dark = p.picture.pixels[160 * 640 + 250],
+            bright = p.picture.pixels[160 * 640 + 350];
+  EXPECT_LT(sky, 60);
+  EXPECT_GT(dark, sky + 60);
+  EXPECT_GT(bright, dark + 30);
+  EXPECT_GT(bright, 200);
+}
+
 TEST(Preview, LargeFramesShrinkSmallOnesGrowAndPlacesFollow) {
   const Preview half = preview(CountImage(3326, 2504, 500));
   EXPECT_EQ(half.picture.columns, 1663);
