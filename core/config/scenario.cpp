@@ -15,8 +15,8 @@
 #include "core/config/search_path.h"
 #include "core/config/yaml_reader.h"
 #include "core/optics/psf_plan.h"
-#include "core/orbit/interpolation_error.h"
 #include "core/optics/pupil_sampling.h"
+#include "core/orbit/interpolation_error.h"
 #include "core/sky/airmass.h"
 #include "core/sky/sun_moon.h"
 #include "core/time/clock.h"
@@ -87,7 +87,6 @@ void read_sensor_surroundings(YamlMap& map, SensorConfig& sensor) {
   sensor.sky = around.sky ? *around.sky : sky_preset(site ? "dark" : "space");
   sensor.atmosphere = around.atmosphere ? *around.atmosphere : standard_atmosphere(0.17);
   sensor.weather = around.weather.value_or(WeatherConfig{});
-  check_sky_in_band(map.value(), sensor.sky, sensor.camera.band, bool(site));
 }
 
 // Refuses what no kernel can be made of: a complaint "a.b: reason" at that key, or at the last one
@@ -167,6 +166,8 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTi
     sensor.mask_deg = mask->number(Bounds::between(0.0, 89.0));
   }
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
+  if (sensor.effects.has(Effect::sky))
+    check_sky_in_band(value, sensor.sky, sensor.camera.band, bool(site));
   map.done();
   return sensor;
 }

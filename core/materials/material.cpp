@@ -53,7 +53,7 @@ Brdf brdf_at(const Material& material, double wavelength_m) {
 
 Brdf brdf_in_band(const Material& material, const Band& band) {
   constexpr int steps = 256;
-  const Curve& sun = solar_spectrum().irradiance;
+  const Curve& sun = sunlight_spectrum().irradiance;
   const double low = band.low_m(), step = (band.high_m() - low) / steps;
   return brdf_of(material, [&](const Curve& curve) {
     double sum = 0.0, weights = 0.0;

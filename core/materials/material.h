@@ -38,7 +38,7 @@ Brdf brdf_at(const Material& material, double wavelength_m);
 
 /// Its BRDF to photons of sunlight in a band: exact for the model, as f is linear in everything
 /// that depends on wavelength; the mean by a midpoint sum, relative error below 1e-3 for tables of
-/// 10 nm. Beyond the solar spectrum (5 um) the band's photons count alike.
+/// 10 nm.
 Brdf brdf_in_band(const Material& material, const Band& band);
 
 /// Throws `Error` "material NAME: reason, got value" unless it conserves energy at every

@@ -46,7 +46,7 @@ double sun_magnitude(const Band& band) {
 double sunlight_photons_per_s_m2(double v_mag, const Band& band) {
   static const double per_v_photon =
       zero_point_photons_per_s_m2(johnson_v()) / photon_rate_per_m2(solar_spectrum(), johnson_v());
-  return light_of_magnitude(v_mag) * per_v_photon * photon_rate_per_m2(solar_spectrum(), band);
+  return light_of_magnitude(v_mag) * per_v_photon * photon_rate_per_m2(sunlight_spectrum(), band);
 }
 
 }  // namespace dmise

@@ -44,6 +44,26 @@ const Spectrum& solar_spectrum() {
   return spectrum;
 }
 
+const Spectrum& sunlight_spectrum() {
+  static const Spectrum spectrum = [] {
+    constexpr double kelvin = 5050.0, last_m = 100 * um, step = 1.01;
+    constexpr double scale_m = planck_j_s * speed_of_light_m_per_s / (boltzmann_j_per_k * kelvin);
+    const auto black_body = [](double x) {
+      return 1.0 / (std::pow(x, 5) * std::expm1(scale_m / x));
+    };
+    Spectrum sun = solar_spectrum();
+    Curve& curve = sun.irradiance;
+    const double from_m = curve.wavelength_m.back();
+    const double scale = curve.value.back() / black_body(from_m);
+    for (double x = from_m * step; curve.wavelength_m.back() < last_m; x *= step) {
+      curve.wavelength_m.push_back(std::min(x, last_m));
+      curve.value.push_back(scale * black_body(curve.wavelength_m.back()));
+    }
+    return sun;
+  }();
+  return spectrum;
+}
+
 const Spectrum& vega_spectrum() {
   static const Spectrum spectrum = from_samples(vega_samples, 1e-9 * 1e6);
   return spectrum;

@@ -12,6 +12,10 @@ struct Spectrum {
 /// The Sun at 1 au above the atmosphere, 0.2-5 um. Source: ASTM E490-00a, hat means every 5 nm up
 /// to 1.1 um.
 const Spectrum& solar_spectrum();
+/// The same for what reflects it, 0.2-100 um: beyond 5 um a black body of 5050 K, the Sun's
+/// brightness temperature at 10 um (Vernazza, Avrett & Loeser 1976, ApJS 30, 1), scaled to follow
+/// on: up to 13 % too much there, where what is warm outshines it.
+const Spectrum& sunlight_spectrum();
 /// Vega above the atmosphere, 0.2-2.195 um. Source: CALSPEC alpha_lyr_mod_001, hat means likewise.
 const Spectrum& vega_spectrum();
 

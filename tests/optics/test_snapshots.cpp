@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "core/base/units.h"
 
 namespace dmise {
 namespace {
@@ -30,19 +31,31 @@ double misplaced(const RateImage& a, const RateImage& b) {
 // A curved streak of 60 px that brightens.
 const Arc streak{{15, 12}, {46, 20}, {76, 36}, 1e5, 0.4};
 
+// A Gaussian of deviation sigma that is moved by s misplaces erf(s / (sigma sqrt 8)) of its light,
+// at most s / (sigma sqrt(2 pi)); a snapshot moves light by v / 4N in the mean, v being the speed
+// of the path in pixels an exposure. Pixels and the sum of all snapshots make it no more.
 TEST(Snapshots, ConvergeToThePathIntegralAtLeastAsOneOverTheirNumber) {
-  const PsfTable psf = make_psf_table(0.8);
-  const RateImage exact = drawn({streak}, psf);
-  double last = 1.0;
-  for (int count = 4; count <= 1024; count *= 2) {
-    const double error = misplaced(exact, drawn(as_snapshots({&streak, 1}, count), psf));
-    EXPECT_LT(error, 1.1 * 60.0 / count) << count;  // never worse than half the way between two
-    if (count >= 16) {
-      EXPECT_LT(error, 0.55 * last) << count;
+  const auto speed = [](double a, double b, double c, double d) {
+    return std::hypot(b - a, d - c);
+  };
+  const double fastest_px =
+      1.01 * std::max(speed(3 * streak.start.x_px + streak.end.x_px, 4 * streak.middle.x_px,
+                            3 * streak.start.y_px + streak.end.y_px, 4 * streak.middle.y_px),
+                      speed(4 * streak.middle.x_px, streak.start.x_px + 3 * streak.end.x_px,
+                            4 * streak.middle.y_px, streak.start.y_px + 3 * streak.end.y_px));
+  for (const double sigma_px : {0.34, 0.8, 1.7, 4.0}) {
+    const PsfTable psf = make_psf_table(sigma_px);
+    const RateImage exact = drawn({streak}, psf);
+    const double bound = fastest_px / (4 * sigma_px * std::sqrt(2 * pi));
+    for (int count = 1; count <= 1024; count += 1 + count / 32) {
+      const double error = misplaced(exact, drawn(as_snapshots({&streak, 1}, count), psf));
+      EXPECT_LE(error, bound / count) << sigma_px << " " << count;
+      // Closer than the blur they are even, and what is left falls as 1/N^2.
+      if (fastest_px / count < sigma_px) {
+        EXPECT_LE(error, 8 * bound / (double(count) * count)) << sigma_px << " " << count;
+      }
     }
-    last = error;
   }
-  EXPECT_LT(last, 2e-3);
 }
 
 TEST(Snapshots, KeepTheLightAndTheMiddle) {
