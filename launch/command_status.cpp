@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "launch/commands.h"
 #include "nodes/runtime/event.h"
+#include "nodes/runtime/phase_name.h"
 #include "nodes/runtime/status.h"
 
 namespace dmise {
@@ -27,26 +28,10 @@ constexpr auto interval = std::chrono::milliseconds(500);
 
 Security security_of(const StatusOptions& options) { return {options.keys, operator_name}; }
 
-const char* name_of(Phase phase) {
-  switch (phase) {
-    case Phase::gathering:
-      return "gathering";
-    case Phase::connecting:
-      return "connecting";
-    case Phase::running:
-      return "running";
-    case Phase::ended:
-      return "ended";
-    case Phase::failed:
-      break;
-  }
-  return "failed";
-}
-
 std::string table(const RunStatus& status) {
   char row[256];
   std::snprintf(row, sizeof row, "run %016llx  %s%s  tick %ld of %ld  %.1f s simulated\n",
-                static_cast<unsigned long long>(status.run_id), name_of(status.phase),
+                static_cast<unsigned long long>(status.run_id), phase_name(status.phase),
                 status.paused ? ", paused" : "", long(status.settled), long(status.last_tick),
                 double(std::max<Tick>(status.settled, 0)) * status.tick_length.seconds());
   std::string text = row;

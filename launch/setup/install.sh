@@ -100,6 +100,22 @@ fetch_catalogues() {
   done 3< <(names_in "$lists/catalogues.txt")
 }
 
+# Debian's own judge of metrics, without the server that its package would start.
+fetch_promtool() {
+  local work
+  [[ ! -x $build/tools/promtool ]] || return 0
+  say "fetching promtool from Debian's prometheus"
+  mkdir -p "$build/tools"
+  work=$(mktemp -d "$build/fetch.XXXXXX")
+  if download_package prometheus "$work" &&
+    dpkg-deb --fsys-tarfile "$work"/*.deb | tar -x -C "$work" ./usr/bin/promtool; then
+    mv "$work/usr/bin/promtool" "$build/tools/promtool"
+  else
+    say "note: cannot fetch promtool; the test of metrics will say so (log: $log)"
+  fi
+  rm -rf "$work"
+}
+
 # What python-packages.txt names, into build/venv. Without PyPI the tests that need it say so.
 fetch_python_packages() {
   local stamp=$build/venv/packages.sha256 wanted

@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "nodes/runtime/master.h"
 #include "nodes/runtime/master_link.h"
+#include "nodes/runtime/metrics.h"
 #include "nodes/runtime/status.h"
 #include "nodes/wire/refusal.h"
 
@@ -121,6 +122,8 @@ void serve(const BrokerOptions& options, BrokerResult* result) {
     const int back = pass(subscribers, publishers);  // subscriptions
     result->messages += std::uint64_t(forward);
     if (forward + back > 0) busy = now();
+    if (Metrics* metrics = Metrics::of_process())
+      metrics->tell(BrokerFigures{.messages = result->messages, .refused = result->refused});
   }
   const bool interrupted = link.stopped() && !link.over();
   link.leave(interrupted, {});

@@ -165,6 +165,15 @@ std::vector<Message> Inbox::take(Tick tick) {
   return messages;
 }
 
+std::size_t Inbox::queued() const {
+  std::size_t messages = 0;
+  for (const Topic& topic : topics_) {
+    messages += topic.lasting.size() + topic.early.size();
+    for (const auto& [tick, ready] : topic.ready) messages += ready.size();
+  }
+  return messages;
+}
+
 std::vector<Inbox::Want> Inbox::wanted(Tick tick) const {
   std::vector<Want> wants;
   for (const Topic& topic : topics_) {

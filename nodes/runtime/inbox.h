@@ -53,6 +53,8 @@ class Inbox {
   /// Topics that keep `tick` from being complete.
   std::vector<Want> wanted(Tick tick) const;
 
+  /// Messages received and not yet taken.
+  std::size_t queued() const;
   std::uint64_t duplicates() const { return duplicates_; }
   /// Messages that nobody keeps any more; only those who hold nobody's time have such.
   std::uint64_t missed() const { return missed_; }

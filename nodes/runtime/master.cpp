@@ -9,8 +9,10 @@
 #include "core/base/error.h"
 #include "core/base/text_file.h"
 #include "nodes/runtime/clock_watch.h"
+#include "nodes/runtime/json_log.h"
 #include "nodes/runtime/master_voice.h"
 #include "nodes/runtime/master_words.h"
+#include "nodes/runtime/metrics.h"
 #include "nodes/runtime/peer_directory.h"
 #include "nodes/runtime/peer_monitor.h"
 #include "nodes/runtime/socket.h"
@@ -81,6 +83,7 @@ class Master {
       if (now() >= next_check) {
         coordinator_.check(now());
         watch_.look(coordinator_, now());
+        tell_metrics();
         const bool connecting = coordinator_.phase() == Phase::connecting;
         next_check = now() + (connecting ? connecting_interval : check_interval);
         if (connecting || coordinator_.over()) voice_.publish();
@@ -97,6 +100,14 @@ class Master {
   }
 
  private:
+  void tell_metrics() const {
+    Metrics* metrics = Metrics::of_process();
+    if (!metrics) return;
+    v1::Endpoints endpoints;
+    fill(&endpoints);
+    metrics->tell(status_of(endpoints));
+  }
+
   void announce() {
     spdlog::debug("listens on {}", address_);
     if (!options_.announce_file.empty()) write_file_whole(options_.announce_file, address_ + "\n");
@@ -180,7 +191,8 @@ class Master {
     if (refusal) {
       answer.mutable_refuse()->set_reason(*refusal);
       voice_.reply(sender, answer);
-      spdlog::warn("refused {}: {}", join.name(), *refusal);
+      log_event(spdlog::level::warn, "node_refused", {{"name", join.name()}, {"reason", *refusal}},
+                "refused " + join.name() + ": " + *refusal);
       return;
     }
     const std::uint64_t incarnation = coordinator_.members().at(join.name()).incarnation;
@@ -197,9 +209,12 @@ class Master {
     welcome->set_tick_endpoint(tick_endpoint_);
     voice_.reply(sender, answer);
     const auto missing = coordinator_.missing();
-    spdlog::info("{} joined{}{}", join.name(),
-                 incarnation == 1 ? "" : fmt::format(", process {} of its name", incarnation),
-                 missing.empty() ? "" : "; waiting for " + joined(missing));
+    log_event(
+        spdlog::level::info, "node_joined",
+        {{"name", join.name()}, {"incarnation", incarnation}, {"missing", joined(missing)}},
+        fmt::format("{} joined{}{}", join.name(),
+                    incarnation == 1 ? "" : fmt::format(", process {} of its name", incarnation),
+                    missing.empty() ? "" : "; waiting for " + joined(missing)));
   }
 
   void heartbeat(std::string_view sender, zmq::message_t& frame) {
@@ -234,8 +249,12 @@ class Master {
     const Phase phase = voice_.phase();
     if (phase == Phase::running) started_ = now();
     if (before == Phase::running) ended_ = now();
-    if (phase == Phase::failed) spdlog::error("{}", coordinator_.cause());
-    if (phase == Phase::running) spdlog::info("all are ready");
+    const Tick granted = coordinator_.granted();
+    if (phase == Phase::failed)
+      log_event(spdlog::level::err, "run_failed", {{"granted_tick", granted}},
+                coordinator_.cause());
+    if (phase == Phase::running)
+      log_event(spdlog::level::info, "run_started", {{"granted_tick", granted}}, "all are ready");
   }
 
   void fill(v1::Endpoints* endpoints) const {

@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "nodes/runtime/json_log.h"
 #include "nodes/runtime/master_link.h"
+#include "nodes/runtime/metrics.h"
 #include "nodes/runtime/node_inputs.h"
 
 namespace dmise {
@@ -20,6 +22,14 @@ constexpr milliseconds probe_interval{10};
 constexpr milliseconds idle{1000};
 
 bool is_direct(const std::string& topic) { return topic.starts_with(truth_prefix); }
+
+void count(const std::vector<Message>& published, TimeSplit* made) {
+  for (const Message& message : published) {
+    made->frames += std::holds_alternative<FrameReport>(*message.state);
+    if (const auto* set = std::get_if<DetectionSet>(message.state.get()))
+      made->detections += set->detections.size();
+  }
+}
 
 /// Adds the time of its life to one part of the split.
 class Stopwatch {
@@ -165,6 +175,7 @@ class Node {
       {
         const Stopwatch watch(&result_->times.compute_s);
         link_.set_computing(true);
+        tell_metrics(true);
         for (Message& message : participant_.step(tick, inputs))
           outputs.push_back(std::move(message));
         link_.set_computing(false);
@@ -172,9 +183,12 @@ class Node {
       if (link_.stopped()) return;  // a step that was asked to stop may be half done
       const Stopwatch watch(&result_->times.messaging_s);
       for (const SharedFrames& frames : outbox_->pack(tick, outputs)) publish(frames);
+      count(outputs, &result_->times);
       if (tick >= resume_tick_) link_.done(outbox_->tally());
       result_->done = tick;
+      ++steps_;
       link_.set_times(result_->times);
+      tell_metrics(false);
     }
     while (!link_.over() && !link_.stopped()) {
       link_.wait({}, idle);
@@ -191,7 +205,8 @@ class Node {
       if (!await(from_tick_ - 1)) return {};
       past = inputs_.take(from_tick_ - 1);
     }
-    spdlog::info("takes up its work at tick {}", from_tick_);
+    log_event(spdlog::level::info, "resumed", {{"tick", std::int64_t(from_tick_)}},
+              fmt::format("takes up its work at tick {}", from_tick_));
     return participant_.resume(from_tick_, past);
   }
 
@@ -209,6 +224,7 @@ class Node {
         link_.wait(inputs_.sockets(), patience);
       }
       receive_data();
+      tell_metrics(false);
     }
     return false;
   }
@@ -220,6 +236,29 @@ class Node {
 
   void publish(const SharedFrames& frames) {
     send(is_direct(frames->topic) ? direct_ : publish_, frames);
+    ++sent_;
+    sent_bytes_ += frames->bytes();
+  }
+
+  void tell_metrics(bool computing) const {
+    Metrics* metrics = Metrics::of_process();
+    if (!metrics) return;
+    NodeFigures figures{.granted = link_.granted(),
+                        .done = result_->done,
+                        .computing = computing,
+                        .incarnation = incarnation_,
+                        .ticks = steps_,
+                        .sent = sent_,
+                        .sent_bytes = sent_bytes_,
+                        .received = inputs_.received(),
+                        .refused = {},
+                        .asked_again = inputs_.asked_again(),
+                        .missed = inputs_.missed(),
+                        .queued = inputs_.queued(),
+                        .times = result_->times};
+    for (std::size_t i = 0; i < figures.refused.size(); ++i)
+      figures.refused[i] = inputs_.refused(Refusal(i));
+    metrics->tell(figures);
   }
 
   bool going() const { return !link_.over() && !link_.stopped(); }
@@ -258,6 +297,7 @@ class Node {
   RunFacts run_;
   std::uint64_t incarnation_ = 1, topology_version_ = 0;
   Tick resume_tick_ = 0, from_tick_ = 0;
+  std::uint64_t steps_ = 0, sent_ = 0, sent_bytes_ = 0;
 };
 
 }  // namespace

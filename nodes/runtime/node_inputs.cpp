@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "dmise/v1/node.pb.h"
+#include "nodes/runtime/json_log.h"
 
 namespace dmise {
 namespace {
@@ -117,9 +118,11 @@ void NodeInputs::receive_from(zmq::socket_t& socket, const std::string* publishe
     if (publisher && expected->second != *publisher) {
       spdlog::warn("refused a message: {} does not publish on {}", *publisher, expected->first);
     } else if (const auto received = receiver_->receive(views(message))) {
+      ++received_;
       inbox_.accept(*received);
     } else {
-      spdlog::warn("refused a message: {}", receiver_->last_refusal());
+      log_event(spdlog::level::warn, "message_refused", {{"topic", expected->first}},
+                "refused a message: " + receiver_->last_refusal());
     }
   }
 }

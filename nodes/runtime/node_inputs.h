@@ -41,6 +41,9 @@ class NodeInputs {
 
   const std::vector<zmq::socket_t*>& sockets() const { return sockets_; }
   std::uint64_t refused() const { return receiver_ ? receiver_->refused() : 0; }
+  std::uint64_t refused(Refusal reason) const { return receiver_ ? receiver_->refused(reason) : 0; }
+  std::uint64_t received() const { return received_; }  // that passed every check
+  std::size_t queued() const { return inbox_.queued(); }
   std::string last_refusal() const { return receiver_ ? receiver_->last_refusal() : ""; }
   std::uint64_t asked_again() const { return asked_again_; }
   std::uint64_t missed() const { return inbox_.missed(); }
@@ -75,6 +78,7 @@ class NodeInputs {
   std::chrono::nanoseconds asked_{0};
   std::chrono::nanoseconds quiet_{0};
   std::uint64_t asked_again_ = 0;
+  std::uint64_t received_ = 0;
 };
 
 }  // namespace dmise

@@ -1,7 +1,10 @@
 #include "nodes/runtime/program.h"
 
+#include <optional>
+
 #include "core/base/error.h"
 #include "nodes/runtime/log.h"
+#include "nodes/runtime/metrics.h"
 
 namespace dmise {
 
@@ -13,6 +16,11 @@ void add_common_flags(CLI::App& app, CommonFlags& flags) {
                  "directory of keys (dmise keygen); without it all is plain, on loopback alone");
   app.add_option("--log-level", flags.log_level, "trace, debug, info, warning, error or off")
       ->capture_default_str();
+  app.add_option("--log-format", flags.log_format, "text or json: an object a line")
+      ->capture_default_str();
+  app.add_option("--metrics", flags.metrics,
+                 "serve figures for Prometheus at [HOST:]PORT, or auto: any free port; the host is "
+                 "127.0.0.1 unless given");
   app.add_option("--seed", flags.seed, "seed of every random draw")->capture_default_str();
   app.add_flag("--check", flags.check, "look at flags and files, then stop");
   app.set_version_flag("--version", std::string("dmise ") + DMISE_VERSION);
@@ -26,7 +34,13 @@ int run_program(CLI::App& app, const CommonFlags& flags, int argc, char** argv,
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    start_log(flags.name.empty() ? app.get_name() : flags.name, flags.log_level);
+    const std::string name = flags.name.empty() ? app.get_name() : flags.name;
+    start_log(name, flags.log_level, flags.log_format);
+    std::optional<Metrics> metrics;
+    if (!flags.metrics.empty() && !flags.check)
+      metrics.emplace(flags.metrics, app.get_name(), name);
+    else if (!flags.metrics.empty())
+      metrics_address(flags.metrics);
     return body();
   } catch (const ConfigError& error) {
     spdlog::error("{}", error.what());

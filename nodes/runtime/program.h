@@ -12,17 +12,19 @@ struct CommonFlags {
   std::string master;  // address of the time-master
   std::string keys;    // directory of keys; empty: plain, loopback alone
   std::string log_level = "info";
+  std::string log_format = "text";
+  std::string metrics;  // where figures are served: [HOST:]PORT or auto; empty: nowhere
   std::uint64_t seed = 0;
   bool check = false;  // look at the flags and files, do nothing
 };
 
-/// Declares `--name --master --log-level --seed --check --version` with the values in `flags` as
-/// defaults.
+/// Declares `--name --master --log-level --log-format --metrics --seed --check --version` with the
+/// values in `flags` as defaults.
 void add_common_flags(CLI::App& app, CommonFlags& flags);
 
-/// Reads the command line, starts the log, runs `body` and returns the process's exit code: that of
-/// `body`, 2 for a `ConfigError` or a wrong flag, 1 for any other exception, which is one line on
-/// stderr.
+/// Reads the command line, starts the log and the metrics, runs `body` and returns the process's
+/// exit code: that of `body`, 2 for a `ConfigError` or a wrong flag, 1 for any other exception,
+/// which is one line on stderr.
 int run_program(CLI::App& app, const CommonFlags& flags, int argc, char** argv,
                 const std::function<int()>& body);
 

@@ -53,7 +53,12 @@ RunStatus ask(const std::string& address, double within_s, const v1::NodeMessage
   if (!frame || !from_frame(*frame, &answer) || !answer.has_endpoints())
     throw Error("no time-master answers at " + address);
 
-  const v1::Endpoints& e = answer.endpoints();
+  return status_of(answer.endpoints());
+}
+
+}  // namespace
+
+RunStatus status_of(const v1::Endpoints& e) {
   RunStatus status{.run_id = e.run_id(),
                    .phase = from_wire(e.phase()),
                    .cause = e.cause(),
@@ -80,8 +85,6 @@ RunStatus ask(const std::string& address, double within_s, const v1::NodeMessage
                             .times = take(node.times())});
   return status;
 }
-
-}  // namespace
 
 RunStatus ask_master(const std::string& address, double within_s, const Security& security) {
   v1::NodeMessage question;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/base/sim_time.h"
+#include "dmise/v1/time.pb.h"
 #include "nodes/runtime/security.h"
 #include "nodes/runtime/time_split.h"
 #include "time-master/coordinator.h"
@@ -42,6 +43,9 @@ struct RunStatus {
   std::vector<std::string> missing;
   std::vector<std::string> holding;  // who holds the clock
 };
+
+/// What the master's answer says.
+RunStatus status_of(const v1::Endpoints& answer);
 
 enum class ClockAction { pause, step, go_on, end_early, abort };
 

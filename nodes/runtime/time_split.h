@@ -1,12 +1,15 @@
 #pragma once
+#include <cstdint>
 
 namespace dmise {
 
-/// How a process spent the time of a run.
+/// How a process spent the time of a run, and what it made in it.
 struct TimeSplit {
-  double compute_s = 0.0;    // in steps
-  double messaging_s = 0.0;  // encoding, sending, receiving, checking
-  double waiting_s = 0.0;    // for the clock or for inputs
+  double compute_s = 0.0;        // in steps
+  double messaging_s = 0.0;      // encoding, sending, receiving, checking
+  double waiting_s = 0.0;        // for the clock or for inputs
+  std::uint64_t frames = 0;      // published
+  std::uint64_t detections = 0;  // in all that were published
 
   bool operator==(const TimeSplit&) const = default;
 };
