@@ -51,7 +51,7 @@ void Coordinator::done(const std::string& name, TickTally tally, Instant now) {
                     std::to_string(next) + " was next and " + std::to_string(granted_) +
                     " the last granted");
   member->done = tally.tick;
-  member->progressed = now;
+  member->pulse.progressed = now;
   if (notes(*member, std::move(tally))) grant(now);
 }
 
@@ -90,8 +90,7 @@ void Coordinator::grant(Instant now) {
 void Coordinator::settle(Tick slowest, Instant now) {
   for (auto& [name, member] : members_)
     while (!member.said.empty() && member.said.front().tick <= slowest) {
-      for (const TopicTally& topic : member.said.front().topics)
-        member.digest = fold_digest(fold_digest(member.digest, topic.messages), topic.digest);
+      digest_ += content_digest(name, member.said.front());
       member.said.pop_front();
     }
   for (const Tick last = std::min(slowest, end_); settled_ < last;) pace_.finished(++settled_, now);
@@ -189,13 +188,6 @@ Tick Coordinator::keep_ticks(const std::string& name) const {
 bool Coordinator::deserted() const {
   return std::none_of(members_.begin(), members_.end(),
                       [](const auto& entry) { return entry.second.active(); });
-}
-
-std::uint64_t Coordinator::digest() const {
-  std::uint64_t digest = 0;
-  for (const auto& [name, member] : members_)
-    if (member.keeps_time) digest = fold_digest(digest, member.digest);
-  return digest;
 }
 
 }  // namespace dmise

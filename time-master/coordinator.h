@@ -7,6 +7,7 @@
 
 #include "core/sim/topic_graph.h"
 #include "time-master/pace.h"
+#include "time-master/pulse.h"
 #include "time-master/tally.h"
 
 namespace dmise {
@@ -26,15 +27,12 @@ enum class Phase {
   failed,  // see cause()
 };
 
-struct CoordinatorOptions {
+struct CoordinatorOptions : PulseLimits {
   std::vector<std::string> expected;  // names; no other may join but observers
   Tick first_tick = 0;                // > 0: goes on with a run that was interrupted
   Tick last_tick = 0;                 // ticks are first_tick..last_tick
   int window_ticks = 1;               // >= 1; 1 is lock-step
   PaceOptions pace;
-  Instant silent_after = std::chrono::seconds(5);
-  Instant suspect_after = std::chrono::milliseconds(750);  // after its connection broke
-  Instant progress_after{0};                               // longest step without progress; 0: none
   Instant start_within{0};  // longest time until all are ready; 0: none
   SilentPolicy on_silent = SilentPolicy::fail;
   Instant rejoin_within{0};  // under `wait`, longest time until a lost node is back; 0: none
@@ -59,18 +57,13 @@ class Coordinator {
     bool silent = false;  // under SilentPolicy::wait
     bool left = false;    // said goodbye, or was dropped
     bool dropped = false;
-    bool computing = false;
     std::uint64_t incarnation = 1;  // of the name: counts its processes
     Tick done = -1;
     Tick resumes_at = 0;         // the first tick that this process is to say done
     Tick closed_from = 0;        // of a dropped node: its topics are empty from this tick on
     std::deque<TickTally> said;  // of ticks that not all have done
-    std::uint64_t digest = 0;    // of all that it published in ticks that all have done
-    std::uint64_t progress = 0;
-    Instant heard{0};
-    Instant progressed{0};
+    Pulse pulse;
     Instant silent_since{0};
-    std::optional<Instant> suspected;
 
     bool active() const { return !left; }
     /// Nobody waits for it up to and with this tick.
@@ -133,7 +126,7 @@ class Coordinator {
   /// Ticks that a node keeps for whoever asks again.
   Tick keep_ticks(const std::string& name) const;
   /// Of all that was published in ticks that all have done: the same for the same run.
-  std::uint64_t digest() const;
+  std::uint64_t digest() const { return digest_; }
   const std::map<std::string, Member>& members() const { return members_; }
   const CoordinatorOptions& options() const { return options_; }
 
@@ -165,6 +158,7 @@ class Coordinator {
   Tick settled_;
   Tick end_;  // last tick, or an earlier one
   std::uint64_t topology_version_ = 0;
+  std::uint64_t digest_ = 0;
   Instant started_;
 };
 

@@ -1,19 +1,9 @@
 // Who dies, hangs, falls silent or leaves, and what becomes of the run.
 #include <algorithm>
-#include <cstdio>
 
 #include "time-master/coordinator.h"
 
 namespace dmise {
-namespace {
-
-std::string in_seconds(Instant duration) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f s", std::chrono::duration<double>(duration).count());
-  return text;
-}
-
-}  // namespace
 
 std::string Coordinator::after_tick(const Member& member) const {
   return " (last tick done: " + std::to_string(member.done) + " of " +
@@ -25,20 +15,17 @@ void Coordinator::heartbeat(const std::string& name, bool computing, std::uint64
   Member* member = active(name);
   if (!member) return;
   heard(*member, now);
-  if (!computing || !member->computing || progress != member->progress) member->progressed = now;
-  member->computing = computing;
-  member->progress = progress;
+  member->pulse.beat(computing, progress, now);
 }
 
 void Coordinator::heard(Member& member, Instant now) {
-  member.heard = now;
-  member.suspected.reset();
+  member.pulse.hear(now);
   member.silent = false;
 }
 
 void Coordinator::suspect(const std::string& name, Instant now) {
   Member* member = active(name);
-  if (member && !member->suspected) member->suspected = now;
+  if (member) member->pulse.suspect(now);
 }
 
 void Coordinator::leave(const std::string& name, bool interrupted, Instant now) {
@@ -64,7 +51,7 @@ void Coordinator::fail(const std::string& name, const std::string& reason) {
   }
   member->left = true;
   if (options_.on_silent == SilentPolicy::drop && member->keeps_time && phase_ == Phase::running)
-    drop(*member, member->heard);
+    drop(*member, member->pulse.heard);
   else
     fail_run(name + ": " + reason);
 }
@@ -88,14 +75,8 @@ void Coordinator::check(Instant now) {
                  after_tick(*member));
       continue;
     }
-    const Instant silence = now - member->heard;
-    if (silence > options_.silent_after)
-      lost(*member, "has been silent for " + in_seconds(silence), now);
-    else if (member->suspected && now - *member->suspected > options_.suspect_after)
-      lost(*member, "has closed its connection", now);
-    else if (member->computing && options_.progress_after.count() > 0 &&
-             now - member->progressed > options_.progress_after && !over())
-      lost(*member, "has made no progress for " + in_seconds(now - member->progressed), now);
+    const std::string trouble = member->pulse.trouble(options_, !over(), now);
+    if (!trouble.empty()) lost(*member, trouble, now);
   }
   grant(now);
 }

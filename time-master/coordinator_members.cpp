@@ -17,7 +17,7 @@ std::optional<std::string> Coordinator::join(const Request& request, Instant now
     return "this run has no node named " + name + "; it has " + joined(options_.expected);
   if (const auto earlier = members_.find(name); earlier != members_.end()) {
     const Member& member = earlier->second;
-    const bool gone = member.silent || member.suspected;
+    const bool gone = member.silent || member.pulse.suspected;
     if (phase_ != Phase::gathering && gone && member.active() &&
         options_.on_silent == SilentPolicy::wait)
       return rejoin(earlier->second, request, now);
@@ -37,8 +37,7 @@ Coordinator::Member& Coordinator::add(const Request& request, Instant now) {
   member.incarnation = ++incarnations_[request.node.name];
   member.resumes_at = settled_ + 1;
   member.done = settled_;
-  member.progressed = now;
-  heard(member, now);
+  member.pulse = Pulse::begin(now);
   return member;
 }
 
@@ -71,9 +70,7 @@ std::optional<std::string> Coordinator::rejoin(Member& member, const Request& re
   // still need. Their tallies stay, to be compared.
   member.resumes_at = slowest_done() + 1;
   member.done = member.resumes_at - 1;
-  member.computing = false;
-  member.progress = 0;
-  member.progressed = now;
+  member.pulse = Pulse::begin(now);
   member.ready = !member.keeps_time;
   heard(member, now);
   ++topology_version_;

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/fold_digest.h"
@@ -28,5 +29,16 @@ struct TickTally {
   std::vector<TopicTally> topics;  // in the order of the node's list
   std::uint64_t incarnation = 0;   // of the process that said so
 };
+
+/// What a node's tick adds to the digest of a run, which is the sum over all nodes and ticks: who adds
+/// them up, and in which order, makes no difference. 0 for a node without topics.
+inline std::uint64_t content_digest(std::string_view node, const TickTally& tally) {
+  if (tally.topics.empty()) return 0;
+  std::uint64_t digest = fold_digest(0, std::uint64_t(tally.tick));
+  for (const char c : node) digest = fold_digest(digest, static_cast<unsigned char>(c));
+  for (const TopicTally& topic : tally.topics)
+    digest = fold_digest(fold_digest(digest, topic.messages), topic.digest);
+  return digest;
+}
 
 }  // namespace dmise
