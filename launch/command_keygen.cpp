@@ -5,6 +5,7 @@
 #include "core/config/scenario.h"
 #include "launch/commands.h"
 #include "nodes/runtime/security.h"
+#include "sensors/positions/positions_evaluator.h"
 
 namespace dmise {
 namespace {
@@ -21,7 +22,9 @@ void keygen(const KeygenOptions& options) {
     for (const char* name :
          {"time-master", "broker", "orbit-node", "environment-node", operator_name})
       names.push_back(name);
-    for (const auto& sensor : load_scenario(options.scenario).sensors) names.push_back(sensor.name);
+    const Scenario scenario = load_scenario(options.scenario);
+    if (scenario.output.positions()) names.push_back(positions_node);
+    for (const auto& sensor : scenario.sensors) names.push_back(sensor.name);
   }
   if (names.empty()) names.push_back(operator_name);
   for (const auto& name : names) {

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
     if (flags.check) return 0;
     if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
     return dmise::run_node(actor, {.master = flags.master,
+                                   .host = flags.host,
                                    .join_within_s = scenario.network.join_within_s,
                                    .keys = flags.keys,
                                    .stop = &dmise::stop_signal()})

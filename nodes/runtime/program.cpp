@@ -12,6 +12,9 @@ void add_common_flags(CLI::App& app, CommonFlags& flags) {
   app.add_option("--name", flags.name, "name of this node in the run")->capture_default_str();
   app.add_option("--master", flags.master, "address of the time-master, tcp://HOST:PORT")
       ->capture_default_str();
+  app.add_option("--host", flags.host,
+                 "where this node's own sockets bind, as others reach them; port 0: any")
+      ->capture_default_str();
   app.add_option("--keys", flags.keys,
                  "directory of keys (dmise keygen); without it all is plain, on loopback alone");
   app.add_option("--log-level", flags.log_level, "trace, debug, info, warning, error or off")

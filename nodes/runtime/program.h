@@ -9,8 +9,9 @@ namespace dmise {
 /// Flags that every program takes.
 struct CommonFlags {
   std::string name;
-  std::string master;  // address of the time-master
-  std::string keys;    // directory of keys; empty: plain, loopback alone
+  std::string master;                      // address of the time-master
+  std::string host = "tcp://127.0.0.1:0";  // where a node's own sockets bind
+  std::string keys;                        // directory of keys; empty: plain, loopback alone
   std::string log_level = "info";
   std::string log_format = "text";
   std::string metrics;  // where figures are served: [HOST:]PORT or auto; empty: nowhere
@@ -18,8 +19,8 @@ struct CommonFlags {
   bool check = false;  // look at the flags and files, do nothing
 };
 
-/// Declares `--name --master --log-level --log-format --metrics --seed --check --version` with the
-/// values in `flags` as defaults.
+/// Declares `--name --master --host --log-level --log-format --metrics --seed --check --version`
+/// with the values in `flags` as defaults.
 void add_common_flags(CLI::App& app, CommonFlags& flags);
 
 /// Reads the command line, starts the log and the metrics, runs `body` and returns the process's

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
     if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
     sensor->stop_when([] { return dmise::stop_signal().is_set(); });
     const auto end = dmise::run_node(*sensor, {.master = flags.master,
+                                               .host = flags.host,
                                                .join_within_s = scenario.network.join_within_s,
                                                .stop_within_s = 1.0,
                                                .keys = flags.keys,

@@ -24,7 +24,9 @@ int main(int argc, char** argv) {
     if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
     dmise::PositionsEvaluator evaluator(scenario, dmise::make_clock(scenario), out);
     return dmise::run_node(evaluator, {.master = flags.master,
+                                       .host = flags.host,
                                        .join_within_s = scenario.network.join_within_s,
+                                       .keys = flags.keys,
                                        .stop = &dmise::stop_signal()})
         .exit_code;
   });

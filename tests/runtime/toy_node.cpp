@@ -57,6 +57,7 @@ int main(int argc, char** argv) {
     return dmise::run_node(
                telling,
                {.master = flags.master,
+                .host = flags.host,
                 .stop_within_s = 1.5,
                 .keys = flags.keys,
                 .stop = &dmise::stop_signal()})
