@@ -63,6 +63,7 @@ std::string scenario_text(const Elements& elements, const std::string& name) {
          elements.path +
          "}]\n"
          "stars: {catalogue: kstars, faintest_mag: 9}\n"
+         "detection: off\n"
          "sensors:\n  - {name: " +
          name +
          ", site: atlanta, camera: omnissa, pointing: zenith, exposure_s: 20, cadence_s: 20, sky: "
@@ -147,8 +148,7 @@ void measure_all_sky(bool json) {
                             .clock = make_clock(scenario),
                             .seed = 1,
                             .digest = "bench",
-                            .faintest_star_mag = scenario.faintest_star_mag,
-                            .detect = false},
+                            .faintest_star_mag = scenario.faintest_star_mag},
                            load_stars(scenario), one);
     malloc_trim(0);
     print_figure({"all_sky_resting_mb", pss_mb(), "MB"}, json);  // states, stars, programs

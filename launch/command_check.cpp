@@ -25,6 +25,9 @@ void check(const std::string& path) {
     const PsfPlan plan = plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing,
                                   sensor.exposure_s);
     std::printf("%s: points by %s: %s\n", sensor.name.c_str(), name(plan.method), plan.why.c_str());
+    if (!sensor.detect)
+      std::printf("%s: detection off: frames are reported, nothing is looked for in them\n",
+                  sensor.name.c_str());
   }
   if (!population.roster.objects.empty())
     std::printf("objects between ticks: %s\n",

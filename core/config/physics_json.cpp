@@ -51,6 +51,7 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
     if (s.effects.has(static_cast<Effect>(i))) json.value(facts(static_cast<Effect>(i)).name);
   json.end_array();
   if (s.effects.snapshots() > 0) json.field("snapshots", s.effects.snapshots());
+  if (!s.detect) json.field("detection", false);
   json.end_object();
 }
 

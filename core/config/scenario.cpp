@@ -115,10 +115,12 @@ void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
   }
 }
 
-SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, SimTime duration) {
+SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, bool detect,
+                         SimTime duration) {
   YamlMap map(value);
   SensorConfig sensor;
   sensor.effects = effects;
+  sensor.detect = map.flag_or("detection", detect);
   const auto name = map.require("name");
   sensor.name = name.text();
   const auto allowed = [](char c) {
@@ -280,11 +282,12 @@ Scenario load_scenario(const std::string& path) {
   if (const auto stars = map.find("stars")) read_stars(*stars, scenario);
   EffectSet effects;
   if (const auto value = map.find("effects")) read_effects(*value, effects);
+  const bool detect = map.flag_or("detection", true);
   const auto sensors = map.require("sensors");
   std::set<std::string> names{"orbit-node", "environment-node", "positions-node", "time-master",
                               "broker"};
   for (const auto& value : sensors.list()) {
-    scenario.sensors.push_back(read_sensor(value, effects, scenario.duration));
+    scenario.sensors.push_back(read_sensor(value, effects, detect, scenario.duration));
     if (!names.insert(scenario.sensors.back().name).second)
       YamlMap(value).require("name").fail("another node has this name");
   }

@@ -92,6 +92,7 @@ struct SensorConfig {
   std::optional<SensorSeeing> seeing;  // none: no turbulence
   double mask_deg = 0.0;  // least elevation for `dmise visible`, on the ground, [0, 89]
   EffectSet effects;
+  bool detect = true;  // off: frames are reported, nothing is looked for in them
 };
 
 enum class OnSilentNode { fail, wait, drop, restart };

@@ -111,27 +111,36 @@ std::uint32_t count_saturated(const CountImage& counts, double saturation_dn) {
                                      [&](std::uint16_t v) { return v >= saturation_dn; }));
 }
 
-FrameReport make_report(const CountImage& counts, const FrameHeader& header,
-                        const Background& background, double sigma_px, double threshold_snr) {
+PixelPosition centre_of(const CountImage& counts) {
+  return {(counts.columns - 1) / 2.0, (counts.rows - 1) / 2.0};
+}
+
+/// What the header alone says.
+FrameReport unmeasured_report(const CountImage& counts, const FrameHeader& header) {
   FrameReport r;
   r.sensor = header.sensor;
   r.frame = header.frame;
   r.start = header.start;
   r.middle = header.middle;
   r.end = header.end;
-  const PixelPosition centre{(counts.columns - 1) / 2.0, (counts.rows - 1) / 2.0};
-  const auto place = to_spherical(wcs_direction(header.wcs, centre));
+  const auto place = to_spherical(wcs_direction(header.wcs, centre_of(counts)));
   r.boresight_ra_rad = place[0];
   r.boresight_dec_rad = place[1];
   r.wcs = header.wcs;
   r.sensor_position_m = header.sensor_position_m;
   r.sensor_velocity_m_per_s = header.sensor_velocity_m_per_s;
+  r.zero_point_mag = header.zero_point_mag;
+  return r;
+}
+
+FrameReport make_report(const CountImage& counts, const FrameHeader& header,
+                        const Background& background, double sigma_px, double threshold_snr) {
+  FrameReport r = unmeasured_report(counts, header);
   r.background_e = (background.median_level_dn() - header.bias_dn) * header.gain_e_per_dn;
   r.noise_e = background.median_sigma_dn() * header.gain_e_per_dn;
-  r.zero_point_mag = header.zero_point_mag;
   const double least_e = threshold_snr * r.noise_e / std::sqrt(kernel_square_sum(sigma_px));
   r.limiting_magnitude = header.zero_point_mag - 2.5 * std::log10(least_e / header.exposure_s) -
-                         extinction_mag(header, centre);
+                         extinction_mag(header, centre_of(counts));
   r.saturated_px = count_saturated(counts, header.saturation_dn);
   return r;
 }
@@ -161,6 +170,12 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
     result.detections.push_back(std::move(d));
   }
   result.report.detections = std::uint32_t(result.detections.size());
+  return result;
+}
+
+DetectionResult without_detection(const CountImage& counts, const FrameHeader& header) {
+  DetectionResult result{.report = unmeasured_report(counts, header), .detections = {}};
+  result.report.detection_off = true;
   return result;
 }
 

@@ -30,4 +30,8 @@ struct DetectionResult {
 DetectionResult detect(const CountImage& counts, const FrameHeader& header,
                        const DetectorSettings& settings, Threads& threads);
 
+/// The report of a frame in which nothing is looked for: what the header says, and that detection
+/// is off.
+DetectionResult without_detection(const CountImage& counts, const FrameHeader& header);
+
 }  // namespace dmise

@@ -89,6 +89,9 @@ struct FrameReport {
   std::uint32_t saturated_px = 0;
   std::uint32_t stars_rendered = 0, objects_rendered = 0;
   std::string plan;                         // "effect effect ..." that ran, in order
+  // Nothing was looked for: limiting magnitude, background, noise, saturated_px and the numbers of
+  // what was found are 0.
+  bool detection_off = false;
 
   bool operator==(const FrameReport&) const = default;
 };

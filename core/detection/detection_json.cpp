@@ -20,6 +20,13 @@ class Line {
     json_.field(name, value);
     return *this;
   }
+  /// null where it was not measured.
+  template <class T>
+  Line& measured(std::string_view name, const T& value, bool was) {
+    if (was) return field(name, value);
+    json_.key(name).null();
+    return *this;
+  }
   Line& angle(std::string_view name, double value_rad) { return field(name, value_rad / deg); }
   /// "NAME_ns" and "NAME_utc".
   Line& time(const std::string& name, SimTime value) {
@@ -119,10 +126,13 @@ std::string to_json(const FrameReport& r, const UtcText& utc) {
   line.wcs(r.wcs);
   line.vector("sensor_position_gcrs_m", r.sensor_position_m);
   line.vector("sensor_velocity_gcrs_m_per_s", r.sensor_velocity_m_per_s);
-  line.field("limiting_magnitude", r.limiting_magnitude).field("background_e", r.background_e);
-  line.field("noise_e", r.noise_e).field("zero_point_mag", r.zero_point_mag);
-  line.field("detections", r.detections).field("star_like", r.star_like);
-  line.field("saturated_px", r.saturated_px);
+  const bool measured = !r.detection_off;
+  if (!measured) line.field("detection_off", true);
+  line.measured("limiting_magnitude", r.limiting_magnitude, measured);
+  line.measured("background_e", r.background_e, measured);
+  line.measured("noise_e", r.noise_e, measured).field("zero_point_mag", r.zero_point_mag);
+  line.field("detections", r.detections).measured("star_like", r.star_like, measured);
+  line.measured("saturated_px", r.saturated_px, measured);
   line.field("stars_rendered", r.stars_rendered).field("objects_rendered", r.objects_rendered);
   line.field("plan", r.plan);
   return line.end();

@@ -2,12 +2,13 @@
 #include "nodes/wire/codecs.h"
 
 // Fields that have one name and type on both sides, in the order of the message.
-#define DMISE_REPORT_FIELDS(X)                                                            \
-  X(sensor)                                                                               \
-  X(frame)                                                                                \
-  X(boresight_ra_rad)                                                                     \
-  X(boresight_dec_rad) X(limiting_magnitude) X(background_e) X(noise_e) X(zero_point_mag) \
-      X(detections) X(star_like) X(saturated_px) X(stars_rendered) X(objects_rendered) X(plan)
+#define DMISE_REPORT_FIELDS(X)                                                                  \
+  X(sensor)                                                                                     \
+  X(frame)                                                                                      \
+  X(boresight_ra_rad)                                                                           \
+  X(boresight_dec_rad)                                                                          \
+  X(limiting_magnitude) X(background_e) X(noise_e) X(zero_point_mag) X(detections) X(star_like) \
+      X(saturated_px) X(stars_rendered) X(objects_rendered) X(plan) X(detection_off)
 
 namespace dmise {
 namespace {

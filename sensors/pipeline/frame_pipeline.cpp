@@ -236,9 +236,10 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   release_pages(light.pixels.data(), light.pixels.size() * sizeof(float));
 
   DetectionResult result;
-  if (settings.detect) {
+  {
     Stopwatch timing(frame.detection_s);
-    result = detect(frame.counts, as_in_file(frame.header), {}, threads);
+    result = sensor.detect ? detect(frame.counts, as_in_file(frame.header), {}, threads)
+                           : without_detection(frame.counts, as_in_file(frame.header));
   }
   frame.detections = std::move(result.detections);
   frame.report = std::move(result.report);

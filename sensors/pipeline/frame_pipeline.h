@@ -41,7 +41,6 @@ struct PipelineSettings {
   double faintest_star_mag = 9.5;
   bool star_truth = false;
   OutputConfig output;  // flags and planes that are wanted
-  bool detect = true;
   std::shared_ptr<const ObjectShapes> shapes;  // null: all objects are points
 };
 

@@ -145,5 +145,11 @@ TEST_F(ScenarioFile, SwitchesEffectsForAllAndForOne) {
   EXPECT_TRUE(effects.has(Effect::refraction));
 }
 
+TEST_F(ScenarioFile, SwitchesDetectionForAllAndForOne) {
+  EXPECT_TRUE(load(good).sensors[0].detect);
+  EXPECT_FALSE(load("detection: off\n" + good).sensors[0].detect);
+  EXPECT_TRUE(load("detection: off\n" + good + "    detection: on\n").sensors[0].detect);
+}
+
 }  // namespace
 }  // namespace dmise

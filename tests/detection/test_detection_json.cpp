@@ -45,6 +45,12 @@ TEST(DetectionJson, ReportAndTruthAreOneObjectEach) {
   const YAML::Node node = YAML::Load(to_json(report, utc));
   EXPECT_EQ(node["wcs"]["a"].size(), 9u);
   EXPECT_EQ(node["detections"].as<int>(), 0);
+  EXPECT_FALSE(node["detection_off"]);
+  report.detection_off = true;
+  const YAML::Node off = YAML::Load(to_json(report, utc));
+  EXPECT_TRUE(off["detection_off"].as<bool>());
+  EXPECT_TRUE(off["limiting_magnitude"].IsNull());
+  EXPECT_EQ(off["detections"].as<int>(), 0);
   Truth truth;
   truth.name = "COSMOS 2519";
   truth.true_dec_rad = -pi / 6;

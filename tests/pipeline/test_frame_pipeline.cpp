@@ -64,6 +64,25 @@ TEST(FramePipeline, SwitchedEffectsLeaveTheFrame) {
   EXPECT_NE(frame.report.plan.find("refraction"), std::string::npos);
 }
 
+TEST(FramePipeline, WithoutDetectionTheFrameIsTheSameAndItsReportSaysWhatTheHeaderDoes) {
+  const std::string star = "ra_deg,dec_deg,mag_v\n49.7,-5.4,6\n";
+  test::Stage with(scenario("{}"), star, elements);
+  const auto found = with.frame();
+  test::Stage without("detection: off\n" + scenario("{}"), star, elements);
+  const auto frame = without.frame();
+  EXPECT_GT(found.detections.size() + found.report.star_like, 0u);
+  EXPECT_TRUE(frame.counts.pixels == found.counts.pixels);
+  EXPECT_TRUE(frame.detections.empty());
+  EXPECT_TRUE(frame.report.detection_off);
+  EXPECT_FALSE(found.report.detection_off);
+  EXPECT_EQ(frame.report.limiting_magnitude, 0.0);
+  EXPECT_EQ(frame.report.wcs, found.report.wcs);
+  EXPECT_EQ(frame.report.middle, found.report.middle);
+  EXPECT_EQ(frame.report.boresight_ra_rad, found.report.boresight_ra_rad);
+  EXPECT_EQ(frame.report.objects_rendered, found.report.objects_rendered);
+  EXPECT_NE(physics_json(with.scenario), physics_json(without.scenario));
+}
+
 TEST(FramePipeline, BytesDoNotDependOnThreads) {
   test::Stage stage(scenario("{}"), "ra_deg,dec_deg,mag_v\n49.7,-5.4,6\n50.2,-5.9,4\n48.9,-6.3,8\n",
                     elements);

@@ -110,6 +110,7 @@ FrameReport report(Numbers& n) {
   r.stars_rendered = 1234;
   r.objects_rendered = 17;
   r.plan = "proper_motion refraction photon_noise";
+  r.detection_off = true;
   return r;
 }
 
