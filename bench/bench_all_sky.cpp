@@ -13,14 +13,13 @@
 #include <thread>
 #include <vector>
 
+#include "bench/catalogue_file.h"
 #include "bench/figure.h"
 #include "bench/timing.h"
 #include "core/base/text_file.h"
 #include "core/config/make_clock.h"
 #include "core/config/search_path.h"
 #include "core/image/fits_file.h"
-#include "core/orbit/element_text.h"
-#include "core/orbit/synthetic_catalogue.h"
 #include "nodes/environment/environment_actor.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/make_sensor.h"
@@ -42,25 +41,11 @@ T median(std::vector<T> values) {
   return values[values.size() / 2];
 }
 
-/// The real catalogue of December 2019 where there is one, or one like it.
-struct Elements {
-  std::string path, start;
-};
-Elements elements(const std::filesystem::path& directory) {
-  if (const char* data = std::getenv("DMISE_DATA")) {
-    const std::string path = std::string(data) + "/tle/catalog_3le_2019-12-19_18470.txt.gz";
-    if (std::filesystem::exists(path)) return {path, "2019-12-20T00:15:00Z"};
-  }
-  std::ofstream(directory / "objects.tle")
-      << format_3le(synthetic_catalogue({.objects = 18470, .seed = 1}));
-  return {(directory / "objects.tle").string(), "2018-01-20T00:15:00Z"};
-}
-
-std::string scenario_text(const Elements& elements, const std::string& name) {
-  return "simulation: {start: " + elements.start +
+std::string scenario_text(const CatalogueFile& catalogue, const std::string& name) {
+  return "simulation: {start: " + catalogue.start_utc +
          ", duration_s: 20, tick_s: 5}\n"
          "objects: [{catalogue: " +
-         elements.path +
+         catalogue.path +
          "}]\n"
          "stars: {catalogue: kstars, faintest_mag: 9}\n"
          "detection: off\n"
@@ -139,7 +124,7 @@ void measure_all_sky(bool json) {
   std::filesystem::create_directories(directory);
   if (find_catalogue("stars.dat").empty()) return;  // as on a machine without Debian's catalogues
   const std::string path = (directory / "all-sky.yaml").string();
-  std::ofstream(path) << scenario_text(elements(directory), "all-sky");
+  std::ofstream(path) << scenario_text(catalogue_of_18470(directory), "all-sky");
   {
     const Scenario scenario = load_scenario(path);
     Threads one(1);

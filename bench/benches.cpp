@@ -3,6 +3,7 @@
 #include "bench/bench_figure5.h"
 #include "bench/bench_frame.h"
 #include "bench/bench_interpolation.h"
+#include "bench/bench_network.h"
 #include "bench/bench_render.h"
 #include "bench/bench_sgp4.h"
 #include "bench/bench_sky.h"
@@ -14,6 +15,8 @@ std::vector<Bench> benches() {
   return {
       {"frame", "stages of a frame on one thread", bench_frame},
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
+      {"network", "sensors that keep up with real time, a process each, and their memory",
+       bench_network, add_network_options},
       {"render", "pictures and light of objects with a shape", bench_render},
       {"sgp4", "propagation of whole catalogues against the compiled reference",
        [](bool json) { return bench_sgp4(json) | bench_figure5(json); }},

@@ -3,6 +3,10 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace dmise {
 
 /// One benchmark: prints what it measured and returns an exit code.
@@ -10,6 +14,7 @@ struct Bench {
   std::string name;
   std::string what;
   std::function<int(bool json)> run;
+  std::function<void(CLI::App&)> add_options = {};  // of its own; may be empty
 };
 
 /// All benchmarks. To add one: write bench/bench_NAME.cpp, declare and list it in benches.cpp.

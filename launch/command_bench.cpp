@@ -13,6 +13,7 @@ void add_bench_command(CLI::App& app) {
     auto json = std::make_shared<bool>(false);
     auto* one = command->add_subcommand(bench.name, bench.what);
     one->add_flag("--json", *json, "one JSON object a line");
+    if (bench.add_options) bench.add_options(*one);
     one->callback([json, run = bench.run] {
       if (const int code = run(*json)) throw ExitWith{code};
     });

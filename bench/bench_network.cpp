@@ -1,0 +1,133 @@
+#include "bench/bench_network.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "bench/figure.h"
+#include "bench/network_run.h"
+#include "core/base/error.h"
+#include "core/config/search_path.h"
+
+namespace dmise {
+namespace {
+
+struct Options {
+  int sensors = 100;
+  int frames = 6;
+  double real_time = 1.0;
+  bool without_detection_only = false;
+};
+Options options;
+
+constexpr int most_tries = 4;
+constexpr int pilot_sensors = 8, pilot_frames = 3;
+constexpr double share_at_first = 0.96;  // of the processors' time that the first try takes
+constexpr double step = 0.95;            // from one try to the next
+
+double cores() { return double(std::max(1u, std::thread::hardware_concurrency())); }
+
+/// Sensors whose frames take `share` of the processors' time.
+int sensors_within(double share, double cpu_s_per_frame, double real_time) {
+  return int(share * cores() * network_cadence_s / real_time / cpu_s_per_frame);
+}
+
+NetworkRun measure(const NetworkCase& network, const std::filesystem::path& directory) {
+  std::fprintf(stderr, "network: %d sensors, %d frames each, detection %s, ", network.sensors,
+               network.frames, network.detect ? "on" : "off");
+  network.real_time > 0.0 ? std::fprintf(stderr, "%g x real time\n", network.real_time)
+                          : std::fprintf(stderr, "as fast as possible\n");
+  const NetworkRun run = run_network(network, directory);
+  if (!run.complete) throw Error("network: " + run.reason);
+  std::fprintf(
+      stderr,
+      "network: started in %.0f s, ran %.0f s, %.3f s of processors a frame, %ld overruns, "
+      "worst lag %.2f s, %.0f MB\n",
+      run.start_s, run.wall_s, run.cpu_s_per_frame(), run.overruns, run.worst_lag_s,
+      run.peak_pss_mb);
+  return run;
+}
+
+struct Kept {
+  int sensors = 0;  // the most that were tried and kept up; 0: none did
+  NetworkRun run;   // theirs, or the last one's
+};
+
+/// The first of `sensors` and fewer that keeps up.
+Kept keep_up(NetworkCase network, const std::filesystem::path& directory) {
+  Kept kept;
+  for (int tried = 0; tried < most_tries && network.sensors > 0; ++tried) {
+    kept.run = measure(network, directory);
+    if (kept.run.overruns == 0) {
+      kept.sensors = network.sensors;
+      break;
+    }
+    const int affordable =
+        sensors_within(share_at_first, kept.run.cpu_s_per_frame(), network.real_time);
+    network.sensors = std::min(int(step * network.sensors), affordable);
+  }
+  return kept;
+}
+
+void print(const std::string& suffix, const Kept& kept, double target, bool json) {
+  const NetworkRun& run = kept.run;
+  print_figure({"sensors_real_time" + suffix, double(kept.sensors), "1", "", 0, target}, json);
+  print_figure({"network_frame_cpu" + suffix + "_s", run.cpu_s_per_frame(), "s"}, json);
+  print_figure({"network_cpu_share" + suffix, run.cpu_s / run.wall_s / cores(), "1"}, json);
+  print_figure({"network_overruns" + suffix, double(run.overruns), "1"}, json);
+  print_figure({"network_start" + suffix + "_s", run.start_s, "s"}, json);
+}
+
+void print_memory(const NetworkRun& run, bool json) {
+  print_figure({"memory_gb", run.peak_pss_mb / 1e3, "GB", "", 0, 12, true}, json);
+  print_figure({"sensor_pss_mb", run.sensor_pss_mb, "MB", "", 0, 80, true}, json);
+  print_figure({"sensor_pss_bound_mb", run.sensor_most_mb, "MB"}, json);
+}
+
+}  // namespace
+
+void add_network_options(CLI::App& command) {
+  command
+      .add_option("--sensors", options.sensors, "without detection; fewer if they can't keep up")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command.add_option("--frames", options.frames, "of each sensor")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command.add_option("--real-time", options.real_time, "simulated seconds a second")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->capture_default_str();
+  command.add_flag("--without-detection-only", options.without_detection_only,
+                   "leaves out the runs with detection");
+}
+
+int bench_network(bool json) {
+  if (find_catalogue("stars.dat").empty()) return 0;  // as without Debian's catalogues
+  const auto directory =
+      std::filesystem::temp_directory_path() / ("dmise-bench-network-" + std::to_string(getpid()));
+  NetworkCase network{.sensors = options.sensors,
+                      .frames = options.frames,
+                      .detect = false,
+                      .real_time = options.real_time};
+  const Kept without = keep_up(network, directory);
+  print("", without, 100, json);
+  print_memory(without.run, json);
+  if (!options.without_detection_only) {
+    network.detect = true;
+    const NetworkRun pilot = measure(
+        {.sensors = pilot_sensors, .frames = pilot_frames, .detect = true, .real_time = 0.0},
+        directory);
+    network.sensors =
+        std::max(1, sensors_within(share_at_first, pilot.cpu_s_per_frame(), network.real_time));
+    print("_detecting", keep_up(network, directory), 0, json);
+  }
+  std::filesystem::remove_all(directory);
+  return 0;
+}
+
+}  // namespace dmise

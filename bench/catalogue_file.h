@@ -1,0 +1,16 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+namespace dmise {
+
+/// A catalogue of 18,470 objects and a dark evening over North America near its epoch.
+struct CatalogueFile {
+  std::string path, start_utc;
+};
+
+/// The real one of December 2019 where `$DMISE_DATA` has it, or one like it written into
+/// `directory`.
+CatalogueFile catalogue_of_18470(const std::filesystem::path& directory);
+
+}  // namespace dmise
