@@ -52,6 +52,7 @@ void Coordinator::done(const std::string& name, TickTally tally, Instant now) {
                     " the last granted");
   member->done = tally.tick;
   member->pulse.progressed = now;
+  member->pulse.stalled.reset();
   if (notes(*member, std::move(tally))) grant(now);
 }
 

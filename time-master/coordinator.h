@@ -33,7 +33,9 @@ struct CoordinatorOptions : PulseLimits {
   Tick last_tick = 0;                 // ticks are first_tick..last_tick
   int window_ticks = 1;               // >= 1; 1 is lock-step
   PaceOptions pace;
-  Instant start_within{0};  // longest time until all are ready; 0: none
+  Instant stalled_after{0};  // longest time that one for whom all wait neither computes nor is
+                             // done, though all that it needs is published; 0: none
+  Instant start_within{0};   // longest time until all are ready; 0: none
   SilentPolicy on_silent = SilentPolicy::fail;
   Instant rejoin_within{0};  // under `wait`, longest time until a lost node is back; 0: none
   int max_rejoins = -1;      // under `wait`, processes that may follow the first of a name; -1: any
@@ -88,8 +90,10 @@ class Coordinator {
   /// Ends a run that has not ended, from outside, at once.
   void stop(const std::string& reason);
   /// Finds who has been silent or without progress for too long, and grants what has become due.
-  /// Call it often, and at next_due().
+  /// Call it at next_check() and next_due(), or sooner.
   void check(Instant now);
+  /// The clock's own process did not run between `since` and `now`: nobody could be heard.
+  void excuse(Instant since, Instant now);
 
   /// No tick is granted after `at`, or after the last granted if that is later.
   void pause(Tick at = -1);
@@ -111,6 +115,9 @@ class Coordinator {
   const Pace& pace() const { return pace_; }
   /// When `check` has something to grant, if time alone brings it.
   std::optional<Instant> next_due() const;
+  /// When `check` has somebody to name, unless more is heard until then. Not before anybody has
+  /// joined.
+  std::optional<Instant> next_check() const { return next_check_; }
   /// Expected and not yet joined, in the order of the list.
   std::vector<std::string> missing() const;
   /// Whom everybody waits for: those to join, to be ready, the silent, or the furthest behind who
@@ -136,6 +143,9 @@ class Coordinator {
   std::optional<std::string> observe(const Request& request, Instant now);
   Member& add(const Request& request, Instant now);
   void heard(Member& member, Instant now);
+  void check_by(Instant deadline);
+  void look_at(Member& member, Instant now);
+  void look_for_stalled(Instant now);
   void lost(Member& member, const std::string& how, Instant now);
   void drop(Member& member, Instant now);
   void fail_run(const std::string& cause);
@@ -160,6 +170,8 @@ class Coordinator {
   std::uint64_t topology_version_ = 0;
   std::uint64_t digest_ = 0;
   Instant started_;
+  std::optional<Instant> next_check_;
+  Instant next_look_{0};  // for the stalled
 };
 
 /// "a, b, c"

@@ -10,22 +10,34 @@ std::string Coordinator::after_tick(const Member& member) const {
          std::to_string(options_.last_tick) + ")";
 }
 
+void Coordinator::check_by(Instant deadline) {
+  next_check_ = std::min(next_check_.value_or(deadline), deadline);
+}
+
 void Coordinator::heartbeat(const std::string& name, bool computing, std::uint64_t progress,
                             Instant now) {
   Member* member = active(name);
   if (!member) return;
   heard(*member, now);
   member->pulse.beat(computing, progress, now);
+  check_by(member->pulse.deadline(options_, !over()));
 }
 
 void Coordinator::heard(Member& member, Instant now) {
   member.pulse.hear(now);
   member.silent = false;
+  check_by(member.pulse.deadline(options_, !over()));
 }
 
 void Coordinator::suspect(const std::string& name, Instant now) {
   Member* member = active(name);
-  if (member) member->pulse.suspect(now);
+  if (!member) return;
+  member->pulse.suspect(now);
+  check_by(member->pulse.deadline(options_, !over()));
+}
+
+void Coordinator::excuse(Instant since, Instant now) {
+  for (auto& [name, member] : members_) member.pulse.excuse(since, now);
 }
 
 void Coordinator::leave(const std::string& name, bool interrupted, Instant now) {
@@ -59,26 +71,52 @@ void Coordinator::fail(const std::string& name, const std::string& reason) {
 void Coordinator::stop(const std::string& reason) { fail_run(reason); }
 
 void Coordinator::check(Instant now) {
-  if (!over() && phase_ != Phase::running && options_.start_within.count() > 0 &&
-      now - started_ > options_.start_within)
-    return fail_run("not started within " + in_seconds(options_.start_within) + ": waiting for " +
-                    joined(holding()));
+  next_check_.reset();
+  if (!over() && phase_ != Phase::running && options_.start_within.count() > 0) {
+    if (now - started_ >= options_.start_within)
+      return fail_run("not started within " + in_seconds(options_.start_within) + ": waiting for " +
+                      joined(holding()));
+    check_by(started_ + options_.start_within);
+  }
   std::vector<std::string> names;  // lost() may take a member away
   for (const auto& [name, member] : members_) names.push_back(name);
-  for (const std::string& name : names) {
-    Member* member = active(name);
-    if (!member) continue;
-    if (member->silent) {
-      const Instant gone = now - member->silent_since;
-      if (options_.rejoin_within.count() > 0 && gone > options_.rejoin_within && !over())
-        fail_run(name + " has not come back within " + in_seconds(options_.rejoin_within) +
-                 after_tick(*member));
-      continue;
-    }
-    const std::string trouble = member->pulse.trouble(options_, !over(), now);
-    if (!trouble.empty()) lost(*member, trouble, now);
-  }
+  for (const std::string& name : names)
+    if (Member* member = active(name)) look_at(*member, now);
+  look_for_stalled(now);
   grant(now);
+}
+
+void Coordinator::look_at(Member& member, Instant now) {
+  if (!member.silent) {
+    const std::string trouble = member.pulse.trouble(options_, !over(), now);
+    return trouble.empty() ? check_by(member.pulse.deadline(options_, !over()))
+                           : lost(member, trouble, now);
+  }
+  if (options_.rejoin_within.count() == 0 || over()) return;
+  const Instant back_by = member.silent_since + options_.rejoin_within;
+  if (now < back_by) return check_by(back_by);
+  fail_run(member.node.name + " has not come back within " + in_seconds(options_.rejoin_within) +
+           after_tick(member));
+}
+
+/// A node that lives and yet never begins what it could: what it needs does not reach it, or it is
+/// at fault itself. No heartbeat tells.
+void Coordinator::look_for_stalled(Instant now) {
+  if (options_.stalled_after.count() == 0 || phase_ != Phase::running || now < next_look_) return;
+  next_look_ = now + options_.stalled_after / 8;
+  const std::vector<std::string> names = holding();
+  for (auto& [name, member] : members_) {
+    auto& since = member.pulse.stalled;
+    const bool idle = !member.silent && !member.pulse.computing &&
+                      std::find(names.begin(), names.end(), name) != names.end();
+    if (!idle) since.reset();
+    if (!idle || now - since.emplace(since.value_or(now)) < options_.stalled_after) continue;
+    if (options_.on_silent == SilentPolicy::drop) return drop(member, now);
+    return fail_run(name + " has not begun tick " +
+                    std::to_string(member.node.schedule.next_after(member.done)) + " for " +
+                    in_seconds(now - *since) + ", though all that it needs is published" +
+                    after_tick(member));
+  }
 }
 
 void Coordinator::lost(Member& member, const std::string& how, Instant now) {

@@ -16,7 +16,8 @@ int main(int argc, char** argv) {
   dmise::MasterOptions options;
   dmise::Tick ticks = 1;
   std::string report;
-  double silent_after_s = 5.0, progress_after_s = 0.0, start_within_s = 0.0, rejoin_within_s = 0.0;
+  double silent_after_s = 5.0, progress_after_s = 0.0, stalled_after_s = 60.0, start_within_s = 0.0,
+         rejoin_within_s = 0.0;
   CLI::App app("Keeps the clock of one run.", "dmise-time-master");
   dmise::add_common_flags(app, flags);
   app.add_option("--bind", options.address, "the address that everybody must know; port 0: any")
@@ -39,6 +40,10 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--progress-after", progress_after_s,
                  "a step without progress for so long is hung [s]; 0: no limit")
+      ->capture_default_str();
+  app.add_option("--stalled-after", stalled_after_s,
+                 "longest time that a node neither computes nor is done, though all that it needs "
+                 "is published [s]; 0: no limit")
       ->capture_default_str();
   app.add_option("--start-within", start_within_s,
                  "longest wait for all nodes to be ready [s]; 0: no limit")
@@ -66,6 +71,7 @@ int main(int argc, char** argv) {
     options.run.last_tick = ticks - 1;
     options.run.silent_after = from_seconds(silent_after_s);
     options.run.progress_after = from_seconds(progress_after_s);
+    options.run.stalled_after = from_seconds(stalled_after_s);
     options.run.start_within = from_seconds(start_within_s);
     options.run.rejoin_within = from_seconds(rejoin_within_s);
     options.keys = flags.keys;

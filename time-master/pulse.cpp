@@ -19,6 +19,7 @@ void Pulse::beat(bool is_computing, std::uint64_t step_progress, Instant now) {
   hear(now);
   if (!is_computing || !computing || step_progress != progress) progressed = now;
   computing = is_computing;
+  if (computing) stalled.reset();
   progress = step_progress;
 }
 
@@ -26,14 +27,30 @@ void Pulse::suspect(Instant now) {
   if (!suspected) suspected = now;
 }
 
+void Pulse::excuse(Instant since, Instant now) {
+  const auto later = [&](Instant t) { return std::min(t + (now - since), now); };
+  heard = later(heard);
+  progressed = later(progressed);
+  if (suspected) suspected = later(*suspected);
+  stalled.reset();
+}
+
 std::string Pulse::trouble(const PulseLimits& limits, bool steps_matter, Instant now) const {
   const Instant silence = now - heard;
-  if (silence > limits.silent_after) return "has been silent for " + in_seconds(silence);
-  if (suspected && now - *suspected > limits.suspect_after) return "has closed its connection";
+  if (silence >= limits.silence()) return "has been silent for " + in_seconds(silence);
+  if (suspected && now - *suspected >= limits.suspect_after) return "has closed its connection";
   if (computing && limits.progress_after.count() > 0 && steps_matter &&
-      now - progressed > limits.progress_after)
+      now - progressed >= limits.step())
     return "has made no progress for " + in_seconds(now - progressed);
   return "";
+}
+
+Instant Pulse::deadline(const PulseLimits& limits, bool steps_matter) const {
+  Instant first = heard + limits.silence();
+  if (suspected) first = std::min(first, *suspected + limits.suspect_after);
+  if (computing && limits.progress_after.count() > 0 && steps_matter)
+    first = std::min(first, progressed + limits.step());
+  return first;
 }
 
 }  // namespace dmise

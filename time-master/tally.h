@@ -9,8 +9,8 @@
 
 namespace dmise {
 
-/// What a node has published on one topic at one tick, as it says itself. What is said once and for all
-/// (a roster) does not count: a process that follows another says it again.
+/// What a node has published on one topic at one tick, as it says itself. What is said once and for
+/// all (a roster) does not count: a process that follows another says it again.
 struct TopicTally {
   std::string topic;
   std::uint64_t messages = 0;       // of this tick, a watermark counts
@@ -30,8 +30,8 @@ struct TickTally {
   std::uint64_t incarnation = 0;   // of the process that said so
 };
 
-/// What a node's tick adds to the digest of a run, which is the sum over all nodes and ticks: who adds
-/// them up, and in which order, makes no difference. 0 for a node without topics.
+/// What a node's tick adds to the digest of a run, which is the sum over all nodes and ticks: who
+/// adds them up, and in which order, makes no difference. 0 for a node without topics.
 inline std::uint64_t content_digest(std::string_view node, const TickTally& tally) {
   if (tally.topics.empty()) return 0;
   std::uint64_t digest = fold_digest(0, std::uint64_t(tally.tick));

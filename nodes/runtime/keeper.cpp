@@ -5,6 +5,7 @@
 
 #include "core/sim/message.h"
 #include "dmise/v1/node.pb.h"
+#include "nodes/runtime/control_rules.h"
 #include "nodes/runtime/time_split_codec.h"
 
 namespace dmise {
@@ -76,7 +77,9 @@ void Keeper::beat() {
 void Keeper::hear() {
   while (const auto frame = receive_one(heartbeat_)) {
     v1::MasterMessage message;
-    if (!from_frame(*frame, &message) || message.grant().run_id() != options_.run_id) continue;
+    if (!from_frame(*frame, &message) || message.grant().run_id() != options_.run_id ||
+        fault_of(message))
+      continue;
     heard_ = now();
     post(message.grant());
   }
@@ -101,7 +104,7 @@ void Keeper::answer() {
   for (auto message = receive(*resend_); !message.empty(); message = receive(*resend_)) {
     v1::ResendRequest request;
     if (message.size() != 2 || !from_frame(message[1], &request) ||
-        request.run_id() != options_.run_id)
+        request.run_id() != options_.run_id || fault_of(request))
       continue;
     if (options_.security.on() && request.topic().starts_with(truth_prefix) &&
         !may_hear_truth(message[1]))

@@ -1,14 +1,13 @@
 #include "nodes/runtime/master.h"
 
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <random>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
 #include "nodes/runtime/clock_watch.h"
+#include "nodes/runtime/control_rules.h"
 #include "nodes/runtime/json_log.h"
 #include "nodes/runtime/master_voice.h"
 #include "nodes/runtime/master_words.h"
@@ -40,6 +39,7 @@ CoordinatorOptions with_broker(const MasterOptions& options) {
   CoordinatorOptions run = options.run;
   if (run.expected.empty()) throw ConfigError("expect: must name a node");
   run.pace.tick_length = options.tick_length;
+  run.heartbeat = std::min<nanoseconds>(milliseconds(250), run.silent_after / 8);
   if (options.with_broker) run.expected.insert(run.expected.begin(), broker_name);
   return run;
 }
@@ -57,29 +57,33 @@ class Master {
         ticks_(make_socket(context_, zmq::socket_type::pub, max_control_bytes)),
         connections_(context_, router_),
         run_id_(new_run_id()),
-        heartbeat_(std::min<nanoseconds>(milliseconds(250), options.run.silent_after / 8)),
         voice_(router_, ticks_, run_id_, coordinator_, directory_) {
     router_.set(zmq::sockopt::linger, 500);
     ticks_.set(zmq::sockopt::linger, 500);
     address_ = bind_to(router_, options.address, security_);
     tick_endpoint_ = bind_to(ticks_, any_port(options.address), security_);
-    announce();
+    announce(options, address_);
   }
 
   MasterResult run() {
     auto next_check = now();
+    auto awake = now();
     std::optional<nanoseconds> over_since;
     while (true) {
-      wait(std::min(next_check, coordinator_.next_due().value_or(next_check)) - now());
-      const std::vector<int> broken = connections_.broken();
-      for (const std::string& name : connections_.names_of(broken))
-        coordinator_.suspect(name, now());
+      wait(std::min({next_check, coordinator_.next_due().value_or(next_check),
+                     coordinator_.next_check().value_or(next_check)}) -
+           now());
+      broken_ = connections_.broken();
+      suspect(connections_.names_of(broken_));
       hear();
       // What came over a connection before it broke is no sign of life after it.
-      for (const std::string& name : connections_.forget(broken)) coordinator_.suspect(name, now());
+      suspect(connections_.forget(broken_));
+      // Whoever was itself stopped has heard nobody because it could not.
+      if (now() - awake > options_.run.silent_after / 2) coordinator_.excuse(awake, now());
+      awake = now();
       if (options_.stop && options_.stop->is_set()) coordinator_.stop("interrupted");
-      const auto due = coordinator_.next_due();
-      if (due && now() >= *due) coordinator_.check(now());
+      for (const auto due : {coordinator_.next_due(), coordinator_.next_check()})
+        if (due && now() >= *due) coordinator_.check(now());
       if (now() >= next_check) {
         coordinator_.check(now());
         watch_.look(coordinator_, now());
@@ -93,7 +97,7 @@ class Master {
       if (!over_since) over_since = now();
       // Of a failure, the heartbeat of a node that hangs hears as well.
       const bool told = coordinator_.phase() == Phase::ended || directory_.all().empty() ||
-                        now() - *over_since > 2 * heartbeat_;
+                        now() - *over_since > 2 * coordinator_.options().heartbeat;
       if ((coordinator_.deserted() && told) || now() - *over_since > farewell) break;
     }
     return result();
@@ -108,22 +112,15 @@ class Master {
     metrics->tell(status_of(endpoints));
   }
 
-  void announce() {
-    spdlog::debug("listens on {}", address_);
-    if (!options_.announce_file.empty()) write_file_whole(options_.announce_file, address_ + "\n");
-    if (options_.announce_fd >= 0) {
-      const std::string line = address_ + "\n";
-      if (write(options_.announce_fd, line.data(), line.size()) != ssize_t(line.size()))
-        throw Error("announce-fd: can't write");
-    }
-    if (options_.on_bound) options_.on_bound(address_);
-  }
-
   void wait(nanoseconds at_most) {
     items_ = {{router_.handle(), 0, ZMQ_POLLIN, 0}, {connections_.handle(), 0, ZMQ_POLLIN, 0}};
     if (options_.stop && !coordinator_.over())
       items_.push_back({nullptr, options_.stop->fd(), ZMQ_POLLIN, 0});
     wait_for(items_, at_most);
+  }
+
+  void suspect(const std::vector<std::string>& names) {
+    for (const std::string& name : names) coordinator_.suspect(name, now());
   }
 
   void hear() {
@@ -133,6 +130,10 @@ class Master {
       if (!before_welcome && heard_.run_id() != run_id_) continue;
       const std::string_view sender = message[0].to_string_view();
       if (security_.on() && !in_own_name(sender_of(message[1]))) continue;
+      if (const auto fault = fault_of(heard_)) {
+        refuse(sender, *fault);
+        continue;
+      }
       const std::string& name = directory_.name_of(sender);
       if (heard_.has_done()) {
         done(name);
@@ -145,7 +146,7 @@ class Master {
       } else if (heard_.has_leave()) {
         leave(name);
       } else if (heard_.has_failed()) {
-        coordinator_.fail(name, heard_.failed().reason());
+        coordinator_.fail(name, one_line(heard_.failed().reason()));
       } else if (heard_.has_hello() || heard_.has_control()) {
         if (heard_.has_control()) control();
         v1::MasterMessage answer;
@@ -153,6 +154,11 @@ class Master {
         voice_.reply(sender, answer);
       }
     }
+  }
+
+  void refuse(std::string_view sender, const std::string& fault) {
+    spdlog::warn("refused a message: {}", fault);
+    if (heard_.has_join()) voice_.refuse(sender, fault);
   }
 
   /// With keys: whether `who` may say what was heard.
@@ -183,14 +189,13 @@ class Master {
   void join(std::string_view sender, zmq::message_t& frame) {
     const v1::Join& join = heard_.join();
     const Coordinator::Request request = request_of(join);
-    v1::MasterMessage answer;
     const bool is_broker = join.name() == broker_name;
+    suspect(connections_.names_of(broken_));  // whose last words may have been heard just now
     const auto refusal = join.has_broker() == is_broker
                              ? coordinator_.join(request, now())
                              : std::optional<std::string>("only the broker is named broker");
     if (refusal) {
-      answer.mutable_refuse()->set_reason(*refusal);
-      voice_.reply(sender, answer);
+      voice_.refuse(sender, *refusal);
       log_event(spdlog::level::warn, "node_refused", {{"name", join.name()}, {"reason", *refusal}},
                 "refused " + join.name() + ": " + *refusal);
       return;
@@ -198,16 +203,7 @@ class Master {
     const std::uint64_t incarnation = coordinator_.members().at(join.name()).incarnation;
     directory_.add(sender, incarnation, join);
     connections_.belongs(frame, join.name());
-    auto* welcome = answer.mutable_welcome();
-    welcome->set_run_id(run_id_);
-    welcome->set_incarnation(incarnation);
-    welcome->set_tick_ns(options_.tick_length.ns);
-    welcome->set_last_tick(options_.run.last_tick);
-    welcome->set_window_ticks(std::uint32_t(options_.run.window_ticks));
-    welcome->set_heartbeat_s(as_seconds(heartbeat_));
-    welcome->set_silent_after_s(as_seconds(options_.run.silent_after));
-    welcome->set_tick_endpoint(tick_endpoint_);
-    voice_.reply(sender, answer);
+    voice_.reply(sender, voice_.welcome(join.name(), tick_endpoint_));
     const auto missing = coordinator_.missing();
     log_event(
         spdlog::level::info, "node_joined",
@@ -282,8 +278,8 @@ class Master {
   Doorkeeper door_;
   zmq::socket_t router_, ticks_;
   PeerMonitor connections_;
+  std::vector<int> broken_;  // of these, as of now
   std::uint64_t run_id_;
-  nanoseconds heartbeat_;
   std::string address_, tick_endpoint_;
   std::vector<zmq::pollitem_t> items_;
   PeerDirectory directory_;

@@ -24,6 +24,9 @@ struct MasterOptions {
   std::function<void(const std::string& address)> on_bound;
 };
 
+/// Says where a master listens, in all the ways that `options` ask for. Throws `Error`.
+void announce(const MasterOptions& options, const std::string& address);
+
 /// Keeps the clock of one run until every tick is done or the run fails. Throws `ConfigError` for
 /// options that make no sense and `Error` when the address can't be bound.
 MasterResult run_master(const MasterOptions& options);

@@ -1,6 +1,9 @@
 #include "nodes/runtime/master_link.h"
 
+#include <spdlog/spdlog.h>
+
 #include "core/base/error.h"
+#include "nodes/runtime/control_rules.h"
 #include "nodes/runtime/time_split_codec.h"
 
 namespace dmise {
@@ -108,7 +111,9 @@ void MasterLink::wait(const std::vector<zmq::socket_t*>& sockets, nanoseconds at
 
 void MasterLink::hear_ticks() {
   while (const auto frame = receive_one(ticks_)) {
-    if (!from_frame(*frame, &scratch_) || scratch_.run_id() != welcome_.run_id()) continue;
+    if (!from_frame(*frame, &scratch_) || scratch_.run_id() != welcome_.run_id() ||
+        fault_of(scratch_))
+      continue;
     hears_ticks_ = true;
     take(scratch_);
   }
@@ -118,6 +123,10 @@ void MasterLink::hear_control() {
   while (const auto frame = receive_one(control_)) {
     v1::MasterMessage message;
     if (!from_frame(*frame, &message)) continue;
+    if (const auto fault = fault_of(message)) {
+      spdlog::warn("refused what the time-master says: {}", *fault);
+      continue;
+    }
     if (message.has_welcome() || message.has_refuse())
       answer_ = message;
     else if (message.has_topology()) {

@@ -10,6 +10,12 @@ void MasterVoice::reply(std::string_view routing_id, const v1::MasterMessage& me
   router_.send(to_frame(message), zmq::send_flags::none);
 }
 
+void MasterVoice::refuse(std::string_view routing_id, const std::string& reason) {
+  v1::MasterMessage answer;
+  answer.mutable_refuse()->set_reason(reason);
+  reply(routing_id, answer);
+}
+
 void MasterVoice::note(const TickTally& tally) { add_published(&fresh_, consumed_, tally); }
 
 bool MasterVoice::say_news() {
@@ -28,6 +34,23 @@ void MasterVoice::publish() {
   grant_.mutable_published()->Swap(fresh_.mutable_published());
   fresh_.clear_published();
   ticks_.send(to_frame(grant_), zmq::send_flags::none);
+}
+
+v1::MasterMessage MasterVoice::welcome(const std::string& name,
+                                       const std::string& tick_endpoint) const {
+  const auto in_seconds = [](Instant t) { return std::chrono::duration<double>(t).count(); };
+  const CoordinatorOptions& options = coordinator_.options();
+  v1::MasterMessage answer;
+  auto* welcome = answer.mutable_welcome();
+  welcome->set_run_id(run_id_);
+  welcome->set_incarnation(coordinator_.members().at(name).incarnation);
+  welcome->set_tick_ns(options.pace.tick_length.ns);
+  welcome->set_last_tick(options.last_tick);
+  welcome->set_window_ticks(std::uint32_t(options.window_ticks));
+  welcome->set_heartbeat_s(in_seconds(options.heartbeat));
+  welcome->set_silent_after_s(in_seconds(options.silent_after));
+  welcome->set_tick_endpoint(tick_endpoint);
+  return answer;
 }
 
 v1::MasterMessage MasterVoice::grant() const {

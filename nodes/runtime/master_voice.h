@@ -24,6 +24,7 @@ class MasterVoice {
         directory_(directory) {}
 
   void reply(std::string_view routing_id, const v1::MasterMessage& message);
+  void refuse(std::string_view routing_id, const std::string& reason);
   /// To be told to all who consume with what is said next.
   void note(const TickTally& tally);
   /// Says what has changed since it was last said; true if something had.
@@ -31,6 +32,7 @@ class MasterVoice {
   /// Says the grant as it is now.
   void publish();
 
+  v1::MasterMessage welcome(const std::string& name, const std::string& tick_endpoint) const;
   /// The grant as it is now.
   v1::MasterMessage grant() const;
   /// The same for the process `member`, with the manifests of all that it may still wait for.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "nodes/runtime/control_rules.h"
+
 namespace dmise {
 
 v1::Phase to_wire(Phase phase) {
@@ -21,15 +23,13 @@ v1::Phase to_wire(Phase phase) {
 }
 
 Coordinator::Request request_of(const v1::Join& join) {
-  // What is larger than any run is nonsense and will be refused as negative.
-  const auto ticks = [](std::uint64_t n) { return n > (1ull << 62) ? Tick(-1) : Tick(n); };
   Coordinator::Request request;
   request.node = {.name = join.name(),
                   .produces = {join.produces().begin(), join.produces().end()},
                   .consumes = {join.consumes().begin(), join.consumes().end()},
-                  .look_back = ticks(join.look_back_ticks()),
-                  .schedule = {.period = ticks(std::max<std::uint64_t>(1, join.period_ticks())),
-                               .offset = ticks(join.offset_ticks())}};
+                  .look_back = Tick(join.look_back_ticks()),
+                  .schedule = {.period = Tick(std::max<std::uint64_t>(1, join.period_ticks())),
+                               .offset = Tick(join.offset_ticks())}};
   request.node.produces.insert(request.node.produces.end(), join.produces_direct().begin(),
                                join.produces_direct().end());
   request.keeps_time = !join.has_broker() && !join.observer();
@@ -115,8 +115,9 @@ void describe(v1::Endpoints* endpoints, const Coordinator& coordinator) {
 }
 
 void apply(const v1::Control& control, Coordinator& coordinator, Instant now) {
-  const std::string why =
-      control.reason().empty() ? "ended on request" : "ended on request: " + control.reason();
+  const std::string why = control.reason().empty()
+                              ? "ended on request"
+                              : "ended on request: " + one_line(control.reason());
   switch (control.action()) {
     case v1::Control::ACTION_PAUSE:
       return coordinator.pause(control.tick());

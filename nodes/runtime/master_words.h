@@ -9,7 +9,7 @@ namespace dmise {
 
 v1::Phase to_wire(Phase phase);
 
-/// What a process says of itself in Join.
+/// What a process says of itself in a Join without fault.
 Coordinator::Request request_of(const v1::Join& join);
 TickTally tally_of(const v1::Done& done);
 

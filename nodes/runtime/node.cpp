@@ -207,7 +207,10 @@ class Node {
     }
     log_event(spdlog::level::info, "resumed", {{"tick", std::int64_t(from_tick_)}},
               fmt::format("takes up its work at tick {}", from_tick_));
-    return participant_.resume(from_tick_, past);
+    link_.set_computing(true);
+    auto carried = participant_.resume(from_tick_, past);
+    link_.set_computing(false);
+    return carried;
   }
 
   /// Until the tick is granted and its inputs are here. False when the run is over.

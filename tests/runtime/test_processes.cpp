@@ -90,7 +90,7 @@ TEST(Processes, AStoppedNodeIsNamedAndTheRunFails) {
   stack.start_all();
   ASSERT_TRUE(stack.nodes["b"]->says("step 5\n"));
   stack.nodes["a"]->kill(SIGSTOP);
-  EXPECT_TRUE(stack.master->says("a has been silent for 1.", 3.0)) << stack.master->output();
+  EXPECT_TRUE(stack.master->says("a has been silent for ", 3.0)) << stack.master->output();
   stack.expect_all_exit(1, "a");
 }
 
@@ -159,7 +159,7 @@ TEST(Processes, AHungStepIsNamedByItsProgressDeadline) {
   stack.start_broker();
   for (const char* name : {"recorder", "b", "orbit"}) stack.start(name);
   stack.start("a", {"--hang-at", "7"});
-  EXPECT_TRUE(stack.master->says("a has made no progress for 1.")) << stack.master->output();
+  EXPECT_TRUE(stack.master->says("a has made no progress for ")) << stack.master->output();
   stack.expect_all_exit(1);  // the hung one too: its process ends itself
 }
 
