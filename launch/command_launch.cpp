@@ -10,6 +10,7 @@
 #include "core/base/text_file.h"
 #include "core/config/make_clock.h"
 #include "launch/commands.h"
+#include "launch/metrics_ports.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
 #include "launch/restarts.h"
@@ -33,6 +34,7 @@ struct LaunchOptions {
   std::optional<std::uint64_t> seed;  // in place of the scenario's
   int threads = 1;
   bool force = false;
+  std::string metrics, log_format = "text";  // of every process
 };
 
 std::string number(double x) {
@@ -46,7 +48,11 @@ class Launch {
  public:
   Launch(const LaunchOptions& options, const Scenario& scenario, const RunDirectory& directory,
          Tick first_tick)
-      : options_(options), scenario_(scenario), directory_(directory), first_tick_(first_tick) {
+      : options_(options),
+        scenario_(scenario),
+        directory_(directory),
+        first_tick_(first_tick),
+        metrics_(options.metrics) {
     for (const auto& sensor : scenario.sensors)
       frames_total_ += static_cast<int>(frames_within(sensor, scenario.duration));
   }
@@ -58,6 +64,7 @@ class Launch {
     start_master();
     const std::string master = master_address();
     start_nodes(master);
+    metrics_.write_targets(directory_.path() + "/logs/prometheus-targets.json");
     watch(master, outcome);
     outcome.wall_s = Seconds(Clock_::now() - start).count();
     return outcome;
@@ -123,6 +130,9 @@ class Launch {
              std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), program_directory() + "/" + program);
     if (!options_.keys.empty()) arguments.insert(arguments.end(), {"--keys", options_.keys});
+    arguments.insert(arguments.end(), {"--log-format", options_.log_format});
+    if (const std::string at = metrics_.next(name); !at.empty())
+      arguments.insert(arguments.end(), {"--metrics", at});
     processes_.start(name, arguments, log_of(name));
   }
 
@@ -219,11 +229,15 @@ class Launch {
   const Scenario& scenario_;
   const RunDirectory& directory_;
   Tick first_tick_;
+  MetricsPorts metrics_;
   Supervisor processes_;
   int frames_total_ = 0;
 };
 
 void launch(const LaunchOptions& options) {
+  if (options.log_format != "text" && options.log_format != "json")
+    throw ConfigError("--log-format: must be text or json, got " + options.log_format);
+  if (!options.metrics.empty()) metrics_address(options.metrics);
   Scenario scenario = load_scenario(options.scenario);
   if (options.seed) scenario.seed = *options.seed;
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
@@ -260,6 +274,11 @@ void add_launch_command(CLI::App& app) {
   command->add_option(
       "--keys", options->keys,
       "directory of keys (dmise keygen); without it all is plain, on loopback alone");
+  command->add_option("--metrics", options->metrics,
+                      "serve figures for Prometheus: at [HOST:]PORT the time-master's, at the next "
+                      "ports the others'; auto: each says in its log where");
+  command->add_option("--log-format", options->log_format, "of the processes' logs: text or json")
+      ->capture_default_str();
   command->add_flag("--force", options->force, "replace what is in the directory");
   command->callback([options] { launch(*options); });
 }

@@ -23,6 +23,7 @@ void add_visible_command(CLI::App& app);
 void add_catalogue_command(CLI::App& app);
 void add_keygen_command(CLI::App& app);
 void add_status_command(CLI::App& app);
+void add_health_command(CLI::App& app);
 void add_clock_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   dmise::add_catalogue_command(app);
   dmise::add_keygen_command(app);
   dmise::add_status_command(app);
+  dmise::add_health_command(app);
   dmise::add_clock_command(app);
   dmise::add_bench_command(app);
   try {

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string_view>
 #include <thread>
 
@@ -142,6 +143,9 @@ std::string last_line(const std::string& path) {
   std::string line, last;
   while (std::getline(file, line))
     if (!line.empty()) last = line;
+  if (last.starts_with('{'))  // of a log in JSON
+    if (const auto event = nlohmann::json::parse(last, nullptr, false); event.is_object())
+      return event.value("text", last);
   constexpr std::string_view before_message = " error: ";  // time, node and level stand before it
   const auto at = last.find(before_message);
   return at == std::string::npos ? last : last.substr(at + before_message.size());

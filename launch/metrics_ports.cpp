@@ -1,0 +1,34 @@
+#include "launch/metrics_ports.h"
+
+#include "core/base/error.h"
+#include "core/base/json.h"
+#include "core/base/text_file.h"
+
+namespace dmise {
+
+MetricsPorts::MetricsPorts(const std::string& where) : on_(!where.empty()) {
+  if (on_) address_ = metrics_address(where);
+}
+
+std::string MetricsPorts::next(const std::string& name) {
+  if (!on_) return "";
+  if (address_.port == 0) return "auto";
+  if (address_.port > 65535) throw ConfigError("metrics: no port left for " + name);
+  const std::string target = address_.host + ":" + std::to_string(address_.port++);
+  targets_.emplace_back(name, target);
+  return target;
+}
+
+void MetricsPorts::write_targets(const std::string& path) const {
+  if (targets_.empty()) return;
+  JsonWriter json;
+  json.begin_array();
+  for (const auto& [name, target] : targets_) {
+    json.begin_object().key("targets").begin_array().value(target).end_array();
+    json.key("labels").begin_object().field("process", name).end_object().end_object();
+  }
+  json.end_array();
+  write_file_whole(path, json.take() + "\n");
+}
+
+}  // namespace dmise
