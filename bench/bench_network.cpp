@@ -50,6 +50,9 @@ NetworkRun measure(const NetworkCase& network, const std::filesystem::path& dire
       "worst lag %.2f s, %.0f MB\n",
       run.start_s, run.wall_s, run.cpu_s_per_frame(), run.overruns, run.worst_lag_s,
       run.peak_pss_mb);
+  for (const auto& [program, seconds] : run.cpu_of_s)
+    std::fprintf(stderr, "network: %s: %.2f s, %.4f s a frame\n", program.c_str(), seconds,
+                 seconds / run.frames);
   return run;
 }
 

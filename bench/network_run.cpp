@@ -57,7 +57,7 @@ pid_t launch(const fs::path& scenario, const fs::path& out, const fs::path& log)
   _exit(127);
 }
 
-/// Frames of the sensors of a run, made so far; removes images that nobody writes any more.
+/// Removes images that nobody writes any more.
 void remove_frames(const fs::path& out) {
   const auto old = fs::file_time_type::clock::now() - std::chrono::seconds(4);
   std::error_code ignored;
@@ -76,6 +76,15 @@ int frames_made(const fs::path& out) {
     frames += int(std::count(lines.begin(), lines.end(), '\n'));
   }
   return frames;
+}
+
+bool is_sensor(const ProcessUse& process) { return process.name.starts_with("all-sky-"); }
+
+std::map<std::string, double> cpu_by_program_s(const ProcessFamily& family) {
+  std::map<std::string, double> cpu_s;
+  for (const ProcessUse& member : family.members())
+    cpu_s[is_sensor(member) ? "sensors" : member.name] += member.cpu_s;
+  return cpu_s;
 }
 
 double cpu_s(const rusage& use) {
@@ -139,6 +148,7 @@ NetworkRun run_network(const NetworkCase& network, const fs::path& directory) {
     if (begins) {
       ready = Clock::now();
       cpu_before_s = family.cpu_s();
+      run.cpu_of_s = cpu_by_program_s(family);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
@@ -146,6 +156,8 @@ NetworkRun run_network(const NetworkCase& network, const fs::path& directory) {
   run.start_s = seconds(ready - started);
   run.wall_s = seconds(Clock::now() - ready);
   run.cpu_s = cpu_s(use) - std::max(0.0, cpu_before_s);
+  for (const auto& [program, seconds_in_all] : cpu_by_program_s(family))
+    run.cpu_of_s[program] = seconds_in_all - run.cpu_of_s[program];
   run.frames = frames_made(out);
   run.complete = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   if (!run.complete) run.reason = last_line_of(text_of(log));
@@ -154,7 +166,7 @@ NetworkRun run_network(const NetworkCase& network, const fs::path& directory) {
   run.worst_lag_s = number_in(report, "worst_lag_s");
   run.peak_pss_mb = family.peak_pss_mb();
   for (const ProcessUse& member : family.members()) {
-    if (!member.name.starts_with("all-sky-")) continue;
+    if (!is_sensor(member)) continue;
     run.sensor_pss_mb = std::max(run.sensor_pss_mb, member.peak_pss_mb);
     run.sensor_most_mb = std::max(run.sensor_most_mb, member.most_pss_mb);
   }

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,13 +24,14 @@ struct NetworkRun {
   std::string reason;  // why not
   long overruns = 0;   // ticks not over when the next was due
   double worst_lag_s = 0.0;
-  double start_s = 0.0;         // from the launch until all were ready
-  double wall_s = 0.0;          // from there to the end
-  double cpu_s = 0.0;           // of all processes meanwhile
-  int frames = 0;               // made by all sensors
-  double peak_pss_mb = 0.0;     // largest sum over all processes that was seen
-  double sensor_pss_mb = 0.0;   // the most that was seen of one sensor
-  double sensor_most_mb = 0.0;  // bound of what was not seen (`ProcessUse::most_pss_mb`)
+  double start_s = 0.0;                    // from the launch until all were ready
+  double wall_s = 0.0;                     // from there to the end
+  double cpu_s = 0.0;                      // of all processes meanwhile
+  std::map<std::string, double> cpu_of_s;  // the same by program, sensors together
+  int frames = 0;                          // made by all sensors
+  double peak_pss_mb = 0.0;                // largest sum over all processes that was seen
+  double sensor_pss_mb = 0.0;              // the most that was seen of one sensor
+  double sensor_most_mb = 0.0;             // bound of what was not seen (`ProcessUse::most_pss_mb`)
 
   double cpu_s_per_frame() const { return frames > 0 ? cpu_s / frames : 0.0; }
 };
