@@ -103,6 +103,7 @@ class Watcher : public Evaluator {
   Tick look_back() const override { return 2; }
   std::vector<Message> resume(Tick, std::span<const Message> past) override {
     for (const Message& m : past) note(m);
+    resumed.set_value();
     return {};
   }
   std::vector<Message> step(Tick, std::span<const Message> inputs) override {
@@ -115,6 +116,7 @@ class Watcher : public Evaluator {
   }
   int rosters = 0;
   std::vector<Tick> ticks;
+  std::promise<void> resumed;
 };
 
 TEST(Clock, AnObserverJoinsLateAndHearsTheLastValues) {
@@ -129,6 +131,8 @@ TEST(Clock, AnObserverJoinsLateAndHearsTheLastValues) {
   ASSERT_TRUE(becomes(network.master.address, [](const auto& s) {
     return std::any_of(s.nodes.begin(), s.nodes.end(), [](const auto& n) { return n.observer; });
   }));
+  ASSERT_EQ(watcher.resumed.get_future().wait_for(std::chrono::seconds(30)),
+            std::future_status::ready);
   network.ask(ClockAction::go_on);
   EXPECT_EQ(network.master.result.get().exit_code, 0);
   const NodeResult result = watching.get();
