@@ -6,8 +6,8 @@
 
 namespace dmise {
 
-/// Every stage that touches light or pixels, in the order in which a frame runs through it. Each can
-/// be switched in a scenario (`effects: {aberration: off}`) and its time is measured per frame.
+/// Every stage that touches light or pixels, in the order in which a frame runs through it. Each
+/// can be switched in a scenario (`effects: {aberration: off}`) and its time is measured per frame.
 /// To add one: list it here and in effects.cpp, use it where it acts, test it.
 enum class Effect {
   proper_motion,
@@ -21,6 +21,7 @@ enum class Effect {
   clouds,
   scintillation,
   shadow,
+  earthshine,
   earth_occultation,
   stars,
   objects,
@@ -60,10 +61,13 @@ struct EffectFacts {
 const EffectFacts& facts(Effect effect);
 std::optional<Effect> effect_named(std::string_view name);
 
-/// Which effects run. All do unless switched off.
+/// Which effects run. All do unless switched off, but for earthshine, which is switched on.
 class EffectSet {
  public:
-  EffectSet() { on_.fill(true); }
+  EffectSet() {
+    on_.fill(true);
+    set(Effect::earthshine, false);
+  }
   bool has(Effect e) const { return on_[static_cast<std::size_t>(e)]; }
   void set(Effect e, bool on) { on_[static_cast<std::size_t>(e)] = on; }
   /// Snapshots along an exposure in which light is integrated; 0: along the path, exactly.

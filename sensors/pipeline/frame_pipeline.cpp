@@ -211,12 +211,18 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     Stopwatch timing(frame.times[Effect::psf]);
     optics.begin(times, faintest_e(times));
   }
-  if (stars && has(Effect::stars))
-    stars_drawn = stars->draw(view, optics, light, settings.faintest_star_mag,
-                              settings.star_truth ? &frame.stars : nullptr, frame.times);
+  Screen screen(light.columns, light.rows);
   if (has(Effect::objects))
-    frame.truths = draw_objects(view, objects_in_field(view, settings.shapes.get()), settings.shapes.get(), optics, light,
-                                frame.times);
+    frame.truths = draw_objects(view, objects_in_field(view, settings.shapes.get()),
+                                settings.shapes.get(), optics, screen, light, frame.times);
+  if (!screen.empty()) {
+    RateImage behind(light.columns, light.rows);
+    fill_sky_behind(view, drawn_to_v_mag(), behind, threads);
+    screen.take_hidden(behind, light);
+  }
+  if (stars && has(Effect::stars))
+    stars_drawn = stars->draw(view, optics, screen, light, settings.faintest_star_mag,
+                              settings.star_truth ? &frame.stars : nullptr, frame.times);
   {
     Stopwatch timing(frame.times[Effect::psf]);
     optics.finish(light);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
+#include "core/base/error.h"
 #include "core/optics/snapshots.h"
 #include "sensors/pipeline/object_sampler.h"
 #include "sensors/pipeline/place_costs.h"
@@ -47,9 +49,32 @@ bool is_resolved_at(const View& view, const ObjectSampler& sampler, std::size_t 
                               view.sensor().camera.optics.pixel_angle_rad(), shape_error_px);
 }
 
+Deposited draw_resolved(const View& view, const ObjectSampler& sampler, std::size_t object,
+                        const std::vector<ShapeSnapshot>& snapshots, OpticsStage& stage,
+                        Screen& screen, RateImage& image) {
+  try {
+    return draw_shape(sampler.shapes(), snapshots, view.sensor().camera.optics, stage, screen,
+                      image);
+  } catch (const Error& error) {
+    throw Error("object " + view.world().roster().objects[object].name + ": " + error.what());
+  }
+}
+
+/// Nearest first: what is drawn later lies behind it. Objects of one range as they are listed.
+std::vector<std::size_t> nearest_first(const View& view, std::vector<std::size_t> objects,
+                                       const ExposureInstant& at) {
+  std::map<std::size_t, double> range_m;
+  for (const std::size_t object : objects)
+    range_m[object] =
+        norm(view.world().motion(object, at.time).position_m - at.observer.position_m);
+  std::stable_sort(objects.begin(), objects.end(),
+                   [&](std::size_t a, std::size_t b) { return range_m.at(a) < range_m.at(b); });
+  return objects;
+}
+
 std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
                          const std::vector<std::size_t>& objects, OpticsStage& stage,
-                         RateImage& image, EffectTimes& times) {
+                         Screen& screen, RateImage& image, EffectTimes& times) {
   const auto& exposure = view.times();
   const auto& optics = view.sensor().camera.optics;
   // Instants of the finest division; coarser ones take every so manieth.
@@ -67,8 +92,8 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
     return samples;
   };
 
-  std::vector<Truth> truths;
-  for (const std::size_t object : objects) {
+  std::map<std::size_t, Truth> truth_of;  // by object
+  for (const std::size_t object : nearest_first(view, objects, instant(changing_arcs))) {
     std::vector<ObjectSample> samples = samples_of(object, plain_arcs);
     const ObjectSample start = samples[0], middle = samples[1], end = samples[2];
     if (distance_px(start, middle) + distance_px(middle, end) > straight_enough_px)
@@ -79,14 +104,17 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
     const bool shaped = sampler.shape(object) != nullptr;
     if (shaped && turn_rad(view, object) > still_enough_rad)
       samples = samples_of(object, changing_arcs);
-    auto arcs = resolved ? std::vector<Arc>{}
-                : shaped ? shape_arcs(view, sampler, object, samples)
+    if (resolved) {
+      const int poses = poses_of(view, sampler, object);
+      if (std::size_t(2 * poses) >= samples.size()) samples = samples_of(object, changing_arcs);
+      light =
+          draw_resolved(view, sampler, object, snapshots_of(view, sampler, object, samples, poses),
+                        stage, screen, image);
+    } else {
+      auto arcs = shaped ? shape_arcs(view, sampler, object, samples)
                          : arcs_of(samples, exposure.seconds());
-    if (const int count = view.sensor().effects.snapshots()) arcs = as_snapshots(arcs, count);
-    if (resolved)
-      light = draw_shape(sampler.shapes(), snapshots_of(view, sampler, object, samples), optics,
-                         stage, image);
-    if (!arcs.empty()) {
+      if (const int count = view.sensor().effects.snapshots()) arcs = as_snapshots(arcs, count);
+      arcs = screen.past(arcs);
       Stopwatch timing(times[Effect::psf]);
       for (const auto& part : stage.add(arcs, image)) light = light + part;
     }
@@ -136,23 +164,27 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
     put(start, truth.start_x_px, truth.start_y_px);
     put(middle, truth.middle_x_px, truth.middle_y_px);
     put(end, truth.end_x_px, truth.end_y_px);
-    truths.push_back(std::move(truth));
+    truth_of.emplace(object, std::move(truth));
   }
+  std::vector<Truth> truths;  // as listed
+  for (const std::size_t object : objects)
+    if (const auto found = truth_of.find(object); found != truth_of.end())
+      truths.push_back(std::move(found->second));
   return truths;
 }
 
 }  // namespace
 
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
-                                const ObjectShapes* shapes, OpticsStage& optics, RateImage& image,
-                                EffectTimes& times) {
+                                const ObjectShapes* shapes, OpticsStage& optics, Screen& screen,
+                                RateImage& image, EffectTimes& times) {
   EffectTimes inside;
   double total_s = 0.0;
   std::vector<Truth> truths;
   const ObjectSampler sampler(view, shapes, inside);
   {
     Stopwatch timing(total_s);
-    truths = paint(view, sampler, objects, optics, image, inside);
+    truths = paint(view, sampler, objects, optics, screen, image, inside);
   }
   add_object_place_costs(view, objects, sampler.samples(), inside);
   for (std::size_t i = 0; i < effect_count; ++i) {

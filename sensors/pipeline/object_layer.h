@@ -6,6 +6,7 @@
 #include "core/detection/truth.h"
 #include "sensors/pipeline/object_shapes.h"
 #include "sensors/pipeline/optics_stage.h"
+#include "sensors/pipeline/screen.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -14,9 +15,10 @@ namespace dmise {
 // along its own path with its own brightness over the exposure.
 
 /// Adds their light to `image` and tells what was drawn. An object of which no light fell inside
-/// and whose path did not enter the frame has no entry.
+/// and whose path did not enter the frame has no entry. `screen`, as yet empty, gets what objects
+/// with a shape hide; they hide each other and points by their ranges.
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
-                                const ObjectShapes* shapes, OpticsStage& optics, RateImage& image,
-                                EffectTimes& times);
+                                const ObjectShapes* shapes, OpticsStage& optics, Screen& screen,
+                                RateImage& image, EffectTimes& times);
 
 }  // namespace dmise

@@ -17,6 +17,7 @@ ObjectSampler::ObjectSampler(const View& view, const ObjectShapes* shapes, Effec
       light_(view),
       shadow_(view.environment().sun_m, oblate_earth(view.earth())),
       with_shadow_(view.sensor().effects.has(Effect::shadow)),
+      with_earthshine_(view.sensor().effects.has(Effect::earthshine)),
       zero_mag_(object_photons_per_s_m2(0.0, view.sensor().camera.band)) {}
 
 ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at) const {
@@ -35,14 +36,15 @@ ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at
     hidden = at.hidden.object(motion.position_m, place.direction);
   }
   const ObjectShape* own_shape = shape(object);
-  if (hidden || (s.sunlit <= 0.0 && !own_shape)) return s;
+  if (hidden || (s.sunlit <= 0.0 && !own_shape && !with_earthshine_)) return s;
   s.electrons_per_photon_m2 =
       transmission(place.direction) * flicker(object, place.direction) *
       light_.electrons_per_photon_m2() *
       (s.pixel ? relative_illumination(view_.sensor().camera.optics, *s.pixel) : 1.0);
   const double photons =
       own_shape ? shape_photons(object, *own_shape, at.time, at.observer, s.sunlit)
-                : zero_mag_ * light_of_magnitude(magnitude(object, motion, at)) * s.sunlit;
+                : zero_mag_ * light_of_magnitude(magnitude(object, motion, at)) * s.sunlit +
+                      earthshine_photons(object, motion, at);
   s.electrons_per_s = photons * s.electrons_per_photon_m2;
   return s;
 }
@@ -59,7 +61,7 @@ double ObjectSampler::magnitude(std::size_t object, const Motion& motion,
                                 const ExposureInstant& at) const {
   const auto& facts = view_.world().roster().objects[object];
   if (const ObjectShape* own_shape = shape(object))
-    if (const auto pose = shape_pose(view_, object, at.time, at.observer.position_m))
+    if (const auto pose = shape_pose(view_, object, at.time, at.observer.position_m, 0))
       return shape_magnitude(*own_shape, *pose);
   const Illumination seen = illumination(motion, at.observer.position_m);
   return std::visit(
@@ -75,6 +77,29 @@ double ObjectSampler::shape_photons(std::size_t object, const ObjectShape& shape
                                     const ObserverState& observer, double sunlit) const {
   const auto pose = shape_pose(view_, object, t, observer.position_m);
   return pose ? shape_photons_per_s_m2(*shapes_, shape, *pose, sunlit) : 0.0;
+}
+
+double ObjectSampler::quick_photons(std::size_t object, const ObjectShape& shape, SimTime t,
+                                    const ObserverState& observer, double sunlit) const {
+  const auto pose = shape_pose(view_, object, t, observer.position_m, 0);
+  return pose ? shape_photons_per_s_m2(*shapes_, shape, *pose, sunlit) : 0.0;
+}
+
+double ObjectSampler::earthshine_photons(std::size_t object, const Motion& motion,
+                                         const ExposureInstant& at) const {
+  if (!with_earthshine_) return 0.0;
+  Stopwatch timing(times_[Effect::earthshine]);
+  const auto& sphere = std::get<DiffuseSphere>(view_.world().roster().objects[object].geometry);
+  Rotation<Body, Gcrs> axes;  // a sphere looks the same in any
+  const Illumination seen = illumination(motion, at.observer.position_m);
+  const Vec<Body> to_viewer = axes * unit(at.observer.position_m - motion.position_m);
+  double light = 0.0;
+  for (const auto& source : earthshine_on(motion.position_m, view_.environment().sun_m, axes))
+    light += diffuse_sphere_light(sphere, {.range_m = seen.range_m,
+                                           .phase_rad = angle_rad(source.to_source, to_viewer),
+                                           .sun_distance_au = seen.sun_distance_au,
+                                           .sunlit = source.share});
+  return zero_mag_ * light_of_magnitude(sun_v_mag) * light;
 }
 
 double ObjectSampler::transmission(const Vec<Gcrs>& apparent) const {

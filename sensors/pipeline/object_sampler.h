@@ -55,12 +55,17 @@ class ObjectSampler {
   /// Photons/s/m2 above the atmosphere of an object with a shape.
   double shape_photons(std::size_t object, const ObjectShape& shape, SimTime t,
                        const ObserverState& observer, double sunlit) const;
+  /// The same without earthshine, which changes slowly and costs much.
+  double quick_photons(std::size_t object, const ObjectShape& shape, SimTime t,
+                       const ObserverState& observer, double sunlit) const;
 
   /// How many were taken.
   std::size_t samples() const { return samples_; }
 
  private:
   double transmission(const Vec<Gcrs>& apparent) const;
+  double earthshine_photons(std::size_t object, const Motion& motion,
+                            const ExposureInstant& at) const;
   double flicker(std::size_t object, const Vec<Gcrs>& apparent) const;
 
   const View& view_;
@@ -69,7 +74,7 @@ class ObjectSampler {
   mutable std::size_t samples_ = 0;
   Light light_;
   EarthShadow shadow_;
-  bool with_shadow_;
+  bool with_shadow_, with_earthshine_;
   double zero_mag_;
 };
 

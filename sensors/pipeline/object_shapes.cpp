@@ -5,6 +5,7 @@
 
 #include "core/base/units.h"
 #include "core/photometry/diffuse_sphere.h"
+#include "core/photometry/earthshine.h"
 #include "core/photometry/magnitude.h"
 #include "sensors/render/render_module.h"
 
@@ -34,18 +35,28 @@ std::string ObjectShapes::renderer_description() const {
 }
 
 std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTime t,
-                                    const Vec<Gcrs>& observer_m) {
+                                    const Vec<Gcrs>& observer_m, int rings) {
   const auto attitude = view.world().gcrs_from_body(object, t);
   if (!attitude) return std::nullopt;
   const Vec<Gcrs> position_m = view.world().motion(object, t).position_m;
   const Vec<Gcrs> to_sun = view.environment().sun_m - position_m;
   const Vec<Gcrs> to_viewer = observer_m - position_m;
   const auto body_from_gcrs = attitude->inverse();
-  return ShapePose{.gcrs_from_body = *attitude,
-                   .to_sun = unit(body_from_gcrs * to_sun),
-                   .to_viewer = unit(body_from_gcrs * to_viewer),
-                   .range_m = norm(to_viewer),
-                   .sun_distance_au = norm(to_sun) / au_m};
+  ShapePose pose{.gcrs_from_body = *attitude,
+                 .to_sun = unit(body_from_gcrs * to_sun),
+                 .to_viewer = unit(body_from_gcrs * to_viewer),
+                 .range_m = norm(to_viewer),
+                 .sun_distance_au = norm(to_sun) / au_m,
+                 .earthshine = {}};
+  if (rings > 0 && view.sensor().effects.has(Effect::earthshine))
+    pose.earthshine = earthshine_on(position_m, view.environment().sun_m, body_from_gcrs, rings);
+  return pose;
+}
+
+std::vector<LightSource> earthshine_on(const Vec<Gcrs>& position_m, const Vec<Gcrs>& sun_m,
+                                       const Rotation<Body, Gcrs>& body_from_gcrs, int rings) {
+  return earthshine_sources({.rings = rings}, body_from_gcrs * -position_m,
+                            unit(body_from_gcrs * (sun_m - position_m)));
 }
 
 double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
@@ -55,7 +66,16 @@ double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& sha
     photons_per_s_sr += shapes.sun_photons() * sunlit /
                         (pose.sun_distance_au * pose.sun_distance_au) *
                         shape.light.reflected_m2_per_sr(pose.to_sun, pose.to_viewer);
-  return photons_per_s_sr / (pose.range_m * pose.range_m);
+  return photons_per_s_sr / (pose.range_m * pose.range_m) +
+         earthshine_photons_per_s_m2(shapes, shape, pose);
+}
+
+double earthshine_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
+                                   const ShapePose& pose) {
+  if (pose.earthshine.empty()) return 0.0;
+  return shapes.sun_photons() / (pose.sun_distance_au * pose.sun_distance_au) *
+         shape.light.reflected_m2_per_sr(pose.earthshine, pose.to_viewer) /
+         (pose.range_m * pose.range_m);
 }
 
 double shape_magnitude(const ObjectShape& shape, const ShapePose& pose) {

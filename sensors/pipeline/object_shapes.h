@@ -23,7 +23,17 @@ struct ShapePose {
   Vec<Body> to_sun, to_viewer;  // unit
   double range_m = 0.0;
   double sun_distance_au = 1.0;
+  std::vector<LightSource> earthshine;  // where the effect is on
 };
+
+/// Rings of the Earth's face whose light makes a flux, to 1 % of earthshine, and a picture, to 10
+/// %.
+inline constexpr int earthshine_flux_rings = 8, earthshine_picture_rings = 3;
+
+/// What the Earth throws on an object at `position_m`, in any axes `body_from_gcrs`.
+std::vector<LightSource> earthshine_on(const Vec<Gcrs>& position_m, const Vec<Gcrs>& sun_m,
+                                       const Rotation<Body, Gcrs>& body_from_gcrs,
+                                       int rings = earthshine_flux_rings);
 
 /// The objects of a scenario that have a shape, for one sensor. The renderer is loaded when the
 /// first of them is near enough to show it.
@@ -48,14 +58,19 @@ class ObjectShapes {
   double sun_photons_ = 0.0;
 };
 
-/// Pose at `t`; nothing for an object without an attitude there.
+/// Pose at `t`; nothing for an object without an attitude there. With earthshine of `rings` where
+/// the effect is on.
 std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTime t,
-                                    const Vec<Gcrs>& observer_m);
+                                    const Vec<Gcrs>& observer_m, int rings = earthshine_flux_rings);
 
 /// Photons/s/m2 above the atmosphere at the observer, in the band: sunlight of which `sunlit`
-/// reaches the object, and what it emits.
+/// reaches the object, earthshine, and what it emits.
 double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
                               const ShapePose& pose, double sunlit);
+
+/// The part of them that the Earth throws.
+double earthshine_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
+                                   const ShapePose& pose);
 
 /// V magnitude of the sunlight alone when fully sunlit, `darkest_mag` at most.
 double shape_magnitude(const ObjectShape& shape, const ShapePose& pose);

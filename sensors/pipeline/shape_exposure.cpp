@@ -2,30 +2,105 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+
+#include "core/optics/projection.h"
 
 namespace dmise {
 namespace {
 
-/// Gives each arc of an object with a shape the mean of its brightness, so that a glint shorter
-/// than an arc is not missed, in steps in which it turns by no more than `still_enough_rad`.
-void integrate_glints(const View& view, const ObjectSampler& sampler, std::size_t object,
-                      const std::vector<ObjectSample>& samples, std::vector<Arc>& arcs) {
+/// Light of one arc.
+struct ArcLight {
+  double signal_e = 0.0, tilt = 0.0;
+};
+
+/// The mean brightness of a shape over arc `k` of `count`, in steps in which it turns by no more
+/// than `still_enough_rad`, so that a glint shorter than an arc is not missed.
+ArcLight light_of_arc(const View& view, const ObjectSampler& sampler, std::size_t object,
+                      const ObjectSample& middle, std::size_t k, std::size_t count) {
   const auto& exposure = view.times();
-  const double arc_s = exposure.seconds() / double(arcs.size());
-  const double turn = turn_rad(view, object) / double(arcs.size());
+  const double turn = turn_rad(view, object) / double(count);
   const int halves = 2 * std::clamp(int(std::ceil(turn / still_enough_rad / 2)), 1, 256);
-  for (std::size_t k = 0; k < arcs.size(); ++k) {
-    const ObjectSample& middle = samples[2 * k + 1];
-    double half[2] = {};
-    for (int i = 0; i < halves; ++i) {
-      const SimTime t = exposure.at((double(k) + (i + 0.5) / halves) / double(arcs.size()));
-      half[2 * i / halves] +=
-          sampler.shape_photons(object, *sampler.shape(object), t, view.observer(t), middle.sunlit);
-    }
-    const double sum = half[0] + half[1];
-    arcs[k].signal_e = sum / halves * middle.electrons_per_photon_m2 * arc_s;
-    arcs[k].tilt = sum > 0.0 ? std::clamp(2 * (half[1] - half[0]) / sum, -1.0, 1.0) : 0.0;
+  const ObjectShape& shape = *sampler.shape(object);
+  const auto at = [&](double part) { return exposure.at((double(k) + part) / double(count)); };
+  double half[2] = {};
+  for (int i = 0; i < halves; ++i) {
+    const SimTime t = at((i + 0.5) / halves);
+    half[2 * i / halves] +=
+        sampler.quick_photons(object, shape, t, view.observer(t), middle.sunlit);
   }
+  double sum = half[0] + half[1];
+  ArcLight light{.tilt = sum > 0.0 ? std::clamp(2 * (half[1] - half[0]) / sum, -1.0, 1.0) : 0.0};
+  if (view.sensor().effects.has(Effect::earthshine)) {
+    const SimTime t = at(0.5);
+    const auto pose = shape_pose(view, object, t, view.observer(t).position_m);
+    if (pose) sum += halves * earthshine_photons_per_s_m2(sampler.shapes(), shape, *pose);
+  }
+  light.signal_e =
+      sum / halves * middle.electrons_per_photon_m2 * exposure.seconds() / double(count);
+  return light;
+}
+
+Vec<CameraFrame> direction_at(const View& view, std::size_t object, const ExposureInstant& at) {
+  const Motion motion = view.world().motion(object, at.time);
+  return unit(at.camera * at.places.satellite(motion.position_m, motion.slope_m_per_s).direction);
+}
+
+/// One arc for several that follow one another, of equal time.
+Arc joined(std::span<const Arc> arcs) {
+  const std::size_t half = arcs.size() / 2;
+  Arc all{arcs.front().start, arcs.size() % 2 ? arcs[half].middle : arcs[half].start,
+          arcs.back().end, 0.0, 0.0};
+  double late = 0.0;  // second half less the first
+  for (std::size_t i = 0; i < arcs.size(); ++i) {
+    all.signal_e += arcs[i].signal_e;
+    if (arcs.size() % 2 && i == half)
+      late += arcs[i].tilt / 2 * arcs[i].signal_e;
+    else
+      late += i < half ? -arcs[i].signal_e : arcs[i].signal_e;
+  }
+  if (all.signal_e > 0.0) all.tilt = std::clamp(2.0 * late / all.signal_e, -1.0, 1.0);
+  return all;
+}
+
+/// Short ways of even light are one arc.
+std::vector<Arc> simplified(std::vector<Arc> arcs) {
+  constexpr double short_px = 8.0, even = 0.5;
+  double length_px = 0.0, least_e = arcs[0].signal_e, most_e = least_e;
+  for (const Arc& arc : arcs) {
+    const PixelPosition a = arc.middle - arc.start, b = arc.end - arc.middle;
+    length_px += std::hypot(a.x_px, a.y_px) + std::hypot(b.x_px, b.y_px);
+    least_e = std::min(least_e, arc.signal_e);
+    most_e = std::max(most_e, arc.signal_e);
+  }
+  constexpr double still_px = 1e-3;
+  if (length_px < still_px)
+    for (Arc& arc : arcs) arc.start = arc.end = arc.middle;
+  if (length_px < still_px || (length_px < short_px && least_e >= even * most_e))
+    return {joined(arcs)};
+  return arcs;
+}
+
+/// The instant of the brightest pose within a part of the exposure; its middle, unless another is
+/// twice as bright.
+SimTime brightest(const View& view, const ObjectSampler& sampler, std::size_t object, double begin,
+                  double end) {
+  const SimTime middle = view.times().at((begin + end) / 2);
+  if (turn_rad(view, object) * (end - begin) < still_enough_rad) return middle;
+  constexpr int looks = 16;
+  const auto light = [&](SimTime t) {
+    return sampler.quick_photons(object, *sampler.shape(object), t, view.observer(t), 1.0);
+  };
+  SimTime best = middle;
+  double most = 2.0 * light(middle);
+  for (int i = 0; i < looks; ++i) {
+    const SimTime t = view.times().at(begin + (end - begin) * (i + 0.5) / looks);
+    if (const double l = light(t); l > most) {
+      most = l;
+      best = t;
+    }
+  }
+  return best;
 }
 
 }  // namespace
@@ -37,40 +112,73 @@ std::vector<Arc> shape_arcs(const View& view, const ObjectSampler& sampler, std:
   std::vector<Arc> arcs = arcs_of(path, view.times().seconds());
   if (2 * arcs.size() + 1 != samples.size())  // a part has no place in the image
     return arcs_of(samples, view.times().seconds());
-  integrate_glints(view, sampler, object, samples, arcs);
+  for (std::size_t k = 0; k < arcs.size(); ++k) {
+    const auto light = light_of_arc(view, sampler, object, samples[2 * k + 1], k, arcs.size());
+    arcs[k].signal_e = light.signal_e;
+    arcs[k].tilt = light.tilt;
+  }
   return arcs;
+}
+
+int poses_of(const View& view, const ObjectSampler& sampler, std::size_t object) {
+  const auto& exposure = view.times();
+  const auto line_m = [&](SimTime t) {
+    return view.world().motion(object, t).position_m - view.observer(t).position_m;
+  };
+  const Vec<Gcrs> start_m = line_m(exposure.start), end_m = line_m(exposure.end);
+  const double nearest_m = std::min({norm(start_m), norm(end_m), norm(line_m(exposure.middle))});
+  const double radius_px =
+      sampler.shape(object)->radius_m / nearest_m / view.sensor().camera.optics.pixel_angle_rad();
+  const double change = turn_rad(view, object) + angle_rad(start_m, end_m) +
+                        std::abs(norm(start_m) - norm(end_m)) / nearest_m;
+  return int(std::clamp(std::ceil(2.0 * radius_px * change), 1.0, double(most_poses)));
 }
 
 std::vector<ShapeSnapshot> snapshots_of(const View& view, const ObjectSampler& sampler,
                                         std::size_t object,
-                                        const std::vector<ObjectSample>& samples) {
-  constexpr int most = 32;
-  const auto& exposure = view.times();
-  const ObjectShape& shape = *sampler.shape(object);
-  double path_px = 0.0;
-  for (std::size_t i = 1; i < samples.size(); ++i)
-    path_px += distance_px(samples[i - 1], samples[i]);
-  const ExposureInstant middle(view, exposure.middle);
-  const double range_m =
-      norm(view.world().motion(object, exposure.middle).position_m - middle.observer.position_m);
-  const double radius_px = shape.radius_m / range_m / view.sensor().camera.optics.pixel_angle_rad();
-  const double swept_px = path_px + radius_px * turn_rad(view, object);
-  const int count = std::clamp(int(std::ceil(2 * std::min(swept_px, 1e6))), 1, most);
+                                        const std::vector<ObjectSample>& samples, int poses) {
+  const std::size_t count = (samples.size() - 1) / 2;
+  const bool placed = std::all_of(samples.begin(), samples.end(),
+                                  [](const ObjectSample& s) { return s.pixel.has_value(); });
   std::vector<ShapeSnapshot> snapshots;
-  for (int i = 0; i < count; ++i) {
-    const ExposureInstant at(view, exposure.at((i + 0.5) / count));
-    const auto pose = shape_pose(view, object, at.time, at.observer.position_m);
-    if (!pose) continue;
-    const Motion motion = view.world().motion(object, at.time);
-    const auto place = at.places.satellite(motion.position_m, motion.slope_m_per_s);
+  for (int pose = 0; pose < poses; ++pose) {
+    const std::size_t first = count * std::size_t(pose) / std::size_t(poses);
+    const std::size_t last = count * (std::size_t(pose) + 1) / std::size_t(poses);
+    const double begin = double(first) / double(count), end = double(last) / double(count);
+    const ExposureInstant at(view, brightest(view, sampler, object, begin, end));
+    auto shape_at =
+        shape_pose(view, object, at.time, at.observer.position_m, earthshine_picture_rings);
+    if (!shape_at) continue;
     const ObjectSample sample = sampler.sample(object, at);
-    snapshots.push_back({.shape = &shape,
-                         .pose = *pose,
-                         .camera_from_gcrs = at.camera,
-                         .direction = unit(at.camera * place.direction),
-                         .sunlit = sample.sunlit,
-                         .electrons_per_photon_m2 = sample.electrons_per_photon_m2,
-                         .seconds = exposure.seconds() / count});
+    ShapeSnapshot snapshot{.shape = sampler.shape(object),
+                           .pose = std::move(*shape_at),
+                           .camera_from_gcrs = at.camera,
+                           .direction = direction_at(view, object, at),
+                           .sunlit = sample.sunlit,
+                           .photons_per_s_m2 = 0.0,
+                           .sweep = {},
+                           .share = end - begin};
+    for (std::size_t k = first; k < last; ++k) {
+      const auto light = light_of_arc(view, sampler, object, samples[2 * k + 1], k, count);
+      Arc arc{{}, {}, {}, light.signal_e, light.tilt};
+      if (placed && sample.pixel)
+        for (const auto& [place, i] : {std::pair(&arc.start, 0), {&arc.middle, 1}, {&arc.end, 2}})
+          *place = *samples[2 * k + std::size_t(i)].pixel - *sample.pixel;
+      snapshot.sweep.push_back(arc);
+    }
+    const bool shines = std::any_of(snapshot.sweep.begin(), snapshot.sweep.end(),
+                                    [](const Arc& arc) { return arc.signal_e > 0.0; });
+    if (!shines && !(sample.electrons_per_photon_m2 > 0.0)) continue;  // behind the Earth
+    // Where the pose is dark but not its part of the exposure the shape is that of full sunlight.
+    snapshot.photons_per_s_m2 =
+        shape_photons_per_s_m2(sampler.shapes(), *snapshot.shape, snapshot.pose, snapshot.sunlit);
+    if (shines && !(snapshot.photons_per_s_m2 > 0.0)) {
+      snapshot.sunlit = 1.0;
+      snapshot.photons_per_s_m2 =
+          shape_photons_per_s_m2(sampler.shapes(), *snapshot.shape, snapshot.pose, 1.0);
+    }
+    snapshot.sweep = simplified(std::move(snapshot.sweep));
+    snapshots.push_back(std::move(snapshot));
   }
   return snapshots;
 }

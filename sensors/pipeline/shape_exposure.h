@@ -15,9 +15,16 @@ inline constexpr double still_enough_rad = 0.25 * deg;
 std::vector<Arc> shape_arcs(const View& view, const ObjectSampler& sampler, std::size_t object,
                             const std::vector<ObjectSample>& samples);
 
-/// Snapshots of a resolved object: two for each pixel that it, or its outermost part, moves by.
+/// Poses in which a resolved object is drawn over the exposure: so many that its outermost part
+/// jumps by half a pixel at most from one to the next, or `most_poses`.
+int poses_of(const View& view, const ObjectSampler& sampler, std::size_t object);
+inline constexpr int most_poses = 64;
+
+/// A resolved object in `poses` poses, each swept along its part of the path. `samples` as for
+/// `arcs_of`, of as many arcs as poses or more. The light is that of `shape_arcs`; each pose is
+/// that of the brightest of some instants of its time.
 std::vector<ShapeSnapshot> snapshots_of(const View& view, const ObjectSampler& sampler,
                                         std::size_t object,
-                                        const std::vector<ObjectSample>& samples);
+                                        const std::vector<ObjectSample>& samples, int poses);
 
 }  // namespace dmise

@@ -2,120 +2,157 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "core/optics/projection.h"
+#include "sensors/pipeline/shape_window.h"
 
 namespace dmise {
 namespace {
 
-constexpr int longest_side_px = 2048;
-constexpr int fine_side_px = 512;  // tiles below this are drawn finer than the camera's pixels
-constexpr int finest = 4;
-constexpr double widest_rad = 1.2;  // half angle of a tile
+constexpr int piece_px = 512;  // longest side of a tile
+constexpr std::size_t arcs_at_once = 1 << 16;
+constexpr int most_cover_steps = 1024;  // along one arc
 
-struct Local {};  // axes of the tile: z to the object
+double length_px(const Arc& arc) {
+  return std::hypot(arc.middle.x_px - arc.start.x_px, arc.middle.y_px - arc.start.y_px) +
+         std::hypot(arc.end.x_px - arc.middle.x_px, arc.end.y_px - arc.middle.y_px);
+}
 
-/// Axes about `direction` whose x is nearest to the camera's.
-Rotation<CameraFrame, Local> local_axes(const Vec<CameraFrame>& direction) {
-  const Vec<CameraFrame> aside =
-      std::abs(direction.x) < 0.9 ? Vec<CameraFrame>{1, 0, 0} : Vec<CameraFrame>{0, 0, -1};
-  const Vec<CameraFrame> y = unit(cross(direction, aside)), x = cross(y, direction);
-  return {{{{x.x, y.x, direction.x}, {x.y, y.y, direction.y}, {x.z, y.z, direction.z}}}};
+/// Farthest that a sweep leads from its middle.
+double reach_px(const std::vector<Arc>& sweep) {
+  double reach = 0.0;
+  for (const Arc& arc : sweep) {
+    const Extent e = extent(arc);
+    reach = std::max({reach, -e.left, -e.top, e.right, e.bottom});
+  }
+  return reach;
+}
+
+/// Distance from a point's place within which its light falls.
+double reach_px(const PsfPlan& plan) {
+  return plan.method == PointSpread::Method::deposit
+             ? 4.0 * plan.fwhm_px + 2.0
+             : double(plan.half_cells) / plan.oversampling + 2.0;
 }
 
 /// Light of snapshots on its way to the plane.
 class ShapePainter {
  public:
-  ShapePainter(const ObjectShapes& shapes, const Optics& optics, double exposure_s)
-      : shapes_(shapes), optics_(optics), exposure_s_(exposure_s) {}
+  ShapePainter(const ObjectShapes& shapes, const Optics& optics, OpticsStage& stage, Screen& screen,
+               RateImage& image)
+      : shapes_(shapes), optics_(optics), stage_(stage), screen_(screen), image_(image) {}
 
   void add(const ShapeSnapshot& snapshot) {
-    const auto camera_from_local = local_axes(snapshot.direction);
-    const auto local_from_body =
-        camera_from_local.inverse() * snapshot.camera_from_gcrs * snapshot.pose.gcrs_from_body;
-    Rotation<CameraFrame, Body> tile_from_body;  // the tile's axes, as those of its own camera
-    tile_from_body.m = local_from_body.m;
-    const Vec<CameraFrame> object_m{0, 0, snapshot.pose.range_m};
+    if (!(snapshot.photons_per_s_m2 > 0.0)) add_point(snapshot);
     const Mesh& mesh = snapshot.shape->light.mesh();
-    const TileCamera camera = tile_around(mesh, tile_from_body, object_m, frame_of(snapshot));
-    if (camera.columns == 0) return;
+    const ShapeWindow window =
+        window_on(optics_, mesh, snapshot, reach_px(stage_.plan()) + reach_px(snapshot.sweep));
+    const TileCamera& whole = window.camera;
+    for (int top = 0; top < whole.rows; top += piece_px)
+      for (int left = 0; left < whole.columns; left += piece_px) {
+        TileCamera piece = whole;
+        piece.left += left;
+        piece.top += top;
+        piece.columns = std::min(piece_px, whole.columns - left);
+        piece.rows = std::min(piece_px, whole.rows - top);
+        add_piece(snapshot, window, piece);
+      }
+  }
+
+  Deposited finish() {
+    hand_over();
+    screen_.close();
+    return light_;
+  }
+
+ private:
+  void add_piece(const ShapeSnapshot& snapshot, const ShapeWindow& window,
+                 const TileCamera& camera) {
     const double au2 = snapshot.pose.sun_distance_au * snapshot.pose.sun_distance_au;
+    std::vector<LightSource> sources{{snapshot.pose.to_sun, snapshot.sunlit}};
+    sources.insert(sources.end(), snapshot.pose.earthshine.begin(), snapshot.pose.earthshine.end());
     const Tile tile = shapes_.renderer().draw(
-        {.mesh = &mesh,
-         .bands = {{&snapshot.shape->light.facets(),
-                    shapes_.sun_photons() * snapshot.sunlit / au2}},
-         .camera_from_body = tile_from_body,
-         .object_m = object_m,
-         .sources = {{snapshot.pose.to_sun, 1.0}},
+        {.mesh = &snapshot.shape->light.mesh(),
+         .bands = {{&snapshot.shape->light.facets(), shapes_.sun_photons() / au2}},
+         .camera_from_body = window.tile_from_body,
+         .object_m = window.object_m,
+         .sources = std::move(sources),
          .camera = camera,
-         .oversampling = std::clamp(fine_side_px / std::max(camera.columns, camera.rows), 4, 64)});
+         .oversampling = std::clamp(piece_px / std::max(camera.columns, camera.rows), 4, 64)});
+    const auto middle = project(optics_, snapshot.direction);
+    const double at_middle = middle ? relative_illumination(optics_, *middle) : 1.0;
     for (int y = 0; y < tile.rows; ++y)
       for (int x = 0; x < tile.columns; ++x) {
         const std::size_t pixel = std::size_t(y) * std::size_t(tile.columns) + std::size_t(x);
         if (!(tile.coverage[pixel] > 0.0f)) continue;
-        const double u = (x + camera.left) / camera.focal_px;
-        const double v = (y + camera.top) / camera.focal_px;
-        if (const auto place = project(optics_, camera_from_local * Vec<Local>{u, v, 1.0}))
-          add_pixel(snapshot, *place, tile.radiance[pixel], tile.coverage[pixel],
-                    1.0 / (camera.focal_px * camera.focal_px) / std::pow(1.0 + u * u + v * v, 1.5));
+        const double u = (x + camera.left - camera.principal_x_px) / camera.focal_px;
+        const double v = (y + camera.top - camera.principal_y_px) / camera.focal_px;
+        const auto place = project(optics_, window.camera_from_tile * Vec<TileAxes>{u, v, 1.0});
+        if (!place) continue;
+        const double solid_angle_sr =
+            1.0 / (camera.focal_px * camera.focal_px) / std::pow(1.0 + u * u + v * v, 1.5);
+        cover(snapshot, *place, window.pixel_side_px,
+              tile.coverage[pixel] * solid_angle_sr / pixel_solid_angle_sr(optics_, *place));
+        if (snapshot.photons_per_s_m2 > 0.0)
+          add_light(snapshot, *place,
+                    tile.radiance[pixel] * solid_angle_sr / snapshot.photons_per_s_m2 *
+                        relative_illumination(optics_, *place) / at_middle);
       }
   }
 
-  Deposited finish(OpticsStage& stage, RateImage& image) {
-    for (const auto& [pixel, share] : hidden_)
-      image.pixels[pixel] *= std::max(0.0f, 1.0f - float(share));
-    Deposited light;
-    for (const auto& part : stage.add(arcs_, image)) light = light + part;
-    return light;
+  /// Light of another moment than the pose's, which is dark.
+  void add_point(const ShapeSnapshot& snapshot) {
+    if (const auto middle = project(optics_, snapshot.direction)) add_light(snapshot, *middle, 1.0);
   }
 
- private:
-  /// Pixels of the tile's camera around the object, fine enough and not too many.
-  TileCamera frame_of(const ShapeSnapshot& snapshot) const {
-    const double ratio = snapshot.shape->radius_m / snapshot.pose.range_m;
-    const double half_rad = ratio < 0.9 ? std::min(widest_rad, std::asin(ratio)) : widest_rad;
-    const double side_px = 2.0 * std::tan(half_rad) * optics_.focal_length_px();
-    const double scale = std::clamp(std::floor(fine_side_px / side_px), 1.0, double(finest)) *
-                         std::min(1.0, longest_side_px / (side_px + 2.0));
-    const double focal_px = optics_.focal_length_px() * scale;
-    const int half = std::min(longest_side_px / 2, int(std::tan(half_rad) * focal_px) + 1);
-    return {.focal_px = focal_px,
-            .left = -half,
-            .top = -half,
-            .columns = 2 * half + 1,
-            .rows = 2 * half + 1};
+  /// `share`: of the object's light.
+  void add_light(const ShapeSnapshot& snapshot, const PixelPosition& at, double share) {
+    for (const Arc& way : snapshot.sweep) {
+      const double signal_e = share * way.signal_e;
+      if (!(signal_e > 0.0)) continue;
+      const Arc arc{at + way.start, at + way.middle, at + way.end, signal_e, way.tilt};
+      if (screen_.empty()) {
+        arcs_.push_back(arc);
+      } else {
+        const auto free = screen_.past({&arc, 1});
+        arcs_.insert(arcs_.end(), free.begin(), free.end());
+      }
+    }
+    if (arcs_.size() >= arcs_at_once) hand_over();
   }
 
-  void add_pixel(const ShapeSnapshot& snapshot, const PixelPosition& place, float radiance,
-                 float coverage, double solid_angle_sr) {
-    const double signal_e =
-        double(radiance) * solid_angle_sr * snapshot.electrons_per_photon_m2 * snapshot.seconds;
-    if (signal_e > 0.0) arcs_.push_back({place, place, place, signal_e, 0.0});
-    const int x = int(std::lround(place.x_px)), y = int(std::lround(place.y_px));
-    if (x < 0 || y < 0 || x >= optics_.columns || y >= optics_.rows) return;
-    const double pixel_sr = pixel_solid_angle_sr(optics_, place);
-    if (pixel_sr > 0.0)
-      hidden_[std::size_t(y) * std::size_t(optics_.columns) + std::size_t(x)] +=
-          double(coverage) * solid_angle_sr / pixel_sr * snapshot.seconds / exposure_s_;
+  void cover(const ShapeSnapshot& snapshot, const PixelPosition& at, double side_px,
+             double hidden_px) {
+    const double share = snapshot.share / double(snapshot.sweep.size());
+    for (const Arc& way : snapshot.sweep) {
+      const int steps =
+          int(std::clamp(std::ceil(2.0 * length_px(way)), 1.0, double(most_cover_steps)));
+      for (int i = 0; i < steps; ++i)
+        screen_.cover(at + place(way, (i + 0.5) / steps), side_px, hidden_px * share / steps);
+    }
+  }
+
+  void hand_over() {
+    for (const auto& part : stage_.add(arcs_, image_)) light_ = light_ + part;
+    arcs_.clear();
   }
 
   const ObjectShapes& shapes_;
   const Optics& optics_;
-  double exposure_s_;
+  OpticsStage& stage_;
+  Screen& screen_;
+  RateImage& image_;
   std::vector<Arc> arcs_;
-  std::map<std::size_t, double> hidden_;  // share of a pixel's light over the exposure
+  Deposited light_;
 };
 
 }  // namespace
 
 Deposited draw_shape(const ObjectShapes& shapes, const std::vector<ShapeSnapshot>& snapshots,
-                     const Optics& optics, OpticsStage& stage, RateImage& image) {
-  double exposure_s = 0.0;
-  for (const auto& snapshot : snapshots) exposure_s += snapshot.seconds;
-  ShapePainter painter(shapes, optics, exposure_s);
+                     const Optics& optics, OpticsStage& stage, Screen& screen, RateImage& image) {
+  ShapePainter painter(shapes, optics, stage, screen, image);
   for (const auto& snapshot : snapshots) painter.add(snapshot);
-  return painter.finish(stage, image);
+  return painter.finish();
 }
 
 }  // namespace dmise

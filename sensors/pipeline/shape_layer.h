@@ -4,26 +4,30 @@
 #include "core/base/image.h"
 #include "sensors/pipeline/object_shapes.h"
 #include "sensors/pipeline/optics_stage.h"
+#include "sensors/pipeline/screen.h"
 
 namespace dmise {
 
-/// One snapshot of a resolved object.
+/// A resolved object over a part of the exposure in which it keeps its pose while it moves.
 struct ShapeSnapshot {
   const ObjectShape* shape = nullptr;
   ShapePose pose;
   Rotation<CameraFrame, Gcrs> camera_from_gcrs;
-  Vec<CameraFrame> direction;  // apparent, unit
-  double sunlit = 1.0;
-  double electrons_per_photon_m2 = 0.0;  // of the whole way to the detector; 0 when hidden
-  double seconds = 0.0;                  // that it stands for
+  Vec<CameraFrame> direction;     // apparent, unit, of its middle in that pose
+  double sunlit = 1.0;            // of the pose
+  double photons_per_s_m2 = 0.0;  // of the whole object in that pose
+  /// Way of its middle from where `direction` is [px], in arcs of equal time, with the light of the
+  /// whole object at the detector.
+  std::vector<Arc> sweep;
+  double share = 1.0;  // of the exposure
 };
 
-/// Draws an object with its shape: for each snapshot of the exposure a tile about its direction,
-/// finer than the camera's pixels where it is small, each of whose pixels is put on the plane
-/// through the camera's own projection, as a point of its light. What was on the plane before is
-/// behind the object and dimmed by its coverage (blur aside). Throws `Error` for a camera inside
-/// the bounding box.
+/// Draws an object with its shape: for each snapshot tiles of what the frame sees of it, finer than
+/// the camera's pixels where it is small, each of whose pixels is put on the plane through the
+/// camera's own projection and swept along. The light is that of the sweep, whatever the pose has;
+/// what nearer objects on the screen hide is left out, and the object is added to the screen.
+/// Memory is bounded by the frame. Throws `Error` for a camera inside the bounding box.
 Deposited draw_shape(const ObjectShapes& shapes, const std::vector<ShapeSnapshot>& snapshots,
-                     const Optics& optics, OpticsStage& stage, RateImage& image);
+                     const Optics& optics, OpticsStage& stage, Screen& screen, RateImage& image);
 
 }  // namespace dmise

@@ -80,11 +80,31 @@ void share_out(const SkyModel& sky, const std::vector<Vec<Enu>>& sample, std::si
   times[Effect::sky] = std::max(0.0, times[Effect::sky]);
 }
 
+SkyModel sky_of(const View& view, const SkyParts& parts) {
+  return SkyModel(parts, scene_of(view), view.sensor().camera.band, extinction_over(view));
+}
+
+SkyGridReport fill_with(const View& view, const SkyModel& sky, RateImage& image, Threads& threads) {
+  const auto& optics = view.sensor().camera.optics;
+  const auto gcrs_from_camera = view.camera_from_gcrs(view.times().middle).inverse();
+  const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) * gcrs_from_camera;
+  const Hidden hidden(view, view.times().middle);
+  const double electrons_per_photon_m2 =
+      Light(view).electrons_per_photon_m2() * view.times().seconds();
+  const PixelFunction electrons = [&](double x, double y) {
+    const auto direction = unproject(optics, {x, y});
+    if (!direction || hidden.direction(gcrs_from_camera * *direction)) return 0.0;
+    return sky.photons_per_s_m2_sr(enu_from_camera * *direction) * electrons_per_photon_m2 *
+           pixel_solid_angle_sr(optics, {x, y}) * relative_illumination(optics, {x, y});
+  };
+  return fill_from_grid(optics.columns, optics.rows, electrons, sky_tolerance, image.pixels.data(),
+                        threads);
+}
+
 }  // namespace
 
 SkyModel sky_over(const View& view, double drawn_to_v_mag) {
-  return SkyModel(parts_switched_on(view.sensor(), drawn_to_v_mag), scene_of(view),
-                  view.sensor().camera.band, extinction_over(view));
+  return sky_of(view, parts_switched_on(view.sensor(), drawn_to_v_mag));
 }
 
 void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads,
@@ -102,17 +122,7 @@ void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads
   {
     Stopwatch timing(whole_s);
     sky.emplace(sky_over(view, drawn_to_v_mag));
-    const Hidden hidden(view, view.times().middle);
-    const double electrons_per_photon_m2 =
-        Light(view).electrons_per_photon_m2() * view.times().seconds();
-    const PixelFunction electrons = [&](double x, double y) {
-      const auto direction = unproject(optics, {x, y});
-      if (!direction || hidden.direction(gcrs_from_camera * *direction)) return 0.0;
-      return sky->photons_per_s_m2_sr(enu_from_camera * *direction) * electrons_per_photon_m2 *
-             pixel_solid_angle_sr(optics, {x, y}) * relative_illumination(optics, {x, y});
-    };
-    report = fill_from_grid(optics.columns, optics.rows, electrons, sky_tolerance,
-                            image.pixels.data(), threads);
+    report = fill_with(view, *sky, image, threads);
   }
   times[Effect::sky] += whole_s;
   std::vector<Vec<Enu>> sample;
@@ -122,6 +132,16 @@ void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads
                                                   (i / side + 0.5) / side * (optics.rows - 1.0)}))
       sample.push_back(enu_from_camera * *direction);
   if (!sample.empty()) share_out(*sky, sample, report.evaluations, whole_s, times);
+}
+
+void fill_sky_behind(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads) {
+  SkyParts parts = parts_switched_on(view.sensor(), drawn_to_v_mag);
+  if (view.on_ground())
+    parts = {.zodiacal_light = parts.zodiacal_light, .faint_starlight = parts.faint_starlight};
+  if (view.sensor().effects.has(Effect::sky))
+    fill_with(view, sky_of(view, parts), image, threads);
+  else
+    std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
 }
 
 }  // namespace dmise

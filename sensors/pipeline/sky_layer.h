@@ -17,6 +17,10 @@ SkyModel sky_over(const View& view, double drawn_to_v_mag);
 void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads,
               EffectTimes& times);
 
+/// Fills `image` with what of the same sky comes from beyond every object: on the ground zodiacal
+/// light and faint starlight, as the air and lamps shine before objects; in orbit all of it.
+void fill_sky_behind(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads);
+
 inline constexpr double sky_tolerance = 0.005;  // relative
 
 }  // namespace dmise

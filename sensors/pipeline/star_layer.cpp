@@ -74,9 +74,9 @@ StarLayer::StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> 
       light_(sensor.camera.band),
       faintest_filled_v_mag_(dmise::faintest_filled_v_mag(map_->stars)) {}
 
-std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, RateImage& image,
-                              double faintest_v_mag, std::vector<StarTruth>* truth,
-                              EffectTimes& times) const {
+std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Screen& screen,
+                              RateImage& image, double faintest_v_mag,
+                              std::vector<StarTruth>* truth, EffectTimes& times) const {
   const auto& exposure = view.times();
   const auto& stars = map_->stars;
   const StarColumns columns{.epoch_jyear = stars.epoch_jyear,
@@ -134,14 +134,27 @@ std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, RateImage& 
   std::vector<Deposited> deposited;
   {
     Stopwatch timing(times[Effect::psf]);
-    if (const int count = view.sensor().effects.snapshots())
+    if (const int count = view.sensor().effects.snapshots()) {
       for (const Arc& arc : arcs) {
         deposited.emplace_back();
-        for (const auto& part : optics.add(as_snapshots({&arc, 1}, count), image))
+        for (const auto& part : optics.add(screen.past(as_snapshots({&arc, 1}, count)), image))
           deposited.back() = deposited.back() + part;
       }
-    else
+    } else if (screen.empty()) {
       deposited = optics.add(arcs, image);
+    } else {
+      std::vector<Arc> free;
+      std::vector<std::size_t> star;
+      for (std::size_t i = 0; i < arcs.size(); ++i)
+        for (const Arc& part : screen.past({&arcs[i], 1})) {
+          free.push_back(part);
+          star.push_back(i);
+        }
+      deposited.resize(arcs.size());
+      const auto parts = optics.add(free, image);
+      for (std::size_t k = 0; k < parts.size(); ++k)
+        deposited[star[k]] = deposited[star[k]] + parts[k];
+    }
   }
   std::uint32_t inside = 0;
   for (std::size_t i = 0; i < arcs.size(); ++i) {

@@ -7,6 +7,7 @@
 #include "core/photometry/star_light.h"
 #include "core/sky/star_cache.h"
 #include "sensors/pipeline/optics_stage.h"
+#include "sensors/pipeline/screen.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -27,10 +28,12 @@ class StarLayer {
   /// V to which the catalogue goes.
   double faintest_filled_v_mag() const { return faintest_filled_v_mag_; }
 
-  /// Adds the stars' light to `image`; returns how many left some in the frame. `truth`, if not
-  /// null, gets each of them. The time spent goes to the effects it was spent for.
-  std::uint32_t draw(const View& view, OpticsStage& optics, RateImage& image, double faintest_v_mag,
-                     std::vector<StarTruth>* truth, EffectTimes& times) const;
+  /// Adds the stars' light that gets past `screen` to `image`; returns how many left some in the
+  /// frame. `truth`, if not null, gets each of them. The time spent goes to the effects it was
+  /// spent for.
+  std::uint32_t draw(const View& view, OpticsStage& optics, const Screen& screen, RateImage& image,
+                     double faintest_v_mag, std::vector<StarTruth>* truth,
+                     EffectTimes& times) const;
 
  private:
   std::vector<std::uint32_t> candidates(const View& view, double faintest_v_mag) const;

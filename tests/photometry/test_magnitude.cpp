@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/photometry/spectrum.h"
@@ -52,6 +54,22 @@ TEST(Magnitude, SolarConstantIsKeptByTheShortTable) {
   for (std::size_t i = 1; i < sun.value.size(); ++i)
     sum += (sun.wavelength_m[i] - sun.wavelength_m[i - 1]) * (sun.value[i] + sun.value[i - 1]) / 2;
   EXPECT_NEAR(sum, 1366.1 * 0.995, 1366.1 * 0.004);
+}
+
+TEST(Magnitude, SunlightGoesOnBeyondTheSolarTable) {
+  const Curve& sun = sunlight_spectrum().irradiance;
+  const auto of_sun = [](double wavelength_m) {  // a black body of 5050 K as large as the Sun
+    const double x =
+        planck_j_s * speed_of_light_m_per_s / (wavelength_m * boltzmann_j_per_k * 5050.0);
+    const double radius_au = 6.957e8 / au_m;
+    return 2 * pi * radius_au * radius_au * planck_j_s * speed_of_light_m_per_s *
+           speed_of_light_m_per_s / std::pow(wavelength_m, 5) / std::expm1(x);
+  };
+  for (const double wavelength_m : {10 * um, 20 * um})
+    EXPECT_NEAR(sun.at_or_zero(wavelength_m) / of_sun(wavelength_m), 1.0, 0.13);
+  EXPECT_EQ(sun.at_or_zero(2 * um), solar_spectrum().irradiance.at_or_zero(2 * um));
+  EXPECT_GT(sunlight_photons_per_s_m2(0.0, {.name = "N", .centre_m = 10 * um, .width_m = 4 * um}),
+            0.0);
 }
 
 TEST(Magnitude, SunlightOfAMagnitudeHasItInV) {
