@@ -38,6 +38,7 @@ Coordinator::Member& Coordinator::add(const Request& request, Instant now) {
   member.resumes_at = settled_ + 1;
   member.done = settled_;
   member.pulse = Pulse::begin(now);
+  heard(member, now);
   return member;
 }
 
