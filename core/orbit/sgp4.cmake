@@ -14,7 +14,7 @@ dmise_library(core_orbit_sgp4
     cone_test_avx512.cpp
   DEPENDS core_base)
 # GCC 12 takes the unset inputs of its own intrinsics for mistakes of ours.
-set(quiet "-Wno-maybe-uninitialized;-Wno-uninitialized")
+set(quiet "$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>;-Wno-uninitialized")
 set_source_files_properties(sgp4_kernel_sse2.cpp cone_test_sse2.cpp PROPERTIES COMPILE_OPTIONS "${quiet}")
 set_source_files_properties(sgp4_kernel_avx2.cpp cone_test_avx2.cpp PROPERTIES
   COMPILE_OPTIONS "${quiet};-mavx2;-mfma")

@@ -50,7 +50,7 @@ for target in "${targets[@]}"; do
   new=$(($(find "$found" -type f | wc -l) - before))
   ((code == 0 || new > 0)) || new=1
   findings=$((findings + new))
-  printf '%-9s %9s runs, %d findings\n' "$target" "${runs:-?}" "$new"
+  printf '%-17s %9s runs, %d findings\n' "$target" "${runs:-?}" "$new"
   ((code == 0)) || { grep -m 1 -E 'runtime error|ERROR: |deadly signal' "$log" || true; echo "  log: $log"; }
 done
 ((findings == 0))
