@@ -159,18 +159,26 @@ class Launch {
     Restarts restarts(processes_, scenario_.network);
     std::optional<Clock_::time_point> first_death;
     auto asked = Clock_::now() - std::chrono::hours(1);
-    bool running = true;
-    while ((running = processes_.poll()) && !stop.is_set()) {
+    auto answered = Clock_::now(), awake = answered;
+    while (processes_.poll() && !stop.is_set()) {
+      // Who was itself stopped has not heard the master because it could not.
+      if (Seconds(Clock_::now() - awake).count() > scenario_.network.silent_after_s / 2)
+        answered = Clock_::now();
+      awake = Clock_::now();
       if (!first_death && processes_.first_failure()) first_death = Clock_::now();
       // The master decides what a dead node means; it has `silent_after_s`, and a little more.
       if (first_death && scenario_.network.on_silent_node == OnSilentNode::fail &&
-          Seconds(Clock_::now() - *first_death).count() > scenario_.network.silent_after_s + 2.0)
+          Seconds(Clock_::now() - *first_death).count() > scenario_.network.silent_after_s + 2.0) {
+        first_cause_ = end_of(*processes_.first_failure());
         break;
+      }
       if (Clock_::now() - asked > std::chrono::milliseconds(200)) {
         asked = Clock_::now();
-        ask(master, status);
+        if (ask(master, status)) answered = Clock_::now();
         progress.show(progress_state(status));
       }
+      // It is stopped or gone, or what is left of its nodes does not end.
+      if (Seconds(Clock_::now() - answered).count() > scenario_.network.silent_after_s + 2.0) break;
       for (const auto& line : restarts.look(status, Clock_::now())) {
         progress.clear_line();
         std::fprintf(stderr, "note: %s\n", line.c_str());
@@ -178,24 +186,27 @@ class Launch {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     progress.clear_line();
+    const Child* clock = processes_.find("time-master");
+    const bool clock_ended = clock->exit_code.has_value();
     processes_.stop(std::chrono::milliseconds(stop.is_set() ? 1300 : 500));
     for (const auto& node : status.nodes)
       outcome.nodes.push_back(
           {node.name, node.times.compute_s, node.times.messaging_s, node.times.waiting_s});
-    const Child* clock = processes_.find("time-master");
     if (stop.is_set()) {
       outcome.status = "interrupted";
     } else if (clock->exit_code != 0) {
       outcome.status = "failed";
-      outcome.reason = reason(status);
+      outcome.reason = reason(status, clock_ended) + " (logs in " + directory_.path() + "/logs)";
     }
   }
 
-  void ask(const std::string& master, RunStatus& status) {
+  /// False when it does not answer: it is starting, busy or gone.
+  bool ask(const std::string& master, RunStatus& status) {
     try {
       status = ask_master(master, 0.5, Security(options_.keys, operator_name));
+      return true;
     } catch (const Error&) {
-      // It is starting, busy or gone; its exit code will tell.
+      return false;
     }
   }
 
@@ -218,11 +229,17 @@ class Launch {
     return state;
   }
 
-  /// The first cause of a failure: what the node that failed first says, else what the master says.
-  std::string reason(const RunStatus& status) const {
-    const std::string cause =
-        status.cause.empty() ? last_line(log_of("time-master")) : status.cause;
-    return cause + " (logs in " + directory_.path() + "/logs)";
+  /// The first cause of a failure: what the master says, or what has become of it, or of who died
+  /// before it could tell.
+  std::string reason(const RunStatus& status, bool clock_ended) const {
+    if (!status.cause.empty()) return status.cause;
+    if (clock_ended) {
+      const Child& clock = *processes_.find("time-master");
+      return *clock.exit_code > killed_by ? end_of(clock) : last_line(clock.log_path);
+    }
+    if (!first_cause_.empty()) return first_cause_;
+    return "time-master has not answered for " + number(scenario_.network.silent_after_s + 2.0) +
+           " s";
   }
 
   const LaunchOptions& options_;
@@ -231,6 +248,7 @@ class Launch {
   Tick first_tick_;
   MetricsPorts metrics_;
   Supervisor processes_;
+  std::string first_cause_;  // of a run whose master can't say it
   int frames_total_ = 0;
 };
 

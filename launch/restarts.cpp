@@ -27,9 +27,8 @@ std::vector<std::string> Restarts::look(const RunStatus& status, Instant now) {
 /// Empty when the child need not be started again.
 std::string Restarts::reason(const Child& child, const RunStatus& status, Instant now) const {
   if (child.name == "time-master") return "";  // nobody survives it
-  constexpr int killed = 128;                  // codes above stand for signals
-  if (child.exit_code && *child.exit_code > killed)
-    return std::string("was killed (") + strsignal(*child.exit_code - killed) + ")";
+  if (child.exit_code && *child.exit_code > killed_by)
+    return std::string("was killed (") + strsignal(*child.exit_code - killed_by) + ")";
   // A process that has just been started takes its time to join.
   const auto last = last_.find(child.name);
   if (last != last_.end() &&

@@ -114,7 +114,7 @@ bool Supervisor::poll() {
       running = true;
       continue;
     }
-    child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    child.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : killed_by + WTERMSIG(status);
     if (*child.exit_code != 0 && !first_failure_) first_failure_ = i;
   }
   return running;
@@ -136,6 +136,12 @@ void Supervisor::stop(Milliseconds patience) {
 
 const Child* Supervisor::first_failure() const {
   return first_failure_ ? &children_[*first_failure_] : nullptr;
+}
+
+std::string end_of(const Child& child) {
+  const int code = child.exit_code.value_or(0);
+  if (code > killed_by) return child.name + " was killed (" + strsignal(code - killed_by) + ")";
+  return child.name + ": " + last_line(child.log_path);
 }
 
 std::string last_line(const std::string& path) {

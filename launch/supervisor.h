@@ -54,6 +54,11 @@ class Supervisor {
   std::optional<std::size_t> first_failure_;
 };
 
+constexpr int killed_by = 128;  // codes above stand for signals
+
+/// How a child has ended: "beta was killed (Killed)", or "beta: " and its last words.
+std::string end_of(const Child& child);
+
 /// The message of the last line of a log that is not empty.
 std::string last_line(const std::string& path);
 

@@ -78,7 +78,10 @@ bool Coordinator::notes(Member& member, TickTally tally) {
 void Coordinator::grant(Instant now) {
   if (phase_ != Phase::running) return;
   const Tick slowest = slowest_done();
-  if (slowest == no_tick) return fail_run("no node is left");
+  if (slowest == no_tick)
+    return fail_run("no node is left" + (first_dropped_.empty()
+                                             ? ""
+                                             : "; the first that was lost was " + first_dropped_));
   settle(slowest, now);
   if (slowest >= end_) {
     phase_ = Phase::ended;

@@ -163,7 +163,7 @@ class Coordinator {
   std::map<std::string, std::uint64_t> incarnations_;  // of each name, so far
   std::map<std::string, Tick> history_;
   Phase phase_ = Phase::gathering;
-  std::string cause_;
+  std::string cause_, first_dropped_;
   Tick granted_;
   Tick settled_;
   Tick end_;  // last tick, or an earlier one

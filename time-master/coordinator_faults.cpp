@@ -145,6 +145,7 @@ void Coordinator::lost(Member& member, const std::string& how, Instant now) {
 void Coordinator::drop(Member& member, Instant now) {
   // It may have died with messages of ticks that it called done: they count for nobody who is
   // behind.
+  if (first_dropped_.empty()) first_dropped_ = member.node.name;
   member.left = true;
   member.dropped = true;
   member.closed_from = std::min(member.done, slowest_done()) + 1;

@@ -19,6 +19,13 @@ class Participant {
   virtual std::vector<std::string> produces() const = 0;  // topics, whole names
   virtual std::vector<std::string> consumes() const = 0;  // topics, whole names
 
+  /// Whether it can't work without this topic: then it is lost with who publishes it. Otherwise, when
+  /// a run goes on without that node, nothing comes on the topic any more.
+  virtual bool needs(const std::string& topic) const {
+    static_cast<void>(topic);
+    return true;
+  }
+
   /// The ticks at which it works; `step` is called for no other.
   virtual Schedule schedule() const { return {}; }
 

@@ -7,15 +7,26 @@ namespace {
 
 constexpr std::chrono::seconds patience{5};
 
+void say_lost(const std::string& name, Tick done, const std::string& what_follows) {
+  log_event(spdlog::level::warn, "node_lost", {{"name", name}, {"done_tick", done}},
+            fmt::format("{} is lost: {} (last tick done: {})", name, what_follows, done));
+}
+
 }  // namespace
 
 void ClockWatch::look(const Coordinator& coordinator, Instant now) {
   if (coordinator.over()) return;
-  for (const auto& [name, member] : coordinator.members()) {
-    if (!member.silent) silent_.erase(name);
-    if (member.silent && silent_.insert(name).second)
-      log_event(spdlog::level::warn, "node_lost", {{"name", name}, {"done_tick", member.done}},
-                fmt::format("{} is lost: waiting for it (last tick done: {})", name, member.done));
+  const auto& members = coordinator.members();
+  for (const std::string& name : joined_)
+    if (!members.contains(name)) say_lost(name, -1, "waiting for another of its name");
+  joined_.clear();
+  for (const auto& [name, member] : members) {
+    if (member.observer) continue;
+    joined_.insert(name);
+    if (!member.silent && !member.dropped) lost_.erase(name);
+    if (member.silent && lost_.insert(name).second) say_lost(name, member.done, "waiting for it");
+    if (member.dropped && lost_.insert(name).second)
+      say_lost(name, member.done, "the run goes on without it");
   }
   const auto state = std::pair(coordinator.granted(), coordinator.holding());
   if (state != seen_) {

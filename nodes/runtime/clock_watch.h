@@ -16,7 +16,7 @@ class ClockWatch {
  private:
   std::pair<Tick, std::vector<std::string>> seen_;  // granted, and who holds the clock
   Instant quiet_since_{0};
-  std::set<std::string> silent_;  // as last said
+  std::set<std::string> joined_, lost_;  // as last seen, as last said
 };
 
 }  // namespace dmise

@@ -78,8 +78,7 @@ class Master {
       hear();
       // What came over a connection before it broke is no sign of life after it.
       suspect(connections_.forget(broken_));
-      // Whoever was itself stopped has heard nobody because it could not.
-      if (now() - awake > options_.run.silent_after / 2) coordinator_.excuse(awake, now());
+      wake(awake);
       awake = now();
       if (options_.stop && options_.stop->is_set()) coordinator_.stop("interrupted");
       for (const auto due : {coordinator_.next_due(), coordinator_.next_check()})
@@ -117,6 +116,16 @@ class Master {
     if (options_.stop && !coordinator_.over())
       items_.push_back({nullptr, options_.stop->fd(), ZMQ_POLLIN, 0});
     wait_for(items_, at_most);
+  }
+
+  /// Whoever was itself stopped has heard nobody because it could not; the others may have given it
+  /// up if that was for long.
+  void wake(nanoseconds since) {
+    const nanoseconds slept = now() - since;
+    if (slept > options_.run.silent_after - 2 * coordinator_.options().heartbeat)
+      coordinator_.stop(fmt::format("time-master was stopped for {:.1f} s", as_seconds(slept)));
+    else if (slept > options_.run.silent_after / 2)
+      coordinator_.excuse(since, now());
   }
 
   void suspect(const std::vector<std::string>& names) {

@@ -168,6 +168,7 @@ class Node {
     for (Tick tick = schedule_.next_after(from_tick_ - 1); tick <= run_.last_tick;
          tick = schedule_.next_after(tick)) {
       if (!await(tick)) return;
+      need_inputs_of(tick);
       const std::vector<Message> inputs = inputs_.take(tick);
       std::vector<Message> outputs = std::move(carried);
       carried.clear();
@@ -194,6 +195,15 @@ class Node {
       link_.wait({}, idle);
       follow_topology();
     }
+  }
+
+  /// Throws when the run goes on without somebody without whom the participant can't.
+  void need_inputs_of(Tick tick) const {
+    for (const auto& topic : link_.closed())
+      if (tick >= Tick(topic.from_tick()) && inputs_.consumes(topic.topic()) &&
+          participant_.needs(topic.topic()))
+        throw Error("nothing comes on " + topic.topic() + " from tick " +
+                    std::to_string(topic.from_tick()) + " on");
   }
 
   /// After a restart, or where an earlier run stopped: gives the participant what it needs to go

@@ -49,6 +49,9 @@ class NodeInputs {
   std::uint64_t missed() const { return inbox_.missed(); }
   void close();
 
+  /// Whether the topic is one of its own list.
+  bool consumes(const std::string& topic) const;
+
  private:
   struct Source {  // a publisher of consumed topics
     std::uint64_t incarnation = 0;
@@ -57,7 +60,6 @@ class NodeInputs {
     std::optional<zmq::socket_t> direct;  // SUB to its own socket
     std::optional<zmq::socket_t> asker;   // DEALER to its resend endpoint
   };
-  bool consumes(const std::string& topic) const;
   void follow(const v1::Publisher& publisher);
   void receive_from(zmq::socket_t& socket, const std::string* publisher);
   void ask(const std::string& topic, std::uint64_t from_sequence, std::optional<Tick> from_tick);

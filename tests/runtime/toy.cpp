@@ -85,6 +85,7 @@ std::vector<std::string> ToyRecorder::consumes() const {
 }
 
 std::vector<Message> ToyRecorder::step(Tick tick, std::span<const Message> inputs) {
+  if (!keep_all_) record_.clear();
   record_ += "tick " + std::to_string(tick) + "\n";
   for (const Message& message : inputs) {
     const Encoded body = encode(*message.state);

@@ -47,19 +47,23 @@ class ToyCamera : public Participant {
   std::uint32_t frame_ = 0;
 };
 
-/// Keeps everything that the cameras say, in the order in which it is handed over.
+/// Keeps everything that the cameras say, in the order in which it is handed over; or only the last
+/// tick's, in runs without end.
 class ToyRecorder : public Participant {
  public:
-  explicit ToyRecorder(std::vector<std::string> cameras) : cameras_(std::move(cameras)) {}
+  explicit ToyRecorder(std::vector<std::string> cameras, bool keep_all = true)
+      : cameras_(std::move(cameras)), keep_all_(keep_all) {}
   std::string name() const override { return "recorder"; }
   std::vector<std::string> produces() const override { return {}; }
   std::vector<std::string> consumes() const override;
+  bool needs(const std::string&) const override { return false; }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
 
   const std::string& record() const { return record_; }
 
  private:
   std::vector<std::string> cameras_;
+  bool keep_all_;
   std::string record_;
 };
 

@@ -18,6 +18,7 @@ class Telling : public dmise::Participant {
   std::string name() const override { return participant_.name(); }
   std::vector<std::string> produces() const override { return participant_.produces(); }
   std::vector<std::string> consumes() const override { return participant_.consumes(); }
+  bool needs(const std::string& topic) const override { return participant_.needs(topic); }
   std::vector<dmise::Message> step(dmise::Tick tick,
                                    std::span<const dmise::Message> inputs) override {
     std::printf("step %ld\n", long(tick));
@@ -49,7 +50,7 @@ int main(int argc, char** argv) {
   return dmise::run_program(app, flags, argc, argv, [&] {
     dmise::test::ToyOrbit orbit;
     dmise::test::ToyCamera camera(flags.name);
-    dmise::test::ToyRecorder recorder({"a", "b"});
+    dmise::test::ToyRecorder recorder({"a", "b"}, false);
     dmise::Participant& participant = role == "orbit"    ? static_cast<dmise::Participant&>(orbit)
                                       : role == "camera" ? static_cast<dmise::Participant&>(camera)
                                                          : recorder;
