@@ -117,6 +117,7 @@ void serve(const BrokerOptions& options, BrokerResult* result) {
   };
   while (!finished()) {
     link.wait(sockets, link.deserted() ? drained : milliseconds(1000));
+    link.take_published();  // manifests, which are nothing to a broker
     const int forward = security.on() ? pass_checked(publishers, subscribers, &result->refused)
                                       : pass(publishers, subscribers);
     const int back = pass(subscribers, publishers);  // subscriptions
