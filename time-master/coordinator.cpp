@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 
 #include "core/base/error.h"
 
@@ -46,7 +45,8 @@ void Coordinator::done(const std::string& name, TickTally tally, Instant now) {
     member->done = tally.tick;
     return;
   }
-  if (!member->keeps_time || tally.tick != next || tally.tick > granted_)
+  const bool in_turn = tally.tick == next || member->agent;
+  if (!member->keeps_time || !in_turn || tally.tick > granted_)
     return fail_run(name + ": tick " + std::to_string(tally.tick) + " is done, but " +
                     std::to_string(next) + " was next and " + std::to_string(granted_) +
                     " the last granted");
@@ -58,15 +58,22 @@ void Coordinator::done(const std::string& name, TickTally tally, Instant now) {
 
 /// False when a tick that is done again is not what it was: then the run has failed.
 bool Coordinator::notes(Member& member, TickTally tally) {
-  tally.incarnation = member.incarnation;
+  if (!member.agent)
+    for (TopicTally& topic : tally.topics) topic.incarnation = member.incarnation;
   const auto at = std::lower_bound(member.said.begin(), member.said.end(), tally.tick,
                                    [](const TickTally& t, Tick tick) { return t.tick < tick; });
   if (at == member.said.end() || at->tick != tally.tick) {
     member.said.insert(at, std::move(tally));
     return true;
   }
-  if (!std::equal(at->topics.begin(), at->topics.end(), tally.topics.begin(), tally.topics.end(),
-                  [](const TopicTally& a, const TopicTally& b) { return a.same_content(b); })) {
+  // An agent that is new does not know what others wanted to be told by the one before.
+  const bool same =
+      member.agent
+          ? at->digest == tally.digest
+          : std::equal(at->topics.begin(), at->topics.end(), tally.topics.begin(),
+                       tally.topics.end(),
+                       [](const TopicTally& a, const TopicTally& b) { return a.same_content(b); });
+  if (!same) {
     fail_run(member.node.name + ": tick " + std::to_string(tally.tick) +
              ", done again after a restart, is not what it was");
     return false;
@@ -82,7 +89,7 @@ void Coordinator::grant(Instant now) {
     return fail_run("no node is left" + (first_dropped_.empty()
                                              ? ""
                                              : "; the first that was lost was " + first_dropped_));
-  settle(slowest, now);
+  if (slowest > settled_) settle(slowest, now);
   if (slowest >= end_) {
     phase_ = Phase::ended;
     return;
@@ -94,7 +101,8 @@ void Coordinator::grant(Instant now) {
 void Coordinator::settle(Tick slowest, Instant now) {
   for (auto& [name, member] : members_)
     while (!member.said.empty() && member.said.front().tick <= slowest) {
-      digest_ += content_digest(name, member.said.front());
+      const TickTally& tally = member.said.front();
+      digest_ += member.agent ? tally.digest : content_digest(name, tally);
       member.said.pop_front();
     }
   for (const Tick last = std::min(slowest, end_); settled_ < last;) pace_.finished(++settled_, now);
@@ -137,45 +145,61 @@ Coordinator::Member* Coordinator::active(const std::string& name) {
 std::vector<std::string> Coordinator::missing() const {
   std::vector<std::string> names;
   for (const std::string& name : options_.expected)
-    if (!members_.contains(name)) names.push_back(name);
+    if (!members_.contains(name) && !behind_.contains(name)) names.push_back(name);
   return names;
+}
+
+const Coordinator::Member& Coordinator::member_of(const std::string& name) const {
+  const auto found = behind_.find(name);
+  return found != behind_.end() ? found->second : members_.at(name);
 }
 
 std::vector<std::string> Coordinator::holding() const {
   if (phase_ == Phase::gathering) return missing();
   std::vector<std::string> names;
+  if (over()) return names;
   if (phase_ == Phase::connecting) {
-    for (const std::string& name : options_.expected)
-      if (!members_.at(name).ready || members_.at(name).silent) names.push_back(name);
+    for (const std::string& name : options_.expected) {
+      const Member& member = member_of(name);
+      const Member& speaks = member.host.empty() ? member : members_.at(member.host);
+      if (!speaks.ready || speaks.silent || member.silent) names.push_back(name);
+    }
     return names;
   }
-  if (over()) return names;
+  names.assign(silent_behind_.begin(), silent_behind_.end());
   for (const auto& [name, member] : members_)
     if (member.silent) names.push_back(name);
   const Tick slowest = slowest_done();
   if (!names.empty() || slowest >= granted_) return names;
-  std::set<std::string> late_topics;  // of those who are behind
-  const auto behind = [&](const Member& member) {
+  std::map<std::string, std::string> late_topics;  // of those who are behind: whose they are
+  const auto late = [&](const Member& member) {
     return member.keeps_time && member.active() && member.reaches() == slowest;
   };
   for (const auto& [name, member] : members_)
-    if (behind(member))
-      late_topics.insert(member.node.produces.begin(), member.node.produces.end());
-  for (const std::string& name : options_.expected) {
-    const Member& member = members_.at(name);
+    if (late(member))
+      for (const std::string& topic : member.node.produces) late_topics[topic] = name;
+  for (const auto& [name, member] : members_) {
     const auto& needs = member.node.consumes;
     const bool waits = std::any_of(needs.begin(), needs.end(), [&](const std::string& topic) {
-      return late_topics.contains(topic);
+      const auto owner = late_topics.find(topic);
+      return owner != late_topics.end() && owner->second != name;
     });
-    if (behind(member) && !waits) names.push_back(name);
+    if (!late(member) || waits) continue;
+    if (member.waits_for.empty())
+      names.push_back(name);
+    else
+      names.insert(names.end(), member.waits_for.begin(), member.waits_for.end());
   }
   return names;
 }
 
 Tick Coordinator::slowest_done() const {
   Tick slowest = no_tick;
-  for (const auto& [name, member] : members_)
-    if (member.keeps_time && member.active()) slowest = std::min(slowest, member.reaches());
+  for (const auto& [name, member] : members_) {
+    if (!member.keeps_time || !member.active()) continue;
+    slowest = std::min(slowest, member.reaches());
+    if (slowest <= settled_) break;  // nobody is further behind
+  }
   return slowest;
 }
 

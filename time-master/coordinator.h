@@ -2,6 +2,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -50,11 +51,15 @@ class Coordinator {
     NodeTopics node;
     bool keeps_time = true;  // false: the clock does not wait for it (the broker)
     bool observer = false;   // joins and leaves at any time under a name of its own, holds nobody
+    bool agent = false;      // stands for the nodes of a host, under a name of its own
+    std::string host;        // the agent that it is behind; empty: it speaks for itself
   };
   struct Member {
     NodeTopics node;
     bool keeps_time = true;
     bool observer = false;
+    bool agent = false;
+    std::string host;  // as in Request
     bool ready = false;
     bool silent = false;  // under SilentPolicy::wait
     bool left = false;    // said goodbye, or was dropped
@@ -66,6 +71,7 @@ class Coordinator {
     std::deque<TickTally> said;  // of ticks that not all have done
     Pulse pulse;
     Instant silent_since{0};
+    std::vector<std::string> waits_for;  // of an agent: those of its nodes that it waits for
 
     bool active() const { return !left; }
     /// Nobody waits for it up to and with this tick.
@@ -87,6 +93,17 @@ class Coordinator {
   void suspect(const std::string& name, Instant now);
   void leave(const std::string& name, bool interrupted, Instant now = Instant{0});
   void fail(const std::string& name, const std::string& reason);
+
+  // What agents say of the nodes behind them; nothing of an earlier incarnation counts. `done` of
+  // an agent is said tick by tick, when all its nodes have done the tick.
+  void lost_behind(const std::string& name, std::uint64_t incarnation, const std::string& how,
+                   Tick done, Instant now = Instant{0});
+  void found_behind(const std::string& name, std::uint64_t incarnation);
+  void fail_behind(const std::string& name, std::uint64_t incarnation, const std::string& reason);
+  /// For those who ask: whom it waits for, and what each has done.
+  void tell_of(const std::string& agent, std::vector<std::string> waits_for,
+               const std::map<std::string, Tick>& done);
+
   /// Ends a run that has not ended, from outside, at once.
   void stop(const std::string& reason);
   /// Finds who has been silent or without progress for too long, and grants what has become due.
@@ -134,19 +151,37 @@ class Coordinator {
   Tick keep_ticks(const std::string& name) const;
   /// Of all that was published in ticks that all have done: the same for the same run.
   std::uint64_t digest() const { return digest_; }
+  /// Those whom the clock hears itself: nodes, agents, the broker, observers.
   const std::map<std::string, Member>& members() const { return members_; }
+  /// The nodes behind agents.
+  const std::map<std::string, Member>& behind() const { return behind_; }
+  /// Node, agent or observer that has joined.
+  const Member& member_of(const std::string& name) const;
   const CoordinatorOptions& options() const { return options_; }
 
  private:
   Member* active(const std::string& name);
   std::optional<std::string> rejoin(Member& member, const Request& request, Instant now);
   std::optional<std::string> observe(const Request& request, Instant now);
-  Member& add(const Request& request, Instant now);
+  std::optional<std::string> join_agent(const Request& request, Instant now);
+  std::optional<std::string> join_behind(const Request& request, Instant now);
+  std::optional<std::string> take_place(Member& member, Instant now);
+  bool is_expected(const std::string& name) const;
+  std::string not_expected(const std::string& name) const;
+  Member fresh(const Request& request, Instant now);
+  void add(const Request& request, Instant now) {
+    members_[request.node.name] = fresh(request, now);
+  }
+  void forget(const std::string& name);
+  Member* behind(const std::string& name, std::uint64_t incarnation);
+  std::vector<std::string> nodes_behind(const std::string& agent) const;
   void heard(Member& member, Instant now);
   void check_by(Instant deadline);
   void look_at(Member& member, Instant now);
   void look_for_stalled(Instant now);
   void lost(Member& member, const std::string& how, Instant now);
+  void wait_or_fail(Member& member, const std::string& how, Instant now);
+  void silence(Member& member, Instant now);
   void drop(Member& member, Instant now);
   void fail_run(const std::string& cause);
   void connect_if_complete(Instant now);
@@ -160,6 +195,8 @@ class Coordinator {
   CoordinatorOptions options_;
   Pace pace_;
   std::map<std::string, Member> members_;
+  std::map<std::string, Member> behind_;
+  std::set<std::string> silent_behind_;
   std::map<std::string, std::uint64_t> incarnations_;  // of each name, so far
   std::map<std::string, Tick> history_;
   Phase phase_ = Phase::gathering;

@@ -47,10 +47,7 @@ void Coordinator::leave(const std::string& name, bool interrupted, Instant now) 
     member->left = true;
     return;
   }
-  if (phase_ == Phase::gathering || member->observer) {
-    members_.erase(name);
-    return;
-  }
+  if (phase_ == Phase::gathering || member->observer) return forget(name);
   lost(*member, interrupted ? "was interrupted" : "left before the end", now);
 }
 
@@ -78,6 +75,7 @@ void Coordinator::check(Instant now) {
                       joined(holding()));
     check_by(started_ + options_.start_within);
   }
+  for (const std::string& name : silent_behind_) look_at(behind_.at(name), now);
   std::vector<std::string> names;  // lost() may take a member away
   for (const auto& [name, member] : members_) names.push_back(name);
   for (const std::string& name : names)
@@ -107,15 +105,17 @@ void Coordinator::look_for_stalled(Instant now) {
   const std::vector<std::string> names = holding();
   for (auto& [name, member] : members_) {
     auto& since = member.pulse.stalled;
+    const std::string& who = member.waits_for.empty() ? name : member.waits_for.front();
     const bool idle = !member.silent && !member.pulse.computing &&
-                      std::find(names.begin(), names.end(), name) != names.end();
+                      std::find(names.begin(), names.end(), who) != names.end();
     if (!idle) since.reset();
     if (!idle || now - since.emplace(since.value_or(now)) < options_.stalled_after) continue;
     if (options_.on_silent == SilentPolicy::drop) return drop(member, now);
-    return fail_run(name + " has not begun tick " +
-                    std::to_string(member.node.schedule.next_after(member.done)) + " for " +
+    const Member& stalled = member_of(who);
+    return fail_run(who + " has not begun tick " +
+                    std::to_string(stalled.node.schedule.next_after(stalled.done)) + " for " +
                     in_seconds(now - *since) + ", though all that it needs is published" +
-                    after_tick(member));
+                    after_tick(stalled));
   }
 }
 
@@ -124,22 +124,30 @@ void Coordinator::lost(Member& member, const std::string& how, Instant now) {
     member.left = true;
     return;
   }
-  if (phase_ == Phase::gathering || member.observer) {
-    members_.erase(std::string(member.node.name));
-    return;
-  }
+  if (phase_ == Phase::gathering || member.observer) return forget(member.node.name);
   if (options_.on_silent == SilentPolicy::drop && member.keeps_time && phase_ == Phase::running)
     return drop(member, now);
+  wait_or_fail(member, how, now);
+}
+
+void Coordinator::wait_or_fail(Member& member, const std::string& how, Instant now) {
   if (options_.on_silent != SilentPolicy::wait) {
     member.left = true;
-    return fail_run(member.node.name + " " + how + after_tick(member));
+    const std::string with_it =
+        member.agent ? ", and with it " + joined(nodes_behind(member.node.name)) : "";
+    return fail_run(member.node.name + " " + how + after_tick(member) + with_it);
   }
   if (options_.max_rejoins >= 0 && member.incarnation > std::uint64_t(options_.max_rejoins) &&
       options_.max_rejoins > 0)
     return fail_run(member.node.name + " " + how + ", after " +
                     std::to_string(options_.max_rejoins) + " restarts" + after_tick(member));
+  silence(member, now);
+}
+
+void Coordinator::silence(Member& member, Instant now) {
   member.silent = true;
   member.silent_since = now;
+  if (!member.host.empty()) silent_behind_.insert(member.node.name);
 }
 
 void Coordinator::drop(Member& member, Instant now) {

@@ -12,9 +12,10 @@ std::optional<std::string> Coordinator::join(const Request& request, Instant now
       request.node.look_back < 0)
     return "its period must be >= 1, its offset and look-back >= 0";
   if (request.observer) return observe(request, now);
-  if (std::find(options_.expected.begin(), options_.expected.end(), name) ==
-      options_.expected.end())
-    return "this run has no node named " + name + "; it has " + joined(options_.expected);
+  if (request.agent) return join_agent(request, now);
+  if (!request.host.empty()) return join_behind(request, now);
+  if (!is_expected(name)) return not_expected(name);
+  if (behind_.contains(name)) return "a node named " + name + " has already joined";
   if (const auto earlier = members_.find(name); earlier != members_.end()) {
     const Member& member = earlier->second;
     const bool gone = member.silent || member.pulse.suspected;
@@ -28,9 +29,20 @@ std::optional<std::string> Coordinator::join(const Request& request, Instant now
   return std::nullopt;
 }
 
-Coordinator::Member& Coordinator::add(const Request& request, Instant now) {
-  Member& member = members_[request.node.name] = {};
+bool Coordinator::is_expected(const std::string& name) const {
+  return std::find(options_.expected.begin(), options_.expected.end(), name) !=
+         options_.expected.end();
+}
+
+std::string Coordinator::not_expected(const std::string& name) const {
+  return "this run has no node named " + name + "; it has " + joined(options_.expected);
+}
+
+Coordinator::Member Coordinator::fresh(const Request& request, Instant now) {
+  Member member;
   member.node = request.node;
+  member.agent = request.agent;
+  member.host = request.host;
   member.keeps_time = request.keeps_time && !request.observer;
   member.observer = request.observer;
   member.ready = !member.keeps_time;
@@ -44,8 +56,7 @@ Coordinator::Member& Coordinator::add(const Request& request, Instant now) {
 
 std::optional<std::string> Coordinator::observe(const Request& request, Instant now) {
   const std::string& name = request.node.name;
-  const auto& expected = options_.expected;
-  if (std::find(expected.begin(), expected.end(), name) != expected.end())
+  if (is_expected(name))
     return name + " is a node of this run and can't be the name of an observer";
   if (members_.contains(name)) return "an observer named " + name + " has already joined";
   if (!request.node.produces.empty()) return "an observer publishes nothing";
@@ -62,6 +73,14 @@ std::optional<std::string> Coordinator::rejoin(Member& member, const Request& re
       before.look_back != request.node.look_back || !(before.schedule == request.node.schedule) ||
       member.keeps_time != request.keeps_time)
     return name + " joins again with other topics than before";
+  if (auto refusal = take_place(member, now)) return refusal;
+  ++topology_version_;
+  start_if_ready(now);
+  return std::nullopt;
+}
+
+std::optional<std::string> Coordinator::take_place(Member& member, Instant now) {
+  const std::string& name = member.node.name;
   if (options_.max_rejoins >= 0 && member.incarnation > std::uint64_t(options_.max_rejoins)) {
     fail_run(name + " has died " + std::to_string(member.incarnation) + " times");
     return "the run is over";
@@ -74,15 +93,13 @@ std::optional<std::string> Coordinator::rejoin(Member& member, const Request& re
   member.pulse = Pulse::begin(now);
   member.ready = !member.keeps_time;
   heard(member, now);
-  ++topology_version_;
-  start_if_ready(now);
   return std::nullopt;
 }
 
 void Coordinator::connect_if_complete(Instant now) {
   if (phase_ != Phase::gathering || !missing().empty()) return;
   std::vector<NodeTopics> nodes;
-  for (const std::string& name : options_.expected) nodes.push_back(members_.at(name).node);
+  for (const std::string& name : options_.expected) nodes.push_back(member_of(name).node);
   if (const auto fault = topic_fault(nodes)) return fail_run(*fault);
   history_ = history_ticks(nodes);
   phase_ = Phase::connecting;

@@ -16,6 +16,7 @@ struct TopicTally {
   std::uint64_t messages = 0;       // of this tick, a watermark counts
   std::uint64_t last_sequence = 0;  // of the publisher on this topic
   std::uint64_t digest = 0;         // of kinds, payloads and arrays; not of envelopes
+  std::uint64_t incarnation = 0;    // of the process that said so
 
   /// The same content, whatever process published it: sequences count within an incarnation.
   bool same_content(const TopicTally& other) const {
@@ -23,11 +24,11 @@ struct TopicTally {
   }
 };
 
-/// A node's whole manifest of one tick.
+/// A node's whole manifest of one tick, or of all nodes of a host what others want to know.
 struct TickTally {
   Tick tick = 0;
   std::vector<TopicTally> topics;  // in the order of the node's list
-  std::uint64_t incarnation = 0;   // of the process that said so
+  std::uint64_t digest = 0;        // of a host: the sum of its nodes' content_digest
 };
 
 /// What a node's tick adds to the digest of a run, which is the sum over all nodes and ticks: who

@@ -1,5 +1,7 @@
 #include "nodes/runtime/clock_watch.h"
 
+#include <algorithm>
+
 #include "nodes/runtime/json_log.h"
 
 namespace dmise {
@@ -16,18 +18,21 @@ void say_lost(const std::string& name, Tick done, const std::string& what_follow
 
 void ClockWatch::look(const Coordinator& coordinator, Instant now) {
   if (coordinator.over()) return;
-  const auto& members = coordinator.members();
+  const auto all = {&coordinator.members(), &coordinator.behind()};
   for (const std::string& name : joined_)
-    if (!members.contains(name)) say_lost(name, -1, "waiting for another of its name");
+    if (std::none_of(all.begin(), all.end(),
+                     [&](const auto* some) { return some->contains(name); }))
+      say_lost(name, -1, "waiting for another of its name");
   joined_.clear();
-  for (const auto& [name, member] : members) {
-    if (member.observer) continue;
-    joined_.insert(name);
-    if (!member.silent && !member.dropped) lost_.erase(name);
-    if (member.silent && lost_.insert(name).second) say_lost(name, member.done, "waiting for it");
-    if (member.dropped && lost_.insert(name).second)
-      say_lost(name, member.done, "the run goes on without it");
-  }
+  for (const auto* members : all)
+    for (const auto& [name, member] : *members) {
+      if (member.observer) continue;
+      joined_.insert(name);
+      if (!member.silent && !member.dropped) lost_.erase(name);
+      if (member.silent && lost_.insert(name).second) say_lost(name, member.done, "waiting for it");
+      if (member.dropped && lost_.insert(name).second)
+        say_lost(name, member.done, "the run goes on without it");
+    }
   const auto state = std::pair(coordinator.granted(), coordinator.holding());
   if (state != seen_) {
     seen_ = state;

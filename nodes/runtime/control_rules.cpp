@@ -46,6 +46,14 @@ bool good_tallies(const Tallies& tallies) {
   });
 }
 
+template <class Beats>
+bool good_beats(const Beats& beats) {
+  return std::all_of(beats.begin(), beats.end(), [](const v1::NodeBeat& node) {
+    return is_name(node.name()) && node.done_tick() >= -1 && node.done_tick() <= most_ticks &&
+           good(node.times());
+  });
+}
+
 bool good(const v1::Broker& broker) {
   return is_text(broker.publish_endpoint()) && is_text(broker.subscribe_endpoint()) &&
          is_text(broker.observe_endpoint());
@@ -56,6 +64,7 @@ Fault fault_in(const v1::Join& join) {
   if (!are_names(join.produces()) || !are_names(join.produces_direct()) ||
       !are_names(join.consumes()))
     return "join: topics are names, and at most 4096";
+  if (!is_text(join.host())) return "join: its host can't be a name";
   if (!is_text(join.direct_endpoint()) || !is_text(join.resend_endpoint()) || !good(join.broker()))
     return "join: an address can't be one";
   return unless(is_count(join.look_back_ticks()) && is_count(join.period_ticks()) &&
@@ -79,14 +88,23 @@ Fault fault_in(const v1::Welcome& welcome) {
     return "welcome: window_ticks must be 1 to 1000000";
   return unless(welcome.heartbeat_s() > 0.0 && is_duration(welcome.heartbeat_s(), 3600.0) &&
                     welcome.silent_after_s() > 0.0 && is_duration(welcome.silent_after_s(), 1e6) &&
-                    is_text(welcome.tick_endpoint()),
+                    is_text(welcome.tick_endpoint()) && is_text(welcome.name()) &&
+                    is_tick(welcome.resume_tick()) && is_duration(welcome.progress_after_s(), 1e6),
                 "welcome: heartbeat_s, silent_after_s or tick_endpoint can't be one");
 }
 
 Fault fault_in(const v1::Topology& topology) {
   const auto& publishers = topology.publishers();
-  return unless(std::all_of(publishers.begin(), publishers.end(),
-                            [](const v1::Publisher& publisher) { return good(publisher); }) &&
+  const auto& starts = topology.starts();
+  return unless(are_names(topology.reported()) &&
+                    std::all_of(starts.begin(), starts.end(),
+                                [](const v1::NodeStart& start) {
+                                  return is_name(start.name()) && is_tick(start.resume_tick()) &&
+                                         is_tick(start.from_tick()) &&
+                                         start.from_tick() <= start.resume_tick();
+                                }) &&
+                    std::all_of(publishers.begin(), publishers.end(),
+                                [](const v1::Publisher& publisher) { return good(publisher); }) &&
                     is_text(topology.publish_endpoint()) &&
                     is_text(topology.subscribe_endpoint()) && is_tick(topology.resume_tick()) &&
                     is_tick(topology.from_tick()) && topology.from_tick() <= topology.resume_tick(),
@@ -105,10 +123,17 @@ std::optional<std::string> fault_of(const v1::NodeMessage& message) {
                         good_tallies(message.done().published()),
                     "done: a tick or topic can't be one");
     case v1::NodeMessage::kHeartbeat:
-      return unless(is_name(message.heartbeat().name()) && good(message.heartbeat().times()),
+      return unless(is_name(message.heartbeat().name()) && good(message.heartbeat().times()) &&
+                        good_beats(message.heartbeat().nodes()) &&
+                        are_names(message.heartbeat().holding()),
                     "heartbeat: a name or time can't be one");
     case v1::NodeMessage::kLeave:
-      return unless(good(message.leave().times()), "leave: a time can't be one");
+      return unless(good(message.leave().times()) && good_beats(message.leave().nodes()),
+                    "leave: a time can't be one");
+    case v1::NodeMessage::kNodeNews:
+      return unless(is_name(message.node_news().name()) && message.node_news().done_tick() >= -1 &&
+                        message.node_news().done_tick() <= most_ticks,
+                    "node news: a name or tick can't be one");
     case v1::NodeMessage::kControl:
       return unless(message.control().tick() >= -1 && message.control().tick() <= most_ticks,
                     "control: its tick can't be one");

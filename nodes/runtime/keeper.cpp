@@ -71,6 +71,7 @@ void Keeper::beat() {
     const std::lock_guard lock(mutex_);
     put(heartbeat->mutable_times(), times_);
   }
+  if (options_.add_to_heartbeat) options_.add_to_heartbeat(heartbeat);
   heartbeat_.send(to_frame(message), zmq::send_flags::none);
 }
 

@@ -27,6 +27,7 @@ struct KeeperOptions {
   const Event* stop = nullptr;              // may be null
   std::function<std::uint64_t()> progress;  // of the step; called from the keeper's thread
   std::function<std::vector<SharedFrames>(const v1::ResendRequest&)> resend;
+  std::function<void(v1::Heartbeat*)> add_to_heartbeat;  // may be empty; called there as well
 };
 
 /// A node's second thread: tells the master that the process lives and how far its step is, hears

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <ctime>
 #include <random>
 
 #include "core/base/error.h"
@@ -44,7 +45,16 @@ CoordinatorOptions with_broker(const MasterOptions& options) {
   return run;
 }
 
+/// Seconds of all threads of this process.
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
 double as_seconds(nanoseconds t) { return duration<double>(t).count(); }
+
+using NodeBeats = google::protobuf::RepeatedPtrField<v1::NodeBeat>;
 
 class Master {
  public:
@@ -135,6 +145,7 @@ class Master {
   void hear() {
     for (auto message = receive(router_); !message.empty(); message = receive(router_)) {
       if (message.size() != 2 || !from_frame(message[1], &heard_)) continue;
+      if (!ended_) ++messages_;
       const bool before_welcome = heard_.has_hello() || heard_.has_join() || heard_.has_control();
       if (!before_welcome && heard_.run_id() != run_id_) continue;
       const std::string_view sender = message[0].to_string_view();
@@ -154,6 +165,8 @@ class Master {
         coordinator_.ready(name, now());
       } else if (heard_.has_leave()) {
         leave(name);
+      } else if (heard_.has_node_news()) {
+        hear_news(name);
       } else if (heard_.has_failed()) {
         coordinator_.fail(name, one_line(heard_.failed().reason()));
       } else if (heard_.has_hello() || heard_.has_control()) {
@@ -167,12 +180,12 @@ class Master {
 
   void refuse(std::string_view sender, const std::string& fault) {
     spdlog::warn("refused a message: {}", fault);
-    if (heard_.has_join()) voice_.refuse(sender, fault);
+    if (heard_.has_join()) voice_.refuse(sender, fault, heard_.join().name());
   }
 
   /// With keys: whether `who` may say what was heard.
   bool in_own_name(const std::string& who) {
-    const bool own = heard_.has_join()        ? heard_.join().name() == who
+    const bool own = heard_.has_join() ? heard_.join().name() == who && !heard_.join().agent()
                      : heard_.has_heartbeat() ? heard_.heartbeat().name() == who
                      : heard_.has_control()   ? who == operator_name
                                               : true;  // goes by its connection
@@ -186,7 +199,8 @@ class Master {
     const auto member = coordinator_.members().find(name);
     if (member == coordinator_.members().end() || member->second.observer) return;
     TickTally tally = tally_of(heard_.done());
-    tally.incarnation = member->second.incarnation;
+    if (!member->second.agent)
+      for (TopicTally& topic : tally.topics) topic.incarnation = member->second.incarnation;
     voice_.note(tally);
   }
 
@@ -200,18 +214,28 @@ class Master {
     const Coordinator::Request request = request_of(join);
     const bool is_broker = join.name() == broker_name;
     suspect(connections_.names_of(broken_));  // whose last words may have been heard just now
-    const auto refusal = join.has_broker() == is_broker
-                             ? coordinator_.join(request, now())
-                             : std::optional<std::string>("only the broker is named broker");
+    std::optional<std::string> refusal;
+    if (join.has_broker() != is_broker)
+      refusal = "only the broker is named broker";
+    else if (join.agent() && security_.on())
+      refusal = "agents do not know keys";
+    else if (!join.host().empty() && directory_.name_of(sender) != join.host())
+      refusal = "only " + join.host() + " speaks for the nodes of its host";
+    else
+      refusal = coordinator_.join(request, now());
     if (refusal) {
-      voice_.refuse(sender, *refusal);
+      voice_.refuse(sender, *refusal, join.name());
       log_event(spdlog::level::warn, "node_refused", {{"name", join.name()}, {"reason", *refusal}},
                 "refused " + join.name() + ": " + *refusal);
       return;
     }
-    const std::uint64_t incarnation = coordinator_.members().at(join.name()).incarnation;
-    directory_.add(sender, incarnation, join);
-    connections_.belongs(frame, join.name());
+    const std::uint64_t incarnation = coordinator_.member_of(join.name()).incarnation;
+    if (join.host().empty()) {
+      directory_.add(sender, incarnation, join);
+      connections_.belongs(frame, join.name());
+    } else {
+      directory_.add_behind(sender, incarnation, join);
+    }
     voice_.reply(sender, voice_.welcome(join.name(), tick_endpoint_));
     const auto missing = coordinator_.missing();
     log_event(
@@ -234,6 +258,8 @@ class Master {
     connections_.belongs(frame, heartbeat.name());
     coordinator_.heartbeat(heartbeat.name(), heartbeat.computing(), heartbeat.progress(), now());
     times_[heartbeat.name()] = take(heartbeat.times());
+    hear_of(heartbeat.name(), heartbeat.nodes(),
+            {heartbeat.holding().begin(), heartbeat.holding().end()});
     if (member == coordinator_.members().end() || member->second.dropped)
       return voice_.reply(sender, voice_.expelled("the run goes on without " + heartbeat.name()));
     voice_.reply(sender, voice_.grant_for(member->second));
@@ -243,8 +269,37 @@ class Master {
     const auto& leave = heard_.leave();
     if (name.empty()) return;
     times_[name] = take(leave.times());
+    hear_of(name, leave.nodes(), {});
     coordinator_.leave(name, leave.interrupted(), now());
     spdlog::debug("{} left", name);
+  }
+
+  /// An agent says how the nodes behind it are.
+  void hear_of(const std::string& agent, const NodeBeats& nodes, std::vector<std::string> holding) {
+    if (nodes.empty()) return;
+    std::map<std::string, Tick> done;
+    for (const v1::NodeBeat& node : nodes) {
+      done[node.name()] = node.done_tick();
+      times_[node.name()] = take(node.times());
+    }
+    coordinator_.tell_of(agent, std::move(holding), done);
+  }
+
+  void hear_news(const std::string& agent) {
+    const v1::NodeNews& news = heard_.node_news();
+    const auto node = coordinator_.behind().find(news.name());
+    if (node == coordinator_.behind().end() || node->second.host != agent) return;
+    switch (news.what()) {
+      case v1::NodeNews::WHAT_LOST:
+        return coordinator_.lost_behind(news.name(), news.incarnation(), one_line(news.reason()),
+                                        news.done_tick(), now());
+      case v1::NodeNews::WHAT_FOUND:
+        return coordinator_.found_behind(news.name(), news.incarnation());
+      case v1::NodeNews::WHAT_FAILED:
+        return coordinator_.fail_behind(news.name(), news.incarnation(), one_line(news.reason()));
+      default:
+        return;
+    }
   }
 
   /// Says what has changed to everybody.
@@ -252,8 +307,15 @@ class Master {
     const Phase before = voice_.phase();
     if (!voice_.say_news() || voice_.phase() == before) return;
     const Phase phase = voice_.phase();
-    if (phase == Phase::running) started_ = now();
-    if (before == Phase::running) ended_ = now();
+    if (phase == Phase::running) {
+      started_ = now();
+      messages_ = 0;
+      cpu_s_ = -cpu_seconds();
+    }
+    if (before == Phase::running) {
+      ended_ = now();
+      cpu_s_ += cpu_seconds();
+    }
     const Tick granted = coordinator_.granted();
     if (phase == Phase::failed)
       log_event(spdlog::level::err, "run_failed", {{"granted_tick", granted}},
@@ -277,6 +339,8 @@ class Master {
     MasterResult result = result_of(coordinator_);
     if (started_) result.wall_s = as_seconds(ended_.value_or(now()) - *started_);
     result.times = times_;
+    result.messages = messages_;
+    result.cpu_s = std::max(0.0, cpu_s_);
     return result;
   }
 
@@ -297,6 +361,8 @@ class Master {
   v1::NodeMessage heard_;
   ClockWatch watch_;
   std::optional<nanoseconds> started_, ended_;
+  std::uint64_t messages_ = 0;
+  double cpu_s_ = 0.0;
 };
 
 }  // namespace

@@ -91,6 +91,8 @@ void MasterLink::failed(const std::string& reason) {
   tell(message);
 }
 
+void MasterLink::say(v1::NodeMessage message) { tell(message); }
+
 void MasterLink::tell(v1::NodeMessage& message) {
   message.set_run_id(welcome_.run_id());
   control_.send(to_frame(message), zmq::send_flags::none);
@@ -127,9 +129,14 @@ void MasterLink::hear_control() {
       spdlog::warn("refused what the time-master says: {}", *fault);
       continue;
     }
-    if (message.has_welcome() || message.has_refuse())
-      answer_ = message;
-    else if (message.has_topology()) {
+    if (message.has_welcome() || message.has_refuse()) {
+      const std::string& name =
+          message.has_welcome() ? message.welcome().name() : message.refuse().name();
+      if (!answer_ || name == name_)
+        answer_ = message;
+      else
+        answers_.push_back(std::move(message));
+    } else if (message.has_topology()) {
       topology_ = message.topology();
       ++topology_version_;
     }

@@ -32,6 +32,8 @@ class MasterLink {
   void done(const TickTally& tally);
   void leave(bool interrupted, const TimeSplit& times);
   void failed(const std::string& reason);
+  /// Anything else, over the connection that stands for the process.
+  void say(v1::NodeMessage message);
 
   /// Waits until the master says something, one of `sockets` is readable, the process is asked to
   /// stop, or the time is over; takes in what the master said.
@@ -52,6 +54,9 @@ class MasterLink {
   /// What publishers have told the master since the last call.
   std::vector<v1::TopicTally> take_published() { return std::exchange(published_, {}); }
   const std::vector<v1::ClosedTopic>& closed() const { return closed_; }
+  /// Answers to Join that are for others, since the last call: an agent asks for its nodes.
+  std::vector<v1::MasterMessage> take_answers() { return std::exchange(answers_, {}); }
+  const v1::Welcome& welcome() const { return welcome_; }
 
  private:
   void tell(v1::NodeMessage& message);
@@ -71,6 +76,7 @@ class MasterLink {
 
   v1::Welcome welcome_;
   std::optional<v1::MasterMessage> answer_;  // to Join
+  std::vector<v1::MasterMessage> answers_;   // the same, for others
   std::optional<v1::Topology> topology_;
   std::uint64_t topology_version_ = 0;
   std::vector<v1::ClosedTopic> closed_;

@@ -14,10 +14,11 @@ MasterResult result_of(const Coordinator& coordinator) {
   result.overruns = coordinator.pace().overruns();
   result.worst_lag_s = std::chrono::duration<double>(coordinator.pace().worst_lag()).count();
   result.granted = coordinator.granted();
-  for (const auto& [name, member] : coordinator.members()) {
-    if (member.dropped) result.dropped.push_back(name);
-    if (member.incarnation > 1) result.restarts[name] = int(member.incarnation) - 1;
-  }
+  for (const auto* members : {&coordinator.members(), &coordinator.behind()})
+    for (const auto& [name, member] : *members) {
+      if (member.dropped) result.dropped.push_back(name);
+      if (member.incarnation > 1) result.restarts[name] = int(member.incarnation) - 1;
+    }
   return result;
 }
 
@@ -28,6 +29,7 @@ std::string to_json(const MasterResult& result) {
   json.field("cause", result.reason);
   json.field("granted_tick", std::int64_t(result.granted));
   json.field("wall_s", result.wall_s);
+  json.field("cpu_s", result.cpu_s).field("messages", result.messages);
   char digest[17];
   std::snprintf(digest, sizeof digest, "%016llx", static_cast<unsigned long long>(result.digest));
   json.field("digest", digest);

@@ -22,9 +22,11 @@ struct MasterResult {
   std::uint64_t digest = 0;             // of all that was published; the same for the same run
   std::uint64_t overruns = 0;           // of real time: ticks not over when the next was due
   double worst_lag_s = 0.0;
+  std::uint64_t messages = 0;  // heard from the first grant to the end
+  double cpu_s = 0.0;          // of the master's whole process in that time
 };
 
-/// All but `wall_s` and `times`.
+/// What the coordinator knows of it.
 MasterResult result_of(const Coordinator& coordinator);
 
 /// One JSON object: status, cause, granted_tick, wall_s, digest, overruns, worst_lag_s, dropped,

@@ -10,8 +10,10 @@ void MasterVoice::reply(std::string_view routing_id, const v1::MasterMessage& me
   router_.send(to_frame(message), zmq::send_flags::none);
 }
 
-void MasterVoice::refuse(std::string_view routing_id, const std::string& reason) {
+void MasterVoice::refuse(std::string_view routing_id, const std::string& reason,
+                         const std::string& name) {
   v1::MasterMessage answer;
+  answer.mutable_refuse()->set_name(name);
   answer.mutable_refuse()->set_reason(reason);
   reply(routing_id, answer);
 }
@@ -43,12 +45,16 @@ v1::MasterMessage MasterVoice::welcome(const std::string& name,
   v1::MasterMessage answer;
   auto* welcome = answer.mutable_welcome();
   welcome->set_run_id(run_id_);
-  welcome->set_incarnation(coordinator_.members().at(name).incarnation);
+  const Coordinator::Member& member = coordinator_.member_of(name);
+  welcome->set_name(name);
+  welcome->set_incarnation(member.incarnation);
+  welcome->set_resume_tick(member.resumes_at);
   welcome->set_tick_ns(options.pace.tick_length.ns);
   welcome->set_last_tick(options.last_tick);
   welcome->set_window_ticks(std::uint32_t(options.window_ticks));
   welcome->set_heartbeat_s(in_seconds(options.heartbeat));
   welcome->set_silent_after_s(in_seconds(options.silent_after));
+  welcome->set_progress_after_s(in_seconds(options.progress_after));
   welcome->set_tick_endpoint(tick_endpoint);
   return answer;
 }
@@ -64,9 +70,7 @@ v1::MasterMessage MasterVoice::grant_for(const Coordinator::Member& member) cons
   const auto& needs = member.node.consumes;
   const std::set<std::string, std::less<>> wanted(needs.begin(), needs.end());
   for (const auto& [name, other] : coordinator_.members())
-    for (const TickTally& tally : other.said)
-      if (tally.incarnation == other.incarnation)
-        add_published(answer.mutable_grant(), wanted, tally);
+    for (const TickTally& tally : other.said) add_published(answer.mutable_grant(), wanted, tally);
   return answer;
 }
 
@@ -82,8 +86,13 @@ void MasterVoice::send_topology() {
   consumed_ = directory_.consumed();
   const v1::Topology topology = directory_.topology();
   for (const auto& [name, peer] : directory_.all()) {
+    if (!peer.join.host().empty()) continue;  // its agent tells it
     v1::MasterMessage message;
     *message.mutable_topology() = topology_for(name, topology, coordinator_);
+    if (peer.join.agent()) {
+      for (const std::string& topic : coordinator_.members().at(name).node.produces)
+        if (consumed_.contains(topic)) message.mutable_topology()->add_reported(topic);
+    }
     reply(peer.routing_id, message);
   }
 }

@@ -24,7 +24,7 @@ class MasterVoice {
         directory_(directory) {}
 
   void reply(std::string_view routing_id, const v1::MasterMessage& message);
-  void refuse(std::string_view routing_id, const std::string& reason);
+  void refuse(std::string_view routing_id, const std::string& reason, const std::string& name);
   /// To be told to all who consume with what is said next.
   void note(const TickTally& tally);
   /// Says what has changed since it was last said; true if something had.

@@ -34,14 +34,16 @@ Coordinator::Request request_of(const v1::Join& join) {
                                join.produces_direct().end());
   request.keeps_time = !join.has_broker() && !join.observer();
   request.observer = join.observer();
+  request.agent = join.agent();
+  request.host = join.host();
   return request;
 }
 
 TickTally tally_of(const v1::Done& done) {
-  TickTally tally{done.tick(), {}, 0};
+  TickTally tally{done.tick(), {}, done.digest()};
   for (const auto& topic : done.published())
-    tally.topics.push_back(
-        {topic.topic(), topic.messages(), topic.last_sequence(), topic.digest()});
+    tally.topics.push_back({topic.topic(), topic.messages(), topic.last_sequence(), topic.digest(),
+                            topic.incarnation()});
   return tally;
 }
 
@@ -55,9 +57,23 @@ void add_published(v1::Grant* grant, const std::set<std::string, std::less<>>& w
     published->set_messages(topic.messages);
     published->set_last_sequence(topic.last_sequence);
     published->set_digest(topic.digest);
-    published->set_incarnation(tally.incarnation);
+    published->set_incarnation(topic.incarnation);
   }
 }
+
+namespace {
+
+void add_starts(v1::Topology* topology, const std::string& agent, const Coordinator& coordinator) {
+  for (const auto& [name, member] : coordinator.behind()) {
+    if (member.host != agent) continue;
+    auto* start = topology->add_starts();
+    start->set_name(name);
+    start->set_resume_tick(member.resumes_at);
+    start->set_from_tick(coordinator.publishes_from(member));
+  }
+}
+
+}  // namespace
 
 v1::Topology topology_for(const std::string& name, v1::Topology topology,
                           const Coordinator& coordinator) {
@@ -65,6 +81,7 @@ v1::Topology topology_for(const std::string& name, v1::Topology topology,
   if (member != coordinator.members().end()) {
     topology.set_resume_tick(member->second.resumes_at);
     topology.set_from_tick(coordinator.publishes_from(member->second));
+    if (member->second.agent) add_starts(&topology, name, coordinator);
   }
   topology.set_running(coordinator.phase() == Phase::running);
   for (auto& publisher : *topology.mutable_publishers())
@@ -102,13 +119,18 @@ void describe(v1::Endpoints* endpoints, const Coordinator& coordinator) {
   endpoints->set_overruns(coordinator.pace().overruns());
   endpoints->set_worst_lag_s(std::chrono::duration<double>(coordinator.pace().worst_lag()).count());
   endpoints->set_digest(coordinator.digest());
-  for (const auto& [name, member] : coordinator.members()) {
+  const auto add = [&](const std::string& name, const Coordinator::Member& member, bool heard) {
     auto* node = endpoints->add_nodes();
     node->set_name(name);
     node->set_done_tick(member.done);
-    node->set_alive(member.active() && !member.silent);
+    node->set_alive(member.active() && !member.silent && heard);
     node->set_incarnation(member.incarnation);
     node->set_observer(member.observer);
+  };
+  for (const auto& [name, member] : coordinator.members()) add(name, member, true);
+  for (const auto& [name, member] : coordinator.behind()) {
+    const auto agent = coordinator.members().find(member.host);
+    add(name, member, agent != coordinator.members().end() && !agent->second.silent);
   }
   for (const std::string& name : coordinator.missing()) endpoints->add_missing(name);
   for (const std::string& name : coordinator.holding()) endpoints->add_holding(name);

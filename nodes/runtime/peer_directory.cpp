@@ -26,6 +26,11 @@ const Peer& PeerDirectory::add(std::string_view routing_id, std::uint64_t incarn
   return peers_[join.name()] = {std::string(routing_id), incarnation, join};
 }
 
+const Peer& PeerDirectory::add_behind(std::string_view agent, std::uint64_t incarnation,
+                                      const v1::Join& join) {
+  return peers_[join.name()] = {std::string(agent), incarnation, join};
+}
+
 std::set<std::string, std::less<>> PeerDirectory::consumed() const {
   std::set<std::string, std::less<>> topics;
   for (const auto& [name, peer] : peers_)
@@ -51,7 +56,7 @@ v1::Topology PeerDirectory::topology() const {
     if (peer.join.has_broker()) {
       topology.set_publish_endpoint(peer.join.broker().publish_endpoint());
       topology.set_subscribe_endpoint(peer.join.broker().subscribe_endpoint());
-    } else {
+    } else if (!peer.join.agent()) {
       fill(topology.add_publishers(), peer);
     }
   }
@@ -64,7 +69,7 @@ void PeerDirectory::describe(v1::Endpoints* endpoints) const {
   for (const auto& [name, peer] : peers_) {
     if (peer.join.has_broker())
       *endpoints->mutable_broker() = peer.join.broker();
-    else
+    else if (!peer.join.agent())
       fill(endpoints->add_publishers(), peer);
   }
 }

@@ -21,6 +21,8 @@ class PeerDirectory {
  public:
   /// A later process of the same name takes the place of the earlier.
   const Peer& add(std::string_view routing_id, std::uint64_t incarnation, const v1::Join& join);
+  /// The same for a node of a host: the connection is its agent's and stands for that.
+  const Peer& add_behind(std::string_view agent, std::uint64_t incarnation, const v1::Join& join);
 
   /// The name behind a connection; "" if none.
   const std::string& name_of(std::string_view routing_id) const;

@@ -1,0 +1,33 @@
+#pragma once
+#include <functional>
+#include <string>
+
+#include "nodes/runtime/event.h"
+
+namespace dmise {
+
+struct HostAgentOptions {
+  std::string name;                        // of the agent in the run
+  std::string master;                      // address of the time-master
+  std::string bind = "tcp://127.0.0.1:0";  // the nodes of the host join here; also ipc://PATH
+  double join_within_s = 30.0;
+  Event* stop = nullptr;
+  std::string announce_file;  // the address is written here when bound
+  int announce_fd = -1;       // and here, as one line
+  std::function<void(const std::string& address)> on_bound;
+};
+
+struct HostAgentResult {
+  int exit_code = 0;
+  std::string reason;
+  std::uint64_t messages_in = 0;   // published elsewhere: each once, whoever listens here
+  std::uint64_t messages_out = 0;  // published here
+  double cpu_s = 0.0;              // of its process while the run went
+};
+
+/// Stands between the nodes of one host and the run. To its nodes it is the time-master and the
+/// broker; to the run it is one member, which has done a tick when all its nodes have. Does not
+/// throw and does not print; it logs.
+HostAgentResult run_host_agent(const HostAgentOptions& options);
+
+}  // namespace dmise
