@@ -1,4 +1,7 @@
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -33,6 +36,7 @@ struct LaunchOptions {
   std::string scenario, out, bind = "tcp://127.0.0.1:0", keys;
   std::optional<std::uint64_t> seed;  // in place of the scenario's
   int threads = 1;
+  int hosts = 0;  // > 0: sensors are behind so many agents
   bool force = false;
   std::string metrics, log_format = "text";  // of every process
 };
@@ -117,13 +121,30 @@ class Launch {
       arguments.insert(arguments.end(), {"--out", directory_.path()});
       start(positions_node, "dmise-positions-node", arguments);
     }
-    for (const auto& sensor : scenario_.sensors) {
+    for (int host = 0; host < options_.hosts; ++host)
+      start(agent_name(host), "dmise-host-agent",
+            {"--name", agent_name(host), "--master", master, "--bind", agent_address(host)});
+    for (std::size_t i = 0; i < scenario_.sensors.size(); ++i) {
+      const auto& sensor = scenario_.sensors[i];
       auto arguments = common;
+      if (options_.hosts > 0) arguments[3] = agent_address(int(i) % options_.hosts);
       arguments.insert(arguments.end(),
                        {"--name", sensor.name, "--out", directory_.path(), "--digest",
                         directory_.digest(), "--seed", std::to_string(scenario_.seed)});
       start(sensor.name, "dmise-sensor-node", arguments);
     }
+  }
+
+  /// "host-1", or longer where a sensor has that name.
+  std::string agent_name(int host) const {
+    std::string name = "host-" + std::to_string(host + 1);
+    const auto taken = [&](const auto& sensor) { return sensor.name == name; };
+    while (std::any_of(scenario_.sensors.begin(), scenario_.sensors.end(), taken)) name += "-agent";
+    return name;
+  }
+  /// Where its nodes join; one that is started again is found there.
+  std::string agent_address(int host) const {
+    return "ipc://@dmise-" + std::to_string(getpid()) + "-" + agent_name(host);
   }
 
   void start(const std::string& name, const std::string& program,
@@ -257,6 +278,10 @@ void launch(const LaunchOptions& options) {
     throw ConfigError("--log-format: must be text or json, got " + options.log_format);
   if (!options.metrics.empty()) metrics_address(options.metrics);
   Scenario scenario = load_scenario(options.scenario);
+  if (options.hosts > 0 && scenario.network.on_silent_node == OnSilentNode::drop)
+    throw ConfigError("--hosts: agents can't take part in a run with on_silent_node: drop");
+  if (options.hosts > 0 && !options.keys.empty())
+    throw ConfigError("--hosts: agents do not know keys; leave out --keys");
   if (options.seed) scenario.seed = *options.seed;
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   const RunStart begin = prepare_directory(directory, scenario, options.force);
@@ -287,6 +312,11 @@ void add_launch_command(CLI::App& app) {
                    "threads of each node; the products do not depend on it")
       ->default_val(1)
       ->check(CLI::Range(1, 256));
+  command
+      ->add_option("--hosts", options->hosts,
+                   "puts the sensors behind so many agents, as on so many hosts; 0: none")
+      ->default_val(0)
+      ->check(CLI::Range(0, 10000));
   command->add_option("--seed", options->seed,
                       "seed of the random draws, in place of the scenario's");
   command->add_option(
