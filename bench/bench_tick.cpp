@@ -1,8 +1,5 @@
 #include "bench/bench_tick.h"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -10,6 +7,8 @@
 #include <functional>
 #include <vector>
 
+#include "bench/bench_tick_hosts.h"
+#include "bench/idle_nodes.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "nodes/runtime/log.h"
@@ -24,54 +23,6 @@ namespace {
 constexpr int repeats = 5;
 constexpr double target_ratio = 0.70;
 constexpr double curve_target_ratio = 0.65;
-
-/// A node that does nothing, so that only the clock is measured.
-class Idle : public Participant {
- public:
-  explicit Idle(int index) : name_("node-" + std::to_string(index)) {}
-  std::string name() const override { return name_; }
-  std::vector<std::string> produces() const override { return {}; }
-  std::vector<std::string> consumes() const override { return {}; }
-  std::vector<Message> step(Tick, std::span<const Message>) override { return {}; }
-
- private:
-  std::string name_;
-};
-
-/// Child processes that each read one line of addresses from their standard pipe before they start.
-class Children {
- public:
-  Children(int count, const std::function<int(int index, const std::string& line)>& work) {
-    for (int i = 0; i < count; ++i) {
-      int ends[2];
-      if (pipe(ends) != 0) throw Error("pipe: too many open files");
-      const pid_t pid = fork();
-      if (pid < 0) throw Error("fork: too many processes");
-      if (pid == 0) {
-        close(ends[1]);
-        std::string line;
-        for (char c; read(ends[0], &c, 1) == 1 && c != '\n';) line += c;
-        _exit(work(i, line));
-      }
-      close(ends[0]);
-      pids_.push_back(pid);
-      pipes_.push_back(ends[1]);
-    }
-  }
-  void tell(const std::string& line) {
-    for (int& end : pipes_) {
-      if (write(end, (line + "\n").data(), line.size() + 1) < 0) throw Error("a child is gone");
-      close(end);
-    }
-  }
-  ~Children() {
-    for (const pid_t pid : pids_) waitpid(pid, nullptr, 0);
-  }
-
- private:
-  std::vector<pid_t> pids_;
-  std::vector<int> pipes_;
-};
 
 struct Tock {
   std::int64_t tick;
@@ -262,6 +213,7 @@ int bench_tick(bool json) {
   const std::string anchor = "bare ZeroMQ PUB + PUSH, tcp, CURVE";
   print({"curve_ticks_16_per_s", median(ours), "ticks/s", anchor, median(floors), 0}, json);
   print({"curve_ratio_16", median(ratios), "1", anchor, 1.0, curve_target_ratio}, json);
+  bench_tick_hosts(json);
   return 0;
 }
 
