@@ -5,10 +5,12 @@
 #include <unistd.h>
 #include <zmq.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "core/base/error.h"
 
@@ -42,13 +44,55 @@ bool is_key(const std::string& text) {
   return text.size() == key_characters && zmq_z85_decode(bytes, text.c_str());
 }
 
-/// Value of the line "KEY VALUE"; empty if there is none.
-std::string value_in(const std::string& path, const std::string& key) {
+struct Entry {
+  std::string name;
+  KeyPair key;
+  bool truth = false;
+};
+
+/// What a NAME.key or NAME.pub says, or each part of a ring behind its "name NAME".
+std::vector<Entry> read_entries(const fs::path& path) {
+  std::vector<Entry> entries{{path.stem().string(), {}, false}};
   std::ifstream file(path);
   std::string word, value;
-  while (file >> word)
-    if (word == key && file >> value) return value;
-  return "";
+  while (file >> word >> value) {
+    if (word == "name") entries.push_back({value, {}, false});
+    if (word == "public") entries.back().key.public_key = value;
+    if (word == "secret") entries.back().key.secret_key = value;
+    if (word == "may") entries.back().truth = value == "truth";
+  }
+  std::erase_if(entries, [](const Entry& entry) { return !is_key(entry.key.public_key); });
+  return entries;
+}
+
+/// Files of a directory whose names end with `ending`, in the order of their names.
+std::vector<std::string> files_in(const std::string& directory, const std::string& ending) {
+  std::vector<std::string> paths;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(directory, ignored))
+    if (entry.path().extension() == ending) paths.push_back(entry.path().string());
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+std::string text_of(const KeyPair& key) {
+  return "public " + key.public_key + "\nsecret " + key.secret_key + "\n";
+}
+
+/// Mode bits of a file; 0 when it is not there.
+mode_t mode_of(const std::string& path) {
+  struct stat status {};
+  return stat(path.c_str(), &status) == 0 ? status.st_mode : 0;
+}
+
+/// The file that holds the pair of `name`, if there is one.
+std::optional<std::string> file_of_key(const std::string& directory, const std::string& name) {
+  const std::string own = path_of(directory, name, ".key");
+  if (mode_of(own)) return own;
+  for (const auto& ring : files_in(directory, ".keys"))
+    for (const auto& entry : read_entries(ring))
+      if (entry.name == name) return ring;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -59,42 +103,54 @@ void make_key(const std::string& directory, const std::string& name, bool truth)
   char public_key[key_characters + 1], secret_key[key_characters + 1];
   if (zmq_curve_keypair(public_key, secret_key) != 0)
     throw Error("this build of ZeroMQ has no CURVE");
-  const std::string open_half = std::string("public ") + public_key + "\n";
-  write_new(path_of(directory, name, ".key"), 0600, open_half + "secret " + secret_key + "\n");
-  write_new(path_of(directory, name, ".pub"), 0644, open_half + (truth ? "may truth\n" : ""));
+  write_new(path_of(directory, name, ".key"), 0600, text_of({public_key, secret_key}));
+  write_new(path_of(directory, name, ".pub"), 0644,
+            std::string("public ") + public_key + "\n" + (truth ? "may truth\n" : ""));
+}
+
+void make_rings(const std::string& directory, const std::string& ring,
+                const std::vector<std::string>& names) {
+  std::string pairs, open_halves;
+  for (const auto& name : names)
+    pairs += "name " + name + "\n" + text_of(read_key(directory, name));
+  for (const auto& [key, owner] : read_allowed(directory))
+    open_halves +=
+        "name " + owner.name + "\npublic " + key + "\n" + (owner.truth ? "may truth\n" : "");
+  const std::string below = directory + "/rings";
+  if (mkdir(below.c_str(), 0700) != 0 && errno != EEXIST)
+    throw Error(below + ": can't be made: " + std::strerror(errno));
+  write_new(path_of(below, ring, ".keys"), 0600, pairs);
+  write_new(path_of(below, "everybody", ".pubs"), 0644, open_halves);
 }
 
 KeyPair read_key(const std::string& directory, const std::string& name) {
-  const std::string path = path_of(directory, name, ".key");
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0)
-    throw ConfigError(path + ": no such key; dmise keygen " + directory + " " + name + " makes it");
-  if (status.st_mode & 077)
-    throw ConfigError(path + ": others may read this key; chmod 600 it and make a new one");
-  const KeyPair key{value_in(path, "public"), value_in(path, "secret")};
-  if (!is_key(key.public_key) || !is_key(key.secret_key))
-    throw ConfigError(path + ": not a key of dmise keygen");
-  return key;
+  const auto path = file_of_key(directory, name);
+  if (!path)
+    throw ConfigError(path_of(directory, name, ".key") + ": no such key; dmise keygen " +
+                      directory + " " + name + " makes it");
+  if (mode_of(*path) & 077)
+    throw ConfigError(*path + ": others may read this key; chmod 600 it and make a new one");
+  for (const auto& entry : read_entries(*path))
+    if (entry.name == name && is_key(entry.key.secret_key)) return entry.key;
+  throw ConfigError(*path + ": not a key of dmise keygen");
 }
 
 std::map<std::string, AllowedKey> read_allowed(const std::string& directory) {
   std::map<std::string, AllowedKey> allowed;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(directory, ignored)) {
-    if (entry.path().extension() != ".pub") continue;
-    const std::string path = entry.path().string();
-    const std::string key = value_in(path, "public");
-    if (is_key(key))
-      allowed[key] = {entry.path().stem().string(), key, value_in(path, "may") == "truth"};
-  }
+  for (const char* ending : {".pubs", ".pub"})
+    for (const auto& path : files_in(directory, ending))
+      for (const auto& entry : read_entries(path))
+        allowed[entry.key.public_key] = {entry.name, entry.key.public_key, entry.truth};
   return allowed;
 }
 
 std::string public_key_of(const std::string& directory, const std::string& name) {
-  const std::string path = path_of(directory, name, ".pub");
-  const std::string key = value_in(path, "public");
-  if (!is_key(key)) throw ConfigError(path + ": no public key of " + name);
-  return key;
+  for (const auto& entry : read_entries(path_of(directory, name, ".pub")))
+    if (entry.name == name) return entry.key.public_key;
+  for (const auto& ring : files_in(directory, ".pubs"))
+    for (const auto& entry : read_entries(ring))
+      if (entry.name == name) return entry.key.public_key;
+  throw ConfigError(path_of(directory, name, ".pub") + ": no public key of " + name);
 }
 
 bool is_loopback(const std::string& address) {

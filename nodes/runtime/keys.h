@@ -2,6 +2,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace dmise {
 
@@ -25,6 +26,15 @@ struct AllowedKey {
 /// `directory`, which is made with mode 0700 if it is not there. Throws `ConfigError` when there is
 /// such a key already, `Error` when it can't be written.
 void make_key(const std::string& directory, const std::string& name, bool truth);
+
+// Rings are many keys in one file, for those who are given files and no directory (containers): in
+// a directory of keys, X.keys counts as the NAME.key and X.pubs as the NAME.pub of each "name NAME"
+// in it.
+
+/// Makes rings/`ring`.keys (mode 0600) of the pairs of `names`, and rings/everybody.pubs of all
+/// NAME.pub. Throws as `make_key`, and as `read_key`.
+void make_rings(const std::string& directory, const std::string& ring,
+                const std::vector<std::string>& names);
 
 /// Reads NAME.key. Throws `ConfigError` when it is not there, is none, or others may read it.
 KeyPair read_key(const std::string& directory, const std::string& name);

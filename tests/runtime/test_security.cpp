@@ -77,6 +77,27 @@ TEST(Keys, AreReadableByTheirOwnerAlone) {
   EXPECT_THROW(make_key(keys.directory, "../b", false), ConfigError);
 }
 
+TEST(Keys, InARingCountAsFilesOfTheirOwn) {
+  const Keys keys({"time-master", "a", "b"}, {"scorer"});
+  make_rings(keys.directory, "sensors", {"a", "b"});
+  const std::string rings = keys.directory + "/rings";
+  for (const char* name : {"a", "b"}) {
+    EXPECT_EQ(read_key(rings, name).secret_key, read_key(keys.directory, name).secret_key);
+    EXPECT_EQ(public_key_of(rings, name), public_key_of(keys.directory, name));
+  }
+  EXPECT_THROW(read_key(rings, "time-master"), ConfigError);
+  EXPECT_THROW(public_key_of(rings, "c"), ConfigError);
+  const auto listed = read_allowed(keys.directory), in_ring = read_allowed(rings);
+  ASSERT_EQ(in_ring.size(), 4u);
+  for (const auto& [key, owner] : listed) {
+    EXPECT_EQ(in_ring.at(key).name, owner.name);
+    EXPECT_EQ(in_ring.at(key).truth, owner.name == "scorer");
+  }
+  EXPECT_THROW(make_rings(keys.directory, "sensors", {"a"}), ConfigError);  // none is replaced
+  ASSERT_EQ(chmod((rings + "/sensors.keys").c_str(), 0640), 0);
+  EXPECT_THROW(read_key(rings, "a"), ConfigError);
+}
+
 TEST(Keys, AreRequiredForAnythingButLoopback) {
   for (const char* address : {"tcp://127.0.0.1:0", "tcp://127.9.9.9:5", "ipc:///tmp/x",
                               "inproc://x", "tcp://[::1]:0", "tcp://localhost:1"})
