@@ -14,6 +14,7 @@
 #include "core/config/make_clock.h"
 #include "launch/commands.h"
 #include "launch/metrics_ports.h"
+#include "launch/own_address.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
 #include "launch/restarts.h"
@@ -39,6 +40,7 @@ struct LaunchOptions {
   int hosts = 0;  // > 0: sensors are behind so many agents
   bool force = false;
   std::string metrics, log_format = "text";  // of every process
+  bool nodes_elsewhere = false;  // on other hosts, in other containers: `dmise join` each
 };
 
 std::string number(double x) {
@@ -67,7 +69,7 @@ class Launch {
     std::filesystem::create_directories(directory_.path() + "/logs");
     start_master();
     const std::string master = master_address();
-    start_nodes(master);
+    if (!options_.nodes_elsewhere) start_nodes(master);
     metrics_.write_targets(directory_.path() + "/logs/prometheus-targets.json");
     watch(master, outcome);
     outcome.wall_s = Seconds(Clock_::now() - start).count();
@@ -98,7 +100,7 @@ class Launch {
            "--rejoin-within", number(restart ? network.join_within_s : 0.0),
            "--max-rejoins",   std::to_string(restart ? network.restarts : -1),
            "--report",        report(),
-           "--bind",          options_.bind,
+           "--bind",          numeric_address(options_.bind),
            "--announce",      announcement(),
            "--expect",        expected,
            "--ticks",         std::to_string(scenario_.last_tick() + 1),
@@ -213,9 +215,10 @@ class Launch {
     for (const auto& node : status.nodes)
       outcome.nodes.push_back(
           {node.name, node.times.compute_s, node.times.messaging_s, node.times.waiting_s});
+    if (clock->exit_code == 0) return;  // a signal may come when all is done
     if (stop.is_set()) {
       outcome.status = "interrupted";
-    } else if (clock->exit_code != 0) {
+    } else {
       outcome.status = "failed";
       outcome.reason = reason(status, clock_ended) + " (logs in " + directory_.path() + "/logs)";
     }
@@ -327,6 +330,8 @@ void add_launch_command(CLI::App& app) {
                       "ports the others'; auto: each says in its log where");
   command->add_option("--log-format", options->log_format, "of the processes' logs: text or json")
       ->capture_default_str();
+  command->add_flag("--nodes-elsewhere", options->nodes_elsewhere,
+                    "start the time-master alone: each other node is started by `dmise join`");
   command->add_flag("--force", options->force, "replace what is in the directory");
   command->callback([options] { launch(*options); });
 }

@@ -18,6 +18,7 @@ struct ExitWith {
 void add_check_command(CLI::App& app);
 void add_run_command(CLI::App& app);
 void add_launch_command(CLI::App& app);
+void add_join_command(CLI::App& app);
 void add_detect_command(CLI::App& app);
 void add_visible_command(CLI::App& app);
 void add_catalogue_command(CLI::App& app);

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   dmise::add_check_command(app);
   dmise::add_run_command(app);
   dmise::add_launch_command(app);
+  dmise::add_join_command(app);
   dmise::add_detect_command(app);
   dmise::add_visible_command(app);
   dmise::add_catalogue_command(app);

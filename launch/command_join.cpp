@@ -1,0 +1,253 @@
+#include <poll.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/config/scenario.h"
+#include "launch/commands.h"
+#include "launch/file_lock.h"
+#include "launch/own_address.h"
+#include "launch/run_directory.h"
+#include "launch/supervisor.h"
+#include "nodes/runtime/event.h"
+#include "nodes/runtime/master.h"
+#include "nodes/runtime/status.h"
+#include "sensors/positions/positions_evaluator.h"
+
+namespace dmise {
+namespace {
+
+using Clock_ = std::chrono::steady_clock;
+
+constexpr auto look_every = std::chrono::milliseconds(100);
+constexpr double answer_within_s = 0.5;
+constexpr int answers_missed = 6;  // in a row: the time-master that was there is gone
+constexpr const char* any_sensor = "sensor";
+
+struct JoinOptions {
+  std::string scenario, node, out, master, keys, host;
+  int slot = 0;                       // from 1: which sensor of the scenario; 0: any that is free
+  std::optional<std::uint64_t> seed;  // in place of the scenario's
+  std::vector<std::string> more;      // for the node's program
+};
+
+/// One node of a run whose time-master was started elsewhere, by `dmise launch --nodes-elsewhere`.
+/// This process becomes the node's program, so whoever started it sees the node itself.
+class Join {
+ public:
+  Join(const JoinOptions& options, const Scenario& scenario)
+      : options_(options), scenario_(scenario) {}
+
+  /// Does not return but when there is nothing (more) to be.
+  void run() {
+    if (options_.slot > int(scenario_.sensors.size())) {
+      std::fprintf(stderr, "no sensor %d in %s: nothing to do\n", options_.slot,
+                   options_.scenario.c_str());
+      return;
+    }
+    const bool not_needed = options_.node == positions_node && !scenario_.output.positions();
+    if (const auto name = fixed_name()) {
+      wait_for_master(*name);
+      not_needed ? stand_by(*name) : become(*name);
+    } else if (take_free_sensor()) {
+      wait_for_master(lock_name_);
+      become(lock_name_);
+    } else {
+      wait_for_master(scenario_.sensors.front().name);
+      stand_by(scenario_.sensors.front().name);
+      if (!lock_name_.empty()) become(lock_name_);
+    }
+  }
+
+ private:
+  std::optional<std::string> fixed_name() const {
+    if (options_.node != any_sensor) return options_.node;
+    if (options_.slot > 0) return scenario_.sensors[std::size_t(options_.slot - 1)].name;
+    return std::nullopt;
+  }
+
+  /// The first sensor of the scenario that nobody is yet.
+  bool take_free_sensor() {
+    const auto& sensors = scenario_.sensors;
+    return std::any_of(sensors.begin(), sensors.end(),
+                       [&](const auto& sensor) { return take(sensor.name); });
+  }
+
+  bool take(const std::string& name) {
+    FileLock lock(options_.out + "/.nodes/" + name + ".lock");
+    if (!lock.take()) return false;
+    lock_.emplace(std::move(lock));
+    lock_name_ = name;
+    return true;
+  }
+
+  /// The first sensor that the run waits for. At its end all are free, and nobody is wanted.
+  bool take_wanted_sensor(const RunStatus& status) {
+    std::vector<std::string> wanted = status.missing;
+    if (scenario_.network.on_silent_node == OnSilentNode::restart)
+      for (const auto& node : status.nodes)
+        if (!node.alive) wanted.push_back(node.name);
+    for (const auto& sensor : scenario_.sensors)
+      if (std::count(wanted.begin(), wanted.end(), sensor.name) > 0 && take(sensor.name))
+        return true;
+    return false;
+  }
+
+  Security security_as(const std::string& name) const { return {options_.keys, name}; }
+
+  /// It answers from the moment when the directory of the run is ready. Throws `Error` when it does
+  /// not within `join_within_s`.
+  void wait_for_master(const std::string& name) {
+    const Security security = security_as(name);
+    const auto deadline =
+        Clock_::now() + std::chrono::duration<double>(scenario_.network.join_within_s);
+    while (true) {
+      try {
+        master_ = numeric_address(options_.master);
+        ask_master(master_, answer_within_s, security);
+        return;
+      } catch (const ConfigError&) {
+        throw;
+      } catch (const Error& error) {
+        if (Clock_::now() > deadline) throw;
+      }
+      pause();
+    }
+  }
+
+  /// One too many: until the run is over, or a sensor's place is free.
+  void stand_by(const std::string& name) {
+    std::fprintf(stderr, "%s: nobody is missing; standing by\n", options_.node.c_str());
+    const Security security = security_as(name);
+    int missed = 0;
+    while (missed < answers_missed) {
+      try {
+        const RunStatus status = ask_master(master_, answer_within_s, security);
+        if (status.phase == Phase::ended || status.phase == Phase::failed) return;
+        if (options_.node == any_sensor && take_wanted_sensor(status)) return;
+        missed = 0;
+      } catch (const Error&) {
+        ++missed;
+      }
+      pause();
+    }
+  }
+
+  void pause() const {
+    pollfd until_stopped{.fd = stop_.fd(), .events = POLLIN, .revents = 0};
+    poll(&until_stopped, 1, int(look_every.count()));
+    if (stop_.is_set()) throw ExitWith{130};
+  }
+
+  std::vector<std::string> arguments(const std::string& name) const {
+    const auto& sensors = scenario_.sensors;
+    const bool sensor = std::any_of(sensors.begin(), sensors.end(),
+                                    [&](const auto& other) { return other.name == name; });
+    const std::string host = options_.host.empty() ? address_towards(master_) : options_.host;
+    std::vector<std::string> all{program_directory() + "/dmise-" + (sensor ? "sensor-node" : name),
+                                 "--name", name, "--master", master_};
+    const auto add = [&](std::initializer_list<std::string> more) { all.insert(all.end(), more); };
+    if (!options_.keys.empty()) add({"--keys", options_.keys});
+    if (name == broker_name)
+      add({"--publish", host, "--subscribe", host, "--observe", host});
+    else
+      add({"--host", host, "--config", options_.scenario});
+    if (sensor || name == positions_node) add({"--out", options_.out});
+    if (sensor)
+      add({"--digest", scenario_digest(scenario_), "--seed", std::to_string(scenario_.seed)});
+    all.insert(all.end(), options_.more.begin(), options_.more.end());
+    return all;
+  }
+
+  [[noreturn]] void become(const std::string& name) {
+    std::vector<std::string> texts = arguments(name);
+    std::vector<char*> words;
+    for (auto& text : texts) words.push_back(text.data());
+    words.push_back(nullptr);
+    std::fprintf(stderr, "joining %s as %s\n", master_.c_str(), name.c_str());
+    // A signal that comes from here on ends the process, or is the node's.
+    signal(SIGINT, SIG_DFL);
+    signal(SIGTERM, SIG_DFL);
+    if (stop_.is_set()) throw ExitWith{130};
+    execv(words[0], words.data());
+    throw Error(texts[0] + ": " + std::strerror(errno));
+  }
+
+  const JoinOptions& options_;
+  const Scenario& scenario_;
+  const Event& stop_ = stop_signal();
+  std::optional<FileLock> lock_;
+  std::string lock_name_;  // the sensor that this process is by the lock
+  std::string master_;     // numeric address
+};
+
+/// DMISE_SLOT, if it is a number: compose leaves a Swarm's "{{.Task.Slot}}" as it stands.
+int slot_of_environment() {
+  const char* text = std::getenv("DMISE_SLOT");
+  int slot = 0;
+  if (text) std::from_chars(text, text + std::strlen(text), slot);
+  return slot;
+}
+
+void join(JoinOptions options) {
+  if (options.slot == 0) options.slot = slot_of_environment();
+  if (options.slot < 0)
+    throw ConfigError("--slot: must be from 1, got " + std::to_string(options.slot));
+  Scenario scenario = load_scenario(options.scenario);
+  if (options.seed) scenario.seed = *options.seed;
+  bool known = false;
+  for (const char* name :
+       {broker_name, "orbit-node", "environment-node", positions_node, any_sensor})
+    known = known || options.node == name;
+  for (const auto& sensor : scenario.sensors) known = known || options.node == sensor.name;
+  if (!known) throw ConfigError(options.node + ": is no node of " + options.scenario);
+  Join(options, scenario).run();
+}
+
+}  // namespace
+
+void add_join_command(CLI::App& app) {
+  auto options = std::make_shared<JoinOptions>();
+  auto* command = app.add_subcommand(
+      "join",
+      "Is one node of a run whose time-master is elsewhere (`dmise launch --nodes-elsewhere`)");
+  command->add_option("scenario", options->scenario, "scenario (YAML), that of the run")
+      ->required();
+  command
+      ->add_option("node", options->node,
+                   "broker, orbit-node, environment-node, positions-node, a sensor's name, or "
+                   "sensor: the first that nobody is yet, and one too many stands by")
+      ->required();
+  command->add_option("--master", options->master, "address of the time-master, tcp://HOST:PORT")
+      ->required();
+  command->add_option("--out", options->out, "directory of the run, which its nodes share")
+      ->default_val("out/launch");
+  command->add_option("--slot", options->slot,
+                      "of `sensor`: which of the scenario, from 1 (or DMISE_SLOT); one too many "
+                      "ends at once");
+  command->add_option("--keys", options->keys,
+                      "directory of keys (dmise keygen); without it loopback alone");
+  command->add_option("--host", options->host,
+                      "where the node's own sockets bind, tcp://A.B.C.D:0; else this machine's "
+                      "address on the way to the time-master");
+  command->add_option("--seed", options->seed, "as given to the launch");
+  command->allow_extras();  // for the node's program: --threads, --log-level
+  command->callback([options, command] {
+    options->more = command->remaining();
+    join(*options);
+  });
+}
+
+}  // namespace dmise

@@ -1,0 +1,148 @@
+"""Nodes that are started elsewhere join a run: by slot, or by what is free; the same bytes.
+
+    join.py DMISE
+"""
+
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import time
+
+from harness import Run, check, check_same, first_frame, main, wait_until, write_scenario
+
+NODES = ("broker", "orbit-node", "environment-node")
+
+
+def free_address():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp://127.0.0.1:{probe.getsockname()[1]}"
+
+
+class Stack:
+    """A launch without nodes, and nodes that join it, each a process of its own."""
+
+    def __init__(self, binary, scenario, out, keys):
+        self.binary, self.scenario, self.out = binary, scenario, out
+        self.address = free_address()
+        self.keys = ("--keys", keys)
+        self.runs = {}
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        for run in self.runs.values():
+            run.__exit__(*error)
+
+    def launch(self):
+        self.runs["launch"] = Run(self.binary, "launch", self.scenario, "--nodes-elsewhere", "--bind", self.address,
+                                  "--out", self.out, *self.keys)
+
+    def join(self, node, *more, called=None):
+        run = Run(self.binary, "join", self.scenario, node, "--master", self.address, "--out", self.out,
+                  *self.keys, *more)
+        self.runs[called or node] = run
+        return run
+
+    def finish(self):
+        return {name: run.finish()[0] for name, run in self.runs.items()}
+
+
+def joins_as(run):
+    """The sensor that a joined process is, once it is one."""
+    def name():
+        command = pathlib.Path(f"/proc/{run.process.pid}/cmdline").read_bytes().decode().split("\0")
+        return command[0].endswith("/dmise-sensor-node") and command[command.index("--name") + 1]
+    return wait_until(name, "a sensor's program")
+
+
+def says(binary, *arguments):
+    done = subprocess.run([str(binary), *map(str, arguments)], capture_output=True, text=True, timeout=60)
+    return done.returncode, done.stderr.strip()
+
+
+def test(binary, directory):
+    scenario = write_scenario(directory, duration_s=30, network=", join_within_s: 60")
+    keys, reference = directory / "keys", directory / "reference"
+    check(says(binary, "keygen", keys, "--scenario", scenario, "--rings")[0] == 0, "keygen makes rings")
+    ring = keys / "rings/sensors.keys"
+    check(oct(ring.stat().st_mode & 0o777) == "0o600", "their owner alone may read the sensors' keys")
+    with Run(binary, "run", scenario, "--out", reference) as run:
+        check(run.finish()[0] == 0, "a run of one process is complete")
+
+    # As a container has them: some files, and nobody's keys but its own.
+    shown = directory / "secrets"
+    shown.mkdir()
+    (shown / "everybody.pubs").symlink_to(keys / "rings/everybody.pubs")
+    (shown / "sensors.keys").symlink_to(ring)
+    for name in (*NODES, "time-master", "operator"):
+        (shown / f"{name}.key").symlink_to(keys / f"{name}.key")
+
+    out = directory / "slots"
+    with Stack(binary, scenario, out, shown) as stack:
+        for slot in (2, 1):  # before there is anybody to join
+            stack.join("sensor", "--slot", str(slot), called=f"slot {slot}")
+        stack.launch()
+        for node in NODES:
+            stack.join(node)
+        codes = stack.finish()
+        check(set(codes.values()) == {0}, f"all end with 0: {codes} {stack.runs['launch'].stderr[-300:]}")
+    check_same(out, reference, "by slot, with rings of keys")
+
+    out = directory / "free"
+    with Stack(binary, scenario, out, shown) as stack:
+        stack.launch()
+        for called in ("first", "second", "spare"):
+            stack.join("sensor", called=called)
+        for node in NODES:
+            stack.join(node)
+        codes = stack.finish()
+        check(set(codes.values()) == {0}, f"one sensor too many stands by: {codes}")
+        spares = [name for name, run in stack.runs.items() if "standing by" in run.stderr]
+        check(len(spares) == 1, f"one stood by: {spares}")
+    check_same(out, reference, "by what is free")
+
+    slow = write_scenario(directory, duration_s=3600, network=", join_within_s: 60, real_time: 5",
+                          name="slow.yaml", on_silent_node="restart")
+    out = directory / "replaced"
+    with Stack(binary, slow, out, shown) as stack:
+        stack.launch()
+        sensors = {joins_as(run): run for run in (stack.join("sensor", called="first"), stack.join("sensor", called="second"))}
+        check(set(sensors) == {"alpha", "beta"}, f"two are the two sensors: {sorted(sensors)}")
+        spare = stack.join("sensor", called="spare")
+        for node in NODES:
+            stack.join(node)
+        first_frame(out, "alpha")
+        os.kill(sensors["alpha"].process.pid, signal.SIGKILL)
+        check(joins_as(spare) == "alpha", "a spare takes the place of a sensor that was killed")
+        wait_until(lambda: "takes up its work" in (out / "logs/time-master.log").read_text()
+                   or "process 2 of its name" in (out / "logs/time-master.log").read_text(),
+                   "the time-master to take it")
+        began = time.monotonic()
+        for run in stack.runs.values():
+            if run.process.poll() is None:
+                run.process.send_signal(signal.SIGTERM)
+        codes = stack.finish()
+        check(codes["launch"] == 130, f"SIGTERM ends all {time.monotonic() - began:.1f} s later: {codes}")
+        for run in stack.runs.values():
+            check(not run.living(), "no process is left")
+
+    with Stack(binary, scenario, directory / "alone", shown) as stack:
+        waiting = stack.join("sensor", called="waiting")
+        wait_until(lambda: (directory / "alone/.nodes/alpha.lock").exists(), "a sensor that waits")
+        waiting.process.send_signal(signal.SIGINT)
+        code, _ = waiting.finish()
+        check(code == 130, f"one that waits for a run can be interrupted: {code}")
+        code, err = says(binary, "join", scenario, "sensor", "--slot", 3, "--master", stack.address, *stack.keys)
+        check(code == 0 and "nothing to do" in err, f"a slot too many ends at once: {err}")
+        code, err = says(binary, "join", scenario, "gamma", "--master", stack.address, *stack.keys)
+        check(code == 2 and "no node" in err, f"a node that nobody knows is refused: {err}")
+        code, err = says(binary, "join", scenario, "alpha", "--master", "tcp://10.9.8.7:1")
+        check(code == 2 and "keys" in err, f"no keys, no other address than loopback: {err}")
+
+
+if __name__ == "__main__":
+    main(test)
