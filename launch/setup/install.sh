@@ -68,6 +68,19 @@ install_packages() {
   apt_get install --no-install-recommends "${missing[@]}" || why_apt_failed
 }
 
+# install_without_starting LIST..: as install_packages, of packages that have services.
+install_without_starting() (
+  policy=/usr/sbin/policy-rc.d
+  [[ -n $(missing_packages $(names_in "$@")) ]] || exit 0
+  need_root "install $(names_in "$@" | tr '\n' ' ')"
+  if [[ ! -e $policy ]]; then
+    trap 'as_root rm -f "$policy"' EXIT
+    printf '#!/bin/sh\nexit 101\n' | as_root tee "$policy" >/dev/null
+    as_root chmod 755 "$policy"
+  fi
+  install_packages "$@"
+)
+
 # download_package PACKAGE DIRECTORY: its .deb, not installed.
 download_package() {
   local download=(apt-get -q -o Acquire::Retries=3 download "$1")

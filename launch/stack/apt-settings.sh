@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# apt-settings.sh ROOT: the mirrors, keys and proxies of this machine into the Debian system below ROOT,
+# so that it fetches its packages from where this machine does.
+set -euo pipefail
+
+root=$1
+rm -f "$root/etc/apt/sources.list"
+for file in sources.list sources.list.d trusted.gpg trusted.gpg.d keyrings auth.conf auth.conf.d; do
+  [[ ! -e /etc/apt/$file ]] || cp -a "/etc/apt/$file" "$root/etc/apt/"
+done
+mkdir -p "$root/usr/share/keyrings" "$root/etc/ssl/certs"
+cp -a /usr/share/keyrings/. "$root/usr/share/keyrings/"
+apt-config dump | grep -E '^Acquire::(http|https|ftp)' >"$root/etc/apt/apt.conf.d/80host" || true
+[[ ! -e /etc/ssl/certs/ca-certificates.crt ]] ||
+  cp -L /etc/ssl/certs/ca-certificates.crt "$root/etc/ssl/certs/"

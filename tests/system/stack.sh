@@ -1,0 +1,180 @@
+#!/usr/bin/env bash
+# The image of launch/stack/Dockerfile, made on a bare Debian by the set-up of the README; a run of its
+# containers with compose and as a stack of a Swarm makes the bytes that `dmise run` makes.
+#
+#   stack.sh CHECKOUT DMISE      of the committed tree (HEAD) of that checkout
+#
+# Starts a dockerd of its own in namespaces of its own. A proof holds until something that it depends
+# on changes; it and the base image are kept in ${XDG_CACHE_HOME:-~/.cache}/dmise. Takes a whole build,
+# so it runs only with DMISE_BARE_ROOT=1; else, and where the kernel lets no container run, it exits
+# 77 (skipped). DMISE_IMAGE: an image (`docker save`) to test in place of one built here; no proof.
+set -euo pipefail
+
+name=stack
+checkout=$(readlink -f "$1") dmise=$(readlink -f "$2")
+tests=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
+data_root=${XDG_CACHE_HOME:-$HOME/.cache}/dmise/docker
+file=$checkout/launch/stack/compose.yaml
+base=dmise-base:bookworm builder=dmise-builder project=dmise-test
+export PATH=/usr/sbin:/usr/bin:/sbin:/bin
+source "$tests/setup_proof.sh"
+source "$tests/stack/products.sh"
+source "$tests/stack/daemon.sh"
+
+clean_up() {
+  if [[ -n $outer ]]; then
+    docker swarm leave --force >/dev/null 2>&1 || true
+    compose down --volumes --timeout 1 >/dev/null 2>&1 || true
+    stop_daemon
+  fi
+  rm -rf --one-file-system "$work"
+}
+
+compose() { docker-compose -p "$project" -f "$file" "$@"; }
+container_of() { compose ps -aq "$1" 2>/dev/null; }
+
+# A registry's Debian or, where none can be reached, one made here.
+make_base() {
+  if timeout 60 docker pull -q debian:bookworm-slim >/dev/null 2>&1; then
+    base=debian:bookworm-slim
+  else
+    "$checkout/launch/stack/base-image.sh" "$base" || die "no base image: see above"
+  fi
+  say "the base is $base"
+}
+
+build() {  # TARGET NAME: a stage of the Dockerfile
+  docker build --network host -f "$work/tree/launch/stack/Dockerfile" --build-arg BASE="$base" \
+    ${http_proxy:+--build-arg http_proxy} ${https_proxy:+--build-arg https_proxy} \
+    ${1:+--target "$1"} -t "$2" "$work/tree" >"$work/build.log" 2>&1 ||
+    die "docker build failed: $(tail -n 20 "$work/build.log")"
+}
+
+# What bare_root.sh proves, on the way to the image.
+check_setup() {
+  local began=$SECONDS
+  docker run --rm --network none --user 65534 -v "$work/tree:/src:ro" "$base" /src/dmise demo \
+    >"$work/refusal.log" 2>&1 && die "the demonstration ran without its packages"
+  check_refusal "$work/refusal.log"
+  build builder "$builder"
+  say "./dmise build on a bare Debian: done after $((SECONDS - began)) s"
+  docker run -d --name demo --network none "$builder" sleep infinity >/dev/null
+  docker exec demo ./dmise demo >"$work/demo.log" 2>&1 || die "./dmise demo: $(tail -n 20 "$work/demo.log")"
+  docker cp demo:/src/out/demo "$work/demo" >/dev/null
+  check_demonstration "$work/demo"
+  docker exec demo ./dmise demo >"$work/demo.log" 2>&1
+  grep -q 'holds this run, complete' "$work/demo.log" || die "a second ./dmise demo did the work again"
+  docker rm -f demo >/dev/null
+  say "ok: the demonstration is whole, after $((SECONDS - began)) s"
+  write_proof "$(setup_proof)" "$((SECONDS - began))"
+}
+
+check_image() {
+  local inside
+  inside=$(docker run --rm --network none --read-only --entrypoint sh "$DMISE_IMAGE" -c \
+    'id -u; for c in cc c++ g++ gcc clang ld as cmake ninja make; do command -v $c; done
+     touch /etc/x /opt/dmise/x 2>/dev/null && echo writable; true')
+  [[ $inside == 10001 ]] || die "in the image: uid, compilers and what can be written: '$inside'"
+  say "ok: user 10001, no compiler, $(($(docker image inspect -f '{{.Size}}' "$DMISE_IMAGE") / 1000000)) MB"
+}
+
+make_keys() {
+  install -d -m 700 -o 10001 -g 10001 "$DMISE_KEYS"
+  docker run --rm --network none --read-only -v "$DMISE_KEYS:/keys" -v "$DMISE_SCENARIOS:/scenarios:ro" \
+    "$DMISE_IMAGE" keygen /keys --scenario /scenarios/scenario.yaml --rings >/dev/null
+}
+
+# Every container as compose.yaml says, and no secret key where `docker inspect` shows it.
+check_containers() {
+  local containers secret
+  mapfile -t containers < <(docker ps -aq --no-trunc)
+  ((${#containers[@]} >= $1)) || die "${#containers[@]} containers, not $1"
+  docker inspect "${containers[@]}" >"$work/containers.json"
+  [[ $(docker inspect -f '{{.Config.User}} {{.HostConfig.ReadonlyRootfs}} {{.HostConfig.CapDrop}}' \
+    "${containers[@]}" | sort -u) == 'dmise true [ALL]' ]] || die "a container has more rights than it needs"
+  for secret in $(sed -n 's/^secret //p' "$DMISE_KEYS"/*.key); do
+    ! grep -qF -- "$secret" "$work/containers.json" || die "a secret key can be read by docker inspect"
+  done
+}
+
+# One sensor too many: it stands by.
+check_compose() {
+  local began=$SECONDS
+  compose config -q >/dev/null 2>"$work/config.log" || die "compose config: $(cat "$work/config.log")"
+  compose up --no-color --scale sensor=4 --exit-code-from time-master >"$work/up.log" 2>&1 ||
+    die "compose up: $(tail -n 30 "$work/up.log")"
+  docker cp "$(container_of time-master):/products" "$work/compose" >/dev/null
+  same_products "$work/reference" "$work/compose" 17 "compose ($((SECONDS - began)) s)"
+  check_containers 9
+  compose down --volumes --timeout 1 >/dev/null 2>&1
+}
+
+# A scenario that nobody can run: compose gives the launcher's code.
+check_failure() {
+  local code=0
+  DMISE_SCENARIO=missing.yaml compose up --no-color --exit-code-from time-master \
+    >"$work/missing.log" 2>&1 || code=$?
+  ((code == 2)) || die "exit code $code of a run without scenario, not 2: $(tail -n 9 "$work/missing.log")"
+  compose down --volumes --timeout 1 >/dev/null 2>&1
+  say "ok: the exit code is that of the run"
+}
+
+task() { docker inspect -f "{{.Status.$1}}" "$(docker service ps -q --no-trunc "${project}_time-master")"; }
+task_over() { [[ $(task State) =~ ^(complete|failed|rejected)$ ]]; }
+
+check_swarm() {
+  local began=$SECONDS
+  docker swarm init --advertise-addr 127.0.0.1 >/dev/null
+  DMISE_SENSORS=3 docker stack deploy --resolve-image never -c "$file" "$project" >"$work/deploy.log" 2>&1 ||
+    die "docker stack deploy: $(tail -n 3 "$work/deploy.log")"
+  wait_until 600 "the end of the Swarm's run" task_over
+  [[ $(task ContainerStatus.ExitCode) == 0 ]] ||
+    die "the Swarm's run: $(task Err) $(docker service logs "${project}_time-master" 2>&1 | tail -n 5)"
+  docker cp "$(task ContainerStatus.ContainerID):/products" "$work/swarm" >/dev/null
+  same_products "$work/reference" "$work/swarm" 17 "a Swarm ($((SECONDS - began)) s)"
+  check_containers 8
+  docker stack rm "$project" >/dev/null
+  docker swarm leave --force >/dev/null
+}
+
+[[ ${DMISE_BARE_ROOT:-0} == 1 ]] || { say "skipped: set DMISE_BARE_ROOT=1 to spend a build on it"; exit 77; }
+why=$(kernel_forbids)
+[[ -z $why ]] || { say "skipped: no container can run here: $why"; exit 77; }
+command -v dockerd docker-compose >/dev/null || die "needs docker.io and docker-compose"
+mkdir -p "$proofs"
+proof=$proofs/stack-$(digest_of_files 'proto/.*|nodes/.*|broker/.*|time-master/.*|launch/.*|tests/system/stack.*|.dockerignore').proof
+if [[ -f $proof && -f $(setup_proof) && -z ${DMISE_IMAGE-} ]]; then
+  say "proved before: $(cat "$proof")"
+  exit 0
+fi
+exec 9>"$proofs/docker.lock"
+flock 9  # one dockerd a data root
+work=$(mktemp -d -t dmise-stack-XXXXXX)
+trap clean_up EXIT
+export DMISE_SCENARIOS=$work/scenarios DMISE_SCENARIO=scenario.yaml DMISE_KEYS=$work/keys
+mkdir "$work/tree" "$DMISE_SCENARIOS"
+cp "$tests"/stack/*.yaml "$DMISE_SCENARIOS/"
+chmod -R a+rX "$DMISE_SCENARIOS"
+given=${DMISE_IMAGE-}
+export DMISE_IMAGE=dmise-test
+if [[ -z $given ]]; then
+  committed archive HEAD | tar -x -C "$work/tree"
+  start_daemon outside
+  make_base
+  check_setup
+  build '' "$DMISE_IMAGE"
+  stop_daemon
+fi
+"$dmise" run "$DMISE_SCENARIOS/scenario.yaml" --out "$work/reference" >"$work/run.log" 2>&1 ||
+  die "dmise run: $(tail -n 1 "$work/run.log")"
+start_daemon inside
+[[ -z $given ]] || DMISE_IMAGE=$(docker load -q <"$given" | sed -n 's/^Loaded image: //p')
+check_image
+make_keys
+check_compose
+check_failure
+check_swarm
+[[ -z $given ]] || exit 0
+docker image rm "$DMISE_IMAGE" "$builder" >/dev/null
+docker system prune -f --volumes >/dev/null
+write_proof "$proof" "$SECONDS"
