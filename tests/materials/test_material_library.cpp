@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/base/error.h"
+#include "core/base/units.h"
 #include "core/config/material_config.h"
 
 namespace dmise {
@@ -32,6 +35,29 @@ TEST(MaterialLibrary, EveryMaterialStatesItsSourceAndConservesEnergy) {
         EXPECT_LE(directional_reflectance(brdf_at(material, wavelength_m), i / 20.0), 1.0 + 1e-9)
             << name;
   }
+}
+
+// By quadrature over the hemisphere that is seen, at incidence from the normal to grazing: what
+// leaves is no more than what falls in, whatever the closed form says.
+TEST(MaterialLibrary, NoMaterialReflectsMoreThanFallsInAtAnyGeometry) {
+  constexpr int steps = 256;
+  for (const auto& [name, material] : library().all())
+    for (const double wavelength_m : {0.4e-6, 0.6e-6, 1.4e-6})
+      for (const double cos_in : {1.0, 0.9, 0.6, 0.3, 0.1, 0.02, 1e-3}) {
+        const Brdf brdf = brdf_at(material, wavelength_m);
+        const double sin_in = std::sqrt(1 - cos_in * cos_in);
+        double sum = 0;
+        for (int i = 0; i < steps; ++i)
+          for (int j = 0; j < steps; ++j) {
+            const double cos_out = (i + 0.5) / steps, azimuth = pi * (j + 0.5) / steps;
+            const double cos_phase =
+                cos_in * cos_out + sin_in * std::sqrt(1 - cos_out * cos_out) * std::cos(azimuth);
+            sum += reflected_per_sr(brdf, {cos_in, cos_out, cos_phase});
+          }
+        const double reflectance = sum * 2 * pi / (double(steps) * steps) / cos_in;
+        EXPECT_LE(reflectance, 1.0 + 2e-3) << name << " " << wavelength_m << " " << cos_in;
+        EXPECT_GE(reflectance, 0.0);
+      }
 }
 
 std::string complaint(const std::string& text) {
