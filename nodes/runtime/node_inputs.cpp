@@ -13,8 +13,9 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
-constexpr milliseconds gap_patience{20};     // it is published: late or lost
-constexpr milliseconds quiet_patience{500};  // nothing is known of it: the producer may be slow
+constexpr milliseconds gap_patience{20};         // it is published: late or lost
+constexpr milliseconds gap_patience_limit{500};  // doubled whenever it was only late
+constexpr milliseconds quiet_patience{500};      // nothing is known of it: the producer may be slow
 constexpr milliseconds quiet_patience_limit{8000};  // doubled each time up to this
 constexpr milliseconds idle{1000};
 
@@ -27,7 +28,8 @@ NodeInputs::NodeInputs(zmq::context_t& context, std::vector<std::string> topics,
       topics_(topics),
       inbox_(std::move(topics)),
       subscribe_(make_socket(context, zmq::socket_type::sub, max_data_bytes)),
-      quiet_(quiet_patience) {}
+      quiet_(quiet_patience),
+      gap_(gap_patience) {}
 
 bool NodeInputs::consumes(const std::string& topic) const {
   return std::find(topics_.begin(), topics_.end(), topic) != topics_.end();
@@ -107,6 +109,7 @@ void NodeInputs::receive() {
   for (auto& [name, source] : sources_)
     for (auto* socket : {&source.direct, &source.asker})
       if (*socket) receive_from(**socket, &name);
+  learn_patience();
 }
 
 /// `publisher`: the only one who may speak there; null: anyone.
@@ -131,19 +134,33 @@ nanoseconds NodeInputs::ask_for(Tick tick) {
   const auto wants = inbox_.wanted(tick);
   if (wants.empty()) return idle;
   const bool gap = std::any_of(wants.begin(), wants.end(), [](const auto& w) { return w.gap; });
-  const nanoseconds patience = gap ? nanoseconds(gap_patience) : quiet_;
+  const Missing missing = gap ? Missing::gap : Missing::quiet;
+  // Patience begins when it is known that something is missing. 0: to be asked without delay.
+  if (missing > missing_ && asked_.count() != 0) asked_ = now();
+  missing_ = missing;
+  const nanoseconds patience = gap ? gap_ : quiet_;
   if (now() - asked_ > patience) {
     for (const Inbox::Want& want : wants)
       ask(want.topic, want.from_sequence,
           want.from_tick || !may_miss_ ? want.from_tick : std::optional(tick));
     asked_ = now();
+    if (gap) duplicates_when_asked_ = inbox_.duplicates();
     if (!gap) quiet_ = std::min<nanoseconds>(2 * quiet_, quiet_patience_limit);
   }
   return patience;
 }
 
+/// What was asked for and came twice was only late: a network of many takes its time, and asking
+/// again makes it more.
+void NodeInputs::learn_patience() {
+  if (!duplicates_when_asked_ || inbox_.duplicates() == *duplicates_when_asked_) return;
+  duplicates_when_asked_.reset();
+  gap_ = std::min<nanoseconds>(2 * gap_, gap_patience_limit);
+}
+
 void NodeInputs::be_patient_again() {
   asked_ = now();
+  missing_ = Missing::nothing;
   quiet_ = quiet_patience;
 }
 

@@ -62,6 +62,7 @@ class NodeInputs {
   };
   void follow(const v1::Publisher& publisher);
   void receive_from(zmq::socket_t& socket, const std::string* publisher);
+  void learn_patience();
   void ask(const std::string& topic, std::uint64_t from_sequence, std::optional<Tick> from_tick);
   void list_sockets();
 
@@ -78,7 +79,10 @@ class NodeInputs {
   std::vector<zmq::socket_t*> sockets_;              // that data arrive on
   bool may_miss_ = false;
   std::chrono::nanoseconds asked_{0};
+  enum class Missing { nothing, quiet, gap } missing_ = Missing::nothing;  // of the tick awaited
   std::chrono::nanoseconds quiet_{0};
+  std::chrono::nanoseconds gap_{0};
+  std::optional<std::uint64_t> duplicates_when_asked_;  // for a gap; nothing came twice since
   std::uint64_t asked_again_ = 0;
   std::uint64_t received_ = 0;
 };
