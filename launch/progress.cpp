@@ -24,10 +24,13 @@ void Progress::clear_line() {
   open_line_ = false;
 }
 
+bool Progress::is_due() const {
+  return Seconds(std::chrono::steady_clock::now() - shown_).count() >= interval_s_;
+}
+
 bool Progress::due(bool last) {
-  const auto now = std::chrono::steady_clock::now();
-  if (!last && Seconds(now - shown_).count() < interval_s_) return false;
-  shown_ = now;
+  if (!last && !is_due()) return false;
+  shown_ = std::chrono::steady_clock::now();
   return true;
 }
 

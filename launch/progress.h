@@ -19,6 +19,8 @@ class Progress {
   explicit Progress(double interval_s = 5.0);
   ~Progress();
   void show(const ProgressState& state, bool last = false);
+  /// Whether `show` would say anything now.
+  bool is_due() const;
   /// The same for other work, `share` of it in [0, 1] done.
   void show_share(double share, const std::string& what);
   /// Ends the line being redrawn, so that other text can follow.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <tuple>
 
@@ -102,6 +103,11 @@ void RunDirectory::merge_lines() const {
     for (const auto& row : rows) text += std::get<3>(row) + "\n";
     write_file_whole(file(name), text);
   }
+}
+
+long count_lines(const std::string& path) {
+  std::ifstream file(path);
+  return long(std::count(std::istreambuf_iterator<char>(file), {}, '\n'));
 }
 
 std::vector<SensorSummary> summarise(const Scenario& scenario, const std::string& run_path) {

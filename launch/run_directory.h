@@ -47,4 +47,7 @@ struct SensorSummary {
 };
 std::vector<SensorSummary> summarise(const Scenario& scenario, const std::string& run_path);
 
+/// Whole lines of a file; 0 where there is none.
+long count_lines(const std::string& path);
+
 }  // namespace dmise
