@@ -5,6 +5,7 @@
 #include "bench/bench_interpolation.h"
 #include "bench/bench_network.h"
 #include "bench/bench_render.h"
+#include "bench/bench_scaling.h"
 #include "bench/bench_sgp4.h"
 #include "bench/bench_sky.h"
 #include "bench/bench_tick.h"
@@ -18,6 +19,7 @@ std::vector<Bench> benches() {
       {"network", "sensors that keep up with real time, a process each, and their memory",
        bench_network, add_network_options},
       {"render", "pictures and light of objects with a shape", bench_render},
+      {"scaling", "what 2 to 200 sensor nodes cost time-master, broker and links", bench_scaling},
       {"sgp4", "propagation of whole catalogues against the compiled reference",
        [](bool json) { return bench_sgp4(json) | bench_figure5(json); }},
       {"sky", "the sky of a frame and the stars of a field", bench_sky},
