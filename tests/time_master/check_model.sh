@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Looks at every state of the model of the lock-step protocol with spin; then plants faults, each of
+# Looks at every state of a model of the lock-step protocol with spin; then plants faults, each of
 # which the checks must find.
 #
-#   check_model.sh lockstep.pml
+#   check_model.sh lockstep.pml FAULT..
 set -euo pipefail
 
 model=$(readlink -f "$1")
+shift
 command -v spin >/dev/null || { echo "spin is not installed"; [[ -n ${DMISE_DATA-} ]] && exit 1 || exit 77; }
 work=$(mktemp -d -t dmise-test-XXXXXX)
 trap 'rm -rf "$work"' EXIT
@@ -29,7 +30,7 @@ verifier liveness "" -DNFAIR=4
 grep -q 'errors: 0' liveness.log || { cat liveness.log; fail "a run that does not end"; }
 echo "ok: every run ends"
 
-for fault in forgets_look_back resumes_after_own trusts_the_dead publishes_no_history; do
+for fault in "$@"; do
   verifier "$fault" "-DFAULT=$fault" -DSAFETY -DNOCLAIM
   "./$fault" -m100000 >fault.log
   ! grep -q 'errors: 0' fault.log || fail "the planted fault '$fault' is not found"
