@@ -8,8 +8,10 @@
 #include "bench/figure.h"
 #include "bench/timing.h"
 #include "core/base/error.h"
+#include "core/base/rng.h"
 #include "core/base/units.h"
 #include "core/materials/shapes.h"
+#include "core/optics/deposit.h"
 #include "sensors/render/render_module.h"
 
 namespace dmise {
@@ -57,6 +59,41 @@ double tile_ms(Renderer& renderer, double& light) {
   return 1e3 * median_seconds(9, draw, process_seconds);
 }
 
+/// 15,000 star trails of some 1.5 px on 3326 x 2504 pixels: as 32 snapshots by OpenGL and along
+/// their paths.
+void measure_snapshots(SceneRenderer& renderer, bool json) {
+  constexpr int columns = 3326, rows = 2504, snapshots = 32;
+  constexpr double sigma_px = 1.5 / fwhm_per_sigma;
+  const RngKey key = rng_key(1, "bench", 1, "stars");
+  std::vector<Arc> trails;
+  for (std::uint32_t i = 0; i < 15000; ++i) {
+    const auto u = [&](std::uint32_t draw) { return uniform_of(rng_word(key, i, draw)); };
+    const PixelPosition at{u(0) * columns, u(1) * rows}, half{0.5 + u(2), u(3) - 0.5};
+    trails.push_back({at - half, at, at + half, 1e4});
+  }
+  RateImage image(columns, rows, 100.0f);
+  const ScenePlane plane{image.pixels.data(), columns, rows, columns};
+  std::vector<ScenePoint> points;
+  const auto draw_all = [&] {
+    for (int k = 0; k < snapshots; ++k) {
+      for (const Arc& trail : trails) {
+        const PixelPosition at = place(trail, (k + 0.5) / snapshots);
+        points.push_back({at.x_px, at.y_px, trail.signal_e / snapshots});
+      }
+      if (points.size() < 60000 && k + 1 < snapshots) continue;
+      renderer.add_points(points, sigma_px, plane);
+      points.clear();
+    }
+  };
+  draw_all();
+  Threads one(1);
+  const PsfTable psf = make_psf_table(sigma_px);
+  const double path_s = median_seconds(5, [&] { deposit(trails, psf, image, one); });
+  const double drawn_s = median_seconds(5, draw_all, process_seconds);
+  print_figure({"snapshots_frame_s", drawn_s, "s", "path integral [s]", path_s}, json);
+  print_figure({"snapshots_frame_ratio", drawn_s / path_s, "1"}, json);
+}
+
 }  // namespace
 
 int bench_render(bool json) {
@@ -76,6 +113,7 @@ int bench_render(bool json) {
                   .target = 200,
                   .less_is_better = true},
                  json);
+    measure_snapshots(*load_scene_renderer(), json);
   } catch (const Error& error) {
     std::fprintf(stderr, "bench render: %s: the tile is left out\n", error.what());
   }

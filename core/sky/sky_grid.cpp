@@ -39,7 +39,7 @@ struct Grid {
   int columns, rows;
   const PixelFunction& f;
   double tolerance;
-  float* out;
+  float* out;  // null: patches are wanted
   Axis across{columns}, down{rows};
   int stride = across.cells + 3;  // nodes in a row, with one beyond each end
   std::vector<double> nodes;
@@ -101,6 +101,7 @@ struct Grid {
 struct Piece {
   const Grid& grid;
   SkyGridReport report;
+  std::vector<SkyPatch> patches;
 
   double evaluate(double x, double y) {
     ++report.evaluations;
@@ -127,6 +128,21 @@ struct Piece {
       return;
     }
     const float t0 = float(x0 / across.width - i), dt = float(1.0 / across.width);
+    if (!grid.out) {
+      SkyPatch patch{.x0 = x0, .y0 = y0, .x1 = x1 - 1, .y1 = y1 - 1, .u0 = t0, .du = dt};
+      patch.v0 = float(y0 / down.width - j);
+      patch.dv = float(1.0 / down.width);
+      std::array<std::array<double, 4>, 4> columns;  // polynomials of v
+      for (int k = 0; k < 4; ++k)
+        columns[k] = cubic(grid.node(i - 1 + k, j - 1), grid.node(i - 1 + k, j),
+                           grid.node(i - 1 + k, j + 1), grid.node(i - 1 + k, j + 2));
+      for (std::size_t b = 0; b < 4; ++b) {
+        const auto c = cubic(columns[0][b], columns[1][b], columns[2][b], columns[3][b]);
+        for (std::size_t a = 0; a < 4; ++a) patch.coefficient[4 * b + a] = float(c[a]);
+      }
+      patches.push_back(patch);
+      return;
+    }
     for (int y = y0; y < y1; ++y) {
       const auto c = cubic_at(y / down.width - j);
       const float c0 = float(c[0]), c1 = float(c[1]), c2 = float(c[2]), c3 = float(c[3]);
@@ -143,6 +159,7 @@ struct Piece {
   void refine(int x0, int y0, int x1, int y1, double f00, double f10, double f01, double f11) {
     const int w = x1 - x0, h = y1 - y0;
     if (w <= 1 && h <= 1) {
+      if (!grid.out) return add_bilinear(x0, y0, x1, y1, f00, f10, f01, f11);
       set(x0, y0, f00), set(x1, y0, f10), set(x0, y1, f01), set(x1, y1, f11);
       return;
     }
@@ -156,6 +173,7 @@ struct Piece {
         grid.agrees(mix(f01, f11, u), bottom) && grid.agrees(mix(f00, f01, v), left) &&
         grid.agrees(mix(f10, f11, v), right) &&
         grid.agrees(mix(mix(f00, f10, u), mix(f01, f11, u), v), middle)) {
+      if (!grid.out) return add_bilinear(x0, y0, x1, y1, f00, f10, f01, f11);
       for (int y = y0; y <= y1; ++y) {
         const double b = h ? double(y - y0) / h : 0.0;
         const double first = mix(f00, f01, b), last = mix(f10, f11, b);
@@ -169,25 +187,32 @@ struct Piece {
     refine(xm, ym, x1, y1, middle, right, bottom, f11);
   }
 
+  void add_bilinear(int x0, int y0, int x1, int y1, double f00, double f10, double f01,
+                    double f11) {
+    SkyPatch patch{.x0 = x0, .y0 = y0, .x1 = x1, .y1 = y1};
+    patch.du = x1 > x0 ? 1.0f / float(x1 - x0) : 0.0f;
+    patch.dv = y1 > y0 ? 1.0f / float(y1 - y0) : 0.0f;
+    patch.coefficient = {float(f00), float(f10 - f00), 0,
+                         0,          float(f01 - f00), float(f11 - f10 - f01 + f00)};
+    patches.push_back(patch);
+  }
+
   void set(int x, int y, double value) {
     grid.out[std::size_t(y) * std::size_t(grid.columns) + std::size_t(x)] = float(value);
   }
 };
 
-}  // namespace
-
-SkyGridReport fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
-                             float* out, Threads& threads) {
-  if (columns <= 0 || rows <= 0) return {};
-  Grid grid{columns, rows, f, tolerance, out};
+SkyGridReport visit_cells(Grid& grid, Threads& threads, std::vector<SkyPatch>* patches) {
   grid.make_nodes(threads);
   const auto cell_rows = std::size_t(grid.down.cells);
   std::vector<SkyGridReport> reports(cell_rows);
+  std::vector<std::vector<SkyPatch>> patches_of_row(cell_rows);
   threads.for_ranges(cell_rows, 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t j = first; j < last; ++j) {
       Piece piece{grid};
       for (int i = 0; i < grid.across.cells; ++i) piece.fill_cell(i, int(j));
       reports[j] = piece.report;
+      patches_of_row[j] = std::move(piece.patches);
     }
   });
   SkyGridReport sum{.evaluations = std::size_t(grid.across.cells + 1) * (cell_rows + 1)};
@@ -195,7 +220,28 @@ SkyGridReport fill_from_grid(int columns, int rows, const PixelFunction& f, doub
     sum.evaluations += report.evaluations;
     sum.refined_cells += report.refined_cells;
   }
+  if (patches)
+    for (const auto& row : patches_of_row) patches->insert(patches->end(), row.begin(), row.end());
   return sum;
+}
+
+}  // namespace
+
+SkyGridReport fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
+                             float* out, Threads& threads) {
+  if (columns <= 0 || rows <= 0) return {};
+  Grid grid{columns, rows, f, tolerance, out};
+  return visit_cells(grid, threads, nullptr);
+}
+
+std::vector<SkyPatch> patches_of_grid(int columns, int rows, const PixelFunction& f,
+                                      double tolerance, Threads& threads, SkyGridReport* report) {
+  std::vector<SkyPatch> patches;
+  if (columns <= 0 || rows <= 0) return patches;
+  Grid grid{columns, rows, f, tolerance, nullptr};
+  const SkyGridReport told = visit_cells(grid, threads, &patches);
+  if (report) *report = told;
+  return patches;
 }
 
 }  // namespace dmise

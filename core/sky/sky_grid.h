@@ -1,8 +1,10 @@
 #pragma once
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 #include "core/base/parallel.h"
+#include "core/sky/sky_patch.h"
 
 namespace dmise {
 
@@ -21,5 +23,11 @@ struct SkyGridReport {
 /// `threads`. The same bytes for the same input, on any number of them.
 SkyGridReport fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
                              float* out, Threads& threads);
+
+/// The same grid as the patches from which those pixels come, for who draws them otherwise. Later
+/// ones cover earlier ones.
+std::vector<SkyPatch> patches_of_grid(int columns, int rows, const PixelFunction& f,
+                                      double tolerance, Threads& threads,
+                                      SkyGridReport* report = nullptr);
 
 }  // namespace dmise

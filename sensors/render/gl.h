@@ -27,6 +27,7 @@
   F(PFNGLBUFFERDATAPROC, BufferData)                           \
   F(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)         \
   F(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
+  F(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor)         \
   F(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                 \
   F(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                 \
   F(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)               \
@@ -43,6 +44,9 @@
   F(PFNGLDISABLEPROC, Disable)                                 \
   F(PFNGLPOLYGONOFFSETPROC, PolygonOffset)                     \
   F(PFNGLDEPTHFUNCPROC, DepthFunc)                             \
+  F(PFNGLBLENDFUNCPROC, BlendFunc)                             \
+  F(PFNGLSCISSORPROC, Scissor)                                 \
+  F(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)         \
   F(PFNGLDRAWELEMENTSPROC, DrawElements)                       \
   F(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
   F(PFNGLREADPIXELSPROC, ReadPixels)
@@ -57,5 +61,8 @@ struct Gl {
 
 /// Functions of a current context. Throws `Error` naming one that is missing.
 Gl load_gl(GlContext& context);
+
+/// What draws: "OSMesa, llvmpipe (...), OpenGL 4.5 ...".
+std::string description_of(const Gl& gl, const GlContext& context);
 
 }  // namespace dmise

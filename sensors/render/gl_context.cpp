@@ -18,6 +18,13 @@ Gl load_gl(GlContext& context) {
   return gl;
 }
 
+std::string description_of(const Gl& gl, const GlContext& context) {
+  const auto text = [&](unsigned name) {
+    return std::string(reinterpret_cast<const char*>(gl.GetString(name)));
+  };
+  return context.name() + ", " + text(GL_RENDERER) + ", OpenGL " + text(GL_VERSION);
+}
+
 std::unique_ptr<GlContext> open_gl() {
   const char* text = std::getenv("DMISE_RENDERER");
   const std::string_view wish = text ? text : "";

@@ -7,6 +7,7 @@
 #include "sensors/render/box_filter.h"
 #include "sensors/render/gl.h"
 #include "sensors/render/gl_context.h"
+#include "sensors/render/gl_program.h"
 #include "sensors/render/shaders.h"
 #include "sensors/render/tile_mesh.h"
 
@@ -25,10 +26,7 @@ class GlRenderer final : public Renderer {
     samples_.resize(std::size_t(piece_samples) * piece_samples * 4);
   }
 
-  std::string description() const override {
-    return context_->name() + ", " + reinterpret_cast<const char*>(gl_.GetString(GL_RENDERER)) +
-           ", OpenGL " + reinterpret_cast<const char*>(gl_.GetString(GL_VERSION));
-  }
+  std::string description() const override { return description_of(gl_, *context_); }
 
   Tile draw(const TileScene& scene) override {
     check(scene);
@@ -64,31 +62,8 @@ class GlRenderer final : public Renderer {
     check_outside(*scene.mesh, scene.camera_from_body, scene.object_m);
   }
 
-  unsigned compiled(unsigned kind, const char* text) {
-    const unsigned shader = gl_.CreateShader(kind);
-    gl_.ShaderSource(shader, 1, &text, nullptr);
-    gl_.CompileShader(shader);
-    int ok = 0;
-    gl_.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
-    if (!ok) {
-      char log[1024] = "";
-      gl_.GetShaderInfoLog(shader, sizeof log, nullptr, log);
-      throw Error(std::string("shader: ") + log);
-    }
-    return shader;
-  }
-
   void link() {
-    const unsigned program = gl_.CreateProgram();
-    for (const unsigned shader : {compiled(GL_VERTEX_SHADER, vertex_shader),
-                                  compiled(GL_FRAGMENT_SHADER, fragment_shader)}) {
-      gl_.AttachShader(program, shader);
-      gl_.DeleteShader(shader);
-    }
-    gl_.LinkProgram(program);
-    int ok = 0;
-    gl_.GetProgramiv(program, GL_LINK_STATUS, &ok);
-    if (!ok) throw Error("shaders do not link");
+    const unsigned program = link_program(gl_, vertex_shader, fragment_shader);
     gl_.UseProgram(program);
     piece_uniform_ = gl_.GetUniformLocation(program, "piece");
     source_uniform_ = gl_.GetUniformLocation(program, "source");

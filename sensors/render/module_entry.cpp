@@ -1,13 +1,27 @@
 #include <exception>
 
 #include "sensors/render/gl_renderer.h"
+#include "sensors/render/gl_scene_renderer.h"
 
-/// Entry of the shared object. Null with the reason when there is no OpenGL here.
-extern "C" dmise::Renderer* dmise_make_renderer(std::string& reason) {
+namespace {
+
+template <class T>
+T* made(std::unique_ptr<T> (*make)(), std::string& reason) {
   try {
-    return dmise::make_gl_renderer().release();
+    return make().release();
   } catch (const std::exception& error) {
     reason = error.what();
     return nullptr;
   }
+}
+
+}  // namespace
+
+// Entries of the shared object. Null with the reason when there is no OpenGL here.
+extern "C" dmise::Renderer* dmise_make_renderer(std::string& reason) {
+  return made(dmise::make_gl_renderer, reason);
+}
+
+extern "C" dmise::SceneRenderer* dmise_make_scene_renderer(std::string& reason) {
+  return made(dmise::make_gl_scene_renderer, reason);
 }

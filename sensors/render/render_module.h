@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "sensors/render/renderer.h"
+#include "sensors/render/scene_renderer.h"
 
 namespace dmise {
 
@@ -9,5 +10,6 @@ namespace dmise {
 /// in `DMISE_RENDER_MODULE`) at the first call, and makes a renderer. Costs nothing before that.
 /// Throws `Error` with the reason when it cannot be had.
 std::unique_ptr<Renderer> load_renderer();
+std::unique_ptr<SceneRenderer> load_scene_renderer();
 
 }  // namespace dmise

@@ -1,0 +1,40 @@
+#include "sensors/render/gl_program.h"
+
+#include <string>
+
+#include "core/base/error.h"
+
+namespace dmise {
+namespace {
+
+unsigned compiled(const Gl& gl, unsigned kind, const char* text) {
+  const unsigned shader = gl.CreateShader(kind);
+  gl.ShaderSource(shader, 1, &text, nullptr);
+  gl.CompileShader(shader);
+  int ok = 0;
+  gl.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+  if (!ok) {
+    char log[1024] = "";
+    gl.GetShaderInfoLog(shader, sizeof log, nullptr, log);
+    throw Error(std::string("shader: ") + log);
+  }
+  return shader;
+}
+
+}  // namespace
+
+unsigned link_program(const Gl& gl, const char* vertex_shader, const char* fragment_shader) {
+  const unsigned program = gl.CreateProgram();
+  for (const unsigned shader : {compiled(gl, GL_VERTEX_SHADER, vertex_shader),
+                                compiled(gl, GL_FRAGMENT_SHADER, fragment_shader)}) {
+    gl.AttachShader(program, shader);
+    gl.DeleteShader(shader);
+  }
+  gl.LinkProgram(program);
+  int ok = 0;
+  gl.GetProgramiv(program, GL_LINK_STATUS, &ok);
+  if (!ok) throw Error("shaders do not link");
+  return program;
+}
+
+}  // namespace dmise

@@ -1,0 +1,11 @@
+#pragma once
+#include <memory>
+
+#include "sensors/render/scene_renderer.h"
+
+namespace dmise {
+
+/// The scene renderer on the best OpenGL that this machine has. Throws `Error` without one.
+std::unique_ptr<SceneRenderer> make_gl_scene_renderer();
+
+}  // namespace dmise
