@@ -51,12 +51,26 @@ std::string packed(T... numbers) {
   return bytes;
 }
 
-std::string header_of(const ExrImage& image) {
+/// In the order in which the file has them: by name.
+std::vector<ExrChannel> channels_of(const ExrImage& image) {
+  std::vector<ExrChannel> channels{{image.channel, image.pixels}};
+  channels.insert(channels.end(), image.more.begin(), image.more.end());
+  std::sort(channels.begin(), channels.end(),
+            [](const auto& a, const auto& b) { return a.name < b.name; });
+  for (std::size_t i = 1; i < channels.size(); ++i)
+    if (channels[i].name == channels[i - 1].name)
+      throw Error("EXR can't be written: two channels " + channels[i].name);
+  return channels;
+}
+
+std::string header_of(const ExrImage& image, const std::vector<ExrChannel>& of_file) {
   std::string bytes = packed(std::uint32_t{20000630}, std::uint32_t{2});
   std::string channels;
-  put_name(channels, image.channel);
-  channels +=
-      packed(std::int32_t{float_pixels}, std::uint32_t{0}, std::int32_t{1}, std::int32_t{1});
+  for (const ExrChannel& channel : of_file) {
+    put_name(channels, channel.name);
+    channels +=
+        packed(std::int32_t{float_pixels}, std::uint32_t{0}, std::int32_t{1}, std::int32_t{1});
+  }
   channels += '\0';
   const std::string window = packed(std::int32_t{0}, std::int32_t{0},
                                     std::int32_t{image.columns - 1}, std::int32_t{image.rows - 1});
@@ -98,22 +112,29 @@ std::string zipped(const char* raw, std::size_t size) {
 }  // namespace
 
 std::string encode_exr(const ExrImage& image) {
-  if (image.columns < 1 || image.rows < 1 || !image.pixels)
-    throw Error("EXR can't be written: no pixels");
+  const std::vector<ExrChannel> channels = channels_of(image);
   const std::size_t count = std::size_t(image.columns) * std::size_t(image.rows);
-  for (std::size_t i = 0; i < count; ++i)
-    if (!std::isfinite(image.pixels[i]))
-      throw Error("EXR can't be written: not a finite number at pixel " + std::to_string(i));
-  std::string bytes = header_of(image);
+  for (const ExrChannel& channel : channels) {
+    if (image.columns < 1 || image.rows < 1 || !channel.pixels)
+      throw Error("EXR can't be written: no pixels");
+    for (std::size_t i = 0; i < count; ++i)
+      if (!std::isfinite(channel.pixels[i]))
+        throw Error("EXR can't be written: not a finite number at pixel " + std::to_string(i));
+  }
+  std::string bytes = header_of(image, channels);
   const int blocks = (image.rows + rows_in_block - 1) / rows_in_block;
   const std::size_t table = bytes.size();
   bytes.resize(table + std::size_t(blocks) * sizeof(std::uint64_t));
   for (int b = 0; b < blocks; ++b) {
     const int row = b * rows_in_block, count = std::min(rows_in_block, image.rows - row);
-    const auto* raw =
-        reinterpret_cast<const char*>(image.pixels + std::size_t(row) * std::size_t(image.columns));
+    std::vector<float> raw;  // row by row, in each channel by channel
+    for (int y = row; y < row + count; ++y)
+      for (const ExrChannel& channel : channels) {
+        const float* from = channel.pixels + std::size_t(y) * std::size_t(image.columns);
+        raw.insert(raw.end(), from, from + image.columns);
+      }
     const std::string block =
-        zipped(raw, std::size_t(count) * std::size_t(image.columns) * sizeof(float));
+        zipped(reinterpret_cast<const char*>(raw.data()), raw.size() * sizeof(float));
     const std::uint64_t at = bytes.size();
     std::memcpy(bytes.data() + table + std::size_t(b) * sizeof at, &at, sizeof at);
     bytes += packed(std::int32_t{row}, std::int32_t(block.size()));

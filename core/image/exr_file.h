@@ -11,12 +11,18 @@ struct ExrAttribute {
   std::variant<std::string, double> value;
 };
 
-/// An image of one channel of 32-bit floats.
+struct ExrChannel {
+  std::string name;               // at most 31 characters
+  const float* pixels = nullptr;  // rows x columns, first row first
+};
+
+/// An image of channels of 32-bit floats, one as a rule.
 struct ExrImage {
   std::string channel = "Y";      // at most 31 characters; Y is what viewers show as grey
   const float* pixels = nullptr;  // rows x columns, first row first
   int columns = 0, rows = 0;
   std::vector<ExrAttribute> attributes;
+  std::vector<ExrChannel> more;  // beside `channel`, of other names
 };
 
 /// A single-part scan-line OpenEXR file with ZIP compression (blocks of 16 rows, without loss), as

@@ -139,6 +139,43 @@ TEST(Exr, OpenExrReadsEveryPixel) {
   }
 }
 
+TEST(Exr, OpenExrReadsEveryChannel) {
+  const std::string python = test::python_with("OpenEXR");
+  if (python.empty()) DMISE_SKIP() << "needs OpenEXR from PyPI: ./dmise setup --tests";
+  constexpr int columns = 71, rows = 53;
+  std::vector<RateImage> images(3, RateImage(columns, rows));
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < images[k].pixels.size(); ++i)
+      images[k].pixels[i] = float(k + 1) * 1000.0f + float(i % 97);
+  write_exr(scratch("bands.exr"),
+            {.pixels = images[1].pixels.data(),
+             .columns = columns,
+             .rows = rows,
+             .attributes = {{"unit", "photon"}, {"frame", 7.0}},
+             .more = {{"Z", images[2].pixels.data()}, {"00500.00nm", images[0].pixels.data()}}});
+  const auto [status, output] = command_output(
+      python + " " DMISE_SOURCE_DIR "/tests/reference/read_exr.py " + scratch("bands.exr"));
+  std::string expected;
+  const char* names[] = {"00500.00nm", "Y", "Z"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const RateImage& image = images[k];
+    char line[160];
+    std::snprintf(line, sizeof line,
+                  "channel %s shape %d %d float32 corners %.9g %.9g %.9g %.9g\nsum ", names[k],
+                  rows, columns, image.at(0, 0), image.at(columns - 1, 0), image.at(0, rows - 1),
+                  image.at(columns - 1, rows - 1));
+    expected +=
+        line + number(sum_of(image.pixels)) + " unit photon frame 7 Compression.ZIP_COMPRESSION\n";
+  }
+  EXPECT_EQ(status, 0) << output;
+  EXPECT_EQ(output, expected);
+  EXPECT_THROW(encode_exr({.pixels = images[0].pixels.data(),
+                           .columns = columns,
+                           .rows = rows,
+                           .more = {{"Y", images[1].pixels.data()}}}),
+               Error);
+}
+
 TEST(Exr, EqualImagesAreEqualBytesAndSmoothOnesAreSmaller) {
   const RateImage image = sample_plane();
   const ExrImage exr{.pixels = image.pixels.data(), .columns = 200, .rows = 150};
