@@ -13,6 +13,14 @@
 namespace dmise {
 namespace {
 
+/// Who draws. OpenGL is asked, so that a machine without it is found out now.
+std::string evaluator_of(const EffectSet& effects) {
+  if (effects.snapshots() == 0) return "drawn analytically, along the path";
+  const std::string count = std::to_string(effects.snapshots()) + " snapshots, ";
+  if (!effects.drawn_by_opengl()) return count + "drawn analytically";
+  return count + "drawn by " + GlEvaluator().description();
+}
+
 void check(const std::string& path) {
   const Scenario scenario = load_scenario(path);
   const Clock clock = make_clock(scenario);
@@ -28,6 +36,7 @@ void check(const std::string& path) {
     if (!sensor.detect)
       std::printf("%s: detection off: frames are reported, nothing is looked for in them\n",
                   sensor.name.c_str());
+    std::printf("%s: %s\n", sensor.name.c_str(), evaluator_of(sensor.effects).c_str());
   }
   if (!population.roster.objects.empty())
     std::printf("objects between ticks: %s\n",

@@ -113,11 +113,16 @@ class EmbeddedRun {
             return !stop_signal().is_set();
           },
           first_tick_);
-      for (const auto* sensor : sensors_)
+      for (const auto* sensor : sensors_) {
+        if (const std::string evaluator = sensor->evaluator(); !evaluator.empty()) {
+          std::lock_guard lock(mutex_);
+          notes_.push_back(sensor->name() + ": drawn by " + evaluator);
+        }
         if (const std::string renderer = sensor->renderer(); !renderer.empty()) {
           std::lock_guard lock(mutex_);
           notes_.push_back(sensor->name() + ": shapes drawn by " + renderer);
         }
+      }
     } catch (const std::exception& e) {
       failure = e.what();
     }

@@ -22,7 +22,16 @@ OutputConfig read_output(const YamlValue& value) {
   output.truth = map.flag_or("truth", true);
   output.star_truth = map.flag_or("star_truth", false);
   output.preview_width_px = static_cast<int>(map.integer_or("preview_width_px", 1663, 16, 32768));
-  output.radiance_exr = map.flag_or("radiance_exr", false);
+  if (const auto radiance = map.find("radiance_exr")) {
+    if (radiance->is_map()) {
+      YamlMap how(*radiance);
+      output.radiance_bands = int(how.require("bands").integer(1, 16));
+      output.radiance_exr = true;
+      how.done();
+    } else {
+      output.radiance_exr = radiance->flag();
+    }
+  }
   if (const auto planes = map.find("planes"))
     for (const auto& plane : planes->list()) {
       const std::string name = plane.choice({"sources", "background", "noise"});

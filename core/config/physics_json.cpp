@@ -52,6 +52,7 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   json.end_array();
   if (s.effects.snapshots() > 0) json.field("snapshots", s.effects.snapshots());
   if (!s.detect) json.field("detection", false);
+  if (s.effects.drawn_by_opengl()) json.field("evaluator", "opengl");
   json.end_object();
 }
 

@@ -56,8 +56,17 @@ void read_effects(const YamlValue& value, EffectSet& effects) {
     effects.set(Effect::annual_aberration, both->flag());
     effects.set(Effect::diurnal_aberration, both->flag());
   }
-  if (const auto integration = map.find("integration"))
-    effects.set_snapshots(integration->choice({"analytic", "snapshots"}) == "snapshots" ? 16 : 0);
+  constexpr int usual_snapshots = 16;
+  const auto integration = map.find("integration");
+  const bool analytic = integration && integration->choice({"analytic", "snapshots"}) == "analytic";
+  if (integration) effects.set_snapshots(analytic ? 0 : usual_snapshots);
+  if (analytic) effects.draw_by_opengl(false);
+  if (const auto evaluator = map.find("evaluator")) {
+    effects.draw_by_opengl(evaluator->choice({"analytic", "opengl"}) == "opengl");
+    if (effects.drawn_by_opengl() && analytic) evaluator->fail("needs integration: snapshots");
+    if (effects.drawn_by_opengl() && effects.snapshots() == 0)
+      effects.set_snapshots(usual_snapshots);
+  }
   if (const auto count = map.find("snapshots")) {
     if (effects.snapshots() == 0) count->fail("needs integration: snapshots", false);
     effects.set_snapshots(int(count->integer(1, 100000)));
@@ -96,6 +105,10 @@ void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
   try {
     const PsfPlan plan =
         plan_psf(camera.optics, camera.band.centre_m, sensor.seeing, sensor.exposure_s);
+    if (plan.method == PointSpread::Method::direct && sensor.effects.drawn_by_opengl())
+      throw ConfigError(
+          "effects.evaluator: opengl draws points by deposit or transform; this "
+          "camera's are summed directly (optics.method)");
     if (plan.method != PointSpread::Method::deposit)
       sample_pupils(camera.optics, wavelengths_of(camera.band, camera.optics.spread.wavelengths),
                     plan, sensor.seeing);
@@ -159,7 +172,6 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, bool 
                                               sensor.atmosphere.turbulence)
                         : read_seeing(*seeing);
   }
-  check_point_spread(value, sensor);
   read_sensor_surroundings(map, sensor);
   if (sensor.atmosphere.refraction)
     sensor.effects.set(Effect::refraction, *sensor.atmosphere.refraction);
@@ -170,6 +182,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, bool 
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
   if (sensor.effects.has(Effect::sky))
     check_sky_in_band(value, sensor.sky, sensor.camera.band, bool(site));
+  check_point_spread(value, sensor);
   map.done();
   return sensor;
 }

@@ -122,6 +122,7 @@ struct OutputConfig {
   bool star_truth = false;  // frame-NNNNNN.stars.csv: every star drawn
   int preview_width_px = 1663;
   bool radiance_exr = false;  // frame-NNNNNN-radiance.exr
+  int radiance_bands = 1;     // its channels: the band, or beside it so many parts of it
   // frame-NNNNNN-PLANE.fits: what the counts were drawn from.
   bool sources = false, background = false, noise = false;
   // Of cameras, platforms, own objects, Sun and Moon at every tick.

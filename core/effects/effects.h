@@ -73,11 +73,15 @@ class EffectSet {
   /// Snapshots along an exposure in which light is integrated; 0: along the path, exactly.
   int snapshots() const { return snapshots_; }
   void set_snapshots(int count) { snapshots_ = count; }
+  /// Whether OpenGL draws the snapshots, and the sky, instead of the analytic deposit.
+  bool drawn_by_opengl() const { return opengl_; }
+  void draw_by_opengl(bool on) { opengl_ = on; }
   bool operator==(const EffectSet&) const = default;
 
  private:
   std::array<bool, effect_count> on_;
   int snapshots_ = 0;
+  bool opengl_ = false;
 };
 
 /// Seconds spent in each effect over one frame. Never part of a product whose bytes must repeat.

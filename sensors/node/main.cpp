@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
                                                .stop_within_s = 1.0,
                                                .keys = flags.keys,
                                                .stop = &dmise::stop_signal()});
+    if (!sensor->evaluator().empty()) spdlog::info("drawn by {}", sensor->evaluator());
     if (!sensor->renderer().empty()) spdlog::info("shapes drawn by {}", sensor->renderer());
     return end.exit_code;
   });

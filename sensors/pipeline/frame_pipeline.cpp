@@ -13,6 +13,7 @@
 #include "core/optics/projection.h"
 #include "core/optics/wcs_fit.h"
 #include "core/time/iso8601.h"
+#include "sensors/pipeline/gl_evaluator.h"
 #include "sensors/pipeline/light.h"
 #include "sensors/pipeline/object_layer.h"
 #include "sensors/pipeline/objects_in_field.h"
@@ -50,6 +51,7 @@ struct FramePipeline::Work {
   PipelineSettings settings;
   Threads& threads;
   std::optional<StarLayer> stars;
+  std::optional<GlEvaluator> evaluator;
   OpticsStage optics;
   RateImage light;  // kept between frames without the memory behind it
   DetectorMemory detector_memory;
@@ -59,6 +61,7 @@ struct FramePipeline::Work {
     light = RateImage(settings.sensor.camera.optics.columns, settings.sensor.camera.optics.rows);
     release_pages(light.pixels.data(), light.pixels.size() * sizeof(float));
     prefer_large_pages(light.pixels.data(), light.pixels.size() * sizeof(float));
+    if (settings.sensor.effects.drawn_by_opengl()) optics.draw_by(evaluator.emplace());
     if (map) stars.emplace(settings.sensor, std::move(map));
   }
 
@@ -92,6 +95,8 @@ struct FramePipeline::Work {
   }
 
   FrameProducts make(const FrameTimes& times, const World& world);
+  RadianceMap radiance_in(const PipelineSettings::Part& part, const FrameTimes& times,
+                          const World& world);
   FrameHeader header(const View& view) const;
   std::uint32_t first_frame_for(std::uint32_t frame) const;
 };
@@ -165,6 +170,33 @@ FrameHeader FramePipeline::Work::header(const View& view) const {
   return h;
 }
 
+RadianceMap FramePipeline::Work::radiance_in(const PipelineSettings::Part& part,
+                                             const FrameTimes& times, const World& world) {
+  SensorConfig sensor = settings.sensor;
+  sensor.camera.band = part.band;
+  const View view(sensor, times, world, settings.seed);
+  OpticsStage part_optics(sensor, settings.seed, threads);
+  if (evaluator) part_optics.draw_by(*evaluator);
+  RateImage image(light.columns, light.rows);
+  EffectTimes elsewhere;
+  fill_sky(view, drawn_to_v_mag(), image, threads, elsewhere, evaluator ? &*evaluator : nullptr);
+  part_optics.begin(times, faintest_e(times));
+  Screen screen(image.columns, image.rows);
+  if (has(Effect::objects))
+    draw_objects(view, objects_in_field(view, part.shapes.get()), part.shapes.get(), part_optics,
+                 screen, image, elsewhere);
+  if (!screen.empty()) {
+    RateImage behind(image.columns, image.rows);
+    fill_sky_behind(view, drawn_to_v_mag(), behind, threads);
+    screen.take_hidden(behind, image);
+  }
+  if (stars && has(Effect::stars))
+    StarLayer(sensor, stars->map())
+        .draw(view, part_optics, screen, image, settings.faintest_star_mag, nullptr, elsewhere);
+  part_optics.finish(image);
+  return radiance_of(view, times.seconds(), image, threads);
+}
+
 FramePipeline::FramePipeline(PipelineSettings settings, std::shared_ptr<const StarMap> stars,
                              Threads& threads)
     : work_(std::make_unique<Work>(std::move(settings), std::move(stars), threads)) {}
@@ -173,6 +205,10 @@ FramePipeline::~FramePipeline() = default;
 
 std::uint32_t FramePipeline::first_frame_for(std::uint32_t frame) const {
   return work_->first_frame_for(frame);
+}
+
+std::string FramePipeline::evaluator() const {
+  return work_->evaluator ? work_->evaluator->description() : "";
 }
 
 std::uint32_t FramePipeline::most_frames_made_again() const {
@@ -205,7 +241,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   frame.counts = CountImage(light.columns, light.rows);
   release_pages(frame.counts.pixels.data(), frame.counts.pixels.size() * sizeof(std::uint16_t));
   std::uint32_t stars_drawn = 0;
-  fill_sky(view, drawn_to_v_mag(), light, threads, frame.times);
+  fill_sky(view, drawn_to_v_mag(), light, threads, frame.times, evaluator ? &*evaluator : nullptr);
   keep_background(settings.output, light, frame.planes);
   {
     Stopwatch timing(frame.times[Effect::psf]);
@@ -227,6 +263,9 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     Stopwatch timing(frame.times[Effect::psf]);
     optics.finish(light);
   }
+  if (settings.output.radiance_exr)
+    for (const auto& part : settings.radiance_parts)
+      frame.planes.radiance_parts.push_back({part.band, radiance_in(part, times, world)});
   frame.header = header(view);
   const Exposure exposure{.seed = settings.seed,
                           .sensor = sensor.name,

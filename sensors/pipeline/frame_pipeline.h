@@ -40,8 +40,14 @@ struct PipelineSettings {
   std::string digest;  // of the run, written into every frame
   double faintest_star_mag = 9.5;
   bool star_truth = false;
-  OutputConfig output;  // flags and planes that are wanted
+  OutputConfig output;                         // flags and planes that are wanted
   std::shared_ptr<const ObjectShapes> shapes;  // null: all objects are points
+  /// Parts of the band in which the radiance map has channels, with the surfaces in them.
+  struct Part {
+    Band band;
+    std::shared_ptr<const ObjectShapes> shapes;
+  };
+  std::vector<Part> radiance_parts;
 };
 
 /// The chain of one sensor: states around an exposure -> stars, objects and sky at the focal plane
@@ -60,6 +66,9 @@ class FramePipeline {
   /// The frame that must be exposed first for the detector to be in the state in which `frame`
   /// finds it: `frame` itself, unless an earlier one left charge in traps and was made elsewhere.
   std::uint32_t first_frame_for(std::uint32_t frame) const;
+
+  /// What of OpenGL draws points and sky; empty: they are deposited.
+  std::string evaluator() const;
 
   /// Frames before any frame that a pipeline which starts with it must expose first, at most.
   std::uint32_t most_frames_made_again() const;

@@ -6,7 +6,6 @@
 #include "sensors/pipeline/light.h"
 
 namespace dmise {
-namespace {
 
 RadianceMap radiance_of(const View& view, double exposure_s, const RateImage& light,
                         Threads& threads) {
@@ -25,8 +24,6 @@ RadianceMap radiance_of(const View& view, double exposure_s, const RateImage& li
   });
   return map;
 }
-
-}  // namespace
 
 void keep_background(const OutputConfig& wanted, const RateImage& light, FramePlanes& planes) {
   if (wanted.sources || wanted.background) planes.background = light;

@@ -1,4 +1,6 @@
 #pragma once
+#include <vector>
+
 #include "core/base/image.h"
 #include "core/base/parallel.h"
 #include "core/config/scenario.h"
@@ -12,14 +14,24 @@ namespace dmise {
 using RadianceMap = Image<float, struct RadianceCarrier>;
 
 /// What the counts of a frame were drawn from. Only what the scenario asks for is filled in.
+struct BandRadiance {
+  Band band;
+  RadianceMap map;
+};
+
 struct FramePlanes {
   RateImage sources, background;  // expected photo-electrons a second
   ElectronImage noise;            // expected standard deviation from frame to frame [e-]
   RadianceMap radiance;
+  std::vector<BandRadiance> radiance_parts;  // in parts of the band, where they are asked for
 };
 
 /// Call when `light` holds the sky alone.
 void keep_background(const OutputConfig& wanted, const RateImage& light, FramePlanes& planes);
+
+/// What `light` [e-] of an exposure is at the aperture.
+RadianceMap radiance_of(const View& view, double exposure_s, const RateImage& light,
+                        Threads& threads);
 
 /// Call when `light` [e-] holds all that falls on the detector during `exposure`.
 void make_planes(const OutputConfig& wanted, const View& view, const Exposure& exposure,

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/config/make_clock.h"
+#include "core/photometry/band_parts.h"
 
 namespace dmise {
 
@@ -25,6 +26,11 @@ std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std
                                              const std::string& directory,
                                              std::shared_ptr<const StarMap> stars,
                                              Threads& threads) {
+  std::vector<PipelineSettings::Part> parts;
+  if (scenario.output.radiance_bands > 1)
+    for (const Band& part :
+         parts_of(sensor_named(scenario, name).camera.band, scenario.output.radiance_bands))
+      parts.push_back({part, std::make_shared<const ObjectShapes>(scenario.own_objects, part)});
   return std::make_unique<SensorEvaluator>(
       PipelineSettings{.sensor = sensor_named(scenario, name),
                        .clock = make_clock(scenario),
@@ -34,7 +40,8 @@ std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std
                        .star_truth = scenario.output.star_truth,
                        .output = scenario.output,
                        .shapes = std::make_shared<const ObjectShapes>(
-                           scenario.own_objects, sensor_named(scenario, name).camera.band)},
+                           scenario.own_objects, sensor_named(scenario, name).camera.band),
+                       .radiance_parts = std::move(parts)},
       RunGrid{.tick_length = scenario.tick,
               .duration = scenario.duration,
               .told_every = sim_seconds(

@@ -25,6 +25,13 @@ FieldPlace field_place(const Optics& o, PixelPosition pixel) {
           std::atan2(d.y_px, d.x_px)};
 }
 
+bool is_point(const Arc& arc) {
+  const auto same = [&](PixelPosition p) {
+    return p.x_px == arc.middle.x_px && p.y_px == arc.middle.y_px;
+  };
+  return same(arc.start) && same(arc.end);
+}
+
 /// Places of the kernels over the field, row by row.
 std::vector<FieldPlace> field_places(const Optics& o) {
   const PointSpread& s = o.spread;
@@ -106,8 +113,26 @@ void OpticsStage::begin(const FrameTimes& exposure, double limit_e) {
   if (grid_) grid_->clear(threads_);
 }
 
+std::vector<Deposited> OpticsStage::put(std::span<const Arc> arcs, const DepositView& view) {
+  if (!evaluator_) return deposit(arcs, table_, view, threads_);
+  std::vector<Arc> points, moving;
+  for (const Arc& arc : arcs) (is_point(arc) ? points : moving).push_back(arc);
+  const auto drawn = evaluator_->add(points, table_, view, threads_);
+  const auto swept = deposit(moving, table_, view, threads_);
+  std::vector<Deposited> result;
+  auto point = drawn.begin(), sweep = swept.begin();
+  for (const Arc& arc : arcs) result.push_back(is_point(arc) ? *point++ : *sweep++);
+  return result;
+}
+
 std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, RateImage& light) {
-  if (!model_) return deposit(arcs, table_, light, threads_);
+  if (!model_)
+    return put(arcs, DepositView{.pixels = light.pixels.data(),
+                                 .columns = light.columns,
+                                 .rows = light.rows,
+                                 .stride = light.columns,
+                                 .told_columns = light.columns,
+                                 .told_rows = light.rows});
   const auto is_bright = [&](const Arc& arc) { return !grid_ || arc.signal_e > bright_e_; };
   if (!grid_) return sum_directly(arcs, light);
 
@@ -116,7 +141,7 @@ std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, RateImage& li
   for (Arc& arc : others) arc = grid_->on_cells(arc);
   std::vector<Deposited> direct, on_grid;
   if (!bright.empty()) direct = sum_directly(bright, light);
-  if (!others.empty()) on_grid = deposit(others, table_, grid_->cells(), threads_);
+  if (!others.empty()) on_grid = put(others, grid_->cells());
   std::vector<Deposited> result;
   std::size_t b = 0, o = 0;
   for (const Arc& arc : arcs) {

@@ -9,6 +9,7 @@
 #include "core/optics/direct_blur.h"
 #include "core/optics/psf_model.h"
 #include "sensors/pipeline/frame_times.h"
+#include "sensors/pipeline/gl_evaluator.h"
 
 namespace dmise {
 
@@ -22,6 +23,10 @@ class OpticsStage {
   static constexpr double bright_ratio = 1e4;
 
   OpticsStage(const SensorConfig& sensor, std::uint64_t seed, Threads& threads);
+
+  /// Points are drawn by this from now on, where they are not summed directly; what moves is still
+  /// deposited. It must outlive the stage.
+  void draw_by(GlEvaluator& evaluator) { evaluator_ = &evaluator; }
 
   const PsfPlan& plan() const { return plan_; }
   /// Full width at half maximum before pixel integration.
@@ -37,6 +42,7 @@ class OpticsStage {
 
  private:
   void make_kernels();
+  std::vector<Deposited> put(std::span<const Arc> arcs, const DepositView& view);
   std::vector<Deposited> sum_directly(std::span<const Arc> arcs, RateImage& light);
 
   Optics optics_;
@@ -44,6 +50,7 @@ class OpticsStage {
   PsfPlan plan_;
   PsfTable table_;  // of deposits: the Gaussian's, or the grid's
   Threads& threads_;
+  GlEvaluator* evaluator_ = nullptr;  // null: arcs are deposited
   std::unique_ptr<PsfModel> model_;
   std::unique_ptr<BlurGrid> grid_;
   std::unique_ptr<DirectBlur> direct_;

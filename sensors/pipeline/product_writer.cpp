@@ -28,21 +28,31 @@ Plane plane(const char* name, const char* unit, const char* what,
   return {name, unit, what, image.pixels.data(), image.columns, image.rows};
 }
 
-ExrImage radiance_exr(const RadianceMap& map, const FrameHeader& h) {
-  return {.pixels = map.pixels.data(),
-          .columns = map.columns,
-          .rows = map.rows,
-          .attributes = {{"quantity", "radiance in the band, at the aperture"},
-                         {"unit", "photon s-1 m-2 sr-1"},
-                         {"band", h.band.name},
-                         {"band_centre_m", h.band.centre_m},
-                         {"band_width_m", h.band.width_m},
-                         {"sensor", h.sensor},
-                         {"frame", double(h.frame)},
-                         {"exposure_s", h.exposure_s},
-                         {"start_utc", h.start_utc},
-                         {"scenario_digest", h.scenario_digest},
-                         {"software", h.software}}};
+/// The whole band is channel Y; its parts are named by their middle, and described by attributes.
+ExrImage radiance_exr(const FramePlanes& planes, const FrameHeader& h) {
+  const RadianceMap& map = planes.radiance;
+  ExrImage image{.pixels = map.pixels.data(),
+                 .columns = map.columns,
+                 .rows = map.rows,
+                 .attributes = {{"quantity", "radiance in the band, at the aperture"},
+                                {"unit", "photon s-1 m-2 sr-1"},
+                                {"band", h.band.name},
+                                {"band_centre_m", h.band.centre_m},
+                                {"band_width_m", h.band.width_m},
+                                {"sensor", h.sensor},
+                                {"frame", double(h.frame)},
+                                {"exposure_s", h.exposure_s},
+                                {"start_utc", h.start_utc},
+                                {"scenario_digest", h.scenario_digest},
+                                {"software", h.software}}};
+  for (const auto& [band, part] : planes.radiance_parts) {
+    char name[32];
+    std::snprintf(name, sizeof name, "%08.2fnm", band.centre_m * 1e9);
+    image.more.push_back({name, part.pixels.data()});
+    image.attributes.push_back({std::string(name) + ".low_m", band.low_m()});
+    image.attributes.push_back({std::string(name) + ".high_m", band.high_m()});
+  }
+  return image;
 }
 
 }  // namespace
@@ -82,7 +92,7 @@ void ProductWriter::write_planes(const FrameProducts& f) const {
   if (output_.noise)
     write_plane(path("-noise.fits"),
                 plane("NOISE", "electron", "expected standard deviation", p.noise), f.header);
-  if (output_.radiance_exr) write_exr(path("-radiance.exr"), radiance_exr(p.radiance, f.header));
+  if (output_.radiance_exr) write_exr(path("-radiance.exr"), radiance_exr(p, f.header));
 }
 
 void ProductWriter::append(const char* name, const std::string& lines) const {

@@ -44,6 +44,8 @@ class SensorEvaluator : public Evaluator {
   void stop_when(std::function<bool()> asked) { stop_asked_ = std::move(asked); }
   int frames_done() const { return static_cast<int>(next_frame_) - 1; }
   long detections_made() const { return detections_; }
+  /// What of OpenGL draws points and sky; empty: they are deposited.
+  std::string evaluator() const { return pipeline_.evaluator(); }
   /// What draws objects with a shape ("OSMesa, llvmpipe ..."); empty if none was near enough.
   std::string renderer() const { return shapes_ ? shapes_->renderer_description() : ""; }
 

@@ -84,7 +84,8 @@ SkyModel sky_of(const View& view, const SkyParts& parts) {
   return SkyModel(parts, scene_of(view), view.sensor().camera.band, extinction_over(view));
 }
 
-SkyGridReport fill_with(const View& view, const SkyModel& sky, RateImage& image, Threads& threads) {
+SkyGridReport fill_with(const View& view, const SkyModel& sky, RateImage& image, Threads& threads,
+                        GlEvaluator* evaluator = nullptr) {
   const auto& optics = view.sensor().camera.optics;
   const auto gcrs_from_camera = view.camera_from_gcrs(view.times().middle).inverse();
   const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) * gcrs_from_camera;
@@ -97,8 +98,15 @@ SkyGridReport fill_with(const View& view, const SkyModel& sky, RateImage& image,
     return sky.photons_per_s_m2_sr(enu_from_camera * *direction) * electrons_per_photon_m2 *
            pixel_solid_angle_sr(optics, {x, y}) * relative_illumination(optics, {x, y});
   };
-  return fill_from_grid(optics.columns, optics.rows, electrons, sky_tolerance, image.pixels.data(),
-                        threads);
+  if (!evaluator)
+    return fill_from_grid(optics.columns, optics.rows, electrons, sky_tolerance,
+                          image.pixels.data(), threads);
+  SkyGridReport report;
+  std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
+  evaluator->add_sky(
+      patches_of_grid(optics.columns, optics.rows, electrons, sky_tolerance, threads, &report),
+      image);
+  return report;
 }
 
 }  // namespace
@@ -108,7 +116,7 @@ SkyModel sky_over(const View& view, double drawn_to_v_mag) {
 }
 
 void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads,
-              EffectTimes& times) {
+              EffectTimes& times, GlEvaluator* evaluator) {
   const auto& optics = view.sensor().camera.optics;
   if (!view.sensor().effects.has(Effect::sky)) {
     std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
@@ -122,7 +130,7 @@ void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads
   {
     Stopwatch timing(whole_s);
     sky.emplace(sky_over(view, drawn_to_v_mag));
-    report = fill_with(view, *sky, image, threads);
+    report = fill_with(view, *sky, image, threads, evaluator);
   }
   times[Effect::sky] += whole_s;
   std::vector<Vec<Enu>> sample;

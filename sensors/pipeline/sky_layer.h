@@ -2,6 +2,7 @@
 #include "core/base/image.h"
 #include "core/base/parallel.h"
 #include "core/sky/sky_model.h"
+#include "sensors/pipeline/gl_evaluator.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -13,9 +14,9 @@ SkyModel sky_over(const View& view, double drawn_to_v_mag);
 /// Fills `image` with the expected electrons of the sky: `sky_over` at each pixel's centre times
 /// the pixel's own solid angle; 0 where the Earth hides it. From a grid, within `sky_tolerance` of
 /// the evaluation of every pixel. With the effect off, all zero. The time goes to `sky` and to its
-/// parts; that of a part is measured on a sample.
+/// parts; that of a part is measured on a sample. With an `evaluator` that one draws the grid.
 void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads,
-              EffectTimes& times);
+              EffectTimes& times, GlEvaluator* evaluator = nullptr);
 
 /// Fills `image` with what of the same sky comes from beyond every object: on the ground zodiacal
 /// light and faint starlight, as the air and lamps shine before objects; in orbit all of it.

@@ -5,9 +5,9 @@
 
 #include "core/optics/deposit.h"
 #include "core/optics/projection.h"
-#include "core/optics/snapshots.h"
 #include "sensors/pipeline/light.h"
 #include "sensors/pipeline/place_costs.h"
+#include "sensors/pipeline/star_snapshots.h"
 #include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
@@ -100,6 +100,7 @@ std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Scree
     const Hidden hidden(view, exposure.middle);
     std::erase_if(trails, [&](const Trail& t) { return hidden.direction(t.middle); });
   }
+  const int snapshots = view.sensor().effects.snapshots();
   const Light light(view);
   std::vector<double> transmission(trails.size());
   {
@@ -128,18 +129,21 @@ std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Scree
       arcs.push_back({t.pixel[0], t.pixel[1], t.pixel[2],
                       light_.photons_per_s_m2(stars.v_mag[t.star], stars.bv[t.star]) *
                           electrons_per_rate * transmission[i] *
-                          relative_illumination(camera, t.pixel[1])});
+                          (snapshots ? 1.0 : relative_illumination(camera, t.pixel[1]))});
     }
   }
   std::vector<Deposited> deposited;
   {
     Stopwatch timing(times[Effect::psf]);
-    if (const int count = view.sensor().effects.snapshots()) {
-      for (const Arc& arc : arcs) {
-        deposited.emplace_back();
-        for (const auto& part : optics.add(screen.past(as_snapshots({&arc, 1}, count)), image))
-          deposited.back() = deposited.back() + part;
+    if (snapshots) {
+      std::vector<std::uint32_t> drawn;
+      std::vector<double> signal_e;
+      for (std::size_t i = 0; i < arcs.size(); ++i) {
+        drawn.push_back(trails[i].star);
+        signal_e.push_back(arcs[i].signal_e);
       }
+      deposited =
+          draw_star_snapshots(view, columns, drawn, signal_e, snapshots, optics, screen, image);
     } else if (screen.empty()) {
       deposited = optics.add(arcs, image);
     } else {

@@ -25,6 +25,7 @@ class StarLayer {
  public:
   StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map);
 
+  const std::shared_ptr<const StarMap>& map() const { return map_; }
   /// V to which the catalogue goes.
   double faintest_filled_v_mag() const { return faintest_filled_v_mag_; }
 

@@ -2,6 +2,7 @@
 
 #include "core/image/fits_file.h"
 #include "core/optics/projection.h"
+#include "core/photometry/band_parts.h"
 #include "tests/pipeline/harness.h"
 
 namespace dmise {
@@ -38,13 +39,15 @@ class Planes : public testing::Test {
         sensor.effects.set(e, false);
     return pipeline().run(frame_times(sensor, number), stage.world);
   }
+  std::vector<PipelineSettings::Part> radiance_parts;
   FramePipeline pipeline() {
     return FramePipeline({.sensor = stage.scenario.sensors[0],
                           .clock = make_clock(stage.scenario),
                           .digest = "test",
                           .faintest_star_mag = 15,
                           .star_truth = true,
-                          .output = stage.scenario.output},
+                          .output = stage.scenario.output,
+                          .radiance_parts = radiance_parts},
                          stage.stars, stage.threads);
   }
 };
@@ -81,6 +84,32 @@ TEST_F(Planes, RadianceIsTheSkysWhateverTheCamera) {
   const double v = 8.99e9 * std::pow(10, -0.4 * 21.9) * 4.2545e10;
   EXPECT_GT(f.planes.radiance.pixels[0], v * 0.8);
   EXPECT_LT(f.planes.radiance.pixels[0], v * 2.5);
+}
+
+// Each part of the band has its light, and together they have the band's: sky, stars and objects.
+TEST_F(Planes, RadianceInPartsOfTheBandSumsToTheBands) {
+  const auto& band = stage.scenario.sensors[0].camera.band;
+  for (const Band& part : parts_of(band, 4))
+    radiance_parts.push_back(
+        {part, std::make_shared<const ObjectShapes>(stage.scenario.own_objects, part)});
+  for (const bool opengl : {false, true}) {
+    stage.scenario.sensors[0].effects.set_snapshots(opengl ? 4 : 0);
+    stage.scenario.sensors[0].effects.draw_by_opengl(opengl);
+    const auto f = frame();
+    ASSERT_EQ(f.planes.radiance_parts.size(), 4u);
+    double worst = 0, brightest = 0;
+    for (std::size_t i = 0; i < f.planes.radiance.pixels.size(); ++i) {
+      double sum = 0;
+      for (const auto& part : f.planes.radiance_parts) {
+        ASSERT_GT(part.map.pixels[i], 0.0f);
+        sum += part.map.pixels[i];
+      }
+      worst = std::max(worst, std::abs(sum / f.planes.radiance.pixels[i] - 1.0));
+      brightest = std::max<double>(brightest, f.planes.radiance.pixels[i]);
+    }
+    EXPECT_GT(brightest, 3 * f.planes.radiance.pixels[0]);  // there is a star
+    EXPECT_LT(worst, 0.02) << opengl;
+  }
 }
 
 TEST_F(Planes, NoiseIsThatOfThePlanes) {

@@ -1,0 +1,54 @@
+#include "sensors/pipeline/star_snapshots.h"
+
+#include <algorithm>
+
+#include "core/optics/projection.h"
+#include "core/optics/vignetting.h"
+
+namespace dmise {
+namespace {
+
+/// Snapshots are put on the plane together, as far as memory (6 MB) and single precision allow.
+constexpr std::size_t most_points = 65536;
+constexpr int most_snapshots = 64;
+
+}  // namespace
+
+std::vector<Deposited> draw_star_snapshots(const View& view, const StarColumns& columns,
+                                           const std::vector<std::uint32_t>& stars,
+                                           std::span<const double> signal_e, int count,
+                                           OpticsStage& optics, const Screen& screen,
+                                           RateImage& image) {
+  const Optics& camera = view.sensor().camera.optics;
+  std::vector<Deposited> result(stars.size());
+  std::vector<Vec<Gcrs>> direction(stars.size());
+  std::vector<Arc> points;
+  std::vector<std::size_t> star_of;
+  const auto put = [&] {
+    const auto deposited = optics.add(points, image);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      result[star_of[i]] = result[star_of[i]] + deposited[i];
+    points.clear();
+    star_of.clear();
+  };
+  for (int k = 0; k < count; ++k) {
+    const SimTime t = view.times().at((k + 0.5) / count);
+    view.places(t).stars(columns, stars, direction);
+    const auto camera_from_gcrs = view.camera_from_gcrs(t);
+    for (std::size_t i = 0; i < stars.size(); ++i) {
+      const auto pixel = project(camera, camera_from_gcrs * direction[i]);
+      if (!pixel) continue;
+      const Arc point{*pixel, *pixel, *pixel,
+                      signal_e[i] / count * relative_illumination(camera, *pixel), 0.0};
+      for (const Arc& part : screen.past({&point, 1})) {
+        points.push_back(part);
+        star_of.push_back(i);
+      }
+    }
+    if (points.size() + stars.size() > most_points || (k + 1) % most_snapshots == 0) put();
+  }
+  put();
+  return result;
+}
+
+}  // namespace dmise

@@ -1,0 +1,24 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/sky/apparent.h"
+#include "sensors/pipeline/optics_stage.h"
+#include "sensors/pipeline/screen.h"
+#include "sensors/pipeline/view.h"
+
+namespace dmise {
+
+/// Time-delay integration of stars: `count` snapshots in the middles of equal parts of the
+/// exposure, in each of which every star is placed anew, as a point with its share of the light.
+/// `signal_e`: of each of `stars` (numbers in `columns`) over the exposure, vignetting aside.
+/// Tells what of each fell inside.
+std::vector<Deposited> draw_star_snapshots(const View& view, const StarColumns& columns,
+                                           const std::vector<std::uint32_t>& stars,
+                                           std::span<const double> signal_e, int count,
+                                           OpticsStage& optics, const Screen& screen,
+                                           RateImage& image);
+
+}  // namespace dmise
