@@ -1,7 +1,9 @@
 #include "sensors/render/gl_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "core/base/error.h"
 #include "sensors/render/box_filter.h"
@@ -16,6 +18,9 @@ namespace {
 
 /// Samples of one piece per axis: 4 MB of colour.
 constexpr int piece_samples = 512;
+
+/// From this many radii on the same of an object is seen from the camera as along one direction.
+constexpr double parallel_from = 1e4;
 
 class GlRenderer final : public Renderer {
  public:
@@ -38,9 +43,13 @@ class GlRenderer final : public Renderer {
     tile.radiance.assign(pixels * scene.bands.size(), 0.0f);
     tile.coverage.assign(pixels, 0.0f);
     const bool convex = is_convex(*scene.mesh);
+    std::optional<FacetShadow> viewer;
+    if (!convex && norm(scene.object_m) > parallel_from * radius_m(*scene.mesh))
+      viewer.emplace(*scene.mesh, unit(scene.camera_from_body.inverse() * -scene.object_m));
     bool first = true;
     for (const auto& source : scene.sources) {
-      const LitPieces lit = lit_pieces(*scene.mesh, source.to_source, convex);
+      const LitPieces lit =
+          lit_pieces(*scene.mesh, source.to_source, convex, viewer ? &*viewer : nullptr);
       for (std::size_t band = 0; band < scene.bands.size(); band += 3)
         draw_pass(scene, source, tile_mesh(scene, source, lit, band, first), band,
                   first && band == 0, tile);
@@ -128,8 +137,21 @@ class GlRenderer final : public Renderer {
         if (!draw_piece(mesh, tile, box, scene.oversampling)) continue;
         add_box_means(samples_.data(), box, scene.oversampling, first_band, with_coverage, tile);
       }
+    add_specks(mesh, first_band, tile);
     if (const unsigned error = gl_.GetError(); error != GL_NO_ERROR)
       throw Error("OpenGL error " + std::to_string(error));
+  }
+
+  static void add_specks(const TileMesh& mesh, std::size_t first_band, Tile& tile) {
+    const std::size_t bands = std::size_t(tile.bands);
+    for (const auto& speck : mesh.specks) {
+      const int x = std::clamp(int(std::lround(speck.x_px)), 0, tile.columns - 1);
+      const int y = std::clamp(int(std::lround(speck.y_px)), 0, tile.rows - 1);
+      float* pixel =
+          &tile.radiance[(std::size_t(y) * std::size_t(tile.columns) + std::size_t(x)) * bands];
+      for (std::size_t k = 0; first_band + k < bands && k < 3; ++k)
+        pixel[first_band + k] += speck.light[k];
+    }
   }
 
   /// Leaves the samples in `samples_`; false when nothing lies in the box.

@@ -108,11 +108,12 @@ class SampleCount {
     return width < 32.0 && longest_ > 2.5 * width;
   }
 
+  /// Wholly in the tile with too few samples to tell.
+  bool sparse() const { return inside_ && count_ < fewest; }
+  double area() const { return area_; }  // in samples
+
   /// Area over samples; 1 for what is not wholly in the tile or has too few samples to tell.
-  double correction() const {
-    constexpr double fewest = 12.0;
-    return inside_ && count_ >= fewest ? area_ / count_ : 1.0;
-  }
+  double correction() const { return inside_ && count_ >= fewest ? area_ / count_ : 1.0; }
 
  private:
   void add_row(const std::array<double, 3>& x, const std::array<double, 3>& y, double row) {
@@ -127,6 +128,7 @@ class SampleCount {
     if (right > left) count_ += std::ceil(right - 0.5) - std::ceil(left - 0.5);
   }
 
+  static constexpr double fewest = 12.0;
   TileCamera camera_;
   double oversampling_;
   double area_ = 0.0, count_ = 0.0, longest_ = 0.0;
@@ -135,12 +137,14 @@ class SampleCount {
 
 class Builder {
  public:
-  Builder(const TileScene& scene, const LightSource& source, std::size_t first_band, bool emission)
+  Builder(const TileScene& scene, const LightSource& source, std::size_t first_band, bool emission,
+          bool visible)
       : scene_(scene),
         source_(source),
         first_(first_band),
         bands_(std::min<std::size_t>(3, scene.bands.size() - first_band)),
         emission_(emission),
+        specks_(visible),
         clip_(scene) {
     for (std::size_t k = 0; k < bands_; ++k) {
       lobe_of_[k].assign(scene.mesh->triangles.size(), -1);
@@ -232,7 +236,12 @@ class Builder {
     if (lit) {
       SampleCount samples(scene_.camera, scene_.oversampling);
       samples.add(p);
-      if (samples.narrow()) scale(look, samples.correction());
+      if (specks_ && samples.sparse()) {
+        add_speck(look, p, samples.area());
+        look = surface(f, false);
+      } else if (samples.narrow()) {
+        scale(look, samples.correction());
+      }
     }
     add(look, p);
   }
@@ -251,14 +260,46 @@ class Builder {
       }
     }
     TileVertex look = surface(f, true);
+    if (specks_ && samples.sparse()) {  // on the dark underlay
+      if (!parts.empty()) add_speck(look, parts[0], samples.area());
+      return;
+    }
     scale(look, samples.correction());
     for (const auto& part : parts) add(look, part);
+  }
+
+  /// What the shader makes of a look at the middle of a triangle, times its area, less its own
+  /// emission, which stays with the samples.
+  void add_speck(const TileVertex& look, const SampleCount::Triangle& p, double area_samples) {
+    const Vec<CameraFrame> middle = (p[0] + p[1] + p[2]) / 3.0;
+    const Vec<CameraFrame> n{look.normal[0], look.normal[1], look.normal[2]};
+    const Vec<CameraFrame> view = unit(-middle);
+    const Vec<CameraFrame> source = scene_.camera_from_body * source_.to_source;
+    const double c = dot(n, view);
+    if (!(c > 0.0)) return;
+    const Vec<CameraFrame> h = view + source;
+    const double cos2 = std::min(1.0, dot(n, h) * dot(n, h) / std::max(dot(h, h), 1e-30));
+    const double root = look.specular[3] * cos2 + (1.0 - cos2);
+    const double mirror = std::clamp(2.0 * dot(n, source) * c - dot(view, source), 0.0, 1.0);
+    const double lobe = look.emitted[3] < 0.0f ? 1.0 / (root * root * std::max(c, least_cos_out))
+                        : mirror > 0.0         ? std::pow(mirror, double(look.emitted[3]))
+                                               : 0.0;
+    const double falloff = c * c / (c * c + look.diffuse[3] * (1.0 - c * c));
+    const double pixels = area_samples / (scene_.oversampling * double(scene_.oversampling));
+    TileMesh::Speck speck{};
+    const TileCamera& camera = scene_.camera;
+    speck.x_px = float(camera.principal_x_px - camera.left + camera.focal_px * middle.x / middle.z);
+    speck.y_px = float(camera.principal_y_px - camera.top + camera.focal_px * middle.y / middle.z);
+    for (std::size_t k = 0; k < bands_; ++k)
+      speck.light[k] = float((look.diffuse[k] * falloff + look.specular[k] * lobe) * pixels);
+    out_.specks.push_back(speck);
   }
 
   const TileScene& scene_;
   const LightSource& source_;
   std::size_t first_, bands_;
   bool emission_;
+  bool specks_;
   ClipSpace clip_;
   std::array<std::vector<int>, 3> lobe_of_;
   std::vector<Vec<CameraFrame>> place_;
@@ -267,19 +308,24 @@ class Builder {
 
 }  // namespace
 
-LitPieces lit_pieces(const Mesh& mesh, const Vec<Body>& to_source, bool convex) {
+LitPieces lit_pieces(const Mesh& mesh, const Vec<Body>& to_source, bool convex,
+                     const FacetShadow* viewer) {
   const std::size_t count = mesh.triangles.size();
   LitPieces lit;
   lit.state.assign(count, LitPieces::dark);
   lit.begin.assign(count + 1, 0);
+  lit.only_visible = convex || viewer;
   const FacetShadow shadow(mesh, to_source);
   std::vector<FacetPiece> pieces;
   for (std::size_t f = 0; f < count; ++f) {
     if (shadow.cosine(f) > 0.0) {
       lit.state[f] = LitPieces::lit;
-      if (!convex && shadow.may_be_hidden(f)) {
+      const bool shaded = !convex && shadow.may_be_hidden(f);
+      const bool covered = viewer && viewer->cosine(f) > 0.0 && viewer->may_be_hidden(f);
+      if (shaded || covered) {
         pieces.assign(1, FacetPiece::whole());
-        shadow.cut(f, pieces);
+        if (shaded) shadow.cut(f, pieces);
+        if (covered && !pieces.empty()) viewer->cut(f, pieces);
         double share = 0.0;
         for (const auto& piece : pieces) share += area_share(piece);
         lit.state[f] = share > 1.0 - 1e-9 ? LitPieces::lit
@@ -296,7 +342,7 @@ LitPieces lit_pieces(const Mesh& mesh, const Vec<Body>& to_source, bool convex) 
 
 TileMesh tile_mesh(const TileScene& scene, const LightSource& source, const LitPieces& lit,
                    std::size_t first_band, bool with_emission) {
-  return Builder(scene, source, first_band, with_emission).build(lit);
+  return Builder(scene, source, first_band, with_emission, lit.only_visible).build(lit);
 }
 
 }  // namespace dmise

@@ -27,6 +27,14 @@ struct TileMesh {
   };
   std::vector<Bounds> bounds;  // one a triangle, of three vertices
   std::size_t underlays = 0;   // the first triangles
+
+  /// Lit parts of facets that have too few samples to be drawn by them: drawn dark, their light
+  /// goes to the pixel of their middle.
+  struct Speck {
+    float x_px, y_px;  // of the tile
+    float light[3];    // radiance x pixels
+  };
+  std::vector<Speck> specks;
 };
 
 /// What of each facet a source reaches; no pieces: all of it.
@@ -34,9 +42,13 @@ struct LitPieces {
   std::vector<std::uint32_t> begin;  // facets + 1, into `pieces`
   std::vector<FacetPiece> pieces;
   enum State : char { dark, lit, partly };
-  std::vector<State> state;  // one a facet
+  std::vector<State> state;   // one a facet
+  bool only_visible = false;  // what other facets hide from the camera is left out
 };
-LitPieces lit_pieces(const Mesh& mesh, const Vec<Body>& to_source, bool convex);
+/// `viewer`, if not null: what that direction does not see is left out, so that the light of what
+/// is all but hidden does not hang on single samples.
+LitPieces lit_pieces(const Mesh& mesh, const Vec<Body>& to_source, bool convex,
+                     const FacetShadow* viewer = nullptr);
 
 /// `first_band`: up to three bands from there on. `with_emission`: add what the facets radiate.
 TileMesh tile_mesh(const TileScene& scene, const LightSource& source, const LitPieces& lit,

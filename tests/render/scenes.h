@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/config/material_config.h"
+#include "core/materials/obj_file.h"
 #include "core/materials/shapes.h"
 #include "sensors/render/render_module.h"
 #include "tests/support/directions.h"
@@ -26,7 +27,13 @@ struct NamedMesh {
   Mesh mesh;
 };
 
-/// The parametric models with materials of the library.
+inline Mesh inspector() {
+  return load_obj(DMISE_SOURCE_DIR "/launch/models/inspector.obj",
+                  [](std::string_view name) { return library().find(name); })
+      .mesh;
+}
+
+/// Every model that is shipped: those by parameters with materials of the library, and the files.
 inline std::vector<NamedMesh> shipped_shapes() {
   return {{"box", box({1.2, 0.8, 2.0}, named("kapton"))},
           {"plate", plate(2.0, 3.0, named("silicon-cell"), named("white-paint"))},
@@ -36,7 +43,8 @@ inline std::vector<NamedMesh> shipped_shapes() {
           // About its middle, so that it fills the picture.
           {"starlink", moved(starlink_like(named("starlink-chassis"), named("starlink-array"),
                                            named("starlink-array")),
-                             {0, 0, 4.1})}};
+                             {0, 0, 4.1})},
+          {"inspector", inspector()}};
 }
 
 /// Axes of the camera from axes of the body: looks along `view` (unit, body axes), turned by

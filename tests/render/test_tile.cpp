@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/photometry/magnitude.h"
 #include "tests/render/scenes.h"
 
 namespace dmise {
@@ -73,6 +74,51 @@ TEST(Tile, ChannelsAreTheBandsEachAsDrawnAlone) {
       for (int x = 0; x < all.columns; ++x)
         ASSERT_EQ(all.at(x, y, int(k)), one.at(x, y, 0)) << k << " " << x << " " << y;
   }
+}
+
+// Gold foil, whose reflectance climbs from 0.37 to 0.97 across a wide band: drawn at sixteen
+// wavelengths in the tile's channels and summed by the photons that the Sun sends in each, it is
+// what the unresolved object has in the whole band, and that is not what it has at the band's
+// middle.
+TEST(Tile, AColouredMaterialHasTheLightOfItsBandInChannelsAndUnresolved) {
+  Material gold = sandford_robertson_of(
+      "gold", {{0.45e-6, 0.50e-6, 0.55e-6, 0.60e-6, 0.70e-6}, {0.37, 0.45, 0.80, 0.92, 0.97}}, 0.3,
+      0.3, 0.3);
+  const Mesh mesh = box_wing({}, gold, gold, gold);
+  const Band wide{.name = "wide", .centre_m = 0.55 * um, .width_m = 0.24 * um};
+  constexpr int count = 16;
+  std::vector<FacetLight> lights;
+  std::vector<double> photons;
+  for (int k = 0; k < count; ++k) {
+    const Band narrow{.name = "k",
+                      .centre_m = wide.low_m() + (k + 0.5) / count * wide.width_m,
+                      .width_m = wide.width_m / count};
+    lights.emplace_back(mesh, narrow);
+    photons.push_back(sunlight_photons_per_s_m2(sun_v_mag, narrow));
+  }
+  const Vec<Body> sun = unit(Vec<Body>{0.4, 0.3, 1}), viewer = unit(Vec<Body>{-0.2, 0.4, 1});
+  const TileCamera camera = camera_around(radius_m(mesh), far_m, 64);
+  TileScene scene{.mesh = &mesh,
+                  .bands = {},
+                  .camera_from_body = looking_along(-viewer, 0.3),
+                  .object_m = {0, 0, far_m},
+                  .sources = {{sun, 1.0}},
+                  .camera = camera,
+                  .oversampling = 8};
+  for (int k = 0; k < count; ++k)
+    scene.bands.push_back({&lights[std::size_t(k)].facets(), photons[std::size_t(k)]});
+  const Tile tile = renderer().draw(scene);
+  double channels = 0, unresolved = 0;
+  for (int k = 0; k < count; ++k) channels += flux(tile, camera, k);
+  const FacetLight whole(mesh, wide);
+  unresolved = sunlight_photons_per_s_m2(sun_v_mag, wide) * whole.reflected_m2_per_sr(sun, viewer) /
+               (far_m * far_m);
+  EXPECT_NEAR(channels / unresolved, 1.0, 5e-3);
+  const FacetLight middle(mesh, Band{.centre_m = 0.55 * um, .width_m = 1e-9});
+  EXPECT_GT(
+      std::abs(middle.reflected_m2_per_sr(sun, viewer) / whole.reflected_m2_per_sr(sun, viewer) -
+               1.0),
+      0.02);
 }
 
 TEST(Tile, IsTheSameToTheBitEveryTimeAndInPieces) {
