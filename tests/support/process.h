@@ -52,7 +52,7 @@ class Child {
   const std::string& output() const { return output_; }
 
   /// False when `text` was not written within the time.
-  bool says(const std::string& text, double within_s = 20.0) {
+  bool says(const std::string& text, double within_s = 60.0) {
     const auto deadline = after(within_s);
     while (output_.find(text) == std::string::npos)
       if (!read_some(deadline)) return false;
@@ -60,7 +60,7 @@ class Child {
   }
 
   /// The exit code (128 + signal when killed), or nothing when it still runs after the time.
-  std::optional<int> exit_code(double within_s = 20.0) {
+  std::optional<int> exit_code(double within_s = 60.0) {
     if (code_) return code_;
     const auto deadline = after(within_s);
     while (read_some(deadline)) {  // until it closes its output

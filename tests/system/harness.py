@@ -140,7 +140,7 @@ class Run:
 
 def products(out):
     """The bytes of everything that must not depend on how a run went, by path."""
-    paths = [*out.glob("*/frame-*.fits"), *out.glob("*/*.jsonl"), *out.glob("*.jsonl")]
+    paths = [*out.glob("*/frame-*.fits"), *out.glob("*/*.jsonl"), *out.glob("*.jsonl"), *out.glob("positions.*")]
     return {str(p.relative_to(out)): p.read_bytes() for p in paths if p.name != "cost.jsonl"}
 
 

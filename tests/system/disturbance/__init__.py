@@ -1,0 +1,1 @@
+"""Networks of real processes that are killed, stopped, slowed, cut off and started again."""
