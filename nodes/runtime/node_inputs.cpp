@@ -14,7 +14,7 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 constexpr milliseconds gap_patience{20};         // it is published: late or lost
-constexpr milliseconds gap_patience_limit{500};  // doubled whenever it was only late
+constexpr milliseconds gap_patience_limit{4000};  // doubled whenever it was only late
 constexpr milliseconds quiet_patience{500};      // nothing is known of it: the producer may be slow
 constexpr milliseconds quiet_patience_limit{8000};  // doubled each time up to this
 constexpr milliseconds idle{1000};
@@ -162,6 +162,7 @@ void NodeInputs::be_patient_again() {
   asked_ = now();
   missing_ = Missing::nothing;
   quiet_ = quiet_patience;
+  gap_ = std::max<nanoseconds>(gap_patience, gap_ - gap_ / 16);  // the rush may be over
 }
 
 void NodeInputs::ask(const std::string& topic, std::uint64_t from_sequence,
