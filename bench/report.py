@@ -22,6 +22,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 BINARY = ROOT / "build/release/bin/dmise"
 DEMO = ROOT / "launch/scenarios/demo.yaml"
 RUN = ROOT / "build/benchmark-run"
+ELSEWHERE = ("scaling",)  # has a document of its own, by bench/scaling.py
 REFEREES = ("solve_field", "source_extractor_magnitudes", "skyfield_directions", "erfa_directions",
             "fitsverify_frames")
 
@@ -63,7 +64,7 @@ def machine():
 def bench_names():
     """The subcommands that `dmise bench --help` lists."""
     listed = output_of(BINARY, "bench", "--help").stdout.partition("Subcommands:")[2]
-    return re.findall(r"^  (\w+)", listed, re.MULTILINE)
+    return [name for name in re.findall(r"^  (\w+)", listed, re.MULTILINE) if name not in ELSEWHERE]
 
 
 def benches(names):
