@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# One process, one process per node, one thread or two, once or again: the products are the same bytes.
+# One process, one process per node, nodes behind agents, one thread or two, once or again: the products are the same bytes.
 #
 #   run_identity.sh DMISE SCENARIO DURATION_S
 #
@@ -30,10 +30,11 @@ produce run-1-thread run --threads 1
 produce run-2-threads run --threads 2
 produce launch launch
 produce launch-again launch
+produce launch-hosts launch --hosts 2
 
 reference=$work/run-1-thread
 frames=$(products "$reference" | grep -cE 'frame-[0-9]+.fits$') || fail "no frame was made"
-for other in run-2-threads launch launch-again; do
+for other in run-2-threads launch launch-again launch-hosts; do
   diff <(products "$reference") <(products "$work/$other") || fail "$other: other files than one process made"
   while read -r file; do
     cmp "$reference/$file" "$work/$other/$file" || fail "$other: $file differs"
