@@ -27,7 +27,7 @@ detector: {full_well_e: 25500, gain_e_per_dn: 0.35, read_noise_e: 9, bias_dn: 10
 band: {centre_m: 0.55e-6, width_m: 0.128e-6}
 """
 
-PATIENCE_S = 60.0  # for what has no deadline of its own
+PATIENCE_S = 150.0  # for what has no deadline of its own, on a loaded machine
 
 
 class Failure(Exception):

@@ -25,7 +25,7 @@ def fails(binary, directory):
 
 
 def drops(binary, directory):
-    scenario = write_scenario(directory, duration_s=200, on_silent_node="drop",
+    scenario = write_scenario(directory, duration_s=100, on_silent_node="drop",
                               silent_after_s=SILENT_AFTER_S)
     out = directory / "drop"
     with Run(binary, "launch", scenario, "--out", out) as run:
@@ -34,7 +34,7 @@ def drops(binary, directory):
         code, _ = run.finish()
         check(code == 0, f"policy drop: the run ends with code {code}: {run.stderr[-300:]}")
         frames = len(list((out / "alpha").glob("frame-*.fits")))
-        check(frames == 40, f"alpha goes on to its frame {frames} of 40")
+        check(frames == 20, f"alpha goes on to its frame {frames} of 20")
         check("beta" in run.stderr + run.stdout + (out / "run.json").read_text(), "beta is named")
         run.nothing_left()
 
