@@ -31,17 +31,6 @@ void count(const std::vector<Message>& published, TimeSplit* made) {
   }
 }
 
-/// Adds the time of its life to one part of the split.
-class Stopwatch {
- public:
-  explicit Stopwatch(double* total_s) : total_s_(total_s), start_(now()) {}
-  ~Stopwatch() { *total_s_ += duration<double>(now() - start_).count(); }
-
- private:
-  double* total_s_;
-  nanoseconds start_;
-};
-
 class Node {
  public:
   Node(Participant& participant, const NodeOptions& options)
@@ -61,6 +50,7 @@ class Node {
     publish_.set(zmq::sockopt::linger, 1000);
     direct_.set(zmq::sockopt::linger, 1000);
     inputs_.set_may_miss(options.observer);
+    inputs_.lose_every(options.lose_every);
   }
 
   void run(NodeResult* result) {
@@ -256,21 +246,15 @@ class Node {
   void tell_metrics(bool computing) const {
     Metrics* metrics = Metrics::of_process();
     if (!metrics) return;
-    NodeFigures figures{.granted = link_.granted(),
-                        .done = result_->done,
-                        .computing = computing,
-                        .incarnation = incarnation_,
-                        .ticks = steps_,
-                        .sent = sent_,
-                        .sent_bytes = sent_bytes_,
-                        .received = inputs_.received(),
-                        .refused = {},
-                        .asked_again = inputs_.asked_again(),
-                        .missed = inputs_.missed(),
-                        .queued = inputs_.queued(),
-                        .times = result_->times};
-    for (std::size_t i = 0; i < figures.refused.size(); ++i)
-      figures.refused[i] = inputs_.refused(Refusal(i));
+    NodeFigures figures = inputs_.figures();
+    figures.granted = link_.granted();
+    figures.done = result_->done;
+    figures.computing = computing;
+    figures.incarnation = incarnation_;
+    figures.ticks = steps_;
+    figures.sent = sent_;
+    figures.sent_bytes = sent_bytes_;
+    figures.times = result_->times;
     metrics->tell(figures);
   }
 
@@ -280,6 +264,8 @@ class Node {
     result_->refused = inputs_.refused();
     result_->last_refusal = inputs_.last_refusal();
     result_->asked_again = inputs_.asked_again();
+    result_->asked_for_known = inputs_.asked_for_known();
+    result_->lost = inputs_.lost();
     result_->missed = inputs_.missed();
     const bool interrupted = link_.stopped() && link_.phase() != v1::PHASE_ENDED;
     publish_.close();

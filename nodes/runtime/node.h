@@ -16,7 +16,8 @@ struct NodeOptions {
   std::string keys;                        // directory of keys; empty: plain, loopback alone
   std::string name;                        // in the run; empty: the participant's
   bool observer = false;                   // joins and leaves at any time, holds nobody's time
-  Event* stop = nullptr;                   // asks the node to leave; see stop_signal()
+  int lose_every = 0;     // > 0, for tests: every n-th message published to this node is lost
+  Event* stop = nullptr;  // asks the node to leave; see stop_signal()
 };
 
 struct NodeResult {
@@ -26,9 +27,11 @@ struct NodeResult {
   TimeSplit times;
   std::uint64_t refused = 0;  // messages that failed a check
   std::string last_refusal;
-  std::uint64_t asked_again = 0;  // requests for messages that were missing
-  std::uint64_t missed = 0;       // messages that nobody kept any more; of an observer
-  std::uint64_t incarnation = 1;  // of its name in the run
+  std::uint64_t asked_again = 0;      // requests for messages that were missing
+  std::uint64_t asked_for_known = 0;  // of these, for what was known to be published
+  std::uint64_t lost = 0;             // by `lose_every`
+  std::uint64_t missed = 0;           // messages that nobody kept any more; of an observer
+  std::uint64_t incarnation = 1;      // of its name in the run
 };
 
 /// Runs a participant as a node of a network: joins at the master, waits until every consumed topic

@@ -105,15 +105,17 @@ void NodeInputs::hear(const std::vector<v1::ClosedTopic>& closed,
 }
 
 void NodeInputs::receive() {
-  if (!broker_.empty()) receive_from(subscribe_, nullptr);
-  for (auto& [name, source] : sources_)
-    for (auto* socket : {&source.direct, &source.asker})
-      if (*socket) receive_from(**socket, &name);
+  if (!broker_.empty()) receive_from(subscribe_, nullptr, true);
+  for (auto& [name, source] : sources_) {
+    if (source.direct) receive_from(*source.direct, &name, true);
+    if (source.asker) receive_from(*source.asker, &name, false);
+  }
   learn_patience();
 }
 
-/// `publisher`: the only one who may speak there; null: anyone.
-void NodeInputs::receive_from(zmq::socket_t& socket, const std::string* publisher) {
+/// `publisher`: the only one who may speak there; null: anyone. `published`: not an answer to a
+/// question of ours.
+void NodeInputs::receive_from(zmq::socket_t& socket, const std::string* publisher, bool published) {
   for (auto message = dmise::receive(socket); !message.empty(); message = dmise::receive(socket)) {
     // A subscription also matches topics that only begin like it.
     const auto expected = publisher_of_.find(message[0].to_string());
@@ -122,6 +124,11 @@ void NodeInputs::receive_from(zmq::socket_t& socket, const std::string* publishe
       spdlog::warn("refused a message: {} does not publish on {}", *publisher, expected->first);
     } else if (const auto received = receiver_->receive(views(message))) {
       ++received_;
+      const bool counts = published && received->envelope.kind != MessageKind::probe;
+      if (counts && lose_every_ > 0 && ++countdown_ % std::uint64_t(lose_every_) == 0) {
+        ++lost_;
+        continue;
+      }
       inbox_.accept(*received);
     } else {
       log_event(spdlog::level::warn, "message_refused", {{"topic", expected->first}},
@@ -140,9 +147,11 @@ nanoseconds NodeInputs::ask_for(Tick tick) {
   missing_ = missing;
   const nanoseconds patience = gap ? gap_ : quiet_;
   if (now() - asked_ > patience) {
-    for (const Inbox::Want& want : wants)
+    for (const Inbox::Want& want : wants) {
+      asked_for_known_ += want.gap;
       ask(want.topic, want.from_sequence,
           want.from_tick || !may_miss_ ? want.from_tick : std::optional(tick));
+    }
     asked_ = now();
     if (gap) duplicates_when_asked_ = inbox_.duplicates();
     if (!gap) quiet_ = std::min<nanoseconds>(2 * quiet_, quiet_patience_limit);
@@ -183,6 +192,16 @@ void NodeInputs::ask(const std::string& topic, std::uint64_t from_sequence,
   request.set_from_tick(from_tick.value_or(0));
   source.asker->send(to_frame(request), zmq::send_flags::none);
   ++asked_again_;
+}
+
+NodeFigures NodeInputs::figures() const {
+  NodeFigures figures{.received = received_,
+                      .asked_again = asked_again_,
+                      .missed = inbox_.missed(),
+                      .queued = inbox_.queued()};
+  for (std::size_t i = 0; receiver_ && i < figures.refused.size(); ++i)
+    figures.refused[i] = receiver_->refused(Refusal(i));
+  return figures;
 }
 
 void NodeInputs::close() {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dmise/v1/time.pb.h"
+#include "nodes/runtime/figures.h"
 #include "nodes/runtime/inbox.h"
 #include "nodes/runtime/socket.h"
 
@@ -38,14 +39,18 @@ class NodeInputs {
   /// Whether a question asks for all from a tick on, whatever is lost before: that of who holds
   /// nobody's time.
   void set_may_miss(bool may_miss) { may_miss_ = may_miss; }
+  /// A seam for tests: every n-th message that is published, once the run has begun, is lost; 0:
+  /// none.
+  void lose_every(int n) { lose_every_ = n; }
 
   const std::vector<zmq::socket_t*>& sockets() const { return sockets_; }
   std::uint64_t refused() const { return receiver_ ? receiver_->refused() : 0; }
-  std::uint64_t refused(Refusal reason) const { return receiver_ ? receiver_->refused(reason) : 0; }
-  std::uint64_t received() const { return received_; }  // that passed every check
-  std::size_t queued() const { return inbox_.queued(); }
+  /// What can be said of inputs.
+  NodeFigures figures() const;
   std::string last_refusal() const { return receiver_ ? receiver_->last_refusal() : ""; }
   std::uint64_t asked_again() const { return asked_again_; }
+  std::uint64_t asked_for_known() const { return asked_for_known_; }
+  std::uint64_t lost() const { return lost_; }
   std::uint64_t missed() const { return inbox_.missed(); }
   void close();
 
@@ -61,7 +66,7 @@ class NodeInputs {
     std::optional<zmq::socket_t> asker;   // DEALER to its resend endpoint
   };
   void follow(const v1::Publisher& publisher);
-  void receive_from(zmq::socket_t& socket, const std::string* publisher);
+  void receive_from(zmq::socket_t& socket, const std::string* publisher, bool published);
   void learn_patience();
   void ask(const std::string& topic, std::uint64_t from_sequence, std::optional<Tick> from_tick);
   void list_sockets();
@@ -84,6 +89,9 @@ class NodeInputs {
   std::chrono::nanoseconds gap_{0};
   std::optional<std::uint64_t> duplicates_when_asked_;  // for a gap; nothing came twice since
   std::uint64_t asked_again_ = 0;
+  std::uint64_t asked_for_known_ = 0;
+  int lose_every_ = 0;
+  std::uint64_t countdown_ = 0, lost_ = 0;  // of that seam
   std::uint64_t received_ = 0;
 };
 

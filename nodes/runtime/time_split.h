@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <cstdint>
 
 namespace dmise {
@@ -12,6 +13,19 @@ struct TimeSplit {
   std::uint64_t detections = 0;  // in all that were published
 
   bool operator==(const TimeSplit&) const = default;
+};
+
+/// Adds the time of its life to one part of the split.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double* total_s) : total_s_(total_s) {}
+  ~Stopwatch() {
+    *total_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  double* total_s_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace dmise

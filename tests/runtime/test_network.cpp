@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "nodes/runtime/master_link.h"
 #include "nodes/runtime/socket.h"
 #include "tests/runtime/network_threads.h"
@@ -115,6 +117,86 @@ TEST(Network, LosesNothingWhenTheBrokerDoes) {
   ToyRecorder recorder_here({"a", "ab"});
   drive({&orbit_here, &a_here, &ab_here, &recorder_here}, 60);
   EXPECT_TRUE(recorder.record() == recorder_here.record());
+}
+
+// In lock-step nothing follows a lost message that could show its absence: only the manifest says
+// that it was published, and the next tick waits for it.
+TEST(Network, AMessageLostOnItsWayIsKnownInItsTickAndFetchedAgain) {
+  MasterThread master(run_of({"orbit", "a", "ab", "recorder"}, 15, 1));
+  ToyOrbit orbit;
+  ToyCamera a("a"), ab("ab");
+  ToyRecorder recorder({"a", "ab"});
+  auto broker = start_broker(master.address);
+  std::vector<std::future<NodeResult>> nodes;
+  for (Participant* participant : std::vector<Participant*>{&recorder, &ab, &a, &orbit})
+    nodes.push_back(std::async(std::launch::async, [&, participant] {
+      return run_node(*participant, {.master = master.address, .lose_every = 3});
+    }));
+  std::vector<NodeResult> results;
+  for (auto& node : nodes) results.push_back(node.get());
+  for (const NodeResult& result : results) EXPECT_EQ(result.exit_code, 0) << result.reason;
+  EXPECT_EQ(broker.get().exit_code, 0);
+  for (const std::size_t camera : {1u, 2u}) {  // one message a tick, a roster in the first
+    EXPECT_GE(results[camera].lost, 4u);
+    EXPECT_GE(results[camera].asked_for_known + 1, results[camera].lost);
+  }
+  EXPECT_GT(results[0].lost, 8u);  // truth, from the cameras' own sockets, among them
+  EXPECT_TRUE(recorder.record() == recorded_locally(15));
+}
+
+/// Says again, over the broker, all that an observer hears: as it was, as of another run, and as of
+/// a process that has not joined.
+int replay(const std::string& master, const std::atomic<bool>& over) {
+  BrokerEndpoints broker;
+  while (broker.publish.empty() && !over) broker = ask_master(master, 5).broker;
+  zmq::context_t context(1);
+  auto publisher = make_socket(context, zmq::socket_type::pub, max_data_bytes);
+  connect_to(publisher, broker.publish);
+  auto listener = make_socket(context, zmq::socket_type::sub, max_data_bytes);
+  listener.set(zmq::sockopt::subscribe, "");
+  connect_to(listener, broker.observe);
+  int said = 0;
+  while (!over) {
+    std::vector<zmq::pollitem_t> items{{listener.handle(), 0, ZMQ_POLLIN, 0}};
+    wait_for(items, std::chrono::milliseconds(10));
+    // What it says is heard by itself as well: a bounded number of each.
+    for (auto m = receive(listener); !m.empty(); m = receive(listener)) {
+      Envelope envelope = open(views(m));
+      if (envelope.kind == MessageKind::probe || ++said > 2000) continue;
+      const std::string topic = m[0].to_string(), payload = m[2].to_string(),
+                        arrays = m.size() > 3 ? m[3].to_string() : "";
+      send(publisher, std::make_shared<const Frames>(seal(topic, envelope, payload, arrays)));
+      ++envelope.run_id;
+      send(publisher, std::make_shared<const Frames>(seal(topic, envelope, payload, arrays)));
+      --envelope.run_id, ++envelope.incarnation;
+      send(publisher, std::make_shared<const Frames>(seal(topic, envelope, payload, arrays)));
+    }
+  }
+  return said;
+}
+
+TEST(Network, WhatIsSaidAgainOrInAnotherRunChangesNothing) {
+  MasterThread master(run_of({"orbit", "a", "ab", "recorder"}, 200, 2));
+  ToyOrbit orbit;
+  ToyCamera a("a"), ab("ab");
+  ToyRecorder recorder({"a", "ab"});
+  auto broker = start_broker(master.address);
+  std::atomic<bool> over{false};
+  auto replayer = std::async(std::launch::async, [&] { return replay(master.address, over); });
+  std::vector<std::future<NodeResult>> nodes;
+  for (Participant* participant : std::vector<Participant*>{&recorder, &ab, &a, &orbit})
+    nodes.push_back(start(*participant, master.address));
+  std::uint64_t refused = 0;
+  for (auto& node : nodes) {
+    const NodeResult result = node.get();
+    EXPECT_EQ(result.exit_code, 0) << result.reason;
+    refused += result.refused;
+  }
+  over = true;
+  EXPECT_GT(replayer.get(), 0);
+  EXPECT_GT(refused, 0u);
+  EXPECT_EQ(broker.get().exit_code, 0);
+  EXPECT_TRUE(recorder.record() == recorded_locally(200));
 }
 
 // An observer joins nothing and holds nobody up; a gap would show in the sequence numbers.

@@ -156,6 +156,20 @@ TEST(Security, ListsAreReadAnewForEveryConnection) {
   EXPECT_TRUE(server.hears(in_vain).empty());
 }
 
+TEST(Security, AKeyIsReplacedWithoutARestartOfTheServer) {
+  const Keys keys({"server", "a"});
+  Server server(keys, Domain::control);
+  const Security before(keys.directory, "a");
+  for (const char* ending : {"/a.key", "/a.pub"}) std::filesystem::remove(keys.directory + ending);
+  make_key(keys.directory, "a", false);
+  Client old(server, before);
+  EXPECT_TRUE(server.hears(in_vain).empty());
+  Client fresh(server, Security(keys.directory, "a"));
+  auto message = server.hears(patience);
+  ASSERT_EQ(message.size(), 2u);
+  EXPECT_EQ(sender_of(message[1]), "a");
+}
+
 struct SecureNetwork {
   SecureNetwork()
       : keys({"time-master", "broker", "orbit", "a", operator_name}, {"recorder"}),
@@ -243,6 +257,92 @@ TEST(Security, TheBrokerPassesNothingInAnothersName) {
   EXPECT_GT(count, 0);
   network.master.stop.set();
   EXPECT_GT(broker.get().refused, 0u);
+}
+
+/// What comes on a socket within the time; empty if nothing does.
+std::vector<zmq::message_t> heard_on(zmq::socket_t& socket, std::chrono::nanoseconds within) {
+  std::vector<zmq::pollitem_t> items{{socket.handle(), 0, ZMQ_POLLIN, 0}};
+  wait_for(items, within);
+  return receive(socket);
+}
+
+TEST(Security, TruthIsAskedForAgainByThoseWhoMayHearIt) {
+  SecureNetwork network;
+  make_key(network.keys.directory, "tracker", false);
+  auto broker = std::async(std::launch::async, [&] {
+    return run_broker({.master = network.master.address, .keys = network.keys.directory});
+  });
+  // The run stands in tick 2, until all have been asked.
+  std::promise<void> asked;
+  std::shared_future<void> go_on = asked.get_future().share();
+  ToyOrbit orbit;
+  ToyCamera camera("a");
+  std::promise<void> at_work;
+  camera.on_step = [&](Tick tick) {
+    if (tick == 2) at_work.set_value(), go_on.wait();
+  };
+  ToyRecorder recorder({"a"});
+  auto a = network.start(orbit), b = network.start(camera), c = network.start(recorder);
+  ASSERT_EQ(at_work.get_future().wait_for(patience), std::future_status::ready);
+
+  zmq::context_t context(1);
+  auto hello = make_socket(context, zmq::socket_type::dealer, max_control_bytes);
+  connect_to(hello, network.master.address, Security(network.keys.directory, operator_name),
+             master_name);
+  v1::NodeMessage question;
+  question.mutable_hello();
+  hello.send(to_frame(question), zmq::send_flags::none);
+  v1::MasterMessage answer;
+  const auto told = heard_on(hello, patience);
+  ASSERT_TRUE(told.size() == 1 && from_frame(told[0], &answer));
+  std::string address;
+  for (const auto& publisher : answer.endpoints().publishers())
+    if (publisher.name() == "a") address = publisher.resend_endpoint();
+
+  const auto answers = [&](const char* who, const char* topic, std::chrono::nanoseconds within) {
+    auto asker = make_socket(context, zmq::socket_type::dealer, max_data_bytes);
+    connect_to(asker, address, Security(network.keys.directory, who), "a");
+    v1::ResendRequest request;
+    request.set_run_id(answer.endpoints().run_id());
+    request.set_topic(topic);
+    asker.send(to_frame(request), zmq::send_flags::none);
+    const auto message = heard_on(asker, within);
+    return !message.empty() && message[0].to_string() == topic;
+  };
+  EXPECT_TRUE(answers("tracker", "detection/a", patience));
+  EXPECT_FALSE(answers("tracker", "truth/a", in_vain));
+  EXPECT_TRUE(answers("recorder", "truth/a", patience));
+  asked.set_value();
+  for (auto* node : {&a, &b, &c}) EXPECT_EQ(node->get().exit_code, 0);
+  EXPECT_EQ(broker.get().exit_code, 0);
+}
+
+TEST(Security, NobodyBeatsForAnother) {
+  SecureNetwork network;
+  ToyOrbit orbit;
+  auto waiting = network.start(orbit);  // for the others
+  const Security asking(network.keys.directory, operator_name);
+  const auto deadline = now() + patience;
+  RunStatus status;
+  while (status.nodes.empty() && now() < deadline)
+    status = ask_master(network.master.address, 5, asking);
+  ASSERT_EQ(status.nodes.size(), 1u);
+
+  zmq::context_t context(1);
+  const auto is_answered = [&](const char* who, std::chrono::nanoseconds within) {
+    auto socket = make_socket(context, zmq::socket_type::dealer, max_control_bytes);
+    connect_to(socket, network.master.address, Security(network.keys.directory, who), master_name);
+    v1::NodeMessage message;
+    message.set_run_id(status.run_id);
+    message.mutable_heartbeat()->set_name("orbit");
+    message.mutable_heartbeat()->set_incarnation(1);
+    socket.send(to_frame(message), zmq::send_flags::none);
+    return !heard_on(socket, within).empty();
+  };
+  EXPECT_FALSE(is_answered("a", in_vain));
+  EXPECT_TRUE(is_answered("orbit", patience));
+  network.master.stop.set();
+  EXPECT_NE(waiting.get().exit_code, 0);
 }
 
 }  // namespace
