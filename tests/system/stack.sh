@@ -30,6 +30,7 @@ clean_up() {
   rm -rf --one-file-system "$work"
 }
 
+remove_containers() { docker ps -aq | xargs -r docker rm -fv >/dev/null; }
 compose() { docker-compose -p "$project" -f "$file" "$@"; }
 container_of() { compose ps -aq "$1" 2>/dev/null; }
 
@@ -58,6 +59,7 @@ check_setup() {
   check_refusal "$work/refusal.log"
   build builder "$builder"
   say "./dmise build on a bare Debian: done after $((SECONDS - began)) s"
+  remove_containers
   docker run -d --name demo --network none "$builder" sleep infinity >/dev/null
   docker exec demo ./dmise demo >"$work/demo.log" 2>&1 || die "./dmise demo: $(tail -n 20 "$work/demo.log")"
   docker cp demo:/src/out/demo "$work/demo" >/dev/null
@@ -168,6 +170,7 @@ fi
 "$dmise" run "$DMISE_SCENARIOS/scenario.yaml" --out "$work/reference" >"$work/run.log" 2>&1 ||
   die "dmise run: $(tail -n 1 "$work/run.log")"
 start_daemon inside
+remove_containers  # of a test that was cut short
 [[ -z $given ]] || DMISE_IMAGE=$(docker load -q <"$given" | sed -n 's/^Loaded image: //p')
 check_image
 make_keys
