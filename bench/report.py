@@ -1,6 +1,6 @@
 """Measures, and writes docs/benchmarks.md from what it measured in this run.
 
-    report.py [--only NAME ..] [--output FILE]
+    report.py [--only NAME ..] [--also NAME ..] [--output FILE]
 
 Runs every `dmise bench NAME --json`, the demonstration, and the referees on its products. A figure is
 never kept from an earlier run. What fails is reported as failed.
@@ -23,6 +23,7 @@ BINARY = ROOT / "build/release/bin/dmise"
 DEMO = ROOT / "launch/scenarios/demo.yaml"
 RUN = ROOT / "build/benchmark-run"
 ELSEWHERE = ("scaling",)  # has a document of its own, by bench/scaling.py
+LONG = ("network",)  # real time, a quarter of an hour
 REFEREES = ("solve_field", "source_extractor_magnitudes", "skyfield_directions", "erfa_directions",
             "fitsverify_frames")
 
@@ -64,7 +65,8 @@ def machine():
 def bench_names():
     """The subcommands that `dmise bench --help` lists."""
     listed = output_of(BINARY, "bench", "--help").stdout.partition("Subcommands:")[2]
-    return [name for name in re.findall(r"^  (\w+)", listed, re.MULTILINE) if name not in ELSEWHERE]
+    return [name for name in re.findall(r"^  (\w+)", listed, re.MULTILINE)
+            if name not in ELSEWHERE + LONG]
 
 
 def benches(names):
@@ -163,13 +165,15 @@ def continuous_integration():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--only", nargs="+", metavar="NAME", help="benchmarks to run; default all")
+    parser.add_argument("--only", nargs="+", metavar="NAME",
+                        help="benchmarks to run; default all but " + ", ".join(LONG))
+    parser.add_argument("--also", nargs="+", metavar="NAME", default=[], help="and these")
     parser.add_argument("--output", type=pathlib.Path, default=ROOT / "docs/benchmarks.md")
     options = parser.parse_args()
     if not BINARY.exists():
         sys.exit(f"{BINARY} is not built; run ./dmise build")
     sections = [("Machine", table(("", ""), machine())),
-                ("Against anchors", benches(options.only or bench_names())),
+                ("Against anchors", benches((options.only or bench_names()) + options.also)),
                 ("The demonstration", demonstration()), ("Referees", referees()),
                 ("Light against its label", registration()), ("Whole runs", whole_runs()),
                 ("Continuous integration", continuous_integration())]
