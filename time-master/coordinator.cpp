@@ -178,7 +178,9 @@ std::vector<std::string> Coordinator::holding() const {
   for (const auto& [name, member] : members_)
     if (late(member))
       for (const std::string& topic : member.node.produces) late_topics[topic] = name;
-  for (const auto& [name, member] : members_) {
+  for (const auto& entry : members_) {
+    const std::string& name = entry.first;
+    const Member& member = entry.second;
     const auto& needs = member.node.consumes;
     const bool waits = std::any_of(needs.begin(), needs.end(), [&](const std::string& topic) {
       const auto owner = late_topics.find(topic);
