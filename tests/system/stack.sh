@@ -178,6 +178,7 @@ check_compose
 check_failure
 check_swarm
 [[ -z $given ]] || exit 0
-docker image rm "$DMISE_IMAGE" "$builder" >/dev/null
-docker system prune -f --volumes >/dev/null
+remove_containers || true  # those of a stack go in their own time
+docker image rm -f "$DMISE_IMAGE" "$builder" >/dev/null || true
+docker system prune -f --volumes >/dev/null || true
 write_proof "$proof" "$SECONDS"
