@@ -6,6 +6,7 @@
 #include "nodes/runtime/master.h"
 #include "nodes/runtime/master_link.h"
 #include "nodes/runtime/metrics.h"
+#include "nodes/runtime/relay.h"
 #include "nodes/runtime/status.h"
 #include "nodes/wire/refusal.h"
 
@@ -18,24 +19,6 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 constexpr milliseconds drained{100};  // nothing more comes when it was quiet for so long
-constexpr int burst = 1000;           // messages in one direction before looking at the other
-
-/// Passes on what waits at `from`; returns the number of messages.
-int pass(zmq::socket_t& from, zmq::socket_t& to) {
-  int messages = 0;
-  zmq::message_t frame;
-  while (messages < burst && from.recv(frame, zmq::recv_flags::dontwait)) {
-    bool more = frame.more();
-    to.send(frame, more ? zmq::send_flags::sndmore : zmq::send_flags::none);
-    while (more) {
-      if (!from.recv(frame, zmq::recv_flags::none)) break;
-      more = frame.more();
-      to.send(frame, more ? zmq::send_flags::sndmore : zmq::send_flags::none);
-    }
-    ++messages;
-  }
-  return messages;
-}
 
 /// Where an earlier broker of this run was bound, so that nobody has to look for the new one.
 BrokerEndpoints earlier_broker(const BrokerOptions& options) {
@@ -67,7 +50,7 @@ bool in_own_name(std::vector<zmq::message_t>& message) {
   }
 }
 
-/// As `pass`, from publishers whose names are proved.
+/// As `pass_on`, from publishers whose names are proved.
 int pass_checked(zmq::socket_t& from, zmq::socket_t& to, std::uint64_t* refused) {
   int messages = 0;
   for (auto message = receive(from); !message.empty(); message = receive(from)) {
@@ -78,7 +61,7 @@ int pass_checked(zmq::socket_t& from, zmq::socket_t& to, std::uint64_t* refused)
     } else if ((*refused)++ == 0) {
       spdlog::warn("refused a message of {} in another name", sender_of(message[0]));
     }
-    if (++messages >= burst) break;
+    if (++messages >= relay_burst) break;
   }
   return messages;
 }
@@ -119,8 +102,8 @@ void serve(const BrokerOptions& options, BrokerResult* result) {
     link.wait(sockets, link.deserted() ? drained : milliseconds(1000));
     link.take_published();  // manifests, which are nothing to a broker
     const int forward = security.on() ? pass_checked(publishers, subscribers, &result->refused)
-                                      : pass(publishers, subscribers);
-    const int back = pass(subscribers, publishers);  // subscriptions
+                                      : pass_on(publishers, subscribers);
+    const int back = pass_on(subscribers, publishers);  // subscriptions
     result->messages += std::uint64_t(forward);
     if (forward + back > 0) busy = now();
     if (Metrics* metrics = Metrics::of_process())
