@@ -9,6 +9,7 @@
 #include "tests/runtime/network_threads.h"
 #include "tests/runtime/toy.h"
 #include "tests/support/process.h"
+#include "tests/support/report.h"
 #include "tests/support/tsan.h"
 
 namespace dmise {
@@ -16,6 +17,7 @@ namespace {
 
 using namespace test;
 using test::Child;
+using test::digest_in;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -149,13 +151,6 @@ struct Hosts {
         gone = gone || (node.name == name && !node.alive);
   }
 };
-
-/// "digest" of a master's report.
-std::string digest_in(const std::string& report) {
-  const std::string json = read_text_file(report);
-  const auto at = json.find("\"digest\":\"");
-  return at == std::string::npos ? "" : json.substr(at + 10, 16);
-}
 
 TEST(Agents, LeaveTheDigestOfTheRunAsItIs) {
   const std::string report = testing::TempDir() + "dmise-agents-report.json";

@@ -8,12 +8,14 @@
 #include "core/base/text_file.h"
 #include "nodes/runtime/status.h"
 #include "tests/support/process.h"
+#include "tests/support/report.h"
 #include "tests/support/tsan.h"
 
 namespace dmise {
 namespace {
 
 using test::Child;
+using test::digest_in;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -69,14 +71,14 @@ TEST(Processes, RunToTheEndAndReportIt) {
   EXPECT_THAT(json, HasSubstr(R"("recorder":{"compute_s":)"));
 }
 
-// How soon a dead node is named is measured by tests/system/deaths.py.
+// The promise: a dead node is named within `silent_after_s`.
 TEST(Processes, AKilledNodeIsNamedAndTheRunFails) {
   for (const std::string victim : {"orbit", "a", "recorder", "broker"}) {
     Stack stack({"--ticks", "100000000", "--silent-after", "5"});
     stack.start_all();
     ASSERT_TRUE(stack.nodes["b"]->says("step 5\n")) << stack.nodes["b"]->output();
     stack.nodes[victim]->kill(SIGKILL);
-    EXPECT_TRUE(stack.master->says(victim + " has closed its connection"))
+    EXPECT_TRUE(stack.master->says(victim + " has closed its connection", 5.0))
         << stack.master->output();
     stack.expect_all_exit(1, victim);
     for (auto& [name, node] : stack.nodes)
@@ -91,7 +93,7 @@ TEST(Processes, AStoppedNodeIsNamedAndTheRunFails) {
   stack.start_all();
   ASSERT_TRUE(stack.nodes["b"]->says("step 5\n"));
   stack.nodes["a"]->kill(SIGSTOP);
-  EXPECT_TRUE(stack.master->says("a has been silent for ")) << stack.master->output();
+  EXPECT_TRUE(stack.master->says("a has been silent for ", 4.0)) << stack.master->output();
   stack.expect_all_exit(1, "a");
 }
 
@@ -150,13 +152,6 @@ TEST(Processes, TheRunWaitsForAStoppedNodeByPolicy) {
   EXPECT_THAT(ask_master(stack.address, 5).holding, ElementsAre("a"));
   stack.nodes["a"]->kill(SIGCONT);
   stack.expect_all_exit(0, "");
-}
-
-/// "digest" of a master's report.
-std::string digest_in(const std::string& report) {
-  const std::string json = read_text_file(report);
-  const auto at = json.find("\"digest\":\"");
-  return at == std::string::npos ? "" : json.substr(at + 10, 16);
 }
 
 TEST(Processes, ARestartedNodeLeavesTheRunAsItWas) {
