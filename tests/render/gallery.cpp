@@ -9,7 +9,6 @@
 #include "core/base/units.h"
 #include "core/image/png_file.h"
 #include "core/materials/obj_file.h"
-#include "core/optics/snapshots.h"
 #include "core/photometry/earthshine.h"
 #include "core/photometry/magnitude.h"
 #include "tests/render/scenes.h"
@@ -73,38 +72,6 @@ void light_curve(const std::string& path) {
   }
 }
 
-/// Misplaced light and time of snapshots against the path integral, of a streak of 60 px.
-void snapshots(const std::string& path) {
-  const PsfTable psf = make_psf_table(0.8);
-  const Arc streak{{15, 12}, {46, 20}, {76, 36}, 1e5, 0.4};
-  Threads one;
-  const auto drawn = [&](const std::vector<Arc>& arcs, double& us) {
-    RateImage image(96, 48);
-    us = 1e9;
-    for (int repeat = 0; repeat < 20; ++repeat) {
-      const std::clock_t start = std::clock();  // of processor time
-      for (int i = 0; i < 50; ++i) {
-        std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
-        deposit(arcs, psf, image, one);
-      }
-      us = std::min(us, double(std::clock() - start) / CLOCKS_PER_SEC / 50 * 1e6);
-    }
-    return image;
-  };
-  std::ofstream file(path);
-  file << "snapshots,misplaced,us\n";
-  double us = 0;
-  const RateImage exact = drawn({streak}, us);
-  file << "0,0," << us << "\n";
-  for (int count = 1; count <= 1024; count *= 2) {
-    const RateImage image = drawn(as_snapshots({&streak, 1}, count), us);
-    double difference = 0;
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-      difference += std::abs(double(image.pixels[i]) - double(exact.pixels[i]));
-    file << count << "," << difference / 2e5 << "," << us << "\n";
-  }
-}
-
 void draw_all(const std::string& folder) {
   const auto model = load_obj(DMISE_SOURCE_DIR "/launch/models/inspector.obj",
                               [](std::string_view name) { return library().find(name); });
@@ -122,7 +89,6 @@ void draw_all(const std::string& folder) {
                unit(Vec<Body>{0.7, 0.5, 0.45}), unit(Vec<Body>{0.5, 0.75, -0.1}), {0, 0, 7000e3},
                0.0, 0.72);
   light_curve(folder + "/light-curve.csv");
-  snapshots(folder + "/snapshots.csv");
 }
 
 }  // namespace
