@@ -89,23 +89,22 @@ void Coordinator::grant(Instant now) {
     return fail_run("no node is left" + (first_dropped_.empty()
                                              ? ""
                                              : "; the first that was lost was " + first_dropped_));
-  if (slowest > settled_) settle(slowest, now);
-  if (slowest >= end_) {
-    phase_ = Phase::ended;
-    return;
-  }
   granted_ =
       std::max(granted_, std::min({slowest + options_.window_ticks, end_, pace_.limit(now)}));
+  // At a tick at which nobody works the clock passes too.
+  const Tick over_to = std::min(slowest, granted_);
+  if (over_to > settled_) settle(over_to, now);
+  if (over_to >= end_) phase_ = Phase::ended;
 }
 
-void Coordinator::settle(Tick slowest, Instant now) {
+void Coordinator::settle(Tick last, Instant now) {
   for (auto& [name, member] : members_)
-    while (!member.said.empty() && member.said.front().tick <= slowest) {
+    while (!member.said.empty() && member.said.front().tick <= last) {
       const TickTally& tally = member.said.front();
       digest_ += member.agent ? tally.digest : content_digest(name, tally);
       member.said.pop_front();
     }
-  for (const Tick last = std::min(slowest, end_); settled_ < last;) pace_.finished(++settled_, now);
+  while (settled_ < last) pace_.finished(++settled_, now);
 }
 
 void Coordinator::pause(Tick at) {

@@ -188,7 +188,7 @@ class Coordinator {
   void connect_if_complete(Instant now);
   void start_if_ready(Instant now);
   bool notes(Member& member, TickTally tally);
-  void settle(Tick slowest, Instant now);
+  void settle(Tick last, Instant now);
   void grant(Instant now);
   Tick slowest_done() const;
   std::string after_tick(const Member& member) const;

@@ -88,7 +88,7 @@ std::optional<std::string> Coordinator::take_place(Member& member, Instant now) 
   member.incarnation = ++incarnations_[name];
   // It may have died with messages of ticks that it called done: it does again what anybody may
   // still need. Their tallies stay, to be compared.
-  member.resumes_at = slowest_done() + 1;
+  member.resumes_at = settled_ + 1;
   member.done = member.resumes_at - 1;
   member.pulse = Pulse::begin(now);
   member.ready = !member.keeps_time;

@@ -117,6 +117,23 @@ TEST(Pause, IsNoOverrunOfRealTime) {
   EXPECT_EQ(master.pace().overruns(), 0u);
 }
 
+TEST(Pause, HoldsTheClockBeforeATickAtWhichNobodyWorks) {
+  auto request = node("camera", {});
+  request.node.schedule = {.period = 2, .offset = 1};
+  Coordinator master(options({"camera"}, 3, 1));
+  master.pause();
+  master.join(request);
+  master.ready("camera");
+  EXPECT_EQ(master.settled(), master.granted());
+  EXPECT_EQ(master.granted(), -1);
+  master.step(1);
+  EXPECT_EQ(master.settled(), 0);  // over as soon as it is granted
+  master.go_on();
+  for (const Tick tick : {1, 3}) master.done("camera", tick);
+  EXPECT_EQ(master.settled(), 3);
+  EXPECT_EQ(master.phase(), Phase::ended);
+}
+
 TEST(EndEarly, LeavesNoTickHalfDone) {
   Coordinator master = started(options({"orbit", "camera"}, 9, 2));
   master.done("orbit", 0);
