@@ -55,13 +55,11 @@ int main(int argc, char** argv) {
                                       : role == "camera" ? static_cast<dmise::Participant&>(camera)
                                                          : recorder;
     Telling telling(participant, hang_at);
-    return dmise::run_node(
-               telling,
-               {.master = flags.master,
-                .host = flags.host,
-                .stop_within_s = 1.5,
-                .keys = flags.keys,
-                .stop = &dmise::stop_signal()})
+    return dmise::run_node(telling, {.master = flags.master,
+                                     .host = flags.host,
+                                     .stop_within_s = 0.7,
+                                     .keys = flags.keys,
+                                     .stop = &dmise::stop_signal()})
         .exit_code;
   });
 }

@@ -7,9 +7,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 extern char** environ;
@@ -34,7 +38,7 @@ class Child {
     if (posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ) != 0) pid_ = -1;
     posix_spawn_file_actions_destroy(&actions);
     close(ends[1]);
-    output_fd_ = ends[0];
+    reader_ = std::thread([this, from = ends[0]] { read_all(from); });
   }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
@@ -43,27 +47,39 @@ class Child {
       kill(SIGKILL);
       waitpid(pid_, nullptr, 0);
     }
-    if (output_fd_ >= 0) close(output_fd_);
+    if (reader_.joinable()) reader_.join();
   }
 
   void kill(int signal) { ::kill(pid_, signal); }
 
-  /// Everything written to stdout and stderr so far.
-  const std::string& output() const { return output_; }
+  /// Everything written to stdout and stderr so far. It is read as it comes: nobody waits for room
+  /// in the pipe.
+  std::string output() const {
+    const std::lock_guard lock(mutex_);
+    return output_;
+  }
 
   /// False when `text` was not written within the time.
   bool says(const std::string& text, double within_s = 60.0) {
-    const auto deadline = after(within_s);
-    while (output_.find(text) == std::string::npos)
-      if (!read_some(deadline)) return false;
-    return true;
+    std::unique_lock lock(mutex_);
+    std::size_t from = 0;
+    const auto said = [&] {
+      const bool found = output_.find(text, from) != std::string::npos;
+      from = output_.size() - std::min(output_.size(), text.size());
+      return found;
+    };
+    bool found = false;
+    news_.wait_until(lock, after(within_s), [&] { return (found = said()) || ended_; });
+    return found;
   }
 
   /// The exit code (128 + signal when killed), or nothing when it still runs after the time.
   std::optional<int> exit_code(double within_s = 60.0) {
     if (code_) return code_;
     const auto deadline = after(within_s);
-    while (read_some(deadline)) {  // until it closes its output
+    {
+      std::unique_lock lock(mutex_);
+      news_.wait_until(lock, deadline, [&] { return ended_; });  // until it closes its output
     }
     const int pidfd = int(syscall(SYS_pidfd_open, pid_, 0));
     pollfd ended{pidfd, POLLIN, 0};
@@ -87,19 +103,25 @@ class Child {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
     return int(std::max<std::int64_t>(left.count(), 0));
   }
-  bool read_some(Clock::time_point deadline) {
-    pollfd readable{output_fd_, POLLIN, 0};
-    if (poll(&readable, 1, left_ms(deadline)) != 1) return false;
+  void read_all(int from) {
     char buffer[4096];
-    const ssize_t size = read(output_fd_, buffer, sizeof buffer);
-    if (size <= 0) return false;
-    output_.append(buffer, std::size_t(size));
-    return true;
+    for (ssize_t size; (size = read(from, buffer, sizeof buffer)) > 0;) {
+      const std::lock_guard lock(mutex_);
+      output_.append(buffer, std::size_t(size));
+      news_.notify_all();
+    }
+    close(from);
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+    news_.notify_all();
   }
 
   pid_t pid_ = -1;
-  int output_fd_ = -1;
+  mutable std::mutex mutex_;  // guards the two below
   std::string output_;
+  bool ended_ = false;
+  std::condition_variable news_;
+  std::thread reader_;
   std::optional<int> code_;
 };
 
