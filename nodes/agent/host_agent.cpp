@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/text_file.h"
 #include "nodes/agent/host_voice.h"
+#include "nodes/runtime/broker_place.h"
 #include "nodes/runtime/control_rules.h"
 #include "nodes/runtime/master_link.h"
 #include "nodes/runtime/master_words.h"
@@ -289,16 +290,9 @@ class HostAgent {
     topology_version_ = link_.topology_version();
     const v1::Topology& topology = *link_.topology();
     reported_ = {topology.reported().begin(), topology.reported().end()};
-    follow(from_broker_, &broker_.first, topology.subscribe_endpoint());
-    follow(to_broker_, &broker_.second, topology.publish_endpoint());
+    at_subscribe_.follow(topology.subscribe_endpoint(), topology.broker_incarnation());
+    at_publish_.follow(topology.publish_endpoint(), topology.broker_incarnation());
     voice_.send_topology(topology, publish_endpoint_, subscribe_endpoint_);
-  }
-
-  void follow(zmq::socket_t& socket, std::string* connected, const std::string& endpoint) {
-    if (endpoint == *connected) return;
-    if (!connected->empty()) socket.disconnect(*connected);
-    *connected = endpoint;
-    connect_to(socket, endpoint);
   }
 
   /// Tells the master what there is to tell of this host.
@@ -387,7 +381,7 @@ class HostAgent {
   std::map<std::string, v1::TimeSplit> times_;
   std::set<std::string, std::less<>> reported_;  // topics whose tallies the master wants
   std::string address_, tick_endpoint_, publish_endpoint_, subscribe_endpoint_;
-  std::pair<std::string, std::string> broker_;  // where from_broker_ and to_broker_ are connected
+  BrokerPlace at_subscribe_{from_broker_}, at_publish_{to_broker_};
   std::uint64_t topology_version_ = 0;
   v1::NodeMessage heard_;
   nanoseconds busy_{0};

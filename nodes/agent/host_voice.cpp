@@ -76,6 +76,7 @@ void HostVoice::send_topology(const v1::Topology& topology, const std::string& p
   v1::Topology& theirs = *message.mutable_topology() = topology;
   theirs.clear_starts();
   theirs.clear_reported();
+  theirs.clear_broker_incarnation();
   theirs.set_publish_endpoint(publish_endpoint);
   theirs.set_subscribe_endpoint(subscribe_endpoint);
   for (const v1::NodeStart& start : topology.starts()) {

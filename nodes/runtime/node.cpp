@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "nodes/runtime/broker_place.h"
 #include "nodes/runtime/json_log.h"
 #include "nodes/runtime/master_link.h"
 #include "nodes/runtime/metrics.h"
@@ -143,10 +144,8 @@ class Node {
     const bool through_broker =
         std::any_of(produces_.begin(), produces_.end(),
                     [](const std::string& topic) { return !is_direct(topic); });
-    if (!through_broker || topology.publish_endpoint() == publish_endpoint_) return;
-    if (!publish_endpoint_.empty()) publish_.disconnect(publish_endpoint_);
-    publish_endpoint_ = topology.publish_endpoint();
-    connect_to(publish_, publish_endpoint_, security_, "broker");
+    if (through_broker)
+      broker_.follow(topology.publish_endpoint(), topology.broker_incarnation(), security_);
   }
 
   void follow_topology() {
@@ -291,7 +290,7 @@ class Node {
   std::optional<Outbox> outbox_;  // used by the link's keeper: outlives it
   MasterLink link_;
   zmq::socket_t publish_, direct_;
-  std::string publish_endpoint_;
+  BrokerPlace broker_{publish_};
   NodeInputs inputs_;
   RunFacts run_;
   std::uint64_t incarnation_ = 1, topology_version_ = 0;

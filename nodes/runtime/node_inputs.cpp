@@ -13,9 +13,9 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
-constexpr milliseconds gap_patience{20};         // it is published: late or lost
+constexpr milliseconds gap_patience{20};          // it is published: late or lost
 constexpr milliseconds gap_patience_limit{4000};  // doubled whenever it was only late
-constexpr milliseconds quiet_patience{500};      // nothing is known of it: the producer may be slow
+constexpr milliseconds quiet_patience{500};  // nothing is known of it: the producer may be slow
 constexpr milliseconds quiet_patience_limit{8000};  // doubled each time up to this
 constexpr milliseconds idle{1000};
 
@@ -28,8 +28,11 @@ NodeInputs::NodeInputs(zmq::context_t& context, std::vector<std::string> topics,
       topics_(topics),
       inbox_(std::move(topics)),
       subscribe_(make_socket(context, zmq::socket_type::sub, max_data_bytes)),
+      broker_(subscribe_),
       quiet_(quiet_patience),
-      gap_(gap_patience) {}
+      gap_(gap_patience) {
+  for (const std::string& topic : topics_) subscribe_.set(zmq::sockopt::subscribe, topic);
+}
 
 bool NodeInputs::consumes(const std::string& topic) const {
   return std::find(topics_.begin(), topics_.end(), topic) != topics_.end();
@@ -37,14 +40,7 @@ bool NodeInputs::consumes(const std::string& topic) const {
 
 void NodeInputs::connect(const v1::Topology& topology) {
   for (const auto& publisher : topology.publishers()) follow(publisher);
-  if (topology.subscribe_endpoint() != broker_) {
-    if (broker_.empty())
-      for (const std::string& topic : topics_) subscribe_.set(zmq::sockopt::subscribe, topic);
-    else
-      subscribe_.disconnect(broker_);
-    broker_ = topology.subscribe_endpoint();
-    connect_to(subscribe_, broker_, security_, "broker");
-  }
+  broker_.follow(topology.subscribe_endpoint(), topology.broker_incarnation(), security_);
   list_sockets();
 }
 
@@ -78,7 +74,7 @@ void NodeInputs::follow(const v1::Publisher& publisher) {
 
 void NodeInputs::list_sockets() {
   sockets_.clear();
-  if (!broker_.empty() && !topics_.empty()) sockets_.push_back(&subscribe_);
+  if (broker_.known() && !topics_.empty()) sockets_.push_back(&subscribe_);
   for (auto& [name, source] : sources_)
     for (auto* socket : {&source.direct, &source.asker})
       if (*socket) sockets_.push_back(&**socket);
@@ -105,7 +101,7 @@ void NodeInputs::hear(const std::vector<v1::ClosedTopic>& closed,
 }
 
 void NodeInputs::receive() {
-  if (!broker_.empty()) receive_from(subscribe_, nullptr, true);
+  if (broker_.known()) receive_from(subscribe_, nullptr, true);
   for (auto& [name, source] : sources_) {
     if (source.direct) receive_from(*source.direct, &name, true);
     if (source.asker) receive_from(*source.asker, &name, false);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dmise/v1/time.pb.h"
+#include "nodes/runtime/broker_place.h"
 #include "nodes/runtime/figures.h"
 #include "nodes/runtime/inbox.h"
 #include "nodes/runtime/socket.h"
@@ -78,7 +79,7 @@ class NodeInputs {
   std::optional<Receiver> receiver_;
   Inbox inbox_;
   zmq::socket_t subscribe_;
-  std::string broker_;                               // where subscribe_ is connected
+  BrokerPlace broker_;
   std::map<std::string, Source> sources_;            // by name of the publisher
   std::map<std::string, std::string> publisher_of_;  // each consumed topic
   std::vector<zmq::socket_t*> sockets_;              // that data arrive on

@@ -54,6 +54,7 @@ v1::Topology PeerDirectory::topology() const {
   v1::Topology topology;
   for (const auto& [name, peer] : peers_) {
     if (peer.join.has_broker()) {
+      topology.set_broker_incarnation(peer.incarnation);
       topology.set_publish_endpoint(peer.join.broker().publish_endpoint());
       topology.set_subscribe_endpoint(peer.join.broker().subscribe_endpoint());
     } else if (!peer.join.agent()) {

@@ -147,7 +147,7 @@ struct Hosts {
   /// Until the master counts `name` as lost.
   void wait_until_lost(const std::string& name) {
     for (bool gone = false; !gone;)
-      for (const NodeStatus& node : ask_master(address, 20).nodes)
+      for (const NodeStatus& node : ask_master(address, 60).nodes)
         gone = gone || (node.name == name && !node.alive);
   }
 };
@@ -206,7 +206,7 @@ TEST(Agents, AreRefusedWhereTheRunDropsTheLost) {
 
 TEST(Agents, ARestartedNodeLeavesTheRunAsItWas) {
   const std::string report = testing::TempDir() + "dmise-agents-restart.json";
-  const std::vector<std::string> flags{"--ticks",     "3000", "--window",        "3",
+  const std::vector<std::string> flags{"--ticks",     "6000", "--window",        "3",
                                        "--on-silent", "wait", "--rejoin-within", "60",
                                        "--report",    report};
   std::string undisturbed;
