@@ -19,6 +19,13 @@ struct Arc {
   PixelPosition start, middle, end;  // anywhere, also outside the frame
   double signal_e = 0.0;             // of the whole arc, expected [e-], >= 0
   double tilt = 0.0;                 // [-1, 1]
+
+  bool is_point() const {
+    const auto is_middle = [this](PixelPosition p) {
+      return p.x_px == middle.x_px && p.y_px == middle.y_px;
+    };
+    return is_middle(start) && is_middle(end);
+  }
 };
 
 /// What fell inside the frame: the signal and the mean of the pixel centres weighted by it. Where

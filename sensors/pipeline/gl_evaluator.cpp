@@ -13,9 +13,7 @@ ScenePoint point_of(const Arc& arc, std::size_t index) {
   if (!(std::abs(at.x_px) < 1e15 && std::abs(at.y_px) < 1e15 && arc.signal_e >= 0.0 &&
         arc.signal_e < 1e30))
     throw Error("scene: point " + std::to_string(index) + " is not finite or has negative light");
-  for (const PixelPosition& p : {arc.start, arc.end})
-    if (p.x_px != at.x_px || p.y_px != at.y_px)
-      throw Error("scene: point " + std::to_string(index) + " moves");
+  if (!arc.is_point()) throw Error("scene: point " + std::to_string(index) + " moves");
   return {at.x_px, at.y_px, arc.signal_e};
 }
 

@@ -25,13 +25,6 @@ FieldPlace field_place(const Optics& o, PixelPosition pixel) {
           std::atan2(d.y_px, d.x_px)};
 }
 
-bool is_point(const Arc& arc) {
-  const auto same = [&](PixelPosition p) {
-    return p.x_px == arc.middle.x_px && p.y_px == arc.middle.y_px;
-  };
-  return same(arc.start) && same(arc.end);
-}
-
 /// Places of the kernels over the field, row by row.
 std::vector<FieldPlace> field_places(const Optics& o) {
   const PointSpread& s = o.spread;
@@ -116,12 +109,12 @@ void OpticsStage::begin(const FrameTimes& exposure, double limit_e) {
 std::vector<Deposited> OpticsStage::put(std::span<const Arc> arcs, const DepositView& view) {
   if (!evaluator_) return deposit(arcs, table_, view, threads_);
   std::vector<Arc> points, moving;
-  for (const Arc& arc : arcs) (is_point(arc) ? points : moving).push_back(arc);
+  for (const Arc& arc : arcs) (arc.is_point() ? points : moving).push_back(arc);
   const auto drawn = evaluator_->add(points, table_, view, threads_);
   const auto swept = deposit(moving, table_, view, threads_);
   std::vector<Deposited> result;
   auto point = drawn.begin(), sweep = swept.begin();
-  for (const Arc& arc : arcs) result.push_back(is_point(arc) ? *point++ : *sweep++);
+  for (const Arc& arc : arcs) result.push_back(arc.is_point() ? *point++ : *sweep++);
   return result;
 }
 
