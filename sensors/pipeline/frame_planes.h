@@ -13,12 +13,13 @@ namespace dmise {
 /// [photons/s/m2/sr].
 using RadianceMap = Image<float, struct RadianceCarrier>;
 
-/// What the counts of a frame were drawn from. Only what the scenario asks for is filled in.
+/// The radiance in a part of the camera's band.
 struct BandRadiance {
   Band band;
   RadianceMap map;
 };
 
+/// What the counts of a frame were drawn from. Only what the scenario asks for is filled in.
 struct FramePlanes {
   RateImage sources, background;  // expected photo-electrons a second
   ElectronImage noise;            // expected standard deviation from frame to frame [e-]
