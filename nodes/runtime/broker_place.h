@@ -1,6 +1,6 @@
 #pragma once
+#include <cstdint>
 #include <string>
-#include <utility>
 
 #include "nodes/runtime/socket.h"
 

@@ -28,11 +28,14 @@ struct MasterThread {
   std::future<MasterResult> result;
 };
 
+inline std::future<NodeResult> start(Participant& participant, NodeOptions options) {
+  return std::async(std::launch::async,
+                    [&participant, options] { return run_node(participant, options); });
+}
+
 inline std::future<NodeResult> start(Participant& participant, const std::string& master,
                                      Event* stop = nullptr) {
-  return std::async(std::launch::async, [&participant, master, stop] {
-    return run_node(participant, {.master = master, .stop = stop});
-  });
+  return start(participant, NodeOptions{.master = master, .stop = stop});
 }
 
 inline std::future<BrokerResult> start_broker(const std::string& master,

@@ -8,6 +8,7 @@
 #include "nodes/agent/host_agent.h"
 #include "tests/runtime/network_threads.h"
 #include "tests/runtime/toy.h"
+#include "tests/runtime/until_lost.h"
 #include "tests/support/process.h"
 #include "tests/support/report.h"
 #include "tests/support/tsan.h"
@@ -16,8 +17,6 @@ namespace dmise {
 namespace {
 
 using namespace test;
-using test::Child;
-using test::digest_in;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -144,12 +143,6 @@ struct Hosts {
         EXPECT_EQ(process->exit_code(within_s), code) << name << ": " << process->output();
       }
   }
-  /// Until the master counts `name` as lost.
-  void wait_until_lost(const std::string& name) {
-    for (bool gone = false; !gone;)
-      for (const NodeStatus& node : ask_master(address, 60).nodes)
-        gone = gone || (node.name == name && !node.alive);
-  }
 };
 
 TEST(Agents, LeaveTheDigestOfTheRunAsItIs) {
@@ -221,7 +214,7 @@ TEST(Agents, ARestartedNodeLeavesTheRunAsItWas) {
     ASSERT_TRUE(run["b"].says("step " + std::to_string(at) + "\n", 60));
     at += 400;
     run[victim].kill(SIGKILL);
-    run.wait_until_lost(victim);
+    wait_until_lost(run.address, victim);
     run.start(victim);
   }
   run.expect_all_exit(0, "", 120);

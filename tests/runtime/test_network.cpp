@@ -58,24 +58,32 @@ int serve_badly(const std::string& master) {
   return lost;
 }
 
-std::string recorded_locally(Tick last_tick) {
+/// An orbit, two cameras of which one's name begins like the other's, and who records both.
+struct ToyParty {
+  explicit ToyParty(std::size_t objects = 20) : orbit(objects) {}
+
   ToyOrbit orbit;
-  ToyCamera a("a"), ab("ab");
-  ToyRecorder recorder({"a", "ab"});
-  drive({&orbit, &a, &ab, &recorder}, last_tick);
-  return recorder.record();
-}
+  ToyCamera a{"a"}, ab{"ab"};
+  ToyRecorder recorder{{"a", "ab"}};
+
+  std::string recorded_locally(Tick last_tick) {
+    drive({&orbit, &a, &ab, &recorder}, last_tick);
+    return recorder.record();
+  }
+  /// Who is waited for starts last.
+  std::vector<std::future<NodeResult>> start_all(const std::string& master, int lose_every = 0) {
+    std::vector<std::future<NodeResult>> nodes;
+    for (Participant* participant : std::vector<Participant*>{&recorder, &ab, &a, &orbit})
+      nodes.push_back(start(*participant, NodeOptions{.master = master, .lose_every = lose_every}));
+    return nodes;
+  }
+};
 
 std::string recorded_by_a_network(Tick last_tick, int window) {
   MasterThread master(run_of({"orbit", "a", "ab", "recorder"}, last_tick, window));
-  ToyOrbit orbit;
-  ToyCamera a("a"), ab("ab");  // one name begins like the other
-  ToyRecorder recorder({"a", "ab"});
+  ToyParty party;
   auto broker = start_broker(master.address);
-  std::vector<std::future<NodeResult>> nodes;
-  for (Participant* participant : std::vector<Participant*>{&recorder, &ab, &a, &orbit})
-    nodes.push_back(start(*participant, master.address));
-  for (auto& node : nodes) {
+  for (auto& node : party.start_all(master.address)) {
     const NodeResult result = node.get();
     EXPECT_EQ(result.exit_code, 0) << result.reason;
     EXPECT_EQ(result.refused, 0u) << result.last_refusal;
@@ -85,55 +93,38 @@ std::string recorded_by_a_network(Tick last_tick, int window) {
   const MasterResult result = master.result.get();
   EXPECT_EQ(result.exit_code, 0) << result.reason;
   EXPECT_EQ(result.times.size(), 5u);
-  return recorder.record();
+  return party.recorder.record();
 }
 
 TEST(Network, GivesTheBytesOfOneProcess) {
-  const std::string expected = recorded_locally(200);
+  const std::string expected = ToyParty().recorded_locally(200);
   EXPECT_TRUE(recorded_by_a_network(200, 1) == expected);
   EXPECT_TRUE(recorded_by_a_network(200, 4) == expected);
 }
 
 TEST(Network, LosesNothingWhenTheBrokerDoes) {
   MasterThread master(run_of({"orbit", "a", "ab", "recorder"}, 60, 4));
-  ToyOrbit orbit(2000);  // frames large enough to be handed over without a copy
-  ToyCamera a("a"), ab("ab");
-  ToyRecorder recorder({"a", "ab"});
+  ToyParty party(2000);  // frames large enough to be handed over without a copy
   auto broker = std::async(std::launch::async, [&] { return serve_badly(master.address); });
-  std::vector<std::future<NodeResult>> nodes;
-  for (Participant* participant : std::vector<Participant*>{&recorder, &ab, &a, &orbit})
-    nodes.push_back(start(*participant, master.address));
   std::uint64_t asked_again = 0;
-  for (auto& node : nodes) {
+  for (auto& node : party.start_all(master.address)) {
     const NodeResult result = node.get();
     EXPECT_EQ(result.exit_code, 0) << result.reason;
     asked_again += result.asked_again;
   }
   EXPECT_GT(broker.get(), 10);
   EXPECT_GT(asked_again, 10u);
-
-  ToyOrbit orbit_here(2000);
-  ToyCamera a_here("a"), ab_here("ab");
-  ToyRecorder recorder_here({"a", "ab"});
-  drive({&orbit_here, &a_here, &ab_here, &recorder_here}, 60);
-  EXPECT_TRUE(recorder.record() == recorder_here.record());
+  EXPECT_TRUE(party.recorder.record() == ToyParty(2000).recorded_locally(60));
 }
 
 // In lock-step nothing follows a lost message that could show its absence: only the manifest says
 // that it was published, and the next tick waits for it.
 TEST(Network, AMessageLostOnItsWayIsKnownInItsTickAndFetchedAgain) {
   MasterThread master(run_of({"orbit", "a", "ab", "recorder"}, 15, 1));
-  ToyOrbit orbit;
-  ToyCamera a("a"), ab("ab");
-  ToyRecorder recorder({"a", "ab"});
+  ToyParty party;
   auto broker = start_broker(master.address);
-  std::vector<std::future<NodeResult>> nodes;
-  for (Participant* participant : std::vector<Participant*>{&recorder, &ab, &a, &orbit})
-    nodes.push_back(std::async(std::launch::async, [&, participant] {
-      return run_node(*participant, {.master = master.address, .lose_every = 3});
-    }));
   std::vector<NodeResult> results;
-  for (auto& node : nodes) results.push_back(node.get());
+  for (auto& node : party.start_all(master.address, 3)) results.push_back(node.get());
   for (const NodeResult& result : results) EXPECT_EQ(result.exit_code, 0) << result.reason;
   EXPECT_EQ(broker.get().exit_code, 0);
   for (const std::size_t camera : {1u, 2u}) {  // one message a tick, a roster in the first
@@ -141,7 +132,7 @@ TEST(Network, AMessageLostOnItsWayIsKnownInItsTickAndFetchedAgain) {
     EXPECT_GE(results[camera].asked_for_known + 1, results[camera].lost);
   }
   EXPECT_GT(results[0].lost, 8u);  // truth, from the cameras' own sockets, among them
-  EXPECT_TRUE(recorder.record() == recorded_locally(15));
+  EXPECT_TRUE(party.recorder.record() == ToyParty().recorded_locally(15));
 }
 
 /// Says again, over the broker, all that an observer hears: as it was, as of another run, and as of
@@ -177,17 +168,12 @@ int replay(const std::string& master, const std::atomic<bool>& over) {
 
 TEST(Network, WhatIsSaidAgainOrInAnotherRunChangesNothing) {
   MasterThread master(run_of({"orbit", "a", "ab", "recorder"}, 200, 2));
-  ToyOrbit orbit;
-  ToyCamera a("a"), ab("ab");
-  ToyRecorder recorder({"a", "ab"});
+  ToyParty party;
   auto broker = start_broker(master.address);
   std::atomic<bool> over{false};
   auto replayer = std::async(std::launch::async, [&] { return replay(master.address, over); });
-  std::vector<std::future<NodeResult>> nodes;
-  for (Participant* participant : std::vector<Participant*>{&recorder, &ab, &a, &orbit})
-    nodes.push_back(start(*participant, master.address));
   std::uint64_t refused = 0;
-  for (auto& node : nodes) {
+  for (auto& node : party.start_all(master.address)) {
     const NodeResult result = node.get();
     EXPECT_EQ(result.exit_code, 0) << result.reason;
     refused += result.refused;
@@ -196,7 +182,7 @@ TEST(Network, WhatIsSaidAgainOrInAnotherRunChangesNothing) {
   EXPECT_GT(replayer.get(), 0);
   EXPECT_GT(refused, 0u);
   EXPECT_EQ(broker.get().exit_code, 0);
-  EXPECT_TRUE(recorder.record() == recorded_locally(200));
+  EXPECT_TRUE(party.recorder.record() == ToyParty().recorded_locally(200));
 }
 
 // An observer joins nothing and holds nobody up; a gap would show in the sequence numbers.

@@ -8,6 +8,7 @@
 #include "core/base/text_file.h"
 #include "nodes/runtime/socket.h"
 #include "nodes/runtime/status.h"
+#include "tests/runtime/until_lost.h"
 #include "tests/support/process.h"
 #include "tests/support/report.h"
 #include "tests/support/tsan.h"
@@ -17,6 +18,7 @@ namespace {
 
 using test::Child;
 using test::digest_in;
+using test::wait_until_lost;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -51,12 +53,6 @@ struct Stack {
   void start_all() {
     start_broker();
     for (const char* name : {"recorder", "b", "a", "orbit"}) start(name);
-  }
-  /// Until the master counts `name` as lost.
-  void expect_lost(const std::string& name) {
-    for (bool gone = false; !gone;)
-      for (const NodeStatus& node : ask_master(address, 60).nodes)
-        gone = gone || (node.name == name && !node.alive);
   }
   /// Every process but `except` has ended within the time and with this code.
   void expect_all_exit(int code, const std::string& except = "", double within_s = 60) {
@@ -153,7 +149,7 @@ TEST(Processes, TheRunWaitsForAStoppedNodeByPolicy) {
   stack.start_all();
   ASSERT_TRUE(stack.nodes["b"]->says("step 5\n"));
   stack.nodes["a"]->kill(SIGSTOP);
-  stack.expect_lost("a");
+  wait_until_lost(stack.address, "a");
   EXPECT_THAT(ask_master(stack.address, 60).holding, ElementsAre("a"));
   stack.nodes["a"]->kill(SIGCONT);
   stack.expect_all_exit(0, "");
@@ -178,7 +174,7 @@ TEST(Processes, ARestartedNodeLeavesTheRunAsItWas) {
     ASSERT_TRUE(stack.nodes["b"]->says("step " + std::to_string(at) + "\n"));
     at += 400;
     stack.nodes[victim]->kill(SIGKILL);
-    stack.expect_lost(victim);
+    wait_until_lost(stack.address, victim);
     victim == "broker" ? stack.start_broker() : static_cast<void>(stack.start(victim));
   }
   stack.expect_all_exit(0, "", 120);
@@ -209,7 +205,7 @@ TEST(Processes, ABrokerReturnsToWhereAStrangerHasBeen) {
   ASSERT_TRUE(stack.nodes["b"]->says("step 5\n"));
   const BrokerEndpoints earlier = ask_master(stack.address, 60).broker;
   stack.nodes["broker"]->kill(SIGKILL);
-  stack.expect_lost("broker");
+  wait_until_lost(stack.address, "broker");
   be_a_stranger_at(earlier.subscribe);
   be_a_stranger_at(earlier.publish);
   stack.start_broker();
