@@ -8,7 +8,6 @@ declared time.
 """
 
 import argparse
-import json
 import os
 import pathlib
 import random
@@ -20,6 +19,7 @@ import tempfile
 import time
 
 from disturbance.hosts import Hosts, may_make_hosts
+from harness import tell_figures
 
 DECLARED_S = 5.0  # the default of --silent-after
 NODES = ("orbit", "a", "b", "recorder", "broker")
@@ -147,10 +147,7 @@ def main():
     figures = {"name": "death_named_worst_s", "value": round(max(took), 3), "unit": "s", "target": DECLARED_S,
                "met": max(took) <= DECLARED_S, "named_in_time": sum(t <= DECLARED_S for t in took), "trials": options.trials, "seed": options.seed,
                "median_s": round(sorted(took)[len(took) // 2], 3), **counts}
-    print(json.dumps(figures))
-    if options.json:
-        with open(options.json, "a", encoding="utf-8") as file:
-            file.write(json.dumps(figures) + "\n")
+    tell_figures(figures, options.json)
     return 1 if bad else 0
 
 

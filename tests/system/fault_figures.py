@@ -52,7 +52,7 @@ def main():
     parts += [soak_text(line) for line in named("soak_growth_worst")[-1:]]
     cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")),
                platform.processor())
-    where = f"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}, {os.cpu_count()} cores ({cpu}), Linux {platform.release().split('-')[0]}, other work beside it:"
+    where = f"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}, {os.cpu_count()} cores ({cpu}), Linux {platform.release().split('-')[0]}, load {os.getloadavg()[2]:.1f} before:"
     text = PAGE.read_text()
     PAGE.write_text(text[: text.index(MARK)] + MARK + "\n" + where + "\n\n" + "\n".join(parts) + "\n")
 

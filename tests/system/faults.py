@@ -24,7 +24,7 @@ from disturbance.scene import EVERYBODY, write_scene
 from disturbance.schedule import draw
 from disturbance.verdict import (EVERYBODY_NEEDS, dropped, expected, names_a_cause, nothing_wrong,
                                  survivors_complete)
-from harness import Failure, Run, products
+from harness import Failure, Run, products, tell_figures
 
 PATIENCE_S = 150.0  # for the end of a run that has been disturbed for the last time
 
@@ -150,10 +150,7 @@ def main():
             field.hosts.close()
     figures = {"name": "fault_schedules", "seed": options.seed, "first": options.first, "value": options.schedules,
                "failed": failures, "wall_s": round(time.monotonic() - began, 1), **counts}
-    print(json.dumps(figures))
-    if options.json:
-        with open(options.json, "a", encoding="utf-8") as file:
-            file.write(json.dumps(figures) + "\n")
+    tell_figures(figures, options.json)
     return 1 if failures else 0
 
 

@@ -1,5 +1,6 @@
 """What the system tests share: scenarios of small cameras, a launched run, its processes."""
 
+import json
 import os
 import pathlib
 import signal
@@ -136,6 +137,15 @@ class Run:
     def nothing_left(self):
         left = [" ".join(command_of(pid)) for pid in self.living()]
         check(not left, f"{len(left)} processes are left running {left}")
+
+
+def tell_figures(figures, path=None):
+    """Prints a line of figures, and appends it to the file if there is one."""
+    line = json.dumps(figures)
+    print(line)
+    if path:
+        with open(path, "a", encoding="utf-8") as file:
+            file.write(line + "\n")
 
 
 def products(out):
