@@ -15,6 +15,7 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 #include "core/orbit/cone_test.h"
 #include "core/orbit/element_text.h"
 #include "core/orbit/sgp4_batch.h"

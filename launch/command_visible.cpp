@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
 #include "core/base/units.h"
+#include "core/base/whole_file.h"
 #include "core/config/make_clock.h"
 #include "core/image/png_file.h"
 #include "core/time/iso8601.h"

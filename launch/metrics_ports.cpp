@@ -2,7 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json.h"
-#include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 
 namespace dmise {
 

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "core/base/json.h"
-#include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 #include "sensors/pipeline/frame_times.h"
 #include "sensors/positions/position_files.h"
 

@@ -10,6 +10,7 @@
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 
 namespace dmise {
 namespace {

@@ -5,8 +5,8 @@
 #include <fstream>
 
 #include "core/base/json.h"
-#include "core/base/text_file.h"
 #include "core/base/version.h"
+#include "core/base/whole_file.h"
 #include "core/orbit/interpolation_error.h"
 
 namespace dmise {

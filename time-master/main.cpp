@@ -1,5 +1,5 @@
 // dmise-time-master: keeps the clock of one run, from the first node that joins to the last tick.
-#include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 #include "nodes/runtime/master.h"
 #include "nodes/runtime/program.h"
 

@@ -3,12 +3,8 @@
 
 namespace dmise {
 
-/// Whole content of a file, gunzipped if it is gzip. Throws `ConfigError` "PATH: reason" when it can't
-/// be read or grows beyond `limit_bytes`.
+/// Whole content of a file, gunzipped if it is gzip. Throws `ConfigError` "PATH: reason" when it
+/// can't be read or grows beyond `limit_bytes`.
 std::string read_text_file(const std::string& path, std::size_t limit_bytes = std::size_t(1) << 30);
-
-/// Writes `content` to `path` whole or not at all: to a file beside it, flushed to the disk, then
-/// renamed. Throws `Error` "PATH: reason" and leaves nothing behind when it can't.
-void write_file_whole(const std::string& path, const std::string& content);
 
 }  // namespace dmise

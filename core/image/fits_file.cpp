@@ -7,16 +7,17 @@
 
 #include "core/base/error.h"
 #include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_guard.h"
 #include "core/image/fits_memory.h"
+#include "core/image/plain_image.h"
 #include "core/image/rice.h"
 #include "core/image/tiled_image.h"
 
 namespace dmise {
 namespace {
 
-constexpr std::size_t fits_block = 2880;
 constexpr long widest_side = 1 << 16;
 // The best that Rice's code does is a few bits for 32 pixels: a file that claims more is a bomb.
 constexpr std::size_t most_pixels_per_byte = 128;
@@ -124,29 +125,38 @@ std::vector<std::string> flag_cards(const FrameHeader& header) {
   return cards;
 }
 
+std::vector<std::string> frame_cards(const CountImage& counts, const FrameHeader& header,
+                                     const FlagImage* flags) {
+  if (flags && (flags->columns != counts.columns || flags->rows != counts.rows))
+    throw Error("FITS can't be written: flags of another shape than the counts");
+  return fits_cards(header);
+}
+
+void put_plain(const ByteSink& file, const CountImage& counts, std::span<const std::string> cards,
+               const FrameHeader& header, const FlagImage* flags) {
+  put_image(file, FitsPlace::primary, counts.pixels, counts.columns, cards);
+  if (flags)
+    put_image(file, FitsPlace::extension, flags->pixels, flags->columns, flag_cards(header));
+}
+
 }  // namespace
 
 std::string encode_frame(const CountImage& counts, const FrameHeader& header,
                          FitsCompression compression, const FlagImage* flags) {
-  const auto cards = fits_cards(header);
-  if (flags && (flags->columns != counts.columns || flags->rows != counts.rows))
-    throw Error("FITS can't be written: flags of another shape than the counts");
+  const auto cards = frame_cards(counts, header, flags);
   if (compression == FitsCompression::rice) {
     std::string file = empty_primary();
     append_rice_image(file, counts.pixels, counts.columns, cards);
     if (flags) append_rice_image(file, flags->pixels, flags->columns, flag_cards(header));
     return file;
   }
-  FitsWriter fits(2 * (cards.size() + 64) * 80 + 3 * counts.pixels.size() + 6 * fits_block);
-  fits.image(USHORT_IMG, counts.columns, counts.rows, cards, TUSHORT, counts.pixels.data());
-  if (flags)
-    fits.image(BYTE_IMG, flags->columns, flags->rows, flag_cards(header), TBYTE,
-               flags->pixels.data());
-  return fits.bytes();
+  std::string file;
+  put_plain([&](std::string_view piece) { file += piece; }, counts, cards, header, flags);
+  return file;
 }
 
 Frame decode_frame(std::string_view bytes, const std::string& name) {
-  if (bytes.size() < fits_block || !bytes.starts_with("SIMPLE  ="))
+  if (bytes.size() < fits_block_bytes || !bytes.starts_with("SIMPLE  ="))
     throw ConfigError(name + ": SIMPLE: not a FITS file");
   require_harmless_headers(bytes, name);
   Fits fits;
@@ -178,13 +188,21 @@ Frame decode_frame(std::string_view bytes, const std::string& name) {
 
 void write_frame(const std::string& path, const CountImage& counts, const FrameHeader& header,
                  FitsCompression compression, const FlagImage* flags) {
-  std::string bytes;
+  std::vector<std::string> cards;
+  std::string compressed;
   try {
-    bytes = encode_frame(counts, header, compression, flags);
+    if (compression == FitsCompression::rice)
+      compressed = encode_frame(counts, header, compression, flags);
+    else
+      cards = frame_cards(counts, header, flags);
   } catch (const Error& error) {
     throw Error(path + ": " + error.what());
   }
-  write_file_whole(path, bytes);
+  WholeFile file(path);
+  const ByteSink sink = [&](std::string_view piece) { file.append(piece); };
+  compression == FitsCompression::rice ? sink(compressed)
+                                       : put_plain(sink, counts, cards, header, flags);
+  file.finish();
 }
 
 Frame read_frame(const std::string& path) { return decode_frame(read_text_file(path), path); }

@@ -1,37 +1,55 @@
 #include "core/image/plane_file.h"
 
 #include <cmath>
+#include <span>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 #include "core/image/fits_cards.h"
-#include "core/image/fits_memory.h"
+#include "core/image/plain_image.h"
 
 namespace dmise {
 
-std::string encode_plane(const Plane& plane, const FrameHeader& header) {
-  const std::size_t count = std::size_t(plane.columns) * std::size_t(plane.rows);
-  for (std::size_t i = 0; i < count; ++i)
+namespace {
+
+std::size_t pixel_count(const Plane& plane) {
+  return std::size_t(plane.columns) * std::size_t(plane.rows);
+}
+
+std::vector<std::string> plane_cards(const Plane& plane, const FrameHeader& header) {
+  for (std::size_t i = 0; i < pixel_count(plane); ++i)
     if (!std::isfinite(plane.pixels[i]))
       throw Error("FITS can't be written: " + plane.name + ": not a finite number at pixel " +
                   std::to_string(i));
   auto cards = fits_cards(header);
   cards.insert(cards.begin(), {text_card("EXTNAME", plane.name, plane.what),
                                text_card("BUNIT", plane.unit, "unit of the pixels")});
-  constexpr std::size_t fits_block = 2880;
-  FitsWriter fits((cards.size() + 64) * 80 + 4 * count + 3 * fits_block);
-  fits.image(FLOAT_IMG, plane.columns, plane.rows, cards, TFLOAT, plane.pixels);
-  return fits.bytes();
+  return cards;
+}
+
+void put_plane(const ByteSink& file, const Plane& plane, std::span<const std::string> cards) {
+  put_image(file, FitsPlace::primary, std::span(plane.pixels, pixel_count(plane)), plane.columns,
+            cards);
+}
+
+}  // namespace
+
+std::string encode_plane(const Plane& plane, const FrameHeader& header) {
+  std::string file;
+  put_plane([&](std::string_view piece) { file += piece; }, plane, plane_cards(plane, header));
+  return file;
 }
 
 void write_plane(const std::string& path, const Plane& plane, const FrameHeader& header) {
-  std::string bytes;
+  std::vector<std::string> cards;
   try {
-    bytes = encode_plane(plane, header);
+    cards = plane_cards(plane, header);
   } catch (const Error& error) {
     throw Error(path + ": " + error.what());
   }
-  write_file_whole(path, bytes);
+  WholeFile file(path);
+  put_plane([&](std::string_view piece) { file.append(piece); }, plane, cards);
+  file.finish();
 }
 
 }  // namespace dmise

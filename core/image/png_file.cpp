@@ -5,7 +5,7 @@
 #include <csetjmp>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 
 namespace dmise {
 namespace {

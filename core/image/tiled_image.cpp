@@ -4,30 +4,18 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/image/fits_block.h"
 #include "core/image/fits_cards.h"
 #include "core/image/rice.h"
 
 namespace dmise {
 namespace {
 
-constexpr std::size_t fits_block = 2880, card_size = 80;
 constexpr int rice_block = 32;  // pixels that share a code
 constexpr std::uint16_t zero = 32768;
 
-void pad(std::string& file, char with) {
-  file.append((fits_block - file.size() % fits_block) % fits_block, with);
-}
-
 void put_big_endian(std::string& bytes, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) bytes += char(number >> shift);
-}
-
-void append_header(std::string& file, std::span<const std::string> cards) {
-  for (const std::string& card : cards) file += card;
-  std::string end = "END";
-  end.resize(card_size, ' ');
-  file += end;
-  pad(file, ' ');
 }
 
 struct Compressed {
@@ -83,20 +71,18 @@ void append(std::string& file, const Compressed& image, int columns, std::size_t
     all.push_back(integer_card("BSCALE", 1, ""));
   }
   all.insert(all.end(), cards.begin(), cards.end());
-  append_header(file, all);
+  file += fits_header(all);
   file += image.table;
   file += image.heap;
-  pad(file, '\0');
+  file += fits_padding(file.size(), '\0');
 }
 
 }  // namespace
 
 std::string empty_primary() {
-  std::string file;
-  append_header(file, std::vector{flag_card("SIMPLE", true, "FITS Standard 4.0"),
-                                  integer_card("BITPIX", 8, ""), integer_card("NAXIS", 0, ""),
-                                  flag_card("EXTEND", true, "the image follows")});
-  return file;
+  return fits_header(std::vector{flag_card("SIMPLE", true, "FITS Standard 4.0"),
+                                 integer_card("BITPIX", 8, ""), integer_card("NAXIS", 0, ""),
+                                 flag_card("EXTEND", true, "the image follows")});
 }
 
 void append_rice_image(std::string& file, std::span<const std::uint16_t> pixels, int columns,

@@ -9,6 +9,7 @@
 #include "core/base/crc32c.h"
 #include "core/base/error.h"
 #include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 
 namespace dmise {
 namespace {

@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 #include "nodes/agent/host_voice.h"
 #include "nodes/runtime/broker_place.h"
 #include "nodes/runtime/control_rules.h"

@@ -2,7 +2,7 @@
 #include <unistd.h>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 #include "nodes/runtime/master.h"
 
 namespace dmise {

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json.h"
-#include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 #include "core/detection/detection_json.h"
 #include "core/image/exr_file.h"
 #include "core/image/fits_file.h"

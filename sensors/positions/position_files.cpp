@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 
 namespace dmise {
 namespace {

@@ -1,4 +1,5 @@
 #include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

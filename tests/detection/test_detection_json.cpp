@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/text_file.h"
 #include "core/base/units.h"
+#include "core/base/whole_file.h"
 #include "core/detection/detect_file.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"

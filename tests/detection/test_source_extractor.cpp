@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 #include "core/detection/detect.h"
 #include "core/image/fits_file.h"
 #include "tests/detection/simulated_frame.h"

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 #include "core/orbit/oem.h"
 
 namespace dmise {

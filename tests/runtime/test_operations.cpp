@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 #include "nodes/runtime/metrics.h"
 #include "nodes/runtime/status.h"
 #include "tests/runtime/http.h"

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/base/text_file.h"
+#include "core/base/whole_file.h"
 
 namespace dmise {
 namespace {

@@ -1,0 +1,31 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+// What every FITS file is made of: blocks of 2880 bytes, cards of 80 characters (FITS Standard 4.0,
+// sections 3.1 and 3.2).
+namespace dmise {
+
+constexpr std::size_t fits_block_bytes = 2880, fits_card_bytes = 80;
+
+/// Takes the bytes of a file piece by piece.
+using ByteSink = std::function<void(std::string_view piece)>;
+
+/// What fills the last block of `bytes`.
+inline std::string fits_padding(std::size_t bytes, char with) {
+  return std::string((fits_block_bytes - bytes % fits_block_bytes) % fits_block_bytes, with);
+}
+
+/// A header of these cards, its end and padding with it.
+inline std::string fits_header(std::span<const std::string> cards) {
+  std::string header;
+  for (const std::string& card : cards) header += card;
+  header += "END";
+  header.append(fits_card_bytes - 3, ' ');
+  return header + fits_padding(header.size(), ' ');
+}
+
+}  // namespace dmise

@@ -1,0 +1,22 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "core/image/fits_block.h"
+
+namespace dmise {
+
+enum class FitsPlace { primary, extension };
+
+/// A FITS image whose pixels are stored as they are: 16-bit unsigned (BZERO 32768), 8-bit, or
+/// 32-bit floats, first row first; `cards` follow the structural ones. Handed on in pieces of 64
+/// KB, so that an image is not held twice.
+void put_image(const ByteSink& file, FitsPlace place, std::span<const std::uint16_t> pixels,
+               int columns, std::span<const std::string> cards);
+void put_image(const ByteSink& file, FitsPlace place, std::span<const std::uint8_t> pixels,
+               int columns, std::span<const std::string> cards);
+void put_image(const ByteSink& file, FitsPlace place, std::span<const float> pixels, int columns,
+               std::span<const std::string> cards);
+
+}  // namespace dmise
