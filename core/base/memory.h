@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <span>
 
 namespace dmise {
 
@@ -10,10 +11,10 @@ void return_large_blocks();
 
 /// Gives the memory of a range back while it stays allocated: whole pages of it are zero
 /// afterwards, what is left at its ends as it was.
-void release_pages(void* begin, std::size_t bytes);
+void release_pages(std::span<std::byte> range);
 
 /// Asks for large pages behind a range from its next touch on: an image is mapped in tens of faults
 /// instead of thousands.
-void prefer_large_pages(void* begin, std::size_t bytes);
+void prefer_large_pages(std::span<std::byte> range);
 
 }  // namespace dmise

@@ -4,7 +4,6 @@
 #include <span>
 
 #include "core/base/error.h"
-#include "core/base/memory.h"
 #include "core/detector/blooming.h"
 #include "core/detector/chain.h"
 #include "core/detector/effect_watch.h"
@@ -73,10 +72,7 @@ SaturatedPixels expose(const RateImage& light, const Detector& figures, const Ex
   };
 
   const auto collect = [&](std::size_t begin, std::span<float> e, EffectWatch& watch) {
-    const std::size_t full = chain.collect(begin, e, flags_of(begin, e.size()), watch);
-    if (options.spent_light)
-      release_pages(options.spent_light->pixels.data() + begin, e.size() * sizeof(float));
-    return full;
+    return chain.collect(begin, e, flags_of(begin, e.size()), watch);
   };
 
   if (!chain.needs_neighbours()) {

@@ -39,9 +39,6 @@ struct SaturatedPixels {
 struct ExposeOptions {
   DetectorMemory* memory = nullptr;  // none: traps are empty and nothing is kept
   FlagImage* flags = nullptr;        // filled in if given (resized as needed)
-  /// `light` itself where nobody needs it any more: its memory is given back as it is read, so that
-  /// light and counts are never held whole together.
-  RateImage* spent_light = nullptr;
   SimdLevel level = best_simd_level();
 };
 

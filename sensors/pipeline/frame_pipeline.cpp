@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
+#include <utility>
 
 #include "core/base/memory.h"
 #include "core/base/version.h"
@@ -42,6 +44,11 @@ std::optional<Vec<Gcrs>> star_at(const Optics& optics, const ApparentPlaces& pla
   return star;
 }
 
+template <class T, class Carrier>
+std::span<std::byte> bytes_of(Image<T, Carrier>& image) {
+  return std::as_writable_bytes(std::span(image.pixels));
+}
+
 /// SIP order that leaves the fit below 0.01 px: refraction bends wide fields.
 int sip_order(const Optics& optics) { return half_diagonal_rad(optics) > 10 * deg ? 5 : 3; }
 
@@ -53,16 +60,25 @@ struct FramePipeline::Work {
   std::optional<StarLayer> stars;
   std::optional<GlEvaluator> evaluator;
   OpticsStage optics;
-  RateImage light;  // kept between frames without the memory behind it
+  RateImage light;         // kept between frames: memory that is new costs more than filling it
+  CountImage used_counts;  // of a frame that is done with, without the memory behind them
   DetectorMemory detector_memory;
 
   Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)
       : settings(std::move(s)), threads(t), optics(settings.sensor, settings.seed, t) {
-    light = RateImage(settings.sensor.camera.optics.columns, settings.sensor.camera.optics.rows);
-    release_pages(light.pixels.data(), light.pixels.size() * sizeof(float));
-    prefer_large_pages(light.pixels.data(), light.pixels.size() * sizeof(float));
+    const auto& grid = settings.sensor.camera.optics;
+    light = RateImage(grid.columns, grid.rows);
+    release_pages(bytes_of(light));
+    prefer_large_pages(bytes_of(light));
+    give_back(CountImage(grid.columns, grid.rows));
+    prefer_large_pages(bytes_of(used_counts));
     if (settings.sensor.effects.drawn_by_opengl()) optics.draw_by(evaluator.emplace());
     if (map) stars.emplace(settings.sensor, std::move(map));
+  }
+
+  void give_back(CountImage counts) {
+    used_counts = std::move(counts);
+    release_pages(bytes_of(used_counts));
   }
 
   bool has(Effect effect) const { return settings.sensor.effects.has(effect); }
@@ -226,20 +242,20 @@ FrameProducts FramePipeline::run(const FrameTimes& times, const World& world) {
     auto earlier = first_frame_for(times.frame);
     if (earlier < times.frame) work_->detector_memory.persistence = {};
     for (; earlier < times.frame; ++earlier)
-      work_->make(frame_times(work_->settings.sensor, earlier), world);
+      work_->give_back(work_->make(frame_times(work_->settings.sensor, earlier), world).counts);
     frame = work_->make(times, world);
   }
   frame.total_s = total_s;
   return frame;
 }
 
+void FramePipeline::give_back(CountImage counts) { work_->give_back(std::move(counts)); }
+
 FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& world) {
   const auto& sensor = settings.sensor;
   FrameProducts frame;
   const View view(sensor, times, world, settings.seed);
-  // Its pages come as they are filled, while those of the light go.
-  frame.counts = CountImage(light.columns, light.rows);
-  release_pages(frame.counts.pixels.data(), frame.counts.pixels.size() * sizeof(std::uint16_t));
+  frame.counts = std::exchange(used_counts, {});
   std::uint32_t stars_drawn = 0;
   fill_sky(view, drawn_to_v_mag(), light, threads, frame.times, evaluator ? &*evaluator : nullptr);
   keep_background(settings.output, light, frame.planes);
@@ -273,12 +289,10 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
                           .exposure_s = times.seconds(),
                           .idle_s = sensor.cadence_s - sensor.exposure_s};
   make_planes(settings.output, view, exposure, light, threads, frame.planes);
-  expose(light, sensor.camera.detector, exposure, sensor.effects, threads, frame.counts,
-         &frame.times,
-         {.memory = &detector_memory,
-          .flags = settings.output.saturation ? &frame.flags : nullptr,
-          .spent_light = &light});
-  release_pages(light.pixels.data(), light.pixels.size() * sizeof(float));
+  expose(
+      light, sensor.camera.detector, exposure, sensor.effects, threads, frame.counts, &frame.times,
+      {.memory = &detector_memory, .flags = settings.output.saturation ? &frame.flags : nullptr});
+  if (sensor.detect) release_pages(bytes_of(light));  // the search needs as much
 
   DetectionResult result;
   {

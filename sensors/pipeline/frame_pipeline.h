@@ -63,6 +63,9 @@ class FramePipeline {
   /// Makes one frame. `world` holds the states from the exposure of `first_frame_for` it on.
   FrameProducts run(const FrameTimes& exposure, const World& world);
 
+  /// The counts of a frame that is done with: the next one goes where they were.
+  void give_back(CountImage counts);
+
   /// The frame that must be exposed first for the detector to be in the state in which `frame`
   /// finds it: `frame` itself, unless an earlier one left charge in traps and was made elsewhere.
   std::uint32_t first_frame_for(std::uint32_t frame) const;

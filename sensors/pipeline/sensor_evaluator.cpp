@@ -85,6 +85,7 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
     }
     FrameProducts frame = pipeline_.run(exposure, world_);
     writer_.write(frame);
+    pipeline_.give_back(std::move(frame.counts));
     detections_ += static_cast<long>(frame.detections.size());
     messages.push_back(
         {frame_prefix + sensor_.name, tick, std::make_shared<State>(std::move(frame.report))});
