@@ -135,9 +135,8 @@ Vec<Gcrs> ApparentPlaces::through_air(const Vec<Gcrs>& direction, double distanc
   const Vec<Gcrs> level = direction - up * sine;
   const double cosine = norm(level);
   if (cosine < 1e-12) return direction;  // zenith or nadir: no side to bend to
-  const double apparent =
-      observer_.air->refraction.apparent_from_true_rad(std::atan2(sine, cosine), distance_m);
-  return level * (std::cos(apparent) / cosine) + up * std::sin(apparent);
+  const auto seen = observer_.air->refraction.apparent_from_true({sine, cosine}, distance_m);
+  return level * (seen.cosine / cosine) + up * seen.sine;
 }
 
 }  // namespace dmise

@@ -60,7 +60,10 @@ Refraction::Refraction(const Weather& weather, double wavelength_um) {
 }
 
 double Refraction::series_rad(double apparent_elevation_rad) const {
-  const double tan_z = std::tan(0.5 * pi - apparent_elevation_rad);
+  return series_of_tan_rad(std::tan(0.5 * pi - apparent_elevation_rad));
+}
+
+double Refraction::series_of_tan_rad(double tan_z) const {
   return tan_z * (tan_term_rad_ + tan3_term_rad_ * tan_z * tan_z);
 }
 
@@ -122,6 +125,31 @@ double Refraction::apparent_from_true_rad(double true_elevation_rad, double dist
     b = next;
   }
   return b;
+}
+
+// Where the series alone holds, R = series(tan(z - R)) by Newton's method from R = series(tan z),
+// which is off by 4e-2 of R at most; R stays below 0.02, so that its powers beyond the fifth are
+// nothing.
+Refraction::Elevation Refraction::apparent_from_true(const Elevation& truly,
+                                                     double distance_m) const {
+  static const double lowest_sine = std::sin(series_ends_rad);
+  if (bennett_scale_ == 0.0) return truly;
+  if (distance_m != star || truly.sine < lowest_sine) {
+    const double apparent =
+        apparent_from_true_rad(std::atan2(truly.sine, truly.cosine), distance_m);
+    return {std::sin(apparent), std::cos(apparent)};
+  }
+  const double tan_z = truly.cosine / truly.sine;
+  double r = series_of_tan_rad(tan_z);
+  for (int i = 0; i < 2; ++i) {
+    const double tan_r = r * (1 + r * r * (1.0 / 3 + r * r * (2.0 / 15)));
+    const double u = (tan_z - tan_r) / (1 + tan_z * tan_r);
+    const double slope = (tan_term_rad_ + 3 * tan3_term_rad_ * u * u) * (1 + u * u);
+    r -= (r - series_of_tan_rad(u)) / (1 + slope);
+  }
+  const double sin_r = r * (1 - r * r * (1.0 / 6 - r * r / 120)),
+               cos_r = 1 - r * r * (0.5 - r * r / 24);
+  return {truly.sine * cos_r + truly.cosine * sin_r, truly.cosine * cos_r - truly.sine * sin_r};
 }
 
 }  // namespace dmise

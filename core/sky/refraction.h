@@ -35,10 +35,17 @@ class Refraction {
   double at_apparent_rad(double apparent_elevation_rad) const;
 
   double apparent_from_true_rad(double true_elevation_rad, double distance_m = star) const;
+  /// The same of an elevation given by its sine and cosine (>= 0): for most stars nothing but
+  /// arithmetic.
+  struct Elevation {
+    double sine, cosine;
+  };
+  Elevation apparent_from_true(const Elevation& truly, double distance_m = star) const;
   double true_from_apparent_rad(double apparent_elevation_rad, double distance_m = star) const;
 
  private:
   double series_rad(double apparent_elevation_rad) const;
+  double series_of_tan_rad(double tan_z) const;
   double bennett_rad(double apparent_elevation_rad) const;
   double aside_m(double apparent_elevation_rad) const;
   double of_body_rad(double apparent_elevation_rad, double distance_m) const;

@@ -82,6 +82,20 @@ TEST(Refraction, IsFiniteAndMonotoneFromNadirToZenithAndInvertsItself) {
   }
 }
 
+TEST(Refraction, IsTheSameOfAnAngleAndOfItsSineAndCosine) {
+  const Refraction dense(Weather{.pressure_hpa = 10000.0, .temperature_c = -20.0});
+  for (const Refraction& air : {sea_level, dense, Refraction()})
+    for (const double distance_m : {Refraction::star, 500e3})
+      for (int i = -9000; i <= 9000; ++i) {
+        const double elevation = i * 0.01 * deg;
+        const double apparent = air.apparent_from_true_rad(elevation, distance_m);
+        const auto seen =
+            air.apparent_from_true({std::sin(elevation), std::cos(elevation)}, distance_m);
+        ASSERT_NEAR(seen.sine, std::sin(apparent), 1e-14) << i;
+        ASSERT_NEAR(seen.cosine, std::cos(apparent), 1e-14) << i;
+      }
+}
+
 TEST(Refraction, IsConstantUnderTheHorizon) {
   const double horizon = sea_level.at_apparent_rad(0.0);
   EXPECT_EQ(sea_level.at_apparent_rad(-5 * deg), horizon);
