@@ -33,28 +33,40 @@ struct TangentPlane {
   double eta(const Vec<Gcrs>& v) const { return dot(v, north) / dot(v, reference); }
 };
 
-std::vector<Sample> sample(int columns, int rows, const SkyOfPixel& sky, const TangentPlane& plane,
-                           int points) {
-  std::vector<Sample> samples;
+// What a pixel and its edges see.
+struct Seen {
+  PixelPosition pixel;
+  Vec<Gcrs> middle, right, left, down, up;
+};
+
+std::vector<Seen> look(int columns, int rows, const SkyOfPixel& sky, int points) {
+  std::vector<Seen> all;
   const auto place = [&](int k, int size) {
     return 0.5 * (size - 1) - 0.5 * size * std::cos(pi * k / (points - 1));
   };
   for (int j = 0; j < points; ++j)
     for (int i = 0; i < points; ++i) {
-      Sample s{{place(i, columns), place(j, rows)}, {}, 0.0};
-      const auto at = sky(s.pixel), right = sky(s.pixel + PixelPosition{0.5, 0.0}),
-                 left = sky(s.pixel - PixelPosition{0.5, 0.0}),
-                 down = sky(s.pixel + PixelPosition{0.0, 0.5}),
-                 up = sky(s.pixel - PixelPosition{0.0, 0.5});
-      if (!at || !right || !left || !down || !up) continue;
-      s.direction = unit(*at);
-      if (dot(s.direction, plane.reference) < reach_cos) continue;
-      const double area =
-          (plane.xi(*right) - plane.xi(*left)) * (plane.eta(*down) - plane.eta(*up)) -
-          (plane.xi(*down) - plane.xi(*up)) * (plane.eta(*right) - plane.eta(*left));
-      s.weight = 1.0 / std::sqrt(std::abs(area));
-      if (std::isfinite(s.weight)) samples.push_back(s);
+      const PixelPosition pixel{place(i, columns), place(j, rows)};
+      const auto middle = sky(pixel), right = sky(pixel + PixelPosition{0.5, 0.0}),
+                 left = sky(pixel - PixelPosition{0.5, 0.0}),
+                 down = sky(pixel + PixelPosition{0.0, 0.5}),
+                 up = sky(pixel - PixelPosition{0.0, 0.5});
+      if (middle && right && left && down && up)
+        all.push_back({pixel, unit(*middle), *right, *left, *down, *up});
     }
+  return all;
+}
+
+std::vector<Sample> samples_on(const TangentPlane& plane, const std::vector<Seen>& all) {
+  std::vector<Sample> samples;
+  for (const Seen& s : all) {
+    if (dot(s.middle, plane.reference) < reach_cos) continue;
+    const double area =
+        (plane.xi(s.right) - plane.xi(s.left)) * (plane.eta(s.down) - plane.eta(s.up)) -
+        (plane.xi(s.down) - plane.xi(s.up)) * (plane.eta(s.right) - plane.eta(s.left));
+    const double weight = 1.0 / std::sqrt(std::abs(area));
+    if (std::isfinite(weight)) samples.push_back({s.pixel, s.middle, weight});
+  }
   return samples;
 }
 
@@ -103,12 +115,13 @@ Wcs fit_wcs(int columns, int rows, const SkyOfPixel& sky, int order) {
   w.order = order < 2 ? 0 : order;
   const double scale = 0.5 * std::max(columns, rows);
   const auto list = terms(0, std::max(1, order));
+  const auto seen = look(columns, rows, sky, fit_points);
   std::vector<Sample> samples;
   std::vector<double> c;
   // The constant term moves the reference direction until it is nothing.
   for (int pass = 0; pass < 4; ++pass) {
     const TangentPlane plane(*reference);
-    samples = sample(columns, rows, sky, plane, fit_points);
+    samples = samples_on(plane, seen);
     if (samples.size() < list.size()) throw Error("fit_wcs: too few pixels see sky");
     c = fit(
         samples, list, scale,
@@ -153,7 +166,7 @@ Wcs fit_wcs(int columns, int rows, const SkyOfPixel& sky, int order) {
 
   const TangentPlane plane(from_spherical<Gcrs>(w.ra_rad, w.dec_rad));
   double sum = 0.0;
-  const auto checks = sample(columns, rows, sky, plane, check_points);
+  const auto checks = samples_on(plane, look(columns, rows, sky, check_points));
   for (const Sample& s : checks) {
     const Vec<Gcrs> got = wcs_direction(w, s.pixel);
     const double error_px = s.weight * std::hypot(plane.xi(got) - plane.xi(s.direction),

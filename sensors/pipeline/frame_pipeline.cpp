@@ -37,9 +37,10 @@ std::optional<Vec<Gcrs>> star_at(const Optics& optics, const ApparentPlaces& pla
   Vec<Gcrs> star = wanted;
   for (int i = 0; i < 5; ++i) {
     const auto [ra, dec] = to_spherical(star);
-    const Vec<Gcrs> apparent =
-        places.star({.ra_rad = ra, .dec_rad = dec, .epoch_jyear = epoch_jyear});
-    star = unit(star + (wanted - apparent));
+    const Vec<Gcrs> missed =
+        wanted - places.star({.ra_rad = ra, .dec_rad = dec, .epoch_jyear = epoch_jyear});
+    star = unit(star + missed);
+    if (norm(missed) < 1e-11) break;  // what is left is a hundredth of this
   }
   return star;
 }
