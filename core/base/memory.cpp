@@ -8,7 +8,10 @@
 
 namespace dmise {
 
-void return_large_blocks() { mallopt(M_MMAP_THRESHOLD, 1 << 18); }
+void return_large_blocks() {
+  mallopt(M_MMAP_THRESHOLD, 1 << 18);
+  mallopt(M_TRIM_THRESHOLD, 1 << 22);  // what is below the limit is soon asked for again
+}
 
 namespace {
 

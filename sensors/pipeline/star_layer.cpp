@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "core/optics/deposit.h"
 #include "core/optics/projection.h"
@@ -17,6 +18,9 @@ namespace {
 /// the horizon 0.6 deg, aberration 0.006, Barnard's star over two centuries 0.6.
 constexpr double widest_shift_rad = 1.3 * deg;
 
+/// Stars that are drawn at a time: what is known of them stays in the cache.
+constexpr std::size_t stars_at_a_time = 2048;
+
 /// A star's way over the detector.
 struct Trail {
   std::uint32_t star = 0;
@@ -24,18 +28,43 @@ struct Trail {
   std::array<PixelPosition, 3> pixel;  // start, middle, end
 };
 
-/// Trails of those stars that the projection can image throughout the exposure.
-std::vector<Trail> trails_of(const View& view, const StarColumns& columns,
-                             const std::vector<std::uint32_t>& stars) {
+StarColumns columns_of(const StarCatalogue& stars) {
+  return {.epoch_jyear = stars.epoch_jyear,
+          .ra_rad = stars.ra_rad,
+          .dec_rad = stars.dec_rad,
+          .pm_ra_cosdec_rad_per_yr = stars.pm_ra_cosdec_rad_per_yr,
+          .pm_dec_rad_per_yr = stars.pm_dec_rad_per_yr,
+          .parallax_rad = stars.parallax_rad};
+}
+
+}  // namespace
+
+/// What an exposure's stars have in common.
+struct StarLayer::Exposure {
+  const View& view;
+  const StarCatalogue& stars;
+  StarColumns columns = columns_of(stars);
+  std::array<SimTime, 3> instants = {view.times().start, view.times().middle, view.times().end};
+  std::array<ApparentPlaces, 3> places = {view.places(instants[0]), view.places(instants[1]),
+                                          view.places(instants[2])};
+  Hidden hidden{view, instants[1]};
+  Light light{view};
+
+  /// Trails of those that the projection can image throughout the exposure.
+  std::vector<Trail> trails(std::span<const std::uint32_t> which) const;
+  /// Shares of their light that reach the camera.
+  std::vector<double> transmission(const std::vector<Trail>& trails, EffectTimes& times) const;
+};
+
+std::vector<Trail> StarLayer::Exposure::trails(std::span<const std::uint32_t> which) const {
   const auto& optics = view.sensor().camera.optics;
-  const SimTime times[3] = {view.times().start, view.times().middle, view.times().end};
-  std::vector<Trail> trails(stars.size());
-  std::vector<bool> imaged(stars.size(), true);
-  std::vector<Vec<Gcrs>> direction(stars.size());
-  for (std::size_t k = 0; k < 3; ++k) {
-    view.places(times[k]).stars(columns, stars, direction);
-    const auto camera = view.camera_from_gcrs(times[k]);
-    for (std::size_t i = 0; i < stars.size(); ++i) {
+  std::vector<Trail> trails(which.size());
+  std::vector<bool> imaged(which.size(), true);
+  std::vector<Vec<Gcrs>> direction(which.size());
+  for (std::size_t k = 0; k < instants.size(); ++k) {
+    places[k].stars(columns, which, direction);
+    const auto camera = view.camera_from_gcrs(instants[k]);
+    for (std::size_t i = 0; i < which.size(); ++i) {
       const auto pixel = project(optics, camera * direction[i]);
       imaged[i] = imaged[i] && pixel;
       if (pixel) trails[i].pixel[k] = *pixel;
@@ -43,13 +72,54 @@ std::vector<Trail> trails_of(const View& view, const StarColumns& columns,
     }
   }
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < stars.size(); ++i) {
+  for (std::size_t i = 0; i < which.size(); ++i) {
     if (!imaged[i]) continue;
     trails[kept] = trails[i];
-    trails[kept++].star = stars[i];
+    trails[kept++].star = which[i];
   }
   trails.resize(kept);
   return trails;
+}
+
+std::vector<double> StarLayer::Exposure::transmission(const std::vector<Trail>& trails,
+                                                      EffectTimes& times) const {
+  std::vector<double> transmission(trails.size());
+  {
+    Stopwatch timing(times[Effect::extinction]);
+    for (std::size_t i = 0; i < trails.size(); ++i)
+      transmission[i] = light.air_transmission(trails[i].middle, stars.bv[trails[i].star]);
+  }
+  {
+    Stopwatch timing(times[Effect::clouds]);
+    for (std::size_t i = 0; i < trails.size(); ++i)
+      transmission[i] *= light.cloud_transmission(trails[i].middle);
+  }
+  {
+    Stopwatch timing(times[Effect::scintillation]);
+    for (std::size_t i = 0; i < trails.size(); ++i)
+      transmission[i] *=
+          light.flicker(trails[i].middle, Light::Flickering::star, stars.id[trails[i].star]);
+  }
+  return transmission;
+}
+
+namespace {
+
+/// Deposits arcs, each as far as it is not behind something.
+std::vector<Deposited> add_past(const Screen& screen, std::span<const Arc> arcs,
+                                OpticsStage& optics, RateImage& image) {
+  if (screen.empty()) return optics.add(arcs, image);
+  std::vector<Arc> free;
+  std::vector<std::size_t> star;
+  for (std::size_t i = 0; i < arcs.size(); ++i)
+    for (const Arc& part : screen.past(arcs.subspan(i, 1))) {
+      free.push_back(part);
+      star.push_back(i);
+    }
+  std::vector<Deposited> deposited(arcs.size());
+  const auto parts = optics.add(free, image);
+  for (std::size_t k = 0; k < parts.size(); ++k) deposited[star[k]] = deposited[star[k]] + parts[k];
+  return deposited;
 }
 
 }  // namespace
@@ -77,51 +147,47 @@ StarLayer::StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> 
 std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Screen& screen,
                               RateImage& image, double faintest_v_mag,
                               std::vector<StarTruth>* truth, EffectTimes& times) const {
-  const auto& exposure = view.times();
-  const auto& stars = map_->stars;
-  const StarColumns columns{.epoch_jyear = stars.epoch_jyear,
-                            .ra_rad = stars.ra_rad,
-                            .dec_rad = stars.dec_rad,
-                            .pm_ra_cosdec_rad_per_yr = stars.pm_ra_cosdec_rad_per_yr,
-                            .pm_dec_rad_per_yr = stars.pm_dec_rad_per_yr,
-                            .parallax_rad = stars.parallax_rad};
+  std::optional<Exposure> exposure;
   std::vector<std::uint32_t> found;
+  {
+    Stopwatch timing(times[Effect::stars]);
+    exposure.emplace(Exposure{.view = view, .stars = map_->stars});
+    found = candidates(view, faintest_v_mag);
+  }
+  // OpenGL's pictures are read back whole, so that there all go at once.
+  const std::size_t at_a_time =
+      view.sensor().effects.snapshots() ? std::max<std::size_t>(1, found.size()) : stars_at_a_time;
+  std::uint32_t inside = 0;
+  for (std::size_t begin = 0; begin < found.size(); begin += at_a_time) {
+    const auto which = std::span(found).subspan(begin, std::min(at_a_time, found.size() - begin));
+    inside += draw(*exposure, which, optics, screen, image, truth, times);
+  }
+  times[Effect::stars] -= add_place_costs(view, exposure->columns, found, 3 * found.size(), times);
+  times[Effect::stars] = std::max(0.0, times[Effect::stars]);
+  return inside;
+}
+
+std::uint32_t StarLayer::draw(const Exposure& exposure, std::span<const std::uint32_t> which,
+                              OpticsStage& optics, const Screen& screen, RateImage& image,
+                              std::vector<StarTruth>* truth, EffectTimes& times) const {
+  const View& view = exposure.view;
+  const StarCatalogue& stars = exposure.stars;
   std::vector<Trail> trails;
+  {
+    Stopwatch timing(times[Effect::stars]);
+    trails = exposure.trails(which);
+  }
+  {
+    Stopwatch timing(times[Effect::earth_occultation]);
+    std::erase_if(trails, [&](const Trail& t) { return exposure.hidden.direction(t.middle); });
+  }
+  const auto transmission = exposure.transmission(trails, times);
+  const int snapshots = view.sensor().effects.snapshots();
   std::vector<Arc> arcs;
   {
     Stopwatch timing(times[Effect::stars]);
-    found = candidates(view, faintest_v_mag);
-    trails = trails_of(view, columns, found);
-  }
-  times[Effect::stars] -= add_place_costs(view, columns, found, 3 * found.size(), times);
-  times[Effect::stars] = std::max(0.0, times[Effect::stars]);
-  {
-    Stopwatch timing(times[Effect::earth_occultation]);
-    const Hidden hidden(view, exposure.middle);
-    std::erase_if(trails, [&](const Trail& t) { return hidden.direction(t.middle); });
-  }
-  const int snapshots = view.sensor().effects.snapshots();
-  const Light light(view);
-  std::vector<double> transmission(trails.size());
-  {
-    Stopwatch timing(times[Effect::extinction]);
-    for (std::size_t i = 0; i < trails.size(); ++i)
-      transmission[i] = light.air_transmission(trails[i].middle, stars.bv[trails[i].star]);
-  }
-  {
-    Stopwatch timing(times[Effect::clouds]);
-    for (std::size_t i = 0; i < trails.size(); ++i)
-      transmission[i] *= light.cloud_transmission(trails[i].middle);
-  }
-  {
-    Stopwatch timing(times[Effect::scintillation]);
-    for (std::size_t i = 0; i < trails.size(); ++i)
-      transmission[i] *=
-          light.flicker(trails[i].middle, Light::Flickering::star, stars.id[trails[i].star]);
-  }
-  {
-    Stopwatch timing(times[Effect::stars]);
-    const double electrons_per_rate = light.electrons_per_photon_m2() * exposure.seconds();
+    const double electrons_per_rate =
+        exposure.light.electrons_per_photon_m2() * view.times().seconds();
     const auto& camera = view.sensor().camera.optics;
     arcs.reserve(trails.size());
     for (std::size_t i = 0; i < trails.size(); ++i) {
@@ -142,22 +208,10 @@ std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Scree
         drawn.push_back(trails[i].star);
         signal_e.push_back(arcs[i].signal_e);
       }
-      deposited =
-          draw_star_snapshots(view, columns, drawn, signal_e, snapshots, optics, screen, image);
-    } else if (screen.empty()) {
-      deposited = optics.add(arcs, image);
+      deposited = draw_star_snapshots(view, exposure.columns, drawn, signal_e, snapshots, optics,
+                                      screen, image);
     } else {
-      std::vector<Arc> free;
-      std::vector<std::size_t> star;
-      for (std::size_t i = 0; i < arcs.size(); ++i)
-        for (const Arc& part : screen.past({&arcs[i], 1})) {
-          free.push_back(part);
-          star.push_back(i);
-        }
-      deposited.resize(arcs.size());
-      const auto parts = optics.add(free, image);
-      for (std::size_t k = 0; k < parts.size(); ++k)
-        deposited[star[k]] = deposited[star[k]] + parts[k];
+      deposited = add_past(screen, arcs, optics, image);
     }
   }
   std::uint32_t inside = 0;

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/base/image.h"
@@ -37,6 +38,10 @@ class StarLayer {
                      EffectTimes& times) const;
 
  private:
+  struct Exposure;
+  std::uint32_t draw(const Exposure& exposure, std::span<const std::uint32_t> which,
+                     OpticsStage& optics, const Screen& screen, RateImage& image,
+                     std::vector<StarTruth>* truth, EffectTimes& times) const;
   std::vector<std::uint32_t> candidates(const View& view, double faintest_v_mag) const;
 
   std::shared_ptr<const StarMap> map_;
