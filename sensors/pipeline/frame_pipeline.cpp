@@ -50,6 +50,19 @@ std::span<std::byte> bytes_of(Image<T, Carrier>& image) {
   return std::as_writable_bytes(std::span(image.pixels));
 }
 
+/// An image whose memory is there, in large pages.
+template <class AnImage>
+AnImage image_in_large_pages(int columns, int rows) {
+  AnImage image;
+  const std::size_t size = std::size_t(columns) * std::size_t(rows);
+  image.pixels.reserve(size);
+  prefer_large_pages(std::as_writable_bytes(std::span(image.pixels.data(), size)));
+  image.pixels.resize(size);
+  image.columns = columns;
+  image.rows = rows;
+  return image;
+}
+
 /// SIP order that leaves the fit below 0.01 px: refraction bends wide fields.
 int sip_order(const Optics& optics) { return half_diagonal_rad(optics) > 10 * deg ? 5 : 3; }
 
@@ -68,11 +81,8 @@ struct FramePipeline::Work {
   Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)
       : settings(std::move(s)), threads(t), optics(settings.sensor, settings.seed, t) {
     const auto& grid = settings.sensor.camera.optics;
-    light = RateImage(grid.columns, grid.rows);
-    release_pages(bytes_of(light));
-    prefer_large_pages(bytes_of(light));
-    give_back(CountImage(grid.columns, grid.rows));
-    prefer_large_pages(bytes_of(used_counts));
+    light = image_in_large_pages<RateImage>(grid.columns, grid.rows);
+    give_back(image_in_large_pages<CountImage>(grid.columns, grid.rows));
     if (settings.sensor.effects.drawn_by_opengl()) optics.draw_by(evaluator.emplace());
     if (map) stars.emplace(settings.sensor, std::move(map));
   }
