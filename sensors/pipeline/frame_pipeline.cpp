@@ -50,16 +50,13 @@ std::span<std::byte> bytes_of(Image<T, Carrier>& image) {
   return std::as_writable_bytes(std::span(image.pixels));
 }
 
-/// An image whose memory is there, in large pages.
+/// Room for an image, in large pages from its first touch on.
 template <class AnImage>
-AnImage image_in_large_pages(int columns, int rows) {
+AnImage room_for_image(const Optics& optics) {
   AnImage image;
-  const std::size_t size = std::size_t(columns) * std::size_t(rows);
+  const std::size_t size = std::size_t(optics.columns) * std::size_t(optics.rows);
   image.pixels.reserve(size);
   prefer_large_pages(std::as_writable_bytes(std::span(image.pixels.data(), size)));
-  image.pixels.resize(size);
-  image.columns = columns;
-  image.rows = rows;
   return image;
 }
 
@@ -81,8 +78,11 @@ struct FramePipeline::Work {
   Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)
       : settings(std::move(s)), threads(t), optics(settings.sensor, settings.seed, t) {
     const auto& grid = settings.sensor.camera.optics;
-    light = image_in_large_pages<RateImage>(grid.columns, grid.rows);
-    give_back(image_in_large_pages<CountImage>(grid.columns, grid.rows));
+    light = room_for_image<RateImage>(grid);
+    light.columns = grid.columns;
+    light.rows = grid.rows;
+    light.pixels.resize(std::size_t(grid.columns) * std::size_t(grid.rows));
+    used_counts = room_for_image<CountImage>(grid);
     if (settings.sensor.effects.drawn_by_opengl()) optics.draw_by(evaluator.emplace());
     if (map) stars.emplace(settings.sensor, std::move(map));
   }
