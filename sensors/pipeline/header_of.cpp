@@ -1,0 +1,104 @@
+#include "sensors/pipeline/header_of.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/base/version.h"
+#include "core/optics/projection.h"
+#include "core/optics/wcs_fit.h"
+#include "core/time/iso8601.h"
+#include "sensors/pipeline/light.h"
+
+namespace dmise {
+namespace {
+
+/// ICRS direction of the star that the camera sees at a pixel in the middle of the exposure: the
+/// apparent place's inverse by iteration, so that refraction and aberration are those of the stars.
+std::optional<Vec<Gcrs>> star_at(const Optics& optics, const ApparentPlaces& places,
+                                 const Rotation<Gcrs, CameraFrame>& gcrs_from_camera,
+                                 double epoch_jyear, PixelPosition pixel) {
+  const auto seen = unproject(optics, pixel);
+  if (!seen) return std::nullopt;
+  const Vec<Gcrs> wanted = gcrs_from_camera * *seen;
+  Vec<Gcrs> star = wanted;
+  for (int i = 0; i < 5; ++i) {
+    const auto [ra, dec] = to_spherical(star);
+    const Vec<Gcrs> missed =
+        wanted - places.star({.ra_rad = ra, .dec_rad = dec, .epoch_jyear = epoch_jyear});
+    star = unit(star + missed);
+    if (norm(missed) < 1e-11) break;  // what is left is a hundredth of this
+  }
+  return star;
+}
+
+/// SIP order that leaves the fit below 0.01 px: refraction bends wide fields.
+int sip_order(const Optics& optics) { return half_diagonal_rad(optics) > 10 * deg ? 5 : 3; }
+
+}  // namespace
+
+FrameHeader header_of(const View& view, const PipelineSettings& settings, double psf_fwhm_px) {
+  const auto& sensor = settings.sensor;
+  const auto& optics = sensor.camera.optics;
+  const Detector detector = in_effect(sensor.camera.detector, sensor.effects);
+  const auto& times = view.times();
+  const auto& environment = view.environment();
+  const ObserverState observer = view.observer(times.middle);
+  const auto utc = [&](SimTime t) { return format_utc(settings.clock.utc(t), 6); };
+  FrameHeader h{.sensor = sensor.name,
+                .frame = times.frame,
+                .start = times.start,
+                .middle = times.middle,
+                .end = times.end,
+                .start_utc = utc(times.start),
+                .middle_utc = utc(times.middle),
+                .end_utc = utc(times.end),
+                .exposure_s = times.seconds(),
+                .mount = sensor.tracking == Tracking::fixed      ? "fixed"
+                         : sensor.tracking == Tracking::sidereal ? "sidereal"
+                                                                 : "target",
+                .software = software_name(),
+                .scenario_digest = settings.digest,
+                .seed = settings.seed,
+                .gain_e_per_dn = detector.gain_e_per_dn,
+                .bias_dn = detector.bias_dn,
+                .read_noise_e = detector.read_noise_e,
+                .dark_e_per_s = detector.dark_e_per_s,
+                .full_well_e = detector.full_well_e,
+                .detector = detector,
+                .psf_fwhm_px = psf_fwhm_px,
+                .band = sensor.camera.band,
+                .zero_point_mag = Light(view).zero_point_mag(),
+                .extinction_mag_per_airmass = Light(view).extinction_mag_per_airmass(),
+                .projection = optics.projection,
+                .focal_length_px = optics.focal_length_px(),
+                .sensor_position_m = observer.position_m,
+                .sensor_velocity_m_per_s = observer.velocity_m_per_s,
+                .earth_velocity_m_per_s = environment.earth_velocity_m_per_s};
+  if (const SiteState* air = view.air()) {
+    h.r0_m = air->r0_m;
+    h.isoplanatic_angle_rad = air->isoplanatic_angle_rad;
+    h.tau0_s = air->tau0_s;
+  }
+  if (const auto& site = view.site())
+    h.site = SitePlace{site->latitude_deg * deg, site->longitude_deg * deg, site->height_m,
+                       itrs_from_geodetic(*site)};
+  const double most_dn = std::exp2(detector.adc_bits) - 1;
+  const double well_e = h.full_well_e * (1.0 - detector.nonlinearity) *
+                        (1.0 - 4.0 * detector.interpixel_coupling);  // what is left of a full one
+  const double well_dn = well_e / h.gain_e_per_dn + h.bias_dn;
+  h.saturation_dn = sensor.effects.has(Effect::full_well) ? std::min(most_dn, well_dn) : most_dn;
+  const SimTime at[3] = {times.start, times.middle, times.end};
+  for (int k = 0; k < 3; ++k) h.camera_from_gcrs[k] = quaternion_of(view.camera_from_gcrs(at[k]));
+
+  const auto places = view.places(times.middle);
+  const auto gcrs_from_camera = view.camera_from_gcrs(times.middle).inverse();
+  const double epoch = 2000.0 + julian_years_since_j2000(settings.clock.tt(times.middle));
+  h.wcs = fit_wcs(
+      optics.columns, optics.rows,
+      [&](PixelPosition pixel) { return star_at(optics, places, gcrs_from_camera, epoch, pixel); },
+      sip_order(optics));
+  return h;
+}
+
+}  // namespace dmise

@@ -1,0 +1,12 @@
+#pragma once
+#include "core/image/frame_header.h"
+#include "sensors/pipeline/frame_pipeline.h"
+#include "sensors/pipeline/view.h"
+
+namespace dmise {
+
+/// What the file of a frame says of it: times, pose and place, the detector as it is in effect, and
+/// the world coordinates of the stars that each pixel sees in mid exposure.
+FrameHeader header_of(const View& view, const PipelineSettings& settings, double psf_fwhm_px);
+
+}  // namespace dmise
