@@ -7,51 +7,11 @@
 
 #include "core/base/units.h"
 #include "core/materials/brdf.h"
+#include "sensors/render/clip_space.h"
+#include "sensors/render/sample_count.h"
 
 namespace dmise {
 namespace {
-
-/// The camera's mapping to clip space: linear, so that what lies behind the camera is clipped.
-class ClipSpace {
- public:
-  explicit ClipSpace(const TileScene& scene)
-      : camera_(scene.camera), rotation_(scene.camera_from_body), object_m_(scene.object_m) {
-    const double size = radius_m(*scene.mesh);
-    near_ = 1e300;
-    far_ = -1e300;
-    for (const auto& v : scene.mesh->vertex_m) {
-      const double z = (rotation_ * v + object_m_).z;
-      near_ = std::min(near_, z);
-      far_ = std::max(far_, z);
-    }
-    far_ += 0.01 * size;
-    near_ = std::max(near_ - 0.01 * size, 1e-3 * size);
-    far_ = std::max(far_, 2.0 * near_ * 1e-6 + near_);
-    scale_ = 1.0 / std::max(norm(object_m_), size);
-  }
-
-  Vec<CameraFrame> place(const Vec<Body>& v) const { return rotation_ * v + object_m_; }
-  double near_m() const { return near_; }
-
-  void put(const Vec<CameraFrame>& p, TileVertex& out) const {
-    const double columns = camera_.columns, rows = camera_.rows;
-    const double x0 = 2.0 * (camera_.principal_x_px - camera_.left + 0.5) / columns - 1.0;
-    const double y0 = 2.0 * (camera_.principal_y_px - camera_.top + 0.5) / rows - 1.0;
-    out.clip[0] = float(x0 * p.z + 2.0 * camera_.focal_px / columns * p.x);
-    out.clip[1] = float(y0 * p.z + 2.0 * camera_.focal_px / rows * p.y);
-    out.clip[2] = float((far_ - p.z) * near_ / (far_ - near_));
-    out.clip[3] = float(p.z);
-    out.view[0] = float(-p.x * scale_);
-    out.view[1] = float(-p.y * scale_);
-    out.view[2] = float(-p.z * scale_);
-  }
-
- private:
-  TileCamera camera_;
-  Rotation<CameraFrame, Body> rotation_;
-  Vec<CameraFrame> object_m_;
-  double near_ = 0, far_ = 0, scale_ = 1;
-};
 
 TileMesh::Bounds bounds_of(const std::array<TileVertex, 3>& v, const TileCamera& camera,
                            double near_m) {
@@ -67,73 +27,6 @@ TileMesh::Bounds bounds_of(const std::array<TileVertex, 3>& v, const TileCamera&
   }
   return {x0, y0, x1, y1};
 }
-
-/// Samples of the tile that a rasteriser gives to triangles, against their areas: the grid sees a
-/// little more or less of a narrow shape than there is, which is put right by its radiance.
-class SampleCount {
- public:
-  using Triangle = std::array<Vec<CameraFrame>, 3>;
-
-  SampleCount(const TileCamera& camera, int oversampling)
-      : camera_(camera), oversampling_(oversampling) {}
-
-  void add(const Triangle& p) {
-    std::array<double, 3> x, y;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (!(p[i].z > 0.0)) inside_ = false;
-      x[i] = camera_.principal_x_px - camera_.left + 0.5 + camera_.focal_px * p[i].x / p[i].z;
-      y[i] = camera_.principal_y_px - camera_.top + 0.5 + camera_.focal_px * p[i].y / p[i].z;
-      if (!(x[i] >= 0.0 && y[i] >= 0.0 && x[i] <= camera_.columns && y[i] <= camera_.rows))
-        inside_ = false;
-      x[i] *= oversampling_;
-      y[i] *= oversampling_;
-    }
-    if (!inside_) return;
-    const double twice = std::abs((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]));
-    for (std::size_t i = 0; i < 3; ++i)
-      longest_ = std::max(longest_, std::hypot(x[(i + 1) % 3] - x[i], y[(i + 1) % 3] - y[i]));
-    area_ += twice / 2.0;
-    // Rasterisers snap corners to 1/256 of a sample.
-    for (std::size_t i = 0; i < 3; ++i) {
-      x[i] = std::round(x[i] * 256.0) / 256.0;
-      y[i] = std::round(y[i] * 256.0) / 256.0;
-    }
-    const auto [low, high] = std::minmax({y[0], y[1], y[2]});
-    for (double row = std::ceil(low - 0.5) + 0.5; row < high; row += 1.0) add_row(x, y, row);
-  }
-
-  /// Of triangles that are long and at most 32 samples wide.
-  bool narrow() const {
-    const double width = longest_ > 0.0 ? 2.0 * area_ / longest_ : 0.0;
-    return width < 32.0 && longest_ > 2.5 * width;
-  }
-
-  /// Wholly in the tile with too few samples to tell.
-  bool sparse() const { return inside_ && count_ < fewest; }
-  double area() const { return area_; }  // in samples
-
-  /// Area over samples; 1 for what is not wholly in the tile or has too few samples to tell.
-  double correction() const { return inside_ && count_ >= fewest ? area_ / count_ : 1.0; }
-
- private:
-  void add_row(const std::array<double, 3>& x, const std::array<double, 3>& y, double row) {
-    double left = 1e300, right = -1e300;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t j = (i + 1) % 3;
-      if ((y[i] <= row) == (y[j] <= row)) continue;
-      const double at = x[i] + (x[j] - x[i]) * (row - y[i]) / (y[j] - y[i]);
-      left = std::min(left, at);
-      right = std::max(right, at);
-    }
-    if (right > left) count_ += std::ceil(right - 0.5) - std::ceil(left - 0.5);
-  }
-
-  static constexpr double fewest = 12.0;
-  TileCamera camera_;
-  double oversampling_;
-  double area_ = 0.0, count_ = 0.0, longest_ = 0.0;
-  bool inside_ = true;
-};
 
 class Builder {
  public:
