@@ -1,0 +1,184 @@
+#include "core/config/sensor_config.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+#include "core/config/band_wavelengths.h"
+#include "core/config/camera_config.h"
+#include "core/config/detector_config.h"
+#include "core/config/optics_config.h"
+#include "core/config/pointing_config.h"
+#include "core/config/search_path.h"
+#include "core/optics/psf_plan.h"
+#include "core/optics/pupil_sampling.h"
+#include "core/sky/airmass.h"
+
+namespace dmise {
+namespace {
+
+SiteConfig read_site(const YamlValue& value) {
+  if (value.is_scalar()) {
+    const std::string path = find_preset("sites", value.text(), value.file());
+    if (path.empty()) {
+      const std::string hint = nearest_name(value.text(), preset_names("sites"));
+      value.fail("no such site" + (hint.empty() ? "" : ", did you mean " + hint + "?"));
+    }
+    return read_site(YamlValue::load(path));
+  }
+  YamlMap map(value);
+  SiteConfig site;
+  site.name = map.text_or("name", "");
+  map.find("source");  // for people
+  site.latitude_deg = map.number("latitude_deg", Bounds::between(-90.0, 90.0));
+  site.longitude_deg = map.number("longitude_deg", Bounds::between(-180.0, 360.0));
+  site.height_m = map.number_or("height_m", 0.0, Bounds::between(-500.0, 9000.0));
+  read_surroundings(map, site.surroundings);
+  map.done();
+  return site;
+}
+
+/// Trails are one parabola each: over 10 deg they are still within 1e-4 of a focal length.
+constexpr double most_turn_deg = 10.0;
+
+/// Of a camera fixed to the horizon's grid; of one that follows the sky the zenith's, 1.
+double airmass_of(const Pointing& pointing) {
+  const auto* fixed = std::get_if<PointHorizon>(&pointing);
+  return fixed ? std::max(1.0, airmass(fixed->elevation_deg * deg)) : 1.0;
+}
+
+/// Sky, air and weather: the sensor's own, else its site's, else the usual ones.
+void read_sensor_surroundings(YamlMap& map, SensorConfig& sensor) {
+  const auto* site = std::get_if<SiteConfig>(&sensor.place);
+  Surroundings around = site ? site->surroundings : Surroundings{};
+  const auto old_key = map.find("extinction_mag_per_airmass");
+  if (!site)
+    for (const auto& ground_only : {map.find("atmosphere"), map.find("weather")})
+      if (ground_only) ground_only->fail("is for a sensor on the ground", false);
+  if (old_key) around.atmosphere = standard_atmosphere(old_key->number(Bounds::between(0.0, 5.0)));
+  read_surroundings(map, around);
+  sensor.sky = around.sky ? *around.sky : sky_preset(site ? "dark" : "space");
+  sensor.atmosphere = around.atmosphere ? *around.atmosphere : standard_atmosphere(0.17);
+  sensor.weather = around.weather.value_or(WeatherConfig{});
+}
+
+// Refuses what no kernel can be made of: a complaint "a.b: reason" at that key, or at the last one
+// on the way to it that this file has (a camera may be a preset).
+void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
+  const Camera& camera = sensor.camera;
+  try {
+    const PsfPlan plan =
+        plan_psf(camera.optics, camera.band.centre_m, sensor.seeing, sensor.exposure_s);
+    if (plan.method == PointSpread::Method::direct && sensor.effects.drawn_by_opengl())
+      throw ConfigError(
+          "effects.evaluator: opengl draws points by deposit or transform; this "
+          "camera's are summed directly (optics.method)");
+    if (plan.method != PointSpread::Method::deposit)
+      sample_pupils(camera.optics, wavelengths_of(camera.band, camera.optics.spread.wavelengths),
+                    plan, sensor.seeing);
+  } catch (const ConfigError& e) {
+    const std::string complaint = e.what(), key = complaint.substr(0, complaint.find(':'));
+    const std::string path = key.starts_with("optics.") ? "camera." + key : key;
+    YamlValue at = value;
+    std::size_t begin = 0;
+    while (begin < path.size() && at.is_map()) {
+      const std::size_t end = std::min(path.find('.', begin), path.size());
+      const auto next = YamlMap(at).find(path.substr(begin, end - begin));
+      if (!next) break;
+      at = *next;
+      begin = end + 1;
+    }
+    at.fail(begin > path.size() ? complaint.substr(key.size() + 2) : complaint, false);
+  }
+}
+
+}  // namespace
+
+void read_effects(const YamlValue& value, EffectSet& effects) {
+  YamlMap map(value);
+  for (std::size_t i = 0; i < effect_count; ++i) {
+    const auto effect = static_cast<Effect>(i);
+    if (const auto flag = map.find(facts(effect).name)) effects.set(effect, flag->flag());
+  }
+  if (const auto both = map.find("aberration")) {
+    effects.set(Effect::annual_aberration, both->flag());
+    effects.set(Effect::diurnal_aberration, both->flag());
+  }
+  constexpr int usual_snapshots = 16;
+  const auto integration = map.find("integration");
+  const bool analytic = integration && integration->choice({"analytic", "snapshots"}) == "analytic";
+  if (integration) effects.set_snapshots(analytic ? 0 : usual_snapshots);
+  if (analytic) effects.draw_by_opengl(false);
+  if (const auto evaluator = map.find("evaluator")) {
+    effects.draw_by_opengl(evaluator->choice({"analytic", "opengl"}) == "opengl");
+    if (effects.drawn_by_opengl() && analytic) evaluator->fail("needs integration: snapshots");
+    if (effects.drawn_by_opengl() && effects.snapshots() == 0)
+      effects.set_snapshots(usual_snapshots);
+  }
+  if (const auto count = map.find("snapshots")) {
+    if (effects.snapshots() == 0) count->fail("needs integration: snapshots", false);
+    effects.set_snapshots(int(count->integer(1, 100000)));
+  }
+  map.done();
+}
+
+SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, bool detect,
+                         SimTime duration) {
+  YamlMap map(value);
+  SensorConfig sensor;
+  sensor.effects = effects;
+  sensor.detect = map.flag_or("detection", detect);
+  const auto name = map.require("name");
+  sensor.name = name.text();
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_';
+  };
+  if (sensor.name.size() > 64 || !std::all_of(sensor.name.begin(), sensor.name.end(), allowed))
+    name.fail("must be at most 64 letters, digits, - and _");
+  const auto site = map.find("site");
+  const auto platform = map.find("platform");
+  if (bool(site) == bool(platform))
+    value.fail("needs either site (on the ground) or platform (an object of the catalogue)", false);
+  if (site) {
+    sensor.place = read_site(*site);
+  } else {
+    sensor.place = PlatformConfig{platform->text()};
+  }
+  sensor.camera = read_camera(map.require("camera"));
+  read_pointing(map.require("pointing"), bool(site), sensor);
+  const auto exposure = map.require("exposure_s");
+  sensor.exposure_s = exposure.number({.least = 1e-6, .most = 3600.0});
+  sensor.cadence_s = map.number("cadence_s", {.least = 1e-3, .most = 86400.0});
+  if (sensor.cadence_s < sensor.exposure_s) exposure.fail("must be <= cadence_s");
+  check_exposure(sensor.camera, exposure);
+  if (turn_rate_deg_per_s(sensor.pointing) * sensor.exposure_s > most_turn_deg)
+    exposure.fail("the camera must turn by no more than 10 deg within an exposure");
+  const auto first = map.find("first_exposure_s");
+  if (first) sensor.first_exposure_s = first->number(Bounds::not_negative());
+  if (sim_seconds(sensor.first_exposure_s + sensor.exposure_s) > duration)
+    exposure.fail("the first exposure ends after the run does");
+  if (const auto seeing = map.find("seeing")) {
+    if (sensor.camera.optics.spread.model == PointSpread::Model::gaussian)
+      seeing->fail("needs a camera with psf: diffraction", false);
+    sensor.seeing = names_profile(*seeing)
+                        ? read_seeing_profile(*seeing, airmass_of(sensor.pointing),
+                                              sensor.atmosphere.turbulence)
+                        : read_seeing(*seeing);
+  }
+  read_sensor_surroundings(map, sensor);
+  if (sensor.atmosphere.refraction)
+    sensor.effects.set(Effect::refraction, *sensor.atmosphere.refraction);
+  if (const auto mask = map.find("mask_deg")) {
+    if (platform) mask->fail("a mask is for a sensor on the ground", false);
+    sensor.mask_deg = mask->number(Bounds::between(0.0, 89.0));
+  }
+  if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
+  if (sensor.effects.has(Effect::sky))
+    check_sky_in_band(value, sensor.sky, sensor.camera.band, bool(site));
+  check_point_spread(value, sensor);
+  map.done();
+  return sensor;
+}
+
+}  // namespace dmise
