@@ -1,11 +1,8 @@
 #include "core/config/scenario.h"
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/units.h"
 #include "core/config/output_config.h"
 #include "core/config/search_path.h"
 #include "core/config/sensor_config.h"
