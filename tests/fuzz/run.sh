@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Runs libFuzzer targets and tells runs and findings; exits 1 on a finding.
 #
-#   run.sh BIN_DIRECTORY [--seconds N | --runs N] [TARGET..]
+#   run.sh BIN_DIRECTORY [--seconds N | --runs N] [--json FILE] [TARGET..]
 #
-# N is for each target (5 seconds unless said). TARGET is tle, omm, ...; all of them unless said.
+# N is for each target (5 seconds unless said); FILE gets a line of figures for each. TARGET is tle, omm, ...; all of them unless said.
 # Targets start from tests/fuzz/corpus/TARGET; what they find interesting is kept for the next run in
 # BIN_DIRECTORY/../corpus, an input that fails in BIN_DIRECTORY/../findings. One by hand:
 #   build/fuzz/bin/fuzz_tle -runs=1000000 -max_len=2048 FOLDER tests/fuzz/corpus/tle
@@ -15,12 +15,16 @@ die() { printf 'fuzz: %s\n' "$*" >&2; exit 2; }
 bin=$(readlink -f "${1:?BIN_DIRECTORY is missing}")
 shift
 limit=(-max_total_time=5)
+json=/dev/null
 targets=()
 while (($#)); do
   case $1 in
     --seconds | --runs)
       [[ ${2-} =~ ^[1-9][0-9]*$ ]] || die "$1: must be a whole number > 0, got ${2-nothing}"
       if [[ $1 == --runs ]]; then limit=("-runs=$2"); else limit=("-max_total_time=$2"); fi
+      shift ;;
+    --json)
+      json=$(realpath -m "${2:?--json: FILE is missing}")
       shift ;;
     -*) die "$1: unknown option" ;;
     *)
@@ -44,13 +48,15 @@ for target in "${targets[@]}"; do
   [[ ! -d $here/corpus/$target ]] || corpus+=("$here/corpus/$target")
   before=$(find "$found" -type f | wc -l)
   code=0
-  "$bin/fuzz_$target" "${limit[@]}" -max_len=2048 -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+  # A minute of wall clock for one input, since other work may have the processors.
+  "$bin/fuzz_$target" "${limit[@]}" -max_len=2048 -timeout=60 -rss_limit_mb=2048 -print_final_stats=1 \
     -artifact_prefix="$found/$target-" "${corpus[@]}" >"$log" 2>&1 || code=$?
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   new=$(($(find "$found" -type f | wc -l) - before))
   ((code == 0 || new > 0)) || new=1
   findings=$((findings + new))
   printf '%-17s %9s runs, %d findings\n' "$target" "${runs:-?}" "$new"
+  printf '{"name": "fuzz", "target": "%s", "value": %d, "findings": %d}\n' "$target" "${runs:-0}" "$new" >>"$json"
   ((code == 0)) || { grep -m 1 -E 'runtime error|ERROR: |deadly signal' "$log" || true; echo "  log: $log"; }
 done
 ((findings == 0))

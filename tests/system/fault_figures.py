@@ -2,7 +2,8 @@
 
     fault_figures.py FIGURES.jsonl
 
-The lines are those that faults.py, deaths.py and soak.py append with --json; lines of schedules are added up.
+The lines are those that faults.py, deaths.py, soak.py and tests/fuzz/run.sh append with --json; lines of schedules
+are added up.
 """
 
 import datetime
@@ -44,12 +45,20 @@ def soak_text(line):
             f"tenth {100 * line['value']:.2f} % (KiB: {grown}).")
 
 
+def fuzz_text(lines):
+    targets = sorted({line["target"] for line in lines})
+    return (f"- {min(line['value'] for line in lines)} mutated messages and more for each of {', '.join(targets)} under "
+            f"ASan and UBSan: {sum(line['findings'] for line in lines)} findings.")
+
+
 def main():
     lines = [json.loads(line) for line in pathlib.Path(sys.argv[1]).read_text().splitlines()]
     named = lambda name: [line for line in lines if line["name"] == name]
     parts = [schedules_text(named("fault_schedules"))] if named("fault_schedules") else []
     parts += [deaths_text(line) for line in named("death_named_worst_s")[-1:]]
     parts += [soak_text(line) for line in named("soak_growth_worst")[-1:]]
+    if named("fuzz"):
+        parts.append(fuzz_text(named("fuzz")))
     cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")),
                platform.processor())
     where = f"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}, {os.cpu_count()} cores ({cpu}), Linux {platform.release().split('-')[0]}, load {os.getloadavg()[2]:.1f} before:"
