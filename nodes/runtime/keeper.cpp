@@ -3,6 +3,9 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <map>
+#include <tuple>
+
 #include "core/sim/message.h"
 #include "dmise/v1/node.pb.h"
 #include "nodes/runtime/control_rules.h"
@@ -102,6 +105,8 @@ void Keeper::post(const v1::Grant& grant) {
 }
 
 void Keeper::answer() {
+  // Whoever asks again before there was time to answer is answered once: it knows more by then.
+  std::map<std::tuple<std::string, std::string, bool>, v1::ResendRequest> questions;
   for (auto message = receive(*resend_); !message.empty(); message = receive(*resend_)) {
     v1::ResendRequest request;
     if (message.size() != 2 || !from_frame(message[1], &request) ||
@@ -110,9 +115,11 @@ void Keeper::answer() {
     if (options_.security.on() && request.topic().starts_with(truth_prefix) &&
         !may_hear_truth(message[1]))
       continue;
-    for (const SharedFrames& frames : options_.resend(request))
-      send(*resend_, frames, message[0].to_string_view());
+    questions[{message[0].to_string(), request.topic(), request.catch_up()}] = request;
   }
+  for (const auto& [question, request] : questions)
+    for (const SharedFrames& frames : options_.resend(request))
+      send(*resend_, frames, std::get<0>(question));
 }
 
 void Keeper::leave_if_stuck() {

@@ -141,7 +141,7 @@ nanoseconds NodeInputs::ask_for(Tick tick) {
   // Patience begins when it is known that something is missing. 0: to be asked without delay.
   if (missing > missing_ && asked_.count() != 0) asked_ = now();
   missing_ = missing;
-  const nanoseconds patience = gap ? gap_ : quiet_;
+  const nanoseconds patience = gap ? std::max(gap_, again_) : quiet_;
   if (now() - asked_ > patience) {
     for (const Inbox::Want& want : wants) {
       asked_for_known_ += want.gap;
@@ -150,7 +150,10 @@ nanoseconds NodeInputs::ask_for(Tick tick) {
     }
     asked_ = now();
     if (gap) duplicates_when_asked_ = inbox_.duplicates();
-    if (!gap) quiet_ = std::min<nanoseconds>(2 * quiet_, quiet_patience_limit);
+    if (gap)
+      again_ = std::min<nanoseconds>(2 * patience, gap_patience_limit);
+    else
+      quiet_ = std::min<nanoseconds>(2 * quiet_, quiet_patience_limit);
   }
   return patience;
 }
@@ -167,6 +170,7 @@ void NodeInputs::be_patient_again() {
   asked_ = now();
   missing_ = Missing::nothing;
   quiet_ = quiet_patience;
+  again_ = nanoseconds{0};
   gap_ = std::max<nanoseconds>(gap_patience, gap_ - gap_ / 16);  // the rush may be over
 }
 

@@ -88,6 +88,7 @@ class NodeInputs {
   enum class Missing { nothing, quiet, gap } missing_ = Missing::nothing;  // of the tick awaited
   std::chrono::nanoseconds quiet_{0};
   std::chrono::nanoseconds gap_{0};
+  std::chrono::nanoseconds again_{0};  // least patience once it was asked for at this tick
   std::optional<std::uint64_t> duplicates_when_asked_;  // for a gap; nothing came twice since
   std::uint64_t asked_again_ = 0;
   std::uint64_t asked_for_known_ = 0;
