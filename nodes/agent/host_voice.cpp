@@ -80,11 +80,12 @@ void HostVoice::send_topology(const v1::Topology& topology, const std::string& p
   theirs.set_publish_endpoint(publish_endpoint);
   theirs.set_subscribe_endpoint(subscribe_endpoint);
   for (const v1::NodeStart& start : topology.starts()) {
-    const auto peer = directory_.all().find(start.name());
-    if (peer == directory_.all().end()) continue;
+    // What was said before it joined is meant for the process before it.
+    const Peer* peer = directory_.find(start.name(), start.incarnation());
+    if (!peer) continue;
     theirs.set_resume_tick(start.resume_tick());
     theirs.set_from_tick(start.from_tick());
-    reply(peer->second.routing_id, message);
+    reply(peer->routing_id, message);
   }
 }
 

@@ -70,6 +70,7 @@ void add_starts(v1::Topology* topology, const std::string& agent, const Coordina
     start->set_name(name);
     start->set_resume_tick(member.resumes_at);
     start->set_from_tick(coordinator.publishes_from(member));
+    start->set_incarnation(member.incarnation);
   }
 }
 
