@@ -137,7 +137,8 @@ Tick HostBarrier::slowest() const {
 }
 
 std::optional<TickTally> HostBarrier::take_done(Tick granted) {
-  if (nodes_.empty() || !asking_.empty() || taken_ >= std::min(slowest(), granted))
+  if (nodes_.empty() || !asking_.empty() || taken_ >= std::min(slowest(), granted) ||
+      !missing().empty())
     return std::nullopt;
   TickTally all{++taken_, {}, 0};
   for (auto& [name, node] : nodes_) {
@@ -150,14 +151,21 @@ std::optional<TickTally> HostBarrier::take_done(Tick granted) {
 }
 
 bool HostBarrier::all_ready() const {
-  return !nodes_.empty() && asking_.empty() &&
+  return !nodes_.empty() && asking_.empty() && missing().empty() &&
          std::all_of(nodes_.begin(), nodes_.end(), [](const auto& entry) {
            return entry.second.ready && !entry.second.silent && !entry.second.left;
          });
 }
 
-std::vector<std::string> HostBarrier::holding() const {
+std::vector<std::string> HostBarrier::missing() const {
   std::vector<std::string> names;
+  for (const std::string& name : expected_)
+    if (!nodes_.contains(name)) names.push_back(name);
+  return names;
+}
+
+std::vector<std::string> HostBarrier::holding() const {
+  std::vector<std::string> names = missing();
   for (const auto& [name, node] : nodes_)
     if (node.silent || node.left) names.push_back(name);
   if (!names.empty() || nodes_.empty()) return names;

@@ -44,6 +44,9 @@ class HostBarrier {
 
   explicit HostBarrier(PulseLimits limits) : limits_(limits) {}
 
+  /// The nodes of this host: those who are not there yet are waited for. An agent that follows a
+  /// lost one knows nobody, and what some of them have done is not what the host has.
+  void expects(std::set<std::string> names) { expected_ = std::move(names); }
   /// A process asks to join, and the master has not answered yet: nothing counts as done meanwhile.
   void asks(const std::string& name) { asking_.insert(name); }
   void refused(const std::string& name) { asking_.erase(name); }
@@ -73,7 +76,7 @@ class HostBarrier {
   std::optional<TickTally> take_done(Tick granted);
   std::vector<News> take_news() { return std::exchange(news_, {}); }
   bool all_ready() const;
-  /// Those whom the others wait for: lost, or furthest behind.
+  /// Those whom the others wait for: not there, lost, or furthest behind.
   std::vector<std::string> holding() const;
   /// Whether this process may still take a name.
   bool knows_living(const std::string& name) const;
@@ -87,9 +90,11 @@ class HostBarrier {
   void tell(News::What what, const std::string& name, const Node& node, const std::string& reason);
   bool notes(const std::string& name, Node& node, TickTally tally);
   Tick slowest() const;
+  std::vector<std::string> missing() const;
 
   PulseLimits limits_;
   std::map<std::string, Node> nodes_;
+  std::set<std::string> expected_;
   std::set<std::string> asking_;
   std::vector<News> news_;
   Tick taken_ = -1;

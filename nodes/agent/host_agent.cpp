@@ -290,6 +290,9 @@ class HostAgent {
     topology_version_ = link_.topology_version();
     const v1::Topology& topology = *link_.topology();
     reported_ = {topology.reported().begin(), topology.reported().end()};
+    std::set<std::string> names;
+    for (const v1::NodeStart& start : topology.starts()) names.insert(start.name());
+    barrier_->expects(std::move(names));
     at_subscribe_.follow(topology.subscribe_endpoint(), topology.broker_incarnation());
     at_publish_.follow(topology.publish_endpoint(), topology.broker_incarnation());
     voice_.send_topology(topology, publish_endpoint_, subscribe_endpoint_);

@@ -183,6 +183,29 @@ TEST(HostBarrier, IsReadyWhenAllAre) {
   EXPECT_FALSE(host.barrier.all_ready());
 }
 
+// Of an agent that follows a lost one: its nodes join one by one, and the first must not speak for
+// those who are not back.
+TEST(HostBarrier, TellsNothingBeforeAllWhoBelongToTheHostAreThere) {
+  HostBarrier barrier({});
+  barrier.expects({"a", "b"});
+  EXPECT_THAT(barrier.holding(), ElementsAre("a", "b"));
+  barrier.join("a", {}, 2, 10, seconds(0));
+  barrier.ready("a", seconds(0));
+  barrier.done("a", tally("a", 10), seconds(0));
+  EXPECT_FALSE(barrier.take_done(far));
+  EXPECT_FALSE(barrier.all_ready());
+  EXPECT_THAT(barrier.holding(), ElementsAre("b"));
+  barrier.join("b", {}, 2, 10, seconds(0));
+  EXPECT_FALSE(barrier.take_done(far));
+  barrier.ready("b", seconds(0));
+  EXPECT_TRUE(barrier.all_ready());
+  barrier.done("b", tally("b", 10), seconds(0));
+  const auto all = barrier.take_done(far);
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->tick, 10);
+  EXPECT_EQ(all->topics.size(), 2u);
+}
+
 TEST(HostBarrier, MissesNobodyOnceTheRunIsOver) {
   Host host;
   host.barrier.run_is_over();

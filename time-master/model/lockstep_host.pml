@@ -16,6 +16,8 @@
  * host_done              Coordinator::Member::done of the agent
  * at, taken              HostBarrier::Node::done, HostBarrier::taken_
  * asking                 HostBarrier::asks: a Join that the master has not answered
+ * mine > 0, of both      HostBarrier::expects: all who belong to the host are there
+ * welcome                Welcome, and of the Topology the start that is meant for this incarnation
  * lowest, highest        what Outbox of the producer keeps
  */
 #ifndef TICKS
@@ -37,6 +39,7 @@
 #define host_stays_done 1    /* the master counts what the host did before one of its nodes died */
 #define tells_while_asking 2 /* the agent goes on telling while it asks for a new process */
 #define trusts_the_dead 3    /* the agent counts a word of an earlier process of the name */
+#define counts_who_is_back 4 /* a new agent tells what the nodes that are back have done */
 #define FAULTY(fault) (FAULT == fault)
 
 #define KEEP (WINDOW + LOOK_BACK)
@@ -217,8 +220,9 @@ start:
        fi
      }
   :: atomic {
-       mine[0] > 0 && mine[1] > 0 && ((!asking[0] && !asking[1]) || FAULTY(tells_while_asking)) &&
-       taken < at[0] && taken < at[1] && taken < granted ->
+       ((mine[0] > 0 && mine[1] > 0) || FAULTY(counts_who_is_back)) &&
+       ((!asking[0] && !asking[1]) || FAULTY(tells_while_asking)) &&
+       (mine[0] == 0 || taken < at[0]) && (mine[1] == 0 || taken < at[1]) && taken < granted ->
        taken++;
        up!DONE, me, 0, taken
      }
