@@ -38,9 +38,8 @@ struct CoordinatorOptions : PulseLimits {
                              // done, though all that it needs is published; 0: none
   Instant start_within{0};   // longest time until all are ready; 0: none
   SilentPolicy on_silent = SilentPolicy::fail;
-  Instant rejoin_within{0};   // under `wait`, longest time until a lost node is back; 0: none
-  bool agents_return = true;  // under `wait`, as nodes do; false: the run fails when one is lost
-  int max_rejoins = -1;  // under `wait`, processes that may follow the first of a name; -1: any
+  Instant rejoin_within{0};  // under `wait`, longest time until a lost node is back; 0: none
+  int max_rejoins = -1;      // under `wait`, processes that may follow the first of a name; -1: any
 };
 
 /// The lock-step protocol as a state machine that has never seen a socket: who is in the run, up to

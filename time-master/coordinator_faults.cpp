@@ -131,7 +131,7 @@ void Coordinator::lost(Member& member, const std::string& how, Instant now) {
 }
 
 void Coordinator::wait_or_fail(Member& member, const std::string& how, Instant now) {
-  if (options_.on_silent != SilentPolicy::wait || (member.agent && !options_.agents_return)) {
+  if (options_.on_silent != SilentPolicy::wait) {
     member.left = true;
     const std::string with_it =
         member.agent ? ", and with it " + joined(nodes_behind(member.node.name)) : "";

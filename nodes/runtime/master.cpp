@@ -40,7 +40,6 @@ CoordinatorOptions with_broker(const MasterOptions& options) {
   CoordinatorOptions run = options.run;
   if (run.expected.empty()) throw ConfigError("expect: must name a node");
   run.pace.tick_length = options.tick_length;
-  run.agents_return = false;  // what was lost with an agent is not fetched again
   run.heartbeat = std::min<nanoseconds>(milliseconds(250), run.silent_after / 8);
   if (options.with_broker) run.expected.insert(run.expected.begin(), broker_name);
   return run;

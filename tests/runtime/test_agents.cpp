@@ -103,13 +103,16 @@ struct Hosts {
                                            {"west", local_address("west")}};
   std::map<std::string, std::unique_ptr<Child>> processes;
 
-  explicit Hosts(const std::vector<std::string>& master_flags, bool with_agents = true) {
+  /// `stops_at`: the clock stops after this tick; -1: it does not.
+  explicit Hosts(const std::vector<std::string>& master_flags, bool with_agents = true,
+                 Tick stops_at = -1) {
     std::vector<std::string> command{bin + "dmise-time-master", "--expect", "orbit,a,b,recorder",
                                      "--announce-fd", "1"};
     command.insert(command.end(), master_flags.begin(), master_flags.end());
     master = std::make_unique<Child>(command);
     if (!master->says("\n")) return;
     address = master->output().substr(0, master->output().find('\n'));
+    if (stops_at >= 0) control_master(address, 60, ClockAction::pause, stops_at);
     if (!with_agents) local = {{"east", address}, {"west", address}};
     start("broker");
     if (with_agents) start("east"), start("west");
@@ -199,9 +202,9 @@ TEST(Agents, AreRefusedWhereTheRunDropsTheLost) {
 
 TEST(Agents, ARestartedNodeLeavesTheRunAsItWas) {
   const std::string report = testing::TempDir() + "dmise-agents-restart.json";
-  const std::vector<std::string> flags{"--ticks",     "6000", "--window",        "3",
-                                       "--on-silent", "wait", "--rejoin-within", "60",
-                                       "--report",    report};
+  const std::vector<std::string> flags{"--ticks",         "6000", "--window",       "3",
+                                       "--on-silent",     "wait", "--silent-after", "60",
+                                       "--rejoin-within", "120",  "--report",       report};
   std::string undisturbed;
   {
     Hosts run(flags);
@@ -224,12 +227,46 @@ TEST(Agents, ARestartedNodeLeavesTheRunAsItWas) {
               HasSubstr(R"("restarts":{"a":1,"broker":1,"orbit":1,"recorder":1})"));
 }
 
-TEST(Agents, EndARunThatWaitsWhenTheyDie) {
-  Hosts run({"--ticks", "100000000", "--on-silent", "wait", "--rejoin-within", "60"});
-  ASSERT_TRUE(run["b"].says("step 5\n", 60));
-  run["east"].kill(SIGKILL);
-  EXPECT_TRUE(run.master->says("east has", 30)) << run.master->output();
-  run.expect_all_exit(1, "east", 60);
+// A new agent knows no nodes: those of the one before end, and others of their names join it.
+TEST(Agents, ARestartedAgentLeavesTheRunAsItWas) {
+  const std::string report = testing::TempDir() + "dmise-agents-return.json";
+  const std::vector<std::string> flags{"--ticks",         "1500", "--window",       "3",
+                                       "--on-silent",     "wait", "--silent-after", "60",
+                                       "--rejoin-within", "120",  "--report",       report};
+  std::string undisturbed;
+  {
+    Hosts run(flags);
+    run.expect_all_exit(0, "", 120);
+    undisturbed = digest_in(report);
+  }
+  // The clock stops of itself some ticks after each loss: no process can end before the last.
+  constexpr Tick between = 300, margin = 100;
+  Tick stops_at = between;
+  Hosts run(flags, true, stops_at);
+  // Who publishes for the others comes back first, or last; then no agent is left.
+  const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> losses{
+      {{"east"}, {"orbit", "a"}},
+      {{"west"}, {"recorder", "b"}},
+      {{"east", "west"}, {"recorder", "a", "b", "orbit"}}};
+  for (const auto& [agents, nodes] : losses) {
+    wait_until_settled(run.address, stops_at - margin);
+    for (const std::string& agent : agents) run[agent].kill(SIGKILL);
+    for (const std::string& agent : agents) wait_until_lost(run.address, agent);
+    for (const std::string& agent : agents) run.start(agent);
+    for (const std::string& name : nodes) {
+      EXPECT_EQ(run[name].exit_code(60), 1);
+      EXPECT_THAT(run[name].output(), HasSubstr("another has taken its place"));
+      run.start(name);
+    }
+    control_master(run.address, 60, ClockAction::step, between);
+    stops_at += between;
+  }
+  control_master(run.address, 60, ClockAction::go_on);
+  run.expect_all_exit(0, "", 120);
+  EXPECT_EQ(digest_in(report), undisturbed);
+  EXPECT_EQ(undisturbed.size(), 16u);
+  EXPECT_THAT(read_text_file(report),
+              HasSubstr(R"("restarts":{"a":2,"b":2,"east":2,"orbit":2,"recorder":2,"west":2})"));
 }
 
 }  // namespace
