@@ -69,7 +69,8 @@ void Inbox::accept(const Received& message) {
 
 void Inbox::position(Topic& topic, const Envelope& envelope) {
   if (topic.positioned && envelope.sequence <= topic.next_sequence) return;
-  if (topic.positioned) missed_ += envelope.sequence - topic.next_sequence;
+  if (topic.positioned && envelope.tick > topic.complete_to + 1)
+    missed_ += envelope.sequence - topic.next_sequence;
   topic.positioned = true;
   topic.next_sequence = envelope.sequence;
   topic.complete_to = std::max(topic.complete_to, envelope.tick - 1);
@@ -181,9 +182,13 @@ std::vector<Inbox::Want> Inbox::wanted(Tick tick) const {
     const auto lost = [&](const auto& said) {
       return said.second.last_sequence >= topic.next_sequence;
     };
+    // Of a process that follows another: it has said again what is complete here, and need not keep
+    // that; what is missing before it is never asked for.
+    const bool known =
+        !topic.early.empty() && topic.early.begin()->second.envelope.tick <= topic.complete_to;
     wants.push_back(
         {topic.name, topic.next_sequence,
-         topic.positioned ? std::nullopt : std::optional(topic.complete_to + 1),
+         topic.positioned && !known ? std::nullopt : std::optional(topic.complete_to + 1),
          !topic.early.empty() || std::any_of(topic.said.begin(), topic.said.end(), lost)});
   }
   return wants;

@@ -20,7 +20,8 @@ class Inbox {
   struct Want {
     std::string topic;
     std::uint64_t from_sequence = 0;
-    std::optional<Tick> from_tick;  // instead: it is not known where the topic is
+    std::optional<Tick> from_tick;  // instead: it is not known where the topic is, or earlier ticks
+                                    // are complete and need not be kept
     bool gap = false;               // known to be published: this one is lost or late
   };
 

@@ -148,6 +148,44 @@ TEST(Restart, OfAPublisherThatHasMovedOn) {
   EXPECT_THAT(ticks_of(inbox.take(9)), ElementsAre(8, 9));
 }
 
+/// Asked before its first step where it is, a publisher names its first message, of a tick that
+/// need not be known again; then all that it publishes is lost, and it keeps that no more.
+void lose_the_beginning(Publisher& again, Inbox& inbox, Tick from_tick) {
+  again.answer(inbox, from_tick);
+  for (int i = 0; i < 4; ++i) again.step();
+  ASSERT_EQ(inbox.wanted(from_tick).size(), 1u);
+  EXPECT_EQ(inbox.wanted(from_tick)[0].from_sequence, 1u);
+  EXPECT_FALSE(inbox.wanted(from_tick)[0].from_tick);
+  for (const auto& frames : again.outbox.since(objects_topic, 1))
+    inbox.accept(again.received(frames));
+  EXPECT_FALSE(inbox.complete(from_tick));
+  EXPECT_EQ(inbox.wanted(from_tick)[0].from_tick, from_tick);
+  again.answer(inbox, from_tick);
+}
+
+TEST(Restart, OfAPublisherThatNoLongerKeepsWhatIsKnown) {
+  Publisher orbit;
+  Inbox inbox({objects_topic});
+  for (int i = 0; i < 8; ++i)
+    for (const Received& message : orbit.step()) inbox.accept(message);
+  inbox.take(7);
+  inbox.restart(objects_topic);
+  Publisher again(2, 6);
+  lose_the_beginning(again, inbox, 8);  // ticks 7, 8, 9 are kept
+  EXPECT_TRUE(inbox.complete(9));
+  EXPECT_THAT(ticks_of(inbox.take(9)), ElementsAre(8, 9));
+  EXPECT_EQ(inbox.missed(), 0u);
+}
+
+TEST(Restart, OfBothBringsTheRosterThatIsNoLongerKept) {
+  Inbox inbox({objects_topic});
+  inbox.begin_at(8, true);
+  Publisher again(2, 6);
+  lose_the_beginning(again, inbox, 8);
+  EXPECT_THAT(ticks_of(inbox.take(9)), ElementsAre(6, 8, 9));  // the roster first
+  EXPECT_EQ(inbox.missed(), 0u);
+}
+
 TEST(Manifest, ShowsALostMessageThatNothingFollows) {
   Publisher orbit;
   Inbox inbox({objects_topic});
