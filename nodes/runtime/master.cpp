@@ -27,7 +27,7 @@ using std::chrono::nanoseconds;
 
 constexpr milliseconds check_interval{50};
 constexpr milliseconds connecting_interval{10};  // grants repeated while subscribers connect
-constexpr milliseconds farewell{1700};  // longest wait for nodes to leave a run that is over
+constexpr milliseconds farewell{1500};  // longest wait for nodes to leave a run that is over
 
 std::uint64_t new_run_id() {
   std::random_device device;
