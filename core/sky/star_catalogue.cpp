@@ -4,20 +4,37 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <utility>
 
 #include "core/base/units.h"
 #include "core/frames/vec.h"
 
 namespace dmise {
 
-double faintest_filled_v_mag(const StarCatalogue& catalogue) {
-  std::map<int, std::size_t> count;  // by half magnitude
-  for (const float v_mag : catalogue.v_mag) ++count[int(std::floor(2.0 * v_mag))];
-  if (count.empty()) return -std::numeric_limits<double>::infinity();
-  const auto fullest = std::max_element(
-      count.begin(), count.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  return 0.5 * (fullest->first + 1);
+namespace {
+constexpr double faintest_allowed_v_mag = 50.0;  // and brightest, below zero
+}
+
+StarTable table_of(StarCatalogue c) {
+  return {.epoch_jyear = c.epoch_jyear,
+          .id = std::move(c.id),
+          .ra_rad = std::move(c.ra_rad),
+          .dec_rad = std::move(c.dec_rad),
+          .pm_ra_cosdec_rad_per_yr = std::move(c.pm_ra_cosdec_rad_per_yr),
+          .pm_dec_rad_per_yr = std::move(c.pm_dec_rad_per_yr),
+          .parallax_rad = std::move(c.parallax_rad),
+          .v_mag = std::move(c.v_mag),
+          .bv = std::move(c.bv),
+          .flags = std::move(c.flags)};
+}
+
+double faintest_filled_v_mag(std::span<const float> v_mags) {
+  if (v_mags.empty()) return -std::numeric_limits<double>::infinity();
+  constexpr int halves = 2 * int(faintest_allowed_v_mag);
+  std::array<std::size_t, 2 * halves + 1> count = {};  // by half magnitude, from -50 on
+  for (const float v_mag : v_mags) ++count[std::size_t(std::floor(2.0 * v_mag) + halves)];
+  const auto fullest = std::max_element(count.begin(), count.end());
+  return 0.5 * (int(fullest - count.begin()) - halves + 1);
 }
 
 std::optional<double> bv_of_spectral_type(std::string_view type) {
@@ -37,7 +54,7 @@ std::optional<double> bv_of_spectral_type(std::string_view type) {
 const char* append_star(StarCatalogue& catalogue, const StarRecord& star) {
   if (!(star.ra_rad >= 0 && star.ra_rad < 2 * pi)) return "right ascension must be in [0, 360) deg";
   if (!(std::abs(star.dec_rad) <= pi / 2)) return "declination must be in [-90, 90] deg";
-  if (!(std::abs(star.v_mag) <= 50)) return "magnitude must be in [-50, 50]";
+  if (!(std::abs(star.v_mag) <= faintest_allowed_v_mag)) return "magnitude must be in [-50, 50]";
   if (star.bv && !std::isfinite(*star.bv)) return "colour must be finite";
   const double pm_ra = star.pm_ra_cosdec_rad_per_yr.value_or(0.0);
   const double pm_dec = star.pm_dec_rad_per_yr.value_or(0.0);

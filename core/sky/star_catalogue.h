@@ -2,8 +2,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
+
+#include "core/base/column.h"
 
 namespace dmise {
 
@@ -18,21 +21,33 @@ enum StarFlag : std::uint8_t {
 inline constexpr float default_star_bv = 0.65F;
 
 /// Stars in ICRS, structure of arrays. Places are for `epoch_jyear`; motions are of that epoch too.
-struct StarCatalogue {
-  double epoch_jyear = 2000.0;    // Julian year, TT
-  std::vector<std::uint32_t> id;  // the catalogue's own number, else the place in its file
-  std::vector<double> ra_rad;     // [0, 2 pi)
-  std::vector<double> dec_rad;    // [-pi/2, pi/2]
-  std::vector<double> pm_ra_cosdec_rad_per_yr;  // along right ascension, on the sky
-  std::vector<double> pm_dec_rad_per_yr;
-  std::vector<double> parallax_rad;  // >= 0
-  std::vector<float> v_mag;          // Johnson V
-  std::vector<float> bv;             // Johnson B-V [mag]
-  std::vector<std::uint8_t> flags;   // StarFlag, or-ed
+template <template <class> class Array>
+struct StarFields {
+  double epoch_jyear = 2000.0;            // Julian year, TT
+  Array<std::uint32_t> id;                // the catalogue's own number, else the place in its file
+  Array<double> ra_rad;                   // [0, 2 pi)
+  Array<double> dec_rad;                  // [-pi/2, pi/2]
+  Array<double> pm_ra_cosdec_rad_per_yr;  // along right ascension, on the sky
+  Array<double> pm_dec_rad_per_yr;
+  Array<double> parallax_rad;  // >= 0
+  Array<float> v_mag;          // Johnson V
+  Array<float> bv;             // Johnson B-V [mag]
+  Array<std::uint8_t> flags;   // StarFlag, or-ed
 
   std::size_t size() const { return ra_rad.size(); }
-  bool operator==(const StarCatalogue&) const = default;
+  bool operator==(const StarFields&) const = default;
 };
+
+template <class T>
+using StarVector = std::vector<T>;
+
+/// A catalogue while it is made.
+using StarCatalogue = StarFields<StarVector>;
+/// One that is done.
+using StarTable = StarFields<Column>;
+
+/// The same stars in the same order.
+StarTable table_of(StarCatalogue catalogue);
 
 /// One star as a reader finds it, before what is missing gets its stated default.
 struct StarRecord {
@@ -52,10 +67,10 @@ struct StarRecord {
 /// arcsec/yr.
 const char* append_star(StarCatalogue& catalogue, const StarRecord& star);
 
-/// V to which the catalogue goes: the faint edge of the half magnitude that holds most stars.
+/// V to which a catalogue goes: the faint edge of the half magnitude that holds most stars.
 /// Counts grow by half in half a magnitude until stars begin to be missing. -infinity without
 /// stars.
-double faintest_filled_v_mag(const StarCatalogue& catalogue);
+double faintest_filled_v_mag(std::span<const float> v_mag);
 
 /// Mean B-V of a main-sequence star of a spectral type such as "K2V" or "A?"; none for classes
 /// without one (carbon stars, white dwarfs). Source: Fitzgerald 1970, A&A 4, 234, every fifth

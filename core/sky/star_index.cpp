@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/base/units.h"
 
@@ -23,17 +24,20 @@ void reorder(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
   values = std::move(sorted);
 }
 
-}  // namespace
-
-StarIndex build_star_index(StarCatalogue& c) {
-  StarIndex index;
-  index.bands = band_count;
-  index.first_cell.resize(band_count + 1, 0);
+std::vector<std::uint32_t> first_cells() {
+  std::vector<std::uint32_t> first(band_count + 1, 0);
   for (int b = 0; b < band_count; ++b) {
     const double middle = (b + 0.5) * band_rad - pi / 2;
     const double cells = std::max(3.0, std::round(2 * pi * std::cos(middle) / band_rad));
-    index.first_cell[b + 1] = index.first_cell[b] + std::uint32_t(cells);
+    first[b + 1] = first[b] + std::uint32_t(cells);
   }
+  return first;
+}
+
+}  // namespace
+
+StarIndex build_star_index(StarCatalogue& c) {
+  StarIndex index{.bands = band_count, .first_cell = first_cells()};
   const std::size_t n = c.size();
   std::vector<std::uint32_t> cell(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -59,20 +63,31 @@ StarIndex build_star_index(StarCatalogue& c) {
   reorder(c.bv, order);
   reorder(c.flags, order);
 
-  index.first_star.assign(index.first_cell.back() + 1, 0);
-  for (const std::uint32_t one : cell) ++index.first_star[one + 1];
-  std::partial_sum(index.first_star.begin(), index.first_star.end(), index.first_star.begin());
-  index.direction.resize(n);
+  std::vector<std::uint32_t> first_star(index.first_cell[band_count] + 1, 0);
+  for (const std::uint32_t one : cell) ++first_star[one + 1];
+  std::partial_sum(first_star.begin(), first_star.end(), first_star.begin());
+  std::vector<Vec<Gcrs>> direction(n);
   for (std::size_t i = 0; i < n; ++i) {
-    index.direction[i] = from_spherical<Gcrs>(c.ra_rad[i], c.dec_rad[i]);
+    direction[i] = from_spherical<Gcrs>(c.ra_rad[i], c.dec_rad[i]);
     index.fastest_motion_rad_per_yr =
         std::max(index.fastest_motion_rad_per_yr,
                  std::hypot(c.pm_ra_cosdec_rad_per_yr[i], c.pm_dec_rad_per_yr[i]));
   }
+  index.first_star = std::move(first_star);
+  index.direction = std::move(direction);
   return index;
 }
 
-void query_cone(const StarCatalogue& c, const StarIndex& index, const Vec<Gcrs>& axis,
+bool is_sound(const StarIndex& index, std::size_t stars) {
+  if (index.bands != band_count || !std::ranges::equal(index.first_cell, first_cells()))
+    return false;
+  const Column<std::uint32_t>& first = index.first_star;
+  return first.size() == index.first_cell[band_count] + std::size_t(1) && first[0] == 0 &&
+         first[first.size() - 1] == stars && std::ranges::is_sorted(first) &&
+         index.direction.size() == stars;
+}
+
+void query_cone(std::span<const float> v_mag, const StarIndex& index, const Vec<Gcrs>& axis,
                 double radius_rad, double faintest_v_mag, std::vector<std::uint32_t>& found) {
   if (!(radius_rad >= 0)) return;
   const auto [ra, dec] = to_spherical(axis);
@@ -90,7 +105,7 @@ void query_cone(const StarCatalogue& c, const StarIndex& index, const Vec<Gcrs>&
     for (std::int64_t k = from; k <= to; ++k) {
       const std::uint32_t cell = first + std::uint32_t(k);
       for (std::uint32_t i = index.first_star[cell]; i < index.first_star[cell + 1]; ++i) {
-        if (double(c.v_mag[i]) > faintest_v_mag) break;  // brightest first
+        if (double(v_mag[i]) > faintest_v_mag) break;  // brightest first
         const Vec<Gcrs> apart = index.direction[i] - axis;
         if (dot(apart, apart) <= chord2) found.push_back(i);
       }

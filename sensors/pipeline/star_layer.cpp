@@ -28,7 +28,7 @@ struct Trail {
   std::array<PixelPosition, 3> pixel;  // start, middle, end
 };
 
-StarColumns columns_of(const StarCatalogue& stars) {
+StarColumns columns_of(const StarTable& stars) {
   return {.epoch_jyear = stars.epoch_jyear,
           .ra_rad = stars.ra_rad,
           .dec_rad = stars.dec_rad,
@@ -42,7 +42,7 @@ StarColumns columns_of(const StarCatalogue& stars) {
 /// What an exposure's stars have in common.
 struct StarLayer::Exposure {
   const View& view;
-  const StarCatalogue& stars;
+  const StarTable& stars;
   StarColumns columns = columns_of(stars);
   std::array<SimTime, 3> instants = {view.times().start, view.times().middle, view.times().end};
   std::array<ApparentPlaces, 3> places = {view.places(instants[0]), view.places(instants[1]),
@@ -133,7 +133,7 @@ std::vector<std::uint32_t> StarLayer::candidates(const View& view, double fainte
   const double turned = std::max(angle_rad(middle, boresight(view.times().start)),
                                  angle_rad(middle, boresight(view.times().end)));
   std::vector<std::uint32_t> found;
-  query_cone(map_->stars, map_->index, middle,
+  query_cone(map_->stars.v_mag, map_->index, middle,
              half_diagonal_rad(view.sensor().camera.optics) + turned + widest_shift_rad,
              faintest_v_mag, found);
   return found;
@@ -142,7 +142,7 @@ std::vector<std::uint32_t> StarLayer::candidates(const View& view, double fainte
 StarLayer::StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map)
     : map_(std::move(map)),
       light_(sensor.camera.band),
-      faintest_filled_v_mag_(dmise::faintest_filled_v_mag(map_->stars)) {}
+      faintest_filled_v_mag_(dmise::faintest_filled_v_mag(map_->stars.v_mag)) {}
 
 std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Screen& screen,
                               RateImage& image, double faintest_v_mag,
@@ -171,7 +171,7 @@ std::uint32_t StarLayer::draw(const Exposure& exposure, std::span<const std::uin
                               OpticsStage& optics, const Screen& screen, RateImage& image,
                               std::vector<StarTruth>* truth, EffectTimes& times) const {
   const View& view = exposure.view;
-  const StarCatalogue& stars = exposure.stars;
+  const StarTable& stars = exposure.stars;
   std::vector<Trail> trails;
   {
     Stopwatch timing(times[Effect::stars]);

@@ -2,16 +2,29 @@
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <limits>
 
+#include "core/base/crc32c.h"
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
+#include "core/sky/star_cache_file.h"
 
 namespace dmise {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t header_bytes = 128, crc_at = 12;
 
 class StarCache : public testing::Test {
  protected:
@@ -29,18 +42,42 @@ class StarCache : public testing::Test {
     for (const auto& entry : fs::directory_iterator(cache_)) return entry.path().string();
     return {};
   }
+  auto files() const { return std::distance(fs::directory_iterator(cache_), {}); }
+
+  /// As `write_file_whole`, without waiting for the disk.
+  void place(const std::string& content) const {
+    const std::string beside = directory_ + "/beside";
+    std::ofstream(beside, std::ios::binary) << content;
+    fs::rename(beside, star_cache_path(cache_, *star_source(source_)));
+  }
 
   std::string directory_, source_, cache_;
 };
 
+void expect_same(const StarMap& a, const StarMap& b) {
+  EXPECT_EQ(a.stars, b.stars);
+  EXPECT_EQ(a.index, b.index);
+  EXPECT_EQ(a.problems, b.problems);
+}
+
+/// A file with the checksum that belongs to it.
+std::string sealed(std::string file) {
+  std::memset(file.data() + crc_at, 0, 4);
+  const std::uint32_t crc = crc32c(file.data(), file.size());
+  std::memcpy(file.data() + crc_at, &crc, 4);
+  return file;
+}
+
 TEST_F(StarCache, TheSecondTimeGivesTheSameFromTheCache) {
+  const StarMap fresh = load_star_map(source_);
   const StarMap first = load_star_map(source_, cache_), second = load_star_map(source_, cache_);
   EXPECT_FALSE(first.from_cache);
   EXPECT_TRUE(second.from_cache);
-  EXPECT_EQ(first.stars, second.stars);
+  expect_same(first, fresh);
+  expect_same(second, fresh);
   EXPECT_EQ(first.problems.size(), 1u);
-  EXPECT_EQ(first.problems, second.problems);
   EXPECT_EQ(first.stars.size(), 2u);
+  EXPECT_EQ(files(), 1);
 }
 
 TEST_F(StarCache, AnotherSourceIsReadAnew) {
@@ -51,18 +88,169 @@ TEST_F(StarCache, AnotherSourceIsReadAnew) {
   EXPECT_EQ(map.stars.size(), 1u);
 }
 
-TEST_F(StarCache, DamageIsPassedOverAndMended) {
-  const StarMap first = load_star_map(source_, cache_);
-  const std::string whole = read_text_file(cached());
-  for (std::size_t at = 0; at < whole.size(); at += 3) {
+TEST_F(StarCache, AMapUnderAnothersNameIsPassedOver) {
+  load_star_map(source_, cache_);
+  const std::string foreign = read_text_file(cached());
+  fs::remove(cached());
+  write_file_whole(source_, "ra_deg,dec_deg,mag_v\n1,2,3\n");
+  place(foreign);
+  EXPECT_FALSE(load_star_map(source_, cache_).from_cache);
+  const StarMap map = load_star_map(source_, cache_);
+  EXPECT_TRUE(map.from_cache);
+  EXPECT_EQ(map.stars.size(), 1u);
+}
+
+// Each byte of the header, and every so often one of the rest.
+TEST_F(StarCache, DamageIsPassedOver) {
+  load_star_map(source_, cache_);
+  const StarSource source = *star_source(source_);
+  const std::string path = cached(), whole = read_text_file(path);
+  for (std::size_t at = 0; at < whole.size(); at += at < header_bytes ? 1 : 997) {
     std::string damaged = whole;
     damaged[at] = char(damaged[at] ^ 0x40);
-    write_file_whole(cached(), damaged);
-    const StarMap again = load_star_map(source_, cache_);
-    EXPECT_EQ(again.stars, first.stars) << at;
-    write_file_whole(cached(), whole.substr(0, at));
-    EXPECT_FALSE(load_star_map(source_, cache_).from_cache) << at;
+    place(damaged);
+    EXPECT_FALSE(map_star_cache(path, source)) << at;
+    place(whole.substr(0, at));
+    EXPECT_FALSE(map_star_cache(path, source)) << at;
   }
+  place(whole + '\n');
+  EXPECT_FALSE(map_star_cache(path, source));
+  place(whole);
+  EXPECT_TRUE(map_star_cache(path, source));
+}
+
+TEST_F(StarCache, DamageIsMended) {
+  const StarMap first = load_star_map(source_, cache_);
+  const std::string whole = read_text_file(cached());
+  for (const std::size_t at : {std::size_t(0), crc_at, header_bytes, whole.size() - 1}) {
+    std::string damaged = whole;
+    damaged[at] = char(damaged[at] ^ 0x40);
+    place(damaged);
+    const StarMap again = load_star_map(source_, cache_);
+    EXPECT_FALSE(again.from_cache) << at;
+    EXPECT_EQ(again.cache_problem, "");
+    expect_same(again, first);
+    EXPECT_EQ(files(), 1);
+    EXPECT_EQ(read_text_file(cached()), whole);
+  }
+  EXPECT_TRUE(load_star_map(source_, cache_).from_cache);
+}
+
+// Bytes that pass for whole: counts and places that lead beyond the stars, and values that are no
+// place, magnitude or colour.
+TEST_F(StarCache, WhatLeadsAstrayIsPassedOverThoughItIsWhole) {
+  load_star_map(source_, cache_);
+  const StarSource source = *star_source(source_);
+  const std::string path = cached(), whole = read_text_file(path);
+  place(sealed(whole));
+  ASSERT_TRUE(map_star_cache(path, source));
+  // Each number of the header: epoch and fastest motion may be other than they were.
+  for (const std::uint32_t value : {0U, 1U, 7U, 0x7fffffffU, 0x80000000U, 0xffffffffU})
+    for (std::size_t at = 0; at < header_bytes; at += 4) {
+      std::string changed = whole;
+      std::memcpy(changed.data() + at, &value, 4);
+      if (changed == whole || at == crc_at) continue;
+      place(sealed(changed));
+      const auto kept = map_star_cache(path, source);
+      if (!kept) continue;
+      EXPECT_GE(at, 56u);
+      std::vector<std::uint32_t> found;
+      query_cone(kept->stars.v_mag, kept->index, {0, 0, 1}, 4.0, 99.0, found);
+      EXPECT_EQ(found, (std::vector<std::uint32_t>{0, 1}));
+    }
+  place(whole);
+  const StarMap mapped = load_star_map(source_, cache_);
+  ASSERT_TRUE(mapped.from_cache);
+  const auto spoil = [&](const auto& column, std::size_t i, auto value) {
+    const auto* begin = reinterpret_cast<const char*>(mapped.stars.ra_rad.data()) - header_bytes;
+    std::string changed = whole;
+    const auto at = std::size_t(reinterpret_cast<const char*>(&column[i]) - begin);
+    std::memcpy(changed.data() + at, &value, sizeof value);
+    place(sealed(changed));
+    EXPECT_FALSE(map_star_cache(path, source)) << at;
+  };
+  const auto& index = mapped.index;
+  for (const std::size_t i :
+       {std::size_t(0), index.first_star.size() / 2, index.first_star.size() - 1})
+    for (const std::uint32_t value : {3U, 0x7fffffffU, 0xffffffffU})
+      spoil(index.first_star, i, value);
+  for (std::size_t i = 0; i < index.first_cell.size(); ++i) spoil(index.first_cell, i, 12345U);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double value : {nan, 1e300, -1e300}) {
+    spoil(index.direction, 1, value);
+    spoil(mapped.stars.ra_rad, 1, value);
+    spoil(mapped.stars.dec_rad, 1, value);
+    spoil(mapped.stars.pm_ra_cosdec_rad_per_yr, 1, value);
+    spoil(mapped.stars.pm_dec_rad_per_yr, 1, value);
+    spoil(mapped.stars.parallax_rad, 1, value);
+    spoil(mapped.stars.v_mag, 1, float(value));
+  }
+  spoil(mapped.stars.bv, 1, float(nan));
+}
+
+// Also of the process that made the file: what it read itself is given up.
+TEST_F(StarCache, ColumnsBeginOnCacheLinesOfTheMappedFile) {
+  const StarMap made = load_star_map(source_, cache_), kept = load_star_map(source_, cache_);
+  std::vector<std::array<std::uintptr_t, 2>> mapped;
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    if (!line.ends_with(cached())) continue;
+    EXPECT_NE(line.find(" r--s "), line.npos) << line;
+    char* end = nullptr;
+    const std::uintptr_t from = std::strtoull(line.c_str(), &end, 16);
+    mapped.push_back({from, std::strtoull(end + 1, nullptr, 16)});
+  }
+  ASSERT_EQ(mapped.size(), 2u);
+  const auto expect_inside = [&](const auto& column) {
+    const auto at = std::bit_cast<std::uintptr_t>(column.data());
+    EXPECT_EQ(at % 64, 0u);
+    EXPECT_TRUE(std::ranges::any_of(
+        mapped, [&](const auto& range) { return range[0] <= at && at < range[1]; }));
+  };
+  for (const StarMap* map : {&made, &kept}) {
+    const StarTable& s = map->stars;
+    expect_inside(s.id), expect_inside(s.ra_rad), expect_inside(s.dec_rad);
+    expect_inside(s.pm_ra_cosdec_rad_per_yr), expect_inside(s.pm_dec_rad_per_yr);
+    expect_inside(s.parallax_rad), expect_inside(s.v_mag), expect_inside(s.bv);
+    expect_inside(s.flags), expect_inside(map->index.direction);
+    expect_inside(map->index.first_cell), expect_inside(map->index.first_star);
+  }
+}
+
+TEST_F(StarCache, WhatIsMappedStaysWhenTheFileIsReplacedAndRemoved) {
+  const StarMap fresh = load_star_map(source_);
+  load_star_map(source_, cache_);
+  const StarMap mapped = load_star_map(source_, cache_);
+  ASSERT_TRUE(mapped.from_cache);
+  place(std::string(read_text_file(cached()).size(), 'x'));
+  expect_same(mapped, fresh);
+  place("");
+  expect_same(mapped, fresh);
+  EXPECT_FALSE(load_star_map(source_, cache_).from_cache);
+  fs::remove_all(cache_);
+  expect_same(mapped, fresh);
+  const StarMap copy = mapped;
+  expect_same(copy, fresh);
+}
+
+TEST_F(StarCache, ProcessesThatMakeItAtOnceLeaveOne) {
+  const StarMap fresh = load_star_map(source_);
+  std::vector<pid_t> children;
+  for (int i = 0; i < 8; ++i) {
+    children.push_back(fork());
+    ASSERT_GE(children.back(), 0);
+    if (children.back() == 0) {
+      const StarMap map = load_star_map(source_, cache_);
+      const bool same = map.stars == fresh.stars && map.index == fresh.index;
+      _exit(same && map.cache_problem.empty() ? 0 : 1);
+    }
+  }
+  for (const pid_t child : children) {
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_EQ(files(), 1);
   EXPECT_TRUE(load_star_map(source_, cache_).from_cache);
 }
 
@@ -70,6 +258,24 @@ TEST_F(StarCache, NoPlaceToKeepItIsNoError) {
   const StarMap map = load_star_map(source_, directory_ + "/absent");
   EXPECT_EQ(map.stars.size(), 2u);
   EXPECT_FALSE(map.cache_problem.empty());
+  fs::create_directories(star_cache_path(cache_, *star_source(source_)) + "/taken");
+  const StarMap other = load_star_map(source_, cache_);
+  EXPECT_FALSE(other.cache_problem.empty());
+  expect_same(other, map);
+  EXPECT_EQ(files(), 1);
+}
+
+// Such as a pipe: it can be read once.
+TEST_F(StarCache, WhatIsNoFileIsReadWithoutACache) {
+  const std::string text = read_text_file(source_);
+  int ends[2] = {};
+  ASSERT_EQ(pipe(ends), 0);
+  ASSERT_EQ(write(ends[1], text.data(), text.size()), ssize_t(text.size()));
+  close(ends[1]);
+  const StarMap map = load_star_map("/dev/fd/" + std::to_string(ends[0]), cache_);
+  close(ends[0]);
+  EXPECT_EQ(map.stars.size(), 2u);
+  EXPECT_TRUE(fs::is_empty(cache_));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ TEST(StarIndex, FindsExactlyTheStarsInTheCone) {
       for (const double radius : {0.0, 0.01, 0.5, 3.0, 30.0, 89.0, 119.7, 180.0}) {
         const Vec<Gcrs> axis = from_spherical<Gcrs>(ra, dec * deg);
         std::vector<std::uint32_t> found;
-        query_cone(stars, index, axis, radius * deg, 6.0, found);
+        query_cone(stars.v_mag, index, axis, radius * deg, 6.0, found);
         std::vector<std::uint32_t> expected;
         for (std::uint32_t i = 0; i < stars.size(); ++i)
           if (stars.v_mag[i] <= 6.0F && angle_rad(index.direction[i], axis) <= radius * deg)
@@ -45,7 +45,7 @@ TEST(StarIndex, FindsAStarExactlyOnTheAxisInAConeOfNoWidth) {
   StarCatalogue stars = random_stars(10);
   const StarIndex index = build_star_index(stars);
   std::vector<std::uint32_t> found;
-  query_cone(stars, index, index.direction[3], 0.0, 99.0, found);
+  query_cone(stars.v_mag, index, index.direction[3], 0.0, 99.0, found);
   EXPECT_EQ(found, std::vector<std::uint32_t>{3});
 }
 

@@ -1,0 +1,40 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace dmise {
+
+/// Values that nobody changes any more, wherever they lie: in a vector that was filled, in a file
+/// that is mapped. Copies share the values and what holds them.
+template <class T>
+class Column {
+ public:
+  using value_type = T;
+
+  Column() = default;
+  Column(std::vector<T> values) {
+    auto kept = std::make_shared<const std::vector<T>>(std::move(values));
+    values_ = *kept;
+    owner_ = std::move(kept);
+  }
+  /// `owner` holds what `values` shows.
+  Column(std::span<const T> values, std::shared_ptr<const void> owner)
+      : values_(values), owner_(std::move(owner)) {}
+
+  const T* data() const { return values_.data(); }
+  std::size_t size() const { return values_.size(); }
+  const T& operator[](std::size_t i) const { return values_[i]; }
+  const T* begin() const { return data(); }
+  const T* end() const { return data() + size(); }
+  bool operator==(const Column& other) const { return std::ranges::equal(*this, other); }
+
+ private:
+  std::span<const T> values_;
+  std::shared_ptr<const void> owner_;
+};
+
+}  // namespace dmise

@@ -1,0 +1,19 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/sky/star_catalogue.h"
+#include "core/sky/star_index.h"
+
+namespace dmise {
+
+/// A catalogue as the renderer uses it: in the index's order, with its index.
+struct StarMap {
+  StarTable stars;
+  StarIndex index;
+  std::vector<std::string> problems;  // `file:line: reason` of what could not be used
+  bool from_cache = false;
+  std::string cache_problem;  // why nothing was kept for the next time; empty when all is well
+};
+
+}  // namespace dmise
