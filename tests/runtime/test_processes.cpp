@@ -55,7 +55,7 @@ struct Stack {
     for (const char* name : {"recorder", "b", "a", "orbit"}) start(name);
   }
   /// Every process but `except` has ended within the time and with this code.
-  void expect_all_exit(int code, const std::string& except = "", double within_s = 60) {
+  void expect_all_exit(int code, const std::string& except = "", double within_s = 120) {
     EXPECT_EQ(master->exit_code(within_s), code) << master->output();
     for (auto& [name, node] : nodes)
       if (name != except) {
@@ -145,7 +145,7 @@ TEST(Processes, ANodeThatDiesBeforeTheStartIsNamed) {
 }
 
 TEST(Processes, TheRunWaitsForAStoppedNodeByPolicy) {
-  Stack stack({"--ticks", "5000", "--silent-after", "1", "--on-silent", "wait"});
+  Stack stack({"--ticks", "2000", "--silent-after", "2", "--on-silent", "wait"});
   stack.start_all();
   ASSERT_TRUE(stack.nodes["b"]->says("step 5\n"));
   stack.nodes["a"]->kill(SIGSTOP);
