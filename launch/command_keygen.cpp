@@ -1,10 +1,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <map>
 #include <memory>
 
 #include "core/base/error.h"
 #include "core/config/scenario.h"
 #include "launch/commands.h"
+#include "launch/host_names.h"
 #include "nodes/runtime/security.h"
 #include "sensors/positions/positions_evaluator.h"
 
@@ -14,12 +16,20 @@ namespace {
 struct KeygenOptions {
   std::string directory, scenario;
   std::vector<std::string> names;
+  std::vector<std::string> nodes;  // for whom they may speak
+  int hosts = 0;                   // of the scenario: agents, each for its sensors
   bool truth = false;
   bool rings = false;
 };
 
 void keygen(const KeygenOptions& options) {
   std::vector<std::string> names = options.names, several;
+  std::map<std::string, std::vector<std::string>> agents;  // and for whom they may speak
+  std::map<std::string, std::vector<std::string>> rings;
+  if (!options.nodes.empty() && options.names.empty())
+    throw ConfigError("--nodes: of which agents? name them");
+  for (const auto& name : options.names)
+    if (!options.nodes.empty()) agents[name] = options.nodes;
   if (!options.scenario.empty()) {
     for (const char* name :
          {"time-master", "broker", "orbit-node", "environment-node", operator_name})
@@ -28,15 +38,23 @@ void keygen(const KeygenOptions& options) {
     for (const auto& sensor : scenario.sensors) several.push_back(sensor.name);
     if (scenario.output.positions()) several.push_back(positions_node);
     names.insert(names.end(), several.begin(), several.end());
+    for (int host = 0; host < options.hosts; ++host) {
+      names.push_back(agent_name(scenario, host));
+      agents[names.back()] = rings[names.back()] = sensors_on(scenario, host, options.hosts);
+      rings[names.back()].push_back(names.back());
+    }
+    rings["sensors"] = several;
+  } else if (options.hosts > 0) {
+    throw ConfigError("--hosts: needs --scenario: agents speak for its sensors");
   }
   if (options.rings && several.empty())
     throw ConfigError("--rings: needs --scenario: rings are of its sensors");
   if (names.empty()) names.push_back(operator_name);
   for (const auto& name : names) {
-    make_key(options.directory, name, options.truth);
+    make_key(options.directory, name, options.truth, {agents[name].begin(), agents[name].end()});
     std::printf("%s/%s.key\n", options.directory.c_str(), name.c_str());
   }
-  if (options.rings) make_rings(options.directory, "sensors", several);
+  if (options.rings) make_rings(options.directory, rings);
 }
 
 }  // namespace
@@ -52,8 +70,20 @@ void add_keygen_command(CLI::App& app) {
   command->add_option("names", options->names, "whose keys: nodes of a run, observers, operator");
   command->add_option("--scenario", options->scenario, "also for every process of this scenario");
   command->add_flag("--rings", options->rings,
-                    "also rings/sensors.keys, the sensors' keys in one file, and "
-                    "rings/everybody.pubs, all public halves: for containers");
+                    "also rings/sensors.keys, the sensors' keys in one file, "
+                    "rings/everybody.pubs, all public halves, and with --hosts a ring of each "
+                    "agent and its sensors: for containers");
+  command
+      ->add_option("--nodes", options->nodes,
+                   "these are agents of hosts (dmise-host-agent) and may speak for NODE[,NODE..], "
+                   "and for nobody else")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option("--hosts", options->hosts,
+                   "with --scenario: also for so many agents, each for the sensors that `dmise "
+                   "launch --hosts` puts behind it")
+      ->check(CLI::Range(0, 10000));
   command->add_flag("--truth", options->truth, "these may hear truth");
   command->callback([options] { keygen(*options); });
 }

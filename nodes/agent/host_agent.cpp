@@ -13,8 +13,10 @@
 #include "nodes/runtime/control_rules.h"
 #include "nodes/runtime/master_link.h"
 #include "nodes/runtime/master_words.h"
+#include "nodes/runtime/own_name.h"
 #include "nodes/runtime/peer_monitor.h"
 #include "nodes/runtime/relay.h"
+#include "nodes/runtime/topic_owners.h"
 #include "time-master/host_barrier.h"
 
 namespace dmise {
@@ -69,7 +71,9 @@ class HostAgent {
   HostAgent(const HostAgentOptions& options, HostAgentResult* result)
       : options_(options),
         result_(result),
-        link_(context_, options.master, options.stop),
+        security_(options.keys, options.name),
+        door_(context_, security_),
+        link_(context_, options.master, options.stop, security_),
         router_(make_socket(context_, zmq::socket_type::router, max_control_bytes)),
         ticks_(make_socket(context_, zmq::socket_type::pub, max_control_bytes)),
         publishers_(make_socket(context_, zmq::socket_type::xsub, max_data_bytes)),
@@ -81,10 +85,10 @@ class HostAgent {
     for (auto* socket : {&router_, &ticks_, &subscribers_}) socket->set(zmq::sockopt::linger, 500);
     to_broker_.set(zmq::sockopt::linger, 1000);
     const std::string& bind = options.bind;
-    address_ = bind_to(router_, bind);
-    tick_endpoint_ = bind_to(ticks_, beside(bind, "ticks"));
-    publish_endpoint_ = bind_to(publishers_, beside(bind, "publish"));
-    subscribe_endpoint_ = bind_to(subscribers_, beside(bind, "subscribe"));
+    address_ = bind_to(router_, bind, security_);
+    tick_endpoint_ = bind_to(ticks_, beside(bind, "ticks"), security_);
+    publish_endpoint_ = bind_to(publishers_, beside(bind, "publish"), security_, Domain::data);
+    subscribe_endpoint_ = bind_to(subscribers_, beside(bind, "subscribe"), security_, Domain::data);
   }
 
   void run() {
@@ -159,7 +163,10 @@ class HostAgent {
     for (auto message = receive(router_); !message.empty(); message = receive(router_)) {
       if (message.size() != 2 || !from_frame(message[1], &heard_)) continue;
       const std::string_view sender = message[0].to_string_view();
-      if (const auto fault = fault_of(heard_)) {
+      auto fault = fault_of(heard_);
+      if (!fault && security_.on())
+        fault = fault_of_sender(heard_, message[1], directory_.name_of(sender));
+      if (fault) {
         spdlog::warn("refused a message: {}", *fault);
         if (heard_.has_join()) voice_.refuse(sender, *fault);
         continue;
@@ -204,6 +211,8 @@ class HostAgent {
   }
 
   void done(const std::string& name) {
+    if (security_.on() && !owners_.keep_own(name, heard_.mutable_done()))
+      spdlog::warn("refused what {} tells of topics of others", name);
     barrier_->done(name, tally_of(heard_.done()), now());
     const Peer& peer = directory_.all().at(name);
     for (v1::TopicTally tally : heard_.done().published()) {
@@ -239,7 +248,10 @@ class HostAgent {
 
   /// Data, in both directions.
   void relay() {
-    const int out = pass_on(publishers_, to_broker_), in = pass_on(from_broker_, subscribers_);
+    const int out = security_.on()
+                        ? pass_checked(publishers_, to_broker_, publishes_itself, &result_->refused)
+                        : pass_on(publishers_, to_broker_);
+    const int in = pass_on(from_broker_, subscribers_);
     const int asked = pass_on(subscribers_, from_broker_) + pass_on(to_broker_, publishers_);
     result_->messages_out += std::uint64_t(out);
     result_->messages_in += std::uint64_t(in);
@@ -272,6 +284,7 @@ class HostAgent {
     if (answer.has_welcome()) {
       auto* welcome = answer.mutable_welcome();
       directory_.add(peer.routing_id, welcome->incarnation(), peer.join);
+      owners_.add(peer.join);
       barrier_->join(name, request_of(peer.join).node.schedule, welcome->incarnation(),
                      welcome->resume_tick(), now());
       welcome->set_tick_endpoint(tick_endpoint_);
@@ -293,8 +306,8 @@ class HostAgent {
     std::set<std::string> names;
     for (const v1::NodeStart& start : topology.starts()) names.insert(start.name());
     barrier_->expects(std::move(names));
-    at_subscribe_.follow(topology.subscribe_endpoint(), topology.broker_incarnation());
-    at_publish_.follow(topology.publish_endpoint(), topology.broker_incarnation());
+    at_subscribe_.follow(topology.subscribe_endpoint(), topology.broker_incarnation(), security_);
+    at_publish_.follow(topology.publish_endpoint(), topology.broker_incarnation(), security_);
     voice_.send_topology(topology, publish_endpoint_, subscribe_endpoint_);
   }
 
@@ -369,6 +382,8 @@ class HostAgent {
   const HostAgentOptions& options_;
   HostAgentResult* result_;
   zmq::context_t context_{1};
+  Security security_;
+  Doorkeeper door_;
   std::mutex mutex_;     // guards beats_
   v1::Heartbeat beats_;  // used by the link's keeper: outlives it
   MasterLink link_;
@@ -378,6 +393,7 @@ class HostAgent {
   PeerMonitor connections_;
   std::vector<int> broken_;  // of these, as of now
   PeerDirectory directory_;
+  TopicOwners owners_;
   HostVoice voice_;
   std::optional<HostBarrier> barrier_;
   std::map<std::string, Peer> asking_;  // nodes whose Join the master has not answered
@@ -399,6 +415,10 @@ HostAgentResult run_host_agent(const HostAgentOptions& options) {
   HostAgentResult result;
   try {
     HostAgent(options, &result).run();
+  } catch (const ConfigError& error) {
+    result.exit_code = 2;
+    result.reason = error.what();
+    spdlog::error("{}", result.reason);
   } catch (const std::exception& error) {
     result.exit_code = 1;
     result.reason = error.what();

@@ -11,6 +11,7 @@ struct HostAgentOptions {
   std::string master;                      // address of the time-master
   std::string bind = "tcp://127.0.0.1:0";  // the nodes of the host join here; also ipc://PATH
   double join_within_s = 30.0;
+  std::string keys;  // directory of keys; empty: plain, loopback alone
   Event* stop = nullptr;
   std::string announce_file;  // the address is written here when bound
   int announce_fd = -1;       // and here, as one line
@@ -22,11 +23,13 @@ struct HostAgentResult {
   std::string reason;
   std::uint64_t messages_in = 0;   // published elsewhere: each once, whoever listens here
   std::uint64_t messages_out = 0;  // published here
+  std::uint64_t refused = 0;       // with keys: published here in another's name
   double cpu_s = 0.0;              // of its process while the run went
 };
 
 /// Stands between the nodes of one host and the run. To its nodes it is the time-master and the
-/// broker; to the run it is one member, which has done a tick when all its nodes have. Does not
+/// broker; to the run it is one member, which has done a tick when all its nodes have. With keys it
+/// lets its nodes speak for themselves alone, and needs a key that may speak for them. Does not
 /// throw and does not print; it logs.
 HostAgentResult run_host_agent(const HostAgentOptions& options);
 

@@ -17,9 +17,9 @@ int main(int argc, char** argv) {
   app.add_option("--announce-fd", options.announce_fd, "file descriptor to write the address to");
   return dmise::run_program(app, flags, argc, argv, [&] {
     if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
-    if (!flags.keys.empty()) throw dmise::ConfigError("--keys: agents do not know keys");
     options.name = flags.name;
     options.master = flags.master;
+    options.keys = flags.keys;
     options.stop = &dmise::stop_signal();
     return flags.check ? 0 : dmise::run_host_agent(options).exit_code;
   });

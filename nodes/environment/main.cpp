@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
                                    .host = flags.host,
                                    .join_within_s = scenario.network.join_within_s,
                                    .keys = flags.keys,
+                                   .via = flags.via,
                                    .stop = &dmise::stop_signal()})
         .exit_code;
   });

@@ -8,7 +8,6 @@
 #include "nodes/runtime/metrics.h"
 #include "nodes/runtime/relay.h"
 #include "nodes/runtime/status.h"
-#include "nodes/wire/refusal.h"
 
 namespace dmise {
 namespace {
@@ -39,31 +38,6 @@ std::string bind_again(zmq::socket_t& socket, const std::string& earlier,
       // Taken by somebody else: all will be told the new address.
     }
   return bind_to(socket, configured, security, Domain::data);
-}
-
-/// Whether the sender of a message, known by its key, is the publisher that its envelope names.
-bool in_own_name(std::vector<zmq::message_t>& message) {
-  try {
-    return sender_of(message[0]) == open(views(message)).publisher;
-  } catch (const Refused&) {
-    return false;
-  }
-}
-
-/// As `pass_on`, from publishers whose names are proved.
-int pass_checked(zmq::socket_t& from, zmq::socket_t& to, std::uint64_t* refused) {
-  int messages = 0;
-  for (auto message = receive(from); !message.empty(); message = receive(from)) {
-    if (in_own_name(message)) {
-      for (std::size_t i = 0; i < message.size(); ++i)
-        to.send(message[i],
-                i + 1 < message.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
-    } else if ((*refused)++ == 0) {
-      spdlog::warn("refused a message of {} in another name", sender_of(message[0]));
-    }
-    if (++messages >= relay_burst) break;
-  }
-  return messages;
 }
 
 void serve(const BrokerOptions& options, BrokerResult* result) {
@@ -101,7 +75,8 @@ void serve(const BrokerOptions& options, BrokerResult* result) {
   while (!finished()) {
     link.wait(sockets, link.deserted() ? drained : milliseconds(1000));
     link.take_published();  // manifests, which are nothing to a broker
-    const int forward = security.on() ? pass_checked(publishers, subscribers, &result->refused)
+    const int forward = security.on() ? pass_checked(publishers, subscribers,
+                                                     publishes_or_is_passed_on, &result->refused)
                                       : pass_on(publishers, subscribers);
     const int back = pass_on(subscribers, publishers);  // subscriptions
     result->messages += std::uint64_t(forward);

@@ -24,8 +24,8 @@ struct BrokerResult {
 };
 
 /// Passes messages from publishers to subscribers until the run is over. With keys it looks at who
-/// says to have sent them, and refuses what is in the name of another. Does not throw and does not
-/// print; it logs.
+/// says to have sent them, and refuses what is in the name of another: neither the sender's own,
+/// nor one that the key of an agent is granted. Does not throw and does not print; it logs.
 BrokerResult run_broker(const BrokerOptions& options);
 
 }  // namespace dmise

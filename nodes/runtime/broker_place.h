@@ -22,7 +22,7 @@ class BrokerPlace {
     if (known()) socket_.disconnect(endpoint_);
     endpoint_ = endpoint;
     incarnation_ = incarnation;
-    connect_to(socket_, endpoint_, security, "broker");
+    connect_to(socket_, endpoint_, security, broker_name);
   }
 
  private:

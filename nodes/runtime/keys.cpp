@@ -6,6 +6,7 @@
 #include <zmq.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -44,22 +45,28 @@ bool is_key(const std::string& text) {
   return text.size() == key_characters && zmq_z85_decode(bytes, text.c_str());
 }
 
+// Words of NAME.pub, each with a value after it.
+constexpr const char* may_word = "may";
+constexpr const char* speaks_for_word = "speaks-for";
+
 struct Entry {
   std::string name;
   KeyPair key;
   bool truth = false;
+  std::set<std::string> nodes;
 };
 
 /// What a NAME.key or NAME.pub says, or each part of a ring behind its "name NAME".
 std::vector<Entry> read_entries(const fs::path& path) {
-  std::vector<Entry> entries{{path.stem().string(), {}, false}};
+  std::vector<Entry> entries{{path.stem().string(), {}, false, {}}};
   std::ifstream file(path);
   std::string word, value;
   while (file >> word >> value) {
-    if (word == "name") entries.push_back({value, {}, false});
+    if (word == "name") entries.push_back({value, {}, false, {}});
     if (word == "public") entries.back().key.public_key = value;
     if (word == "secret") entries.back().key.secret_key = value;
-    if (word == "may") entries.back().truth = value == "truth";
+    if (word == may_word) entries.back().truth = value == "truth";
+    if (word == speaks_for_word) entries.back().nodes.insert(value);
   }
   std::erase_if(entries, [](const Entry& entry) { return !is_key(entry.key.public_key); });
   return entries;
@@ -77,6 +84,24 @@ std::vector<std::string> files_in(const std::string& directory, const std::strin
 
 std::string text_of(const KeyPair& key) {
   return "public " + key.public_key + "\nsecret " + key.secret_key + "\n";
+}
+
+/// The open half, and what it lets its owner do.
+std::string text_of(const AllowedKey& allowed) {
+  std::string text = "public " + allowed.public_key + "\n";
+  if (allowed.truth) text += std::string(may_word) + " truth\n";
+  for (const auto& node : allowed.nodes) text += std::string(speaks_for_word) + " " + node + "\n";
+  return text;
+}
+
+/// The clock, its broker and its operator speak for themselves.
+void require_node(const std::string& name) {
+  const bool word = !name.empty() && std::none_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isspace(c) || std::iscntrl(c);
+  });
+  if (!word) throw ConfigError("\"" + name + "\" can't be the name of a node");
+  for (const char* own : {"time-master", "broker", "operator"})
+    if (name == own) throw ConfigError("no agent may speak for " + name);
 }
 
 /// Mode bits of a file; 0 when it is not there.
@@ -97,29 +122,32 @@ std::optional<std::string> file_of_key(const std::string& directory, const std::
 
 }  // namespace
 
-void make_key(const std::string& directory, const std::string& name, bool truth) {
+void make_key(const std::string& directory, const std::string& name, bool truth,
+              const std::set<std::string>& nodes) {
+  for (const auto& node : nodes) require_node(node);
   if (mkdir(directory.c_str(), 0700) != 0 && errno != EEXIST)
     throw Error(directory + ": can't be made: " + std::strerror(errno));
   char public_key[key_characters + 1], secret_key[key_characters + 1];
   if (zmq_curve_keypair(public_key, secret_key) != 0)
     throw Error("this build of ZeroMQ has no CURVE");
-  write_new(path_of(directory, name, ".key"), 0600, text_of({public_key, secret_key}));
+  write_new(path_of(directory, name, ".key"), 0600, text_of(KeyPair{public_key, secret_key}));
   write_new(path_of(directory, name, ".pub"), 0644,
-            std::string("public ") + public_key + "\n" + (truth ? "may truth\n" : ""));
+            text_of(AllowedKey{name, public_key, truth, nodes}));
 }
 
-void make_rings(const std::string& directory, const std::string& ring,
-                const std::vector<std::string>& names) {
-  std::string pairs, open_halves;
-  for (const auto& name : names)
-    pairs += "name " + name + "\n" + text_of(read_key(directory, name));
+void make_rings(const std::string& directory,
+                const std::map<std::string, std::vector<std::string>>& rings) {
+  std::map<std::string, std::string> pairs;
+  std::string open_halves;
+  for (const auto& [ring, names] : rings)
+    for (const auto& name : names)
+      pairs[ring] += "name " + name + "\n" + text_of(read_key(directory, name));
   for (const auto& [key, owner] : read_allowed(directory))
-    open_halves +=
-        "name " + owner.name + "\npublic " + key + "\n" + (owner.truth ? "may truth\n" : "");
+    open_halves += "name " + owner.name + "\n" + text_of(owner);
   const std::string below = directory + "/rings";
   if (mkdir(below.c_str(), 0700) != 0 && errno != EEXIST)
     throw Error(below + ": can't be made: " + std::strerror(errno));
-  write_new(path_of(below, ring, ".keys"), 0600, pairs);
+  for (const auto& [ring, text] : pairs) write_new(path_of(below, ring, ".keys"), 0600, text);
   write_new(path_of(below, "everybody", ".pubs"), 0644, open_halves);
 }
 
@@ -140,7 +168,8 @@ std::map<std::string, AllowedKey> read_allowed(const std::string& directory) {
   for (const char* ending : {".pubs", ".pub"})
     for (const auto& path : files_in(directory, ending))
       for (const auto& entry : read_entries(path))
-        allowed[entry.key.public_key] = {entry.name, entry.key.public_key, entry.truth};
+        allowed[entry.key.public_key] = {entry.name, entry.key.public_key, entry.truth,
+                                         entry.nodes};
   return allowed;
 }
 

@@ -20,21 +20,24 @@ struct AllowedKey {
   std::string name;
   std::string public_key;
   bool truth = false;
+  std::set<std::string> nodes;  // of the agent of a host: those for whom it may speak
 };
 
-/// Makes NAME.key (mode 0600: both keys) and NAME.pub (public key, and "truth" if granted) in
-/// `directory`, which is made with mode 0700 if it is not there. Throws `ConfigError` when there is
-/// such a key already, `Error` when it can't be written.
-void make_key(const std::string& directory, const std::string& name, bool truth);
+/// Makes NAME.key (mode 0600: both keys) and NAME.pub (public key, and what is granted: "truth",
+/// `nodes` for whom an agent may speak) in `directory`, which is made with mode 0700 if it is not
+/// there. Throws `ConfigError` when there is such a key already, or when nobody speaks for one of
+/// `nodes`; `Error` when it can't be written.
+void make_key(const std::string& directory, const std::string& name, bool truth,
+              const std::set<std::string>& nodes = {});
 
 // Rings are many keys in one file, for those who are given files and no directory (containers): in
 // a directory of keys, X.keys counts as the NAME.key and X.pubs as the NAME.pub of each "name NAME"
 // in it.
 
-/// Makes rings/`ring`.keys (mode 0600) of the pairs of `names`, and rings/everybody.pubs of all
-/// NAME.pub. Throws as `make_key`, and as `read_key`.
-void make_rings(const std::string& directory, const std::string& ring,
-                const std::vector<std::string>& names);
+/// Makes rings/RING.keys (mode 0600) of the pairs of the names of each of `rings`, and
+/// rings/everybody.pubs of all NAME.pub. Throws as `make_key`, and as `read_key`.
+void make_rings(const std::string& directory,
+                const std::map<std::string, std::vector<std::string>>& rings);
 
 /// Reads NAME.key. Throws `ConfigError` when it is not there, is none, or others may read it.
 KeyPair read_key(const std::string& directory, const std::string& name);

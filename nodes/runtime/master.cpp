@@ -13,10 +13,12 @@
 #include "nodes/runtime/master_voice.h"
 #include "nodes/runtime/master_words.h"
 #include "nodes/runtime/metrics.h"
+#include "nodes/runtime/own_name.h"
 #include "nodes/runtime/peer_directory.h"
 #include "nodes/runtime/peer_monitor.h"
 #include "nodes/runtime/socket.h"
 #include "nodes/runtime/time_split_codec.h"
+#include "nodes/runtime/topic_owners.h"
 
 namespace dmise {
 namespace {
@@ -149,12 +151,13 @@ class Master {
       const bool before_welcome = heard_.has_hello() || heard_.has_join() || heard_.has_control();
       if (!before_welcome && heard_.run_id() != run_id_) continue;
       const std::string_view sender = message[0].to_string_view();
-      if (security_.on() && !in_own_name(sender_of(message[1]))) continue;
-      if (const auto fault = fault_of(heard_)) {
+      const std::string& name = directory_.name_of(sender);
+      auto fault = fault_of(heard_);
+      if (!fault && security_.on()) fault = fault_of_sender(heard_, message[1], name);
+      if (fault) {
         refuse(sender, *fault);
         continue;
       }
-      const std::string& name = directory_.name_of(sender);
       if (heard_.has_done()) {
         done(name);
       } else if (heard_.has_heartbeat()) {
@@ -183,17 +186,9 @@ class Master {
     if (heard_.has_join()) voice_.refuse(sender, fault, heard_.join().name());
   }
 
-  /// With keys: whether `who` may say what was heard.
-  bool in_own_name(const std::string& who) {
-    const bool own = heard_.has_join() ? heard_.join().name() == who && !heard_.join().agent()
-                     : heard_.has_heartbeat() ? heard_.heartbeat().name() == who
-                     : heard_.has_control()   ? who == operator_name
-                                              : true;  // goes by its connection
-    if (!own) spdlog::warn("refused a message of {} in another name", who);
-    return own;
-  }
-
   void done(const std::string& name) {
+    if (security_.on() && !owners_.keep_own(name, heard_.mutable_done()))
+      spdlog::warn("refused what {} tells of topics of others", name);
     coordinator_.done(name, tally_of(heard_.done()), now());
     if (heard_.done().published().empty()) return;
     const auto member = coordinator_.members().find(name);
@@ -217,10 +212,10 @@ class Master {
     std::optional<std::string> refusal;
     if (join.has_broker() != is_broker)
       refusal = "only the broker is named broker";
-    else if (join.agent() && security_.on())
-      refusal = "agents do not know keys";
     else if (!join.host().empty() && directory_.name_of(sender) != join.host())
       refusal = "only " + join.host() + " speaks for the nodes of its host";
+    else if (auto fault = join.observer() ? std::nullopt : owners_.fault_of(join))
+      refusal = fault;
     else
       refusal = coordinator_.join(request, now());
     if (refusal) {
@@ -229,6 +224,7 @@ class Master {
                 "refused " + join.name() + ": " + *refusal);
       return;
     }
+    owners_.add(join);
     const std::uint64_t incarnation = coordinator_.member_of(join.name()).incarnation;
     if (join.host().empty()) {
       directory_.add(sender, incarnation, join);
@@ -279,6 +275,8 @@ class Master {
     if (nodes.empty()) return;
     std::map<std::string, Tick> done;
     for (const v1::NodeBeat& node : nodes) {
+      const auto known = coordinator_.behind().find(node.name());
+      if (known == coordinator_.behind().end() || known->second.host != agent) continue;
       done[node.name()] = node.done_tick();
       times_[node.name()] = take(node.times());
     }
@@ -356,6 +354,7 @@ class Master {
   std::string address_, tick_endpoint_;
   std::vector<zmq::pollitem_t> items_;
   PeerDirectory directory_;
+  TopicOwners owners_;
   MasterVoice voice_;
   std::map<std::string, TimeSplit> times_;
   v1::NodeMessage heard_;

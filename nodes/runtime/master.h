@@ -6,11 +6,10 @@
 
 #include "nodes/runtime/event.h"
 #include "nodes/runtime/master_result.h"
+#include "nodes/runtime/security.h"
 #include "time-master/coordinator.h"
 
 namespace dmise {
-
-inline constexpr const char* broker_name = "broker";
 
 struct MasterOptions {
   std::string address = "tcp://127.0.0.1:0";  // of the one socket that everybody must know

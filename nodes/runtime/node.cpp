@@ -41,7 +41,7 @@ class Node {
         produces_(participant.produces()),
         consumes_(participant.consumes()),
         name_(options.name.empty() ? participant.name() : options.name),
-        security_(options.keys, name_),
+        security_(options.keys, name_, options.via),
         control_door_(control_context_, security_),
         data_door_(std::in_place, data_context_, security_),
         link_(control_context_, options.master, options.stop, security_),

@@ -14,8 +14,9 @@ struct NodeOptions {
   double stop_within_s = 0.0;              // > 0: a step that is not over so long after the run or
                                            // `stop` ends the process
   std::string keys;                        // directory of keys; empty: plain, loopback alone
-  std::string name;                        // in the run; empty: the participant's
-  bool observer = false;                   // joins and leaves at any time, holds nobody's time
+  std::string via;        // with keys: the agent whose address `master` is, if it is one's
+  std::string name;       // in the run; empty: the participant's
+  bool observer = false;  // joins and leaves at any time, holds nobody's time
   int lose_every = 0;     // > 0, for tests: every n-th message published to this node is lost
   Event* stop = nullptr;  // asks the node to leave; see stop_signal()
 };

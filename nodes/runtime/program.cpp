@@ -17,6 +17,9 @@ void add_common_flags(CLI::App& app, CommonFlags& flags) {
       ->capture_default_str();
   app.add_option("--keys", flags.keys,
                  "directory of keys (dmise keygen); without it all is plain, on loopback alone");
+  app.add_option("--via", flags.via,
+                 "with keys: name of the agent whose address --master is, if it is not the "
+                 "time-master's own");
   app.add_option("--log-level", flags.log_level, "trace, debug, info, warning, error or off")
       ->capture_default_str();
   app.add_option("--log-format", flags.log_format, "text or json: an object a line")

@@ -12,6 +12,7 @@ struct CommonFlags {
   std::string master;                      // address of the time-master
   std::string host = "tcp://127.0.0.1:0";  // where a node's own sockets bind
   std::string keys;                        // directory of keys; empty: plain, loopback alone
+  std::string via;                         // with keys: the agent whose address `master` is
   std::string log_level = "info";
   std::string log_format = "text";
   std::string metrics;  // where figures are served: [HOST:]PORT or auto; empty: nowhere
@@ -19,8 +20,8 @@ struct CommonFlags {
   bool check = false;  // look at the flags and files, do nothing
 };
 
-/// Declares `--name --master --host --log-level --log-format --metrics --seed --check --version`
-/// with the values in `flags` as defaults.
+/// Declares `--name --master --host --keys --via --log-level --log-format --metrics --seed --check
+/// --version` with the values in `flags` as defaults.
 void add_common_flags(CLI::App& app, CommonFlags& flags);
 
 /// Reads the command line, starts the log and the metrics, runs `body` and returns the process's

@@ -1,5 +1,8 @@
 #pragma once
+#include <cstdint>
 #include <zmq.hpp>
+
+#include "nodes/runtime/own_name.h"
 
 namespace dmise {
 
@@ -9,5 +12,10 @@ inline constexpr int relay_burst = 1000;
 /// Passes on what waits at `from`, message by message, up to `relay_burst` of them; returns how
 /// many.
 int pass_on(zmq::socket_t& from, zmq::socket_t& to);
+
+/// The same from publishers whose names are proved by keys. What is published in a name in which
+/// its sender may not speak goes nowhere and is counted in `refused`; the first is logged.
+int pass_checked(zmq::socket_t& from, zmq::socket_t& to, MayPublish may_publish,
+                 std::uint64_t* refused);
 
 }  // namespace dmise

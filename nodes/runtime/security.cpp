@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* door = "inproc://zeromq.zap.01";
 constexpr const char* truth_property = "X-Truth";
+constexpr const char* nodes_property = "X-Nodes";  // names, a line end before and after each
 
 const char* name_of(Domain domain) {
   switch (domain) {
@@ -40,10 +41,20 @@ std::string property_of(zmq::message_t& frame, const char* name) {
   return value ? value : "";
 }
 
+/// What a key may do beside coming in.
+std::string properties_of(const AllowedKey& owner) {
+  std::string properties;
+  if (owner.truth) properties += property(truth_property, "1");
+  std::string nodes = "\n";
+  for (const auto& node : owner.nodes) nodes += node + "\n";
+  if (!owner.nodes.empty()) properties += property(nodes_property, nodes);
+  return properties;
+}
+
 }  // namespace
 
-Security::Security(std::string directory, const std::string& name)
-    : directory_(std::move(directory)) {
+Security::Security(std::string directory, const std::string& name, std::string via)
+    : directory_(std::move(directory)), via_(std::move(via)) {
   if (on()) key_ = read_key(directory_, name);
 }
 
@@ -67,7 +78,8 @@ void Security::call(zmq::socket_t& socket, const std::string& address,
                     const std::string& peer) const {
   require_for(address);
   if (!on()) return;
-  socket.set(zmq::sockopt::curve_serverkey, public_key_of(directory_, peer));
+  const bool at_agent = !via_.empty() && (peer == master_name || peer == broker_name);
+  socket.set(zmq::sockopt::curve_serverkey, public_key_of(directory_, at_agent ? via_ : peer));
   socket.set(zmq::sockopt::curve_publickey, key_.public_key);
   socket.set(zmq::sockopt::curve_secretkey, key_.secret_key);
 }
@@ -118,8 +130,7 @@ struct Doorkeeper::Work {
                    request.size() > 2 ? request[2] : "nothing",
                    request.size() > 3 ? request[3] : "nowhere",
                    who == allowed.end() ? "no such key is allowed" : who->second.name + " may not");
-    const std::string properties =
-        welcome && who->second.truth ? property(truth_property, "1") : "";
+    const std::string properties = welcome ? properties_of(who->second) : "";
     for (const std::string& part :
          {std::string("1.0"), request.size() > 1 ? request[1] : std::string(),
           std::string(welcome ? "200" : "400"), std::string(welcome ? "OK" : "not allowed"),
@@ -142,5 +153,15 @@ Doorkeeper::~Doorkeeper() = default;
 std::string sender_of(zmq::message_t& frame) { return property_of(frame, "User-Id"); }
 
 bool may_hear_truth(zmq::message_t& frame) { return property_of(frame, truth_property) == "1"; }
+
+bool is_agents(zmq::message_t& frame) {
+  return zmq_msg_gets(frame.handle(), nodes_property) != nullptr;
+}
+
+bool may_speak_for(zmq::message_t& frame, const std::string& node) {
+  const char* nodes = zmq_msg_gets(frame.handle(), nodes_property);
+  return nodes && node.find('\n') == std::string::npos &&
+         std::string_view(nodes).find("\n" + node + "\n") != std::string_view::npos;
+}
 
 }  // namespace dmise

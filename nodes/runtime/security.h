@@ -9,6 +9,7 @@ namespace dmise {
 
 // Names of keys beside those of nodes.
 inline constexpr const char* master_name = "time-master";
+inline constexpr const char* broker_name = "broker";
 inline constexpr const char* operator_name = "operator";  // may ask the clock to do something
 
 /// What one process needs to prove who it is and to know others: CURVE (ZeroMQ RFC 26) with an
@@ -18,8 +19,9 @@ class Security {
  public:
   Security() = default;
   /// `directory`: of keys as `dmise keygen` makes them; empty: plain. `name`: whose key this
-  /// process holds. Throws `ConfigError`.
-  Security(std::string directory, const std::string& name);
+  /// process holds. `via`: the agent that is time-master and broker to this process, if one is.
+  /// Throws `ConfigError`.
+  Security(std::string directory, const std::string& name, std::string via = "");
 
   bool on() const { return !directory_.empty(); }
 
@@ -35,7 +37,7 @@ class Security {
  private:
   void require_for(const std::string& address) const;
 
-  std::string directory_;
+  std::string directory_, via_;
   KeyPair key_;
 };
 
@@ -57,5 +59,9 @@ class Doorkeeper {
 std::string sender_of(zmq::message_t& frame);
 /// Whether its key may hear truth.
 bool may_hear_truth(zmq::message_t& frame);
+/// Whether its key is that of an agent, which may speak for some nodes.
+bool is_agents(zmq::message_t& frame);
+/// Whether its key is that of an agent which may speak for `node`.
+bool may_speak_for(zmq::message_t& frame, const std::string& node);
 
 }  // namespace dmise

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
                                                .join_within_s = scenario.network.join_within_s,
                                                .stop_within_s = 1.0,
                                                .keys = flags.keys,
+                                               .via = flags.via,
                                                .stop = &dmise::stop_signal()});
     if (!sensor->evaluator().empty()) spdlog::info("drawn by {}", sensor->evaluator());
     if (!sensor->renderer().empty()) spdlog::info("shapes drawn by {}", sensor->renderer());

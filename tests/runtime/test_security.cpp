@@ -11,6 +11,7 @@
 #include "nodes/runtime/master_link.h"
 #include "nodes/runtime/socket.h"
 #include "nodes/wire/envelope.h"
+#include "tests/runtime/key_directory.h"
 #include "tests/runtime/network_threads.h"
 #include "tests/runtime/toy.h"
 
@@ -22,18 +23,6 @@ using testing::HasSubstr;
 
 constexpr std::chrono::seconds patience{10};
 constexpr std::chrono::milliseconds in_vain{300};  // how long what must not come is waited for
-
-/// A directory of keys that goes away again.
-struct Keys {
-  explicit Keys(const std::vector<std::string>& names, const std::vector<std::string>& truth = {}) {
-    std::string path = testing::TempDir() + "dmise-keys-XXXXXX";
-    directory = mkdtemp(path.data());
-    for (const auto& name : names) make_key(directory, name, false);
-    for (const auto& name : truth) make_key(directory, name, true);
-  }
-  ~Keys() { std::filesystem::remove_all(directory); }
-  std::string directory;
-};
 
 /// A server of one domain and what it hears.
 struct Server {
@@ -79,7 +68,7 @@ TEST(Keys, AreReadableByTheirOwnerAlone) {
 
 TEST(Keys, InARingCountAsFilesOfTheirOwn) {
   const Keys keys({"time-master", "a", "b"}, {"scorer"});
-  make_rings(keys.directory, "sensors", {"a", "b"});
+  make_rings(keys.directory, {{"sensors", {"a", "b"}}});
   const std::string rings = keys.directory + "/rings";
   for (const char* name : {"a", "b"}) {
     EXPECT_EQ(read_key(rings, name).secret_key, read_key(keys.directory, name).secret_key);
@@ -93,9 +82,24 @@ TEST(Keys, InARingCountAsFilesOfTheirOwn) {
     EXPECT_EQ(in_ring.at(key).name, owner.name);
     EXPECT_EQ(in_ring.at(key).truth, owner.name == "scorer");
   }
-  EXPECT_THROW(make_rings(keys.directory, "sensors", {"a"}), ConfigError);  // none is replaced
+  EXPECT_THROW(make_rings(keys.directory, {{"sensors", {"a"}}}), ConfigError);  // none is replaced
   ASSERT_EQ(chmod((rings + "/sensors.keys").c_str(), 0640), 0);
   EXPECT_THROW(read_key(rings, "a"), ConfigError);
+}
+
+TEST(Keys, OfAnAgentSayForWhomItMaySpeak) {
+  const Keys keys({"a", "b"}, {"scorer"});
+  make_key(keys.directory, "host-1", false, {"a", "b"});
+  make_rings(keys.directory, {{"host-1", {"host-1", "a", "b"}}});
+  for (const std::string& directory : {keys.directory, keys.directory + "/rings"})
+    for (const auto& [key, owner] : read_allowed(directory)) {
+      const std::set<std::string> expected =
+          owner.name == "host-1" ? std::set<std::string>{"a", "b"} : std::set<std::string>{};
+      EXPECT_EQ(owner.nodes, expected) << directory << ": " << owner.name;
+    }
+  EXPECT_NO_THROW(read_key(keys.directory + "/rings", "host-1"));
+  for (const char* nobody : {"time-master", "broker", operator_name, "two words", ""})
+    EXPECT_THROW(make_key(keys.directory, "host-2", false, {nobody}), ConfigError) << nobody;
 }
 
 TEST(Keys, AreRequiredForAnythingButLoopback) {

@@ -59,6 +59,7 @@ int main(int argc, char** argv) {
                                      .host = flags.host,
                                      .stop_within_s = 0.7,
                                      .keys = flags.keys,
+                                     .via = flags.via,
                                      .stop = &dmise::stop_signal()})
         .exit_code;
   });
