@@ -13,6 +13,7 @@
 #include "core/base/text_file.h"
 #include "core/config/make_clock.h"
 #include "launch/commands.h"
+#include "launch/host_names.h"
 #include "launch/metrics_ports.h"
 #include "launch/own_address.h"
 #include "launch/prepare_run.h"
@@ -124,12 +125,17 @@ class Launch {
       start(positions_node, "dmise-positions-node", arguments);
     }
     for (int host = 0; host < options_.hosts; ++host)
-      start(agent_name(host), "dmise-host-agent",
-            {"--name", agent_name(host), "--master", master, "--bind", agent_address(host)});
+      start(agent_name(scenario_, host), "dmise-host-agent",
+            {"--name", agent_name(scenario_, host), "--master", master, "--bind",
+             agent_address(host)});
     for (std::size_t i = 0; i < scenario_.sensors.size(); ++i) {
       const auto& sensor = scenario_.sensors[i];
       auto arguments = common;
-      if (options_.hosts > 0) arguments[3] = agent_address(int(i) % options_.hosts);
+      if (options_.hosts > 0) {
+        const int host = host_of(i, options_.hosts);
+        arguments[3] = agent_address(host);
+        arguments.insert(arguments.end(), {"--via", agent_name(scenario_, host)});
+      }
       arguments.insert(arguments.end(),
                        {"--name", sensor.name, "--out", directory_.path(), "--digest",
                         directory_.digest(), "--seed", std::to_string(scenario_.seed)});
@@ -137,16 +143,9 @@ class Launch {
     }
   }
 
-  /// "host-1", or longer where a sensor has that name.
-  std::string agent_name(int host) const {
-    std::string name = "host-" + std::to_string(host + 1);
-    const auto taken = [&](const auto& sensor) { return sensor.name == name; };
-    while (std::any_of(scenario_.sensors.begin(), scenario_.sensors.end(), taken)) name += "-agent";
-    return name;
-  }
   /// Where its nodes join; one that is started again is found there.
   std::string agent_address(int host) const {
-    return "ipc://@dmise-" + std::to_string(getpid()) + "-" + agent_name(host);
+    return "ipc://@dmise-" + std::to_string(getpid()) + "-" + agent_name(scenario_, host);
   }
 
   void start(const std::string& name, const std::string& program,
@@ -289,7 +288,7 @@ void launch(const LaunchOptions& options) {
   if (options.hosts > 0 && scenario.network.on_silent_node == OnSilentNode::drop)
     throw ConfigError("--hosts: agents can't take part in a run with on_silent_node: drop");
   if (options.hosts > 0 && !options.keys.empty())
-    throw ConfigError("--hosts: agents do not know keys; leave out --keys");
+    check_agent_keys(scenario, options.hosts, options.keys);
   if (options.seed) scenario.seed = *options.seed;
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   const RunStart begin = prepare_directory(directory, scenario, options.force);

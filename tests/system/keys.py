@@ -1,4 +1,4 @@
-"""A run with keys: every connection by CURVE, the same bytes, and nobody without a key is let in.
+"""A run with keys: every connection by CURVE, the same bytes also behind agents, and nobody without a key is let in.
 
     keys.py DMISE
 """
@@ -17,8 +17,8 @@ def says(binary, *arguments):
 def test(binary, directory):
     scenario = write_scenario(directory, duration_s=60, network=", real_time: 12")
     keys = directory / "keys"
-    code, out, _ = says(binary, "keygen", keys, "--scenario", scenario)
-    check(code == 0 and len(out.splitlines()) == 7, f"keygen makes {len(out.splitlines())} keys")
+    code, out, _ = says(binary, "keygen", keys, "--scenario", scenario, "--hosts", 2)
+    check(code == 0 and len(out.splitlines()) == 9, f"keygen makes {len(out.splitlines())} keys")
     modes = {oct(p.stat().st_mode & 0o777) for p in keys.glob("*.key")}
     check(modes == {"0o600"}, f"their owner alone may read them: {modes}")
     code, _, err = says(binary, "keygen", keys, "alpha")
@@ -44,6 +44,15 @@ def test(binary, directory):
         check(code == 0, f"the run ends with code {code} {run.stderr[-300:] if code else ''}")
         run.nothing_left()
     check_same(out, reference, "with keys")
+
+    behind = directory / "behind"
+    with Run(binary, "launch", scenario, "--out", behind, "--keys", keys, "--hosts", 2) as run:
+        code, _ = run.finish()
+        check(code == 0, f"sensors behind agents with keys end with code {code} {run.stderr[-300:] if code else ''}")
+        run.nothing_left()
+    check_same(behind, reference, "with keys behind agents")
+    code, _, err = says(binary, "launch", scenario, "--out", directory / "moved", "--keys", keys, "--hosts", 1)
+    check(code == 2 and "the key of host-1 may not speak for" in err, f"an agent's key is for its own sensors: {err}")
 
     with Run(binary, "launch", scenario, "--out", directory / "open", "--bind", "tcp://0.0.0.0:0") as run:
         code, waited_s = run.finish()
