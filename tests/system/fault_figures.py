@@ -41,7 +41,7 @@ def deaths_text(line):
 def soak_text(line):
     grown = "; ".join(f"{name} {early:.0f} -> {late:.0f}" for name, (early, late) in
                       ((k, v) for k, v in line.items() if isinstance(v, list)))
-    return (f"- {line['ticks']} ticks at {line['ticks_per_s']} a second: largest growth of resident memory after the first "
+    return (f"- {line['ticks']} ticks, window {line['window']}, at {line['ticks_per_s']} a second: largest growth of resident memory after the first "
             f"tenth {100 * line['value']:.2f} % (KiB: {grown}).")
 
 
