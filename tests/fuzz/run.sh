@@ -48,8 +48,7 @@ for target in "${targets[@]}"; do
   [[ ! -d $here/corpus/$target ]] || corpus+=("$here/corpus/$target")
   before=$(find "$found" -type f | wc -l)
   code=0
-  # A minute of wall clock for one input, since other work may have the processors.
-  "$bin/fuzz_$target" "${limit[@]}" -max_len=2048 -timeout=60 -rss_limit_mb=2048 -print_final_stats=1 \
+  "$bin/fuzz_$target" "${limit[@]}" -max_len=2048 -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
     -artifact_prefix="$found/$target-" "${corpus[@]}" >"$log" 2>&1 || code=$?
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   new=$(($(find "$found" -type f | wc -l) - before))
