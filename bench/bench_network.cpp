@@ -29,7 +29,7 @@ constexpr int most_tries = 4;
 constexpr int pilot_sensors = 8, pilot_frames = 3;
 constexpr double share_at_first = 0.96;  // of the processors' time that the first try takes
 // The same with detection, whose frames are long beside the ticks that they have to be ready in.
-constexpr double share_detecting = 0.7;
+constexpr double share_detecting = 0.56;
 constexpr double step = 0.95;  // from one try to the next
 
 double cores() { return double(std::max(1u, std::thread::hardware_concurrency())); }
