@@ -22,7 +22,9 @@ ObjectRoster roster(Numbers& n) {
                          .designator = i % 2 ? "" : "1998-067A",
                          .geometry = DiffuseSphere{n.in(0.01, 50), n.in(0.01, 1)},
                          .element_age_s = n.in(-1e7, 1e7)});
-  r.objects[2].panel = SunTrackingPanel{.hinge = {n.in(1, 2), 0, 0}, .normal = {0, n.in(1, 2), 0}};
+  const double hinge = n.in(1, 2), normal = n.in(1, 2);
+  r.objects[2].panel =
+      SunTrackingPanel{.hinge = {hinge, hinge, hinge}, .normal = {normal, -2 * normal, normal}};
   return r;
 }
 
@@ -161,7 +163,7 @@ Truth truth(Numbers& n) {
   t.frame = 3;
   t.catalogue_number = 44720;
   t.name = "STARLINK-1008";
-  t.start = {0}, t.middle = {1}, t.end = {2};
+  t.start = {-1}, t.middle = {1}, t.end = {2};
   for (double* range : {&t.true_range_m, &t.rendered_signal_e}) *range = n.in(0, 4e7);
   for (double* angle : {&t.true_ra_rad, &t.apparent_ra_rad}) *angle = n.in(0, 2 * half_turn);
   for (double* latitude : {&t.true_dec_rad, &t.apparent_dec_rad, &t.true_elevation_rad})
@@ -173,6 +175,7 @@ Truth truth(Numbers& n) {
     *value = n.in(-100, 4000);
   t.in_frame = true;
   t.whole = n.in(0, 1) > 0.5;
+  t.resolved = n.in(0, 1) > 0.5;
   return t;
 }
 
