@@ -127,8 +127,8 @@ class GlRenderer final : public Renderer {
                  std::size_t first_band, bool with_coverage, Tile& tile) {
     gl_.BufferData(GL_ARRAY_BUFFER, std::ptrdiff_t(mesh.vertices.size() * sizeof(TileVertex)),
                    mesh.vertices.data(), GL_STREAM_DRAW);
-    const Vec<CameraFrame> to_source = scene.camera_from_body * source.to_source;
-    gl_.Uniform4f(source_uniform_, float(to_source.x), float(to_source.y), float(to_source.z), 0);
+    const glm::vec3 to_source = glm_of(scene.camera_from_body * source.to_source);
+    gl_.Uniform4f(source_uniform_, to_source.x, to_source.y, to_source.z, 0);
     const int step = std::max(1, piece_samples / scene.oversampling);
     for (int top = 0; top < tile.rows; top += step)
       for (int left = 0; left < tile.columns; left += step) {
@@ -145,12 +145,12 @@ class GlRenderer final : public Renderer {
   static void add_specks(const TileMesh& mesh, std::size_t first_band, Tile& tile) {
     const std::size_t bands = std::size_t(tile.bands);
     for (const auto& speck : mesh.specks) {
-      const int x = std::clamp(int(std::lround(speck.x_px)), 0, tile.columns - 1);
-      const int y = std::clamp(int(std::lround(speck.y_px)), 0, tile.rows - 1);
+      const int x = std::clamp(int(std::lround(speck.place_px.x)), 0, tile.columns - 1);
+      const int y = std::clamp(int(std::lround(speck.place_px.y)), 0, tile.rows - 1);
       float* pixel =
           &tile.radiance[(std::size_t(y) * std::size_t(tile.columns) + std::size_t(x)) * bands];
-      for (std::size_t k = 0; first_band + k < bands && k < 3; ++k)
-        pixel[first_band + k] += speck.light[k];
+      for (int k = 0; first_band + std::size_t(k) < bands && k < 3; ++k)
+        pixel[first_band + std::size_t(k)] += speck.light[k];
     }
   }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 #include <vector>
 
 #include "core/base/error.h"
@@ -20,11 +22,13 @@ constexpr int piece_cells = 512;
 constexpr double wide_sigma = 2.0;
 
 struct PointInstance {
-  float cell[2], phase[2], light;
+  glm::vec2 cell, phase;
+  float light;
 };
 
 struct PatchInstance {
-  float box[4], map[4], coefficient[16];
+  glm::vec4 box, map;
+  float coefficient[16];
 };
 
 /// Cells, last ones not in it.

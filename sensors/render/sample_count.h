@@ -11,34 +11,34 @@ namespace dmise {
 /// little more or less of a narrow shape than there is, which is put right by its radiance.
 class SampleCount {
  public:
-  using Triangle = std::array<Vec<CameraFrame>, 3>;
+  using Triangle = std::array<glm::dvec3, 3>;  // corners in camera axes [m]
 
   SampleCount(const TileCamera& camera, int oversampling)
       : camera_(camera), oversampling_(oversampling) {}
 
   void add(const Triangle& p) {
-    std::array<double, 3> x, y;
+    const glm::dvec2 edge_px(camera_.columns, camera_.rows);
+    const glm::dvec2 origin_px(camera_.principal_x_px - camera_.left + 0.5,
+                               camera_.principal_y_px - camera_.top + 0.5);
+    std::array<glm::dvec2, 3> at;  // [samples]
     for (std::size_t i = 0; i < 3; ++i) {
-      if (!(p[i].z > 0.0)) inside_ = false;
-      x[i] = camera_.principal_x_px - camera_.left + 0.5 + camera_.focal_px * p[i].x / p[i].z;
-      y[i] = camera_.principal_y_px - camera_.top + 0.5 + camera_.focal_px * p[i].y / p[i].z;
-      if (!(x[i] >= 0.0 && y[i] >= 0.0 && x[i] <= camera_.columns && y[i] <= camera_.rows))
+      const glm::dvec2 place_px = origin_px + camera_.focal_px * glm::dvec2(p[i]) / p[i].z;
+      if (!(p[i].z > 0.0 && glm::all(glm::greaterThanEqual(place_px, glm::dvec2(0.0))) &&
+            glm::all(glm::lessThanEqual(place_px, edge_px))))
         inside_ = false;
-      x[i] *= oversampling_;
-      y[i] *= oversampling_;
+      at[i] = place_px * oversampling_;
     }
     if (!inside_) return;
-    const double twice = std::abs((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]));
-    for (std::size_t i = 0; i < 3; ++i)
-      longest_ = std::max(longest_, std::hypot(x[(i + 1) % 3] - x[i], y[(i + 1) % 3] - y[i]));
-    area_ += twice / 2.0;
-    // Rasterisers snap corners to 1/256 of a sample.
+    area_ += std::abs(glm::determinant(glm::dmat2(at[1] - at[0], at[2] - at[0]))) / 2.0;
     for (std::size_t i = 0; i < 3; ++i) {
-      x[i] = std::round(x[i] * 256.0) / 256.0;
-      y[i] = std::round(y[i] * 256.0) / 256.0;
+      const glm::dvec2 side = at[(i + 1) % 3] - at[i];
+      longest_ = std::max(longest_, std::hypot(side.x, side.y));
     }
-    const auto [low, high] = std::minmax({y[0], y[1], y[2]});
-    for (double row = std::ceil(low - 0.5) + 0.5; row < high; row += 1.0) add_row(x, y, row);
+    // Rasterisers snap corners to 1/256 of a sample.
+    for (glm::dvec2& corner : at)
+      corner = glm::dvec2(std::round(corner.x * 256.0), std::round(corner.y * 256.0)) / 256.0;
+    const auto [low, high] = std::minmax({at[0].y, at[1].y, at[2].y});
+    for (double row = std::ceil(low - 0.5) + 0.5; row < high; row += 1.0) add_row(at, row);
   }
 
   /// Of triangles that are long and at most 32 samples wide.
@@ -55,14 +55,14 @@ class SampleCount {
   double correction() const { return inside_ && count_ >= fewest ? area_ / count_ : 1.0; }
 
  private:
-  void add_row(const std::array<double, 3>& x, const std::array<double, 3>& y, double row) {
+  void add_row(const std::array<glm::dvec2, 3>& corner, double row) {
     double left = 1e300, right = -1e300;
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t j = (i + 1) % 3;
-      if ((y[i] <= row) == (y[j] <= row)) continue;
-      const double at = x[i] + (x[j] - x[i]) * (row - y[i]) / (y[j] - y[i]);
-      left = std::min(left, at);
-      right = std::max(right, at);
+      const glm::dvec2 &a = corner[i], &b = corner[(i + 1) % 3];
+      if ((a.y <= row) == (b.y <= row)) continue;
+      const double x = a.x + (b.x - a.x) * (row - a.y) / (b.y - a.y);
+      left = std::min(left, x);
+      right = std::max(right, x);
     }
     if (right > left) count_ += std::ceil(right - 0.5) - std::ceil(left - 0.5);
   }

@@ -15,17 +15,15 @@ namespace {
 
 TileMesh::Bounds bounds_of(const std::array<TileVertex, 3>& v, const TileCamera& camera,
                            double near_m) {
-  float x0 = 1e30f, y0 = 1e30f, x1 = -1e30f, y1 = -1e30f;
+  const glm::vec2 size_px(camera.columns, camera.rows);
+  glm::vec2 least(1e30f), most(-1e30f);
   for (const auto& corner : v) {
-    if (!(corner.clip[3] > near_m)) return {-1e30f, -1e30f, 1e30f, 1e30f};
-    const float x = (corner.clip[0] / corner.clip[3] + 1) * 0.5f * float(camera.columns) - 0.5f;
-    const float y = (corner.clip[1] / corner.clip[3] + 1) * 0.5f * float(camera.rows) - 0.5f;
-    x0 = std::min(x0, x);
-    y0 = std::min(y0, y);
-    x1 = std::max(x1, x);
-    y1 = std::max(y1, y);
+    if (!(corner.clip.w > near_m)) return {-1e30f, -1e30f, 1e30f, 1e30f};
+    const glm::vec2 at = (glm::vec2(corner.clip) / corner.clip.w + 1.0f) * 0.5f * size_px - 0.5f;
+    least = glm::min(least, at);
+    most = glm::max(most, at);
   }
-  return {x0, y0, x1, y1};
+  return {least.x, least.y, most.x, most.y};
 }
 
 class Builder {
@@ -35,14 +33,16 @@ class Builder {
       : scene_(scene),
         source_(source),
         first_(first_band),
-        bands_(std::min<std::size_t>(3, scene.bands.size() - first_band)),
+        bands_(int(std::min<std::size_t>(3, scene.bands.size() - first_band))),
         emission_(emission),
         specks_(visible),
+        camera_from_body_(glm_of(scene.camera_from_body)),
         clip_(scene) {
-    for (std::size_t k = 0; k < bands_; ++k) {
-      lobe_of_[k].assign(scene.mesh->triangles.size(), -1);
+    for (int k = 0; k < bands_; ++k) {
+      auto& lobe_of = lobe_of_[std::size_t(k)];
+      lobe_of.assign(scene.mesh->triangles.size(), -1);
       const auto& lobes = facets(k).lobes;
-      for (std::size_t i = 0; i < lobes.size(); ++i) lobe_of_[k][lobes[i].facet] = int(i);
+      for (std::size_t i = 0; i < lobes.size(); ++i) lobe_of[lobes[i].facet] = int(i);
     }
   }
 
@@ -68,39 +68,37 @@ class Builder {
   }
 
  private:
-  const FacetSet& facets(std::size_t k) const { return *scene_.bands[first_ + k].facets; }
+  const FacetSet& facets(int k) const { return *scene_.bands[first_ + std::size_t(k)].facets; }
 
-  Vec<CameraFrame> corner(std::size_t facet, int i) const {
+  glm::dvec3 corner(std::size_t facet, int i) const {
     return place_[scene_.mesh->triangles[facet].corner[std::size_t(i)]];
   }
 
-  bool faces_camera(std::size_t f) const {
-    const Vec<CameraFrame> normal = scene_.camera_from_body * facets(0).normal(f);
-    return dot(normal, corner(f, 0)) < 0.0;
+  glm::dvec3 normal_of(std::size_t f) const {
+    return camera_from_body_ * glm_of(facets(0).normal(f));
   }
+
+  bool faces_camera(std::size_t f) const { return glm::dot(normal_of(f), corner(f, 0)) < 0.0; }
 
   /// Everything of a corner that does not depend on its place.
   TileVertex surface(std::size_t f, bool lit) const {
     TileVertex v{};
-    const Vec<Body> normal = facets(0).normal(f);
-    const Vec<CameraFrame> n = scene_.camera_from_body * normal;
-    v.normal[0] = float(n.x);
-    v.normal[1] = float(n.y);
-    v.normal[2] = float(n.z);
-    v.diffuse[3] = float(facets(0).grazing2[f]);
-    v.specular[3] = float(facets(0).lobe2[f]);
-    v.emitted[3] = -1.0f;
-    const double in = dot(normal, source_.to_source);
-    for (std::size_t k = 0; k < bands_; ++k) {
+    v.normal = normal_of(f);
+    v.diffuse.w = float(facets(0).grazing2[f]);
+    v.specular.w = float(facets(0).lobe2[f]);
+    v.emitted.w = -1.0f;
+    const double in = dot(facets(0).normal(f), source_.to_source);
+    for (int k = 0; k < bands_; ++k) {
       const FacetSet& set = facets(k);
       if (emission_) v.emitted[k] = float(set.emitted[f]);
       if (!lit || !(in > 0.0)) continue;
-      const double irradiance = scene_.bands[first_ + k].sun_irradiance * source_.share * in;
+      const double irradiance =
+          scene_.bands[first_ + std::size_t(k)].sun_irradiance * source_.share * in;
       const double falloff = sandford_robertson_falloff(in, std::sqrt(set.grazing2[f]));
       v.diffuse[k] = float(irradiance * set.diffuse[f] * falloff);
-      if (const int lobe = lobe_of_[k][f]; lobe >= 0) {
+      if (const int lobe = lobe_of_[std::size_t(k)][f]; lobe >= 0) {
         v.specular[k] = float(irradiance * set.lobes[std::size_t(lobe)].scale);
-        v.emitted[3] = float(set.lobes[std::size_t(lobe)].exponent);
+        v.emitted.w = float(set.lobes[std::size_t(lobe)].exponent);
       } else {
         const double norm = sandford_robertson_lobe_norm(in, std::sqrt(set.lobe2[f]));
         v.specular[k] =
@@ -110,7 +108,7 @@ class Builder {
     return v;
   }
 
-  void add(const TileVertex& surface, const std::array<Vec<CameraFrame>, 3>& p) {
+  void add(const TileVertex& surface, const SampleCount::Triangle& p) {
     std::array<TileVertex, 3> v{surface, surface, surface};
     for (std::size_t i = 0; i < 3; ++i) clip_.put(p[i], v[i]);
     out_.bounds.push_back(bounds_of(v, scene_.camera, clip_.near_m()));
@@ -118,9 +116,9 @@ class Builder {
   }
 
   void scale(TileVertex& look, double factor) const {
-    for (std::size_t k = 0; k < bands_; ++k)
-      for (float* light : {look.diffuse, look.specular, look.emitted})
-        light[k] = float(light[k] * factor);
+    for (int k = 0; k < bands_; ++k)
+      for (glm::vec4* light : {&look.diffuse, &look.specular, &look.emitted})
+        (*light)[k] = float((*light)[k] * factor);
   }
 
   void add_whole(std::size_t f, bool lit) {
@@ -140,12 +138,13 @@ class Builder {
   }
 
   void add_parts(std::size_t f, std::span<const FacetPiece> pieces) {
-    const Vec<CameraFrame> o = corner(f, 0), e1 = corner(f, 1) - o, e2 = corner(f, 2) - o;
+    const glm::dvec3 o = corner(f, 0), e1 = corner(f, 1) - o, e2 = corner(f, 2) - o;
     std::vector<SampleCount::Triangle> parts;
     SampleCount samples(scene_.camera, scene_.oversampling);
     for (const auto& piece : pieces) {
       const auto at = [&](int i) {
-        return o + e1 * piece.corner[std::size_t(i)].s + e2 * piece.corner[std::size_t(i)].t;
+        const auto& [s, t] = piece.corner[std::size_t(i)];
+        return o + e1 * s + e2 * t;
       };
       for (int i = 1; i + 1 < piece.corners; ++i) {
         parts.push_back({at(0), at(i), at(i + 1)});
@@ -164,38 +163,42 @@ class Builder {
   /// What the shader makes of a look at the middle of a triangle, times its area, less its own
   /// emission, which stays with the samples.
   void add_speck(const TileVertex& look, const SampleCount::Triangle& p, double area_samples) {
-    const Vec<CameraFrame> middle = (p[0] + p[1] + p[2]) / 3.0;
-    const Vec<CameraFrame> n{look.normal[0], look.normal[1], look.normal[2]};
-    const Vec<CameraFrame> view = unit(-middle);
-    const Vec<CameraFrame> source = scene_.camera_from_body * source_.to_source;
-    const double c = dot(n, view);
+    const glm::dvec3 middle = (p[0] + p[1] + p[2]) / 3.0;
+    const glm::dvec3 n(look.normal);
+    const glm::dvec3 view = -middle / glm::length(middle);
+    const glm::dvec3 source = camera_from_body_ * glm_of(source_.to_source);
+    const double c = glm::dot(n, view);
     if (!(c > 0.0)) return;
-    const Vec<CameraFrame> h = view + source;
-    const double cos2 = std::min(1.0, dot(n, h) * dot(n, h) / std::max(dot(h, h), 1e-30));
-    const double root = look.specular[3] * cos2 + (1.0 - cos2);
-    const double mirror = std::clamp(2.0 * dot(n, source) * c - dot(view, source), 0.0, 1.0);
-    const double lobe = look.emitted[3] < 0.0f ? 1.0 / (root * root * std::max(c, least_cos_out))
-                        : mirror > 0.0         ? std::pow(mirror, double(look.emitted[3]))
-                                               : 0.0;
-    const double falloff = c * c / (c * c + look.diffuse[3] * (1.0 - c * c));
+    const glm::dvec3 h = view + source;
+    const double cos2 =
+        std::min(1.0, glm::dot(n, h) * glm::dot(n, h) / std::max(glm::dot(h, h), 1e-30));
+    const double root = look.specular.w * cos2 + (1.0 - cos2);
+    const double mirror =
+        std::clamp(2.0 * glm::dot(n, source) * c - glm::dot(view, source), 0.0, 1.0);
+    const double lobe = look.emitted.w < 0.0f ? 1.0 / (root * root * std::max(c, least_cos_out))
+                        : mirror > 0.0        ? std::pow(mirror, double(look.emitted.w))
+                                              : 0.0;
+    const double falloff = c * c / (c * c + look.diffuse.w * (1.0 - c * c));
     const double pixels = area_samples / (scene_.oversampling * double(scene_.oversampling));
     TileMesh::Speck speck{};
     const TileCamera& camera = scene_.camera;
-    speck.x_px = float(camera.principal_x_px - camera.left + camera.focal_px * middle.x / middle.z);
-    speck.y_px = float(camera.principal_y_px - camera.top + camera.focal_px * middle.y / middle.z);
-    for (std::size_t k = 0; k < bands_; ++k)
+    speck.place_px = {camera.principal_x_px - camera.left + camera.focal_px * middle.x / middle.z,
+                      camera.principal_y_px - camera.top + camera.focal_px * middle.y / middle.z};
+    for (int k = 0; k < bands_; ++k)
       speck.light[k] = float((look.diffuse[k] * falloff + look.specular[k] * lobe) * pixels);
     out_.specks.push_back(speck);
   }
 
   const TileScene& scene_;
   const LightSource& source_;
-  std::size_t first_, bands_;
+  std::size_t first_;
+  int bands_;
   bool emission_;
   bool specks_;
+  glm::dmat3 camera_from_body_;
   ClipSpace clip_;
   std::array<std::vector<int>, 3> lobe_of_;
-  std::vector<Vec<CameraFrame>> place_;
+  std::vector<glm::dvec3> place_;
   TileMesh out_;
 };
 

@@ -3,19 +3,21 @@
 #include <vector>
 
 #include "core/photometry/facet_shadow.h"
+#include "sensors/render/glm_types.h"
 #include "sensors/render/renderer.h"
 
 namespace dmise {
 
 /// One corner as the shader takes it. All but `clip` and `view` is the same for the whole triangle.
 struct TileVertex {
-  float clip[4];      // in the whole tile; depth 1 at the nearest corner, 0 at the farthest
-  float view[3];      // to the camera, any length
-  float normal[3];    // unit, camera axes
-  float diffuse[4];   // of up to three bands, b^2
-  float specular[4];  // of up to three bands, e^2
-  float emitted[4];   // of up to three bands, exponent of Phong's lobe or -1
+  glm::vec4 clip;      // in the whole tile; depth 1 at the nearest corner, 0 at the farthest
+  glm::vec3 view;      // to the camera, any length
+  glm::vec3 normal;    // unit, camera axes
+  glm::vec4 diffuse;   // of up to three bands, b^2
+  glm::vec4 specular;  // of up to three bands, e^2
+  glm::vec4 emitted;   // of up to three bands, exponent of Phong's lobe or -1
 };
+static_assert(sizeof(TileVertex) == 22 * sizeof(float));  // as OpenGL's attributes are declared
 
 /// The triangles of an object that face the camera, lit by one source. A facet that is partly in
 /// shadow comes twice: whole and dark, as an underlay to be pushed back a little so that no seam
@@ -31,8 +33,8 @@ struct TileMesh {
   /// Lit parts of facets that have too few samples to be drawn by them: drawn dark, their light
   /// goes to the pixel of their middle.
   struct Speck {
-    float x_px, y_px;  // of the tile
-    float light[3];    // radiance x pixels
+    glm::vec2 place_px;  // of the tile
+    glm::vec3 light;     // of up to three bands, radiance x pixels
   };
   std::vector<Speck> specks;
 };
