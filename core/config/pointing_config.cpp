@@ -80,6 +80,20 @@ PointScan read_scan(const YamlValue& value, bool on_ground) {
 
 }  // namespace
 
+const char* tracking_name(Tracking tracking) {
+  switch (tracking) {
+    case Tracking::fixed:
+      return "fixed";
+    case Tracking::sidereal:
+      return "sidereal";
+    case Tracking::target:
+      return "target";
+    case Tracking::moving:
+      return "moving";
+  }
+  return "unknown";
+}
+
 double turn_rate_deg_per_s(const Pointing& pointing) {
   if (const auto* p = std::get_if<PointHorizon>(&pointing))
     return std::hypot(p->azimuth_rate_deg_per_s, p->elevation_rate_deg_per_s);
@@ -110,7 +124,10 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
     sensor.pointing = read_sky_place(map);
     natural = Tracking::sidereal;
   } else if (target) {
-    sensor.pointing = PointTarget{target->text()};
+    PointTarget at{target->text()};
+    if (const auto place = map.find("place"))
+      at.geometric = place->choice({"apparent", "geometric"}) == "geometric";
+    sensor.pointing = at;
     natural = Tracking::target;
   } else if (body) {
     if (on_ground) body->fail("is for a sensor aboard a platform", false);
@@ -120,6 +137,8 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
   } else {
     sensor.pointing = PointUp{};
   }
+  if (const auto place = map.find("place"); place && !target)
+    place->fail("goes with target", false);
   const bool moves = turn_rate_deg_per_s(sensor.pointing) > 0.0;
   sensor.tracking = moves || scan ? Tracking::moving : natural;
   if (const auto tracking = map.find("tracking")) {
@@ -162,7 +181,8 @@ struct PointingWriter {
     json.end_object();
   }
   void operator()(const PointTarget& p) const {
-    json.begin_object().field("target", p.object).end_object();
+    json.begin_object().field("target", p.object);
+    json.field("place", p.geometric ? "geometric" : "apparent").end_object();
   }
   void operator()(const PointBody& p) const {
     json.begin_object().key("body_from_camera").begin_array();

@@ -52,7 +52,8 @@ struct PointSky {
   double ra_rate_deg_per_s = 0.0, dec_rate_deg_per_s = 0.0;
 };
 struct PointTarget {
-  std::string object;  // catalogue number or name
+  std::string object;      // catalogue number or name
+  bool geometric = false;  // at the straight line to it, not at the place where it is seen
 };
 /// Fixed to the body of the platform.
 struct PointBody {
@@ -74,6 +75,8 @@ enum class Tracking {
   target,    // follows the target
   moving,    // moves as its pointing does
 };
+/// "fixed", ... as in YAML and in frames.
+const char* tracking_name(Tracking tracking);
 
 struct SensorConfig {
   std::string name;

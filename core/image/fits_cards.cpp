@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/detector/detector_figures.h"
+#include "core/image/observation_cards.h"
 
 namespace dmise {
 namespace {
@@ -72,6 +73,15 @@ class CardWriter {
   }
   void projection(const char* key, Projection& value, const char* comment) {
     constant(key, projection_name(value), comment);
+  }
+  void optional_text(const char* key, std::string& value, const char* comment) {
+    if (!value.empty()) text(key, value, comment);
+  }
+  void optional_number(const char* key, std::optional<double>& value, const char* comment) {
+    if (value) number(key, *value, comment);
+  }
+  void optional_angle(const char* key, std::optional<double>& value_rad, const char* comment) {
+    if (value_rad) angle(key, *value_rad, comment);
   }
   bool present(const char*, bool here) const { return here; }
   void sip(Wcs& wcs) {
@@ -153,6 +163,22 @@ class CardReader {
     if (!named) fail(key, "not a projection, got " + find(key));
     value = *named;
   }
+  // What files from elsewhere say otherwise than we do (RA as a text) is not taken.
+  void optional_text(const char* key, std::string& value, const char*) {
+    const auto at = values_.find(key);
+    value = at == values_.end() ? "" : header_text(at->second);
+  }
+  void optional_number(const char* key, std::optional<double>& value, const char*) {
+    value.reset();
+    const auto at = values_.find(key);
+    if (at == values_.end()) return;
+    double found = 0.0;
+    if (parse_number(at->second, found)) value = found;
+  }
+  void optional_angle(const char* key, std::optional<double>& value_rad, const char*) {
+    optional_number(key, value_rad, "");
+    if (value_rad) *value_rad *= deg;
+  }
   bool present(const char* key, bool) const { return values_.contains(key); }
   void sip(Wcs& wcs) {
     if (!values_.contains("A_ORDER")) return;
@@ -186,14 +212,16 @@ class CardReader {
     if (at == values_.end()) fail(key, "is missing");
     return at->second;
   }
-  double number_of(const std::string& key, std::string text) const {
+  static bool parse_number(std::string text, double& value) {
     for (char& c : text)
       if (c == 'D' || c == 'd') c = 'E';  // FITS allows the exponent of a double to be marked D
     if (text.starts_with('+')) text.erase(0, 1);
-    double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-      fail(key, "must be a finite number, got " + text);
+    return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  }
+  double number_of(const std::string& key, const std::string& text) const {
+    double value = 0.0;
+    if (!parse_number(text, value)) fail(key, "must be a finite number, got " + text);
     return value;
   }
 
@@ -259,6 +287,7 @@ void visit_detector(Visitor& v, FrameHeader& h) {
 template <class Visitor>
 void visit(Visitor& v, FrameHeader& h) {
   v.text("INSTRUME", h.sensor, "sensor");
+  visit_observation(v, h.observation);
   v.integer("FRAMENUM", h.frame, "frame of this sensor, counts from 1");
   v.constant("TIMESYS", "UTC", "");
   v.utc("DATE-OBS", h.start_utc, "start of the exposure");

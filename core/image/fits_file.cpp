@@ -129,7 +129,9 @@ std::vector<std::string> frame_cards(const CountImage& counts, const FrameHeader
                                      const FlagImage* flags) {
   if (flags && (flags->columns != counts.columns || flags->rows != counts.rows))
     throw Error("FITS can't be written: flags of another shape than the counts");
-  return fits_cards(header);
+  auto cards = fits_cards(header);
+  cards.insert(cards.begin(), text_card("BUNIT", "adu", "unit of the pixels: counts of the ADC"));
+  return cards;
 }
 
 void put_plain(const ByteSink& file, const CountImage& counts, std::span<const std::string> cards,

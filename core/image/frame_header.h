@@ -9,6 +9,7 @@
 #include "core/detector/detector.h"
 #include "core/frames/quaternion.h"
 #include "core/frames/vec.h"
+#include "core/image/observation.h"
 #include "core/optics/camera.h"
 #include "core/photometry/band.h"
 
@@ -51,6 +52,7 @@ struct FrameHeader {
   // Turbulence towards the zenith at 500 nm; all 0 where none is given.
   double r0_m = 0.0, isoplanatic_angle_rad = 0.0, tau0_s = 0.0;
 
+  Observation observation;
   Wcs wcs;
   Projection projection = Projection::gnomonic;
   double focal_length_px = 0.0;

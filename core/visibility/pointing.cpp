@@ -59,7 +59,7 @@ struct Aim {
            turned<Enu>(p.axis, -angle_rad) * enu_from_gcrs;
   }
   Rotation<CameraFrame, Gcrs> operator()(const PointTarget&) const {
-    return at_direction(scene.target_m - scene.observer.position_m, roll_rad());
+    return at_direction(scene.towards_target, roll_rad());
   }
 };
 

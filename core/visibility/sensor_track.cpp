@@ -1,12 +1,16 @@
 #include "core/visibility/sensor_track.h"
 
 #include "core/config/pointing_config.h"
+#include "core/visibility/target_direction.h"
 
 namespace dmise {
 
 SensorTrack::SensorTrack(const SensorConfig& sensor, const SkyHours& sky, const Sgp4Batch& batch,
                          std::optional<std::size_t> platform, std::optional<std::size_t> target)
     : sensor_(sensor), sky_(sky), batch_(batch), platform_(platform), target_(target) {
+  const auto* towards = std::get_if<PointTarget>(&sensor.pointing);
+  geometric_ = towards && towards->geometric;
+  if (geometric_) refraction_ = configured_refraction(sensor);
   const auto* site = std::get_if<SiteConfig>(&sensor.place);
   if (!site) return;
   site_ = Site{site->latitude_deg, site->longitude_deg, site->height_m};
@@ -69,7 +73,14 @@ CameraMoment SensorTrack::at(SimTime t) const {
     const auto target = state_of(*target_, now, gcrs_from_teme);
     now.there = target.has_value();
     if (!now.there) return now;
-    scene.target_m = target->position_m;
+    scene.towards_target = target->position_m - scene.observer.position_m;
+    if (geometric_) {
+      // `Sight` takes straight lines: in them the target stands off the axis, where it is seen.
+      const Vec<Gcrs> line = unit(scene.towards_target);
+      const Vec<Gcrs> seen = apparent_direction(sensor_, scene, refraction_, target->position_m,
+                                                target->velocity_m_per_s);
+      scene.towards_target = line * 2.0 - seen;
+    }
   }
   now.camera_from_teme = aim(sensor_, scene) * gcrs_from_teme;
   return now;

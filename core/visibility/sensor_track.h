@@ -4,6 +4,7 @@
 #include "core/config/scenario.h"
 #include "core/orbit/sgp4_batch.h"
 #include "core/sky/occultation.h"
+#include "core/sky/refraction.h"
 #include "core/visibility/pointing.h"
 #include "core/visibility/sky_hours.h"
 
@@ -57,6 +58,8 @@ class SensorTrack {
   std::optional<std::size_t> platform_, target_;
   std::optional<Site> site_;
   Vec<Itrs> site_m_, up_;
+  bool geometric_ = false;  // points at the straight line to its target
+  Refraction refraction_;
   std::optional<Rotation<CameraFrame, Itrs>> fixed_;
 };
 

@@ -9,6 +9,7 @@
 #include "core/optics/wcs_fit.h"
 #include "core/time/iso8601.h"
 #include "sensors/pipeline/light.h"
+#include "sensors/pipeline/observation_of.h"
 
 namespace dmise {
 namespace {
@@ -54,9 +55,7 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
                 .middle_utc = utc(times.middle),
                 .end_utc = utc(times.end),
                 .exposure_s = times.seconds(),
-                .mount = sensor.tracking == Tracking::fixed      ? "fixed"
-                         : sensor.tracking == Tracking::sidereal ? "sidereal"
-                                                                 : "target",
+                .mount = tracking_name(sensor.tracking),
                 .software = software_name(),
                 .scenario_digest = settings.digest,
                 .seed = settings.seed,
@@ -94,6 +93,8 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
   const auto places = view.places(times.middle);
   const auto gcrs_from_camera = view.camera_from_gcrs(times.middle).inverse();
   const double epoch = 2000.0 + julian_years_since_j2000(settings.clock.tt(times.middle));
+  h.observation = observation_of(
+      view, settings, star_at(optics, places, gcrs_from_camera, epoch, principal_point(optics)));
   h.wcs = fit_wcs(
       optics.columns, optics.rows,
       [&](PixelPosition pixel) { return star_at(optics, places, gcrs_from_camera, epoch, pixel); },

@@ -116,8 +116,13 @@ void check_sensors(const Scenario& scenario, const ObjectRoster& roster) {
                           ".pointing.body: the platform must be an object with an attitude, got " +
                           platform->object);
     }
-    if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
-      object_index(roster, target->object, where + ".pointing.target");
+    if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) {
+      const auto index = object_index(roster, target->object, where + ".pointing.target");
+      const auto* platform = std::get_if<PlatformConfig>(&sensor.place);
+      if (platform && object_index(roster, platform->object, where + ".platform") == index)
+        throw ConfigError(where + ".pointing.target: is the sensor's own platform, got " +
+                          target->object);
+    }
   }
 }
 

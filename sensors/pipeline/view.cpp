@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/optics/projection.h"
+#include "core/visibility/target_direction.h"
 
 namespace dmise {
 
@@ -47,7 +48,11 @@ PointingScene View::pointing_scene(SimTime t) const {
                       .observer = observer(t),
                       .itrs_from_gcrs = earth().itrs_from_gcrs(t),
                       .site = site_ ? &*site_ : nullptr};
-  if (target_) scene.target_m = world_.motion(*target_, t).position_m;
+  if (target_ && (sensor_.tracking == Tracking::target || t == times_.middle)) {
+    const Motion target = world_.motion(*target_, t);
+    scene.towards_target =
+        target_direction(sensor_, scene, refraction_, target.position_m, target.slope_m_per_s);
+  }
   if (platform_ && std::holds_alternative<PointBody>(sensor_.pointing))
     scene.gcrs_from_body = world_.gcrs_from_body(*platform_, t);
   return scene;

@@ -31,6 +31,9 @@ class View {
   /// The object that carries the sensor; it does not see itself.
   std::optional<std::size_t> platform() const { return platform_; }
 
+  /// The object that the sensor points at.
+  std::optional<std::size_t> target() const { return target_; }
+
   ObserverState observer(SimTime t) const;
   const EarthOrientation& earth() const { return environment_.earth; }
   const EnvironmentState& environment() const { return environment_; }

@@ -4,6 +4,7 @@
 
 #include "core/frames/geodesy.h"
 #include "core/time/iso8601.h"
+#include "core/visibility/target_direction.h"
 #include "sensors/pipeline/world.h"
 
 namespace dmise {
@@ -86,7 +87,10 @@ std::optional<PositionRow> PositionsEvaluator::camera(std::size_t index, Tick ti
   } else {
     scene.observer = {states_->position(*mount.platform), states_->slope(*mount.platform)};
   }
-  if (mount.target) scene.target_m = states_->position(*mount.target);
+  if (mount.target)
+    scene.towards_target =
+        target_direction(sensor, scene, configured_refraction(sensor),
+                         states_->position(*mount.target), states_->slope(*mount.target));
   if (mount.platform)
     if (const auto attitude = states_->attitude(*mount.platform))
       scene.gcrs_from_body = rotation_of<Gcrs, Body>(attitude->gcrs_from_body);

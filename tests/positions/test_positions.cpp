@@ -118,6 +118,31 @@ TEST(Positions, OfAPlatformAreAnEphemerisThatBringsItBack) {
   }
 }
 
+// At a tick that is the middle of an exposure, the attitude is that of the frame.
+TEST(Positions, OfAMountThatFollowsAnObjectAreThoseOfItsFrames) {
+  for (const std::string place : {"", ", place: geometric"}) {
+    test::Stage stage(
+        "simulation: {start: 2018-01-21T00:15:00Z, duration_s: 10, tick_s: 5}\n"
+        "objects:\n"
+        "  - name: low\n"
+        "    motion: {fixed: {latitude_deg: 28, longitude_deg: -80, height_m: 800000}}\n"
+        "sensors:\n"
+        "  - {name: eye, site: atlanta, camera: telescope-3m, pointing: {target: low" +
+        place +
+        "}, exposure_s: 1, cadence_s: 5, first_exposure_s: 4.5, weather: {pressure_hpa: 900}}\n"
+        "effects: {sky: off}\noutput: {positions: [csv]}\n");
+    run(stage, stage.directory.string(), 0, stage.scenario.last_tick());
+    const auto row =
+        numbers(rows_of(stage.directory.string() + "/positions.csv", ",camera,eye,").at(1));
+    const Quaternion q = stage.frame().header.camera_from_gcrs[1];
+    // The inverse of camera from GCRS, of either sign.
+    const double same = row[11] * q.w - row[12] * q.x - row[13] * q.y - row[14] * q.z;
+    EXPECT_NEAR(std::abs(same), 1.0, 1e-15);
+    const double x = row[12] * q.w + row[11] * q.x, y = row[13] * q.w + row[11] * q.y;
+    EXPECT_LT(std::hypot(x, y), 1e-9);
+  }
+}
+
 TEST(Positions, TakenUpAtAnyTickTheyBecomeTheSameBytes) {
   test::Stage stage(yaml);
   const std::string out = (stage.directory / "out").string();

@@ -3,7 +3,7 @@
 Usage: passes.py satellites.dat. UT1 is taken for UTC, as without an Earth orientation file. Events are
 skyfield's `find_events` at 10 deg of elevation over a day, each then found to 1 ms by bisection of skyfield's own
 altitude. A row: catalogue number; rise, culmination and set [s from the start], elevation [rad], azimuth
-[rad] and range [m] at the culmination; when skyfield's `is_sunlit` (a point-like Sun, here by ERFA, and a
+[rad], range [m] and angular rate in the horizon's axes [rad/s, over half a second] at the culmination; when skyfield's `is_sunlit` (a point-like Sun, here by ERFA, and a
 round Earth) changes within the pass [s], or -1; whether it is sunlit at its rise.
 """
 import sys
@@ -75,6 +75,10 @@ for number in NUMBERS:
     def altitude(s):
         return pair.at(after(s)).altaz()[0].degrees
 
+    def direction(s):
+        up, round_ = (angle.radians for angle in pair.at(after(s)).altaz()[:2])
+        return np.array([np.cos(up) * np.sin(round_), np.cos(up) * np.cos(round_), np.sin(up)])
+
     for k in range(len(events) - 2):
         if list(events[k:k + 3]) != [0, 1, 2]:
             continue
@@ -83,11 +87,12 @@ for number in NUMBERS:
         a, b = seconds[k + 1] - 2.0, seconds[k + 1] + 2.0
         top = bisect(lambda s: altitude(s + 0.05) < altitude(s - 0.05), a, b)
         high, azimuth, distance = pair.at(after(top)).altaz()
+        rate = np.linalg.norm(direction(top + 0.25) - direction(top - 0.25)) / 0.5
 
         def lit(s):
             return bool(satellite.at(after(s)).is_sunlit(ephemeris))
 
         change = bisect(lit, rise, fall)
         print(f"    {{{number}, {rise:.3f}, {top:.3f}, {fall:.3f}, {high.radians:.9f}, {azimuth.radians:.9f}, "
-              f"{distance.m:.1f}, {-1 if change is None else change:.3f}, "
+              f"{distance.m:.1f}, {rate:.6e}, {-1 if change is None else change:.3f}, "
               f"{str(lit(rise)).lower()}}},  // {name}")

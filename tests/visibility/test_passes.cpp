@@ -13,7 +13,7 @@ using test::Watch;
 
 struct SkyfieldPass {
   std::uint32_t number;
-  double rise_s, top_s, set_s, elevation_rad, azimuth_rad, range_m, shadow_s;
+  double rise_s, top_s, set_s, elevation_rad, azimuth_rad, range_m, rate_rad_per_s, shadow_s;
   bool lit_at_rise;
 };
 // tests/reference/passes.py: find_events of skyfield 1.45 at 10 deg over Atlanta, 2018-01-21.
@@ -74,6 +74,17 @@ TEST_F(AgainstSkyfield, CulminationAgrees) {
     // A tenth of a second near the zenith turns the azimuth by degrees.
     EXPECT_LT(std::abs(azimuth) * std::cos(theirs.elevation_rad), 2.5e-3) << theirs.number;
   }
+}
+
+// The camera looks at the zenith and stands on the ground: its frame's rate is that in the axes of
+// the horizon.
+TEST_F(AgainstSkyfield, TheRateAtTheCulminationAgrees) {
+  double worst = 0;
+  for (const auto& [theirs, ours] : pairs) {
+    EXPECT_NEAR(ours.top.rate_rad_per_s / theirs.rate_rad_per_s, 1.0, 1e-3) << theirs.number;
+    worst = std::max(worst, std::abs(ours.top.rate_rad_per_s / theirs.rate_rad_per_s - 1.0));
+  }
+  RecordProperty("worst", std::to_string(worst));
 }
 
 // No pass that they don't know: the same number for each object, those cut by the span aside.

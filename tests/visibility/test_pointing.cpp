@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/units.h"
+#include "tests/visibility/watch.h"
 
 namespace dmise {
 namespace {
@@ -43,6 +44,31 @@ TEST(Pointing, OnTheHorizonsGridTheZenithIsUpAndRollFollowsAzimuth) {
   EXPECT_NEAR(on_the_ground(south, 0, boresight).y, -std::cos(30 * deg), 1e-12);
   EXPECT_NEAR(on_the_ground(south, 0, up).z, std::cos(30 * deg), 1e-12);
   EXPECT_NEAR(on_the_ground(south, 90, up).x, -1.0, 1e-12);  // west, where azimuth grows
+}
+
+/// The first passes of the space station through a field of 0.2 deg that follows it.
+std::vector<Pass> followed_passes(bool geometric) {
+  std::vector<MeanElements> elements;
+  for (const MeanElements& e : test::debian_catalogue())
+    if (e.catalogue_number == 25544) elements.push_back(e);
+  SensorConfig sensor = test::at_atlanta(test::flat_camera(0.2, 0.2));
+  sensor.pointing = PointTarget{"25544", geometric};
+  sensor.tracking = Tracking::target;
+  test::Watch watch(sensor, elements, "2018-01-21T00:00:00Z", 14400, 10, std::nullopt, 0);
+  return watch.passes();
+}
+
+// As in frames: what is seen at its apparent place stays in the middle; aimed at geometrically it
+// stands off the middle by its refraction, which is 6 arcmin (half the field) at 8.9 deg and 8.5
+// arcmin (to the corner) at 6.0 deg by Bennett 1982.
+TEST(Pointing, ATargetIsInTheFieldOfVisibleAsItIsInFrames) {
+  DMISE_NEEDS_FILE(test::catalogue_path("satellites.dat"));
+  const auto apparent = followed_passes(false), geometric = followed_passes(true);
+  ASSERT_FALSE(apparent.empty());
+  ASSERT_EQ(apparent.size(), geometric.size());
+  EXPECT_NEAR(apparent[0].rise.horizontal->elevation_rad / deg, 0.0, 0.1);
+  EXPECT_GT(geometric[0].rise.horizontal->elevation_rad / deg, 5.8);
+  EXPECT_LT(geometric[0].rise.horizontal->elevation_rad / deg, 9.1);
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+#pragma once
+#include "core/sky/apparent.h"
+#include "core/visibility/pointing.h"
+
+namespace dmise {
+
+/// The air that refracts over a ground sensor as its configuration has it, at its band's centre.
+Refraction configured_refraction(const SensorConfig& sensor);
+
+/// Unit vector from the sensor of `scene` to where it sees an object: with light time, the
+/// aberration of the sensor's own motion and refraction, as far as its effects are on. The same
+/// direction as that of the object's light in a frame. `refraction` is used on the ground only.
+/// Throws `Error` for an object at the observer.
+Vec<Gcrs> apparent_direction(const SensorConfig& sensor, const PointingScene& scene,
+                             const Refraction& refraction, const Vec<Gcrs>& position_m,
+                             const Vec<Gcrs>& slope_m_per_s);
+
+/// Unit vector along which the sensor aims at its target: the apparent direction, or the straight
+/// line when the pointing says `place: geometric`.
+Vec<Gcrs> target_direction(const SensorConfig& sensor, const PointingScene& scene,
+                           const Refraction& refraction, const Vec<Gcrs>& position_m,
+                           const Vec<Gcrs>& slope_m_per_s);
+
+}  // namespace dmise
