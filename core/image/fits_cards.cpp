@@ -14,8 +14,8 @@ namespace dmise {
 namespace {
 
 constexpr std::size_t card_size = 80;
-constexpr std::size_t longest_text = 60;
-constexpr int highest_order = 9;  // of SIP polynomials, by its convention
+constexpr std::size_t longest_text = 64;  // as long as a sensor's name may be
+constexpr int highest_order = 9;          // of SIP polynomials, by its convention
 
 std::string number_text(double value) {
   char buffer[40];
@@ -48,7 +48,7 @@ class CardWriter {
   }
   void text(const std::string& key, const std::string& value, const std::string& comment) {
     if (value.size() > longest_text)
-      throw Error("FITS header: " + key + ": longer than 60 characters: " + value);
+      throw Error("FITS header: " + key + ": longer than 64 characters: " + value);
     std::string quoted;
     for (const char c : value) {
       if (c < 0x20 || c > 0x7e) throw Error("FITS header: " + key + ": not printable ASCII");

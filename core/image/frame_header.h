@@ -27,7 +27,7 @@ struct SitePlace {
 /// Everything that a frame says of itself: what its FITS header holds and all that a detector may
 /// know. Nothing in it depends on the wall clock or on how the run was started.
 struct FrameHeader {
-  std::string sensor;          // at most 60 printable ASCII characters, as all texts here
+  std::string sensor;          // at most 64 printable ASCII characters, as all texts here
   std::uint32_t frame = 0;     // counts from 1
   SimTime start, middle, end;  // of the exposure
   std::string start_utc, middle_utc,

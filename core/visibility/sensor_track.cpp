@@ -4,6 +4,12 @@
 #include "core/visibility/target_direction.h"
 
 namespace dmise {
+namespace {
+
+/// A target nearer than this is the sensor's own host, under another number: no direction.
+constexpr double least_distance_m = 1.0;
+
+}  // namespace
 
 SensorTrack::SensorTrack(const SensorConfig& sensor, const SkyHours& sky, const Sgp4Batch& batch,
                          std::optional<std::size_t> platform, std::optional<std::size_t> target)
@@ -74,6 +80,8 @@ CameraMoment SensorTrack::at(SimTime t) const {
     now.there = target.has_value();
     if (!now.there) return now;
     scene.towards_target = target->position_m - scene.observer.position_m;
+    now.there = norm(scene.towards_target) > least_distance_m;
+    if (!now.there) return now;
     if (geometric_) {
       // `Sight` takes straight lines: in them the target stands off the axis, where it is seen.
       const Vec<Gcrs> line = unit(scene.towards_target);

@@ -74,6 +74,7 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
                 .sensor_position_m = observer.position_m,
                 .sensor_velocity_m_per_s = observer.velocity_m_per_s,
                 .earth_velocity_m_per_s = environment.earth_velocity_m_per_s};
+  h.band.name = header_text(h.band.name);
   if (const SiteState* air = view.air()) {
     h.r0_m = air->r0_m;
     h.isoplanatic_angle_rad = air->isoplanatic_angle_rad;

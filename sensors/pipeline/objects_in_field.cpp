@@ -7,6 +7,7 @@
 #include "core/base/units.h"
 #include "core/optics/projection.h"
 #include "core/visibility/field_of_view.h"
+#include "core/visibility/sight.h"
 #include "core/visibility/touch.h"
 
 namespace dmise {
@@ -51,6 +52,16 @@ class FieldCone {
       const SimTime a = looked_at(k, halves), b = looked_at(k + 1, halves);
       turn_rad_per_s_ = std::max(turn_rad_per_s_, 1.25 * halves / half_s_ * turned(a, b));
     }
+  }
+
+  /// Whether an object is where the sensor is: its own host, under whatever number.
+  bool at_sensor(std::size_t object) {
+    const auto& exposure = view_.times();
+    for (const SimTime t : {exposure.start, exposure.middle, exposure.end})
+      if (norm(view_.world().motion(object, t).position_m - moment(t).observer.position_m) <
+          Sight::nearest_m)
+        return true;
+    return false;
   }
 
   /// `radius_m`: of the sphere about the object that holds it.
@@ -122,7 +133,7 @@ std::vector<std::size_t> objects_in_field(const View& view, const ObjectShapes* 
       continue;
     const ObjectShape* shape =
         shapes ? shapes->of(world.roster().objects[i].catalogue_number) : nullptr;
-    if (cone.touched_by(i, shape ? shape->radius_m : 0.0)) found.push_back(i);
+    if (cone.touched_by(i, shape ? shape->radius_m : 0.0) && !cone.at_sensor(i)) found.push_back(i);
   }
   return found;
 }

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/optics/projection.h"
+#include "core/visibility/sight.h"
 #include "core/visibility/target_direction.h"
 
 namespace dmise {
@@ -31,6 +32,10 @@ View::View(const SensorConfig& sensor, const FrameTimes& times, const World& wor
     if (needed && !(world.has_state(*needed, times.start) && world.has_state(*needed, times.end)))
       throw Error(sensor.name + ": " + world.roster().objects[*needed].name +
                   " has no state at frame " + std::to_string(times.frame));
+  if (target_ && norm(world.motion(*target_, times.middle).position_m -
+                      observer(times.middle).position_m) < Sight::nearest_m)
+    throw Error(sensor.name + ": pointing.target: " + world.roster().objects[*target_].name +
+                " is where the sensor is, at frame " + std::to_string(times.frame));
   aimed_ = pointing_scene(times.middle);
 }
 

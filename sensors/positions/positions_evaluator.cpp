@@ -4,6 +4,7 @@
 
 #include "core/frames/geodesy.h"
 #include "core/time/iso8601.h"
+#include "core/visibility/sight.h"
 #include "core/visibility/target_direction.h"
 #include "sensors/pipeline/world.h"
 
@@ -87,6 +88,9 @@ std::optional<PositionRow> PositionsEvaluator::camera(std::size_t index, Tick ti
   } else {
     scene.observer = {states_->position(*mount.platform), states_->slope(*mount.platform)};
   }
+  if (mount.target &&
+      norm(states_->position(*mount.target) - scene.observer.position_m) < Sight::nearest_m)
+    return std::nullopt;
   if (mount.target)
     scene.towards_target =
         target_direction(sensor, scene, configured_refraction(sensor),

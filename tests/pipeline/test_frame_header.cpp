@@ -5,6 +5,7 @@
 
 #include "core/base/units.h"
 #include "core/config/pointing_config.h"
+#include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
 #include "tests/pipeline/harness.h"
 
@@ -236,6 +237,39 @@ TEST(FrameHeader, NamesThatAHeaderCannotHoldAreShownAsFarAsItCan) {
   const Observation o = read_back(stage).header.observation;
   EXPECT_EQ(o.object, "d?bris of a name that is fifty-eight or more characters 'lo");
   EXPECT_EQ(o.telescope, "Ann's eye");
+}
+
+// A sensor's name may have 64 characters; a filter's may be anything.
+TEST(FrameHeader, TheLongestNameOfASensorAndAnyNameOfAFilterAreWritten) {
+  const std::string name(64, 'x');
+  std::string yaml = scenario(atlanta, "zenith");
+  yaml.replace(yaml.find("name: eye,"), 9, "name: " + name);
+  yaml.replace(yaml.find("name: V,"), 7, "name: \"\xCE\xBB " + std::string(80, '\'') + "\"");
+  test::Stage stage(yaml);
+  const FrameHeader h = read_back(stage).header;
+  EXPECT_EQ(h.sensor, name);
+  EXPECT_EQ(h.band.name, "? " + std::string(29, '\''));
+}
+
+// What others write in these keywords is taken where it is meant as ours, else left.
+TEST(FrameHeader, KeywordsOfFilesFromElsewhereMayBeAnything) {
+  test::Stage stage(scenario(atlanta, "{target: \"990000002\"}"));
+  const Read frame = read_back(stage);
+  for (const char* key :
+       {"OBJECT", "TELESCOP", "MJD-OBS", "RA", "DEC", "AIRMASS", "SUNALT", "MOONALT", "BUNIT"})
+    for (const std::string value :
+         {"'12:34:56.7'", "'it''s'", "T", "nan", "1e999", "-", "''", "(1, 2)", "", "1.5D2"}) {
+      std::string bytes = frame.bytes;
+      const std::string card = key + std::string(8 - std::string(key).size(), ' ') + "= ";
+      const std::size_t at = bytes.find(card);
+      ASSERT_NE(at, std::string::npos) << key;
+      std::string other = card + value;
+      other.resize(80, ' ');
+      bytes.replace(at, 80, other);
+      const auto read = decode_frame(bytes, "frame.fits");
+      EXPECT_EQ(as_in_file(read.header), read.header) << key << " = " << value;
+      EXPECT_EQ(read.counts.pixels, frame.counts.pixels);
+    }
 }
 
 }  // namespace

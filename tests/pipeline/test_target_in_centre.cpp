@@ -298,6 +298,22 @@ TEST(TargetInCentre, WhatItsKeyCannotSayIsNamed) {
   }
 }
 
+// A host may have several numbers, as the modules of a station do.
+TEST(TargetInCentre, WhatIsWhereTheSensorIsIsNeitherSeenNorPointedAt) {
+  const std::string twins =
+      object_at("platform", {7178e3, 0, 0}, 8) + object_at("twin", {7178e3, 0, 0}, 8);
+  test::Stage stage(
+      scenario(twins, sensor("platform: platform", "raven", "{ra_deg: 30, dec_deg: 20}")));
+  EXPECT_TRUE(stage.frame().truths.empty());
+  stage.scenario.sensors[0].pointing = PointTarget{"twin"};
+  try {
+    stage.frame();
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_STREQ(e.what(), "eye: pointing.target: twin is where the sensor is, at frame 1");
+  }
+}
+
 TEST(TargetInCentre, ASensorCannotPointAtWhatCarriesIt) {
   test::Stage stage(
       scenario(space_objects, sensor("platform: platform", "raven", "{target: geo}")));
