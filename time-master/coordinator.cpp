@@ -41,8 +41,8 @@ void Coordinator::done(const std::string& name, TickTally tally, Instant now) {
   heard(*member, now);
   if (tally.tick <= member->done) return;  // said twice
   const Tick next = member->node.schedule.next_after(member->done);
-  if (member->observer) {
-    member->done = tally.tick;
+  if (member->is_guest()) {
+    if (member->observer) member->done = tally.tick;
     return;
   }
   const bool in_turn = tally.tick == next || member->agent;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/sim/topic_graph.h"
@@ -40,6 +41,7 @@ struct CoordinatorOptions : PulseLimits {
   SilentPolicy on_silent = SilentPolicy::fail;
   Instant rejoin_within{0};  // under `wait`, longest time until a lost node is back; 0: none
   int max_rejoins = -1;      // under `wait`, processes that may follow the first of a name; -1: any
+  std::size_t max_observers = 64;
 };
 
 /// The lock-step protocol as a state machine that has never seen a socket: who is in the run, up to
@@ -59,7 +61,8 @@ class Coordinator {
     bool keeps_time = true;
     bool observer = false;
     bool agent = false;
-    std::string host;  // as in Request
+    bool idle = false;  // an agent without nodes once the start has begun: holds nobody
+    std::string host;   // as in Request
     bool ready = false;
     bool silent = false;  // under SilentPolicy::wait
     bool left = false;    // said goodbye, or was dropped
@@ -74,6 +77,8 @@ class Coordinator {
     std::vector<std::string> waits_for;  // of an agent: those of its nodes that it waits for
 
     bool active() const { return !left; }
+    /// It may come, go and fall silent without anything becoming of the run.
+    bool is_guest() const { return observer || idle; }
     /// Nobody waits for it up to and with this tick.
     Tick reaches() const { return node.schedule.next_after(done) - 1; }
   };
@@ -142,7 +147,8 @@ class Coordinator {
   std::vector<std::string> holding() const;
   /// True when nobody is left.
   bool deserted() const;
-  /// Grows whenever somebody has joined after the start, so that all must hear who is where.
+  /// Grows whenever a process of the run has joined after the start, so that all must hear who is
+  /// where. Observers are told alone.
   std::uint64_t topology_version() const { return topology_version_; }
   /// First tick whose messages a process of this node publishes: `resumes_at` less what those who
   /// depend on it may need.
@@ -158,6 +164,8 @@ class Coordinator {
   /// Node, agent or observer that has joined.
   const Member& member_of(const std::string& name) const;
   const CoordinatorOptions& options() const { return options_; }
+  /// Names that the run has forgotten since the last call, as if they had never joined.
+  std::vector<std::string> take_forgotten() { return std::exchange(forgotten_, {}); }
 
  private:
   Member* active(const std::string& name);
@@ -173,6 +181,7 @@ class Coordinator {
     members_[request.node.name] = fresh(request, now);
   }
   void forget(const std::string& name);
+  void set_idle_agents();
   Member* behind(const std::string& name, std::uint64_t incarnation);
   std::vector<std::string> nodes_behind(const std::string& agent) const;
   void heard(Member& member, Instant now);
@@ -199,6 +208,7 @@ class Coordinator {
   std::set<std::string> silent_behind_;
   std::map<std::string, std::uint64_t> incarnations_;  // of each name, so far
   std::map<std::string, Tick> history_;
+  std::vector<std::string> forgotten_;
   Phase phase_ = Phase::gathering;
   std::string cause_, first_dropped_;
   Tick granted_;

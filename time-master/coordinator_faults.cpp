@@ -47,17 +47,14 @@ void Coordinator::leave(const std::string& name, bool interrupted, Instant now) 
     member->left = true;
     return;
   }
-  if (phase_ == Phase::gathering || member->observer) return forget(name);
+  if (phase_ == Phase::gathering || member->is_guest()) return forget(name);
   lost(*member, interrupted ? "was interrupted" : "left before the end", now);
 }
 
 void Coordinator::fail(const std::string& name, const std::string& reason) {
   Member* member = active(name);
   if (!member) return;
-  if (member->observer) {
-    members_.erase(name);
-    return;
-  }
+  if (member->is_guest()) return forget(name);
   member->left = true;
   if (options_.on_silent == SilentPolicy::drop && member->keeps_time && phase_ == Phase::running)
     drop(*member, member->pulse.heard);
@@ -124,7 +121,7 @@ void Coordinator::lost(Member& member, const std::string& how, Instant now) {
     member.left = true;
     return;
   }
-  if (phase_ == Phase::gathering || member.observer) return forget(member.node.name);
+  if (phase_ == Phase::gathering || member.is_guest()) return forget(member.node.name);
   if (options_.on_silent == SilentPolicy::drop && member.keeps_time && phase_ == Phase::running)
     return drop(member, now);
   wait_or_fail(member, how, now);

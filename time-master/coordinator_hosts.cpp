@@ -21,6 +21,10 @@ std::optional<std::string> Coordinator::join_agent(const Request& request, Insta
   const auto earlier = members_.find(name);
   if (earlier == members_.end()) {
     if (phase_ != Phase::gathering) return "the run has started: no agent may join";
+    const auto agents = std::count_if(members_.begin(), members_.end(),
+                                      [](const auto& entry) { return entry.second.agent; });
+    if (std::size_t(agents) >= options_.expected.size())
+      return "as many agents have joined as there are nodes";
     add(request, now);
     return std::nullopt;
   }
@@ -79,6 +83,7 @@ void Coordinator::lost_behind(const std::string& name, std::uint64_t incarnation
   Member* member = behind(name, incarnation);
   if (!member || over()) return;
   if (phase_ == Phase::gathering) {
+    forgotten_.push_back(name);
     behind_.erase(name);
     return;
   }
@@ -108,9 +113,25 @@ void Coordinator::tell_of(const std::string& agent, std::vector<std::string> wai
 }
 
 void Coordinator::forget(const std::string& name) {
-  std::erase_if(behind_, [&](const auto& entry) { return entry.second.host == name; });
+  for (const std::string& node : nodes_behind(name)) {
+    forgotten_.push_back(node);
+    behind_.erase(node);
+  }
   std::erase_if(silent_behind_, [&](const auto& node) { return !behind_.contains(node); });
-  members_.erase(std::string(name));
+  const auto member = members_.find(name);
+  if (member == members_.end()) return;
+  // The names of observers are without number: nothing is kept of them.
+  if (member->second.observer) incarnations_.erase(name);
+  forgotten_.push_back(member->first);
+  members_.erase(member);
+}
+
+void Coordinator::set_idle_agents() {
+  for (auto& [name, member] : members_) {
+    if (!member.agent || !nodes_behind(name).empty()) continue;
+    member.idle = member.ready = true;
+    member.keeps_time = false;
+  }
 }
 
 std::vector<std::string> Coordinator::nodes_behind(const std::string& agent) const {

@@ -60,8 +60,12 @@ std::optional<std::string> Coordinator::observe(const Request& request, Instant 
     return name + " is a node of this run and can't be the name of an observer";
   if (members_.contains(name)) return "an observer named " + name + " has already joined";
   if (!request.node.produces.empty()) return "an observer publishes nothing";
+  const auto watching = std::count_if(members_.begin(), members_.end(),
+                                      [](const auto& entry) { return entry.second.observer; });
+  if (std::size_t(watching) >= options_.max_observers)
+    return std::to_string(watching) +
+           " observers have joined already: another may join when one leaves";
   add(request, now);
-  if (phase_ != Phase::gathering) ++topology_version_;
   return std::nullopt;
 }
 
@@ -102,6 +106,7 @@ void Coordinator::connect_if_complete(Instant now) {
   for (const std::string& name : options_.expected) nodes.push_back(member_of(name).node);
   if (const auto fault = topic_fault(nodes)) return fail_run(*fault);
   history_ = history_ticks(nodes);
+  set_idle_agents();
   phase_ = Phase::connecting;
   ++topology_version_;
   start_if_ready(now);

@@ -26,7 +26,7 @@ void ClockWatch::look(const Coordinator& coordinator, Instant now) {
   joined_.clear();
   for (const auto* members : all)
     for (const auto& [name, member] : *members) {
-      if (member.observer) continue;
+      if (member.is_guest()) continue;
       joined_.insert(name);
       if (!member.silent && !member.dropped) lost_.erase(name);
       if (member.silent && lost_.insert(name).second) say_lost(name, member.done, "waiting for it");

@@ -214,5 +214,47 @@ TEST(Hosts, ALostNodeHasItsTimeToComeBack) {
   EXPECT_EQ(master.cause(), "a has not come back within 10.0 s (last tick done: 3 of 20)");
 }
 
+/// Orbit alone, with an agent that has no nodes.
+Coordinator with_hollow_agent() {
+  Coordinator master(options({"orbit"}, 20, 2));
+  EXPECT_FALSE(master.join(agent("hollow")));
+  EXPECT_FALSE(master.join(node("orbit")));
+  master.ready("orbit");
+  return master;
+}
+
+TEST(AgentWithoutNodes, DoesNotHoldTheClock) {
+  Coordinator master = with_hollow_agent();
+  for (Tick tick = 0; tick <= 20; ++tick) {
+    EXPECT_EQ(master.granted(), std::min<Tick>(tick + 1, 20));
+    master.done("orbit", tick);
+  }
+  EXPECT_EQ(master.phase(), Phase::ended);
+}
+
+TEST(AgentWithoutNodes, MaySayWhatItWillOrBeLost) {
+  for (int what = 0; what < 4; ++what) {
+    Coordinator master = with_hollow_agent();
+    if (what == 0) master.done("hollow", 17);
+    if (what == 1) master.fail("hollow", "a reason");
+    if (what == 2) master.leave("hollow", true);
+    if (what == 3) {
+      master.heartbeat("orbit", false, 0, seconds(9));
+      master.check(seconds(9));
+      EXPECT_FALSE(master.members().contains("hollow"));
+    }
+    master.done("orbit", 0, seconds(9));
+    EXPECT_EQ(master.granted(), 2) << what;
+    EXPECT_EQ(master.phase(), Phase::running) << what;
+  }
+}
+
+TEST(AgentWithoutNodes, IsOneOfABoundedNumber) {
+  Coordinator master(options({"orbit", "a"}));
+  EXPECT_FALSE(master.join(agent("host-1")));
+  EXPECT_FALSE(master.join(agent("host-2")));
+  EXPECT_EQ(*master.join(agent("host-3")), "as many agents have joined as there are nodes");
+}
+
 }  // namespace
 }  // namespace dmise

@@ -267,5 +267,44 @@ TEST(Observer, CanTakeNoNodesNameAndPublishesNothing) {
   EXPECT_EQ(*run.master.join(watcher), "an observer publishes nothing");
 }
 
+Coordinator::Request watcher(const std::string& name) {
+  auto request = node(name);
+  request.observer = true;
+  return request;
+}
+
+TEST(Observer, IsForgottenWhenItLeavesFailsOrIsLost) {
+  Scene run;
+  for (const char* name : {"leaves", "fails", "lost"})
+    EXPECT_FALSE(run.master.join(watcher(name), seconds(1)));
+  run.master.leave("leaves", false, seconds(1));
+  run.master.fail("fails", "a reason");
+  run.master.heartbeat("orbit", false, 0, seconds(9));
+  run.master.heartbeat("camera", false, 0, seconds(9));
+  run.master.check(seconds(9));
+  EXPECT_EQ(run.master.members().size(), 2u);
+  EXPECT_THAT(run.master.take_forgotten(), ElementsAre("leaves", "fails", "lost"));
+  EXPECT_THAT(run.master.take_forgotten(), testing::IsEmpty());
+  EXPECT_EQ(run.master.phase(), Phase::running);
+}
+
+TEST(Observer, IsOneOfABoundedNumber) {
+  Scene run;
+  for (int i = 0; i < 64; ++i)
+    EXPECT_FALSE(run.master.join(watcher("watcher " + std::to_string(i))));
+  EXPECT_EQ(*run.master.join(watcher("one more")),
+            "64 observers have joined already: another may join when one leaves");
+  run.master.leave("watcher 7", false);
+  EXPECT_FALSE(run.master.join(watcher("one more")));
+}
+
+TEST(Observer, IsNoNewsForTheNodesOfTheRun) {
+  Scene run;
+  const auto version = run.master.topology_version();
+  run.master.join(watcher("watcher"));
+  run.master.leave("watcher", false);
+  EXPECT_EQ(run.master.topology_version(), version);
+}
+
 }  // namespace
 }  // namespace dmise

@@ -1,0 +1,92 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "time-master/token_bucket.h"
+
+namespace dmise {
+
+struct StrangerLimits {
+  std::size_t messages_of_a_peer = 8;  // that wait at once
+  std::size_t messages = 4096;         // the same of all peers
+  std::size_t bytes = 16 << 20;        // the same
+  RateLimit rate;                      // of each peer
+};
+
+/// Messages of those for whom the clock does not wait, until there is time for them: peers take
+/// turns, each at a bounded rate, and what a peer sends beyond its bounds is ignored and counted.
+template <class Message>
+class StrangerQueue {
+ public:
+  explicit StrangerQueue(const StrangerLimits& limits) : limits_(limits), rates_(limits.rate) {}
+
+  /// False when the message is ignored.
+  bool push(std::string_view peer, Message message, std::size_t bytes) {
+    const auto found = waiting_.find(peer);
+    const std::size_t own = found == waiting_.end() ? 0 : found->second.size();
+    if (own >= limits_.messages_of_a_peer || messages_ >= limits_.messages ||
+        bytes_ + bytes > limits_.bytes) {
+      ++ignored_;
+      return false;
+    }
+    auto& queue = found != waiting_.end() ? found->second : waiting_[std::string(peer)];
+    queue.emplace_back(std::move(message), bytes);
+    if (own == 0) turns_.emplace_back(peer);
+    ++messages_;
+    bytes_ += bytes;
+    return true;
+  }
+
+  /// The next message whose turn it is; none while those who wait are beyond their rate.
+  std::optional<Message> take(Instant now) {
+    for (std::size_t looked = turns_.size(); looked > 0; --looked) {
+      const std::string peer = std::move(turns_.front());
+      turns_.pop_front();
+      if (!rates_.take(peer, now)) {
+        turns_.push_back(peer);
+        continue;
+      }
+      const auto found = waiting_.find(peer);
+      auto [message, bytes] = std::move(found->second.front());
+      found->second.pop_front();
+      --messages_;
+      bytes_ -= bytes;
+      if (found->second.empty())
+        waiting_.erase(found);
+      else
+        turns_.push_back(peer);
+      return std::move(message);
+    }
+    return std::nullopt;
+  }
+
+  /// When `take` has something, unless more comes; none when nobody waits.
+  std::optional<Instant> next_due(Instant now) {
+    std::optional<Instant> next;
+    for (const std::string& peer : turns_) {
+      const Instant due = rates_.next(peer, now);
+      if (!next || due < *next) next = due;
+      if (*next <= now) break;
+    }
+    return next;
+  }
+
+  std::size_t size() const { return messages_; }
+  /// Messages ignored since the last call.
+  std::uint64_t take_ignored() { return std::exchange(ignored_, 0); }
+
+ private:
+  StrangerLimits limits_;
+  PeerRates rates_;
+  std::map<std::string, std::deque<std::pair<Message, std::size_t>>, std::less<>> waiting_;
+  std::deque<std::string> turns_;  // peers with waiting messages
+  std::size_t messages_ = 0, bytes_ = 0;
+  std::uint64_t ignored_ = 0;
+};
+
+}  // namespace dmise
