@@ -20,7 +20,7 @@ def tell(socket, **body):
 def heartbeats():
     socket = context.socket(zmq.DEALER)
     socket.connect(address)
-    heartbeat = node_pb2.Heartbeat(name=name, incarnation=welcome.incarnation)
+    heartbeat = node_pb2.Heartbeat(name=name, incarnation=welcome.incarnation, token=welcome.heartbeat_token)
     while not over.wait(welcome.heartbeat_s):
         tell(socket, heartbeat=heartbeat)
         while socket.poll(0):

@@ -233,6 +233,7 @@ class HostAgent {
                                       : "the agent " + options_.name + " that " + name +
                                             " joined is gone; another has taken its place"));
     }
+    if (heartbeat.token() != peer->heartbeat_token) return;  // another's, in its name
     if (!barrier_->nodes().contains(name))
       return voice_.reply(sender, voice_.expelled("the run goes on without " + name));
     connections_.belongs(frame, name);
@@ -283,7 +284,8 @@ class HostAgent {
     asking_.erase(asked);
     if (answer.has_welcome()) {
       auto* welcome = answer.mutable_welcome();
-      directory_.add(peer.routing_id, welcome->incarnation(), peer.join);
+      directory_.add(peer.routing_id, welcome->incarnation(), peer.join,
+                     welcome->heartbeat_token());
       owners_.add(peer.join);
       barrier_->join(name, request_of(peer.join).node.schedule, welcome->incarnation(),
                      welcome->resume_tick(), now());
@@ -391,7 +393,7 @@ class HostAgent {
   zmq::socket_t publishers_, subscribers_;  // the nodes' broker
   zmq::socket_t to_broker_, from_broker_;   // the run's
   PeerMonitor connections_;
-  std::vector<int> broken_;  // of these, as of now
+  std::vector<std::uint64_t> broken_;  // of these, as of now
   PeerDirectory directory_;
   TopicOwners owners_;
   HostVoice voice_;

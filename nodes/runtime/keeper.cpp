@@ -68,6 +68,7 @@ void Keeper::beat() {
   auto* heartbeat = message.mutable_heartbeat();
   heartbeat->set_name(options_.name);
   heartbeat->set_incarnation(options_.incarnation);
+  heartbeat->set_token(options_.heartbeat_token);
   heartbeat->set_computing(computing_.load(std::memory_order_relaxed));
   heartbeat->set_progress(options_.progress ? options_.progress() : 0);
   {

@@ -20,6 +20,7 @@ struct KeeperOptions {
   std::string name;
   std::uint64_t run_id = 0;
   std::uint64_t incarnation = 0;
+  std::uint64_t heartbeat_token = 0;
   std::chrono::nanoseconds heartbeat{};
   std::chrono::nanoseconds silent_after{};  // of the master
   std::chrono::nanoseconds stop_within{0};  // a step that goes on for longer after the end of the

@@ -10,10 +10,11 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
+#include <sstream>
 
 #include "core/base/error.h"
+#include "nodes/runtime/control_rules.h"
 
 namespace dmise {
 namespace {
@@ -21,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t key_characters = 40;
+constexpr off_t longest_file = 16 << 20;  // a ring of 100,000 keys
 
 std::string path_of(const std::string& directory, const std::string& name, const char* ending) {
   if (name.empty() || name.find('/') != std::string::npos)
@@ -56,19 +58,63 @@ struct Entry {
   std::set<std::string> nodes;
 };
 
-/// What a NAME.key or NAME.pub says, or each part of a ring behind its "name NAME".
+/// The text of a file of keys. Throws `ConfigError`; waits for nobody who might write to it.
+std::string text_of_file(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  if (file < 0) throw ConfigError(path + ": can't be read: " + std::strerror(errno));
+  struct stat status {};
+  std::string text;
+  std::string fault;
+  if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode))
+    fault = "must be a regular file";
+  else if (status.st_size > longest_file)
+    fault = "is longer than a file of keys can be";
+  char buffer[4096];
+  while (fault.empty()) {
+    const ssize_t size = read(file, buffer, sizeof buffer);
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0) fault = std::string("can't be read: ") + std::strerror(errno);
+    if (size <= 0) break;
+    text.append(buffer, std::size_t(size));
+    if (off_t(text.size()) > longest_file) fault = "is longer than a file of keys can be";
+  }
+  close(file);
+  if (!fault.empty()) throw ConfigError(path + ": " + fault);
+  return text;
+}
+
+void require_key(const std::string& path, const char* half, const std::string& key) {
+  if (!is_key(key))
+    throw ConfigError(path + ": not a key of dmise keygen: its " + half + " key has " +
+                      std::to_string(key.size()) + " of " + std::to_string(key_characters) +
+                      " characters of Z85");
+}
+
+/// What a NAME.key or NAME.pub says, or each part of a ring behind its "name NAME". Throws
+/// `ConfigError` for a file that is none or not whole.
 std::vector<Entry> read_entries(const fs::path& path) {
   std::vector<Entry> entries{{path.stem().string(), {}, false, {}}};
-  std::ifstream file(path);
+  std::istringstream file(text_of_file(path));
   std::string word, value;
-  while (file >> word >> value) {
-    if (word == "name") entries.push_back({value, {}, false, {}});
+  bool is_ring = false;
+  while (file >> word) {
+    if (!(file >> value))
+      throw ConfigError(path.string() + ": not a key of dmise keygen: nothing follows \"" +
+                        one_line(word) + "\"");
+    if (word == "name") {
+      if (!is_ring) entries.clear();
+      is_ring = true;
+      entries.push_back({value, {}, false, {}});
+    }
     if (word == "public") entries.back().key.public_key = value;
     if (word == "secret") entries.back().key.secret_key = value;
     if (word == may_word) entries.back().truth = value == "truth";
     if (word == speaks_for_word) entries.back().nodes.insert(value);
   }
-  std::erase_if(entries, [](const Entry& entry) { return !is_key(entry.key.public_key); });
+  for (const Entry& entry : entries) {
+    require_key(path, "public", entry.key.public_key);
+    if (!entry.key.secret_key.empty()) require_key(path, "secret", entry.key.secret_key);
+  }
   return entries;
 }
 
@@ -110,14 +156,29 @@ mode_t mode_of(const std::string& path) {
   return stat(path.c_str(), &status) == 0 ? status.st_mode : 0;
 }
 
+/// The ring that has a key of `name`, which is written to `key`. Throws `ConfigError` when none has
+/// and one could not be read: it may be that of another.
+std::optional<std::string> ring_of(const std::string& directory, const std::string& ending,
+                                   const std::string& name, KeyPair* key) {
+  std::optional<ConfigError> fault;
+  for (const auto& ring : files_in(directory, ending)) try {
+      for (const auto& entry : read_entries(ring)) {
+        if (entry.name != name) continue;
+        if (key) *key = entry.key;
+        return ring;
+      }
+    } catch (const ConfigError& error) {
+      if (!fault) fault = error;
+    }
+  if (fault) throw *fault;
+  return std::nullopt;
+}
+
 /// The file that holds the pair of `name`, if there is one.
 std::optional<std::string> file_of_key(const std::string& directory, const std::string& name) {
   const std::string own = path_of(directory, name, ".key");
   if (mode_of(own)) return own;
-  for (const auto& ring : files_in(directory, ".keys"))
-    for (const auto& entry : read_entries(ring))
-      if (entry.name == name) return ring;
-  return std::nullopt;
+  return ring_of(directory, ".keys", name, nullptr);
 }
 
 }  // namespace
@@ -163,22 +224,31 @@ KeyPair read_key(const std::string& directory, const std::string& name) {
   throw ConfigError(*path + ": not a key of dmise keygen");
 }
 
-std::map<std::string, AllowedKey> read_allowed(const std::string& directory) {
+std::map<std::string, AllowedKey> read_allowed(const std::string& directory,
+                                               std::vector<std::string>* left_out) {
   std::map<std::string, AllowedKey> allowed;
   for (const char* ending : {".pubs", ".pub"})
-    for (const auto& path : files_in(directory, ending))
-      for (const auto& entry : read_entries(path))
-        allowed[entry.key.public_key] = {entry.name, entry.key.public_key, entry.truth,
-                                         entry.nodes};
+    for (const auto& path : files_in(directory, ending)) try {
+        for (const auto& entry : read_entries(path))
+          allowed[entry.key.public_key] = {entry.name, entry.key.public_key, entry.truth,
+                                           entry.nodes};
+      } catch (const ConfigError& error) {
+        if (left_out) left_out->push_back(error.what());
+      }
   return allowed;
 }
 
+void check_keys(const std::string& directory) {
+  for (const char* ending : {".pubs", ".pub"})
+    for (const auto& path : files_in(directory, ending)) read_entries(path);
+}
+
 std::string public_key_of(const std::string& directory, const std::string& name) {
-  for (const auto& entry : read_entries(path_of(directory, name, ".pub")))
-    if (entry.name == name) return entry.key.public_key;
-  for (const auto& ring : files_in(directory, ".pubs"))
-    for (const auto& entry : read_entries(ring))
+  if (const std::string own = path_of(directory, name, ".pub"); mode_of(own))
+    for (const auto& entry : read_entries(own))
       if (entry.name == name) return entry.key.public_key;
+  KeyPair pair;
+  if (ring_of(directory, ".pubs", name, &pair)) return pair.public_key;
   throw ConfigError(path_of(directory, name, ".pub") + ": no public key of " + name);
 }
 

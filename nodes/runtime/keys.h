@@ -43,8 +43,13 @@ void make_rings(const std::string& directory,
 KeyPair read_key(const std::string& directory, const std::string& name);
 
 /// All NAME.pub of a directory, by public key. A file that is none is left out: its owner is
-/// refused.
-std::map<std::string, AllowedKey> read_allowed(const std::string& directory);
+/// refused. `left_out`: where to say why, if anywhere.
+std::map<std::string, AllowedKey> read_allowed(const std::string& directory,
+                                               std::vector<std::string>* left_out = nullptr);
+
+/// Throws `ConfigError` with file and reason for the first NAME.pub, or ring, that is none: not
+/// whole, not a regular file, or not to be read. Waits for nobody.
+void check_keys(const std::string& directory);
 
 /// The public key of `name`. Throws `ConfigError` when there is none.
 std::string public_key_of(const std::string& directory, const std::string& name);

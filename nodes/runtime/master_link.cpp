@@ -52,6 +52,7 @@ void MasterLink::keep(KeeperOptions options, std::optional<zmq::socket_t> resend
   options.name = name_;
   options.run_id = welcome_.run_id();
   options.incarnation = welcome_.incarnation();
+  options.heartbeat_token = welcome_.heartbeat_token();
   options.heartbeat = duration_cast<nanoseconds>(duration<double>(welcome_.heartbeat_s()));
   options.silent_after = duration_cast<nanoseconds>(duration<double>(welcome_.silent_after_s()));
   options.stop = stop_;

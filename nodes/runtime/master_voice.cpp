@@ -1,5 +1,7 @@
 #include "nodes/runtime/master_voice.h"
 
+#include <algorithm>
+
 #include "nodes/runtime/master_words.h"
 #include "nodes/runtime/socket.h"
 
@@ -38,8 +40,8 @@ void MasterVoice::publish() {
   ticks_.send(to_frame(grant_), zmq::send_flags::none);
 }
 
-v1::MasterMessage MasterVoice::welcome(const std::string& name,
-                                       const std::string& tick_endpoint) const {
+v1::MasterMessage MasterVoice::welcome(const std::string& name, const std::string& tick_endpoint,
+                                       std::uint64_t heartbeat_token) const {
   const auto in_seconds = [](Instant t) { return std::chrono::duration<double>(t).count(); };
   const CoordinatorOptions& options = coordinator_.options();
   v1::MasterMessage answer;
@@ -56,6 +58,7 @@ v1::MasterMessage MasterVoice::welcome(const std::string& name,
   welcome->set_silent_after_s(in_seconds(options.silent_after));
   welcome->set_progress_after_s(in_seconds(options.progress_after));
   welcome->set_tick_endpoint(tick_endpoint);
+  welcome->set_heartbeat_token(heartbeat_token);
   return answer;
 }
 
@@ -85,16 +88,29 @@ void MasterVoice::send_topology() {
   topology_version_ = coordinator_.topology_version();
   consumed_ = directory_.consumed();
   const v1::Topology topology = directory_.topology();
-  for (const auto& [name, peer] : directory_.all()) {
-    if (!peer.join.host().empty()) continue;  // its agent tells it
-    v1::MasterMessage message;
-    *message.mutable_topology() = topology_for(name, topology, coordinator_);
-    if (peer.join.agent()) {
-      for (const std::string& topic : coordinator_.members().at(name).node.produces)
-        if (consumed_.contains(topic)) message.mutable_topology()->add_reported(topic);
-    }
-    reply(peer.routing_id, message);
+  for (const auto& [name, peer] : directory_.all()) send_topology_to(peer, topology);
+}
+
+void MasterVoice::send_topology_to(const Peer& peer, const v1::Topology& topology) {
+  if (!peer.join.host().empty()) return;  // its agent tells it
+  const std::string& name = peer.join.name();
+  v1::MasterMessage message;
+  *message.mutable_topology() = topology_for(name, topology, coordinator_);
+  if (peer.join.agent()) {
+    for (const std::string& topic : coordinator_.members().at(name).node.produces)
+      if (consumed_.contains(topic)) message.mutable_topology()->add_reported(topic);
   }
+  reply(peer.routing_id, message);
+}
+
+void MasterVoice::tell_observer(const std::string& name) {
+  auto consumed = directory_.consumed();
+  const bool more =
+      !std::includes(consumed_.begin(), consumed_.end(), consumed.begin(), consumed.end());
+  consumed_ = std::move(consumed);
+  const v1::Topology topology = directory_.topology();
+  for (const auto& [other, peer] : directory_.all())
+    if (other == name || (more && peer.join.agent())) send_topology_to(peer, topology);
 }
 
 }  // namespace dmise

@@ -27,12 +27,15 @@ class MasterVoice {
   void refuse(std::string_view routing_id, const std::string& reason, const std::string& name);
   /// To be told to all who consume with what is said next.
   void note(const TickTally& tally);
+  /// An observer has joined a run under way: nobody else needs to know, but agents what it wants.
+  void tell_observer(const std::string& name);
   /// Says what has changed since it was last said; true if something had.
   bool say_news();
   /// Says the grant as it is now.
   void publish();
 
-  v1::MasterMessage welcome(const std::string& name, const std::string& tick_endpoint) const;
+  v1::MasterMessage welcome(const std::string& name, const std::string& tick_endpoint,
+                            std::uint64_t heartbeat_token) const;
   /// The grant as it is now.
   v1::MasterMessage grant() const;
   /// The same for the process `member`, with the manifests of all that it may still wait for.
@@ -45,6 +48,7 @@ class MasterVoice {
 
  private:
   void send_topology();
+  void send_topology_to(const Peer& peer, const v1::Topology& topology);
 
   zmq::socket_t& router_;
   zmq::socket_t& ticks_;

@@ -1,7 +1,6 @@
 #include "nodes/runtime/metrics.h"
 
-#include <prometheus/collectable.h>
-#include <prometheus/exposer.h>
+#include <prometheus/text_serializer.h>
 
 #include <atomic>
 #include <charconv>
@@ -12,6 +11,7 @@
 #include "core/base/error.h"
 #include "nodes/runtime/json_log.h"
 #include "nodes/runtime/metric_families.h"
+#include "nodes/runtime/metrics_server.h"
 
 namespace dmise {
 namespace {
@@ -43,18 +43,21 @@ MetricsAddress metrics_address(const std::string& text) {
 }
 
 /// The last figures told.
-struct Metrics::Board : prometheus::Collectable {
+struct Metrics::Board {
   Board(std::string program_name, std::string node_name)
       : program(std::move(program_name)), node(std::move(node_name)) {}
 
-  std::vector<prometheus::MetricFamily> Collect() const override {
+  /// In Prometheus's text format.
+  std::string page() const {
     MetricFamilies all = families_of_build(program, node);
     append(&all, families_of(process_figures(), started_s));
-    const std::lock_guard lock(mutex);
-    if (of_node) append(&all, families_of(*of_node, node));
-    if (of_broker) append(&all, families_of(*of_broker));
-    if (of_run) append(&all, families_of(*of_run));
-    return all;
+    {
+      const std::lock_guard lock(mutex);
+      if (of_node) append(&all, families_of(*of_node, node));
+      if (of_broker) append(&all, families_of(*of_broker));
+      if (of_run) append(&all, families_of(*of_run));
+    }
+    return prometheus::TextSerializer().Serialize(all);
   }
 
   const std::string program, node;
@@ -65,25 +68,17 @@ struct Metrics::Board : prometheus::Collectable {
   std::optional<RunStatus> of_run;
 };
 
-struct Metrics::Server {
-  explicit Server(const MetricsAddress& address)
-      : exposer({"listening_ports", address.host + ":" + std::to_string(address.port),
-                 "num_threads", "2", "request_timeout_ms", "5000"}) {}
-  prometheus::Exposer exposer;
-};
-
 Metrics::Metrics(const std::string& where, const std::string& program, const std::string& node)
     : board_(std::make_shared<Board>(program, node)) {
   const MetricsAddress address = metrics_address(where);
   try {
-    server_ = std::make_unique<Server>(address);
-  } catch (const std::exception&) {  // its text names no reason
+    server_ = std::make_unique<MetricsServer>(address.host, address.port,
+                                              [board = board_] { return board->page(); });
+  } catch (const Error& error) {
     throw Error("metrics: can't listen at " + address.host + ":" + std::to_string(address.port) +
-                ": the port is taken, or the host is not this one");
+                ": " + error.what());
   }
-  server_->exposer.RegisterCollectable(board_);
-  const int port = server_->exposer.GetListeningPorts().at(0);
-  url_ = "http://" + address.host + ":" + std::to_string(port) + "/metrics";
+  url_ = "http://" + address.host + ":" + std::to_string(server_->port()) + "/metrics";
   metrics_of_process = this;
   log_event(spdlog::level::info, "metrics_served", {{"url", url_}}, "metrics at " + url_);
 }

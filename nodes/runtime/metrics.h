@@ -7,6 +7,8 @@
 
 namespace dmise {
 
+class MetricsServer;
+
 struct MetricsAddress {
   std::string host = "127.0.0.1";
   int port = 0;  // 0: any free one
@@ -15,8 +17,8 @@ struct MetricsAddress {
 /// Reads "auto", "PORT" or "HOST:PORT". Throws `ConfigError`.
 MetricsAddress metrics_address(const std::string& text);
 
-/// The figures of this process, served at /metrics over HTTP in Prometheus's text format from
-/// threads of their own. The process tells its figures as they change; a scrape takes the last.
+/// The figures of this process, served at /metrics over HTTP in Prometheus's text format from a
+/// thread of their own. The process tells its figures as they change; a scrape takes the last.
 class Metrics {
  public:
   /// `where`: see metrics_address. Throws `ConfigError`, or `Error` when the port is taken.
@@ -37,9 +39,8 @@ class Metrics {
 
  private:
   struct Board;
-  struct Server;
   std::shared_ptr<Board> board_;
-  std::unique_ptr<Server> server_;
+  std::unique_ptr<MetricsServer> server_;
   std::string url_;
 };
 

@@ -19,11 +19,21 @@ void fill(v1::Publisher* publisher, const Peer& peer) {
 }  // namespace
 
 const Peer& PeerDirectory::add(std::string_view routing_id, std::uint64_t incarnation,
-                               const v1::Join& join) {
+                               const v1::Join& join, std::uint64_t heartbeat_token) {
   if (const auto earlier = peers_.find(join.name()); earlier != peers_.end())
     names_.erase(earlier->second.routing_id);
   names_[std::string(routing_id)] = join.name();
-  return peers_[join.name()] = {std::string(routing_id), incarnation, join};
+  return peers_[join.name()] = {std::string(routing_id), incarnation, join, heartbeat_token};
+}
+
+void PeerDirectory::remove(const std::string& name) {
+  const auto peer = peers_.find(name);
+  if (peer == peers_.end()) return;
+  // A node of a host shares its agent's connection.
+  if (const auto own = names_.find(peer->second.routing_id);
+      own != names_.end() && own->second == name)
+    names_.erase(own);
+  peers_.erase(peer);
 }
 
 const Peer& PeerDirectory::add_behind(std::string_view agent, std::uint64_t incarnation,
@@ -57,7 +67,7 @@ v1::Topology PeerDirectory::topology() const {
       topology.set_broker_incarnation(peer.incarnation);
       topology.set_publish_endpoint(peer.join.broker().publish_endpoint());
       topology.set_subscribe_endpoint(peer.join.broker().subscribe_endpoint());
-    } else if (!peer.join.agent()) {
+    } else if (!peer.join.agent() && !peer.join.observer()) {
       fill(topology.add_publishers(), peer);
     }
   }
@@ -70,7 +80,7 @@ void PeerDirectory::describe(v1::Endpoints* endpoints) const {
   for (const auto& [name, peer] : peers_) {
     if (peer.join.has_broker())
       *endpoints->mutable_broker() = peer.join.broker();
-    else if (!peer.join.agent())
+    else if (!peer.join.agent() && !peer.join.observer())
       fill(endpoints->add_publishers(), peer);
   }
 }

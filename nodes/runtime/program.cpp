@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "nodes/runtime/file_limit.h"
 #include "nodes/runtime/log.h"
 #include "nodes/runtime/metrics.h"
 
@@ -42,6 +43,7 @@ int run_program(CLI::App& app, const CommonFlags& flags, int argc, char** argv,
   try {
     const std::string name = flags.name.empty() ? app.get_name() : flags.name;
     start_log(name, flags.log_level, flags.log_format);
+    raise_file_limit();
     std::optional<Metrics> metrics;
     if (!flags.metrics.empty() && !flags.check)
       metrics.emplace(flags.metrics, app.get_name(), name);

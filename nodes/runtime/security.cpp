@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "nodes/runtime/event.h"
+#include "nodes/runtime/limited_log.h"
 
 namespace dmise {
 namespace {
@@ -55,7 +56,9 @@ std::string properties_of(const AllowedKey& owner) {
 
 Security::Security(std::string directory, const std::string& name, std::string via)
     : directory_(std::move(directory)), via_(std::move(via)) {
-  if (on()) key_ = read_key(directory_, name);
+  if (!on()) return;
+  key_ = read_key(directory_, name);
+  check_keys(directory_);
 }
 
 void Security::require_for(const std::string& address) const {
@@ -101,12 +104,13 @@ struct Doorkeeper::Work {
       std::vector<zmq::pollitem_t> items{{nullptr, quit.fd(), ZMQ_POLLIN, 0},
                                          {requests.handle(), 0, ZMQ_POLLIN, 0}};
       try {
-        zmq::poll(items, std::chrono::milliseconds(-1));
+        zmq::poll(items, std::chrono::milliseconds(1000));
       } catch (const zmq::error_t& error) {
         if (error.num() == EINTR) continue;
         return;
       }
       if (items[1].revents) answer();
+      log.sum_up();
     }
   }
 
@@ -121,15 +125,19 @@ struct Doorkeeper::Work {
     const bool whole = request.size() == 7 && request[5] == "CURVE" && request[6].size() == 32;
     char key[41] = "";
     if (whole) zmq_z85_encode(key, reinterpret_cast<const std::uint8_t*>(request[6].data()), 32);
-    const auto allowed = read_allowed(directory);
+    std::vector<std::string> left_out;
+    const auto allowed = read_allowed(directory, &left_out);
+    for (const std::string& fault : left_out) log.warn("key files left out", fault);
     const auto who = allowed.find(key);
     const bool welcome =
         whole && who != allowed.end() && (request[2] != "truth" || who->second.truth);
     if (!welcome)
-      spdlog::warn("refused a connection to {} from {}: {}",
-                   request.size() > 2 ? request[2] : "nothing",
-                   request.size() > 3 ? request[3] : "nowhere",
-                   who == allowed.end() ? "no such key is allowed" : who->second.name + " may not");
+      log.warn(
+          "connections refused",
+          fmt::format(
+              "refused a connection to {} from {}: {}", request.size() > 2 ? request[2] : "nothing",
+              request.size() > 3 ? request[3] : "nowhere",
+              who == allowed.end() ? "no such key is allowed" : who->second.name + " may not"));
     const std::string properties = welcome ? properties_of(who->second) : "";
     for (const std::string& part :
          {std::string("1.0"), request.size() > 1 ? request[1] : std::string(),
@@ -142,6 +150,7 @@ struct Doorkeeper::Work {
   std::string directory;
   zmq::socket_t requests;
   Event quit;
+  LimitedLog log;
   std::thread thread;
 };
 

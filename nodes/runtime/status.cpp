@@ -39,21 +39,39 @@ v1::Control::Action to_wire(ClockAction action) {
   return v1::Control::ACTION_ABORT;
 }
 
-RunStatus ask(const std::string& address, double within_s, const v1::NodeMessage& question,
-              const Security& security) {
-  zmq::context_t context(1);
-  zmq::socket_t socket = make_socket(context, zmq::socket_type::dealer, max_control_bytes);
-  connect_to(socket, address, security, master_name);
-  socket.send(to_frame(question), zmq::send_flags::none);
-  const auto within = std::chrono::duration<double>(within_s);
-  std::vector<zmq::pollitem_t> items{{socket.handle(), 0, ZMQ_POLLIN, 0}};
-  wait_for(items, std::chrono::duration_cast<std::chrono::nanoseconds>(within));
-  const auto frame = receive_one(socket);
-  v1::MasterMessage answer;
-  if (!frame || !from_frame(*frame, &answer) || !answer.has_endpoints())
-    throw Error("no time-master answers at " + address);
+/// A conversation with a time-master. Throws `Error` when there is no answer within the time.
+class Conversation {
+ public:
+  Conversation(const std::string& address, double within_s, const Security& security)
+      : address_(address),
+        deadline_(now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                              std::chrono::duration<double>(within_s))),
+        socket_(make_socket(context_, zmq::socket_type::dealer, max_control_bytes)) {
+    connect_to(socket_, address, security, master_name);
+  }
 
-  return status_of(answer.endpoints());
+  RunStatus ask(const v1::NodeMessage& question) {
+    socket_.send(to_frame(question), zmq::send_flags::none);
+    std::vector<zmq::pollitem_t> items{{socket_.handle(), 0, ZMQ_POLLIN, 0}};
+    wait_for(items, deadline_ - now());
+    const auto frame = receive_one(socket_);
+    v1::MasterMessage answer;
+    if (!frame || !from_frame(*frame, &answer) || !answer.has_endpoints())
+      throw Error("no time-master answers at " + address_);
+    return status_of(answer.endpoints());
+  }
+
+ private:
+  std::string address_;
+  std::chrono::nanoseconds deadline_;
+  zmq::context_t context_{1};
+  zmq::socket_t socket_;
+};
+
+v1::NodeMessage hello() {
+  v1::NodeMessage question;
+  question.mutable_hello();
+  return question;
 }
 
 }  // namespace
@@ -87,18 +105,18 @@ RunStatus status_of(const v1::Endpoints& e) {
 }
 
 RunStatus ask_master(const std::string& address, double within_s, const Security& security) {
-  v1::NodeMessage question;
-  question.mutable_hello();
-  return ask(address, within_s, question, security);
+  return Conversation(address, within_s, security).ask(hello());
 }
 
 RunStatus control_master(const std::string& address, double within_s, ClockAction action, Tick tick,
                          const std::string& reason, const Security& security) {
+  Conversation conversation(address, within_s, security);
   v1::NodeMessage question;
+  question.set_run_id(conversation.ask(hello()).run_id);
   question.mutable_control()->set_action(to_wire(action));
   question.mutable_control()->set_tick(tick);
   question.mutable_control()->set_reason(reason);
-  return ask(address, within_s, question, security);
+  return conversation.ask(question);
 }
 
 }  // namespace dmise

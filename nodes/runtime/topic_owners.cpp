@@ -18,6 +18,10 @@ void TopicOwners::add(const v1::Join& join) {
     for (const std::string& topic : *topics) owners_[topic] = {join.name(), join.host()};
 }
 
+void TopicOwners::remove(const std::string& node) {
+  std::erase_if(owners_, [&](const auto& entry) { return entry.second.node == node; });
+}
+
 bool TopicOwners::keep_own(const std::string& member, v1::Done* done) const {
   auto* published = done->mutable_published();
   const auto others =
