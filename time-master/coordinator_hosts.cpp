@@ -120,8 +120,8 @@ void Coordinator::forget(const std::string& name) {
   std::erase_if(silent_behind_, [&](const auto& node) { return !behind_.contains(node); });
   const auto member = members_.find(name);
   if (member == members_.end()) return;
-  // The names of observers are without number: nothing is kept of them.
-  if (member->second.observer) incarnations_.erase(name);
+  // Names of observers and agents are without number: nothing is kept of them.
+  if (!is_expected(name)) incarnations_.erase(name);
   forgotten_.push_back(member->first);
   members_.erase(member);
 }

@@ -37,7 +37,7 @@ constexpr milliseconds longest_unheard{250};  // between a connection's end and 
 constexpr milliseconds guard_interval{20};    // between two looks at what connections bring
 constexpr int most_control_messages = 1000;   // of one connection, that wait to be read
 constexpr int most_unread_grants = 4096;      // of one who listens; heartbeats repeat what is lost
-constexpr std::int64_t longest_subscription = 256;
+constexpr std::int64_t longest_subscription = 1024;    // the handshake with keys needs so much
 constexpr std::size_t max_unasked_bytes = 4096;        // of what a guest says
 constexpr std::size_t most_observed_bytes = 64 << 10;  // of the topics of one observer
 
