@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <string>
 
@@ -14,20 +15,19 @@ class RawPeer {
  public:
   /// `address`: "tcp://127.0.0.1:PORT". `type`: of its socket, "DEALER".
   RawPeer(const std::string& address, const std::string& type)
-      : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+      : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in there{};
     there.sin_family = AF_INET;
     there.sin_port = htons(std::uint16_t(std::atoi(address.c_str() + address.rfind(':') + 1)));
     there.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    if (connect(fd_, reinterpret_cast<const sockaddr*>(&there), sizeof there) != 0) return;
-    const std::string zeros(32, '\0');
-    say("\xff" + zeros.substr(0, 8) + "\x7f\x03" + zeros.substr(0, 1) + "NULL" +
-        zeros.substr(0, 16 + 32));
+    if (::connect(fd_, reinterpret_cast<const sockaddr*>(&there), sizeof there) != 0) return;
+    const auto zeros = [](std::size_t count) { return std::string(count, '\0'); };
+    say("\xff" + zeros(8) + "\x7f\x03" + zeros(1) + "NULL" + zeros(16 + 32));
     const std::string ready =
         "\x05READY" + property("Socket-Type", type) + property("Identity", "");
     say(std::string("\x04") + char(ready.size()) + ready);
   }
-  ~RawPeer() { close(fd_); }
+  ~RawPeer() { ::close(fd_); }
   RawPeer(const RawPeer&) = delete;
   RawPeer& operator=(const RawPeer&) = delete;
 
@@ -37,8 +37,9 @@ class RawPeer {
       pollfd writable{fd_, POLLOUT, 0};
       if (poll(&writable, 1, within_ms) != 1) return false;
       const ssize_t size =
-          send(fd_, bytes.data() + said, bytes.size() - said, MSG_NOSIGNAL | MSG_DONTWAIT);
-      if (size < 0) return false;
+          ::send(fd_, bytes.data() + said, bytes.size() - said, MSG_NOSIGNAL | MSG_DONTWAIT);
+      if (size < 0 && errno != EAGAIN) return false;
+      if (size < 0) continue;
       said += std::size_t(size);
     }
     return true;

@@ -26,7 +26,7 @@ struct SlowClient {
     address.sin_port = htons(std::uint16_t(port));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     connected = connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-    send(fd, text.data(), text.size(), MSG_NOSIGNAL);
+    ::send(fd, text.data(), text.size(), MSG_NOSIGNAL);
   }
   ~SlowClient() { close(fd); }
   SlowClient(const SlowClient&) = delete;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "nodes/runtime/socket.h"
 #include "tests/runtime/network_threads.h"
 #include "tests/runtime/raw_peer.h"
 #include "tests/runtime/toy.h"
