@@ -13,9 +13,10 @@ namespace dmise {
 namespace {
 
 /// Of light from all around, half of what is scattered out of the line of sight is replaced by what
-/// is scattered into it. Noll et al. 2012, A&A 543, A92 find 0.3 to 0.7 for zodiacal light and
-/// airglow.
+/// is scattered into it. Noll et al. 2012, A&A 543, A92 find 0.3 to 0.7 for zodiacal light.
 constexpr double diffuse_share_of_extinction = 0.5;
+// Airglow, given as it is seen in the zenith, falls by the whole for each airmass beyond the first:
+// Krisciunas & Schaefer 1991, PASP 103, 1033, equation 2, and to 5 % Noll et al.
 
 }  // namespace
 
@@ -84,7 +85,9 @@ double SkyModel::above_air_s10(SkyPart part, const Vec<Enu>& direction) const {
 double SkyModel::above_clouds_s10(SkyPart part, const Vec<Enu>& direction) const {
   switch (part) {
     case SkyPart::airglow:
-      return parts_.airglow ? airglow_s10(*parts_.airglow, direction.z, diffuse_mag_) : 0.0;
+      return parts_.airglow ? airglow_s10(*parts_.airglow, direction.z,
+                                          diffuse_mag_ / diffuse_share_of_extinction)
+                            : 0.0;
     case SkyPart::zodiacal_light:
       if (!parts_.zodiacal_light) return 0.0;
       break;
