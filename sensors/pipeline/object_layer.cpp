@@ -40,6 +40,16 @@ bool changes_abruptly(const std::vector<ObjectSample>& samples) {
   return least < abrupt_ratio * most;
 }
 
+/// By Simpson's rule: an odd number of samples at even times.
+double mean_sunlit(const std::vector<ObjectSample>& samples) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const bool at_end = k == 0 || k + 1 == samples.size();
+    sum += samples[k].sunlit * (at_end ? 1.0 : k % 2 ? 4.0 : 2.0);
+  }
+  return sum / (3.0 * double(samples.size() - 1));
+}
+
 bool is_resolved_at(const View& view, const ObjectSampler& sampler, std::size_t object,
                     const ExposureInstant& at) {
   const ObjectShape* shape = sampler.shape(object);
@@ -128,8 +138,6 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
     const auto place = mid.places.satellite(motion.position_m, motion.slope_m_per_s);
     const auto [ra, dec] = to_spherical(place.astrometric);
     const auto [apparent_ra, apparent_dec] = to_spherical(place.aberrated);
-    double sunlit = 0.0;
-    for (const auto& s : samples) sunlit += s.sunlit / double(samples.size());
     Truth truth{.sensor = view.sensor().name,
                 .frame = exposure.frame,
                 .catalogue_number = facts.catalogue_number,
@@ -143,7 +151,7 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
                 .apparent_ra_rad = apparent_ra,
                 .apparent_dec_rad = apparent_dec,
                 .phase_angle_rad = sampler.illumination(motion, mid.observer.position_m).phase_rad,
-                .sunlit = sunlit,
+                .sunlit = mean_sunlit(samples),
                 .true_magnitude = sampler.magnitude(object, motion, mid),
                 .rendered_signal_e = light.signal_e,
                 .rendered_x_px = light.x_px,
