@@ -95,6 +95,21 @@ TEST(World, RefusesTimesItDoesNotHold) {
   EXPECT_THROW(world.motion(0, sim_seconds(4)), Error);
 }
 
+TEST(World, HasTheAirThatWasToldLast) {
+  World world;
+  for (Tick k = 0; k < 3; ++k)
+    for (const char* sensor : {"a", "b"})
+      world.add(std::make_shared<const SiteState>(
+          SiteState{.tick = k,
+                    .time = sim_seconds(60.0 * double(k)),
+                    .sensor = sensor,
+                    .pressure_hpa = 1000 + double(k) + (*sensor == 'b' ? 100 : 0)}));
+  EXPECT_EQ(world.site("a", sim_seconds(59))->pressure_hpa, 1000);
+  EXPECT_EQ(world.site("a", sim_seconds(60))->pressure_hpa, 1001);
+  EXPECT_EQ(world.site("b", sim_seconds(500))->pressure_hpa, 1102);
+  EXPECT_EQ(world.site("c", sim_seconds(500)), nullptr);
+}
+
 TEST(World, FindsObjectsByNumberOrByAnUnambiguousName) {
   const ObjectRoster roster{{{.catalogue_number = 5, .name = "DEB"},
                              {.catalogue_number = 6, .name = "DEB"},

@@ -15,6 +15,6 @@ def moon_nl(phase, rho, z, z_moon, k):
     return f * illuminance * 10 ** (-0.4 * k * airmass(z_moon)) * (1 - 10 ** (-0.4 * k * airmass(z)))
 
 
-for case in ((0, 60, 0, 60, 0.172), (30, 30, 45, 30, 0.172), (90, 100, 70, 80, 0.3), (0, 5, 40, 45, 0.172)):
+for case in () if __name__ != "__main__" else ((0, 60, 0, 60, 0.172), (30, 30, 45, 30, 0.172), (90, 100, 70, 80, 0.3), (0, 5, 40, 45, 0.172)):
     b = moon_nl(*case)
     print("{%g, %g, %g, %g, %g, %.6g, %.5f}," % (*case, b, (20.7233 - log(b / 34.08)) / 0.92104))
