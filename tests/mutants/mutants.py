@@ -80,24 +80,21 @@ class Workshop:
     def make(self, targets):
         return run(["ninja", "-C", str(self.build), f"-j{self.jobs}", *targets], self.tree, 3600, self.log) == 0
 
-    def tests_of(self, program):
-        """ctest regex of all tests of a test program."""
-        listed = subprocess.check_output([self.build / "bin" / program, "--gtest_list_tests"], text=True)
-        names = [line.split("#")[0].strip() for line in listed.splitlines()]
-        suites = [name for name in names if name.endswith(".")]
-        return "^(" + "|".join(re.escape(suite) for suite in suites) + ")"
-
-    def failing(self, regex):
+    def failing(self, command):
         """The first test that fails; None when all pass."""
         with open(self.log.name) as read:
             read.seek(0, os.SEEK_END)
-            code = run(["ctest", "--test-dir", str(self.build), "--stop-on-failure", "--no-tests=ignore",
-                        "--output-on-failure", "-R", regex], self.tree, self.timeout_s, self.log)
+            code = run(command, self.tree, self.timeout_s, self.log)
             said = read.read()
         if code == 0:
             return None
-        failed = re.findall(r"^\s*\d+ - (\S+) \((?:Failed|Timeout|SEGFAULT|Subprocess aborted|[^)]*)\)", said, re.M)
-        return failed[0] if failed else "timeout" if code == 124 else "ctest"
+        failed = re.findall(r"^\[  FAILED  \] (\S+?),? |^\s*\d+ - (\S+) \(", said, re.M)
+        return next((name for pair in failed for name in pair if name), "timeout" if code == 124 else "ends badly")
+
+    def command_of(self, program, m):
+        if program.startswith("test_"):
+            return [str(self.build / "bin" / program), "--gtest_fail_fast"]
+        return ["ctest", "--test-dir", str(self.build), "--stop-on-failure", "--output-on-failure", "-R", m["tests"]]
 
     def verdict(self, m):
         path = self.tree / m["file"]
@@ -107,8 +104,7 @@ class Workshop:
             for program in m["programs"]:
                 if not self.make([program]):
                     return "does not build", ""
-                is_test = program.startswith("test_")
-                if by := self.failing(self.tests_of(program) if is_test else m["tests"]):
+                if by := self.failing(self.command_of(program, m)):
                     return "noticed", by
             return "survived", ""
         finally:
