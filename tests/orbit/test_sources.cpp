@@ -47,18 +47,45 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-TEST(Sources, EveryTestThatTheTableOfHardCasesNamesExists) {
-  const fs::path root(DMISE_SOURCE_DIR);
-  std::set<std::string> tests;
-  const std::regex test(R"(TEST(_F|_P)?\(\s*(\w+),\s*(\w+)\))");
+/// Names of all tests, and the text of what registers scripts.
+struct Tests {
+  std::set<std::string> names;
   std::string scripts;
+};
+Tests all_tests(const fs::path& root) {
+  Tests tests;
+  const std::regex test(R"(TEST(_F|_P)?\(\s*(\w+),\s*(\w+)\))");
   for (const auto& entry : fs::recursive_directory_iterator(root / "tests")) {
-    if (entry.path().filename() == "CMakeLists.txt") scripts += text_of(entry.path());
+    if (entry.path().filename() == "CMakeLists.txt") tests.scripts += text_of(entry.path());
     if (entry.path().extension() != ".cpp") continue;
     const std::string text = text_of(entry.path());
     for (std::sregex_iterator m(text.begin(), text.end(), test), end; m != end; ++m)
-      tests.insert((*m)[2].str() + "." + (*m)[3].str());
+      tests.names.insert((*m)[2].str() + "." + (*m)[3].str());
   }
+  return tests;
+}
+
+// `Suite.Test`, or `Suite.Begins*`.
+TEST(Sources, EveryTestThatTheModelsDocumentsNameExists) {
+  const fs::path root(DMISE_SOURCE_DIR);
+  const auto tests = all_tests(root).names;
+  const std::regex name(R"(`([A-Z]\w+\.[A-Z]?\w*)(\*?)`)");
+  int named = 0;
+  for (const auto& entry : fs::directory_iterator(root / "docs/models")) {
+    const std::string text = text_of(entry.path());
+    for (std::sregex_iterator m(text.begin(), text.end(), name), end; m != end; ++m, ++named) {
+      const auto found = tests.lower_bound((*m)[1]);
+      EXPECT_TRUE((*m)[2].length() ? found != tests.end() && found->starts_with((*m)[1].str())
+                                   : tests.contains((*m)[1]))
+          << entry.path() << ": " << m->str();
+    }
+  }
+  EXPECT_GT(named, 30);
+}
+
+TEST(Sources, EveryTestThatTheTableOfHardCasesNamesExists) {
+  const fs::path root(DMISE_SOURCE_DIR);
+  const auto [tests, scripts] = all_tests(root);
   const std::string table = text_of(root / "docs/hard-cases.md");
   const std::regex name(R"(`(\w+)\.(\w+)`)");
   int named = 0;

@@ -63,6 +63,26 @@ TEST(StarLight, VisibleBandsOfAnA0StarAreNearTheirZeroPoints) {
   }
 }
 
+// Reference: B-V and median U-B of the dwarfs of the Yale Bright Star Catalogue,
+// tests/reference/star_colours.py. What docs/models/frames.md says of a black body.
+TEST(StarLight, OfABlackBodyAgainstTheColoursOfDwarfs) {
+  const double colours[][2] = {{-0.2, -0.79}, {-0.1, -0.46}, {0.0, -0.02}, {0.1, 0.10}, {0.2, 0.10},
+                               {0.3, 0.07},   {0.4, -0.02},  {0.5, 0.00},  {0.6, 0.10}, {0.7, 0.24},
+                               {0.9, 0.57},   {1.0, 0.80},   {1.2, 0.97}};
+  const auto magnitude = [](const char* filter, double bv) {
+    const Band band = *filter_named(filter);
+    return magnitude_of_light(StarLight(band).photons_per_s_m2(0, bv) /
+                              zero_point_photons_per_s_m2(band));
+  };
+  double worst_b = 0, worst_u = 0;
+  for (const auto& [bv, ub] : colours) {
+    worst_b = std::max(worst_b, std::abs(magnitude("bessell-B", bv) - bv));
+    worst_u = std::max(worst_u, std::abs(magnitude("bessell-U", bv) - (bv + ub)));
+  }
+  EXPECT_NEAR(worst_b, 0.18, 0.02);
+  EXPECT_NEAR(worst_u, 0.88, 0.03);
+}
+
 TEST(StarLight, TheTableIsTheIntegralTo1e4) {
   const Band band = *filter_named("sdss-z");
   const StarLight light(band);

@@ -138,6 +138,17 @@ TEST(Crossings, TheFramesEdgeWithinAnExposureLeavesTheLightThatFellInside) {
   }
 }
 
+// In 10 s the object moves by 36 px along the columns: within 18 px of the edges one end is
+// outside.
+TEST(Crossings, WhatLeavesOrEntersTheFrameIsNotWhole) {
+  for (const double x_px : {8.0, 100.0, 247.0}) {
+    const auto frame = Stage(on_ground(behind_pixel({x_px, 20}), point)).frame();
+    const Truth& truth = truth_named(frame, "target");
+    EXPECT_TRUE(truth.in_frame) << x_px;
+    EXPECT_EQ(truth.whole, x_px == 100.0) << x_px;
+  }
+}
+
 /// Directions of a grid of pixels by the frame's own plate solution.
 std::vector<Vec<Gcrs>> directions(const std::string& pointing) {
   std::string text = on_ground({4.2e7, 0, 0}, point);

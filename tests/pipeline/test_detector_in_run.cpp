@@ -43,6 +43,20 @@ TEST(DetectorInRun, AFullWellIsAPlateauAtItsCount) {
   EXPECT_GE(std::count(frame.counts.pixels.begin(), frame.counts.pixels.end(), 60200), 5);
 }
 
+// Closed form: a full pixel gives each of its four neighbours 2 % of its charge, and at full well
+// the response is down by 5 %; warmed by 12 K with a doubling in 6 K, dark current is four times
+// that of the reference.
+TEST(DetectorInRun, TheHeaderHasTheFiguresInEffect) {
+  test::Stage stage(equator("full_well_e: 90000, gain_e_per_dn: 1.5, bias_dn: 200, adc_bits: 16, "
+                            "interpixel_coupling: 0.02, nonlinearity: 0.05, dark_e_per_s: 3, "
+                            "dark_reference_c: -20, temperature_c: -8, dark_doubling_k: 6",
+                            "sky: off", 1, 2),
+                    "ra_deg,dec_deg,mag_v,bv\n0,-80,6,0.65\n");
+  const auto header = stage.frame().header;
+  EXPECT_NEAR(header.saturation_dn, 90000 * 0.92 * 0.95 / 1.5 + 200, 1e-6);
+  EXPECT_NEAR(header.dark_e_per_s, 12.0, 1e-9);
+}
+
 // Closed form: rate x exposure; the detector is emptied before each exposure.
 TEST(DetectorInRun, DarkCurrentGathersWhileTheShutterIsOpenAlone) {
   test::Stage stage(equator("full_well_e: 1.0e+6, gain_e_per_dn: 1, dark_e_per_s: 50",

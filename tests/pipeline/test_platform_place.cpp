@@ -1,4 +1,7 @@
+#include <algorithm>
+
 #include "core/base/units.h"
+#include "sensors/pipeline/make_sensor.h"
 #include "tests/pipeline/wiring.h"
 
 namespace dmise {
@@ -52,6 +55,18 @@ TEST(PlatformPlace, ACameraFixedToItsBodyTurnsWithTheOrbit) {
   const double cosine = (turn.m[0][0] + turn.m[1][1] + turn.m[2][2] - 1) / 2;
   EXPECT_NEAR(std::acos(cosine), 0.010381289, 1e-7);
   EXPECT_LT(angle_rad(at(0).inverse() * Vec<CameraFrame>{0, 0, 1}, Vec<Gcrs>{1, 0, 0}), 1e-8);
+}
+
+// Without objects in its frames a camera on the ground still has to know where its target is.
+TEST(PlatformPlace, WhoPointsAtAnObjectIsToldOfIt) {
+  test::Stage stage(
+      test::scenario("2018-03-06T12:00:00Z", 20, "site: atlanta", test::camera(8, 8, 0.1),
+                     "{target: far}", 1, 5, ", effects: {objects: off}", "",
+                     "objects:\n  - name: far\n    motion: {fixed: {gcrs_m: [4.2e+7, 0, 0]}}\n"));
+  const auto topics =
+      make_sensor(stage.scenario, "a", "", stage.directory / "out", nullptr, stage.threads)
+          ->consumes();
+  EXPECT_EQ(std::count(topics.begin(), topics.end(), "state/objects"), 1);
 }
 
 }  // namespace

@@ -38,20 +38,23 @@ PixelPosition end_of(const CountImage& counts, int x, int inwards) {
   return {x_px, near + (near - far) / 20 * ((x + 10 * inwards) - x_px) * inwards};
 }
 
+std::string rising(const std::string& effects) {
+  return test::scenario(
+      "2018-01-21T00:13:40Z", 600,
+      "site: {latitude_deg: 33.777, longitude_deg: -84.398, height_m: 300}",
+      test::camera(1000, 128, 0.2),
+      "{azimuth_deg: 84.612, elevation_deg: 10.001, roll_deg: -56.949}", 600, 600,
+      ", weather: {pressure_hpa: 980, temperature_c: 12, humidity: 0.6}, effects: {" +
+          test::noiseless + ", extinction: off" + effects + "}",
+      "", test::with_stars);
+}
+const std::string star = "ra_deg,dec_deg,mag_v,bv\n125,10,4,0.65\n";
+
 // A star rises through 10 deg while a fixed camera looks for ten minutes; its trail lies along the
 // columns. Reference: the observed places of ERFA's eraAtco13 (astropy's) at the exposure's ends,
-// by tests/reference/wiring.py. By the air of mid exposure the ends would be 2.6 and 1.9 px away.
+// by tests/reference/wiring.py.
 TEST(StarTrail, EndsWhereTheStarIsObservedAtTheEndsOfTheExposure) {
-  test::Stage stage(
-      test::scenario(
-          "2018-01-21T00:13:40Z", 600,
-          "site: {latitude_deg: 33.777, longitude_deg: -84.398, height_m: 300}",
-          test::camera(1000, 128, 0.2),
-          "{azimuth_deg: 84.612, elevation_deg: 10.001, roll_deg: -56.949}", 600, 600,
-          ", weather: {pressure_hpa: 980, temperature_c: 12, humidity: 0.6}, effects: {" +
-              test::noiseless + ", extinction: off}",
-          "", test::with_stars),
-      "ra_deg,dec_deg,mag_v,bv\n125,10,4,0.65\n");
+  test::Stage stage(rising(""), star);
   const auto frame = stage.frame();
   const PixelPosition start = end_of(frame.counts, 71, 1), end = end_of(frame.counts, 928, -1);
   constexpr double tolerance_px = 0.3;  // 3 arcsec: eraRefco against Bennett at 9 deg
@@ -59,6 +62,14 @@ TEST(StarTrail, EndsWhereTheStarIsObservedAtTheEndsOfTheExposure) {
   EXPECT_NEAR(start.y_px, 62.728, tolerance_px);
   EXPECT_NEAR(end.x_px, 928.189, tolerance_px);
   EXPECT_NEAR(end.y_px, 62.673, tolerance_px);
+}
+
+// One snapshot is the scene of mid exposure.
+TEST(StarTrail, ASnapshotIsOfTheMiddleOfItsPart) {
+  test::Stage stage(rising(", integration: snapshots, snapshots: 1"), star);
+  const auto at = test::centroid(stage.frame().counts, {499, 64}, 40);
+  EXPECT_NEAR(at.x_px, 499.417, 0.3);
+  EXPECT_NEAR(at.y_px, 63.653, 0.3);
 }
 
 }  // namespace
