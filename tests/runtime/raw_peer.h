@@ -23,6 +23,13 @@ class RawPeer {
     if (::connect(fd_, reinterpret_cast<const sockaddr*>(&there), sizeof there) != 0) return;
     const auto zeros = [](std::size_t count) { return std::string(count, '\0'); };
     say("\xff" + zeros(8) + "\x7f\x03" + zeros(1) + "NULL" + zeros(16 + 32));
+    char greeting[64];
+    pollfd readable{fd_, POLLIN, 0};
+    for (std::size_t heard = 0; heard < sizeof greeting && poll(&readable, 1, 20'000) == 1;) {
+      const ssize_t size = read(fd_, greeting, sizeof greeting - heard);
+      if (size <= 0) return;
+      heard += std::size_t(size);
+    }
     const std::string ready =
         "\x05READY" + property("Socket-Type", type) + property("Identity", "");
     say(std::string("\x04") + char(ready.size()) + ready);
