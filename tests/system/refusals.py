@@ -3,7 +3,9 @@
     refusals.py DMISE
 """
 
+import os
 import socket
+import subprocess
 
 from harness import Run, check, main, write_scenario
 
@@ -47,6 +49,17 @@ def test(binary, directory):
         address = f"tcp://127.0.0.1:{taken.getsockname()[1]}"
         with Run(binary, "launch", good, "--out", directory / "d", "--bind", address) as run:
             refused(run, "port in use", 1, address, "in use")
+
+    keys = directory / "keys"
+    subprocess.run([str(binary), "keygen", str(keys), "--scenario", str(good)], check=True, stdout=subprocess.DEVNULL)
+    whole = (keys / "alpha.pub").read_text()
+    (keys / "alpha.pub").write_text(whole[:20])
+    with Run(binary, "launch", good, "--out", directory / "e", "--keys", keys) as run:
+        refused(run, "truncated key", 1, f"{keys}/alpha.pub: not a key of dmise keygen", "13 of 40 characters")
+    (keys / "alpha.pub").unlink()
+    os.mkfifo(keys / "alpha.pub")
+    with Run(binary, "launch", good, "--out", directory / "f", "--keys", keys) as run:
+        refused(run, "FIFO for a key", 1, f"{keys}/alpha.pub: must be a regular file")
 
 
 if __name__ == "__main__":
