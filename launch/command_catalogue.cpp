@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/text_file.h"
 #include "core/frames/earth_orientation.h"
 #include "core/orbit/catalogue.h"
 #include "core/orbit/catalogue_report.h"
@@ -16,6 +17,7 @@
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 #include "launch/commands.h"
+#include "launch/notes.h"
 
 namespace dmise {
 namespace {
@@ -26,8 +28,9 @@ struct FileOptions {
 };
 
 CatalogueFile read(const FileOptions& options) {
-  const std::string path = options.path == "-" ? "/dev/stdin" : options.path;
-  return read_catalogue(path, {.lenient = options.lenient});
+  const CatalogueOptions how{.lenient = options.lenient};
+  if (options.path == "-") return parse_catalogue(read_standard_input(), "standard input", how);
+  return read_catalogue(options.path, how);
 }
 
 void add_file_options(CLI::App& command, FileOptions& options) {
@@ -104,16 +107,14 @@ void print_states(const StatesOptions& options) {
   const auto catalogue = read(options.file);
   need_elements(catalogue);
   for (const auto& problem : catalogue.refused)
-    std::fprintf(stderr, "note: %s (left out)\n", catalogue.describe(problem).c_str());
-  for (const auto& problem : catalogue.warnings)
-    std::fprintf(stderr, "note: %s\n", catalogue.describe(problem).c_str());
+    print_note(catalogue.describe(problem) + " (left out)");
+  for (const auto& problem : catalogue.warnings) print_note(catalogue.describe(problem));
   const Clock clock(utc, options.earth_orientation.empty()
                              ? nullptr
                              : std::make_shared<const IersTable>(
                                    IersTable::read_finals2000a(options.earth_orientation)));
   if (options.frame != "teme")  // which needs no Earth
-    for (const auto& warning : clock.warnings({0}))
-      std::fprintf(stderr, "note: %s\n", warning.c_str());
+    for (const auto& warning : clock.warnings({0})) print_note(warning);
   const EarthOrientation earth = earth_orientation(clock, {0});
   const Sgp4Batch batch(catalogue.elements);
   const std::size_t n = batch.size();

@@ -4,6 +4,8 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
+#include "core/config/node_names.h"
 #include "core/config/scenario.h"
 #include "launch/commands.h"
 #include "launch/host_names.h"
@@ -28,6 +30,9 @@ void keygen(const KeygenOptions& options) {
   std::map<std::string, std::vector<std::string>> rings;
   if (!options.nodes.empty() && options.names.empty())
     throw ConfigError("--nodes: of which agents? name them");
+  for (const auto& name : options.names)
+    if (const auto fault = fault_of_name(name))
+      throw ConfigError("names: " + *fault + ", got " + printable(name));
   for (const auto& name : options.names)
     if (!options.nodes.empty()) agents[name] = options.nodes;
   if (!options.scenario.empty()) {

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "launch/commands.h"
 #include "nodes/runtime/event.h"
 #include "nodes/runtime/phase_name.h"
@@ -35,9 +36,10 @@ std::string table(const RunStatus& status) {
                 status.paused ? ", paused" : "", long(status.settled), long(status.last_tick),
                 double(std::max<Tick>(status.settled, 0)) * status.tick_length.seconds());
   std::string text = row;
-  if (!status.cause.empty()) text += "cause: " + status.cause + "\n";
-  if (!status.missing.empty()) text += "missing: " + joined(status.missing) + "\n";
-  if (!status.holding.empty()) text += "holds the clock: " + joined(status.holding) + "\n";
+  if (!status.cause.empty()) text += "cause: " + printable(status.cause) + "\n";
+  if (!status.missing.empty()) text += "missing: " + printable(joined(status.missing)) + "\n";
+  if (!status.holding.empty())
+    text += "holds the clock: " + printable(joined(status.holding)) + "\n";
   if (status.overruns > 0) {
     std::snprintf(row, sizeof row, "overruns: %llu, at most %.2f s late\n",
                   static_cast<unsigned long long>(status.overruns), status.worst_lag_s);
@@ -48,7 +50,7 @@ std::string table(const RunStatus& status) {
   text += row;
   for (const auto& node : status.nodes) {
     std::snprintf(row, sizeof row, "%-24s %-8s %6ld %5llu %10.2f %10.2f %10.2f\n",
-                  node.name.c_str(),
+                  printable(node.name, 64).c_str(),
                   !node.alive     ? "lost"
                   : node.observer ? "observes"
                                   : "alive",

@@ -13,6 +13,7 @@
 #include "core/image/png_file.h"
 #include "core/time/iso8601.h"
 #include "launch/commands.h"
+#include "launch/notes.h"
 #include "launch/pass_list.h"
 #include "launch/progress.h"
 #include "launch/range_figure.h"
@@ -63,8 +64,7 @@ bool wanted(const Pass& pass, const VisibleOptions& options) {
 /// The first few; `where` the others are told.
 void say_notes(const std::vector<std::string>& notes, const char* where) {
   constexpr std::size_t most = 5;
-  for (std::size_t k = 0; k < std::min(most, notes.size()); ++k)
-    std::fprintf(stderr, "note: %s\n", notes[k].c_str());
+  for (std::size_t k = 0; k < std::min(most, notes.size()); ++k) print_note(notes[k]);
   if (notes.size() > most)
     std::fprintf(stderr, "note: and %zu more%s\n", notes.size() - most, where);
 }

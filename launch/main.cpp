@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/memory.h"
+#include "core/base/printable.h"
 #include "core/base/version.h"
 #include "launch/commands.h"
 
@@ -23,6 +24,7 @@ int main(int argc, char** argv) {
   dmise::add_health_command(app);
   dmise::add_clock_command(app);
   dmise::add_bench_command(app);
+  constexpr std::size_t longest = 4000;  // of what is told of an error [bytes]
   try {
     app.parse(argc, argv);
     return 0;
@@ -32,10 +34,10 @@ int main(int argc, char** argv) {
   } catch (const dmise::ExitWith& e) {
     return e.code;
   } catch (const dmise::ConfigError& e) {
-    std::fprintf(stderr, "dmise: %s\n", e.what());
+    std::fprintf(stderr, "dmise: %s\n", dmise::printable(e.what(), longest).c_str());
     return 2;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "dmise: %s\n", e.what());
+    std::fprintf(stderr, "dmise: %s\n", dmise::printable(e.what(), longest).c_str());
     return 1;
   }
 }

@@ -5,8 +5,9 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/base/units.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/object_names.h"
 #include "core/orbit/catalogue.h"
 #include "core/orbit/catalogue_report.h"
 #include "core/orbit/object_facts.h"
@@ -24,7 +25,8 @@ bool wanted(const ObjectSource& source, const MeanElements& elements) {
 }
 
 void require_all_found(const ObjectSource& source, const std::vector<MeanElements>& elements) {
-  for (const auto& name : source.only) {
+  for (std::size_t k = 0; k < source.only.size(); ++k) {
+    const std::string& name = source.only[k];
     bool found = false;
     std::vector<std::string> names;
     for (const auto& e : elements) {
@@ -32,9 +34,22 @@ void require_all_found(const ObjectSource& source, const std::vector<MeanElement
       names.push_back(e.name);
     }
     if (found) continue;
-    const std::string hint = nearest_name(name, names);
-    throw ConfigError(source.path + ": no object is named or numbered " + name +
-                      (hint.empty() ? "" : ", did you mean " + hint + "?"));
+    const std::string hint = nearest_object(name, names);
+    const std::string where = k < source.only_where.size() ? source.only_where[k] : source.path;
+    throw ConfigError(where + ": no object of " + source.path + " has this name or number" +
+                      (hint.empty() ? "" : ", did you mean " + printable(hint) + "?") + ", got " +
+                      printable(name));
+  }
+}
+
+std::string prefix(const std::string& where) { return where.empty() ? "" : where + ": "; }
+
+/// What `read` gives; what it complains of names the scenario's key first.
+auto at_key(const std::string& where, const auto& read) {
+  try {
+    return read();
+  } catch (const Error& e) {
+    throw ConfigError(prefix(where) + e.what());
   }
 }
 
@@ -70,16 +85,18 @@ class Loader {
   void note(const std::string& text) { population_.notes.push_back(text); }
 
   void add(const ObjectSource& source) {
-    const auto catalogue = read_catalogue(source.path);
+    auto catalogue = at_key(source.where, [&] { return read_catalogue(source.path); });
+    for (auto& e : catalogue.elements) e.name = printable(e.name);  // as it is shown and told
     if (catalogue.elements.empty())
-      throw ConfigError(source.path + ": no element set could be read" +
+      throw ConfigError(prefix(source.where) + source.path + ": no element set could be read" +
                         (catalogue.refused.empty()
                              ? std::string()
                              : ": " + catalogue.describe(catalogue.refused[0])));
     require_all_found(source, catalogue.elements);
     const DiffuseSphere unknown{source.radius_m, source.albedo};
     ObjectFactsFile facts;
-    if (!source.facts_path.empty()) facts = read_object_facts(source.facts_path);
+    if (!source.facts_path.empty())
+      facts = at_key(source.where, [&] { return read_object_facts(source.facts_path); });
     for (const auto& problem : facts.refused)
       note(source.facts_path + ":" + std::to_string(problem.line) + ": " + problem.reason +
            " (left out)");

@@ -1,10 +1,16 @@
 #include "orbit-node/orbit_actor.h"
 
+#include <utility>
+
 namespace dmise {
 
 OrbitActor::OrbitActor(const Scenario& scenario, Clock clock, Threads& threads)
+    : OrbitActor(scenario, clock, load_objects(scenario, clock), threads) {}
+
+OrbitActor::OrbitActor(const Scenario& scenario, Clock clock, ObjectPopulation population,
+                       Threads& threads)
     : tick_length_(scenario.tick),
-      population_(load_objects(scenario, clock)),
+      population_(std::move(population)),
       source_(population_, std::move(clock), threads),
       told_(population_.roster.objects.size()) {}
 

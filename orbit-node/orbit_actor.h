@@ -14,6 +14,8 @@ namespace dmise {
 class OrbitActor : public Actor {
  public:
   OrbitActor(const Scenario& scenario, Clock clock, Threads& threads);
+  /// Of objects that are loaded already.
+  OrbitActor(const Scenario& scenario, Clock clock, ObjectPopulation population, Threads& threads);
 
   std::string name() const override { return "orbit-node"; }
   std::vector<std::string> produces() const override { return {objects_topic}; }

@@ -1,21 +1,25 @@
 #include "core/base/text_file.h"
 
-#include <sys/stat.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <cerrno>
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
+#include "core/base/regular_file.h"
 
 namespace dmise {
+namespace {
 
-std::string read_text_file(const std::string& path, std::size_t limit_bytes) {
-  struct stat info {};
-  if (stat(path.c_str(), &info) != 0) throw ConfigError(path + ": " + std::strerror(errno));
-  if (S_ISDIR(info.st_mode)) throw ConfigError(path + ": is a directory");
-  gzFile file = gzopen(path.c_str(), "rb");
-  if (!file) throw ConfigError(path + ": " + std::strerror(errno));
+/// To the end of an open file, which is closed.
+std::string read_to_end(int descriptor, const std::string& name, std::size_t limit_bytes) {
+  gzFile file = gzdopen(descriptor, "rb");
+  if (!file) {
+    close(descriptor);
+    throw ConfigError(printable(name) + ": " + std::strerror(errno));
+  }
   std::string text, reason;
   char buffer[1 << 16];
   int got = 0;
@@ -25,8 +29,20 @@ std::string read_text_file(const std::string& path, std::size_t limit_bytes) {
   }
   if (got < 0) reason = "can't be read or unpacked";
   gzclose(file);
-  if (!reason.empty()) throw ConfigError(path + ": " + reason);
+  if (!reason.empty()) throw ConfigError(printable(name) + ": " + reason);
   return text;
+}
+
+}  // namespace
+
+std::string read_text_file(const std::string& path, std::size_t limit_bytes) {
+  return read_to_end(open_regular_file(path), path, limit_bytes);
+}
+
+std::string read_standard_input(std::size_t limit_bytes) {
+  const int copy = dup(STDIN_FILENO);
+  if (copy < 0) throw ConfigError(std::string("standard input: ") + std::strerror(errno));
+  return read_to_end(copy, "standard input", limit_bytes);
 }
 
 }  // namespace dmise

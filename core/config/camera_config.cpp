@@ -4,6 +4,7 @@
 #include "core/config/band_config.h"
 #include "core/config/detector_config.h"
 #include "core/config/optics_config.h"
+#include "core/config/proportion.h"
 #include "core/config/search_path.h"
 
 namespace dmise {
@@ -45,6 +46,7 @@ Camera read_camera(const YamlValue& value) {
   camera.band = read_band(map.require("band"));
   if (const auto efficiency = YamlMap(map.require("detector")).find("quantum_efficiency"))
     apply_quantum_efficiency(*efficiency, camera);
+  camera.warnings = disproportions_of_camera(value, camera);
   map.done();
   return camera;
 }

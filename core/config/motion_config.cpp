@@ -1,9 +1,11 @@
 #include "core/config/motion_config.h"
 
 #include <cmath>
+#include <limits>
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/config/proportion.h"
 #include "core/config/search_path.h"
 #include "core/frames/geodesy.h"
 #include "core/frames/oblate_earth.h"
@@ -66,7 +68,8 @@ KeplerElements read_elements(YamlMap& map) {
   return k;
 }
 
-TwoBodyMotion read_two_body(const YamlValue& value, const Utc& start) {
+TwoBodyMotion read_two_body(const YamlValue& value, const Utc& start,
+                            std::vector<std::string>& warnings) {
   YamlMap map(value);
   TwoBodyMotion motion;
   Utc epoch = start;
@@ -86,7 +89,12 @@ TwoBodyMotion read_two_body(const YamlValue& value, const Utc& start) {
         read_vector<Gcrs>(map.require("velocity_m_per_s"), Bounds::between(-1e6, 1e6));
     require_outside_earth(*position, motion.state.position_m);
   } else {
-    motion.state = state_of(read_elements(map), motion.gm_m3_per_s2);
+    const KeplerElements k = read_elements(map);
+    motion.state = state_of(k, motion.gm_m3_per_s2);
+    const double apoapsis_m = k.eccentricity < 1
+                                  ? k.periapsis_m * (1 + k.eccentricity) / (1 - k.eccentricity)
+                                  : std::numeric_limits<double>::infinity();
+    warnings = disproportions_of_orbit(value, k.periapsis_m, apoapsis_m);
   }
   map.done();
   return motion;
@@ -143,7 +151,7 @@ MotionConfig read_motion(const YamlValue& value, const Utc& start) {
              sgp4 = map.find("sgp4");
   map.done();
   if (map.keys().size() != 1) value.fail("give one of two_body, oem, fixed, sgp4", false);
-  if (two_body) motion.model = MotionModel(read_two_body(*two_body, start));
+  if (two_body) motion.model = MotionModel(read_two_body(*two_body, start, motion.warnings));
   if (oem) motion.model = MotionModel(read_trajectory(*oem, motion.oem_path));
   if (fixed) motion.model = read_fixed(*fixed);
   if (sgp4) motion.model = read_sgp4(*sgp4);

@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "core/config/yaml_reader.h"
 #include "core/orbit/elements.h"
@@ -11,7 +12,8 @@ namespace dmise {
 /// How an object of the scenario's own moves: an element set for SGP4, or any other model.
 struct MotionConfig {
   std::variant<MotionModel, MeanElements> model;
-  std::string oem_path;  // resolved; empty for other models
+  std::string oem_path;                    // resolved; empty for other models
+  std::vector<std::string> warnings = {};  // see `disproportions_of_orbit`
 };
 
 /// Reads one of `two_body`, `oem`, `fixed`, `sgp4`; `start` is the epoch where two_body names none.

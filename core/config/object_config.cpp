@@ -1,8 +1,10 @@
 #include "core/config/object_config.h"
 
+#include <algorithm>
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/config/search_path.h"
 
 namespace dmise {
@@ -19,6 +21,7 @@ ObjectSource read_object_source(const YamlValue& value) {
   YamlMap map(value);
   ObjectSource source;
   const auto catalogue = map.require("catalogue");
+  source.where = catalogue.place();
   source.named = catalogue.text();
   source.path = source.named == "gpredict" ? find_catalogue("satellites.dat")
                                            : find_beside(source.named, value.file());
@@ -31,8 +34,16 @@ ObjectSource read_object_source(const YamlValue& value) {
     source.facts_path = find_beside(facts->text(), value.file());
     if (source.facts_path.empty()) facts->fail("there is no such file");
   }
-  if (const auto only = map.find("only"))
-    for (const auto& name : only->list()) source.only.push_back(name.text());
+  if (const auto only = map.find("only")) {
+    for (const auto& name : only->list()) {
+      const std::string shown = printable(name.text());
+      if (std::find(source.only.begin(), source.only.end(), shown) != source.only.end())
+        name.fail("is named twice");
+      source.only.push_back(shown);
+      source.only_where.push_back(name.place());
+    }
+    if (source.only.empty()) only->fail("must name an object; without it all are taken", false);
+  }
   map.done();
   return source;
 }
@@ -41,8 +52,8 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start) {
   YamlMap map(value);
   OwnObject object;
   const auto name = map.require("name");
-  object.where = name.where() + ": " + name.path();
-  object.name = name.text();
+  object.where = name.place();
+  object.name = printable(name.text());  // as it is shown and told, and found by
   if (object.name.empty() || object.name.size() > longest_name_bytes)
     name.fail("must have 1 to 64 characters");
   object.catalogue_number =

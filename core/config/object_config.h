@@ -18,8 +18,10 @@ struct ObjectSource {
   std::string named;      // as in the scenario: "gpredict" or a path
   double radius_m = 1.0;  // of the equivalent diffuse sphere, where nothing better is known
   double albedo = 0.2;
-  std::string facts_path;         // CSV of brightness facts by catalogue number, may be empty
-  std::vector<std::string> only;  // catalogue numbers or names; empty: all
+  std::string facts_path;               // CSV of brightness facts by catalogue number, may be empty
+  std::vector<std::string> only;        // catalogue numbers or names; empty: all
+  std::string where;                    // `file:line:column: objects[0].catalogue`, for messages
+  std::vector<std::string> only_where;  // likewise of each name
 };
 
 /// An object of the scenario's own: `{name: inspector, motion: {..}, attitude: nadir}`.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/json.h"
+#include "core/base/printable.h"
 
 namespace dmise {
 namespace {
@@ -124,7 +125,7 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
     sensor.pointing = read_sky_place(map);
     natural = Tracking::sidereal;
   } else if (target) {
-    PointTarget at{target->text()};
+    PointTarget at{.object = printable(target->text()), .where = target->place()};
     if (const auto place = map.find("place"))
       at.geometric = place->choice({"apparent", "geometric"}) == "geometric";
     sensor.pointing = at;

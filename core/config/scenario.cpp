@@ -1,8 +1,9 @@
 #include "core/config/scenario.h"
 
-#include <set>
+#include <algorithm>
 
 #include "core/base/error.h"
+#include "core/config/node_names.h"
 #include "core/config/output_config.h"
 #include "core/config/search_path.h"
 #include "core/config/sensor_config.h"
@@ -47,6 +48,11 @@ void read_simulation(const YamlValue& value, Scenario& scenario) {
   if (const auto eop = map.find("earth_orientation")) {
     scenario.earth_orientation_path = find_beside(eop->text(), value.file());
     if (scenario.earth_orientation_path.empty()) eop->fail("there is no such file");
+    try {
+      IersTable::read_finals2000a(scenario.earth_orientation_path);
+    } catch (const Error& e) {
+      eop->fail(e.what(), false);
+    }
   }
   check_span(scenario, start, map.require("duration_s"));
   map.done();
@@ -71,6 +77,7 @@ void read_stars(const YamlValue& value, Scenario& scenario) {
   YamlMap map(value);
   const auto catalogue = map.require("catalogue");
   scenario.star_catalogue_named = catalogue.text();
+  scenario.star_catalogue_where = catalogue.place();
   scenario.star_catalogue_path = scenario.star_catalogue_named == "kstars"
                                      ? find_catalogue("stars.dat")
                                      : find_beside(scenario.star_catalogue_named, value.file());
@@ -118,6 +125,8 @@ Scenario load_scenario(const std::string& path) {
     auto read = read_objects(*objects, parse_utc(scenario.start_utc));
     scenario.objects = std::move(read.catalogues);
     scenario.own_objects = std::move(read.own);
+    for (const auto& object : scenario.own_objects)
+      for (const auto& line : object.motion.warnings) scenario.warnings.push_back(line);
     check_tick(scenario, YamlMap(map.require("simulation")).require("tick_s"));
   }
   if (const auto stars = map.find("stars")) read_stars(*stars, scenario);
@@ -125,13 +134,18 @@ Scenario load_scenario(const std::string& path) {
   if (const auto value = map.find("effects")) read_effects(*value, effects);
   const bool detect = map.flag_or("detection", true);
   const auto sensors = map.require("sensors");
-  std::set<std::string> names{"orbit-node", "environment-node", "positions-node", "time-master",
-                              "broker"};
+  SensorNames names;
   for (const auto& value : sensors.list()) {
+    if (value.is_map())
+      if (const auto name = YamlMap(value).find("name"))
+        if (const auto fault = names.fault_of(name->text())) name->fail(*fault);
     scenario.sensors.push_back(read_sensor(value, effects, detect, scenario.duration));
-    if (!names.insert(scenario.sensors.back().name).second)
-      YamlMap(value).require("name").fail("another node has this name");
   }
+  for (const auto& sensor : scenario.sensors)
+    for (const auto& line : sensor.camera.warnings)
+      if (std::find(scenario.warnings.begin(), scenario.warnings.end(), line) ==
+          scenario.warnings.end())
+        scenario.warnings.push_back(line);
   if (scenario.sensors.empty()) sensors.fail("needs at least one sensor", false);
   if (const auto environment = map.find("environment"))
     read_environment(*environment, scenario.environment);

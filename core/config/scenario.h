@@ -24,6 +24,7 @@ struct Camera {
   Optics optics;
   Detector detector;
   Band band;
+  std::vector<std::string> warnings = {};  // see `disproportions_of_camera`
 };
 
 /// A sensor on the ground.
@@ -38,6 +39,7 @@ struct SiteConfig {
 /// A sensor aboard an object, named by number or name.
 struct PlatformConfig {
   std::string object;
+  std::string where = {};  // `file:line:column: sensors[0].platform`, for messages
 };
 
 /// Where the boresight points. On the ground "up" is the zenith; in orbit away from the Earth.
@@ -54,6 +56,7 @@ struct PointSky {
 struct PointTarget {
   std::string object;      // catalogue number or name
   bool geometric = false;  // at the straight line to it, not at the place where it is seen
+  std::string where = {};  // `file:line:column: sensors[0].pointing.target`, for messages
 };
 /// Fixed to the body of the platform.
 struct PointBody {
@@ -80,6 +83,7 @@ const char* tracking_name(Tracking tracking);
 
 struct SensorConfig {
   std::string name;
+  std::string where = {};  // `file:line:column: sensors[0]`, for messages
   std::variant<SiteConfig, PlatformConfig> place;
   Camera camera;
   Pointing pointing;
@@ -146,11 +150,13 @@ struct Scenario {
   std::vector<OwnObject> own_objects;  // the scenario's own
   std::string star_catalogue_path;     // empty: no stars
   std::string star_catalogue_named;
+  std::string star_catalogue_where;  // `file:line:column: stars.catalogue`, for messages
   double faintest_star_mag = 9.5;
   std::vector<SensorConfig> sensors;
   EnvironmentConfig environment;
   NetworkConfig network;
   OutputConfig output;
+  std::vector<std::string> warnings;  // what can be meant but hardly is; each names its place
 
   /// The last tick: the first at or after the end of the run.
   Tick last_tick() const { return (duration.ns + tick.ns - 1) / tick.ns; }

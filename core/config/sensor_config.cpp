@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/base/units.h"
 #include "core/config/band_wavelengths.h"
 #include "core/config/camera_config.h"
@@ -126,16 +127,10 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, bool 
                          SimTime duration) {
   YamlMap map(value);
   SensorConfig sensor;
+  sensor.where = value.place();
   sensor.effects = effects;
   sensor.detect = map.flag_or("detection", detect);
-  const auto name = map.require("name");
-  sensor.name = name.text();
-  const auto allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-           c == '_';
-  };
-  if (sensor.name.size() > 64 || !std::all_of(sensor.name.begin(), sensor.name.end(), allowed))
-    name.fail("must be at most 64 letters, digits, - and _");
+  sensor.name = map.require("name").text();
   const auto site = map.find("site");
   const auto platform = map.find("platform");
   if (bool(site) == bool(platform))
@@ -143,7 +138,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, bool 
   if (site) {
     sensor.place = read_site(*site);
   } else {
-    sensor.place = PlatformConfig{platform->text()};
+    sensor.place = PlatformConfig{printable(platform->text()), platform->place()};
   }
   sensor.camera = read_camera(map.require("camera"));
   read_pointing(map.require("pointing"), bool(site), sensor);

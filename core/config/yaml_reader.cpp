@@ -6,14 +6,17 @@
 #include <map>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/base/text_file.h"
+#include "core/config/yaml_limits.h"
 
 namespace dmise {
 namespace {
 
-std::string place(const std::string& file, const YAML::Mark& mark) {
-  if (mark.is_null()) return file;
-  return file + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
+std::string place_of(const std::string& file, const YAML::Mark& mark) {
+  if (mark.is_null()) return printable(file);
+  return printable(file) + ":" + std::to_string(mark.line + 1) + ":" +
+         std::to_string(mark.column + 1);
 }
 
 std::string number_text(double x) {
@@ -21,22 +24,37 @@ std::string number_text(double x) {
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
 }
 
-void refuse_repeated_keys(const YAML::Node& node, const std::string& file,
-                          const std::string& path) {
+/// Where a value stands in its file; put into words for a complaint alone, as keys may be long.
+struct NodePath {
+  const NodePath* outer = nullptr;  // null: the file itself
+  std::string key;
+  std::size_t index = 0;  // in a list, where there is no key
+
+  std::string text() const {
+    if (!outer) return "";
+    const std::string before = outer->text();
+    if (key.empty()) return before + "[" + std::to_string(index) + "]";
+    return before + (before.empty() ? "" : ".") + key;
+  }
+};
+
+void refuse_repeated_keys(const YAML::Node& node, const std::string& file, const NodePath& path) {
   if (node.IsMap()) {
     std::set<std::string> seen;
     for (const auto& entry : node) {
-      const std::string inner = path + (path.empty() ? "" : ".") +
-                                (entry.first.IsScalar() ? entry.first.Scalar() : std::string("?"));
-      if (!entry.first.IsScalar())
-        throw ConfigError(place(file, entry.first.Mark()) + ": " + inner + ": key must be a word");
-      if (!seen.insert(entry.first.Scalar()).second)
-        throw ConfigError(place(file, entry.first.Mark()) + ": " + inner + ": key given twice");
+      const bool is_word = entry.first.IsScalar();
+      const NodePath inner{&path, is_word ? entry.first.Scalar() : "?"};
+      const auto refuse = [&](const char* why) {
+        throw ConfigError(place_of(file, entry.first.Mark()) + ": " + printable(inner.text()) +
+                          why);
+      };
+      if (!is_word) refuse(": key must be a word");
+      if (!seen.insert(entry.first.Scalar()).second) refuse(": key given twice");
       refuse_repeated_keys(entry.second, file, inner);
     }
   } else if (node.IsSequence()) {
     for (std::size_t i = 0; i < node.size(); ++i)
-      refuse_repeated_keys(node[i], file, path + "[" + std::to_string(i) + "]");
+      refuse_repeated_keys(node[i], file, {&path, "", i});
   }
 }
 
@@ -58,6 +76,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_name(std::string_view word, const std::vector<std::string>& names) {
+  constexpr std::size_t longest_bytes = 256;  // the distance takes the product of both lengths
+  if (word.size() > longest_bytes) return "";
   std::string best;
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const auto& name : names) {
@@ -71,33 +91,44 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
 }
 
 YamlValue YamlValue::load(const std::string& path) {
-  return parse(read_text_file(path, 16u << 20), path);
+  return parse(read_text_file(path, YamlLimits{}.bytes), path);
 }
 
 YamlValue YamlValue::parse(const std::string& text, const std::string& file) {
+  check_yaml_limits(text, file);
   try {
     auto node = YAML::Load(text);
-    if (!node.IsMap()) throw ConfigError(file + ":1:1: must be a mapping of keys to values");
-    refuse_repeated_keys(node, file, "");
+    if (!node.IsMap())
+      throw ConfigError(printable(file) + ":1:1: must be a mapping of keys to values");
+    refuse_repeated_keys(node, file, {});
     return {node, std::make_shared<const std::string>(file), ""};
   } catch (const YAML::Exception& e) {
-    throw ConfigError(place(file, e.mark) + ": not valid YAML: " + e.msg);
+    throw ConfigError(place_of(file, e.mark) + ": not valid YAML: " + printable(e.msg));
   }
 }
 
-std::string YamlValue::where() const { return place(*file_, node_.Mark()); }
+std::string YamlValue::where() const { return place_of(*file_, node_.Mark()); }
 
-void YamlValue::fail(const std::string& reason, bool show_value) const {
-  std::string text = where() + ": " + (path_.empty() ? "" : path_ + ": ") + reason;
+std::string YamlValue::place() const {
+  return where() + (path_.empty() ? "" : ": " + printable(path_));
+}
+
+std::string YamlValue::complaint(const std::string& reason, bool show_value) const {
+  constexpr std::size_t most_shown_bytes = 200;
+  std::string text = place() + ": " + reason;
   if (show_value) {
     text += ", got ";
     if (node_.IsScalar()) {
-      text += node_.Scalar().empty() ? "''" : node_.Scalar();
+      text += node_.Scalar().empty() ? "''" : printable(node_.Scalar(), most_shown_bytes);
     } else {
       text += node_.IsMap() ? "a mapping" : node_.IsSequence() ? "a list" : "nothing";
     }
   }
-  throw ConfigError(text);
+  return text;
+}
+
+void YamlValue::fail(const std::string& reason, bool show_value) const {
+  throw ConfigError(complaint(reason, show_value));
 }
 
 double YamlValue::number(Bounds bounds) const {

@@ -37,6 +37,7 @@ class YamlValue {
   const std::string& file() const { return *file_; }
   const std::string& path() const { return path_; }
   std::string where() const;  // file:line:column
+  std::string place() const;  // file:line:column: key.path
 
   double number(Bounds bounds = {}) const;
   std::int64_t integer(std::int64_t least, std::int64_t most) const;
@@ -49,6 +50,8 @@ class YamlValue {
   std::vector<double> numbers(std::size_t count, Bounds bounds = {}) const;
 
   [[noreturn]] void fail(const std::string& reason, bool show_value = true) const;
+  /// `file:line:column: key.path: reason, got value`, as `fail` throws it.
+  std::string complaint(const std::string& reason, bool show_value = true) const;
 
  private:
   friend class YamlMap;

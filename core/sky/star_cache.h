@@ -10,7 +10,7 @@ namespace dmise {
 /// all, and mapped from there: the processes of a host share one copy of the stars and of their
 /// index, and nothing is parsed or sorted again. A cache that is damaged or of another version is
 /// passed over and written anew. A cache that can't be written is no error: the map is then this
-/// process's own, as is that of what is no regular file. Throws `ConfigError` as `read_text_file`
+/// process's own. Throws `ConfigError` as `read_text_file`
 /// and `parse_stars` do.
 StarMap load_star_map(const std::string& path, const std::string& cache_dir = "");
 

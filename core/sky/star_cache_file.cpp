@@ -19,6 +19,7 @@
 #include "core/base/crc32c.h"
 #include "core/base/error.h"
 #include "core/base/mapped_file.h"
+#include "core/base/regular_file.h"
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
 
@@ -142,10 +143,12 @@ std::string own_name(const std::string& path) {
 }  // namespace
 
 std::optional<StarSource> star_source(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return std::nullopt;
+  int file = -1;
+  try {
+    file = open_regular_file(path);
+  } catch (const ConfigError&) {
+    return std::nullopt;
+  }
   bool whole = true;
   StarSource source;
   std::array<char, 1 << 16> piece;

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "core/base/error.h"
 #include "core/config/make_clock.h"
 #include "core/photometry/band_parts.h"
 
@@ -18,7 +19,12 @@ std::shared_ptr<const StarMap> load_stars(const Scenario& scenario) {
     cache = std::string(home) + "/.cache/dmise";
   std::error_code ignored;  // without the directory nothing is kept, that is all
   if (!cache.empty()) std::filesystem::create_directories(cache, ignored);
-  return std::make_shared<const StarMap>(load_star_map(scenario.star_catalogue_path, cache));
+  try {
+    return std::make_shared<const StarMap>(load_star_map(scenario.star_catalogue_path, cache));
+  } catch (const Error& e) {
+    if (scenario.star_catalogue_where.empty()) throw;
+    throw ConfigError(scenario.star_catalogue_where + ": " + e.what());
+  }
 }
 
 std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,

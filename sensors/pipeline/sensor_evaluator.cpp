@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 
 namespace dmise {
 
@@ -104,24 +105,27 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
 
 void check_sensors(const Scenario& scenario, const ObjectRoster& roster) {
   for (const auto& sensor : scenario.sensors) {
-    const std::string where = scenario.path + ": sensors." + sensor.name;
+    const auto at = [&](const std::string& where, const char* key) {
+      return where.empty() ? scenario.path + ": sensors." + sensor.name + key : where;
+    };
     if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place)) {
-      const auto index = object_index(roster, platform->object, where + ".platform");
+      const auto index = object_index(roster, platform->object, at(platform->where, ".platform"));
       const auto has_attitude = [&](const OwnObject& own) {
         return own.attitude && own.catalogue_number == roster.objects[index].catalogue_number;
       };
       if (std::holds_alternative<PointBody>(sensor.pointing) &&
           std::none_of(scenario.own_objects.begin(), scenario.own_objects.end(), has_attitude))
-        throw ConfigError(where +
+        throw ConfigError((sensor.where.empty() ? at("", "") : sensor.where) +
                           ".pointing.body: the platform must be an object with an attitude, got " +
-                          platform->object);
+                          printable(platform->object));
     }
     if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) {
-      const auto index = object_index(roster, target->object, where + ".pointing.target");
+      const std::string where = at(target->where, ".pointing.target");
+      const auto index = object_index(roster, target->object, where);
       const auto* platform = std::get_if<PlatformConfig>(&sensor.place);
-      if (platform && object_index(roster, platform->object, where + ".platform") == index)
-        throw ConfigError(where + ".pointing.target: is the sensor's own platform, got " +
-                          target->object);
+      if (platform && object_index(roster, platform->object, where) == index)
+        throw ConfigError(where + ": is the sensor's own platform, got " +
+                          printable(target->object));
     }
   }
 }

@@ -144,6 +144,21 @@ StarLayer::StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> 
       light_(sensor.camera.band),
       faintest_filled_v_mag_(dmise::faintest_filled_v_mag(map_->stars.v_mag)) {}
 
+std::uint32_t StarLayer::count(const View& view, double faintest_v_mag, double margin_px) const {
+  const Exposure exposure{.view = view, .stars = map_->stars};
+  const auto& grid = view.sensor().camera.optics;
+  std::uint32_t inside = 0;
+  for (const Trail& trail : exposure.trails(candidates(view, faintest_v_mag))) {
+    if (exposure.hidden.direction(trail.middle)) continue;
+    const auto [start, middle, end] = trail.pixel;
+    const auto [first_x, last_x] = std::minmax({start.x_px, middle.x_px, end.x_px});
+    const auto [first_y, last_y] = std::minmax({start.y_px, middle.y_px, end.y_px});
+    inside += last_x > -0.5 - margin_px && first_x < grid.columns - 0.5 + margin_px &&
+              last_y > -0.5 - margin_px && first_y < grid.rows - 0.5 + margin_px;
+  }
+  return inside;
+}
+
 std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Screen& screen,
                               RateImage& image, double faintest_v_mag,
                               std::vector<StarTruth>* truth, EffectTimes& times) const {

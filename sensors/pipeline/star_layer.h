@@ -30,6 +30,9 @@ class StarLayer {
   /// V to which the catalogue goes.
   double faintest_filled_v_mag() const { return faintest_filled_v_mag_; }
 
+  /// How many stars have a path over the frame or within `margin_px` of it; none is drawn.
+  std::uint32_t count(const View& view, double faintest_v_mag, double margin_px) const;
+
   /// Adds the stars' light that gets past `screen` to `image`; returns how many left some in the
   /// frame. `truth`, if not null, gets each of them. The time spent goes to the effects it was
   /// spent for.

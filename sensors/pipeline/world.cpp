@@ -1,8 +1,9 @@
 #include "sensors/pipeline/world.h"
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/base/units.h"
-#include "core/config/yaml_reader.h"
+#include "core/config/object_names.h"
 #include "core/orbit/interpolation.h"
 
 namespace dmise {
@@ -140,15 +141,16 @@ std::size_t object_index(const ObjectRoster& roster, const std::string& name,
     if (object.name != name) continue;
     if (found < roster.objects.size())
       throw ConfigError(what + ": several objects have this name, give the catalogue number, got " +
-                        name);
+                        printable(name));
     found = i;
   }
   if (found < roster.objects.size()) return found;
   std::vector<std::string> names;
   for (const auto& object : roster.objects) names.push_back(object.name);
-  const std::string hint = nearest_name(name, names);
+  const std::string hint = nearest_object(name, names);
   throw ConfigError(what + ": no such object" +
-                    (hint.empty() ? "" : ", did you mean " + hint + "?") + ", got " + name);
+                    (hint.empty() ? "" : ", did you mean " + printable(hint) + "?") + ", got " +
+                    printable(name));
 }
 
 }  // namespace dmise

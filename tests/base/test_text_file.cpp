@@ -2,6 +2,7 @@
 #include "core/base/whole_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -46,6 +47,28 @@ TEST_F(TextFile, NamesTheFileThatItCannotRead) {
   EXPECT_THROW(read_text_file(directory.string()), ConfigError);
   write_file_whole(path("big"), std::string(100, 'x'));
   EXPECT_THROW(read_text_file(path("big"), 99), ConfigError);
+}
+
+// A FIFO has no writer here: opening it must not wait for one. /dev/zero has no end.
+TEST_F(TextFile, RefusesWhatIsNoRegularFile) {
+  ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
+  const auto refusal = [](const std::string& of) {
+    try {
+      read_text_file(of, 1000);
+    } catch (const ConfigError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal(path("fifo")), path("fifo") + ": is no regular file but a FIFO");
+  EXPECT_EQ(refusal("/dev/zero"), "/dev/zero: is no regular file but a device");
+  EXPECT_EQ(refusal("/dev/null"), "/dev/null: is no regular file but a device");
+  EXPECT_EQ(refusal("/proc/self/status"),
+            "/proc/self/status: is no regular file but made up by the kernel");
+  EXPECT_EQ(refusal("/sys/kernel/uevent_seqnum"),
+            "/sys/kernel/uevent_seqnum: is no regular file but made up by the kernel");
+  fs::create_symlink(path("fifo"), path("link"));
+  EXPECT_EQ(refusal(path("link")), path("link") + ": is no regular file but a FIFO");
 }
 
 TEST_F(TextFile, LeavesTheOldFileWhenTheNewOneCannotBeWritten) {

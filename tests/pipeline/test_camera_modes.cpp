@@ -182,7 +182,7 @@ TEST(CameraModes, ABodyWithoutAnAttitudeIsNamed) {
     FAIL();
   } catch (const ConfigError& e) {
     EXPECT_NE(std::string(e.what()).find(
-                  "sensors.eye.pointing.body: the platform must be an object with an attitude, got "
+                  "sensors[0].pointing.body: the platform must be an object with an attitude, got "
                   "platform"),
               std::string::npos)
         << e.what();

@@ -1,0 +1,38 @@
+#include "core/config/object_names.h"
+
+#include <map>
+
+#include "core/config/yaml_reader.h"
+
+namespace dmise {
+namespace {
+
+std::string upper_case(std::string_view text) {
+  std::string upper(text);
+  for (char& c : upper)
+    if (c >= 'a' && c <= 'z') c = char(c - 'a' + 'A');
+  return upper;
+}
+
+}  // namespace
+
+std::string nearest_object(std::string_view word, const std::vector<std::string>& names) {
+  std::vector<std::string> ways;               // of writing them
+  std::map<std::string, std::string> name_of;  // the first with that way
+  const auto add = [&](std::string_view way, const std::string& name) {
+    if (way.empty()) return;
+    ways.push_back(upper_case(way));
+    name_of.emplace(ways.back(), name);
+  };
+  for (const auto& name : names) {
+    add(name, name);
+    const auto open = name.find(" ("), close = name.rfind(')');
+    if (open == std::string::npos || close == std::string::npos || close < open) continue;
+    add(std::string_view(name).substr(0, open), name);
+    add(std::string_view(name).substr(open + 2, close - open - 2), name);
+  }
+  const std::string nearest = nearest_name(upper_case(word), ways);
+  return nearest.empty() ? "" : name_of.at(nearest);
+}
+
+}  // namespace dmise
