@@ -1,59 +1,150 @@
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
+#include "core/base/error.h"
+#include "core/base/json.h"
+#include "core/base/printable.h"
 #include "core/config/make_clock.h"
-#include "core/optics/psf_plan.h"
 #include "core/orbit/interpolation_error.h"
 #include "launch/commands.h"
-#include "nodes/environment/environment_actor.h"
-#include "orbit-node/orbit_actor.h"
+#include "launch/host_names.h"
+#include "launch/scenario_outlook.h"
+#include "nodes/runtime/security.h"
+#include "sensors/outlook/outlook_text.h"
 #include "sensors/pipeline/make_sensor.h"
+#include "sensors/positions/positions_evaluator.h"
 
 namespace dmise {
 namespace {
 
-/// Who draws. OpenGL is asked, so that a machine without it is found out now.
-std::string evaluator_of(const EffectSet& effects) {
-  if (effects.snapshots() == 0) return "drawn analytically, along the path";
-  const std::string count = std::to_string(effects.snapshots()) + " snapshots, ";
-  if (!effects.drawn_by_opengl()) return count + "drawn analytically";
-  return count + "drawn by " + GlEvaluator().description();
+struct CheckOptions {
+  std::string scenario, out, keys;
+  int hosts = 0;
+  bool json = false;
+};
+
+/// That products can be written there; leaves nothing behind.
+void check_directory(const std::string& out) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  fs::path at = fs::absolute(out).lexically_normal();
+  if (!at.has_filename()) at = at.parent_path();
+  while (!fs::exists(at, ignored) && at.has_relative_path()) at = at.parent_path();
+  if (!fs::is_directory(at, ignored))
+    throw ConfigError("--out: " + at.string() + " is no directory, got " + out);
+  if (access(at.c_str(), W_OK | X_OK) != 0)
+    throw ConfigError("--out: " + at.string() + " can't be written to, got " + out);
 }
 
-void check(const std::string& path) {
-  const Scenario scenario = load_scenario(path);
-  const Clock clock = make_clock(scenario);
-  const auto population = load_objects(scenario, clock);
-  check_sensors(scenario, population.roster);
-  for (const auto& note : population.notes) std::printf("note: %s\n", note.c_str());
-  for (const auto& warning : clock.warnings(scenario.duration))
-    std::printf("note: %s\n", warning.c_str());
-  for (const auto& sensor : scenario.sensors) {
-    const PsfPlan plan = plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing,
-                                  sensor.exposure_s);
-    std::printf("%s: points by %s: %s\n", sensor.name.c_str(), name(plan.method), plan.why.c_str());
-    if (!sensor.detect)
-      std::printf("%s: detection off: frames are reported, nothing is looked for in them\n",
-                  sensor.name.c_str());
-    std::printf("%s: %s\n", sensor.name.c_str(), evaluator_of(sensor.effects).c_str());
+/// That every process of a launch has its key.
+void check_keys(const Scenario& scenario, const CheckOptions& options) {
+  std::vector<std::string> names{"time-master", "broker", "orbit-node", "environment-node",
+                                 operator_name};
+  for (const auto& sensor : scenario.sensors) names.push_back(sensor.name);
+  if (scenario.output.positions()) names.push_back(positions_node);
+  for (int host = 0; host < options.hosts; ++host) names.push_back(agent_name(scenario, host));
+  for (const auto& name : names) {
+    read_key(options.keys, name);
+    public_key_of(options.keys, name);
   }
-  if (!population.roster.objects.empty())
+  if (options.hosts > 0) check_agent_keys(scenario, options.hosts, options.keys);
+}
+
+/// That each sensor can be made as the run makes it.
+void make_sensors(const Scenario& scenario, const std::shared_ptr<const StarMap>& stars) {
+  Threads threads(1);
+  for (const auto& sensor : scenario.sensors) {
+    make_sensor(scenario, sensor.name, "", "", stars, threads);
+    if (sensor.effects.drawn_by_opengl()) GlEvaluator().description();  // is there one at all
+  }
+}
+
+/// Of a sensor whose frames are not made by the usual way, what makes them. OpenGL is asked, so
+/// that a machine without it is found out now.
+std::string evaluator_of(const EffectSet& effects) {
+  if (effects.snapshots() == 0) return "";
+  const std::string count = "each frame is the sum of " + std::to_string(effects.snapshots()) +
+                            (effects.snapshots() == 1 ? " snapshot" : " snapshots");
+  return effects.drawn_by_opengl() ? count + ", drawn by " + GlEvaluator().description() : count;
+}
+
+void print_text(const Scenario& scenario, const ScenarioOutlook& outlook) {
+  for (const auto& note : outlook.notes) std::printf("note: %s\n", printable(note, 4000).c_str());
+  for (const auto& sensor : outlook.sensors) {
+    for (const auto& line : lines_of(sensor)) std::printf("%s\n", line.c_str());
+    const SensorConfig& config = sensor_named(scenario, sensor.sensor);
+    if (const std::string evaluator = evaluator_of(config.effects); !evaluator.empty())
+      std::printf("%s: %s\n", sensor.sensor.c_str(), evaluator.c_str());
+    if (!config.detect)
+      std::printf("%s: detection off: frames are reported, nothing is looked for in them\n",
+                  sensor.sensor.c_str());
+  }
+  if (outlook.objects > 0)
     std::printf("objects between ticks: %s\n",
                 interpolation_text(scenario.interpolation, scenario.tick.seconds()).c_str());
-  std::printf("%s: %zu objects, %zu sensors, %lld ticks of %g s: no errors\n", path.c_str(),
-              population.roster.objects.size(), scenario.sensors.size(),
-              static_cast<long long>(scenario.last_tick()), scenario.tick.seconds());
+  for (const auto& warning : outlook.warnings)
+    std::printf("warning: %s\n", printable(warning, 4000).c_str());
+  std::printf("%s: %zu objects, %zu sensors, %lld ticks of %g s: no errors%s\n",
+              printable(scenario.path).c_str(), outlook.objects, scenario.sensors.size(),
+              static_cast<long long>(scenario.last_tick()), scenario.tick.seconds(),
+              outlook.warnings.empty() ? ""
+                                       : (", " + std::to_string(outlook.warnings.size()) +
+                                          (outlook.warnings.size() == 1 ? " warning" : " warnings"))
+                                             .c_str());
+}
+
+void print_json(const Scenario& scenario, const ScenarioOutlook& outlook, const Clock& clock) {
+  JsonWriter json;
+  json.begin_object().field("scenario", printable(scenario.path));
+  json.field("start_utc", scenario.start_utc).field("duration_s", scenario.duration.seconds());
+  json.field("tick_s", scenario.tick.seconds());
+  json.field("objects", std::int64_t(outlook.objects));
+  json.key("sensors").begin_array();
+  for (const auto& sensor : outlook.sensors) write_json(json, sensor, clock);
+  json.end_array();
+  for (const auto& [key, lines] :
+       {std::pair{"notes", &outlook.notes}, std::pair{"warnings", &outlook.warnings}}) {
+    json.key(key).begin_array();
+    for (const auto& line : *lines) json.value(printable(line, 4000));
+    json.end_array();
+  }
+  std::printf("%s\n", json.end_object().take().c_str());
+}
+
+void check(const CheckOptions& options) {
+  const Scenario scenario = load_scenario(options.scenario);
+  if (!options.out.empty()) check_directory(options.out);
+  if (!options.keys.empty()) check_keys(scenario, options);
+  const Clock clock = make_clock(scenario);
+  const Scene scene = load_scene(scenario, clock);
+  make_sensors(scenario, scene.stars);
+  const auto outlook = scenario_outlook(scenario, scene, clock, {});
+  if (options.json)
+    print_json(scenario, outlook, clock);
+  else
+    print_text(scenario, outlook);
 }
 
 }  // namespace
 
 void add_check_command(CLI::App& app) {
-  auto path = std::make_shared<std::string>();
-  auto* command =
-      app.add_subcommand("check", "Reads a scenario and all that it names; runs nothing");
-  command->add_option("scenario", *path, "scenario (YAML)")->required();
-  command->callback([path] { check(*path); });
+  auto options = std::make_shared<CheckOptions>();
+  auto* command = app.add_subcommand(
+      "check", "Reads a scenario and all that it names, says what each sensor will see, and warns");
+  command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
+  command->add_flag("--json", options->json, "one JSON object, for machines");
+  command->add_option("--out", options->out, "also that products can be written there");
+  command->add_option("--keys", options->keys,
+                      "also that this directory has the key of every process of a launch");
+  command
+      ->add_option("--hosts", options->hosts, "with --keys: also of so many agents, as in a launch")
+      ->default_val(0)
+      ->check(CLI::Range(0, 10000));
+  command->callback([options] { check(*options); });
 }
 
 }  // namespace dmise

@@ -15,11 +15,13 @@
 #include "launch/commands.h"
 #include "launch/host_names.h"
 #include "launch/metrics_ports.h"
+#include "launch/notes.h"
 #include "launch/own_address.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
 #include "launch/restarts.h"
 #include "launch/run_record.h"
+#include "launch/scenario_outlook.h"
 #include "launch/supervisor.h"
 #include "nodes/environment/environment_actor.h"
 #include "nodes/runtime/event.h"
@@ -207,7 +209,7 @@ class Launch {
       if (Seconds(Clock_::now() - answered).count() > scenario_.network.silent_after_s + 2.0) break;
       for (const auto& line : restarts.look(status, Clock_::now())) {
         progress.clear_line();
-        std::fprintf(stderr, "note: %s\n", line.c_str());
+        print_note(line);
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
@@ -290,14 +292,13 @@ void launch(const LaunchOptions& options) {
   if (options.hosts > 0 && !options.keys.empty())
     check_agent_keys(scenario, options.hosts, options.keys);
   if (options.seed) scenario.seed = *options.seed;
+  // What a node would complain of is better said here, once, before anything starts.
+  const Scene scene = load_scene(scenario, make_clock(scenario));
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   const RunStart begin = prepare_directory(directory, scenario, options.force);
   if (!begin.needed) return;
   stop_signal();
-  // What a node would complain of is better said here, once, before anything starts.
-  const auto population = load_objects(scenario, make_clock(scenario));
-  check_sensors(scenario, population.roster);
-  for (const auto& note : population.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  print_outlook(scenario, scene, make_clock(scenario));
   const RunOutcome outcome = Launch(options, scenario, directory, begin.first_tick).run();
   finish_run(directory, scenario, outcome);
 }

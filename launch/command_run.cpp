@@ -14,9 +14,11 @@
 #include "core/config/make_clock.h"
 #include "core/sim/controller.h"
 #include "launch/commands.h"
+#include "launch/notes.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
 #include "launch/run_record.h"
+#include "launch/scenario_outlook.h"
 #include "nodes/environment/environment_actor.h"
 #include "nodes/runtime/event.h"
 #include "orbit-node/orbit_actor.h"
@@ -39,22 +41,21 @@ constexpr auto patience_after_stop = std::chrono::milliseconds(1500);
 /// request to stop is met in time also in the middle of a frame.
 class EmbeddedRun {
  public:
-  EmbeddedRun(const Scenario& scenario, const RunDirectory& directory, int thread_count,
-              Tick first_tick)
+  EmbeddedRun(const Scenario& scenario, Scene scene, const RunDirectory& directory,
+              int thread_count, Tick first_tick)
       : scenario_(scenario), threads_(thread_count), first_tick_(first_tick) {
-    auto orbit = std::make_unique<OrbitActor>(scenario, make_clock(scenario), threads_);
-    for (const auto& note : orbit->notes()) std::fprintf(stderr, "note: %s\n", note.c_str());
+    print_outlook(scenario, scene, make_clock(scenario));
+    auto orbit = std::make_unique<OrbitActor>(scenario, make_clock(scenario),
+                                              std::move(scene.population), threads_);
     orbit->on_absence([this](const std::string& line) {
       std::lock_guard lock(mutex_);
       notes_.push_back(line);
     });
-    check_sensors(scenario, orbit->roster());
     participants_.push_back(std::move(orbit));
     participants_.push_back(std::make_unique<EnvironmentActor>(scenario, make_clock(scenario)));
-    const auto stars = load_stars(scenario);
     for (const auto& sensor : scenario.sensors) {
-      auto evaluator =
-          make_sensor(scenario, sensor.name, directory.digest(), directory.path(), stars, threads_);
+      auto evaluator = make_sensor(scenario, sensor.name, directory.digest(), directory.path(),
+                                   scene.stars, threads_);
       evaluator->stop_when([] { return stop_signal().is_set(); });
       frames_total_ += static_cast<int>(frames_within(sensor, scenario.duration));
       sensors_.push_back(evaluator.get());
@@ -76,14 +77,13 @@ class EmbeddedRun {
       changed_.wait_for(lock, std::chrono::milliseconds(50));
       for (const auto& line : std::exchange(notes_, {})) {
         progress.clear_line();
-        std::fprintf(stderr, "note: %s\n", line.c_str());
+        print_note(line);
       }
       progress.show(state_, finished_);
     }
     if (!finished_) changed_.wait_for(lock, patience_after_stop, [this] { return finished_; });
     progress.clear_line();
-    for (const auto& line : std::exchange(notes_, {}))
-      std::fprintf(stderr, "note: %s\n", line.c_str());
+    for (const auto& line : std::exchange(notes_, {})) print_note(line);
     if (stop_signal().is_set() && failure_.empty()) outcome.status = "interrupted";
     if (!failure_.empty()) {
       outcome.status = "failed";
@@ -161,12 +161,13 @@ class EmbeddedRun {
 void run(const RunOptions& options) {
   Scenario scenario = load_scenario(options.scenario);
   if (options.seed) scenario.seed = *options.seed;
+  Scene scene = load_scene(scenario, make_clock(scenario));
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   const RunStart begin = prepare_directory(directory, scenario, options.force);
   if (!begin.needed) return;
   stop_signal();
   const auto start = std::chrono::steady_clock::now();
-  EmbeddedRun embedded(scenario, directory, options.threads, begin.first_tick);
+  EmbeddedRun embedded(scenario, std::move(scene), directory, options.threads, begin.first_tick);
   RunOutcome outcome = embedded.run();
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!embedded.in_step()) return finish_run(directory, scenario, outcome);

@@ -1,0 +1,56 @@
+#include "launch/scenario_outlook.h"
+
+#include <algorithm>
+
+#include "launch/notes.h"
+#include "sensors/outlook/outlook_text.h"
+#include "sensors/pipeline/make_sensor.h"
+
+namespace dmise {
+namespace {
+
+void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
+  for (const auto& line : more)
+    if (std::find(all.begin(), all.end(), line) == all.end()) all.push_back(line);
+}
+
+}  // namespace
+
+Scene load_scene(const Scenario& scenario, const Clock& clock) {
+  Scene scene{.population = load_objects(scenario, clock), .stars = nullptr};
+  check_sensors(scenario, scene.population.roster);
+  scene.stars = load_stars(scenario);
+  return scene;
+}
+
+ScenarioOutlook scenario_outlook(const Scenario& scenario, const Scene& scene, const Clock& clock,
+                                 const OutlookOptions& options) {
+  const ObjectPopulation& population = scene.population;
+  ScenarioOutlook outlook{.objects = population.roster.objects.size()};
+  append(outlook.notes, population.notes);
+  append(outlook.notes, clock.warnings(scenario.duration));
+  append(outlook.warnings, scenario.warnings);
+  append(outlook.warnings, catalogue_warnings(scenario, population));
+  Threads threads(1);
+  for (const auto& sensor : scenario.sensors) {
+    outlook.sensors.push_back(
+        sensor_outlook(scenario, sensor, population, clock, scene.stars, threads, options));
+    append(outlook.warnings, outlook.sensors.back().warnings);
+  }
+  return outlook;
+}
+
+void print_outlook(const Scenario& scenario, const Scene& scene, const Clock& clock) {
+  constexpr std::size_t most_sensors = 16;
+  Scenario first = scenario;
+  first.sensors.resize(std::min(scenario.sensors.size(), most_sensors));
+  const auto outlook =
+      scenario_outlook(first, scene, clock, {.most_frames = 3, .most_states = 500'000});
+  for (const auto& note : outlook.notes) print_note(note);
+  for (const auto& sensor : outlook.sensors) print_note(sensor.sensor + ": " + short_text(sensor));
+  for (const auto& warning : outlook.warnings) print_warning(warning);
+  if (const std::size_t others = scenario.sensors.size() - first.sensors.size())
+    print_note("dmise check says the same of " + std::to_string(others) + " more sensors");
+}
+
+}  // namespace dmise

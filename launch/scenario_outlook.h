@@ -1,0 +1,34 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sensors/outlook/sensor_outlook.h"
+
+namespace dmise {
+
+/// What a run reads before its first frame. All that is wrong with it is said before the run's
+/// directory is touched.
+struct Scene {
+  ObjectPopulation population;
+  std::shared_ptr<const StarMap> stars;  // null: none
+};
+
+/// Throws `ConfigError` with the place of the key at fault.
+Scene load_scene(const Scenario& scenario, const Clock& clock);
+
+/// What is worth knowing of a scenario before it runs.
+struct ScenarioOutlook {
+  std::size_t objects = 0;
+  std::vector<SensorOutlook> sensors;
+  std::vector<std::string> notes, warnings;  // one line each
+};
+
+ScenarioOutlook scenario_outlook(const Scenario& scenario, const Scene& scene, const Clock& clock,
+                                 const OutlookOptions& options);
+
+/// At the start of a run: notes and warnings, and a line for each of the first sensors, on stderr.
+/// Looks at three frames of each and counts objects of small populations only.
+void print_outlook(const Scenario& scenario, const Scene& scene, const Clock& clock);
+
+}  // namespace dmise

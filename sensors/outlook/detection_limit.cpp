@@ -1,0 +1,81 @@
+#include "sensors/outlook/detection_limit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/units.h"
+#include "core/detection/components.h"
+#include "core/detector/expected_noise.h"
+#include "core/optics/projection.h"
+#include "core/optics/vignetting.h"
+#include "sensors/pipeline/light.h"
+#include "sensors/pipeline/sky_layer.h"
+
+namespace dmise {
+namespace {
+
+/// Electrons of a source of SNR `snr` on `pixels` of `noise_e`.
+double electrons_of(double snr, double pixels, double noise_e) {
+  const double s = snr * snr;
+  return 0.5 * (s + std::sqrt(s * s + 4 * s * pixels * noise_e * noise_e));
+}
+
+/// z with P(x < z) = p of a normal deviate; p in (0.5, 1). Bisection of erfc.
+double normal_quantile(double p) {
+  double low = 0.0, high = 10.0;
+  for (int i = 0; i < 60; ++i) {
+    const double z = 0.5 * (low + high);
+    (0.5 * std::erfc(-z / std::sqrt(2.0)) < p ? low : high) = z;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+DetectionLimit detection_limit(double noise_e, double sigma_px, double streak_px) {
+  DetectionLimit limit{.streak_px = streak_px};
+  limit.point_e = electrons_of(point_limit_snr, 1.0 / kernel_square_sum(sigma_px), noise_e);
+  const double width_px = 2 * std::sqrt(pi) * sigma_px;  // that as much noise as the blur's has
+  const double places = std::max(1.0, streak_px / width_px);
+  const double lift = places > 1.0 ? normal_quantile(std::pow(0.5, 1.0 / places)) : 0.0;
+  const double density = electrons_of(streak_limit_snr - lift, width_px * width_px, noise_e);
+  // `electrons_of` is for a point of these pixels; along a streak its density is that over a width.
+  limit.streak_e_per_px =
+      std::max(density / width_px,
+               electrons_of(point_limit_snr, width_px * std::max(width_px, streak_px), noise_e) /
+                   std::max(width_px, streak_px));
+  return limit;
+}
+
+PixelBackground background_at_centre(const View& view, double drawn_to_v_mag) {
+  const auto& sensor = view.sensor();
+  const auto& optics = sensor.camera.optics;
+  const PixelPosition centre = principal_point(optics);
+  const SimTime middle = view.times().middle;
+  double sky_e = 0.0;
+  const auto gcrs_from_camera = view.camera_from_gcrs(middle).inverse();
+  const Vec<Gcrs> boresight = gcrs_from_camera * Vec<CameraFrame>{0, 0, 1};
+  if (sensor.effects.has(Effect::sky) && !Hidden(view, middle).direction(boresight))
+    sky_e =
+        sky_over(view, drawn_to_v_mag).photons_per_s_m2_sr(view.enu_from_gcrs(middle) * boresight) *
+        Light(view).electrons_per_photon_m2() * view.times().seconds() *
+        pixel_solid_angle_sr(optics, centre) * relative_illumination(optics, centre);
+  const Detector detector = in_effect(sensor.camera.detector, sensor.effects);
+  constexpr int side = 8;  // the median of a few: hot pixels are drawn by place
+  RateImage light(side, side);
+  std::fill(light.pixels.begin(), light.pixels.end(), float(sky_e));
+  Threads threads(1);
+  auto noise = expected_noise(light, sensor.camera.detector,
+                              {.seed = view.seed(),
+                               .sensor = sensor.name,
+                               .frame = view.times().frame,
+                               .exposure_s = view.times().seconds(),
+                               .idle_s = sensor.cadence_s - sensor.exposure_s},
+                              sensor.effects, threads);
+  std::nth_element(noise.pixels.begin(), noise.pixels.begin() + side * side / 2,
+                   noise.pixels.end());
+  return {sky_e + detector.dark_e_per_s * view.times().seconds(),
+          double(noise.pixels[std::size_t(side * side / 2)])};
+}
+
+}  // namespace dmise

@@ -1,0 +1,112 @@
+#include "sensors/outlook/frame_outlook.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/units.h"
+#include "core/optics/projection.h"
+#include "core/photometry/magnitude.h"
+#include "core/visibility/field_of_view.h"
+#include "sensors/pipeline/light.h"
+#include "sensors/pipeline/object_sampler.h"
+#include "sensors/pipeline/objects_in_field.h"
+#include "sensors/pipeline/star_layer.h"
+
+namespace dmise {
+namespace {
+
+bool inside(const PixelPosition& p, const Optics& optics) {
+  return p.x_px > -0.5 && p.y_px > -0.5 && p.x_px < optics.columns - 0.5 &&
+         p.y_px < optics.rows - 0.5;
+}
+
+double elevation_rad(const Vec<Gcrs>& up, const Vec<Gcrs>& line) {
+  return std::asin(std::clamp(dot(up, unit(line)), -1.0, 1.0));
+}
+
+}  // namespace
+
+std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes) {
+  const auto& optics = view.sensor().camera.optics;
+  EffectTimes unused;
+  const ObjectSampler sampler(view, shapes, unused);
+  constexpr int pieces = 64;
+  std::vector<ExposureInstant> instants;
+  for (int k = 0; k <= pieces; ++k)
+    instants.emplace_back(view, view.times().at(double(k) / pieces));
+  std::uint32_t count = 0;
+  for (const std::size_t object : objects_in_field(view, shapes)) {
+    const bool lit = std::any_of(instants.begin(), instants.end(), [&](const auto& at) {
+      const ObjectSample s = sampler.sample(object, at);
+      return s.pixel && s.electrons_per_s > 0.0 && inside(*s.pixel, optics);
+    });
+    count += lit;
+  }
+  return count;
+}
+
+FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
+  const auto& sensor = view.sensor();
+  const auto& optics = sensor.camera.optics;
+  const SimTime middle = view.times().middle;
+  const auto camera_from_gcrs = view.camera_from_gcrs(middle);
+  const Vec<Gcrs> boresight = camera_from_gcrs.inverse() * Vec<CameraFrame>{0, 0, 1};
+  const Vec<Gcrs> here_m = view.observer(middle).position_m, up = view.up(middle);
+  const Vec<Gcrs> to_sun_m = view.environment().sun_m - here_m;
+  const Hidden hidden(view, middle);
+  FrameOutlook out{.frame = view.times().frame, .middle = middle};
+  if (view.on_ground()) {
+    out.boresight_elevation_rad = elevation_rad(up, boresight);
+    out.sun_elevation_rad = elevation_rad(up, to_sun_m);
+    out.moon_elevation_rad = elevation_rad(up, view.environment().moon_m - here_m);
+  }
+  out.boresight_hidden = hidden.direction(boresight) ||
+                         (out.boresight_elevation_rad && *out.boresight_elevation_rad < 0.0);
+  if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) {
+    const auto index = object_index(view.world().roster(), target->object, target->where);
+    const Vec<Gcrs> position_m = view.world().motion(index, middle).position_m;
+    const Vec<Gcrs> line = position_m - here_m;
+    if (view.on_ground()) out.target_elevation_rad = elevation_rad(up, line);
+    out.target_hidden =
+        view.on_ground() ? *out.target_elevation_rad < 0.0 : hidden.object(position_m, unit(line));
+  }
+  out.sun_in_field = FieldOfView(optics).contains(camera_from_gcrs * to_sun_m) &&
+                     !hidden.direction(unit(to_sun_m));
+
+  double drawn_to_v_mag = -std::numeric_limits<double>::infinity();
+  if (scene.stars && sensor.effects.has(Effect::stars)) {
+    const StarLayer layer(sensor, scene.stars);
+    drawn_to_v_mag = std::min(scene.faintest_star_mag, layer.faintest_filled_v_mag());
+    out.stars = layer.count(view, scene.faintest_star_mag, 5 * scene.psf_sigma_px);
+  }
+  if (scene.count_objects && sensor.effects.has(Effect::objects))
+    out.objects = objects_with_light(view, scene.shapes);
+
+  out.background = background_at_centre(view, drawn_to_v_mag);
+  const Detector detector = in_effect(sensor.camera.detector, sensor.effects);
+  const double most_e =
+      (std::exp2(detector.adc_bits) - 1 - detector.bias_dn) * detector.gain_e_per_dn;
+  out.full_e =
+      sensor.effects.has(Effect::full_well) ? std::min(most_e, detector.full_well_e) : most_e;
+  const double pixels_per_deg = deg / optics.pixel_angle_rad();
+  out.streak_deg_per_s = usual_rate_deg_per_s;
+  out.streak_px = usual_rate_deg_per_s * pixels_per_deg * view.times().seconds();
+  if (out.boresight_hidden || out.background.electrons >= out.full_e) return out;
+  const double diagonal_px = std::hypot(optics.columns, optics.rows);
+  const auto limit = detection_limit(out.background.noise_e, scene.psf_sigma_px,
+                                     std::min(out.streak_px, diagonal_px));
+  const Light light(view);
+  const double through = light.transmission(boresight);
+  if (!(through > 0.0)) return out;
+  out.extinction_mag = magnitude_of_light(through);
+  const auto v_mag = [&](double e_per_s) {
+    return light.zero_point_mag() + magnitude_of_light(e_per_s / through);
+  };
+  out.point_limit_v_mag = v_mag(limit.point_e / view.times().seconds());
+  if (out.streak_px >= 1.0)
+    out.streak_limit_v_mag = v_mag(limit.streak_e_per_px * out.streak_px / view.times().seconds());
+  return out;
+}
+
+}  // namespace dmise

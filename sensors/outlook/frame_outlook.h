@@ -1,0 +1,50 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "core/sky/star_cache.h"
+#include "sensors/outlook/detection_limit.h"
+#include "sensors/pipeline/object_shapes.h"
+#include "sensors/pipeline/view.h"
+
+namespace dmise {
+
+/// What one frame will show, at mid exposure, without making it. Elevations are those of centres
+/// seen from the sensor's place through no air, above the horizon of the ellipsoid; on the ground
+/// alone.
+struct FrameOutlook {
+  std::uint32_t frame = 0;
+  SimTime middle;
+  std::optional<double> boresight_elevation_rad, sun_elevation_rad, moon_elevation_rad,
+      target_elevation_rad;
+  bool boresight_hidden = false;  // by the Earth
+  bool target_hidden = false;
+  bool sun_in_field = false;
+  PixelBackground background;   // at the frame's centre
+  double full_e = 0.0;          // more than this and the pixel is saturated
+  double extinction_mag = 0.0;  // along the boresight
+  double streak_deg_per_s = 0.0, streak_px = 0.0;
+  std::optional<double> point_limit_v_mag, streak_limit_v_mag;  // none of a saturated or hidden sky
+  std::optional<std::uint32_t> stars, objects;                  // with light in the frame
+};
+
+/// Rate of the streaks whose limit is told: of a satellite 1000 km overhead.
+inline constexpr double usual_rate_deg_per_s = 0.42;
+
+/// What it needs beside the view. `stars` and `shapes` may be null. Objects are counted where
+/// `count_objects`, for the world may hold some of them only.
+struct OutlookScene {
+  std::shared_ptr<const StarMap> stars;
+  double faintest_star_mag = 0.0;
+  const ObjectShapes* shapes = nullptr;
+  double psf_sigma_px = 0.0;  // as pixels see it
+  bool count_objects = true;
+};
+
+FrameOutlook frame_outlook(const View& view, const OutlookScene& scene);
+
+/// Objects whose light falls into the frame, or whose path enters it lit.
+std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes);
+
+}  // namespace dmise

@@ -1,0 +1,212 @@
+#include "sensors/outlook/outlook_text.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+#include <functional>
+
+#include "core/base/printable.h"
+#include "core/base/units.h"
+#include "core/time/iso8601.h"
+
+namespace dmise {
+namespace {
+
+using Frames = std::vector<FrameOutlook>;
+
+[[gnu::format(printf, 1, 2)]] std::string printed(const char* format, ...) {
+  char text[400];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+/// Least and greatest of what frames have of a figure.
+struct Range {
+  double least = 0.0, most = 0.0;
+  bool any = false;
+};
+template <class T>
+Range range_of(const Frames& frames, std::optional<T> FrameOutlook::*figure, double unit = 1.0) {
+  Range range;
+  for (const auto& frame : frames) {
+    if (!(frame.*figure)) continue;
+    const double value = double(*(frame.*figure)) / unit;
+    range.least = range.any ? std::min(range.least, value) : value;
+    range.most = range.any ? std::max(range.most, value) : value;
+    range.any = true;
+  }
+  return range;
+}
+
+std::string text_of(const Range& range, const char* format) {
+  const std::string least = printed(format, range.least), most = printed(format, range.most);
+  return least == most ? least : least + " to " + most;
+}
+
+/// From the first frame looked at to the last, with what is beyond both in between.
+std::string course_of(const Frames& frames, std::optional<double> FrameOutlook::*figure) {
+  const Range range = range_of(frames, figure, deg);
+  const double first = (frames.front().*figure).value_or(0.0) / deg;
+  const double last = (frames.back().*figure).value_or(0.0) / deg;
+  std::string text = printed("%.1f", first);
+  if (printed("%.1f", last) != text || frames.size() > 1) text += " to " + printed("%.1f", last);
+  if (range.most > std::max(first, last) + 0.05)
+    text += " (highest " + printed("%.1f)", range.most);
+  if (range.least < std::min(first, last) - 0.05)
+    text += " (lowest " + printed("%.1f)", range.least);
+  return text + " deg";
+}
+
+std::size_t count_if(const Frames& frames, const std::function<bool(const FrameOutlook&)>& is) {
+  return std::size_t(std::count_if(frames.begin(), frames.end(), is));
+}
+
+std::string looked_at(const SensorOutlook& o) {
+  return std::to_string(o.frames.size()) +
+         (o.frames.size() == o.frames_in_run ? "" : " of " + std::to_string(o.frames_in_run)) +
+         (o.frames_in_run == 1 ? " frame" : " frames");
+}
+
+const FrameOutlook& middle_of(const SensorOutlook& o) { return o.frames[o.frames.size() / 2]; }
+
+std::string field_text(const SensorOutlook& o) {
+  const auto& c = o.camera;
+  const double scale_arcsec = c.pixel_rad / arcsec;
+  return printed(
+      "field of view %.4g x %.4g deg, %.4g from corner to corner; %.4g arcsec/px; f/%.3g",
+      c.width_rad / deg, c.height_rad / deg, c.diagonal_rad / deg, scale_arcsec, c.f_number);
+}
+
+std::string limit_text(const SensorOutlook& o) {
+  const FrameOutlook& f = middle_of(o);
+  if (!f.point_limit_v_mag) return "";
+  std::string text = printed("half are found of points of V = %.1f (SNR %g)", *f.point_limit_v_mag,
+                             point_limit_snr);
+  if (f.streak_limit_v_mag)
+    text += printed(", of streaks of V = %.1f (%g deg/s, %.0f px, SNR %g in a pixel)",
+                    *f.streak_limit_v_mag, f.streak_deg_per_s, f.streak_px, streak_limit_snr);
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& where) {
+  std::vector<std::string> warnings;
+  const std::size_t looked = o.frames.size();
+  if (looked == 0) return warnings;
+  const auto warn = [&](const std::string& text) { warnings.push_back(where + ": " + text); };
+  const auto of_frames = [&](std::size_t n) {
+    return n == looked
+               ? "in all " + looked_at(o) + " looked at"
+               : "in " + std::to_string(n) + " of " + std::to_string(looked) + " frames looked at";
+  };
+  if (const auto n = count_if(o.frames, [](auto& f) { return f.target_hidden; }))
+    warn("the target " + o.target + " is " +
+         (o.on_ground ? "below the horizon " : "behind the Earth ") + of_frames(n));
+  else if (const auto m = count_if(o.frames, [](auto& f) { return f.boresight_hidden; }))
+    warn(std::string("the camera points ") +
+         (o.on_ground ? "below the horizon " : "at the Earth ") + of_frames(m));
+  if (const auto n = count_if(o.frames, [](auto& f) { return f.sun_in_field; }))
+    warn("the Sun is in the field " + of_frames(n));
+  // Civil twilight ends at -6 deg: above it no star is found by eye.
+  const auto day = [](const FrameOutlook& f) {
+    return f.sun_elevation_rad && *f.sun_elevation_rad > -6.0 * deg;
+  };
+  if (const auto n = count_if(o.frames, day)) {
+    const Range sun = range_of(o.frames, &FrameOutlook::sun_elevation_rad, deg);
+    warn(printed("it is day or civil twilight (the Sun up to %.1f deg) ", sun.most) + of_frames(n));
+  }
+  const auto full = [](const FrameOutlook& f) { return f.background.electrons >= f.full_e; };
+  if (const auto n = count_if(o.frames, full)) {
+    double most_e = 0.0;
+    for (const auto& f : o.frames) most_e = std::max(most_e, f.background.electrons);
+    warn(printed("sky and dark current alone saturate the pixels (%.3g of %.3g e-) ", most_e,
+                 middle_of(o).full_e) +
+         of_frames(n));
+  }
+  const Range objects = range_of(o.frames, &FrameOutlook::objects);
+  if (objects.any && objects.most == 0.0)
+    warn("no lit object is in the field in any of the " + looked_at(o) + " looked at");
+  return warnings;
+}
+
+std::string short_text(const SensorOutlook& o) {
+  std::string text = field_text(o);
+  if (o.frames.empty()) return text;
+  if (const std::string limit = limit_text(o); !limit.empty()) text += "; " + limit;
+  if (o.on_ground)
+    text += "; Sun " + course_of(o.frames, &FrameOutlook::sun_elevation_rad) + ", Moon " +
+            course_of(o.frames, &FrameOutlook::moon_elevation_rad);
+  if (o.frames.front().target_elevation_rad)
+    text += "; " + printable(o.target) + " at " +
+            course_of(o.frames, &FrameOutlook::target_elevation_rad);
+  return text;
+}
+
+std::vector<std::string> lines_of(const SensorOutlook& o) {
+  std::vector<std::string> lines;
+  const auto say = [&](const std::string& text) { lines.push_back(o.sensor + ": " + text); };
+  say(field_text(o));
+  if (o.frames.empty()) return lines;
+  if (const std::string limit = limit_text(o); !limit.empty()) say(limit + " in mid run");
+  if (o.on_ground) {
+    std::string text = "elevation of the boresight " +
+                       course_of(o.frames, &FrameOutlook::boresight_elevation_rad) + ", the Sun " +
+                       course_of(o.frames, &FrameOutlook::sun_elevation_rad) + ", the Moon " +
+                       course_of(o.frames, &FrameOutlook::moon_elevation_rad);
+    if (o.frames.front().target_elevation_rad)
+      text += ", " + printable(o.target) + " " +
+              course_of(o.frames, &FrameOutlook::target_elevation_rad);
+    say(text);
+  }
+  const Range stars = range_of(o.frames, &FrameOutlook::stars);
+  const Range objects = range_of(o.frames, &FrameOutlook::objects);
+  std::string text;
+  if (stars.any) text = text_of(stars, "%.0f") + " stars";
+  if (objects.any) text += (text.empty() ? "" : ", ") + text_of(objects, "%.0f") + " lit objects";
+  if (!text.empty()) say(text + " in the field (" + looked_at(o) + " looked at)");
+  if (!o.objects_counted) say("objects in the field are not counted: there are too many");
+  return lines;
+}
+
+void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
+  json.begin_object().field("name", o.sensor);
+  json.field("field_width_deg", o.camera.width_rad / deg);
+  json.field("field_height_deg", o.camera.height_rad / deg);
+  json.field("field_diagonal_deg", o.camera.diagonal_rad / deg);
+  json.field("pixel_scale_arcsec", o.camera.pixel_rad / arcsec);
+  json.field("f_number", o.camera.f_number);
+  json.field("frames_in_run", std::int64_t(o.frames_in_run));
+  json.field("point_limit_snr", point_limit_snr).field("streak_limit_snr", streak_limit_snr);
+  if (!o.target.empty()) json.field("target", o.target);
+  json.key("frames").begin_array();
+  for (const auto& f : o.frames) {
+    const auto angle = [&](const char* key, const std::optional<double>& rad) {
+      if (rad) json.field(key, *rad / deg);
+    };
+    json.begin_object().field("frame", std::int64_t(f.frame));
+    json.field("middle_utc", format_utc(clock.utc(f.middle), 3));
+    angle("boresight_elevation_deg", f.boresight_elevation_rad);
+    angle("sun_elevation_deg", f.sun_elevation_rad);
+    angle("moon_elevation_deg", f.moon_elevation_rad);
+    angle("target_elevation_deg", f.target_elevation_rad);
+    json.field("boresight_hidden", f.boresight_hidden).field("target_hidden", f.target_hidden);
+    json.field("sun_in_field", f.sun_in_field);
+    json.field("background_e", f.background.electrons).field("noise_e", f.background.noise_e);
+    json.field("saturates_at_e", f.full_e).field("extinction_mag", f.extinction_mag);
+    if (f.point_limit_v_mag) json.field("point_limit_v_mag", *f.point_limit_v_mag);
+    json.field("streak_deg_per_s", f.streak_deg_per_s).field("streak_px", f.streak_px);
+    if (f.streak_limit_v_mag) json.field("streak_limit_v_mag", *f.streak_limit_v_mag);
+    if (f.stars) json.field("stars", std::int64_t(*f.stars));
+    if (f.objects) json.field("objects", std::int64_t(*f.objects));
+    json.end_object();
+  }
+  json.end_array().key("warnings").begin_array();
+  for (const auto& warning : o.warnings) json.value(warning);
+  json.end_array().end_object();
+}
+
+}  // namespace dmise

@@ -1,0 +1,206 @@
+#include "sensors/outlook/sensor_outlook.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/printable.h"
+#include "core/base/units.h"
+#include "core/detection/components.h"
+#include "core/optics/psf_plan.h"
+#include "core/optics/psf_table.h"
+#include "nodes/environment/environment_actor.h"
+#include "sensors/outlook/outlook_text.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::uint32_t most_frames_with_states = 2000;  // of a platform or a target
+
+/// Those objects of a population alone. `indices` ascend.
+ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::size_t>& indices) {
+  ObjectPopulation some;
+  for (const std::size_t i : indices) {
+    for (const auto& attitude : all.attitudes)
+      if (attitude.object == i)
+        some.attitudes.push_back({some.roster.objects.size(), attitude.model});
+    some.roster.objects.push_back(all.roster.objects[i]);
+    if (i < all.elements.size())
+      some.elements.push_back(all.elements[i]);
+    else
+      some.models.push_back(all.models[i - all.elements.size()]);
+  }
+  return some;
+}
+
+/// The objects without which the sensor has no place or no direction.
+std::set<std::size_t> needed_objects(const SensorConfig& sensor, const ObjectRoster& roster) {
+  std::set<std::size_t> needed;
+  if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place))
+    needed.insert(object_index(roster, platform->object, platform->where));
+  if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
+    needed.insert(object_index(roster, target->object, target->where));
+  return needed;
+}
+
+/// Gaussian that pixels see.
+double psf_sigma_px(const SensorConfig& sensor) {
+  const double fwhm_px =
+      plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing, sensor.exposure_s)
+          .fwhm_px;
+  const double sigma_px = sensor.effects.has(Effect::psf) ? fwhm_px / fwhm_per_sigma : 0.0;
+  return std::sqrt(sigma_px * sigma_px + 1.0 / 12);
+}
+
+/// Worlds around frames of one sensor, as the run's actors would tell them.
+class Worlds {
+ public:
+  Worlds(const Scenario& scenario, const SensorConfig& sensor, const Clock& clock)
+      : scenario_(scenario), sensor_(sensor), environment_(alone(scenario, sensor), clock) {}
+
+  struct Ticks {
+    Tick first = 0, last = 0;
+  };
+  /// Those that the states of a frame are interpolated between.
+  Ticks ticks_of(const FrameTimes& exposure) const {
+    const Tick last_tick = scenario_.last_tick();
+    const Tick before = std::max<Tick>(0, exposure.start.ns / scenario_.tick.ns - 1);
+    return {knot_ticks(scenario_.interpolation, before, last_tick).first,
+            tick_needed(scenario_.interpolation, exposure.end, scenario_.tick, last_tick)};
+  }
+
+  World around(const FrameTimes& exposure, const ObjectPopulation& population,
+               const StateSource& source) {
+    World world(scenario_.interpolation, scenario_.last_tick());
+    world.add(std::make_shared<const ObjectRoster>(population.roster));
+    const Ticks ticks = ticks_of(exposure);
+    for (Tick tick = ticks.first; tick <= ticks.last; ++tick) {
+      if (!population.roster.objects.empty())
+        world.add(std::make_shared<const ObjectStates>(source.at(tick, scenario_.time_of(tick))));
+      if (scenario_.time_of(tick) > exposure.end) continue;
+      for (const auto& message : environment_.step(tick, {})) {
+        if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
+          world.add(std::shared_ptr<const EnvironmentState>(message.state, state));
+        if (const auto* state = std::get_if<SiteState>(message.state.get()))
+          world.add(std::shared_ptr<const SiteState>(message.state, state));
+      }
+    }
+    return world;
+  }
+
+ private:
+  /// A scenario of this sensor whose environment tells at every tick.
+  static Scenario alone(const Scenario& scenario, const SensorConfig& sensor) {
+    Scenario one;
+    one.tick = scenario.tick;
+    one.environment = {.common_every_s = 0.0, .site_every_s = 0.0};
+    one.sensors = {sensor};
+    return one;
+  }
+
+  const Scenario& scenario_;
+  const SensorConfig& sensor_;
+  EnvironmentActor environment_;
+};
+
+/// `count` of the frames 1 to `frames`, with the first and the last.
+std::vector<std::uint32_t> evenly(std::uint32_t frames, std::uint32_t count) {
+  count = std::min(count, frames);
+  if (count == 0) return {};
+  if (count == 1) return {1};
+  std::vector<std::uint32_t> chosen;
+  for (std::uint32_t k = 0; k < count; ++k)
+    chosen.push_back(1 + std::uint32_t(std::uint64_t(frames - 1) * k / (count - 1)));
+  return chosen;
+}
+
+/// The first frame looked at where an object that the sensor needs has no state, and which.
+struct Loss {
+  std::uint32_t frame = 0;
+  std::string why;
+};
+std::optional<Loss> first_loss(const Scenario& scenario, const SensorConfig& sensor,
+                               const ObjectPopulation& needed, const StateSource& source,
+                               std::uint32_t frames) {
+  if (needed.roster.objects.empty()) return std::nullopt;
+  for (const std::uint32_t frame : evenly(frames, most_frames_with_states)) {
+    const FrameTimes exposure = frame_times(sensor, frame);
+    for (const Tick tick : {exposure.start.ns / scenario.tick.ns,
+                            (exposure.end.ns + scenario.tick.ns - 1) / scenario.tick.ns}) {
+      const Tick within = std::min<Tick>(tick, scenario.last_tick());
+      const ObjectStates states = source.at(within, scenario.time_of(within));
+      for (std::size_t i = 0; i < states.count; ++i)
+        if (states.code[i] != 0) return Loss{frame, source.why_absent(i, states)};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& sensor,
+                             const ObjectPopulation& population, const Clock& clock,
+                             std::shared_ptr<const StarMap> stars, Threads& threads,
+                             const OutlookOptions& options) {
+  SensorOutlook out{.sensor = sensor.name,
+                    .camera = camera_figures(sensor.camera.optics),
+                    .on_ground = std::holds_alternative<SiteConfig>(sensor.place),
+                    .frames_in_run = frames_within(sensor, scenario.duration)};
+  if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) out.target = target->object;
+  const auto needed = only_these(population, needed_objects(sensor, population.roster));
+  const StateSource source_of_needed(needed, clock, threads);
+  const auto loss = first_loss(scenario, sensor, needed, source_of_needed, out.frames_in_run);
+  if (loss && loss->frame == 1) throw ConfigError(sensor.where + ": " + loss->why);
+  const std::uint32_t frames = loss ? loss->frame - 1 : out.frames_in_run;
+
+  Worlds worlds(scenario, sensor, clock);
+  std::uint32_t looks = options.most_frames;
+  if (frames > 0 && sensor.effects.has(Effect::objects) && !population.roster.objects.empty()) {
+    const auto ticks = worlds.ticks_of(frame_times(sensor, 1));
+    const std::size_t states =
+        3 * std::size_t(ticks.last - ticks.first + 1) * population.roster.objects.size();
+    if (options.most_states / states < 2)
+      out.objects_counted = false;
+    else
+      looks = std::uint32_t(std::min<std::size_t>(looks, options.most_states / states));
+  }
+  const ObjectPopulation& seen = out.objects_counted ? population : needed;
+  const StateSource source(seen, clock, threads);
+  const ObjectShapes shapes(scenario.own_objects, sensor.camera.band);
+  const OutlookScene scene{.stars = std::move(stars),
+                           .faintest_star_mag = scenario.faintest_star_mag,
+                           .shapes = &shapes,
+                           .psf_sigma_px = psf_sigma_px(sensor),
+                           .count_objects = out.objects_counted};
+  for (const std::uint32_t frame : evenly(frames, looks)) {
+    const FrameTimes exposure = frame_times(sensor, frame);
+    const World world = worlds.around(exposure, seen, source);
+    out.frames.push_back(frame_outlook(View(sensor, exposure, world, scenario.seed), scene));
+  }
+  out.warnings = warnings_of(out, sensor.where.empty() ? sensor.name : sensor.where);
+  if (loss)
+    out.warnings.push_back(sensor.where + ": the run ends in an error at frame " +
+                           std::to_string(loss->frame) + " at the latest: " + loss->why);
+  return out;
+}
+
+std::vector<std::string> catalogue_warnings(const Scenario& scenario,
+                                            const ObjectPopulation& population) {
+  std::vector<double> age_days;
+  for (std::size_t i = 0; i < population.elements.size(); ++i)
+    age_days.push_back(std::abs(population.roster.objects[i].element_age_s) / day_s);
+  if (age_days.empty()) return {};
+  const auto middle = age_days.begin() + std::ptrdiff_t(age_days.size() / 2);
+  std::nth_element(age_days.begin(), middle, age_days.end());
+  if (*middle < old_after_days) return {};
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "half of the %zu element sets are %.0f days or more from the start of the run: "
+                "places are off by kilometres to tens of kilometres",
+                population.elements.size(), *middle);
+  const std::string where = scenario.objects.empty() ? scenario.path : scenario.objects[0].where;
+  return {where + ": " + text};
+}
+
+}  // namespace dmise
