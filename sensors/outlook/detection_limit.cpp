@@ -5,6 +5,7 @@
 
 #include "core/base/units.h"
 #include "core/detection/components.h"
+#include "core/detection/detect.h"
 #include "core/detector/expected_noise.h"
 #include "core/optics/projection.h"
 #include "core/optics/vignetting.h"
@@ -30,11 +31,33 @@ double normal_quantile(double p) {
   return 0.5 * (low + high);
 }
 
+/// Squared correlation of a point and an even trail of `length_px`, both blurred by `sigma_px`.
+double correlation_squared(double sigma_px, double length_px) {
+  const double half_px = 0.5 * length_px, step_px = sigma_px / 16;
+  const int steps = int((half_px + 6 * sigma_px) / step_px);
+  double point_point = 0.0, trail_trail = 0.0, point_trail = 0.0;
+  for (int k = -steps; k <= steps; ++k) {
+    const double x = k * step_px / (std::sqrt(2.0) * sigma_px);
+    const double half = half_px / (std::sqrt(2.0) * sigma_px);
+    const double point = std::exp(-x * x), trail = std::erf(x + half) - std::erf(x - half);
+    point_point += point * point;
+    trail_trail += trail * trail;
+    point_trail += point * trail;
+  }
+  return point_trail * point_trail / (point_point * trail_trail);
+}
+
 }  // namespace
 
-DetectionLimit detection_limit(double noise_e, double sigma_px, double streak_px) {
+DetectionLimit detection_limit(double noise_e, double sigma_px, double streak_px, double star_px) {
   DetectionLimit limit{.streak_px = streak_px};
   limit.point_e = electrons_of(point_limit_snr, 1.0 / kernel_square_sum(sigma_px), noise_e);
+  if (const DetectorSettings search; star_px >= search.least_difference_px) {
+    // Beyond a few widths a longer trail is no less like a point: it is cut for the sum's sake.
+    const double unlike = 1.0 - correlation_squared(sigma_px, std::min(star_px, 100 * sigma_px));
+    const double snr = std::max(point_limit_snr, std::sqrt(search.blend_margin / unlike));
+    limit.found_point_e = electrons_of(snr, 1.0 / kernel_square_sum(sigma_px), noise_e);
+  }
   const double width_px = 2 * std::sqrt(pi) * sigma_px;  // that as much noise as the blur's has
   const double places = std::max(1.0, streak_px / width_px);
   const double lift = places > 1.0 ? normal_quantile(std::pow(0.5, 1.0 / places)) : 0.0;

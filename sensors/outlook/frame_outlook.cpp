@@ -16,9 +16,10 @@
 namespace dmise {
 namespace {
 
-bool inside(const PixelPosition& p, const Optics& optics) {
-  return p.x_px > -0.5 && p.y_px > -0.5 && p.x_px < optics.columns - 0.5 &&
-         p.y_px < optics.rows - 0.5;
+bool inside(const PixelPosition& p, const Optics& optics, double margin_px) {
+  const double edge_px = 0.5 + margin_px;
+  return p.x_px > -edge_px && p.y_px > -edge_px && p.x_px < optics.columns - 1 + edge_px &&
+         p.y_px < optics.rows - 1 + edge_px;
 }
 
 double elevation_rad(const Vec<Gcrs>& up, const Vec<Gcrs>& line) {
@@ -27,7 +28,7 @@ double elevation_rad(const Vec<Gcrs>& up, const Vec<Gcrs>& line) {
 
 }  // namespace
 
-std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes) {
+std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes, double margin_px) {
   const auto& optics = view.sensor().camera.optics;
   EffectTimes unused;
   const ObjectSampler sampler(view, shapes, unused);
@@ -39,7 +40,7 @@ std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes) {
   for (const std::size_t object : objects_in_field(view, shapes)) {
     const bool lit = std::any_of(instants.begin(), instants.end(), [&](const auto& at) {
       const ObjectSample s = sampler.sample(object, at);
-      return s.pixel && s.electrons_per_s > 0.0 && inside(*s.pixel, optics);
+      return s.pixel && s.electrons_per_s > 0.0 && inside(*s.pixel, optics, margin_px);
     });
     count += lit;
   }
@@ -74,14 +75,15 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
   out.sun_in_field = FieldOfView(optics).contains(camera_from_gcrs * to_sun_m) &&
                      !hidden.direction(unit(to_sun_m));
 
+  const double reach_px = 5 * scene.psf_sigma_px + 1;  // of a source's light
   double drawn_to_v_mag = -std::numeric_limits<double>::infinity();
   if (scene.stars && sensor.effects.has(Effect::stars)) {
     const StarLayer layer(sensor, scene.stars);
     drawn_to_v_mag = std::min(scene.faintest_star_mag, layer.faintest_filled_v_mag());
-    out.stars = layer.count(view, scene.faintest_star_mag, 5 * scene.psf_sigma_px);
+    out.stars = layer.count(view, scene.faintest_star_mag, reach_px);
   }
   if (scene.count_objects && sensor.effects.has(Effect::objects))
-    out.objects = objects_with_light(view, scene.shapes);
+    out.objects = objects_with_light(view, scene.shapes, reach_px);
 
   out.background = background_at_centre(view, drawn_to_v_mag);
   const Detector detector = in_effect(sensor.camera.detector, sensor.effects);
@@ -93,9 +95,14 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
   out.streak_deg_per_s = usual_rate_deg_per_s;
   out.streak_px = usual_rate_deg_per_s * pixels_per_deg * view.times().seconds();
   if (out.boresight_hidden || out.background.electrons >= out.full_e) return out;
+  const auto star_at = [&](SimTime t) {
+    return project(optics, view.camera_from_gcrs(t) * boresight);
+  };
+  const auto start = star_at(view.times().start), end = star_at(view.times().end);
+  if (start && end) out.star_px = std::hypot(end->x_px - start->x_px, end->y_px - start->y_px);
   const double diagonal_px = std::hypot(optics.columns, optics.rows);
   const auto limit = detection_limit(out.background.noise_e, scene.psf_sigma_px,
-                                     std::min(out.streak_px, diagonal_px));
+                                     std::min(out.streak_px, diagonal_px), out.star_px);
   const Light light(view);
   const double through = light.transmission(boresight);
   if (!(through > 0.0)) return out;
@@ -104,7 +111,9 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
     return light.zero_point_mag() + magnitude_of_light(e_per_s / through);
   };
   out.point_limit_v_mag = v_mag(limit.point_e / view.times().seconds());
-  if (out.streak_px >= 1.0)
+  if (limit.found_point_e)
+    out.found_point_v_mag = v_mag(*limit.found_point_e / view.times().seconds());
+  if (out.streak_px >= shortest_streak_px)
     out.streak_limit_v_mag = v_mag(limit.streak_e_per_px * out.streak_px / view.times().seconds());
   return out;
 }

@@ -25,8 +25,11 @@ struct FrameOutlook {
   double full_e = 0.0;          // more than this and the pixel is saturated
   double extinction_mag = 0.0;  // along the boresight
   double streak_deg_per_s = 0.0, streak_px = 0.0;
-  std::optional<double> point_limit_v_mag, streak_limit_v_mag;  // none of a saturated or hidden sky
-  std::optional<std::uint32_t> stars, objects;                  // with light in the frame
+  double star_px = 0.0;  // length of a star's trail at the centre
+  // None of a saturated or hidden sky; of points that are told from stars where those trail; of
+  // streaks that are long enough.
+  std::optional<double> point_limit_v_mag, found_point_v_mag, streak_limit_v_mag;
+  std::optional<std::uint32_t> stars, objects;  // with light in the frame
 };
 
 /// Rate of the streaks whose limit is told: of a satellite 1000 km overhead.
@@ -44,7 +47,7 @@ struct OutlookScene {
 
 FrameOutlook frame_outlook(const View& view, const OutlookScene& scene);
 
-/// Objects whose light falls into the frame, or whose path enters it lit.
-std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes);
+/// Objects whose path comes lit into the frame or within `margin_px` of it.
+std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes, double margin_px);
 
 }  // namespace dmise

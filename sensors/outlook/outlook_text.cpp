@@ -52,7 +52,7 @@ std::string course_of(const Frames& frames, std::optional<double> FrameOutlook::
   const double first = (frames.front().*figure).value_or(0.0) / deg;
   const double last = (frames.back().*figure).value_or(0.0) / deg;
   std::string text = printed("%.1f", first);
-  if (printed("%.1f", last) != text || frames.size() > 1) text += " to " + printed("%.1f", last);
+  if (printed("%.1f", last) != text) text += " to " + printed("%.1f", last);
   if (range.most > std::max(first, last) + 0.05)
     text += " (highest " + printed("%.1f)", range.most);
   if (range.least < std::min(first, last) - 0.05)
@@ -83,11 +83,15 @@ std::string field_text(const SensorOutlook& o) {
 std::string limit_text(const SensorOutlook& o) {
   const FrameOutlook& f = middle_of(o);
   if (!f.point_limit_v_mag) return "";
-  std::string text = printed("half are found of points of V = %.1f (SNR %g)", *f.point_limit_v_mag,
-                             point_limit_snr);
+  std::string text =
+      printed("a point of V = %.1f has SNR %g", *f.point_limit_v_mag, point_limit_snr);
+  if (f.found_point_v_mag)
+    text += printed("; half are found of points of V = %.1f beside trails of stars of %.0f px",
+                    *f.found_point_v_mag, f.star_px);
   if (f.streak_limit_v_mag)
-    text += printed(", of streaks of V = %.1f (%g deg/s, %.0f px, SNR %g in a pixel)",
-                    *f.streak_limit_v_mag, f.streak_deg_per_s, f.streak_px, streak_limit_snr);
+    text += printed("%s of streaks of V = %.1f (%g deg/s, %.0f px, SNR %g in a pixel)",
+                    f.found_point_v_mag ? "," : "; half are found", *f.streak_limit_v_mag,
+                    f.streak_deg_per_s, f.streak_px, streak_limit_snr);
   return text;
 }
 
@@ -166,7 +170,9 @@ std::vector<std::string> lines_of(const SensorOutlook& o) {
   const Range objects = range_of(o.frames, &FrameOutlook::objects);
   std::string text;
   if (stars.any) text = text_of(stars, "%.0f") + " stars";
-  if (objects.any) text += (text.empty() ? "" : ", ") + text_of(objects, "%.0f") + " lit objects";
+  if (objects.any)
+    text += (text.empty() ? "" : ", ") + text_of(objects, "%.0f") +
+            (objects.most == 1.0 ? " lit object" : " lit objects");
   if (!text.empty()) say(text + " in the field (" + looked_at(o) + " looked at)");
   if (!o.objects_counted) say("objects in the field are not counted: there are too many");
   return lines;
@@ -199,6 +205,8 @@ void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
     json.field("saturates_at_e", f.full_e).field("extinction_mag", f.extinction_mag);
     if (f.point_limit_v_mag) json.field("point_limit_v_mag", *f.point_limit_v_mag);
     json.field("streak_deg_per_s", f.streak_deg_per_s).field("streak_px", f.streak_px);
+    if (f.found_point_v_mag) json.field("found_point_v_mag", *f.found_point_v_mag);
+    json.field("star_px", f.star_px);
     if (f.streak_limit_v_mag) json.field("streak_limit_v_mag", *f.streak_limit_v_mag);
     if (f.stars) json.field("stars", std::int64_t(*f.stars));
     if (f.objects) json.field("objects", std::int64_t(*f.objects));
