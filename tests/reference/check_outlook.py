@@ -246,7 +246,7 @@ def crossing(rng, number, radius_m):
 def limits(binary, directory):
     point, streak = "found_point_v_mag", "streak_limit_v_mag"
     completeness(binary, directory, fixed_point, "points beside short trails, dark sky", point, 8.0, 21.9, 3, 2)
-    completeness(binary, directory, fixed_point, "points beside long trails, bright sky", point, 40.0, 18.0, 3, 2)
+    completeness(binary, directory, fixed_point, "points beside long trails, bright sky", point, 25.0, 20.0, 3, 2)
     completeness(binary, directory, crossing, "streaks, dark sky", streak, 1.0, 21.9, 1, 5)
     completeness(binary, directory, crossing, "streaks, bright sky", streak, 0.8, 18.0, 1, 5)
 
