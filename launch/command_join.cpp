@@ -116,7 +116,7 @@ class Join {
     while (true) {
       try {
         master_ = numeric_address(options_.master);
-        ask_master(master_, answer_within_s, security);
+        run_id_ = ask_master(master_, answer_within_s, security).run_id;
         return;
       } catch (const ConfigError&) {
         throw;
@@ -151,10 +151,18 @@ class Join {
     if (stop_.is_set()) throw ExitWith{130};
   }
 
-  std::vector<std::string> arguments(const std::string& name) const {
+  bool is_sensor(const std::string& name) const {
     const auto& sensors = scenario_.sensors;
-    const bool sensor = std::any_of(sensors.begin(), sensors.end(),
-                                    [&](const auto& other) { return other.name == name; });
+    return std::any_of(sensors.begin(), sensors.end(),
+                       [&](const auto& other) { return other.name == name; });
+  }
+
+  bool writes_products(const std::string& name) const {
+    return is_sensor(name) || name == positions_node;
+  }
+
+  std::vector<std::string> arguments(const std::string& name) const {
+    const bool sensor = is_sensor(name);
     const std::string host = options_.host.empty() ? address_towards(master_) : options_.host;
     std::vector<std::string> all{program_directory() + "/dmise-" + (sensor ? "sensor-node" : name),
                                  "--name", name, "--master", master_};
@@ -164,14 +172,33 @@ class Join {
       add({"--publish", host, "--subscribe", host, "--observe", host});
     else
       add({"--host", host, "--config", options_.scenario});
-    if (sensor || name == positions_node) add({"--out", options_.out});
+    if (writes_products(name)) add({"--out", options_.out});
     if (sensor)
       add({"--digest", scenario_digest(scenario_), "--seed", std::to_string(scenario_.seed)});
     all.insert(all.end(), options_.more.begin(), options_.more.end());
     return all;
   }
 
+  /// Products are written into the directory that this very run has locked, or that nobody uses.
+  void enter_directory() {
+    const auto deadline = Clock_::now() + std::chrono::seconds(10);
+    while (true) {
+      const auto holder = RunLock::written_in(options_.out);
+      if (holder && holder->run_id == run_id_) return;
+      try {
+        directory_lock_ = std::make_unique<RunLock>(options_.out);
+        directory_lock_->set_run_id(run_id_);
+        return;
+      } catch (const ConfigError&) {
+        // A launch does not know at once which run it is.
+        if ((holder && holder->run_id != 0) || Clock_::now() > deadline) throw;
+      }
+      pause();
+    }
+  }
+
   [[noreturn]] void become(const std::string& name) {
+    if (writes_products(name)) enter_directory();
     std::vector<std::string> texts = arguments(name);
     std::vector<char*> words;
     for (auto& text : texts) words.push_back(text.data());
@@ -181,6 +208,7 @@ class Join {
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
     if (stop_.is_set()) throw ExitWith{130};
+    if (directory_lock_) directory_lock_->pass_on();
     execv(words[0], words.data());
     throw Error(texts[0] + ": " + std::strerror(errno));
   }
@@ -191,6 +219,8 @@ class Join {
   std::optional<FileLock> lock_;
   std::string lock_name_;  // the sensor that this process is by the lock
   std::string master_;     // numeric address
+  std::uint64_t run_id_ = 0;
+  std::unique_ptr<RunLock> directory_lock_;  // of a directory that the launch does not hold
 };
 
 /// DMISE_SLOT, if it is a number: compose leaves a Swarm's "{{.Task.Slot}}" as it stands.

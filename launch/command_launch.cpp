@@ -55,7 +55,7 @@ std::string number(double x) {
 /// One launch of a scenario as a process per node.
 class Launch {
  public:
-  Launch(const LaunchOptions& options, const Scenario& scenario, const RunDirectory& directory,
+  Launch(const LaunchOptions& options, const Scenario& scenario, RunDirectory& directory,
          Tick first_tick)
       : options_(options),
         scenario_(scenario),
@@ -233,6 +233,7 @@ class Launch {
   bool ask(const std::string& master, RunStatus& status) {
     try {
       status = ask_master(master, 0.5, Security(options_.keys, operator_name));
+      directory_.lock().set_run_id(status.run_id);
       return true;
     } catch (const Error&) {
       return false;
@@ -274,7 +275,7 @@ class Launch {
 
   const LaunchOptions& options_;
   const Scenario& scenario_;
-  const RunDirectory& directory_;
+  RunDirectory& directory_;
   Tick first_tick_;
   MetricsPorts metrics_;
   Supervisor processes_;

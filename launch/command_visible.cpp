@@ -17,6 +17,7 @@
 #include "launch/pass_list.h"
 #include "launch/progress.h"
 #include "launch/range_figure.h"
+#include "launch/run_lock.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/world.h"
 
@@ -169,6 +170,8 @@ void visible(const VisibleOptions& options) {
   Threads threads(options.threads);
   const Sgp4Batch batch(population.elements, &threads);
   const SkyHours sky(clock, grid.from, grid.last());
+  std::unique_ptr<RunLock> lock;
+  if (!options.print_only) lock = lock_directory(options.out);
   bool first = true;
   for (const SensorConfig* sensor : sensors) {
     show_sensor(*sensor, options, population, batch, sky, grid, threads, first);

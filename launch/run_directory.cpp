@@ -51,14 +51,10 @@ std::string scenario_digest(const Scenario& scenario) {
 }
 
 RunDirectory::RunDirectory(std::string path, const Scenario& scenario, std::string digest)
-    : path_(std::move(path)), scenario_(scenario), digest_(std::move(digest)) {
-  std::error_code code;
-  fs::create_directories(path_, code);
-  if (code) throw Error(path_ + ": can't be made: " + code.message());
-  const std::string probe = file(".writable");
-  write_file_whole(probe, "");
-  fs::remove(probe, code);
-}
+    : path_(std::move(path)),
+      scenario_(scenario),
+      digest_(std::move(digest)),
+      lock_(lock_directory(path_)) {}
 
 RunDirectory::Content RunDirectory::content() const {
   std::error_code ignored;

@@ -1,19 +1,24 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/config/scenario.h"
+#include "launch/run_lock.h"
 
 namespace dmise {
 
-/// The directory that a run writes into, and what its run.json says of it.
+/// The directory that a run writes into, which is its own as long as this lives, and what its
+/// run.json says of it.
 class RunDirectory {
  public:
-  /// Makes `path` and tries to write there. Throws `Error` "PATH: reason".
+  /// Makes `path` and locks it. Throws `Error` "PATH: reason" when that can't be written to, and
+  /// `ConfigError` when it is in use.
   RunDirectory(std::string path, const Scenario& scenario, std::string digest);
 
   const std::string& path() const { return path_; }
   const std::string& digest() const { return digest_; }
+  RunLock& lock() { return *lock_; }
 
   enum class Content { empty, same_run_complete, same_run_unfinished, another_run };
   Content content() const;
@@ -30,6 +35,7 @@ class RunDirectory {
   std::string path_;
   const Scenario& scenario_;
   std::string digest_;
+  std::unique_ptr<RunLock> lock_;
 };
 
 /// Digest of all that decides the products: the resolved scenario and the bytes of its catalogues;
