@@ -4,13 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "bench/catalogue_file.h"
@@ -76,21 +74,23 @@ World world_of(const Scenario& scenario, Threads& threads) {
   return world;
 }
 
-/// Most memory of this process [MB] while `work` runs, by looking every 2 ms.
+/// A line of /proc/self/status [MB].
+double status_mb(const std::string& key) {
+  std::ifstream file("/proc/self/status");
+  std::string line;
+  while (std::getline(file, line))
+    if (line.starts_with(key + ":"))
+      return std::strtod(line.c_str() + key.size() + 1, nullptr) / 1e3;
+  return 0.0;
+}
+
+/// Most memory of this process [MB] while `work` runs, as the kernel counts it. Pages of libraries
+/// count whole: what a share of them is (PSS) depends on who else runs on the machine.
 template <class Work>
-double peak_pss_mb(const Work& work) {
-  std::atomic<bool> done = false;
-  double most = 0.0;
-  std::thread watch([&] {
-    while (!done) {
-      most = std::max(most, pss_mb());
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-  });
+double peak_mb(const Work& work) {
+  std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): the peak from now on
   work();
-  done = true;
-  watch.join();
-  return most;
+  return status_mb("VmHWM");
 }
 
 struct Measured {
@@ -136,7 +136,8 @@ void measure_all_sky(bool json) {
                             .faintest_star_mag = scenario.faintest_star_mag},
                            load_stars(scenario), one);
     malloc_trim(0);
-    print_figure({"all_sky_resting_mb", pss_mb(), "MB"}, json);  // states, stars, programs
+    print_figure({"all_sky_resting_mb", status_mb("VmRSS"), "MB"},
+                 json);  // states, stars, programs
     const FrameTimes exposure = frame_times(scenario.sensors[0], 1);
     const std::string fits = (directory / "frame.fits").string();
     Measured measured;
@@ -160,7 +161,7 @@ void measure_all_sky(bool json) {
     print_stages(measured, json);
     print_figure({"all_sky_stars", double(stars), "1"}, json);
     print_figure({"all_sky_objects", double(objects), "1"}, json);
-    print_figure({"all_sky_peak_mb", peak_pss_mb([&] {
+    print_figure({"all_sky_peak_mb", peak_mb([&] {
                     make();
                     make();
                   }),

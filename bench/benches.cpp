@@ -1,5 +1,6 @@
 #include "bench/benches.h"
 
+#include "bench/bench_all_sky.h"
 #include "bench/bench_figure5.h"
 #include "bench/bench_frame.h"
 #include "bench/bench_interpolation.h"
@@ -14,6 +15,11 @@ namespace dmise {
 
 std::vector<Bench> benches() {
   return {
+      {"all-sky", "the paper's all-sky frame, its stages and memory (a part of frame)",
+       [](bool json) {
+         measure_all_sky(json);
+         return 0;
+       }},
       {"frame", "stages of a frame on one thread", bench_frame},
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
       {"network", "sensors that keep up with real time, a process each, and their memory",

@@ -99,7 +99,7 @@ def demonstration():
              number(statistics.median(c["detection_s"] for c in costs)),
              number(max(c["pss_mb"] for c in costs))] for sensor, costs in frames.items()]
     text = f"`dmise launch launch/scenarios/demo.yaml`: {record['wall_s']:.1f} s (at most 60 s on two cores).\n\n"
-    text += table(("sensor", "frames", "s a frame, median", "of it detection", "largest PSS, MB"), rows)
+    text += table(("sensor", "frames", "s per frame, median", "of it detection", "largest PSS, MB"), rows)
     effects = list(record["frames"][0]["effects_s"])
     shares = [[effect] + [number(round(1e3 * statistics.median(c["effects_s"][effect] for c in costs), 2))
                           for costs in frames.values()] for effect in effects]

@@ -20,6 +20,10 @@ class MappedFile {
   /// They begin on a page.
   std::span<const std::byte> bytes() const { return bytes_; }
 
+  /// Takes the pages out of this process, also while others read them: the system keeps them, and
+  /// the next who reads finds them there.
+  void release() const;
+
  private:
   std::span<const std::byte> bytes_;
 };

@@ -210,7 +210,7 @@ std::optional<StarMap> map_star_cache(const std::string& path, const StarSource&
       header.file_bytes != bytes.size() ||
       header.crc != checksum(header, bytes.subspan(sizeof header)))
     return std::nullopt;
-  StarMap map{.from_cache = true};
+  StarMap map{.file = file, .from_cache = true};
   map.stars.epoch_jyear = header.epoch_jyear;
   map.index.bands = int(header.bands);
   map.index.fastest_motion_rad_per_yr = header.fastest_motion_rad_per_yr;
@@ -227,6 +227,7 @@ std::optional<StarMap> map_star_cache(const std::string& path, const StarSource&
     map.problems.emplace_back(rest.substr(0, end));
     rest.remove_prefix(end + 1);
   }
+  file->release();  // all of it was looked at; a field needs a part
   return map;
 } catch (const Error&) {  // none yet, or not to be read
   return std::nullopt;

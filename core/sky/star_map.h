@@ -1,7 +1,9 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "core/base/mapped_file.h"
 #include "core/sky/star_catalogue.h"
 #include "core/sky/star_index.h"
 
@@ -11,7 +13,8 @@ namespace dmise {
 struct StarMap {
   StarTable stars;
   StarIndex index;
-  std::vector<std::string> problems;  // `file:line: reason` of what could not be used
+  std::vector<std::string> problems;       // `file:line: reason` of what could not be used
+  std::shared_ptr<const MappedFile> file;  // that holds the columns; null: they are in memory
   bool from_cache = false;
   std::string cache_problem;  // why nothing was kept for the next time; empty when all is well
 };

@@ -192,9 +192,12 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     fill_sky_behind(view, drawn_to_v_mag(), behind, threads);
     screen.take_hidden(behind, light);
   }
-  if (stars && has(Effect::stars))
+  if (stars && has(Effect::stars)) {
     stars_drawn = stars->draw(view, optics, screen, light, settings.faintest_star_mag,
                               settings.star_truth ? &frame.stars : nullptr, frame.times);
+    // Until the next frame the memory is for counts.
+    if (const auto& file = stars->map()->file) file->release();
+  }
   {
     Stopwatch timing(frame.times[Effect::psf]);
     optics.finish(light);
