@@ -1,6 +1,7 @@
 #include "core/config/scenario.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "core/base/error.h"
 #include "core/config/node_names.h"
@@ -27,6 +28,19 @@ void check_span(const Scenario& scenario, const YamlValue& start, const YamlValu
     duration.fail("the run must end within " + span);
 }
 
+/// A run lasts as long as it says, and is made in ticks.
+void check_whole_ticks(const Scenario& scenario, const YamlValue& duration) {
+  const std::int64_t tick_ns = scenario.tick.ns, whole = scenario.duration.ns / tick_ns;
+  if (whole * tick_ns == scenario.duration.ns) return;
+  const auto seconds_of = [&](std::int64_t ticks) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.12g", SimTime{ticks * tick_ns}.seconds());
+    return std::string(text);
+  };
+  duration.fail("must be a whole number of ticks (tick_s: " + seconds_of(1) + "): " +
+                (whole > 0 ? seconds_of(whole) + " or " : "") + seconds_of(whole + 1));
+}
+
 void read_simulation(const YamlValue& value, Scenario& scenario) {
   YamlMap map(value);
   const auto start = map.require("start");
@@ -40,6 +54,7 @@ void read_simulation(const YamlValue& value, Scenario& scenario) {
   }
   scenario.duration = sim_seconds(map.number("duration_s", {.least = 1e-3, .most = 3.2e8}));
   scenario.tick = sim_seconds(map.number("tick_s", {.least = 1e-6, .most = 3600.0}));
+  check_whole_ticks(scenario, map.require("duration_s"));
   scenario.seed = static_cast<std::uint64_t>(
       map.integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
   if (const auto order = map.find("interpolation"))

@@ -11,6 +11,8 @@ from harness import check, main, write_scenario
 # (text of a good scenario, what replaces it, line, column or None, rest of the message)
 CASES = [
     ("duration_s: 3600", "duration_s: -1", 1, None, r"simulation\.duration_s: must be >=? \S+, got -1"),
+    ("duration_s: 3600", "duration_s: 3602", 1, None,
+     r"simulation\.duration_s: must be a whole number of ticks \(tick_s: 5\): 3600 or 3605, got 3602"),
     ("duration_s: 3600", "duration_s: fast", 1, None, r"simulation\.duration_s: must be a number, got fast"),
     ("duration_s: 3600", "duration_s: .nan", 1, None, r"simulation\.duration_s: must be a number, got \.nan"),
     ("duration_s: 3600", "duraton_s: 3600", 1, None,
