@@ -53,14 +53,19 @@ class EmbeddedRun {
     });
     participants_.push_back(std::move(orbit));
     participants_.push_back(std::make_unique<EnvironmentActor>(scenario, make_clock(scenario)));
+    found_ = state_after(std::max<Tick>(0, first_tick_ - 1));
     for (const auto& sensor : scenario.sensors) {
       auto evaluator = make_sensor(scenario, sensor.name, directory.digest(), directory.path(),
                                    scene.stars, threads_);
       evaluator->stop_when([] { return stop_signal().is_set(); });
       frames_total_ += static_cast<int>(frames_within(sensor, scenario.duration));
+      const std::string lines = directory.path() + "/" + sensor.name;
+      found_.frames += int(count_lines(lines + "/frames.jsonl"));
+      found_.detections += count_lines(lines + "/detections.jsonl");
       sensors_.push_back(evaluator.get());
       participants_.push_back(std::move(evaluator));
     }
+    found_.frames_total = frames_total_;
     if (scenario.output.positions())
       participants_.push_back(
           std::make_unique<PositionsEvaluator>(scenario, make_clock(scenario), directory.path()));
@@ -70,6 +75,7 @@ class EmbeddedRun {
   /// step being made may go on in its thread for a while: `in_step()`.
   RunOutcome run() {
     RunOutcome outcome{.how = "one process"};
+    state_ = found_;
     Progress progress;
     std::thread worker([this] { make_ticks(); });
     std::unique_lock lock(mutex_);
@@ -150,7 +156,8 @@ class EmbeddedRun {
   std::vector<std::unique_ptr<Participant>> participants_;
   std::vector<SensorEvaluator*> sensors_;
   int frames_total_ = 0;
-  std::mutex mutex_;  // guards what follows
+  ProgressState found_;  // before the first step: what an earlier run has left
+  std::mutex mutex_;     // guards what follows
   std::condition_variable changed_;
   ProgressState state_;
   std::vector<std::string> notes_;  // to be told: objects that left, what draws

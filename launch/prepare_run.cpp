@@ -13,8 +13,10 @@ RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bo
   switch (directory.content()) {
     case RunDirectory::Content::same_run_complete:
       if (!force) {
-        std::printf("%s holds this run, complete; --force does it again\n%s%s/index.html\n",
-                    directory.path().c_str(), "open ", directory.path().c_str());
+        std::printf("%s holds this run, complete; --force does it again\n",
+                    directory.path().c_str());
+        if (!has_index_page(directory)) write_index_page(directory, scenario);
+        std::fputs(what_to_open(directory, scenario).c_str(), stdout);
         return {.needed = false};
       }
       break;
@@ -42,11 +44,16 @@ RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bo
   return start;
 }
 
-void finish_run(const RunDirectory& directory, const Scenario& scenario,
-                const RunOutcome& outcome) {
-  directory.merge_lines();
-  write_run_record(directory, scenario, outcome);
-  write_index_page(directory, scenario);
+void finish_run(const RunDirectory& directory, const Scenario& scenario, RunOutcome outcome) {
+  try {
+    directory.merge_lines();
+    write_index_page(directory, scenario);
+    write_run_record(directory, scenario, outcome);  // last: it says that all is there
+  } catch (const Error& error) {
+    // What went wrong first is told; where that was a full disk, this is its echo.
+    if (outcome.status != "failed") outcome.reason = error.what();
+    outcome.status = "failed";
+  }
   std::fputs(summary_text(directory, scenario, outcome).c_str(), stdout);
   if (outcome.status == "failed") throw Error(outcome.reason);
   if (const int code = exit_code(outcome.status)) throw ExitWith{code};

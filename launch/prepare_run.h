@@ -18,7 +18,7 @@ RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bo
 
 /// Merges the lines, writes run.json and index.html and prints the summary; throws `ExitWith` or
 /// the failure itself unless the run is complete.
-void finish_run(const RunDirectory& directory, const Scenario& scenario, const RunOutcome& outcome);
+void finish_run(const RunDirectory& directory, const Scenario& scenario, RunOutcome outcome);
 
 /// Exit code that a status stands for: complete 0, interrupted 130, failed 1.
 int exit_code(const std::string& status);

@@ -76,7 +76,8 @@ void write_index_page(const RunDirectory& directory, const Scenario& scenario) {
       ". Truth is green, streaks found are cyan, points yellow. <a "
       "href=detections.jsonl>detections.jsonl</a> "
       "<a href=truth.jsonl>truth.jsonl</a> <a href=run.json>run.json</a></p>"
-      "<table><tr><th>sensor<th>frames<th>objects in frame<th>detections<th>s a frame<th>PSS, MB";
+      "<table><tr><th>sensor<th>frames<th>objects in frame<th>detections<th>s per frame<th>memory, "
+      "MB";
   const auto summaries = summarise(scenario, directory.path());
   char cells[256];
   for (const auto& s : summaries) {
@@ -100,26 +101,37 @@ void write_index_page(const RunDirectory& directory, const Scenario& scenario) {
   write_file_whole(directory.path() + "/index.html", html + "\n");
 }
 
+bool has_index_page(const RunDirectory& directory) {
+  return exists(directory.path() + "/index.html");
+}
+
+std::string what_to_open(const RunDirectory& directory, const Scenario& scenario) {
+  std::string text;
+  for (const auto& sensor : scenario.sensors) {
+    const std::string marked =
+        directory.path() + "/" + sensor.name + "/" + frame_file(1, "-marked.png");
+    if (text.empty() && exists(marked)) text = "open " + marked + "\n";
+  }
+  if (has_index_page(directory))
+    text += (text.empty() ? "open " : "or   ") + directory.path() + "/index.html\n";
+  return text;
+}
+
 std::string summary_text(const RunDirectory& directory, const Scenario& scenario,
                          const RunOutcome& outcome) {
   char row[256];
-  std::snprintf(row, sizeof row, "%-20s %7s %8s %11s %10s %8s\n", "sensor", "frames", "objects",
-                "detections", "s a frame", "PSS, MB");
+  std::snprintf(row, sizeof row, "%-20s %7s %8s %11s %11s %10s\n", "sensor", "frames", "objects",
+                "detections", "s per frame", "memory, MB");
   std::string text = row;
-  std::string picture;
   for (const auto& s : summarise(scenario, directory.path())) {
-    std::snprintf(row, sizeof row, "%-20s %7d %8d %11d %10.2f %8.0f\n", s.name.c_str(), s.frames,
+    std::snprintf(row, sizeof row, "%-20s %7d %8d %11d %11.2f %10.0f\n", s.name.c_str(), s.frames,
                   s.objects, s.detections, s.seconds_per_frame, s.memory_mb);
     text += row;
-    const std::string marked = directory.path() + "/" + s.name + "/" + frame_file(1, "-marked.png");
-    if (picture.empty() && exists(marked)) picture = marked;
   }
   std::snprintf(row, sizeof row, "%s in %.1f s (%s)\n", outcome.status.c_str(), outcome.wall_s,
                 outcome.how.c_str());
   text += row;
-  if (!picture.empty()) text += "open " + picture + "\n";
-  text += "or   " + directory.path() + "/index.html\n";
-  return text;
+  return text + what_to_open(directory, scenario);
 }
 
 }  // namespace dmise

@@ -29,8 +29,12 @@ void write_run_record(const RunDirectory& directory, const Scenario& scenario,
 
 /// Writes index.html: the sensors, their frames and pictures.
 void write_index_page(const RunDirectory& directory, const Scenario& scenario);
+bool has_index_page(const RunDirectory& directory);
 
-/// The table at the end of a run and the picture to open.
+/// Lines that say what to look at: the first marked picture and the page, where there are such.
+std::string what_to_open(const RunDirectory& directory, const Scenario& scenario);
+
+/// The table at the end of a run and what to open.
 std::string summary_text(const RunDirectory& directory, const Scenario& scenario,
                          const RunOutcome& outcome);
 

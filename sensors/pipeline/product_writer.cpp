@@ -146,7 +146,8 @@ void ProductWriter::write(const FrameProducts& f) {
   append("frames.jsonl", to_json(f.report, utc) + "\n");
 }
 
-void ProductWriter::keep_frames(std::uint32_t last) const {
+long ProductWriter::keep_frames(std::uint32_t last) const {
+  long detections = 0;
   for (const char* name : {"detections.jsonl", "truth.jsonl", "cost.jsonl", "frames.jsonl"}) {
     const std::string path = directory_ + "/" + name;
     std::error_code ignored;
@@ -159,7 +160,10 @@ void ProductWriter::keep_frames(std::uint32_t last) const {
       if (std::strtoul(line.c_str() + at + 8, nullptr, 10) <= last) kept += line + "\n";
     }
     write_file_whole(path, kept);
+    if (path.ends_with("/detections.jsonl"))
+      detections = long(std::count(kept.begin(), kept.end(), '\n'));
   }
+  return detections;
 }
 
 }  // namespace dmise

@@ -19,8 +19,8 @@ class ProductWriter {
 
   void write(const FrameProducts& frame);
   /// Takes the lines of frames after `last` out again, and lines that were cut short: an earlier
-  /// process was in the middle of them.
-  void keep_frames(std::uint32_t last) const;
+  /// process was in the middle of them. Returns how many detections are left.
+  long keep_frames(std::uint32_t last) const;
 
  private:
   std::string frame_path(std::uint32_t frame, const char* ending) const;

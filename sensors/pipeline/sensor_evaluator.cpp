@@ -71,7 +71,7 @@ std::vector<Message> SensorEvaluator::resume(Tick tick, std::span<const Message>
   next_frame_ = tick == 0 ? 1 : frames_within(sensor_, {(tick - 1) * grid_.tick_length.ns}) + 1;
   next_frame_ = std::min(next_frame_, last_frame_ + 1);
   while (next_frame_ > 1 && ready_at(next_frame_ - 1) >= tick) --next_frame_;
-  writer_.keep_frames(next_frame_ - 1);
+  detections_ = writer_.keep_frames(next_frame_ - 1);
   return {};
 }
 

@@ -5,9 +5,13 @@ interrupted, killed with -9, and the one going on with what the other has left.
 """
 
 import os
+import re
 import signal
 
 from harness import Run, check, check_same, main, wait_until, write_scenario
+
+
+DURATION_S = 200
 
 
 def whole_lines(path):
@@ -26,15 +30,31 @@ def cut_short(binary, command, scenario, out, how, frames):
         check(code != 0, f"{command}: {how.name} after {frames} frames ends it with code {code}")
 
 
+def tells_what_there_is(run, out, reference):
+    """What is told of a run that goes on counts what it found in its directory."""
+    told = [tuple(map(int, found)) for found in re.findall(
+        r"simulated (\d+) of (\d+) s, frames (\d+) of (\d+), detections (\d+)", run.stderr)]
+    frames = whole_lines(reference / "frames.jsonl")
+    check(told and all(line[1] == DURATION_S and line[3] == frames for line in told),
+          f"each line says of how much: {told}")
+    check(told[0][0] > 0 and told[0][2] > 0, "the first says what is there already")
+    return told[-1]
+
+
 def goes_on(binary, command, scenario, out, reference):
     with Run(binary, command, scenario, "--out", out) as run:
         code, _ = run.finish()
+        last = tells_what_there_is(run, out, reference)
+        if command == "run":  # whose last line is of the end
+            frames, detections = (whole_lines(reference / f"{name}.jsonl") for name in ("frames", "detections"))
+            check((last[2], last[4]) == (frames, detections),
+                  f"at the end it tells frames {last[2]}, detections {last[4]}: {detections} lines are there")
         check(code == 0 and "going on at tick" in run.stdout, f"{command}: {run.stdout.splitlines()[0]}")
     check_same(out, reference, f"{command}: the products are those of a run that was not cut short")
 
 
 def test(binary, directory):
-    scenario = write_scenario(directory, duration_s=200)
+    scenario = write_scenario(directory, duration_s=DURATION_S)
     reference = directory / "reference"
     with Run(binary, "run", scenario, "--out", reference) as run:
         check(run.finish()[0] == 0, "the undisturbed run is complete")
