@@ -6,13 +6,15 @@ first are those of an undisturbed run, whatever command the two are.
 
 import json
 import os
+import pathlib
+import re
 import shutil
 import signal
 import socket
 import subprocess
 import time
 
-from harness import Failure, Run, check, check_same, first_frame, main, wait_until, write_scenario
+from harness import Run, check, check_same, first_frame, main, wait_until, write_scenario
 
 
 def refused(binary, command, *words):
@@ -114,24 +116,56 @@ def where_nothing_can_be_written(binary, directory, scenario):
         with Run("setpriv", "--reuid=65534", "--clear-groups", binary, "run", scenario, "--out", "/") as run:
             code, _ = run.finish()
             check(code == 1 and run.stderr == "dmise: /: can't be written: Permission denied\n", run.stderr)
-    # Full from the start, after some frames, at the end.
-    for size_kb in (0, 64, 1500):
-        disk = directory / "disk"
-        script = (f"mkdir -p {disk} && mount -t tmpfs -o size={size_kb or 4}k none {disk} && "
-                  + (f"(cat /dev/zero >{disk}/fill 2>/dev/null; true) && " if not size_kb else "")
-                  + f"{binary} run {scenario} --out {disk}/out; code=$?; "
-                  f"[[ $code == 0 ]] || ls {disk}/out >{directory}/there; exit $code")
+
+
+FULL_DISK = """\
+mount -t tmpfs -o size={size}k none {disk} || exit 99
+[[ {size} != 4 ]] || cat /dev/zero >{disk}/fill 2>/dev/null
+{binary} run {scenario} --out {disk}/out >{disk}.said
+code=$?
+sed -nE 's/^(open|or) +//p' {disk}.said | while read -r file; do [[ -e $file ]] || echo "not there: $file" >&2; done
+rm -f {disk}/fill
+mount -o remount,size=64m {disk}
+echo again >&2
+{binary} run {scenario} --out {disk}/out | sed -nE 's/^(open|or) +//p' | while read -r file; do
+  [[ -e $file ]] || echo "not there: $file" >&2
+done
+cp -r {disk}/out {disk}.after
+exit $code
+"""
+
+
+def on_a_full_disk(binary, directory):
+    """Full from the start, after some frames, and when lines are merged and pages are written at the end."""
+    scenario = write_scenario(directory, duration_s=10, name="short.yaml")
+    reference = directory / "short"
+    with Run(binary, "run", scenario, "--out", reference) as run:
+        check(run.finish()[0] == 0, "an undisturbed run is complete")
+    needed_kb = sum(-(-path.stat().st_size // 4096) * 4 for path in reference.rglob("*") if path.is_file())
+    for number, size_kb in enumerate((4, 64, needed_kb // 2, needed_kb - 16, needed_kb - 8, needed_kb - 4, needed_kb)):
+        disk = directory / f"disk-{number}"
+        disk.mkdir()
+        script = FULL_DISK.format(size=size_kb, disk=disk, binary=binary, scenario=scenario)
         done = subprocess.run(["unshare", "-rm", "bash", "-c", script], capture_output=True, text=True, timeout=120)
-        if "unshare" in done.stderr or "mount:" in done.stderr:
+        if done.returncode == 99 or "unshare" in done.stderr:
             print(f"not tried on a full disk: {done.stderr.strip()}")
             return
-        said = [line for line in done.stderr.splitlines() if not line.startswith(("note: ", "simulated "))]
-        check(done.returncode == 1 and len(said) == 1 and "No space left on device" in said[0],
-              f"a disk of {size_kb} kB: code {done.returncode}: {' | '.join(said)}")
-        there = (directory / "there").read_text().split()
-        for line in done.stdout.splitlines():
-            if line.startswith(("open ", "or ")):
-                check(line.rsplit("/", 1)[1] in there or "frame-" in line, f"it is there: {line}")
+        first, after = done.stderr.split("again\n")
+        said = [line for line in first.splitlines() if not line.startswith(("note: ", "simulated "))]
+        fits = done.returncode == 0 and not said
+        check(fits or (done.returncode == 1 and len(said) == 1 and "No space left on device" in said[0]),
+              f"a disk of {size_kb} kB, of {needed_kb}: code {done.returncode}: {' | '.join(said)}")
+        if 64 <= size_kb <= needed_kb // 2:
+            check(".fits:" in said[0], "the frame that could not be written is the reason, not what failed after it")
+        check("not there" not in after, f"what is offered to be opened is there {after[-200:]}")
+        check_same(pathlib.Path(f"{disk}.after"), reference, "with room again the run goes on to the same products")
+
+    (reference / "index.html").unlink()  # as a disk that was full at the very end left a complete run
+    with Run(binary, "run", scenario, "--out", reference) as run:
+        check(run.finish()[0] == 0 and "holds this run, complete" in run.stdout, run.stdout.splitlines()[0])
+        for file in re.findall(r"^(?:open|or) +(.*)$", run.stdout, re.MULTILINE):
+            check(pathlib.Path(file).exists(), f"what is offered to be opened is there: {file}")
+        check((reference / "index.html").exists(), "the page is made again")
 
 
 def test(binary, directory):
@@ -145,6 +179,7 @@ def test(binary, directory):
     of_others(binary, directory, scenario, reference)
     joined_elsewhere(binary, directory, scenario)
     where_nothing_can_be_written(binary, directory, scenario)
+    on_a_full_disk(binary, directory)
 
 
 if __name__ == "__main__":
