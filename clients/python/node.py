@@ -47,6 +47,8 @@ ticks.subscribe("")
 topology = time_pb2.MasterMessage.FromString(master.recv()).topology
 data = context.socket(zmq.SUB)
 data.set_hwm(0)
+if topology.broker_password:  # without keys: only nodes of the run are told
+    data.plain_username, data.plain_password = name.encode(), topology.broker_password.encode()
 data.connect(topology.subscribe_endpoint)
 for topic in topics:
     data.subscribe(topic)

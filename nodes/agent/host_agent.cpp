@@ -71,7 +71,7 @@ class HostAgent {
   HostAgent(const HostAgentOptions& options, HostAgentResult* result)
       : options_(options),
         result_(result),
-        security_(options.keys, options.name),
+        security_(serving(Security(options.keys, options.name))),
         door_(context_, security_),
         link_(context_, options.master, options.stop, security_),
         router_(make_socket(context_, zmq::socket_type::router, max_control_bytes)),
@@ -80,15 +80,18 @@ class HostAgent {
         subscribers_(make_socket(context_, zmq::socket_type::xpub, max_data_bytes)),
         to_broker_(make_socket(context_, zmq::socket_type::xpub, max_data_bytes)),
         from_broker_(make_socket(context_, zmq::socket_type::xsub, max_data_bytes)),
-        connections_(context_, router_),
+        connections_(context_, router_, bytes_alone(max_unheard_bytes)),
+        subscriptions_(context_, subscribers_, bytes_alone(max_subscriptions_bytes)),
+        tick_subscriptions_(context_, ticks_, bytes_alone(max_subscriptions_bytes)),
         voice_(router_, ticks_, directory_) {
     for (auto* socket : {&router_, &ticks_, &subscribers_}) socket->set(zmq::sockopt::linger, 500);
     to_broker_.set(zmq::sockopt::linger, 1000);
+    ticks_.set(zmq::sockopt::sndhwm, max_unread);
     const std::string& bind = options.bind;
     address_ = bind_to(router_, bind, security_);
     tick_endpoint_ = bind_to(ticks_, beside(bind, "ticks"), security_);
-    publish_endpoint_ = bind_to(publishers_, beside(bind, "publish"), security_, Domain::data);
-    subscribe_endpoint_ = bind_to(subscribers_, beside(bind, "subscribe"), security_, Domain::data);
+    publish_endpoint_ = bind_to(publishers_, beside(bind, "publish"), security_, Domain::run);
+    subscribe_endpoint_ = bind_to(subscribers_, beside(bind, "subscribe"), security_, Domain::run);
   }
 
   void run() {
@@ -112,6 +115,10 @@ class HostAgent {
       const bool due = now() >= next_check;
       if (due) {
         barrier_->check(now());
+        for (PeerMonitor* peers : {&connections_, &subscriptions_, &tick_subscriptions_})
+          for (const std::string& closed : peers->enforce(now())) spdlog::warn("{}", closed);
+        subscriptions_.forget(subscriptions_.broken());
+        tick_subscriptions_.forget(tick_subscriptions_.broken());
         note_beats();
         const bool connecting = link_.phase() == v1::PHASE_CONNECTING;
         next_check = now() + (connecting ? connecting_interval : check_interval);
@@ -161,6 +168,7 @@ class HostAgent {
   /// What the nodes of this host say.
   void hear() {
     for (auto message = receive(router_); !message.empty(); message = receive(router_)) {
+      for (std::size_t i = 1; i < message.size(); ++i) connections_.took(message[i]);
       if (message.size() != 2 || !from_frame(message[1], &heard_)) continue;
       const std::string_view sender = message[0].to_string_view();
       auto fault = fault_of(heard_);
@@ -253,7 +261,8 @@ class HostAgent {
                         ? pass_checked(publishers_, to_broker_, publishes_itself, &result_->refused)
                         : pass_on(publishers_, to_broker_);
     const int in = pass_on(from_broker_, subscribers_);
-    const int asked = pass_on(subscribers_, from_broker_) + pass_on(to_broker_, publishers_);
+    const int asked = pass_subscriptions(subscribers_, from_broker_) +
+                      pass_subscriptions(to_broker_, publishers_);
     result_->messages_out += std::uint64_t(out);
     result_->messages_in += std::uint64_t(in);
     if (out + in + asked > 0) busy_ = now();
@@ -308,9 +317,12 @@ class HostAgent {
     std::set<std::string> names;
     for (const v1::NodeStart& start : topology.starts()) names.insert(start.name());
     barrier_->expects(std::move(names));
-    at_subscribe_.follow(topology.subscribe_endpoint(), topology.broker_incarnation(), security_);
-    at_publish_.follow(topology.publish_endpoint(), topology.broker_incarnation(), security_);
-    voice_.send_topology(topology, publish_endpoint_, subscribe_endpoint_);
+    const std::string& password = topology.broker_password();
+    at_subscribe_.follow(topology.subscribe_endpoint(), topology.broker_incarnation(), security_,
+                         password);
+    at_publish_.follow(topology.publish_endpoint(), topology.broker_incarnation(), security_,
+                       password);
+    voice_.send_topology(topology, publish_endpoint_, subscribe_endpoint_, security_.password());
   }
 
   /// Tells the master what there is to tell of this host.
@@ -392,7 +404,7 @@ class HostAgent {
   zmq::socket_t router_, ticks_;            // the nodes' time-master
   zmq::socket_t publishers_, subscribers_;  // the nodes' broker
   zmq::socket_t to_broker_, from_broker_;   // the run's
-  PeerMonitor connections_;
+  PeerMonitor connections_, subscriptions_, tick_subscriptions_;
   std::vector<std::uint64_t> broken_;  // of these, as of now
   PeerDirectory directory_;
   TopicOwners owners_;

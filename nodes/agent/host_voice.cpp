@@ -70,7 +70,7 @@ v1::MasterMessage HostVoice::expelled(const std::string& cause) const {
 }
 
 void HostVoice::send_topology(const v1::Topology& topology, const std::string& publish_endpoint,
-                              const std::string& subscribe_endpoint) {
+                              const std::string& subscribe_endpoint, const std::string& password) {
   consumed_ = directory_.consumed();
   v1::MasterMessage message;
   v1::Topology& theirs = *message.mutable_topology() = topology;
@@ -79,6 +79,7 @@ void HostVoice::send_topology(const v1::Topology& topology, const std::string& p
   theirs.clear_broker_incarnation();
   theirs.set_publish_endpoint(publish_endpoint);
   theirs.set_subscribe_endpoint(subscribe_endpoint);
+  theirs.set_broker_password(password);
   for (const v1::NodeStart& start : topology.starts()) {
     // What was said before it joined is meant for the process before it.
     const Peer* peer = directory_.find(start.name(), start.incarnation());

@@ -33,7 +33,7 @@ class HostVoice {
   v1::MasterMessage expelled(const std::string& cause) const;
   /// Tells each node who is where: the agent itself is their broker.
   void send_topology(const v1::Topology& topology, const std::string& publish_endpoint,
-                     const std::string& subscribe_endpoint);
+                     const std::string& subscribe_endpoint, const std::string& password);
 
  private:
   zmq::socket_t& router_;

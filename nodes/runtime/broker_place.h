@@ -16,13 +16,15 @@ class BrokerPlace {
   /// Connects to the broker, anew to one that follows another at the same place: ZeroMQ never again
   /// connects to where it has met a socket of the wrong kind, and a stranger may have had the
   /// address in between.
-  void follow(const std::string& endpoint, std::uint64_t incarnation,
-              const Security& security = {}) {
+  void follow(const std::string& endpoint, std::uint64_t incarnation, const Security& security = {},
+              const std::string& password = "") {
     if (endpoint == endpoint_ && incarnation == incarnation_) return;
     if (known()) socket_.disconnect(endpoint_);
     endpoint_ = endpoint;
     incarnation_ = incarnation;
-    connect_to(socket_, endpoint_, security, broker_name);
+    Security with_password = security;
+    with_password.set_password(password);
+    connect_to(socket_, endpoint_, with_password, broker_name);
   }
 
  private:

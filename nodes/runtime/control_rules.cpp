@@ -56,7 +56,7 @@ bool good_beats(const Beats& beats) {
 
 bool good(const v1::Broker& broker) {
   return is_text(broker.publish_endpoint()) && is_text(broker.subscribe_endpoint()) &&
-         is_text(broker.observe_endpoint());
+         is_text(broker.observe_endpoint()) && is_text(broker.password());
 }
 
 Fault fault_in(const v1::Join& join) {
@@ -106,8 +106,9 @@ Fault fault_in(const v1::Topology& topology) {
                     std::all_of(publishers.begin(), publishers.end(),
                                 [](const v1::Publisher& publisher) { return good(publisher); }) &&
                     is_text(topology.publish_endpoint()) &&
-                    is_text(topology.subscribe_endpoint()) && is_tick(topology.resume_tick()) &&
-                    is_tick(topology.from_tick()) && topology.from_tick() <= topology.resume_tick(),
+                    is_text(topology.subscribe_endpoint()) && is_text(topology.broker_password()) &&
+                    is_tick(topology.resume_tick()) && is_tick(topology.from_tick()) &&
+                    topology.from_tick() <= topology.resume_tick(),
                 "topology: a publisher, address or tick can't be one");
 }
 

@@ -9,8 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t early_limit =
-    4096;  // messages of a topic kept out of turn; others are re-sent
+constexpr std::size_t waiting_limit = 4096;  // messages of a topic; others are asked for again
 
 }  // namespace
 
@@ -42,52 +41,124 @@ void Inbox::restart(const std::string& name) {
   if (!topic) return;
   topic->next_sequence = 1;
   topic->positioned = false;
-  topic->early.clear();
+  topic->waiting.clear();
+  topic->doubted = false;
   topic->ready.erase(topic->ready.upper_bound(topic->complete_to), topic->ready.end());
   topic->heard.erase(topic->heard.upper_bound(topic->complete_to), topic->heard.end());
   topic->said.clear();
 }
 
-void Inbox::accept(const Received& message) {
+void Inbox::accept(const Received& message, Way way) {
   Topic* found = find(message.topic);
   if (!found) return;
   Topic& topic = *found;
   topic.probed = true;
   const Envelope& envelope = message.envelope;
   if (envelope.kind == MessageKind::probe) return;
-  if (envelope.kind == MessageKind::position) return position(topic, envelope);
-  const std::uint64_t sequence = envelope.sequence;
-  if ((topic.positioned && sequence < topic.next_sequence) || topic.early.contains(sequence)) {
-    ++duplicates_;
-  } else if (!topic.positioned || sequence > topic.next_sequence) {
-    if (topic.early.size() < early_limit) topic.early.emplace(sequence, message);
-  } else {
-    deliver(topic, message);
-    deliver_early(topic);
+  if (envelope.kind == MessageKind::position) {
+    if (way == Way::answer) position(topic, envelope);
+    return;
   }
+  const bool sure = way != Way::broker;
+  if (topic.doubted && !sure) return;
+  const std::uint64_t sequence = envelope.sequence;
+  if (topic.positioned && sequence < topic.next_sequence) {
+    ++duplicates_;
+    return;
+  }
+  if (topic.positioned && sequence - topic.next_sequence >= waiting_limit) return;
+  const auto [entry, fresh] = topic.waiting.try_emplace(sequence);
+  if (!fresh) ++duplicates_;
+  if (!fresh && sure && !entry->second.sure && !topic.said.contains(envelope.tick))
+    topic.unsaid = true;
+  if (fresh || (sure && !entry->second.sure)) entry->second = {message, sure};
+  if (topic.waiting.size() > waiting_limit) topic.waiting.erase(std::prev(topic.waiting.end()));
+  settle(topic);
 }
 
 void Inbox::position(Topic& topic, const Envelope& envelope) {
-  if (topic.positioned && envelope.sequence <= topic.next_sequence) return;
-  if (topic.positioned && envelope.tick > topic.complete_to + 1)
+  if (topic.positioned && !topic.doubted && envelope.sequence <= topic.next_sequence) return;
+  if (topic.positioned && envelope.tick > topic.complete_to + 1 &&
+      envelope.sequence > topic.next_sequence)
     missed_ += envelope.sequence - topic.next_sequence;
   topic.positioned = true;
   topic.next_sequence = envelope.sequence;
   topic.complete_to = std::max(topic.complete_to, envelope.tick - 1);
-  while (!topic.early.empty() && topic.early.begin()->first < topic.next_sequence) {
-    const Received& message = topic.early.begin()->second;
-    if (message.state && said_once(*message.state) && !std::exchange(topic.has_lasting, true))
-      topic.lasting.push_back({topic.name, message.envelope.tick, message.state});
-    topic.early.erase(topic.early.begin());
+  while (!topic.waiting.empty() && topic.waiting.begin()->first < topic.next_sequence) {
+    keep_lasting(topic, topic.waiting.begin()->second.message);
+    topic.waiting.erase(topic.waiting.begin());
   }
-  deliver_early(topic);
+  settle(topic);
 }
 
-void Inbox::deliver_early(Topic& topic) {
-  while (!topic.early.empty() && topic.early.begin()->first == topic.next_sequence) {
-    deliver(topic, topic.early.begin()->second);
-    topic.early.erase(topic.early.begin());
+/// What is said once and for all counts whatever its tick.
+void Inbox::keep_lasting(Topic& topic, const Received& message) {
+  if (message.state && said_once(*message.state) && !std::exchange(topic.has_lasting, true))
+    topic.lasting.push_back({topic.name, message.envelope.tick, message.state});
+}
+
+/// Delivers what is next and sure, or is what the manifest says, tick by tick.
+void Inbox::settle(Topic& topic) {
+  if (!topic.positioned) return;
+  for (;;) {
+    auto next = topic.waiting.find(topic.next_sequence);
+    if (next != topic.waiting.end() && next->second.sure) {
+      deliver(topic, next->second.message);
+      topic.waiting.erase(next);
+      continue;
+    }
+    std::uint64_t sequence = topic.next_sequence;
+    while (next != topic.waiting.end() && next->first == sequence &&
+           !next->second.message.envelope.last_of_tick)
+      ++next, ++sequence;
+    const bool whole = next != topic.waiting.end() && next->first == sequence;
+    if (contradicts(topic)) return doubt(topic);
+    if (!whole || !settle_group(topic, std::next(next))) return;
   }
+}
+
+/// True when the manifest of the next tick says that its last message was one that was passed.
+bool Inbox::contradicts(const Topic& topic) const {
+  const auto said = topic.said.find(topic.schedule.next_after(topic.complete_to));
+  return said != topic.said.end() && said->second.last_sequence < topic.next_sequence;
+}
+
+/// What waits up to `end` ends a tick. False when it can't count, or not yet.
+bool Inbox::settle_group(Topic& topic, std::map<std::uint64_t, Waiting>::iterator end) {
+  const auto last = std::prev(end);
+  const Tick tick = last->second.message.envelope.tick;
+  TopicTally tally = {};
+  if (const auto heard = topic.heard.find(tick); heard != topic.heard.end()) tally = heard->second;
+  bool one_tick = true;
+  for (auto entry = topic.waiting.begin(); entry != end; ++entry) {
+    const Received& message = entry->second.message;
+    one_tick = one_tick && message.envelope.tick == tick;
+    if (message.state && said_once(*message.state)) continue;
+    ++tally.messages;
+    tally.digest = fold_digest(tally.digest, message.content_digest);
+  }
+  const auto said = topic.said.find(tick);
+  // A process that follows another says again what counts already.
+  const bool known = one_tick && tick <= topic.complete_to;
+  const bool next = tick == topic.schedule.next_after(topic.complete_to);
+  const bool agrees = said != topic.said.end() && said->second.messages == tally.messages &&
+                      said->second.digest == tally.digest &&
+                      said->second.last_sequence == last->first;
+  if (!known && one_tick && next && said == topic.said.end()) return false;  // not said yet
+  if (!known && !(one_tick && next && agrees)) {
+    // Nothing but the manifest of the next tick can show whose fault it is.
+    if (topic.said.contains(topic.schedule.next_after(topic.complete_to))) doubt(topic);
+    return false;
+  }
+  topic.unsaid = topic.unsaid && known;
+  for (auto entry = topic.waiting.begin(); entry != end; entry = topic.waiting.erase(entry))
+    deliver(topic, entry->second.message);
+  return true;
+}
+
+void Inbox::doubt(Topic& topic) {
+  topic.doubted = true;
+  forged_ += std::erase_if(topic.waiting, [](const auto& entry) { return !entry.second.sure; });
 }
 
 void Inbox::deliver(Topic& topic, const Received& message) {
@@ -115,10 +186,13 @@ void Inbox::deliver(Topic& topic, const Received& message) {
 
 void Inbox::published(const TopicTally& tally, Tick tick) {
   Topic* topic = find(tally.topic);
-  if (!topic || !topic->positioned) return;
+  if (!topic) return;
   if (tick <= topic->complete_to && !topic->heard.contains(tick)) return;  // taken
   topic->said[tick] = tally;
-  if (tick <= topic->complete_to) compare(*topic, tick);
+  if (tick <= topic->complete_to)
+    compare(*topic, tick);
+  else
+    settle(*topic);
 }
 
 void Inbox::compare(const Topic& topic, Tick tick) const {
@@ -169,27 +243,36 @@ std::vector<Message> Inbox::take(Tick tick) {
 std::size_t Inbox::queued() const {
   std::size_t messages = 0;
   for (const Topic& topic : topics_) {
-    messages += topic.lasting.size() + topic.early.size();
+    messages += topic.lasting.size() + topic.waiting.size();
     for (const auto& [tick, ready] : topic.ready) messages += ready.size();
   }
   return messages;
+}
+
+/// True when something is known to be published and is not here, or nobody else vouches for it.
+bool Inbox::lacks_published(const Topic& topic) {
+  if (topic.doubted) return topic.said.upper_bound(topic.complete_to) != topic.said.end();
+  if (topic.unsaid && !topic.waiting.empty()) return true;
+  std::uint64_t next = topic.next_sequence;
+  for (const auto& [sequence, waiting] : topic.waiting)
+    if (sequence != next++) return true;
+  return std::any_of(topic.said.begin(), topic.said.end(),
+                     [&](const auto& said) { return said.second.last_sequence >= next; });
 }
 
 std::vector<Inbox::Want> Inbox::wanted(Tick tick) const {
   std::vector<Want> wants;
   for (const Topic& topic : topics_) {
     if (topic.positioned && topic.covers(tick)) continue;
-    const auto lost = [&](const auto& said) {
-      return said.second.last_sequence >= topic.next_sequence;
-    };
     // Of a process that follows another: it has said again what is complete here, and need not keep
     // that; what is missing before it is never asked for.
-    const bool known =
-        !topic.early.empty() && topic.early.begin()->second.envelope.tick <= topic.complete_to;
-    wants.push_back(
-        {topic.name, topic.next_sequence,
-         topic.positioned && !known ? std::nullopt : std::optional(topic.complete_to + 1),
-         !topic.early.empty() || std::any_of(topic.said.begin(), topic.said.end(), lost)});
+    const bool known = !topic.waiting.empty() &&
+                       topic.waiting.begin()->first > topic.next_sequence &&
+                       topic.waiting.begin()->second.message.envelope.tick <= topic.complete_to;
+    const bool by_tick = !topic.positioned || known || topic.doubted;
+    wants.push_back({topic.name, topic.next_sequence,
+                     by_tick ? std::optional(topic.complete_to + 1) : std::nullopt,
+                     lacks_published(topic)});
   }
   return wants;
 }

@@ -13,9 +13,17 @@ namespace dmise {
 
 /// What a node has received and not yet used: brings each topic's messages into the order of their
 /// sequence numbers, whatever the order of arrival, knows when a tick is complete, and compares
-/// what came with what its publisher says it published.
+/// what came with what its publisher says it published. What came through the broker counts when
+/// the publisher's manifest of the tick, which comes from the time-master, agrees with it: anybody
+/// may have sent it. If not, it is thrown away and the publisher itself is asked.
 class Inbox {
  public:
+  /// How a message came.
+  enum class Way {
+    broker,  // from whoever reaches the broker
+    direct,  // over a connection to its publisher
+    answer,  // the same, to a question of ours: it may say where a topic is (POSITION)
+  };
   /// Messages to be asked for again.
   struct Want {
     std::string topic;
@@ -36,8 +44,8 @@ class Inbox {
   void restart(const std::string& topic);
 
   /// Takes a message that passed the receiver; duplicates and probes change nothing but `probed`.
-  void accept(const Received& message);
-  /// What the publisher says of a tick. Throws `Error` when something else came.
+  void accept(const Received& message, Way way = Way::answer);
+  /// What the publisher says of a tick. Throws `Error` when it has itself sent something else.
   void published(const TopicTally& tally, Tick tick);
   /// Nothing is said on `topic` from this tick on.
   void close(const std::string& topic, Tick from_tick);
@@ -59,21 +67,31 @@ class Inbox {
   std::uint64_t duplicates() const { return duplicates_; }
   /// Messages that nobody keeps any more; only those who hold nobody's time have such.
   std::uint64_t missed() const { return missed_; }
+  /// Messages thrown away because their publisher's manifest says otherwise.
+  std::uint64_t forged() const { return forged_; }
 
  private:
+  struct Waiting {
+    Received message;
+    bool sure = false;  // it came from its publisher
+  };
   struct Topic {
     std::string name;
     Schedule schedule;
     bool probed = false;
     bool positioned = true;
     bool has_lasting = false;  // heard what is said once and for all
-    std::uint64_t next_sequence = 1;
-    Tick complete_to = -1;  // watermark
+    bool doubted = false;      // something else came through the broker than was published: the
+                               // publisher is asked for everything from then on
+    bool unsaid = false;       // manifests come only after the publisher was asked: it is behind an
+                               // agent whose other nodes wait for this one
+    std::uint64_t next_sequence = 1;  // the first that does not count yet
+    Tick complete_to = -1;
     Tick closed_from = INT64_MAX;
-    std::map<std::uint64_t, Received> early;     // arrived before their turn
+    std::map<std::uint64_t, Waiting> waiting;    // do not count yet
     std::vector<Message> lasting;                // said once and for all, before the first tick
     std::map<Tick, std::vector<Message>> ready;  // by tick
-    std::map<Tick, TopicTally> heard;            // what came, of ticks not yet taken
+    std::map<Tick, TopicTally> heard;            // what counts, of ticks not yet taken
     std::map<Tick, TopicTally> said;             // what the publisher says of them
 
     bool covers(Tick tick) const {
@@ -81,8 +99,13 @@ class Inbox {
     }
   };
   void position(Topic& topic, const Envelope& envelope);
+  void settle(Topic& topic);
+  bool settle_group(Topic& topic, std::map<std::uint64_t, Waiting>::iterator end);
+  bool contradicts(const Topic& topic) const;
+  void doubt(Topic& topic);
   void deliver(Topic& topic, const Received& message);
-  void deliver_early(Topic& topic);
+  void keep_lasting(Topic& topic, const Received& message);
+  static bool lacks_published(const Topic& topic);
   void compare(const Topic& topic, Tick tick) const;
   Topic* find(std::string_view name);
 
@@ -90,6 +113,7 @@ class Inbox {
   std::map<std::string, std::size_t, std::less<>> place_;
   std::uint64_t duplicates_ = 0;
   std::uint64_t missed_ = 0;
+  std::uint64_t forged_ = 0;
 };
 
 }  // namespace dmise

@@ -15,12 +15,20 @@ namespace dmise {
 
 using std::chrono::duration;
 
+namespace {
+
+constexpr std::chrono::milliseconds look_interval{100};  // at who asks too much
+constexpr int questions_at_once = 64;
+
+}  // namespace
+
 Keeper::Keeper(zmq::context_t& context, KeeperOptions options,
                std::optional<zmq::socket_t> resend_socket)
     : options_(std::move(options)),
       heartbeat_(make_socket(context, zmq::socket_type::dealer, max_control_bytes)),
       resend_(std::move(resend_socket)),
       heard_(now()) {
+  if (resend_) askers_.emplace(context, *resend_, bytes_alone(max_unheard_questions_bytes));
   connect_to(heartbeat_, options_.master, options_.security, master_name);
   thread_ = std::thread([this] { run(); });
 }
@@ -44,6 +52,7 @@ void Keeper::set_times(const TimeSplit& times) {
 void Keeper::run() {
   auto next_beat = now();
   auto awake = now();
+  auto next_look = now();
   while (!quit_.is_set()) {
     if (now() >= next_beat) {
       beat();
@@ -58,6 +67,11 @@ void Keeper::run() {
     awake = now();
     hear();
     if (resend_) answer();
+    if (askers_ && now() >= next_look) {
+      for (const std::string& closed : askers_->enforce(now())) spdlog::warn("{}", closed);
+      askers_->forget(askers_->broken());
+      next_look = now() + look_interval;
+    }
     leave_if_stuck();
   }
 }
@@ -107,8 +121,12 @@ void Keeper::post(const v1::Grant& grant) {
 
 void Keeper::answer() {
   // Whoever asks again before there was time to answer is answered once: it knows more by then.
+  // The heartbeat waits for no more questions than a few.
   std::map<std::tuple<std::string, std::string, bool>, v1::ResendRequest> questions;
-  for (auto message = receive(*resend_); !message.empty(); message = receive(*resend_)) {
+  for (int i = 0; i < questions_at_once; ++i) {
+    auto message = receive(*resend_);
+    if (message.empty()) break;
+    for (std::size_t i = 1; i < message.size(); ++i) askers_->took(message[i]);
     v1::ResendRequest request;
     if (message.size() != 2 || !from_frame(message[1], &request) ||
         request.run_id() != options_.run_id || fault_of(request))

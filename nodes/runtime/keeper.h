@@ -9,6 +9,7 @@
 #include "dmise/v1/time.pb.h"
 #include "nodes/runtime/event.h"
 #include "nodes/runtime/outbox.h"
+#include "nodes/runtime/peer_monitor.h"
 #include "nodes/runtime/socket.h"
 #include "nodes/runtime/time_split.h"
 
@@ -60,6 +61,7 @@ class Keeper {
   KeeperOptions options_;
   zmq::socket_t heartbeat_;
   std::optional<zmq::socket_t> resend_;
+  std::optional<PeerMonitor> askers_;  // of `resend_`
   Event quit_;
   Event news_;
   std::atomic<bool> computing_{false};

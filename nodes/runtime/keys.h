@@ -6,8 +6,9 @@
 
 namespace dmise {
 
-/// What a process may connect to. A public key without `truth` is refused where truth is served.
-enum class Domain { control, data, truth };
+/// What a process may connect to. A public key without `truth` is refused where truth is served;
+/// without keys, whoever has not joined is refused at `run`, the broker's endpoints for nodes.
+enum class Domain { control, data, run, truth };
 
 /// A CURVE key pair, each in Z85 (ZeroMQ RFC 32): 40 characters.
 struct KeyPair {

@@ -100,6 +100,7 @@ void MasterVoice::send_topology_to(const Peer& peer, const v1::Topology& topolog
     for (const std::string& topic : coordinator_.members().at(name).node.produces)
       if (consumed_.contains(topic)) message.mutable_topology()->add_reported(topic);
   }
+  if (peer.join.observer()) directory_.make_for_observer(message.mutable_topology());
   reply(peer.routing_id, message);
 }
 

@@ -10,6 +10,7 @@
 #include "nodes/runtime/master_link.h"
 #include "nodes/runtime/metrics.h"
 #include "nodes/runtime/node_inputs.h"
+#include "nodes/runtime/peer_monitor.h"
 
 namespace dmise {
 namespace {
@@ -21,6 +22,7 @@ using std::chrono::nanoseconds;
 
 constexpr milliseconds probe_interval{10};
 constexpr milliseconds idle{1000};
+constexpr milliseconds look_interval{100};  // at who subscribes to too much
 
 bool is_direct(const std::string& topic) { return topic.starts_with(truth_prefix); }
 
@@ -50,6 +52,7 @@ class Node {
         inputs_(data_context_, consumes_, security_) {
     publish_.set(zmq::sockopt::linger, 1000);
     direct_.set(zmq::sockopt::linger, 1000);
+    direct_.set(zmq::sockopt::sndhwm, max_unread);
     inputs_.set_may_miss(options.observer);
     inputs_.lose_every(options.lose_every);
   }
@@ -78,11 +81,14 @@ class Node {
     request.set_look_back_ticks(std::uint64_t(participant_.look_back()));
     request.set_period_ticks(std::uint64_t(schedule_.period));
     request.set_offset_ticks(std::uint64_t(schedule_.offset));
-    if (request.produces_direct_size() > 0)
+    if (request.produces_direct_size() > 0) {
+      listeners_.emplace(data_context_, direct_, bytes_alone(max_subscriptions_bytes));
       request.set_direct_endpoint(bind_to(direct_, options_.host, security_, Domain::truth));
+    }
     std::optional<zmq::socket_t> resend;
     if (!produces_.empty()) {
-      resend = make_socket(control_context_, zmq::socket_type::router, max_control_bytes);
+      resend = make_socket(control_context_, zmq::socket_type::router, max_question_bytes);
+      resend->set(zmq::sockopt::sndhwm, max_unread_answers);
       request.set_resend_endpoint(bind_to(*resend, options_.host, security_, Domain::data));
     }
 
@@ -145,7 +151,8 @@ class Node {
         std::any_of(produces_.begin(), produces_.end(),
                     [](const std::string& topic) { return !is_direct(topic); });
     if (through_broker)
-      broker_.follow(topology.publish_endpoint(), topology.broker_incarnation(), security_);
+      broker_.follow(topology.publish_endpoint(), topology.broker_incarnation(), security_,
+                     topology.broker_password());
   }
 
   void follow_topology() {
@@ -234,6 +241,11 @@ class Node {
   void receive_data() {
     const Stopwatch watch(&result_->times.messaging_s);
     inputs_.receive();
+    if (listeners_ && now() >= next_look_) {
+      for (const std::string& closed : listeners_->enforce(now())) spdlog::warn("{}", closed);
+      listeners_->forget(listeners_->broken());
+      next_look_ = now() + look_interval;
+    }
   }
 
   void publish(const SharedFrames& frames) {
@@ -268,6 +280,7 @@ class Node {
     result_->missed = inputs_.missed();
     const bool interrupted = link_.stopped() && link_.phase() != v1::PHASE_ENDED;
     publish_.close();
+    listeners_.reset();
     direct_.close();
     inputs_.close();
     data_door_.reset();
@@ -290,6 +303,8 @@ class Node {
   std::optional<Outbox> outbox_;  // used by the link's keeper: outlives it
   MasterLink link_;
   zmq::socket_t publish_, direct_;
+  std::optional<PeerMonitor> listeners_;  // of `direct_`
+  nanoseconds next_look_{0};
   BrokerPlace broker_{publish_};
   NodeInputs inputs_;
   RunFacts run_;

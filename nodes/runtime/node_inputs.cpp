@@ -40,7 +40,8 @@ bool NodeInputs::consumes(const std::string& topic) const {
 
 void NodeInputs::connect(const v1::Topology& topology) {
   for (const auto& publisher : topology.publishers()) follow(publisher);
-  broker_.follow(topology.subscribe_endpoint(), topology.broker_incarnation(), security_);
+  broker_.follow(topology.subscribe_endpoint(), topology.broker_incarnation(), security_,
+                 topology.broker_password());
   list_sockets();
 }
 
@@ -101,17 +102,24 @@ void NodeInputs::hear(const std::vector<v1::ClosedTopic>& closed,
 }
 
 void NodeInputs::receive() {
-  if (broker_.known()) receive_from(subscribe_, nullptr, true);
+  if (broker_.known()) receive_from(subscribe_, nullptr, Inbox::Way::broker);
   for (auto& [name, source] : sources_) {
-    if (source.direct) receive_from(*source.direct, &name, true);
-    if (source.asker) receive_from(*source.asker, &name, false);
+    if (source.direct) receive_from(*source.direct, &name, Inbox::Way::direct);
+    if (source.asker) receive_from(*source.asker, &name, Inbox::Way::answer);
   }
   learn_patience();
+  say_forged();
 }
 
-/// `publisher`: the only one who may speak there; null: anyone. `published`: not an answer to a
-/// question of ours.
-void NodeInputs::receive_from(zmq::socket_t& socket, const std::string* publisher, bool published) {
+void NodeInputs::say_forged() {
+  if (inbox_.forged() == forged_said_) return;
+  spdlog::warn("threw away {} messages that their publishers have not sent",
+               inbox_.forged() - forged_said_);
+  forged_said_ = inbox_.forged();
+}
+
+/// `publisher`: the only one who may speak there; null: anyone.
+void NodeInputs::receive_from(zmq::socket_t& socket, const std::string* publisher, Inbox::Way way) {
   for (auto message = dmise::receive(socket); !message.empty(); message = dmise::receive(socket)) {
     // A subscription also matches topics that only begin like it.
     const auto expected = publisher_of_.find(message[0].to_string());
@@ -120,12 +128,13 @@ void NodeInputs::receive_from(zmq::socket_t& socket, const std::string* publishe
       spdlog::warn("refused a message: {} does not publish on {}", *publisher, expected->first);
     } else if (const auto received = receiver_->receive(views(message))) {
       ++received_;
-      const bool counts = published && received->envelope.kind != MessageKind::probe;
+      const bool counts =
+          way != Inbox::Way::answer && received->envelope.kind != MessageKind::probe;
       if (counts && lose_every_ > 0 && ++countdown_ % std::uint64_t(lose_every_) == 0) {
         ++lost_;
         continue;
       }
-      inbox_.accept(*received);
+      inbox_.accept(*received, way);
     } else {
       log_event(spdlog::level::warn, "message_refused", {{"topic", expected->first}},
                 "refused a message: " + receiver_->last_refusal());

@@ -67,8 +67,9 @@ class NodeInputs {
     std::optional<zmq::socket_t> asker;   // DEALER to its resend endpoint
   };
   void follow(const v1::Publisher& publisher);
-  void receive_from(zmq::socket_t& socket, const std::string* publisher, bool published);
+  void receive_from(zmq::socket_t& socket, const std::string* publisher, Inbox::Way way);
   void learn_patience();
+  void say_forged();
   void ask(const std::string& topic, std::uint64_t from_sequence, std::optional<Tick> from_tick);
   void list_sockets();
 
@@ -95,6 +96,7 @@ class NodeInputs {
   int lose_every_ = 0;
   std::uint64_t countdown_ = 0, lost_ = 0;  // of that seam
   std::uint64_t received_ = 0;
+  std::uint64_t forged_said_ = 0;
 };
 
 }  // namespace dmise

@@ -16,6 +16,12 @@ void fill(v1::Publisher* publisher, const Peer& peer) {
   publisher->set_offset_ticks(peer.join.offset_ticks());
 }
 
+/// Whoever asks is told where a broker is, not how to get in.
+void tell_addresses(v1::Broker* told, const v1::Broker& broker) {
+  *told = broker;
+  told->clear_password();
+}
+
 }  // namespace
 
 const Peer& PeerDirectory::add(std::string_view routing_id, std::uint64_t incarnation,
@@ -67,6 +73,7 @@ v1::Topology PeerDirectory::topology() const {
       topology.set_broker_incarnation(peer.incarnation);
       topology.set_publish_endpoint(peer.join.broker().publish_endpoint());
       topology.set_subscribe_endpoint(peer.join.broker().subscribe_endpoint());
+      topology.set_broker_password(peer.join.broker().password());
     } else if (!peer.join.agent() && !peer.join.observer()) {
       fill(topology.add_publishers(), peer);
     }
@@ -74,12 +81,20 @@ v1::Topology PeerDirectory::topology() const {
   return topology;
 }
 
+void PeerDirectory::make_for_observer(v1::Topology* topology) const {
+  topology->clear_broker_password();
+  const auto broker = peers_.find("broker");
+  if (broker == peers_.end()) return;
+  const std::string& observe = broker->second.join.broker().observe_endpoint();
+  if (!observe.empty()) topology->set_subscribe_endpoint(observe);
+}
+
 void PeerDirectory::describe(v1::Endpoints* endpoints) const {
   if (const auto broker = peers_.find("broker"); broker != peers_.end())
     endpoints->set_observe_endpoint(broker->second.join.broker().observe_endpoint());
   for (const auto& [name, peer] : peers_) {
     if (peer.join.has_broker())
-      *endpoints->mutable_broker() = peer.join.broker();
+      tell_addresses(endpoints->mutable_broker(), peer.join.broker());
     else if (!peer.join.agent() && !peer.join.observer())
       fill(endpoints->add_publishers(), peer);
   }

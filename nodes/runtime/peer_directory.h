@@ -38,6 +38,8 @@ class PeerDirectory {
 
   /// Who publishes what, and where; not what depends on whom it is for. Observers are left out.
   v1::Topology topology() const;
+  /// The same for an observer, who hears through bounded queues and publishes nothing.
+  void make_for_observer(v1::Topology* topology) const;
   /// Topics that somebody consumes.
   std::set<std::string, std::less<>> consumed() const;
   /// Sets `publishers`, `observe_endpoint` and `broker`.

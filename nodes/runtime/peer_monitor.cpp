@@ -62,6 +62,11 @@ ConnectionLimits limits_for(std::size_t nodes, double share) {
   return limits;
 }
 
+ConnectionLimits bytes_alone(std::int64_t stranger_bytes) {
+  constexpr std::size_t any = 1 << 20;
+  return {.usual_strangers = any, .most_strangers = any, .stranger_bytes = stranger_bytes};
+}
+
 PeerMonitor::PeerMonitor(zmq::context_t& context, zmq::socket_t& watched,
                          std::optional<ConnectionLimits> limits)
     : watched_(watched),

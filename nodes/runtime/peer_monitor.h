@@ -26,6 +26,9 @@ struct ConnectionLimits {
 /// that `nodes` nodes need. `share`: of what is left for strangers.
 ConnectionLimits limits_for(std::size_t nodes, double share);
 
+/// Bounds the bytes of a connection alone, not how many there are.
+ConnectionLimits bytes_alone(std::int64_t stranger_bytes);
+
 /// Knows which node is behind a connection of a socket, tells when a connection breaks, and closes
 /// those that go beyond the limits. A hint, not proof: nodes may come back.
 class PeerMonitor {

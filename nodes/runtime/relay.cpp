@@ -54,4 +54,17 @@ int pass_checked(zmq::socket_t& from, zmq::socket_t& to, MayPublish may_publish,
   return messages;
 }
 
+int pass_subscriptions(zmq::socket_t& from, zmq::socket_t& to) {
+  int messages = 0;
+  for (auto message = receive(from); !message.empty(); message = receive(from)) {
+    const std::string_view frame = message[0].to_string_view();
+    const bool subscription =
+        message.size() == 1 && !frame.empty() && (frame[0] == 0 || frame[0] == 1);
+    if (subscription && frame.size() <= 1 + max_topic_bytes)
+      to.send(message[0], zmq::send_flags::none);
+    if (++messages >= relay_burst) break;
+  }
+  return messages;
+}
+
 }  // namespace dmise

@@ -18,4 +18,7 @@ int pass_on(zmq::socket_t& from, zmq::socket_t& to);
 int pass_checked(zmq::socket_t& from, zmq::socket_t& to, MayPublish may_publish,
                  std::uint64_t* refused);
 
+/// Passes on subscriptions, to a topic that can be one. What else subscribers send goes nowhere.
+int pass_subscriptions(zmq::socket_t& from, zmq::socket_t& to);
+
 }  // namespace dmise

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <cstring>
+#include <random>
 #include <thread>
 #include <vector>
 
@@ -22,6 +23,7 @@ const char* name_of(Domain domain) {
     case Domain::control:
       return "control";
     case Domain::data:
+    case Domain::run:
       return "data";
     case Domain::truth:
       break;
@@ -52,7 +54,33 @@ std::string properties_of(const AllowedKey& owner) {
   return properties;
 }
 
+/// Takes the same time wherever they differ.
+bool is_same(std::string_view a, std::string_view b) {
+  unsigned different = a.size() != b.size();
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    different |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+  return different == 0;
+}
+
+void say_password(zmq::socket_t& socket, const std::string& password) {
+  if (password.empty()) {
+    zmq_setsockopt(socket.handle(), ZMQ_PLAIN_USERNAME, nullptr, 0);  // no mechanism again
+    return;
+  }
+  socket.set(zmq::sockopt::plain_username, "node");
+  socket.set(zmq::sockopt::plain_password, password);
+}
+
 }  // namespace
+
+Security serving(Security security) {
+  if (security.on()) return security;
+  std::random_device random;
+  std::string password;
+  for (int i = 0; i < 4; ++i) password += fmt::format("{:08x}", random());
+  security.set_password(password);
+  return security;
+}
 
 Security::Security(std::string directory, const std::string& name, std::string via)
     : directory_(std::move(directory)), via_(std::move(via)) {
@@ -71,7 +99,12 @@ void Security::require_for(const std::string& address) const {
 
 void Security::serve(zmq::socket_t& socket, const std::string& address, Domain domain) const {
   require_for(address);
-  if (!on()) return;
+  if (!on()) {
+    if (domain != Domain::run || password_.empty()) return;
+    socket.set(zmq::sockopt::plain_server, 1);
+    socket.set(zmq::sockopt::zap_domain, name_of(domain));
+    return;
+  }
   socket.set(zmq::sockopt::curve_server, 1);
   socket.set(zmq::sockopt::curve_secretkey, key_.secret_key);
   socket.set(zmq::sockopt::zap_domain, name_of(domain));
@@ -80,7 +113,10 @@ void Security::serve(zmq::socket_t& socket, const std::string& address, Domain d
 void Security::call(zmq::socket_t& socket, const std::string& address,
                     const std::string& peer) const {
   require_for(address);
-  if (!on()) return;
+  if (!on()) {
+    if (peer == broker_name) say_password(socket, password_);
+    return;
+  }
   const bool at_agent = !via_.empty() && (peer == master_name || peer == broker_name);
   socket.set(zmq::sockopt::curve_serverkey, public_key_of(directory_, at_agent ? via_ : peer));
   socket.set(zmq::sockopt::curve_publickey, key_.public_key);
@@ -88,8 +124,10 @@ void Security::call(zmq::socket_t& socket, const std::string& address,
 }
 
 struct Doorkeeper::Work {
-  Work(zmq::context_t& context, std::string directory)
-      : directory(std::move(directory)), requests(context, zmq::socket_type::rep) {
+  Work(zmq::context_t& context, const Security& security)
+      : directory(security.directory()),
+        password(security.password()),
+        requests(context, zmq::socket_type::rep) {
     requests.set(zmq::sockopt::linger, 0);
     requests.bind(door);
     thread = std::thread([this] { run(); });
@@ -122,6 +160,7 @@ struct Doorkeeper::Work {
       if (!requests.recv(frame, zmq::recv_flags::none)) return;
       request.push_back(frame.to_string());
     } while (frame.more());
+    if (directory.empty()) return answer_plain(request);
     const bool whole = request.size() == 7 && request[5] == "CURVE" && request[6].size() == 32;
     char key[41] = "";
     if (whole) zmq_z85_encode(key, reinterpret_cast<const std::uint8_t*>(request[6].data()), 32);
@@ -138,16 +177,32 @@ struct Doorkeeper::Work {
               "refused a connection to {} from {}: {}", request.size() > 2 ? request[2] : "nothing",
               request.size() > 3 ? request[3] : "nowhere",
               who == allowed.end() ? "no such key is allowed" : who->second.name + " may not"));
-    const std::string properties = welcome ? properties_of(who->second) : "";
+    reply(request, welcome, welcome ? who->second.name : "",
+          welcome ? properties_of(who->second) : "");
+  }
+
+  /// The same with two credentials: user name and password.
+  void answer_plain(const std::vector<std::string>& request) {
+    const bool welcome =
+        request.size() == 8 && request[5] == "PLAIN" && is_same(request[7], password);
+    if (!welcome)
+      log.warn("connections refused",
+               fmt::format("refused a connection from {}: only nodes of the run may publish and "
+                           "subscribe there",
+                           request.size() > 3 ? request[3] : "nowhere"));
+    reply(request, welcome, "", "");
+  }
+
+  void reply(const std::vector<std::string>& request, bool welcome, const std::string& name,
+             const std::string& properties) {
     for (const std::string& part :
          {std::string("1.0"), request.size() > 1 ? request[1] : std::string(),
-          std::string(welcome ? "200" : "400"), std::string(welcome ? "OK" : "not allowed"),
-          welcome ? who->second.name : std::string()})
+          std::string(welcome ? "200" : "400"), std::string(welcome ? "OK" : "not allowed"), name})
       requests.send(zmq::buffer(part), zmq::send_flags::sndmore);
     requests.send(zmq::buffer(properties), zmq::send_flags::none);
   }
 
-  std::string directory;
+  std::string directory, password;
   zmq::socket_t requests;
   Event quit;
   LimitedLog log;
@@ -155,7 +210,9 @@ struct Doorkeeper::Work {
 };
 
 Doorkeeper::Doorkeeper(zmq::context_t& context, const Security& security)
-    : work_(security.on() ? std::make_unique<Work>(context, security.directory()) : nullptr) {}
+    : work_(security.on() || !security.password().empty()
+                ? std::make_unique<Work>(context, security)
+                : nullptr) {}
 
 Doorkeeper::~Doorkeeper() = default;
 

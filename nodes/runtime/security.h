@@ -34,12 +34,19 @@ class Security {
 
   const std::string& directory() const { return directory_; }
 
+  /// Without keys: what is asked at `Domain::run`, or said to the broker. Empty: nothing.
+  void set_password(std::string password) { password_ = std::move(password); }
+  const std::string& password() const { return password_; }
+
  private:
   void require_for(const std::string& address) const;
 
-  std::string directory_, via_;
+  std::string directory_, via_, password_;
   KeyPair key_;
 };
+
+/// A copy for who serves a run: without keys it has a new password.
+Security serving(Security security);
 
 /// Answers for one context who may connect, reading the list anew each time: a file that is added,
 /// replaced or removed counts from the next connection on. Outlives the sockets that serve.
@@ -52,7 +59,7 @@ class Doorkeeper {
 
  private:
   struct Work;
-  std::unique_ptr<Work> work_;  // null when there are no keys
+  std::unique_ptr<Work> work_;  // null when there are neither keys nor a password
 };
 
 /// The name that the sender of a message has proved, "" without keys.

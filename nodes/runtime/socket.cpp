@@ -31,12 +31,14 @@ zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
                           std::int64_t max_message_bytes) {
   zmq::socket_t socket(context, type);
   socket.set(zmq::sockopt::linger, 0);
-  socket.set(zmq::sockopt::maxmsgsize, max_message_bytes);
+  const bool publishes = type == zmq::socket_type::pub || type == zmq::socket_type::xpub;
+  socket.set(zmq::sockopt::maxmsgsize, publishes ? max_subscription_bytes : max_message_bytes);
   socket.set(zmq::sockopt::handshake_ivl, 5000);
   socket.set(zmq::sockopt::reconnect_ivl, 20);
   socket.set(zmq::sockopt::reconnect_ivl_max, 500);
-  socket.set(zmq::sockopt::sndhwm, 0);
-  socket.set(zmq::sockopt::rcvhwm, 0);
+  const bool serves = type == zmq::socket_type::router;
+  socket.set(zmq::sockopt::sndhwm, serves ? max_unread : 0);
+  socket.set(zmq::sockopt::rcvhwm, serves ? max_waiting : 0);
   return socket;
 }
 
@@ -70,10 +72,11 @@ std::vector<zmq::message_t> receive(zmq::socket_t& socket) {
   zmq::message_t frame;
   if (!socket.recv(frame, zmq::recv_flags::dontwait)) return message;
   message.push_back(std::move(frame));
-  while (message.back().more()) {  // the frames of a message arrive together
+  for (bool more = message.back().more(); more;) {  // the frames of a message arrive together
     zmq::message_t next;
     if (!socket.recv(next, zmq::recv_flags::none)) break;
-    message.push_back(std::move(next));
+    more = next.more();
+    if (message.size() < max_frames) message.push_back(std::move(next));
   }
   return message;
 }

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "core/base/error.h"
 #include "nodes/runtime/inbox.h"
 #include "nodes/runtime/outbox.h"
@@ -214,6 +216,99 @@ TEST(Manifest, RefusesATickThatIsNotWhatWasPublished) {
     };
     EXPECT_THROW(hear(), Error);
   }
+}
+
+using Way = Inbox::Way;
+
+// Not before the publisher's word is heard, which comes another way.
+TEST(Manifest, IsWhatMakesAMessageThroughTheBrokerCount) {
+  Publisher orbit;
+  Inbox inbox({objects_topic});
+  for (const auto& m : orbit.step()) inbox.accept(m, Way::broker);
+  EXPECT_FALSE(inbox.complete(0));
+  ASSERT_EQ(inbox.wanted(0).size(), 1u);
+  EXPECT_FALSE(inbox.wanted(0)[0].gap);
+  inbox.published(orbit.outbox.tally().topics.at(0), 0);
+  EXPECT_TRUE(inbox.complete(0));
+  EXPECT_THAT(ticks_of(inbox.take(0)), ElementsAre(0, 0));
+}
+
+TEST(Manifest, IsNotNeededOfWhatThePublisherItselfSends) {
+  for (const Way way : {Way::direct, Way::answer}) {
+    Publisher orbit;
+    Inbox inbox({objects_topic});
+    for (const auto& m : orbit.step()) inbox.accept(m, way);
+    EXPECT_TRUE(inbox.complete(0));
+  }
+}
+
+/// A message in a publisher's name that a receiver takes.
+Received forged(Publisher& orbit, Envelope envelope, const std::optional<Message>& content = {}) {
+  envelope.run_id = run.run_id;
+  envelope.publisher = "orbit";
+  envelope.time = run.time_of(envelope.tick);
+  Outbox other(run, "orbit", 1, {objects_topic}, 3);
+  std::string payload, arrays;
+  if (content) {
+    const auto frames = other.pack(content->tick, {*content}).at(0);
+    payload = frames->payload, arrays = frames->arrays;
+  }
+  return orbit.received(std::make_shared<const Frames>(
+      seal(objects_topic, envelope, std::move(payload), std::move(arrays))));
+}
+
+// A property: whatever is forged at whatever moment, what is taken is what was published.
+TEST(Manifest, KeepsEveryForgeryOut) {
+  std::mt19937 random(12);
+  const auto any = [&](int below) { return int(random() % unsigned(below)); };
+  std::uint64_t thrown_away = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    Publisher orbit;
+    Inbox inbox({objects_topic});
+    Tick taken = -1;
+    const auto ask = [&] {
+      for (const auto& want : inbox.wanted(taken + 1))
+        for (const auto& frames : want.from_tick
+                                      ? orbit.outbox.catch_up(objects_topic, *want.from_tick)
+                                      : orbit.outbox.since(objects_topic, want.from_sequence))
+          inbox.accept(orbit.received(frames));
+    };
+    for (Tick tick = 0; tick < 6; ++tick) {
+      std::vector<Received> messages = orbit.step();
+      for (int i = any(4); i > 0; --i) {
+        const Tick when = any(9);
+        Envelope envelope{.sequence = std::uint64_t(1 + any(12)), .tick = when};
+        envelope.last_of_tick = any(2) == 0;
+        const MessageKind kinds[] = {MessageKind::position, MessageKind::watermark,
+                                     MessageKind::object_states};
+        envelope.kind = kinds[any(3)];
+        std::optional<Message> content;
+        if (envelope.kind == MessageKind::object_states) {
+          ObjectStates other = std::get<ObjectStates>(*states(when).state);
+          other.position_m[0] = 8e6;
+          content = Message{objects_topic, when, std::make_shared<const State>(other)};
+        }
+        messages.insert(messages.begin() + any(int(messages.size()) + 1),
+                        forged(orbit, envelope, content));
+      }
+      const bool told_first = any(2) == 0;
+      const auto tell = [&] { inbox.published(orbit.outbox.tally().topics.at(0), tick); };
+      if (told_first) tell();
+      for (const auto& m : messages) inbox.accept(m, Way::broker);
+      if (!told_first) tell();
+      for (int i = 0; i < 3 && !inbox.complete(tick); ++i) ask();
+      ASSERT_TRUE(inbox.complete(tick)) << trial << " at " << tick;
+      EXPECT_FALSE(inbox.complete(tick + 1));
+      for (const Message& m : inbox.take(tick)) {
+        if (std::holds_alternative<ObjectRoster>(*m.state)) continue;
+        EXPECT_EQ(m.tick, tick);
+        EXPECT_EQ(std::get<ObjectStates>(*m.state).position_m[0], 7e6);
+      }
+      taken = tick;
+    }
+    thrown_away += inbox.forged();
+  }
+  EXPECT_GT(thrown_away, 1000u);
 }
 
 TEST(Manifest, IsTheSameWhateverProcessPublishes) {

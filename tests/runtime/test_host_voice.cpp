@@ -27,7 +27,7 @@ struct Voice {
     start->set_incarnation(incarnation);
     start->set_resume_tick(tick);
     start->set_from_tick(tick);
-    voice.send_topology(topology, "publish", "subscribe");
+    voice.send_topology(topology, "publish", "subscribe", "password");
     const auto frame = receive_one(node);
     v1::MasterMessage message;
     if (!frame || !from_frame(*frame, &message)) return std::nullopt;

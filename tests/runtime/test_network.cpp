@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
+#include <functional>
 
 #include "nodes/runtime/master_link.h"
 #include "nodes/runtime/socket.h"
@@ -17,8 +17,12 @@ using namespace test;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A broker that loses every fifth message, sends every third twice and swaps others.
-int serve_badly(const std::string& master) {
+/// What a broker of a test makes of a message on its way: sends it to `subscribers`, or whatever.
+using PassOn =
+    std::function<void(zmq::socket_t& subscribers, const std::shared_ptr<Frames>& frames)>;
+
+/// A broker that does with messages what it likes.
+void serve(const std::string& master, const PassOn& pass_on) {
   zmq::context_t context(1);
   auto publishers = make_socket(context, zmq::socket_type::xsub, max_data_bytes);
   auto subscribers = make_socket(context, zmq::socket_type::xpub, max_data_bytes);
@@ -30,31 +34,42 @@ int serve_badly(const std::string& master) {
   link.join(join, std::chrono::seconds(10));
   link.keep({}, std::nullopt);
 
-  int lost = 0, count = 0;
-  std::shared_ptr<Frames> held;
   while (!link.over()) {
     link.wait({&publishers, &subscribers}, std::chrono::milliseconds(100));
     for (auto m = receive(subscribers); !m.empty(); m = receive(subscribers))
       publishers.send(m[0], zmq::send_flags::none);
-    for (auto m = receive(publishers); !m.empty(); m = receive(publishers)) {
-      auto frames =
-          std::make_shared<Frames>(Frames{m[0].to_string(), m[1].to_string(), m[2].to_string(),
-                                          m.size() > 3 ? m[3].to_string() : ""});
-      const bool probe = open(views(m)).kind == MessageKind::probe;
-      if (!probe && ++count % 5 == 0) {
-        ++lost;
-        continue;
-      }
-      if (!probe && count % 7 == 0 && !held) {
-        held = frames;
-        continue;
-      }
-      send(subscribers, frames);
-      if (count % 3 == 0) send(subscribers, frames);
-      if (held) send(subscribers, std::exchange(held, nullptr));
-    }
+    for (auto m = receive(publishers); !m.empty(); m = receive(publishers))
+      pass_on(subscribers,
+              std::make_shared<Frames>(Frames{m[0].to_string(), m[1].to_string(), m[2].to_string(),
+                                              m.size() > 3 ? m[3].to_string() : ""}));
   }
   link.leave(false, {});
+}
+
+Envelope envelope_of(const Frames& frames) {
+  std::vector<std::string_view> all{frames.topic, frames.envelope, frames.payload};
+  if (!frames.arrays.empty()) all.push_back(frames.arrays);
+  return open(all);
+}
+
+/// A broker that loses every fifth message, sends every third twice and swaps others.
+int serve_badly(const std::string& master) {
+  int lost = 0, count = 0;
+  std::shared_ptr<Frames> held;
+  serve(master, [&](zmq::socket_t& subscribers, const std::shared_ptr<Frames>& frames) {
+    const bool probe = envelope_of(*frames).kind == MessageKind::probe;
+    if (!probe && ++count % 5 == 0) {
+      ++lost;
+      return;
+    }
+    if (!probe && count % 7 == 0 && !held) {
+      held = frames;
+      return;
+    }
+    send(subscribers, frames);
+    if (count % 3 == 0) send(subscribers, frames);
+    if (held) send(subscribers, std::exchange(held, nullptr));
+  });
   return lost;
 }
 
@@ -135,54 +150,112 @@ TEST(Network, AMessageLostOnItsWayIsKnownInItsTickAndFetchedAgain) {
   EXPECT_TRUE(party.recorder.record() == ToyParty().recorded_locally(15));
 }
 
-/// Says again, over the broker, all that an observer hears: as it was, as of another run, and as of
-/// a process that has not joined.
-int replay(const std::string& master, const std::atomic<bool>& over) {
-  BrokerEndpoints broker;
-  while (broker.publish.empty() && !over) broker = ask_master(master, 5).broker;
-  zmq::context_t context(1);
-  auto publisher = make_socket(context, zmq::socket_type::pub, max_data_bytes);
-  connect_to(publisher, broker.publish);
-  auto listener = make_socket(context, zmq::socket_type::sub, max_data_bytes);
-  listener.set(zmq::sockopt::subscribe, "");
-  connect_to(listener, broker.observe);
-  int said = 0;
-  while (!over) {
-    std::vector<zmq::pollitem_t> items{{listener.handle(), 0, ZMQ_POLLIN, 0}};
-    wait_for(items, std::chrono::milliseconds(10));
-    // What it says is heard by itself as well: a bounded number of each.
-    for (auto m = receive(listener); !m.empty(); m = receive(listener)) {
-      Envelope envelope = open(views(m));
-      if (envelope.kind == MessageKind::probe || ++said > 2000) continue;
-      const std::string topic = m[0].to_string(), payload = m[2].to_string(),
-                        arrays = m.size() > 3 ? m[3].to_string() : "";
-      send(publisher, std::make_shared<const Frames>(seal(topic, envelope, payload, arrays)));
-      ++envelope.run_id;
-      send(publisher, std::make_shared<const Frames>(seal(topic, envelope, payload, arrays)));
-      --envelope.run_id, ++envelope.incarnation;
-      send(publisher, std::make_shared<const Frames>(seal(topic, envelope, payload, arrays)));
-    }
-  }
-  return said;
+/// Sends each message as it is, and again: as it was, as of another run, and as of a process that
+/// has not joined.
+void serve_and_replay(const std::string& master) {
+  serve(master, [](zmq::socket_t& subscribers, const std::shared_ptr<Frames>& frames) {
+    send(subscribers, frames);
+    Envelope envelope = envelope_of(*frames);
+    const auto again = [&] {
+      send(subscribers, std::make_shared<const Frames>(
+                            seal(frames->topic, envelope, frames->payload, frames->arrays)));
+    };
+    again();
+    ++envelope.run_id, again();
+    --envelope.run_id, ++envelope.incarnation, again();
+  });
 }
 
 TEST(Network, WhatIsSaidAgainOrInAnotherRunChangesNothing) {
   MasterThread master(run_of({"orbit", "a", "ab", "recorder"}, 200, 2));
   ToyParty party;
-  auto broker = start_broker(master.address);
-  std::atomic<bool> over{false};
-  auto replayer = std::async(std::launch::async, [&] { return replay(master.address, over); });
+  auto broker = std::async(std::launch::async, [&] { serve_and_replay(master.address); });
   std::uint64_t refused = 0;
   for (auto& node : party.start_all(master.address)) {
     const NodeResult result = node.get();
     EXPECT_EQ(result.exit_code, 0) << result.reason;
     refused += result.refused;
   }
-  over = true;
-  EXPECT_GT(replayer.get(), 0);
+  broker.get();
   EXPECT_GT(refused, 0u);
-  EXPECT_EQ(broker.get().exit_code, 0);
   EXPECT_TRUE(party.recorder.record() == ToyParty().recorded_locally(200));
+}
+
+/// Before each message says in its publisher's name something else that a receiver takes: where
+/// the topic is, that all is said, the same with content of another tick, or what comes next.
+void serve_and_forge(const std::string& master, int how) {
+  std::map<std::string, std::shared_ptr<Frames>> last;
+  serve(master, [&](zmq::socket_t& subscribers, const std::shared_ptr<Frames>& frames) {
+    const Envelope envelope = envelope_of(*frames);
+    Envelope forged = envelope;
+    std::string payload, arrays;
+    if (how == 0) {
+      forged.kind = MessageKind::position;
+      forged.sequence = 1'000'000;
+    } else if (how == 1) {
+      forged.kind = MessageKind::watermark;
+      forged.last_of_tick = true;
+    } else if (const auto& other = last[frames->topic]; how == 2 && other) {
+      payload = other->payload, arrays = other->arrays;
+    } else if (how == 3) {
+      forged.kind = MessageKind::watermark;
+      forged.last_of_tick = true;
+      ++forged.sequence;
+    }
+    if (envelope.kind != MessageKind::probe && envelope.tick > 3) {
+      send(subscribers, std::make_shared<const Frames>(
+                            seal(frames->topic, forged, std::move(payload), std::move(arrays))));
+    }
+    last[frames->topic] = frames;
+    send(subscribers, frames);
+  });
+}
+
+// Without keys anybody who reaches the broker may speak in another's name: its manifest shows it.
+TEST(Network, WhatIsForgedIsThrownAwayAndItsPublisherAsked) {
+  for (const int how : {0, 1, 2, 3}) {
+    MasterThread master(run_of({"orbit", "a", "ab", "recorder"}, 12, 2));
+    ToyParty party;
+    auto broker = std::async(std::launch::async, [&] { serve_and_forge(master.address, how); });
+    for (auto& node : party.start_all(master.address)) {
+      const NodeResult result = node.get();
+      EXPECT_EQ(result.exit_code, 0) << how << ": " << result.reason;
+    }
+    broker.get();
+    EXPECT_TRUE(party.recorder.record() == ToyParty().recorded_locally(12)) << how;
+  }
+}
+
+// Nothing but the master's word lets anybody publish; observers hear at an endpoint of their own.
+TEST(Network, TheBrokerPassesNothingOfAStranger) {
+  MasterThread master(run_of({"orbit", "a"}, 3));
+  auto broker = start_broker(master.address);
+  BrokerEndpoints endpoints;
+  while (endpoints.publish.empty()) endpoints = ask_master(master.address, 5).broker;
+  zmq::context_t context(1);
+  Security guessed;
+  guessed.set_password("guessed");
+  for (const Security& stranger : {Security(), guessed}) {
+    auto publisher = make_socket(context, zmq::socket_type::pub, max_data_bytes);
+    auto events = make_socket(context, zmq::socket_type::pair, max_control_bytes);
+    const std::string inproc = "inproc://stranger-" + stranger.password();
+    ASSERT_EQ(zmq_socket_monitor(publisher.handle(), inproc.c_str(),
+                                 ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH |
+                                     ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
+                                     ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_DISCONNECTED),
+              0);
+    events.connect(inproc);
+    connect_to(publisher, endpoints.publish, stranger, broker_name);
+    std::vector<zmq::pollitem_t> items{{events.handle(), 0, ZMQ_POLLIN, 0}};
+    wait_for(items, std::chrono::seconds(10));
+    const auto event = receive(events);
+    ASSERT_FALSE(event.empty());
+    std::uint16_t what = 0;
+    std::memcpy(&what, event[0].data(), sizeof what);
+    EXPECT_NE(what, ZMQ_EVENT_HANDSHAKE_SUCCEEDED);
+  }
+  master.stop.set();
+  broker.get();
 }
 
 // An observer joins nothing and holds nobody up; a gap would show in the sequence numbers.

@@ -74,6 +74,7 @@ def main():
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--json", help="append lines of figures to this file")
     options = parser.parse_args()
+    sys.stdout.reconfigure(line_buffering=True)
     cases = load()
     unknown = [name for name in options.case if name not in cases]
     if unknown:

@@ -1,5 +1,6 @@
 """A launched run as a stranger meets it: an address, and whatever its time-master tells anybody."""
 
+import os
 import time
 
 import zmq
@@ -73,6 +74,17 @@ class Target:
             return time_pb2.MasterMessage.FromString(master.recv()).endpoints
         finally:
             master.close(0)
+
+    def in_child(self, attack):
+        """attack(self) in a process of its own, which may crash: what harms the run may harm it as well."""
+        child = os.fork()
+        if child == 0:
+            try:
+                self.context = zmq.Context()
+                attack(self)
+            finally:
+                os._exit(0)  # no farewell: its connections break
+        os.waitpid(child, 0)
 
     def publisher(self, name):
         return next(p for p in self.endpoints.publishers if p.name == name)
