@@ -4,32 +4,34 @@
 #include <cmath>
 #include <map>
 
+#include "core/base/units.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_hypothesis.h"
 
 namespace dmise {
 namespace {
 
-/// The component's pixels and those that touch them, without saturated ones.
-std::vector<FitPixel> pixels_around(const Scene& scene, const Component& component,
-                                    bool& saturated) {
+struct Light {
+  std::vector<FitPixel> told;     // pixels to fit
+  std::vector<FitPixel> clipped;  // as bright as they could be
+};
+
+/// The component's pixels and those that touch them.
+Light light_around(const Scene& scene, const Component& component) {
   std::map<int, std::vector<std::pair<int, int>>> rows;
   for (const Run& run : component.runs)
     for (int y = run.y - 1; y <= run.y + 1; ++y)
       if (y >= 0 && y < scene.counts.rows)
         rows[y].push_back(
             {std::max(0, run.first_x - 1), std::min(scene.counts.columns - 1, run.last_x + 1)});
-  std::vector<FitPixel> out;
+  Light out;
   for (auto& [y, spans] : rows) {
     std::sort(spans.begin(), spans.end());
     int done = -1;
     for (const auto& [first, last] : spans)
       for (int x = std::max(first, done + 1); x <= last; ++x) {
         done = x;
-        if (scene.saturated(x, y))
-          saturated = true;
-        else
-          out.push_back(scene.pixel(x, y));
+        (scene.tells_light(x, y) ? out.told : out.clipped).push_back(scene.pixel(x, y));
       }
   }
   return out;
@@ -65,19 +67,55 @@ Trail moments(const std::vector<FitPixel>& pixels, double sigma_px) {
   return trail;
 }
 
+/// Relative error of the PSF beyond `clipped` pixels.
+double wings_error(std::size_t clipped, double sigma_px, const DetectorSettings& settings) {
+  const double radius_in_sigmas = std::sqrt(double(clipped) / pi) / sigma_px;
+  return std::clamp(settings.wings_error * radius_in_sigmas * radius_in_sigmas,
+                    settings.least_wings_error, settings.most_wings_error);
+}
+
+/// A fit of the wings alone. Its flux is that of the wings times a factor which the PSF gives, and
+/// which is off by 0.01 for each square of the sigma at which they begin (2 ln of peak over clip).
+std::optional<Source> from_wings(const Scene& scene, const Trail& start, bool streak,
+                                 const std::vector<FitPixel>& clipped, double model_error) {
+  auto source = fit_source(scene, start, streak, 0.3 * model_error);
+  if (!source) return source;
+  source->model_error = model_error;
+  double excess = 1.0;
+  for (const FitPixel& p : clipped)
+    excess = std::max(excess, trail_value(source->trail(), scene.sigma_px, p.x, p.y) /
+                                  std::max(double(p.signal_e), 1.0));
+  const double flux_error_e = 0.02 * std::log(excess) * source->trail().flux_e;
+  source->fit.covariance[2 * std::size_t(source->fit.parameters) + 2] +=
+      flux_error_e * flux_error_e;
+  return source;
+}
+
+/// Would the source clip a pixel that is clipped? Wings alone may be anything's.
+bool fills_the_wells(const Scene& scene, const Source& source,
+                     const std::vector<FitPixel>& clipped) {
+  return std::any_of(clipped.begin(), clipped.end(), [&](const FitPixel& p) {
+    return trail_value(source.trail(), scene.sigma_px, p.x, p.y) > 0.7 * p.signal_e;
+  });
+}
+
 }  // namespace
 
 std::optional<Source> judge_compact(const Scene& scene, const Component& component,
                                     const DetectorSettings& settings) {
-  bool saturated = false;
-  const auto pixels = pixels_around(scene, component, saturated);
-  if (saturated || pixels.size() < 8) return std::nullopt;  // a clipped blob's shape tells nothing
-  const Trail light = moments(pixels, scene.sigma_px);
+  const auto [pixels, clipped] = light_around(scene, component);
+  if (pixels.size() < 8) return std::nullopt;
+  const bool saturated = !clipped.empty();
+  std::vector<FitPixel> all = pixels;
+  all.insert(all.end(), clipped.begin(), clipped.end());
+  const Trail light = moments(all, scene.sigma_px);
+  const double model_error =
+      saturated ? wings_error(clipped.size(), scene.sigma_px, settings) : settings.model_error;
   Trail star = scene.star_trail(light.x_px, light.y_px);
   star.flux_e = light.flux_e;
   FitSettings fit_settings;
   fit_settings.sigma_px = scene.sigma_px;
-  fit_settings.model_error = settings.model_error;
+  fit_settings.model_error = model_error;
   fit_settings.settled_chi2 = 0.05;  // small against every margin
   fit_settings.most_steps = 8;
   const TrailFit as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings);
@@ -93,14 +131,21 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
       stars_trail && as_point.deviance < as_star.deviance - settings.blend_margin;
   if (as_star.good(3.5) && !may_be_point) return std::nullopt;
 
+  const auto believable = [&](const std::optional<Source>& source) {
+    return source && source->snr() >= settings.least_snr &&
+           (!saturated || fills_the_wells(scene, *source, clipped));
+  };
+  const auto fitted = [&](const Trail& start, bool streak) {
+    return saturated ? from_wings(scene, start, streak, clipped, model_error)
+                     : fit_source(scene, start, streak, 0.0);
+  };
   fit_settings.most_steps = 15;
   const TrailFit as_line = fit_trails(pixels, {light}, {trail_line}, fit_settings);
   if (may_be_point && as_point.good(5.0) &&
       as_point.deviance < as_line.deviance + settings.blend_margin) {
-    auto source = fit_source(scene, as_point.trails[0], false, 0.0);
+    auto source = fitted(as_point.trails[0], false);
     // A star that the frame's edge cuts has the shape of a point.
-    if (source && !source->at_edge && source->snr() >= settings.least_snr &&
-        point_beats_star(scene, *source, settings))
+    if (believable(source) && !source->at_edge && point_beats_star(scene, *source, settings))
       return source;
     return std::nullopt;
   }
@@ -109,8 +154,8 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
     return std::nullopt;
   const double as_two = deviance_of_stars(pixels, light, star, 2, fit_settings);
   if (as_line.deviance > as_two - settings.blend_margin) return std::nullopt;
-  auto source = fit_source(scene, as_line.trails[0], true, 0.0);
-  if (!source || source->snr() < settings.least_snr) return std::nullopt;
+  auto source = fitted(as_line.trails[0], true);
+  if (!believable(source)) return std::nullopt;
   const double sigma_length_px = std::sqrt(source->fit.cov(3, 3));
   const double tolerance_px = std::max(settings.least_difference_px, 4 * sigma_length_px);
   if (moves_like_star(*source, star, tolerance_px) || !beats_stars(scene, *source, settings))

@@ -7,6 +7,7 @@
 #include "core/base/units.h"
 #include "core/detection/aberration.h"
 #include "core/detection/atmosphere.h"
+#include "core/detection/refraction_parallax.h"
 #include "core/detection/wcs.h"
 
 namespace dmise {
@@ -115,25 +116,37 @@ void describe_ends(const Source& source, const FrameHeader& header, Detection& d
   d.rate_rad_per_s = source.streak ? angle_rad(end1, end2) / header.exposure_s : 0.0;
 }
 
+/// Adds a variance along one direction of the tangent plane.
+void add_along(std::array<double, 3>& covariance, double east, double north, double variance) {
+  covariance[0] += variance * east * east;
+  covariance[1] += variance * east * north;
+  covariance[2] += variance * north * north;
+}
+
 void describe_direction(const FrameHeader& header, Detection& d) {
   const Vec<Gcrs> here = wcs_direction(header.wcs, {d.x_px, d.y_px});
   std::tie(d.ra_rad, d.dec_rad) = std::tuple_cat(to_spherical(here));
+  const RefractionParallax parallax = refraction_parallax(header, here);
+  d.refraction_removed = !refraction_of(header);
+  d.refraction_offset_m = parallax.offset_m;
+  d.refraction_parallax_rad = parallax.mean_rad;
+  d.refraction_parallax_sigma_rad = parallax.sigma_rad;
   const Vec<Gcrs> corrected = without_annual_aberration(here, header.earth_velocity_m_per_s,
-                                                        header.sensor_velocity_m_per_s);
+                                                        header.sensor_velocity_m_per_s) +
+                              parallax.upwards * parallax.mean_rad;
   std::tie(d.corrected_ra_rad, d.corrected_dec_rad) = std::tuple_cat(to_spherical(corrected));
 
   d.covariance_rad2 = on_the_sky(d.covariance_px2, header.wcs, {d.x_px, d.y_px});
+  const Tangent tangent = tangent_at(here);
+  add_along(d.covariance_rad2, dot(parallax.upwards, tangent.east),
+            dot(parallax.upwards, tangent.north), parallax.sigma_rad * parallax.sigma_rad);
   if (d.kind == DetectionKind::point) return;
   const Vec<Gcrs> track = wcs_direction(header.wcs, {d.end2_x_px, d.end2_y_px}) -
                           wcs_direction(header.wcs, {d.end1_x_px, d.end1_y_px});
-  const Tangent tangent = tangent_at(here);
   const double e = dot(track, tangent.east), n = dot(track, tangent.north);
   const double chord = std::hypot(e, n), arc = d.rate_rad_per_s * header.exposure_s;
   if (!(chord > 0)) return;
-  const double variance = std::pow(arc * arc / 12, 2);
-  d.covariance_rad2[0] += variance * e * e / (chord * chord);
-  d.covariance_rad2[1] += variance * e * n / (chord * chord);
-  d.covariance_rad2[2] += variance * n * n / (chord * chord);
+  add_along(d.covariance_rad2, e / chord, n / chord, std::pow(arc * arc / 12, 2));
 }
 
 }  // namespace

@@ -24,6 +24,13 @@ double effective_sigma_px(double fwhm_px) {
   return std::sqrt(sigma * sigma + 1.0 / 12);
 }
 
+/// The lowest count of a clipped pixel: those at the full well are read with noise.
+double lowest_clipped_dn(const FrameHeader& header) {
+  const double column_e = header.detector ? header.detector->column_noise_e : 0.0;
+  return header.saturation_dn -
+         5 * std::hypot(header.read_noise_e, column_e) / header.gain_e_per_dn;
+}
+
 /// Ratio of the axes of the component's pixels, whatever their brightness.
 double elongation(const Component& c) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
@@ -141,7 +148,7 @@ FrameReport make_report(const CountImage& counts, const FrameHeader& header,
   const double least_e = threshold_snr * r.noise_e / std::sqrt(kernel_square_sum(sigma_px));
   r.limiting_magnitude = header.zero_point_mag - 2.5 * std::log10(least_e / header.exposure_s) -
                          extinction_mag(header, centre_of(counts));
-  r.saturated_px = count_saturated(counts, header.saturation_dn);
+  r.saturated_px = count_saturated(counts, lowest_clipped_dn(header));
   return r;
 }
 
@@ -155,8 +162,9 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
                     background,
                     stars,
                     header.gain_e_per_dn,
-                    header.saturation_dn,
-                    effective_sigma_px(header.psf_fwhm_px)};
+                    lowest_clipped_dn(header),
+                    effective_sigma_px(header.psf_fwhm_px),
+                    header.detector && header.detector->blooming};
   const auto components = find_components(counts, background, scene.sigma_px, settings.connect_snr,
                                           settings.seed_snr, threads);
   Judged judged = judge(scene, components, settings, threads);

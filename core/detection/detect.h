@@ -18,6 +18,9 @@ struct DetectorSettings {
   double blend_margin = 16.0;        // deviance by which a short streak must beat two blended stars
   double chain_margin = 6.0;  // by which it must beat a row of two to four, chance allowed for
   double model_error = 0.03;  // relative, of the PSF, when shapes are judged
+  // The same where a saturated source has its wings alone: for each square of the sigma at which
+  // they begin, at least and at most so much.
+  double wings_error = 0.02, least_wings_error = 0.1, most_wings_error = 0.5;
 };
 
 struct DetectionResult {

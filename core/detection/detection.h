@@ -15,8 +15,8 @@ enum class ExposureEpoch : std::uint8_t { start, middle, end };
 
 /// One moving or point-like source found in one frame, from the counts image and its header alone.
 /// Pixels: (0, 0) is the centre of the first pixel. Directions: RA/Dec in ICRS read through the
-/// image's WCS ("astrometric": what the stars around it say), and the same with the annual
-/// aberration that the stars absorbed put right for an object that shares the Earth's motion.
+/// image's WCS ("astrometric": what the stars around it say), and the same put right for an object
+/// that shares the Earth's motion and is near ("corrected").
 struct Detection {
   std::string id;                  // "<sensor>/<frame>/<index>", stable over runs
   std::string sensor;
@@ -26,15 +26,26 @@ struct Detection {
   ExposureEpoch epoch = ExposureEpoch::middle;
   SimTime time;                    // of ra/dec
   double ra_rad = 0.0, dec_rad = 0.0;               // astrometric, through the WCS
-  double corrected_ra_rad = 0.0, corrected_dec_rad = 0.0;  // annual aberration put right
-  // var(ra cos dec), cov, var(dec). Of a streak's centroid it includes along the track what one frame
-  // can't tell: where between the ends the object was at mid exposure (core/detection/describe.h).
+  // Annual aberration put right, and the mean of the parallactic part of refraction.
+  double corrected_ra_rad = 0.0, corrected_dec_rad = 0.0;
+  // Of corrected_*: var(ra cos dec), cov, var(dec). It includes what one frame can't tell: along a
+  // streak, where between the ends the object was at mid exposure (core/detection/describe.h); along
+  // the vertical of a ground sensor, refraction_parallax_sigma_rad.
   std::array<double, 3> covariance_rad2{};
   Vec<Gcrs> sensor_position_m;     // at `time`
   Vec<Gcrs> sensor_velocity_m_per_s;
   bool light_time_removed = false;
   bool aberration_removed = false; // of corrected_*
-  bool refraction_removed = true;  // absorbed by the WCS, as for stars
+  // Nothing of refraction is left in corrected_*: in space, or where the frame was made without.
+  // On the ground the WCS takes away the stars' share; what is left is smaller the farther the
+  // object, and its range is not known.
+  bool refraction_removed = false;
+  // GCRS: outside the air the line of sight begins at sensor_position_m + this, square to it. An
+  // object at range d stands norm / d higher than ra/dec say.
+  Vec<Gcrs> refraction_offset_m;
+  // Mean and standard deviation of that angle over altitudes from 300 km to GEO, evenly likely in
+  // their logarithm: corrected_* are raised by the mean.
+  double refraction_parallax_rad = 0.0, refraction_parallax_sigma_rad = 0.0;
   double magnitude = 0.0;          // in `band`, above the atmosphere, by the header's zero point
   double magnitude_sigma = 0.0;
   std::string band = "V";
@@ -48,7 +59,7 @@ struct Detection {
   double end1_ra_rad = 0.0, end1_dec_rad = 0.0, end2_ra_rad = 0.0, end2_dec_rad = 0.0;
   SimTime end1_time, end2_time;
   bool direction_known = false;
-  // Errors of the ends, as covariance_rad2. They have times of their own, so nothing is added.
+  // Errors of the ends as they were read through the WCS, from the fit alone.
   std::array<double, 3> end1_covariance_rad2{}, end2_covariance_rad2{};
   double length_px = 0.0;          // between the ends; 0 for a point
   double rate_rad_per_s = 0.0;     // angular, along the streak

@@ -100,6 +100,9 @@ std::string to_json(const Detection& d, const UtcText& utc) {
   line.field("light_time_removed", d.light_time_removed);
   line.field("aberration_removed", d.aberration_removed);
   line.field("refraction_removed", d.refraction_removed);
+  line.vector("refraction_offset_gcrs_m", d.refraction_offset_m);
+  line.field("refraction_parallax_arcsec", d.refraction_parallax_rad / arcsec);
+  line.field("refraction_parallax_sigma_arcsec", d.refraction_parallax_sigma_rad / arcsec);
   line.field("magnitude", d.magnitude).field("magnitude_sigma", d.magnitude_sigma);
   line.field("band", d.band).field("snr", d.snr);
   line.field("x_px", d.x_px).field("y_px", d.y_px).array("covariance_px2", d.covariance_px2);

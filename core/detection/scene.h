@@ -14,13 +14,20 @@ struct Scene {
   const Background& background;
   const StarMotion& stars;
   double gain_e_per_dn;
-  double saturation_dn;
-  double sigma_px;  // of a point source's Gaussian, pixel included
+  double saturation_dn;  // counts from here on may be clipped, noise of reading allowed for
+  double sigma_px;       // of a point source's Gaussian, pixel included
+  bool blooming;         // charge above the full well runs along columns
 
   bool contains(int x, int y) const {
     return x >= 0 && y >= 0 && x < counts.columns && y < counts.rows;
   }
   bool saturated(int x, int y) const { return counts.at(x, y) >= saturation_dn; }
+  /// Not clipped itself, nor the pixel that takes what is left of a neighbour's overflow.
+  bool tells_light(int x, int y) const {
+    if (saturated(x, y)) return false;
+    return !blooming || !((y > 0 && saturated(x, y - 1)) ||
+                          (y + 1 < counts.rows && saturated(x, y + 1)));
+  }
   FitPixel pixel(int x, int y) const {
     const double noise_e = background.sigma_dn(x, y) * gain_e_per_dn;
     return {x, y, float((counts.at(x, y) - background.level_dn(x, y)) * gain_e_per_dn),
@@ -45,6 +52,7 @@ struct Source {
   bool streak = false;
   bool saturated = false;
   bool at_edge = false;
+  double model_error = 0.0;  // relative, of the PSF, by which hypotheses are compared
 
   const Trail& trail() const { return fit.trails[0]; }
   double snr() const { return trail().flux_e / std::sqrt(fit.cov(2, 2)); }

@@ -36,6 +36,22 @@ std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels, cons
   return out;
 }
 
+/// Is a pixel clipped within one of the line?
+bool is_saturated(const Scene& scene, const Trail& trail) {
+  const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
+  const int steps = int(std::ceil(trail.length_px)) + 1;
+  for (int i = 0; i <= steps; ++i) {
+    const double along = (double(i) / steps - 0.5) * trail.length_px;
+    const int x = int(std::lround(trail.x_px + along * c));
+    const int y = int(std::lround(trail.y_px + along * s));
+    for (int py = y - 1; py <= y + 1; ++py)
+      for (int px = x - 1; px <= x + 1; ++px)
+        if (scene.contains(px, py) && scene.saturated(px, py) && lies_on(trail, px, py, 1.0))
+          return true;
+  }
+  return false;
+}
+
 /// Takes `trail` to `target`, but neither end farther than `limit_px`: the light beyond was not
 /// looked at. Returns how far the farther end wanted to go.
 double move_ends(Trail& trail, const Trail& target, double limit_px) {
@@ -76,7 +92,7 @@ std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double
   std::vector<FitPixel> out;
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x)
-      if (lies_on(trail, x, y, margin_px) && !scene.saturated(x, y))
+      if (lies_on(trail, x, y, margin_px) && scene.tells_light(x, y))
         out.push_back(scene.pixel(x, y));
   return out;
 }
@@ -107,6 +123,7 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
   Trail trail = start;
   if (!streak) trail.length_px = 0.0;
   const double margin_px = 3 * scene.sigma_px + 2.5;
+  const double tolerance = std::max(0.15, 3 * model_error);
   std::vector<FitPixel> pixels;
   double moved_px = 0.0;
   const int least_rounds = draft ? 2 : 3, last_round = draft ? 2 : most_rounds;
@@ -115,7 +132,8 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     if (!plausible(scene, trail)) return std::nullopt;
     const auto all = pixels_near(scene, trail, margin_px);
     // Of a start only the brightness is known, and only of a streak's.
-    pixels = round > 0 ? without_outliers(all, trail, source.fit.background_e, 0.15, scene.sigma_px)
+    pixels = round > 0
+                 ? without_outliers(all, trail, source.fit.background_e, tolerance, scene.sigma_px)
              : streak && start.length_px > sloped_from_px
                  ? without_outliers(all, trail, 0.0, 1.0, scene.sigma_px)
                  : all;
@@ -137,13 +155,8 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     if (x < edge || y < edge || x > scene.counts.columns - 1 - edge ||
         y > scene.counts.rows - 1 - edge)
       source.at_edge = true;
-    const int steps = int(trail.length_px / 2) + 1;
-    for (int i = 0; i <= steps && !source.saturated; ++i) {
-      const int px = int(std::lround(trail.x_px + half * c * i / steps));
-      const int py = int(std::lround(trail.y_px + half * s * i / steps));
-      if (scene.contains(px, py) && scene.saturated(px, py)) source.saturated = true;
-    }
   }
+  source.saturated = is_saturated(scene, trail);
   return source;
 }
 

@@ -69,7 +69,7 @@ bool point_beats_star(const Scene& scene, const Source& source, const DetectorSe
   const auto pixels = pixels_near(scene, star, 2.5 * scene.sigma_px + 0.5);
   FitSettings fit_settings;
   fit_settings.sigma_px = scene.sigma_px;
-  fit_settings.model_error = settings.model_error;
+  fit_settings.model_error = std::max(source.model_error, settings.model_error);
   fit_settings.settled_chi2 = 0.05;  // small against every margin
   fit_settings.most_steps = 15;
   const double as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings).deviance;
@@ -84,7 +84,7 @@ bool beats_stars(const Scene& scene, const Source& source, const DetectorSetting
   const auto pixels = pixels_near(scene, line, margin_px);
   FitSettings fit_settings;
   fit_settings.sigma_px = scene.sigma_px;
-  fit_settings.model_error = settings.model_error;
+  fit_settings.model_error = std::max(source.model_error, settings.model_error);
   fit_settings.settled_chi2 = 0.05;  // small against every margin
   fit_settings.most_steps = 15;
   if (is_piece_of_star(scene, line, star, margin_px, settings, fit_settings)) return false;

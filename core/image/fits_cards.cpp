@@ -338,6 +338,13 @@ void visit(Visitor& v, FrameHeader& h) {
     v.angle("SITELONG", h.site->longitude_rad, "[deg] longitude, east positive");
     v.number("SITEELEV", h.site->height_m, "[m] height above the ellipsoid");
   }
+  if (v.present("PRESSURE", h.air.has_value())) {
+    if (!h.air) h.air.emplace();
+    v.number("PRESSURE", h.air->pressure_hpa,
+             "[hPa] of the air that refracts, 0: refraction is off");
+    v.number("AIRTEMP", h.air->temperature_c, "[deg C]");
+    v.number("HUMIDITY", h.air->humidity, "relative, 0 to 1");
+  }
   visit_wcs(v, h.wcs);
   v.integer("SEED", h.seed, "of the random draws");
   v.text("SCENARIO", h.scenario_digest, "digest of the scenario");
@@ -352,6 +359,20 @@ void require_sense(const CardReader& v, const FrameHeader& h) {
   v.require(h.saturation_dn > 0, "SATURATE", "must be > 0");
   v.require(h.psf_fwhm_px > 0 && h.psf_fwhm_px <= 1e4, "PSFFWHM", "must be in (0, 1e4]");
   v.require(h.focal_length_px > 0, "FOCALPX", "must be > 0");
+  if (h.site) {
+    v.require(norm(h.sensor_position_m) > 0, "SENPOSX",
+              "the sensor must not be the Earth's centre");
+    v.require(std::abs(h.site->latitude_rad) <= 0.5 * pi, "SITELAT", "must be in [-90, 90]");
+    v.require(h.band.centre_m >= 1e-7 && h.band.centre_m <= 1e-4, "BANDCEN",
+              "must be in [1e-7, 1e-4] for a site's refraction");
+  }
+  if (h.air) {
+    v.require(h.air->pressure_hpa >= 0 && h.air->pressure_hpa <= 1e4, "PRESSURE",
+              "must be in [0, 10000]");
+    v.require(h.air->temperature_c >= -150 && h.air->temperature_c <= 200, "AIRTEMP",
+              "must be in [-150, 200]");
+    v.require(h.air->humidity >= 0 && h.air->humidity <= 1, "HUMIDITY", "must be in [0, 1]");
+  }
   const auto& cd = h.wcs.cd_deg;
   v.require(cd[0] * cd[3] - cd[1] * cd[2] != 0, "CD1_1", "the CD matrix must have an inverse");
   constexpr const char* attitudes[3] = {"QBEG0", "QAVG0", "QEND0"};

@@ -12,6 +12,7 @@
 #include "core/image/observation.h"
 #include "core/optics/camera.h"
 #include "core/photometry/band.h"
+#include "core/sky/refraction.h"
 
 namespace dmise {
 
@@ -62,6 +63,9 @@ struct FrameHeader {
   Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // geocentric, mid exposure
   Vec<Gcrs> earth_velocity_m_per_s;                      // of the geocentre, barycentric, GCRS axes
   std::optional<SitePlace> site;                             // of a ground sensor
+  // Air that refracts the light of a ground sensor's frame, pressure 0 where refraction is off. None
+  // in space and in files that do not say.
+  std::optional<Weather> air;
 
   bool operator==(const FrameHeader&) const = default;
 };

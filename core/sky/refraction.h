@@ -8,6 +8,8 @@ struct Weather {
   double pressure_hpa = 1013.25;  // [0, 10000]; 0 is no air
   double temperature_c = 15.0;    // [-150, 200]
   double humidity = 0.5;          // relative, [0, 1]
+
+  bool operator==(const Weather&) const = default;
 };
 
 /// International Standard Atmosphere at a height above the sea, which stands in for the one above
@@ -43,11 +45,15 @@ class Refraction {
   Elevation apparent_from_true(const Elevation& truly, double distance_m = star) const;
   double true_from_apparent_rad(double apparent_elevation_rad, double distance_m = star) const;
 
+  /// How far aside of the observer the line passes along which light comes to the air that arrives
+  /// at this apparent elevation [m]: a body at `distance_m` is lifted by aside / distance less than
+  /// a star.
+  double aside_m(double apparent_elevation_rad) const;
+
  private:
   double series_rad(double apparent_elevation_rad) const;
   double series_of_tan_rad(double tan_z) const;
   double bennett_rad(double apparent_elevation_rad) const;
-  double aside_m(double apparent_elevation_rad) const;
   double of_body_rad(double apparent_elevation_rad, double distance_m) const;
 
   double tan_term_rad_ = 0.0, tan3_term_rad_ = 0.0;  // of the apparent zenith distance

@@ -220,6 +220,9 @@ void check(const Detection& d) {
   covariance(d.end2_covariance_rad2, "end2_covariance_rad2");
   vector_within(d.sensor_position_m, distance_limit_m, "sensor_position_m");
   vector_within(d.sensor_velocity_m_per_s, speed_limit_m_per_s, "sensor_velocity_m_per_s");
+  vector_within(d.refraction_offset_m, distance_limit_m, "refraction_offset_m");
+  not_negative(d.refraction_parallax_rad, "refraction_parallax_rad");
+  not_negative(d.refraction_parallax_sigma_rad, "refraction_parallax_sigma_rad");
   finite(d.magnitude, "magnitude");
   not_negative(d.magnitude_sigma, "magnitude_sigma");
   not_negative(d.length_px, "length_px");

@@ -80,9 +80,12 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
     h.isoplanatic_angle_rad = air->isoplanatic_angle_rad;
     h.tau0_s = air->tau0_s;
   }
-  if (const auto& site = view.site())
+  if (const auto& site = view.site()) {
     h.site = SitePlace{site->latitude_deg * deg, site->longitude_deg * deg, site->height_m,
                        itrs_from_geodetic(*site)};
+    h.air = view.weather();
+    if (!sensor.effects.has(Effect::refraction)) h.air->pressure_hpa = 0.0;
+  }
   const double most_dn = std::exp2(detector.adc_bits) - 1;
   const double well_e = h.full_well_e * (1.0 - detector.nonlinearity) *
                         (1.0 - 4.0 * detector.interpixel_coupling);  // what is left of a full one

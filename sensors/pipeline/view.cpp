@@ -19,9 +19,9 @@ View::View(const SensorConfig& sensor, const FrameTimes& times, const World& wor
   if (const auto* site = std::get_if<SiteConfig>(&sensor.place)) {
     site_ = Site{site->latitude_deg, site->longitude_deg, site->height_m};
     site_m_ = itrs_from_geodetic(*site_);
-    const Weather air = air_ ? Weather{air_->pressure_hpa, air_->temperature_c, air_->humidity}
-                             : sensor.weather.air.value_or(standard_weather(site->height_m));
-    refraction_ = Refraction(air, sensor.camera.band.centre_m * 1e6);
+    weather_ = air_ ? Weather{air_->pressure_hpa, air_->temperature_c, air_->humidity}
+                    : sensor.weather.air.value_or(standard_weather(site->height_m));
+    refraction_ = Refraction(weather_, sensor.camera.band.centre_m * 1e6);
   } else {
     platform_ = object_index(world.roster(), std::get<PlatformConfig>(sensor.place).object,
                              sensor.name + ": platform");

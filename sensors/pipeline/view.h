@@ -39,6 +39,8 @@ class View {
   const EnvironmentState& environment() const { return environment_; }
   /// The air over a ground sensor; null where the sensor did not ask for it.
   const SiteState* air() const { return air_; }
+  /// The air that refracts over a ground sensor.
+  const Weather& weather() const { return weather_; }
   Rotation<CameraFrame, Gcrs> camera_from_gcrs(SimTime t) const;
   /// Where light seems to come from, at `t`, with the sensor's effects.
   ApparentPlaces places(SimTime t) const { return places(t, sensor_.effects); }
@@ -65,6 +67,7 @@ class View {
   std::optional<Site> site_;
   Vec<Itrs> site_m_;
   std::optional<std::size_t> platform_, target_;
+  Weather weather_;
   Refraction refraction_;
   PointingScene aimed_;
 };

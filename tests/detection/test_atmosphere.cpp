@@ -13,6 +13,7 @@ FrameHeader looking(double zenith_angle_rad) {
   h.extinction_mag_per_airmass = 0.2;
   h.sensor_position_m = {6378137.0, 0.0, 0.0};
   h.site.emplace();
+  h.air = Weather{.pressure_hpa = 0.0};  // elevations are apparent ones
   h.wcs.ra_rad = zenith_angle_rad;
   h.wcs.cd_deg = {-0.01, 0.0, 0.0, 0.01};
   return h;

@@ -71,6 +71,7 @@ inline FrameHeader sample_header(int columns = 200, int rows = 150) {
   h.sensor_velocity_m_per_s = {-87.5, 372.0, 0.1};
   h.earth_velocity_m_per_s = {-26000.0, -13500.0, -5850.0};
   h.site = SitePlace{33.777 * deg, -84.398 * deg, 300.0, {517000.0, -5281000.0, 3525000.0}};
+  h.air = Weather{.pressure_hpa = 977.5, .temperature_c = 13.0, .humidity = 0.25};
   return h;
 }
 

@@ -135,6 +135,8 @@ Detection detection(Numbers& n, std::uint32_t index) {
   d.light_time_removed = index % 2;
   d.aberration_removed = index % 3;
   d.refraction_removed = index % 5;
+  d.refraction_offset_m = n.vec<Gcrs>(100);
+  d.refraction_parallax_rad = n.in(0, 1e-5), d.refraction_parallax_sigma_rad = n.in(0, 1e-5);
   d.magnitude = n.in(-1, 20);
   d.magnitude_sigma = n.in(0, 1);
   d.band = "swir140";

@@ -1,0 +1,241 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tests/pipeline/harness.h"
+#include "tests/pipeline/sky_targets.h"
+
+// What detections claim of themselves, drawn and found by the pipeline, against exact truth.
+namespace dmise {
+namespace {
+
+// A mountain in Chile, an hour after sunset: the Sun 15 deg down.
+const Site chile{-30.17, -70.8, 2200.0};
+const std::string evening = "2018-01-21T01:05:00Z";
+
+/// A quarter of the raven's frame: the same optics and pixels.
+std::string camera_file(const std::string& psf = "psf_fwhm_px: 1.6",
+                        const std::string& blooming = "false") {
+  const auto path = std::filesystem::path(testing::TempDir()) /
+                    ("telescope-0.4m-" + std::to_string(getpid()) + ".yaml");
+  std::ofstream(path)
+      << "name: telescope-0.4m\n"
+         "optics: {columns: 512, rows: 512, pixel_pitch_m: 13.5e-6, "
+         "focal_length_m: 1.2, aperture_m: 0.4, obscuration: 0.4, "
+         "transmission: 0.75, " +
+             psf +
+             "}\n"
+             "detector: {quantum_efficiency: 0.90, dark_e_per_s: 0.1, read_noise_e: 8, "
+             "full_well_e: 100000, gain_e_per_dn: 1.6, bias_dn: 300, adc_bits: 16, blooming: " +
+             blooming +
+             "}\n"
+             "band: {name: V, centre_m: 0.55e-6, width_m: 0.128e-6}\n";
+  return path.string();
+}
+
+std::string scenario(const std::vector<test::SkyTarget>& targets, const std::string& sensor,
+                     const std::string& camera = camera_file()) {
+  std::string yaml = "simulation: {start: " + evening +
+                     ", duration_s: 4, tick_s: 1}\nstars: {catalogue: stars.csv}\n"
+                     "objects:\n" +
+                     test::own_objects(targets, chile, evening) + "sensors:\n";
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    yaml +=
+        "- {name: s" + std::to_string(i) +
+        ", site: {latitude_deg: -30.17, longitude_deg: -70.8, height_m: 2200}, camera: " + camera +
+        ", pointing: {target: t" + std::to_string(i) + sensor + "}\n";
+  return yaml;
+}
+
+const Truth* truth_of(const FrameProducts& frame, std::size_t target) {
+  for (const Truth& t : frame.truths)
+    if (t.name == "t" + std::to_string(target)) return &t;
+  return nullptr;
+}
+
+struct Nees {
+  double mean = 0.0, median = 0.0;  // per degree of freedom
+  std::size_t found = 0;
+};
+
+/// Of the directions of the objects aimed at, by the published covariance.
+Nees nees_of(test::Stage& stage) {
+  std::vector<double> all;
+  for (std::size_t k = 0; k < stage.scenario.sensors.size(); ++k) {
+    const auto frame = stage.frame(1, k);
+    const Truth* truth = truth_of(frame, k);
+    if (!truth) continue;
+    for (const Detection& d : frame.detections) {
+      if (std::hypot(d.x_px - truth->rendered_x_px, d.y_px - truth->rendered_y_px) > 3) continue;
+      const double e = std::remainder(d.corrected_ra_rad - truth->true_ra_rad, 2 * pi) *
+                       std::cos(truth->true_dec_rad);
+      const double n = d.corrected_dec_rad - truth->true_dec_rad;
+      const auto [ee, en, nn] = d.covariance_rad2;
+      all.push_back((e * e * nn - 2 * e * n * en + n * n * ee) / (ee * nn - en * en) / 2);
+    }
+  }
+  Nees out{.found = all.size()};
+  if (all.empty()) return out;
+  std::sort(all.begin(), all.end());
+  for (const double v : all) out.mean += v / double(all.size());
+  out.median = all[all.size() / 2];
+  return out;
+}
+
+std::vector<test::SkyTarget> targets_between(double lowest_m, double highest_m, int count,
+                                             unsigned seed) {
+  std::mt19937_64 random(seed);
+  const auto uniform = [&](double from, double to) {
+    return from + (to - from) * double(random() >> 11) * 0x1p-53;
+  };
+  std::vector<test::SkyTarget> out;
+  for (int i = 0; i < count; ++i) {
+    test::SkyTarget t;
+    t.azimuth_rad = uniform(0, 2 * pi);
+    t.elevation_rad = uniform(20 * deg, 80 * deg);
+    t.altitude_m = std::exp(uniform(std::log(lowest_m), std::log(highest_m)));
+    t.course_rad = uniform(0, 2 * pi);
+    t.magnitude = uniform(9, 11);
+    out.push_back(t);
+  }
+  return out;
+}
+
+const std::string stars = "ra_deg,dec_deg,mag_v\n0,89,6\n";
+
+class DetectionNees : public testing::Test {
+ protected:
+  static void expect_honest(const std::vector<test::SkyTarget>& targets, const char* sensor) {
+    test::Stage stage(scenario(targets, sensor), stars);
+    const Nees nees = nees_of(stage);
+    RecordProperty("mean", std::to_string(nees.mean));
+    RecordProperty("median", std::to_string(nees.median));
+    EXPECT_GE(nees.found, 200u);
+    EXPECT_GT(nees.mean, 0.8);
+    EXPECT_LT(nees.mean, 1.2);
+  }
+};
+
+// Altitudes evenly spread in their logarithm from 300 km to GEO, as the covariance takes them.
+TEST_F(DetectionNees, OfPointsFromLowToGeostationaryOrbits) {
+  expect_honest(targets_between(300e3, 35786e3, 300, 1),
+                ", tracking: target}, exposure_s: 1, cadence_s: 2");
+}
+
+// As most of a catalogue is.
+TEST_F(DetectionNees, OfPointsInLowOrbits) {
+  expect_honest(targets_between(400e3, 1500e3, 420, 2),
+                ", tracking: target}, exposure_s: 0.25, cadence_s: 2");
+}
+
+// OSCAR 7 as in Debian's gpredict: a sphere of 1 m at 1460 km, V = 7.7, whose light fills the
+// wells of one to three pixels of the raven in a second, by where in a pixel it falls.
+TEST(SaturatedPoint, IsFoundInEveryFrameAndFlagged) {
+  test::Stage stage(
+      "simulation: {start: 2018-02-09T10:15:40Z, duration_s: 45, tick_s: 5}\n"
+      "objects: [{catalogue: objects.tle, radius_m: 0.74}]\nstars: {catalogue: kstars}\n"
+      "sensors:\n  - {name: raven, site: atlanta, camera: raven, pointing: {target: \"7530\"}, "
+      "exposure_s: 1, cadence_s: 2}\n",
+      "",
+      "OSCAR 7\n"
+      "1 07530U 74089B   18020.92882759 -.00000031  00000-0  83259-4 0  9990\n"
+      "2 07530 101.6660 350.5859 0011799 260.7489 115.8236 12.53630761975916\n");
+  int below = 0;
+  for (std::uint32_t number = 1; number <= 20; ++number) {
+    const auto frame = stage.frame(number);
+    // Wells are read with noise: not every full one shows the highest count.
+    const auto highest = *std::max_element(frame.counts.pixels.begin(), frame.counts.pixels.end());
+    below += highest < frame.header.saturation_dn;
+    ASSERT_EQ(frame.detections.size(), 1u) << number;
+    const Detection& d = frame.detections[0];
+    EXPECT_TRUE(d.saturated) << number;
+    EXPECT_GT(frame.report.saturated_px, 0u) << number;
+    EXPECT_EQ(d.kind, DetectionKind::point) << number;
+    EXPECT_NEAR(d.x_px, frame.truths.at(0).rendered_x_px, 0.05) << number;
+    EXPECT_NEAR(d.y_px, frame.truths.at(0).rendered_y_px, 0.05) << number;
+  }
+  EXPECT_GT(below, 0);
+}
+
+struct SaturatedTargets : testing::TestWithParam<std::tuple<const char*, const char*>> {};
+
+TEST_P(SaturatedTargets, AreFoundFlaggedAndTheirCovarianceIsHonest) {
+  const auto [psf, blooming] = GetParam();
+  auto targets = targets_between(500e3, 35786e3, 60, 5);
+  for (std::size_t i = 0; i < targets.size(); ++i) targets[i].magnitude = 4 + 0.06 * double(i);
+  test::Stage stage(scenario(targets, ", tracking: target}, exposure_s: 1, cadence_s: 2",
+                             camera_file(psf, blooming)),
+                    stars);
+  double place = 0.0, light = 0.0;
+  int saturated = 0, flagged = 0, found = 0;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const auto frame = stage.frame(1, k);
+    const Truth* truth = truth_of(frame, k);
+    if (!truth || truth->rendered_signal_e < 1e5) continue;  // in the Earth's shadow
+    saturated += frame.report.saturated_px > 0;
+    ASSERT_LE(frame.detections.size(), 1u) << k;
+    found += int(frame.detections.size());
+    for (const Detection& d : frame.detections) {
+      EXPECT_EQ(d.saturated, frame.report.saturated_px > 0) << k;
+      if (!d.saturated) continue;
+      ++flagged;
+      const double dx = d.x_px - truth->rendered_x_px, dy = d.y_px - truth->rendered_y_px;
+      const auto [xx, xy, yy] = d.covariance_px2;
+      place += (dx * dx * yy - 2 * dx * dy * xy + dy * dy * xx) / (xx * yy - xy * xy) / 2;
+      light +=
+          std::pow(2.5 * std::log10(d.signal_e / truth->rendered_signal_e) / d.magnitude_sigma, 2);
+    }
+  }
+  RecordProperty("saturated", saturated);
+  RecordProperty("found", flagged);
+  RecordProperty("nees_place", std::to_string(place / flagged));
+  RecordProperty("nees_light", std::to_string(light / flagged));
+  EXPECT_GE(saturated, 20);
+  EXPECT_EQ(flagged, saturated);
+  EXPECT_LT(place / flagged, 1.2);
+  EXPECT_LT(light / flagged, 1.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Everywhere, SaturatedTargets,
+                         testing::Combine(testing::Values("psf_fwhm_px: 1.6", "psf_fwhm_px: 4"),
+                                          testing::Values("false")));
+
+// Stars from V = 0 to 9: up to thousands of times what a well holds, none of them moves.
+struct SaturatedStars : testing::TestWithParam<std::tuple<const char*, const char*, const char*>> {
+};
+
+TEST_P(SaturatedStars, AreNoDetections) {
+  const auto [psf, blooming, motion] = GetParam();
+  const std::string camera = camera_file(psf, blooming);
+  std::string csv = "ra_deg,dec_deg,mag_v,bv\n";
+  for (int i = 0; i < 100; ++i)
+    csv += std::to_string(120 + (i % 10 - 4.5) * 0.0317 + 0.0003 * i) + "," +
+           std::to_string(-20 + (i / 10 - 4.5) * 0.0289) + "," + std::to_string(i % 19 * 0.5) +
+           ",0.5\n";
+  test::Stage stage("simulation: {start: " + evening +
+                        ", duration_s: 60, tick_s: 5}\nobjects: []\nstars: {catalogue: stars.csv}\n"
+                        "sensors:\n- {name: s, site: {latitude_deg: -30.17, longitude_deg: -70.8, "
+                        "height_m: 2200}, camera: " +
+                        camera + ", pointing: {ra_deg: 120, dec_deg: -20" + motion + "}\n",
+                    csv);
+  std::size_t found = 0, saturated = 0;
+  for (std::uint32_t number = 1; number <= 3; ++number) {
+    const auto frame = stage.frame(number);
+    found += frame.detections.size();
+    saturated += frame.report.saturated_px;
+  }
+  EXPECT_GT(saturated, 300u);
+  EXPECT_EQ(found, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Everywhere, SaturatedStars,
+    testing::Combine(testing::Values("psf_fwhm_px: 1.6", "psf_fwhm_px: 4", "psf: diffraction"),
+                     testing::Values("false", "true"),
+                     testing::Values("}, exposure_s: 1, cadence_s: 5",
+                                     ", tracking: fixed}, exposure_s: 0.3, cadence_s: 5",
+                                     ", tracking: fixed}, exposure_s: 0.8, cadence_s: 5",
+                                     ", tracking: fixed}, exposure_s: 4, cadence_s: 5")));
+
+}  // namespace
+}  // namespace dmise
