@@ -275,6 +275,8 @@ TEST(Detect, MagnitudeFollowsFromTheZeroPoint) {
   const Detection& d = result.detections[0];
   EXPECT_NEAR(d.magnitude, 17.0 - 2.5 * std::log10(60000.0 / 20), 4 * d.magnitude_sigma);
   EXPECT_LT(d.magnitude_sigma, 0.03);
+  // dm = 2.5 / ln 10 dF / F.
+  EXPECT_NEAR(d.magnitude_sigma * d.snr, 1.0857362047581294, 1e-12);
   const auto direction = to_spherical(wcs_direction(header.wcs, {d.x_px, d.y_px}));
   EXPECT_EQ(d.ra_rad, direction[0]);
   EXPECT_EQ(d.dec_rad, direction[1]);

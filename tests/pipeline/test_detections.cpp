@@ -53,6 +53,15 @@ const Truth* truth_of(const FrameProducts& frame, std::size_t target) {
   return nullptr;
 }
 
+/// Squared error of the direction by the published covariance, per degree of freedom.
+double nees(const Detection& d, const Truth& truth) {
+  const double e =
+      std::remainder(d.corrected_ra_rad - truth.true_ra_rad, 2 * pi) * std::cos(truth.true_dec_rad);
+  const double n = d.corrected_dec_rad - truth.true_dec_rad;
+  const auto [ee, en, nn] = d.covariance_rad2;
+  return (e * e * nn - 2 * e * n * en + n * n * ee) / (ee * nn - en * en) / 2;
+}
+
 struct Nees {
   double mean = 0.0, median = 0.0;  // per degree of freedom
   std::size_t found = 0;
@@ -67,11 +76,7 @@ Nees nees_of(test::Stage& stage) {
     if (!truth) continue;
     for (const Detection& d : frame.detections) {
       if (std::hypot(d.x_px - truth->rendered_x_px, d.y_px - truth->rendered_y_px) > 3) continue;
-      const double e = std::remainder(d.corrected_ra_rad - truth->true_ra_rad, 2 * pi) *
-                       std::cos(truth->true_dec_rad);
-      const double n = d.corrected_dec_rad - truth->true_dec_rad;
-      const auto [ee, en, nn] = d.covariance_rad2;
-      all.push_back((e * e * nn - 2 * e * n * en + n * n * ee) / (ee * nn - en * en) / 2);
+      all.push_back(nees(d, *truth));
     }
   }
   Nees out{.found = all.size()};
@@ -103,29 +108,104 @@ std::vector<test::SkyTarget> targets_between(double lowest_m, double highest_m, 
 
 const std::string stars = "ra_deg,dec_deg,mag_v\n0,89,6\n";
 
-class DetectionNees : public testing::Test {
+class DirectionNees : public testing::Test {
  protected:
   static void expect_honest(const std::vector<test::SkyTarget>& targets, const char* sensor) {
     test::Stage stage(scenario(targets, sensor), stars);
-    const Nees nees = nees_of(stage);
-    RecordProperty("mean", std::to_string(nees.mean));
-    RecordProperty("median", std::to_string(nees.median));
-    EXPECT_GE(nees.found, 200u);
-    EXPECT_GT(nees.mean, 0.8);
-    EXPECT_LT(nees.mean, 1.2);
+    const Nees found = nees_of(stage);
+    RecordProperty("mean", std::to_string(found.mean));
+    RecordProperty("median", std::to_string(found.median));
+    EXPECT_GE(found.found, 200u);
+    EXPECT_GT(found.mean, 0.8);
+    EXPECT_LT(found.mean, 1.2);
   }
 };
 
 // Altitudes evenly spread in their logarithm from 300 km to GEO, as the covariance takes them.
-TEST_F(DetectionNees, OfPointsFromLowToGeostationaryOrbits) {
+TEST_F(DirectionNees, OfPointsFromLowToGeostationaryOrbits) {
   expect_honest(targets_between(300e3, 35786e3, 300, 1),
                 ", tracking: target}, exposure_s: 1, cadence_s: 2");
 }
 
 // As most of a catalogue is.
-TEST_F(DetectionNees, OfPointsInLowOrbits) {
+TEST_F(DirectionNees, OfPointsInLowOrbits) {
   expect_honest(targets_between(400e3, 1500e3, 420, 2),
                 ", tracking: target}, exposure_s: 0.25, cadence_s: 2");
+}
+
+// A wide camera fixed to the ground: arcs of 10 deg, whose centroid of light is not where the
+// object was at mid exposure. Uniform straight motion: they differ by tan(a) arc^2 / 12, a the
+// angle from the closest approach, which one frame does not tell.
+TEST(StreakNees, OfStreaksOfTenDegrees) {
+  const auto camera =
+      std::filesystem::path(testing::TempDir()) / ("wide-" + std::to_string(getpid()) + ".yaml");
+  std::ofstream(camera) << "name: wide\noptics: {columns: 800, rows: 800, pixel_pitch_m: 10.8e-6, "
+                           "focal_length_m: 0.009, aperture_m: 0.004, psf_fwhm_px: 1.7}\n"
+                           "detector: {quantum_efficiency: 0.6, read_noise_e: 8, full_well_e: "
+                           "100000, gain_e_per_dn: 1.6, bias_dn: 300, adc_bits: 16}\n"
+                           "band: {name: V, centre_m: 0.55e-6, width_m: 0.128e-6}\n";
+  auto targets = targets_between(600e3, 1200e3, 60, 3);
+  std::string yaml = "simulation: {start: " + evening +
+                     ", duration_s: 20, tick_s: 5}\nstars: {catalogue: stars.csv}\nobjects:\n";
+  for (auto& t : targets) {
+    t.elevation_rad = 35 * deg + 0.6 * (t.elevation_rad - 20 * deg);
+    t.magnitude = -1;
+  }
+  yaml += test::own_objects(targets, chile, evening) + "sensors:\n";
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    yaml += "- {name: s" + std::to_string(i) +
+            ", site: {latitude_deg: -30.17, longitude_deg: -70.8, height_m: 2200}, camera: " +
+            camera.string() + ", effects: {shadow: off}, pointing: {azimuth_deg: " +
+            std::to_string(targets[i].azimuth_rad / deg) +
+            ", elevation_deg: " + std::to_string(targets[i].elevation_rad / deg) +
+            "}, exposure_s: 20, cadence_s: 20}\n";
+  test::Stage stage(yaml, stars);
+  double sum = 0.0, longest_rad = 0.0;
+  int found = 0;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const auto frame = stage.frame(1, k);
+    const Truth* truth = truth_of(frame, k);
+    if (!truth || !truth->whole) continue;
+    for (const Detection& d : frame.detections) {
+      const double off = std::hypot(d.x_px - truth->rendered_x_px, d.y_px - truth->rendered_y_px);
+      if (off > 1 || d.at_edge || d.kind != DetectionKind::streak) continue;
+      sum += nees(d, *truth);
+      longest_rad = std::max(longest_rad, d.rate_rad_per_s * 20);
+      ++found;
+    }
+  }
+  RecordProperty("found", found);
+  RecordProperty("mean", std::to_string(sum / found));
+  EXPECT_GE(found, 20);
+  EXPECT_GT(longest_rad, 9 * deg);
+  EXPECT_GT(sum / found, 0.3);
+  EXPECT_LT(sum / found, 1.2);
+}
+
+// Nothing of refraction is left where there is no air, or the scenario says so; on the ground a
+// part is, of known length and unknown angle. Light is lifted towards the zenith: the line of sight
+// passes above the sensor, 2.3 m tan z / cos z in first order at sea level (refractivity 2.77e-4
+// times a scale height of 8.4 km), three quarters of it at 2200 m.
+TEST(DetectionFlags, RefractionIsRemovedWhereThereIsNone) {
+  const auto targets = targets_between(1000e3, 1000e3, 1, 8);
+  const std::string sensor = ", tracking: target}, exposure_s: 1, cadence_s: 2";
+  test::Stage ground(scenario(targets, sensor), stars);
+  const auto with = ground.frame(1, 0);
+  ASSERT_EQ(with.detections.size(), 1u);
+  const Detection& d = with.detections[0];
+  EXPECT_FALSE(d.refraction_removed);
+  const double z = pi / 2 - truth_of(with, 0)->true_elevation_rad;
+  EXPECT_NEAR(norm(d.refraction_offset_m), 0.77 * 2.33 * std::tan(z) / std::cos(z),
+              0.05 * norm(d.refraction_offset_m));
+  EXPECT_GT(dot(d.refraction_offset_m, d.sensor_position_m), 0.0);
+  EXPECT_NEAR(dot(d.refraction_offset_m, from_spherical<Gcrs>(d.ra_rad, d.dec_rad)), 0.0, 1e-9);
+  EXPECT_FALSE(d.saturated || d.at_edge || d.star_like || d.direction_known);
+  test::Stage off(scenario(targets, sensor + ", effects: {refraction: off}"), stars);
+  const auto without = off.frame(1, 0);
+  ASSERT_EQ(without.detections.size(), 1u);
+  EXPECT_TRUE(without.detections[0].refraction_removed);
+  EXPECT_EQ(norm(without.detections[0].refraction_offset_m), 0.0);
+  EXPECT_EQ(without.detections[0].refraction_parallax_sigma_rad, 0.0);
 }
 
 // OSCAR 7 as in Debian's gpredict: a sphere of 1 m at 1460 km, V = 7.7, whose light fills the
