@@ -9,6 +9,7 @@
 #include "core/detection/compact_source.h"
 #include "core/detection/components.h"
 #include "core/detection/describe.h"
+#include "core/detection/line_profile.h"
 #include "core/detection/long_streak.h"
 #include "core/detection/scene.h"
 #include "core/detection/source_fit.h"
@@ -113,6 +114,12 @@ std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
   return out;
 }
 
+/// A streak must stand out among the lines beside it as it must above the noise of the pixels:
+/// where several stars share every few pixels, some of them always stand in a row.
+bool is_row_of_stars(const Scene& scene, const Source& source, const DetectorSettings& settings) {
+  return source.streak && rise_above_neighbours(scene, source.trail()) < settings.least_snr;
+}
+
 std::uint32_t count_saturated(const CountImage& counts, double saturation_dn) {
   return std::uint32_t(std::count_if(counts.pixels.begin(), counts.pixels.end(),
                                      [&](std::uint16_t v) { return v >= saturation_dn; }));
@@ -172,6 +179,11 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   result.report = make_report(counts, header, background, scene.sigma_px, settings.seed_snr);
   result.report.star_like = judged.star_like;
   for (const Source& source : distinct(std::move(judged.sources), scene.sigma_px)) {
+    if (!wcs_sees_sky(header.wcs, {source.trail().x_px, source.trail().y_px})) continue;
+    if (is_row_of_stars(scene, source, settings)) {
+      ++result.report.star_like;
+      continue;
+    }
     Detection d = describe(source, header);
     d.index = std::uint32_t(result.detections.size());
     d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);

@@ -4,6 +4,7 @@
 
 #include "core/base/json.h"
 #include "core/base/units.h"
+#include "core/detection/wcs.h"
 
 namespace dmise {
 namespace {
@@ -45,7 +46,8 @@ class Line {
   }
   Line& wcs(const Wcs& w) {
     json_.key("wcs").begin_object();
-    json_.field("projection", w.order > 0 ? "TAN-SIP" : "TAN");
+    json_.field("projection",
+                wcs_projection_code(w.projection) + std::string(w.order > 0 ? "-SIP" : ""));
     array("crpix_px", std::array<double, 2>{w.crpix_x, w.crpix_y});
     array("crval_deg", std::array<double, 2>{w.ra_rad / deg, w.dec_rad / deg});
     array("cd_deg_per_px", w.cd_deg);
@@ -55,6 +57,19 @@ class Line {
       array("b", w.b);
       array("ap", w.ap);
       array("bp", w.bp);
+    }
+    if (w.refraction) {
+      const WcsRefraction& air = *w.refraction;
+      json_.key("refraction").begin_object();
+      array("zenith", std::array<double, 3>{air.zenith.x, air.zenith.y, air.zenith.z});
+      json_.field("focal_length_px", air.focal_length_px);
+      json_.field("pressure_hpa", air.pressure_hpa);
+      json_.field("temperature_c", air.temperature_c);
+      json_.field("humidity", air.humidity);
+      json_.field("wavelength_um", air.wavelength_um);
+      array("offset_px", std::array<double, 2>{air.offset_x_px, air.offset_y_px});
+      json_.field("cell_px", air.cell_px);
+      json_.end_object();
     }
     json_.field("rms_px", w.rms_px);
     json_.field("max_px", w.max_px);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/base/units.h"
+#include "core/detection/line_profile.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_hypothesis.h"
 
@@ -20,102 +21,9 @@ constexpr double gap_snr = 6.0;            // of one beyond a gap
 constexpr double chain_px = 30.0;  // blends of stars are not longer, but by their own trails
 constexpr int most_rounds = 6;     // of fitting and following
 
-struct Point {
-  double x, y;
-  double weight = 1.0;  // by brightness: the ridge counts, not the skirts
-};
-
-/// A line cut into slices: one for each column (or row, where it is steeper than 45 degrees). It
-/// may be bent as a trail is, and goes on beyond the trail's ends.
-struct Line {
-  double x = 0.0, y = 0.0;  // a point on it
-  double ux = 1.0, uy = 0.0;
-  double sagitta_px = 0.0, half_length_px = 1.0;
-
-  bool by_columns() const { return std::abs(ux) >= std::abs(uy); }
-  double major(const Point& p) const { return by_columns() ? p.x : p.y; }
-  /// Length of the line in one slice.
-  double slice_px() const { return 1.0 / std::max(std::abs(ux), std::abs(uy)); }
-  double off(const Point& p) const { return (p.y - y) * ux - (p.x - x) * uy; }
-  /// Point of the slice, `offset_px` across from the line.
-  Point at(double major_px, double offset_px = 0.0) const {
-    const double along = by_columns() ? (major_px - x) / ux : (major_px - y) / uy;
-    const double r = along / half_length_px;
-    const double off_px = offset_px + sagitta_px * (1.0 / 3 - r * r);
-    return by_columns() ? Point{major_px, y + along * uy + off_px / ux}
-                        : Point{x + along * ux - off_px / uy, major_px};
-  }
-};
-
 Line line_through(const Point& a, const Point& b) {
   const double length = std::hypot(b.x - a.x, b.y - a.y);
   return {a.x, a.y, (b.x - a.x) / length, (b.y - a.y) / length};
-}
-
-Line line_of(const Trail& t) {
-  return {t.x_px,
-          t.y_px,
-          std::cos(t.angle_rad),
-          std::sin(t.angle_rad),
-          t.sagitta_px,
-          std::max(t.length_px / 2, 1.0)};
-}
-
-/// Electrons per px of length in one slice, by the matched profile across.
-struct Slice {
-  double e_per_px = 0.0, variance = 0.0;  // variance 0: no pixel to look at
-};
-
-Slice slice_at(const Scene& scene, const Line& line, int major, double offset_px) {
-  const Point centre = line.at(major, offset_px);
-  const double sigma = scene.sigma_px, cosine = 1.0 / line.slice_px();
-  const double middle = line.by_columns() ? centre.y : centre.x;
-  const int reach = int(std::ceil(2.5 * sigma / cosine));
-  double gd = 0.0, gg = 0.0, variance = 0.0;
-  const int nearest = int(std::lround(middle));
-  for (int m = nearest - reach; m <= nearest + reach; ++m) {
-    const int px = line.by_columns() ? major : m, py = line.by_columns() ? m : major;
-    if (!scene.contains(px, py)) continue;
-    const double n = (m - middle) * cosine / sigma;
-    const double g = std::exp(-0.5 * n * n) / (sigma * std::sqrt(2 * pi));
-    const FitPixel pixel = scene.pixel(px, py);
-    gd += g * pixel.signal_e;
-    gg += g * g;
-    variance += g * g * (pixel.variance_e2 + std::max(pixel.signal_e, 0.0f));
-  }
-  // Less than half a profile inside the frame says nothing.
-  if (gg < 0.25 * cosine / (2 * sigma * std::sqrt(pi))) return {};
-  return {gd / gg, variance / (gg * gg)};
-}
-
-std::vector<Slice> slices(const Scene& scene, const Line& line, int from, int to,
-                          double offset_px) {
-  std::vector<Slice> out;
-  for (int k = from; k <= to; ++k) {
-    const Slice s = slice_at(scene, line, k, offset_px);
-    if (s.variance > 0) out.push_back(s);
-  }
-  return out;
-}
-
-double median_level(const std::vector<Slice>& s) {
-  std::vector<double> levels;
-  for (const Slice& slice : s) levels.push_back(slice.e_per_px);
-  if (levels.empty()) return 0.0;
-  const auto middle = levels.begin() + std::ptrdiff_t(levels.size() / 2);
-  std::nth_element(levels.begin(), middle, levels.end());
-  return *middle;
-}
-
-/// Mean with what rises above twice `level` (a star on the line) cut off, and its SNR.
-std::array<double, 2> held_mean(const std::vector<Slice>& s, double level) {
-  double sum = 0.0, variance = 0.0;
-  for (const Slice& slice : s) {
-    sum += std::min(slice.e_per_px, 2 * level);
-    variance += slice.variance;
-  }
-  if (s.empty() || !(variance > 0)) return {0.0, 0.0};
-  return {sum / double(s.size()), sum / std::sqrt(variance)};
 }
 
 /// The line that most of the points lie on, by pairs of points far apart; nothing shorter than
@@ -161,17 +69,6 @@ Line refined(const std::vector<Point>& points, const Line& line, double width_px
   y /= n;
   const double angle = 0.5 * std::atan2(2 * (xy / n - x * y), xx / n - x * x - (yy / n - y * y));
   return {line.x + x, line.y + y, std::cos(angle), std::sin(angle)};
-}
-
-/// Extent of a streak along its line's major axis.
-struct Extent {
-  int from, to;
-};
-
-Extent extent_of(const Line& line, double half_length_px) {
-  const double centre = line.by_columns() ? line.x : line.y;
-  const double half = half_length_px / line.slice_px();
-  return {int(std::lround(centre - half)), int(std::lround(centre + half))};
 }
 
 /// Follows the line beyond one end while light of about the same level goes on, a window at a time,

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/detection/wcs_refraction.h"
+#include "core/optics/image_height.h"
 
 namespace dmise {
 namespace {
@@ -38,35 +40,81 @@ TangentBasis tangent_basis(const Wcs& wcs) {
   return {{ca * cd, sa * cd, sd}, {-sa, ca, 0.0}, {-ca * sd, -sa * sd, cd}};
 }
 
+constexpr const char* codes[] = {"TAN", "ARC", "ZEA", "STG"};  // in the order of `Projection`
+
+PixelPosition polynomials(const Wcs& wcs, double u, double v) {
+  return {u + evaluate(wcs.a, wcs.order, u, v).value, v + evaluate(wcs.b, wcs.order, u, v).value};
+}
+
+PixelPosition focal_place(const Wcs& wcs, const RefractionShift* air, PixelPosition pixel) {
+  const PixelPosition place = polynomials(wcs, pixel.x_px - wcs.crpix_x, pixel.y_px - wcs.crpix_y);
+  return air ? place + air->at(pixel) : place;
+}
+
+std::optional<RefractionShift> air_of(const Wcs& wcs) {
+  return wcs.refraction ? std::optional<RefractionShift>(wcs) : std::nullopt;
+}
+
+/// On the projection's plane [rad], east and north.
+std::array<double, 2> plane_of_focal(const Wcs& wcs, PixelPosition place) {
+  return {(wcs.cd_deg[0] * place.x_px + wcs.cd_deg[1] * place.y_px) * deg,
+          (wcs.cd_deg[2] * place.x_px + wcs.cd_deg[3] * place.y_px) * deg};
+}
+
 }  // namespace
 
-Vec<Gcrs> wcs_direction(const Wcs& wcs, PixelPosition pixel) {
-  const double u = pixel.x_px - wcs.crpix_x, v = pixel.y_px - wcs.crpix_y;
-  const double uu = u + evaluate(wcs.a, wcs.order, u, v).value;
-  const double vv = v + evaluate(wcs.b, wcs.order, u, v).value;
-  const double xi = (wcs.cd_deg[0] * uu + wcs.cd_deg[1] * vv) * deg;
-  const double eta = (wcs.cd_deg[2] * uu + wcs.cd_deg[3] * vv) * deg;
+const char* wcs_projection_code(Projection projection) { return codes[int(projection)]; }
+
+std::optional<Projection> wcs_projection_of_code(std::string_view code) {
+  for (int i = 0; i < 4; ++i)
+    if (code == codes[i]) return Projection(i);
+  return std::nullopt;
+}
+
+PixelPosition wcs_focal_place(const Wcs& wcs, PixelPosition pixel) {
+  const auto air = air_of(wcs);
+  return focal_place(wcs, air ? &*air : nullptr, pixel);
+}
+
+std::optional<PixelPosition> wcs_focal_place(const Wcs& wcs, const Vec<Gcrs>& direction) {
   const TangentBasis t = tangent_basis(wcs);
-  return unit(t.reference + t.east * xi + t.north * eta);
+  const Vec<Gcrs> v = unit(direction);
+  const auto image =
+      image_of_direction(wcs.projection, dot(v, t.east), dot(v, t.north), dot(v, t.reference));
+  if (!image) return std::nullopt;
+  const double xi = (*image)[0] / deg, eta = (*image)[1] / deg;
+  const double det = wcs.cd_deg[0] * wcs.cd_deg[3] - wcs.cd_deg[1] * wcs.cd_deg[2];
+  return PixelPosition{(wcs.cd_deg[3] * xi - wcs.cd_deg[1] * eta) / det,
+                       (wcs.cd_deg[0] * eta - wcs.cd_deg[2] * xi) / det};
+}
+
+Vec<Gcrs> wcs_direction(const Wcs& wcs, PixelPosition pixel) {
+  auto [xi, eta] = plane_of_focal(wcs, wcs_focal_place(wcs, pixel));
+  auto local = direction_of_image(wcs.projection, xi, eta);
+  if (!local) {  // at the rim, or just within
+    const double rim = wcs.projection == Projection::equisolid ? 2.0 : pi;
+    const double shrink = rim * (1 - 1e-12) / std::hypot(xi, eta);
+    local = direction_of_image(wcs.projection, xi * shrink, eta * shrink);
+  }
+  const TangentBasis t = tangent_basis(wcs);
+  return unit(t.reference * (*local)[2] + t.east * (*local)[0] + t.north * (*local)[1]);
 }
 
 std::optional<PixelPosition> wcs_pixel(const Wcs& wcs, const Vec<Gcrs>& direction) {
-  const TangentBasis t = tangent_basis(wcs);
-  const double along = dot(direction, t.reference);
-  if (!(along > 1e-9 * norm(direction))) return std::nullopt;
-  const double xi = dot(direction, t.east) / along / deg;
-  const double eta = dot(direction, t.north) / along / deg;
-  const double det = wcs.cd_deg[0] * wcs.cd_deg[3] - wcs.cd_deg[1] * wcs.cd_deg[2];
-  const double uu = (wcs.cd_deg[3] * xi - wcs.cd_deg[1] * eta) / det;
-  const double vv = (wcs.cd_deg[0] * eta - wcs.cd_deg[2] * xi) / det;
-
+  const auto target = wcs_focal_place(wcs, direction);
+  if (!target) return std::nullopt;
+  const auto air = air_of(wcs);
+  const double uu = target->x_px, vv = target->y_px;
   double u = uu + evaluate(wcs.ap, wcs.order, uu, vv).value;
   double v = vv + evaluate(wcs.bp, wcs.order, uu, vv).value;
   const double tolerance = 1e-9 + 1e-14 * (std::abs(u) + std::abs(v));
-  for (int i = 0; i < 20; ++i) {
+  // The slope of the air's part, below 0.2, is left out: each step leaves a fifth.
+  const int most_steps = air ? 40 : 20;
+  for (int i = 0; i < most_steps; ++i) {
     const PolynomialValue f = evaluate(wcs.a, wcs.order, u, v);
     const PolynomialValue g = evaluate(wcs.b, wcs.order, u, v);
-    const double ru = uu - u - f.value, rv = vv - v - g.value;
+    const PixelPosition by = air ? air->at({u + wcs.crpix_x, v + wcs.crpix_y}) : PixelPosition{};
+    const double ru = uu - u - f.value - by.x_px, rv = vv - v - g.value - by.y_px;
     if (!(std::abs(ru) + std::abs(rv) < 1e12)) return std::nullopt;
     if (std::abs(ru) + std::abs(rv) <= tolerance)
       return PixelPosition{u + wcs.crpix_x, v + wcs.crpix_y};
@@ -76,6 +124,13 @@ std::optional<PixelPosition> wcs_pixel(const Wcs& wcs, const Vec<Gcrs>& directio
     v += (j11 * rv - j21 * ru) / jacobian;
   }
   return std::nullopt;
+}
+
+bool wcs_sees_sky(const Wcs& wcs, PixelPosition pixel) {
+  const auto [xi, eta] = plane_of_focal(wcs, wcs_focal_place(wcs, pixel));
+  if (!direction_of_image(wcs.projection, xi, eta)) return false;
+  const auto air = air_of(wcs);
+  return !air || air->elevation_rad(pixel) > -wcs_scale_rad_per_px(wcs);
 }
 
 double wcs_scale_rad_per_px(const Wcs& wcs) {

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/detection/wcs.h"
 #include "core/detector/detector_figures.h"
 #include "core/image/observation_cards.h"
 
@@ -82,6 +83,18 @@ class CardWriter {
   }
   void optional_angle(const char* key, std::optional<double>& value_rad, const char* comment) {
     if (value_rad) angle(key, *value_rad, comment);
+  }
+  void wcs_projection(Wcs& wcs, bool sip) {
+    const std::string tail = wcs_projection_code(wcs.projection) + std::string(sip ? "-SIP" : "");
+    text("CTYPE1", "RA---" + tail, sip ? "with SIP distortion" : "");
+    text("CTYPE2", "DEC--" + tail, "");
+  }
+  /// The records of a distortion by table lookup: a keyword for several of them.
+  void lookup(int axis) {
+    const std::string number = std::to_string(axis);
+    text("CPDIS" + number, "LOOKUP", "the air, by a table in the extension WCSDVARR");
+    for (const char* record : {"EXTVER: ", "NAXES: 2", "AXIS.1: 1", "AXIS.2: 2"})
+      text("DP" + number, record + std::string(record[0] == 'E' ? number : ""), "");
   }
   bool present(const char*, bool here) const { return here; }
   void sip(Wcs& wcs) {
@@ -179,6 +192,19 @@ class CardReader {
     optional_number(key, value_rad, "");
     if (value_rad) *value_rad *= deg;
   }
+  void wcs_projection(Wcs& wcs, bool sip) {
+    const std::string& type = find("CTYPE1");
+    const auto projection =
+        wcs_projection_of_code(std::string_view(type).substr(std::min<std::size_t>(5, type.size()), 3));
+    if (!projection) fail("CTYPE1", "must be TAN, ARC, ZEA or STG, got " + type);
+    wcs.projection = *projection;
+    const std::string tail = wcs_projection_code(wcs.projection) + std::string(sip ? "-SIP" : "");
+    constant("CTYPE1", ("RA---" + tail).c_str(), "");
+    constant("CTYPE2", ("DEC--" + tail).c_str(), "");
+  }
+  void lookup(int axis) {
+    constant(("CPDIS" + std::to_string(axis)).c_str(), "LOOKUP", "");
+  }
   bool present(const char* key, bool) const { return values_.contains(key); }
   void sip(Wcs& wcs) {
     if (!values_.contains("A_ORDER")) return;
@@ -236,12 +262,36 @@ void visit_pixel_coordinate(Visitor& v, const char* key, double& zero_based, con
   zero_based = one_based - 1.0;
 }
 
+template <class Visitor, class Frame>
+void visit_vector(Visitor& v, const std::string& key, Vec<Frame>& vector, const char* comment) {
+  v.number(key + "X", vector.x, comment);
+  v.number(key + "Y", vector.y, "");
+  v.number(key + "Z", vector.z, "");
+}
+
+template <class Visitor>
+void visit_refraction(Visitor& v, Wcs& wcs) {
+  if (!v.present("CPDIS1", wcs.refraction.has_value())) return;
+  if (!wcs.refraction) wcs.refraction.emplace();
+  WcsRefraction& r = *wcs.refraction;
+  v.lookup(1);
+  v.lookup(2);
+  visit_vector(v, "WCSZEN", r.zenith, "zenith in the camera: right, down, boresight");
+  v.number("WCSFOC", r.focal_length_px, "[px] focal length");
+  v.number("WCSPRES", r.pressure_hpa, "[hPa] of the air that refracts");
+  v.number("WCSTEMP", r.temperature_c, "[degC]");
+  v.number("WCSHUM", r.humidity, "relative humidity");
+  v.number("WCSWAVE", r.wavelength_um, "[um] wavelength");
+  v.number("WCSOFFX", r.offset_x_px, "[px] left out of the lookup tables");
+  v.number("WCSOFFY", r.offset_y_px, "");
+  v.number("WCSCELL", r.cell_px, "[px] step of the lookup tables");
+}
+
 template <class Visitor>
 void visit_wcs(Visitor& v, Wcs& wcs) {
   const bool sip = v.present("A_ORDER", wcs.order > 0);
   v.constant("WCSAXES", 2, "");
-  v.constant("CTYPE1", sip ? "RA---TAN-SIP" : "RA---TAN", "gnomonic, with SIP distortion if -SIP");
-  v.constant("CTYPE2", sip ? "DEC--TAN-SIP" : "DEC--TAN", "");
+  v.wcs_projection(wcs, sip);
   v.constant("CUNIT1", "deg", "");
   v.constant("CUNIT2", "deg", "");
   visit_pixel_coordinate(v, "CRPIX1", wcs.crpix_x, "centre of the first pixel is 1");
@@ -255,15 +305,9 @@ void visit_wcs(Visitor& v, Wcs& wcs) {
   v.number_constant("LONPOLE", 180.0, "[deg] also where the reference is a celestial pole");
   v.constant("RADESYS", "ICRS", "places are astrometric: as in a star catalogue");
   v.sip(wcs);
-  v.number("WCSRMS", wcs.rms_px, "[px] rms of the WCS against the true mapping");
-  v.number("WCSMAX", wcs.max_px, "[px] largest error of the WCS");
-}
-
-template <class Visitor, class Frame>
-void visit_vector(Visitor& v, const std::string& key, Vec<Frame>& vector, const char* comment) {
-  v.number(key + "X", vector.x, comment);
-  v.number(key + "Y", vector.y, "");
-  v.number(key + "Z", vector.z, "");
+  visit_refraction(v, wcs);
+  v.number("WCSRMS", wcs.rms_px, "[px] rms of the WCS where the sky is seen");
+  v.number("WCSMAX", wcs.max_px, "[px] largest error of the WCS there");
 }
 
 // Those of the figures that every frame states are copied from there, not written twice.
@@ -375,6 +419,16 @@ void require_sense(const CardReader& v, const FrameHeader& h) {
   }
   const auto& cd = h.wcs.cd_deg;
   v.require(cd[0] * cd[3] - cd[1] * cd[2] != 0, "CD1_1", "the CD matrix must have an inverse");
+  if (const auto& air = h.wcs.refraction) {
+    v.require(std::abs(norm(air->zenith) - 1) < 1e-6, "WCSZENX", "the zenith must have length 1");
+    v.require(air->focal_length_px > 0, "WCSFOC", "must be > 0");
+    v.require(air->pressure_hpa >= 0 && air->pressure_hpa <= 1e4, "WCSPRES", "must be in 0..1e4");
+    v.require(std::abs(air->temperature_c - 25) <= 175, "WCSTEMP", "must be in -150..200");
+    v.require(air->humidity >= 0 && air->humidity <= 1, "WCSHUM", "must be in 0..1");
+    v.require(air->wavelength_um >= 0.1 && air->wavelength_um <= 100, "WCSWAVE",
+              "must be in 0.1..100");
+    v.require(air->cell_px >= 1, "WCSCELL", "must be >= 1");
+  }
   constexpr const char* attitudes[3] = {"QBEG0", "QAVG0", "QEND0"};
   for (std::size_t i = 0; i < 3; ++i) {
     const Quaternion& q = h.camera_from_gcrs[i];
@@ -408,6 +462,12 @@ std::string flag_card(const std::string& key, bool value, const std::string& com
 std::string integer_card(const std::string& key, std::int64_t value, const std::string& comment) {
   CardWriter writer;
   writer.integer(key, value, comment);
+  return writer.cards.front();
+}
+
+std::string number_card(const std::string& key, double value, const std::string& comment) {
+  CardWriter writer;
+  writer.number(key, value, comment.c_str());
   return writer.cards.front();
 }
 

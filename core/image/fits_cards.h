@@ -16,6 +16,7 @@ std::vector<std::string> fits_cards(const FrameHeader& header);
 /// One card. Throws `Error` as `fits_cards` does.
 std::string text_card(const std::string& key, const std::string& value, const std::string& comment);
 std::string flag_card(const std::string& key, bool value, const std::string& comment);
+std::string number_card(const std::string& key, double value, const std::string& comment);
 std::string integer_card(const std::string& key, std::int64_t value, const std::string& comment);
 
 /// Keyword -> value of cards; texts without quotes, comments dropped, of doubles the first.

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
+#include "core/detection/wcs_refraction.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_guard.h"
 #include "core/image/fits_memory.h"
@@ -134,11 +135,31 @@ std::vector<std::string> frame_cards(const CountImage& counts, const FrameHeader
   return cards;
 }
 
+/// What moves pixels along an axis, for readers that know CPDISj = 'LOOKUP'. astropy, which is the
+/// one in use, takes the node of a pixel as (pixel - CRVAL) / CDELT + CRPIX with both counted from 0.
+void put_shift_tables(const ByteSink& file, const CountImage& counts, const Wcs& wcs) {
+  if (!wcs.refraction) return;
+  const ShiftTable table = shift_table(wcs, counts.columns, counts.rows);
+  for (int axis = 1; axis <= 2; ++axis) {
+    std::vector<std::string> cards = {
+        text_card("EXTNAME", "WCSDVARR", "WCS distortion array"),
+        integer_card("EXTVER", axis, axis == 1 ? "[px] along x" : "[px] along y")};
+    for (const std::string& k : {std::string("1"), std::string("2")}) {
+      cards.push_back(text_card("CTYPE" + k, "LINEAR", "pixel of the frame"));
+      cards.push_back(integer_card("CRPIX" + k, 0, "node; the first is 0"));
+      cards.push_back(number_card("CRVAL" + k, ShiftTable::first_px, "its pixel; the first is 0"));
+      cards.push_back(number_card("CDELT" + k, table.cell_px, "[px]"));
+    }
+    put_image(file, FitsPlace::extension, axis == 1 ? table.x_px : table.y_px, table.columns, cards);
+  }
+}
+
 void put_plain(const ByteSink& file, const CountImage& counts, std::span<const std::string> cards,
                const FrameHeader& header, const FlagImage* flags) {
   put_image(file, FitsPlace::primary, counts.pixels, counts.columns, cards);
   if (flags)
     put_image(file, FitsPlace::extension, flags->pixels, flags->columns, flag_cards(header));
+  put_shift_tables(file, counts, header.wcs);
 }
 
 }  // namespace
@@ -146,14 +167,16 @@ void put_plain(const ByteSink& file, const CountImage& counts, std::span<const s
 std::string encode_frame(const CountImage& counts, const FrameHeader& header,
                          FitsCompression compression, const FlagImage* flags) {
   const auto cards = frame_cards(counts, header, flags);
+  std::string file;
+  const ByteSink append = [&](std::string_view piece) { file += piece; };
   if (compression == FitsCompression::rice) {
-    std::string file = empty_primary();
+    file = empty_primary();
     append_rice_image(file, counts.pixels, counts.columns, cards);
     if (flags) append_rice_image(file, flags->pixels, flags->columns, flag_cards(header));
+    put_shift_tables(append, counts, header.wcs);
     return file;
   }
-  std::string file;
-  put_plain([&](std::string_view piece) { file += piece; }, counts, cards, header, flags);
+  put_plain(append, counts, cards, header, flags);
   return file;
 }
 

@@ -90,7 +90,11 @@ Vec<Gcrs> ApparentPlaces::star(const StarPlace& star) const {
                   receding_per_yr * catalogue);
   }
   if (parallax_) p = p - star.parallax_rad * barycentric_au_;
-  p = unit(p);
+  p = bent_and_aberrated(unit(p));
+  return refraction_ ? through_air(p, Refraction::star) : p;
+}
+
+Vec<Gcrs> ApparentPlaces::bent_and_aberrated(Vec<Gcrs> p) const {
   if (deflection_) {
     Array from(p), sun(from_sun_);
     double to[3];
@@ -99,7 +103,30 @@ Vec<Gcrs> ApparentPlaces::star(const StarPlace& star) const {
   }
   if (star_aberration_)
     p = aberrated_by(p, star_velocity_c_, sun_distance_au_, star_inverse_gamma_);
-  return refraction_ ? through_air(p, Refraction::star) : p;
+  return p;
+}
+
+Vec<Gcrs> ApparentPlaces::star_seen_at(const Vec<Gcrs>& apparent) const {
+  Vec<Gcrs> above_air = unit(apparent);
+  if (refraction_) {
+    const Vec<Gcrs>& up = observer_.air->zenith;
+    const double sine = dot(above_air, up);
+    const Vec<Gcrs> level = above_air - up * sine;
+    const double cosine = norm(level);
+    if (cosine >= 1e-12) {
+      const double elevation_rad =
+          observer_.air->refraction.true_from_apparent_rad(std::atan2(sine, cosine));
+      above_air = level * (std::cos(elevation_rad) / cosine) + up * std::sin(elevation_rad);
+    }
+  }
+  // What is left falls by v/c each time.
+  Vec<Gcrs> star = above_air;
+  for (int i = 0; i < 8; ++i) {
+    const Vec<Gcrs> missed = above_air - bent_and_aberrated(star);
+    star = unit(star + missed);
+    if (norm(missed) < 1e-12) break;
+  }
+  return star;
 }
 
 void ApparentPlaces::stars(const StarColumns& c, std::span<const std::uint32_t> which,

@@ -72,6 +72,10 @@ class ApparentPlaces {
   /// eraAb.
   Vec<Gcrs> star(const StarPlace& star) const;
 
+  /// Where a star without parallax and proper motion stands that is seen at an apparent direction:
+  /// the inverse of `star`, to 1e-12 rad. A unit vector.
+  Vec<Gcrs> star_seen_at(const Vec<Gcrs>& apparent) const;
+
   /// `directions[i]` of star `which[i]` of a catalogue.
   void stars(const StarColumns& catalogue, std::span<const std::uint32_t> which,
              std::span<Vec<Gcrs>> directions) const;
@@ -101,6 +105,7 @@ class ApparentPlaces {
   }
 
  private:
+  Vec<Gcrs> bent_and_aberrated(Vec<Gcrs> p) const;
   Vec<Gcrs> through_air(const Vec<Gcrs>& direction, double distance_m) const;
   void finish(const Vec<Gcrs>& line_m, SatellitePlace& place) const;
 

@@ -34,7 +34,8 @@ Weather standard_weather(double height_m) {
   return {.pressure_hpa = pressure, .temperature_c = temperature_k - 273.15};
 }
 
-Refraction::Refraction(const Weather& weather, double wavelength_um) {
+Refraction::Refraction(const Weather& weather, double wavelength_um)
+    : weather_(weather), wavelength_um_(wavelength_um) {
   check(weather.pressure_hpa, 0.0, 10000.0, "pressure_hpa");
   check(weather.temperature_c, -150.0, 200.0, "temperature_c");
   check(weather.humidity, 0.0, 1.0, "humidity");

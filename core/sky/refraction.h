@@ -49,6 +49,9 @@ class Refraction {
   /// at this apparent elevation [m]: a body at `distance_m` is lifted by aside / distance less than
   /// a star.
   double aside_m(double apparent_elevation_rad) const;
+  /// What it was made of; pressure 0 for no air.
+  const Weather& weather() const { return weather_; }
+  double wavelength_um() const { return wavelength_um_; }
 
  private:
   double series_rad(double apparent_elevation_rad) const;
@@ -56,6 +59,8 @@ class Refraction {
   double bennett_rad(double apparent_elevation_rad) const;
   double of_body_rad(double apparent_elevation_rad, double distance_m) const;
 
+  Weather weather_{.pressure_hpa = 0.0};
+  double wavelength_um_ = 0.55;
   double tan_term_rad_ = 0.0, tan3_term_rad_ = 0.0;  // of the apparent zenith distance
   double bennett_scale_ = 0.0;                       // 0: no air
   double refractivity_ = 0.0;                        // n - 1 at the observer

@@ -13,6 +13,11 @@
 namespace dmise {
 namespace {
 
+#define DMISE_WCS_REFRACTION_FIELDS(X)                                                        \
+  X(focal_length_px)                                                                          \
+  X(pressure_hpa) X(temperature_c) X(humidity) X(wavelength_um) X(offset_x_px) X(offset_y_px) \
+  X(cell_px)
+
 void put_wcs(v1::Wcs* message, const Wcs& wcs) {
   message->set_crpix_x_px(wcs.crpix_x);
   message->set_crpix_y_px(wcs.crpix_y);
@@ -26,6 +31,14 @@ void put_wcs(v1::Wcs* message, const Wcs& wcs) {
   message->mutable_bp()->Add(wcs.bp.begin(), wcs.bp.end());
   message->set_rms_px(wcs.rms_px);
   message->set_max_px(wcs.max_px);
+  message->set_projection(std::uint32_t(wcs.projection));
+  if (!wcs.refraction) return;
+  const WcsRefraction& from = *wcs.refraction;
+  auto* to = message->mutable_refraction();
+  put(to->mutable_zenith(), from.zenith);
+#define X(field) to->set_##field(from.field);
+  DMISE_WCS_REFRACTION_FIELDS(X)
+#undef X
 }
 
 Wcs take_wcs(const v1::Wcs& message) {
@@ -43,6 +56,15 @@ Wcs take_wcs(const v1::Wcs& message) {
   wcs.bp.assign(message.bp().begin(), message.bp().end());
   wcs.rms_px = message.rms_px();
   wcs.max_px = message.max_px();
+  if (message.projection() > 3) throw Refused(Refusal::value, "wcs.projection: must be 0 to 3");
+  wcs.projection = Projection(message.projection());
+  if (!message.has_refraction()) return wcs;
+  const v1::WcsRefraction& from = message.refraction();
+  WcsRefraction& to = wcs.refraction.emplace();
+  to.zenith = take_vec<CameraFrame>(from.zenith(), "wcs.refraction.zenith");
+#define X(field) to.field = from.field();
+  DMISE_WCS_REFRACTION_FIELDS(X)
+#undef X
   return wcs;
 }
 

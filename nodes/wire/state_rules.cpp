@@ -188,6 +188,17 @@ void check(const Wcs& wcs) {
   }
   not_negative(wcs.rms_px, "wcs.rms_px");
   not_negative(wcs.max_px, "wcs.max_px");
+  if (!wcs.refraction) return;
+  const WcsRefraction& air = *wcs.refraction;
+  in_range(norm(air.zenith), 1 - 1e-6, 1 + 1e-6, "wcs.refraction.zenith");
+  in_range(air.focal_length_px, 1e-9, 1e15, "wcs.refraction.focal_length_px");
+  in_range(air.pressure_hpa, 0, 1e4, "wcs.refraction.pressure_hpa");
+  in_range(air.temperature_c, -150, 200, "wcs.refraction.temperature_c");
+  in_range(air.humidity, 0, 1, "wcs.refraction.humidity");
+  in_range(air.wavelength_um, 0.1, 100, "wcs.refraction.wavelength_um");
+  finite(air.offset_x_px, "wcs.refraction.offset_x_px");
+  finite(air.offset_y_px, "wcs.refraction.offset_y_px");
+  in_range(air.cell_px, 1, 1e6, "wcs.refraction.cell_px");
 }
 
 void check(const FrameReport& report) {

@@ -14,27 +14,24 @@
 namespace dmise {
 namespace {
 
-/// ICRS direction of the star that the camera sees at a pixel in the middle of the exposure: the
-/// apparent place's inverse by iteration, so that refraction and aberration are those of the stars.
-std::optional<Vec<Gcrs>> star_at(const Optics& optics, const ApparentPlaces& places,
-                                 const Rotation<Gcrs, CameraFrame>& gcrs_from_camera,
-                                 double epoch_jyear, PixelPosition pixel) {
-  const auto seen = unproject(optics, pixel);
-  if (!seen) return std::nullopt;
-  const Vec<Gcrs> wanted = gcrs_from_camera * *seen;
-  Vec<Gcrs> star = wanted;
-  for (int i = 0; i < 5; ++i) {
-    const auto [ra, dec] = to_spherical(star);
-    const Vec<Gcrs> missed =
-        wanted - places.star({.ra_rad = ra, .dec_rad = dec, .epoch_jyear = epoch_jyear});
-    star = unit(star + missed);
-    if (norm(missed) < 1e-11) break;  // what is left is a hundredth of this
-  }
-  return star;
+/// The WCS of mid exposure, with the refraction and aberration of the stars.
+Wcs wcs_of(const View& view) {
+  const auto& sensor = view.sensor();
+  const Optics& optics = sensor.camera.optics;
+  const SimTime middle = view.times().middle;
+  const auto places = view.places(middle);
+  const auto camera_from_gcrs = view.camera_from_gcrs(middle);
+  const auto gcrs_from_camera = camera_from_gcrs.inverse();
+  std::optional<CameraAir> air;
+  if (view.on_ground() && sensor.effects.has(Effect::refraction))
+    air = CameraAir{camera_from_gcrs * view.up(middle), view.refraction()};
+  const auto star_at = [&](PixelPosition pixel) -> std::optional<Vec<Gcrs>> {
+    const auto seen = unproject(optics, pixel);
+    if (!seen) return std::nullopt;
+    return places.star_seen_at(gcrs_from_camera * *seen);
+  };
+  return best_wcs(optics, star_at, air);
 }
-
-/// SIP order that leaves the fit below 0.01 px: refraction bends wide fields.
-int sip_order(const Optics& optics) { return half_diagonal_rad(optics) > 10 * deg ? 5 : 3; }
 
 }  // namespace
 
@@ -94,15 +91,10 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
   const SimTime at[3] = {times.start, times.middle, times.end};
   for (int k = 0; k < 3; ++k) h.camera_from_gcrs[k] = quaternion_of(view.camera_from_gcrs(at[k]));
 
-  const auto places = view.places(times.middle);
-  const auto gcrs_from_camera = view.camera_from_gcrs(times.middle).inverse();
-  const double epoch = 2000.0 + julian_years_since_j2000(settings.clock.tt(times.middle));
-  h.observation = observation_of(
-      view, settings, star_at(optics, places, gcrs_from_camera, epoch, principal_point(optics)));
-  h.wcs = fit_wcs(
-      optics.columns, optics.rows,
-      [&](PixelPosition pixel) { return star_at(optics, places, gcrs_from_camera, epoch, pixel); },
-      sip_order(optics));
+  const Vec<Gcrs> axis =
+      view.camera_from_gcrs(times.middle).inverse() * Vec<CameraFrame>{0.0, 0.0, 1.0};
+  h.observation = observation_of(view, settings, view.places(times.middle).star_seen_at(axis));
+  h.wcs = wcs_of(view);
   return h;
 }
 

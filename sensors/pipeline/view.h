@@ -41,6 +41,8 @@ class View {
   const SiteState* air() const { return air_; }
   /// The air that refracts over a ground sensor.
   const Weather& weather() const { return weather_; }
+  /// Of a ground sensor, whether its effects have it or not.
+  const Refraction& refraction() const { return refraction_; }
   Rotation<CameraFrame, Gcrs> camera_from_gcrs(SimTime t) const;
   /// Where light seems to come from, at `t`, with the sensor's effects.
   ApparentPlaces places(SimTime t) const { return places(t, sensor_.effects); }

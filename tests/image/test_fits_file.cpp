@@ -22,6 +22,7 @@ using test::command_output;
 using test::sample_counts;
 using test::sample_header;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string scratch(const std::string& name) { return testing::TempDir() + "/fits-" + name; }
 
@@ -91,6 +92,44 @@ TEST(FitsFile, EqualFramesAreEqualBytesAndRiceIsSmaller) {
               encode_frame(sample_counts(), sample_header(), compression));
   EXPECT_LT(encode_frame(sample_counts(640, 480), sample_header(), FitsCompression::rice).size(),
             0.6 * encode_frame(sample_counts(640, 480), sample_header()).size());
+}
+
+FrameHeader header_with_refraction() {
+  FrameHeader header = sample_header();
+  header.wcs.projection = Projection::equidistant;
+  header.wcs.refraction = WcsRefraction{.zenith = {0.0, -0.6, 0.8},
+                                        .focal_length_px = 60.0,
+                                        .pressure_hpa = 950.0,
+                                        .temperature_c = 10.0,
+                                        .humidity = 0.3,
+                                        .wavelength_um = 0.7,
+                                        .offset_x_px = 0.01,
+                                        .offset_y_px = -0.02,
+                                        .cell_px = 7.5};
+  return header;
+}
+
+TEST(FitsFile, ARefractionComesBackAndItsTablesDoNotDisturb) {
+  const FrameHeader header = header_with_refraction();
+  for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
+    const Frame frame = decode_frame(encode_frame(sample_counts(), header, compression), "x");
+    EXPECT_EQ(frame.header.wcs, as_in_file(header).wcs);
+    EXPECT_EQ(frame.header.wcs.projection, Projection::equidistant);
+    EXPECT_EQ(frame.header.wcs.refraction, header.wcs.refraction);
+    EXPECT_EQ(frame.counts.pixels, sample_counts().pixels);
+  }
+}
+
+// Reference: fitsverify 4.20. The records of a table lookup share a keyword by their convention,
+// which it warns of; nothing else may be found.
+TEST(FitsFile, FitsverifyFindsNothingInLookupTablesButTheirRecords) {
+  if (std::system("command -v fitsverify > /dev/null") != 0) DMISE_SKIP() << "needs fitsverify";
+  const std::string path = scratch("lookup.fits");
+  write_frame(path, sample_counts(), header_with_refraction());
+  const auto [status, output] =
+      command_output("fitsverify " + path + " | grep -v 'Keyword DP. is duplicated'");
+  EXPECT_THAT(output, HasSubstr("6 warning(s) and 0 error(s)"));
+  EXPECT_THAT(output, Not(HasSubstr("*** Warning")));
 }
 
 // Reference: fitsverify 4.20 (HEASARC), which knows the FITS standard.

@@ -13,7 +13,7 @@ warnings.simplefilter("ignore", FITSFixedWarning)
 with fits.open(sys.argv[1]) as hdus:
     hdus.verify("exception")
     data, header = hdus[0].data, hdus[0].header
-    wcs = WCS(header)
+    wcs = WCS(header, hdus)
     print("shape", *data.shape, "dtype", data.dtype, "corners", data[0, 0], data[-1, -1])
     print("gain", header["GAIN"], "seed", header["SEED"], "obs", Time(header["DATE-OBS"]).isot)
     x, y = wcs.all_world2pix([wcs.wcs.crval], 0)[0]

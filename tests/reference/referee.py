@@ -120,7 +120,8 @@ def read_frame(path):
     with fits.open(path) as hdus:
         hdu = next(h for h in hdus if h.data is not None)
         header = hdu.header
-        return Frame(pathlib.Path(path), np.asarray(hdu.data, dtype=np.float64), header, WCS(header))
+        return Frame(pathlib.Path(path), np.asarray(hdu.data, dtype=np.float64), header,
+                     WCS(header, hdus))
 
 
 def first_frames(run):

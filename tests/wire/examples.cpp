@@ -98,6 +98,17 @@ FrameReport report(Numbers& n) {
            .order = 3};
   for (auto* polynomial : {&r.wcs.a, &r.wcs.b, &r.wcs.ap, &r.wcs.bp})
     for (int i = 0; i < 16; ++i) polynomial->push_back(n.in(-1e-5, 1e-5));
+  r.wcs.projection = Projection::equisolid;
+  const auto zenith = n.vec<CameraFrame>(1.0);
+  r.wcs.refraction = {.zenith = unit(zenith),
+                      .focal_length_px = n.in(100, 1000),
+                      .pressure_hpa = n.in(500, 1000),
+                      .temperature_c = n.in(-20, 30),
+                      .humidity = n.in(0, 1),
+                      .wavelength_um = n.in(0.4, 2),
+                      .offset_x_px = n.in(-9, 9),
+                      .offset_y_px = n.in(-9, 9),
+                      .cell_px = n.in(2, 20)};
   r.wcs.rms_px = n.in(0, 1);
   r.wcs.max_px = n.in(1, 2);
   r.sensor_position_m = n.vec<Gcrs>(7e6);

@@ -201,6 +201,9 @@ TEST(Wire, DoesNotSendWhatItWouldRefuse) {
     for (double& x : s.earth.itrs_from_tirs.m[2]) x = -x;  // a mirror
   });
   expect_unsent<FrameReport>([](auto& s) { s.wcs.a.pop_back(); });
+  expect_unsent<FrameReport>([](auto& s) { s.wcs.refraction->zenith = {0, 0, 2}; });
+  expect_unsent<FrameReport>([](auto& s) { s.wcs.refraction->pressure_hpa = -1; });
+  expect_unsent<FrameReport>([](auto& s) { s.wcs.refraction->cell_px = 0; });
   expect_unsent<FrameReport>([](auto& s) { s.frame = 0; });
   expect_unsent<FrameReport>([](auto& s) { s.end.ns = -8; });
   expect_unsent<DetectionSet>([](auto& s) { s.detections[1].dec_rad = 1.6; });

@@ -1,0 +1,96 @@
+#include "core/detection/line_profile.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr int neighbours = 20;  // on each side
+constexpr int least_neighbours = 12;
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+Slice slice_at(const Scene& scene, const Line& line, int major, double offset_px) {
+  const Point centre = line.at(major, offset_px);
+  const double sigma = scene.sigma_px, cosine = 1.0 / line.slice_px();
+  const double middle = line.by_columns() ? centre.y : centre.x;
+  const int reach = int(std::ceil(2.5 * sigma / cosine));
+  double gd = 0.0, gg = 0.0, variance = 0.0;
+  const int nearest = int(std::lround(middle));
+  for (int m = nearest - reach; m <= nearest + reach; ++m) {
+    const int px = line.by_columns() ? major : m, py = line.by_columns() ? m : major;
+    if (!scene.contains(px, py)) continue;
+    const double n = (m - middle) * cosine / sigma;
+    const double g = std::exp(-0.5 * n * n) / (sigma * std::sqrt(2 * pi));
+    const FitPixel pixel = scene.pixel(px, py);
+    gd += g * pixel.signal_e;
+    gg += g * g;
+    variance += g * g * (pixel.variance_e2 + std::max(pixel.signal_e, 0.0f));
+  }
+  // Less than half a profile inside the frame says nothing.
+  if (gg < 0.25 * cosine / (2 * sigma * std::sqrt(pi))) return {};
+  return {gd / gg, variance / (gg * gg)};
+}
+
+std::vector<Slice> slices(const Scene& scene, const Line& line, int from, int to,
+                          double offset_px) {
+  std::vector<Slice> out;
+  for (int k = from; k <= to; ++k) {
+    const Slice s = slice_at(scene, line, k, offset_px);
+    if (s.variance > 0) out.push_back(s);
+  }
+  return out;
+}
+
+double median_level(const std::vector<Slice>& s) {
+  std::vector<double> levels;
+  for (const Slice& slice : s) levels.push_back(slice.e_per_px);
+  if (levels.empty()) return 0.0;
+  const auto middle = levels.begin() + std::ptrdiff_t(levels.size() / 2);
+  std::nth_element(levels.begin(), middle, levels.end());
+  return *middle;
+}
+
+std::array<double, 2> held_mean(const std::vector<Slice>& s, double level) {
+  double sum = 0.0, variance = 0.0;
+  for (const Slice& slice : s) {
+    sum += std::min(slice.e_per_px, 2 * level);
+    variance += slice.variance;
+  }
+  if (s.empty() || !(variance > 0)) return {0.0, 0.0};
+  return {sum / double(s.size()), sum / std::sqrt(variance)};
+}
+
+double rise_above_neighbours(const Scene& scene, const Trail& trail) {
+  const Line line = line_of(trail);
+  const double level = trail.flux_e / trail.length_px;
+  const Extent extent = extent_of(line, trail.length_px / 2);
+  const auto own = slices(scene, line, extent.from, extent.to, 0.0);
+  const double step_px = 4 * scene.sigma_px;
+  std::vector<double> beside;
+  for (int k = -neighbours; k <= neighbours; ++k) {
+    if (std::abs(k) < 2) continue;
+    const auto other = slices(scene, line, extent.from, extent.to, k * step_px);
+    if (2 * other.size() > own.size()) beside.push_back(held_mean(other, level)[0]);
+  }
+  if (beside.size() < least_neighbours) return std::numeric_limits<double>::infinity();
+  // Stars only add light, so the scatter upwards counts, if it is the larger.
+  const double middle = median(beside);
+  const auto high = beside.begin() + std::ptrdiff_t(beside.size() * 9 / 10);
+  std::nth_element(beside.begin(), high, beside.end());
+  const double upwards = (*high - middle) / 1.2816;
+  for (double& value : beside) value = std::abs(value - middle);
+  const double scatter = std::max(1.4826 * median(beside), upwards);
+  return (held_mean(own, level)[0] - middle) / std::max(scatter, 1e-12);
+}
+
+}  // namespace dmise

@@ -1,0 +1,80 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/detection/scene.h"
+
+// Light along a line, slice by slice.
+namespace dmise {
+
+struct Point {
+  double x, y;
+  double weight = 1.0;  // by brightness: the ridge counts, not the skirts
+};
+
+/// A line cut into slices: one for each column (or row, where it is steeper than 45 degrees). It
+/// may be bent as a trail is, and goes on beyond the trail's ends.
+struct Line {
+  double x = 0.0, y = 0.0;  // a point on it
+  double ux = 1.0, uy = 0.0;
+  double sagitta_px = 0.0, half_length_px = 1.0;
+
+  bool by_columns() const { return std::abs(ux) >= std::abs(uy); }
+  double major(const Point& p) const { return by_columns() ? p.x : p.y; }
+  /// Length of the line in one slice.
+  double slice_px() const { return 1.0 / std::max(std::abs(ux), std::abs(uy)); }
+  double off(const Point& p) const { return (p.y - y) * ux - (p.x - x) * uy; }
+  /// Point of the slice, `offset_px` across from the line.
+  Point at(double major_px, double offset_px = 0.0) const {
+    const double along = by_columns() ? (major_px - x) / ux : (major_px - y) / uy;
+    const double r = along / half_length_px;
+    const double off_px = offset_px + sagitta_px * (1.0 / 3 - r * r);
+    return by_columns() ? Point{major_px, y + along * uy + off_px / ux}
+                        : Point{x + along * ux - off_px / uy, major_px};
+  }
+};
+
+/// Through a trail, bent as it is.
+inline Line line_of(const Trail& t) {
+  return {t.x_px,
+          t.y_px,
+          std::cos(t.angle_rad),
+          std::sin(t.angle_rad),
+          t.sagitta_px,
+          std::max(t.length_px / 2, 1.0)};
+}
+
+/// Extent of a streak along its line's major axis.
+struct Extent {
+  int from, to;
+};
+
+inline Extent extent_of(const Line& line, double half_length_px) {
+  const double centre = line.by_columns() ? line.x : line.y;
+  const double half = half_length_px / line.slice_px();
+  return {int(std::lround(centre - half)), int(std::lround(centre + half))};
+}
+
+/// Electrons per px of length in one slice, by the matched profile across.
+struct Slice {
+  double e_per_px = 0.0, variance = 0.0;  // variance 0: no pixel to look at
+};
+
+Slice slice_at(const Scene& scene, const Line& line, int major, double offset_px);
+
+/// Of `from` to `to`, without those that have no pixel to look at.
+std::vector<Slice> slices(const Scene& scene, const Line& line, int from, int to, double offset_px);
+
+double median_level(const std::vector<Slice>& s);
+
+/// Mean with what rises above twice `level` (a star on the line) cut off, and its SNR.
+std::array<double, 2> held_mean(const std::vector<Slice>& s, double level);
+
+/// How far a trail's light rises above that of the parallel lines beside it, in units of their own
+/// scatter: where faint stars lie close together, that is more than the noise of the pixels.
+/// Infinite where there are too few lines to tell.
+double rise_above_neighbours(const Scene& scene, const Trail& trail);
+
+}  // namespace dmise
