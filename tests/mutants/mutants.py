@@ -157,6 +157,9 @@ def main():
                 needed = sorted({p for mutant in mutants for p in mutant["programs"]})
                 if not workshop.make(needed):
                     sys.exit(f"mutants: the tree does not build: see {options.work}/log")
+                for program in needed:
+                    if program.startswith("test_") and (by := workshop.failing(workshop.command_of(program, m))):
+                        sys.exit(f"mutants: {by} fails without any change: see {options.work}/log")
             verdict, by = workshop.verdict(m)
             result = {"key": key, "group": m["group"], "name": m["name"], "verdict": verdict, "by": by}
             with open(results, "a") as file:

@@ -166,8 +166,8 @@ TEST(LightOfARun, EachStarIsDimmedByItsOwnColour) {
       by_mag[std::uint32_t(std::lround(1e3 * s.v_mag))] = s.signal_e;
     return by_mag;
   };
-  // Sidereal time is 124 deg; four far ones come first.
-  const std::string far = "10,80,5,0.1\n20,80,5,1.9\n30,80,5,0.1\n40,80,5,1.9\n";
+  // Sidereal time is 124 deg; four far ones stand around.
+  const std::string far = "10,-80,5,0.1\n20,-80,5,1.9\n30,80,5,0.1\n40,80,5,1.9\n";
   const std::string red = "124.1,-44.0,4,1.8\n", blue = "124.4,-44.1,4.5,-0.2\n";
   const auto both = signals(far + red + blue), one = signals(red), other = signals(blue);
   ASSERT_EQ(both.size(), 2u);

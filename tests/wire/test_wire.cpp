@@ -237,6 +237,10 @@ TEST(Wire, AttitudesMustBeRotationsOfObjectsThatAreThere) {
   expect_unsent<ObjectStates>([](auto& s) { s.gcrs_from_body[0] = 0.6; });                 // not of length 1
   expect_unsent<ObjectStates>([](auto& s) { s.gcrs_from_body[1] = 1.0; });                 // of an object without a state
   expect_unsent<ObjectStates>([](auto& s) { s.gcrs_from_body.pop_back(); });
+  expect_unsent<ObjectStates>([](auto& s) {  // two of one object, each a rotation
+    s.attitude_object[1] = 0;
+    s.gcrs_from_body = {0.5, 0.5, -0.5, -0.5, 0.5, 0.5, 0.5, 0.5};
+  });
   expect_unsent<ObjectStates>([](auto& s) { s.attitude_rate_rad_per_s[0] = 1e300; });
 }
 
