@@ -88,8 +88,10 @@ class Workshop:
             said = read.read()
         if code == 0:
             return None
+        if code == 124:
+            raise TimeoutError
         failed = re.findall(r"^\[  FAILED  \] (\S+?),? |^\s*\d+ - (\S+) \(", said, re.M)
-        return next((name for pair in failed for name in pair if name), "timeout" if code == 124 else "ends badly")
+        return next((name for pair in failed for name in pair if name), "ends badly")
 
     def command_of(self, program, m):
         if program.startswith("test_"):
@@ -107,6 +109,8 @@ class Workshop:
                 if by := self.failing(self.command_of(program, m)):
                     return "noticed", by
             return "survived", ""
+        except TimeoutError:
+            return "timeout", ""
         finally:
             path.write_text(text)
 
@@ -162,8 +166,9 @@ def main():
                         sys.exit(f"mutants: {by} fails without any change: see {options.work}/log")
             verdict, by = workshop.verdict(m)
             result = {"key": key, "group": m["group"], "name": m["name"], "verdict": verdict, "by": by}
-            with open(results, "a") as file:
-                file.write(json.dumps(result) + "\n")
+            if verdict != "timeout":
+                with open(results, "a") as file:
+                    file.write(json.dumps(result) + "\n")
         table.append(result)
         print(f"{result['verdict']:14} {m['group']:6} {m['name']:70} {result['by']}", flush=True)
 

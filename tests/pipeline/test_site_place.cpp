@@ -1,4 +1,7 @@
+#include <map>
+
 #include "core/base/units.h"
+#include "core/image/fits_cards.h"
 #include "tests/pipeline/wiring.h"
 
 namespace dmise {
@@ -29,6 +32,17 @@ TEST(SitePlace, IsByTheUt1AndPoleOfTheEarthOrientationFile) {
   EXPECT_LT(norm(frame.header.sensor_position_m - place_m), 0.02);
   EXPECT_LT(norm(frame.report.sensor_position_m - place_m), 0.02);
   std::filesystem::remove(path);
+}
+
+// Closed form: 10 s from the scenario's start.
+TEST(SitePlace, TheFileSaysWhenTheExposureBeganAndEnded) {
+  test::Stage stage(test::scenario("2018-03-06T11:59:55Z", 20, "site: atlanta",
+                                   test::camera(8, 8, 0.1), "zenith", 10, 20));
+  std::map<std::string, std::string> values;
+  for (const auto& card : fits_cards(stage.frame().header)) add_card(values, card);
+  EXPECT_EQ(values.at("DATE-BEG"), "2018-03-06T11:59:55.000000");
+  EXPECT_EQ(values.at("DATE-AVG"), "2018-03-06T12:00:00.000000");
+  EXPECT_EQ(values.at("DATE-END"), "2018-03-06T12:00:05.000000");
 }
 
 // Reference: ISO 2533, table 5: 794.95 hPa and 1.999 deg C at 2,000 m.

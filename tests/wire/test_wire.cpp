@@ -169,6 +169,14 @@ TEST(Wire, RefusesAStateOfAnotherTickThanItsEnvelope) {
   EXPECT_EQ(refusal(sealed(e)), Refusal::tick);
 }
 
+TEST(Wire, RefusesATickAtAnotherTimeThanItsOwn) {
+  const Example e = states_example();
+  Envelope end = envelope_of(e, MessageKind::watermark);
+  EXPECT_EQ(refusal(seal(e.topic, end, "", "")), std::nullopt);
+  ++end.time.ns;
+  EXPECT_EQ(refusal(seal(e.topic, end, "", "")), Refusal::tick);
+}
+
 /// Changes the example of type `S` and tries to send it.
 template <class S>
 void expect_unsent(void (*change)(S&)) {
@@ -232,10 +240,11 @@ TEST(Wire, ArraysLieInTheStatedOrder) {
 }
 
 TEST(Wire, AttitudesMustBeRotationsOfObjectsThatAreThere) {
-  expect_unsent<ObjectStates>([](auto& s) { s.attitude_object[1] = 7; });                  // of 7
-  expect_unsent<ObjectStates>([](auto& s) { s.attitude_object[1] = 0; });                  // not ascending
-  expect_unsent<ObjectStates>([](auto& s) { s.gcrs_from_body[0] = 0.6; });                 // not of length 1
-  expect_unsent<ObjectStates>([](auto& s) { s.gcrs_from_body[1] = 1.0; });                 // of an object without a state
+  expect_unsent<ObjectStates>([](auto& s) { s.attitude_object[1] = 7; });   // of 7
+  expect_unsent<ObjectStates>([](auto& s) { s.attitude_object[1] = 0; });   // not ascending
+  expect_unsent<ObjectStates>([](auto& s) { s.gcrs_from_body[0] = 0.6; });  // not of length 1
+  expect_unsent<ObjectStates>(
+      [](auto& s) { s.gcrs_from_body[1] = 1.0; });  // of an object without a state
   expect_unsent<ObjectStates>([](auto& s) { s.gcrs_from_body.pop_back(); });
   expect_unsent<ObjectStates>([](auto& s) {  // two of one object, each a rotation
     s.attitude_object[1] = 0;
