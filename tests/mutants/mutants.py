@@ -5,8 +5,8 @@
     mutants.py --check                 that each change still fits the tree in one place; builds nothing
 
 Each [[mutant]] has a name, a file, the text before (once in the file) and after, and `programs`: targets that are built
-and tested one after the other, until a test fails. Of a test program all tests are run; `tests` is a ctest regex of
-those that any other target needs.
+and tested one after the other, until a test fails. Of a test program all tests are run, or those of `filter` (--gtest_filter);
+`tests` is a ctest regex of those that any other target needs.
 
 Works on a copy of the tree (a git worktree of HEAD) with a build of its own under --work, or with --build in this tree,
 each file put back after its turn. Results are kept in --work as JSON lines: what is decided about a mutant, as it is
@@ -95,7 +95,8 @@ class Workshop:
 
     def command_of(self, program, m):
         if program.startswith("test_"):
-            return [str(self.build / "bin" / program), "--gtest_fail_fast"]
+            chosen = [f"--gtest_filter={m['filter']}"] if "filter" in m else []
+            return [str(self.build / "bin" / program), "--gtest_fail_fast", *chosen]
         return ["ctest", "--test-dir", str(self.build), "--stop-on-failure", "--output-on-failure", "-R", m["tests"]]
 
     def verdict(self, m):
