@@ -1,6 +1,7 @@
 // dmise-broker: passes messages from publishers to subscribers, from the start of a run to its end.
 #include "core/base/error.h"
 #include "nodes/runtime/broker.h"
+#include "nodes/runtime/command_line.h"
 #include "nodes/runtime/program.h"
 
 int main(int argc, char** argv) {
@@ -9,10 +10,15 @@ int main(int argc, char** argv) {
   CLI::App app("Passes messages from publishers to subscribers until the run is over.",
                "dmise-broker");
   dmise::add_common_flags(app, flags);
-  app.add_option("--publish", options.publish, "publishers connect here")->capture_default_str();
+  app.add_option("--publish", options.publish, "publishers connect here")
+      ->capture_default_str()
+      ->check(dmise::transport_address());
   app.add_option("--subscribe", options.subscribe, "nodes of the run subscribe here")
-      ->capture_default_str();
-  app.add_option("--observe", options.observe, "anybody subscribes here")->capture_default_str();
+      ->capture_default_str()
+      ->check(dmise::transport_address());
+  app.add_option("--observe", options.observe, "anybody subscribes here")
+      ->capture_default_str()
+      ->check(dmise::transport_address());
   app.add_option("--observer-queue", options.observer_queue,
                  "messages kept for an observer that does not read")
       ->check(CLI::PositiveNumber)

@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "launch/commands.h"
 #include "launch/node_health.h"
+#include "nodes/runtime/command_line.h"
 
 namespace dmise {
 namespace {
@@ -39,8 +40,9 @@ void add_health_command(CLI::App& app) {
       ->add_option("name", options->name,
                    "of the node (its key is used, with --keys), or time-master: the run as a whole")
       ->required();
-  command->add_option("--master", options->master, "address of the time-master")
-      ->envname("DMISE_MASTER");
+  command->add_option("--master", options->master, "address of the time-master, tcp://HOST:PORT")
+      ->envname("DMISE_MASTER")
+      ->check(transport_address());
   command->add_option("--keys", options->keys, "directory with NAME.key")->envname("DMISE_KEYS");
   command->callback([options] { look(*options); });
 }

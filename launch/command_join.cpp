@@ -21,6 +21,7 @@
 #include "launch/own_address.h"
 #include "launch/run_directory.h"
 #include "launch/supervisor.h"
+#include "nodes/runtime/command_line.h"
 #include "nodes/runtime/event.h"
 #include "nodes/runtime/master.h"
 #include "nodes/runtime/status.h"
@@ -261,7 +262,8 @@ void add_join_command(CLI::App& app) {
                    "sensor: the first that nobody is yet, and one too many stands by")
       ->required();
   command->add_option("--master", options->master, "address of the time-master, tcp://HOST:PORT")
-      ->required();
+      ->required()
+      ->check(transport_address());
   command->add_option("--out", options->out, "directory of the run, which its nodes share")
       ->default_val("out/launch");
   command->add_option("--slot", options->slot,
@@ -269,9 +271,11 @@ void add_join_command(CLI::App& app) {
                       "ends at once");
   command->add_option("--keys", options->keys,
                       "directory of keys (dmise keygen); without it loopback alone");
-  command->add_option("--host", options->host,
-                      "where the node's own sockets bind, tcp://A.B.C.D:0; else this machine's "
-                      "address on the way to the time-master");
+  command
+      ->add_option("--host", options->host,
+                   "where the node's own sockets bind, tcp://A.B.C.D:0; else this machine's "
+                   "address on the way to the time-master")
+      ->check(transport_address());
   command->add_option("--seed", options->seed, "as given to the launch");
   command->allow_extras();  // for the node's program: --threads, --log-level
   command->callback([options, command] {

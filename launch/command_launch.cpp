@@ -24,6 +24,7 @@
 #include "launch/scenario_outlook.h"
 #include "launch/supervisor.h"
 #include "nodes/environment/environment_actor.h"
+#include "nodes/runtime/command_line.h"
 #include "nodes/runtime/event.h"
 #include "nodes/runtime/status.h"
 #include "orbit-node/orbit_actor.h"
@@ -246,7 +247,8 @@ class Launch {
       if (node.alive && node.name != "broker") done = std::min(done.value_or(node.done), node.done);
     ProgressState state{
         .simulated_s =
-            std::min(scenario_.time_of(std::max<Tick>(done.value_or(0), 0)), scenario_.duration)
+            std::min(scenario_.time_of(std::max({done.value_or(0), first_tick_ - 1, Tick(0)})),
+                     scenario_.duration)
                 .seconds(),
         .duration_s = scenario_.duration.seconds(),
         .frames_total = frames_total_};
@@ -315,7 +317,8 @@ void add_launch_command(CLI::App& app) {
       ->default_val("out/launch");
   command
       ->add_option("--bind", options->bind, "address of the time-master; port 0 takes any free one")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(transport_address());
   command
       ->add_option("--threads", options->threads,
                    "threads of each node; the products do not depend on it")

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/printable.h"
 #include "launch/commands.h"
+#include "nodes/runtime/command_line.h"
 #include "nodes/runtime/event.h"
 #include "nodes/runtime/phase_name.h"
 #include "nodes/runtime/status.h"
@@ -97,7 +98,9 @@ void add_status_command(CLI::App& app) {
   auto options = std::make_shared<StatusOptions>();
   auto* command = app.add_subcommand(
       "status", "Shows a run under way: its clock and its nodes; live on a terminal");
-  command->add_option("master", options->master, "address of the time-master")->required();
+  command->add_option("master", options->master, "address of the time-master, tcp://HOST:PORT")
+      ->required()
+      ->check(transport_address());
   command->add_option("--keys", options->keys, "directory with operator.key");
   command->add_flag("--once", options->once, "once, also on a terminal");
   command->add_flag("--healthy", options->healthy,
@@ -118,7 +121,9 @@ void add_clock_command(CLI::App& app) {
     auto options = std::make_shared<StatusOptions>();
     options->tick = action.first == ClockAction::step ? 1 : 0;
     auto* verb = command->add_subcommand(name, action.second);
-    verb->add_option("master", options->master, "address of the time-master")->required();
+    verb->add_option("master", options->master, "address of the time-master, tcp://HOST:PORT")
+        ->required()
+        ->check(transport_address());
     verb->add_option("--keys", options->keys, "directory with operator.key");
     verb->add_option("--tick", options->tick, "tick, or number of ticks");
     verb->add_option("--reason", options->reason, "to be named as the cause");

@@ -22,6 +22,7 @@ void add_join_command(CLI::App& app);
 void add_detect_command(CLI::App& app);
 void add_visible_command(CLI::App& app);
 void add_catalogue_command(CLI::App& app);
+void add_list_command(CLI::App& app);
 void add_keygen_command(CLI::App& app);
 void add_status_command(CLI::App& app);
 void add_health_command(CLI::App& app);

@@ -6,6 +6,7 @@
 #include "core/base/printable.h"
 #include "core/base/version.h"
 #include "launch/commands.h"
+#include "nodes/runtime/command_line.h"
 
 int main(int argc, char** argv) {
   dmise::return_large_blocks();
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
   dmise::add_detect_command(app);
   dmise::add_visible_command(app);
   dmise::add_catalogue_command(app);
+  dmise::add_list_command(app);
   dmise::add_keygen_command(app);
   dmise::add_status_command(app);
   dmise::add_health_command(app);
@@ -29,8 +31,7 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& e) {
-    const int code = app.exit(e);
-    return code == 0 ? 0 : 2;
+    return dmise::end_of_command_line(app, e);
   } catch (const dmise::ExitWith& e) {
     return e.code;
   } catch (const dmise::ConfigError& e) {

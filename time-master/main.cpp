@@ -1,5 +1,6 @@
 // dmise-time-master: keeps the clock of one run, from the first node that joins to the last tick.
 #include "core/base/whole_file.h"
+#include "nodes/runtime/command_line.h"
 #include "nodes/runtime/master.h"
 #include "nodes/runtime/program.h"
 
@@ -21,7 +22,8 @@ int main(int argc, char** argv) {
   CLI::App app("Keeps the clock of one run.", "dmise-time-master");
   dmise::add_common_flags(app, flags);
   app.add_option("--bind", options.address, "the address that everybody must know; port 0: any")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(dmise::transport_address());
   app.add_option("--announce", options.announce_file, "file to write the address to");
   app.add_option("--announce-fd", options.announce_fd, "file descriptor to write the address to");
   app.add_option("--report", report, "file for the outcome of the run, in JSON");

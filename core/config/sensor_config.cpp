@@ -72,8 +72,8 @@ void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
         plan_psf(camera.optics, camera.band.centre_m, sensor.seeing, sensor.exposure_s);
     if (plan.method == PointSpread::Method::direct && sensor.effects.drawn_by_opengl())
       throw ConfigError(
-          "effects.evaluator: opengl draws points by deposit or transform; this "
-          "camera's are summed directly (optics.method)");
+          "effects.evaluator: opengl can't draw the point sources of this camera, whose "
+          "optics.method is direct; deposit and transform can be drawn");
     if (plan.method != PointSpread::Method::deposit)
       sample_pupils(camera.optics, wavelengths_of(camera.band, camera.optics.spread.wavelengths),
                     plan, sensor.seeing);

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/nearest_name.h"
+
 namespace dmise {
 
 /// Range that a number must lie in; the reason given when it does not.
@@ -89,8 +91,5 @@ class YamlMap {
   YamlValue value_;
   std::set<std::string, std::less<>> known_;
 };
-
-/// The one of `names` that is likeliest meant by `word`; empty if none is near.
-std::string nearest_name(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace dmise

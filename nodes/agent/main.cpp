@@ -1,6 +1,7 @@
 // dmise-host-agent: stands between the nodes of one host and the run.
 #include "core/base/error.h"
 #include "nodes/agent/host_agent.h"
+#include "nodes/runtime/command_line.h"
 #include "nodes/runtime/program.h"
 
 int main(int argc, char** argv) {
@@ -12,7 +13,8 @@ int main(int argc, char** argv) {
   app.add_option("--bind", options.bind,
                  "the address that the nodes of this host take for the time-master's: "
                  "tcp://HOST:PORT or ipc://PATH")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(dmise::transport_address());
   app.add_option("--announce", options.announce_file, "file to write the address to");
   app.add_option("--announce-fd", options.announce_fd, "file descriptor to write the address to");
   return dmise::run_program(app, flags, argc, argv, [&] {

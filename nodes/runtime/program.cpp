@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "nodes/runtime/command_line.h"
 #include "nodes/runtime/file_limit.h"
 #include "nodes/runtime/log.h"
 #include "nodes/runtime/metrics.h"
@@ -12,10 +13,12 @@ namespace dmise {
 void add_common_flags(CLI::App& app, CommonFlags& flags) {
   app.add_option("--name", flags.name, "name of this node in the run")->capture_default_str();
   app.add_option("--master", flags.master, "address of the time-master, tcp://HOST:PORT")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(transport_address());
   app.add_option("--host", flags.host,
                  "where this node's own sockets bind, as others reach them; port 0: any")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(transport_address());
   app.add_option("--keys", flags.keys,
                  "directory of keys (dmise keygen); without it all is plain, on loopback alone");
   app.add_option("--via", flags.via,
@@ -38,7 +41,7 @@ int run_program(CLI::App& app, const CommonFlags& flags, int argc, char** argv,
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    return end_of_command_line(app, error);
   }
   try {
     const std::string name = flags.name.empty() ? app.get_name() : flags.name;

@@ -224,7 +224,7 @@ TEST(GlEvaluator, TheScenarioAsksForIt) {
       complaint(telescope + "}\n", ", integration: analytic").find("needs integration: snapshots"),
       std::string::npos);
   EXPECT_NE(complaint(telescope + ", psf: diffraction, method: direct}\n", "")
-                .find("opengl draws points by deposit or transform"),
+                .find("opengl can't draw the point sources of this camera"),
             std::string::npos);
 }
 

@@ -1,0 +1,93 @@
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "core/config/camera_config.h"
+#include "core/config/material_config.h"
+#include "core/config/search_path.h"
+#include "core/photometry/band.h"
+#include "launch/commands.h"
+
+namespace dmise {
+namespace {
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  char line[256];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+void print(const std::string& name, const std::string& what) {
+  std::printf("%-18s %s\n", name.c_str(), what.c_str());
+}
+
+YamlValue preset(const char* kind, const std::string& name) {
+  return YamlValue::load(find_preset(kind, name, ""));
+}
+
+void list_cameras() {
+  for (const auto& name : preset_names("cameras")) {
+    const Camera camera = read_camera(preset("cameras", name));
+    print(name,
+          text("%d x %d px of %.3g um, focal length %.4g m, aperture %.3g m, %s",
+               camera.optics.columns, camera.optics.rows, camera.optics.pixel_pitch_m * 1e6,
+               camera.optics.focal_length_m, camera.optics.aperture_m, camera.band.name.c_str()));
+  }
+}
+
+void list_sites() {
+  for (const auto& name : preset_names("sites")) {
+    YamlMap site(preset("sites", name));
+    const double latitude_deg = site.number("latitude_deg"),
+                 longitude_deg = site.number("longitude_deg");
+    print(name, text("%.3f deg %c, %.3f deg %c, %.0f m", std::abs(latitude_deg),
+                     latitude_deg < 0 ? 'S' : 'N', std::abs(longitude_deg),
+                     longitude_deg < 0 ? 'W' : 'E', site.number_or("height_m", 0.0)));
+  }
+}
+
+void list_filters() {
+  for (const auto& name : filter_names()) {
+    const Band band = *filter_named(name);
+    print(name, text("centre %.4g um, width %.3g um", band.centre_m * 1e6, band.width_m * 1e6));
+  }
+}
+
+void list_materials() {
+  for (const auto& [name, material] : MaterialLibrary::shipped().all())
+    print(name, material.source);
+}
+
+void list_catalogues() {
+  const auto show = [](const char* name, const char* use, const char* what, const char* file) {
+    const std::string path = find_catalogue(file);
+    print(name, text("%s (%s): ", what, use) +
+                    (path.empty() ? "not installed; ./dmise setup fetches it" : path));
+  };
+  show("gpredict", "objects: [{catalogue: gpredict}]", "objects in orbit of Debian's gpredict",
+       "satellites.dat");
+  show("kstars", "stars: {catalogue: kstars}", "stars of Debian's kstars-data", "stars.dat");
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& app) {
+  auto* command = app.add_subcommand(
+      "list", "Names that a scenario may use: cameras, sites, filters, materials, catalogues");
+  command->require_subcommand(1);
+  const std::map<std::string, std::pair<std::string, void (*)()>> kinds{
+      {"cameras", {"for sensors[].camera", list_cameras}},
+      {"sites", {"for sensors[].site", list_sites}},
+      {"filters", {"for a camera's band", list_filters}},
+      {"materials", {"for objects[].shape and its surfaces", list_materials}},
+      {"catalogues", {"for objects[].catalogue and stars.catalogue", list_catalogues}}};
+  for (const auto& [name, kind] : kinds)
+    command->add_subcommand(name, kind.first)->callback(kind.second);
+}
+
+}  // namespace dmise
