@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/text_file.h"
 #include "core/config/make_clock.h"
+#include "core/time/iso8601.h"
 #include "launch/commands.h"
 #include "launch/host_names.h"
 #include "launch/metrics_ports.h"
@@ -109,6 +110,7 @@ class Launch {
            "--expect",        expected,
            "--ticks",         std::to_string(scenario_.last_tick() + 1),
            "--tick-ns",       std::to_string(scenario_.tick.ns),
+           "--start",         format_utc(parse_utc(scenario_.start_utc), 6),
            "--window",        std::to_string(network.window_ticks),
            "--silent-after",  number(network.silent_after_s),
            "--start-within",  number(network.join_within_s),

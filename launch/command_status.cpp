@@ -37,6 +37,7 @@ std::string table(const RunStatus& status) {
                 status.paused ? ", paused" : "", long(status.settled), long(status.last_tick),
                 double(std::max<Tick>(status.settled, 0)) * status.tick_length.seconds());
   std::string text = row;
+  if (!status.start_utc.empty()) text += "start: " + printable(status.start_utc) + "\n";
   if (!status.cause.empty()) text += "cause: " + printable(status.cause) + "\n";
   if (!status.missing.empty()) text += "missing: " + printable(joined(status.missing)) + "\n";
   if (!status.holding.empty())

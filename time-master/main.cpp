@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   app.add_option("--tick-ns", options.tick_length.ns, "length of a tick")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_option("--start", options.start_utc, "UTC of the first tick (ISO 8601), for observers");
   app.add_option("--window", options.run.window_ticks, "ticks that a node may run ahead")
       ->capture_default_str();
   app.add_option("--silent-after", silent_after_s, "a node unheard of for so long is lost [s]")

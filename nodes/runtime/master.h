@@ -16,7 +16,8 @@ struct MasterOptions {
   CoordinatorOptions run;  // `expected`: nodes that keep time, without the broker
   bool with_broker = true;
   SimTime tick_length{1'000'000'000};
-  std::string keys;  // directory of keys; empty: plain, loopback alone
+  std::string start_utc;  // of tick 0 (ISO 8601), for those who ask; empty: not told
+  std::string keys;       // directory of keys; empty: plain, loopback alone
   Event* stop = nullptr;
   std::string announce_file;  // the address is written here when bound
   int announce_fd = -1;       // and here, as one line

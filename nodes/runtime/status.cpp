@@ -83,6 +83,7 @@ RunStatus status_of(const v1::Endpoints& e) {
                    .granted = e.granted_tick(),
                    .last_tick = e.last_tick(),
                    .tick_length = {e.tick_ns()},
+                   .start_utc = e.start_utc(),
                    .settled = e.settled_tick(),
                    .paused = e.paused(),
                    .overruns = e.overruns(),

@@ -32,7 +32,8 @@ struct RunStatus {
   Tick granted = -1;
   Tick last_tick = 0;
   SimTime tick_length;
-  Tick settled = -1;  // all have done it
+  std::string start_utc;  // of tick 0; empty when the master was not told
+  Tick settled = -1;      // all have done it
   bool paused = false;
   std::uint64_t overruns = 0;  // of real time
   double worst_lag_s = 0.0;
