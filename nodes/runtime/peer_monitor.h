@@ -17,8 +17,9 @@ struct ConnectionLimits {
   std::size_t most_strangers = 1024;
   std::chrono::nanoseconds grace = std::chrono::seconds(2);
   /// Bytes of one connection that have come in and that nobody has taken: messages that wait, and a
-  /// message of many frames whose last does not come.
-  std::int64_t stranger_bytes = 4 << 20;
+  /// message of many frames whose last does not come. A stranger's are few, for an empty frame is two
+  /// bytes on the way and 64 in ZeroMQ's queue.
+  std::int64_t stranger_bytes = 512 << 10;
   std::int64_t known_bytes = 64 << 20;
 };
 
