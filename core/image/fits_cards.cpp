@@ -194,17 +194,16 @@ class CardReader {
   }
   void wcs_projection(Wcs& wcs, bool sip) {
     const std::string& type = find("CTYPE1");
-    const auto projection =
-        wcs_projection_of_code(std::string_view(type).substr(std::min<std::size_t>(5, type.size()), 3));
-    if (!projection) fail("CTYPE1", "must be TAN, ARC, ZEA or STG, got " + type);
+    const auto projection = wcs_projection_of_code(
+        std::string_view(type).substr(std::min<std::size_t>(5, type.size()), 3));
+    if (!projection)
+      fail("CTYPE1", "must be RA---TAN, -ARC, -ZEA or -STG, with or without -SIP, got " + type);
     wcs.projection = *projection;
     const std::string tail = wcs_projection_code(wcs.projection) + std::string(sip ? "-SIP" : "");
     constant("CTYPE1", ("RA---" + tail).c_str(), "");
     constant("CTYPE2", ("DEC--" + tail).c_str(), "");
   }
-  void lookup(int axis) {
-    constant(("CPDIS" + std::to_string(axis)).c_str(), "LOOKUP", "");
-  }
+  void lookup(int axis) { constant(("CPDIS" + std::to_string(axis)).c_str(), "LOOKUP", ""); }
   bool present(const char* key, bool) const { return values_.contains(key); }
   void sip(Wcs& wcs) {
     if (!values_.contains("A_ORDER")) return;
