@@ -9,7 +9,7 @@ namespace {
 /// exposure drifts west.
 std::string equator(const std::string& detector, const std::string& effects, double exposure_s,
                     double cadence_s) {
-  return test::scenario("2018-01-21T03:00:00Z", 3 * cadence_s, "site: atlanta",
+  return test::scenario("2018-01-21T03:00:00Z", 5 * cadence_s, "site: atlanta",
                         test::camera(96, 64, 0.0344, detector),
                         "{azimuth_deg: 180, elevation_deg: 56.22}", exposure_s, cadence_s,
                         ", effects: {" + effects + "}", "", test::with_stars);
