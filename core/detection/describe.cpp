@@ -7,6 +7,7 @@
 #include "core/base/units.h"
 #include "core/detection/aberration.h"
 #include "core/detection/atmosphere.h"
+#include "core/detection/mid_exposure.h"
 #include "core/detection/refraction_parallax.h"
 #include "core/detection/wcs.h"
 
@@ -42,7 +43,7 @@ std::array<double, 3> covariance_of(const Source& source, const PlaceBy& by) {
   return out;
 }
 
-/// The same in var(ra cos dec), cov, var(dec) [rad^2] around a pixel.
+/// The same in var(ra cos dec), cov, var(dec) [rad^2] around a pixel, with the WCS's own error.
 std::array<double, 3> on_the_sky(const std::array<double, 3>& covariance_px2, const Wcs& wcs,
                                  PixelPosition at) {
   const Tangent tangent = tangent_at(wcs_direction(wcs, at));
@@ -52,7 +53,9 @@ std::array<double, 3> on_the_sky(const std::array<double, 3>& covariance_px2, co
   const Vec<Gcrs> by_x = change({0.5, 0}), by_y = change({0, 0.5});
   const double ex = dot(by_x, tangent.east), ey = dot(by_y, tangent.east);
   const double nx = dot(by_x, tangent.north), ny = dot(by_y, tangent.north);
-  const auto [xx, xy, yy] = covariance_px2;
+  const double wcs_px2 = wcs.rms_px * wcs.rms_px / 2;
+  const double xx = covariance_px2[0] + wcs_px2, xy = covariance_px2[1],
+               yy = covariance_px2[2] + wcs_px2;
   return {ex * ex * xx + 2 * ex * ey * xy + ey * ey * yy,
           ex * nx * xx + (ex * ny + ey * nx) * xy + ey * ny * yy,
           nx * nx * xx + 2 * nx * ny * xy + ny * ny * yy};
@@ -75,29 +78,56 @@ void describe_centroid(const Source& source, Detection& d) {
   d.covariance_px2 = covariance_of(source, by);
 }
 
-/// One end of the line, at +length/2 (`side` 1) or -length/2 (-1).
-struct End {
+/// A point of the bent line: -1 and 1 are its ends, 0 its middle.
+struct LinePoint {
   PixelPosition place;
   std::array<double, 3> covariance_px2;
 };
 
-End end_of(const Source& source, double side) {
+LinePoint line_point(const Source& source, double r) {
   const Trail& t = source.trail();
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
-  const double along = side * t.length_px / 2, across = -2.0 / 3 * t.sagitta_px;
+  const double along = r * t.length_px / 2, bend = 1.0 / 3 - r * r, across = bend * t.sagitta_px;
   const PlaceBy by = {{{1, 0},
                        {0, 1},
                        {0, 0},
-                       {side / 2 * c, side / 2 * s},
+                       {r / 2 * c, r / 2 * s},
                        {-along * s - across * c, along * c - across * s},
                        {0, 0},
-                       {2.0 / 3 * s, -2.0 / 3 * c}}};
+                       {-bend * s, bend * c}}};
   return {{t.x_px + along * c - across * s, t.y_px + along * s + across * c},
           covariance_of(source, by)};
 }
 
+/// Adds a variance along one direction of a plane.
+void add_along(std::array<double, 3>& covariance, double x, double y, double variance) {
+  covariance[0] += variance * x * x;
+  covariance[1] += variance * x * y;
+  covariance[2] += variance * y * y;
+}
+
+/// An end, with what the terms that a trail leaves out of its bend (the third power) and of its
+/// brightness (the second) do there: sizes measured on low orbits.
+LinePoint line_end(const Source& source, const FrameHeader& header, double side, double arc_rad) {
+  LinePoint end = line_point(source, side);
+  const Trail& t = source.trail();
+  const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
+  const double along_px = 0.05 * header.psf_fwhm_px * arc_rad * arc_rad;
+  const double across_px = 0.035 * t.sagitta_px * arc_rad;
+  add_along(end.covariance_px2, c, s, along_px * along_px);
+  add_along(end.covariance_px2, -s, c, across_px * across_px);
+  return end;
+}
+
+double arc_of(const Source& source, const FrameHeader& header) {
+  return angle_rad(wcs_direction(header.wcs, line_point(source, -1).place),
+                   wcs_direction(header.wcs, line_point(source, 1).place));
+}
+
 void describe_ends(const Source& source, const FrameHeader& header, Detection& d) {
-  End first = end_of(source, -1), last = end_of(source, 1);
+  const double arc_rad = arc_of(source, header);
+  LinePoint first = line_end(source, header, -1, arc_rad);
+  LinePoint last = line_end(source, header, 1, arc_rad);
   const PixelPosition a = first.place, b = last.place;
   if (b.x_px < a.x_px || (b.x_px == a.x_px && b.y_px < a.y_px)) std::swap(first, last);
   d.end1_x_px = first.place.x_px;
@@ -116,15 +146,32 @@ void describe_ends(const Source& source, const FrameHeader& header, Detection& d
   d.rate_rad_per_s = source.streak ? angle_rad(end1, end2) / header.exposure_s : 0.0;
 }
 
-/// Adds a variance along one direction of the tangent plane.
-void add_along(std::array<double, 3>& covariance, double east, double north, double variance) {
-  covariance[0] += variance * east * east;
-  covariance[1] += variance * east * north;
-  covariance[2] += variance * north * north;
+/// The line's point where the object was at mid exposure, and the error of that along the line.
+struct MidPoint {
+  LinePoint point;
+  Vec<Gcrs> track;  // from end to end
+  double sigma_rad = 0.0;
+};
+
+MidPoint mid_point(const Source& source, const FrameHeader& header) {
+  if (!source.streak) return {line_point(source, 0.0), {}, 0.0};
+  const Trail& t = source.trail();
+  const Vec<Gcrs> end1 = wcs_direction(header.wcs, line_point(source, -1).place);
+  const Vec<Gcrs> end2 = wcs_direction(header.wcs, line_point(source, 1).place);
+  const MidExposure mid = mid_exposure(header, end1, end2, source.at_edge);
+  const auto pixel = wcs_pixel(header.wcs, mid.direction);
+  double r = 0.0;
+  if (pixel && t.length_px > 0) {
+    const PixelPosition way = *pixel - PixelPosition{t.x_px, t.y_px};
+    const double along = way.x_px * std::cos(t.angle_rad) + way.y_px * std::sin(t.angle_rad);
+    r = std::clamp(2 * along / t.length_px, -1.0, 1.0);
+  }
+  return {line_point(source, r), end2 - end1, mid.sigma_rad};
 }
 
-void describe_direction(const FrameHeader& header, Detection& d) {
-  const Vec<Gcrs> here = wcs_direction(header.wcs, {d.x_px, d.y_px});
+void describe_direction(const Source& source, const FrameHeader& header, Detection& d) {
+  const MidPoint mid = mid_point(source, header);
+  const Vec<Gcrs> here = wcs_direction(header.wcs, mid.point.place);
   std::tie(d.ra_rad, d.dec_rad) = std::tuple_cat(to_spherical(here));
   const RefractionParallax parallax = refraction_parallax(header, here);
   d.refraction_removed = !refraction_of(header);
@@ -136,17 +183,14 @@ void describe_direction(const FrameHeader& header, Detection& d) {
                               parallax.upwards * parallax.mean_rad;
   std::tie(d.corrected_ra_rad, d.corrected_dec_rad) = std::tuple_cat(to_spherical(corrected));
 
-  d.covariance_rad2 = on_the_sky(d.covariance_px2, header.wcs, {d.x_px, d.y_px});
+  d.covariance_rad2 = on_the_sky(mid.point.covariance_px2, header.wcs, mid.point.place);
   const Tangent tangent = tangent_at(here);
   add_along(d.covariance_rad2, dot(parallax.upwards, tangent.east),
             dot(parallax.upwards, tangent.north), parallax.sigma_rad * parallax.sigma_rad);
-  if (d.kind == DetectionKind::point) return;
-  const Vec<Gcrs> track = wcs_direction(header.wcs, {d.end2_x_px, d.end2_y_px}) -
-                          wcs_direction(header.wcs, {d.end1_x_px, d.end1_y_px});
-  const double e = dot(track, tangent.east), n = dot(track, tangent.north);
-  const double chord = std::hypot(e, n), arc = d.rate_rad_per_s * header.exposure_s;
+  const double e = dot(mid.track, tangent.east), n = dot(mid.track, tangent.north);
+  const double chord = std::hypot(e, n);
   if (!(chord > 0)) return;
-  add_along(d.covariance_rad2, e / chord, n / chord, std::pow(arc * arc / 12, 2));
+  add_along(d.covariance_rad2, e / chord, n / chord, mid.sigma_rad * mid.sigma_rad);
 }
 
 }  // namespace
@@ -171,7 +215,7 @@ Detection describe(const Source& source, const FrameHeader& header) {
   d.at_edge = source.at_edge;
   describe_centroid(source, d);
   describe_ends(source, header, d);
-  describe_direction(header, d);
+  describe_direction(source, header, d);
   return d;
 }
 

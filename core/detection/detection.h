@@ -27,11 +27,13 @@ struct Detection {
   DetectionKind kind = DetectionKind::point;
   ExposureEpoch epoch = ExposureEpoch::middle;
   SimTime time;                    // of ra/dec
-  double ra_rad = 0.0, dec_rad = 0.0;               // astrometric, through the WCS
+  // Astrometric, through the WCS, of the object at mid exposure: of a point its centroid, of a streak
+  // the place on its line (core/detection/mid_exposure.h).
+  double ra_rad = 0.0, dec_rad = 0.0;
   // Annual aberration put right, and the mean of the parallactic part of refraction.
   double corrected_ra_rad = 0.0, corrected_dec_rad = 0.0;
   // Of corrected_*: var(ra cos dec), cov, var(dec). It includes what one frame can't tell: along a
-  // streak, where between the ends the object was at mid exposure (core/detection/describe.h); along
+  // streak, where between the ends the object was at mid exposure (core/detection/mid_exposure.h); along
   // the vertical of a ground sensor, refraction_parallax_sigma_rad.
   std::array<double, 3> covariance_rad2{};
   Vec<Gcrs> sensor_position_m;     // at `time`
@@ -52,7 +54,7 @@ struct Detection {
   double magnitude_sigma = 0.0;
   std::string band = "V";
   double snr = 0.0;                // signal_e / its standard error in the fit (a matched filter)
-  double x_px = 0.0, y_px = 0.0;   // centroid
+  double x_px = 0.0, y_px = 0.0;   // centroid of light
   std::array<double, 3> covariance_px2{};           // var x, cov xy, var y
   double signal_e = 0.0;           // electrons above the background
   // Streak ends. Which end came first cannot be seen in one frame: end 1 is the one with smaller x
@@ -61,7 +63,7 @@ struct Detection {
   double end1_ra_rad = 0.0, end1_dec_rad = 0.0, end2_ra_rad = 0.0, end2_dec_rad = 0.0;
   SimTime end1_time, end2_time;
   bool direction_known = false;
-  // Errors of the ends as they were read through the WCS, from the fit alone.
+  // Errors of the ends as they were read through the WCS, of the fit, its model and the WCS.
   std::array<double, 3> end1_covariance_rad2{}, end2_covariance_rad2{};
   double length_px = 0.0;          // between the ends; 0 for a point
   double rate_rad_per_s = 0.0;     // angular, along the streak

@@ -11,12 +11,14 @@
 
 namespace dmise::test {
 
-/// An object on a circular orbit that stands in a chosen direction over a site when the run starts.
+/// An object that stands in a chosen direction over a site when the run starts, on a circular
+/// orbit if it has no radial speed.
 struct SkyTarget {
   double azimuth_rad = 0.0, elevation_rad = 0.0;  // over the geodetic horizon, without air
   double altitude_m = 0.0;                        // over a sphere of 6371 km
   double course_rad = 0.0;                        // of its motion, about its radius
   double magnitude = 10.0;                        // roughly
+  double radial_share = 0.0;                      // radial speed over that of a circular orbit
 };
 
 /// Over a sphere: the range at which a line of sight from `from_m` meets an altitude.
@@ -40,8 +42,9 @@ inline std::string own_objects(const std::vector<SkyTarget>& targets, const Site
     const double range_m = range_at_altitude_m(site_m, u, t.altitude_m);
     const Vec<Gcrs> at_m = site_m + u * range_m, radial = unit(at_m);
     const Vec<Gcrs> a = unit(cross(radial, Vec<Gcrs>{0.6, 0.0, 0.8})), b = cross(radial, a);
-    const Vec<Gcrs> v = (a * std::cos(t.course_rad) + b * std::sin(t.course_rad)) *
-                        std::sqrt(3.986004418e14 / norm(at_m));
+    const Vec<Gcrs> v =
+        (a * std::cos(t.course_rad) + b * std::sin(t.course_rad) + radial * t.radial_share) *
+        std::sqrt(3.986004418e14 / norm(at_m));
     // A sphere of 1 m and albedo 0.2 at 1000 km and phase 90 deg has V = 6.67.
     const double radius_m = std::pow(10.0, 0.2 * (6.67 - t.magnitude)) * range_m / 1e6;
     char text[400];

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/detection/wcs.h"
 #include "tests/pipeline/harness.h"
 #include "tests/pipeline/sky_targets.h"
 
@@ -53,13 +54,16 @@ const Truth* truth_of(const FrameProducts& frame, std::size_t target) {
   return nullptr;
 }
 
-/// Squared error of the direction by the published covariance, per degree of freedom.
+/// Squared error of a direction by its covariance, per degree of freedom.
+double nees(double east, double north, const std::array<double, 3>& covariance) {
+  const auto [ee, en, nn] = covariance;
+  return (east * east * nn - 2 * east * north * en + north * north * ee) / (ee * nn - en * en) / 2;
+}
+
 double nees(const Detection& d, const Truth& truth) {
-  const double e =
-      std::remainder(d.corrected_ra_rad - truth.true_ra_rad, 2 * pi) * std::cos(truth.true_dec_rad);
-  const double n = d.corrected_dec_rad - truth.true_dec_rad;
-  const auto [ee, en, nn] = d.covariance_rad2;
-  return (e * e * nn - 2 * e * n * en + n * n * ee) / (ee * nn - en * en) / 2;
+  return nees(
+      std::remainder(d.corrected_ra_rad - truth.true_ra_rad, 2 * pi) * std::cos(truth.true_dec_rad),
+      d.corrected_dec_rad - truth.true_dec_rad, d.covariance_rad2);
 }
 
 struct Nees {
@@ -230,6 +234,86 @@ TEST_P(SaturatedTargets, AreFoundFlaggedAndTheirCovarianceIsHonest) {
 INSTANTIATE_TEST_SUITE_P(Everywhere, SaturatedTargets,
                          testing::Combine(testing::Values("psf_fwhm_px: 1.6", "psf_fwhm_px: 4"),
                                           testing::Values("false")));
+
+/// Of both ends, in any order, against where the pixels of start and end are in the sky.
+double nees_of_ends(const Detection& d, const Truth& truth, const Wcs& wcs) {
+  PixelPosition at1{truth.start_x_px, truth.start_y_px}, at2{truth.end_x_px, truth.end_y_px};
+  if (at2.x_px < at1.x_px) std::swap(at1, at2);
+  const auto one = [&](double ra, double dec, const std::array<double, 3>& covariance,
+                       PixelPosition at) {
+    const auto place = to_spherical(wcs_direction(wcs, at));
+    return nees(std::remainder(ra - place[0], 2 * pi) * std::cos(place[1]), dec - place[1],
+                covariance);
+  };
+  return (one(d.end1_ra_rad, d.end1_dec_rad, d.end1_covariance_rad2, at1) +
+          one(d.end2_ra_rad, d.end2_dec_rad, d.end2_covariance_rad2, at2)) /
+         2;
+}
+
+/// Fixed to the ground, 33 deg across: 250 arcsec a pixel.
+std::string wide_camera() {
+  const auto path =
+      std::filesystem::path(testing::TempDir()) / ("wide-" + std::to_string(getpid()) + ".yaml");
+  std::ofstream(path) << "name: wide\noptics: {columns: 480, rows: 480, pixel_pitch_m: 10.8e-6, "
+                         "focal_length_m: 0.009, aperture_m: 0.004, psf_fwhm_px: 1.7}\n"
+                         "detector: {quantum_efficiency: 0.6, read_noise_e: 8, full_well_e: "
+                         "100000, gain_e_per_dn: 1.6, bias_dn: 300, adc_bits: 16}\n"
+                         "band: {name: V, centre_m: 0.55e-6, width_m: 0.128e-6}\n";
+  return path.string();
+}
+
+// Low orbits through a wide camera: arcs whose middle is up to half a degree from where the object
+// was at mid exposure, their centroid of light as far again, and off the bent line. Radial speeds
+// as the covariance takes them.
+TEST(StreakNees, OfStreaksOfTenDegrees) {
+  auto targets = targets_between(400e3, 1500e3, 110, 3);
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  for (auto& t : targets) {
+    t.elevation_rad = 35 * deg + 0.6 * (t.elevation_rad - 20 * deg);
+    t.magnitude = -1;
+    t.radial_share = 0.02 * normal(random);
+  }
+  std::string yaml = "simulation: {start: " + evening +
+                     ", duration_s: 20, tick_s: 5}\nstars: {catalogue: stars.csv}\nobjects:\n" +
+                     test::own_objects(targets, chile, evening) + "sensors:\n";
+  const std::string camera = wide_camera();
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    yaml +=
+        "- {name: s" + std::to_string(i) +
+        ", site: {latitude_deg: -30.17, longitude_deg: -70.8, height_m: 2200}, camera: " + camera +
+        ", effects: {shadow: off}, pointing: {azimuth_deg: " +
+        std::to_string(targets[i].azimuth_rad / deg) +
+        ", elevation_deg: " + std::to_string(targets[i].elevation_rad / deg) +
+        "}, exposure_s: 20, cadence_s: 20}\n";
+  test::Stage stage(yaml, stars);
+  double sum = 0.0, ends = 0.0, arcs_rad = 0.0;
+  int found = 0;
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const auto frame = stage.frame(1, k);
+    const Truth* truth = truth_of(frame, k);
+    if (!truth || !truth->whole) continue;
+    for (const Detection& d : frame.detections) {
+      // x_px, y_px are of the light, wherever the object was at mid exposure.
+      const double off = std::hypot(d.x_px - truth->rendered_x_px, d.y_px - truth->rendered_y_px);
+      if (off > 0.5 || d.at_edge || d.kind != DetectionKind::streak) continue;
+      sum += nees(d, *truth);
+      ends += nees_of_ends(d, *truth, frame.header.wcs);
+      arcs_rad += d.rate_rad_per_s * 20;
+      ++found;
+    }
+  }
+  RecordProperty("found", found);
+  RecordProperty("mean_arc_deg", std::to_string(arcs_rad / found / deg));
+  RecordProperty("mean", std::to_string(sum / found));
+  RecordProperty("ends", std::to_string(ends / found));
+  EXPECT_GE(found, 80);
+  EXPECT_NEAR(arcs_rad / found, 10 * deg, 3 * deg);
+  EXPECT_GT(sum / found, 0.7);
+  EXPECT_LT(sum / found, 1.3);
+  EXPECT_GT(ends / found, 0.7);
+  EXPECT_LT(ends / found, 1.3);
+}
 
 // Stars from V = 0 to 9: up to thousands of times what a well holds, none of them moves.
 struct SaturatedStars : testing::TestWithParam<std::tuple<const char*, const char*, const char*>> {
