@@ -114,10 +114,18 @@ std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
   return out;
 }
 
-/// A streak must stand out among the lines beside it as it must above the noise of the pixels:
-/// where several stars share every few pixels, some of them always stand in a row.
+/// A faint streak must stand out among the lines beside it too: where several stars share every few
+/// pixels, some of them always stand in a row. The light of stars scatters from line to line with a
+/// longer tail than the noise of the pixels, so it counts for more.
 bool is_row_of_stars(const Scene& scene, const Source& source, const DetectorSettings& settings) {
-  return source.streak && rise_above_neighbours(scene, source.trail()) < settings.least_snr;
+  if (!source.streak) return false;
+  const double snr_per_px = source.snr() / std::sqrt(std::max(source.trail().length_px, 1.0));
+  if (source.snr() > settings.even_snr && snr_per_px > settings.even_snr_per_px) return false;
+  const double rise = rise_above_neighbours(scene, source.trail());
+  if (rise <= 0) return true;
+  const double noise = 1 / source.snr(), scatter = 1 / rise;  // in units of the streak's light
+  const double stars = std::sqrt(std::max(scatter * scatter - noise * noise, 0.0));
+  return std::hypot(settings.least_snr * noise, settings.least_snr_in_stars * stars) > 1;
 }
 
 std::uint32_t count_saturated(const CountImage& counts, double saturation_dn) {
