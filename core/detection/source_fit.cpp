@@ -7,7 +7,7 @@
 namespace dmise {
 namespace {
 
-constexpr double bent_from_px = 30.0;     // a shorter streak is taken as straight
+constexpr double bent_from_px = 15.0;     // a shorter streak is taken as straight
 constexpr double sloped_from_px = 15.0;   // and as evenly bright
 constexpr int most_rounds = 8;            // of fitting and leaving out
 constexpr double settled_px = 0.5;        // ends that move less stay
