@@ -15,7 +15,7 @@ struct Airglow {
 double van_rhijn(double sin_altitude, double layer_height_m);
 
 /// Brightness at the ground [S10 in V]; `diffuse_extinction_mag` is what the zenith takes from
-/// extended light.
+/// the light of a layer over the whole sky, by which Noll et al. give it.
 double airglow_s10(const Airglow& airglow, double sin_altitude, double diffuse_extinction_mag);
 
 /// Its colour, 0.2-2.5 um: lines of oxygen, sodium and OH over a continuum. To 0.97 um the night
