@@ -50,7 +50,7 @@ class Referees(unittest.TestCase):
         self.judge("skyfield_directions.py", False, "from skyfield's", clock_error_s=0.005)
 
     def test_fitsverify_accepts_a_frame(self):
-        self.judge("fitsverify_frames.py", True, "0 with errors or warnings")
+        self.judge("fitsverify_frames.py", True, ": 0 errors or warnings")
 
     def test_fitsverify_refuses_a_frame_cut_short(self):
         with tempfile.TemporaryDirectory() as run:
