@@ -10,7 +10,7 @@
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
 #include "core/config/make_clock.h"
-#include "core/image/png_file.h"
+#include "core/pictures/picture_file.h"
 #include "core/time/iso8601.h"
 #include "launch/commands.h"
 #include "launch/notes.h"
@@ -99,7 +99,7 @@ void write_products(const std::string& directory, const PassList& list, const Ch
   write_file_whole(directory + "/passes.csv", pass_csv(list));
   write_file_whole(directory + "/passes.jsonl", pass_jsonl(list));
   write_file_whole(directory + "/figure.svg", chart_svg(chart));
-  write_png(directory + "/figure.png", chart_picture(chart));
+  write_picture(directory + "/figure.png", chart_picture(chart));
 }
 
 void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,

@@ -11,11 +11,10 @@
 #include "core/base/json.h"
 #include "core/base/whole_file.h"
 #include "core/detection/detection_json.h"
-#include "core/image/exr_file.h"
 #include "core/image/fits_file.h"
 #include "core/image/marked_picture.h"
 #include "core/image/plane_file.h"
-#include "core/image/png_file.h"
+#include "core/pictures/picture_file.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
@@ -111,9 +110,9 @@ void ProductWriter::write(const FrameProducts& f) {
   write_planes(f);
   if (output_.png) {
     const auto picture = preview(f.counts, {.max_width = output_.preview_width_px});
-    write_png(frame_path(number, ".png"), picture.picture);
-    write_png(frame_path(number, "-marked.png"),
-              marked_picture(picture, f.header, f.truths, f.detections));
+    write_picture(frame_path(number, ".png"), picture.picture);
+    write_picture(frame_path(number, "-marked.png"),
+                  marked_picture(picture, f.header, f.truths, f.detections));
   }
   if (output_.star_truth) {
     std::string csv = "id,v_mag,bv,x_px,y_px,signal_e\n";

@@ -1,13 +1,11 @@
 #include "core/image/picture.h"
 
 #include <gtest/gtest.h>
-#include <png.h>
 
 #include "core/base/error.h"
 #include "core/image/drawing.h"
 #include "core/image/font.h"
 #include "core/image/marked_picture.h"
-#include "core/image/png_file.h"
 #include "tests/image/sample_frame.h"
 
 namespace dmise {
@@ -15,32 +13,6 @@ namespace {
 
 using test::sample_counts;
 using test::sample_header;
-
-/// By libpng's own simplified reader.
-Picture decoded(const std::string& bytes, int channels) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size())) return {};
-  image.format = channels == 1 ? PNG_FORMAT_GRAY : PNG_FORMAT_RGB;
-  Picture out{int(image.width), int(image.height), channels, {}};
-  out.pixels.resize(PNG_IMAGE_SIZE(image));
-  png_image_finish_read(&image, nullptr, out.pixels.data(), 0, nullptr);
-  return out;
-}
-
-TEST(Png, ReadsBackWhatWasWritten) {
-  for (const int channels : {1, 3}) {
-    Picture picture{37, 21, channels, {}};
-    for (int i = 0; i < 37 * 21 * channels; ++i) picture.pixels.push_back(std::uint8_t(i * 7));
-    const std::string bytes = encode_png(picture);
-    EXPECT_EQ(bytes, encode_png(picture));
-    const Picture back = decoded(bytes, channels);
-    EXPECT_EQ(back.columns, 37);
-    EXPECT_EQ(back.rows, 21);
-    EXPECT_EQ(back.pixels, picture.pixels);
-  }
-  EXPECT_THROW(encode_png(Picture{}), Error);
-}
 
 TEST(Preview, SkyIsDarkNoiseAndStarsShow) {
   CountImage counts = sample_counts(800, 600);  // 300 .. 363

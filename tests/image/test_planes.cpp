@@ -9,10 +9,10 @@
 
 #include "core/base/error.h"
 #include "core/base/text_file.h"
-#include "core/image/exr_file.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
 #include "core/image/plane_file.h"
+#include "core/pictures/picture_file.h"
 #include "tests/image/sample_frame.h"
 #include "tests/support/command.h"
 #include "tests/support/data.h"
@@ -108,96 +108,6 @@ TEST(Planes, AstropyReadsCompressedCountsFlagsAndPlanes) {
                         " full well / cosmic ray\nprnu 0.01 blooming True bits 14\n"
                         "plane SOURCES 150 200 float32 sum " +
                         number(sum_of(plane.pixels)) + " electron / s RA---TAN-SIP\n");
-}
-
-// Reference: the OpenEXR library's own Python module. Odd sizes; a block that can't be compressed.
-TEST(Exr, OpenExrReadsEveryPixel) {
-  const std::string python = test::python_with("OpenEXR");
-  if (python.empty()) DMISE_SKIP() << "needs OpenEXR from PyPI: ./dmise setup --tests";
-  for (const auto& [columns, rows] : {std::pair{1, 1}, {3, 17}, {701, 503}, {64, 16}}) {
-    RateImage image(columns, rows);
-    std::uint32_t state = 1;
-    for (float& v : image.pixels) {
-      state = state * 1664525u + 1013904223u;
-      v = columns == 64 ? float(state) * 1e-3f : 300.0f + float(state >> 28);
-    }
-    image.pixels.front() = 1e12f;
-    write_exr(scratch("map.exr"), {.pixels = image.pixels.data(),
-                                   .columns = columns,
-                                   .rows = rows,
-                                   .attributes = {{"unit", "photon"}, {"frame", 7.0}}});
-    const auto [status, output] = command_output(
-        python + " " DMISE_SOURCE_DIR "/tests/reference/read_exr.py " + scratch("map.exr"));
-    EXPECT_EQ(status, 0) << output;
-    char corners[160];
-    std::snprintf(corners, sizeof corners,
-                  "channel Y shape %d %d float32 corners %.9g %.9g %.9g %.9g\n", rows, columns,
-                  image.at(0, 0), image.at(columns - 1, 0), image.at(0, rows - 1),
-                  image.at(columns - 1, rows - 1));
-    EXPECT_EQ(output, corners + ("sum " + number(sum_of(image.pixels))) +
-                          " unit photon frame 7 Compression.ZIP_COMPRESSION\n");
-  }
-}
-
-TEST(Exr, OpenExrReadsEveryChannel) {
-  const std::string python = test::python_with("OpenEXR");
-  if (python.empty()) DMISE_SKIP() << "needs OpenEXR from PyPI: ./dmise setup --tests";
-  constexpr int columns = 71, rows = 53;
-  std::vector<RateImage> images(3, RateImage(columns, rows));
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t i = 0; i < images[k].pixels.size(); ++i)
-      images[k].pixels[i] = float(k + 1) * 1000.0f + float(i % 97);
-  write_exr(scratch("bands.exr"),
-            {.pixels = images[1].pixels.data(),
-             .columns = columns,
-             .rows = rows,
-             .attributes = {{"unit", "photon"}, {"frame", 7.0}},
-             .more = {{"Z", images[2].pixels.data()}, {"00500.00nm", images[0].pixels.data()}}});
-  const auto [status, output] = command_output(
-      python + " " DMISE_SOURCE_DIR "/tests/reference/read_exr.py " + scratch("bands.exr"));
-  std::string expected;
-  const char* names[] = {"00500.00nm", "Y", "Z"};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const RateImage& image = images[k];
-    char line[160];
-    std::snprintf(line, sizeof line,
-                  "channel %s shape %d %d float32 corners %.9g %.9g %.9g %.9g\nsum ", names[k],
-                  rows, columns, image.at(0, 0), image.at(columns - 1, 0), image.at(0, rows - 1),
-                  image.at(columns - 1, rows - 1));
-    expected +=
-        line + number(sum_of(image.pixels)) + " unit photon frame 7 Compression.ZIP_COMPRESSION\n";
-  }
-  EXPECT_EQ(status, 0) << output;
-  EXPECT_EQ(output, expected);
-  EXPECT_THROW(encode_exr({.pixels = images[0].pixels.data(),
-                           .columns = columns,
-                           .rows = rows,
-                           .more = {{"Y", images[1].pixels.data()}}}),
-               Error);
-}
-
-TEST(Exr, EqualImagesAreEqualBytesAndSmoothOnesAreSmaller) {
-  const RateImage image = sample_plane();
-  const ExrImage exr{.pixels = image.pixels.data(), .columns = 200, .rows = 150};
-  EXPECT_EQ(encode_exr(exr), encode_exr(exr));
-  EXPECT_LT(encode_exr(exr).size(), 200 * 150 * 4 * 0.7);
-}
-
-TEST(Exr, RefusesWhatNoFileHolds) {
-  const RateImage image = sample_plane();
-  EXPECT_THROW(encode_exr({.columns = 2, .rows = 2}), Error);
-  EXPECT_THROW(encode_exr({.pixels = image.pixels.data(), .columns = 0, .rows = 2}), Error);
-  EXPECT_THROW(encode_exr({.pixels = image.pixels.data(),
-                           .columns = 2,
-                           .rows = 2,
-                           .attributes = {{std::string(32, 'x'), 1.0}}}),
-               Error);
-}
-
-TEST(Exr, NoNanLeaves) {
-  RateImage image = sample_plane();
-  image.at(0, 1) = std::numeric_limits<float>::infinity();
-  EXPECT_THROW(encode_exr({.pixels = image.pixels.data(), .columns = 200, .rows = 150}), Error);
 }
 
 TEST(Planes, NoNanLeaves) {

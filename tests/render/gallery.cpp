@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "core/base/units.h"
-#include "core/image/png_file.h"
+#include "core/pictures/picture_file.h"
 #include "core/materials/obj_file.h"
 #include "core/photometry/earthshine.h"
 #include "core/photometry/magnitude.h"
@@ -50,7 +50,7 @@ void draw_picture(const std::string& path, const Mesh& mesh, const Vec<Body>& vi
                                      .sources = sources,
                                      .camera = camera,
                                      .oversampling = 8});
-  write_png(path, shown(tile));
+  write_picture(path, shown(tile));
 }
 
 /// A box-wing satellite that turns ten times a minute, 1000 km away: seconds and V magnitudes.
