@@ -79,6 +79,13 @@ std::string digest_of(const Mesh& mesh) {
   for (const auto& v : mesh.vertex_m) json.value(v.x).value(v.y).value(v.z);
   for (const auto& t : mesh.triangles)
     json.value(t.corner[0]).value(t.corner[1]).value(t.corner[2]).value(t.material);
+  const auto write_texture = [&](const Texture& texture, double height_m) {
+    json.value(texture.scale_u).value(texture.scale_v);
+    json.value(texture.offset_u).value(texture.offset_v).value(int(texture.clamp)).value(height_m);
+    json.value(sha256_hex({reinterpret_cast<const char*>(texture.texels.data()),
+                           texture.texels.size() * sizeof(float)}));
+  };
+  bool textured = false;
   const auto write = [&](const Curve& curve) {
     for (const double x : curve.wavelength_m) json.value(x);
     for (const double x : curve.value) json.value(x);
@@ -89,7 +96,15 @@ std::string digest_of(const Mesh& mesh) {
       write(*curve);
     json.value(m.grazing).value(m.lobe_width).value(m.exponent);
     json.value(m.temperature_k).value(m.thermal_emissivity);
+    for (const auto& texture : {m.colour_map, m.slope_map})
+      if (texture) {
+        write_texture(*texture, m.height_m);
+        textured = true;
+      }
   }
+  if (textured)
+    for (const auto& t : mesh.triangles)
+      for (const auto& place : t.place) json.value(double(place.u)).value(double(place.v));
   return sha256_hex(json.end_array().text());
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -6,6 +7,8 @@
 #include "core/photometry/band.h"
 
 namespace dmise {
+
+struct Texture;
 
 /// A surface over wavelength. The tables are linear between their samples and keep their end values
 /// outside; the shape of a lobe is the same at all wavelengths.
@@ -15,15 +18,18 @@ struct Material {
   std::string name = "grey";
   std::string source;  // where its numbers come from
   Model model = Model::lambert;
-  Curve reflectance{{0.55e-6}, {0.2}};  // lambert: of all light, [0, 1]
-  Curve emissivity;                     // sandford_robertson: eps
-  Curve diffuse;                        // sandford_robertson: rho_D; phong: kd
-  Curve specular;                       // phong: ks
-  double grazing = 0.3;                 // sandford_robertson: b
-  double lobe_width = 0.3;              // sandford_robertson: e
-  double exponent = 1.0;                // phong: n
-  double temperature_k = 0.0;           // of what it emits; 0: does not emit
-  double thermal_emissivity = 0.0;      // grey, of that emission, [0, 1]
+  Curve reflectance{{0.55e-6}, {0.2}};        // lambert: of all light, [0, 1]
+  Curve emissivity;                           // sandford_robertson: eps
+  Curve diffuse;                              // sandford_robertson: rho_D; phong: kd
+  Curve specular;                             // phong: ks
+  double grazing = 0.3;                       // sandford_robertson: b
+  double lobe_width = 0.3;                    // sandford_robertson: e
+  double exponent = 1.0;                      // phong: n
+  double temperature_k = 0.0;                 // of what it emits; 0: does not emit
+  double thermal_emissivity = 0.0;            // grey, of that emission, [0, 1]
+  std::shared_ptr<const Texture> colour_map;  // phong: times `diffuse`, by red, green and blue
+  std::shared_ptr<const Texture> slope_map;   // phong: of heights, times `height_m`
+  double height_m = 1.0;                      // of white above black
 
   bool operator==(const Material&) const = default;
 };

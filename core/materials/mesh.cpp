@@ -58,11 +58,12 @@ Mesh moved(Mesh mesh, const Vec<Body>& by_m) {
 
 Mesh scaled(Mesh mesh, double factor) {
   for (auto& v : mesh.vertex_m) v = v * factor;
+  for (auto& material : mesh.materials) material.height_m *= factor;
   return mesh;
 }
 
 Mesh reversed(Mesh mesh) {
-  for (auto& t : mesh.triangles) std::swap(t.corner[1], t.corner[2]);
+  for (auto& t : mesh.triangles) t.turn_over();
   return mesh;
 }
 

@@ -2,9 +2,11 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/materials/material.h"
+#include "core/materials/texture.h"
 #include "core/orbit/attitude.h"
 
 namespace dmise {
@@ -14,7 +16,13 @@ namespace dmise {
 struct Mesh {
   struct Triangle {
     std::array<std::uint32_t, 3> corner;
-    std::uint32_t material = 0;  // index into `materials`
+    std::uint32_t material = 0;           // index into `materials`
+    std::array<TexturePlace, 3> place{};  // of the corners, on the pictures of the material
+
+    void turn_over() {
+      std::swap(corner[1], corner[2]);
+      std::swap(place[1], place[2]);
+    }
 
     bool operator==(const Triangle&) const = default;
   };

@@ -133,8 +133,6 @@ struct Surfaces {
   }
 };
 
-void turn_over(Mesh::Triangle& t) { std::swap(t.corner[1], t.corner[2]); }
-
 /// Turns the triangles of a closed surface to agree with its first; false if they cannot. `members`
 /// becomes its triangles.
 bool agree(const Surfaces& surfaces, std::uint32_t first, std::vector<signed char>& turned,
@@ -188,11 +186,11 @@ std::vector<std::string> repair(Mesh& mesh, MeshLines lines) {
     std::size_t changed = 0;
     for (const auto m : members)
       if (turned[m] == 1) {
-        turn_over(mesh.triangles[m]);
+        mesh.triangles[m].turn_over();
         ++changed;
       }
     if (six_volumes(mesh, members) < 0) {
-      for (const auto m : members) turn_over(mesh.triangles[m]);
+      for (const auto m : members) mesh.triangles[m].turn_over();
       changed = members.size() - changed;
     }
     if (changed > 0)
@@ -208,7 +206,7 @@ std::vector<std::string> repair(Mesh& mesh, MeshLines lines) {
       ++sheets.try_emplace(surfaces.of[t], std::pair{std::size_t(t), std::size_t(0)})
             .first->second.second;
       mesh.triangles.push_back(mesh.triangles[t]);
-      turn_over(mesh.triangles.back());
+      mesh.triangles.back().turn_over();
     }
   constexpr std::size_t most_notes = 20;
   std::size_t told = 0;

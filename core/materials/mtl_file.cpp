@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 #include "core/base/error.h"
 #include "core/materials/line_fields.h"
+#include "core/materials/texture.h"
 
 namespace dmise {
 namespace {
@@ -14,10 +16,13 @@ using Colour = std::array<double, 3>;  // red, green, blue
 /// What the lines of one `newmtl` said.
 struct Entry {
   std::string name, where;
-  Colour diffuse{0.2, 0.2, 0.2}, specular{};
+  std::optional<Colour> diffuse;
+  Colour specular{};
   double exponent = 1.0;
   std::optional<Material> named;
   double temperature_k = -1.0, thermal_emissivity = -1.0;  // < 0: not said
+  std::shared_ptr<Texture> colour_map, slope_map;
+  double height_m = 1.0;
 };
 
 double ranged(const LineFields& fields, std::size_t field, double least, double most) {
@@ -44,23 +49,30 @@ Material material_of(Entry entry, std::vector<std::string>& notes) {
   Material m;
   if (entry.named) {
     m = *entry.named;
+    for (const auto& map : {entry.colour_map, entry.slope_map})
+      if (map) notes.push_back(map->where + ": left out: the material has a brdf of the library");
   } else {
+    const double otherwise = entry.colour_map ? 1.0 : 0.2;
+    Colour diffuse = entry.diffuse.value_or(Colour{otherwise, otherwise, otherwise});
     double most = 0.0;
-    for (int i = 0; i < 3; ++i) most = std::max(most, entry.diffuse[i] + entry.specular[i]);
+    for (int i = 0; i < 3; ++i) most = std::max(most, diffuse[i] + entry.specular[i]);
     if (most > 1.0) {
       notes.push_back(entry.where + ": newmtl " + entry.name +
                       ": Kd + Ks above 1, scaled down to reflect no more than falls in");
       for (int i = 0; i < 3; ++i) {
-        entry.diffuse[i] /= most;
+        diffuse[i] /= most;
         entry.specular[i] /= most;
       }
     }
     m = {.source = entry.where,
          .model = Material::Model::phong,
          .reflectance = {},
-         .diffuse = curve_of(entry.diffuse),
+         .diffuse = curve_of(diffuse),
          .specular = curve_of(entry.specular),
-         .exponent = entry.exponent};
+         .exponent = entry.exponent,
+         .colour_map = entry.colour_map,
+         .slope_map = entry.slope_map,
+         .height_m = entry.height_m};
   }
   m.name = entry.name;
   if (entry.temperature_k >= 0.0) m.temperature_k = entry.temperature_k;
@@ -69,10 +81,52 @@ Material material_of(Entry entry, std::vector<std::string>& notes) {
   return m;
 }
 
-constexpr std::array<std::string_view, 21> without_effect{
-    "Ka",    "Ke",   "Tf",    "Ni",     "illum", "sharpness", "Pr",
-    "Pm",    "Ps",   "Pc",    "Pcr",    "bump",  "norm",      "disp",
-    "decal", "refl", "aniso", "anisor", "Km",    "map_aat",   "map_bump"};
+bool is_number(std::string_view text) {
+  double value = 0.0;
+  return std::from_chars(text.data(), text.data() + text.size(), value).ptr ==
+         text.data() + text.size();
+}
+
+bool is_height_map(std::string_view key) {
+  return key == "map_Bump" || key == "map_bump" || key == "bump";
+}
+
+/// `map_Kd [options] file`: what of it can be used. `height_m` is told by -bm.
+std::shared_ptr<Texture> texture_of(const LineFields& fields, double& height_m) {
+  Texture t{.where = fields.where() + ": " + std::string(fields.keyword())};
+  std::size_t i = 1;
+  const auto numbers = [&](double& u, double& v) {
+    u = ranged(fields, ++i, -1e4, 1e4);
+    for (double* more : {&v, static_cast<double*>(nullptr)})
+      if (i + 1 < fields.size() && is_number(fields[i + 1])) {
+        const double value = ranged(fields, ++i, -1e4, 1e4);
+        if (more) *more = value;
+      }
+  };
+  const auto word = [&] { return ++i < fields.size() ? fields[i] : std::string_view(); };
+  for (; i < fields.size() && fields[i].starts_with('-'); ++i) {
+    const std::string_view option = fields[i];
+    if (option == "-s")
+      numbers(t.scale_u, t.scale_v);
+    else if (option == "-o")
+      numbers(t.offset_u, t.offset_v);
+    else if (option == "-bm" && is_height_map(fields.keyword()))
+      height_m = ranged(fields, ++i, -1e3, 1e3);
+    else if (option == "-clamp")
+      t.clamp = word() == "on";
+    else if (option == "-blendu" || option == "-blendv" || option == "-cc" || option == "-texres")
+      word();
+    else
+      fields.fail("option cannot be used", option);
+  }
+  for (; i < fields.size(); ++i) t.file += (t.file.empty() ? "" : " ") + std::string(fields[i]);
+  if (t.file.empty()) fields.fail("needs the name of a picture");
+  return std::make_shared<Texture>(std::move(t));
+}
+
+constexpr std::array<std::string_view, 19> without_effect{
+    "Ka",  "Ke",   "Tf",   "Ni",    "illum", "sharpness", "Pr",     "Pm", "Ps",     "Pc",
+    "Pcr", "norm", "disp", "decal", "refl",  "aniso",     "anisor", "Km", "map_aat"};
 
 bool starts_with_map(std::string_view keyword) { return keyword.substr(0, 4) == "map_"; }
 
@@ -114,9 +168,14 @@ std::map<std::string, Material> parse_mtl(std::string_view text, const std::stri
       const std::size_t field = fields.size() > 2 && fields[1] == "-halo" ? 2 : 1;
       if (fields.number(field) != opaque)
         notes.push_back(fields.where() + ": " + std::string(key) + ": taken as opaque");
+    } else if (key == "map_Kd") {
+      double none = 0.0;
+      entry->colour_map = texture_of(fields, none);
+    } else if (is_height_map(key)) {
+      entry->slope_map = texture_of(fields, entry->height_m);
     } else if (starts_with_map(key)) {
       notes.push_back(fields.where() + ": " + std::string(key.substr(0, 20)) +
-                      ": textures are left out");
+                      ": this map is left out");
     } else if (std::find(without_effect.begin(), without_effect.end(), key) ==
                without_effect.end()) {
       fields.fail("unknown keyword");

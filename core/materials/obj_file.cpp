@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -14,7 +15,8 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t most_corners = 1024;  // of one face
+constexpr std::size_t most_corners = 1024;                 // of one face
+constexpr std::size_t most_texels = std::size_t(1) << 27;  // numbers in all pictures of a model
 
 class Reader {
  public:
@@ -39,6 +41,9 @@ class Reader {
     if (key == "v") {
       model_.mesh.vertex_m.push_back({fields_.number(1), fields_.number(2), fields_.number(3)});
       if (model_.mesh.vertex_m.size() > most_facets) fields_.fail("too many vertices");
+    } else if (key == "vt") {
+      place_.push_back({texture_number(1), fields_.size() > 2 ? texture_number(2) : 0.0f});
+      if (place_.size() > most_facets) fields_.fail("too many places on textures");
     } else if (key == "f" || key == "fo") {
       face();
     } else if (key == "usemtl") {
@@ -47,10 +52,9 @@ class Reader {
       library();
     } else if (key == "l" || key == "p") {
       once(left_out_, "lines and points have no area and are left out");
-    } else if (key != "vn" && key != "vt" && key != "o" && key != "g" && key != "s" &&
-               key != "mg" && key != "bevel" && key != "c_interp" && key != "d_interp" &&
-               key != "lod" && key != "usemap" && key != "maplib" && key != "shadow_obj" &&
-               key != "trace_obj") {
+    } else if (key != "vn" && key != "o" && key != "g" && key != "s" && key != "mg" &&
+               key != "bevel" && key != "c_interp" && key != "d_interp" && key != "lod" &&
+               key != "usemap" && key != "maplib" && key != "shadow_obj" && key != "trace_obj") {
       refuse(key);
     }
   }
@@ -69,9 +73,19 @@ class Reader {
     told = true;
   }
 
-  std::uint32_t corner(std::string_view text) const {
+  float texture_number(std::size_t field) const {
+    const double value = fields_.number(field);
+    if (!(std::abs(value) <= 1e4)) fields_.fail("must be from -10000 to 10000", fields_[field]);
+    return float(value);
+  }
+
+  struct Corner {
+    std::uint32_t vertex = none, place = none;
+  };
+
+  Corner corner(std::string_view text) const {
     const std::string_view whole = text;
-    std::uint32_t vertex = none;
+    Corner c;
     for (int part = 0; part < 3; ++part) {
       const std::size_t slash = text.find('/');
       const std::string_view number = text.substr(0, slash);
@@ -82,18 +96,21 @@ class Reader {
         if (error != std::errc{} || end != number.data() + number.size() || index == 0)
           fields_.fail("corner must be v, v/vt, v//vn or v/vt/vn with numbers from 1 or below 0",
                        whole);
-        if (part == 0) vertex = vertex_numbered(index, whole);
+        if (part == 0) c.vertex = numbered(index, model_.mesh.vertex_m.size(), "vertex", whole);
+        if (part == 1) c.place = numbered(index, place_.size(), "vt", whole);
       }
-      if (slash == std::string_view::npos) return vertex;
+      if (slash == std::string_view::npos) return c;
       text.remove_prefix(slash + 1);
     }
     fields_.fail("corner has more than three parts", whole);
   }
 
-  std::uint32_t vertex_numbered(std::int64_t index, std::string_view shown) const {
-    const auto count = std::int64_t(model_.mesh.vertex_m.size());
+  std::uint32_t numbered(std::int64_t index, std::size_t size, const char* what,
+                         std::string_view shown) const {
+    const auto count = std::int64_t(size);
     if (index < -count || index > count)
-      fields_.fail("no such vertex (" + std::to_string(count) + " so far)", shown);
+      fields_.fail("no such " + std::string(what) + " (" + std::to_string(count) + " so far)",
+                   shown);
     return std::uint32_t(index > 0 ? index - 1 : count + index);
   }
 
@@ -102,24 +119,43 @@ class Reader {
     if (corners < 3) fields_.fail("a face needs three corners");
     if (corners > most_corners)
       fields_.fail("a face has at most " + std::to_string(most_corners) + " corners");
-    std::vector<std::uint32_t> vertex;
-    for (std::size_t i = 1; i <= corners; ++i) vertex.push_back(corner(fields_[i]));
+    std::vector<Corner> of;
+    for (std::size_t i = 1; i <= corners; ++i) of.push_back(corner(fields_[i]));
     if (material_ == none) {
       once(grey_, "faces before any usemtl are grey, reflectance 0.2");
       use_material(Material{});
     }
+    const bool placed = std::none_of(of.begin(), of.end(), [](auto& c) { return c.place == none; });
+    const std::uint32_t material = placed ? material_ : untextured();
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-      model_.mesh.triangles.push_back({{vertex[a], vertex[b], vertex[c]}, material_});
+      Mesh::Triangle t{{of[a].vertex, of[b].vertex, of[c].vertex}, material};
+      if (placed) t.place = {place_[of[a].place], place_[of[b].place], place_[of[c].place]};
+      model_.mesh.triangles.push_back(t);
       lines_.line.push_back(fields_.line());
     };
     if (corners == 3) {
       add(0, 1, 2);
     } else {
       std::vector<Vec<Body>> places;
-      for (const auto v : vertex) places.push_back(model_.mesh.vertex_m[v]);
+      for (const Corner& c : of) places.push_back(model_.mesh.vertex_m[c.vertex]);
       for (const auto& [a, b, c] : triangulate(places)) add(a, b, c);
     }
     if (model_.mesh.triangles.size() > most_facets) fields_.fail("too many facets");
+  }
+
+  /// The material in use without its pictures, for faces that have no place on them.
+  std::uint32_t untextured() {
+    const Material& used = model_.mesh.materials[material_];
+    if (!used.colour_map && !used.slope_map) return material_;
+    once(no_place_, "faces without vt go without the pictures of their material");
+    const auto [found, is_new] =
+        untextured_.try_emplace(material_, std::uint32_t(model_.mesh.materials.size()));
+    if (is_new) {
+      Material plain = used;
+      plain.colour_map = plain.slope_map = nullptr;
+      model_.mesh.materials.push_back(std::move(plain));
+    }
+    return found->second;
   }
 
   void use(const std::string& name) {
@@ -137,9 +173,25 @@ class Reader {
     used_[name] = material_;
   }
 
-  void use_material(const Material& material) {
+  void use_material(Material material) {
     material_ = std::uint32_t(model_.mesh.materials.size());
-    model_.mesh.materials.push_back(material);
+    for (auto* map : {&material.colour_map, &material.slope_map})
+      if (*map) *map = loaded(**map, map == &material.colour_map);
+    model_.mesh.materials.push_back(std::move(material));
+  }
+
+  std::shared_ptr<const Texture> loaded(const Texture& described, bool colour) {
+    try {
+      if (!sources_.read_picture) throw Error("pictures are not read here");
+      auto picture =
+          sources_.read_picture(described.file, colour ? PictureOf::light : PictureOf::quantity);
+      texels_ += picture.pixels.size();
+      if (texels_ > most_texels) throw Error("the pictures of the model are too large together");
+      return std::make_shared<const Texture>(colour ? colour_texture(described, std::move(picture))
+                                                    : slope_texture(described, picture));
+    } catch (const Error& error) {
+      throw ConfigError(described.where + ": " + error.what());
+    }
   }
 
   void library() {
@@ -162,7 +214,10 @@ class Reader {
   std::map<std::string, Material> defined_;
   std::map<std::string, std::uint32_t> used_;
   std::uint32_t material_ = none;
-  bool left_out_ = false, grey_ = false;
+  std::map<std::uint32_t, std::uint32_t> untextured_;
+  std::vector<TexturePlace> place_;
+  std::size_t texels_ = 0;
+  bool left_out_ = false, grey_ = false, no_place_ = false;
 };
 
 }  // namespace
@@ -176,7 +231,10 @@ ObjModel load_obj(const std::string& path, const MaterialByName& library) {
   const auto read_mtl = [&](const std::string& name) {
     return read_text_file((folder / name).string(), std::size_t(1) << 26);
   };
-  return parse_obj(read_text_file(path), path, {read_mtl, library});
+  const auto read = [&](const std::string& name, PictureOf what) {
+    return read_picture((folder / name).string(), what);
+  };
+  return parse_obj(read_text_file(path), path, {read_mtl, library, read});
 }
 
 }  // namespace dmise

@@ -19,12 +19,13 @@ struct ObjModel {
 struct ObjSources {
   std::function<std::string(const std::string& name)> read_mtl;  // text of a material file
   MaterialByName library;
+  std::function<LinearPicture(const std::string& name, PictureOf what)> read_picture;
 };
 
 /// More facets are refused.
 inline constexpr std::size_t most_facets = 4'000'000;
 
-/// Reads a Wavefront OBJ, lengths in metres: v, f (any number of corners, absolute and negative
+/// Reads a Wavefront OBJ, lengths in metres: v, vt, f (any number of corners, absolute and negative
 /// numbers, with and without texture and normal), usemtl, mtllib, o, g, s. Vertex normals are not
 /// needed: facets are flat. A material is looked for in the material files, then in the library;
 /// facets before any usemtl are grey (Lambert 0.2), with a note. Lines and points have no area and
@@ -32,7 +33,7 @@ inline constexpr std::size_t most_facets = 4'000'000;
 /// Throws `ConfigError` with `file:line`.
 ObjModel parse_obj(std::string_view text, const std::string& file, const ObjSources& sources);
 
-/// Reads it from a file; material files stand beside it.
+/// Reads it from a file; material files and pictures stand beside it.
 ObjModel load_obj(const std::string& path, const MaterialByName& library);
 
 }  // namespace dmise

@@ -12,6 +12,13 @@ namespace {
 double sum_of(const FacetSet& set, const double* area_m2, const Vec<Body>& sun,
               const Vec<Body>& viewer, SimdLevel level) {
   const Vec<Body> half = sun + viewer;
+  std::vector<double> flat_m2;  // without facets whose normals a height map tilts
+  const double* const free_m2 = area_m2;
+  if (!set.bumps.empty()) {
+    flat_m2.assign(area_m2, area_m2 + set.area_m2.size());
+    for (const auto& b : set.bumps) flat_m2[b.facet] = 0.0;
+    area_m2 = flat_m2.data();
+  }
   const FacetArrays arrays{
       set.area_m2.size(), set.normal_x.data(), set.normal_y.data(), set.normal_z.data(), area_m2,
       set.diffuse.data(), set.taken.data(),    set.grazing2.data(), set.lobe2.data()};
@@ -29,6 +36,19 @@ double sum_of(const FacetSet& set, const double* area_m2, const Vec<Body>& sun,
     const double mirror = std::min(1.0, 2.0 * in * out - cos_phase);
     if (in > 0.0 && out > 0.0 && mirror > 0.0)
       sum += area_m2[lobe.facet] * in * out * lobe.scale * std::pow(mirror, lobe.exponent);
+  }
+  for (const auto& b : set.bumps) {
+    const double out = dot(set.normal(b.facet), viewer);
+    if (!(out > 0.0 && dot(set.normal(b.facet), sun) > 0.0)) continue;
+    for (std::size_t i = b.begin; i < b.end; ++i) {
+      const auto& bump = set.bump_normals[i];
+      const double in = dot(bump.normal, sun);
+      const double seen = std::max(0.0, dot(bump.normal, viewer));
+      if (!(in > 0.0)) continue;
+      const double mirror = std::clamp(2.0 * in * seen - cos_phase, 0.0, 1.0);
+      const double lobe = mirror > 0.0 ? b.phong_scale * std::pow(mirror, b.exponent) : 0.0;
+      sum += free_m2[b.facet] * out * bump.share * in * (bump.diffuse + lobe);
+    }
   }
   return sum;
 }

@@ -2,6 +2,7 @@
 
 #include "core/base/units.h"
 #include "core/materials/thermal.h"
+#include "core/photometry/facet_texture.h"
 
 namespace dmise {
 namespace {
@@ -62,6 +63,7 @@ FacetSet facet_set(const Mesh& mesh, const Band& band) {
     set.emitted[i] = emitted[triangle.material];
     if (c.phong_scale > 0.0) set.lobes.push_back({std::uint32_t(i), c.phong_scale, c.exponent});
   }
+  add_textures(mesh, band, set);
   return set;
 }
 

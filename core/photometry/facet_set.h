@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -26,6 +27,26 @@ struct FacetSet {
     double exponent;
   };
   std::vector<PhongLobe> lobes;
+
+  /// Share of red, green and blue of a picture in the reflectance, by material.
+  std::vector<std::array<float, 3>> colour_weights;
+  /// Mean over a facet of its picture, which is in `diffuse`; empty without pictures.
+  std::vector<float> colour_mean;
+
+  /// A facet with a height map: normals that stand for it, not unit but means, so that Lambert's
+  /// part is exact where none turns away from the light.
+  struct Bumps {
+    std::uint32_t facet;
+    std::size_t begin, end;  // in `bump_normals`
+    double phong_scale, exponent;
+  };
+  struct BumpNormal {
+    Vec<Body> normal;
+    double share = 0.0;    // of the facet
+    double diffuse = 0.0;  // as above, of the picture there
+  };
+  std::vector<Bumps> bumps;
+  std::vector<BumpNormal> bump_normals;
 
   Vec<Body> normal(std::size_t i) const { return {normal_x[i], normal_y[i], normal_z[i]}; }
 };

@@ -49,7 +49,14 @@
   F(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)         \
   F(PFNGLDRAWELEMENTSPROC, DrawElements)                       \
   F(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
-  F(PFNGLREADPIXELSPROC, ReadPixels)
+  F(PFNGLREADPIXELSPROC, ReadPixels)                           \
+  F(PFNGLUNIFORMMATRIX3FVPROC, UniformMatrix3fv)               \
+  F(PFNGLCREATETEXTURESPROC, CreateTextures)                   \
+  F(PFNGLTEXTURESTORAGE2DPROC, TextureStorage2D)               \
+  F(PFNGLTEXTURESUBIMAGE2DPROC, TextureSubImage2D)             \
+  F(PFNGLGENERATETEXTUREMIPMAPPROC, GenerateTextureMipmap)     \
+  F(PFNGLTEXTUREPARAMETERIPROC, TextureParameteri)             \
+  F(PFNGLBINDTEXTUREUNITPROC, BindTextureUnit)
 
 namespace dmise {
 

@@ -1,5 +1,6 @@
 #include "sensors/render/gl_program.h"
 
+#include <array>
 #include <string>
 
 #include "core/base/error.h"
@@ -7,9 +8,11 @@
 namespace dmise {
 namespace {
 
-unsigned compiled(const Gl& gl, unsigned kind, const char* text) {
+unsigned compiled(const Gl& gl, unsigned kind, const char* text, const char* definition) {
   const unsigned shader = gl.CreateShader(kind);
-  gl.ShaderSource(shader, 1, &text, nullptr);
+  const std::string define = definition ? "#define " + std::string(definition) + "\n" : "";
+  const std::array parts{"#version 450 core\n", define.c_str(), text};
+  gl.ShaderSource(shader, int(parts.size()), parts.data(), nullptr);
   gl.CompileShader(shader);
   int ok = 0;
   gl.GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
@@ -23,10 +26,11 @@ unsigned compiled(const Gl& gl, unsigned kind, const char* text) {
 
 }  // namespace
 
-unsigned link_program(const Gl& gl, const char* vertex_shader, const char* fragment_shader) {
+unsigned link_program(const Gl& gl, const char* vertex_shader, const char* fragment_shader,
+                      const char* definition) {
   const unsigned program = gl.CreateProgram();
-  for (const unsigned shader : {compiled(gl, GL_VERTEX_SHADER, vertex_shader),
-                                compiled(gl, GL_FRAGMENT_SHADER, fragment_shader)}) {
+  for (const unsigned shader : {compiled(gl, GL_VERTEX_SHADER, vertex_shader, definition),
+                                compiled(gl, GL_FRAGMENT_SHADER, fragment_shader, definition)}) {
     gl.AttachShader(program, shader);
     gl.DeleteShader(shader);
   }

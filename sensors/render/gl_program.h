@@ -3,7 +3,9 @@
 
 namespace dmise {
 
-/// A program of two shaders. Throws `Error` with the compiler's words.
-unsigned link_program(const Gl& gl, const char* vertex_shader, const char* fragment_shader);
+/// A program of two shaders behind "#version 450 core" and `definition`, if not null. Throws
+/// `Error` with the compiler's words.
+unsigned link_program(const Gl& gl, const char* vertex_shader, const char* fragment_shader,
+                      const char* definition = nullptr);
 
 }  // namespace dmise

@@ -10,6 +10,7 @@
 #include "sensors/render/gl.h"
 #include "sensors/render/gl_context.h"
 #include "sensors/render/gl_program.h"
+#include "sensors/render/gl_textures.h"
 #include "sensors/render/shaders.h"
 #include "sensors/render/tile_mesh.h"
 
@@ -24,10 +25,9 @@ constexpr double parallel_from = 1e4;
 
 class GlRenderer final : public Renderer {
  public:
-  GlRenderer() : context_(open_gl()), gl_(load_gl(*context_)) {
-    link();
+  GlRenderer() : context_(open_gl()), gl_(load_gl(*context_)), textures_(gl_) {
     make_target();
-    make_arrays();
+    plain_ = make_stage(nullptr);
     samples_.resize(std::size_t(piece_samples) * piece_samples * 4);
   }
 
@@ -71,12 +71,11 @@ class GlRenderer final : public Renderer {
     check_outside(*scene.mesh, scene.camera_from_body, scene.object_m);
   }
 
-  void link() {
-    const unsigned program = link_program(gl_, vertex_shader, fragment_shader);
-    gl_.UseProgram(program);
-    piece_uniform_ = gl_.GetUniformLocation(program, "piece");
-    source_uniform_ = gl_.GetUniformLocation(program, "source");
-  }
+  /// A program with the buffers that it reads.
+  struct Stage {
+    unsigned program = 0, arrays = 0, buffers[3] = {0, 0, 0};  // vertices, indices, textures
+    int piece = -1, source = -1, weights = -1;
+  };
 
   void make_target() {
     unsigned frame = 0, buffers[2];
@@ -103,38 +102,58 @@ class GlRenderer final : public Renderer {
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
   }
 
-  void make_arrays() {
-    unsigned arrays = 0, buffers[2];
-    gl_.CreateVertexArrays(1, &arrays);
-    gl_.BindVertexArray(arrays);
-    gl_.GenBuffers(2, buffers);
-    gl_.BindBuffer(GL_ARRAY_BUFFER, buffers[0]);
-    gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers[1]);
-    const auto attribute = [this](unsigned location, int floats, std::size_t offset) {
-      gl_.VertexAttribPointer(location, floats, GL_FLOAT, GL_FALSE, sizeof(TileVertex),
+  Stage make_stage(const char* definition) {
+    Stage stage;
+    stage.program = link_program(gl_, vertex_shader, fragment_shader, definition);
+    stage.piece = gl_.GetUniformLocation(stage.program, "piece");
+    stage.source = gl_.GetUniformLocation(stage.program, "source");
+    stage.weights = gl_.GetUniformLocation(stage.program, "weights");
+    gl_.CreateVertexArrays(1, &stage.arrays);
+    gl_.BindVertexArray(stage.arrays);
+    gl_.GenBuffers(3, stage.buffers);
+    gl_.BindBuffer(GL_ARRAY_BUFFER, stage.buffers[0]);
+    gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, stage.buffers[1]);
+    const auto attribute = [this](unsigned location, int floats, int stride, std::size_t offset) {
+      gl_.VertexAttribPointer(location, floats, GL_FLOAT, GL_FALSE, stride,
                               reinterpret_cast<const void*>(offset));
       gl_.EnableVertexAttribArray(location);
     };
-    attribute(0, 4, offsetof(TileVertex, clip));
-    attribute(1, 3, offsetof(TileVertex, view));
-    attribute(2, 3, offsetof(TileVertex, normal));
-    attribute(3, 4, offsetof(TileVertex, diffuse));
-    attribute(4, 4, offsetof(TileVertex, specular));
-    attribute(5, 4, offsetof(TileVertex, emitted));
+    attribute(0, 4, sizeof(TileVertex), offsetof(TileVertex, clip));
+    attribute(1, 3, sizeof(TileVertex), offsetof(TileVertex, view));
+    attribute(2, 3, sizeof(TileVertex), offsetof(TileVertex, normal));
+    attribute(3, 4, sizeof(TileVertex), offsetof(TileVertex, diffuse));
+    attribute(4, 4, sizeof(TileVertex), offsetof(TileVertex, specular));
+    attribute(5, 4, sizeof(TileVertex), offsetof(TileVertex, emitted));
+    if (stage.weights < 0) return stage;
+    gl_.BindBuffer(GL_ARRAY_BUFFER, stage.buffers[2]);
+    attribute(6, 4, sizeof(TextureVertex), offsetof(TextureVertex, place));
+    attribute(7, 3, sizeof(TextureVertex), offsetof(TextureVertex, slope_u));
+    attribute(8, 3, sizeof(TextureVertex), offsetof(TextureVertex, slope_v));
+    return stage;
+  }
+
+  void send(unsigned buffer, const auto& values) {
+    gl_.BindBuffer(GL_ARRAY_BUFFER, buffer);
+    gl_.BufferData(GL_ARRAY_BUFFER, std::ptrdiff_t(values.size() * sizeof(values[0])),
+                   values.data(), GL_STREAM_DRAW);
   }
 
   void draw_pass(const TileScene& scene, const LightSource& source, const TileMesh& mesh,
                  std::size_t first_band, bool with_coverage, Tile& tile) {
-    gl_.BufferData(GL_ARRAY_BUFFER, std::ptrdiff_t(mesh.vertices.size() * sizeof(TileVertex)),
-                   mesh.vertices.data(), GL_STREAM_DRAW);
+    if (!mesh.texture.empty() && textured_.program == 0) textured_ = make_stage("TEXTURED");
+    const Stage& stage = mesh.texture.empty() ? plain_ : textured_;
+    gl_.UseProgram(stage.program);
+    gl_.BindVertexArray(stage.arrays);
+    send(stage.buffers[0], mesh.vertices);
+    if (!mesh.texture.empty()) send(stage.buffers[2], mesh.texture);
     const glm::vec3 to_source = glm_of(scene.camera_from_body * source.to_source);
-    gl_.Uniform4f(source_uniform_, to_source.x, to_source.y, to_source.z, 0);
+    gl_.Uniform4f(stage.source, to_source.x, to_source.y, to_source.z, 0);
     const int step = std::max(1, piece_samples / scene.oversampling);
     for (int top = 0; top < tile.rows; top += step)
       for (int left = 0; left < tile.columns; left += step) {
         const PixelBox box{left, top, std::min(step, tile.columns - left),
                            std::min(step, tile.rows - top)};
-        if (!draw_piece(mesh, tile, box, scene.oversampling)) continue;
+        if (!draw_piece(scene, stage, mesh, box, first_band)) continue;
         add_box_means(samples_.data(), box, scene.oversampling, first_band, with_coverage, tile);
       }
     add_specks(mesh, first_band, tile);
@@ -154,44 +173,79 @@ class GlRenderer final : public Renderer {
     }
   }
 
-  /// Leaves the samples in `samples_`; false when nothing lies in the box.
-  bool draw_piece(const TileMesh& mesh, const Tile& tile, const PixelBox& box, int oversampling) {
+  /// Indices of the triangles in the box, by material where they have pictures; underlays first.
+  void choose(const TileMesh& mesh, const PixelBox& box, std::size_t materials) {
     indices_.clear();
+    ranges_.clear();
     const float x0 = float(box.left) - 0.5f, x1 = x0 + float(box.columns);
     const float y0 = float(box.top) - 0.5f, y1 = y0 + float(box.rows);
-    std::size_t underlays = 0;
-    for (std::uint32_t t = 0; t < mesh.bounds.size(); ++t) {
-      if (t == mesh.underlays) underlays = indices_.size();
-      const auto& b = mesh.bounds[t];
-      if (b.x1 >= x0 && b.x0 <= x1 && b.y1 >= y0 && b.y0 <= y1)
-        for (std::uint32_t i = 0; i < 3; ++i) indices_.push_back(3 * t + i);
+    by_material_.resize(mesh.material.empty() ? 1 : materials);
+    const auto choose_from = [&](std::size_t first, std::size_t end, bool underlay) {
+      for (auto& chosen : by_material_) chosen.clear();
+      for (std::size_t t = first; t < end; ++t) {
+        const auto& b = mesh.bounds[t];
+        if (b.x1 >= x0 && b.x0 <= x1 && b.y1 >= y0 && b.y0 <= y1)
+          by_material_[mesh.material.empty() ? 0 : mesh.material[t]].push_back(std::uint32_t(t));
+      }
+      for (std::size_t m = 0; m < by_material_.size(); ++m) {
+        if (by_material_[m].empty()) continue;
+        ranges_.push_back({m, indices_.size(), 3 * by_material_[m].size(), underlay});
+        for (const std::uint32_t t : by_material_[m])
+          for (std::uint32_t i = 0; i < 3; ++i) indices_.push_back(3 * t + i);
+      }
+    };
+    choose_from(0, mesh.underlays, true);
+    choose_from(mesh.underlays, mesh.bounds.size(), false);
+  }
+
+  void use_pictures(const TileScene& scene, const Stage& stage, std::size_t material,
+                    std::size_t first_band) {
+    const Material& m = scene.mesh->materials[material];
+    textures_.bind_colours(m.colour_map);
+    textures_.bind_slopes(m.slope_map);
+    glm::mat3 rows(0.0f);  // one a band
+    for (std::size_t k = 0; k < 3 && first_band + k < scene.bands.size(); ++k) {
+      const auto& w = scene.bands[first_band + k].facets->colour_weights[material];
+      rows[glm::length_t(k)] = m.colour_map ? glm::vec3(w[0], w[1], w[2]) : glm::vec3(1, 0, 0);
     }
+    gl_.UniformMatrix3fv(stage.weights, 1, GL_TRUE, &rows[0][0]);
+  }
+
+  /// Leaves the samples in `samples_`; false when nothing lies in the box.
+  bool draw_piece(const TileScene& scene, const Stage& stage, const TileMesh& mesh,
+                  const PixelBox& box, std::size_t first_band) {
+    choose(mesh, box, scene.mesh->materials.size());
     if (indices_.empty()) return false;
     gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, std::ptrdiff_t(indices_.size() * 4), indices_.data(),
                    GL_STREAM_DRAW);
-    const int width = box.columns * oversampling, height = box.rows * oversampling;
+    const int width = box.columns * scene.oversampling, height = box.rows * scene.oversampling;
     gl_.Viewport(0, 0, width, height);
-    const float scale_x = float(tile.columns) / float(box.columns);
-    const float scale_y = float(tile.rows) / float(box.rows);
-    gl_.Uniform4f(piece_uniform_, scale_x, scale_y,
-                  float(tile.columns - 2 * box.left - box.columns) / float(box.columns),
-                  float(tile.rows - 2 * box.top - box.rows) / float(box.rows));
+    const int columns = scene.camera.columns, rows = scene.camera.rows;
+    gl_.Uniform4f(stage.piece, float(columns) / float(box.columns), float(rows) / float(box.rows),
+                  float(columns - 2 * box.left - box.columns) / float(box.columns),
+                  float(rows - 2 * box.top - box.rows) / float(box.rows));
     gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    if (mesh.underlays == mesh.bounds.size()) underlays = indices_.size();
-    if (underlays > 0) {
-      gl_.Enable(GL_POLYGON_OFFSET_FILL);
-      gl_.DrawElements(GL_TRIANGLES, int(underlays), GL_UNSIGNED_INT, nullptr);
-      gl_.Disable(GL_POLYGON_OFFSET_FILL);
+    for (const Range& range : ranges_) {
+      if (range.underlay) gl_.Enable(GL_POLYGON_OFFSET_FILL);
+      if (!mesh.material.empty()) use_pictures(scene, stage, range.material, first_band);
+      gl_.DrawElements(GL_TRIANGLES, int(range.count), GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(range.begin * 4));
+      if (range.underlay) gl_.Disable(GL_POLYGON_OFFSET_FILL);
     }
-    gl_.DrawElements(GL_TRIANGLES, int(indices_.size() - underlays), GL_UNSIGNED_INT,
-                     reinterpret_cast<const void*>(underlays * 4));
     gl_.ReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, samples_.data());
     return true;
   }
 
   std::unique_ptr<GlContext> context_;
   Gl gl_;
-  int piece_uniform_ = -1, source_uniform_ = -1;
+  GlTextures textures_;
+  Stage plain_, textured_;
+  struct Range {
+    std::size_t material, begin, count;  // of indices
+    bool underlay;
+  };
+  std::vector<Range> ranges_;
+  std::vector<std::vector<std::uint32_t>> by_material_;
   std::vector<float> samples_;
   std::vector<std::uint32_t> indices_;
 };

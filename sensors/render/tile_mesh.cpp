@@ -7,6 +7,7 @@
 
 #include "core/base/units.h"
 #include "core/materials/brdf.h"
+#include "core/materials/texture.h"
 #include "sensors/render/clip_space.h"
 #include "sensors/render/sample_count.h"
 
@@ -44,6 +45,8 @@ class Builder {
       const auto& lobes = facets(k).lobes;
       for (std::size_t i = 0; i < lobes.size(); ++i) lobe_of[lobes[i].facet] = int(i);
     }
+    for (const auto& m : scene.mesh->materials)
+      if (m.colour_map || m.slope_map) textured_ = true;
   }
 
   TileMesh build(const LitPieces& lit) {
@@ -108,11 +111,53 @@ class Builder {
     return v;
   }
 
-  void add(const TileVertex& surface, const SampleCount::Triangle& p) {
+  using Places = std::array<FacetPiece::Point, 3>;  // of corners in their facet's coordinates
+
+  void add(const TileVertex& surface, std::size_t f, const SampleCount::Triangle& p,
+           const Places& at) {
     std::array<TileVertex, 3> v{surface, surface, surface};
     for (std::size_t i = 0; i < 3; ++i) clip_.put(p[i], v[i]);
+    if (textured_) {
+      add_texture(f, at);
+      for (int k = 0; k < bands_; ++k)
+        if (const float mean = facets(k).colour_mean[f]; mean > 0.0f)
+          for (auto& corner : v) corner.diffuse[k] /= mean;
+    }
     out_.bounds.push_back(bounds_of(v, scene_.camera, clip_.near_m()));
     out_.vertices.insert(out_.vertices.end(), v.begin(), v.end());
+  }
+
+  void add_texture(std::size_t f, const Places& at) {
+    const Mesh& mesh = *scene_.mesh;
+    const auto& triangle = mesh.triangles[f];
+    const Material& m = mesh.materials[triangle.material];
+    std::array<TextureVertex, 3> v{};
+    const auto places = [&](const Texture& texture) {
+      std::array<TexturePlace, 3> of;
+      for (std::size_t i = 0; i < 3; ++i) of[i] = texture.of(triangle.place[i]);
+      return of;
+    };
+    const auto put = [&](const Texture& texture, glm::length_t first) {
+      const auto of = places(texture);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto s = float(at[i].s), t = float(at[i].t);
+        v[i].place[first] = of[0].u + s * (of[1].u - of[0].u) + t * (of[2].u - of[0].u);
+        v[i].place[first + 1] = of[0].v + s * (of[1].v - of[0].v) + t * (of[2].v - of[0].v);
+      }
+    };
+    if (m.colour_map) put(*m.colour_map, 0);
+    if (m.slope_map) {
+      put(*m.slope_map, 2);
+      std::array<Vec<Body>, 3> corner_m;
+      for (std::size_t i = 0; i < 3; ++i) corner_m[i] = mesh.vertex_m[triangle.corner[i]];
+      const auto gradient = place_gradients(corner_m, places(*m.slope_map));
+      for (auto& corner : v) {
+        corner.slope_u = camera_from_body_ * glm_of(gradient[0] * m.height_m);
+        corner.slope_v = camera_from_body_ * glm_of(gradient[1] * m.height_m);
+      }
+    }
+    out_.material.push_back(triangle.material);
+    out_.texture.insert(out_.texture.end(), v.begin(), v.end());
   }
 
   void scale(TileVertex& look, double factor) const {
@@ -134,12 +179,13 @@ class Builder {
         scale(look, samples.correction());
       }
     }
-    add(look, p);
+    add(look, f, p, {{{0, 0}, {1, 0}, {0, 1}}});
   }
 
   void add_parts(std::size_t f, std::span<const FacetPiece> pieces) {
     const glm::dvec3 o = corner(f, 0), e1 = corner(f, 1) - o, e2 = corner(f, 2) - o;
     std::vector<SampleCount::Triangle> parts;
+    std::vector<Places> places;
     SampleCount samples(scene_.camera, scene_.oversampling);
     for (const auto& piece : pieces) {
       const auto at = [&](int i) {
@@ -148,6 +194,8 @@ class Builder {
       };
       for (int i = 1; i + 1 < piece.corners; ++i) {
         parts.push_back({at(0), at(i), at(i + 1)});
+        places.push_back(
+            {piece.corner[0], piece.corner[std::size_t(i)], piece.corner[std::size_t(i) + 1]});
         samples.add(parts.back());
       }
     }
@@ -157,7 +205,7 @@ class Builder {
       return;
     }
     scale(look, samples.correction());
-    for (const auto& part : parts) add(look, part);
+    for (std::size_t i = 0; i < parts.size(); ++i) add(look, f, parts[i], places[i]);
   }
 
   /// What the shader makes of a look at the middle of a triangle, times its area, less its own
@@ -195,6 +243,7 @@ class Builder {
   int bands_;
   bool emission_;
   bool specks_;
+  bool textured_ = false;
   glm::dmat3 camera_from_body_;
   ClipSpace clip_;
   std::array<std::vector<int>, 3> lobe_of_;

@@ -19,6 +19,14 @@ struct TileVertex {
 };
 static_assert(sizeof(TileVertex) == 22 * sizeof(float));  // as OpenGL's attributes are declared
 
+/// What a corner of a facet with pictures has beside: where it is on them, and how the place on the
+/// height map grows over the facet, times the height.
+struct TextureVertex {
+  glm::vec4 place;             // on the colours, on the heights
+  glm::vec3 slope_u, slope_v;  // camera axes
+};
+static_assert(sizeof(TextureVertex) == 10 * sizeof(float));
+
 /// The triangles of an object that face the camera, lit by one source. A facet that is partly in
 /// shadow comes twice: whole and dark, as an underlay to be pushed back a little so that no seam
 /// shows through, and in its lit parts.
@@ -27,8 +35,10 @@ struct TileMesh {
   struct Bounds {
     float x0, y0, x1, y1;  // of the tile [px], pixel centres are whole
   };
-  std::vector<Bounds> bounds;  // one a triangle, of three vertices
-  std::size_t underlays = 0;   // the first triangles
+  std::vector<Bounds> bounds;           // one a triangle, of three vertices
+  std::vector<TextureVertex> texture;   // as `vertices`; empty when no material has a picture
+  std::vector<std::uint32_t> material;  // one a triangle, as `texture`
+  std::size_t underlays = 0;            // the first triangles
 
   /// Lit parts of facets that have too few samples to be drawn by them: drawn dark, their light
   /// goes to the pixel of their middle.

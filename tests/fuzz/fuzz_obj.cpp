@@ -14,9 +14,12 @@ using namespace dmise;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const ObjSources sources{
-      [](const std::string&) { return std::string("newmtl a\nKd 0.5 0.5 0.5\n"); },
+      [](const std::string&) { return std::string("newmtl a\nmap_Kd a.png\nbump a.png\n"); },
       [](std::string_view name) -> std::optional<Material> {
         return name == "kapton" ? std::optional<Material>(Material{}) : std::nullopt;
+      },
+      [](const std::string&, PictureOf) {
+        return LinearPicture{2, 1, 1, {0.25f, 0.75f}};
       }};
   try {
     const ObjModel model = parse_obj(text, "fuzz", sources);

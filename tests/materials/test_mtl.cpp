@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/materials/texture.h"
 
 namespace dmise {
 namespace {
@@ -68,9 +69,43 @@ TEST(Mtl, WhatCannotBeUsedPointsAtItsLine) {
   EXPECT_EQ(complaint("newmtl\n"), "a.mtl:1: newmtl: needs a name");
 }
 
-TEST(Mtl, TexturesAreLeftOutWithANote) {
-  parse("newmtl a\nmap_Kd hull.png\n");
-  EXPECT_EQ(notes, std::vector<std::string>{"a.mtl:2: map_Kd: textures are left out"});
+TEST(Mtl, TellsThePicturesOfAMaterialAndHowTheyLie) {
+  const auto all = parse(
+      "newmtl a\nmap_Kd -s 2 3 1 -o 0.25 -clamp on my hull.png\nmap_Bump -bm -0.02 -blendu on "
+      "h.tif\n"
+      "newmtl b\nKd 0.5 0.5 0.5\nbump h.tif\n");
+  const Texture& colours = *all.at("a").colour_map;
+  EXPECT_EQ(colours.file, "my hull.png");
+  EXPECT_EQ(colours.where, "a.mtl:2: map_Kd");
+  EXPECT_TRUE(colours.clamp);
+  const TexturePlace place = colours.of({0.5f, 0.25f});  // u from the left, v from the top
+  EXPECT_FLOAT_EQ(place.u, 0.25f + 2 * 0.5f);
+  EXPECT_FLOAT_EQ(place.v, 1 - 3 * 0.25f);
+  EXPECT_EQ(all.at("a").slope_map->file, "h.tif");
+  EXPECT_DOUBLE_EQ(all.at("a").height_m, -0.02);
+  EXPECT_EQ(all.at("b").colour_map, nullptr);
+  EXPECT_DOUBLE_EQ(all.at("b").height_m, 1.0);
+  // The picture is the reflectance where no Kd is given.
+  EXPECT_DOUBLE_EQ(std::get<Phong>(brdf_at(all.at("a"), 0.55e-6)).diffuse, 1.0);
+  EXPECT_TRUE(notes.empty());
+}
+
+TEST(Mtl, WhatOfAPictureCannotBeUsedPointsAtItsLine) {
+  EXPECT_EQ(complaint("newmtl a\nmap_Kd\n"), "a.mtl:2: map_Kd: needs the name of a picture");
+  EXPECT_EQ(complaint("newmtl a\nmap_Kd -s 2 2\n"), "a.mtl:2: map_Kd: needs the name of a picture");
+  EXPECT_EQ(complaint("newmtl a\nmap_Kd -t 1 1 1 a.png\n"),
+            "a.mtl:2: map_Kd: option cannot be used, got -t");
+  EXPECT_EQ(complaint("newmtl a\nmap_Kd -bm 1 a.png\n"),
+            "a.mtl:2: map_Kd: option cannot be used, got -bm");
+  EXPECT_EQ(complaint("newmtl a\nbump -bm x a.png\n"), "a.mtl:2: bump: must be a number, got x");
+}
+
+TEST(Mtl, OtherMapsAndThoseOfALibraryMaterialAreLeftOutWithANote) {
+  const auto all = parse("newmtl a\nmap_Ks hull.png\nnewmtl b\nbrdf kapton\nmap_Kd hull.png\n");
+  EXPECT_EQ(notes, (std::vector<std::string>{
+                       "a.mtl:2: map_Ks: this map is left out",
+                       "a.mtl:5: map_Kd: left out: the material has a brdf of the library"}));
+  EXPECT_EQ(all.at("b").colour_map, nullptr);
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "core/base/error.h"
+#include "core/base/whole_file.h"
 
 namespace dmise {
 namespace {
@@ -19,6 +22,28 @@ ObjModel parse(std::string_view text) {
                              return m;
                            }};
   return parse_obj(text, "a.obj", sources);
+}
+
+/// Of a model in files of its own, with a picture of 2 x 2 pixels beside it.
+std::string complaint_of_files(const std::string& mtl) {
+  const std::string folder = testing::TempDir() + ".";
+  write_picture(folder + "/obj-2x2.png", Picture{2, 2, 1, {0, 255, 128, 7}});
+  write_exr(folder + "/obj-bright.exr",
+            {.pixels = std::array{0.0f, 3.5f}.data(), .columns = 2, .rows = 1});
+  write_file_whole(folder + "/obj-a.mtl", "newmtl hull\n" + mtl + "\n");
+  write_file_whole(folder + "/obj-a.obj",
+                   "mtllib obj-a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                   "usemtl hull\nf 1/1 2/2 3/3\n");
+  try {
+    const auto model = load_obj(folder + "/obj-a.obj", [](auto) { return std::nullopt; });
+    const auto& material = model.mesh.materials.at(0);
+    return material.colour_map ? std::to_string(material.colour_map->columns) + " columns" : "none";
+  } catch (const ConfigError& error) {
+    std::string words = error.what();
+    for (auto at = words.find(folder + "/"); at != words.npos; at = words.find(folder + "/"))
+      words.erase(at, folder.size() + 1);
+    return words;
+  }
 }
 
 std::string complaint(std::string_view text) {
@@ -138,6 +163,41 @@ TEST(Obj, WhatCannotBeUsedPointsAtItsLine) {
             "a.obj:1: curv: free-form curves and surfaces cannot be used");
   EXPECT_EQ(complaint("<html>\n"), "a.obj:1: <html>: unknown keyword");
   EXPECT_EQ(complaint(""), "a.obj: has no face");
+}
+
+TEST(Obj, PicturesStandBesideTheModelAndBadOnesPointAtTheirLine) {
+  EXPECT_EQ(complaint_of_files("map_Kd obj-2x2.png"), "2 columns");
+  EXPECT_EQ(complaint_of_files("Kd 1 1 1\nmap_Kd obj-none.png"),
+            "obj-a.mtl:3: map_Kd: obj-none.png: No such file or directory");
+  EXPECT_EQ(complaint_of_files("map_Kd obj-a.obj"),
+            "obj-a.mtl:2: map_Kd: obj-a.obj: is no PNG, TIFF, JPEG or EXR");
+  EXPECT_EQ(complaint_of_files("bump ../../dev/zero").substr(0, 17), "obj-a.mtl:2: bump");
+  EXPECT_EQ(complaint_of_files("map_Kd obj-bright.exr"),
+            "obj-a.mtl:2: map_Kd: values must be from 0 to 1, got 3.500000");
+}
+
+// Both sides of a sheet have the picture, each corner its own place.
+TEST(Obj, PlacesOnPicturesFollowTheirCorners) {
+  const ObjSources sources{
+      [](const std::string&) { return std::string("newmtl hull\nmap_Kd a.png\n"); },
+      [](std::string_view) { return std::optional<Material>(); },
+      [](const std::string&, PictureOf) {
+        return LinearPicture{1, 1, 3, {0.5f, 0.5f, 0.5f}};
+      }};
+  const auto model = parse_obj(
+      "mtllib a.mtl\nusemtl hull\n" + corners + "vt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 4/-1\nf 2 3 4\n",
+      "a.obj", sources);
+  EXPECT_EQ(model.notes.front(),
+            "a.obj:15: faces without vt go without the pictures of their material");
+  ASSERT_EQ(model.mesh.triangles.size(), 4u);
+  for (const auto& t : model.mesh.triangles)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& v = model.mesh.vertex_m[t.corner[i]];
+      const bool placed = model.mesh.materials[t.material].colour_map != nullptr;
+      EXPECT_EQ(t.place[i], placed ? (TexturePlace{float(v.x), float(v.y)}) : TexturePlace{});
+    }
+  EXPECT_EQ(complaint(corners + "usemtl kapton\nf 1/1 2/1 3/1\n"),
+            "a.obj:10: f: no such vt (0 so far), got 1/1");
 }
 
 }  // namespace
