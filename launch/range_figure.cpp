@@ -8,6 +8,7 @@
 #include "core/base/units.h"
 #include "core/orbit/catalogue_report.h"
 #include "core/time/iso8601.h"
+#include "sensors/outlook/camera_figures.h"
 
 namespace dmise {
 namespace {
@@ -81,17 +82,10 @@ std::string where(const SensorTrack& track) {
 }
 
 std::string field(const Optics& optics) {
-  const auto size = [&](int pixels) {
-    const double r = 0.5 * pixels / optics.focal_length_px();
-    double half = r;  // equidistant
-    if (optics.projection == Projection::gnomonic) half = std::atan(r);
-    if (optics.projection == Projection::equisolid) half = 2 * std::asin(std::min(1.0, r / 2));
-    if (optics.projection == Projection::stereographic) half = 2 * std::atan(r / 2);
-    return 2 * half / deg;
-  };
+  const CameraFigures figures = camera_figures(optics);
   char text[64];
-  std::snprintf(text, sizeof text, "field %.4g x %.4g deg", size(optics.columns),
-                size(optics.rows));
+  std::snprintf(text, sizeof text, "field %.4g x %.4g deg", figures.width_rad / deg,
+                figures.height_rad / deg);
   return text;
 }
 

@@ -2,33 +2,36 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 
 #include "core/base/units.h"
+#include "core/optics/projection.h"
 
 namespace dmise {
 namespace {
 
-Projection projection_named(const std::string& name) {
-  if (name == "equidistant") return Projection::equidistant;
-  if (name == "equisolid") return Projection::equisolid;
-  if (name == "stereographic") return Projection::stereographic;
-  return Projection::gnomonic;
-}
-
-/// Focal length that spreads a full field of `field_rad` over `width_m`.
-double focal_length_for(Projection projection, double width_m, double field_rad) {
-  const double half = field_rad / 2;
-  switch (projection) {
-    case Projection::gnomonic:
-      return width_m / 2 / std::tan(half);
-    case Projection::equidistant:
-      return width_m / 2 / half;
-    case Projection::equisolid:
-      return width_m / 2 / (2 * std::sin(half / 2));
-    case Projection::stereographic:
-      return width_m / 2 / (2 * std::tan(half / 2));
+// projection: a row of the table; distortion: {COEFFICIENT: value, ...} of one that has some.
+Projection read_projection(YamlMap& map) {
+  const auto named = map.find("projection"), distortion = map.find("distortion");
+  std::vector<std::string_view> names;
+  std::string distorted;
+  for (const Projection::Row& row : Projection::rows()) {
+    names.push_back(row.name);
+    if (!row.coefficients.empty())
+      distorted += (distorted.empty() ? "" : " or ") + std::string(row.name);
   }
-  return 0.0;
+  const std::size_t index = named ? *Projection::index_of_name(named->choice(names)) : 0;
+  const auto wanted = Projection::rows()[index].coefficients;
+  std::vector<double> values(wanted.size(), 0.0);
+  if (distortion) {
+    if (wanted.empty()) distortion->fail("goes with projection: " + distorted, false);
+    YamlMap coefficients(*distortion);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      values[i] = coefficients.number_or(wanted[i].key, 0.0,
+                                         Bounds::between(-wanted[i].most, wanted[i].most));
+    coefficients.done();
+  }
+  return Projection::make(index, values);
 }
 
 // {NOLL INDEX: rms in nanometres of path, ...}
@@ -120,14 +123,20 @@ Vignetting read_vignetting(const YamlValue& value) {
   return v;
 }
 
+[[noreturn]] void fail_fold(const YamlValue& optics, double fold_rad) {
+  char at[32];
+  std::snprintf(at, sizeof at, "%.4g", fold_rad / deg);
+  optics.fail("distortion: the image turns back on itself " + std::string(at) +
+                  " deg from the boresight, within the frame",
+              false);
+}
+
 }  // namespace
 
 Optics read_optics(const YamlValue& value) {
   YamlMap map(value);
   Optics optics;
-  if (const auto projection = map.find("projection"))
-    optics.projection = projection_named(
-        projection->choice({"gnomonic", "equidistant", "equisolid", "stereographic"}));
+  optics.projection = read_projection(map);
   optics.columns = static_cast<int>(map.require("columns").integer(1, 32768));
   optics.rows = static_cast<int>(map.require("rows").integer(1, 32768));
   optics.pixel_pitch_m = map.number("pixel_pitch_m", Bounds::positive());
@@ -139,10 +148,14 @@ Optics read_optics(const YamlValue& value) {
   if (focal) {
     optics.focal_length_m = focal->number(Bounds::positive());
   } else {
-    const double most = optics.projection == Projection::gnomonic ? 170.0 : 220.0;
+    const double most = std::round(optics.projection.row().widest_field_rad / deg);
     const double field_deg = field->number({.least = 0.0, .most = most, .least_open = true});
-    optics.focal_length_m = focal_length_for(optics.projection, width_m, field_deg * deg);
+    const double half_rad = field_deg * deg / 2;
+    if (const auto fold = optics.projection.fold_rad(); fold && half_rad >= *fold)
+      fail_fold(value, *fold);
+    optics.focal_length_m = width_m / 2 / optics.projection.height(half_rad);
   }
+  if (const auto fold = fold_in_frame_rad(optics)) fail_fold(value, *fold);
   optics.aperture_m = map.number("aperture_m", Bounds::positive());
   optics.obscuration = map.number_or("obscuration", 0.0, Bounds::between(0.0, 0.99));
   optics.transmission =

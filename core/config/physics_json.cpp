@@ -22,8 +22,13 @@ void write_camera(JsonWriter& json, const Camera& camera) {
   const auto& o = camera.optics;
   const auto& d = camera.detector;
   json.key("camera").begin_object().field("name", camera.name);
-  json.field("projection", static_cast<int>(o.projection))
-      .field("focal_length_m", o.focal_length_m);
+  json.field("projection", o.projection.index());
+  if (const auto coefficients = o.projection.coefficients(); !coefficients.empty()) {
+    json.key("distortion").begin_array();
+    for (const double value : coefficients) json.value(value);
+    json.end_array();
+  }
+  json.field("focal_length_m", o.focal_length_m);
   json.field("aperture_m", o.aperture_m).field("obscuration", o.obscuration);
   json.field("pixel_pitch_m", o.pixel_pitch_m).field("columns", o.columns).field("rows", o.rows);
   json.field("transmission", o.transmission).field("psf_fwhm_px", o.psf_fwhm_px);

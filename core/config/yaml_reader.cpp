@@ -140,7 +140,7 @@ bool YamlValue::flag() const {
   fail("must be on or off");
 }
 
-std::string YamlValue::choice(std::initializer_list<std::string_view> choices) const {
+std::string YamlValue::choice(std::span<const std::string_view> choices) const {
   std::vector<std::string> names(choices.begin(), choices.end());
   const std::string word = is_scalar() ? node_.Scalar() : "";
   if (std::find(names.begin(), names.end(), word) != names.end()) return word;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,7 +47,10 @@ class YamlValue {
   std::string text() const;
   bool flag() const;  // on/off, true/false, yes/no
   /// One of `choices`; the nearest is suggested.
-  std::string choice(std::initializer_list<std::string_view> choices) const;
+  std::string choice(std::span<const std::string_view> choices) const;
+  std::string choice(std::initializer_list<std::string_view> choices) const {
+    return choice(std::span(choices.begin(), choices.size()));
+  }
   std::vector<YamlValue> list() const;
   /// A list of `count` numbers.
   std::vector<double> numbers(std::size_t count, Bounds bounds = {}) const;

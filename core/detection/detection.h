@@ -79,7 +79,8 @@ struct Detection {
 /// Readers of FITS files find it as a lookup table.
 struct WcsRefraction {
   Vec<CameraFrame> zenith;        // unit
-  double focal_length_px = 0.0;   // of the lens, in the projection of the WCS
+  double focal_length_px = 0.0;   // of the lens
+  std::optional<Projection> lens; // where that is not the projection of the WCS
   double pressure_hpa = 0.0, temperature_c = 0.0, humidity = 0.0;  // at the camera
   double wavelength_um = 0.55;
   double offset_x_px = 0.0, offset_y_px = 0.0;  // the move of the reference pixel, left out of all
@@ -88,14 +89,14 @@ struct WcsRefraction {
   bool operator==(const WcsRefraction&) const = default;
 };
 
-/// World coordinate system of an image: a projection of FITS (TAN, ARC, ZEA, STG) with SIP
-/// distortion (Shupe et al. 2005) and, if a horizon is near, the air's own.
+/// World coordinate system of an image: a projection of FITS with SIP distortion (Shupe et al. 2005)
+/// and, if a horizon is near, the air's own.
 struct Wcs {
-  Projection projection = Projection::gnomonic;  // TAN, ARC, ZEA, STG in this order
+  Projection projection;                    // one that FITS has
   double crpix_x = 0.0, crpix_y = 0.0;      // reference pixel, (0, 0) at the first pixel's centre
   double ra_rad = 0.0, dec_rad = 0.0;       // ICRS direction of the reference pixel
   std::array<double, 4> cd_deg{};           // CD1_1 CD1_2 CD2_1 CD2_2 [deg/px]
-  int order = 0;                            // of the SIP polynomials, 0: none, at most 5
+  int order = 0;                            // of the SIP polynomials, 0: none, at most 9
   // A_pq, B_pq (pixel -> intermediate) and AP_pq, BP_pq (back), index p * (order + 1) + q.
   std::vector<double> a, b, ap, bp;
   std::optional<WcsRefraction> refraction;

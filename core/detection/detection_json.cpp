@@ -47,7 +47,8 @@ class Line {
   Line& wcs(const Wcs& w) {
     json_.key("wcs").begin_object();
     json_.field("projection",
-                wcs_projection_code(w.projection) + std::string(w.order > 0 ? "-SIP" : ""));
+                w.projection.row().fits_code + std::string(w.order > 0 ? "-SIP" : ""));
+    coefficients(w.projection);
     array("crpix_px", std::array<double, 2>{w.crpix_x, w.crpix_y});
     array("crval_deg", std::array<double, 2>{w.ra_rad / deg, w.dec_rad / deg});
     array("cd_deg_per_px", w.cd_deg);
@@ -63,6 +64,10 @@ class Line {
       json_.key("refraction").begin_object();
       array("zenith", std::array<double, 3>{air.zenith.x, air.zenith.y, air.zenith.z});
       json_.field("focal_length_px", air.focal_length_px);
+      if (air.lens) {
+        json_.field("lens", air.lens->name());
+        coefficients(*air.lens);
+      }
       json_.field("pressure_hpa", air.pressure_hpa);
       json_.field("temperature_c", air.temperature_c);
       json_.field("humidity", air.humidity);
@@ -79,6 +84,12 @@ class Line {
   std::string end() { return json_.end_object().take(); }
 
  private:
+  void coefficients(const Projection& projection) {
+    const auto names = projection.row().coefficients;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      json_.field(names[i].key, projection.coefficients()[i]);
+  }
+
   JsonWriter json_;
   const UtcText& utc_;
 };

@@ -4,7 +4,6 @@
 
 #include "core/base/units.h"
 #include "core/detection/wcs_refraction.h"
-#include "core/optics/image_height.h"
 
 namespace dmise {
 namespace {
@@ -40,8 +39,6 @@ TangentBasis tangent_basis(const Wcs& wcs) {
   return {{ca * cd, sa * cd, sd}, {-sa, ca, 0.0}, {-ca * sd, -sa * sd, cd}};
 }
 
-constexpr const char* codes[] = {"TAN", "ARC", "ZEA", "STG"};  // in the order of `Projection`
-
 PixelPosition polynomials(const Wcs& wcs, double u, double v) {
   return {u + evaluate(wcs.a, wcs.order, u, v).value, v + evaluate(wcs.b, wcs.order, u, v).value};
 }
@@ -63,14 +60,6 @@ std::array<double, 2> plane_of_focal(const Wcs& wcs, PixelPosition place) {
 
 }  // namespace
 
-const char* wcs_projection_code(Projection projection) { return codes[int(projection)]; }
-
-std::optional<Projection> wcs_projection_of_code(std::string_view code) {
-  for (int i = 0; i < 4; ++i)
-    if (code == codes[i]) return Projection(i);
-  return std::nullopt;
-}
-
 PixelPosition wcs_focal_place(const Wcs& wcs, PixelPosition pixel) {
   const auto air = air_of(wcs);
   return focal_place(wcs, air ? &*air : nullptr, pixel);
@@ -79,8 +68,7 @@ PixelPosition wcs_focal_place(const Wcs& wcs, PixelPosition pixel) {
 std::optional<PixelPosition> wcs_focal_place(const Wcs& wcs, const Vec<Gcrs>& direction) {
   const TangentBasis t = tangent_basis(wcs);
   const Vec<Gcrs> v = unit(direction);
-  const auto image =
-      image_of_direction(wcs.projection, dot(v, t.east), dot(v, t.north), dot(v, t.reference));
+  const auto image = wcs.projection.image_of(dot(v, t.east), dot(v, t.north), dot(v, t.reference));
   if (!image) return std::nullopt;
   const double xi = (*image)[0] / deg, eta = (*image)[1] / deg;
   const double det = wcs.cd_deg[0] * wcs.cd_deg[3] - wcs.cd_deg[1] * wcs.cd_deg[2];
@@ -90,11 +78,10 @@ std::optional<PixelPosition> wcs_focal_place(const Wcs& wcs, const Vec<Gcrs>& di
 
 Vec<Gcrs> wcs_direction(const Wcs& wcs, PixelPosition pixel) {
   auto [xi, eta] = plane_of_focal(wcs, wcs_focal_place(wcs, pixel));
-  auto local = direction_of_image(wcs.projection, xi, eta);
+  auto local = wcs.projection.direction_of(xi, eta);
   if (!local) {  // at the rim, or just within
-    const double rim = wcs.projection == Projection::equisolid ? 2.0 : pi;
-    const double shrink = rim * (1 - 1e-12) / std::hypot(xi, eta);
-    local = direction_of_image(wcs.projection, xi * shrink, eta * shrink);
+    const double shrink = wcs.projection.rim() * (1 - 1e-12) / std::hypot(xi, eta);
+    local = wcs.projection.direction_of(xi * shrink, eta * shrink);
   }
   const TangentBasis t = tangent_basis(wcs);
   return unit(t.reference * (*local)[2] + t.east * (*local)[0] + t.north * (*local)[1]);
@@ -128,7 +115,7 @@ std::optional<PixelPosition> wcs_pixel(const Wcs& wcs, const Vec<Gcrs>& directio
 
 bool wcs_sees_sky(const Wcs& wcs, PixelPosition pixel) {
   const auto [xi, eta] = plane_of_focal(wcs, wcs_focal_place(wcs, pixel));
-  if (!direction_of_image(wcs.projection, xi, eta)) return false;
+  if (!wcs.projection.direction_of(xi, eta)) return false;
   const auto air = air_of(wcs);
   return !air || air->elevation_rad(pixel) > -wcs_scale_rad_per_px(wcs);
 }

@@ -1,6 +1,5 @@
 #pragma once
 #include <optional>
-#include <string_view>
 
 #include "core/base/pixel.h"
 #include "core/detection/detection.h"
@@ -12,10 +11,6 @@
 // throughout. LONPOLE is 180 deg; a FITS header must say so, since its default at declination +90
 // is 0.
 namespace dmise {
-
-/// "TAN", "ARC", "ZEA", "STG".
-const char* wcs_projection_code(Projection projection);
-std::optional<Projection> wcs_projection_of_code(std::string_view code);
 
 /// Direction of a pixel on the ICRS axes, a unit vector; where the projection images none, of the
 /// nearest place that has one.

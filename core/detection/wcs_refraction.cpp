@@ -5,7 +5,6 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/optics/image_height.h"
 
 namespace dmise {
 namespace {
@@ -21,7 +20,7 @@ const WcsRefraction& required(const Wcs& wcs) {
 }  // namespace
 
 RefractionShift::RefractionShift(const Wcs& wcs)
-    : projection_(wcs.projection),
+    : lens_(required(wcs).lens.value_or(wcs.projection)),
       principal_point_{wcs.crpix_x, wcs.crpix_y},
       offset_px_{required(wcs).offset_x_px, required(wcs).offset_y_px},
       focal_length_px_(required(wcs).focal_length_px),
@@ -36,7 +35,7 @@ RefractionShift::RefractionShift(const Wcs& wcs)
 
 double RefractionShift::elevation_rad(PixelPosition pixel) const {
   const PixelPosition d = (pixel - principal_point_) * (1.0 / focal_length_px_);
-  const auto v = direction_of_image(projection_, d.x_px, d.y_px);
+  const auto v = lens_.direction_of(d.x_px, d.y_px);
   if (!v) return -0.5 * pi;
   return std::asin(
       std::clamp(dot(Vec<CameraFrame>{(*v)[0], (*v)[1], (*v)[2]}, zenith_), -1.0, 1.0));
@@ -44,7 +43,7 @@ double RefractionShift::elevation_rad(PixelPosition pixel) const {
 
 PixelPosition RefractionShift::shift(PixelPosition pixel, bool smooth) const {
   const PixelPosition d = (pixel - principal_point_) * (1.0 / focal_length_px_);
-  const auto v = direction_of_image(projection_, d.x_px, d.y_px);
+  const auto v = lens_.direction_of(d.x_px, d.y_px);
   if (!v) return {};
   const Vec<CameraFrame> seen{(*v)[0], (*v)[1], (*v)[2]};
   const double sine = dot(seen, zenith_);
@@ -60,7 +59,7 @@ PixelPosition RefractionShift::shift(PixelPosition pixel, bool smooth) const {
       cos_r = 1 - r * r * (0.5 - r * r / 24);
   const Vec<CameraFrame> above_air = level * ((cosine * cos_r + sine * sin_r) / cosine) +
                                      zenith_ * (sine * cos_r - cosine * sin_r);
-  const auto image = image_of_direction(projection_, above_air.x, above_air.y, above_air.z);
+  const auto image = lens_.image_of(above_air.x, above_air.y, above_air.z);
   if (!image) return {};
   return PixelPosition{focal_length_px_ * ((*image)[0] - d.x_px),
                        focal_length_px_ * ((*image)[1] - d.y_px)} -

@@ -26,7 +26,7 @@ class RefractionShift {
  private:
   PixelPosition shift(PixelPosition pixel, bool smooth) const;
 
-  Projection projection_;
+  Projection lens_;
   PixelPosition principal_point_, offset_px_;
   double focal_length_px_;
   Vec<CameraFrame> zenith_;

@@ -73,7 +73,12 @@ class CardWriter {
     number(key, value, comment);
   }
   void projection(const char* key, Projection& value, const char* comment) {
-    constant(key, projection_name(value), comment);
+    constant(key, value.name(), comment);
+    const auto coefficients = value.row().coefficients;
+    for (std::size_t i = 0; i < coefficients.size(); ++i) {
+      double coefficient = value.coefficients()[i];
+      number(coefficients[i].card, coefficient, coefficients[i].comment);
+    }
   }
   void optional_text(const char* key, std::string& value, const char* comment) {
     if (!value.empty()) text(key, value, comment);
@@ -85,9 +90,16 @@ class CardWriter {
     if (value_rad) angle(key, *value_rad, comment);
   }
   void wcs_projection(Wcs& wcs, bool sip) {
-    const std::string tail = wcs_projection_code(wcs.projection) + std::string(sip ? "-SIP" : "");
+    const Projection::Row& row = wcs.projection.row();
+    const std::string tail = row.fits_code + std::string(sip ? "-SIP" : "");
     text("CTYPE1", "RA---" + tail, sip ? "with SIP distortion" : "");
     text("CTYPE2", "DEC--" + tail, "");
+    if (row.coefficients.empty()) return;
+    number_constant("PV2_1", 1.0, "image height: theta and more powers of it [rad]");
+    for (std::size_t i = 0; i < row.coefficients.size(); ++i) {
+      double coefficient = wcs.projection.coefficients()[i];
+      number("PV2_" + std::to_string(row.coefficients[i].pv), coefficient, "");
+    }
   }
   /// The records of a distortion by table lookup: a keyword for several of them.
   void lookup(int axis) {
@@ -172,9 +184,10 @@ class CardReader {
     if (found != value) fail(key, "must be " + number_text(value) + ", got " + find(key));
   }
   void projection(const char* key, Projection& value, const char*) {
-    const auto named = projection_named(find(key));
+    const auto named = Projection::index_of_name(find(key));
     if (!named) fail(key, "not a projection, got " + find(key));
-    value = *named;
+    value = with_coefficients(key, *named,
+                              [](const ProjectionCoefficient& c) -> std::string { return c.card; });
   }
   // What files from elsewhere say otherwise than we do (RA as a text) is not taken.
   void optional_text(const char* key, std::string& value, const char*) {
@@ -194,12 +207,19 @@ class CardReader {
   }
   void wcs_projection(Wcs& wcs, bool sip) {
     const std::string& type = find("CTYPE1");
-    const auto projection = wcs_projection_of_code(
+    const auto row = Projection::index_of_fits_code(
         std::string_view(type).substr(std::min<std::size_t>(5, type.size()), 3));
-    if (!projection)
-      fail("CTYPE1", "must be RA---TAN, -ARC, -ZEA or -STG, with or without -SIP, got " + type);
-    wcs.projection = *projection;
-    const std::string tail = wcs_projection_code(wcs.projection) + std::string(sip ? "-SIP" : "");
+    if (!row) {
+      std::string codes;
+      for (const auto& known : Projection::rows())
+        if (known.fits_code) codes += (codes.empty() ? "" : ", -") + std::string(known.fits_code);
+      fail("CTYPE1", "must be RA---" + codes + ", with or without -SIP, got " + type);
+    }
+    wcs.projection = with_coefficients("CTYPE1", *row, [](const ProjectionCoefficient& c) {
+      return "PV2_" + std::to_string(c.pv);
+    });
+    if (!wcs.projection.coefficients().empty()) number_constant("PV2_1", 1.0, "");
+    const std::string tail = wcs.projection.row().fits_code + std::string(sip ? "-SIP" : "");
     constant("CTYPE1", ("RA---" + tail).c_str(), "");
     constant("CTYPE2", ("DEC--" + tail).c_str(), "");
   }
@@ -229,6 +249,18 @@ class CardReader {
   }
 
  private:
+  /// The projection of a row of the table; `card_of` names the keyword of a coefficient.
+  template <class CardOf>
+  Projection with_coefficients(const char* key, std::size_t index, const CardOf& card_of) {
+    std::vector<double> coefficients;
+    for (const auto& c : Projection::rows()[index].coefficients)
+      number(card_of(c), coefficients.emplace_back(), "");
+    try {
+      return Projection::make(index, coefficients);
+    } catch (const Error& error) {
+      fail(key, error.what());
+    }
+  }
   [[noreturn]] void fail(const std::string& key, const std::string& reason) const {
     throw ConfigError(name_ + ": " + key + ": " + reason);
   }
@@ -269,10 +301,11 @@ void visit_vector(Visitor& v, const std::string& key, Vec<Frame>& vector, const 
 }
 
 template <class Visitor>
-void visit_refraction(Visitor& v, Wcs& wcs) {
+void visit_refraction(Visitor& v, const Projection& lens, Wcs& wcs) {
   if (!v.present("CPDIS1", wcs.refraction.has_value())) return;
   if (!wcs.refraction) wcs.refraction.emplace();
   WcsRefraction& r = *wcs.refraction;
+  if (!lens.row().fits_code) r.lens = lens;
   v.lookup(1);
   v.lookup(2);
   visit_vector(v, "WCSZEN", r.zenith, "zenith in the camera: right, down, boresight");
@@ -287,7 +320,7 @@ void visit_refraction(Visitor& v, Wcs& wcs) {
 }
 
 template <class Visitor>
-void visit_wcs(Visitor& v, Wcs& wcs) {
+void visit_wcs(Visitor& v, const Projection& lens, Wcs& wcs) {
   const bool sip = v.present("A_ORDER", wcs.order > 0);
   v.constant("WCSAXES", 2, "");
   v.wcs_projection(wcs, sip);
@@ -304,7 +337,7 @@ void visit_wcs(Visitor& v, Wcs& wcs) {
   v.number_constant("LONPOLE", 180.0, "[deg] also where the reference is a celestial pole");
   v.constant("RADESYS", "ICRS", "places are astrometric: as in a star catalogue");
   v.sip(wcs);
-  visit_refraction(v, wcs);
+  visit_refraction(v, lens, wcs);
   v.number("WCSRMS", wcs.rms_px, "[px] rms of the WCS where the sky is seen");
   v.number("WCSMAX", wcs.max_px, "[px] largest error of the WCS there");
 }
@@ -388,7 +421,7 @@ void visit(Visitor& v, FrameHeader& h) {
     v.number("AIRTEMP", h.air->temperature_c, "[deg C]");
     v.number("HUMIDITY", h.air->humidity, "relative, 0 to 1");
   }
-  visit_wcs(v, h.wcs);
+  visit_wcs(v, h.projection, h.wcs);
   v.integer("SEED", h.seed, "of the random draws");
   v.text("SCENARIO", h.scenario_digest, "digest of the scenario");
   v.text("CREATOR", h.software, "");

@@ -55,7 +55,7 @@ struct FrameHeader {
 
   Observation observation;
   Wcs wcs;
-  Projection projection = Projection::gnomonic;
+  Projection projection;
   double focal_length_px = 0.0;
   // Start, middle and end of the exposure: how the star field moves over the detector.
   std::array<Quaternion, 3> camera_from_gcrs;
@@ -69,9 +69,5 @@ struct FrameHeader {
 
   bool operator==(const FrameHeader&) const = default;
 };
-
-/// "gnomonic", ... as in FITS headers and configuration.
-const char* projection_name(Projection projection);
-std::optional<Projection> projection_named(const std::string& name);
 
 }  // namespace dmise

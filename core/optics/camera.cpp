@@ -40,18 +40,4 @@ void check(const Optics& o) {
           "focal ratio below 0.5 needs equivalent_aperture: true", o.aperture_m);
 }
 
-const char* name(Projection projection) {
-  switch (projection) {
-    case Projection::gnomonic:
-      return "gnomonic";
-    case Projection::equidistant:
-      return "equidistant";
-    case Projection::equisolid:
-      return "equisolid";
-    case Projection::stereographic:
-      return "stereographic";
-  }
-  return "?";
-}
-
 }  // namespace dmise

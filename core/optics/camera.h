@@ -3,15 +3,14 @@
 
 #include "core/optics/point_spread.h"
 #include "core/optics/vignetting.h"
+#include "core/projection/projection.h"
 
 namespace dmise {
-
-enum class Projection { gnomonic, equidistant, equisolid, stereographic };
 
 /// The optics of a camera and the geometry of its pixels. Band: a top hat for now described by its
 /// centre and width; `transmission` is that of the optics and filter together.
 struct Optics {
-  Projection projection = Projection::gnomonic;
+  Projection projection;
   double focal_length_m = 0.0;
   double aperture_m = 0.0;   // entrance pupil diameter
   double obscuration = 0.0;  // secondary / primary diameter, [0, 1)
@@ -34,8 +33,5 @@ struct Optics {
 /// Throws `ConfigError` "optics.KEY: reason, got value" for figures that no camera can have. Below
 /// a focal ratio of 0.5 radiance would not be conserved: refused unless `equivalent_aperture`.
 void check(const Optics& optics);
-
-/// "gnomonic", ...
-const char* name(Projection projection);
 
 }  // namespace dmise

@@ -1,10 +1,10 @@
 #include "core/optics/projection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/optics/image_height.h"
 
 namespace dmise {
 PixelPosition principal_point(const Optics& o) {
@@ -13,7 +13,7 @@ PixelPosition principal_point(const Optics& o) {
 
 std::optional<PixelPosition> project(const Optics& o, const Vec<CameraFrame>& direction) {
   const Vec<CameraFrame> v = unit(direction);
-  const auto image = image_of_direction(o.projection, v.x, v.y, v.z);
+  const auto image = o.projection.image_of(v.x, v.y, v.z);
   if (!image) return std::nullopt;
   const double f = o.focal_length_px();
   return principal_point(o) + PixelPosition{f * (*image)[0], f * (*image)[1]};
@@ -21,33 +21,41 @@ std::optional<PixelPosition> project(const Optics& o, const Vec<CameraFrame>& di
 
 std::optional<Vec<CameraFrame>> unproject(const Optics& o, PixelPosition pixel) {
   const PixelPosition d = (pixel - principal_point(o)) * (1.0 / o.focal_length_px());
-  const auto v = direction_of_image(o.projection, d.x_px, d.y_px);
+  const auto v = o.projection.direction_of(d.x_px, d.y_px);
   if (!v) return std::nullopt;
   return Vec<CameraFrame>{(*v)[0], (*v)[1], (*v)[2]};
 }
 
 double pixel_solid_angle_sr(const Optics& o, PixelPosition pixel) {
-  const double f = o.focal_length_px();
   const PixelPosition d = pixel - principal_point(o);
-  const auto theta = axis_angle_rad(o.projection, std::hypot(d.x_px, d.y_px) / f);
-  if (!theta) return 0.0;
-  const double centre_sr = 1.0 / (f * f);
-  switch (o.projection) {
-    case Projection::gnomonic:
-      return centre_sr * std::pow(std::cos(*theta), 3);
-    case Projection::equidistant:
-      return centre_sr * (*theta > 0.0 ? std::sin(*theta) / *theta : 1.0);
-    case Projection::equisolid:
-      return centre_sr;
-    case Projection::stereographic:
-      return centre_sr * std::pow(std::cos(*theta / 2), 4);
-  }
-  return 0.0;
+  return o.projection.pixel_solid_angle_sr(d.x_px, d.y_px, o.focal_length_px());
 }
 
-double half_diagonal_rad(const Optics& o) {
-  const double r = 0.5 * std::hypot(o.columns, o.rows) / o.focal_length_px();
-  return axis_angle_rad(o.projection, r).value_or(pi);
+namespace {
+
+/// Largest angle from the boresight [rad] of places spread along the frame's rim; nothing if one
+/// images no direction.
+std::optional<double> rim_angle_rad(const Optics& o) {
+  constexpr int steps = 16;  // along each side
+  const double x = 0.5 * o.columns / o.focal_length_px(), y = 0.5 * o.rows / o.focal_length_px();
+  double most = 0.0;
+  for (int i = -steps; i <= steps; ++i)
+    for (const auto& [u, v] : {std::array{x, y * i / steps}, std::array{-x, y * i / steps},
+                               std::array{x * i / steps, y}, std::array{x * i / steps, -y}}) {
+      const auto angle = o.projection.axis_angle_rad(u, v);
+      if (!angle) return std::nullopt;
+      most = std::max(most, *angle);
+    }
+  return most;
+}
+
+}  // namespace
+
+double half_diagonal_rad(const Optics& o) { return rim_angle_rad(o).value_or(pi); }
+
+std::optional<double> fold_in_frame_rad(const Optics& o) {
+  const auto fold = o.projection.fold_rad();
+  return fold && !rim_angle_rad(o) ? fold : std::nullopt;
 }
 
 }  // namespace dmise

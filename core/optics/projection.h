@@ -5,17 +5,14 @@
 #include "core/frames/vec.h"
 #include "core/optics/camera.h"
 
-// Where light from a direction meets the detector. With theta the angle from the boresight and f
-// the focal length, the image height is f tan theta (gnomonic), f theta (equidistant), 2 f
-// sin(theta/2) (equisolid) or 2 f tan(theta/2) (stereographic). The boresight meets the image's
-// centre,
-// ((columns - 1) / 2, (rows - 1) / 2).
+// Where light from a direction meets the detector: in focal lengths as the camera's `Projection`
+// says, with the boresight at the image's centre, ((columns - 1) / 2, (rows - 1) / 2).
 namespace dmise {
 
 PixelPosition principal_point(const Optics& optics);
 
 /// Pixel of a direction (any length > 0), also outside the frame. Nothing where the projection has
-/// no image: 90 deg and more from the boresight for the gnomonic, exactly behind for the others.
+/// no image: 90 deg and more from the boresight for the gnomonic, exactly behind for a fisheye.
 std::optional<PixelPosition> project(const Optics& optics, const Vec<CameraFrame>& direction);
 
 /// Direction of a pixel, a unit vector. Nothing where no direction is imaged: beyond pi f
@@ -26,7 +23,11 @@ std::optional<Vec<CameraFrame>> unproject(const Optics& optics, PixelPosition pi
 /// direction is imaged. Relative error of using the centre: about (pixel angle)^2.
 double pixel_solid_angle_sr(const Optics& optics, PixelPosition pixel);
 
-/// Angle from the boresight of the frame's farthest corner [rad, 0..pi].
+/// Angle from the boresight of the farthest place of the frame [rad, 0..pi].
 double half_diagonal_rad(const Optics& optics);
+
+/// Angle from the boresight [rad] at which the projection turns back on itself, if that is within
+/// the frame.
+std::optional<double> fold_in_frame_rad(const Optics& optics);
 
 }  // namespace dmise

@@ -19,6 +19,7 @@ constexpr int fit_points = 24, check_points = 37, table_points = 33;
 constexpr double between_points = 1.3, between_cells = 1.1;
 constexpr double good_px = 0.08;  // of a WCS as a whole
 constexpr double good_low_order_px = 0.01;
+constexpr int highest_order = 9;  // of SIP, by its convention
 constexpr double good_table_px = 0.06;
 constexpr double least_cell_px = 3.0;
 // Near the opposite of the axis, where a projection turns without bounds, nothing is fitted.
@@ -33,10 +34,7 @@ struct Sample {
 
 /// The part of the frame that can image anything: half its sides.
 std::array<double, 2> half_sides_px(const Optics& o) {
-  const double f = o.focal_length_px();
-  const double rim_px = o.projection == Projection::equidistant ? pi * f
-                        : o.projection == Projection::equisolid ? 2 * f
-                                                                : HUGE_VAL;
+  const double rim_px = o.projection.rim() * o.focal_length_px();
   return {std::min(0.5 * o.columns, rim_px), std::min(0.5 * o.rows, rim_px)};
 }
 
@@ -70,7 +68,7 @@ class Polynomials {
 
   void add(PixelPosition at, PixelPosition shift, const std::array<double, 2>& value) {
     const double u = at.x_px / half_[0], v = at.y_px / half_[1];
-    std::array<double, 6> pu{1.0}, pv{1.0};
+    std::array<double, highest_order + 1> pu{1.0}, pv{1.0};
     for (std::size_t k = 1; k <= std::size_t(order_); ++k) {
       pu[k] = pu[k - 1] * u;
       pv[k] = pv[k - 1] * v;
@@ -292,7 +290,7 @@ void Fit::measure(Wcs& w) const {
 }
 
 Wcs Fit::wcs(const WcsForm& form) const {
-  if (form.order < 0 || form.order > 5) throw Error("fit_wcs: order must be 0..5");
+  if (form.order < 0 || form.order > highest_order) throw Error("fit_wcs: order must be 0..9");
   const PixelPosition centre = principal_point(optics_);
   Wcs w;
   w.projection = form.projection;
@@ -339,25 +337,28 @@ Wcs best_wcs(const Optics& optics, const SkyOfPixel& sky, const std::optional<Ca
   const double half_rad = half_diagonal_rad(optics);
   const bool bent = air && air->refraction.weather().pressure_hpa > 0.0;
   std::vector<WcsForm> forms;
-  const auto polynomials = [&](Projection projection) {
+  const Projection plane = optics.projection.fits_plane();
+  const bool distorted = !(plane == optics.projection);
+  const auto polynomials = [&](const Projection& projection) {
     if (half_rad <= 10 * deg) forms.push_back({.projection = projection, .order = 3});
     forms.push_back({.projection = projection, .order = 5});
+    if (distorted) forms.push_back({.projection = projection, .order = highest_order});
   };
   if (!bent || !has_horizon(optics, fit.checks(), air)) {
     if (half_rad <= 45 * deg) polynomials(Projection::gnomonic);
-    if (half_rad > 45 * deg || optics.projection != Projection::gnomonic)
-      polynomials(optics.projection);
+    if (half_rad > 45 * deg || plane != Projection::gnomonic) polynomials(plane);
   }
   if (bent) {
     const Weather& weather = air->refraction.weather();
-    WcsForm form{.projection = optics.projection,
-                 .order = 5,
+    WcsForm form{.projection = plane,
+                 .order = distorted ? highest_order : 5,
                  .refraction = WcsRefraction{.zenith = air->zenith,
                                              .focal_length_px = optics.focal_length_px(),
                                              .pressure_hpa = weather.pressure_hpa,
                                              .temperature_c = weather.temperature_c,
                                              .humidity = weather.humidity,
                                              .wavelength_um = air->refraction.wavelength_um()}};
+    if (distorted) form.refraction->lens = optics.projection;
     forms.push_back(form);
     form.reference_is_refracted = false;
     forms.push_back(form);

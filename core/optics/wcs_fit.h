@@ -22,8 +22,8 @@ struct CameraAir {
 
 /// What a fit is held to.
 struct WcsForm {
-  Projection projection = Projection::gnomonic;
-  int order = 0;                            // 0..5 of the polynomials; below 2 there are none
+  Projection projection;                    // one that FITS has
+  int order = 0;                            // 0..9 of the polynomials; below 2 there are none
   std::optional<WcsRefraction> refraction;  // of a camera of the same projection; offset ignored
   bool reference_is_refracted = true;       // the move of the reference pixel is left out
 };
@@ -35,8 +35,9 @@ struct WcsForm {
 Wcs fit_wcs(const Optics& optics, const SkyOfPixel& sky, const WcsForm& form);
 
 /// The simplest WCS that holds the whole frame to 0.08 px: TAN + SIP up to half diagonals of 45
-/// deg; the camera's own projection + SIP; else, and where a horizon is in the frame, that with the
-/// air's part by itself, whose lookup table is made for 0.06 px. `air` if refraction is in `sky`.
+/// deg; the camera's own projection, where FITS has it, + SIP; else, and where a horizon is in the
+/// frame, that with the air's part by itself, whose lookup table is made for 0.06 px. `air` if
+/// refraction is in `sky`.
 Wcs best_wcs(const Optics& optics, const SkyOfPixel& sky, const std::optional<CameraAir>& air);
 
 }  // namespace dmise

@@ -1,22 +1,24 @@
+#include "core/base/error.h"
 #include "dmise/v1/frame.pb.h"
 #include "nodes/wire/codecs.h"
 
 // Fields that have one name and type on both sides, in the order of the message.
-#define DMISE_REPORT_FIELDS(X)                                                                  \
-  X(sensor)                                                                                     \
-  X(frame)                                                                                      \
-  X(boresight_ra_rad)                                                                           \
-  X(boresight_dec_rad)                                                                          \
-  X(limiting_magnitude) X(background_e) X(noise_e) X(zero_point_mag) X(detections) X(star_like) \
-      X(saturated_px) X(stars_rendered) X(objects_rendered) X(plan) X(detection_off)
+#define DMISE_REPORT_FIELDS(X)                                                            \
+  X(sensor)                                                                               \
+  X(frame)                                                                                \
+  X(boresight_ra_rad)                                                                     \
+  X(boresight_dec_rad)                                                                    \
+  X(limiting_magnitude)                                                                   \
+  X(background_e) X(noise_e) X(zero_point_mag) X(detections) X(star_like) X(saturated_px) \
+      X(stars_rendered) X(objects_rendered) X(plan) X(detection_off)
 
 namespace dmise {
 namespace {
 
-#define DMISE_WCS_REFRACTION_FIELDS(X)                                                        \
-  X(focal_length_px)                                                                          \
-  X(pressure_hpa) X(temperature_c) X(humidity) X(wavelength_um) X(offset_x_px) X(offset_y_px) \
-  X(cell_px)
+#define DMISE_WCS_REFRACTION_FIELDS(X) \
+  X(focal_length_px)                   \
+  X(pressure_hpa)                      \
+  X(temperature_c) X(humidity) X(wavelength_um) X(offset_x_px) X(offset_y_px) X(cell_px)
 
 void put_wcs(v1::Wcs* message, const Wcs& wcs) {
   message->set_crpix_x_px(wcs.crpix_x);
@@ -31,7 +33,9 @@ void put_wcs(v1::Wcs* message, const Wcs& wcs) {
   message->mutable_bp()->Add(wcs.bp.begin(), wcs.bp.end());
   message->set_rms_px(wcs.rms_px);
   message->set_max_px(wcs.max_px);
-  message->set_projection(std::uint32_t(wcs.projection));
+  message->set_projection(std::uint32_t(wcs.projection.index()));
+  const auto coefficients = wcs.projection.coefficients();
+  message->mutable_coefficients()->Add(coefficients.begin(), coefficients.end());
   if (!wcs.refraction) return;
   const WcsRefraction& from = *wcs.refraction;
   auto* to = message->mutable_refraction();
@@ -39,6 +43,19 @@ void put_wcs(v1::Wcs* message, const Wcs& wcs) {
 #define X(field) to->set_##field(from.field);
   DMISE_WCS_REFRACTION_FIELDS(X)
 #undef X
+  if (!from.lens) return;
+  to->set_lens(std::uint32_t(from.lens->index()));
+  const auto of_lens = from.lens->coefficients();
+  to->mutable_lens_coefficients()->Add(of_lens.begin(), of_lens.end());
+}
+
+template <class Repeated>
+Projection take_projection(std::uint32_t index, const Repeated& coefficients, const char* field) {
+  try {
+    return Projection::make(index, {coefficients.data(), std::size_t(coefficients.size())});
+  } catch (const Error& error) {
+    throw Refused(Refusal::value, std::string(field) + ": " + error.what());
+  }
 }
 
 Wcs take_wcs(const v1::Wcs& message) {
@@ -48,7 +65,7 @@ Wcs take_wcs(const v1::Wcs& message) {
   wcs.ra_rad = message.ra_rad();
   wcs.dec_rad = message.dec_rad();
   wcs.cd_deg = take<4>(message.cd_deg(), "wcs.cd_deg");
-  if (message.order() > 5) throw Refused(Refusal::value, "wcs.order: must be 0 to 5");
+  if (message.order() > 9) throw Refused(Refusal::value, "wcs.order: must be 0 to 9");
   wcs.order = int(message.order());
   wcs.a.assign(message.a().begin(), message.a().end());
   wcs.b.assign(message.b().begin(), message.b().end());
@@ -56,8 +73,9 @@ Wcs take_wcs(const v1::Wcs& message) {
   wcs.bp.assign(message.bp().begin(), message.bp().end());
   wcs.rms_px = message.rms_px();
   wcs.max_px = message.max_px();
-  if (message.projection() > 3) throw Refused(Refusal::value, "wcs.projection: must be 0 to 3");
-  wcs.projection = Projection(message.projection());
+  wcs.projection = take_projection(message.projection(), message.coefficients(), "wcs.projection");
+  if (!wcs.projection.row().fits_code)
+    throw Refused(Refusal::value, "wcs.projection: must be one that FITS has");
   if (!message.has_refraction()) return wcs;
   const v1::WcsRefraction& from = message.refraction();
   WcsRefraction& to = wcs.refraction.emplace();
@@ -65,6 +83,8 @@ Wcs take_wcs(const v1::Wcs& message) {
 #define X(field) to.field = from.field();
   DMISE_WCS_REFRACTION_FIELDS(X)
 #undef X
+  if (from.has_lens())
+    to.lens = take_projection(from.lens(), from.lens_coefficients(), "wcs.refraction.lens");
   return wcs;
 }
 

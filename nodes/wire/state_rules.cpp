@@ -179,7 +179,7 @@ void check(const Wcs& wcs) {
   finite(wcs.crpix_y, "wcs.crpix_y_px");
   direction(wcs.ra_rad, wcs.dec_rad, "wcs.ra_rad, dec_rad");
   for (const double value : wcs.cd_deg) finite(value, "wcs.cd_deg");
-  if (wcs.order < 0 || wcs.order > 5) refuse("wcs.order", "must be 0 to 5");
+  if (wcs.order < 0 || wcs.order > 9) refuse("wcs.order", "must be 0 to 9");
   const std::size_t terms = std::size_t(wcs.order + 1) * std::size_t(wcs.order + 1);
   for (const auto* polynomial : {&wcs.a, &wcs.b, &wcs.ap, &wcs.bp}) {
     if (!(polynomial->size() == terms || (wcs.order == 0 && polynomial->empty())))

@@ -42,8 +42,8 @@ TEST(StarMotion, RollTurnsTheImageInEveryProjection) {
                                 Projection::equisolid, Projection::stereographic}) {
     header.projection = projection;
     const auto d = StarMotion(header, 1001, 1001).trail_at({900, 500});
-    EXPECT_NEAR(d.x_px, 0.0, 1e-3) << projection_name(projection);
-    EXPECT_NEAR(d.y_px, -400 * roll_rad, 1e-5) << projection_name(projection);
+    EXPECT_NEAR(d.x_px, 0.0, 1e-3) << projection.name();
+    EXPECT_NEAR(d.y_px, -400 * roll_rad, 1e-5) << projection.name();
   }
 }
 

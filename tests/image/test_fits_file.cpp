@@ -120,6 +120,22 @@ TEST(FitsFile, ARefractionComesBackAndItsTablesDoNotDisturb) {
   }
 }
 
+// Every row of the table of projections, as a lens and as the plane of a world coordinate system.
+TEST(FitsFile, EveryProjectionIsReadBack) {
+  for (std::size_t i = 0; i < Projection::rows().size(); ++i) {
+    std::vector<double> coefficients(Projection::rows()[i].coefficients.size(), 1e-3);
+    for (std::size_t k = 0; k < coefficients.size(); ++k) coefficients[k] *= double(k + 1) / 3;
+    FrameHeader header = header_with_refraction();
+    header.projection = Projection::make(i, coefficients);
+    header.wcs.projection = header.projection.fits_plane();
+    if (header.wcs.projection != header.projection) header.wcs.refraction->lens = header.projection;
+    const Frame frame = decode_frame(encode_frame(sample_counts(), header), "x");
+    EXPECT_EQ(frame.header.projection, header.projection) << header.projection.name();
+    EXPECT_EQ(frame.header.wcs.projection, header.wcs.projection) << header.projection.name();
+    EXPECT_EQ(frame.header.wcs.refraction, header.wcs.refraction) << header.projection.name();
+  }
+}
+
 // Reference: fitsverify 4.20. The records of a table lookup share a keyword by their convention,
 // which it warns of; nothing else may be found.
 TEST(FitsFile, FitsverifyFindsNothingInLookupTablesButTheirRecords) {
@@ -194,9 +210,9 @@ TEST(FitsFile, NamesTheMissingOrWrongKeyword) {
             "frame.fits: GAIN: must be > 0, got -1");
   EXPECT_EQ(error_of(with_card(good, "GAIN", "GAIN    = nan")),
             "frame.fits: GAIN: must be a finite number, got nan");
-  EXPECT_EQ(error_of(with_card(good, "CTYPE1", "CTYPE1  = 'GLON-CAR'")),
-            "frame.fits: CTYPE1: must be RA---TAN, -ARC, -ZEA or -STG, with or without -SIP, got "
-            "GLON-CAR");
+  EXPECT_THAT(error_of(with_card(good, "CTYPE1", "CTYPE1  = 'GLON-CAR'")),
+              testing::AllOf(HasSubstr("frame.fits: CTYPE1: must be RA---TAN, -ARC, -ZEA, -STG"),
+                             HasSubstr(", with or without -SIP, got GLON-CAR")));
   EXPECT_EQ(error_of(with_card(good, "A_ORDER", "A_ORDER = 99")),
             "frame.fits: A_ORDER: must be in 1..9");
   EXPECT_EQ(error_of(with_card(good, "BZERO", "BZERO   = 0")),

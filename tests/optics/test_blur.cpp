@@ -200,8 +200,8 @@ TEST(Blur, RegistersTheDirectionsOfEveryProjectionOnBothPaths) {
         for (const RateImage& image :
              {by_transform(o, {&arc, 1}, one), directly(o, {&arc, 1}, one)}) {
           const PixelPosition seen = centroid(image);
-          EXPECT_NEAR(seen.x_px, mean.x_px, 0.01) << name(projection) << k << turn_deg;
-          EXPECT_NEAR(seen.y_px, mean.y_px, 0.01) << name(projection) << k << turn_deg;
+          EXPECT_NEAR(seen.x_px, mean.x_px, 0.01) << projection.name() << k << turn_deg;
+          EXPECT_NEAR(seen.y_px, mean.y_px, 0.01) << projection.name() << k << turn_deg;
         }
       }
     }

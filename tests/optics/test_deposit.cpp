@@ -185,8 +185,8 @@ TEST(Deposit, CentroidsAgreeWithTheRequestedDirectionsInEveryProjection) {
       draw({at(0), at(0.5), at(1), 1e5}, image);
       PixelPosition mean;
       for (int i = 0; i < 4000; ++i) mean = mean + at((i + 0.5) / 4000) * (1.0 / 4000);
-      EXPECT_NEAR(measured(image).x_px, mean.x_px, 0.01) << name(p) << turn_deg;
-      EXPECT_NEAR(measured(image).y_px, mean.y_px, 0.01) << name(p) << turn_deg;
+      EXPECT_NEAR(measured(image).x_px, mean.x_px, 0.01) << p.name() << turn_deg;
+      EXPECT_NEAR(measured(image).y_px, mean.y_px, 0.01) << p.name() << turn_deg;
     }
   }
 }

@@ -62,11 +62,11 @@ TEST(Projection, ThereAndBackOverTheFrameAndFarOutside) {
 TEST(Projection, NothingBehindTheCameraIsWrappedIntoTheImage) {
   EXPECT_FALSE(project(all_sky(Projection::gnomonic), {0.1, 0.0, -1.0}));
   EXPECT_FALSE(project(all_sky(Projection::gnomonic), {1.0, 0.0, 0.0}));
-  for (Projection p : projections) EXPECT_FALSE(project(all_sky(p), {0.0, 0.0, -1.0})) << name(p);
+  for (Projection p : projections) EXPECT_FALSE(project(all_sky(p), {0.0, 0.0, -1.0})) << p.name();
   for (Projection p : {Projection::equidistant, Projection::equisolid, Projection::stereographic}) {
     const auto pixel = project(all_sky(p), {std::sin(170 * deg), 0.0, std::cos(170 * deg)});
     ASSERT_TRUE(pixel);
-    EXPECT_GT(pixel->x_px, 3326) << name(p);
+    EXPECT_GT(pixel->x_px, 3326) << p.name();
   }
   const double f = all_sky(Projection::equisolid).focal_length_px();
   EXPECT_FALSE(unproject(all_sky(Projection::equisolid), {1662.5 + 2.001 * f, 1251.5}));
@@ -88,7 +88,7 @@ TEST(Projection, PixelSolidAngleIsThatOfItsCorners) {
         return 2 * std::atan2(dot(u, cross(v - u, w - u)), 1 + dot(u, v) + dot(v, w) + dot(w, u));
       };
       const double expected = triangle(a, b, c) + triangle(a, c, d);
-      EXPECT_NEAR(pixel_solid_angle_sr(o, at) / expected, 1.0, 2e-6) << name(p);
+      EXPECT_NEAR(pixel_solid_angle_sr(o, at) / expected, 1.0, 2e-6) << p.name();
     }
 }
 

@@ -70,7 +70,7 @@ TEST(WcsFit, FisheyesOf40DegKeepWithinATenthOfAPixel) {
   for (Projection p : {Projection::equidistant, Projection::equisolid, Projection::stereographic}) {
     const Optics optics = camera(p, 40);
     const Wcs w = fit_wcs(optics, refracted(optics, {0.2, 0.5, 0.6}, 2.0), {.order = 5});
-    EXPECT_LT(w.max_px, 0.1) << name(p);
+    EXPECT_LT(w.max_px, 0.1) << p.name();
   }
 }
 

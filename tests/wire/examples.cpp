@@ -81,6 +81,16 @@ SiteState site(Numbers& n, Tick tick) {
           .turbulence_m_per_s = n.in(1, 100)};
 }
 
+/// The row of the table of projections with the most coefficients; one that FITS has, or any.
+Projection calibrated(bool fits) {
+  Projection most = Projection::equisolid;
+  const auto rows = Projection::rows();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if ((rows[i].fits_code || !fits) && rows[i].coefficients.size() > most.coefficients().size())
+      most = Projection::make(i, std::vector<double>(rows[i].coefficients.size(), 0.01));
+  return most;
+}
+
 FrameReport report(Numbers& n) {
   FrameReport r;
   r.sensor = sensor;
@@ -98,10 +108,11 @@ FrameReport report(Numbers& n) {
            .order = 3};
   for (auto* polynomial : {&r.wcs.a, &r.wcs.b, &r.wcs.ap, &r.wcs.bp})
     for (int i = 0; i < 16; ++i) polynomial->push_back(n.in(-1e-5, 1e-5));
-  r.wcs.projection = Projection::equisolid;
+  r.wcs.projection = calibrated(true);
   const auto zenith = n.vec<CameraFrame>(1.0);
   r.wcs.refraction = {.zenith = unit(zenith),
                       .focal_length_px = n.in(100, 1000),
+                      .lens = calibrated(false),
                       .pressure_hpa = n.in(500, 1000),
                       .temperature_c = n.in(-20, 30),
                       .humidity = n.in(0, 1),
