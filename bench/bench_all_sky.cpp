@@ -13,6 +13,7 @@
 
 #include "bench/catalogue_file.h"
 #include "bench/figure.h"
+#include "bench/status_memory.h"
 #include "bench/timing.h"
 #include "core/base/text_file.h"
 #include "core/config/make_clock.h"
@@ -72,16 +73,6 @@ World world_of(const Scenario& scenario, Threads& threads) {
     for (const auto& message : environment.step(tick, {})) add(message);
   }
   return world;
-}
-
-/// A line of /proc/self/status [MB].
-double status_mb(const std::string& key) {
-  std::ifstream file("/proc/self/status");
-  std::string line;
-  while (std::getline(file, line))
-    if (line.starts_with(key + ":"))
-      return std::strtod(line.c_str() + key.size() + 1, nullptr) / 1e3;
-  return 0.0;
 }
 
 /// Most memory of this process [MB] while `work` runs, as the kernel counts it. Pages of libraries

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/figure.h"
+#include "bench/sightings_one_by_one.h"
 #include "bench/timing.h"
 #include "core/base/units.h"
 #include "core/orbit/catalogue.h"
@@ -66,7 +67,7 @@ Day whole_day(const std::vector<MeanElements>& elements, const SensorConfig& sen
   const SkyHours sky(clock, grid.from, grid.last());
   const Sgp4Batch batch(elements);
   const SensorTrack track(sensor, sky, batch, std::nullopt, std::nullopt);
-  day.seen = find_sightings(batch, track, grid, one, {.stays = false}).seen;
+  day.seen = find_sightings(batch, track, grid, one, {.intervals = false}).seen;
   for (const Sighting& s : day.seen) day.sunlit += s.sunlit >= lit_fraction;
   day.in_field = day.seen.size();
   day.cpu_s = thread_seconds() - start;

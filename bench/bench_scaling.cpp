@@ -15,9 +15,9 @@
 #include "bench/cost_clock.h"
 #include "bench/figure.h"
 #include "core/base/error.h"
-#include "nodes/runtime/broker.h"
-#include "nodes/runtime/master.h"
-#include "nodes/runtime/node.h"
+#include "nodes/runtime/broker/broker.h"
+#include "nodes/runtime/node/node.h"
+#include "time-master/master.h"
 
 namespace dmise {
 namespace {

@@ -11,11 +11,12 @@
 #include "bench/idle_nodes.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
-#include "nodes/runtime/log.h"
-#include "nodes/runtime/master.h"
-#include "nodes/runtime/node.h"
-#include "nodes/runtime/security.h"
-#include "nodes/runtime/socket.h"
+#include "nodes/runtime/node/node.h"
+#include "nodes/runtime/process/log.h"
+#include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/security/security.h"
+#include "nodes/runtime/transport/socket.h"
+#include "time-master/master.h"
 
 namespace dmise {
 namespace {

@@ -8,8 +8,8 @@
 #include "bench/figure.h"
 #include "bench/idle_nodes.h"
 #include "nodes/agent/host_agent.h"
-#include "nodes/runtime/master.h"
-#include "nodes/runtime/node.h"
+#include "nodes/runtime/node/node.h"
+#include "time-master/master.h"
 
 namespace dmise {
 namespace {

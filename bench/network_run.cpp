@@ -51,7 +51,7 @@ pid_t launch(const fs::path& scenario, const fs::path& out, const fs::path& log)
   const int fd = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   dup2(fd, STDOUT_FILENO);
   dup2(fd, STDERR_FILENO);
-  const std::string program = fs::read_symlink("/proc/self/exe");
+  const std::string program = fs::read_symlink("/proc/self/exe").parent_path() / "dmise";
   execl(program.c_str(), program.c_str(), "launch", scenario.c_str(), "--out", out.c_str(),
         "--force", nullptr);
   _exit(127);

@@ -1,5 +1,4 @@
 #include "bench/sgp4_scale.h"
-#include "bench/timing.h"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,19 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "bench/status_memory.h"
+#include "bench/timing.h"
 #include "core/base/error.h"
-#include "core/base/text_file.h"
 #include "core/orbit/sgp4_batch.h"
 #include "core/orbit/synthetic_catalogue.h"
 
 namespace dmise {
 namespace {
-
-double peak_mb() {
-  const std::string status = read_text_file("/proc/self/status");
-  const std::size_t at = status.find("VmHWM:");
-  return at == std::string::npos ? 0.0 : std::atof(status.c_str() + at + 6) * 1024e-6;
-}
 
 Sgp4Scale measure(std::size_t objects, bool keep_elements) {
   constexpr std::size_t piece = 4096;
@@ -46,7 +40,8 @@ Sgp4Scale measure(std::size_t objects, bool keep_elements) {
     if (k > 0) times_s.push_back(thread_seconds() - start);  // the first one touches the arrays
   }
   std::nth_element(times_s.begin(), times_s.begin() + long(calls / 2), times_s.end());
-  return {.ns_per_object = 1e9 * times_s[calls / 2] / double(objects), .peak_mb = peak_mb()};
+  return {.ns_per_object = 1e9 * times_s[calls / 2] / double(objects),
+          .peak_mb = status_mb("VmHWM")};
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // dmise-broker: passes messages from publishers to subscribers, from the start of a run to its end.
 #include "core/base/error.h"
-#include "nodes/runtime/broker.h"
-#include "nodes/runtime/command_line.h"
-#include "nodes/runtime/program.h"
+#include "nodes/runtime/broker/broker.h"
+#include "nodes/runtime/program/command_line.h"
+#include "nodes/runtime/program/program.h"
 
 int main(int argc, char** argv) {
   dmise::CommonFlags flags{.name = "broker"};

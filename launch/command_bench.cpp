@@ -1,23 +1,35 @@
-#include <CLI/CLI.hpp>
-#include <memory>
+#include <unistd.h>
 
-#include "bench/benches.h"
+#include <CLI/CLI.hpp>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
 #include "launch/commands.h"
+#include "launch/supervisor.h"
 
 namespace dmise {
+namespace {
+
+/// Becomes the program of the benches. Throws `Error` when there is none.
+[[noreturn]] void become_bench(std::vector<std::string> arguments) {
+  const std::string program = program_directory() + "/dmise-bench";
+  arguments.insert(arguments.begin(), program);
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  execv(program.c_str(), argv.data());
+  throw Error(program + ": " + std::strerror(errno));
+}
+
+}  // namespace
 
 void add_bench_command(CLI::App& app) {
   auto* command = app.add_subcommand("bench", "Measures; with --json one object a line");
-  command->require_subcommand(1);
-  for (const auto& bench : benches()) {
-    auto json = std::make_shared<bool>(false);
-    auto* one = command->add_subcommand(bench.name, bench.what);
-    one->add_flag("--json", *json, "one JSON object a line");
-    if (bench.add_options) bench.add_options(*one);
-    one->callback([json, run = bench.run] {
-      if (const int code = run(*json)) throw ExitWith{code};
-    });
-  }
+  command->set_help_flag();  // the benches' program has its own
+  command->prefix_command();
+  command->callback([command] { become_bench(command->remaining()); });
 }
 
 }  // namespace dmise

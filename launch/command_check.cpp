@@ -13,7 +13,7 @@
 #include "launch/commands.h"
 #include "launch/host_names.h"
 #include "launch/scenario_outlook.h"
-#include "nodes/runtime/security.h"
+#include "nodes/runtime/security/security.h"
 #include "sensors/outlook/outlook_text.h"
 #include "sensors/pipeline/make_sensor.h"
 #include "sensors/positions/positions_evaluator.h"

@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "launch/commands.h"
 #include "launch/node_health.h"
-#include "nodes/runtime/command_line.h"
+#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 namespace {

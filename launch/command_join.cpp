@@ -21,11 +21,11 @@
 #include "launch/own_address.h"
 #include "launch/run_directory.h"
 #include "launch/supervisor.h"
-#include "nodes/runtime/command_line.h"
-#include "nodes/runtime/event.h"
-#include "nodes/runtime/master.h"
-#include "nodes/runtime/status.h"
+#include "nodes/runtime/observability/status.h"
+#include "nodes/runtime/process/event.h"
+#include "nodes/runtime/program/command_line.h"
 #include "sensors/positions/positions_evaluator.h"
+#include "time-master/master.h"
 
 namespace dmise {
 namespace {

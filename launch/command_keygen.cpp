@@ -9,7 +9,7 @@
 #include "core/config/scenario.h"
 #include "launch/commands.h"
 #include "launch/host_names.h"
-#include "nodes/runtime/security.h"
+#include "nodes/runtime/security/security.h"
 #include "sensors/positions/positions_evaluator.h"
 
 namespace dmise {

@@ -20,7 +20,7 @@
 #include "launch/run_record.h"
 #include "launch/scenario_outlook.h"
 #include "nodes/environment/environment_actor.h"
-#include "nodes/runtime/event.h"
+#include "nodes/runtime/process/event.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/make_sensor.h"
 #include "sensors/positions/positions_evaluator.h"

@@ -10,11 +10,11 @@
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
+#include "core/sim/run_phase.h"
 #include "launch/commands.h"
-#include "nodes/runtime/command_line.h"
-#include "nodes/runtime/event.h"
-#include "nodes/runtime/phase_name.h"
-#include "nodes/runtime/status.h"
+#include "nodes/runtime/observability/status.h"
+#include "nodes/runtime/process/event.h"
+#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 namespace {

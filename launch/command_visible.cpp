@@ -119,7 +119,7 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
                        progress.show_share(share, sensor.name + ": looking for objects in sight");
                      }});
   progress.show_share(1.0, sensor.name + ": following passes");
-  std::vector<Pass> passes = passes_of(batch, track, found.stays, threads);
+  std::vector<Pass> passes = passes_of(batch, track, found.intervals, threads);
   progress.clear_line();
   std::erase_if(passes, [&](const Pass& p) { return !wanted(p, options); });
   std::sort(passes.begin(), passes.end(), [&](const Pass& a, const Pass& b) {

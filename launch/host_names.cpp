@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "nodes/runtime/keys.h"
+#include "nodes/runtime/security/keys.h"
 
 namespace dmise {
 

@@ -6,7 +6,7 @@
 #include "core/base/printable.h"
 #include "core/base/version.h"
 #include "launch/commands.h"
-#include "nodes/runtime/command_line.h"
+#include "nodes/runtime/program/command_line.h"
 
 int main(int argc, char** argv) {
   dmise::return_large_blocks();

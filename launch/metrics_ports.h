@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "nodes/runtime/metrics.h"
+#include "nodes/runtime/observability/metrics.h"
 
 namespace dmise {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "nodes/runtime/status.h"
+#include "nodes/runtime/observability/status.h"
 
 namespace dmise {
 

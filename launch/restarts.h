@@ -6,7 +6,7 @@
 
 #include "core/config/scenario.h"
 #include "launch/supervisor.h"
-#include "nodes/runtime/status.h"
+#include "nodes/runtime/observability/status.h"
 
 namespace dmise {
 

@@ -3,8 +3,8 @@
 
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
-#include "nodes/runtime/node.h"
-#include "nodes/runtime/program.h"
+#include "nodes/runtime/node/node.h"
+#include "nodes/runtime/program/program.h"
 #include "orbit-node/orbit_actor.h"
 
 int main(int argc, char** argv) {

@@ -12,12 +12,6 @@ constexpr Tick no_tick = std::numeric_limits<Tick>::max();
 
 }  // namespace
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 Coordinator::Coordinator(CoordinatorOptions options, Instant now)
     : options_(std::move(options)),
       pace_(options_.pace, options_.first_tick),

@@ -7,10 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/sim/run_phase.h"
+#include "core/sim/tally.h"
 #include "core/sim/topic_graph.h"
 #include "time-master/pace.h"
 #include "time-master/pulse.h"
-#include "time-master/tally.h"
 
 namespace dmise {
 
@@ -19,14 +20,6 @@ enum class SilentPolicy {
   fail,  // the run ends with that as its cause
   wait,  // the clock stands until the node is heard again, or another process joins under its name
   drop,  // the run goes on without it
-};
-
-enum class Phase {
-  gathering,   // expected nodes join
-  connecting,  // all have joined, each makes sure that it hears what it needs
-  running,
-  ended,   // every tick is done
-  failed,  // see cause()
 };
 
 struct CoordinatorOptions : PulseLimits {
@@ -106,8 +99,8 @@ class Coordinator {
   void found_behind(const std::string& name, std::uint64_t incarnation);
   void fail_behind(const std::string& name, std::uint64_t incarnation, const std::string& reason);
   /// For those who ask: whom it waits for, and what each has done.
-  void tell_of(const std::string& agent, std::vector<std::string> waits_for,
-               const std::map<std::string, Tick>& done);
+  void report_behind(const std::string& agent, std::vector<std::string> waits_for,
+                     const std::map<std::string, Tick>& done);
 
   /// Ends a run that has not ended, from outside, at once.
   void stop(const std::string& reason);
@@ -220,8 +213,5 @@ class Coordinator {
   std::optional<Instant> next_check_;
   Instant next_look_{0};  // for the stalled
 };
-
-/// "a, b, c"
-std::string joined(const std::vector<std::string>& names);
 
 }  // namespace dmise

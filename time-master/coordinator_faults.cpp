@@ -1,6 +1,7 @@
 // Who dies, hangs, falls silent or leaves, and what becomes of the run.
 #include <algorithm>
 
+#include "core/base/printable.h"
 #include "time-master/coordinator.h"
 
 namespace dmise {

@@ -103,8 +103,8 @@ void Coordinator::fail_behind(const std::string& name, std::uint64_t incarnation
   if (behind(name, incarnation)) fail_run(name + ": " + reason);
 }
 
-void Coordinator::tell_of(const std::string& agent, std::vector<std::string> waits_for,
-                          const std::map<std::string, Tick>& done) {
+void Coordinator::report_behind(const std::string& agent, std::vector<std::string> waits_for,
+                                const std::map<std::string, Tick>& done) {
   if (Member* member = active(agent)) member->waits_for = std::move(waits_for);
   for (const auto& [name, tick] : done)
     if (const auto found = behind_.find(name);

@@ -1,6 +1,7 @@
 // Who joins, takes another's place, watches, and when all are there.
 #include <algorithm>
 
+#include "core/base/printable.h"
 #include "time-master/coordinator.h"
 
 namespace dmise {

@@ -1,8 +1,8 @@
 // dmise-time-master: keeps the clock of one run, from the first node that joins to the last tick.
 #include "core/base/whole_file.h"
-#include "nodes/runtime/command_line.h"
-#include "nodes/runtime/master.h"
-#include "nodes/runtime/program.h"
+#include "nodes/runtime/program/command_line.h"
+#include "nodes/runtime/program/program.h"
+#include "time-master/master.h"
 
 namespace {
 

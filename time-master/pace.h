@@ -2,12 +2,10 @@
 #include <chrono>
 #include <optional>
 
+#include "core/base/instant.h"
 #include "core/base/sim_time.h"
 
 namespace dmise {
-
-/// Wall-clock time since any fixed instant; handed in, never read here.
-using Instant = std::chrono::nanoseconds;
 
 struct PaceOptions {
   SimTime tick_length{1'000'000'000};

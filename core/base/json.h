@@ -5,9 +5,9 @@
 
 namespace dmise {
 
-/// Writes one JSON value, keys in the order they are given. Doubles are the shortest text that reads
-/// back to the same bits, so equal values are equal bytes; NaN and infinities throw `Error` with the
-/// key: no NaN leaves the program.
+/// Writes one JSON value, keys in the order they are given. Doubles are the shortest text that
+/// reads back to the same bits, so equal values are equal bytes; NaN and infinities throw `Error`
+/// with the key: no NaN leaves the program.
 class JsonWriter {
  public:
   JsonWriter& begin_object();

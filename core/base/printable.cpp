@@ -66,4 +66,10 @@ std::string printable(std::string_view text, std::size_t most_bytes) {
   return out;
 }
 
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
 }  // namespace dmise

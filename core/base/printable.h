@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace dmise {
 
@@ -9,5 +10,8 @@ namespace dmise {
 /// \u202e), bytes that are no UTF-8 become \xff. The rest stays, a backslash too. More than
 /// `most_bytes` of it are cut, with "... (N bytes)".
 std::string printable(std::string_view text, std::size_t most_bytes = 1000);
+
+/// "a, b, c"
+std::string joined(const std::vector<std::string>& names);
 
 }  // namespace dmise

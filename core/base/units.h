@@ -12,10 +12,10 @@ inline constexpr double mas = arcsec * 1e-3;
 inline constexpr double km = 1e3;
 inline constexpr double um = 1e-6;
 inline constexpr double nm = 1e-9;
-inline constexpr double au_m = 149597870700.0;            // IAU 2012 Resolution B2
+inline constexpr double au_m = 149597870700.0;  // IAU 2012 Resolution B2
 inline constexpr double speed_of_light_m_per_s = 299792458.0;
-inline constexpr double planck_j_s = 6.62607015e-34;      // SI 2019
-inline constexpr double boltzmann_j_per_k = 1.380649e-23; // SI 2019
+inline constexpr double planck_j_s = 6.62607015e-34;       // SI 2019
+inline constexpr double boltzmann_j_per_k = 1.380649e-23;  // SI 2019
 inline constexpr double day_s = 86400.0;
 
 }  // namespace dmise

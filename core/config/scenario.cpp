@@ -37,8 +37,8 @@ void check_whole_ticks(const Scenario& scenario, const YamlValue& duration) {
     std::snprintf(text, sizeof text, "%.12g", SimTime{ticks * tick_ns}.seconds());
     return std::string(text);
   };
-  duration.fail("must be a whole number of ticks (tick_s: " + seconds_of(1) + "): " +
-                (whole > 0 ? seconds_of(whole) + " or " : "") + seconds_of(whole + 1));
+  duration.fail("must be a whole number of ticks (tick_s: " + seconds_of(1) +
+                "): " + (whole > 0 ? seconds_of(whole) + " or " : "") + seconds_of(whole + 1));
 }
 
 void read_simulation(const YamlValue& value, Scenario& scenario) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/detection/wcs.h"
 #include "core/sky/airmass.h"
+#include "core/wcs/wcs.h"
 
 namespace dmise {
 

@@ -9,7 +9,7 @@
 #include "core/detection/atmosphere.h"
 #include "core/detection/mid_exposure.h"
 #include "core/detection/refraction_parallax.h"
-#include "core/detection/wcs.h"
+#include "core/wcs/wcs.h"
 
 namespace dmise {
 namespace {

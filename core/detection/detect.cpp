@@ -14,7 +14,7 @@
 #include "core/detection/scene.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_motion.h"
-#include "core/detection/wcs.h"
+#include "core/wcs/wcs.h"
 
 namespace dmise {
 namespace {

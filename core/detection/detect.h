@@ -3,8 +3,8 @@
 
 #include "core/base/image.h"
 #include "core/base/parallel.h"
-#include "core/detection/detection.h"
-#include "core/image/frame_header.h"
+#include "core/products/detection.h"
+#include "core/products/frame_header.h"
 
 namespace dmise {
 

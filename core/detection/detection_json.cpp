@@ -4,7 +4,7 @@
 
 #include "core/base/json.h"
 #include "core/base/units.h"
-#include "core/detection/wcs.h"
+#include "core/wcs/wcs.h"
 
 namespace dmise {
 namespace {

@@ -2,8 +2,8 @@
 #include <functional>
 #include <string>
 
-#include "core/detection/detection.h"
-#include "core/detection/truth.h"
+#include "core/products/detection.h"
+#include "core/products/truth.h"
 
 namespace dmise {
 

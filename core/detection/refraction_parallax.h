@@ -1,5 +1,5 @@
 #pragma once
-#include "core/image/frame_header.h"
+#include "core/products/frame_header.h"
 
 namespace dmise {
 

@@ -25,8 +25,8 @@ struct Scene {
   /// Not clipped itself, nor the pixel that takes what is left of a neighbour's overflow.
   bool tells_light(int x, int y) const {
     if (saturated(x, y)) return false;
-    return !blooming || !((y > 0 && saturated(x, y - 1)) ||
-                          (y + 1 < counts.rows && saturated(x, y + 1)));
+    return !blooming ||
+           !((y > 0 && saturated(x, y - 1)) || (y + 1 < counts.rows && saturated(x, y + 1)));
   }
   FitPixel pixel(int x, int y) const {
     const double noise_e = background.sigma_dn(x, y) * gain_e_per_dn;

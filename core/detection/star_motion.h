@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "core/base/pixel.h"
-#include "core/image/frame_header.h"
+#include "core/products/frame_header.h"
 
 namespace dmise {
 

@@ -26,21 +26,31 @@ struct Vec {
 };
 
 template <class F>
-Vec<F> operator*(double s, const Vec<F>& v) { return v * s; }
+Vec<F> operator*(double s, const Vec<F>& v) {
+  return v * s;
+}
 template <class F>
-double dot(const Vec<F>& a, const Vec<F>& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+double dot(const Vec<F>& a, const Vec<F>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 template <class F>
 Vec<F> cross(const Vec<F>& a, const Vec<F>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 template <class F>
-double norm(const Vec<F>& v) { return std::sqrt(dot(v, v)); }
+double norm(const Vec<F>& v) {
+  return std::sqrt(dot(v, v));
+}
 /// Unit vector along `v`; `v` must not be zero.
 template <class F>
-Vec<F> unit(const Vec<F>& v) { return v / norm(v); }
+Vec<F> unit(const Vec<F>& v) {
+  return v / norm(v);
+}
 /// Angle between two directions [rad, 0..pi], accurate at every angle.
 template <class F>
-double angle_rad(const Vec<F>& a, const Vec<F>& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
+double angle_rad(const Vec<F>& a, const Vec<F>& b) {
+  return std::atan2(norm(cross(a, b)), dot(a, b));
+}
 
 /// Rotation of axes: `Rotation<To, From> to_from; Vec<To> v = to_from * w` with `Vec<From> w`.
 /// Frames cancel side by side; the wrong order does not compile.

@@ -7,9 +7,9 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/detection/wcs.h"
 #include "core/detector/detector_figures.h"
 #include "core/image/observation_cards.h"
+#include "core/wcs/wcs.h"
 
 namespace dmise {
 namespace {

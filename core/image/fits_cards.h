@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image/frame_header.h"
+#include "core/products/frame_header.h"
 
 namespace dmise {
 

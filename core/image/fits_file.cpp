@@ -8,13 +8,13 @@
 #include "core/base/error.h"
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
-#include "core/detection/wcs_refraction.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_guard.h"
 #include "core/image/fits_memory.h"
 #include "core/image/plain_image.h"
 #include "core/image/rice.h"
 #include "core/image/tiled_image.h"
+#include "core/wcs/wcs_refraction.h"
 
 namespace dmise {
 namespace {
@@ -136,7 +136,8 @@ std::vector<std::string> frame_cards(const CountImage& counts, const FrameHeader
 }
 
 /// What moves pixels along an axis, for readers that know CPDISj = 'LOOKUP'. astropy, which is the
-/// one in use, takes the node of a pixel as (pixel - CRVAL) / CDELT + CRPIX with both counted from 0.
+/// one in use, takes the node of a pixel as (pixel - CRVAL) / CDELT + CRPIX with both counted from
+/// 0.
 void put_shift_tables(const ByteSink& file, const CountImage& counts, const Wcs& wcs) {
   if (!wcs.refraction) return;
   const ShiftTable table = shift_table(wcs, counts.columns, counts.rows);
@@ -150,7 +151,8 @@ void put_shift_tables(const ByteSink& file, const CountImage& counts, const Wcs&
       cards.push_back(number_card("CRVAL" + k, ShiftTable::first_px, "its pixel; the first is 0"));
       cards.push_back(number_card("CDELT" + k, table.cell_px, "[px]"));
     }
-    put_image(file, FitsPlace::extension, axis == 1 ? table.x_px : table.y_px, table.columns, cards);
+    put_image(file, FitsPlace::extension, axis == 1 ? table.x_px : table.y_px, table.columns,
+              cards);
   }
 }
 

@@ -4,7 +4,7 @@
 
 #include "core/base/image.h"
 #include "core/detector/pixel_flags.h"
-#include "core/image/frame_header.h"
+#include "core/products/frame_header.h"
 
 namespace dmise {
 
@@ -18,8 +18,8 @@ enum class FitsCompression { none, rice };
 
 /// A FITS file in memory: 16-bit unsigned (BZERO 32768), row 0 first; with Rice compression a tiled
 /// image (RICE_1) in the first extension. `flags` follow as an 8-bit image in an extension of the
-/// name FLAGS, compressed as the counts are; a WCS with refraction has two lookup tables at the end,
-/// WCSDVARR. Equal input gives equal bytes. Throws `Error`.
+/// name FLAGS, compressed as the counts are; a WCS with refraction has two lookup tables at the
+/// end, WCSDVARR. Equal input gives equal bytes. Throws `Error`.
 std::string encode_frame(const CountImage& counts, const FrameHeader& header,
                          FitsCompression compression = FitsCompression::none,
                          const FlagImage* flags = nullptr);

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/base/units.h"
-#include "core/detection/wcs.h"
 #include "core/image/drawing.h"
+#include "core/wcs/wcs.h"
 
 namespace dmise {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 #include <vector>
 
-#include "core/detection/detection.h"
-#include "core/detection/truth.h"
-#include "core/image/frame_header.h"
 #include "core/image/picture.h"
+#include "core/products/detection.h"
+#include "core/products/frame_header.h"
+#include "core/products/truth.h"
 
 namespace dmise {
 

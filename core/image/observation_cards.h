@@ -1,5 +1,5 @@
 #pragma once
-#include "core/image/observation.h"
+#include "core/products/observation.h"
 
 namespace dmise {
 

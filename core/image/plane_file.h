@@ -2,7 +2,7 @@
 #include <string>
 
 #include "core/base/image.h"
-#include "core/image/frame_header.h"
+#include "core/products/frame_header.h"
 
 namespace dmise {
 

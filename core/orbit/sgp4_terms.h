@@ -43,11 +43,11 @@ struct SecularTerms {
   T m, m_dot;        // mean anomaly; rates hold the Sun's and Moon's share for deep space
   T argp, argp_dot;  // argument of perigee
   T node, node_dot, node_t2;
-  T e, e_dot;           // near: e includes B* C5 sin M0
-  T a_t;                // semi-major axis / a0 = (1 - a_t t - ...)^2
-  T l_t2;               // mean longitude, drag: l_t2 t^2 + ...
-  T sqrt_a0;            // square root of the semi-major axis at epoch [Earth radii^1/2]
-  T farthest_m;         // 2.2 a (1 + e)
+  T e, e_dot;    // near: e includes B* C5 sin M0
+  T a_t;         // semi-major axis / a0 = (1 - a_t t - ...)^2
+  T l_t2;        // mean longitude, drag: l_t2 t^2 + ...
+  T sqrt_a0;     // square root of the semi-major axis at epoch [Earth radii^1/2]
+  T farthest_m;  // 2.2 a (1 + e)
 };
 
 template <class T>

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/sim/said_once.h"
+#include "core/sim/retained.h"
 #include "core/sim/topic_graph.h"
 
 namespace dmise {
@@ -67,8 +67,9 @@ void SimulationController::run(Tick last, const std::function<bool(Tick)>& after
           auto& messages = waiting[i][topic];
           // What is left of ticks that nobody looks back to.
           const Tick needed = start - node.look_back - (node.schedule.period - 1);
-          std::erase_if(messages,
-                        [&](const Message& m) { return m.tick < needed && !said_once(*m.state); });
+          std::erase_if(messages, [&](const Message& m) {
+            return m.tick < needed && !is_retained(*m.state);
+          });
           std::move(messages.begin(), messages.end(), std::back_inserter(inputs));
           messages.clear();
         }

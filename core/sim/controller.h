@@ -14,9 +14,9 @@ class SimulationController {
   /// Throws `Error` if a consumed topic has no producer, has two, or producers wait for each other.
   explicit SimulationController(std::vector<std::unique_ptr<Participant>> participants);
 
-  /// Runs ticks first..last. After each tick `after_tick(tick)` decides whether to go on. With `first`
-  /// > 0 the work of an earlier process is taken up: each participant resumes so early that those who
-  /// depend on it can look back.
+  /// Runs ticks first..last. After each tick `after_tick(tick)` decides whether to go on. With
+  /// `first` > 0 the work of an earlier process is taken up: each participant resumes so early that
+  /// those who depend on it can look back.
   void run(Tick last, const std::function<bool(Tick)>& after_tick, Tick first = 0);
 
   const std::vector<std::unique_ptr<Participant>>& participants() const { return participants_; }

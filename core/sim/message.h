@@ -4,8 +4,8 @@
 #include <variant>
 #include <vector>
 
-#include "core/detection/detection.h"
-#include "core/detection/truth.h"
+#include "core/products/detection.h"
+#include "core/products/truth.h"
 #include "core/sim/state.h"
 
 namespace dmise {
@@ -29,9 +29,8 @@ struct TruthSet {
 
 /// The State interface: everything that actors and evaluators tell each other. To add one: list it
 /// here, give it a message in proto/ and a pair of functions in nodes/wire.
-using State =
-    std::variant<ObjectRoster, ObjectStates, EnvironmentState, FrameReport, DetectionSet, TruthSet,
-                 SiteState>;
+using State = std::variant<ObjectRoster, ObjectStates, EnvironmentState, FrameReport, DetectionSet,
+                           TruthSet, SiteState>;
 
 /// One state, published on a topic for a tick. A topic may carry none, one or several a tick.
 struct Message {
@@ -43,9 +42,9 @@ struct Message {
 // Topics. A sensor's own are `prefix + sensor name`.
 inline constexpr const char* objects_topic = "state/objects";  // roster (tick 0), then states
 inline constexpr const char* environment_topic = "env/common";
-inline constexpr const char* site_prefix = "env/site/";        // the air over a ground sensor
+inline constexpr const char* site_prefix = "env/site/";  // the air over a ground sensor
 inline constexpr const char* frame_prefix = "frame/";
 inline constexpr const char* detection_prefix = "detection/";
-inline constexpr const char* truth_prefix = "truth/";          // own endpoint, own security domain
+inline constexpr const char* truth_prefix = "truth/";  // own endpoint, own security domain
 
 }  // namespace dmise

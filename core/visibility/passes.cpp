@@ -189,21 +189,21 @@ void describe(const Follower& object, SimTime rise, SimTime set, Pass& pass) {
 }  // namespace
 
 std::vector<Pass> passes_of(const Sgp4Batch& batch, const SensorTrack& track,
-                            const std::vector<Stay>& stays, Threads& threads) {
+                            const std::vector<VisibilityInterval>& intervals, Threads& threads) {
   const Sight sight(track.sensor());
-  std::vector<Pass> passes(stays.size());
-  threads.for_ranges(stays.size(), 16, [&](std::size_t begin, std::size_t end) {
+  std::vector<Pass> passes(intervals.size());
+  threads.for_ranges(intervals.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Stay& stay = stays[k];
-      const Follower object(batch, track, sight, stay.object);
+      const VisibilityInterval& interval = intervals[k];
+      const Follower object(batch, track, sight, interval.object);
       const auto visible = [&](const Place& p) { return object.visible(p); };
       Pass& pass = passes[k];
-      pass.object = stay.object;
-      pass.open_start = stay.open_start;
-      pass.open_end = stay.open_end;
-      SimTime rise = stay.in_first, set = stay.in_last;
-      if (!stay.open_start) rise = object.turning(stay.out_before, rise, false, visible);
-      if (!stay.open_end) set = object.turning(set, stay.out_after, true, visible);
+      pass.object = interval.object;
+      pass.open_start = interval.open_start;
+      pass.open_end = interval.open_end;
+      SimTime rise = interval.in_first, set = interval.in_last;
+      if (!interval.open_start) rise = object.turning(interval.out_before, rise, false, visible);
+      if (!interval.open_end) set = object.turning(set, interval.out_after, true, visible);
       describe(object, rise, set, pass);
     }
   });

@@ -16,7 +16,7 @@ struct PassMoment {
   std::optional<double> sun_elevation_rad;  // at the site; none in orbit
 };
 
-/// One stay of an object in a sensor's sight.
+/// An object's passage through a sensor's sight.
 struct Pass {
   std::uint32_t object = 0;
   PassMoment rise, top, set;  // top: highest over a site, nearest to a sensor in orbit
@@ -31,9 +31,9 @@ struct Pass {
 /// Rise, set and shadow are found to this, the top within a tenth of a second.
 inline constexpr double event_error_s = 0.01;
 
-/// The passes that stays are: rise and set refined, the rest looked up along the way. In the order
-/// of the stays.
+/// The pass of each interval: rise and set refined, the rest looked up along the way. In the order
+/// of the intervals.
 std::vector<Pass> passes_of(const Sgp4Batch& batch, const SensorTrack& track,
-                            const std::vector<Stay>& stays, Threads& threads);
+                            const std::vector<VisibilityInterval>& intervals, Threads& threads);
 
 }  // namespace dmise

@@ -6,8 +6,8 @@
 
 #include "core/visibility/batch_states.h"
 #include "core/visibility/camera_motion.h"
+#include "core/visibility/crossing.h"
 #include "core/visibility/orbit_bound.h"
-#include "core/visibility/touch.h"
 
 namespace dmise {
 namespace {
@@ -62,7 +62,7 @@ class Search {
   struct Found {
     std::vector<Sighting> seen;
     std::vector<SeenRun> runs;
-    std::vector<Stay> crossings;
+    std::vector<VisibilityInterval> crossings;
   };
 
   void propagate(std::size_t step, BatchStates& states) const {
@@ -207,7 +207,7 @@ class Search {
         if (visible[k] && (begin + k > from || from == 0))
           note(object, begin + k, range, [&] { return s.light(begin + k).fraction(p); });
       }
-      if (!s.options_.stays) return;
+      if (!s.options_.intervals) return;
       for (std::size_t k = 0; k + 1 < count; ++k) {
         const bool none = code[k] && code[k + 1];
         const bool there = s.camera(begin + k).there || s.camera(begin + k + 1).there;
@@ -221,7 +221,7 @@ class Search {
     void note(std::uint32_t object, std::size_t step, double range_m, Sunlit&& sunlit) {
       if (const auto of_grid = search.grid_.of_grid(step))
         found.seen.push_back({object, *of_grid, range_m, sunlit()});
-      if (!search.options_.stays) return;
+      if (!search.options_.intervals) return;
       auto& runs = found.runs;
       if (!runs.empty() && runs.back().object == object && runs.back().last + 1 == step)
         ++runs.back().last;
@@ -234,7 +234,7 @@ class Search {
                       double range_m) {
       const Search& s = search;
       const SimTime a = s.grid_.at(step), b = s.grid_.at(step + 1);
-      const auto when = touch_between(
+      const auto when = crossing_between(
           a, std::max(hidden_a_m, 0.0), b, std::max(hidden_b_m, 0.0), shortest_crossing_s,
           [&](double from_m, double to_m, double seconds) {
             return s.may_come(object, from_m, to_m, range_m, seconds, s.motion(step));
@@ -262,12 +262,12 @@ class Search {
     for (const Found& f : found_)
       for (const Sighting& s : f.seen) all.seen[place[s.object]++] = s;
     std::vector<SeenRun> runs;
-    std::vector<Stay> crossings;
+    std::vector<VisibilityInterval> crossings;
     for (const Found& f : found_) {
       runs.insert(runs.end(), f.runs.begin(), f.runs.end());
       crossings.insert(crossings.end(), f.crossings.begin(), f.crossings.end());
     }
-    all.stays = stays_of(std::move(runs), std::move(crossings), grid_);
+    all.intervals = intervals_of(std::move(runs), std::move(crossings), grid_);
     for (const auto& [object, lost] : lost_) all.lost.push_back(lost);
     return all;
   }

@@ -4,8 +4,8 @@
 
 #include "core/base/parallel.h"
 #include "core/visibility/sight.h"
-#include "core/visibility/stays.h"
 #include "core/visibility/time_grid.h"
+#include "core/visibility/visibility_interval.h"
 
 namespace dmise {
 
@@ -27,30 +27,26 @@ struct LostObject {
 };
 
 struct Sightings {
-  std::vector<Sighting> seen;    // by object, then time
-  std::vector<Stay> stays;       // by object, then time
-  std::vector<LostObject> lost;  // by object
+  std::vector<Sighting> seen;                 // by object, then time
+  std::vector<VisibilityInterval> intervals;  // by object, then time
+  std::vector<LostObject> lost;               // by object
 };
 
 struct SightingOptions {
-  bool stays = true;
+  bool intervals = true;
   std::function<void(double share)> progress;  // called from the calling thread, share in [0, 1]
 };
 
-/// A stay that lasts no longer than this may be missed.
+/// An interval that lasts no longer than this may be missed.
 inline constexpr double shortest_crossing_s = 0.02;
 
 /// Who is visible when: equal, to the bit, to asking `Sight` about every object at every instant,
 /// for a small part of the work. States some minutes apart and a bound on each object's speed
 /// (`orbit_bound`) say between which instants it can't come into sight; only the rest is looked at,
-/// and cut in halves between instants, so that what crosses between them is found as well. Stays
-/// are looked for every 10 s where the grid is coarser, so that they do not depend on it; an
-/// absence shorter than that is not noticed.
+/// and cut in halves between instants, so that what crosses between them is found as well.
+/// Intervals are looked for every 10 s where the grid is coarser, so that they do not depend on it;
+/// an absence shorter than that is not noticed.
 Sightings find_sightings(const Sgp4Batch& batch, const SensorTrack& track, const TimeGrid& grid,
                          Threads& threads, const SightingOptions& options = {});
-
-/// The same by asking for every object at every instant: slow, for comparison. No stays.
-Sightings find_sightings_one_by_one(const Sgp4Batch& batch, const SensorTrack& track,
-                                    const TimeGrid& grid);
 
 }  // namespace dmise

@@ -3,21 +3,22 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include <ctime>
 #include <mutex>
 
 #include "core/base/error.h"
 #include "core/base/whole_file.h"
-#include "nodes/agent/host_voice.h"
-#include "nodes/runtime/broker_place.h"
-#include "nodes/runtime/control_rules.h"
-#include "nodes/runtime/master_link.h"
-#include "nodes/runtime/master_words.h"
-#include "nodes/runtime/own_name.h"
-#include "nodes/runtime/peer_monitor.h"
-#include "nodes/runtime/relay.h"
-#include "nodes/runtime/topic_owners.h"
-#include "time-master/host_barrier.h"
+#include "nodes/agent/host_barrier.h"
+#include "nodes/agent/host_publisher.h"
+#include "nodes/runtime/master_link/master_link.h"
+#include "nodes/runtime/process/cpu_time.h"
+#include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/protocol/control_rules.h"
+#include "nodes/runtime/protocol/topic_owners.h"
+#include "nodes/runtime/transport/broker_place.h"
+#include "nodes/runtime/transport/own_name.h"
+#include "nodes/runtime/transport/peer_monitor.h"
+#include "nodes/runtime/transport/relay.h"
+#include "time-master/master_messages.h"
 
 namespace dmise {
 namespace {
@@ -35,13 +36,6 @@ constexpr milliseconds drained{50};     // nothing more comes when it was quiet 
 /// Another address of the same host.
 std::string beside(const std::string& address, const std::string& what) {
   return address.starts_with("tcp://") ? any_port(address) : address + "-" + what;
-}
-
-/// Seconds of all threads of this process.
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
 nanoseconds from_seconds(double s) { return duration_cast<nanoseconds>(duration<double>(s)); }
@@ -83,7 +77,7 @@ class HostAgent {
         connections_(context_, router_, bytes_alone(max_unheard_bytes)),
         subscriptions_(context_, subscribers_, bytes_alone(max_subscriptions_bytes)),
         tick_subscriptions_(context_, ticks_, bytes_alone(max_subscriptions_bytes)),
-        voice_(router_, ticks_, directory_) {
+        publisher_(router_, ticks_, directory_) {
     for (auto* socket : {&router_, &ticks_, &subscribers_}) socket->set(zmq::sockopt::linger, 500);
     to_broker_.set(zmq::sockopt::linger, 1000);
     ticks_.set(zmq::sockopt::sndhwm, max_unread);
@@ -124,10 +118,10 @@ class HostAgent {
         next_check = now() + (connecting ? connecting_interval : check_interval);
       }
       speak();
-      voice_.say(due && (link_.phase() == v1::PHASE_CONNECTING || over()));
-      if (link_.phase() == v1::PHASE_RUNNING && cpu_began_ < 0) cpu_began_ = cpu_seconds();
+      publisher_.say(due && (link_.phase() == v1::PHASE_CONNECTING || over()));
+      if (link_.phase() == v1::PHASE_RUNNING && cpu_began_ < 0) cpu_began_ = process_cpu_seconds();
       if (!over()) continue;
-      if (cpu_began_ >= 0 && !over_since) result_->cpu_s = cpu_seconds() - cpu_began_;
+      if (cpu_began_ >= 0 && !over_since) result_->cpu_s = process_cpu_seconds() - cpu_began_;
       barrier_->run_is_over();
       if (!over_since) over_since = now();
       const bool quiet = now() - busy_ > drained && now() - *over_since > drained;
@@ -143,12 +137,12 @@ class HostAgent {
     request.set_agent(true);
     const v1::Welcome welcome = link_.join(request, from_seconds(options_.join_within_s));
     barrier_.emplace(limits_of(welcome));
-    KeeperOptions keeper;
-    keeper.add_to_heartbeat = [this](v1::Heartbeat* heartbeat) {
+    HeartbeatOptions heartbeat;
+    heartbeat.add_to_heartbeat = [this](v1::Heartbeat* heartbeat) {
       const std::lock_guard lock(mutex_);
       heartbeat->MergeFrom(beats_);
     };
-    link_.keep(std::move(keeper), std::nullopt);
+    link_.keep(std::move(heartbeat), std::nullopt);
     spdlog::debug("joined {}, listens on {}", options_.master, address_);
     if (!options_.announce_file.empty()) write_file_whole(options_.announce_file, address_ + "\n");
     if (options_.announce_fd >= 0) {
@@ -176,7 +170,7 @@ class HostAgent {
         fault = fault_of_sender(heard_, message[1], directory_.name_of(sender));
       if (fault) {
         spdlog::warn("refused a message: {}", *fault);
-        if (heard_.has_join()) voice_.refuse(sender, *fault);
+        if (heard_.has_join()) publisher_.refuse(sender, *fault);
         continue;
       }
       if (heard_.has_join()) {
@@ -202,13 +196,13 @@ class HostAgent {
 
   void join_of(std::string_view sender, zmq::message_t& frame) {
     const v1::Join& join = heard_.join();
-    if (over()) return voice_.refuse(sender, "the run is over");
+    if (over()) return publisher_.refuse(sender, "the run is over");
     if (join.observer() || join.has_broker() || join.agent() || !join.host().empty())
-      return voice_.refuse(
+      return publisher_.refuse(
           sender, "only nodes that keep time join an agent; join " + options_.master + " itself");
     suspect(connections_.names_of(broken_));  // whose last words may have been heard just now
     if (barrier_->knows_living(join.name()))
-      return voice_.refuse(sender, "a node named " + join.name() + " has already joined");
+      return publisher_.refuse(sender, "a node named " + join.name() + " has already joined");
     asking_[join.name()] = {std::string(sender), 0, join};
     connections_.belongs(frame, join.name());
     barrier_->asks(join.name());
@@ -226,7 +220,7 @@ class HostAgent {
     for (v1::TopicTally tally : heard_.done().published()) {
       tally.set_tick(heard_.done().tick());
       tally.set_incarnation(peer.incarnation);
-      voice_.note(tally);
+      publisher_.note(tally);
     }
   }
 
@@ -235,19 +229,19 @@ class HostAgent {
     const std::string& name = heartbeat.name();
     const Peer* peer = directory_.find(name, heartbeat.incarnation());
     if (!peer) {
-      return voice_.reply(
-          sender, voice_.expelled(directory_.knows(name)
-                                      ? "another process has taken the name " + name
-                                      : "the agent " + options_.name + " that " + name +
-                                            " joined is gone; another has taken its place"));
+      return publisher_.reply(
+          sender, publisher_.expelled(directory_.knows(name)
+                                          ? "another process has taken the name " + name
+                                          : "the agent " + options_.name + " that " + name +
+                                                " joined is gone; another has taken its place"));
     }
     if (!security_.on() && heartbeat.token() != peer->heartbeat_token) return;  // another's
     if (!barrier_->nodes().contains(name))
-      return voice_.reply(sender, voice_.expelled("the run goes on without " + name));
+      return publisher_.reply(sender, publisher_.expelled("the run goes on without " + name));
     connections_.belongs(frame, name);
     barrier_->heartbeat(name, heartbeat.computing(), heartbeat.progress(), now());
     times_[name] = heartbeat.times();
-    voice_.reply(sender, voice_.grant_for(peer->join));
+    publisher_.reply(sender, publisher_.grant_for(peer->join));
   }
 
   void leave_of(const std::string& name) {
@@ -280,8 +274,8 @@ class HostAgent {
     for (const v1::ClosedTopic& topic : link_.closed()) *grant.add_closed() = topic;
     const Tick settled = link_.granted() - Tick(link_.welcome().window_ticks());
     barrier_->settled(settled);
-    voice_.set_grant(std::move(grant), settled);
-    for (const v1::TopicTally& tally : link_.take_published()) voice_.note(tally);
+    publisher_.set_grant(std::move(grant), settled);
+    for (const v1::TopicTally& tally : link_.take_published()) publisher_.note(tally);
   }
 
   void welcome(v1::MasterMessage answer) {
@@ -307,7 +301,7 @@ class HostAgent {
     } else {
       barrier_->refused(name);
     }
-    voice_.reply(peer.routing_id, answer);
+    publisher_.reply(peer.routing_id, answer);
   }
 
   void follow_topology() {
@@ -322,7 +316,8 @@ class HostAgent {
                          password);
     at_publish_.follow(topology.publish_endpoint(), topology.broker_incarnation(), security_,
                        password);
-    voice_.send_topology(topology, publish_endpoint_, subscribe_endpoint_, security_.password());
+    publisher_.send_topology(topology, publish_endpoint_, subscribe_endpoint_,
+                             security_.password());
   }
 
   /// Tells the master what there is to tell of this host.
@@ -397,9 +392,9 @@ class HostAgent {
   HostAgentResult* result_;
   zmq::context_t context_{1};
   Security security_;
-  Doorkeeper door_;
+  ZapAuthenticator door_;
   std::mutex mutex_;     // guards beats_
-  v1::Heartbeat beats_;  // used by the link's keeper: outlives it
+  v1::Heartbeat beats_;  // used by the link's heartbeat: outlives it
   MasterLink link_;
   zmq::socket_t router_, ticks_;            // the nodes' time-master
   zmq::socket_t publishers_, subscribers_;  // the nodes' broker
@@ -408,7 +403,7 @@ class HostAgent {
   std::vector<std::uint64_t> broken_;  // of these, as of now
   PeerDirectory directory_;
   TopicOwners owners_;
-  HostVoice voice_;
+  HostPublisher publisher_;
   std::optional<HostBarrier> barrier_;
   std::map<std::string, Peer> asking_;  // nodes whose Join the master has not answered
   std::map<std::string, v1::TimeSplit> times_;

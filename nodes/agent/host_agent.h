@@ -2,7 +2,7 @@
 #include <functional>
 #include <string>
 
-#include "nodes/runtime/event.h"
+#include "nodes/runtime/process/event.h"
 
 namespace dmise {
 

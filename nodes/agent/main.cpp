@@ -1,8 +1,8 @@
 // dmise-host-agent: stands between the nodes of one host and the run.
 #include "core/base/error.h"
 #include "nodes/agent/host_agent.h"
-#include "nodes/runtime/command_line.h"
-#include "nodes/runtime/program.h"
+#include "nodes/runtime/program/command_line.h"
+#include "nodes/runtime/program/program.h"
 
 int main(int argc, char** argv) {
   dmise::CommonFlags flags{.name = "host-1"};

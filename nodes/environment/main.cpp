@@ -2,8 +2,8 @@
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
 #include "nodes/environment/environment_actor.h"
-#include "nodes/runtime/node.h"
-#include "nodes/runtime/program.h"
+#include "nodes/runtime/node/node.h"
+#include "nodes/runtime/program/program.h"
 
 int main(int argc, char** argv) {
   dmise::CommonFlags flags{.name = "environment-node"};

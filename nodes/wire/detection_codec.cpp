@@ -2,27 +2,24 @@
 #include "nodes/wire/codecs.h"
 
 // Fields that have one name and type on both sides, in the order of the messages.
-#define DMISE_DETECTION_FIELDS(X)                                                                \
-  X(id)                                                                                          \
-  X(sensor)                                                                                      \
-  X(frame)                                                                                       \
-  X(index)                                                                                       \
-  X(ra_rad) X(dec_rad) X(corrected_ra_rad) X(corrected_dec_rad) X(light_time_removed)            \
-      X(aberration_removed) X(refraction_removed) X(magnitude) X(magnitude_sigma) X(band) X(snr) \
-          X(x_px) X(y_px) X(signal_e) X(end1_x_px) X(end1_y_px) X(end2_x_px) X(end2_y_px)        \
-              X(end1_ra_rad) X(end1_dec_rad) X(end2_ra_rad) X(end2_dec_rad) X(direction_known)   \
-                  X(length_px) X(rate_rad_per_s) X(saturated) X(at_edge) X(star_like)            \
-                      X(refraction_parallax_rad) X(refraction_parallax_sigma_rad)
+// clang-format off
+#define DMISE_DETECTION_FIELDS(X) \
+  X(id) X(sensor) X(frame) X(index) X(ra_rad) X(dec_rad) X(corrected_ra_rad) X(corrected_dec_rad) \
+  X(light_time_removed) X(aberration_removed) X(refraction_removed) X(magnitude) \
+  X(magnitude_sigma) X(band) X(snr) X(x_px) X(y_px) X(signal_e) X(end1_x_px) X(end1_y_px) \
+  X(end2_x_px) X(end2_y_px) X(end1_ra_rad) X(end1_dec_rad) X(end2_ra_rad) X(end2_dec_rad) \
+  X(direction_known) X(length_px) X(rate_rad_per_s) X(saturated) X(at_edge) X(star_like) \
+  X(refraction_parallax_rad) X(refraction_parallax_sigma_rad)
+// clang-format on
 
-#define DMISE_TRUTH_FIELDS(X)                                                                   \
-  X(sensor)                                                                                     \
-  X(frame)                                                                                      \
-  X(catalogue_number)                                                                           \
-  X(name)                                                                                       \
-  X(true_range_m) X(true_ra_rad) X(true_dec_rad) X(apparent_ra_rad) X(apparent_dec_rad)         \
-      X(true_elevation_rad) X(phase_angle_rad) X(sunlit) X(true_magnitude) X(rendered_signal_e) \
-          X(rendered_x_px) X(rendered_y_px) X(start_x_px) X(start_y_px) X(middle_x_px)          \
-              X(middle_y_px) X(end_x_px) X(end_y_px) X(in_frame) X(whole) X(resolved)
+// clang-format off
+#define DMISE_TRUTH_FIELDS(X) \
+  X(sensor) X(frame) X(catalogue_number) X(name) X(true_range_m) X(true_ra_rad) X(true_dec_rad) \
+  X(apparent_ra_rad) X(apparent_dec_rad) X(true_elevation_rad) X(phase_angle_rad) X(sunlit) \
+  X(true_magnitude) X(rendered_signal_e) X(rendered_x_px) X(rendered_y_px) X(start_x_px) \
+  X(start_y_px) X(middle_x_px) X(middle_y_px) X(end_x_px) X(end_y_px) X(in_frame) X(whole) \
+  X(resolved)
+// clang-format on
 
 namespace dmise {
 namespace {

@@ -3,22 +3,21 @@
 #include "nodes/wire/codecs.h"
 
 // Fields that have one name and type on both sides, in the order of the message.
-#define DMISE_REPORT_FIELDS(X)                                                            \
-  X(sensor)                                                                               \
-  X(frame)                                                                                \
-  X(boresight_ra_rad)                                                                     \
-  X(boresight_dec_rad)                                                                    \
-  X(limiting_magnitude)                                                                   \
+// clang-format off
+#define DMISE_REPORT_FIELDS(X) \
+  X(sensor) X(frame) X(boresight_ra_rad) X(boresight_dec_rad) X(limiting_magnitude) \
   X(background_e) X(noise_e) X(zero_point_mag) X(detections) X(star_like) X(saturated_px) \
-      X(stars_rendered) X(objects_rendered) X(plan) X(detection_off)
+  X(stars_rendered) X(objects_rendered) X(plan) X(detection_off)
+// clang-format on
 
 namespace dmise {
 namespace {
 
+// clang-format off
 #define DMISE_WCS_REFRACTION_FIELDS(X) \
-  X(focal_length_px)                   \
-  X(pressure_hpa)                      \
-  X(temperature_c) X(humidity) X(wavelength_um) X(offset_x_px) X(offset_y_px) X(cell_px)
+  X(focal_length_px) X(pressure_hpa) X(temperature_c) X(humidity) X(wavelength_um) X(offset_x_px) \
+  X(offset_y_px) X(cell_px)
+// clang-format on
 
 void put_wcs(v1::Wcs* message, const Wcs& wcs) {
   message->set_crpix_x_px(wcs.crpix_x);

@@ -3,8 +3,8 @@
 
 #include "core/base/error.h"
 #include "core/base/memory.h"
-#include "nodes/runtime/node.h"
-#include "nodes/runtime/program.h"
+#include "nodes/runtime/node/node.h"
+#include "nodes/runtime/program/program.h"
 #include "sensors/pipeline/make_sensor.h"
 
 int main(int argc, char** argv) {

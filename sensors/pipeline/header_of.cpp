@@ -6,8 +6,8 @@
 
 #include "core/base/version.h"
 #include "core/optics/projection.h"
-#include "core/optics/wcs_fit.h"
 #include "core/time/iso8601.h"
+#include "core/wcs/wcs_fit.h"
 #include "sensors/pipeline/light.h"
 #include "sensors/pipeline/observation_of.h"
 

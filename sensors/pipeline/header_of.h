@@ -1,5 +1,5 @@
 #pragma once
-#include "core/image/frame_header.h"
+#include "core/products/frame_header.h"
 #include "sensors/pipeline/frame_pipeline.h"
 #include "sensors/pipeline/view.h"
 

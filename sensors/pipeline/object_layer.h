@@ -3,7 +3,7 @@
 
 #include "core/base/image.h"
 #include "core/base/parallel.h"
-#include "core/detection/truth.h"
+#include "core/products/truth.h"
 #include "sensors/pipeline/object_shapes.h"
 #include "sensors/pipeline/optics_stage.h"
 #include "sensors/pipeline/screen.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/facets/earthshine.h"
 #include "core/photometry/diffuse_sphere.h"
-#include "core/photometry/earthshine.h"
 #include "core/photometry/magnitude.h"
 #include "sensors/render/render_module.h"
 

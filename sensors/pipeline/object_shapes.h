@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/config/object_config.h"
-#include "core/photometry/facet_light.h"
+#include "core/facets/facet_light.h"
 #include "sensors/pipeline/view.h"
 #include "sensors/render/renderer.h"
 

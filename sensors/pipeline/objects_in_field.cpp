@@ -6,9 +6,9 @@
 
 #include "core/base/units.h"
 #include "core/optics/projection.h"
+#include "core/visibility/crossing.h"
 #include "core/visibility/field_of_view.h"
 #include "core/visibility/sight.h"
-#include "core/visibility/touch.h"
 
 namespace dmise {
 namespace {
@@ -22,7 +22,7 @@ constexpr double greatest_pull_m_per_s2 = 20.0;
 /// A path that touches the field for no longer than this part of the exposure, or than this, may be
 /// missed.
 constexpr double shortest_share = 1e-3;
-constexpr double shortest_touch_s = 0.02;
+constexpr double shortest_crossing_s = 0.02;
 
 /// The camera's turning is taken from attitudes no farther apart than this.
 constexpr double longest_look_s = 10.0;
@@ -65,7 +65,7 @@ class FieldCone {
   }
 
   /// `radius_m`: of the sphere about the object that holds it.
-  bool touched_by(std::size_t object, double radius_m) {
+  bool crossed_by(std::size_t object, double radius_m) {
     radius_m_ = radius_m;
     const auto& exposure = view_.times();
     const Motion motion = view_.world().motion(object, exposure.middle);
@@ -80,15 +80,15 @@ class FieldCone {
     const double start_m = outside_m(object, exposure.start);
     const double end_m = outside_m(object, exposure.end);
     if (start_m <= 0.0 || end_m <= 0.0) return true;
-    const auto may_touch = [&](double a_m, double b_m, double s) {
+    const auto may_cross = [&](double a_m, double b_m, double s) {
       return a_m + b_m <= speed_in_axes * s;
     };
     const auto distance_m = [&](SimTime t) { return outside_m(object, t); };
-    const double shortest_s = std::min(shortest_touch_s, shortest_share * exposure.seconds());
-    return touch_between(exposure.start, start_m, exposure.middle, middle_m, shortest_s, may_touch,
-                         distance_m) ||
-           touch_between(exposure.middle, middle_m, exposure.end, end_m, shortest_s, may_touch,
-                         distance_m);
+    const double shortest_s = std::min(shortest_crossing_s, shortest_share * exposure.seconds());
+    return crossing_between(exposure.start, start_m, exposure.middle, middle_m, shortest_s,
+                            may_cross, distance_m) ||
+           crossing_between(exposure.middle, middle_m, exposure.end, end_m, shortest_s, may_cross,
+                            distance_m);
   }
 
  private:
@@ -133,7 +133,7 @@ std::vector<std::size_t> objects_in_field(const View& view, const ObjectShapes* 
       continue;
     const ObjectShape* shape =
         shapes ? shapes->of(world.roster().objects[i].catalogue_number) : nullptr;
-    if (cone.touched_by(i, shape ? shape->radius_m : 0.0) && !cone.at_sensor(i)) found.push_back(i);
+    if (cone.crossed_by(i, shape ? shape->radius_m : 0.0) && !cone.at_sensor(i)) found.push_back(i);
   }
   return found;
 }

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "core/image/observation.h"
+#include "core/products/observation.h"
 #include "sensors/pipeline/frame_pipeline.h"
 #include "sensors/pipeline/view.h"
 

@@ -2,8 +2,8 @@
 // and Moon are.
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
-#include "nodes/runtime/node.h"
-#include "nodes/runtime/program.h"
+#include "nodes/runtime/node/node.h"
+#include "nodes/runtime/program/program.h"
 #include "sensors/positions/positions_evaluator.h"
 
 int main(int argc, char** argv) {

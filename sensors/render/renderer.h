@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "core/facets/facet_light.h"
 #include "core/frames/vec.h"
 #include "core/materials/mesh.h"
-#include "core/photometry/facet_light.h"
 
 // Pictures of objects near enough to have a shape. OpenGL lives behind this interface, in a shared
 // object that is loaded when a plan first needs it (render_module.h).

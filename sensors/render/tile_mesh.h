@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/photometry/facet_shadow.h"
+#include "core/facets/facet_shadow.h"
 #include "sensors/render/glm_types.h"
 #include "sensors/render/renderer.h"
 

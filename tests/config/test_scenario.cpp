@@ -97,8 +97,9 @@ TEST_F(ScenarioFile, RefusesADurationThatIsNoWholeNumberOfTicks) {
   EXPECT_EQ(asked("50", "7"),
             "1:55: simulation.duration_s: must be a whole number of ticks (tick_s: 7): 49 or 56, "
             "got 50");
-  EXPECT_EQ(asked("50", "60"),
-            "1:55: simulation.duration_s: must be a whole number of ticks (tick_s: 60): 60, got 50");
+  EXPECT_EQ(
+      asked("50", "60"),
+      "1:55: simulation.duration_s: must be a whole number of ticks (tick_s: 60): 60, got 50");
   EXPECT_EQ(asked("30.1", "0.2"),
             "1:55: simulation.duration_s: must be a whole number of ticks (tick_s: 0.2): 30 or "
             "30.2, got 30.1");

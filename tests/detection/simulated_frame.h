@@ -7,7 +7,7 @@
 #include "core/base/image.h"
 #include "core/base/units.h"
 #include "core/detection/star_motion.h"
-#include "core/image/frame_header.h"
+#include "core/products/frame_header.h"
 
 namespace dmise::test {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/detection/detection_json.h"
-#include "core/detection/wcs.h"
+#include "core/wcs/wcs.h"
 #include "tests/detection/simulated_frame.h"
 
 namespace dmise {

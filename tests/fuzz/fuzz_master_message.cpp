@@ -4,8 +4,8 @@
 #include <google/protobuf/stubs/logging.h>
 
 #include "core/base/error.h"
-#include "nodes/runtime/control_rules.h"
-#include "nodes/runtime/inbox.h"
+#include "nodes/runtime/protocol/control_rules.h"
+#include "nodes/runtime/protocol/inbox.h"
 #include "tests/fuzz/chunks.h"
 
 namespace {

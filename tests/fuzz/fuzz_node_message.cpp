@@ -3,10 +3,10 @@
 // and a NodeMessage.
 #include <google/protobuf/stubs/logging.h>
 
-#include "nodes/runtime/control_rules.h"
-#include "nodes/runtime/master_words.h"
-#include "nodes/runtime/peer_directory.h"
+#include "nodes/runtime/protocol/control_rules.h"
+#include "nodes/runtime/protocol/peer_directory.h"
 #include "tests/fuzz/chunks.h"
+#include "time-master/master_messages.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
-// Hostile questions for what a node has published, as its keeper judges and answers them.
-#include "nodes/runtime/control_rules.h"
-#include "nodes/runtime/outbox.h"
+// Hostile questions for what a node has published, as its heartbeat thread judges and answers them.
+#include "nodes/runtime/protocol/control_rules.h"
+#include "nodes/runtime/protocol/outbox.h"
 #include "tests/fuzz/chunks.h"
 #include "tests/wire/examples.h"
 

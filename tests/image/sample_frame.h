@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/image/frame_header.h"
+#include "core/products/frame_header.h"
 
 namespace dmise::test {
 

@@ -9,8 +9,8 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
-#include "core/detection/wcs.h"
 #include "core/image/fits_cards.h"
+#include "core/wcs/wcs.h"
 #include "tests/image/sample_frame.h"
 #include "tests/support/command.h"
 #include "tests/support/data.h"
@@ -176,7 +176,7 @@ TEST(FitsFile, AstropyReadsHeaderAndPixels) {
             "frame icrs ctype RA---TAN-SIP DEC--TAN-SIP reference pixel 99.5 74.5\n");
 }
 
-// Reference: astropy 5.2's WCS with SIP. The directions are ours (core/detection/wcs.h).
+// Reference: astropy 5.2's WCS with SIP. The directions are ours (core/wcs/wcs.h).
 TEST(FitsFile, AstropysWcsIsOursToAThousandthOfAPixel) {
   const std::string python = "/usr/bin/python3";
   if (std::system((python + " -c 'import astropy.wcs' 2> /dev/null").c_str()) != 0)

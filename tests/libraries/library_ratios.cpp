@@ -1,5 +1,5 @@
-// Our own code beside the library that does the same: time and peak memory of a frame of 4096 x 4096 counts, each in
-// a process of its own. docs/libraries.md has the ratios.
+// Our own code beside the library that does the same: time and peak memory of a frame of 4096 x
+// 4096 counts, each in a process of its own. docs/libraries.md has the ratios.
 //
 //     ninja -C build/release library-ratios && build/release/bin/library-ratios [DIRECTORY]
 
@@ -82,8 +82,8 @@ void write_by_cfitsio(const std::string& path, const CountImage& counts, const F
 }
 
 void show(const char* what, const Cost& ours, const Cost& theirs) {
-  std::printf("%-34s ours %7.1f ms %6.1f MB   library %7.1f ms %6.1f MB   ratio %5.2f %6.2f\n", what,
-              1e3 * ours.seconds, ours.mb, 1e3 * theirs.seconds, theirs.mb,
+  std::printf("%-34s ours %7.1f ms %6.1f MB   library %7.1f ms %6.1f MB   ratio %5.2f %6.2f\n",
+              what, 1e3 * ours.seconds, ours.mb, 1e3 * theirs.seconds, theirs.mb,
               theirs.seconds / ours.seconds, theirs.mb / std::max(ours.mb, 0.1));
 }
 

@@ -1,13 +1,13 @@
-#include "core/photometry/facet_light.h"
+#include "core/facets/facet_light.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/facets/earthshine.h"
 #include "core/materials/shapes.h"
 #include "core/photometry/diffuse_sphere.h"
-#include "core/photometry/earthshine.h"
 #include "tests/support/directions.h"
 
 namespace dmise {

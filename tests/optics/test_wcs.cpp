@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/detection/wcs.h"
+#include "core/wcs/wcs.h"
 
 namespace dmise {
 namespace {

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/detection/wcs.h"
 #include "core/optics/projection.h"
-#include "core/optics/wcs_fit.h"
+#include "core/wcs/wcs.h"
+#include "core/wcs/wcs_fit.h"
 
 namespace dmise {
 namespace {

@@ -1,6 +1,6 @@
-#include "core/detection/wcs.h"
 #include "core/optics/projection.h"
 #include "core/sky/shadow.h"
+#include "core/wcs/wcs.h"
 #include "sensors/pipeline/light.h"
 #include "tests/pipeline/shape_scenes.h"
 

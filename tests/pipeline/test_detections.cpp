@@ -2,7 +2,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/detection/wcs.h"
+#include "core/wcs/wcs.h"
 #include "tests/pipeline/harness.h"
 #include "tests/pipeline/sky_targets.h"
 

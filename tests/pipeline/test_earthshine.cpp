@@ -1,4 +1,4 @@
-#include "core/photometry/earthshine.h"
+#include "core/facets/earthshine.h"
 #include "core/sky/shadow.h"
 #include "tests/pipeline/shape_scenes.h"
 

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/detection/wcs.h"
 #include "core/image/fits_cards.h"
+#include "core/wcs/wcs.h"
 #include "sensors/pipeline/optics_stage.h"
 #include "tests/pipeline/harness.h"
 

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/detection/wcs.h"
+#include "core/wcs/wcs.h"
 #include "tests/pipeline/harness.h"
 
 // Light lies where its label says: what is measured in the counts, against the place that the

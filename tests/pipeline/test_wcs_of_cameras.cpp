@@ -4,10 +4,10 @@
 #include <sstream>
 
 #include "core/base/units.h"
-#include "core/detection/wcs.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
 #include "core/optics/projection.h"
+#include "core/wcs/wcs.h"
 #include "sensors/pipeline/header_of.h"
 #include "sensors/pipeline/view.h"
 #include "tests/pipeline/harness.h"
@@ -60,7 +60,7 @@ struct Asked {
   FrameHeader header;
   std::string lines;
   int count = 0;
-  double worst_here_px = 0.0;  // of core/detection/wcs.h
+  double worst_here_px = 0.0;  // of core/wcs/wcs.h
 };
 
 Asked ask(const CameraCase& c) {

@@ -7,10 +7,10 @@
 #include <fstream>
 
 #include "core/base/units.h"
-#include "core/pictures/picture_file.h"
+#include "core/facets/earthshine.h"
 #include "core/materials/obj_file.h"
-#include "core/photometry/earthshine.h"
 #include "core/photometry/magnitude.h"
+#include "core/pictures/picture_file.h"
 #include "tests/render/scenes.h"
 
 namespace dmise {

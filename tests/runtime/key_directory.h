@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "nodes/runtime/keys.h"
+#include "nodes/runtime/security/keys.h"
 
 namespace dmise::test {
 

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "nodes/runtime/broker.h"
-#include "nodes/runtime/master.h"
-#include "nodes/runtime/node.h"
-#include "nodes/runtime/status.h"
+#include "nodes/runtime/broker/broker.h"
+#include "nodes/runtime/node/node.h"
+#include "nodes/runtime/observability/status.h"
+#include "time-master/master.h"
 
 // A network in one process: master, broker and nodes as threads, over real sockets.
 namespace dmise::test {

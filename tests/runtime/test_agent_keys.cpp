@@ -9,7 +9,8 @@
 
 #include "core/base/error.h"
 #include "nodes/agent/host_agent.h"
-#include "nodes/runtime/master_link.h"
+#include "nodes/runtime/master_link/master_link.h"
+#include "nodes/runtime/process/monotonic_clock.h"
 #include "nodes/wire/envelope.h"
 #include "tests/runtime/key_directory.h"
 #include "tests/runtime/network_threads.h"

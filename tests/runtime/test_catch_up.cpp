@@ -5,8 +5,8 @@
 #include <random>
 
 #include "core/base/error.h"
-#include "nodes/runtime/inbox.h"
-#include "nodes/runtime/outbox.h"
+#include "nodes/runtime/protocol/inbox.h"
+#include "nodes/runtime/protocol/outbox.h"
 
 namespace dmise {
 namespace {

@@ -1,9 +1,9 @@
-#include "nodes/runtime/command_line.h"
+#include "nodes/runtime/program/command_line.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nodes/runtime/program.h"
+#include "nodes/runtime/program/program.h"
 
 namespace dmise {
 namespace {

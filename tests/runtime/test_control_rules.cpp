@@ -1,5 +1,5 @@
 // Which words of the control connections have a meaning.
-#include "nodes/runtime/control_rules.h"
+#include "nodes/runtime/protocol/control_rules.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "nodes/runtime/inbox.h"
+#include "nodes/runtime/protocol/inbox.h"
 
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "nodes/runtime/outbox.h"
+#include "nodes/runtime/protocol/outbox.h"
 #include "nodes/wire/receiver.h"
 
 namespace dmise {

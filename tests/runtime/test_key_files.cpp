@@ -9,8 +9,8 @@
 #include <future>
 
 #include "core/base/error.h"
-#include "nodes/runtime/keys.h"
-#include "nodes/runtime/security.h"
+#include "nodes/runtime/security/keys.h"
+#include "nodes/runtime/security/security.h"
 #include "tests/runtime/key_directory.h"
 
 namespace dmise {

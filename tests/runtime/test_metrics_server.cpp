@@ -1,5 +1,5 @@
 // The page of metrics under clients that are slow, many, or ask for too much.
-#include "nodes/runtime/metrics_server.h"
+#include "nodes/runtime/observability/metrics_server.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "nodes/runtime/master_link.h"
-#include "nodes/runtime/socket.h"
+#include "nodes/runtime/master_link/master_link.h"
+#include "nodes/runtime/transport/socket.h"
 #include "tests/runtime/network_threads.h"
 #include "tests/runtime/toy.h"
 #include "tests/support/tsan.h"

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "core/base/whole_file.h"
-#include "nodes/runtime/metrics.h"
-#include "nodes/runtime/status.h"
+#include "nodes/runtime/observability/metrics.h"
+#include "nodes/runtime/observability/status.h"
 #include "tests/runtime/http.h"
 #include "tests/runtime/metrics_page.h"
 #include "tests/support/command.h"

@@ -1,12 +1,13 @@
 // What a socket bears with of those who connect to it.
-#include "nodes/runtime/peer_monitor.h"
+#include "nodes/runtime/transport/peer_monitor.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <memory>
 
-#include "nodes/runtime/socket.h"
+#include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/transport/socket.h"
 #include "tests/runtime/raw_peer.h"
 
 namespace dmise {

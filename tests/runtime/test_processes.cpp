@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "core/base/text_file.h"
-#include "nodes/runtime/socket.h"
-#include "nodes/runtime/status.h"
+#include "nodes/runtime/observability/status.h"
+#include "nodes/runtime/transport/socket.h"
 #include "tests/runtime/until_lost.h"
 #include "tests/support/process.h"
 #include "tests/support/report.h"

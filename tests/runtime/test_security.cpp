@@ -1,5 +1,5 @@
 // Who is let in, and what one may say: real sockets, with keys in a directory of its own.
-#include "nodes/runtime/security.h"
+#include "nodes/runtime/security/security.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,9 @@
 #include <filesystem>
 
 #include "core/base/error.h"
-#include "nodes/runtime/master_link.h"
-#include "nodes/runtime/socket.h"
+#include "nodes/runtime/master_link/master_link.h"
+#include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/transport/socket.h"
 #include "nodes/wire/envelope.h"
 #include "tests/runtime/key_directory.h"
 #include "tests/runtime/network_threads.h"
@@ -39,7 +40,7 @@ struct Server {
   }
   zmq::context_t context{1};
   Security security;
-  Doorkeeper door;
+  ZapAuthenticator door;
   zmq::socket_t socket;
   std::string address;
 };

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 
-#include "nodes/runtime/socket.h"
+#include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/transport/socket.h"
 #include "tests/runtime/network_threads.h"
 #include "tests/runtime/raw_peer.h"
 #include "tests/runtime/toy.h"

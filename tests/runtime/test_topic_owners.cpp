@@ -1,4 +1,4 @@
-#include "nodes/runtime/topic_owners.h"
+#include "nodes/runtime/protocol/topic_owners.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

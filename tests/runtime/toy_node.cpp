@@ -4,8 +4,8 @@
 
 #include <cstdio>
 
-#include "nodes/runtime/node.h"
-#include "nodes/runtime/program.h"
+#include "nodes/runtime/node/node.h"
+#include "nodes/runtime/program/program.h"
 #include "tests/runtime/toy.h"
 
 namespace {

@@ -40,8 +40,8 @@ std::vector<std::unique_ptr<Participant>> pair(std::vector<std::string>& log,
 TEST(SimulationController, RunsProducersBeforeConsumersInEveryTick) {
   std::vector<std::string> log;
   SimulationController(pair(log, {"topic/orbit"})).run(1, [](Tick) { return true; });
-  EXPECT_EQ(log, (std::vector<std::string>{"orbit0:", "camera0: topic/orbit@0", "orbit1:",
-                                           "camera1: topic/orbit@1"}));
+  EXPECT_EQ(log, (std::vector<std::string>{"orbit0:", "camera0: topic/orbit@0",
+                                           "orbit1:", "camera1: topic/orbit@1"}));
 }
 
 TEST(SimulationController, StopsWhenAskedAfterATick) {

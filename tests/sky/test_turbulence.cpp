@@ -51,7 +51,8 @@ TEST(Turbulence, TrackingALowOrbitAddsWind) {
 }
 
 TEST(Turbulence, WithoutGroundLayerAndJetThereIsLittleLeft) {
-  const Turbulence s = turbulence(HufnagelValley{0.0, 0.0}, 0.5 * um);  // 2.7e-16 is left of the model
+  const Turbulence s =
+      turbulence(HufnagelValley{0.0, 0.0}, 0.5 * um);  // 2.7e-16 is left of the model
   EXPECT_GT(s.r0_m, 0.1);
   EXPECT_TRUE(std::isfinite(s.tau0_s));
 }

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "time-master/host_barrier.h"
+#include "nodes/agent/host_barrier.h"
 
 namespace dmise {
 namespace {

@@ -65,7 +65,7 @@ TEST(Hosts, AreWaitedForByTheNamesOfTheirNodes) {
   Scene run;
   run.orbit_to(1);
   EXPECT_THAT(run.master.holding(), ElementsAre("host"));
-  run.master.tell_of("host", {"b"}, {{"a", 1}, {"b", 0}});
+  run.master.report_behind("host", {"b"}, {{"a", 1}, {"b", 0}});
   EXPECT_THAT(run.master.holding(), ElementsAre("b"));
   EXPECT_EQ(run.master.member_of("a").done, 1);
 }

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "time-master/line_limit.h"
+#include "nodes/runtime/process/line_limit.h"
 #include "time-master/stranger_queue.h"
 
 namespace dmise {

@@ -82,20 +82,23 @@ TEST(Sightings, AnyNumberOfThreadsFindsTheSame) {
              4);
   const Sightings a = one.sightings(), b = four.sightings();
   expect_equal(a, b);
-  EXPECT_GT(a.stays.size(), 100u);
-  EXPECT_EQ(a.stays, b.stays);
+  EXPECT_GT(a.intervals.size(), 100u);
+  EXPECT_EQ(a.intervals, b.intervals);
 }
 
 /// Every sighting of `every_second` lies within one of the stays.
-void expect_covered(const std::vector<Stay>& stays, const std::vector<Sighting>& every_second) {
-  auto stay = stays.begin();
+void expect_covered(const std::vector<VisibilityInterval>& intervals,
+                    const std::vector<Sighting>& every_second) {
+  auto interval = intervals.begin();
   for (const Sighting& s : every_second) {
     const SimTime t = sim_seconds(s.step);
-    while (stay != stays.end() &&
-           (stay->object < s.object || (stay->object == s.object && stay->out_after < t)))
-      ++stay;
-    ASSERT_NE(stay, stays.end()) << s.object << " at " << s.step << " s";
-    EXPECT_TRUE(stay->object == s.object && stay->out_before <= t && t <= stay->out_after)
+    while (
+        interval != intervals.end() &&
+        (interval->object < s.object || (interval->object == s.object && interval->out_after < t)))
+      ++interval;
+    ASSERT_NE(interval, intervals.end()) << s.object << " at " << s.step << " s";
+    EXPECT_TRUE(interval->object == s.object && interval->out_before <= t &&
+                t <= interval->out_after)
         << s.object << " at " << s.step << " s";
   }
 }
@@ -109,12 +112,12 @@ TEST(Sightings, AnObjectThatOnlyCrossesBetweenInstantsIsFound) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> at_instants;  // object, minute
   for (const Sighting& s : found.seen) at_instants.insert({s.object, s.step});
   std::size_t between = 0;
-  for (const Stay& s : found.stays) {
+  for (const VisibilityInterval& s : found.intervals) {
     const auto minute = std::uint32_t(s.in_last.seconds() / 60);
     between += s.in_first.seconds() > minute * 60.0 && !at_instants.count({s.object, minute});
   }
   EXPECT_GT(between, 20u);
-  expect_covered(found.stays, fine.one_by_one().seen);
+  expect_covered(found.intervals, fine.one_by_one().seen);
 }
 
 struct MovingCamera {
@@ -147,15 +150,15 @@ std::vector<MovingCamera> moving_cameras() {
 
 TEST(Sightings, AMovingCameraHasTheSameStaysOnAnyGrid) {
   for (const MovingCamera& c : moving_cameras()) {
-    const auto stays = [&](double step_s) {
+    const auto intervals = [&](double step_s) {
       Watch watch(c.sensor, population(800), "2018-01-20T06:00:00Z", 43200, step_s, c.platform,
                   c.target);
-      return watch.sightings().stays;
+      return watch.sightings().intervals;
     };
-    const auto every_10_s = stays(10);
+    const auto every_10_s = intervals(10);
     EXPECT_GT(every_10_s.size(), 100u) << c.name;
     for (const double step_s : {60.0, 300.0, 3000.0, 3600.0})  // 3000 s: the last is 1200 s
-      EXPECT_EQ(stays(step_s), every_10_s) << c.name << ", " << step_s;
+      EXPECT_EQ(intervals(step_s), every_10_s) << c.name << ", " << step_s;
   }
 }
 
@@ -167,19 +170,20 @@ TEST(Sightings, AMovingCameraMissesNothingBetweenInstantsAnHourApart) {
                   c.target);
     const auto every_second = seconds.one_by_one().seen;
     EXPECT_GT(every_second.size(), 500u) << c.name;
-    expect_covered(hours.sightings().stays, every_second);
+    expect_covered(hours.sightings().intervals, every_second);
   }
 }
 
 TEST(Sightings, TheSameObjectIsFoundAsOftenAsItComesWithinAStep) {
   const auto sensor = test::at_atlanta(test::all_sky_camera(), 10.0);
   Watch day(sensor, population(300), "2018-01-20T06:00:00Z", 86400, 86400);
-  const auto stays = day.sightings().stays;
+  const auto intervals = day.sightings().intervals;
   std::size_t again = 0;
-  for (std::size_t k = 1; k < stays.size(); ++k) again += stays[k].object == stays[k - 1].object;
+  for (std::size_t k = 1; k < intervals.size(); ++k)
+    again += intervals[k].object == intervals[k - 1].object;
   EXPECT_GT(again, 300u);
   Watch fine(sensor, population(300), "2018-01-20T06:00:00Z", 86400, 10);
-  EXPECT_EQ(stays, fine.sightings().stays);
+  EXPECT_EQ(intervals, fine.sightings().intervals);
 }
 
 TEST(Sightings, TheCamerasOwnHostIsLeftOut) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/sightings_one_by_one.h"
 #include "core/orbit/catalogue.h"
 #include "core/time/iso8601.h"
 #include "core/visibility/passes.h"
@@ -61,7 +62,7 @@ struct Watch {
 
   Sightings sightings() { return find_sightings(batch, track, grid, threads); }
   Sightings one_by_one() { return find_sightings_one_by_one(batch, track, grid); }
-  std::vector<Pass> passes() { return passes_of(batch, track, sightings().stays, threads); }
+  std::vector<Pass> passes() { return passes_of(batch, track, sightings().intervals, threads); }
 };
 
 inline std::vector<MeanElements> debian_catalogue() {

@@ -20,7 +20,7 @@ ltl run_ends, under weak fairness).
  * accepted               false: the refusal of a second node of one name, which then tries again
  * publishes_from         Coordinator::publishes_from
  * lowest, highest        what Outbox keeps at least (Coordinator::keep_ticks: one more)
- * got                    Inbox of the consumer; fetch: ResendRequest (nodes/runtime/node_inputs.cpp)
+ * got                    Inbox of the consumer; fetch: ResendRequest (nodes/runtime/node/node_inputs.cpp)
  */
 #ifndef TICKS
 #define TICKS 4

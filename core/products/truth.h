@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "core/base/sim_time.h"
+
+namespace dmise {
+
+/// One object in one frame as it was: `true_*` by the full physics, `rendered_*` as the plan drew
+/// it. Travels on its own endpoint; only a scorer joins it with detections.
+struct Truth {
+  std::string sensor;
+  std::uint32_t frame = 0;
+  std::uint32_t catalogue_number = 0;
+  std::string name;
+  SimTime start, middle, end;                    // of the exposure
+  double true_range_m = 0.0;                     // at mid exposure, geometric
+  double true_ra_rad = 0.0, true_dec_rad = 0.0;  // astrometric (geometric minus light time), mid
+  double apparent_ra_rad = 0.0, apparent_dec_rad = 0.0;  // with the observer's aberration, mid
+  double true_elevation_rad = 0.0;                       // 0 for a space sensor
+  double phase_angle_rad = 0.0;                          // Sun-object-observer
+  double sunlit = 0.0;             // fraction of the Sun's disc, mean over the exposure
+  double true_magnitude = 0.0;     // V above the atmosphere, when fully sunlit
+  double rendered_signal_e = 0.0;  // expected electrons deposited in the frame
+  double rendered_x_px = 0.0, rendered_y_px = 0.0;  // centroid of the light deposited in the frame
+  double start_x_px = 0.0, start_y_px = 0.0, middle_x_px = 0.0, middle_y_px = 0.0, end_x_px = 0.0,
+         end_y_px = 0.0;  // where the object is; may lie outside the frame
+  bool in_frame = false;  // some of its light fell inside
+  bool whole = false;     // start, middle and end are inside
+  bool resolved = false;  // drawn with its shape, not as a point
+
+  bool operator==(const Truth&) const = default;
+};
+
+}  // namespace dmise

@@ -1,0 +1,183 @@
+#include "nodes/agent/host_barrier.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace dmise {
+namespace {
+
+constexpr Tick no_tick = std::numeric_limits<Tick>::max();
+
+/// Where the manifest of a tick is, or belongs.
+std::deque<TickTally>::iterator place_of(Tick tick, std::deque<TickTally>& said) {
+  return std::lower_bound(said.begin(), said.end(), tick,
+                          [](const TickTally& t, Tick wanted) { return t.tick < wanted; });
+}
+
+}  // namespace
+
+void HostBarrier::join(const std::string& name, Schedule schedule, std::uint64_t incarnation,
+                       Tick resumes_at, Instant now) {
+  asking_.erase(name);
+  Node& node = nodes_[name];
+  node.schedule = schedule;
+  node.incarnation = incarnation;
+  node.ready = node.silent = node.left = false;
+  node.done = resumes_at - 1;
+  node.pulse = Pulse::begin(now);
+  taken_ = nodes_.size() == 1 ? node.done : std::min(taken_, node.done);
+}
+
+HostBarrier::Node* HostBarrier::active(const std::string& name) {
+  const auto found = nodes_.find(name);
+  return found != nodes_.end() && !found->second.left ? &found->second : nullptr;
+}
+
+bool HostBarrier::knows_living(const std::string& name) const {
+  const auto found = nodes_.find(name);
+  if (found == nodes_.end()) return asking_.contains(name);
+  return !found->second.silent && !found->second.left && !found->second.pulse.suspected;
+}
+
+void HostBarrier::tell(News::What what, const std::string& name, const Node& node,
+                       const std::string& reason) {
+  if (!over_) news_.push_back({what, name, node.incarnation, reason, node.done});
+}
+
+void HostBarrier::hear(const std::string& name, Node& node, Instant now) {
+  node.pulse.hear(now);
+  if (std::exchange(node.silent, false)) tell(News::What::found, name, node, "");
+}
+
+void HostBarrier::ready(const std::string& name, Instant now) {
+  Node* node = active(name);
+  if (!node) return;
+  hear(name, *node, now);
+  node->ready = true;
+}
+
+void HostBarrier::heartbeat(const std::string& name, bool computing, std::uint64_t progress,
+                            Instant now) {
+  Node* node = active(name);
+  if (!node) return;
+  hear(name, *node, now);
+  node->pulse.beat(computing, progress, now);
+}
+
+void HostBarrier::suspect(const std::string& name, Instant now) {
+  if (Node* node = active(name)) node->pulse.suspect(now);
+}
+
+void HostBarrier::done(const std::string& name, TickTally tally, Instant now) {
+  Node* node = active(name);
+  if (!node || over_) return;
+  hear(name, *node, now);
+  if (tally.tick <= node->done) return;  // said twice
+  const Tick next = node->schedule.next_after(node->done);
+  if (tally.tick != next)
+    return fail(name, "tick " + std::to_string(tally.tick) + " is done, but " +
+                          std::to_string(next) + " was next");
+  node->done = tally.tick;
+  node->pulse.progressed = now;
+  for (TopicTally& topic : tally.topics) topic.incarnation = node->incarnation;
+  const Tick tick = tally.tick;
+  if (!notes(name, *node, std::move(tally)))
+    fail(name, "tick " + std::to_string(tick) + ", done again after a restart, is not what it was");
+}
+
+bool HostBarrier::notes(const std::string& name, Node& node, TickTally tally) {
+  tally.digest = content_digest(name, tally);
+  const auto at = place_of(tally.tick, node.said);
+  if (at == node.said.end() || at->tick != tally.tick) {
+    node.said.insert(at, std::move(tally));
+    return true;
+  }
+  if (at->digest != tally.digest) return false;
+  *at = std::move(tally);  // the sequence numbers are those of the new process
+  return true;
+}
+
+void HostBarrier::leave(const std::string& name, bool interrupted) {
+  Node* node = active(name);
+  if (!node) return;
+  node->left = true;
+  tell(News::What::lost, name, *node, interrupted ? "was interrupted" : "left before the end");
+}
+
+void HostBarrier::fail(const std::string& name, const std::string& reason) {
+  if (Node* node = active(name)) tell(News::What::failed, name, *node, reason);
+}
+
+void HostBarrier::check(Instant now) {
+  for (auto& [name, node] : nodes_) {
+    if (node.left || node.silent) continue;
+    const std::string trouble = node.pulse.trouble(limits_, !over_, now);
+    if (trouble.empty()) continue;
+    tell(News::What::lost, name, node, trouble);
+    (over_ ? node.left : node.silent) = true;
+  }
+}
+
+void HostBarrier::excuse(Instant since, Instant now) {
+  for (auto& [name, node] : nodes_) node.pulse.excuse(since, now);
+}
+
+void HostBarrier::settled(Tick tick) {
+  for (auto& [name, node] : nodes_)
+    while (!node.said.empty() && node.said.front().tick <= tick) node.said.pop_front();
+}
+
+Tick HostBarrier::slowest() const {
+  Tick slowest = no_tick;
+  for (const auto& [name, node] : nodes_) {
+    slowest = std::min(slowest, node.reaches());
+    if (slowest <= taken_) break;  // nobody is further behind
+  }
+  return slowest;
+}
+
+std::optional<TickTally> HostBarrier::take_done(Tick granted) {
+  if (nodes_.empty() || !asking_.empty() || taken_ >= std::min(slowest(), granted) ||
+      !missing().empty())
+    return std::nullopt;
+  TickTally all{++taken_, {}, 0};
+  for (auto& [name, node] : nodes_) {
+    const auto at = place_of(taken_, node.said);
+    if (at == node.said.end() || at->tick != taken_) continue;
+    all.topics.insert(all.topics.end(), at->topics.begin(), at->topics.end());
+    all.digest += at->digest;
+  }
+  return all;
+}
+
+bool HostBarrier::all_ready() const {
+  return !nodes_.empty() && asking_.empty() && missing().empty() &&
+         std::all_of(nodes_.begin(), nodes_.end(), [](const auto& entry) {
+           return entry.second.ready && !entry.second.silent && !entry.second.left;
+         });
+}
+
+std::vector<std::string> HostBarrier::missing() const {
+  std::vector<std::string> names;
+  for (const std::string& name : expected_)
+    if (!nodes_.contains(name)) names.push_back(name);
+  return names;
+}
+
+std::vector<std::string> HostBarrier::holding() const {
+  std::vector<std::string> names = missing();
+  for (const auto& [name, node] : nodes_)
+    if (node.silent || node.left) names.push_back(name);
+  if (!names.empty() || nodes_.empty()) return names;
+  const Tick last = slowest();
+  for (const auto& [name, node] : nodes_)
+    if (node.reaches() == last) names.push_back(name);
+  return names;
+}
+
+bool HostBarrier::deserted() const {
+  return std::all_of(nodes_.begin(), nodes_.end(),
+                     [](const auto& entry) { return entry.second.left; });
+}
+
+}  // namespace dmise

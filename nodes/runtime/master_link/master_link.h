@@ -1,0 +1,92 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/sim/tally.h"
+#include "dmise/v1/node.pb.h"
+#include "dmise/v1/time.pb.h"
+#include "nodes/runtime/master_link/heartbeat_thread.h"
+
+namespace dmise {
+
+/// A process's side of the conversation with the time-master: joins, hears grants (published, and
+/// repeated in answers to heartbeats), reports, leaves. Used from one thread.
+class MasterLink {
+ public:
+  MasterLink(zmq::context_t& context, std::string master, const Event* stop,
+             const Security& security = {});
+  ~MasterLink();
+
+  /// Throws `Error` when refused or when there is no answer within the time.
+  v1::Welcome join(const v1::Join& request, std::chrono::nanoseconds within);
+
+  /// Starts the heartbeat. Only what `join` does not know needs to be set in `options`.
+  void keep(HeartbeatOptions options, std::optional<zmq::socket_t> resend_socket);
+  /// Told to the master with the next heartbeat.
+  void set_computing(bool computing) { heartbeat_->set_computing(computing); }
+  void set_times(const TimeSplit& times) { heartbeat_->set_times(times); }
+
+  void ready();
+  void done(const TickTally& tally);
+  void leave(bool interrupted, const TimeSplit& times);
+  void failed(const std::string& reason);
+  /// Anything else, over the connection that stands for the process.
+  void say(v1::NodeMessage message);
+
+  /// Waits until the master says something, one of `sockets` is readable, the process is asked to
+  /// stop, or the time is over; takes in what the master said.
+  void wait(const std::vector<zmq::socket_t*>& sockets, std::chrono::nanoseconds at_most);
+
+  Tick granted() const { return granted_; }
+  v1::Phase phase() const { return phase_; }
+  bool over() const { return phase_ == v1::PHASE_ENDED || phase_ == v1::PHASE_FAILED; }
+  const std::string& cause() const { return cause_; }
+  bool deserted() const { return deserted_; }
+  bool stopped() const { return stop_ && stop_->is_set(); }
+  /// A grant came over the published channel: none will be missed.
+  bool hears_ticks() const { return hears_ticks_; }
+  const std::string& name() const { return name_; }
+  const std::optional<v1::Topology>& topology() const { return topology_; }
+  /// Grows with every topology heard.
+  std::uint64_t topology_version() const { return topology_version_; }
+  /// What publishers have told the master since the last call.
+  std::vector<v1::TopicTally> take_published() { return std::exchange(published_, {}); }
+  const std::vector<v1::ClosedTopic>& closed() const { return closed_; }
+  /// Answers to Join that are for others, since the last call: an agent asks for its nodes.
+  std::vector<v1::MasterMessage> take_answers() { return std::exchange(answers_, {}); }
+  const v1::Welcome& welcome() const { return welcome_; }
+
+ private:
+  void tell(v1::NodeMessage& message);
+  void hear_control();
+  void hear_ticks();
+  void take(const v1::Grant& grant);
+
+  zmq::context_t& context_;
+  std::string master_;
+  Security security_;
+  const Event* stop_;
+  std::string name_;
+  zmq::socket_t control_;
+  zmq::socket_t ticks_;
+  std::unique_ptr<HeartbeatThread> heartbeat_;
+  std::vector<zmq::pollitem_t> items_;
+
+  v1::Welcome welcome_;
+  std::optional<v1::MasterMessage> answer_;  // to Join
+  std::vector<v1::MasterMessage> answers_;   // the same, for others
+  std::optional<v1::Topology> topology_;
+  std::uint64_t topology_version_ = 0;
+  std::vector<v1::ClosedTopic> closed_;
+  std::vector<v1::TopicTally> published_;
+  v1::Grant scratch_;
+  Tick granted_ = -1;
+  v1::Phase phase_ = v1::PHASE_GATHERING;
+  std::string cause_;
+  bool deserted_ = false;
+  bool hears_ticks_ = false;
+};
+
+}  // namespace dmise

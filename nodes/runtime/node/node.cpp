@@ -1,0 +1,335 @@
+#include "nodes/runtime/node/node.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "nodes/runtime/master_link/master_link.h"
+#include "nodes/runtime/node/node_inputs.h"
+#include "nodes/runtime/observability/metrics.h"
+#include "nodes/runtime/process/json_log.h"
+#include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/transport/broker_place.h"
+#include "nodes/runtime/transport/peer_monitor.h"
+
+namespace dmise {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::duration_cast;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+
+constexpr milliseconds probe_interval{10};
+constexpr milliseconds idle{1000};
+constexpr milliseconds look_interval{100};  // at who subscribes to too much
+
+bool is_direct(const std::string& topic) { return topic.starts_with(truth_prefix); }
+
+void count(const std::vector<Message>& published, TimeSplit* made) {
+  for (const Message& message : published) {
+    made->frames += std::holds_alternative<FrameReport>(*message.state);
+    if (const auto* set = std::get_if<DetectionSet>(message.state.get()))
+      made->detections += set->detections.size();
+  }
+}
+
+class Node {
+ public:
+  Node(Participant& participant, const NodeOptions& options)
+      : participant_(participant),
+        options_(options),
+        schedule_(participant.schedule()),
+        produces_(participant.produces()),
+        consumes_(participant.consumes()),
+        name_(options.name.empty() ? participant.name() : options.name),
+        security_(options.keys, name_, options.via),
+        control_door_(control_context_, security_),
+        data_door_(std::in_place, data_context_, security_),
+        link_(control_context_, options.master, options.stop, security_),
+        publish_(make_socket(data_context_, zmq::socket_type::pub, max_data_bytes)),
+        direct_(make_socket(data_context_, zmq::socket_type::pub, max_data_bytes)),
+        inputs_(data_context_, consumes_, security_) {
+    publish_.set(zmq::sockopt::linger, 1000);
+    direct_.set(zmq::sockopt::linger, 1000);
+    direct_.set(zmq::sockopt::sndhwm, max_unread);
+    inputs_.set_may_miss(options.observer);
+    inputs_.lose_every(options.lose_every);
+  }
+
+  void run(NodeResult* result) {
+    result_ = result;
+    join();
+    try {
+      if (gather()) work();
+    } catch (const std::exception& error) {
+      link_.set_computing(false);
+      link_.failed(error.what());
+      throw;
+    }
+    finish();
+  }
+
+ private:
+  void join() {
+    v1::Join request;
+    request.set_name(name_);
+    for (const std::string& topic : produces_)
+      *(is_direct(topic) ? request.add_produces_direct() : request.add_produces()) = topic;
+    for (const std::string& topic : consumes_) request.add_consumes(topic);
+    request.set_observer(options_.observer);
+    request.set_look_back_ticks(std::uint64_t(participant_.look_back()));
+    request.set_period_ticks(std::uint64_t(schedule_.period));
+    request.set_offset_ticks(std::uint64_t(schedule_.offset));
+    if (request.produces_direct_size() > 0) {
+      listeners_.emplace(data_context_, direct_, bytes_alone(max_subscriptions_bytes));
+      request.set_direct_endpoint(bind_to(direct_, options_.host, security_, Domain::truth));
+    }
+    std::optional<zmq::socket_t> resend;
+    if (!produces_.empty()) {
+      resend = make_socket(control_context_, zmq::socket_type::router, max_question_bytes);
+      resend->set(zmq::sockopt::sndhwm, max_unread_answers);
+      request.set_resend_endpoint(bind_to(*resend, options_.host, security_, Domain::data));
+    }
+
+    const auto within = duration_cast<nanoseconds>(duration<double>(options_.join_within_s));
+    const v1::Welcome welcome = link_.join(request, within);
+    run_ = {welcome.run_id(), {welcome.tick_ns()}, welcome.last_tick()};
+    incarnation_ = welcome.incarnation();
+    result_->incarnation = incarnation_;
+    inputs_.start(run_);
+    outbox_.emplace(run_, request.name(), incarnation_, produces_,
+                    Tick(welcome.window_ticks()) + 1);
+    HeartbeatOptions heartbeat;
+    heartbeat.stop_within = duration_cast<nanoseconds>(duration<double>(options_.stop_within_s));
+    heartbeat.progress = [this] { return participant_.progress(); };
+    heartbeat.resend = [this](const v1::ResendRequest& request) {
+      return request.catch_up() ? outbox_->catch_up(request.topic(), request.from_tick())
+                                : outbox_->since(request.topic(), request.from_sequence());
+    };
+    link_.keep(std::move(heartbeat), std::move(resend));
+    spdlog::debug("joined {}", options_.master);
+  }
+
+  /// Connects to everybody and waits for the start, or catches up with a run that has started.
+  /// False when the run is over before.
+  bool gather() {
+    while (!link_.topology() && going()) link_.wait({}, idle);
+    if (!going()) return false;
+    const v1::Topology first = *link_.topology();
+    resume_tick_ = first.resume_tick();
+    from_tick_ = first.from_tick();
+    for (const auto& publisher : first.publishers())
+      if (publisher.incarnation() == incarnation_ && publisher.name() == link_.name())
+        outbox_->keep(Tick(publisher.keep_ticks()));
+    connect_data();
+    inputs_.begin_at(first_input(), first.running());
+    const auto probes = outbox_->probes();
+    bool said_ready = false;
+    while (link_.phase() != v1::PHASE_RUNNING && going()) {
+      for (const SharedFrames& probe : probes) publish(probe);
+      link_.wait(inputs_.sockets(), probe_interval);
+      follow_topology();
+      receive_data();
+      if (!said_ready && (inputs_.probed() || first.running()) && link_.hears_ticks()) {
+        link_.ready();
+        said_ready = true;
+      }
+    }
+    return going();
+  }
+
+  Tick first_input() const {
+    return std::max<Tick>(0, from_tick_ - participant_.look_back() - (schedule_.period - 1));
+  }
+
+  void connect_data() {
+    const v1::Topology& topology = *link_.topology();
+    topology_version_ = link_.topology_version();
+    inputs_.connect(topology);
+    const bool through_broker =
+        std::any_of(produces_.begin(), produces_.end(),
+                    [](const std::string& topic) { return !is_direct(topic); });
+    if (through_broker)
+      broker_.follow(topology.publish_endpoint(), topology.broker_incarnation(), security_,
+                     topology.broker_password());
+  }
+
+  void follow_topology() {
+    if (link_.topology_version() != topology_version_) connect_data();
+  }
+
+  void work() {
+    std::vector<Message> carried = take_up();  // published with the first step's
+    for (Tick tick = schedule_.next_after(from_tick_ - 1); tick <= run_.last_tick;
+         tick = schedule_.next_after(tick)) {
+      if (!await(tick)) return;
+      need_inputs_of(tick);
+      const std::vector<Message> inputs = inputs_.take(tick);
+      std::vector<Message> outputs = std::move(carried);
+      carried.clear();
+      for (Message& message : outputs) message.tick = tick;
+      {
+        const Stopwatch watch(&result_->times.compute_s);
+        link_.set_computing(true);
+        tell_metrics(true);
+        for (Message& message : participant_.step(tick, inputs))
+          outputs.push_back(std::move(message));
+        link_.set_computing(false);
+      }
+      if (link_.stopped()) return;  // a step that was asked to stop may be half done
+      const Stopwatch watch(&result_->times.messaging_s);
+      for (const SharedFrames& frames : outbox_->pack(tick, outputs)) publish(frames);
+      count(outputs, &result_->times);
+      if (tick >= resume_tick_) link_.done(outbox_->tally());
+      result_->done = tick;
+      ++steps_;
+      link_.set_times(result_->times);
+      tell_metrics(false);
+    }
+    while (!link_.over() && !link_.stopped()) {
+      link_.wait({}, idle);
+      follow_topology();
+    }
+  }
+
+  /// Throws when the run goes on without somebody without whom the participant can't.
+  void need_inputs_of(Tick tick) const {
+    for (const auto& topic : link_.closed())
+      if (tick >= Tick(topic.from_tick()) && inputs_.consumes(topic.topic()) &&
+          participant_.needs(topic.topic()))
+        throw Error("nothing comes on " + topic.topic() + " from tick " +
+                    std::to_string(topic.from_tick()) + " on");
+  }
+
+  /// After a restart, or where an earlier run stopped: gives the participant what it needs to go
+  /// on.
+  std::vector<Message> take_up() {
+    if (incarnation_ == 1 && from_tick_ == 0) return {};
+    std::vector<Message> past;
+    if (!consumes_.empty() && first_input() < from_tick_) {
+      if (!await(from_tick_ - 1)) return {};
+      past = inputs_.take(from_tick_ - 1);
+    }
+    log_event(spdlog::level::info, "resumed", {{"tick", std::int64_t(from_tick_)}},
+              fmt::format("takes up its work at tick {}", from_tick_));
+    link_.set_computing(true);
+    auto carried = participant_.resume(from_tick_, past);
+    link_.set_computing(false);
+    return carried;
+  }
+
+  /// Until the tick is granted and its inputs are here. False when the run is over.
+  bool await(Tick tick) {
+    inputs_.be_patient_again();
+    while (going()) {
+      follow_topology();
+      inputs_.hear(link_.closed(), link_.take_published());
+      const bool granted = link_.granted() >= tick || tick < resume_tick_;
+      if (granted && inputs_.complete(tick)) return true;
+      const nanoseconds patience = granted ? inputs_.ask_for(tick) : nanoseconds(idle);
+      {
+        const Stopwatch watch(&result_->times.waiting_s);
+        link_.wait(inputs_.sockets(), patience);
+      }
+      receive_data();
+      tell_metrics(false);
+    }
+    return false;
+  }
+
+  void receive_data() {
+    const Stopwatch watch(&result_->times.messaging_s);
+    inputs_.receive();
+    if (listeners_ && now() >= next_look_) {
+      for (const std::string& closed : listeners_->enforce(now())) spdlog::warn("{}", closed);
+      listeners_->forget(listeners_->broken());
+      next_look_ = now() + look_interval;
+    }
+  }
+
+  void publish(const SharedFrames& frames) {
+    send(is_direct(frames->topic) ? direct_ : publish_, frames);
+    ++sent_;
+    sent_bytes_ += frames->bytes();
+  }
+
+  void tell_metrics(bool computing) const {
+    Metrics* metrics = Metrics::of_process();
+    if (!metrics) return;
+    NodeFigures figures = inputs_.figures();
+    figures.granted = link_.granted();
+    figures.done = result_->done;
+    figures.computing = computing;
+    figures.incarnation = incarnation_;
+    figures.ticks = steps_;
+    figures.sent = sent_;
+    figures.sent_bytes = sent_bytes_;
+    figures.times = result_->times;
+    metrics->tell(figures);
+  }
+
+  bool going() const { return !link_.over() && !link_.stopped(); }
+
+  void finish() {
+    result_->refused = inputs_.refused();
+    result_->last_refusal = inputs_.last_refusal();
+    result_->asked_again = inputs_.asked_again();
+    result_->asked_for_known = inputs_.asked_for_known();
+    result_->lost = inputs_.lost();
+    result_->missed = inputs_.missed();
+    const bool interrupted = link_.stopped() && link_.phase() != v1::PHASE_ENDED;
+    publish_.close();
+    listeners_.reset();
+    direct_.close();
+    inputs_.close();
+    data_door_.reset();
+    data_context_.close();  // everything published is on its way before the node leaves
+    link_.leave(interrupted, result_->times);
+    if (link_.phase() == v1::PHASE_FAILED) throw Error(link_.cause());
+    if (interrupted) throw Error("interrupted");
+  }
+
+  Participant& participant_;
+  const NodeOptions& options_;
+  NodeResult* result_ = nullptr;
+  Schedule schedule_;
+  std::vector<std::string> produces_, consumes_;
+  std::string name_;
+  Security security_;
+  zmq::context_t control_context_{1}, data_context_{1};
+  ZapAuthenticator control_door_;
+  std::optional<ZapAuthenticator> data_door_;
+  std::optional<Outbox> outbox_;  // used by the link's heartbeat: outlives it
+  MasterLink link_;
+  zmq::socket_t publish_, direct_;
+  std::optional<PeerMonitor> listeners_;  // of `direct_`
+  nanoseconds next_look_{0};
+  BrokerPlace broker_{publish_};
+  NodeInputs inputs_;
+  RunFacts run_;
+  std::uint64_t incarnation_ = 1, topology_version_ = 0;
+  Tick resume_tick_ = 0, from_tick_ = 0;
+  std::uint64_t steps_ = 0, sent_ = 0, sent_bytes_ = 0;
+};
+
+}  // namespace
+
+NodeResult run_node(Participant& participant, const NodeOptions& options) {
+  NodeResult result;
+  try {
+    Node node(participant, options);
+    node.run(&result);
+  } catch (const ConfigError& error) {
+    result.exit_code = 2;
+    result.reason = error.what();
+  } catch (const std::exception& error) {
+    result.exit_code = 1;
+    result.reason = error.what();
+  }
+  if (result.exit_code != 0) spdlog::error("{}", result.reason);
+  return result;
+}
+
+}  // namespace dmise

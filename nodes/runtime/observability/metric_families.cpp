@@ -1,0 +1,141 @@
+#include "nodes/runtime/observability/metric_families.h"
+
+#include <algorithm>
+
+#include "core/sim/run_phase.h"
+
+namespace dmise {
+namespace {
+
+using prometheus::MetricType;
+using Labels = std::vector<prometheus::ClientMetric::Label>;
+
+/// Collects samples; those of one name follow each other.
+class Builder {
+ public:
+  void gauge(const char* name, const char* help, double value, Labels labels = {}) {
+    sample(MetricType::Gauge, name, help, std::move(labels)).gauge.value = value;
+  }
+  void counter(const char* name, const char* help, double value, Labels labels = {}) {
+    sample(MetricType::Counter, name, help, std::move(labels)).counter.value = value;
+  }
+  MetricFamilies take() { return std::move(families_); }
+
+ private:
+  prometheus::ClientMetric& sample(MetricType type, const char* name, const char* help,
+                                   Labels labels) {
+    auto family = std::find_if(families_.begin(), families_.end(),
+                               [&](const auto& f) { return f.name == name; });
+    if (family == families_.end())
+      family = families_.insert(families_.end(), {name, help, type, {}});
+    family->metric.emplace_back().label = std::move(labels);
+    return family->metric.back();
+  }
+  MetricFamilies families_;
+};
+
+void add_times(Builder& b, const char* name, const char* help, const TimeSplit& times,
+               const std::string& node) {
+  b.counter(name, help, times.compute_s, {{"node", node}, {"part", "compute"}});
+  b.counter(name, help, times.messaging_s, {{"node", node}, {"part", "messaging"}});
+  b.counter(name, help, times.waiting_s, {{"node", node}, {"part", "waiting"}});
+}
+
+void add_node(Builder& b, const NodeStatus& node, const RunStatus& status) {
+  const Labels of{{"node", node.name}};
+  const bool holds =
+      std::find(status.holding.begin(), status.holding.end(), node.name) != status.holding.end();
+  b.gauge("dmise_clock_node_up", "1 while the time-master hears the node.", node.alive, of);
+  b.gauge("dmise_clock_held", "1 while everybody waits for the node.", holds, of);
+  b.gauge("dmise_clock_node_done_tick", "Last tick that the node has done; -1 before the first.",
+          double(node.done), of);
+  b.counter("dmise_clock_node_restarts_total", "Processes that followed the node's first.",
+            double(node.incarnation - 1), of);
+  b.counter("dmise_clock_node_frames_total", "Frames published, as the node last said.",
+            double(node.times.frames), of);
+  b.counter("dmise_clock_node_detections_total", "Detections published, as the node last said.",
+            double(node.times.detections), of);
+  add_times(b, "dmise_clock_node_seconds_total", "How the node spent its time, as it last said.",
+            node.times, node.name);
+}
+
+}  // namespace
+
+MetricFamilies families_of_build(const std::string& program, const std::string& node) {
+  Builder b;
+  b.gauge("dmise_build_info", "Always 1: which program this is.", 1,
+          {{"version", DMISE_VERSION}, {"program", program}, {"node", node}});
+  return b.take();
+}
+
+MetricFamilies families_of(const ProcessFigures& f, double started_s) {
+  Builder b;
+  b.counter("process_cpu_seconds_total", "User and system time spent.", f.cpu_s);
+  b.gauge("process_resident_memory_bytes", "Memory in use.", double(f.resident_bytes));
+  b.gauge("process_open_fds", "Open file descriptors.", double(f.open_files));
+  b.gauge("process_start_time_seconds", "When the process started, since 1970.", started_s);
+  return b.take();
+}
+
+MetricFamilies families_of(const NodeFigures& f, const std::string& node) {
+  Builder b;
+  const Labels of{{"node", node}};
+  b.counter("dmise_node_ticks_total", "Ticks that this process has worked on.", double(f.ticks),
+            of);
+  b.gauge("dmise_node_done_tick", "Last tick done; -1 before the first.", double(f.done), of);
+  b.gauge("dmise_node_granted_tick", "Last tick that the clock allows; -1 before the start.",
+          double(f.granted), of);
+  b.gauge("dmise_node_computing", "1 inside a step.", f.computing, of);
+  b.gauge("dmise_node_incarnation", "Processes of this name so far, this one included.",
+          double(f.incarnation), of);
+  add_times(b, "dmise_node_seconds_total", "How this process spent its time.", f.times, node);
+  b.counter("dmise_node_frames_total", "Frames published.", double(f.times.frames), of);
+  b.counter("dmise_node_detections_total", "Detections published.", double(f.times.detections), of);
+  b.counter("dmise_node_sent_messages_total", "Messages published.", double(f.sent), of);
+  b.counter("dmise_node_sent_bytes_total", "Bytes of all messages published.", double(f.sent_bytes),
+            of);
+  b.counter("dmise_node_received_messages_total", "Messages received that passed every check.",
+            double(f.received), of);
+  for (std::size_t i = 0; i < f.refused.size(); ++i)
+    b.counter("dmise_node_refused_messages_total", "Messages received that failed a check.",
+              double(f.refused[i]), {{"node", node}, {"reason", std::string(name(Refusal(i)))}});
+  b.counter("dmise_node_resend_requests_total", "Questions for messages that were missing.",
+            double(f.asked_again), of);
+  b.counter("dmise_node_missed_messages_total", "Messages that nobody kept; of an observer.",
+            double(f.missed), of);
+  b.gauge("dmise_node_queued_messages", "Messages received and not used yet.", double(f.queued),
+          of);
+  return b.take();
+}
+
+MetricFamilies families_of(const BrokerFigures& f) {
+  Builder b;
+  b.counter("dmise_broker_messages_total", "Messages passed on.", double(f.messages));
+  b.counter("dmise_broker_refused_messages_total",
+            "Messages in the name of another than their sender.", double(f.refused));
+  return b.take();
+}
+
+MetricFamilies families_of(const RunStatus& s) {
+  Builder b;
+  for (const Phase phase :
+       {Phase::gathering, Phase::connecting, Phase::running, Phase::ended, Phase::failed})
+    b.gauge("dmise_clock_phase", "1 for the phase of the run.", phase == s.phase,
+            {{"phase", phase_name(phase)}});
+  b.gauge("dmise_clock_granted_tick", "Last tick that nodes may work on; -1 before the start.",
+          double(s.granted));
+  b.gauge("dmise_clock_settled_tick", "Last tick that all have done; -1 before the first.",
+          double(s.settled));
+  b.gauge("dmise_clock_last_tick", "Last tick of the run.", double(s.last_tick));
+  b.gauge("dmise_clock_tick_seconds", "Simulated length of a tick.", s.tick_length.seconds());
+  b.gauge("dmise_clock_paused", "1 while somebody has asked the clock to wait.", s.paused);
+  b.gauge("dmise_clock_missing_nodes", "Expected nodes that have not joined.",
+          double(s.missing.size()));
+  b.counter("dmise_clock_overruns_total", "Ticks not over when real time reached the next.",
+            double(s.overruns));
+  b.gauge("dmise_clock_worst_lag_seconds", "Largest delay behind real time.", s.worst_lag_s);
+  for (const NodeStatus& node : s.nodes) add_node(b, node, s);
+  return b.take();
+}
+
+}  // namespace dmise

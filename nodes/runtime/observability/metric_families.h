@@ -1,0 +1,24 @@
+#pragma once
+#include <prometheus/metric_family.h>
+
+#include <string>
+#include <vector>
+
+#include "nodes/runtime/observability/figures.h"
+#include "nodes/runtime/observability/status.h"
+
+// Figures as families of metrics. Names follow Prometheus's conventions: base units, which end the
+// name, and _total for what only grows. docs/operations.md lists them.
+namespace dmise {
+
+using MetricFamilies = std::vector<prometheus::MetricFamily>;
+
+MetricFamilies families_of_build(const std::string& program, const std::string& node);
+/// `started_s`: when the process started, seconds since 1970.
+MetricFamilies families_of(const ProcessFigures& figures, double started_s);
+/// `node`: its name in the run.
+MetricFamilies families_of(const NodeFigures& figures, const std::string& node);
+MetricFamilies families_of(const BrokerFigures& figures);
+MetricFamilies families_of(const RunStatus& status);
+
+}  // namespace dmise

@@ -1,0 +1,124 @@
+#include "nodes/runtime/observability/status.h"
+
+#include "core/base/error.h"
+#include "dmise/v1/time.pb.h"
+#include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/protocol/time_split_codec.h"
+#include "nodes/runtime/transport/socket.h"
+
+namespace dmise {
+namespace {
+
+Phase from_wire(v1::Phase phase) {
+  switch (phase) {
+    case v1::PHASE_CONNECTING:
+      return Phase::connecting;
+    case v1::PHASE_RUNNING:
+      return Phase::running;
+    case v1::PHASE_ENDED:
+      return Phase::ended;
+    case v1::PHASE_FAILED:
+      return Phase::failed;
+    default:
+      return Phase::gathering;
+  }
+}
+
+v1::Control::Action to_wire(ClockAction action) {
+  switch (action) {
+    case ClockAction::pause:
+      return v1::Control::ACTION_PAUSE;
+    case ClockAction::step:
+      return v1::Control::ACTION_STEP;
+    case ClockAction::go_on:
+      return v1::Control::ACTION_GO_ON;
+    case ClockAction::end_early:
+      return v1::Control::ACTION_END_EARLY;
+    case ClockAction::abort:
+      break;
+  }
+  return v1::Control::ACTION_ABORT;
+}
+
+/// A conversation with a time-master. Throws `Error` when there is no answer within the time.
+class Conversation {
+ public:
+  Conversation(const std::string& address, double within_s, const Security& security)
+      : address_(address),
+        deadline_(now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                              std::chrono::duration<double>(within_s))),
+        socket_(make_socket(context_, zmq::socket_type::dealer, max_control_bytes)) {
+    connect_to(socket_, address, security, master_name);
+  }
+
+  RunStatus ask(const v1::NodeMessage& question) {
+    socket_.send(to_frame(question), zmq::send_flags::none);
+    std::vector<zmq::pollitem_t> items{{socket_.handle(), 0, ZMQ_POLLIN, 0}};
+    wait_for(items, deadline_ - now());
+    const auto frame = receive_one(socket_);
+    v1::MasterMessage answer;
+    if (!frame || !from_frame(*frame, &answer) || !answer.has_endpoints())
+      throw Error("no time-master answers at " + address_);
+    return status_of(answer.endpoints());
+  }
+
+ private:
+  std::string address_;
+  std::chrono::nanoseconds deadline_;
+  zmq::context_t context_{1};
+  zmq::socket_t socket_;
+};
+
+v1::NodeMessage hello() {
+  v1::NodeMessage question;
+  question.mutable_hello();
+  return question;
+}
+
+}  // namespace
+
+RunStatus status_of(const v1::Endpoints& e) {
+  RunStatus status{.run_id = e.run_id(),
+                   .phase = from_wire(e.phase()),
+                   .cause = e.cause(),
+                   .granted = e.granted_tick(),
+                   .last_tick = e.last_tick(),
+                   .tick_length = {e.tick_ns()},
+                   .start_utc = e.start_utc(),
+                   .settled = e.settled_tick(),
+                   .paused = e.paused(),
+                   .overruns = e.overruns(),
+                   .worst_lag_s = e.worst_lag_s(),
+                   .digest = e.digest(),
+                   .observe_endpoint = e.observe_endpoint(),
+                   .broker = {e.broker().publish_endpoint(), e.broker().subscribe_endpoint(),
+                              e.broker().observe_endpoint()},
+                   .nodes = {},
+                   .missing = {e.missing().begin(), e.missing().end()},
+                   .holding = {e.holding().begin(), e.holding().end()}};
+  for (const auto& node : e.nodes())
+    status.nodes.push_back({.name = node.name(),
+                            .done = node.done_tick(),
+                            .alive = node.alive(),
+                            .observer = node.observer(),
+                            .incarnation = node.incarnation(),
+                            .times = take(node.times())});
+  return status;
+}
+
+RunStatus ask_master(const std::string& address, double within_s, const Security& security) {
+  return Conversation(address, within_s, security).ask(hello());
+}
+
+RunStatus control_master(const std::string& address, double within_s, ClockAction action, Tick tick,
+                         const std::string& reason, const Security& security) {
+  Conversation conversation(address, within_s, security);
+  v1::NodeMessage question;
+  question.set_run_id(conversation.ask(hello()).run_id);
+  question.mutable_control()->set_action(to_wire(action));
+  question.mutable_control()->set_tick(tick);
+  question.mutable_control()->set_reason(reason);
+  return conversation.ask(question);
+}
+
+}  // namespace dmise

@@ -1,0 +1,114 @@
+#include "nodes/runtime/program/command_line.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <vector>
+
+#include "core/base/nearest_name.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::string_view tcp = "tcp://";
+
+bool is_port(std::string_view text) {
+  if (text == "*") return true;
+  const bool digits =
+      !text.empty() && text.size() <= 5 &&
+      std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); });
+  return digits && std::stoi(std::string(text)) <= 65535;
+}
+
+/// HOST:PORT, [IPv6]:PORT.
+bool is_host_and_port(std::string_view text) {
+  const auto colon = text.rfind(':');
+  if (colon == text.npos || colon == 0 || !is_port(text.substr(colon + 1))) return false;
+  const std::string_view host = text.substr(0, colon);
+  if (host.front() == '[') return host.back() == ']' && host.size() > 2;
+  return host.find_first_of(":/ ") == host.npos;
+}
+
+/// What stands between "SCHEME:" (or nothing) and slashes, and the address's end.
+std::string_view without_scheme(std::string_view text) {
+  const auto slashes = text.find("//");
+  if (slashes != text.npos) return text.substr(slashes + 2);
+  for (const std::string_view scheme : {"tcp:/", "tcp:"})
+    if (text.starts_with(scheme)) return text.substr(scheme.size());
+  return text;
+}
+
+std::vector<const CLI::App*> chain_of(const CLI::App& app) {
+  std::vector<const CLI::App*> chain{&app};
+  while (true) {
+    const auto parsed =
+        chain.back()->get_subcommands([](const CLI::App* sub) { return sub->parsed(); });
+    if (parsed.empty()) return chain;
+    chain.push_back(parsed.back());
+  }
+}
+
+std::vector<std::string> options_of(const std::vector<const CLI::App*>& chain) {
+  std::vector<std::string> names;
+  for (const CLI::App* app : chain)
+    for (const CLI::Option* option : app->get_options())
+      for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+}  // namespace
+
+std::string complaint_of_address(const std::string& address) {
+  for (const std::string_view local : {"ipc://", "inproc://"})
+    if (address.starts_with(local) && address.size() > local.size()) return "";
+  // tcp://INTERFACE;HOST:PORT is ZeroMQ's too.
+  const std::string_view text = address;
+  if (text.starts_with(tcp) && is_host_and_port(text.substr(tcp.size()))) return "";
+  std::string complaint = "must be tcp://HOST:PORT";
+  if (const auto rest = without_scheme(text); is_host_and_port(rest))
+    complaint += ", did you mean " + std::string(tcp) + std::string(rest) + "?";
+  return complaint + ", got " + address;
+}
+
+CLI::Validator transport_address() {
+  return {[](std::string& address) { return complaint_of_address(address); }, "", "address"};
+}
+
+std::string unknown_argument(const CLI::App& app) {
+  const auto chain = chain_of(app);
+  for (auto at = chain.rbegin(); at != chain.rend(); ++at) {
+    // Words first: the value of an unknown option is none of its own.
+    const auto left = (*at)->remaining(false);
+    const auto flag = std::find_if(left.begin(), left.end(),
+                                   [](const std::string& word) { return word.starts_with('-'); });
+    if (left.empty()) continue;
+    const bool option = flag != left.end();
+    const std::string word = option ? flag->substr(0, flag->find('=')) : left.front();
+    std::vector<std::string> known = options_of(chain);
+    if (!option) {
+      known.clear();
+      for (const CLI::App* sub :
+           chain.back()->get_subcommands([](const CLI::App*) { return true; }))
+        known.push_back(sub->get_name());
+      if (known.empty()) return "unexpected argument " + word;
+    }
+    const std::string hint = nearest_name(word, known);
+    return (option ? "unknown option " : "unknown command ") + word +
+           (hint.empty() ? "" : ", did you mean " + hint + "?");
+  }
+  return "";
+}
+
+int end_of_command_line(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) return app.exit(error);
+  std::string command;
+  for (const CLI::App* part : chain_of(app))
+    command += (command.empty() ? "" : " ") + part->get_name();
+  std::string unknown = unknown_argument(app);
+  // What is missing is told first only where nothing can be mistaken for it.
+  const std::string reason = unknown.empty() ? error.what() : unknown;
+  std::fprintf(stderr, "%s: %s (%s --help)\n", command.c_str(), reason.c_str(), command.c_str());
+  return 2;
+}
+
+}  // namespace dmise

@@ -1,0 +1,65 @@
+#include "nodes/runtime/program/program.h"
+
+#include <optional>
+
+#include "core/base/error.h"
+#include "nodes/runtime/observability/metrics.h"
+#include "nodes/runtime/process/file_limit.h"
+#include "nodes/runtime/process/log.h"
+#include "nodes/runtime/program/command_line.h"
+
+namespace dmise {
+
+void add_common_flags(CLI::App& app, CommonFlags& flags) {
+  app.add_option("--name", flags.name, "name of this node in the run")->capture_default_str();
+  app.add_option("--master", flags.master, "address of the time-master, tcp://HOST:PORT")
+      ->capture_default_str()
+      ->check(transport_address());
+  app.add_option("--host", flags.host,
+                 "where this node's own sockets bind, as others reach them; port 0: any")
+      ->capture_default_str()
+      ->check(transport_address());
+  app.add_option("--keys", flags.keys,
+                 "directory of keys (dmise keygen); without it all is plain, on loopback alone");
+  app.add_option("--via", flags.via,
+                 "with keys: name of the agent whose address --master is, if it is not the "
+                 "time-master's own");
+  app.add_option("--log-level", flags.log_level, "trace, debug, info, warning, error or off")
+      ->capture_default_str();
+  app.add_option("--log-format", flags.log_format, "text or json: an object a line")
+      ->capture_default_str();
+  app.add_option("--metrics", flags.metrics,
+                 "serve figures for Prometheus at [HOST:]PORT, or auto: any free port; the host is "
+                 "127.0.0.1 unless given");
+  app.add_option("--seed", flags.seed, "seed of every random draw")->capture_default_str();
+  app.add_flag("--check", flags.check, "look at flags and files, then stop");
+  app.set_version_flag("--version", std::string("dmise ") + DMISE_VERSION);
+}
+
+int run_program(CLI::App& app, const CommonFlags& flags, int argc, char** argv,
+                const std::function<int()>& body) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return end_of_command_line(app, error);
+  }
+  try {
+    const std::string name = flags.name.empty() ? app.get_name() : flags.name;
+    start_log(name, flags.log_level, flags.log_format);
+    raise_file_limit();
+    std::optional<Metrics> metrics;
+    if (!flags.metrics.empty() && !flags.check)
+      metrics.emplace(flags.metrics, app.get_name(), name);
+    else if (!flags.metrics.empty())
+      metrics_address(flags.metrics);
+    return body();
+  } catch (const ConfigError& error) {
+    spdlog::error("{}", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return 1;
+  }
+}
+
+}  // namespace dmise

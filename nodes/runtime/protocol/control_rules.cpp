@@ -1,0 +1,186 @@
+#include "nodes/runtime/protocol/control_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace dmise {
+namespace {
+
+using Fault = std::optional<std::string>;
+
+constexpr std::int64_t most_ticks = std::int64_t(1) << 40;
+constexpr std::size_t longest_name = 256;
+constexpr int most_topics = 4096;
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+bool is_text(const std::string& text) {
+  return text.size() <= longest_name && std::none_of(text.begin(), text.end(), is_control);
+}
+bool is_name(const std::string& text) { return !text.empty() && is_text(text); }
+
+template <class Texts>
+bool are_names(const Texts& texts) {
+  return texts.size() <= most_topics && std::all_of(texts.begin(), texts.end(), is_name);
+}
+
+bool is_tick(std::int64_t tick) { return tick >= 0 && tick <= most_ticks; }
+bool is_count(std::uint64_t ticks) { return ticks <= std::uint64_t(most_ticks); }
+bool is_duration(double s, double limit_s) { return s >= 0.0 && s <= limit_s; }  // false for NaN
+
+Fault unless(bool holds, const char* fault) { return holds ? std::nullopt : Fault(fault); }
+
+bool good(const v1::TimeSplit& times) {
+  constexpr double a_lifetime_s = 1e10;
+  return is_duration(times.compute_s(), a_lifetime_s) &&
+         is_duration(times.messaging_s(), a_lifetime_s) &&
+         is_duration(times.waiting_s(), a_lifetime_s);
+}
+
+template <class Tallies>
+bool good_tallies(const Tallies& tallies) {
+  return std::all_of(tallies.begin(), tallies.end(), [](const v1::TopicTally& tally) {
+    return is_name(tally.topic()) && is_tick(tally.tick());
+  });
+}
+
+template <class Beats>
+bool good_beats(const Beats& beats) {
+  return std::all_of(beats.begin(), beats.end(), [](const v1::NodeBeat& node) {
+    return is_name(node.name()) && node.done_tick() >= -1 && node.done_tick() <= most_ticks &&
+           good(node.times());
+  });
+}
+
+bool good(const v1::Broker& broker) {
+  return is_text(broker.publish_endpoint()) && is_text(broker.subscribe_endpoint()) &&
+         is_text(broker.observe_endpoint()) && is_text(broker.password());
+}
+
+Fault fault_in(const v1::Join& join) {
+  if (!is_name(join.name())) return "join: a name has 1 to 256 bytes and no control characters";
+  if (!are_names(join.produces()) || !are_names(join.produces_direct()) ||
+      !are_names(join.consumes()))
+    return "join: topics are names, and at most 4096";
+  if (!is_text(join.host())) return "join: its host can't be a name";
+  if (!is_text(join.direct_endpoint()) || !is_text(join.resend_endpoint()) || !good(join.broker()))
+    return "join: an address can't be one";
+  return unless(is_count(join.look_back_ticks()) && is_count(join.period_ticks()) &&
+                    is_count(join.offset_ticks()),
+                "join: its period, offset and look-back must be ticks of a run");
+}
+
+bool good(const v1::Publisher& publisher) {
+  return is_name(publisher.name()) && are_names(publisher.topics()) &&
+         are_names(publisher.direct_topics()) && is_text(publisher.direct_endpoint()) &&
+         is_text(publisher.resend_endpoint()) && is_count(publisher.keep_ticks()) &&
+         is_count(publisher.period_ticks()) && is_count(publisher.offset_ticks());
+}
+
+Fault fault_in(const v1::Welcome& welcome) {
+  const std::int64_t tick_ns = welcome.tick_ns(), last_tick = welcome.last_tick();
+  if (tick_ns < 1 || !is_tick(last_tick) ||
+      last_tick > std::numeric_limits<std::int64_t>::max() / tick_ns - 1)
+    return "welcome: a run of so many ticks of that length is none";
+  if (welcome.window_ticks() < 1 || welcome.window_ticks() > 1'000'000)
+    return "welcome: window_ticks must be 1 to 1000000";
+  return unless(welcome.heartbeat_s() > 0.0 && is_duration(welcome.heartbeat_s(), 3600.0) &&
+                    welcome.silent_after_s() > 0.0 && is_duration(welcome.silent_after_s(), 1e6) &&
+                    is_text(welcome.tick_endpoint()) && is_text(welcome.name()) &&
+                    is_tick(welcome.resume_tick()) && is_duration(welcome.progress_after_s(), 1e6),
+                "welcome: heartbeat_s, silent_after_s or tick_endpoint can't be one");
+}
+
+Fault fault_in(const v1::Topology& topology) {
+  const auto& publishers = topology.publishers();
+  const auto& starts = topology.starts();
+  return unless(are_names(topology.reported()) &&
+                    std::all_of(starts.begin(), starts.end(),
+                                [](const v1::NodeStart& start) {
+                                  return is_name(start.name()) && is_tick(start.resume_tick()) &&
+                                         is_tick(start.from_tick()) &&
+                                         start.from_tick() <= start.resume_tick();
+                                }) &&
+                    std::all_of(publishers.begin(), publishers.end(),
+                                [](const v1::Publisher& publisher) { return good(publisher); }) &&
+                    is_text(topology.publish_endpoint()) &&
+                    is_text(topology.subscribe_endpoint()) && is_text(topology.broker_password()) &&
+                    is_tick(topology.resume_tick()) && is_tick(topology.from_tick()) &&
+                    topology.from_tick() <= topology.resume_tick(),
+                "topology: a publisher, address or tick can't be one");
+}
+
+}  // namespace
+
+std::optional<std::string> fault_of(const v1::NodeMessage& message) {
+  switch (message.body_case()) {
+    case v1::NodeMessage::kJoin:
+      return fault_in(message.join());
+    case v1::NodeMessage::kDone:
+      return unless(is_tick(message.done().tick()) &&
+                        message.done().published_size() <= most_topics &&
+                        good_tallies(message.done().published()),
+                    "done: a tick or topic can't be one");
+    case v1::NodeMessage::kHeartbeat:
+      return unless(is_name(message.heartbeat().name()) && good(message.heartbeat().times()) &&
+                        good_beats(message.heartbeat().nodes()) &&
+                        are_names(message.heartbeat().holding()),
+                    "heartbeat: a name or time can't be one");
+    case v1::NodeMessage::kLeave:
+      return unless(good(message.leave().times()) && good_beats(message.leave().nodes()),
+                    "leave: a time can't be one");
+    case v1::NodeMessage::kNodeNews:
+      return unless(is_name(message.node_news().name()) && message.node_news().done_tick() >= -1 &&
+                        message.node_news().done_tick() <= most_ticks,
+                    "node news: a name or tick can't be one");
+    case v1::NodeMessage::kControl:
+      return unless(message.control().tick() >= -1 && message.control().tick() <= most_ticks,
+                    "control: its tick can't be one");
+    case v1::NodeMessage::BODY_NOT_SET:
+      return "says nothing";
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<std::string> fault_of(const v1::Grant& grant) {
+  const auto& closed = grant.closed();
+  return unless(grant.tick() >= -1 && grant.tick() <= most_ticks &&
+                    good_tallies(grant.published()) &&
+                    std::all_of(closed.begin(), closed.end(),
+                                [](const v1::ClosedTopic& topic) {
+                                  return is_name(topic.topic()) && is_tick(topic.from_tick());
+                                }),
+                "grant: a tick or topic can't be one");
+}
+
+std::optional<std::string> fault_of(const v1::MasterMessage& message) {
+  switch (message.body_case()) {
+    case v1::MasterMessage::kWelcome:
+      return fault_in(message.welcome());
+    case v1::MasterMessage::kTopology:
+      return fault_in(message.topology());
+    case v1::MasterMessage::kGrant:
+      return fault_of(message.grant());
+    case v1::MasterMessage::BODY_NOT_SET:
+      return "says nothing";
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<std::string> fault_of(const v1::ResendRequest& request) {
+  return unless(is_name(request.topic()) && is_tick(request.from_tick()),
+                "resend request: its topic or tick can't be one");
+}
+
+std::string one_line(std::string text) {
+  constexpr std::size_t longest = 1024;
+  if (text.size() > longest) text.resize(longest);
+  std::replace_if(text.begin(), text.end(), is_control, ' ');
+  return text;
+}
+
+}  // namespace dmise

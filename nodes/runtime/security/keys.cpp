@@ -1,0 +1,262 @@
+#include "nodes/runtime/security/keys.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zmq.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/base/printable.h"
+
+namespace dmise {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t key_characters = 40;
+constexpr off_t longest_file = 16 << 20;  // a ring of 100,000 keys
+
+std::string path_of(const std::string& directory, const std::string& name, const char* ending) {
+  if (name.empty() || name.find('/') != std::string::npos)
+    throw ConfigError("a key's name must be that of a node, got \"" + name + "\"");
+  return directory + "/" + name + ending;
+}
+
+/// Writes a new file; nobody else can have opened it before its mode was set.
+void write_new(const std::string& path, mode_t mode, const std::string& text) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+  if (file < 0 && errno == EEXIST) throw ConfigError(path + ": there is such a key already");
+  const bool written = file >= 0 && fchmod(file, mode) == 0 &&
+                       write(file, text.data(), text.size()) == ssize_t(text.size()) &&
+                       fsync(file) == 0;
+  const int reason = errno;
+  if (file >= 0) close(file);
+  if (!written) throw Error(path + ": can't be written: " + std::strerror(reason));
+}
+
+bool is_key(const std::string& text) {
+  std::uint8_t bytes[32];
+  return text.size() == key_characters && zmq_z85_decode(bytes, text.c_str());
+}
+
+// Words of NAME.pub, each with a value after it.
+constexpr const char* may_word = "may";
+constexpr const char* speaks_for_word = "speaks-for";
+
+struct Entry {
+  std::string name;
+  KeyPair key;
+  bool truth = false;
+  std::set<std::string> nodes;
+};
+
+/// The text of a file of keys. Throws `ConfigError`; waits for nobody who might write to it.
+std::string text_of_file(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  if (file < 0) throw ConfigError(path + ": can't be read: " + std::strerror(errno));
+  struct stat status {};
+  std::string text;
+  std::string fault;
+  if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode))
+    fault = "must be a regular file";
+  else if (status.st_size > longest_file)
+    fault = "is longer than a file of keys can be";
+  char buffer[4096];
+  while (fault.empty()) {
+    const ssize_t size = read(file, buffer, sizeof buffer);
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0) fault = std::string("can't be read: ") + std::strerror(errno);
+    if (size <= 0) break;
+    text.append(buffer, std::size_t(size));
+    if (off_t(text.size()) > longest_file) fault = "is longer than a file of keys can be";
+  }
+  close(file);
+  if (!fault.empty()) throw ConfigError(path + ": " + fault);
+  return text;
+}
+
+void require_key(const std::string& path, const char* half, const std::string& key) {
+  if (!is_key(key))
+    throw ConfigError(path + ": not a key of dmise keygen: its " + half + " key has " +
+                      std::to_string(key.size()) + " of " + std::to_string(key_characters) +
+                      " characters of Z85");
+}
+
+/// What a NAME.key or NAME.pub says, or each part of a ring behind its "name NAME". Throws
+/// `ConfigError` for a file that is none or not whole.
+std::vector<Entry> read_entries(const fs::path& path) {
+  std::vector<Entry> entries{{path.stem().string(), {}, false, {}}};
+  std::istringstream file(text_of_file(path));
+  std::string word, value;
+  bool is_ring = false;
+  while (file >> word) {
+    if (!(file >> value))
+      throw ConfigError(path.string() + ": not a key of dmise keygen: nothing follows \"" +
+                        printable(word) + "\"");
+    if (word == "name") {
+      if (!is_ring) entries.clear();
+      is_ring = true;
+      entries.push_back({value, {}, false, {}});
+    }
+    if (word == "public") entries.back().key.public_key = value;
+    if (word == "secret") entries.back().key.secret_key = value;
+    if (word == may_word) entries.back().truth = value == "truth";
+    if (word == speaks_for_word) entries.back().nodes.insert(value);
+  }
+  for (const Entry& entry : entries) {
+    require_key(path, "public", entry.key.public_key);
+    if (!entry.key.secret_key.empty()) require_key(path, "secret", entry.key.secret_key);
+  }
+  return entries;
+}
+
+/// Files of a directory whose names end with `ending`, in the order of their names.
+std::vector<std::string> files_in(const std::string& directory, const std::string& ending) {
+  std::vector<std::string> paths;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(directory, ignored))
+    if (entry.path().extension() == ending) paths.push_back(entry.path().string());
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+std::string text_of(const KeyPair& key) {
+  return "public " + key.public_key + "\nsecret " + key.secret_key + "\n";
+}
+
+/// The open half, and what it lets its owner do.
+std::string text_of(const AllowedKey& allowed) {
+  std::string text = "public " + allowed.public_key + "\n";
+  if (allowed.truth) text += std::string(may_word) + " truth\n";
+  for (const auto& node : allowed.nodes) text += std::string(speaks_for_word) + " " + node + "\n";
+  return text;
+}
+
+/// The clock, its broker and its operator speak for themselves.
+void require_node(const std::string& name) {
+  const bool word = !name.empty() && std::none_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isspace(c) || std::iscntrl(c);
+  });
+  if (!word) throw ConfigError("\"" + name + "\" can't be the name of a node");
+  for (const char* own : {"time-master", "broker", "operator"})
+    if (name == own) throw ConfigError("no agent may speak for " + name);
+}
+
+/// Mode bits of a file; 0 when it is not there.
+mode_t mode_of(const std::string& path) {
+  struct stat status {};
+  return stat(path.c_str(), &status) == 0 ? status.st_mode : 0;
+}
+
+/// The ring that has a key of `name`, which is written to `key`. Throws `ConfigError` when none has
+/// and one could not be read: it may be that of another.
+std::optional<std::string> ring_of(const std::string& directory, const std::string& ending,
+                                   const std::string& name, KeyPair* key) {
+  std::optional<ConfigError> fault;
+  for (const auto& ring : files_in(directory, ending)) try {
+      for (const auto& entry : read_entries(ring)) {
+        if (entry.name != name) continue;
+        if (key) *key = entry.key;
+        return ring;
+      }
+    } catch (const ConfigError& error) {
+      if (!fault) fault = error;
+    }
+  if (fault) throw *fault;
+  return std::nullopt;
+}
+
+/// The file that holds the pair of `name`, if there is one.
+std::optional<std::string> file_of_key(const std::string& directory, const std::string& name) {
+  const std::string own = path_of(directory, name, ".key");
+  if (mode_of(own)) return own;
+  return ring_of(directory, ".keys", name, nullptr);
+}
+
+}  // namespace
+
+void make_key(const std::string& directory, const std::string& name, bool truth,
+              const std::set<std::string>& nodes) {
+  for (const auto& node : nodes) require_node(node);
+  if (mkdir(directory.c_str(), 0700) != 0 && errno != EEXIST)
+    throw Error(directory + ": can't be made: " + std::strerror(errno));
+  char public_key[key_characters + 1], secret_key[key_characters + 1];
+  if (zmq_curve_keypair(public_key, secret_key) != 0)
+    throw Error("this build of ZeroMQ has no CURVE");
+  write_new(path_of(directory, name, ".key"), 0600, text_of(KeyPair{public_key, secret_key}));
+  write_new(path_of(directory, name, ".pub"), 0644,
+            text_of(AllowedKey{name, public_key, truth, nodes}));
+}
+
+void make_rings(const std::string& directory,
+                const std::map<std::string, std::vector<std::string>>& rings) {
+  std::map<std::string, std::string> pairs;
+  std::string open_halves;
+  for (const auto& [ring, names] : rings)
+    for (const auto& name : names)
+      pairs[ring] += "name " + name + "\n" + text_of(read_key(directory, name));
+  for (const auto& [key, owner] : read_allowed(directory))
+    open_halves += "name " + owner.name + "\n" + text_of(owner);
+  const std::string below = directory + "/rings";
+  if (mkdir(below.c_str(), 0700) != 0 && errno != EEXIST)
+    throw Error(below + ": can't be made: " + std::strerror(errno));
+  for (const auto& [ring, text] : pairs) write_new(path_of(below, ring, ".keys"), 0600, text);
+  write_new(path_of(below, "everybody", ".pubs"), 0644, open_halves);
+}
+
+KeyPair read_key(const std::string& directory, const std::string& name) {
+  const auto path = file_of_key(directory, name);
+  if (!path)
+    throw ConfigError(path_of(directory, name, ".key") + ": no such key; dmise keygen " +
+                      directory + " " + name + " makes it");
+  if (mode_of(*path) & 077)
+    throw ConfigError(*path + ": others may read this key; chmod 600 it and make a new one");
+  for (const auto& entry : read_entries(*path))
+    if (entry.name == name && is_key(entry.key.secret_key)) return entry.key;
+  throw ConfigError(*path + ": not a key of dmise keygen");
+}
+
+std::map<std::string, AllowedKey> read_allowed(const std::string& directory,
+                                               std::vector<std::string>* left_out) {
+  std::map<std::string, AllowedKey> allowed;
+  for (const char* ending : {".pubs", ".pub"})
+    for (const auto& path : files_in(directory, ending)) try {
+        for (const auto& entry : read_entries(path))
+          allowed[entry.key.public_key] = {entry.name, entry.key.public_key, entry.truth,
+                                           entry.nodes};
+      } catch (const ConfigError& error) {
+        if (left_out) left_out->push_back(error.what());
+      }
+  return allowed;
+}
+
+void check_keys(const std::string& directory) {
+  for (const char* ending : {".pubs", ".pub"})
+    for (const auto& path : files_in(directory, ending)) read_entries(path);
+}
+
+std::string public_key_of(const std::string& directory, const std::string& name) {
+  if (const std::string own = path_of(directory, name, ".pub"); mode_of(own))
+    for (const auto& entry : read_entries(own))
+      if (entry.name == name) return entry.key.public_key;
+  KeyPair pair;
+  if (ring_of(directory, ".pubs", name, &pair)) return pair.public_key;
+  throw ConfigError(path_of(directory, name, ".pub") + ": no public key of " + name);
+}
+
+bool is_loopback(const std::string& address) {
+  for (const char* local : {"inproc://", "ipc://", "tcp://[::1]:", "tcp://localhost:"})
+    if (address.starts_with(local)) return true;
+  if (!address.starts_with("tcp://127.")) return false;
+  return address.find_first_not_of("0123456789.", 6) == address.find(':', 6);
+}
+
+}  // namespace dmise

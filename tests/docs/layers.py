@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""Holds every include line against docs/layers.toml: a directory includes only what stands in its entry, all of
+which stands above it, and nothing stands there that it does not include.
+
+    layers.py            exits 1 and names what is wrong
+    layers.py --write    writes the table of docs/architecture.md anew
+"""
+import pathlib
+import re
+import sys
+import tomllib
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LAYERS = ROOT / "docs/layers.toml"
+DOCUMENT = ROOT / "docs/architecture.md"
+MARKS = "<!-- from docs/layers.toml -->\n", "<!-- to here -->\n"
+# Libraries by how their headers begin.
+LIBRARIES = {"zmq.": "ZeroMQ", "spdlog/": "spdlog", "CLI/": "CLI11", "fitsio": "CFITSIO", "png.h": "libpng",
+             "fftw3": "FFTW", "erfa": "ERFA", "yaml-cpp/": "yaml-cpp", "nlohmann/": "nlohmann/json",
+             "pugixml": "pugixml", "GeographicLib/": "GeographicLib", "glm/": "GLM", "GL/": "OpenGL", "EGL/": "EGL",
+             "google/protobuf/": "Protocol Buffers", "dmise/v1/": "Protocol Buffers", "prometheus/": "prometheus-cpp",
+             "zlib.h": "zlib", "OpenImageIO/": "OpenImageIO"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^">]+)[">]', re.M)
+
+
+def sources():
+    for top in sorted({pathlib.PurePath(layer["folder"]).parts[0] for layer in read()}):
+        for path in sorted((ROOT / top).rglob("*")):
+            if path.suffix in (".h", ".cpp"):
+                yield path
+
+
+def read():
+    return tomllib.loads(LAYERS.read_text())["layer"]
+
+
+def faults(layers):
+    place = {layer["folder"]: number for number, layer in enumerate(layers)}
+    for layer in layers:
+        for used in layer["uses"]:
+            if place.get(used, len(layers)) >= place[layer["folder"]]:
+                yield f"docs/layers.toml: {layer['folder']} uses {used}, which is not above it"
+    seen = {layer["folder"]: set() for layer in layers}
+    by_folder = {layer["folder"]: set(layer["uses"]) | set(layer.get("libraries", ())) for layer in layers}
+    for path in sources():
+        folder = str(path.parent.relative_to(ROOT))
+        name = path.relative_to(ROOT)
+        if folder not in place:
+            yield f"{name}: docs/layers.toml does not know {folder}"
+            continue
+        for header in INCLUDE.findall(path.read_text()):
+            used = next((library for begin, library in LIBRARIES.items() if header.startswith(begin)), None)
+            if used is None:
+                used = str(pathlib.PurePath(header).parent)
+                if used not in place or used == folder:
+                    continue
+            seen[folder].add(used)
+            if used not in by_folder[folder]:
+                yield f"{name}: includes {header}, and docs/layers.toml does not let {folder} use {used}"
+    for folder, uses in by_folder.items():
+        for unused in sorted(uses - seen[folder]):
+            yield f"docs/layers.toml: {folder} does not use {unused}"
+
+
+def table(layers):
+    rows = ["| directory | what | uses | libraries |", "|---|---|---|---|"]
+    for layer in layers:
+        uses = " ".join(f"`{used.removeprefix('core/')}`" for used in layer["uses"] if used != "core/base")
+        rows.append(f"| `{layer['folder']}` | {layer['what']} | {uses} | {', '.join(layer.get('libraries', ()))} |")
+    return "\n".join(rows) + "\n"
+
+
+def document(layers):
+    before, found, rest = DOCUMENT.read_text().partition(MARKS[0])
+    after = rest.partition(MARKS[1])[2]
+    if not found:
+        raise ValueError(f"docs/architecture.md has no line {MARKS[0]!r}")
+    return before + MARKS[0] + "\n" + table(layers) + "\n" + MARKS[1] + after
+
+
+def main():
+    layers = read()
+    text = document(layers)
+    if sys.argv[1:] == ["--write"]:
+        DOCUMENT.write_text(text)
+        return 0
+    wrong = list(faults(layers))
+    if text != DOCUMENT.read_text():
+        wrong.append("docs/architecture.md has not the table of docs/layers.toml: run tests/docs/layers.py --write")
+    print("\n".join(wrong) or f"ok: {len(layers)} directories, no circle, no include line beside them")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,34 @@
+#pragma once
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "nodes/runtime/process/event.h"
+#include "nodes/runtime/security/security.h"
+#include "time-master/coordinator.h"
+#include "time-master/master_result.h"
+
+namespace dmise {
+
+struct MasterOptions {
+  std::string address = "tcp://127.0.0.1:0";  // of the one socket that everybody must know
+  CoordinatorOptions run;  // `expected`: nodes that keep time, without the broker
+  bool with_broker = true;
+  SimTime tick_length{1'000'000'000};
+  std::string start_utc;  // of tick 0 (ISO 8601), for those who ask; empty: not told
+  std::string keys;       // directory of keys; empty: plain, loopback alone
+  Event* stop = nullptr;
+  std::string announce_file;  // the address is written here when bound
+  int announce_fd = -1;       // and here, as one line
+  std::function<void(const std::string& address)> on_bound;
+};
+
+/// Says where a master listens, in all the ways that `options` ask for. Throws `Error`.
+void announce(const MasterOptions& options, const std::string& address);
+
+/// Keeps the clock of one run until every tick is done or the run fails. Throws `ConfigError` for
+/// options that make no sense and `Error` when the address can't be bound.
+MasterResult run_master(const MasterOptions& options);
+
+}  // namespace dmise

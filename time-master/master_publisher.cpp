@@ -1,0 +1,118 @@
+#include "time-master/master_publisher.h"
+
+#include <algorithm>
+
+#include "nodes/runtime/transport/socket.h"
+#include "time-master/master_messages.h"
+
+namespace dmise {
+
+void MasterPublisher::reply(std::string_view routing_id, const v1::MasterMessage& message) {
+  router_.send(zmq::buffer(routing_id), zmq::send_flags::sndmore);
+  router_.send(to_frame(message), zmq::send_flags::none);
+}
+
+void MasterPublisher::refuse(std::string_view routing_id, const std::string& reason,
+                             const std::string& name) {
+  v1::MasterMessage answer;
+  answer.mutable_refuse()->set_name(name);
+  answer.mutable_refuse()->set_reason(reason);
+  reply(routing_id, answer);
+}
+
+void MasterPublisher::note(const TickTally& tally) { add_published(&fresh_, consumed_, tally); }
+
+bool MasterPublisher::publish_changes() {
+  if (coordinator_.phase() == phase_ && coordinator_.granted() == granted_ &&
+      coordinator_.topology_version() == topology_version_ && fresh_.published().empty())
+    return false;
+  phase_ = coordinator_.phase();
+  granted_ = coordinator_.granted();
+  if (coordinator_.topology_version() != topology_version_) send_topology();
+  publish();
+  return true;
+}
+
+void MasterPublisher::publish() {
+  describe(&grant_, run_id_, coordinator_);
+  grant_.mutable_published()->Swap(fresh_.mutable_published());
+  fresh_.clear_published();
+  ticks_.send(to_frame(grant_), zmq::send_flags::none);
+}
+
+v1::MasterMessage MasterPublisher::welcome(const std::string& name,
+                                           const std::string& tick_endpoint,
+                                           std::uint64_t heartbeat_token) const {
+  const auto in_seconds = [](Instant t) { return std::chrono::duration<double>(t).count(); };
+  const CoordinatorOptions& options = coordinator_.options();
+  v1::MasterMessage answer;
+  auto* welcome = answer.mutable_welcome();
+  welcome->set_run_id(run_id_);
+  const Coordinator::Member& member = coordinator_.member_of(name);
+  welcome->set_name(name);
+  welcome->set_incarnation(member.incarnation);
+  welcome->set_resume_tick(member.resumes_at);
+  welcome->set_tick_ns(options.pace.tick_length.ns);
+  welcome->set_last_tick(options.last_tick);
+  welcome->set_window_ticks(std::uint32_t(options.window_ticks));
+  welcome->set_heartbeat_s(in_seconds(options.heartbeat));
+  welcome->set_silent_after_s(in_seconds(options.silent_after));
+  welcome->set_progress_after_s(in_seconds(options.progress_after));
+  welcome->set_tick_endpoint(tick_endpoint);
+  welcome->set_heartbeat_token(heartbeat_token);
+  return answer;
+}
+
+v1::MasterMessage MasterPublisher::grant() const {
+  v1::MasterMessage answer;
+  describe(answer.mutable_grant(), run_id_, coordinator_);
+  return answer;
+}
+
+v1::MasterMessage MasterPublisher::grant_for(const Coordinator::Member& member) const {
+  v1::MasterMessage answer = grant();
+  const auto& needs = member.node.consumes;
+  const std::set<std::string, std::less<>> wanted(needs.begin(), needs.end());
+  for (const auto& [name, other] : coordinator_.members())
+    for (const TickTally& tally : other.said) add_published(answer.mutable_grant(), wanted, tally);
+  return answer;
+}
+
+v1::MasterMessage MasterPublisher::expelled(const std::string& cause) const {
+  v1::MasterMessage answer = grant();
+  answer.mutable_grant()->set_phase(v1::PHASE_FAILED);
+  answer.mutable_grant()->set_cause(cause);
+  return answer;
+}
+
+void MasterPublisher::send_topology() {
+  topology_version_ = coordinator_.topology_version();
+  consumed_ = directory_.consumed();
+  const v1::Topology topology = directory_.topology();
+  for (const auto& [name, peer] : directory_.all()) send_topology_to(peer, topology);
+}
+
+void MasterPublisher::send_topology_to(const Peer& peer, const v1::Topology& topology) {
+  if (!peer.join.host().empty()) return;  // its agent tells it
+  const std::string& name = peer.join.name();
+  v1::MasterMessage message;
+  *message.mutable_topology() = topology_for(name, topology, coordinator_);
+  if (peer.join.agent()) {
+    for (const std::string& topic : coordinator_.members().at(name).node.produces)
+      if (consumed_.contains(topic)) message.mutable_topology()->add_reported(topic);
+  }
+  if (peer.join.observer()) directory_.make_for_observer(message.mutable_topology());
+  reply(peer.routing_id, message);
+}
+
+void MasterPublisher::announce_observer(const std::string& name) {
+  auto consumed = directory_.consumed();
+  const bool more =
+      !std::includes(consumed_.begin(), consumed_.end(), consumed.begin(), consumed.end());
+  consumed_ = std::move(consumed);
+  const v1::Topology topology = directory_.topology();
+  for (const auto& [other, peer] : directory_.all())
+    if (other == name || (more && peer.join.agent())) send_topology_to(peer, topology);
+}
+
+}  // namespace dmise

@@ -1,0 +1,55 @@
+#include "time-master/master_result.h"
+
+#include <cstdio>
+
+#include "core/base/json.h"
+
+namespace dmise {
+
+MasterResult result_of(const Coordinator& coordinator) {
+  MasterResult result;
+  result.reason = coordinator.cause();
+  result.exit_code = coordinator.phase() == Phase::ended && result.reason.empty() ? 0 : 1;
+  result.digest = coordinator.digest();
+  result.overruns = coordinator.pace().overruns();
+  result.worst_lag_s = std::chrono::duration<double>(coordinator.pace().worst_lag()).count();
+  result.granted = coordinator.granted();
+  for (const auto* members : {&coordinator.members(), &coordinator.behind()})
+    for (const auto& [name, member] : *members) {
+      if (member.dropped) result.dropped.push_back(name);
+      if (member.incarnation > 1) result.restarts[name] = int(member.incarnation) - 1;
+    }
+  return result;
+}
+
+std::string to_json(const MasterResult& result) {
+  JsonWriter json;
+  json.begin_object();
+  json.field("status", result.exit_code == 0 ? "ended" : "failed");
+  json.field("cause", result.reason);
+  json.field("granted_tick", std::int64_t(result.granted));
+  json.field("wall_s", result.wall_s);
+  json.field("cpu_s", result.cpu_s).field("messages", result.messages);
+  char digest[17];
+  std::snprintf(digest, sizeof digest, "%016llx", static_cast<unsigned long long>(result.digest));
+  json.field("digest", digest);
+  json.field("overruns", result.overruns).field("worst_lag_s", result.worst_lag_s);
+  json.key("dropped").begin_array();
+  for (const std::string& name : result.dropped) json.value(name);
+  json.end_array();
+  json.key("restarts").begin_object();
+  for (const auto& [name, count] : result.restarts) json.field(name, std::int64_t(count));
+  json.end_object();
+  json.key("nodes").begin_object();
+  for (const auto& [name, times] : result.times) {
+    json.key(name).begin_object();
+    json.field("compute_s", times.compute_s);
+    json.field("messaging_s", times.messaging_s);
+    json.field("waiting_s", times.waiting_s);
+    json.end_object();
+  }
+  json.end_object().end_object();
+  return json.take();
+}
+
+}  // namespace dmise
