@@ -120,7 +120,7 @@ def claims(commands):
         done = output_of(*command)
         said = [line for line in (done.stdout + done.stderr).splitlines() if line]
         verdict = {0: "holds", 77: "not measured"}.get(done.returncode, "fails")
-        rows += [[name, re.sub(r"^\w+: ", "", line).replace(str(ROOT), "."),
+        rows += [[name, re.sub(r"^\w+: ", "", re.sub(r" \(logs in [^)]*\)", "", line)).replace(str(ROOT), "."),
                   "holds" if line.startswith("ok: ") else verdict] for line in said]
     return table(("judge", "claim", ""), rows)
 

@@ -11,6 +11,11 @@ from harness import Run, check, first_frame, main, wait_until, write_scenario
 SILENT_AFTER_S = 2.0
 
 
+def tail_of(run, code):
+    """What a run that failed said last."""
+    return f": {run.stderr[-300:]}" if code else ""
+
+
 def fails(binary, directory):
     scenario = write_scenario(directory, silent_after_s=SILENT_AFTER_S)
     with Run(binary, "launch", scenario, "--out", directory / "fail") as run:
@@ -32,7 +37,7 @@ def drops(binary, directory):
         first_frame(out, "beta")
         os.kill(run.node("beta"), signal.SIGKILL)
         code, _ = run.finish()
-        check(code == 0, f"policy drop: the run ends with code {code}: {run.stderr[-300:]}")
+        check(code == 0, f"policy drop: the run ends with code {code}{tail_of(run, code)}")
         frames = len(list((out / "alpha").glob("frame-*.fits")))
         check(frames == 20, f"alpha goes on to its frame {frames} of 20")
         check("beta" in run.stderr + run.stdout + (out / "run.json").read_text(), "beta is named")
@@ -47,7 +52,7 @@ def drops_who_stands_still(binary, directory):
         first_frame(out, "beta")
         os.kill(run.node("beta"), signal.SIGSTOP)
         code, _ = run.finish()
-        check(code == 0, f"policy drop, stopped for ever: the run ends with code {code}: {run.stderr[-300:]}")
+        check(code == 0, f"policy drop, stopped for ever: the run ends with code {code}{tail_of(run, code)}")
         run.nothing_left()
 
 
