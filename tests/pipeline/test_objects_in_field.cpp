@@ -58,5 +58,29 @@ TEST(ObjectsInField, AnHoursExposureOfATurningCameraMissesNoObject) {
   }
 }
 
+// A mount that follows a low satellite over the zenith turns by a degree a second; far objects
+// cross its field near the start and the end of a minute, and are degrees away from it in the
+// middle.
+TEST(ObjectsInField, AMountThatFollowsALowSatelliteMissesNoFarObject) {
+  DMISE_NEEDS_FILE(test::catalogue_path("satellites.dat"));
+  test::Stage stage(
+      "simulation: {start: 2018-01-21T00:15:00Z, duration_s: 62, tick_s: 31}\n"
+      "objects: [{catalogue: gpredict}]\n"
+      "sensors: [{name: a, site: {latitude_deg: -16.433, longitude_deg: -105.204, height_m: 0}, "
+      "camera: wide-field-cmos, pointing: {target: '25544', tracking: target}, exposure_s: 62, "
+      "cadence_s: 62}]\n");
+  const auto& sensor = stage.scenario.sensors[0];
+  const View view(sensor, frame_times(sensor, 1), stage.world);
+  const auto every_second = asked_for_every_second(view);
+  const auto found = objects_in_field(view);
+  const auto far = std::count_if(every_second.begin(), every_second.end(), [&](std::size_t i) {
+    const Vec<Gcrs> from_m = view.observer(view.times().middle).position_m;
+    return norm(stage.world.motion(i, view.times().middle).position_m - from_m) > 15e6;
+  });
+  EXPECT_GE(far, 1);
+  for (const std::size_t i : every_second)
+    EXPECT_TRUE(std::binary_search(found.begin(), found.end(), i)) << i;
+}
+
 }  // namespace
 }  // namespace dmise

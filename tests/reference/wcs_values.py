@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes wcs_values.inc: sky positions of pixels by astropy's WCS (wcslib, SIP), for tests/optics/test_wcs.cpp."""
+"""Writes wcs_values.inc: sky positions of pixels by astropy's WCS (wcslib, SIP), for tests/wcs/test_wcs.cpp."""
 from astropy.wcs import WCS
 from astropy.io import fits
 
