@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/image/fits_file.h"
 #include "tests/pipeline/harness.h"
+#include "tests/support/projections.h"
 
 namespace dmise::test {
 namespace {
@@ -84,8 +85,15 @@ struct Field {
   std::string projection;
   double deg;
 };
-const Field fields[] = {
-    {"gnomonic", 90}, {"equidistant", 150}, {"equisolid", 150}, {"stereographic", 150}};
+
+/// Every projection with a wide field.
+std::vector<Field> wide_fields() {
+  std::vector<Field> all;
+  for (const auto& p : test::every_projection)
+    all.push_back({p.yaml, p.fields_to_deg < 182 ? 90.0 : 150.0});
+  return all;
+}
+const std::vector<Field> fields = wide_fields();
 
 /// From `first` snapshots on the error falls at least as 1/N, until what is left is `rest`.
 void expect_convergence(Stage& stage, int first, double rest, const std::string& what) {

@@ -8,6 +8,7 @@
 #include "sensors/pipeline/light.h"
 #include "tests/pipeline/harness.h"
 #include "tests/support/data.h"
+#include "tests/support/projections.h"
 
 namespace dmise {
 namespace {
@@ -150,9 +151,9 @@ TEST(SkyLayer, BelowTheHorizonIsDarkAndNothingIsNan) {
 
 // Every projection: the image is the model at each pixel, within the stated tolerance.
 TEST(SkyLayer, IsWithinItsToleranceInEveryProjection) {
-  for (const std::string projection : {"gnomonic", "equidistant", "equisolid", "stereographic"}) {
+  for (const auto& projection : test::every_projection) {
     const std::string camera =
-        "{optics: {projection: " + projection +
+        "{optics: {projection: " + projection.yaml +
         ", columns: 333, rows: 251, pixel_pitch_m: 10e-6, field_of_view_deg: 120, aperture_m: "
         "0.001,"
         " equivalent_aperture: true},"
@@ -178,7 +179,7 @@ TEST(SkyLayer, IsWithinItsToleranceInEveryProjection) {
                              pixel_solid_angle_sr(config.camera.optics, pixel);
         worst = std::max(worst, std::abs(image.at(x, y) / exact - 1));
       }
-    EXPECT_LT(worst, sky_tolerance) << projection;
+    EXPECT_LT(worst, sky_tolerance) << projection.name;
   }
 }
 
