@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "core/projection/classical.h"
+#include "core/projection/kannala_brandt.h"
 
 namespace dmise {
 
@@ -18,7 +19,8 @@ namespace dmise {
 /// The order is that of `projection` in messages and digests.
 class Projection {
  public:
-  using Model = std::variant<Gnomonic, Equidistant, Equisolid, Stereographic>;
+  using Model =
+      std::variant<Gnomonic, Equidistant, Equisolid, Stereographic, KannalaBrandt>;
   static const Projection gnomonic, equidistant, equisolid, stereographic;
 
   struct Row {

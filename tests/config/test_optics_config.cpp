@@ -41,6 +41,40 @@ TEST(OpticsConfig, ReadsThePupilAndWhatBlurs) {
   EXPECT_TRUE(o.vignetting.natural);
 }
 
+const std::string wide =
+    "columns: 1000\nrows: 800\npixel_pitch_m: 5.0e-6\nfocal_length_m: 2.5e-3\naperture_m: 1e-4\n";
+
+std::string refusal_of_wide(const std::string& more) {
+  try {
+    read_optics(YamlValue::parse(wide + more, "camera.yaml"));
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(OpticsConfig, ReadsTheCoefficientsOfAFisheye) {
+  const Optics o = read("projection: kannala_brandt\ndistortion: {k1: -0.01, k3: 0.002}\n");
+  EXPECT_EQ(o.projection, Projection(KannalaBrandt({-0.01, 0, 0.002, 0})));
+  EXPECT_EQ(read("projection: kannala_brandt\n").projection, Projection(KannalaBrandt({})));
+}
+
+// By hand: r = theta - 0.4 theta^3 turns back at 1 / sqrt(1.2) rad, 52.3 deg; the frame's corner is
+// at r = 1.28.
+TEST(OpticsConfig, RefusesAFisheyeThatTurnsBackInTheFrame) {
+  EXPECT_EQ(refusal_of_wide("projection: kannala_brandt\ndistortion: {k1: -0.4}\n"),
+            "camera.yaml:1:1: distortion: the image turns back on itself 52.3 deg from the "
+            "boresight, within the frame");
+  EXPECT_EQ(refusal_of_wide("projection: kannala_brandt\ndistortion: {k1: -0.01}\n"), "");
+  EXPECT_EQ(refusal("distortion: {k1: 0.1}\n")
+                .find("camera.yaml:6:13: distortion: goes with projection: kannala_brandt"),
+            0u);
+  EXPECT_NE(refusal("projection: kannala_brandt\ndistortion: {k1: 2000}\n").find("k1: must be"),
+            std::string::npos);
+  EXPECT_NE(refusal("projection: kannala_brandt\ndistortion: {k5: 1}\n").find("unknown key"),
+            std::string::npos);
+}
+
 TEST(OpticsConfig, RefusesWhatDoesNotGoTogetherAtItsPlace) {
   EXPECT_EQ(refusal("psf: diffraction\npsf_fwhm_px: 2\n"),
             "camera.yaml:7:14: psf_fwhm_px: goes with psf: gaussian, got 2");

@@ -20,6 +20,8 @@ inline const std::vector<ProjectionCase> every_projection{
     {"equidistant", "equidistant"},
     {"equisolid", "equisolid"},
     {"stereographic", "stereographic"},
+    {"kannala_brandt",
+     "kannala_brandt, distortion: {k1: -0.013, k2: 0.021, k3: -0.0125, k4: 0.0019}"},
 };
 
 }  // namespace dmise::test
