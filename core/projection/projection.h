@@ -5,6 +5,7 @@
 #include <string_view>
 #include <variant>
 
+#include "core/projection/brown_conrady.h"
 #include "core/projection/classical.h"
 #include "core/projection/kannala_brandt.h"
 
@@ -20,7 +21,7 @@ namespace dmise {
 class Projection {
  public:
   using Model =
-      std::variant<Gnomonic, Equidistant, Equisolid, Stereographic, KannalaBrandt>;
+      std::variant<Gnomonic, Equidistant, Equisolid, Stereographic, KannalaBrandt, BrownConrady>;
   static const Projection gnomonic, equidistant, equisolid, stereographic;
 
   struct Row {

@@ -75,6 +75,16 @@ TEST(OpticsConfig, RefusesAFisheyeThatTurnsBackInTheFrame) {
             std::string::npos);
 }
 
+// By hand: r - 0.3 r^3 turns back at r = 1 / sqrt(0.9), 46.51 deg.
+TEST(OpticsConfig, RefusesALensWhoseDistortionFoldsInTheFrame) {
+  EXPECT_NE(refusal_of_wide("projection: brown_conrady\ndistortion: {k1: -0.3}\n")
+                .find("distortion: the image turns back on itself 46.51 deg"),
+            std::string::npos);
+  EXPECT_EQ(refusal_of_wide("projection: brown_conrady\ndistortion: {k1: 0.1, p1: 1e-3}\n"), "");
+  EXPECT_EQ(read("projection: brown_conrady\ndistortion: {k2: 0.1, p2: 1e-3}\n").projection,
+            Projection(BrownConrady({0, 0.1, 0, 0, 1e-3})));
+}
+
 TEST(OpticsConfig, RefusesWhatDoesNotGoTogetherAtItsPlace) {
   EXPECT_EQ(refusal("psf: diffraction\npsf_fwhm_px: 2\n"),
             "camera.yaml:7:14: psf_fwhm_px: goes with psf: gaussian, got 2");

@@ -22,6 +22,8 @@ inline const std::vector<ProjectionCase> every_projection{
     {"stereographic", "stereographic"},
     {"kannala_brandt",
      "kannala_brandt, distortion: {k1: -0.013, k2: 0.021, k3: -0.0125, k4: 0.0019}"},
+    {"brown_conrady", "brown_conrady, distortion: {k1: -0.1, k2: 0.02, p1: 2e-4, p2: -1e-4}", 60,
+     60},
 };
 
 }  // namespace dmise::test
