@@ -11,8 +11,10 @@
 
 namespace dmise {
 
-WholeFile::WholeFile(std::string path) : path_(std::move(path)), partial_(path_ + ".partial") {
-  file_ = open(partial_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+WholeFile::WholeFile(std::string path, bool empty)
+    : path_(std::move(path)), partial_(partial_of(path_)) {
+  file_ =
+      open(partial_.c_str(), O_WRONLY | O_CLOEXEC | (empty ? O_CREAT | O_TRUNC : O_APPEND), 0644);
   if (file_ < 0) fail("can't be created");
 }
 

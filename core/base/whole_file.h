@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace dmise {
 
@@ -9,7 +10,10 @@ namespace dmise {
 /// is not finished leaves nothing behind.
 class WholeFile {
  public:
-  explicit WholeFile(std::string path);
+  explicit WholeFile(std::string path) : WholeFile(std::move(path), true) {}
+  /// Goes on behind what somebody else wrote to PATH.partial.
+  static WholeFile begun(std::string path) { return WholeFile(std::move(path), false); }
+  static std::string partial_of(const std::string& path) { return path + ".partial"; }
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
   ~WholeFile();
@@ -18,6 +22,7 @@ class WholeFile {
   void finish();
 
  private:
+  WholeFile(std::string path, bool empty);
   [[noreturn]] void fail(const char* what) const;
   std::string path_, partial_;
   int file_ = -1;

@@ -167,18 +167,10 @@ void put_plain(const ByteSink& file, const CountImage& counts, std::span<const s
 }  // namespace
 
 std::string encode_frame(const CountImage& counts, const FrameHeader& header,
-                         FitsCompression compression, const FlagImage* flags) {
-  const auto cards = frame_cards(counts, header, flags);
+                         const FlagImage* flags) {
   std::string file;
-  const ByteSink append = [&](std::string_view piece) { file += piece; };
-  if (compression == FitsCompression::rice) {
-    file = empty_primary();
-    append_rice_image(file, counts.pixels, counts.columns, cards);
-    if (flags) append_rice_image(file, flags->pixels, flags->columns, flag_cards(header));
-    put_shift_tables(append, counts, header.wcs);
-    return file;
-  }
-  put_plain(append, counts, cards, header, flags);
+  put_plain([&](std::string_view piece) { file += piece; }, counts,
+            frame_cards(counts, header, flags), header, flags);
   return file;
 }
 
@@ -216,19 +208,24 @@ Frame decode_frame(std::string_view bytes, const std::string& name) {
 void write_frame(const std::string& path, const CountImage& counts, const FrameHeader& header,
                  FitsCompression compression, const FlagImage* flags) {
   std::vector<std::string> cards;
-  std::string compressed;
   try {
-    if (compression == FitsCompression::rice)
-      compressed = encode_frame(counts, header, compression, flags);
-    else
-      cards = frame_cards(counts, header, flags);
+    cards = frame_cards(counts, header, flags);
+    if (compression == FitsCompression::rice) {
+      TiledFile file(WholeFile::partial_of(path));
+      file.add(counts.pixels, counts.columns, cards);
+      if (flags) file.add(flags->pixels, flags->columns, flag_cards(header));
+      file.close();
+    }
   } catch (const Error& error) {
     throw Error(path + ": " + error.what());
   }
-  WholeFile file(path);
+  const bool rice = compression == FitsCompression::rice;
+  WholeFile file = rice ? WholeFile::begun(path) : WholeFile(path);
   const ByteSink sink = [&](std::string_view piece) { file.append(piece); };
-  compression == FitsCompression::rice ? sink(compressed)
-                                       : put_plain(sink, counts, cards, header, flags);
+  if (rice)
+    put_shift_tables(sink, counts, header.wcs);
+  else
+    put_plain(sink, counts, cards, header, flags);
   file.finish();
 }
 

@@ -1,7 +1,6 @@
 #include "core/image/rice.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace dmise {
 namespace {
@@ -47,93 +46,7 @@ class Bits {
   bool failed_ = false;
 };
 
-/// Appends bits to bytes, the highest first.
-class BitWriter {
- public:
-  explicit BitWriter(std::string& bytes) : bytes_(bytes) {}
-
-  /// The low `count` <= 32 bits of a number below 2^count.
-  void put(std::uint32_t bits, unsigned count) {
-    store_ = store_ << count | bits;
-    held_ += count;
-    for (; held_ >= 8; held_ -= 8) bytes_ += char(store_ >> (held_ - 8));
-  }
-  void put_zeros_and_one(unsigned zeros) {
-    for (; zeros >= 32; zeros -= 32) put(0, 32);
-    put(1, zeros + 1);
-  }
-  void finish() {
-    if (held_ > 0) put(0, 8 - held_);
-  }
-
- private:
-  std::string& bytes_;
-  std::uint64_t store_ = 0;
-  unsigned held_ = 0;
-};
-
-/// What the standard fixes for integers of one size.
-template <class Pixel>
-struct Code;
-template <>
-struct Code<std::uint16_t> {
-  using Signed = std::int16_t;
-  static constexpr unsigned split_bits = 4, largest_split = 14, pixel_bits = 16;
-};
-template <>
-struct Code<std::uint8_t> {
-  using Signed = std::int8_t;
-  static constexpr unsigned split_bits = 3, largest_split = 6, pixel_bits = 8;
-};
-
-template <class Pixel>
-void encode(std::span<const Pixel> pixels, std::size_t block, std::string& bytes) {
-  using C = Code<Pixel>;
-  if (pixels.empty()) return;
-  BitWriter out(bytes);
-  std::vector<std::uint32_t> folded(block);
-  Pixel last = pixels[0];
-  out.put(last, C::pixel_bits);
-  for (std::size_t begin = 0; begin < pixels.size(); begin += block) {
-    const std::size_t size = std::min(block, pixels.size() - begin);
-    std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-      const Pixel next = pixels[begin + i];
-      const auto d = typename C::Signed(Pixel(next - last));
-      last = next;
-      folded[i] = std::uint32_t(d < 0 ? ~(std::int32_t(d) * 2) : std::int32_t(d) * 2);
-      sum += folded[i];
-    }
-    if (sum == 0) {
-      out.put(0, C::split_bits);
-      continue;
-    }
-    // Low bits that stand as they are: about the logarithm of the mean difference.
-    unsigned split = 0;
-    const std::uint64_t mean = sum > size / 2 ? (sum - size / 2 - 1) / size : 0;
-    for (std::uint64_t m = mean / 2; m > 0; m /= 2) ++split;
-    if (split >= C::largest_split) {
-      out.put(C::largest_split + 1, C::split_bits);
-      for (std::size_t i = 0; i < size; ++i) out.put(folded[i], C::pixel_bits);
-      continue;
-    }
-    out.put(split + 1, C::split_bits);
-    for (std::size_t i = 0; i < size; ++i) {
-      out.put_zeros_and_one(folded[i] >> split);
-      out.put(folded[i] & ((1u << split) - 1), split);
-    }
-  }
-  out.finish();
-}
-
 }  // namespace
-
-void rice_encode(std::span<const std::uint16_t> pixels, std::size_t block, std::string& bytes) {
-  encode(pixels, block, bytes);
-}
-void rice_encode(std::span<const std::uint8_t> pixels, std::size_t block, std::string& bytes) {
-  encode(pixels, block, bytes);
-}
 
 bool rice_decode(std::span<const std::uint8_t> bytes, std::size_t block,
                  std::span<std::int16_t> pixels) {

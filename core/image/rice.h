@@ -9,11 +9,6 @@
 // they are.
 namespace dmise {
 
-/// Appends the code of one tile of integers, with `block` pixels to a block. Numbers wrap: signed
-/// and unsigned ones have the same code.
-void rice_encode(std::span<const std::uint16_t> pixels, std::size_t block, std::string& bytes);
-void rice_encode(std::span<const std::uint8_t> pixels, std::size_t block, std::string& bytes);
-
 /// Unpacks one tile of 16-bit integers coded by RICE_1 with `block` pixels to a block. False when
 /// the bytes end before the pixels do: unlike CFITSIO's decoder it never reads beyond them,
 /// whatever they hold.

@@ -1,109 +1,87 @@
 #include "core/image/tiled_image.h"
 
-#include <algorithm>
-#include <vector>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
 
 #include "core/base/error.h"
-#include "core/image/fits_block.h"
-#include "core/image/fits_cards.h"
-#include "core/image/rice.h"
 
 namespace dmise {
 namespace {
 
-constexpr int rice_block = 32;  // pixels that share a code
-constexpr std::uint16_t zero = 32768;
-
-void put_big_endian(std::string& bytes, std::uint32_t number) {
-  for (int shift = 24; shift >= 0; shift -= 8) bytes += char(number >> shift);
-}
-
-struct Compressed {
-  std::string table, heap;
-  std::size_t longest = 0;  // bytes of a row
-};
-
-/// `row_of(y)` gives the pixels of a row as they are coded.
-template <class RowOf>
-Compressed compress(std::size_t rows, const RowOf& row_of) {
-  Compressed out;
-  for (std::size_t y = 0; y < rows; ++y) {
-    const std::size_t begin = out.heap.size();
-    rice_encode(row_of(y), rice_block, out.heap);
-    const std::size_t size = out.heap.size() - begin;
-    put_big_endian(out.table, std::uint32_t(size));
-    put_big_endian(out.table, std::uint32_t(begin));
-    out.longest = std::max(out.longest, size);
-    if (out.heap.size() >= 0x7fffffffu) throw Error("FITS can't be written: more than 2 GiB");
-  }
-  return out;
-}
-
-void append(std::string& file, const Compressed& image, int columns, std::size_t rows,
-            int pixel_bytes, std::span<const std::string> cards) {
-  const std::string form = "1PB(" + std::to_string(image.longest) + ")";
-  std::vector<std::string> all = {
-      text_card("XTENSION", "BINTABLE", "a compressed image"),
-      integer_card("BITPIX", 8, ""),
-      integer_card("NAXIS", 2, ""),
-      integer_card("NAXIS1", 8, "bytes of a table row"),
-      integer_card("NAXIS2", std::int64_t(rows), "table rows: one for each row of the image"),
-      integer_card("PCOUNT", std::int64_t(image.heap.size()), "bytes of the compressed rows"),
-      integer_card("GCOUNT", 1, ""),
-      integer_card("TFIELDS", 1, ""),
-      text_card("TTYPE1", "COMPRESSED_DATA", ""),
-      text_card("TFORM1", form, ""),
-      flag_card("ZIMAGE", true, "the table holds an image"),
-      integer_card("ZBITPIX", 8 * pixel_bytes, ""),
-      integer_card("ZNAXIS", 2, ""),
-      integer_card("ZNAXIS1", columns, ""),
-      integer_card("ZNAXIS2", std::int64_t(rows), ""),
-      integer_card("ZTILE1", columns, "a tile is a row"),
-      integer_card("ZTILE2", 1, ""),
-      text_card("ZCMPTYPE", "RICE_1", "without loss"),
-      text_card("ZNAME1", "BLOCKSIZE", ""),
-      integer_card("ZVAL1", rice_block, "pixels to a block"),
-      text_card("ZNAME2", "BYTEPIX", ""),
-      integer_card("ZVAL2", pixel_bytes, "bytes of a pixel"),
-  };
-  if (pixel_bytes == 2) {
-    all.push_back(integer_card("BZERO", zero, "16-bit unsigned"));
-    all.push_back(integer_card("BSCALE", 1, ""));
-  }
-  all.insert(all.end(), cards.begin(), cards.end());
-  file += fits_header(all);
-  file += image.table;
-  file += image.heap;
-  file += fits_padding(file.size(), '\0');
+/// What the system says to a longer file, as CFITSIO does not keep what it said.
+int why_no_more(const std::string& path) {
+  const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (file < 0) return errno;
+  const int reason = posix_fallocate(file, lseek(file, 0, SEEK_END), 1 << 20);
+  ::close(file);
+  return reason;
 }
 
 }  // namespace
 
-std::string empty_primary() {
-  return fits_header(std::vector{flag_card("SIMPLE", true, "FITS Standard 4.0"),
-                                 integer_card("BITPIX", 8, ""), integer_card("NAXIS", 0, ""),
-                                 flag_card("EXTEND", true, "the image follows")});
+TiledFile::TiledFile(std::string path) : path_(std::move(path)) {
+  if (path_.starts_with(' ')) path_ = "./" + path_;  // CFITSIO passes over blanks
+  if (path_.size() >= FLEN_FILENAME) throw Error("can't be written: name too long");
+  unlink(path_.c_str());  // of a process that was killed
+  errno = 0;
+  fits_create_diskfile(&fits_.file, path_.c_str(), &fits_.status);
+  fits_create_img(fits_.file, BYTE_IMG, 0, nullptr, &fits_.status);
+  require_ok();
+  errno = 0;  // set where CFITSIO looked whether the file was there
 }
 
-void append_rice_image(std::string& file, std::span<const std::uint16_t> pixels, int columns,
-                       std::span<const std::string> cards) {
-  const auto width = std::size_t(columns);
-  const std::size_t rows = pixels.size() / width;
-  std::vector<std::uint16_t> row(width);
-  const auto image = compress(rows, [&](std::size_t y) {
-    for (std::size_t x = 0; x < width; ++x) row[x] = std::uint16_t(pixels[y * width + x] - zero);
-    return std::span<const std::uint16_t>(row);
-  });
-  append(file, image, columns, rows, 2, cards);
+TiledFile::~TiledFile() {
+  if (!closed_) unlink(path_.c_str());
 }
 
-void append_rice_image(std::string& file, std::span<const std::uint8_t> pixels, int columns,
-                       std::span<const std::string> cards) {
-  const auto width = std::size_t(columns);
-  const std::size_t rows = pixels.size() / width;
-  const auto image =
-      compress(rows, [&](std::size_t y) { return pixels.subspan(y * width, width); });
-  append(file, image, columns, rows, 1, cards);
+void TiledFile::add(std::span<const std::uint16_t> pixels, int columns,
+                    std::span<const std::string> cards) {
+  add(USHORT_IMG, TUSHORT, pixels.data(), pixels.size(), columns, cards);
+}
+
+void TiledFile::add(std::span<const std::uint8_t> pixels, int columns,
+                    std::span<const std::string> cards) {
+  add(BYTE_IMG, TBYTE, pixels.data(), pixels.size(), columns, cards);
+}
+
+void TiledFile::add(int image_type, int data_type, const void* pixels, std::size_t count,
+                    int columns, std::span<const std::string> cards) {
+  fitsfile* const file = fits_.file;
+  int* const status = &fits_.status;
+  std::array<long, 2> shape{columns, long(count) / columns}, tile{columns, 1};
+  fits_set_compression_type(file, RICE_1, status);
+  fits_set_tile_dim(file, 2, tile.data(), status);
+  fits_create_img(file, image_type, 2, shape.data(), status);
+  for (const std::string& card : cards) fits_write_record(file, card.c_str(), status);
+  fits_write_img(file, data_type, 1, LONGLONG(count), const_cast<void*>(pixels), status);
+  require_ok();
+}
+
+void TiledFile::close() {
+  LONGLONG end = 0;
+  fits_flush_file(fits_.file, &fits_.status);
+  fits_get_hduaddrll(fits_.file, nullptr, nullptr, &end, &fits_.status);
+  fits_close_file(std::exchange(fits_.file, nullptr), &fits_.status);
+  // The last block is written on the way out, where CFITSIO does not look whether it could be.
+  std::error_code failed;
+  if (fits_.status == 0 && std::filesystem::file_size(path_, failed) != std::uintmax_t(end))
+    fits_.status = WRITE_ERROR;
+  errno = 0;
+  require_ok();
+  closed_ = true;
+}
+
+void TiledFile::require_ok() {
+  if (fits_.status == 0) return;
+  const int reason = errno != 0 ? errno : why_no_more(path_);
+  throw Error("can't be written: " +
+              (reason != 0 ? std::string(std::strerror(reason)) : fits_.reason()));
 }
 
 }  // namespace dmise

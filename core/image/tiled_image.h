@@ -3,19 +3,31 @@
 #include <span>
 #include <string>
 
-// FITS images compressed in tiles of one row, as the FITS Standard 4.0 has it in section 10.
-// Written here, not by CFITSIO: in memory it moves all behind a table whenever the table grows, 50
-// s for 8 million pixels.
+#include "core/image/fits_memory.h"
+
 namespace dmise {
 
-/// The head of a FITS file without an image of its own.
-std::string empty_primary();
+/// A new FITS file of an empty primary HDU and images compressed by RICE_1 without loss, a tile a
+/// row (FITS Standard 4.0, section 10), by CFITSIO, which writes each row as it is compressed.
+/// Throws `Error` with the reason; what is not closed is removed.
+class TiledFile {
+ public:
+  explicit TiledFile(std::string path);
+  ~TiledFile();
 
-/// Appends an image as a RICE_1 extension: 16-bit unsigned (BZERO 32768) or 8-bit pixels, first row
-/// first, `cards` in its header. Throws `Error` for more than 2 GiB.
-void append_rice_image(std::string& file, std::span<const std::uint16_t> pixels, int columns,
-                       std::span<const std::string> cards);
-void append_rice_image(std::string& file, std::span<const std::uint8_t> pixels, int columns,
-                       std::span<const std::string> cards);
+  /// 16-bit unsigned or 8-bit; `cards` follow the structural ones.
+  void add(std::span<const std::uint16_t> pixels, int columns, std::span<const std::string> cards);
+  void add(std::span<const std::uint8_t> pixels, int columns, std::span<const std::string> cards);
+  void close();
+
+ private:
+  void add(int image_type, int data_type, const void* pixels, std::size_t count, int columns,
+           std::span<const std::string> cards);
+  void require_ok();
+
+  std::string path_;
+  Fits fits_;
+  bool closed_ = false;
+};
 
 }  // namespace dmise

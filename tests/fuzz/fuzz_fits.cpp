@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (compression == FitsCompression::rice)  // and with lookup tables
       header.wcs.refraction = dmise::WcsRefraction{
           .zenith = {0, 0, 1}, .focal_length_px = 9, .pressure_hpa = 950, .cell_px = 6};
-    return dmise::encode_frame(dmise::test::sample_counts(16, 12), header, compression);
+    return dmise::test::encoded(dmise::test::sample_counts(16, 12), header, compression);
   };
   static const std::string plain = encoded(FitsCompression::none),
                            rice = encoded(FitsCompression::rice);

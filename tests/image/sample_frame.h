@@ -1,7 +1,12 @@
 #pragma once
-#include <cmath>
+#include <unistd.h>
 
+#include <cmath>
+#include <filesystem>
+
+#include "core/base/text_file.h"
 #include "core/base/units.h"
+#include "core/image/fits_file.h"
 #include "core/products/frame_header.h"
 
 namespace dmise::test {
@@ -86,6 +91,19 @@ inline CountImage sample_counts(int columns = 200, int rows = 150) {
   counts.pixels.front() = 0;
   counts.pixels.back() = 65535;
   return counts;
+}
+
+/// Bytes of the file that `write_frame` writes.
+inline std::string encoded(const CountImage& counts, const FrameHeader& header,
+                           FitsCompression compression = FitsCompression::none,
+                           const FlagImage* flags = nullptr) {
+  if (compression == FitsCompression::none) return encode_frame(counts, header, flags);
+  const std::string path = std::filesystem::temp_directory_path().string() + "/encoded-" +
+                           std::to_string(getpid()) + ".fits";
+  write_frame(path, counts, header, compression, flags);
+  std::string bytes = read_text_file(path);
+  std::filesystem::remove(path);
+  return bytes;
 }
 
 }  // namespace dmise::test

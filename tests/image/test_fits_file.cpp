@@ -19,6 +19,7 @@ namespace dmise {
 namespace {
 
 using test::command_output;
+using test::encoded;
 using test::sample_counts;
 using test::sample_header;
 using testing::HasSubstr;
@@ -49,7 +50,7 @@ TEST(FitsFile, ReadsBackWhatWasWritten) {
   for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
     const auto counts = sample_counts();
     const auto header = as_in_file(sample_header());
-    const Frame frame = decode_frame(encode_frame(counts, header, compression), "frame.fits");
+    const Frame frame = decode_frame(encoded(counts, header, compression), "frame.fits");
     EXPECT_EQ(frame.counts.columns, counts.columns);
     EXPECT_EQ(frame.counts.rows, counts.rows);
     EXPECT_EQ(frame.counts.pixels, counts.pixels);
@@ -64,14 +65,14 @@ TEST(FitsFile, RiceReadsBackNoiseAndFlatFrames) {
   for (auto& pixel : counts.pixels)
     pixel = std::uint16_t((state = state * 1664525u + 1013904223u) >> 16);
   for (const CountImage& image : {counts, CountImage(1500, 1100, 300), CountImage(1, 1, 7)}) {
-    const auto bytes = encode_frame(image, sample_header(), FitsCompression::rice);
+    const auto bytes = encoded(image, sample_header(), FitsCompression::rice);
     EXPECT_EQ(decode_frame(bytes, "frame.fits").counts.pixels, image.pixels);
   }
 }
 
 TEST(FitsFile, HeaderInMemoryIsTheHeaderOfTheFile) {
   const auto header = sample_header();
-  const Frame frame = decode_frame(encode_frame(sample_counts(), header), "frame.fits");
+  const Frame frame = decode_frame(encoded(sample_counts(), header), "frame.fits");
   EXPECT_EQ(frame.header, as_in_file(header));
   EXPECT_NEAR(frame.header.wcs.ra_rad, header.wcs.ra_rad, 1e-15);
   EXPECT_EQ(frame.header.seed, header.seed);
@@ -81,17 +82,17 @@ TEST(FitsFile, SpaceSensorHasNoSite) {
   auto header = sample_header();
   header.site.reset();
   header.wcs.order = 0;
-  const Frame frame = decode_frame(encode_frame(sample_counts(), header), "frame.fits");
+  const Frame frame = decode_frame(encoded(sample_counts(), header), "frame.fits");
   EXPECT_FALSE(frame.header.site);
   EXPECT_EQ(frame.header.wcs.order, 0);
 }
 
 TEST(FitsFile, EqualFramesAreEqualBytesAndRiceIsSmaller) {
   for (const auto compression : {FitsCompression::none, FitsCompression::rice})
-    EXPECT_EQ(encode_frame(sample_counts(), sample_header(), compression),
-              encode_frame(sample_counts(), sample_header(), compression));
-  EXPECT_LT(encode_frame(sample_counts(640, 480), sample_header(), FitsCompression::rice).size(),
-            0.6 * encode_frame(sample_counts(640, 480), sample_header()).size());
+    EXPECT_EQ(encoded(sample_counts(), sample_header(), compression),
+              encoded(sample_counts(), sample_header(), compression));
+  EXPECT_LT(encoded(sample_counts(640, 480), sample_header(), FitsCompression::rice).size(),
+            0.6 * encoded(sample_counts(640, 480), sample_header()).size());
 }
 
 FrameHeader header_with_refraction() {
@@ -112,7 +113,7 @@ FrameHeader header_with_refraction() {
 TEST(FitsFile, ARefractionComesBackAndItsTablesDoNotDisturb) {
   const FrameHeader header = header_with_refraction();
   for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
-    const Frame frame = decode_frame(encode_frame(sample_counts(), header, compression), "x");
+    const Frame frame = decode_frame(encoded(sample_counts(), header, compression), "x");
     EXPECT_EQ(frame.header.wcs, as_in_file(header).wcs);
     EXPECT_EQ(frame.header.wcs.projection, Projection::equidistant);
     EXPECT_EQ(frame.header.wcs.refraction, header.wcs.refraction);
@@ -129,7 +130,7 @@ TEST(FitsFile, EveryProjectionIsReadBack) {
     header.projection = Projection::make(i, coefficients);
     header.wcs.projection = header.projection.fits_plane();
     if (header.wcs.projection != header.projection) header.wcs.refraction->lens = header.projection;
-    const Frame frame = decode_frame(encode_frame(sample_counts(), header), "x");
+    const Frame frame = decode_frame(encoded(sample_counts(), header), "x");
     EXPECT_EQ(frame.header.projection, header.projection) << header.projection.name();
     EXPECT_EQ(frame.header.wcs.projection, header.wcs.projection) << header.projection.name();
     EXPECT_EQ(frame.header.wcs.refraction, header.wcs.refraction) << header.projection.name();
@@ -204,7 +205,7 @@ TEST(FitsFile, AstropysWcsIsOursToAThousandthOfAPixel) {
 }
 
 TEST(FitsFile, NamesTheMissingOrWrongKeyword) {
-  const std::string good = encode_frame(sample_counts(), sample_header());
+  const std::string good = encoded(sample_counts(), sample_header());
   EXPECT_EQ(error_of(with_card(good, "EXPTIME", "COMMENT")), "frame.fits: EXPTIME: is missing");
   EXPECT_EQ(error_of(with_card(good, "GAIN", "GAIN    = -1")),
             "frame.fits: GAIN: must be > 0, got -1");
@@ -229,7 +230,7 @@ TEST(FitsFile, NamesTheMissingOrWrongKeyword) {
 TEST(FitsFile, RefusesTilesAndBlocksOfNoSize) {
   for (const std::string key : {"ZVAL1   =", "ZTILE1  ="}) {
     std::string bytes =
-        encode_frame(sample_counts(16, 12), sample_header(16, 12), FitsCompression::rice);
+        encoded(sample_counts(16, 12), sample_header(16, 12), FitsCompression::rice);
     const std::size_t at = bytes.find(key);
     ASSERT_NE(at, bytes.npos);
     bytes.replace(at + key.size(), 21, std::string(20, ' ') + "0");
@@ -245,8 +246,7 @@ TEST(FitsFile, RefusesTilesAndBlocksOfNoSize) {
 // A value of many digits overflows CFITSIO's message about it; other bytes than ASCII do too.
 TEST(FitsFile, RefusesHeadersThatAreNoText) {
   for (const FitsCompression compression : {FitsCompression::none, FitsCompression::rice}) {
-    const std::string good =
-        encode_frame(sample_counts(16, 12), sample_header(16, 12), compression);
+    const std::string good = encoded(sample_counts(16, 12), sample_header(16, 12), compression);
     EXPECT_NO_THROW(decode_frame(good, "good.fits"));
     for (const std::string& value : {std::string(60, '7'), std::string(60, char(0x8e))}) {
       std::string bytes = good;
@@ -258,7 +258,7 @@ TEST(FitsFile, RefusesHeadersThatAreNoText) {
 
 TEST(FitsFile, RefusesEveryTruncation) {
   for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
-    const std::string good = encode_frame(sample_counts(), sample_header(), compression);
+    const std::string good = encoded(sample_counts(), sample_header(), compression);
     for (std::size_t size = 0; size + 2880 <= good.size(); size += 2880)
       EXPECT_THAT(error_of(std::string_view(good).substr(0, size)), HasSubstr("frame.fits: "));
   }

@@ -1,9 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <numeric>
 
@@ -21,6 +24,7 @@ namespace dmise {
 namespace {
 
 using test::command_output;
+using test::encoded;
 using test::sample_counts;
 using test::sample_header;
 using testing::HasSubstr;
@@ -56,15 +60,14 @@ TEST(FlagsInFits, DoNotChangeWhatADetectorReads) {
   const auto flags = sample_flags();
   for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
     const auto header = as_in_file(sample_header());
-    const std::string bytes = encode_frame(sample_counts(), header, compression, &flags);
+    const std::string bytes = encoded(sample_counts(), header, compression, &flags);
     const Frame frame = decode_frame(bytes, "frame.fits");
     EXPECT_EQ(frame.counts.pixels, sample_counts().pixels);
     EXPECT_EQ(frame.header, header);
-    EXPECT_EQ(bytes, encode_frame(sample_counts(), header, compression, &flags));
+    EXPECT_EQ(bytes, encoded(sample_counts(), header, compression, &flags));
   }
   const FlagImage other(3, 3);
-  EXPECT_THROW(encode_frame(sample_counts(), sample_header(), FitsCompression::none, &other),
-               Error);
+  EXPECT_THROW(encoded(sample_counts(), sample_header(), FitsCompression::none, &other), Error);
 }
 
 // Reference: fitsverify 4.20 (HEASARC).
@@ -126,13 +129,11 @@ TEST(Planes, NoNanLeaves) {
 // A device that is always full stands for a full disk.
 TEST(Planes, FullDiskLeavesNoHalfFileAndIsNamed) {
   const RateImage image = sample_plane();
-  const auto flags = sample_flags();
   const auto write = [&](const std::string& path) {
     if (path.ends_with("plane.fits")) write_plane(path, as_plane(image), sample_header());
     if (path.ends_with("map.exr"))
       write_exr(path, {.pixels = image.pixels.data(), .columns = 200, .rows = 150});
-    if (path.ends_with("frame.fits"))
-      write_frame(path, sample_counts(), sample_header(), FitsCompression::rice, &flags);
+    if (path.ends_with("frame.fits")) write_frame(path, sample_counts(), sample_header());
   };
   for (const char* name : {"full-plane.fits", "full-map.exr", "full-frame.fits"}) {
     const std::string path = scratch(name), link = path + ".partial";
@@ -147,6 +148,36 @@ TEST(Planes, FullDiskLeavesNoHalfFileAndIsNamed) {
     }
     EXPECT_FALSE(test::exists(path));
   }
+}
+
+// CFITSIO makes its file anew: a limit on the size of files, small and just too small, stands for a
+// full disk. (`tests/system/run_lock.py` fills a real one.)
+TEST(Planes, ACompressedFrameThatDoesNotFitLeavesNothing) {
+  const auto flags = sample_flags();
+  const std::string path = scratch("too-large.fits");
+  const auto write = [&] {
+    write_frame(path, sample_counts(), sample_header(), FitsCompression::rice, &flags);
+  };
+  write();
+  const auto size = std::filesystem::file_size(path);
+  std::filesystem::remove(path);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  for (const auto most : {std::uintmax_t(100), size / 2, size - 1}) {
+    const rlimit limit{most, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      write();
+      ADD_FAILURE() << most;
+    } catch (const Error& e) {
+      EXPECT_EQ(std::string(e.what()), path + ": can't be written: File too large");
+    }
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_FALSE(test::exists(path));
+    EXPECT_FALSE(test::exists(path + ".partial"));
+  }
+  std::signal(SIGXFSZ, handler);
 }
 
 }  // namespace
