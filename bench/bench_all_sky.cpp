@@ -16,6 +16,7 @@
 #include "bench/status_memory.h"
 #include "bench/timing.h"
 #include "core/base/text_file.h"
+#include "core/config/effect_list.h"
 #include "core/config/make_clock.h"
 #include "core/config/search_path.h"
 #include "core/image/fits_file.h"
@@ -100,9 +101,8 @@ void print_stages(const Measured& m, bool json) {
     print_figure(
         {"all_sky_" + stage + "_ms", 1e3 * seconds, "ms", "whole frame [ms]", 1e3 * total_s}, json);
   };
-  for (std::size_t i = 0; i < effect_count; ++i)
-    if (const double s = m.effects[best].seconds[i]; s > 0.0)
-      print(std::string(facts(static_cast<Effect>(i)).name), s);
+  for (const EffectFacts* effect : all_effects())
+    if (const double s = m.effects[best][*effect]; s > 0.0) print(std::string(effect->name), s);
   print("fits", m.writing_s[best]);
   print("rest", std::max(0.0, rest_s));
 }

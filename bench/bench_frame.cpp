@@ -67,11 +67,12 @@ void measure_deposit(bool json) {
 
 void measure_detector(bool json) {
   Threads one(1);
-  const Detector detector{.dark_e_per_s = 0.02,
-                          .read_noise_e = 9.3,
-                          .full_well_e = 25500,
-                          .gain_e_per_dn = 0.35,
-                          .bias_dn = 1000};
+  Detector detector;
+  detector.dark_e_per_s = 0.02;
+  detector.read_noise_e = 9.3;
+  detector.full_well_e = 25500;
+  detector.gain_e_per_dn = 0.35;
+  detector.bias_dn = 1000;
   const RateImage light(columns, rows, 2000.0f);
   CountImage counts;
   EffectTimes times;
@@ -80,12 +81,9 @@ void measure_detector(bool json) {
            counts, &times);
   });
   print_figure({"detector_ms", 1e3 * s, "ms"}, json);
-  for (const auto& [name, effect] : {std::pair("photon_noise_ms", Effect::photon_noise),
-                                     {"dark_current_ms", Effect::dark_current},
-                                     {"full_well_ms", Effect::full_well},
-                                     {"read_noise_ms", Effect::read_noise},
-                                     {"quantisation_ms", Effect::quantisation}})
-    print_figure({name, 1e3 * times[effect] / repeats, "ms"}, json);
+  for (const EffectFacts* effect : {&PhotonNoise::facts, &DarkCurrent::facts, &FullWell::facts,
+                                    &ReadNoise::facts, &Quantisation::facts})
+    print_figure({std::string(effect->name) + "_ms", 1e3 * times[*effect] / repeats, "ms"}, json);
 }
 
 // The two plain transforms of a padded frame, as a library user would run them.
@@ -145,11 +143,12 @@ void measure_optics(bool json) {
                json);
   print_figure({"full_chain_4096_deposit_ms", 1e3 * begin_s, "ms", "full chain [ms]", 1e3 * ours},
                json);
-  const Detector detector{.dark_e_per_s = 0.02,
-                          .read_noise_e = 9.3,
-                          .full_well_e = 25500,
-                          .gain_e_per_dn = 0.35,
-                          .bias_dn = 1000};
+  Detector detector;
+  detector.dark_e_per_s = 0.02;
+  detector.read_noise_e = 9.3;
+  detector.full_well_e = 25500;
+  detector.gain_e_per_dn = 0.35;
+  detector.bias_dn = 1000;
   CountImage counts;
   const double detector_s = seconds([&] {
     expose(light, detector, {.seed = 1, .sensor = "bench", .frame = 1, .exposure_s = 10}, {}, one,

@@ -1,31 +1,28 @@
 #include "core/config/detector_config.h"
 
-#include "core/detector/detector_figures.h"
-#include "core/detector/expose.h"
-
 namespace dmise {
 
 Detector read_detector(const YamlValue& value) {
   YamlMap map(value);
   Detector d;
-  for (const DetectorFigure& figure : detector_figures()) {
-    if (figure.value == &Detector::quantum_efficiency) {
-      map.find(figure.key);  // read with the band: it may be a curve
-      continue;
+  for (const DetectorParameter& p : detector_parameters()) {
+    const auto given = p.required ? map.require(p.key) : map.find(p.key);
+    if (p.key == "quantum_efficiency") continue;  // read with the band: it may be a curve
+    if (!given) {
+      if (p.key == "temperature_c") d.temperature_c = d.dark_reference_c;  // unless it says more
+    } else if (std::holds_alternative<bool Detector::*>(p.value)) {
+      p.set(d, given->flag());
+    } else if (std::holds_alternative<double Detector::*>(p.value)) {
+      p.set(d, given->number({p.least, p.most, p.least_open}));
+    } else {
+      const auto most = std::int64_t(p.reason.empty() ? p.most : 4 * p.most);
+      const auto asked = given->integer(std::int64_t(p.least), most);
+      if (double(asked) > p.most)
+        given->fail("must be " + std::to_string(std::int64_t(p.least)) + ".." +
+                    std::to_string(std::int64_t(p.most)) + ": " + std::string(p.reason));
+      p.set(d, double(asked));
     }
-    double& v = d.*figure.value;
-    if (figure.value == &Detector::temperature_c) v = d.dark_reference_c;  // unless it says more
-    const Bounds bounds{figure.least, figure.most, figure.least_open};
-    v = figure.required ? map.number(figure.key, bounds) : map.number_or(figure.key, v, bounds);
   }
-  if (const auto bits = map.find("adc_bits")) {
-    const auto asked = bits->integer(1, 64);
-    if (asked > most_adc_bits)
-      bits->fail("must be 1..16: counts are 16-bit numbers in frames and messages");
-    d.adc_bits = static_cast<int>(asked);
-  }
-  d.reference_px = static_cast<int>(map.integer_or("reference_px", 0, 0, most_reference_px));
-  d.blooming = map.flag_or("blooming", false);
   map.done();
   if (const auto fault = fault_of(d)) {  // what only two figures together make wrong
     if (const auto at = map.find(fault->key)) at->fail(fault->reason);

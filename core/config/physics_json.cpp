@@ -1,9 +1,9 @@
 #include "core/base/json.h"
+#include "core/config/effect_list.h"
 #include "core/config/optics_config.h"
 #include "core/config/pointing_config.h"
 #include "core/config/scenario.h"
 #include "core/config/surroundings_json.h"
-#include "core/detector/detector_figures.h"
 
 namespace dmise {
 namespace {
@@ -33,8 +33,9 @@ void write_camera(JsonWriter& json, const Camera& camera) {
   json.field("pixel_pitch_m", o.pixel_pitch_m).field("columns", o.columns).field("rows", o.rows);
   json.field("transmission", o.transmission).field("psf_fwhm_px", o.psf_fwhm_px);
   write_optics_json(json, o);
-  for (const auto& figure : detector_figures()) json.field(figure.key, d.*figure.value);
-  json.field("reference_px", d.reference_px).field("blooming", d.blooming);
+  for (const auto& p : detector_parameters())
+    if (p.key != "adc_bits" && (in_every_header(p) || p.number_of(d) != p.number_of({})))
+      std::visit([&](auto member) { json.field(p.key, d.*member); }, p.value);
   json.field("adc_bits", d.adc_bits).field("band", camera.band.name);
   json.field("band_centre_m", camera.band.centre_m).field("band_width_m", camera.band.width_m);
   write_curve(json, "band_response", camera.band.response);
@@ -52,8 +53,7 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   json.field("first_exposure_s", s.first_exposure_s);
   write_surroundings(json, s);
   json.key("effects").begin_array();
-  for (std::size_t i = 0; i < effect_count; ++i)
-    if (s.effects.has(static_cast<Effect>(i))) json.value(facts(static_cast<Effect>(i)).name);
+  for (const auto name : effects_in_digest(s.effects)) json.value(name);
   json.end_array();
   if (s.effects.snapshots() > 0) json.field("snapshots", s.effects.snapshots());
   if (!s.detect) json.field("detection", false);

@@ -5,6 +5,8 @@
 #include <mutex>
 #include <vector>
 
+#include "core/detector/detector.h"
+
 namespace dmise {
 namespace {
 
@@ -69,8 +71,25 @@ std::vector<std::size_t> overfull_columns(float well, const ElectronImage& elect
 
 }  // namespace
 
-std::size_t blooming(double full_well_e, ElectronImage& electrons, Threads& threads,
-                     FlagImage* flags) {
+std::span<const DetectorParameter> Blooming::parameters() {
+  static constexpr DetectorParameter table[] = {{"blooming", "BLOOMING",
+                                                 "charge above the full well runs along columns",
+                                                 &Blooming::blooming}};
+  return table;
+}
+
+// Without a full well nothing runs over.
+bool Blooming::applies(const Detector& detector) const {
+  return blooming && detector.well_is_limited;
+}
+
+void Blooming::apply(const ExposureFacts& exposed, const WholeImage& image) const {
+  image.saturated.full_well +=
+      bloom(exposed.detector.full_well_e, image.electrons, image.threads, image.flags);
+}
+
+std::size_t bloom(double full_well_e, ElectronImage& electrons, Threads& threads,
+                  FlagImage* flags) {
   const auto well = float(full_well_e);
   const auto overfull = overfull_columns(well, electrons, threads);
   threads.for_ranges(overfull.size(), column_grain, [&](std::size_t begin, std::size_t end) {

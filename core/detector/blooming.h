@@ -1,16 +1,25 @@
 #pragma once
-#include <cstddef>
-
-#include "core/base/image.h"
-#include "core/base/parallel.h"
-#include "core/detector/pixel_flags.h"
+#include "core/detector/detector_effect.h"
 
 namespace dmise {
 
 /// Lets charge above the full well run along its column, half up and half down, into pixels with
-/// room; what reaches an end of the column is drained. Returns how many pixels end full. Sets
-/// `flag_full_well` and `flag_bloomed` if `flags` are given.
-std::size_t blooming(double full_well_e, ElectronImage& electrons, Threads& threads,
-                     FlagImage* flags = nullptr);
+/// room; what reaches an end of the column is drained.
+struct Blooming {
+  static constexpr EffectFacts facts{"blooming", "charge above the full well runs along the column",
+                                     "it is lost",
+                                     "Janesick 2001, Scientific Charge-Coupled Devices"};
+  bool blooming = false;
+  bool operator==(const Blooming&) const = default;
+
+  static std::span<const DetectorParameter> parameters();
+  void switch_off() { blooming = false; }
+  bool applies(const Detector& detector) const;
+  void apply(const ExposureFacts& exposed, const WholeImage& image) const;
+};
+
+/// Returns how many pixels end full. Sets `flag_full_well` and `flag_bloomed` if `flags` are given.
+std::size_t bloom(double full_well_e, ElectronImage& electrons, Threads& threads,
+                  FlagImage* flags = nullptr);
 
 }  // namespace dmise

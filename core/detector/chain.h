@@ -1,57 +1,171 @@
 #pragma once
-#include <cstdint>
+#include <array>
+#include <chrono>
 #include <optional>
-#include <span>
-#include <vector>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
-#include "core/detector/cosmic_rays.h"
-#include "core/detector/dark_current.h"
-#include "core/detector/effect_watch.h"
-#include "core/detector/expose.h"
-#include "core/detector/fixed_pattern.h"
-#include "core/detector/quantisation.h"
+#include "core/detector/detector.h"
 
 namespace dmise {
 
-/// The effects of one exposure on a piece of the image, and all of them that is prepared before the
-/// first pixel. A piece begins at a multiple of rng_group. Empty `flags` are not filled in.
-class Chain {
+enum class Reach { piece, neighbours, image };
+
+/// What an effect needs of the image.
+template <class Effect>
+constexpr Reach reach_of() {
+  using X = const ExposureFacts&;
+  if (requires(const Effect& e, X x, const WholeImage& i) { e.apply(x, i); }) return Reach::image;
+  if (requires(const Effect& e, X x, const ElectronImage& i, Piece& p) { e.apply(x, i, p); })
+    return Reach::neighbours;
+  return Reach::piece;
+}
+
+/// What an effect prepares before the first pixel.
+template <class Effect>
+auto prepared(const Effect& effect, const ExposureFacts& exposed) {
+  if constexpr (requires { effect.prepare(exposed); })
+    return effect.prepare(exposed);
+  else
+    return std::monostate();
+}
+
+/// An effect in one exposure.
+template <class Effect>
+class ActingEffect {
  public:
-  /// `detector` as it acts, with the effects that are off out of it (`in_effect`). All arguments
-  /// must outlive the chain.
-  Chain(const RateImage& light, const Detector& detector, const Exposure& exposure,
-        const EffectSet& effects, PersistenceMemory& traps, SimdLevel level, EffectWatch& watch);
+  static constexpr Reach reach = reach_of<Effect>();
+  ActingEffect(const Effect& effect, const ExposureFacts& exposed)
+      : effect_(effect), exposed_(exposed), prepared_(prepared(effect, exposed)) {}
 
-  /// Blooming and interpixel coupling need pixels beyond the piece.
-  bool needs_neighbours() const { return d_.blooming || d_.interpixel_coupling > 0.0; }
-
-  /// Electrons collected by the pixels from `begin` on; returns how many are full (0 if blooming is
-  /// to decide).
-  std::size_t collect(std::size_t begin, std::span<float> electrons, std::span<std::uint8_t> flags,
-                      EffectWatch& watch) const;
-  /// Reads them out; returns how many are at the highest count.
-  std::size_t read(std::size_t begin, std::span<float> electrons, std::uint16_t* counts,
-                   std::span<std::uint8_t> flags, EffectWatch& watch) const;
+  template <class... Pixels>
+  void apply(Pixels&... pixels) const {
+    if constexpr (std::is_same_v<Prepared, std::monostate>)
+      effect_.apply(exposed_, pixels...);
+    else
+      effect_.apply(exposed_, prepared_, pixels...);
+  }
 
  private:
-  struct Keys {
-    RngKey photons, dark, hot, released, read, response;
-  };
-  bool on(Effect effect) const { return effects_.has(effect) && has_figure(d_, effect); }
-  void collect_released(std::size_t begin, std::span<float> electrons) const;
+  using Prepared =
+      decltype(prepared(std::declval<const Effect&>(), std::declval<const ExposureFacts&>()));
 
-  const RateImage& light_;
-  const Detector& d_;
-  const Exposure& exposure_;
-  const EffectSet& effects_;
-  PersistenceMemory& traps_;
-  SimdLevel level_;
-  Keys keys_;
-  std::optional<DarkCurrent> dark_;
-  std::vector<HotPixel> hot_;
-  std::vector<CosmicCharge> rays_;
-  std::vector<float> columns_;
-  std::optional<Release> release_;
+  const Effect& effect_;
+  ExposureFacts exposed_;
+  Prepared prepared_;
+};
+
+/// The effects of a family that apply to one exposure. It owns their switching, their random keys
+/// and the record of their time. It visits the list once a piece, never once a pixel.
+template <class List>
+class Chain;
+
+template <class... Effects>
+class Chain<EffectList<Effects...>> {
+ public:
+  static constexpr std::size_t size = sizeof...(Effects);
+  using Seconds = std::array<double, size>;
+
+  /// `exposed` but for its keys. What it refers to must outlive the chain.
+  Chain(ExposureFacts exposed, Seconds& seconds) {
+    Laps laps;
+    each_slot([&]<class Effect>(std::size_t i, std::optional<ActingEffect<Effect>>& slot) {
+      const Effect& effect = exposed.detector;
+      if (!effect.applies(exposed.detector)) return;
+      const Exposure& named = exposed.exposure;
+      exposed.key = rng_key(named.seed, named.sensor, named.frame, Effect::facts.name);
+      // Frame 0, which no exposure has.
+      exposed.fixed_key = rng_key(named.seed, named.sensor, 0, Effect::facts.name);
+      slot.emplace(effect, exposed);
+      laps.charge(seconds[i]);
+    });
+  }
+
+  /// The first effect from `from` on that needs pixels beyond its piece; `size` if there is none.
+  std::size_t next_beyond_pieces(std::size_t from) const {
+    std::size_t found = size;
+    each([&](std::size_t i, const auto& effect) {
+      if (i >= from && found == size && effect.reach != Reach::piece) found = i;
+    });
+    return found;
+  }
+  Reach reach(std::size_t index) const {
+    Reach reach = Reach::piece;
+    each([&](std::size_t i, const auto& effect) {
+      if (i == index) reach = effect.reach;
+    });
+    return reach;
+  }
+
+  /// Runs effects `begin` to before `end` on a piece. The first may need the pixels around it,
+  /// which are those of `image`.
+  void run(std::size_t begin, std::size_t end, const ElectronImage* image, Piece& piece,
+           Seconds& seconds) const {
+    Laps laps;
+    each([&](std::size_t i, const auto& effect) {
+      if (i < begin || i >= end) return;
+      constexpr Reach reach = std::remove_cvref_t<decltype(effect)>::reach;
+      if constexpr (reach == Reach::piece) effect.apply(piece);
+      if constexpr (reach == Reach::neighbours) effect.apply(*image, piece);
+      laps.charge(seconds[i]);
+    });
+  }
+
+  /// Runs one effect on the whole image.
+  void run(std::size_t index, const WholeImage& image, Seconds& seconds) const {
+    Laps laps;
+    each([&](std::size_t i, const auto& effect) {
+      if (i != index) return;
+      if constexpr (std::remove_cvref_t<decltype(effect)>::reach == Reach::image)
+        effect.apply(image);
+      laps.charge(seconds[i]);
+    });
+  }
+
+  /// Adds the seconds of the effects that ran to `times`.
+  void record(const Seconds& seconds, EffectTimes& times) const {
+    each([&]<class Effect>(std::size_t i, const ActingEffect<Effect>&) {
+      times[Effect::facts] += seconds[i];
+    });
+  }
+
+ private:
+  class Laps {
+   public:
+    void charge(double& seconds) {
+      const auto now = Clock::now();
+      seconds += std::chrono::duration<double>(now - lap_).count();
+      lap_ = now;
+    }
+
+   private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point lap_ = Clock::now();
+  };
+
+  template <class Visit>
+  void each_slot(Visit&& visit) {
+    std::apply(
+        [&](auto&... slot) {
+          std::size_t i = 0;
+          (visit(i++, slot), ...);
+        },
+        slots_);
+  }
+  /// Calls visit(index, effect) for those that apply.
+  template <class Visit>
+  void each(Visit&& visit) const {
+    std::apply(
+        [&](const auto&... slot) {
+          std::size_t i = 0;
+          ((slot ? visit(i, *slot) : void(), ++i), ...);
+        },
+        slots_);
+  }
+
+  std::tuple<std::optional<ActingEffect<Effects>>...> slots_;
 };
 
 }  // namespace dmise

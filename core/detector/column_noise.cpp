@@ -1,19 +1,28 @@
 #include "core/detector/column_noise.h"
 
+#include "core/detector/detector.h"
+
 namespace dmise {
 
-std::vector<float> column_offsets(double rms_e, int columns, const RngKey& key) {
-  std::vector<std::uint32_t> words(static_cast<std::size_t>(columns));
-  rng_words(key, 0, words.size(), 0, words.data());
-  std::vector<float> offsets(words.size());
+std::span<const DetectorParameter> ColumnNoise::parameters() {
+  static constexpr DetectorParameter table[] = {{"column_noise_e", "COLNOISE",
+                                                 "[e-] rms offset of a column",
+                                                 &ColumnNoise::column_noise_e, 0.0, 1e6}};
+  return table;
+}
+
+ColumnNoise::Prepared ColumnNoise::prepare(const ExposureFacts& exposed) const {
+  std::vector<std::uint32_t> words(static_cast<std::size_t>(exposed.light.columns));
+  rng_words(exposed.key, 0, words.size(), 0, words.data());
+  Prepared offsets(words.size());
   normals_of(words.data(), words.size(), offsets.data());
-  for (float& e : offsets) e *= float(rms_e);
+  for (float& e : offsets) e *= float(column_noise_e);
   return offsets;
 }
 
-void add_columns(std::span<const float> offsets_e, std::size_t first, std::span<float> electrons) {
-  std::size_t x = first % offsets_e.size();
-  for (float& e : electrons) {
+void ColumnNoise::apply(const ExposureFacts&, const Prepared& offsets_e, Piece& piece) const {
+  std::size_t x = piece.first % offsets_e.size();
+  for (float& e : piece.electrons) {
     e += offsets_e[x];
     x = x + 1 < offsets_e.size() ? x + 1 : 0;
   }

@@ -1,16 +1,24 @@
 #pragma once
-#include <cstddef>
-#include <span>
 #include <vector>
 
-#include "core/base/rng.h"
+#include "core/detector/detector_effect.h"
 
 namespace dmise {
 
-/// Offset of each column in one frame, a normal deviate of standard deviation `rms_e` [e-].
-std::vector<float> column_offsets(double rms_e, int columns, const RngKey& key);
+/// A normal offset of every column, new in each frame.
+struct ColumnNoise {
+  static constexpr EffectFacts facts{"column_noise",
+                                     "every column is read with an offset, new in each frame",
+                                     "none", "normal distribution, assumed"};
+  double column_noise_e = 0.0;  // rms
+  bool operator==(const ColumnNoise&) const = default;
 
-/// Adds them to the pixels from `first` on (row-major).
-void add_columns(std::span<const float> offsets_e, std::size_t first, std::span<float> electrons);
+  static std::span<const DetectorParameter> parameters();
+  void switch_off() { column_noise_e = 0.0; }
+  bool applies(const Detector&) const { return column_noise_e > 0.0; }
+  using Prepared = std::vector<float>;  // by column [e-]
+  Prepared prepare(const ExposureFacts& exposed) const;
+  void apply(const ExposureFacts& exposed, const Prepared& offsets_e, Piece& piece) const;
+};
 
 }  // namespace dmise

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/detector/detector.h"
 #include "core/detector/poisson.h"
 
 namespace dmise {
@@ -20,10 +23,21 @@ void add_crossings(double from, double extent, std::vector<double>& cuts) {
 
 }  // namespace
 
-std::vector<CosmicCharge> cosmic_rays(const Detector& d, int columns, int rows, double exposure_s,
-                                      const RngKey& key) {
-  std::vector<CosmicCharge> charges;
-  const auto mean = float(d.cosmic_rays_per_px_s * exposure_s * columns * double(rows));
+std::span<const DetectorParameter> CosmicRays::parameters() {
+  static constexpr DetectorParameter table[] = {
+      {"cosmic_rays_per_px_s", "CRRATE", "[1/s/px] hits by charged particles",
+       &CosmicRays::cosmic_rays_per_px_s, 0.0, 1e-3},
+      {"cosmic_ray_e_per_px", "CRCHARGE", "[e-] left in a pixel pitch of track",
+       &CosmicRays::cosmic_ray_e_per_px, 0.0, 1e6},
+      {"cosmic_ray_depth_px", "CRDEPTH", "[px] depth of the sensitive layer",
+       &CosmicRays::cosmic_ray_depth_px, 0.0, 100.0, true}};
+  return table;
+}
+
+CosmicRays::Prepared CosmicRays::charges(int columns, int rows, double exposure_s,
+                                         const RngKey& key) const {
+  Prepared charges;
+  const auto mean = float(cosmic_rays_per_px_s * exposure_s * columns * double(rows));
   float hits;
   poisson(key, 0, &mean, 1, &hits);
   std::vector<double> cuts;
@@ -32,10 +46,10 @@ std::vector<CosmicCharge> cosmic_rays(const Detector& d, int columns, int rows, 
     const double x = u(1) * columns - 0.5, y = u(2) * rows - 0.5;
     // Flux through a plane goes with cos(theta): the cosine is the root of a uniform number.
     const double cosine = std::sqrt(u(3));
-    const double across = std::min(d.cosmic_ray_depth_px * std::sqrt(1 - cosine * cosine) / cosine,
+    const double across = std::min(cosmic_ray_depth_px * std::sqrt(1 - cosine * cosine) / cosine,
                                    std::hypot(columns, rows));
     const double dx = across * std::cos(2 * pi * u(4)), dy = across * std::sin(2 * pi * u(4));
-    const double charge = std::hypot(across, d.cosmic_ray_depth_px) * d.cosmic_ray_e_per_px;
+    const double charge = std::hypot(across, cosmic_ray_depth_px) * cosmic_ray_e_per_px;
     cuts.assign({0.0, 1.0});
     add_crossings(x, dx, cuts);
     add_crossings(y, dy, cuts);
@@ -54,12 +68,22 @@ std::vector<CosmicCharge> cosmic_rays(const Detector& d, int columns, int rows, 
   return charges;
 }
 
-void add_cosmic_rays(std::span<const CosmicCharge> charges, std::uint32_t first,
-                     std::span<float> electrons) {
-  auto it = std::lower_bound(charges.begin(), charges.end(), first,
-                             [](const CosmicCharge& c, std::uint32_t p) { return c.pixel < p; });
-  for (; it != charges.end() && it->pixel - first < electrons.size(); ++it)
-    electrons[it->pixel - first] += it->electrons;
+CosmicRays::Prepared CosmicRays::prepare(const ExposureFacts& exposed) const {
+  const double exposure_s = exposed.exposure.exposure_s;
+  const double hits = cosmic_rays_per_px_s * exposure_s * double(exposed.light.pixels.size());
+  if (hits > most_cosmic_hits)
+    throw Error("detector.cosmic_rays_per_px_s: an exposure must expect <= 1e7 hits, got " +
+                std::to_string(hits));
+  return charges(exposed.light.columns, exposed.light.rows, exposure_s, exposed.key);
+}
+
+void CosmicRays::apply(const ExposureFacts&, const Prepared& charges, Piece& piece) const {
+  auto it = std::lower_bound(charges.begin(), charges.end(), piece.first,
+                             [](const CosmicCharge& c, std::size_t p) { return c.pixel < p; });
+  for (; it != charges.end() && it->pixel - piece.first < piece.electrons.size(); ++it) {
+    piece.electrons[it->pixel - piece.first] += it->electrons;
+    if (!piece.flags.empty()) piece.flags[it->pixel - piece.first] |= flag_cosmic_ray;
+  }
 }
 
 }  // namespace dmise

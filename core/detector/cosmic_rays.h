@@ -1,10 +1,7 @@
 #pragma once
-#include <cstdint>
-#include <span>
 #include <vector>
 
-#include "core/base/rng.h"
-#include "core/detector/detector.h"
+#include "core/detector/detector_effect.h"
 
 namespace dmise {
 
@@ -14,14 +11,31 @@ struct CosmicCharge {
   float electrons;
 };
 
-/// Cosmic rays of one exposure, by rising pixel: straight tracks through the sensitive layer,
-/// isotropic from above, each pixel charged by the length of track within it. Landau's fluctuations
-/// are left out: charge follows the length alone.
-std::vector<CosmicCharge> cosmic_rays(const Detector& detector, int columns, int rows,
-                                      double exposure_s, const RngKey& key);
+/// Most cosmic ray hits in one exposure: more are refused.
+inline constexpr double most_cosmic_hits = 1e7;
 
-/// Adds the charges that fall on the pixels from `first` on.
-void add_cosmic_rays(std::span<const CosmicCharge> charges, std::uint32_t first,
-                     std::span<float> electrons);
+/// Straight tracks through the sensitive layer, isotropic from above, each pixel charged by the
+/// length of track within it. Landau's fluctuations are left out: charge follows the length alone.
+struct CosmicRays {
+  static constexpr EffectFacts facts{"cosmic_rays", "charged particles leave tracks",
+                                     "no false points and streaks",
+                                     "geometry of isotropic flux through a slab"};
+  double cosmic_rays_per_px_s = 0.0;    // hits
+  double cosmic_ray_e_per_px = 1000.0;  // charge left in a pixel pitch of track
+  double cosmic_ray_depth_px = 1.0;     // depth of the sensitive layer in pixel pitches
+  bool operator==(const CosmicRays&) const = default;
+
+  static std::span<const DetectorParameter> parameters();
+  void switch_off() { cosmic_rays_per_px_s = 0.0; }
+  bool applies(const Detector&) const {
+    return cosmic_rays_per_px_s > 0.0 && cosmic_ray_e_per_px > 0.0;
+  }
+  /// Charges of one exposure, by rising pixel.
+  using Prepared = std::vector<CosmicCharge>;
+  Prepared charges(int columns, int rows, double exposure_s, const RngKey& key) const;
+  /// Throws `Error` for more than `most_cosmic_hits` expected hits.
+  Prepared prepare(const ExposureFacts& exposed) const;
+  void apply(const ExposureFacts& exposed, const Prepared& charges, Piece& piece) const;
+};
 
 }  // namespace dmise

@@ -1,111 +1,113 @@
 #include "core/detector/expose.h"
 
+#include <algorithm>
 #include <mutex>
-#include <span>
+#include <string>
 
 #include "core/base/error.h"
-#include "core/detector/blooming.h"
 #include "core/detector/chain.h"
-#include "core/detector/effect_watch.h"
-#include "core/detector/interpixel_coupling.h"
+#include "core/detector/detector_kernels.h"
+#include "core/detector/poisson.h"
 
 namespace dmise {
 namespace {
+
+using DetectorChain = Chain<DetectorEffects>;
 
 constexpr std::size_t piece_px =
     16384;  // 64 KB of electrons: stays in the cache through all effects
 static_assert(piece_px % rng_group == 0);
 
-void check(const RateImage& light, const Detector& d, const Exposure& exposure) {
+void check(const RateImage& light, const Exposure& exposure) {
   if (light.pixels.size() > 0xffffffffu) throw Error("expose: more than 2^32 pixels");
   if (!(exposure.exposure_s >= 0.0)) throw Error("expose: exposure_s must be >= 0");
   if (!(exposure.idle_s >= 0.0)) throw Error("expose: idle_s must be >= 0");
-  const double hits = d.cosmic_rays_per_px_s * exposure.exposure_s * double(light.pixels.size());
-  if (hits > most_cosmic_hits)
-    throw Error("detector.cosmic_rays_per_px_s: an exposure must expect <= 1e7 hits, got " +
-                std::to_string(hits));
+}
+
+/// Names the first pixel from `begin` on that expects no number of electrons.
+[[noreturn]] void refuse(const RateImage& light, std::size_t begin) {
+  std::size_t i = begin;
+  while (light.pixels[i] >= 0.0f && light.pixels[i] <= poisson_largest_mean) ++i;
+  const auto columns = std::size_t(light.columns);
+  throw Error("expose: pixel (" + std::to_string(i % columns) + ", " + std::to_string(i / columns) +
+              "): expected electrons must be in 0..1e12, got " + std::to_string(light.pixels[i]));
+}
+
+void take_light(const RateImage& light, Piece& piece, SimdLevel level) {
+  const auto copy = kernel_of(level, sse2::copy_light, avx2::copy_light, avx512::copy_light);
+  if (!copy(light.pixels.data() + piece.first, piece.electrons.size(), piece.electrons.data()))
+    refuse(light, piece.first);
+  std::fill(piece.flags.begin(), piece.flags.end(), std::uint8_t{0});
+}
+
+template <class AnImage>
+void resize_like(const RateImage& light, AnImage& image) {
+  image.columns = light.columns;
+  image.rows = light.rows;
+  image.pixels.resize(light.pixels.size());
 }
 
 }  // namespace
 
-SaturatedPixels expose(const RateImage& light, const Detector& figures, const Exposure& exposure,
+SaturatedPixels expose(const RateImage& light, const Detector& parameters, const Exposure& exposure,
                        const EffectSet& effects, Threads& threads, CountImage& counts,
                        EffectTimes* times, const ExposeOptions& options) {
-  dmise::check(figures);
-  const Detector detector = in_effect(figures, effects);
-  check(light, detector, exposure);
-  counts.columns = light.columns;
-  counts.rows = light.rows;
-  counts.pixels.resize(light.pixels.size());
-  if (options.flags) {
-    options.flags->columns = light.columns;
-    options.flags->rows = light.rows;
-    options.flags->pixels.resize(light.pixels.size());
-  }
-  const auto flags_of = [&](std::size_t begin, std::size_t size) {
-    return options.flags ? std::span(options.flags->pixels).subspan(begin, size)
-                         : std::span<std::uint8_t>();
-  };
+  dmise::check(parameters);
+  check(light, exposure);
+  const Detector detector = acting_detector(parameters, effects);
+  resize_like(light, counts);
+  if (options.flags) resize_like(light, *options.flags);
   DetectorMemory own;
   DetectorMemory& kept = options.memory ? *options.memory : own;
+  ElectronImage& image = kept.electrons;
 
   SaturatedPixels saturated;
-  EffectTimes all;
-  EffectWatch preparing(all);
-  const Chain chain(light, detector, exposure, effects, kept.persistence, options.level, preparing);
+  DetectorChain::Seconds seconds{};
+  const DetectorChain chain({.light = light,
+                             .detector = detector,
+                             .exposure = exposure,
+                             .traps = kept.persistence,
+                             .level = options.level,
+                             .key = {},
+                             .fixed_key = {}},
+                            seconds);
   std::mutex sums;
-  // Runs work(begin, electrons, watch) on every piece and sums what it returns.
-  const auto by_pieces = [&](const auto& work) {
-    threads.for_ranges(light.pixels.size(), piece_px, [&](std::size_t begin, std::size_t end) {
+  const auto on_pieces = [&](std::size_t begin, std::size_t end, bool first, bool by_neighbours) {
+    const bool in_buffer = end == DetectorChain::size && (first || by_neighbours);
+    threads.for_ranges(light.pixels.size(), piece_px, [&](std::size_t from, std::size_t to) {
       thread_local std::vector<float> buffer(piece_px);
-      EffectTimes spent;
-      EffectWatch watch(spent);
-      const SaturatedPixels here = work(begin, std::span(buffer.data(), end - begin), watch);
+      DetectorChain::Seconds spent{};
+      SaturatedPixels here;
+      Piece piece{
+          .first = from,
+          .electrons = (in_buffer ? std::span(buffer) : std::span(image.pixels).subspan(from))
+                           .first(to - from),
+          .flags = options.flags ? std::span(options.flags->pixels).subspan(from, to - from)
+                                 : std::span<std::uint8_t>(),
+          .counts = counts.pixels.data() + from,
+          .saturated = &here};
+      if (first) take_light(light, piece, options.level);
+      chain.run(begin, end, &image, piece, spent);
       std::lock_guard lock(sums);
       saturated.full_well += here.full_well;
       saturated.adc += here.adc;
-      for (std::size_t i = 0; i < effect_count; ++i) all.seconds[i] += spent.seconds[i];
+      for (std::size_t i = 0; i < spent.size(); ++i) seconds[i] += spent[i];
     });
-  };
-  const auto read = [&](std::size_t begin, std::span<float> e, EffectWatch& watch) {
-    return chain.read(begin, e, counts.pixels.data() + begin, flags_of(begin, e.size()), watch);
   };
 
-  const auto collect = [&](std::size_t begin, std::span<float> e, EffectWatch& watch) {
-    return chain.collect(begin, e, flags_of(begin, e.size()), watch);
-  };
-
-  if (!chain.needs_neighbours()) {
-    by_pieces([&](std::size_t begin, std::span<float> e, EffectWatch& watch) {
-      const std::size_t full = collect(begin, e, watch);
-      return SaturatedPixels{full, read(begin, e, watch)};
-    });
-  } else {
-    ElectronImage& collected = kept.electrons;
-    collected.columns = light.columns;
-    collected.rows = light.rows;
-    collected.pixels.resize(light.pixels.size());
-    by_pieces([&](std::size_t begin, std::span<float> e, EffectWatch& watch) {
-      const auto part = std::span(collected.pixels).subspan(begin, e.size());
-      return SaturatedPixels{collect(begin, part, watch), 0};
-    });
-    if (detector.blooming) {
-      EffectWatch watch(all);
-      saturated.full_well = blooming(detector.full_well_e, collected, threads, options.flags);
-      watch.charge(Effect::blooming);
-    }
-    by_pieces([&](std::size_t begin, std::span<float> e, EffectWatch& watch) {
-      if (detector.interpixel_coupling > 0.0) {
-        interpixel_coupling(detector.interpixel_coupling, collected, begin, e);
-        watch.charge(Effect::interpixel_coupling);
-      } else {
-        e = std::span(collected.pixels).subspan(begin, e.size());
-      }
-      return SaturatedPixels{0, read(begin, e, watch)};
-    });
+  // Pieces run as far as the next effect that needs more of the image.
+  std::size_t end = chain.next_beyond_pieces(0);
+  if (end < DetectorChain::size) resize_like(light, image);
+  on_pieces(0, end, true, false);
+  while (end < DetectorChain::size) {
+    std::size_t begin = end;
+    if (chain.reach(begin) == Reach::image)
+      chain.run(begin++, {image, options.flags, threads, saturated}, seconds);
+    const bool by_neighbours = chain.reach(begin) == Reach::neighbours;
+    end = chain.next_beyond_pieces(begin + by_neighbours);
+    on_pieces(begin, end, false, by_neighbours);
   }
-  if (times)
-    for (std::size_t i = 0; i < effect_count; ++i) times->seconds[i] += all.seconds[i];
+  if (times) chain.record(seconds, *times);
   return saturated;
 }
 

@@ -1,12 +1,28 @@
 #include "core/detector/full_well.h"
 
+#include "core/detector/detector.h"
 #include "core/detector/detector_kernels.h"
 
 namespace dmise {
 
-std::size_t full_well(double full_well_e, std::span<float> electrons, SimdLevel level) {
-  const auto kernel = kernel_of(level, sse2::clip, avx2::clip, avx512::clip);
-  return kernel(float(full_well_e), electrons.data(), electrons.size());
+std::span<const DetectorParameter> FullWell::parameters() {
+  static constexpr DetectorParameter table[] = {
+      {"full_well_e", "", "[e-] that a pixel holds", &FullWell::full_well_e, 0.0, 1e9, true, true}};
+  return table;
+}
+
+bool FullWell::applies(const Detector& detector) const {
+  return well_is_limited && !detector.blooming;  // which decides then
+}
+
+void FullWell::apply(const ExposureFacts& exposed, Piece& piece) const {
+  const auto clip = kernel_of(exposed.level, sse2::clip, avx2::clip, avx512::clip);
+  const auto e = piece.electrons;
+  const std::size_t full = clip(float(full_well_e), e.data(), e.size());
+  if (!piece.flags.empty() && full > 0)
+    for (std::size_t i = 0; i < e.size(); ++i)
+      if (e[i] >= float(full_well_e)) piece.flags[i] |= flag_full_well;
+  piece.saturated->full_well += full;
 }
 
 }  // namespace dmise

@@ -1,12 +1,21 @@
 #pragma once
-#include <cstddef>
-#include <span>
-
-#include "core/base/simd_level.h"
+#include "core/detector/detector_effect.h"
 
 namespace dmise {
 
-/// Clips at the full well; returns how many pixels reached it.
-std::size_t full_well(double full_well_e, std::span<float> electrons, SimdLevel level);
+/// A pixel holds `full_well_e` electrons; more are lost, unless they bloom.
+struct FullWell {
+  static constexpr EffectFacts facts{"full_well", "a pixel holds so many electrons and no more",
+                                     "no saturation before the ADC",
+                                     "Janesick 2001, Scientific Charge-Coupled Devices"};
+  double full_well_e = 1e5;
+  bool well_is_limited = true;
+  bool operator==(const FullWell&) const = default;
+
+  static std::span<const DetectorParameter> parameters();
+  void switch_off() { well_is_limited = false; }
+  bool applies(const Detector& detector) const;
+  void apply(const ExposureFacts& exposed, Piece& piece) const;
+};
 
 }  // namespace dmise

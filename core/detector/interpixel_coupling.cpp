@@ -2,10 +2,24 @@
 
 #include <algorithm>
 
+#include "core/detector/detector.h"
+
 namespace dmise {
 
-void interpixel_coupling(double coupling, const ElectronImage& electrons, std::size_t first,
-                         std::span<float> signal) {
+std::span<const DetectorParameter> InterpixelCoupling::parameters() {
+  static constexpr DetectorParameter table[] = {
+      {"interpixel_coupling", "IPC", "share of signal seen by each neighbour",
+       &InterpixelCoupling::interpixel_coupling, 0.0, 0.2}};
+  return table;
+}
+
+void InterpixelCoupling::apply(const ExposureFacts&, const ElectronImage& electrons,
+                               Piece& piece) const {
+  couple(interpixel_coupling, electrons, piece.first, piece.electrons);
+}
+
+void couple(double coupling, const ElectronImage& electrons, std::size_t first,
+            std::span<float> signal) {
   const auto columns = std::size_t(electrons.columns), rows = std::size_t(electrons.rows);
   const auto share = float(coupling);
   // Row by row: where a neighbour is missing, the pixel itself stands for it and gains nothing.
@@ -15,16 +29,16 @@ void interpixel_coupling(double coupling, const ElectronImage& electrons, std::s
     const float* here = electrons.row(int(y));
     const float* above = y > 0 ? here - columns : here;
     const float* below = y + 1 < rows ? here + columns : here;
-    const auto couple = [&](std::size_t x, std::size_t left, std::size_t right) {
+    const auto couple_at = [&](std::size_t x, std::size_t left, std::size_t right) {
       const float e = here[x];
       signal[i + (x - begin)] =
           e + share * ((here[left] - e) + (here[right] - e) + (above[x] - e) + (below[x] - e));
     };
     std::size_t x = begin;
-    if (x == 0) couple(0, 0, std::min<std::size_t>(1, columns - 1)), ++x;
+    if (x == 0) couple_at(0, 0, std::min<std::size_t>(1, columns - 1)), ++x;
     for (const std::size_t inner = std::min(end, columns - 1); x < inner; ++x)
-      couple(x, x - 1, x + 1);
-    if (x < end) couple(x, x - 1, x);
+      couple_at(x, x - 1, x + 1);
+    if (x < end) couple_at(x, x - 1, x);
     i += end - begin;
   }
 }

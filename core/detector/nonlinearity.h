@@ -1,10 +1,19 @@
 #pragma once
-#include <span>
+#include "core/detector/detector_effect.h"
 
 namespace dmise {
 
-/// Signal that the amplifier makes of charge: e (1 - loss e / full well), a loss of `loss` at full
-/// well.
-void nonlinearity(double loss, double full_well_e, std::span<float> electrons);
+/// e (1 - l e / W): a relative loss l at the full well W.
+struct Nonlinearity {
+  static constexpr EffectFacts facts{"nonlinearity", "the amplifier loses a share of large signals",
+                                     "a straight response", "Janesick 2007, Photon Transfer"};
+  double nonlinearity = 0.0;  // relative loss of signal at full well, 0..0.5
+  bool operator==(const Nonlinearity&) const = default;
+
+  static std::span<const DetectorParameter> parameters();
+  void switch_off() { nonlinearity = 0.0; }
+  bool applies(const Detector&) const { return nonlinearity > 0.0; }
+  void apply(const ExposureFacts& exposed, Piece& piece) const;
+};
 
 }  // namespace dmise

@@ -1,10 +1,13 @@
 #include "core/detector/persistence.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
 #include "core/base/error.h"
+#include "core/detector/detector.h"
+#include "core/detector/poisson.h"
 
 namespace dmise {
 
@@ -13,9 +16,9 @@ std::uint32_t persistence_window(double persistence_s, double cadence_s) {
   return static_cast<std::uint32_t>(std::clamp(std::ceil(frames), 1.0, 4e9));
 }
 
-std::uint32_t persistence_first_frame(const Detector& d, double cadence_s, std::uint32_t frame) {
-  if (!(d.persistence_fraction > 0.0) || frame == 0) return frame;
-  const std::uint32_t window = persistence_window(d.persistence_s, cadence_s);
+std::uint32_t persistence_first_frame(const Persistence& p, double cadence_s, std::uint32_t frame) {
+  if (!(p.persistence_fraction > 0.0) || frame == 0) return frame;
+  const std::uint32_t window = persistence_window(p.persistence_s, cadence_s);
   const std::uint32_t windows = (frame - 1) / window;
   return windows == 0 ? 1 : 1 + (windows - 1) * window;
 }
@@ -57,6 +60,52 @@ void trap(double fraction, double full_well_e, std::span<const float> collected_
   const auto share = float(fraction), well = float(full_well_e);
   for (std::size_t i = 0; i < collected_e.size(); ++i)
     trapped_e[i] += share * std::min(collected_e[i], well);
+}
+
+std::span<const DetectorParameter> Persistence::parameters() {
+  static constexpr DetectorParameter table[] = {
+      {"persistence_fraction", "PERSFRAC", "share of the charge that is trapped",
+       &Persistence::persistence_fraction, 0.0, 1.0},
+      {"persistence_s", "PERSTAU", "[s] time constant of trapped charge",
+       &Persistence::persistence_s, 0.0, 1e6}};
+  return table;
+}
+
+std::optional<DetectorFault> Persistence::fault(const Detector& d) {
+  if (d.persistence_fraction == 0.0 || d.persistence_s >= 1e-3) return std::nullopt;
+  return DetectorFault{"persistence_s", "must be >= 0.001 with persistence", d.persistence_s};
+}
+
+Persistence::Prepared Persistence::prepare(const ExposureFacts& exposed) const {
+  const auto& [seed, sensor, frame, exposure_s, idle_s] = exposed.exposure;
+  begin_frame(exposed.traps, frame, persistence_window(persistence_s, exposure_s + idle_s),
+              exposed.light.pixels.size());
+  return Release(persistence_s, idle_s, exposure_s);
+}
+
+void Persistence::apply(const ExposureFacts& exposed, const Prepared& release, Piece& piece) const {
+  const auto e = piece.electrons;
+  const double full_well_e = exposed.detector.full_well_e;
+  const auto of_piece = [&](std::vector<float>& traps) {
+    return traps.empty() ? std::span<float>() : std::span(traps).subspan(piece.first, e.size());
+  };
+  const auto trapped = of_piece(exposed.traps.trapped_e);
+  const auto younger = of_piece(exposed.traps.younger_e);
+  release.apply(younger);
+  if (!younger.empty()) trap(persistence_fraction, full_well_e, e, younger);
+  constexpr std::size_t part = 1024;
+  static_assert(part % rng_group == 0);
+  std::array<float, part> released;
+  for (std::size_t i = 0; i < e.size(); i += part) {
+    const std::size_t n = std::min(part, e.size() - i);
+    const auto here = trapped.subspan(i, n);
+    release.apply(here, std::span(released).first(n));
+    trap(persistence_fraction, full_well_e, e.subspan(i, n), here);
+    if (exposed.detector.photons_are_drawn)
+      poisson(exposed.key, std::uint32_t(piece.first + i), released.data(), n, released.data(),
+              exposed.level);
+    for (std::size_t j = 0; j < n; ++j) e[i + j] += released[j];
+  }
 }
 
 }  // namespace dmise

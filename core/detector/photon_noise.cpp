@@ -4,9 +4,9 @@
 
 namespace dmise {
 
-void photon_noise(const RngKey& key, std::uint32_t first, std::span<float> electrons,
-                  SimdLevel level) {
-  poisson(key, first, electrons.data(), electrons.size(), electrons.data(), level);
+void PhotonNoise::apply(const ExposureFacts& exposed, Piece& piece) const {
+  float* e = piece.electrons.data();
+  poisson(exposed.key, std::uint32_t(piece.first), e, piece.electrons.size(), e, exposed.level);
 }
 
 }  // namespace dmise

@@ -1,13 +1,20 @@
 #pragma once
-#include <cstdint>
-#include <span>
-
-#include "core/base/rng.h"
+#include "core/detector/detector_effect.h"
 
 namespace dmise {
 
-/// Replaces expected electrons by Poisson deviates, pixel `first` first. Throws as `poisson` does.
-void photon_noise(const RngKey& key, std::uint32_t first, std::span<float> electrons,
-                  SimdLevel level);
+/// A Poisson deviate for the expected electrons of every pixel.
+struct PhotonNoise {
+  static constexpr EffectFacts facts{"photon_noise", "photons arrive at random (Poisson)",
+                                     "expected electrons instead of a draw",
+                                     "Giles 2016, ACM TOMS 42, 7"};
+  bool photons_are_drawn = true;
+  bool operator==(const PhotonNoise&) const = default;
+
+  static std::span<const DetectorParameter> parameters() { return {}; }
+  void switch_off() { photons_are_drawn = false; }
+  bool applies(const Detector&) const { return photons_are_drawn; }
+  void apply(const ExposureFacts& exposed, Piece& piece) const;
+};
 
 }  // namespace dmise

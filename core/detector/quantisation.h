@@ -1,22 +1,23 @@
 #pragma once
-#include <cstddef>
-#include <cstdint>
-#include <span>
-
-#include "core/base/simd_level.h"
+#include "core/detector/detector_effect.h"
 
 namespace dmise {
 
-/// Amplifier and converter.
-struct Adc {
+/// Amplifier and converter: round(e / gain + bias) within 0 and 2^bits - 1. Switched off, counts
+/// are whole electrons without bias, limited by the image's 16 bits alone.
+struct Quantisation {
+  static constexpr EffectFacts facts{"quantisation", "gain, bias, ADC range and rounding",
+                                     "one DN an electron, no bias, 16 bits", "EMVA Standard 1288"};
   double gain_e_per_dn = 1.0;
   double bias_dn = 0.0;
-  int bits = 16;  // 1..16
-};
+  int adc_bits = 16;  // 1..16: counts are 16-bit numbers in frames and messages
+  bool operator==(const Quantisation&) const = default;
 
-/// counts[i] = electrons[i] / gain + bias, rounded half up, within 0 and 2^bits - 1. Returns how
-/// many reached the upper limit.
-std::size_t quantise(const Adc& adc, std::span<const float> electrons, std::uint16_t* counts,
-                     SimdLevel level);
+  static std::span<const DetectorParameter> parameters();
+  static std::optional<DetectorFault> fault(const Detector& detector);
+  void switch_off() { *this = {}; }
+  bool applies(const Detector&) const { return true; }  // there is no frame without counts
+  void apply(const ExposureFacts& exposed, Piece& piece) const;
+};
 
 }  // namespace dmise

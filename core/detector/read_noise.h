@@ -1,14 +1,19 @@
 #pragma once
-#include <cstdint>
-#include <span>
-
-#include "core/base/rng.h"
+#include "core/detector/detector_effect.h"
 
 namespace dmise {
 
-/// Adds a normal deviate of standard deviation `read_noise_e` to every pixel; `first` is a multiple
-/// of rng_group.
-void read_noise(double read_noise_e, const RngKey& key, std::uint32_t first,
-                std::span<float> electrons, SimdLevel level);
+/// A normal deviate for every pixel, new in each frame.
+struct ReadNoise {
+  static constexpr EffectFacts facts{"read_noise", "noise of the read-out amplifier", "none",
+                                     "Janesick 2001, Scientific Charge-Coupled Devices"};
+  double read_noise_e = 0.0;  // rms
+  bool operator==(const ReadNoise&) const = default;
+
+  static std::span<const DetectorParameter> parameters();
+  void switch_off() { read_noise_e = 0.0; }
+  bool applies(const Detector&) const { return read_noise_e > 0.0; }
+  void apply(const ExposureFacts& exposed, Piece& piece) const;
+};
 
 }  // namespace dmise

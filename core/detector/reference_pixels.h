@@ -1,13 +1,45 @@
 #pragma once
-#include <cstddef>
-#include <cstdint>
-#include <span>
+#include <algorithm>
+
+#include "core/detector/detector_effect.h"
 
 namespace dmise {
 
-/// Empties the pixels of a border `border_px` wide, of those from `first` on (row-major): they are
-/// read like the others but collect nothing. Sets `flag_reference` unless `flags` is empty.
-void empty_reference_pixels(int border_px, int columns, int rows, std::size_t first,
-                            std::span<float> electrons, std::span<std::uint8_t> flags = {});
+/// A border of pixels that are read like the others but collect nothing.
+struct ReferencePixels {
+  static constexpr EffectFacts facts{"reference_pixels",
+                                     "a border that sees neither light nor dark current",
+                                     "the border sees as the rest does", "geometry"};
+  int reference_px = 0;  // width of the border
+  bool operator==(const ReferencePixels&) const = default;
+
+  static std::span<const DetectorParameter> parameters();
+  void switch_off() { reference_px = 0; }
+  bool applies(const Detector&) const { return reference_px > 0; }
+  void apply(const ExposureFacts& exposed, Piece& piece) const;
+};
+
+/// Calls visit(begin, end) for the ranges of `count` pixels from `first` on, counted from there,
+/// that lie in a border `border_px` wide.
+template <class Visit>
+void visit_border(int border_px, int columns, int rows, std::size_t first, std::size_t count,
+                  const Visit& visit) {
+  const auto width = std::size_t(columns), border = std::size_t(border_px);
+  // Row by row: whole ones at the top and bottom, both ends of the others.
+  for (std::size_t i = 0; i < count;) {
+    const std::size_t x = (first + i) % width, y = (first + i) / width;
+    const std::size_t end = std::min(count, i + width - x);
+    if (y < border || y + border >= std::size_t(rows) || 2 * border >= width) {
+      visit(i, end);
+    } else {
+      const auto at = [&](std::size_t column) {  // of this row
+        return std::min(end, column > x ? i + (column - x) : i);
+      };
+      visit(i, at(border));
+      visit(at(width - border), end);
+    }
+    i = end;
+  }
+}
 
 }  // namespace dmise

@@ -1,75 +1,46 @@
 #pragma once
-#include <array>
-#include <cstddef>
-#include <optional>
+#include <map>
+#include <set>
 #include <string_view>
 
 namespace dmise {
 
-/// Every stage that touches light or pixels, in the order in which a frame runs through it. Each
-/// can be switched in a scenario (`effects: {aberration: off}`) and its time is measured per frame.
-/// To add one: list it here and in effects.cpp, use it where it acts, test it.
-enum class Effect {
-  proper_motion,
-  parallax,
-  light_deflection,
-  annual_aberration,
-  diurnal_aberration,
-  light_time,
-  refraction,
-  extinction,
-  clouds,
-  scintillation,
-  shadow,
-  earthshine,
-  earth_occultation,
-  stars,
-  objects,
-  sky,
-  airglow,
-  zodiacal_light,
-  faint_starlight,
-  scattered_moonlight,
-  twilight,
-  light_pollution,
-  psf,
-  prnu,
-  photon_noise,
-  dark_current,
-  hot_pixels,
-  cosmic_rays,
-  reference_pixels,
-  persistence,
-  full_well,
-  blooming,
-  interpixel_coupling,
-  nonlinearity,
-  column_noise,
-  read_noise,
-  quantisation,
-  count
-};
-
-inline constexpr std::size_t effect_count = static_cast<std::size_t>(Effect::count);
-
+/// What is said of an effect wherever it is named: scenarios, `dmise check`, run.json, docs.
 struct EffectFacts {
   std::string_view name;          // as in YAML
   std::string_view what;          // one line: what it does
   std::string_view error_if_off;  // the size of what is left out
+  std::string_view source;        // of the model
+  bool usual = true;              // runs unless switched off; else only when switched on
 };
 
-const EffectFacts& facts(Effect effect);
-std::optional<Effect> effect_named(std::string_view name);
+/// A closed family of effects, in the order in which they run.
+template <class... Effects>
+struct EffectList {
+  static constexpr std::size_t size = sizeof...(Effects);
+  /// Parameters of all effects in one struct.
+  struct Parameters : Effects... {
+    bool operator==(const Parameters&) const = default;
+  };
+  /// Calls `visit.template operator()<Effect>()` for each.
+  template <class Visit>
+  static void for_each(Visit&& visit) {
+    (visit.template operator()<Effects>(), ...);
+  }
+};
 
-/// Which effects run. All do unless switched off, but for earthshine, which is switched on.
+/// Which effects run: the usual ones but for those that a scenario switches.
 class EffectSet {
  public:
-  EffectSet() {
-    on_.fill(true);
-    set(Effect::earthshine, false);
+  bool has(const EffectFacts& effect) const {
+    return effect.usual != switched_.contains(effect.name);
   }
-  bool has(Effect e) const { return on_[static_cast<std::size_t>(e)]; }
-  void set(Effect e, bool on) { on_[static_cast<std::size_t>(e)] = on; }
+  void set(const EffectFacts& effect, bool on) {
+    if (on == effect.usual)
+      switched_.erase(effect.name);
+    else
+      switched_.insert(effect.name);
+  }
   /// Snapshots along an exposure in which light is integrated; 0: along the path, exactly.
   int snapshots() const { return snapshots_; }
   void set_snapshots(int count) { snapshots_ = count; }
@@ -79,16 +50,19 @@ class EffectSet {
   bool operator==(const EffectSet&) const = default;
 
  private:
-  std::array<bool, effect_count> on_;
+  std::set<std::string_view> switched_;  // not as usual
   int snapshots_ = 0;
   bool opengl_ = false;
 };
 
 /// Seconds spent in each effect over one frame. Never part of a product whose bytes must repeat.
 struct EffectTimes {
-  std::array<double, effect_count> seconds{};
-  double& operator[](Effect e) { return seconds[static_cast<std::size_t>(e)]; }
-  double operator[](Effect e) const { return seconds[static_cast<std::size_t>(e)]; }
+  std::map<std::string_view, double> seconds;  // by name
+  double& operator[](const EffectFacts& effect) { return seconds[effect.name]; }
+  double operator[](const EffectFacts& effect) const {
+    const auto found = seconds.find(effect.name);
+    return found == seconds.end() ? 0.0 : found->second;
+  }
 };
 
 }  // namespace dmise

@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/detector/detector_figures.h"
+#include "core/detector/detector.h"
 #include "core/image/observation_cards.h"
 #include "core/wcs/wcs.h"
 
@@ -342,17 +342,32 @@ void visit_wcs(Visitor& v, const Projection& lens, Wcs& wcs) {
   v.number("WCSMAX", wcs.max_px, "[px] largest error of the WCS there");
 }
 
+template <class Visitor>
+void visit_field(Visitor& v, const std::string& key, double& value, const char* comment) {
+  v.number(key, value, comment);
+}
+template <class Visitor>
+void visit_field(Visitor& v, const std::string& key, int& value, const char* comment) {
+  v.integer(key, value, comment);
+}
+template <class Visitor>
+void visit_field(Visitor& v, const std::string& key, bool& value, const char* comment) {
+  v.flag(key, value, comment);
+}
+
 // Those of the figures that every frame states are copied from there, not written twice.
 template <class Visitor>
 void visit_detector(Visitor& v, FrameHeader& h) {
   if (!v.present("ADCBITS", h.detector.has_value())) return;
   if (!h.detector) h.detector.emplace();
   Detector& d = *h.detector;
-  for (const DetectorFigure& figure : detector_figures())
-    if (*figure.keyword) v.number(figure.keyword, d.*figure.value, figure.comment);
-  v.integer("ADCBITS", d.adc_bits, "bits of the ADC");
-  v.integer("REFPIX", d.reference_px, "[px] border without light");
-  v.flag("BLOOMING", d.blooming, "charge above the full well runs along columns");
+  for (const DetectorParameter& p : detector_parameters()) {
+    const std::string keyword(p.keyword), comment(p.meaning);
+    const bool unusual = p.number_of(d) != p.number_of({});
+    if (!keyword.empty() && (in_every_header(p) || v.present(keyword.c_str(), unusual)))
+      std::visit([&](auto member) { visit_field(v, keyword, d.*member, comment.c_str()); },
+                 p.value);
+  }
   d.dark_e_per_s = h.dark_e_per_s;
   d.read_noise_e = h.read_noise_e;
   d.full_well_e = h.full_well_e;

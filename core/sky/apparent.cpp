@@ -3,6 +3,7 @@
 #include <erfa.h>
 
 #include "core/base/error.h"
+#include "core/effects/place_effects.h"
 
 namespace dmise {
 namespace {
@@ -50,11 +51,11 @@ Observer space_observer(const Vec<Gcrs>& position_m, const Vec<Gcrs>& velocity_m
 
 ApparentPlaces::ApparentPlaces(const Observer& observer, const EffectSet& effects)
     : observer_(observer),
-      proper_motion_(effects.has(Effect::proper_motion)),
-      parallax_(effects.has(Effect::parallax)),
-      deflection_(effects.has(Effect::light_deflection)),
-      light_time_(effects.has(Effect::light_time)),
-      refraction_(effects.has(Effect::refraction) && observer.air.has_value()) {
+      proper_motion_(effects.has(effect::proper_motion)),
+      parallax_(effects.has(effect::parallax)),
+      deflection_(effects.has(effect::light_deflection)),
+      light_time_(effects.has(effect::light_time)),
+      refraction_(effects.has(effect::refraction) && observer.air.has_value()) {
   const SolarSystem& s = observer.solar_system;
   barycentric_au_ = (s.earth_barycentric_m + observer.position_m) / au_m;
   const Vec<Gcrs> from_sun_m = observer.position_m - s.sun_m;
@@ -62,8 +63,8 @@ ApparentPlaces::ApparentPlaces(const Observer& observer, const EffectSet& effect
   from_sun_ = unit(from_sun_m);
   years_ = 2000.0 + julian_years_since_j2000(observer.time);
 
-  const bool annual = effects.has(Effect::annual_aberration);
-  satellite_aberration_ = effects.has(Effect::diurnal_aberration);
+  const bool annual = effects.has(effect::annual_aberration);
+  satellite_aberration_ = effects.has(effect::diurnal_aberration);
   star_aberration_ = annual || satellite_aberration_;
   if (satellite_aberration_)
     satellite_velocity_c_ = observer.velocity_m_per_s / speed_of_light_m_per_s;

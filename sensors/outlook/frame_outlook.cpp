@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/units.h"
+#include "core/effects/light_effects.h"
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
 #include "core/visibility/field_of_view.h"
@@ -77,20 +78,19 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
 
   const double reach_px = 5 * scene.psf_sigma_px + 1;  // of a source's light
   double drawn_to_v_mag = -std::numeric_limits<double>::infinity();
-  if (scene.stars && sensor.effects.has(Effect::stars)) {
+  if (scene.stars && sensor.effects.has(effect::stars)) {
     const StarLayer layer(sensor, scene.stars);
     drawn_to_v_mag = std::min(scene.faintest_star_mag, layer.faintest_filled_v_mag());
     out.stars = layer.count(view, scene.faintest_star_mag, reach_px);
   }
-  if (scene.count_objects && sensor.effects.has(Effect::objects))
+  if (scene.count_objects && sensor.effects.has(effect::objects))
     out.objects = objects_with_light(view, scene.shapes, reach_px);
 
   out.background = background_at_centre(view, drawn_to_v_mag);
-  const Detector detector = in_effect(sensor.camera.detector, sensor.effects);
+  const Detector detector = acting_detector(sensor.camera.detector, sensor.effects);
   const double most_e =
       (std::exp2(detector.adc_bits) - 1 - detector.bias_dn) * detector.gain_e_per_dn;
-  out.full_e =
-      sensor.effects.has(Effect::full_well) ? std::min(most_e, detector.full_well_e) : most_e;
+  out.full_e = detector.well_is_limited ? std::min(most_e, detector.full_well_e) : most_e;
   const double pixels_per_deg = deg / optics.pixel_angle_rad();
   out.streak_deg_per_s = usual_rate_deg_per_s;
   out.streak_px = usual_rate_deg_per_s * pixels_per_deg * view.times().seconds();

@@ -10,6 +10,8 @@
 #include "core/base/memory.h"
 #include "core/detection/detect.h"
 #include "core/detector/expose.h"
+#include "core/effects/light_effects.h"
+#include "core/effects/place_effects.h"
 #include "core/image/fits_cards.h"
 #include "sensors/pipeline/gl_evaluator.h"
 #include "sensors/pipeline/header_of.h"
@@ -66,16 +68,20 @@ struct FramePipeline::Work {
     release_pages(bytes_of(used_counts));
   }
 
-  bool has(Effect effect) const { return settings.sensor.effects.has(effect); }
+  bool has(const EffectFacts& effect) const { return settings.sensor.effects.has(effect); }
 
   std::string plan() const {
     std::string text;
-    for (std::size_t i = 0; i < effect_count; ++i) {
-      const auto effect = static_cast<Effect>(i);
-      const bool runs = effect == Effect::stars ? has(effect) && stars : has(effect);
-      if (runs && has_figure(settings.sensor.camera.detector, effect))
-        text += (text.empty() ? "" : " ") + std::string(facts(effect).name);
-    }
+    const auto applying =
+        applying_effects(acting_detector(settings.sensor.camera.detector, settings.sensor.effects));
+    const auto add = [&](const EffectFacts& effect) {
+      text += (text.empty() ? "" : " ") + std::string(effect.name);
+    };
+    for (const EffectFacts* effect : effect::places)
+      if (has(*effect)) add(*effect);
+    for (const EffectFacts* effect : effect::lights)
+      if (has(*effect) && (effect != &effect::stars || stars)) add(*effect);
+    for (const EffectFacts* effect : applying) add(*effect);
     return text;
   }
 
@@ -91,7 +97,7 @@ struct FramePipeline::Work {
 
   /// Stars are drawn one by one as far as they are asked for and the catalogue goes.
   double drawn_to_v_mag() const {
-    if (!stars || !has(Effect::stars)) return -std::numeric_limits<double>::infinity();
+    if (!stars || !has(effect::stars)) return -std::numeric_limits<double>::infinity();
     return std::min(settings.faintest_star_mag, stars->faintest_filled_v_mag());
   }
 
@@ -102,7 +108,7 @@ struct FramePipeline::Work {
 };
 
 std::uint32_t FramePipeline::Work::first_frame_for(std::uint32_t frame) const {
-  if (!has(Effect::persistence) || detector_memory.persistence.next_frame == frame) return frame;
+  if (!has(Persistence::facts) || detector_memory.persistence.next_frame == frame) return frame;
   return persistence_first_frame(settings.sensor.camera.detector, settings.sensor.cadence_s, frame);
 }
 
@@ -118,7 +124,7 @@ RadianceMap FramePipeline::Work::radiance_in(const PipelineSettings::Part& part,
   fill_sky(view, drawn_to_v_mag(), image, threads, elsewhere, evaluator ? &*evaluator : nullptr);
   part_optics.begin(times, faintest_e(times));
   Screen screen(image.columns, image.rows);
-  if (has(Effect::objects))
+  if (has(effect::objects))
     draw_objects(view, objects_in_field(view, part.shapes.get()), part.shapes.get(), part_optics,
                  screen, image, elsewhere);
   if (!screen.empty()) {
@@ -126,7 +132,7 @@ RadianceMap FramePipeline::Work::radiance_in(const PipelineSettings::Part& part,
     fill_sky_behind(view, drawn_to_v_mag(), behind, threads);
     screen.take_hidden(behind, image);
   }
-  if (stars && has(Effect::stars))
+  if (stars && has(effect::stars))
     StarLayer(sensor, stars->map())
         .draw(view, part_optics, screen, image, settings.faintest_star_mag, nullptr, elsewhere);
   part_optics.finish(image);
@@ -150,7 +156,7 @@ std::string FramePipeline::evaluator() const {
 std::uint32_t FramePipeline::most_frames_made_again() const {
   const auto& sensor = work_->settings.sensor;
   const auto& detector = sensor.camera.detector;
-  if (!work_->has(Effect::persistence) || !(detector.persistence_fraction > 0.0)) return 0;
+  if (!work_->has(Persistence::facts) || !(detector.persistence_fraction > 0.0)) return 0;
   return 2 * std::min(persistence_window(detector.persistence_s, sensor.cadence_s), 1u << 30);
 }
 
@@ -180,11 +186,11 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   fill_sky(view, drawn_to_v_mag(), light, threads, frame.times, evaluator ? &*evaluator : nullptr);
   keep_background(settings.output, light, frame.planes);
   {
-    Stopwatch timing(frame.times[Effect::psf]);
+    Stopwatch timing(frame.times[effect::psf]);
     optics.begin(times, faintest_e(times));
   }
   Screen screen(light.columns, light.rows);
-  if (has(Effect::objects))
+  if (has(effect::objects))
     frame.truths = draw_objects(view, objects_in_field(view, settings.shapes.get()),
                                 settings.shapes.get(), optics, screen, light, frame.times);
   if (!screen.empty()) {
@@ -192,14 +198,14 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     fill_sky_behind(view, drawn_to_v_mag(), behind, threads);
     screen.take_hidden(behind, light);
   }
-  if (stars && has(Effect::stars)) {
+  if (stars && has(effect::stars)) {
     stars_drawn = stars->draw(view, optics, screen, light, settings.faintest_star_mag,
                               settings.star_truth ? &frame.stars : nullptr, frame.times);
     // Until the next frame the memory is for counts.
     if (const auto& file = stars->map()->file) file->release();
   }
   {
-    Stopwatch timing(frame.times[Effect::psf]);
+    Stopwatch timing(frame.times[effect::psf]);
     optics.finish(light);
   }
   if (settings.output.radiance_exr)

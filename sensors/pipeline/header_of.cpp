@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/version.h"
+#include "core/effects/place_effects.h"
 #include "core/optics/projection.h"
 #include "core/time/iso8601.h"
 #include "core/wcs/wcs_fit.h"
@@ -23,7 +24,7 @@ Wcs wcs_of(const View& view) {
   const auto camera_from_gcrs = view.camera_from_gcrs(middle);
   const auto gcrs_from_camera = camera_from_gcrs.inverse();
   std::optional<CameraAir> air;
-  if (view.on_ground() && sensor.effects.has(Effect::refraction))
+  if (view.on_ground() && sensor.effects.has(effect::refraction))
     air = CameraAir{camera_from_gcrs * view.up(middle), view.refraction()};
   const auto star_at = [&](PixelPosition pixel) -> std::optional<Vec<Gcrs>> {
     const auto seen = unproject(optics, pixel);
@@ -38,7 +39,7 @@ Wcs wcs_of(const View& view) {
 FrameHeader header_of(const View& view, const PipelineSettings& settings, double psf_fwhm_px) {
   const auto& sensor = settings.sensor;
   const auto& optics = sensor.camera.optics;
-  const Detector detector = in_effect(sensor.camera.detector, sensor.effects);
+  const Detector detector = acting_detector(sensor.camera.detector, sensor.effects);
   const auto& times = view.times();
   const auto& environment = view.environment();
   const ObserverState observer = view.observer(times.middle);
@@ -81,13 +82,13 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
     h.site = SitePlace{site->latitude_deg * deg, site->longitude_deg * deg, site->height_m,
                        itrs_from_geodetic(*site)};
     h.air = view.weather();
-    if (!sensor.effects.has(Effect::refraction)) h.air->pressure_hpa = 0.0;
+    if (!sensor.effects.has(effect::refraction)) h.air->pressure_hpa = 0.0;
   }
   const double most_dn = std::exp2(detector.adc_bits) - 1;
   const double well_e = h.full_well_e * (1.0 - detector.nonlinearity) *
                         (1.0 - 4.0 * detector.interpixel_coupling);  // what is left of a full one
   const double well_dn = well_e / h.gain_e_per_dn + h.bias_dn;
-  h.saturation_dn = sensor.effects.has(Effect::full_well) ? std::min(most_dn, well_dn) : most_dn;
+  h.saturation_dn = detector.well_is_limited ? std::min(most_dn, well_dn) : most_dn;
   const SimTime at[3] = {times.start, times.middle, times.end};
   for (int k = 0; k < 3; ++k) h.camera_from_gcrs[k] = quaternion_of(view.camera_from_gcrs(at[k]));
 

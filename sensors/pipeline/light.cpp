@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "core/base/units.h"
+#include "core/effects/light_effects.h"
 #include "core/photometry/diffuse_sphere.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/airmass.h"
@@ -64,9 +65,9 @@ Light::Light(const View& view) : up_(view.up(view.times().middle)) {
   zero_mag_photons_per_s_m2_ = object_photons_per_s_m2(0.0, camera.band);
   if (!view.on_ground()) return;
   air_ = tables_of({camera.band, extinction_over(view), sensor.weather.clouds});
-  with_extinction_ = sensor.effects.has(Effect::extinction);
-  with_clouds_ = sensor.effects.has(Effect::clouds) && air_->clouds;
-  with_flicker_ = sensor.effects.has(Effect::scintillation);
+  with_extinction_ = sensor.effects.has(effect::extinction);
+  with_clouds_ = sensor.effects.has(effect::clouds) && air_->clouds;
+  with_flicker_ = sensor.effects.has(effect::scintillation);
   flicker_key_ = rng_key(view.seed(), sensor.name, view.times().frame, "scintillation");
   flicker_at_zenith_ = scintillation_sigma(camera.optics.aperture_m, view.times().seconds(), 1.0,
                                            view.site()->height_m);
@@ -108,7 +109,7 @@ double Light::extinction_mag_per_airmass() const {
 }
 
 Hidden::Hidden(const View& view, SimTime t)
-    : on_(view.sensor().effects.has(Effect::earth_occultation)), up_(view.up(t)) {
+    : on_(view.sensor().effects.has(effect::earth_occultation)), up_(view.up(t)) {
   if (on_ && !view.on_ground())
     sight_.emplace(view.observer(t).position_m, oblate_earth(view.earth()));
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/effects/light_effects.h"
 #include "core/optics/snapshots.h"
 #include "sensors/pipeline/object_sampler.h"
 #include "sensors/pipeline/place_costs.h"
@@ -125,7 +126,7 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
                          : arcs_of(samples, exposure.seconds());
       if (const int count = view.sensor().effects.snapshots()) arcs = as_snapshots(arcs, count);
       arcs = screen.past(arcs);
-      Stopwatch timing(times[Effect::psf]);
+      Stopwatch timing(times[effect::psf]);
       for (const auto& part : stage.add(arcs, image)) light = light + part;
     }
     bool enters = false;
@@ -195,11 +196,11 @@ std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>
     truths = paint(view, sampler, objects, optics, screen, image, inside);
   }
   add_object_place_costs(view, objects, sampler.samples(), inside);
-  for (std::size_t i = 0; i < effect_count; ++i) {
-    times.seconds[i] += inside.seconds[i];
-    total_s -= inside.seconds[i];
+  for (const auto& [effect, seconds] : inside.seconds) {
+    times.seconds[effect] += seconds;
+    total_s -= seconds;
   }
-  times[Effect::objects] += std::max(0.0, total_s);
+  times[effect::objects] += std::max(0.0, total_s);
   return truths;
 }
 

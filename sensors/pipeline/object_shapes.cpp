@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/effects/light_effects.h"
 #include "core/facets/earthshine.h"
 #include "core/photometry/diffuse_sphere.h"
 #include "core/photometry/magnitude.h"
@@ -48,7 +49,7 @@ std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTim
                  .range_m = norm(to_viewer),
                  .sun_distance_au = norm(to_sun) / au_m,
                  .earthshine = {}};
-  if (rings > 0 && view.sensor().effects.has(Effect::earthshine))
+  if (rings > 0 && view.sensor().effects.has(effect::earthshine))
     pose.earthshine = earthshine_on(position_m, view.environment().sun_m, body_from_gcrs, rings);
   return pose;
 }

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/config/band_wavelengths.h"
+#include "core/effects/light_effects.h"
 #include "core/optics/projection.h"
 
 namespace dmise {
@@ -14,7 +15,7 @@ using Method = PointSpread::Method;
 
 PsfPlan plan_of(const SensorConfig& sensor) {
   const Camera& camera = sensor.camera;
-  if (sensor.effects.has(Effect::psf))
+  if (sensor.effects.has(effect::psf))
     return plan_psf(camera.optics, camera.band.centre_m, sensor.seeing, sensor.exposure_s);
   return {.why = "off"};
 }
@@ -43,7 +44,7 @@ std::vector<FieldPlace> field_places(const Optics& o) {
 
 OpticsStage::OpticsStage(const SensorConfig& sensor, std::uint64_t seed, Threads& threads)
     : optics_(sensor.camera.optics),
-      blurs_(sensor.effects.has(Effect::psf)),
+      blurs_(sensor.effects.has(effect::psf)),
       plan_(plan_of(sensor)),
       threads_(threads) {
   const Band& band = sensor.camera.band;

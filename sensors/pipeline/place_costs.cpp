@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/effects/place_effects.h"
 #include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
@@ -10,11 +11,11 @@ namespace {
 
 constexpr std::size_t sample_size = 64;
 constexpr int repeats = 3;
-constexpr Effect of_stars[] = {Effect::proper_motion,      Effect::parallax,
-                               Effect::light_deflection,   Effect::annual_aberration,
-                               Effect::diurnal_aberration, Effect::refraction};
-constexpr Effect of_objects[] = {Effect::light_time, Effect::diurnal_aberration,
-                                 Effect::refraction};
+constexpr const EffectFacts* of_stars[] = {&effect::proper_motion,      &effect::parallax,
+                                           &effect::light_deflection,   &effect::annual_aberration,
+                                           &effect::diurnal_aberration, &effect::refraction};
+constexpr const EffectFacts* of_objects[] = {&effect::light_time, &effect::diurnal_aberration,
+                                             &effect::refraction};
 
 /// Least of some repeats: what the work itself takes.
 template <class Work>
@@ -33,7 +34,7 @@ double seconds_of(const Work& work) {
 
 /// `evaluate(places)` computes a sample of places; `scale` is how many such samples a frame has.
 template <class Evaluate>
-double add_costs(const View& view, std::span<const Effect> effects, double scale,
+double add_costs(const View& view, std::span<const EffectFacts* const> effects, double scale,
                  const Evaluate& evaluate, EffectTimes& times) {
   const SimTime t = view.times().middle;
   const EffectSet& all = view.sensor().effects;
@@ -43,12 +44,12 @@ double add_costs(const View& view, std::span<const Effect> effects, double scale
   };
   const double with_all_s = cost_of(all);
   double sum = 0.0;
-  for (const Effect effect : effects) {
-    if (!all.has(effect) || (effect == Effect::refraction && !view.on_ground())) continue;
+  for (const EffectFacts* effect : effects) {
+    if (!all.has(*effect) || (effect == &effect::refraction && !view.on_ground())) continue;
     EffectSet others = all;
-    others.set(effect, false);
+    others.set(*effect, false);
     const double cost_s = std::max(0.0, with_all_s - cost_of(others)) * scale;
-    times[effect] += cost_s;
+    times[*effect] += cost_s;
     sum += cost_s;
   }
   return sum;

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/whole_file.h"
+#include "core/config/effect_list.h"
 #include "core/detection/detection_json.h"
 #include "core/image/fits_file.h"
 #include "core/image/marked_picture.h"
@@ -138,8 +139,7 @@ void ProductWriter::write(const FrameProducts& f) {
   cost.begin_object().field("sensor", f.report.sensor).field("frame", number);
   cost.field("total_s", f.total_s).field("detection_s", f.detection_s).field("pss_mb", pss_mb());
   cost.key("effects_s").begin_object();
-  for (std::size_t i = 0; i < effect_count; ++i)
-    cost.field(facts(static_cast<Effect>(i)).name, f.times.seconds[i]);
+  for (const EffectFacts* effect : all_effects()) cost.field(effect->name, f.times[*effect]);
   cost.end_object().end_object();
   append("cost.jsonl", cost.take() + "\n");
   append("frames.jsonl", to_json(f.report, utc) + "\n");

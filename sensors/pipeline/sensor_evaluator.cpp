@@ -4,6 +4,8 @@
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
+#include "core/effects/light_effects.h"
+#include "core/effects/place_effects.h"
 
 namespace dmise {
 
@@ -32,12 +34,12 @@ std::vector<std::string> SensorEvaluator::consumes() const {
   const EffectSet& effects = sensor_.effects;
   const bool on_ground = std::holds_alternative<SiteConfig>(sensor_.place);
   std::vector<std::string> topics;
-  if (effects.has(Effect::objects) || !on_ground ||
+  if (effects.has(effect::objects) || !on_ground ||
       std::holds_alternative<PointTarget>(sensor_.pointing))
     topics.push_back(objects_topic);
   topics.push_back(environment_topic);
-  if (on_ground && (effects.has(Effect::refraction) || effects.has(Effect::extinction) ||
-                    effects.has(Effect::sky) || sensor_.atmosphere.turbulence))
+  if (on_ground && (effects.has(effect::refraction) || effects.has(effect::extinction) ||
+                    effects.has(effect::sky) || sensor_.atmosphere.turbulence))
     topics.push_back(site_prefix + sensor_.name);
   return topics;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "core/effects/light_effects.h"
 #include "core/optics/projection.h"
 #include "core/optics/vignetting.h"
 #include "core/sky/sky_grid.h"
@@ -13,26 +14,27 @@
 namespace dmise {
 namespace {
 
-constexpr std::array<Effect, sky_part_count> effect_of_part = {Effect::sky,
-                                                               Effect::airglow,
-                                                               Effect::zodiacal_light,
-                                                               Effect::faint_starlight,
-                                                               Effect::scattered_moonlight,
-                                                               Effect::twilight,
-                                                               Effect::light_pollution};
+constexpr std::array<const EffectFacts*, sky_part_count> effect_of_part = {
+    &effect::sky,
+    &effect::airglow,
+    &effect::zodiacal_light,
+    &effect::faint_starlight,
+    &effect::scattered_moonlight,
+    &effect::twilight,
+    &effect::light_pollution};
 
 SkyParts parts_switched_on(const SensorConfig& sensor, double drawn_to_v_mag) {
   SkyParts parts = sensor.sky.parts;
   if (parts.faint_starlight) parts.faint_starlight->brighter_limit_v_mag = drawn_to_v_mag;
-  const auto keep = [&](Effect effect, auto& part) {
+  const auto keep = [&](const EffectFacts& effect, auto& part) {
     if (!sensor.effects.has(effect)) part.reset();
   };
-  keep(Effect::airglow, parts.airglow);
-  keep(Effect::zodiacal_light, parts.zodiacal_light);
-  keep(Effect::faint_starlight, parts.faint_starlight);
-  keep(Effect::scattered_moonlight, parts.scattered_moonlight);
-  keep(Effect::twilight, parts.twilight);
-  keep(Effect::light_pollution, parts.light_pollution);
+  keep(effect::airglow, parts.airglow);
+  keep(effect::zodiacal_light, parts.zodiacal_light);
+  keep(effect::faint_starlight, parts.faint_starlight);
+  keep(effect::scattered_moonlight, parts.scattered_moonlight);
+  keep(effect::twilight, parts.twilight);
+  keep(effect::light_pollution, parts.light_pollution);
   return parts;
 }
 
@@ -52,7 +54,7 @@ SkyScene scene_of(const View& view) {
       .in_air = view.on_ground(),
       .time_s = t.seconds()};
   const auto& clouds = view.sensor().weather.clouds;
-  if (view.on_ground() && clouds && view.sensor().effects.has(Effect::clouds))
+  if (view.on_ground() && clouds && view.sensor().effects.has(effect::clouds))
     scene.clouds = std::make_shared<const CloudMap>(*clouds);
   return scene;
 }
@@ -74,10 +76,10 @@ void share_out(const SkyModel& sky, const std::vector<Vec<Enu>>& sample, std::si
   }
   const double scale = std::min(1.0, whole_s / std::max(sum_s, 1e-12));
   for (std::size_t i = 1; i < sky_part_count; ++i) {
-    times[effect_of_part[i]] += scale * part_s[i];
-    times[Effect::sky] -= scale * part_s[i];
+    times[*effect_of_part[i]] += scale * part_s[i];
+    times[effect::sky] -= scale * part_s[i];
   }
-  times[Effect::sky] = std::max(0.0, times[Effect::sky]);
+  times[effect::sky] = std::max(0.0, times[effect::sky]);
 }
 
 SkyModel sky_of(const View& view, const SkyParts& parts) {
@@ -118,7 +120,7 @@ SkyModel sky_over(const View& view, double drawn_to_v_mag) {
 void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads,
               EffectTimes& times, GlEvaluator* evaluator) {
   const auto& optics = view.sensor().camera.optics;
-  if (!view.sensor().effects.has(Effect::sky)) {
+  if (!view.sensor().effects.has(effect::sky)) {
     std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
     return;
   }
@@ -132,7 +134,7 @@ void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads
     sky.emplace(sky_over(view, drawn_to_v_mag));
     report = fill_with(view, *sky, image, threads, evaluator);
   }
-  times[Effect::sky] += whole_s;
+  times[effect::sky] += whole_s;
   std::vector<Vec<Enu>> sample;
   constexpr int side = 8;
   for (int i = 0; i < side * side; ++i)
@@ -146,7 +148,7 @@ void fill_sky_behind(const View& view, double drawn_to_v_mag, RateImage& image, 
   SkyParts parts = parts_switched_on(view.sensor(), drawn_to_v_mag);
   if (view.on_ground())
     parts = {.zodiacal_light = parts.zodiacal_light, .faint_starlight = parts.faint_starlight};
-  if (view.sensor().effects.has(Effect::sky))
+  if (view.sensor().effects.has(effect::sky))
     fill_with(view, sky_of(view, parts), image, threads);
   else
     std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "core/effects/light_effects.h"
 #include "core/optics/deposit.h"
 #include "core/optics/projection.h"
 #include "sensors/pipeline/light.h"
@@ -85,17 +86,17 @@ std::vector<double> StarLayer::Exposure::transmission(const std::vector<Trail>& 
                                                       EffectTimes& times) const {
   std::vector<double> transmission(trails.size());
   {
-    Stopwatch timing(times[Effect::extinction]);
+    Stopwatch timing(times[effect::extinction]);
     for (std::size_t i = 0; i < trails.size(); ++i)
       transmission[i] = light.air_transmission(trails[i].middle, stars.bv[trails[i].star]);
   }
   {
-    Stopwatch timing(times[Effect::clouds]);
+    Stopwatch timing(times[effect::clouds]);
     for (std::size_t i = 0; i < trails.size(); ++i)
       transmission[i] *= light.cloud_transmission(trails[i].middle);
   }
   {
-    Stopwatch timing(times[Effect::scintillation]);
+    Stopwatch timing(times[effect::scintillation]);
     for (std::size_t i = 0; i < trails.size(); ++i)
       transmission[i] *=
           light.flicker(trails[i].middle, Light::Flickering::star, stars.id[trails[i].star]);
@@ -165,7 +166,7 @@ std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Scree
   std::optional<Exposure> exposure;
   std::vector<std::uint32_t> found;
   {
-    Stopwatch timing(times[Effect::stars]);
+    Stopwatch timing(times[effect::stars]);
     exposure.emplace(Exposure{.view = view, .stars = map_->stars});
     found = candidates(view, faintest_v_mag);
   }
@@ -177,8 +178,8 @@ std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Scree
     const auto which = std::span(found).subspan(begin, std::min(at_a_time, found.size() - begin));
     inside += draw(*exposure, which, optics, screen, image, truth, times);
   }
-  times[Effect::stars] -= add_place_costs(view, exposure->columns, found, 3 * found.size(), times);
-  times[Effect::stars] = std::max(0.0, times[Effect::stars]);
+  times[effect::stars] -= add_place_costs(view, exposure->columns, found, 3 * found.size(), times);
+  times[effect::stars] = std::max(0.0, times[effect::stars]);
   return inside;
 }
 
@@ -189,18 +190,18 @@ std::uint32_t StarLayer::draw(const Exposure& exposure, std::span<const std::uin
   const StarTable& stars = exposure.stars;
   std::vector<Trail> trails;
   {
-    Stopwatch timing(times[Effect::stars]);
+    Stopwatch timing(times[effect::stars]);
     trails = exposure.trails(which);
   }
   {
-    Stopwatch timing(times[Effect::earth_occultation]);
+    Stopwatch timing(times[effect::earth_occultation]);
     std::erase_if(trails, [&](const Trail& t) { return exposure.hidden.direction(t.middle); });
   }
   const auto transmission = exposure.transmission(trails, times);
   const int snapshots = view.sensor().effects.snapshots();
   std::vector<Arc> arcs;
   {
-    Stopwatch timing(times[Effect::stars]);
+    Stopwatch timing(times[effect::stars]);
     const double electrons_per_rate =
         exposure.light.electrons_per_photon_m2() * view.times().seconds();
     const auto& camera = view.sensor().camera.optics;
@@ -215,7 +216,7 @@ std::uint32_t StarLayer::draw(const Exposure& exposure, std::span<const std::uin
   }
   std::vector<Deposited> deposited;
   {
-    Stopwatch timing(times[Effect::psf]);
+    Stopwatch timing(times[effect::psf]);
     if (snapshots) {
       std::vector<std::uint32_t> drawn;
       std::vector<double> signal_e;

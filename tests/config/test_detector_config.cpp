@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "core/config/camera_config.h"
 #include "core/config/output_config.h"
-#include "core/detector/detector_figures.h"
+#include "tests/support/detector_of.h"
 
 namespace dmise {
 namespace {
@@ -32,32 +32,32 @@ std::string complaint(const std::string& what, const std::string& with) {
 }
 
 TEST(DetectorConfig, ReadsEveryFigureByItsName) {
-  const Detector expected{.quantum_efficiency = 1.0,  // read with the band
-                          .dark_e_per_s = 20,
-                          .dark_reference_c = 20,
-                          .temperature_c = -10,
-                          .dark_doubling_k = 6,
-                          .read_noise_e = 6,
-                          .full_well_e = 20000,
-                          .gain_e_per_dn = 0.4,
-                          .bias_dn = 200,
-                          .adc_bits = 14,
-                          .prnu_rms = 0.01,
-                          .hot_pixel_fraction = 1e-4,
-                          .hot_pixel_e_per_s = 5000,
-                          .column_noise_e = 2,
-                          .nonlinearity = 0.02,
-                          .interpixel_coupling = 0.005,
-                          .blooming = true,
-                          .persistence_fraction = 0.01,
-                          .persistence_s = 8,
-                          .cosmic_rays_per_px_s = 1e-6,
-                          .cosmic_ray_e_per_px = 800,
-                          .cosmic_ray_depth_px = 2,
-                          .reference_px = 4};
+  const Detector expected = detector_of({.quantum_efficiency = 1.0,  // read with the band
+                                         .dark_e_per_s = 20,
+                                         .dark_reference_c = 20,
+                                         .temperature_c = -10,
+                                         .dark_doubling_k = 6,
+                                         .read_noise_e = 6,
+                                         .full_well_e = 20000,
+                                         .gain_e_per_dn = 0.4,
+                                         .bias_dn = 200,
+                                         .adc_bits = 14,
+                                         .prnu_rms = 0.01,
+                                         .hot_pixel_fraction = 1e-4,
+                                         .hot_pixel_e_per_s = 5000,
+                                         .column_noise_e = 2,
+                                         .nonlinearity = 0.02,
+                                         .interpixel_coupling = 0.005,
+                                         .blooming = true,
+                                         .persistence_fraction = 0.01,
+                                         .persistence_s = 8,
+                                         .cosmic_rays_per_px_s = 1e-6,
+                                         .cosmic_ray_e_per_px = 800,
+                                         .cosmic_ray_depth_px = 2,
+                                         .reference_px = 4});
   EXPECT_EQ(read(all), expected);
-  for (const DetectorFigure& figure : detector_figures())
-    EXPECT_NE(all.find(std::string(figure.key) + ":"), std::string::npos) << figure.key;
+  for (const DetectorParameter& p : detector_parameters())
+    EXPECT_NE(all.find(std::string(p.key) + ":"), std::string::npos) << p.key;
 }
 
 TEST(DetectorConfig, TheEfficiencyIsReadWithTheBand) {
@@ -72,11 +72,11 @@ TEST(DetectorConfig, TheEfficiencyIsReadWithTheBand) {
 TEST(DetectorConfig, TheRestOfADetectorDoesNothing) {
   const Detector d = read("{full_well_e: 20000, gain_e_per_dn: 0.4, dark_reference_c: -20}");
   EXPECT_EQ(d.temperature_c, -20);  // unless it is given, where the dark current is known
-  for (Effect e : {Effect::prnu, Effect::dark_current, Effect::hot_pixels, Effect::cosmic_rays,
-                   Effect::reference_pixels, Effect::persistence, Effect::blooming,
-                   Effect::interpixel_coupling, Effect::nonlinearity, Effect::column_noise,
-                   Effect::read_noise})
-    EXPECT_FALSE(has_figure(d, e)) << int(e);
+  for (const EffectFacts& e :
+       {PixelResponse::facts, DarkCurrent::facts, HotPixels::facts, CosmicRays::facts,
+        ReferencePixels::facts, Persistence::facts, Blooming::facts, InterpixelCoupling::facts,
+        Nonlinearity::facts, ColumnNoise::facts, ReadNoise::facts})
+    EXPECT_FALSE(applies(d, e)) << e.name;
 }
 
 TEST(DetectorConfig, NonsenseIsRefusedWhereItStands) {

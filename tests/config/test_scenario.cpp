@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/effects/place_effects.h"
 
 namespace dmise {
 namespace {
@@ -165,10 +166,10 @@ TEST_F(ScenarioFile, SwitchesEffectsForAllAndForOne) {
   const auto scenario =
       load("effects: {aberration: off}\n" + good + "    effects: {read_noise: off}\n");
   const auto& effects = scenario.sensors[0].effects;
-  EXPECT_FALSE(effects.has(Effect::annual_aberration));
-  EXPECT_FALSE(effects.has(Effect::diurnal_aberration));
-  EXPECT_FALSE(effects.has(Effect::read_noise));
-  EXPECT_TRUE(effects.has(Effect::refraction));
+  EXPECT_FALSE(effects.has(effect::annual_aberration));
+  EXPECT_FALSE(effects.has(effect::diurnal_aberration));
+  EXPECT_FALSE(effects.has(ReadNoise::facts));
+  EXPECT_TRUE(effects.has(effect::refraction));
 }
 
 TEST_F(ScenarioFile, SwitchesDetectionForAllAndForOne) {

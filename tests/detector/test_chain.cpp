@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/detector/expose.h"
+#include "tests/support/detector_of.h"
 
 namespace dmise {
 namespace {
@@ -15,23 +16,23 @@ const Exposure exposure{.seed = 5, .sensor = "s", .frame = 4, .exposure_s = 10, 
 
 /// Every effect, each as strong as in a real detector or stronger. Sixteenths of an electron are
 /// counted, so that what is not a whole electron shows too.
-constexpr Detector busy{.dark_e_per_s = 2,
-                        .read_noise_e = 5,
-                        .full_well_e = 3000,
-                        .gain_e_per_dn = 1.0 / 16,
-                        .bias_dn = 2000,
-                        .prnu_rms = 0.02,
-                        .hot_pixel_fraction = 0.01,
-                        .hot_pixel_e_per_s = 20,
-                        .column_noise_e = 4,
-                        .nonlinearity = 0.02,
-                        .interpixel_coupling = 0.01,
-                        .blooming = true,
-                        .persistence_fraction = 0.05,
-                        .persistence_s = 20,
-                        .cosmic_rays_per_px_s = 1e-4,
-                        .cosmic_ray_e_per_px = 500,
-                        .reference_px = 4};
+constexpr Detector busy = detector_of({.dark_e_per_s = 2,
+                                       .read_noise_e = 5,
+                                       .full_well_e = 3000,
+                                       .gain_e_per_dn = 1.0 / 16,
+                                       .bias_dn = 2000,
+                                       .prnu_rms = 0.02,
+                                       .hot_pixel_fraction = 0.01,
+                                       .hot_pixel_e_per_s = 20,
+                                       .column_noise_e = 4,
+                                       .nonlinearity = 0.02,
+                                       .interpixel_coupling = 0.01,
+                                       .blooming = true,
+                                       .persistence_fraction = 0.05,
+                                       .persistence_s = 20,
+                                       .cosmic_rays_per_px_s = 1e-4,
+                                       .cosmic_ray_e_per_px = 500,
+                                       .reference_px = 4});
 
 RateImage some_light() {
   RateImage light(columns, rows, 150.0f);
@@ -62,20 +63,20 @@ Result read_out(const Detector& d, const EffectSet& effects = {}, Threads* threa
 }
 
 struct Named {
-  Effect effect;
+  EffectFacts effect;
   std::function<void(Detector&)> weak;  // there, but too weak to change a count
 };
 
 const std::vector<Named> all_effects = {
-    {Effect::prnu, [](Detector& d) { d.prnu_rms = 1e-12; }},
-    {Effect::dark_current, [](Detector& d) { d.dark_e_per_s = 1e-15; }},
-    {Effect::hot_pixels, [](Detector& d) { d.hot_pixel_e_per_s = 1e-15; }},
-    {Effect::cosmic_rays, [](Detector& d) { d.cosmic_ray_e_per_px = 1e-9; }},
-    {Effect::persistence, [](Detector& d) { d.persistence_fraction = 1e-15; }},
-    {Effect::interpixel_coupling, [](Detector& d) { d.interpixel_coupling = 1e-12; }},
-    {Effect::nonlinearity, [](Detector& d) { d.nonlinearity = 1e-12; }},
-    {Effect::column_noise, [](Detector& d) { d.column_noise_e = 1e-9; }},
-    {Effect::read_noise, [](Detector& d) { d.read_noise_e = 1e-9; }},
+    {PixelResponse::facts, [](Detector& d) { d.prnu_rms = 1e-12; }},
+    {DarkCurrent::facts, [](Detector& d) { d.dark_e_per_s = 1e-15; }},
+    {HotPixels::facts, [](Detector& d) { d.hot_pixel_e_per_s = 1e-15; }},
+    {CosmicRays::facts, [](Detector& d) { d.cosmic_ray_e_per_px = 1e-9; }},
+    {Persistence::facts, [](Detector& d) { d.persistence_fraction = 1e-15; }},
+    {InterpixelCoupling::facts, [](Detector& d) { d.interpixel_coupling = 1e-12; }},
+    {Nonlinearity::facts, [](Detector& d) { d.nonlinearity = 1e-12; }},
+    {ColumnNoise::facts, [](Detector& d) { d.column_noise_e = 1e-9; }},
+    {ReadNoise::facts, [](Detector& d) { d.read_noise_e = 1e-9; }},
 };
 
 // An effect that is there but too weak to matter draws its numbers as ever; the frame is the one
@@ -86,10 +87,9 @@ TEST(Chain, AddingAnEffectLeavesTheOthersNoiseUnchanged) {
     weaken(weak);
     EffectSet without;
     without.set(effect, false);
-    ASSERT_TRUE(has_figure(weak, effect));
-    EXPECT_EQ(read_out(weak).counts.pixels, read_out(weak, without).counts.pixels)
-        << facts(effect).name;
-    EXPECT_NE(read_out(busy).counts.pixels, read_out(weak).counts.pixels) << facts(effect).name;
+    ASSERT_TRUE(applies(weak, effect));
+    EXPECT_EQ(read_out(weak).counts.pixels, read_out(weak, without).counts.pixels) << effect.name;
+    EXPECT_NE(read_out(busy).counts.pixels, read_out(weak).counts.pixels) << effect.name;
   }
 }
 
@@ -97,7 +97,7 @@ TEST(Chain, AddingAnEffectLeavesTheOthersNoiseUnchanged) {
 TEST(Chain, AddingALimitLeavesThePixelsBelowItUnchanged) {
   Detector apart = busy;
   apart.interpixel_coupling = 0;
-  for (Effect effect : {Effect::full_well, Effect::blooming, Effect::reference_pixels}) {
+  for (const EffectFacts& effect : {FullWell::facts, Blooming::facts, ReferencePixels::facts}) {
     EffectSet without;
     without.set(effect, false);
     const Result with = read_out(apart), free = read_out(apart, without);
@@ -107,7 +107,7 @@ TEST(Chain, AddingALimitLeavesThePixelsBelowItUnchanged) {
       if (with.flags.pixels[i] & acted)
         ++changed;
       else
-        ASSERT_EQ(with.counts.pixels[i], free.counts.pixels[i]) << facts(effect).name << i;
+        ASSERT_EQ(with.counts.pixels[i], free.counts.pixels[i]) << effect.name << i;
     }
     EXPECT_GT(changed, 0u);
   }
@@ -115,11 +115,12 @@ TEST(Chain, AddingALimitLeavesThePixelsBelowItUnchanged) {
 
 // Noise of two effects from different streams: no correlation, however it is paired.
 TEST(Chain, EveryEffectHasAStreamOfItsOwn) {
-  const auto noise = [](Effect effect) {
-    Detector d{.dark_e_per_s = 15, .read_noise_e = 12, .gain_e_per_dn = 1.0 / 16, .bias_dn = 2000};
+  const auto noise = [](const EffectFacts& effect) {
+    Detector d = detector_of(
+        {.dark_e_per_s = 15, .read_noise_e = 12, .gain_e_per_dn = 1.0 / 16, .bias_dn = 2000});
     EffectSet only;
-    for (Effect e : {Effect::photon_noise, Effect::dark_current, Effect::read_noise})
-      only.set(e, e == effect);
+    for (const EffectFacts& e : {PhotonNoise::facts, DarkCurrent::facts, ReadNoise::facts})
+      only.set(e, e.name == effect.name);
     Threads one(1);
     CountImage counts;
     expose(RateImage(1000, 100, 150.0f), d, exposure, only, one, counts);
@@ -131,7 +132,7 @@ TEST(Chain, EveryEffectHasAStreamOfItsOwn) {
     return values;
   };
   const std::vector<std::vector<double>> draws = {
-      noise(Effect::photon_noise), noise(Effect::dark_current), noise(Effect::read_noise)};
+      noise(PhotonNoise::facts), noise(DarkCurrent::facts), noise(ReadNoise::facts)};
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t b = 0; b < a; ++b) {
       double ab = 0, aa = 0, bb = 0;
@@ -143,13 +144,13 @@ TEST(Chain, EveryEffectHasAStreamOfItsOwn) {
 }
 
 TEST(Chain, WhatIsOffOrZeroCostsNothing) {
-  const Result plain = read_out({.full_well_e = 3000, .gain_e_per_dn = 0.1});
+  const Result plain = read_out(detector_of({.full_well_e = 3000, .gain_e_per_dn = 0.1}));
   for (const auto& [effect, weaken] : all_effects) {
-    EXPECT_EQ(plain.times[effect], 0.0) << facts(effect).name;
-    EXPECT_GT(read_out(busy).times[effect], 0.0) << facts(effect).name;
+    EXPECT_EQ(plain.times[effect], 0.0) << effect.name;
+    EXPECT_GT(read_out(busy).times[effect], 0.0) << effect.name;
     EffectSet without;
     without.set(effect, false);
-    EXPECT_EQ(read_out(busy, without).times[effect], 0.0) << facts(effect).name;
+    EXPECT_EQ(read_out(busy, without).times[effect], 0.0) << effect.name;
   }
 }
 
@@ -166,7 +167,8 @@ TEST(Chain, TheBytesOfAllEffectsDependOnNeitherThreadsNorInstructionSet) {
 }
 
 TEST(Flags, SayWhatBefellEachPixel) {
-  Detector d{.full_well_e = 3000, .gain_e_per_dn = 0.05, .blooming = true, .reference_px = 2};
+  Detector d = detector_of(
+      {.full_well_e = 3000, .gain_e_per_dn = 0.05, .blooming = true, .reference_px = 2});
   RateImage light(20, 40, 100.0f);
   light.at(10, 20) = 3000.0f * 5;   // fills itself and about two pixels above and below
   light.at(4, 4) = 3200.0f * 0.9f;  // 57,600 DN of 65,535

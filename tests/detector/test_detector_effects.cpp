@@ -6,19 +6,19 @@
 #include "core/detector/blooming.h"
 #include "core/detector/cosmic_rays.h"
 #include "core/detector/expose.h"
-#include "core/detector/fixed_pattern.h"
 #include "core/detector/interpixel_coupling.h"
+#include "tests/support/detector_of.h"
 
 namespace dmise {
 namespace {
 
 // Counts are electrons above a bias that keeps them positive.
-constexpr Detector plain{
-    .read_noise_e = 0, .full_well_e = 60000, .gain_e_per_dn = 1, .bias_dn = 200};
+constexpr Detector plain =
+    detector_of({.read_noise_e = 0, .full_well_e = 60000, .gain_e_per_dn = 1, .bias_dn = 200});
 
 EffectSet without_photon_noise() {
   EffectSet set;
-  set.set(Effect::photon_noise, false);
+  set.set(PhotonNoise::facts, false);
   return set;
 }
 
@@ -97,7 +97,7 @@ TEST(InterpixelCoupling, KeepsChargeAndCorrelatesNeighbours) {
   e.at(0, 0) = 500;
   e.at(30, 16) = 200;
   std::vector<float> signal(e.pixels.size());
-  interpixel_coupling(0.02, e, 0, signal);
+  couple(0.02, e, 0, signal);
   EXPECT_NEAR(std::accumulate(signal.begin(), signal.end(), 0.0), 1700, 1e-3);
   EXPECT_NEAR(signal[8 * 31 + 10], 920, 1e-3);
   EXPECT_NEAR(signal[8 * 31 + 11], 20, 1e-3);
@@ -123,7 +123,7 @@ TEST(Blooming, FillsTheColumnBothWaysAndKeepsTheCharge) {
   for (int y = 0; y < 101; ++y) e.at(2, y) = 10;
   e.at(2, 50) = 10 + 100 + 990;  // a well of 100 and eleven wells' room for the rest: 5.5 each way
   Threads one(1);
-  EXPECT_EQ(blooming(100, e, one), 11u);
+  EXPECT_EQ(bloom(100, e, one), 11u);
   double sum = 0;
   for (float v : e.pixels) sum += v;
   EXPECT_NEAR(sum, 1100 + 100 * 10, 1e-3);
@@ -149,11 +149,11 @@ TEST(CosmicRays, AreAsManyAsAskedAndLeaveChargeByTheLengthOfTheirTracks) {
   d.cosmic_rays_per_px_s = 1e-4;
   d.cosmic_ray_e_per_px = 100;
   d.cosmic_ray_depth_px = 0.01;  // so thin that a track is a point unless it grazes
-  const auto charges = cosmic_rays(d, 1000, 1000, 10, rng_key(1, "s", 1, "c"));
+  const auto charges = d.charges(1000, 1000, 10, rng_key(1, "s", 1, "c"));
   EXPECT_NEAR(double(charges.size()), 1000, 4 * std::sqrt(1000.0) + 60);
   d.cosmic_ray_depth_px = 2;
   double sum = 0;
-  for (const CosmicCharge& c : cosmic_rays(d, 1000, 1000, 10, rng_key(1, "s", 1, "c"))) {
+  for (const CosmicCharge& c : d.charges(1000, 1000, 10, rng_key(1, "s", 1, "c"))) {
     EXPECT_LE(c.electrons, 100 * std::hypot(std::sqrt(2.0), 2.0) * 100);
     sum += c.electrons;
   }
@@ -178,22 +178,22 @@ TEST(DarkCurrent, DoublesAsOftenAsStated) {
 }
 
 TEST(Detector, AllItsEffectsTogetherGiveTheSameBytesOnAnyNumberOfThreads) {
-  const Detector d{.dark_e_per_s = 0.1,
-                   .read_noise_e = 5,
-                   .full_well_e = 20000,
-                   .gain_e_per_dn = 0.5,
-                   .bias_dn = 500,
-                   .prnu_rms = 0.01,
-                   .hot_pixel_fraction = 0.001,
-                   .hot_pixel_e_per_s = 100,
-                   .column_noise_e = 2,
-                   .nonlinearity = 0.01,
-                   .interpixel_coupling = 0.005,
-                   .blooming = true,
-                   .persistence_fraction = 0.01,
-                   .persistence_s = 100,
-                   .cosmic_rays_per_px_s = 1e-5,
-                   .reference_px = 4};
+  const Detector d = detector_of({.dark_e_per_s = 0.1,
+                                  .read_noise_e = 5,
+                                  .full_well_e = 20000,
+                                  .gain_e_per_dn = 0.5,
+                                  .bias_dn = 500,
+                                  .prnu_rms = 0.01,
+                                  .hot_pixel_fraction = 0.001,
+                                  .hot_pixel_e_per_s = 100,
+                                  .column_noise_e = 2,
+                                  .nonlinearity = 0.01,
+                                  .interpixel_coupling = 0.005,
+                                  .blooming = true,
+                                  .persistence_fraction = 0.01,
+                                  .persistence_s = 100,
+                                  .cosmic_rays_per_px_s = 1e-5,
+                                  .reference_px = 4});
   RateImage light(701, 503, 200.0f);
   light.at(300, 200) = 1e6f;
   CountImage reference;

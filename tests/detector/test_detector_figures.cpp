@@ -1,4 +1,4 @@
-#include "core/detector/detector_figures.h"
+#include "core/detector/detector.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "tests/support/detector_of.h"
 
 namespace dmise {
 namespace {
@@ -22,6 +23,8 @@ std::string complaint(const Detector& d) {
   }
   return "";
 }
+
+std::string complaint(const DetectorNumbers& numbers) { return complaint(detector_of(numbers)); }
 
 TEST(DetectorFigures, NonsenseIsRefusedByName) {
   EXPECT_EQ(complaint({.full_well_e = 0}), "detector.full_well_e: must be > 0 and <= 1e+09, got 0");
@@ -40,74 +43,77 @@ TEST(DetectorFigures, NonsenseIsRefusedByName) {
             "got 0");
   EXPECT_EQ(complaint({.dark_e_per_s = 1e6, .temperature_c = 90, .dark_doubling_k = 5}),
             "detector.temperature_c: dark current there must be <= 1e9 e-/s, got 90");
-  EXPECT_EQ(complaint({}), "");
+  EXPECT_EQ(complaint(DetectorNumbers{}), "");
 }
 
 TEST(DetectorFigures, EveryOneRefusesNanAndWhatIsOutOfItsRange) {
-  for (const DetectorFigure& figure : detector_figures())
-    for (const double bad : {nan, figure.least - 1, figure.most * 1.01 + 1}) {
+  for (const DetectorParameter& p : detector_parameters()) {
+    if (std::holds_alternative<bool Detector::*>(p.value)) continue;
+    const bool real = std::holds_alternative<double Detector::*>(p.value);
+    for (const double bad : {real ? nan : p.most + 1, p.least - 1, p.most * 1.01 + 1}) {
       Detector d;
-      d.*figure.value = bad;
-      EXPECT_EQ(complaint(d).find("detector." + std::string(figure.key) + ": must be "), 0u)
-          << figure.key << " " << bad;
+      p.set(d, bad);
+      EXPECT_EQ(complaint(d).find("detector." + std::string(p.key) + ": must be "), 0u)
+          << p.key << " " << bad;
     }
+  }
 }
 
 // The same name in YAML, FITS and code; FITS allows eight characters.
 TEST(DetectorFigures, HaveKeywordsOfTheirOwn) {
   std::set<std::string> seen;
-  for (const DetectorFigure& figure : detector_figures()) {
-    EXPECT_LE(std::string(figure.keyword).size(), 8u);
-    if (*figure.keyword) {
-      EXPECT_TRUE(seen.insert(figure.keyword).second) << figure.keyword;
+  for (const DetectorParameter& p : detector_parameters()) {
+    EXPECT_LE(p.keyword.size(), 8u);
+    if (!p.keyword.empty()) {
+      EXPECT_TRUE(seen.insert(std::string(p.keyword)).second) << p.keyword;
     }
   }
 }
 
 TEST(DarkCurrent, FollowsTheDetectorsTemperature) {
-  const Detector d{.dark_e_per_s = 8,
-                   .dark_reference_c = 20,
-                   .temperature_c = 2,
-                   .dark_doubling_k = 6,
-                   .hot_pixel_e_per_s = 80};
+  const Detector d = detector_of({.dark_e_per_s = 8,
+                                  .dark_reference_c = 20,
+                                  .temperature_c = 2,
+                                  .dark_doubling_k = 6,
+                                  .hot_pixel_e_per_s = 80});
   EXPECT_NEAR(dark_rate_e_per_s(d), 1.0, 1e-12);
-  const Detector acting = in_effect(d, {});
+  const Detector acting = acting_detector(d, {});
   EXPECT_NEAR(acting.dark_e_per_s, 1.0, 1e-12);
   EXPECT_NEAR(acting.hot_pixel_e_per_s, 10.0, 1e-12);
   EXPECT_NEAR(dark_rate_e_per_s(acting), 1.0, 1e-12);  // not cooled twice
 }
 
 TEST(DetectorFigures, OfEffectsThatAreOffAreZero) {
-  const Detector d{.dark_e_per_s = 1,
-                   .read_noise_e = 1,
-                   .gain_e_per_dn = 0.5,
-                   .bias_dn = 100,
-                   .adc_bits = 12,
-                   .prnu_rms = 0.1,
-                   .hot_pixel_fraction = 0.1,
-                   .hot_pixel_e_per_s = 1,
-                   .column_noise_e = 1,
-                   .nonlinearity = 0.1,
-                   .interpixel_coupling = 0.1,
-                   .blooming = true,
-                   .persistence_fraction = 0.1,
-                   .persistence_s = 1,
-                   .cosmic_rays_per_px_s = 1e-6,
-                   .reference_px = 4};
+  const Detector d = detector_of({.dark_e_per_s = 1,
+                                  .read_noise_e = 1,
+                                  .gain_e_per_dn = 0.5,
+                                  .bias_dn = 100,
+                                  .adc_bits = 12,
+                                  .prnu_rms = 0.1,
+                                  .hot_pixel_fraction = 0.1,
+                                  .hot_pixel_e_per_s = 1,
+                                  .column_noise_e = 1,
+                                  .nonlinearity = 0.1,
+                                  .interpixel_coupling = 0.1,
+                                  .blooming = true,
+                                  .persistence_fraction = 0.1,
+                                  .persistence_s = 1,
+                                  .cosmic_rays_per_px_s = 1e-6,
+                                  .reference_px = 4});
   EffectSet none;
-  for (std::size_t i = 0; i < effect_count; ++i) none.set(static_cast<Effect>(i), false);
-  const Detector off = in_effect(d, none);
-  for (Effect e : {Effect::prnu, Effect::dark_current, Effect::hot_pixels, Effect::cosmic_rays,
-                   Effect::reference_pixels, Effect::persistence, Effect::blooming,
-                   Effect::interpixel_coupling, Effect::nonlinearity, Effect::column_noise,
-                   Effect::read_noise}) {
-    EXPECT_TRUE(has_figure(d, e)) << facts(e).name;
-    EXPECT_FALSE(has_figure(off, e)) << facts(e).name;
+  DetectorEffects::for_each([&]<class Effect>() { none.set(Effect::facts, false); });
+  const Detector off = acting_detector(d, none);
+  for (const EffectFacts& e :
+       {PixelResponse::facts, DarkCurrent::facts, HotPixels::facts, CosmicRays::facts,
+        ReferencePixels::facts, Persistence::facts, Blooming::facts, InterpixelCoupling::facts,
+        Nonlinearity::facts, ColumnNoise::facts, ReadNoise::facts}) {
+    EXPECT_TRUE(applies(d, e)) << e.name;
+    EXPECT_FALSE(applies(off, e)) << e.name;
   }
   EXPECT_EQ(off.gain_e_per_dn, 1.0);
   EXPECT_EQ(off.bias_dn, 0.0);
   EXPECT_EQ(off.adc_bits, 16);
-  EXPECT_EQ(in_effect(d, {}), d);
+  EXPECT_EQ(acting_detector(d, {}), d);
 }
 
 }  // namespace

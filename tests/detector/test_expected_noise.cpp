@@ -1,4 +1,5 @@
 #include "core/detector/expected_noise.h"
+#include "tests/support/detector_of.h"
 
 #include <gtest/gtest.h>
 
@@ -10,19 +11,19 @@ namespace {
 // From frame to frame, the counts of a pixel spread as foretold: the sample variance of n frames
 // has a relative standard deviation of sqrt(2 / (n - 1)).
 TEST(ExpectedNoise, IsTheSpreadOfManyFrames) {
-  const Detector d{.dark_e_per_s = 20,
-                   .dark_reference_c = 20,
-                   .temperature_c = 10,
-                   .dark_doubling_k = 10,
-                   .read_noise_e = 8,
-                   .full_well_e = 60000,
-                   .gain_e_per_dn = 2,
-                   .bias_dn = 300,
-                   .hot_pixel_fraction = 0.05,
-                   .hot_pixel_e_per_s = 200,
-                   .column_noise_e = 6,
-                   .nonlinearity = 0.05,
-                   .reference_px = 2};
+  const Detector d = detector_of({.dark_e_per_s = 20,
+                                  .dark_reference_c = 20,
+                                  .temperature_c = 10,
+                                  .dark_doubling_k = 10,
+                                  .read_noise_e = 8,
+                                  .full_well_e = 60000,
+                                  .gain_e_per_dn = 2,
+                                  .bias_dn = 300,
+                                  .hot_pixel_fraction = 0.05,
+                                  .hot_pixel_e_per_s = 200,
+                                  .column_noise_e = 6,
+                                  .nonlinearity = 0.05,
+                                  .reference_px = 2});
   RateImage light(40, 30);
   for (std::size_t i = 0; i < light.pixels.size(); ++i) light.pixels[i] = float(i) * 20.0f;
   Threads one(1);
@@ -50,10 +51,11 @@ TEST(ExpectedNoise, IsTheSpreadOfManyFrames) {
 }
 
 TEST(ExpectedNoise, OfNothingIsTheRoundingOfTheAdc) {
-  const Detector d{.dark_e_per_s = 5, .read_noise_e = 8, .gain_e_per_dn = 2, .column_noise_e = 6};
+  const Detector d =
+      detector_of({.dark_e_per_s = 5, .read_noise_e = 8, .gain_e_per_dn = 2, .column_noise_e = 6});
   EffectSet off;
-  for (Effect e :
-       {Effect::photon_noise, Effect::dark_current, Effect::read_noise, Effect::column_noise})
+  for (const EffectFacts& e :
+       {PhotonNoise::facts, DarkCurrent::facts, ReadNoise::facts, ColumnNoise::facts})
     off.set(e, false);
   Threads one(1);
   const auto noise = expected_noise(RateImage(3, 3, 100.0f), d, {.exposure_s = 1}, off, one);

@@ -6,18 +6,19 @@
 
 #include "core/base/error.h"
 #include "core/detector/expose.h"
+#include "tests/support/detector_of.h"
 
 namespace dmise {
 namespace {
 
 // KAF-8300 as in the paper's all-sky camera.
-constexpr Detector kaf8300{.quantum_efficiency = 0.5,
-                           .dark_e_per_s = 0.02,
-                           .read_noise_e = 9.3,
-                           .full_well_e = 25500,
-                           .gain_e_per_dn = 0.35,
-                           .bias_dn = 1000,
-                           .adc_bits = 16};
+constexpr Detector kaf8300 = detector_of({.quantum_efficiency = 0.5,
+                                          .dark_e_per_s = 0.02,
+                                          .read_noise_e = 9.3,
+                                          .full_well_e = 25500,
+                                          .gain_e_per_dn = 0.35,
+                                          .bias_dn = 1000,
+                                          .adc_bits = 16});
 const Exposure exposure{.seed = 1, .sensor = "atlanta", .frame = 3, .exposure_s = 20};
 
 CountImage read_out(const RateImage& light, const Detector& detector, const EffectSet& effects = {},
@@ -90,8 +91,8 @@ TEST(Expose, NoDetectorHasNegativeGainOr32Bits) {
 
 TEST(Expose, WithoutQuantisationCountsAreWholeElectrons) {
   EffectSet effects;
-  for (Effect e :
-       {Effect::photon_noise, Effect::dark_current, Effect::read_noise, Effect::quantisation})
+  for (const EffectFacts& e :
+       {PhotonNoise::facts, DarkCurrent::facts, ReadNoise::facts, Quantisation::facts})
     effects.set(e, false);
   for (auto c : read_out(RateImage(40, 30, 123.4f), kaf8300, effects).pixels) EXPECT_EQ(c, 123);
 }
@@ -104,16 +105,16 @@ TEST(Expose, AddingAnEffectLeavesTheOthersNoiseUnchanged) {
   d.dark_e_per_s = 0.5;
   d.read_noise_e = 30;
   const RateImage light(200, 100, 700.0f);
-  const auto with = [&](std::initializer_list<Effect> list) {
+  const auto with = [&](std::initializer_list<EffectFacts> list) {
     EffectSet set;
-    for (Effect e : {Effect::photon_noise, Effect::dark_current, Effect::read_noise})
+    for (const EffectFacts& e : {PhotonNoise::facts, DarkCurrent::facts, ReadNoise::facts})
       set.set(e, false);
-    for (Effect e : list) set.set(e, true);
+    for (const EffectFacts& e : list) set.set(e, true);
     return read_out(light, d, set).pixels;
   };
-  const auto none = with({}), photon = with({Effect::photon_noise}),
-             dark = with({Effect::dark_current}), read = with({Effect::read_noise}),
-             all = with({Effect::photon_noise, Effect::dark_current, Effect::read_noise});
+  const auto none = with({}), photon = with({PhotonNoise::facts}),
+             dark = with({DarkCurrent::facts}), read = with({ReadNoise::facts}),
+             all = with({PhotonNoise::facts, DarkCurrent::facts, ReadNoise::facts});
   for (std::size_t i = 0; i < none.size(); ++i) {
     const int sum = (photon[i] - none[i]) + (dark[i] - none[i]) + (read[i] - none[i]);
     ASSERT_EQ(all[i] - none[i], sum) << i;
@@ -153,7 +154,7 @@ TEST(Expose, ANegativeOrUndefinedExpectationIsNamedByItsPixel) {
   light.at(17, 150) = std::numeric_limits<float>::quiet_NaN();
   for (bool noisy : {true, false}) {
     EffectSet effects;
-    effects.set(Effect::photon_noise, noisy);
+    effects.set(PhotonNoise::facts, noisy);
     try {
       read_out(light, kaf8300, effects);
       FAIL();

@@ -8,17 +8,18 @@
 
 #include "core/base/error.h"
 #include "core/detector/expose.h"
+#include "tests/support/detector_of.h"
 
 namespace dmise {
 namespace {
 
 constexpr double exposure_s = 2.0, idle_s = 1.0;
-constexpr Detector trapping{.dark_e_per_s = 1,
-                            .read_noise_e = 3,
-                            .full_well_e = 50000,
-                            .bias_dn = 100,
-                            .persistence_fraction = 0.02,
-                            .persistence_s = 1.0};
+constexpr Detector trapping = detector_of({.dark_e_per_s = 1,
+                                           .read_noise_e = 3,
+                                           .full_well_e = 50000,
+                                           .bias_dn = 100,
+                                           .persistence_fraction = 0.02,
+                                           .persistence_s = 1.0});
 
 RateImage light_of(std::uint32_t frame) {
   RateImage light(60, 50, 200.0f);

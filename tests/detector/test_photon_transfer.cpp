@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/detector/expose.h"
+#include "tests/support/detector_of.h"
 
 // Janesick's photon transfer: variance [DN2] = mean [DN] / K + (read noise / K)^2, here with the
 // 1/12 of rounding, until the well or the ADC is full.
@@ -41,11 +42,16 @@ struct Camera {
 };
 const Camera cameras[] = {
     {"KAF-8300, where the ADC is full before the well",
-     {.read_noise_e = 9.3, .full_well_e = 25500, .gain_e_per_dn = 0.35, .bias_dn = 1000}},
+     detector_of(
+         {.read_noise_e = 9.3, .full_well_e = 25500, .gain_e_per_dn = 0.35, .bias_dn = 1000})},
     {"a well that is full before the ADC",
-     {.read_noise_e = 10, .full_well_e = 100000, .gain_e_per_dn = 1.8, .bias_dn = 500}},
-    {"12 bits",
-     {.read_noise_e = 2, .full_well_e = 20000, .gain_e_per_dn = 4, .bias_dn = 50, .adc_bits = 12}}};
+     detector_of(
+         {.read_noise_e = 10, .full_well_e = 100000, .gain_e_per_dn = 1.8, .bias_dn = 500})},
+    {"12 bits", detector_of({.read_noise_e = 2,
+                             .full_well_e = 20000,
+                             .gain_e_per_dn = 4,
+                             .bias_dn = 50,
+                             .adc_bits = 12})}};
 
 TEST(PhotonTransfer, FollowsItsLineUntilSaturationAndFallsToNothingThere) {
   for (const auto& [name, d] : cameras) {

@@ -8,6 +8,7 @@
 #include "core/base/units.h"
 #include "core/image/fits_file.h"
 #include "core/products/frame_header.h"
+#include "tests/support/detector_of.h"
 
 namespace dmise::test {
 
@@ -33,24 +34,24 @@ inline FrameHeader sample_header(int columns = 200, int rows = 150) {
   h.read_noise_e = 9.3;
   h.dark_e_per_s = 0.02;
   h.full_well_e = 25500.0;
-  h.detector = Detector{.quantum_efficiency = 0.54,
-                        .dark_reference_c = -10.0,
-                        .temperature_c = -10.0,
-                        .dark_doubling_k = 6.0,
-                        .adc_bits = 14,
-                        .prnu_rms = 0.01,
-                        .hot_pixel_fraction = 1e-4,
-                        .hot_pixel_e_per_s = 50.0,
-                        .column_noise_e = 1.5,
-                        .nonlinearity = 0.02,
-                        .interpixel_coupling = 0.005,
-                        .blooming = true,
-                        .persistence_fraction = 0.003,
-                        .persistence_s = 120.0,
-                        .cosmic_rays_per_px_s = 1e-8,
-                        .cosmic_ray_e_per_px = 900.0,
-                        .cosmic_ray_depth_px = 2.0,
-                        .reference_px = 4};
+  h.detector = detector_of({.quantum_efficiency = 0.54,
+                            .dark_reference_c = -10.0,
+                            .temperature_c = -10.0,
+                            .dark_doubling_k = 6.0,
+                            .adc_bits = 14,
+                            .prnu_rms = 0.01,
+                            .hot_pixel_fraction = 1e-4,
+                            .hot_pixel_e_per_s = 50.0,
+                            .column_noise_e = 1.5,
+                            .nonlinearity = 0.02,
+                            .interpixel_coupling = 0.005,
+                            .blooming = true,
+                            .persistence_fraction = 0.003,
+                            .persistence_s = 120.0,
+                            .cosmic_rays_per_px_s = 1e-8,
+                            .cosmic_ray_e_per_px = 900.0,
+                            .cosmic_ray_depth_px = 2.0,
+                            .reference_px = 4});
   h.saturation_dn = 65535.0;
   h.psf_fwhm_px = 1.7;
   h.band = {"V", 0.55e-6, 0.128e-6};

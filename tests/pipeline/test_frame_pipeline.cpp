@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "core/effects/light_effects.h"
 #include "core/image/fits_file.h"
 #include "core/photometry/magnitude.h"
 #include "tests/pipeline/harness.h"
@@ -103,12 +104,12 @@ TEST(FramePipeline, BytesDoNotDependOnThreads) {
 TEST(FramePipeline, TellsTheTimeOfEveryEffect) {
   test::Stage stage(scenario("{}"), "ra_deg,dec_deg,mag_v\n49.7,-5.4,6\n", elements);
   const auto frame = stage.frame();
-  for (const auto effect : {Effect::sky, Effect::stars, Effect::objects, Effect::psf,
-                            Effect::shadow, Effect::photon_noise, Effect::dark_current,
-                            Effect::read_noise, Effect::full_well, Effect::quantisation})
-    EXPECT_GT(frame.times[effect], 0.0) << facts(effect).name;
+  for (const auto effect : {effect::sky, effect::stars, effect::objects, effect::psf,
+                            effect::shadow, PhotonNoise::facts, DarkCurrent::facts,
+                            ReadNoise::facts, FullWell::facts, Quantisation::facts})
+    EXPECT_GT(frame.times[effect], 0.0) << effect.name;
   double sum = frame.detection_s;
-  for (const double s : frame.times.seconds) sum += s;
+  for (const auto& [effect, s] : frame.times.seconds) sum += s;
   EXPECT_LE(sum, frame.total_s * 1.1);
 }
 

@@ -34,8 +34,8 @@ class Planes : public testing::Test {
     sensor.camera.optics.columns = 400;
     sensor.camera.optics.rows = 300;
     if (noiseless)
-      for (Effect e :
-           {Effect::photon_noise, Effect::dark_current, Effect::read_noise, Effect::quantisation})
+      for (const EffectFacts& e :
+           {PhotonNoise::facts, DarkCurrent::facts, ReadNoise::facts, Quantisation::facts})
         sensor.effects.set(e, false);
     return pipeline().run(frame_times(sensor, number), stage.world);
   }

@@ -3,6 +3,8 @@
 
 #include "core/base/units.h"
 #include "core/config/search_path.h"
+#include "core/effects/light_effects.h"
+#include "core/effects/place_effects.h"
 #include "core/optics/projection.h"
 #include "core/photometry/star_light.h"
 #include "tests/pipeline/harness.h"
@@ -66,8 +68,9 @@ TEST_P(Presets, SeesAStarWithTheElectronsOfItsPhotons) {
   camera.optics.columns = std::min(camera.optics.columns, 256);
   camera.optics.rows = std::min(camera.optics.rows, 200);
   // The mount points at the place of the catalogue; a field of seconds of arc needs the star there.
-  for (Effect e : {Effect::extinction, Effect::scintillation, Effect::refraction,
-                   Effect::annual_aberration, Effect::diurnal_aberration, Effect::light_deflection})
+  for (const EffectFacts& e :
+       {effect::extinction, effect::scintillation, effect::refraction, effect::annual_aberration,
+        effect::diurnal_aberration, effect::light_deflection})
     stage.scenario.sensors[0].effects.set(e, false);
   const auto frame = stage.frame();
   const double area_m2 =
@@ -76,7 +79,7 @@ TEST_P(Presets, SeesAStarWithTheElectronsOfItsPhotons) {
                             camera.optics.transmission * camera.detector.quantum_efficiency * 2;
   ASSERT_EQ(frame.stars.size(), 1u);
   EXPECT_NEAR(frame.stars[0].signal_e / expected_e, 1.0, 1e-3);
-  EXPECT_EQ(frame.header.detector, in_effect(camera.detector, {}));
+  EXPECT_EQ(frame.header.detector, acting_detector(camera.detector, {}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Camera, Presets, testing::ValuesIn(presets), [](const auto& info) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/effects/light_effects.h"
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/airmass.h"
@@ -203,9 +204,9 @@ TEST(SkyLayer, EachPartIsSwitchedByNameAndHasItsTime) {
   test::Stage stage(scenario("2018-01-26T00:10:00Z", 2, fisheye, "zenith", ", sky: urban"),
                     "ra_deg,dec_deg,mag_v\n0,90,6\n");
   const auto frame = stage.frame();
-  for (const Effect part :
-       {Effect::sky, Effect::airglow, Effect::twilight, Effect::light_pollution})
-    EXPECT_GT(frame.times[part], 0.0) << facts(part).name;
+  for (const EffectFacts& part :
+       {effect::sky, effect::airglow, effect::twilight, effect::light_pollution})
+    EXPECT_GT(frame.times[part], 0.0) << part.name;
 }
 
 // A veil of transmission 0.5 at the zenith takes as much from the star there as from the airglow

@@ -7,6 +7,7 @@
 #include "core/config/camera_config.h"
 #include "core/config/pointing_config.h"
 #include "core/config/search_path.h"
+#include "core/effects/place_effects.h"
 #include "core/frames/geodesy.h"
 #include "core/optics/projection.h"
 #include "core/time/iso8601.h"
@@ -157,8 +158,8 @@ TEST(TargetInCentre, OfEveryCameraInOrbit) {
 TEST(TargetInCentre, WithWhateverIsSwitchedOff) {
   std::vector<std::string> targets;
   const std::string objects = objects_over_atlanta(targets);
-  for (const Effect off : {Effect::refraction, Effect::light_time, Effect::diurnal_aberration,
-                           Effect::annual_aberration}) {
+  for (const EffectFacts& off : {effect::refraction, effect::light_time, effect::diurnal_aberration,
+                                 effect::annual_aberration}) {
     test::Stage ground(
         scenario(objects, sensor("site: atlanta", "telescope-3m", "{target: leo-300-20}")));
     test::Stage space(scenario(space_objects,
@@ -166,8 +167,7 @@ TEST(TargetInCentre, WithWhateverIsSwitchedOff) {
     for (auto& [stage, target] :
          {std::pair<test::Stage&, std::string>{ground, "leo-300-20"}, {space, "crossing"}}) {
       stage.scenario.sensors[0].effects.set(off, false);
-      EXPECT_LT(off_centre_px(stage, stage.scenario.sensors[0], target), tolerance_px)
-          << facts(off).name;
+      EXPECT_LT(off_centre_px(stage, stage.scenario.sensors[0], target), tolerance_px) << off.name;
     }
   }
 }

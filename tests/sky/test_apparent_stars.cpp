@@ -4,6 +4,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/effects/place_effects.h"
 #include "core/sky/apparent.h"
 #include "core/time/iso8601.h"
 #include "tests/support/data.h"
@@ -25,9 +26,9 @@ struct Row {
   }
 };
 
-EffectSet all_but(std::initializer_list<Effect> off) {
+EffectSet all_but(std::initializer_list<EffectFacts> off) {
   EffectSet effects;
-  for (const Effect e : off) effects.set(e, false);
+  for (const EffectFacts& e : off) effects.set(e, false);
   return effects;
 }
 
@@ -112,7 +113,7 @@ TEST(ApparentStars, StandOverASitesHorizonWhereAstropySees) {
       return enu_from_itrs(site) *
              (earth.itrs_from_gcrs({}) * ApparentPlaces(here, effects).star(star));
     };
-    EXPECT_LT(angle_rad(seen(all_but({Effect::refraction})),
+    EXPECT_LT(angle_rad(seen(all_but({effect::refraction})),
                         from_horizontal({row.azimuth_deg * deg, row.elevation_deg * deg})),
               2 * mas)
         << row.utc;
@@ -155,7 +156,7 @@ TEST(ApparentStars, AThousandAboveTwentyDegreesAgreeWithAstropyThroughTheAir) {
           (earth.itrs_from_gcrs({}) * ApparentPlaces(here, effects).star({v[3] * deg, v[4] * deg}));
       return angle_rad(seen, from_horizontal({azimuth_deg * deg, elevation_deg * deg}));
     };
-    worst_plain = std::max(worst_plain, off(all_but({Effect::refraction}), v[5], v[6]));
+    worst_plain = std::max(worst_plain, off(all_but({effect::refraction}), v[5], v[6]));
     worst_air = std::max(worst_air, off({}, v[7], v[8]));
     ++count;
   }
@@ -173,15 +174,15 @@ TEST(ApparentStars, EachCorrectionHasItsSizeAndItsSwitch) {
   const Observer here = atlanta("2018-01-20T23:40:00Z");
   const StarPlace barnard{269.452079 * deg, 4.693391 * deg, -0.79858 * arcsec, 10.32812 * arcsec,
                           0.54831 * arcsec};
-  const auto moved_by = [&](Effect effect, const StarPlace& star) {
+  const auto moved_by = [&](const EffectFacts& effect, const StarPlace& star) {
     return angle_rad(ApparentPlaces(here, {}).star(star),
                      ApparentPlaces(here, all_but({effect})).star(star));
   };
-  EXPECT_NEAR(moved_by(Effect::proper_motion, barnard), 18.055 * 10.36 * arcsec, 0.5 * arcsec);
-  EXPECT_LT(moved_by(Effect::parallax, barnard), 0.56 * arcsec);
-  EXPECT_GT(moved_by(Effect::parallax, barnard), 0.1 * arcsec);
+  EXPECT_NEAR(moved_by(effect::proper_motion, barnard), 18.055 * 10.36 * arcsec, 0.5 * arcsec);
+  EXPECT_LT(moved_by(effect::parallax, barnard), 0.56 * arcsec);
+  EXPECT_GT(moved_by(effect::parallax, barnard), 0.1 * arcsec);
 
-  const auto largest = [&](Effect effect) {
+  const auto largest = [&](const EffectFacts& effect) {
     double most = 0.0;
     for (int i = 0; i < 400; ++i) {
       // Stars at 30 deg and more over the horizon.
@@ -192,19 +193,19 @@ TEST(ApparentStars, EachCorrectionHasItsSizeAndItsSwitch) {
     }
     return most;
   };
-  EXPECT_NEAR(largest(Effect::annual_aberration), 20.8 * arcsec, 0.4 * arcsec);
-  EXPECT_NEAR(largest(Effect::diurnal_aberration), 0.32 * std::cos(33.777 * deg) * arcsec,
+  EXPECT_NEAR(largest(effect::annual_aberration), 20.8 * arcsec, 0.4 * arcsec);
+  EXPECT_NEAR(largest(effect::diurnal_aberration), 0.32 * std::cos(33.777 * deg) * arcsec,
               0.01 * arcsec);
-  EXPECT_GT(largest(Effect::light_deflection), 3 * mas);
-  EXPECT_LT(largest(Effect::light_deflection), 30 * mas);
-  EXPECT_GT(largest(Effect::refraction), 90 * arcsec);
-  EXPECT_EQ(largest(Effect::light_time), 0.0);
+  EXPECT_GT(largest(effect::light_deflection), 3 * mas);
+  EXPECT_LT(largest(effect::light_deflection), 30 * mas);
+  EXPECT_GT(largest(effect::refraction), 90 * arcsec);
+  EXPECT_EQ(largest(effect::light_time), 0.0);
 }
 
 TEST(ApparentStars, AllSwitchedOffIsTheCataloguePlace) {
   const EffectSet none =
-      all_but({Effect::proper_motion, Effect::parallax, Effect::light_deflection,
-               Effect::annual_aberration, Effect::diurnal_aberration, Effect::refraction});
+      all_but({effect::proper_motion, effect::parallax, effect::light_deflection,
+               effect::annual_aberration, effect::diurnal_aberration, effect::refraction});
   const StarPlace star{1.0, 0.5, 1e-5, 1e-5, 1e-6};
   EXPECT_LT(angle_rad(ApparentPlaces(atlanta("2018-01-20T23:40:00Z"), none).star(star),
                       from_spherical<Gcrs>(1.0, 0.5)),
@@ -213,7 +214,7 @@ TEST(ApparentStars, AllSwitchedOffIsTheCataloguePlace) {
 
 TEST(ApparentStars, RefractionLiftsTowardsTheZenithAndNothingAtIt) {
   const Observer here = atlanta("2018-01-20T23:40:00Z");
-  const ApparentPlaces with(here, {}), without(here, all_but({Effect::refraction}));
+  const ApparentPlaces with(here, {}), without(here, all_but({effect::refraction}));
   for (double away = 0.0; away < 3.1; away += 0.01) {
     const Vec<Gcrs> side = unit(cross(here.air->zenith, {0.1, 0.2, 0.9}));
     const auto [ra, dec] = to_spherical(here.air->zenith * std::cos(away) + side * std::sin(away));
@@ -255,7 +256,7 @@ TEST(ApparentStars, CrossThePoleAndTheTwentyFourHourLineWithoutAStep) {
 
 TEST(ApparentStars, AStarAtThePoleMovesByItsProperMotion) {
   const Observer here = atlanta("2018-01-20T23:40:00Z");
-  const ApparentPlaces places(here, all_but({Effect::refraction}));
+  const ApparentPlaces places(here, all_but({effect::refraction}));
   const StarPlace still{.ra_rad = 0.3, .dec_rad = pi / 2};
   StarPlace moving = still;
   moving.pm_ra_cosdec_rad_per_yr = 3 * arcsec;
