@@ -57,7 +57,9 @@ TEST(DetectorConfig, ReadsEveryFigureByItsName) {
                                          .reference_px = 4});
   EXPECT_EQ(read(all), expected);
   for (const DetectorParameter& p : detector_parameters())
-    EXPECT_NE(all.find(std::string(p.key) + ":"), std::string::npos) << p.key;
+    if (in_every_header(p)) {
+      EXPECT_NE(all.find(std::string(p.key) + ":"), std::string::npos) << p.key;
+    }
 }
 
 TEST(DetectorConfig, TheEfficiencyIsReadWithTheBand) {
