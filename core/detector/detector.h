@@ -7,6 +7,7 @@
 #include "core/detector/column_noise.h"
 #include "core/detector/cosmic_rays.h"
 #include "core/detector/dark_current.h"
+#include "core/detector/frame_transfer.h"
 #include "core/detector/full_well.h"
 #include "core/detector/hot_pixels.h"
 #include "core/detector/interpixel_coupling.h"
@@ -22,9 +23,9 @@ namespace dmise {
 
 /// What happens between the light on the pixels and the counts, in the order in which it happens.
 using DetectorEffects =
-    EffectList<PixelResponse, PhotonNoise, DarkCurrent, HotPixels, CosmicRays, ReferencePixels,
-               Persistence, FullWell, Blooming, InterpixelCoupling, Nonlinearity, ColumnNoise,
-               ReadNoise, Quantisation>;
+    EffectList<FrameTransfer, PixelResponse, PhotonNoise, DarkCurrent, HotPixels, CosmicRays,
+               ReferencePixels, Persistence, FullWell, Blooming, InterpixelCoupling, Nonlinearity,
+               ColumnNoise, ReadNoise, Quantisation>;
 
 /// A detector's parameters, those of its effects first. What is 0 does nothing and costs nothing.
 struct Detector : DetectorEffects::Parameters {

@@ -1,0 +1,35 @@
+#pragma once
+#include <vector>
+
+#include "core/detector/detector_effect.h"
+
+namespace dmise {
+
+/// Smear of a CCD without a shutter: its image is shifted under the mask, towards row 0, while
+/// light still falls. A pixel gains the light of every row that it passes, times the time that a
+/// row takes over the exposure. The rows' own responses are left out of that gain.
+struct FrameTransfer {
+  static constexpr EffectFacts facts{
+      "frame_transfer", "light still falls while the image is shifted under the mask",
+      "no smear: the light of the rows passed, times a row's time over the exposure",
+      "Ruyten 1999, Opt. Lett. 24, 878"};
+  double frame_transfer_s = 0.0;  // in which all rows are shifted; 0: a shutter, no smear
+  bool operator==(const FrameTransfer&) const = default;
+
+  static std::span<const DetectorParameter> parameters();
+  void switch_off() { frame_transfer_s = 0.0; }
+  bool applies(const Detector&) const { return frame_transfer_s > 0.0; }
+  /// Light of the rows before every `rows_a_sum`th, by column [e-].
+  using Prepared = std::vector<double>;
+  Prepared prepare(const ExposureFacts& exposed) const { return sums_of(exposed.light); }
+  void apply(const ExposureFacts& exposed, const Prepared& sums, Piece& piece) const;
+  /// The same for a whole image.
+  RateImage smeared(const RateImage& light, const Exposure& exposure) const;
+
+ private:
+  Prepared sums_of(const RateImage& light) const;
+  void add(const RateImage& light, const Exposure& exposure, const Prepared& sums,
+           std::size_t first, std::span<float> electrons) const;
+};
+
+}  // namespace dmise
