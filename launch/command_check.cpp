@@ -9,6 +9,7 @@
 #include "core/base/json.h"
 #include "core/base/printable.h"
 #include "core/config/make_clock.h"
+#include "core/config/node_kinds.h"
 #include "core/orbit/interpolation_error.h"
 #include "launch/commands.h"
 #include "launch/host_names.h"
@@ -16,7 +17,6 @@
 #include "nodes/runtime/security/security.h"
 #include "sensors/outlook/outlook_text.h"
 #include "sensors/pipeline/make_sensor.h"
-#include "sensors/positions/positions_evaluator.h"
 
 namespace dmise {
 namespace {
@@ -42,10 +42,8 @@ void check_directory(const std::string& out) {
 
 /// That every process of a launch has its key.
 void check_keys(const Scenario& scenario, const CheckOptions& options) {
-  std::vector<std::string> names{"time-master", "broker", "orbit-node", "environment-node",
-                                 operator_name};
-  for (const auto& sensor : scenario.sensors) names.push_back(sensor.name);
-  if (scenario.output.positions()) names.push_back(positions_node);
+  std::vector<std::string> names = nodes_of(scenario);
+  names.insert(names.end(), {"time-master", broker_name, operator_name});
   for (int host = 0; host < options.hosts; ++host) names.push_back(agent_name(scenario, host));
   for (const auto& name : names) {
     read_key(options.keys, name);

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/config/node_kinds.h"
 #include "core/config/scenario.h"
 #include "launch/commands.h"
 #include "launch/file_lock.h"
@@ -24,7 +25,6 @@
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/process/event.h"
 #include "nodes/runtime/program/command_line.h"
-#include "sensors/positions/positions_evaluator.h"
 #include "time-master/master.h"
 
 namespace dmise {
@@ -35,7 +35,6 @@ using Clock_ = std::chrono::steady_clock;
 constexpr auto look_every = std::chrono::milliseconds(100);
 constexpr double answer_within_s = 0.5;
 constexpr int answers_missed = 6;  // in a row: the time-master that was there is gone
-constexpr const char* any_sensor = "sensor";
 
 struct JoinOptions {
   std::string scenario, node, out, master, keys, host;
@@ -58,7 +57,8 @@ class Join {
                    options_.scenario.c_str());
       return;
     }
-    const bool not_needed = options_.node == positions_node && !scenario_.output.positions();
+    const NodeKind* kind = kind_of_node(options_.node, scenario_);
+    const bool not_needed = kind && !kind->wanted(scenario_);
     if (const auto name = fixed_name()) {
       wait_for_master(*name);
       not_needed ? stand_by(*name) : become(*name);
@@ -152,29 +152,25 @@ class Join {
     if (stop_.is_set()) throw ExitWith{130};
   }
 
-  bool is_sensor(const std::string& name) const {
-    const auto& sensors = scenario_.sensors;
-    return std::any_of(sensors.begin(), sensors.end(),
-                       [&](const auto& other) { return other.name == name; });
-  }
-
   bool writes_products(const std::string& name) const {
-    return is_sensor(name) || name == positions_node;
+    const NodeKind* kind = kind_of_node(name, scenario_);
+    return kind && kind->writes_products;
   }
 
   std::vector<std::string> arguments(const std::string& name) const {
-    const bool sensor = is_sensor(name);
+    const NodeKind* kind = kind_of_node(name, scenario_);  // null: the broker
     const std::string host = options_.host.empty() ? address_towards(master_) : options_.host;
-    std::vector<std::string> all{program_directory() + "/dmise-" + (sensor ? "sensor-node" : name),
-                                 "--name", name, "--master", master_};
+    std::vector<std::string> all{
+        program_directory() + "/" + (kind ? kind->program : "dmise-broker"), "--name", name,
+        "--master", master_};
     const auto add = [&](std::initializer_list<std::string> more) { all.insert(all.end(), more); };
     if (!options_.keys.empty()) add({"--keys", options_.keys});
-    if (name == broker_name)
+    if (!kind)
       add({"--publish", host, "--subscribe", host, "--observe", host});
     else
       add({"--host", host, "--config", options_.scenario});
     if (writes_products(name)) add({"--out", options_.out});
-    if (sensor)
+    if (kind && kind->each_sensor)
       add({"--digest", scenario_digest(scenario_), "--seed", std::to_string(scenario_.seed)});
     all.insert(all.end(), options_.more.begin(), options_.more.end());
     return all;
@@ -232,18 +228,23 @@ int slot_of_environment() {
   return slot;
 }
 
+/// For the help text: "broker, ... or sensor".
+std::string nodes_to_be() {
+  std::string all = broker_name;
+  for (const NodeKind& kind : node_kinds())
+    if (!kind.each_sensor) all += std::string(", ") + kind.name;
+  return all + ", a sensor's name, or " + any_sensor;
+}
+
 void join(JoinOptions options) {
   if (options.slot == 0) options.slot = slot_of_environment();
   if (options.slot < 0)
     throw ConfigError("--slot: must be from 1, got " + std::to_string(options.slot));
   Scenario scenario = load_scenario(options.scenario);
   if (options.seed) scenario.seed = *options.seed;
-  bool known = false;
-  for (const char* name :
-       {broker_name, "orbit-node", "environment-node", positions_node, any_sensor})
-    known = known || options.node == name;
-  for (const auto& sensor : scenario.sensors) known = known || options.node == sensor.name;
-  if (!known) throw ConfigError(options.node + ": is no node of " + options.scenario);
+  if (options.node != broker_name && options.node != any_sensor &&
+      !kind_of_node(options.node, scenario))
+    throw ConfigError(options.node + ": is no node of " + options.scenario);
   Join(options, scenario).run();
 }
 
@@ -258,8 +259,7 @@ void add_join_command(CLI::App& app) {
       ->required();
   command
       ->add_option("node", options->node,
-                   "broker, orbit-node, environment-node, positions-node, a sensor's name, or "
-                   "sensor: the first that nobody is yet, and one too many stands by")
+                   nodes_to_be() + ": the first that nobody is yet, and one too many stands by")
       ->required();
   command->add_option("--master", options->master, "address of the time-master, tcp://HOST:PORT")
       ->required()

@@ -5,12 +5,12 @@
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
+#include "core/config/node_kinds.h"
 #include "core/config/node_names.h"
 #include "core/config/scenario.h"
 #include "launch/commands.h"
 #include "launch/host_names.h"
 #include "nodes/runtime/security/security.h"
-#include "sensors/positions/positions_evaluator.h"
 
 namespace dmise {
 namespace {
@@ -36,12 +36,12 @@ void keygen(const KeygenOptions& options) {
   for (const auto& name : options.names)
     if (!options.nodes.empty()) agents[name] = options.nodes;
   if (!options.scenario.empty()) {
-    for (const char* name :
-         {"time-master", "broker", "orbit-node", "environment-node", operator_name})
-      names.push_back(name);
+    names.insert(names.end(), {"time-master", broker_name});
     const Scenario scenario = load_scenario(options.scenario);
-    for (const auto& sensor : scenario.sensors) several.push_back(sensor.name);
-    if (scenario.output.positions()) several.push_back(positions_node);
+    for (const NodeKind& kind : node_kinds())
+      for (const auto& name : nodes_of(kind, scenario))
+        (kind.writes_products ? several : names).push_back(name);
+    names.push_back(operator_name);
     names.insert(names.end(), several.begin(), several.end());
     for (int host = 0; host < options.hosts; ++host) {
       names.push_back(agent_name(scenario, host));

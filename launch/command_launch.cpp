@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/text_file.h"
 #include "core/config/make_clock.h"
+#include "core/config/node_kinds.h"
 #include "core/time/iso8601.h"
 #include "launch/commands.h"
 #include "launch/host_names.h"
@@ -30,7 +31,6 @@
 #include "nodes/runtime/program/command_line.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/make_sensor.h"
-#include "sensors/positions/positions_evaluator.h"
 
 namespace dmise {
 namespace {
@@ -91,9 +91,8 @@ class Launch {
   void start_master() {
     std::error_code ignored;
     std::filesystem::remove(announcement(), ignored);
-    std::string expected = "orbit-node,environment-node";
-    for (const auto& sensor : scenario_.sensors) expected += "," + sensor.name;
-    if (scenario_.output.positions()) expected += std::string(",") + positions_node;
+    std::string expected;
+    for (const auto& name : nodes_of(scenario_)) expected += (expected.empty() ? "" : ",") + name;
     const auto& network = scenario_.network;
     const bool restart = network.on_silent_node == OnSilentNode::restart;
     const char* policy = network.on_silent_node == OnSilentNode::fail   ? "fail"
@@ -122,29 +121,28 @@ class Launch {
     const std::vector<std::string> common{"--config",  options_.scenario,
                                           "--master",  master,
                                           "--threads", std::to_string(options_.threads)};
-    start("orbit-node", "dmise-orbit-node", common);
-    start("environment-node", "dmise-environment-node", common);
-    if (scenario_.output.positions()) {
-      auto arguments = common;
-      arguments.insert(arguments.end(), {"--out", directory_.path()});
-      start(positions_node, "dmise-positions-node", arguments);
-    }
     for (int host = 0; host < options_.hosts; ++host)
       start(agent_name(scenario_, host), "dmise-host-agent",
             {"--name", agent_name(scenario_, host), "--master", master, "--bind",
              agent_address(host)});
-    for (std::size_t i = 0; i < scenario_.sensors.size(); ++i) {
-      const auto& sensor = scenario_.sensors[i];
-      auto arguments = common;
-      if (options_.hosts > 0) {
-        const int host = host_of(i, options_.hosts);
-        arguments[3] = agent_address(host);
-        arguments.insert(arguments.end(), {"--via", agent_name(scenario_, host)});
+    for (const NodeKind& kind : node_kinds()) {
+      const auto nodes = nodes_of(kind, scenario_);
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        auto arguments = common;
+        const auto add = [&](std::initializer_list<std::string> more) {
+          arguments.insert(arguments.end(), more);
+        };
+        if (kind.each_sensor && options_.hosts > 0) {
+          const int host = host_of(i, options_.hosts);
+          arguments[3] = agent_address(host);
+          add({"--via", agent_name(scenario_, host)});
+        }
+        add({"--name", nodes[i]});
+        if (kind.writes_products) add({"--out", directory_.path()});
+        if (kind.each_sensor)
+          add({"--digest", directory_.digest(), "--seed", std::to_string(scenario_.seed)});
+        start(nodes[i], kind.program, arguments);
       }
-      arguments.insert(arguments.end(),
-                       {"--name", sensor.name, "--out", directory_.path(), "--digest",
-                        directory_.digest(), "--seed", std::to_string(scenario_.seed)});
-      start(sensor.name, "dmise-sensor-node", arguments);
     }
   }
 

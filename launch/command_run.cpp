@@ -12,18 +12,17 @@
 
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
+#include "core/config/node_kinds.h"
 #include "core/sim/controller.h"
 #include "launch/commands.h"
+#include "launch/node_makers.h"
 #include "launch/notes.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
 #include "launch/run_record.h"
 #include "launch/scenario_outlook.h"
-#include "nodes/environment/environment_actor.h"
 #include "nodes/runtime/process/event.h"
-#include "orbit-node/orbit_actor.h"
-#include "sensors/pipeline/make_sensor.h"
-#include "sensors/positions/positions_evaluator.h"
+#include "sensors/pipeline/sensor_evaluator.h"
 
 namespace dmise {
 namespace {
@@ -45,30 +44,31 @@ class EmbeddedRun {
               int thread_count, Tick first_tick)
       : scenario_(scenario), threads_(thread_count), first_tick_(first_tick) {
     print_outlook(scenario, scene, make_clock(scenario));
-    auto orbit = std::make_unique<OrbitActor>(scenario, make_clock(scenario),
-                                              std::move(scene.population), threads_);
-    orbit->on_absence([this](const std::string& line) {
-      std::lock_guard lock(mutex_);
-      notes_.push_back(line);
-    });
-    participants_.push_back(std::move(orbit));
-    participants_.push_back(std::make_unique<EnvironmentActor>(scenario, make_clock(scenario)));
+    NodeParts parts{scenario,
+                    scene,
+                    directory.digest(),
+                    directory.path(),
+                    threads_,
+                    [this](const std::string& line) {
+                      std::lock_guard lock(mutex_);
+                      notes_.push_back(line);
+                    }};
+    for (const NodeKind& kind : node_kinds())
+      for (const auto& node : nodes_of(kind, scenario)) {
+        participants_.push_back(maker_of(kind).make(node, parts));
+        if (auto* sensor = dynamic_cast<SensorEvaluator*>(participants_.back().get())) {
+          sensor->stop_when([] { return stop_signal().is_set(); });
+          sensors_.push_back(sensor);
+        }
+      }
     found_ = state_after(std::max<Tick>(0, first_tick_ - 1));
     for (const auto& sensor : scenario.sensors) {
-      auto evaluator = make_sensor(scenario, sensor.name, directory.digest(), directory.path(),
-                                   scene.stars, threads_);
-      evaluator->stop_when([] { return stop_signal().is_set(); });
       frames_total_ += static_cast<int>(frames_within(sensor, scenario.duration));
       const std::string lines = directory.path() + "/" + sensor.name;
       found_.frames += int(count_lines(lines + "/frames.jsonl"));
       found_.detections += count_lines(lines + "/detections.jsonl");
-      sensors_.push_back(evaluator.get());
-      participants_.push_back(std::move(evaluator));
     }
     found_.frames_total = frames_total_;
-    if (scenario.output.positions())
-      participants_.push_back(
-          std::make_unique<PositionsEvaluator>(scenario, make_clock(scenario), directory.path()));
   }
 
   /// Returns when all ticks are done, one failed, or a stop was asked for. In the last case the

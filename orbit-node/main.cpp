@@ -8,7 +8,7 @@
 #include "orbit-node/orbit_actor.h"
 
 int main(int argc, char** argv) {
-  dmise::CommonFlags flags{.name = "orbit-node"};
+  dmise::CommonFlags flags{.name = dmise::orbit_node};
   std::string config;
   int threads = 1;
   CLI::App app("Publishes the states of all objects of a scenario.", "dmise-orbit-node");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/sim/participant.h"
+#include "core/config/node_kinds.h"
 #include "orbit-node/object_states.h"
 
 namespace dmise {
@@ -17,7 +18,7 @@ class OrbitActor : public Actor {
   /// Of objects that are loaded already.
   OrbitActor(const Scenario& scenario, Clock clock, ObjectPopulation population, Threads& threads);
 
-  std::string name() const override { return "orbit-node"; }
+  std::string name() const override { return orbit_node; }
   std::vector<std::string> produces() const override { return {objects_topic}; }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   std::vector<Message> resume(Tick tick, std::span<const Message> past) override;

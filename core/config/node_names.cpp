@@ -4,15 +4,23 @@
 #include <array>
 #include <string_view>
 
+#include "core/config/node_kinds.h"
+
 namespace dmise {
 namespace {
 
 constexpr std::size_t longest = 64;
 
-// Members of the network: its nodes, its operator. Directories of a run, of keys.
-constexpr std::array<std::string_view, 10> reserved = {
-    "time-master", "broker",     "orbit-node", "environment-node", "positions-node",
-    "operator",    "host-agent", "logs",       "positions",        "rings"};
+// Members of the network besides the nodes of the table. Directories of a run, of keys.
+constexpr std::array<std::string_view, 7> reserved = {
+    "time-master", "broker", "operator", "host-agent", "logs", "positions", "rings"};
+
+bool is_reserved(const std::string& name) {
+  return std::ranges::find(reserved, name) != reserved.end() ||
+         std::ranges::any_of(node_kinds(), [&](const NodeKind& kind) {
+           return !kind.each_sensor && name == kind.name;
+         });
+}
 
 std::string lower_case(std::string text) {
   for (char& c : text)
@@ -39,8 +47,7 @@ std::optional<std::string> SensorNames::fault_of(const std::string& name) {
   const std::string lower = lower_case(name);
   for (const std::string_view own : {"logs", "positions", "rings"})
     if (lower == own) return "a directory of the run has this name";
-  if (std::find(reserved.begin(), reserved.end(), lower) != reserved.end())
-    return "another node has this name";
+  if (is_reserved(lower)) return "another node has this name";
   const auto [other, is_new] = taken_.emplace(lower, name);
   if (is_new) return std::nullopt;
   return "another node has this name" +

@@ -2,7 +2,7 @@
 #include <atomic>
 #include <map>
 
-#include "core/config/scenario.h"
+#include "core/config/node_kinds.h"
 #include "core/sim/participant.h"
 #include "core/time/clock.h"
 
@@ -14,7 +14,7 @@ class EnvironmentActor : public Actor {
  public:
   EnvironmentActor(const Scenario& scenario, Clock clock);
 
-  std::string name() const override { return "environment-node"; }
+  std::string name() const override { return environment_node; }
   std::vector<std::string> produces() const override;
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   std::uint64_t progress() const override { return steps_; }

@@ -6,7 +6,7 @@
 #include "nodes/runtime/program/program.h"
 
 int main(int argc, char** argv) {
-  dmise::CommonFlags flags{.name = "environment-node"};
+  dmise::CommonFlags flags{.name = dmise::environment_node};
   std::string config;
   int threads = 1;
   CLI::App app("Publishes what all sensors of a scenario share.", "dmise-environment-node");

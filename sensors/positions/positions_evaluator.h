@@ -4,15 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "core/config/scenario.h"
+#include "core/config/node_kinds.h"
 #include "core/sim/participant.h"
 #include "core/time/clock.h"
 #include "core/visibility/pointing.h"
 #include "sensors/positions/position_files.h"
 
 namespace dmise {
-
-inline constexpr const char* positions_node = "positions-node";
 
 /// Writes at every tick where cameras, their platforms and targets, the scenario's own objects, Sun
 /// and Moon are, in GCRS. A camera's attitude is the one with which it would be aimed at that

@@ -1,0 +1,61 @@
+#include "core/config/node_kinds.h"
+
+#include <algorithm>
+
+namespace dmise {
+namespace {
+
+bool always(const Scenario&) { return true; }
+
+const std::vector<NodeKind> table{
+    {.name = orbit_node,
+     .program = "dmise-orbit-node",
+     .topics = {"state/objects"},
+     .wanted = always},
+    {.name = environment_node,
+     .program = "dmise-environment-node",
+     .topics = {"env/common", "env/site/"},
+     .wanted = always},
+    {.name = any_sensor,
+     .program = "dmise-sensor-node",
+     .topics = {"frame/", "detection/", "truth/"},
+     .wanted = always,
+     .writes_products = true,
+     .each_sensor = true},
+    {.name = positions_node,
+     .program = "dmise-positions-node",
+     .topics = {},
+     .wanted = [](const Scenario& s) { return s.output.positions(); },
+     .writes_products = true},
+};
+
+bool is_sensor(const std::string& name, const Scenario& scenario) {
+  return std::ranges::any_of(scenario.sensors, [&](const auto& s) { return s.name == name; });
+}
+
+}  // namespace
+
+std::span<const NodeKind> node_kinds() { return table; }
+
+const NodeKind* kind_of_node(const std::string& name, const Scenario& scenario) {
+  for (const NodeKind& kind : table)
+    if (kind.each_sensor ? is_sensor(name, scenario) : name == kind.name) return &kind;
+  return nullptr;
+}
+
+std::vector<std::string> nodes_of(const NodeKind& kind, const Scenario& scenario) {
+  if (!kind.wanted(scenario)) return {};
+  if (!kind.each_sensor) return {kind.name};
+  std::vector<std::string> names;
+  for (const auto& sensor : scenario.sensors) names.push_back(sensor.name);
+  return names;
+}
+
+std::vector<std::string> nodes_of(const Scenario& scenario) {
+  std::vector<std::string> all;
+  for (const NodeKind& kind : table)
+    for (auto& name : nodes_of(kind, scenario)) all.push_back(std::move(name));
+  return all;
+}
+
+}  // namespace dmise

@@ -1,0 +1,82 @@
+#include "launch/node_makers.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "core/base/error.h"
+#include "core/config/make_clock.h"
+#include "core/config/node_kinds.h"
+#include "nodes/environment/environment_actor.h"
+#include "orbit-node/orbit_actor.h"
+#include "sensors/pipeline/frame_times.h"
+#include "sensors/pipeline/make_sensor.h"
+#include "sensors/positions/position_files.h"
+#include "sensors/positions/positions_evaluator.h"
+
+namespace dmise {
+namespace {
+
+std::unique_ptr<Participant> make_orbit(const std::string&, NodeParts& parts) {
+  auto orbit = std::make_unique<OrbitActor>(parts.scenario, make_clock(parts.scenario),
+                                            std::move(parts.scene.population), parts.threads);
+  orbit->on_absence(parts.note);
+  return orbit;
+}
+
+std::unique_ptr<Participant> make_environment(const std::string&, NodeParts& parts) {
+  return std::make_unique<EnvironmentActor>(parts.scenario, make_clock(parts.scenario));
+}
+
+std::unique_ptr<Participant> make_one_sensor(const std::string& node, NodeParts& parts) {
+  return make_sensor(parts.scenario, node, parts.digest, parts.directory, parts.scene.stars,
+                     parts.threads);
+}
+
+std::unique_ptr<Participant> make_positions(const std::string&, NodeParts& parts) {
+  return std::make_unique<PositionsEvaluator>(parts.scenario, make_clock(parts.scenario),
+                                              parts.directory);
+}
+
+std::optional<Tick> no_products(const std::string&, const Scenario&, const std::string&) {
+  return std::nullopt;
+}
+
+std::optional<Tick> unfinished_frame(const std::string& node, const Scenario& scenario,
+                                     const std::string& directory) {
+  const SensorConfig& sensor = sensor_named(scenario, node);
+  const std::uint32_t frames = frames_finished(node, directory);
+  if (frames >= frames_within(sensor, scenario.duration)) return std::nullopt;
+  const SimTime end = frame_times(sensor, frames + 1).end;
+  return tick_needed(scenario.interpolation, end, scenario.tick, scenario.last_tick());
+}
+
+/// What is written of the last tick may be a part of it.
+std::optional<Tick> unfinished_positions(const std::string&, const Scenario&,
+                                         const std::string& directory) {
+  return std::max<Tick>(0, last_tick_written(directory));
+}
+
+constexpr NodeMaker makers[] = {
+    {orbit_node, make_orbit, no_products},
+    {environment_node, make_environment, no_products},
+    {any_sensor, make_one_sensor, unfinished_frame},
+    {positions_node, make_positions, unfinished_positions},
+};
+
+}  // namespace
+
+const NodeMaker& maker_of(const NodeKind& kind) {
+  for (const NodeMaker& maker : makers)
+    if (std::string(maker.kind) == kind.name) return maker;
+  throw Error(std::string(kind.name) + ": has no maker");
+}
+
+std::uint32_t frames_finished(const std::string& sensor, const std::string& directory) {
+  std::ifstream file(directory + "/" + sensor + "/frames.jsonl");
+  std::string line;
+  std::uint32_t frames = 0;
+  while (std::getline(file, line) && !file.eof()) ++frames;
+  return frames;
+}
+
+}  // namespace dmise
