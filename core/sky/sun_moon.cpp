@@ -73,4 +73,25 @@ SolarSystem solar_system(const Tt& tt, Ephemeris ephemeris) {
   return s;
 }
 
+SolarSystem advance(SolarSystem s, double dt_s) {
+  // Nominal mass parameters of IAU 2015 Resolution B3; the Moon is 1/81.3 of the Earth.
+  constexpr double sun_gm_m3_per_s2 = 1.3271244e20;
+  constexpr double moon_gm_m3_per_s2 = 3.986004e14 / 81.3;
+  constexpr double earth_and_moon_gm_m3_per_s2 = 3.986004e14 + moon_gm_m3_per_s2;
+  const auto pull = [](const Vec<Gcrs>& towards_m, double gm_m3_per_s2) {
+    const double r_m = norm(towards_m);
+    return r_m > 0.0 ? towards_m * (gm_m3_per_s2 / (r_m * r_m * r_m)) : Vec<Gcrs>{};
+  };
+  const Vec<Gcrs> earth_m_per_s2 =
+      pull(s.sun_m, sun_gm_m3_per_s2) + pull(s.moon_m, moon_gm_m3_per_s2);
+  const Vec<Gcrs> moon_m_per_s2 = pull(-s.moon_m, earth_and_moon_gm_m3_per_s2);
+  const Vec<Gcrs> moved_m = s.earth_velocity_m_per_s * dt_s + earth_m_per_s2 * (0.5 * dt_s * dt_s);
+  s.earth_barycentric_m += moved_m;
+  s.sun_m += -moved_m;  // the Sun's own 13 m/s about the barycentre are left out
+  s.earth_velocity_m_per_s += earth_m_per_s2 * dt_s;
+  s.moon_m += s.moon_velocity_m_per_s * dt_s + moon_m_per_s2 * (0.5 * dt_s * dt_s);
+  s.moon_velocity_m_per_s += moon_m_per_s2 * dt_s;
+  return s;
+}
+
 }  // namespace dmise

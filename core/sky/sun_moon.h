@@ -39,4 +39,9 @@ Vec<Gcrs> moon_velocity_m_per_s(const Tt& tt);
 /// centre: its velocity is good to 30 m/s (20 mas of aberration).
 SolarSystem solar_system(const Tt& tt, Ephemeris ephemeris = Ephemeris::epv00);
 
+/// The same `dt_s` later, up to an hour: the bodies go on with their velocities and the pull of
+/// Sun, Earth and Moon. After an hour the Sun is within 0.1 arcsec, the Moon within 1 arcsec, the
+/// Earth's velocity within 10 mm/s of the ephemeris.
+SolarSystem advance(SolarSystem bodies, double dt_s);
+
 }  // namespace dmise

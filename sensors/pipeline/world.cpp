@@ -5,17 +5,9 @@
 #include "core/base/units.h"
 #include "core/config/object_names.h"
 #include "core/orbit/interpolation.h"
+#include "core/sky/sun_moon.h"
 
 namespace dmise {
-namespace {
-
-// Nominal mass parameters of IAU 2015 Resolution B3; the Moon is 1/81.3 of the Earth.
-constexpr double sun_gm_m3_per_s2 = 1.3271244e20;
-constexpr double moon_gm_m3_per_s2 = 3.986004e14 / 81.3;
-constexpr double earth_and_moon_gm_m3_per_s2 = 3.986004e14 + moon_gm_m3_per_s2;
-
-}  // namespace
-
 void World::forget_before(SimTime t) {
   // Ticks before the last at or before `t`: a time on a tick belongs to the interval that ends
   // there.
@@ -101,20 +93,17 @@ std::optional<Rotation<Gcrs, Body>> World::gcrs_from_body(std::size_t i, SimTime
 
 EnvironmentState run_on(EnvironmentState state, SimTime t) {
   const double dt_s = (t - state.time).seconds();
-  const auto pull = [](const Vec<Gcrs>& towards_m, double gm_m3_per_s2) {
-    const double r_m = norm(towards_m);
-    return r_m > 0.0 ? towards_m * (gm_m3_per_s2 / (r_m * r_m * r_m)) : Vec<Gcrs>{};
-  };
-  const Vec<Gcrs> earth_m_per_s2 =
-      pull(state.sun_m, sun_gm_m3_per_s2) + pull(state.moon_m, moon_gm_m3_per_s2);
-  const Vec<Gcrs> moon_m_per_s2 = pull(-state.moon_m, earth_and_moon_gm_m3_per_s2);
-  const Vec<Gcrs> moved_m =
-      state.earth_velocity_m_per_s * dt_s + earth_m_per_s2 * (0.5 * dt_s * dt_s);
-  state.earth_barycentric_m += moved_m;
-  state.sun_m += -moved_m;  // the Sun's own 13 m/s about the barycentre are left out
-  state.earth_velocity_m_per_s += earth_m_per_s2 * dt_s;
-  state.moon_m += state.moon_velocity_m_per_s * dt_s + moon_m_per_s2 * (0.5 * dt_s * dt_s);
-  state.moon_velocity_m_per_s += moon_m_per_s2 * dt_s;
+  const SolarSystem later = advance({.sun_m = state.sun_m,
+                                     .moon_m = state.moon_m,
+                                     .earth_barycentric_m = state.earth_barycentric_m,
+                                     .earth_velocity_m_per_s = state.earth_velocity_m_per_s,
+                                     .moon_velocity_m_per_s = state.moon_velocity_m_per_s},
+                                    dt_s);
+  state.sun_m = later.sun_m;
+  state.moon_m = later.moon_m;
+  state.earth_barycentric_m = later.earth_barycentric_m;
+  state.earth_velocity_m_per_s = later.earth_velocity_m_per_s;
+  state.moon_velocity_m_per_s = later.moon_velocity_m_per_s;
   state.tt_jd2 += dt_s / day_s;
   state.time = t;
   return state;

@@ -15,10 +15,8 @@ struct Motion {
   Vec<Gcrs> slope_m_per_s;
 };
 
-/// The environment at `t`, up to an hour after `state`: Sun, Moon and Earth go on with their
-/// velocities and the pull of Sun, Earth and Moon. After an hour the Sun is within 0.1 arcsec,
-/// the Moon within 1 arcsec, the Earth's velocity within 10 mm/s of the ephemeris; the orientation
-/// keeps its own time and runs on by its own rates.
+/// The environment at `t`, up to an hour after `state`: Sun, Moon and Earth by `advance`; the
+/// orientation keeps its own time and runs on by its own rates.
 EnvironmentState run_on(EnvironmentState state, SimTime t);
 
 /// The published states around an exposure: the last few ticks of what actors said, interpolated.
