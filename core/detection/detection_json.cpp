@@ -179,7 +179,9 @@ std::string to_json(const Truth& t, const UtcText& utc) {
       .angle("phase_angle_deg", t.phase_angle_rad);
   line.field("sunlit", t.sunlit).field("true_magnitude", t.true_magnitude);
   line.field("rendered_signal_e", t.rendered_signal_e);
-  line.array("rendered_px", std::array<double, 2>{t.rendered_x_px, t.rendered_y_px});
+  const std::array<double, 2> rendered_px{t.rendered_x_px, t.rendered_y_px};
+  t.rendered_signal_e > 0.0 ? line.array("rendered_px", rendered_px)
+                            : line.measured("rendered_px", 0.0, false);
   line.array("start_px", std::array<double, 2>{t.start_x_px, t.start_y_px});
   line.array("middle_px", std::array<double, 2>{t.middle_x_px, t.middle_y_px});
   line.array("end_px", std::array<double, 2>{t.end_x_px, t.end_y_px});

@@ -57,6 +57,10 @@ TEST(DetectionJson, ReportAndTruthAreOneObjectEach) {
   const YAML::Node true_node = YAML::Load(to_json(truth, utc));
   EXPECT_EQ(true_node["name"].as<std::string>(), "COSMOS 2519");
   EXPECT_NEAR(true_node["true_dec_deg"].as<double>(), -30.0, 1e-12);
+  EXPECT_TRUE(true_node["rendered_px"].IsNull());  // no light falls on no pixel
+  truth.rendered_signal_e = 5.0;
+  truth.rendered_y_px = 7.0;
+  EXPECT_EQ(YAML::Load(to_json(truth, utc))["rendered_px"][1].as<double>(), 7.0);
 }
 
 TEST(DetectionJson, NoNanLeaves) {
