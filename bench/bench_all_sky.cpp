@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/catalogue_file.h"
+#include "bench/effect_shares.h"
 #include "bench/figure.h"
 #include "bench/status_memory.h"
 #include "bench/timing.h"
@@ -19,6 +20,7 @@
 #include "core/config/effect_list.h"
 #include "core/config/make_clock.h"
 #include "core/config/search_path.h"
+#include "core/effects/light_effects.h"
 #include "core/image/fits_file.h"
 #include "nodes/environment/environment_actor.h"
 #include "orbit-node/orbit_actor.h"
@@ -107,6 +109,19 @@ void print_stages(const Measured& m, bool json) {
   print("rest", std::max(0.0, rest_s));
 }
 
+/// What runs interleaved with others in a frame, measured for itself.
+void print_shares(const Scenario& scenario, const FrameTimes& exposure, const World& world,
+                  const Measured& m, std::size_t star_places, bool json) {
+  const auto best =
+      std::size_t(std::min_element(m.wall_s.begin(), m.wall_s.end()) - m.wall_s.begin());
+  const View view(scenario.sensors[0], exposure, world);
+  const auto map = load_stars(scenario);
+  const EffectTimes& spent = m.effects[best];
+  const EffectTimes shares = effect_shares(view, map->stars, star_places, spent[effect::sky]);
+  for (const auto& [effect, seconds] : shares.seconds)
+    print_figure({"all_sky_" + std::string(effect) + "_ms", 1e3 * seconds, "ms"}, json);
+}
+
 }  // namespace
 
 void measure_all_sky(bool json) {
@@ -158,6 +173,7 @@ void measure_all_sky(bool json) {
                   }),
                   "MB", "", 0, 80, true},
                  json);
+    print_shares(scenario, exposure, world, measured, 3 * std::size_t(stars), json);
   }
   std::filesystem::remove_all(directory);
 }

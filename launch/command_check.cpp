@@ -3,11 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/printable.h"
+#include "core/config/effect_list.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
 #include "core/orbit/interpolation_error.h"
@@ -70,7 +72,35 @@ std::string evaluator_of(const EffectSet& effects) {
   return effects.drawn_by_opengl() ? count + ", drawn by " + GlEvaluator().description() : count;
 }
 
-void print_text(const Scenario& scenario, const ScenarioOutlook& outlook) {
+/// What runs in a sensor's frames, with its parameters.
+std::string effects_text(const SensorConfig& sensor, bool has_stars) {
+  std::string text;
+  for (const EffectFacts* effect : effects_in(sensor, has_stars)) {
+    std::string parameters;
+    for (const auto& [key, number] : parameters_in(sensor.camera, *effect)) {
+      char pair[96];
+      std::snprintf(pair, sizeof pair, "%s%.*s = %g", parameters.empty() ? " (" : ", ",
+                    int(key.size()), key.data(), number);
+      parameters += pair;
+    }
+    text += "  " + std::string(effect->name) + ": " + std::string(effect->what) + parameters +
+            (parameters.empty() ? "\n" : ")\n");
+  }
+  return text;
+}
+
+/// Sensors with the same effects and parameters together.
+void print_effects(const Scenario& scenario, bool has_stars) {
+  std::map<std::string, std::string> sensors_of;
+  for (const auto& sensor : scenario.sensors) {
+    std::string& names = sensors_of[effects_text(sensor, has_stars)];
+    names += (names.empty() ? "" : ", ") + sensor.name;
+  }
+  for (const auto& [text, names] : sensors_of)
+    std::printf("effects of %s:\n%s", names.c_str(), text.c_str());
+}
+
+void print_text(const Scenario& scenario, const ScenarioOutlook& outlook, bool has_stars) {
   for (const auto& note : outlook.notes) std::printf("note: %s\n", printable(note, 4000).c_str());
   for (const auto& sensor : outlook.sensors) {
     for (const auto& line : lines_of(sensor)) std::printf("%s\n", line.c_str());
@@ -81,6 +111,7 @@ void print_text(const Scenario& scenario, const ScenarioOutlook& outlook) {
       std::printf("%s: detection off: frames are reported, nothing is looked for in them\n",
                   sensor.sensor.c_str());
   }
+  print_effects(scenario, has_stars);
   if (outlook.objects > 0)
     std::printf("objects between ticks: %s\n",
                 interpolation_text(scenario.interpolation, scenario.tick.seconds()).c_str());
@@ -124,7 +155,7 @@ void check(const CheckOptions& options) {
   if (options.json)
     print_json(scenario, outlook, clock);
   else
-    print_text(scenario, outlook);
+    print_text(scenario, outlook, scene.stars != nullptr);
 }
 
 }  // namespace

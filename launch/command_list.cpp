@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/config/camera_config.h"
+#include "core/config/effect_list.h"
 #include "core/config/material_config.h"
 #include "core/config/search_path.h"
 #include "core/photometry/band.h"
@@ -74,18 +75,22 @@ void list_catalogues() {
   show("kstars", "stars: {catalogue: kstars}", "stars of Debian's kstars-data", "stars.dat");
 }
 
+void list_effects() { std::printf("%s", effects_markdown().c_str()); }
+
 }  // namespace
 
 void add_list_command(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "list", "Names that a scenario may use: cameras, sites, filters, materials, catalogues");
+      "list",
+      "Names that a scenario may use: cameras, sites, filters, materials, catalogues, effects");
   command->require_subcommand(1);
   const std::map<std::string, std::pair<std::string, void (*)()>> kinds{
       {"cameras", {"for sensors[].camera", list_cameras}},
       {"sites", {"for sensors[].site", list_sites}},
       {"filters", {"for a camera's band", list_filters}},
       {"materials", {"for objects[].shape and its surfaces", list_materials}},
-      {"catalogues", {"for objects[].catalogue and stars.catalogue", list_catalogues}}};
+      {"catalogues", {"for objects[].catalogue and stars.catalogue", list_catalogues}},
+      {"effects", {"for effects, as a table in Markdown", list_effects}}};
   for (const auto& [name, kind] : kinds)
     command->add_subcommand(name, kind.first)->callback(kind.second);
 }

@@ -163,6 +163,9 @@ Optics read_optics(const YamlValue& value) {
   optics.spread = read_point_spread(map, optics);
   if (const auto vignetting = map.find("vignetting"))
     optics.vignetting = read_vignetting(*vignetting);
+  for (const ImageParameter& p : image_parameters())
+    optics.image.*p.value =
+        map.number_or(p.key, optics.image.*p.value, Bounds::between(p.least, p.most));
   optics.equivalent_aperture = map.flag_or("equivalent_aperture", false);
   map.done();
   if (optics.focal_length_m < 0.5 * optics.aperture_m && !optics.equivalent_aperture)
@@ -205,6 +208,9 @@ void write_optics_json(JsonWriter& json, const Optics& optics) {
     json.key("vignetting").begin_object().field("natural", v.natural);
     json.field("corner", v.corner).field("power", v.power).end_object();
   }
+  for (const ImageParameter& p : image_parameters())
+    if (optics.image.*p.value != ImageOptics().*p.value)
+      json.field(p.key, optics.image.*p.value);
 }
 
 void write_seeing_json(JsonWriter& json, const SensorSeeing& s) {

@@ -400,6 +400,11 @@ void visit(Visitor& v, FrameHeader& h) {
   v.number("FULLWELL", h.full_well_e, "[e-]");
   visit_detector(v, h);
   v.number("SATURATE", h.saturation_dn, "[DN] counts from here on may be clipped");
+  for (const ImageParameter& p : image_parameters()) {
+    double& number = h.image_optics.*p.value;
+    if (v.present(std::string(p.keyword).c_str(), number != ImageOptics().*p.value))
+      v.number(std::string(p.keyword), number, std::string(p.meaning).c_str());
+  }
   v.number("PSFFWHM", h.psf_fwhm_px, "[px] Gaussian, before pixel integration");
   v.number("PHOTZP", h.zero_point_mag, "[mag] of 1 e-/s, without atmosphere");
   v.number("EXTINCT", h.extinction_mag_per_airmass, "[mag/airmass]");

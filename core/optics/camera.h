@@ -1,14 +1,15 @@
 #pragma once
 #include <string>
 
+#include "core/optics/image_optics.h"
 #include "core/optics/point_spread.h"
 #include "core/optics/vignetting.h"
 #include "core/projection/projection.h"
 
 namespace dmise {
 
-/// The optics of a camera and the geometry of its pixels. Band: a top hat for now described by its
-/// centre and width; `transmission` is that of the optics and filter together.
+/// The optics of a camera and the geometry of its pixels. `transmission` is that of the optics and
+/// filter together.
 struct Optics {
   Projection projection;
   double focal_length_m = 0.0;
@@ -21,6 +22,7 @@ struct Optics {
   double psf_fwhm_px = 1.5;   // of the lens and focus (Gaussian), before pixel integration; >= 0
   PointSpread spread;         // how points are blurred, and by which method
   Vignetting vignetting;
+  ImageOptics image;          // that act on the whole image
   bool equivalent_aperture = false;  // allows N < 0.5: the aperture is a collecting area only
 
   /// Area of the entrance pupil less its obscuration [m2].

@@ -31,8 +31,7 @@ double elevation_rad(const Vec<Gcrs>& up, const Vec<Gcrs>& line) {
 
 std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes, double margin_px) {
   const auto& optics = view.sensor().camera.optics;
-  EffectTimes unused;
-  const ObjectSampler sampler(view, shapes, unused);
+  const ObjectSampler sampler(view, shapes);
   constexpr int pieces = 64;
   std::vector<ExposureInstant> instants;
   for (int k = 0; k <= pieces; ++k)

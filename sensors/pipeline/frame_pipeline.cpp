@@ -1,24 +1,18 @@
 #include "sensors/pipeline/frame_pipeline.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "core/base/memory.h"
+#include "core/config/effect_list.h"
 #include "core/detection/detect.h"
 #include "core/detector/expose.h"
 #include "core/effects/light_effects.h"
-#include "core/effects/place_effects.h"
 #include "core/image/fits_cards.h"
-#include "sensors/pipeline/gl_evaluator.h"
+#include "sensors/pipeline/expected_electrons.h"
 #include "sensors/pipeline/header_of.h"
-#include "sensors/pipeline/object_layer.h"
-#include "sensors/pipeline/objects_in_field.h"
-#include "sensors/pipeline/optics_stage.h"
-#include "sensors/pipeline/sky_layer.h"
 #include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
@@ -72,33 +66,17 @@ struct FramePipeline::Work {
 
   std::string plan() const {
     std::string text;
-    const auto applying =
-        applying_effects(acting_detector(settings.sensor.camera.detector, settings.sensor.effects));
-    const auto add = [&](const EffectFacts& effect) {
-      text += (text.empty() ? "" : " ") + std::string(effect.name);
-    };
-    for (const EffectFacts* effect : effect::places)
-      if (has(*effect)) add(*effect);
-    for (const EffectFacts* effect : effect::lights)
-      if (has(*effect) && (effect != &effect::stars || stars)) add(*effect);
-    for (const EffectFacts* effect : applying) add(*effect);
+    for (const EffectFacts* effect : effects_in(settings.sensor, stars.has_value()))
+      text += (text.empty() ? "" : " ") + std::string(effect->name);
     return text;
   }
 
-  /// Electrons of a source that just stands out of a pixel's noise of sky, dark current and
-  /// read-out; `light` holds the sky.
-  double faintest_e(const FrameTimes& times) const {
-    const auto& d = settings.sensor.camera.detector;
-    const double sky_e = light.at(light.columns / 2, light.rows / 2);
-    const double noise_e =
-        std::sqrt(sky_e + d.dark_e_per_s * times.seconds() + d.read_noise_e * d.read_noise_e);
-    return 10.0 * std::max(1.0, noise_e);
-  }
-
-  /// Stars are drawn one by one as far as they are asked for and the catalogue goes.
-  double drawn_to_v_mag() const {
-    if (!stars || !has(effect::stars)) return -std::numeric_limits<double>::infinity();
-    return std::min(settings.faintest_star_mag, stars->faintest_filled_v_mag());
+  /// What puts light on the plane, with the surfaces of objects in a band.
+  LightSources sources(const StarLayer* layer, const ObjectShapes* shapes) {
+    return {.stars = layer,
+            .faintest_star_mag = settings.faintest_star_mag,
+            .shapes = shapes,
+            .evaluator = evaluator ? &*evaluator : nullptr};
   }
 
   FrameProducts make(const FrameTimes& times, const World& world);
@@ -119,23 +97,12 @@ RadianceMap FramePipeline::Work::radiance_in(const PipelineSettings::Part& part,
   const View view(sensor, times, world, settings.seed);
   OpticsStage part_optics(sensor, settings.seed, threads);
   if (evaluator) part_optics.draw_by(*evaluator);
+  std::optional<StarLayer> part_stars;
+  if (stars) part_stars.emplace(sensor, stars->map());
   RateImage image(light.columns, light.rows);
   EffectTimes elsewhere;
-  fill_sky(view, drawn_to_v_mag(), image, threads, elsewhere, evaluator ? &*evaluator : nullptr);
-  part_optics.begin(times, faintest_e(times));
-  Screen screen(image.columns, image.rows);
-  if (has(effect::objects))
-    draw_objects(view, objects_in_field(view, part.shapes.get()), part.shapes.get(), part_optics,
-                 screen, image, elsewhere);
-  if (!screen.empty()) {
-    RateImage behind(image.columns, image.rows);
-    fill_sky_behind(view, drawn_to_v_mag(), behind, threads);
-    screen.take_hidden(behind, image);
-  }
-  if (stars && has(effect::stars))
-    StarLayer(sensor, stars->map())
-        .draw(view, part_optics, screen, image, settings.faintest_star_mag, nullptr, elsewhere);
-  part_optics.finish(image);
+  expected_electrons(view, sources(part_stars ? &*part_stars : nullptr, part.shapes.get()),
+                     part_optics, image, threads, elsewhere);
   return radiance_of(view, times.seconds(), image, threads);
 }
 
@@ -182,32 +149,15 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   FrameProducts frame;
   const View view(sensor, times, world, settings.seed);
   frame.counts = std::exchange(used_counts, {});
-  std::uint32_t stars_drawn = 0;
-  fill_sky(view, drawn_to_v_mag(), light, threads, frame.times, evaluator ? &*evaluator : nullptr);
-  keep_background(settings.output, light, frame.planes);
-  {
-    Stopwatch timing(frame.times[effect::psf]);
-    optics.begin(times, faintest_e(times));
-  }
-  Screen screen(light.columns, light.rows);
-  if (has(effect::objects))
-    frame.truths = draw_objects(view, objects_in_field(view, settings.shapes.get()),
-                                settings.shapes.get(), optics, screen, light, frame.times);
-  if (!screen.empty()) {
-    RateImage behind(light.columns, light.rows);
-    fill_sky_behind(view, drawn_to_v_mag(), behind, threads);
-    screen.take_hidden(behind, light);
-  }
-  if (stars && has(effect::stars)) {
-    stars_drawn = stars->draw(view, optics, screen, light, settings.faintest_star_mag,
-                              settings.star_truth ? &frame.stars : nullptr, frame.times);
-    // Until the next frame the memory is for counts.
+  const bool keeps_sky = settings.output.sources || settings.output.background;
+  auto truth = expected_electrons(view, sources(stars ? &*stars : nullptr, settings.shapes.get()),
+                                  optics, light, threads, frame.times,
+                                  {.sky = keeps_sky ? &frame.planes.background : nullptr,
+                                   .stars = settings.star_truth ? &frame.stars : nullptr});
+  frame.truths = std::move(truth.objects);
+  // Until the next frame the memory is for counts.
+  if (stars && has(effect::stars))
     if (const auto& file = stars->map()->file) file->release();
-  }
-  {
-    Stopwatch timing(frame.times[effect::psf]);
-    optics.finish(light);
-  }
   if (settings.output.radiance_exr)
     for (const auto& part : settings.radiance_parts)
       frame.planes.radiance_parts.push_back({part.band, radiance_in(part, times, world)});
@@ -231,7 +181,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   }
   frame.detections = std::move(result.detections);
   frame.report = std::move(result.report);
-  frame.report.stars_rendered = stars_drawn;
+  frame.report.stars_rendered = truth.stars;
   for (const auto& truth : frame.truths) frame.report.objects_rendered += truth.in_frame;
   frame.report.plan = plan();
   return frame;

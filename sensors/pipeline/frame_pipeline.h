@@ -58,9 +58,8 @@ class FramePipeline {
   FramePipeline(PipelineSettings settings, std::shared_ptr<const StarMap> stars, Threads& threads);
   ~FramePipeline();
 
-  /// With persistence a frame depends on the ones before it: where those were not made here, they
-  /// are made first, and the world must cover them.
-  /// Makes one frame. `world` holds the states from the exposure of `first_frame_for` it on.
+  /// Makes one frame. `world` holds the states from the exposure of `first_frame_for` it on: with
+  /// persistence a frame depends on the ones before it, which are made first where they were not.
   FrameProducts run(const FrameTimes& exposure, const World& world);
 
   /// The counts of a frame that is done with: the next one goes where they were.

@@ -25,10 +25,6 @@ RadianceMap radiance_of(const View& view, double exposure_s, const RateImage& li
   return map;
 }
 
-void keep_background(const OutputConfig& wanted, const RateImage& light, FramePlanes& planes) {
-  if (wanted.sources || wanted.background) planes.background = light;
-}
-
 void make_planes(const OutputConfig& wanted, const View& view, const Exposure& exposure,
                  const RateImage& light, Threads& threads, FramePlanes& planes) {
   const auto& sensor = view.sensor();

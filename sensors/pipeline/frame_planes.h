@@ -27,14 +27,12 @@ struct FramePlanes {
   std::vector<BandRadiance> radiance_parts;  // in parts of the band, where they are asked for
 };
 
-/// Call when `light` holds the sky alone.
-void keep_background(const OutputConfig& wanted, const RateImage& light, FramePlanes& planes);
-
 /// What `light` [e-] of an exposure is at the aperture.
 RadianceMap radiance_of(const View& view, double exposure_s, const RateImage& light,
                         Threads& threads);
 
-/// Call when `light` [e-] holds all that falls on the detector during `exposure`.
+/// Call when `light` [e-] holds all that falls on the detector during `exposure` and the background,
+/// where it is wanted, the sky alone.
 void make_planes(const OutputConfig& wanted, const View& view, const Exposure& exposure,
                  const RateImage& light, Threads& threads, FramePlanes& planes);
 

@@ -73,6 +73,7 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
                 .sensor_velocity_m_per_s = observer.velocity_m_per_s,
                 .earth_velocity_m_per_s = environment.earth_velocity_m_per_s};
   h.band.name = header_text(h.band.name);
+  h.image_optics = acting_optics(optics.image, sensor.effects);
   if (const SiteState* air = view.air()) {
     h.r0_m = air->r0_m;
     h.isoplanatic_angle_rad = air->isoplanatic_angle_rad;

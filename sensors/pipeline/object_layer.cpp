@@ -9,7 +9,6 @@
 #include "core/effects/light_effects.h"
 #include "core/optics/snapshots.h"
 #include "sensors/pipeline/object_sampler.h"
-#include "sensors/pipeline/place_costs.h"
 #include "sensors/pipeline/shape_exposure.h"
 #include "sensors/pipeline/stopwatch.h"
 #include "sensors/render/resolution.h"
@@ -85,7 +84,7 @@ std::vector<std::size_t> nearest_first(const View& view, std::vector<std::size_t
 
 std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
                          const std::vector<std::size_t>& objects, OpticsStage& stage,
-                         Screen& screen, RateImage& image, EffectTimes& times) {
+                         Screen& screen, RateImage& image) {
   const auto& exposure = view.times();
   const auto& optics = view.sensor().camera.optics;
   // Instants of the finest division; coarser ones take every so manieth.
@@ -126,7 +125,6 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
                          : arcs_of(samples, exposure.seconds());
       if (const int count = view.sensor().effects.snapshots()) arcs = as_snapshots(arcs, count);
       arcs = screen.past(arcs);
-      Stopwatch timing(times[effect::psf]);
       for (const auto& part : stage.add(arcs, image)) light = light + part;
     }
     bool enters = false;
@@ -187,21 +185,8 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
                                 const ObjectShapes* shapes, OpticsStage& optics, Screen& screen,
                                 RateImage& image, EffectTimes& times) {
-  EffectTimes inside;
-  double total_s = 0.0;
-  std::vector<Truth> truths;
-  const ObjectSampler sampler(view, shapes, inside);
-  {
-    Stopwatch timing(total_s);
-    truths = paint(view, sampler, objects, optics, screen, image, inside);
-  }
-  add_object_place_costs(view, objects, sampler.samples(), inside);
-  for (const auto& [effect, seconds] : inside.seconds) {
-    times.seconds[effect] += seconds;
-    total_s -= seconds;
-  }
-  times[effect::objects] += std::max(0.0, total_s);
-  return truths;
+  Stopwatch timing(times[effect::objects]);
+  return paint(view, ObjectSampler(view, shapes), objects, optics, screen, image);
 }
 
 }  // namespace dmise

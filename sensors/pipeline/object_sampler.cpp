@@ -7,14 +7,12 @@
 #include "core/effects/light_effects.h"
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
-#include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
 
-ObjectSampler::ObjectSampler(const View& view, const ObjectShapes* shapes, EffectTimes& times)
+ObjectSampler::ObjectSampler(const View& view, const ObjectShapes* shapes)
     : view_(view),
       shapes_(shapes),
-      times_(times),
       light_(view),
       shadow_(view.environment().sun_m, oblate_earth(view.earth())),
       with_shadow_(view.sensor().effects.has(effect::shadow)),
@@ -22,20 +20,12 @@ ObjectSampler::ObjectSampler(const View& view, const ObjectShapes* shapes, Effec
       zero_mag_(object_photons_per_s_m2(0.0, view.sensor().camera.band)) {}
 
 ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at) const {
-  ++samples_;
   const Motion motion = view_.world().motion(object, at.time);
   const auto place = at.places.satellite(motion.position_m, motion.slope_m_per_s);
   ObjectSample s;
   s.pixel = project(view_.sensor().camera.optics, at.camera * place.direction);
-  {
-    Stopwatch timing(times_[effect::shadow]);
-    s.sunlit = with_shadow_ ? shadow_.sunlit_fraction(motion.position_m) : 1.0;
-  }
-  bool hidden = false;
-  {
-    Stopwatch timing(times_[effect::earth_occultation]);
-    hidden = at.hidden.object(motion.position_m, place.direction);
-  }
+  s.sunlit = with_shadow_ ? shadow_.sunlit_fraction(motion.position_m) : 1.0;
+  const bool hidden = at.hidden.object(motion.position_m, place.direction);
   const ObjectShape* own_shape = shape(object);
   if (hidden || (s.sunlit <= 0.0 && !own_shape && !with_earthshine_)) return s;
   s.electrons_per_photon_m2 =
@@ -89,7 +79,6 @@ double ObjectSampler::quick_photons(std::size_t object, const ObjectShape& shape
 double ObjectSampler::earthshine_photons(std::size_t object, const Motion& motion,
                                          const ExposureInstant& at) const {
   if (!with_earthshine_) return 0.0;
-  Stopwatch timing(times_[effect::earthshine]);
   const auto& sphere = std::get<DiffuseSphere>(view_.world().roster().objects[object].geometry);
   Rotation<Body, Gcrs> axes;  // a sphere looks the same in any
   const Illumination seen = illumination(motion, at.observer.position_m);
@@ -104,12 +93,10 @@ double ObjectSampler::earthshine_photons(std::size_t object, const Motion& motio
 }
 
 double ObjectSampler::transmission(const Vec<Gcrs>& apparent) const {
-  Stopwatch timing(times_[effect::extinction]);
   return light_.transmission(apparent);
 }
 
 double ObjectSampler::flicker(std::size_t object, const Vec<Gcrs>& apparent) const {
-  Stopwatch timing(times_[effect::scintillation]);
   return light_.flicker(apparent, Light::Flickering::object,
                         view_.world().roster().objects[object].catalogue_number);
 }

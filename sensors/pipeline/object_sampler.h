@@ -38,7 +38,7 @@ struct ExposureInstant {
 /// Works out where objects are seen in one exposure, and how bright.
 class ObjectSampler {
  public:
-  ObjectSampler(const View& view, const ObjectShapes* shapes, EffectTimes& times);
+  ObjectSampler(const View& view, const ObjectShapes* shapes);
 
   /// Place and light of an object at an instant.
   ObjectSample sample(std::size_t object, const ExposureInstant& at) const;
@@ -59,9 +59,6 @@ class ObjectSampler {
   double quick_photons(std::size_t object, const ObjectShape& shape, SimTime t,
                        const ObserverState& observer, double sunlit) const;
 
-  /// How many were taken.
-  std::size_t samples() const { return samples_; }
-
  private:
   double transmission(const Vec<Gcrs>& apparent) const;
   double earthshine_photons(std::size_t object, const Motion& motion,
@@ -70,8 +67,6 @@ class ObjectSampler {
 
   const View& view_;
   const ObjectShapes* shapes_;
-  EffectTimes& times_;
-  mutable std::size_t samples_ = 0;
   Light light_;
   EarthShadow shadow_;
   bool with_shadow_, with_earthshine_;

@@ -1,8 +1,6 @@
 #include "sensors/pipeline/sky_layer.h"
 
 #include <algorithm>
-#include <array>
-#include <vector>
 
 #include "core/effects/light_effects.h"
 #include "core/optics/projection.h"
@@ -13,15 +11,6 @@
 
 namespace dmise {
 namespace {
-
-constexpr std::array<const EffectFacts*, sky_part_count> effect_of_part = {
-    &effect::sky,
-    &effect::airglow,
-    &effect::zodiacal_light,
-    &effect::faint_starlight,
-    &effect::scattered_moonlight,
-    &effect::twilight,
-    &effect::light_pollution};
 
 SkyParts parts_switched_on(const SensorConfig& sensor, double drawn_to_v_mag) {
   SkyParts parts = sensor.sky.parts;
@@ -59,35 +48,12 @@ SkyScene scene_of(const View& view) {
   return scene;
 }
 
-/// Moves the time that each part took from the whole's to its own.
-void share_out(const SkyModel& sky, const std::vector<Vec<Enu>>& sample, std::size_t evaluations,
-               double whole_s, EffectTimes& times) {
-  double sum_s = 0.0;
-  std::array<double, sky_part_count> part_s{};
-  double s10 = 0.0;
-  for (std::size_t i = 0; i < sky_part_count; ++i) {
-    Stopwatch timing(part_s[i]);
-    for (const auto& direction : sample) s10 += sky.part_s10(static_cast<SkyPart>(i), direction);
-  }
-  if (!(s10 >= 0)) return;
-  for (double& s : part_s) {
-    s *= double(evaluations) / double(sample.size());
-    sum_s += s;
-  }
-  const double scale = std::min(1.0, whole_s / std::max(sum_s, 1e-12));
-  for (std::size_t i = 1; i < sky_part_count; ++i) {
-    times[*effect_of_part[i]] += scale * part_s[i];
-    times[effect::sky] -= scale * part_s[i];
-  }
-  times[effect::sky] = std::max(0.0, times[effect::sky]);
-}
-
 SkyModel sky_of(const View& view, const SkyParts& parts) {
   return SkyModel(parts, scene_of(view), view.sensor().camera.band, extinction_over(view));
 }
 
-SkyGridReport fill_with(const View& view, const SkyModel& sky, RateImage& image, Threads& threads,
-                        GlEvaluator* evaluator = nullptr) {
+void fill_with(const View& view, const SkyModel& sky, RateImage& image, Threads& threads,
+               GlEvaluator* evaluator = nullptr) {
   const auto& optics = view.sensor().camera.optics;
   const auto gcrs_from_camera = view.camera_from_gcrs(view.times().middle).inverse();
   const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) * gcrs_from_camera;
@@ -100,15 +66,14 @@ SkyGridReport fill_with(const View& view, const SkyModel& sky, RateImage& image,
     return sky.photons_per_s_m2_sr(enu_from_camera * *direction) * electrons_per_photon_m2 *
            pixel_solid_angle_sr(optics, {x, y}) * relative_illumination(optics, {x, y});
   };
-  if (!evaluator)
-    return fill_from_grid(optics.columns, optics.rows, electrons, sky_tolerance,
-                          image.pixels.data(), threads);
-  SkyGridReport report;
+  if (!evaluator) {
+    fill_from_grid(optics.columns, optics.rows, electrons, sky_tolerance, image.pixels.data(),
+                   threads);
+    return;
+  }
   std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
   evaluator->add_sky(
-      patches_of_grid(optics.columns, optics.rows, electrons, sky_tolerance, threads, &report),
-      image);
-  return report;
+      patches_of_grid(optics.columns, optics.rows, electrons, sky_tolerance, threads), image);
 }
 
 }  // namespace
@@ -119,29 +84,12 @@ SkyModel sky_over(const View& view, double drawn_to_v_mag) {
 
 void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads,
               EffectTimes& times, GlEvaluator* evaluator) {
-  const auto& optics = view.sensor().camera.optics;
   if (!view.sensor().effects.has(effect::sky)) {
     std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
     return;
   }
-  double whole_s = 0.0;
-  std::optional<SkyModel> sky;
-  SkyGridReport report;
-  const auto gcrs_from_camera = view.camera_from_gcrs(view.times().middle).inverse();
-  const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) * gcrs_from_camera;
-  {
-    Stopwatch timing(whole_s);
-    sky.emplace(sky_over(view, drawn_to_v_mag));
-    report = fill_with(view, *sky, image, threads, evaluator);
-  }
-  times[effect::sky] += whole_s;
-  std::vector<Vec<Enu>> sample;
-  constexpr int side = 8;
-  for (int i = 0; i < side * side; ++i)
-    if (const auto direction = unproject(optics, {(i % side + 0.5) / side * (optics.columns - 1.0),
-                                                  (i / side + 0.5) / side * (optics.rows - 1.0)}))
-      sample.push_back(enu_from_camera * *direction);
-  if (!sample.empty()) share_out(*sky, sample, report.evaluations, whole_s, times);
+  Stopwatch timing(times[effect::sky]);
+  fill_with(view, sky_over(view, drawn_to_v_mag), image, threads, evaluator);
 }
 
 void fill_sky_behind(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads) {

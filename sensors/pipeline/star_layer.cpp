@@ -8,7 +8,6 @@
 #include "core/optics/deposit.h"
 #include "core/optics/projection.h"
 #include "sensors/pipeline/light.h"
-#include "sensors/pipeline/place_costs.h"
 #include "sensors/pipeline/star_snapshots.h"
 #include "sensors/pipeline/stopwatch.h"
 
@@ -178,8 +177,6 @@ std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Scree
     const auto which = std::span(found).subspan(begin, std::min(at_a_time, found.size() - begin));
     inside += draw(*exposure, which, optics, screen, image, truth, times);
   }
-  times[effect::stars] -= add_place_costs(view, exposure->columns, found, 3 * found.size(), times);
-  times[effect::stars] = std::max(0.0, times[effect::stars]);
   return inside;
 }
 

@@ -1,0 +1,86 @@
+#include "bench/effect_shares.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "bench/timing.h"
+#include "core/effects/light_effects.h"
+#include "core/effects/place_effects.h"
+#include "core/optics/projection.h"
+#include "sensors/pipeline/sky_layer.h"
+
+namespace dmise {
+namespace {
+
+constexpr int repeats = 5;
+
+void add_places(const View& view, const StarTable& stars, std::size_t places, EffectTimes& times) {
+  constexpr std::size_t most = 1024;
+  const std::size_t size = std::min(most, stars.ra_rad.size());
+  if (size == 0) return;
+  std::vector<std::uint32_t> sample(size);
+  for (std::size_t i = 0; i < size; ++i) sample[i] = std::uint32_t(i * stars.ra_rad.size() / size);
+  const StarColumns columns{.epoch_jyear = stars.epoch_jyear,
+                            .ra_rad = stars.ra_rad,
+                            .dec_rad = stars.dec_rad,
+                            .pm_ra_cosdec_rad_per_yr = stars.pm_ra_cosdec_rad_per_yr,
+                            .pm_dec_rad_per_yr = stars.pm_dec_rad_per_yr,
+                            .parallax_rad = stars.parallax_rad};
+  std::vector<Vec<Gcrs>> directions(size);
+  const auto seconds_with = [&](const EffectSet& set) {
+    const ApparentPlaces apparent = view.places(view.times().middle, set);
+    return median_seconds(repeats, [&] { apparent.stars(columns, sample, directions); });
+  };
+  const EffectSet& all = view.sensor().effects;
+  const double whole_s = seconds_with(all);
+  for (const EffectFacts* effect : effect::places) {
+    if (!all.has(*effect) || effect == &effect::light_time) continue;  // of objects
+    EffectSet others = all;
+    others.set(*effect, false);
+    times[*effect] = std::max(0.0, whole_s - seconds_with(others)) * double(places) / double(size);
+  }
+}
+
+void add_sky_parts(const View& view, double sky_s, EffectTimes& times) {
+  const std::array<const EffectFacts*, sky_part_count> effects = {&effect::sky,
+                                                                  &effect::airglow,
+                                                                  &effect::zodiacal_light,
+                                                                  &effect::faint_starlight,
+                                                                  &effect::scattered_moonlight,
+                                                                  &effect::twilight,
+                                                                  &effect::light_pollution};
+  const auto& optics = view.sensor().camera.optics;
+  const SkyModel sky = sky_over(view, -std::numeric_limits<double>::infinity());
+  const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) *
+                               view.camera_from_gcrs(view.times().middle).inverse();
+  constexpr int side = 16;
+  std::vector<Vec<Enu>> sample;
+  for (int i = 0; i < side * side; ++i)
+    if (const auto direction = unproject(optics, {(i % side + 0.5) / side * (optics.columns - 1.0),
+                                                  (i / side + 0.5) / side * (optics.rows - 1.0)}))
+      sample.push_back(enu_from_camera * *direction);
+  std::array<double, sky_part_count> part_s{};
+  double sum_s = 0.0, s10 = 0.0;
+  for (std::size_t i = 0; i < sky_part_count; ++i) {
+    part_s[i] = median_seconds(repeats, [&] {
+      for (const auto& direction : sample) s10 += sky.part_s10(static_cast<SkyPart>(i), direction);
+    });
+    sum_s += part_s[i];
+  }
+  if (!(s10 >= 0) || !(sum_s > 0.0)) return;
+  for (std::size_t i = 1; i < sky_part_count; ++i) times[*effects[i]] = sky_s * part_s[i] / sum_s;
+}
+
+}  // namespace
+
+EffectTimes effect_shares(const View& view, const StarTable& stars, std::size_t star_places,
+                          double sky_s) {
+  EffectTimes times;
+  add_places(view, stars, star_places, times);
+  add_sky_parts(view, sky_s, times);
+  return times;
+}
+
+}  // namespace dmise

@@ -1,0 +1,39 @@
+#include "core/optics/image_optics.h"
+
+#include <chrono>
+
+namespace dmise {
+
+std::span<const ImageParameter> image_parameters() {
+  static const std::vector<ImageParameter> all = [] {
+    std::vector<ImageParameter> list;
+    ImageEffects::for_each([&]<class Effect>() {
+      const auto own = Effect::parameters();
+      list.insert(list.end(), own.begin(), own.end());
+    });
+    return list;
+  }();
+  return all;
+}
+
+ImageOptics acting_optics(const ImageOptics& optics, const EffectSet& effects) {
+  ImageOptics acting = optics;
+  ImageEffects::for_each([&]<class Effect>() {
+    if (!effects.has(Effect::facts)) static_cast<Effect&>(acting).switch_off();
+  });
+  return acting;
+}
+
+void apply_image_optics(const ImageOptics& acting, RateImage& image, Threads& threads,
+                        EffectTimes& times) {
+  using Clock = std::chrono::steady_clock;
+  ImageEffects::for_each([&]<class Effect>() {
+    const Effect& effect = acting;
+    if (!effect.applies()) return;
+    const auto start = Clock::now();
+    effect.apply(image, threads);
+    times[Effect::facts] += std::chrono::duration<double>(Clock::now() - start).count();
+  });
+}
+
+}  // namespace dmise

@@ -1,0 +1,47 @@
+#pragma once
+#include <limits>
+#include <vector>
+
+#include "core/base/image.h"
+#include "core/base/parallel.h"
+#include "core/products/truth.h"
+#include "sensors/pipeline/gl_evaluator.h"
+#include "sensors/pipeline/object_shapes.h"
+#include "sensors/pipeline/optics_stage.h"
+#include "sensors/pipeline/star_layer.h"
+#include "sensors/pipeline/view.h"
+
+namespace dmise {
+
+/// What puts light on the plane of one sensor.
+struct LightSources {
+  const StarLayer* stars = nullptr;  // null: none
+  double faintest_star_mag = 9.5;
+  const ObjectShapes* shapes = nullptr;  // null: all objects are points
+  GlEvaluator* evaluator = nullptr;      // null: light is deposited
+
+  /// V to which stars are drawn one by one: as far as they are asked for and the catalogue goes.
+  double drawn_to_v_mag(const EffectSet& effects) const;
+};
+
+/// What else may be asked of an exposure's light.
+struct LightOptions {
+  RateImage* sky = nullptr;                 // filled with the light of the sky alone
+  std::vector<StarTruth>* stars = nullptr;  // gets the stars as they were drawn
+};
+
+/// What an exposure's light came of.
+struct LightTruth {
+  std::vector<Truth> objects;
+  std::uint32_t stars = 0;  // that left light in the frame
+};
+
+/// Fills `image` with the electrons that the exposure of `view` expects of every pixel: the sky,
+/// objects from the nearest on, stars behind them, blurred by `optics`. For the camera's whole band
+/// or, of a view whose sensor has that, for a part of it. Adds the seconds of each stage to
+/// `times`.
+LightTruth expected_electrons(const View& view, const LightSources& sources, OpticsStage& optics,
+                              RateImage& image, Threads& threads, EffectTimes& times,
+                              const LightOptions& options = {});
+
+}  // namespace dmise
