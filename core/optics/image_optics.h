@@ -1,12 +1,12 @@
 #pragma once
 #include <vector>
 
-#include "core/optics/image_effect.h"
+#include "core/optics/lens_ghost.h"
 
 namespace dmise {
 
 /// Effects on the whole image, in the order in which they act.
-using ImageEffects = EffectList<>;
+using ImageEffects = EffectList<LensGhost>;
 
 struct ImageOptics : ImageEffects::Parameters {
   bool operator==(const ImageOptics&) const = default;

@@ -1,0 +1,59 @@
+#include "core/optics/lens_ghost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/optics/image_optics.h"
+
+namespace dmise {
+
+std::span<const ImageParameter> LensGhost::parameters() {
+  static constexpr ImageParameter table[] = {
+      {"ghost_fraction", "GHOSTFR", "share of the light in the lens's ghost",
+       &LensGhost::ghost_fraction, 0.0, 0.1},
+      {"ghost_radius_px", "GHOSTRAD", "[px] radius of the ghost of a point",
+       &LensGhost::ghost_radius_px, 0.5, 500.0}};
+  return table;
+}
+
+void LensGhost::apply(RateImage& image, Threads& threads) const {
+  const RateImage source = image;
+  const int columns = image.columns, rows = image.rows, reach = int(ghost_radius_px);
+  std::vector<int> half_width;  // of the disc, by the distance of a row from its middle
+  std::size_t pixels = 0;
+  for (int dy = 0; dy <= reach; ++dy) {
+    half_width.push_back(int(std::sqrt(ghost_radius_px * ghost_radius_px - dy * dy)));
+    pixels += std::size_t(dy == 0 ? 1 : 2) * std::size_t(2 * half_width.back() + 1);
+  }
+  const double share = ghost_fraction / double(pixels);
+  threads.for_ranges(std::size_t(rows), 64, [&](std::size_t begin, std::size_t end) {
+    // Sums from the left of the rows that the ghost's rows are made of.
+    const int first = std::max(0, rows - int(end) - reach);
+    const int last = std::min(rows - 1, rows - 1 - int(begin) + reach);
+    const auto stride = std::size_t(columns) + 1;
+    std::vector<double> sums(stride * std::size_t(last - first + 1));
+    for (int y = first; y <= last; ++y) {
+      double* sum = sums.data() + stride * std::size_t(y - first);
+      for (int x = 0; x < columns; ++x) sum[x + 1] = sum[x] + source.at(x, y);
+    }
+    std::vector<double> gained(static_cast<std::size_t>(columns));
+    for (int y = int(begin); y < int(end); ++y) {
+      std::fill(gained.begin(), gained.end(), 0.0);
+      for (int dy = -reach; dy <= reach; ++dy) {
+        const int from = rows - 1 - y + dy;
+        if (from < 0 || from >= rows) continue;
+        const double* sum = sums.data() + stride * std::size_t(from - first);
+        const int half = half_width[std::size_t(std::abs(dy))];
+        for (int x = 0; x < columns; ++x) {
+          const int middle = columns - 1 - x;
+          gained[std::size_t(x)] +=
+              sum[std::min(columns, middle + half + 1)] - sum[std::max(0, middle - half)];
+        }
+      }
+      for (int x = 0; x < columns; ++x) image.at(x, y) += float(share * gained[std::size_t(x)]);
+    }
+  });
+}
+
+}  // namespace dmise
