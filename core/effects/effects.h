@@ -24,7 +24,7 @@ struct EffectList {
   };
   /// Calls `visit.template operator()<Effect>()` for each.
   template <class Visit>
-  static void for_each([[maybe_unused]] Visit&& visit) {
+  static void for_each(Visit&& visit) {
     (visit.template operator()<Effects>(), ...);
   }
 };
