@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/sim/participant.h"
 #include "core/config/node_kinds.h"
+#include "core/sim/participant.h"
 #include "orbit-node/object_states.h"
 
 namespace dmise {

@@ -209,8 +209,7 @@ void write_optics_json(JsonWriter& json, const Optics& optics) {
     json.field("corner", v.corner).field("power", v.power).end_object();
   }
   for (const ImageParameter& p : image_parameters())
-    if (optics.image.*p.value != ImageOptics().*p.value)
-      json.field(p.key, optics.image.*p.value);
+    if (optics.image.*p.value != ImageOptics().*p.value) json.field(p.key, optics.image.*p.value);
 }
 
 void write_seeing_json(JsonWriter& json, const SensorSeeing& s) {

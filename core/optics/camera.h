@@ -22,7 +22,7 @@ struct Optics {
   double psf_fwhm_px = 1.5;   // of the lens and focus (Gaussian), before pixel integration; >= 0
   PointSpread spread;         // how points are blurred, and by which method
   Vignetting vignetting;
-  ImageOptics image;          // that act on the whole image
+  ImageOptics image;                 // that act on the whole image
   bool equivalent_aperture = false;  // allows N < 0.5: the aperture is a collecting area only
 
   /// Area of the entrance pupil less its obscuration [m2].

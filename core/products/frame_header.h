@@ -44,7 +44,7 @@ struct FrameHeader {
   double read_noise_e = 0.0;  // rms
   double dark_e_per_s = 0.0;
   double full_well_e = 0.0;
-  ImageOptics image_optics;  // in effect
+  ImageOptics image_optics;          // in effect
   std::optional<Detector> detector;  // all figures in effect; none in files from elsewhere
   double saturation_dn = 0.0;        // the lowest count that may be clipped: full well or ADC
   double psf_fwhm_px = 0.0;          // Gaussian, before pixel integration

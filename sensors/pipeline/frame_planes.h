@@ -31,8 +31,8 @@ struct FramePlanes {
 RadianceMap radiance_of(const View& view, double exposure_s, const RateImage& light,
                         Threads& threads);
 
-/// Call when `light` [e-] holds all that falls on the detector during `exposure` and the background,
-/// where it is wanted, the sky alone.
+/// Call when `light` [e-] holds all that falls on the detector during `exposure` and the
+/// background, where it is wanted, the sky alone.
 void make_planes(const OutputConfig& wanted, const View& view, const Exposure& exposure,
                  const RateImage& light, Threads& threads, FramePlanes& planes);
 

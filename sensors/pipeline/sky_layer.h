@@ -13,7 +13,8 @@ SkyModel sky_over(const View& view, double drawn_to_v_mag);
 
 /// Fills `image` with the expected electrons of the sky: `sky_over` at each pixel's centre times
 /// the pixel's own solid angle; 0 where the Earth hides it. From a grid, within `sky_tolerance` of
-/// the evaluation of every pixel. With the effect off, all zero. With an `evaluator` that one draws the grid.
+/// the evaluation of every pixel. With the effect off, all zero. With an `evaluator` that one draws
+/// the grid.
 void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads,
               EffectTimes& times, GlEvaluator* evaluator = nullptr);
 
