@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "core/config/node_kinds.h"
 #include "core/sim/participant.h"
 #include "launch/run_directory.h"
 #include "launch/scenario_outlook.h"
