@@ -101,12 +101,14 @@ TEST(FramePipeline, BytesDoNotDependOnThreads) {
   }
 }
 
-TEST(FramePipeline, TellsTheTimeOfEveryEffect) {
+// Stages follow one another: what is a share of one (the shadow's, of the objects) has no time of
+// its own in a frame.
+TEST(FramePipeline, TellsTheTimeOfEveryStage) {
   test::Stage stage(scenario("{}"), "ra_deg,dec_deg,mag_v\n49.7,-5.4,6\n", elements);
   const auto frame = stage.frame();
-  for (const auto& effect : {effect::sky, effect::stars, effect::objects, effect::psf,
-                             effect::shadow, PhotonNoise::facts, DarkCurrent::facts,
-                             ReadNoise::facts, FullWell::facts, Quantisation::facts})
+  for (const auto& effect :
+       {effect::sky, effect::stars, effect::objects, effect::psf, PhotonNoise::facts,
+        DarkCurrent::facts, ReadNoise::facts, FullWell::facts, Quantisation::facts})
     EXPECT_GT(frame.times[effect], 0.0) << effect.name;
   double sum = frame.detection_s;
   for (const auto& [effect, s] : frame.times.seconds) sum += s;

@@ -184,7 +184,7 @@ TEST(SkyLayer, IsWithinItsToleranceInEveryProjection) {
   }
 }
 
-TEST(SkyLayer, EachPartIsSwitchedByNameAndHasItsTime) {
+TEST(SkyLayer, EachPartIsSwitchedByName) {
   const auto with = [](const std::string& effects) {
     test::Stage stage(scenario("2018-01-26T00:10:00Z", 2, fisheye, "zenith",
                                ", sky: urban, effects: {" + effects + "}"),
@@ -201,12 +201,6 @@ TEST(SkyLayer, EachPartIsSwitchedByNameAndHasItsTime) {
   }
   EXPECT_NEAR(parts / whole, 1.0, 0.01);
   EXPECT_EQ(with("sky: off"), 0.0);
-  test::Stage stage(scenario("2018-01-26T00:10:00Z", 2, fisheye, "zenith", ", sky: urban"),
-                    "ra_deg,dec_deg,mag_v\n0,90,6\n");
-  const auto frame = stage.frame();
-  for (const EffectFacts& part :
-       {effect::sky, effect::airglow, effect::twilight, effect::light_pollution})
-    EXPECT_GT(frame.times[part], 0.0) << part.name;
 }
 
 // A veil of transmission 0.5 at the zenith takes as much from the star there as from the airglow
