@@ -33,6 +33,8 @@ struct ExrImage {
   const float* pixels = nullptr;  // rows x columns, first row first
   int columns = 0, rows = 0;
   std::vector<ExrAttribute> attributes;
+  // "YYYY:MM:DD hh:mm:ss", as Exif has it; blanks where a time is not known.
+  std::string taken_utc = "    :  :     :  :  ";
   std::vector<ExrChannel> more;  // beside `channel`, of other names
 };
 

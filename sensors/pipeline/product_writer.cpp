@@ -1,5 +1,6 @@
 #include "sensors/pipeline/product_writer.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -28,6 +29,14 @@ Plane plane(const char* name, const char* unit, const char* what,
   return {name, unit, what, image.pixels.data(), image.columns, image.rows};
 }
 
+/// "2018-01-21T00:15:00.000" as Exif has it: "2018:01:21 00:15:00".
+std::string exif_time(std::string utc) {
+  utc.resize(std::min<std::size_t>(utc.size(), 19));
+  std::replace(utc.begin(), utc.end(), '-', ':');
+  std::replace(utc.begin(), utc.end(), 'T', ' ');
+  return utc;
+}
+
 /// The whole band is channel Y; its parts are named by their middle, and described by attributes.
 ExrImage radiance_exr(const FramePlanes& planes, const FrameHeader& h) {
   const RadianceMap& map = planes.radiance;
@@ -44,7 +53,8 @@ ExrImage radiance_exr(const FramePlanes& planes, const FrameHeader& h) {
                                 {"exposure_s", h.exposure_s},
                                 {"start_utc", h.start_utc},
                                 {"scenario_digest", h.scenario_digest},
-                                {"software", h.software}}};
+                                {"software", h.software}},
+                 .taken_utc = exif_time(h.start_utc)};
   for (const auto& [band, part] : planes.radiance_parts) {
     char name[32];
     std::snprintf(name, sizeof name, "%08.2fnm", band.centre_m * 1e9);

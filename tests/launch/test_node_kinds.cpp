@@ -32,8 +32,9 @@ struct SmallRun {
     std::ofstream(directory / "stars.csv") << "ra_deg,dec_deg,mag_v\n10,20,5\n";
     std::ofstream(directory / "small.yaml")
         << "simulation: {start: 2020-01-01T00:00:00Z, duration_s: 20, tick_s: 10}\n"
-           "objects: [{name: ball, radius_m: 1, motion: {two_body: {semi_major_axis_m: 7.0e+6}}}]\n"
-           "stars: {catalogue: stars.csv}\noutput: {positions: on}\n"
+           "objects: [{name: ball, radius_m: 1, motion: {two_body: {semi_major_axis_m: 7e6, "
+           "eccentricity: 0, inclination_deg: 90, raan_deg: 90}}}]\n"
+           "stars: {catalogue: stars.csv}\noutput: {positions: [csv]}\n"
            "sensors:\n  - {name: eye, site: {latitude_deg: 30, longitude_deg: 0, height_m: 0},\n"
            "     camera: {optics: {columns: 64, rows: 64, pixel_pitch_m: 1.0e-5, focal_length_m: "
            "0.1, aperture_m: 0.05}, detector: {full_well_e: 20000, gain_e_per_dn: 1}, band: "

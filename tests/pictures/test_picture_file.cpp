@@ -222,6 +222,20 @@ TEST(Exr, EqualImagesAreEqualBytesAndSmoothOnesAreSmaller) {
   EXPECT_LT(encode_exr(exr).size(), 200 * 150 * 4 * 0.7);
 }
 
+// What writes the time of day into the attribute capDate makes other bytes a second later.
+TEST(Exr, HoldsTheTimeOfTheExposureAndNotOfItsWriting) {
+  const RateImage image = sample_map();
+  ExrImage exr{.pixels = image.pixels.data(), .columns = 200, .rows = 150};
+  const auto date_of = [](const std::string& bytes) {
+    const std::string name("capDate\0string\0", 15);
+    const std::size_t at = bytes.find(name);
+    return at == std::string::npos ? std::string() : bytes.substr(at + name.size() + 4, 19);
+  };
+  EXPECT_EQ(date_of(encode_exr(exr)), "    :  :     :  :  ");
+  exr.taken_utc = "2018:01:21 00:15:00";
+  EXPECT_EQ(date_of(encode_exr(exr)), exr.taken_utc);
+}
+
 TEST(Exr, RefusesWhatNoFileHolds) {
   const RateImage image = sample_map();
   EXPECT_THROW(encode_exr({.columns = 2, .rows = 2}), Error);
