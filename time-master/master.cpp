@@ -35,10 +35,12 @@ constexpr milliseconds check_interval{50};
 constexpr milliseconds connecting_interval{10};  // grants repeated while subscribers connect
 constexpr milliseconds farewell{1500};  // longest wait for nodes to leave a run that is over
 
-constexpr milliseconds longest_unheard{250};  // between a connection's end and its last words
-constexpr milliseconds guard_interval{20};    // between two looks at what connections bring
-constexpr int most_control_messages = 1000;   // of one connection, that wait to be read
-constexpr int most_unread_grants = 4096;      // of one who listens; heartbeats repeat what is lost
+constexpr milliseconds longest_unheard{250};   // between a connection's end and its last words
+constexpr milliseconds guard_interval{20};     // between two looks at what connections bring
+constexpr int most_control_messages = 1000;    // of one connection, that wait to be read
+constexpr int most_unread_grants = 4096;       // of one who listens; heartbeats repeat what is lost
+constexpr int most_waiting_subscriptions = 8;  // of one connection; the rest waits on its side, so
+                                               // that little is kept between two looks at it
 constexpr std::int64_t longest_subscription = 1024;    // the handshake with keys needs so much
 constexpr std::size_t max_unasked_bytes = 4096;        // of what a guest says
 constexpr std::size_t most_observed_bytes = 64 << 10;  // of the topics of one observer
@@ -80,6 +82,7 @@ zmq::socket_t control_router(zmq::context_t& context) {
 zmq::socket_t grant_publisher(zmq::context_t& context) {
   zmq::socket_t ticks = make_socket(context, zmq::socket_type::pub, longest_subscription);
   ticks.set(zmq::sockopt::sndhwm, most_unread_grants);
+  ticks.set(zmq::sockopt::rcvhwm, most_waiting_subscriptions);
   ticks.set(zmq::sockopt::linger, 500);
   return ticks;
 }
