@@ -69,9 +69,9 @@ class Projection {
   Model model_;
 };
 
-inline constexpr Projection Projection::gnomonic{Gnomonic{}};
-inline constexpr Projection Projection::equidistant{Equidistant{}};
-inline constexpr Projection Projection::equisolid{Equisolid{}};
-inline constexpr Projection Projection::stereographic{Stereographic{}};
+inline const Projection Projection::gnomonic{Gnomonic{}};
+inline const Projection Projection::equidistant{Equidistant{}};
+inline const Projection Projection::equisolid{Equisolid{}};
+inline const Projection Projection::stereographic{Stereographic{}};
 
 }  // namespace dmise

@@ -9,8 +9,8 @@
 namespace dmise {
 namespace {
 
-constexpr Projection projections[] = {Projection::gnomonic, Projection::equidistant,
-                                      Projection::equisolid, Projection::stereographic};
+const Projection projections[] = {Projection::gnomonic, Projection::equidistant,
+                                  Projection::equisolid, Projection::stereographic};
 
 // The paper's all-sky camera: 90 deg across 3326 pixels of 5.4 um.
 Optics all_sky(Projection projection) {
