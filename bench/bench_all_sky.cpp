@@ -20,7 +20,7 @@
 #include "core/config/effect_list.h"
 #include "core/config/make_clock.h"
 #include "core/config/search_path.h"
-#include "core/effects/light_effects.h"
+#include "core/effects/frame_effects.h"
 #include "core/image/fits_file.h"
 #include "nodes/environment/environment_actor.h"
 #include "orbit-node/orbit_actor.h"
@@ -117,7 +117,8 @@ void print_shares(const Scenario& scenario, const FrameTimes& exposure, const Wo
   const View view(scenario.sensors[0], exposure, world);
   const auto map = load_stars(scenario);
   const EffectTimes& spent = m.effects[best];
-  const EffectTimes shares = effect_shares(view, map->stars, star_places, spent[effect::sky]);
+  const EffectTimes shares =
+      effect_shares(view, map->stars, star_places, spent[SkyBackground::facts]);
   for (const auto& [effect, seconds] : shares.seconds)
     print_figure({"all_sky_" + std::string(effect) + "_ms", 1e3 * seconds, "ms"}, json);
 }

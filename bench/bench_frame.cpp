@@ -51,7 +51,7 @@ std::vector<Arc> trails(int width, int height) {
 
 void measure_deposit(bool json) {
   Threads one(1);
-  RateImage image(columns, rows, 100.0f);
+  ExpectedElectronImage image(columns, rows, 100.0f);
   const PsfTable psf = make_psf_table(1.5 / fwhm_per_sigma);
   const auto arcs = trails(columns, rows);
   print_figure({"star_trails_15000_ms", 1e3 * seconds([&] { deposit(arcs, psf, image, one); }),
@@ -73,7 +73,7 @@ void measure_detector(bool json) {
   detector.full_well_e = 25500;
   detector.gain_e_per_dn = 0.35;
   detector.bias_dn = 1000;
-  const RateImage light(columns, rows, 2000.0f);
+  const ExpectedElectronImage light(columns, rows, 2000.0f);
   CountImage counts;
   EffectTimes times;
   const double s = seconds([&] {
@@ -126,7 +126,7 @@ void measure_optics(bool json) {
   OpticsStage stage(sensor, 1, one);
   const FrameTimes exposure{
       .frame = 1, .start = {0}, .middle = sim_seconds(5), .end = sim_seconds(10)};
-  RateImage light(optics.columns, optics.rows);
+  ExpectedElectronImage light(optics.columns, optics.rows);
   const auto arcs = trails(optics.columns, optics.rows);
   double begin_s = 0.0;
   stage.begin(exposure, 1e4);  // the kernel, once

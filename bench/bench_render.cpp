@@ -71,7 +71,7 @@ void measure_snapshots(SceneRenderer& renderer, bool json) {
     const PixelPosition at{u(0) * columns, u(1) * rows}, half{0.5 + u(2), u(3) - 0.5};
     trails.push_back({at - half, at, at + half, 1e4});
   }
-  RateImage image(columns, rows, 100.0f);
+  ExpectedElectronImage image(columns, rows, 100.0f);
   const ScenePlane plane{image.pixels.data(), columns, rows, columns};
   std::vector<ScenePoint> points;
   const auto draw_all = [&] {

@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "bench/timing.h"
-#include "core/effects/light_effects.h"
-#include "core/effects/place_effects.h"
 #include "core/optics/projection.h"
+#include "core/sky/place_effects.h"
 #include "sensors/pipeline/sky_layer.h"
 
 namespace dmise {
@@ -35,22 +34,16 @@ void add_places(const View& view, const StarTable& stars, std::size_t places, Ef
   };
   const EffectSet& all = view.sensor().effects;
   const double whole_s = seconds_with(all);
-  for (const EffectFacts* effect : effect::places) {
-    if (!all.has(*effect) || effect == &effect::light_time) continue;  // of objects
+  PlaceEffects::for_each([&]<class Effect>() {
+    if (!all.has(Effect::facts) || std::is_same_v<Effect, LightTime>) return;  // of objects
     EffectSet others = all;
-    others.set(*effect, false);
-    times[*effect] = std::max(0.0, whole_s - seconds_with(others)) * double(places) / double(size);
-  }
+    others.set(Effect::facts, false);
+    times[Effect::facts] =
+        std::max(0.0, whole_s - seconds_with(others)) * double(places) / double(size);
+  });
 }
 
 void add_sky_parts(const View& view, double sky_s, EffectTimes& times) {
-  const std::array<const EffectFacts*, sky_part_count> effects = {&effect::sky,
-                                                                  &effect::airglow,
-                                                                  &effect::zodiacal_light,
-                                                                  &effect::faint_starlight,
-                                                                  &effect::scattered_moonlight,
-                                                                  &effect::twilight,
-                                                                  &effect::light_pollution};
   const auto& optics = view.sensor().camera.optics;
   const SkyModel sky = sky_over(view, -std::numeric_limits<double>::infinity());
   const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) *
@@ -70,7 +63,9 @@ void add_sky_parts(const View& view, double sky_s, EffectTimes& times) {
     sum_s += part_s[i];
   }
   if (!(s10 >= 0) || !(sum_s > 0.0)) return;
-  for (std::size_t i = 1; i < sky_part_count; ++i) times[*effects[i]] = sky_s * part_s[i] / sum_s;
+  std::size_t part = 1;  // after the uniform one
+  SkyPartEffects::for_each(
+      [&]<class Part>() { times[Part::facts] = sky_s * part_s[part++] / sum_s; });
 }
 
 }  // namespace

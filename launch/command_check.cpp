@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -73,11 +74,11 @@ std::string evaluator_of(const EffectSet& effects) {
 }
 
 /// What runs in a sensor's frames, with its parameters.
-std::string effects_text(const SensorConfig& sensor, bool has_stars) {
+std::string effects_text(const SensorConfig& sensor, SceneFacts scene) {
   std::string text;
-  for (const EffectFacts* effect : effects_in(sensor, has_stars)) {
+  for (const EffectFacts* effect : effects_in(sensor, scene)) {
     std::string parameters;
-    for (const auto& [key, number] : parameters_in(sensor.camera, *effect)) {
+    for (const auto& [key, number] : parameters_in(sensor, *effect)) {
       char pair[96];
       std::snprintf(pair, sizeof pair, "%s%.*s = %g", parameters.empty() ? " (" : ", ",
                     int(key.size()), key.data(), number);
@@ -89,11 +90,19 @@ std::string effects_text(const SensorConfig& sensor, bool has_stars) {
   return text;
 }
 
+bool has_shapes(const Scenario& scenario) {
+  return std::any_of(scenario.own_objects.begin(), scenario.own_objects.end(),
+                     [](const OwnObject& object) { return object.geometry.has_value(); });
+}
+
 /// Sensors with the same effects and parameters together.
 void print_effects(const Scenario& scenario, bool has_stars) {
   std::map<std::string, std::string> sensors_of;
   for (const auto& sensor : scenario.sensors) {
-    std::string& names = sensors_of[effects_text(sensor, has_stars)];
+    SceneFacts scene = scene_facts(sensor);
+    scene.stars = has_stars;
+    scene.shapes = has_shapes(scenario);
+    std::string& names = sensors_of[effects_text(sensor, scene)];
     names += (names.empty() ? "" : ", ") + sensor.name;
   }
   for (const auto& [text, names] : sensors_of)

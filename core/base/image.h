@@ -26,7 +26,7 @@ struct Image {
 };
 
 /// Expected photo-electrons of one exposure, before any random draw [e-].
-using RateImage = Image<float, struct RateCarrier>;
+using ExpectedElectronImage = Image<float, struct ExpectedElectronCarrier>;
 /// Electrons collected, after the random draws, before digitisation [e-].
 using ElectronImage = Image<float, struct ElectronCarrier>;
 /// What the camera delivers [DN].

@@ -4,9 +4,13 @@
 #include <vector>
 
 #include "core/detector/detector.h"
-#include "core/effects/light_effects.h"
-#include "core/effects/place_effects.h"
+#include "core/effects/frame_effects.h"
+#include "core/facets/earthshine.h"
 #include "core/optics/image_optics.h"
+#include "core/sky/air_effects.h"
+#include "core/sky/occultation.h"
+#include "core/sky/place_effects.h"
+#include "core/sky/shadow.h"
 
 namespace dmise {
 namespace {
@@ -50,12 +54,31 @@ constexpr std::string_view always_listed[] = {"proper_motion",
                                               "read_noise",
                                               "quantisation"};
 
+/// What makes expected electrons of sources and of the sky, in the order in which it runs. The
+/// sky's parts, the air's effects and those of the image have lists of their own, where they run.
+using LightEffects =
+    EffectList<SkyBackground, Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight, Twilight,
+               LightPollution, SpaceObjects, EarthShadow, Earthshine, ThermalEmission,
+               StarBackground, EarthOccultation, AirExtinction, CloudCover, Scintillation,
+               Vignetting, Streak, Occlusion, Drawing, PointSpread>;
+
 std::vector<const EffectFacts*> list() {
-  std::vector<const EffectFacts*> all(std::begin(effect::places), std::end(effect::places));
-  all.insert(all.end(), std::begin(effect::lights), std::end(effect::lights));
-  ImageEffects::for_each([&]<class Effect>() { all.push_back(&Effect::facts); });
-  DetectorEffects::for_each([&]<class Effect>() { all.push_back(&Effect::facts); });
+  std::vector<const EffectFacts*> all;
+  const auto add = [&]<class Effect>() { all.push_back(&Effect::facts); };
+  PlaceEffects::for_each(add);
+  LightEffects::for_each(add);
+  ImageEffects::for_each(add);
+  DetectorEffects::for_each(add);
   return all;
+}
+
+/// Whether an effect is a part of the sky that a sensor does not have.
+template <class Effect>
+bool is_missing_from_sky(const SensorConfig& sensor) {
+  if constexpr (requires { sensor.sky.parts.*sky_part<Effect>; })
+    return !(sensor.effects.has(SkyBackground::facts) && sensor.sky.parts.*sky_part<Effect>);
+  else
+    return false;
 }
 
 }  // namespace
@@ -65,33 +88,20 @@ std::span<const EffectFacts* const> all_effects() {
   return all;
 }
 
-std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, bool has_stars) {
-  const bool on_ground = std::holds_alternative<SiteConfig>(sensor.place);
-  const SkyParts& parts = sensor.sky.parts;
-  const struct {
-    const EffectFacts& effect;
-    bool applies;
-  } conditions[] = {{effect::refraction, on_ground},
-                    {effect::extinction, on_ground},
-                    {effect::clouds, on_ground && sensor.weather.clouds},
-                    {effect::scintillation, on_ground},
-                    {effect::stars, has_stars},
-                    {effect::airglow, parts.airglow.has_value()},
-                    {effect::zodiacal_light, parts.zodiacal_light.has_value()},
-                    {effect::faint_starlight, parts.faint_starlight.has_value()},
-                    {effect::scattered_moonlight, parts.scattered_moonlight.has_value()},
-                    {effect::twilight, parts.twilight.has_value()},
-                    {effect::light_pollution, parts.light_pollution.has_value()}};
+SceneFacts scene_facts(const SensorConfig& sensor) {
+  return {.on_ground = std::holds_alternative<SiteConfig>(sensor.place),
+          .clouds = sensor.weather.clouds.has_value(),
+          .vignettes = sensor.camera.optics.vignetting.any()};
+}
+
+std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const SceneFacts& scene) {
   std::vector<const EffectFacts*> running;
-  const auto add = [&](const EffectFacts* effect) {
-    const auto condition =
-        std::find_if(std::begin(conditions), std::end(conditions),
-                     [&](const auto& c) { return c.effect.name == effect->name; });
-    if (sensor.effects.has(*effect) && (condition == std::end(conditions) || condition->applies))
-      running.push_back(effect);
+  const auto add = [&]<class Effect>() {
+    if (acts<Effect>(sensor.effects, scene) && !is_missing_from_sky<Effect>(sensor))
+      running.push_back(&Effect::facts);
   };
-  for (const EffectFacts* effect : effect::places) add(effect);
-  for (const EffectFacts* effect : effect::lights) add(effect);
+  PlaceEffects::for_each(add);
+  LightEffects::for_each(add);
   const ImageOptics optics = acting_optics(sensor.camera.optics.image, sensor.effects);
   ImageEffects::for_each([&]<class Effect>() {
     if (static_cast<const Effect&>(optics).applies()) running.push_back(&Effect::facts);
@@ -102,8 +112,13 @@ std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, bool has_
   return running;
 }
 
-std::vector<std::pair<std::string_view, double>> parameters_in(const Camera& camera,
+std::vector<std::pair<std::string_view, double>> parameters_in(const SensorConfig& sensor,
                                                                const EffectFacts& effect) {
+  const Camera& camera = sensor.camera;
+  const Vignetting& v = camera.optics.vignetting;
+  if (effect.name == Vignetting::facts.name)
+    return {{"natural", v.natural}, {"corner", v.corner}, {"power", v.power}};
+  if (effect.name == Streak::facts.name) return {{"snapshots", sensor.effects.snapshots()}};
   std::vector<std::pair<std::string_view, double>> numbers;
   ImageEffects::for_each([&]<class Effect>() {
     if (Effect::facts.name == effect.name)
@@ -120,12 +135,14 @@ std::vector<std::pair<std::string_view, double>> parameters_in(const Camera& cam
 
 std::string effects_markdown() {
   std::string text =
-      "# Effects\n\nWritten by `dmise list effects > docs/models/effects.md`. Each can be switched "
-      "in "
-      "a scenario, `effects: {NAME: off}`, for all\nsensors or one; `dmise check` says which run "
-      "and "
-      "with what.\n\n| effect | what it does | left out | source | parameters "
-      "|\n|---|---|---|---|---|\n";
+      "# Effects\n\n"
+      "Written by `dmise list effects > docs/models/effects.md`, in the order in which they run.\n"
+      "Each can be switched in a scenario, `effects: {NAME: off}`, for all sensors or one, but "
+      "for\n"
+      "`streak` (`integration: analytic | snapshots`, `snapshots: N`) and `evaluator` (`analytic "
+      "|\n"
+      "opengl`), which have other choices. `dmise check` shows which run and with what.\n\n"
+      "| effect | what it does | left out | source | parameters |\n|---|---|---|---|---|\n";
   for (const EffectFacts* effect : all_effects()) {
     std::string keys;
     for (const auto& [key, number] : parameters_in({}, *effect))

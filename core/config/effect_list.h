@@ -12,11 +12,14 @@ namespace dmise {
 /// All effects: those of place, of light and of the detector, each family in its order.
 std::span<const EffectFacts* const> all_effects();
 
-/// What runs in a sensor's frames, in the same order.
-std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, bool has_stars);
+/// What decides whether effects act in a sensor's frames, as far as the sensor says.
+SceneFacts scene_facts(const SensorConfig& sensor);
 
-/// The parameters of an effect in a camera: key and number.
-std::vector<std::pair<std::string_view, double>> parameters_in(const Camera& camera,
+/// What runs in a sensor's frames, in the same order. `scene` as above, with what else is known.
+std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const SceneFacts& scene);
+
+/// The parameters of an effect in a sensor: key and number.
+std::vector<std::pair<std::string_view, double>> parameters_in(const SensorConfig& sensor,
                                                                const EffectFacts& effect);
 
 /// docs/models/effects.md.

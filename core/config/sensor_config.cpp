@@ -12,11 +12,11 @@
 #include "core/config/optics_config.h"
 #include "core/config/pointing_config.h"
 #include "core/config/search_path.h"
-#include "core/effects/light_effects.h"
-#include "core/effects/place_effects.h"
+#include "core/effects/frame_effects.h"
 #include "core/optics/psf_plan.h"
 #include "core/optics/pupil_sampling.h"
 #include "core/sky/airmass.h"
+#include "core/sky/place_effects.h"
 
 namespace dmise {
 namespace {
@@ -101,10 +101,11 @@ void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
 void read_effects(const YamlValue& value, EffectSet& effects) {
   YamlMap map(value);
   for (const EffectFacts* effect : all_effects())
-    if (const auto flag = map.find(effect->name)) effects.set(*effect, flag->flag());
+    if (effect->switchable)
+      if (const auto flag = map.find(effect->name)) effects.set(*effect, flag->flag());
   if (const auto both = map.find("aberration")) {
-    effects.set(effect::annual_aberration, both->flag());
-    effects.set(effect::diurnal_aberration, both->flag());
+    effects.set(AnnualAberration::facts, both->flag());
+    effects.set(DiurnalAberration::facts, both->flag());
   }
   constexpr int usual_snapshots = 16;
   const auto integration = map.find("integration");
@@ -164,13 +165,13 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, bool 
   }
   read_sensor_surroundings(map, sensor);
   if (sensor.atmosphere.refraction)
-    sensor.effects.set(effect::refraction, *sensor.atmosphere.refraction);
+    sensor.effects.set(AtmosphericRefraction::facts, *sensor.atmosphere.refraction);
   if (const auto mask = map.find("mask_deg")) {
     if (platform) mask->fail("a mask is for a sensor on the ground", false);
     sensor.mask_deg = mask->number(Bounds::between(0.0, 89.0));
   }
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
-  if (sensor.effects.has(effect::sky))
+  if (sensor.effects.has(SkyBackground::facts))
     check_sky_in_band(value, sensor.sky, sensor.camera.band, bool(site));
   check_point_spread(value, sensor);
   map.done();

@@ -53,7 +53,7 @@ struct SaturatedPixels {
 
 /// What an effect may use of an exposure.
 struct ExposureFacts {
-  const RateImage& light;
+  const ExpectedElectronImage& light;
   const Detector& detector;  // as it acts
   const Exposure& exposure;
   PersistenceMemory& traps;

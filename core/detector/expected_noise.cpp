@@ -5,11 +5,12 @@
 
 namespace dmise {
 
-ElectronImage expected_noise(const RateImage& unshifted, const Detector& detector,
+ElectronImage expected_noise(const ExpectedElectronImage& unshifted, const Detector& detector,
                              const Exposure& exposure, const EffectSet& effects, Threads& threads) {
   const Detector d = acting_detector(detector, effects);
-  const RateImage smeared = d.frame_transfer_s > 0.0 ? d.smeared(unshifted, exposure) : RateImage();
-  const RateImage& light = d.frame_transfer_s > 0.0 ? smeared : unshifted;
+  const ExpectedElectronImage smeared =
+      d.frame_transfer_s > 0.0 ? d.smeared(unshifted, exposure) : ExpectedElectronImage();
+  const ExpectedElectronImage& light = d.frame_transfer_s > 0.0 ? smeared : unshifted;
   ElectronImage noise(light.columns, light.rows);
   const double dark_e = d.dark_e_per_s * exposure.exposure_s;
   const float shot = d.photons_are_drawn ? 1.0f : 0.0f;

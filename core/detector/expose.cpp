@@ -18,14 +18,14 @@ constexpr std::size_t piece_px =
     16384;  // 64 KB of electrons: stays in the cache through all effects
 static_assert(piece_px % rng_group == 0);
 
-void check(const RateImage& light, const Exposure& exposure) {
+void check(const ExpectedElectronImage& light, const Exposure& exposure) {
   if (light.pixels.size() > 0xffffffffu) throw Error("expose: more than 2^32 pixels");
   if (!(exposure.exposure_s >= 0.0)) throw Error("expose: exposure_s must be >= 0");
   if (!(exposure.idle_s >= 0.0)) throw Error("expose: idle_s must be >= 0");
 }
 
 /// Names the first pixel from `begin` on that expects no number of electrons.
-[[noreturn]] void refuse(const RateImage& light, std::size_t begin) {
+[[noreturn]] void refuse(const ExpectedElectronImage& light, std::size_t begin) {
   std::size_t i = begin;
   while (light.pixels[i] >= 0.0f && light.pixels[i] <= poisson_largest_mean) ++i;
   const auto columns = std::size_t(light.columns);
@@ -33,7 +33,7 @@ void check(const RateImage& light, const Exposure& exposure) {
               "): expected electrons must be in 0..1e12, got " + std::to_string(light.pixels[i]));
 }
 
-void take_light(const RateImage& light, Piece& piece, SimdLevel level) {
+void take_light(const ExpectedElectronImage& light, Piece& piece, SimdLevel level) {
   const auto copy = kernel_of(level, sse2::copy_light, avx2::copy_light, avx512::copy_light);
   if (!copy(light.pixels.data() + piece.first, piece.electrons.size(), piece.electrons.data()))
     refuse(light, piece.first);
@@ -41,7 +41,7 @@ void take_light(const RateImage& light, Piece& piece, SimdLevel level) {
 }
 
 template <class AnImage>
-void resize_like(const RateImage& light, AnImage& image) {
+void resize_like(const ExpectedElectronImage& light, AnImage& image) {
   image.columns = light.columns;
   image.rows = light.rows;
   image.pixels.resize(light.pixels.size());
@@ -49,9 +49,9 @@ void resize_like(const RateImage& light, AnImage& image) {
 
 }  // namespace
 
-SaturatedPixels expose(const RateImage& light, const Detector& parameters, const Exposure& exposure,
-                       const EffectSet& effects, Threads& threads, CountImage& counts,
-                       EffectTimes* times, const ExposeOptions& options) {
+SaturatedPixels expose(const ExpectedElectronImage& light, const Detector& parameters,
+                       const Exposure& exposure, const EffectSet& effects, Threads& threads,
+                       CountImage& counts, EffectTimes* times, const ExposeOptions& options) {
   dmise::check(parameters);
   check(light, exposure);
   const Detector detector = acting_detector(parameters, effects);

@@ -25,8 +25,9 @@ struct ExposeOptions {
 /// noise of the others as it was, and the bytes depend on neither threads nor instruction set. Adds
 /// each effect's seconds to `times` (summed over threads) if given. Throws `Error` naming the pixel
 /// when `light` is NaN or negative, and what an effect refuses.
-SaturatedPixels expose(const RateImage& light, const Detector& detector, const Exposure& exposure,
-                       const EffectSet& effects, Threads& threads, CountImage& counts,
-                       EffectTimes* times = nullptr, const ExposeOptions& options = {});
+SaturatedPixels expose(const ExpectedElectronImage& light, const Detector& detector,
+                       const Exposure& exposure, const EffectSet& effects, Threads& threads,
+                       CountImage& counts, EffectTimes* times = nullptr,
+                       const ExposeOptions& options = {});
 
 }  // namespace dmise

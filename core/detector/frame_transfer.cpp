@@ -16,7 +16,7 @@ std::span<const DetectorParameter> FrameTransfer::parameters() {
   return table;
 }
 
-FrameTransfer::Prepared FrameTransfer::sums_of(const RateImage& light) const {
+FrameTransfer::Prepared FrameTransfer::sums_of(const ExpectedElectronImage& light) const {
   const auto columns = std::size_t(light.columns);
   std::vector<double> passed(columns);
   Prepared sums;
@@ -28,8 +28,8 @@ FrameTransfer::Prepared FrameTransfer::sums_of(const RateImage& light) const {
   return sums;
 }
 
-void FrameTransfer::add(const RateImage& light, const Exposure& exposure, const Prepared& sums,
-                        std::size_t first, std::span<float> electrons) const {
+void FrameTransfer::add(const ExpectedElectronImage& light, const Exposure& exposure,
+                        const Prepared& sums, std::size_t first, std::span<float> electrons) const {
   if (!(exposure.exposure_s > 0.0)) return;
   const auto columns = std::size_t(light.columns);
   const double share = frame_transfer_s / (double(light.rows) * exposure.exposure_s);
@@ -48,8 +48,9 @@ void FrameTransfer::apply(const ExposureFacts& exposed, const Prepared& sums, Pi
   add(exposed.light, exposed.exposure, sums, piece.first, piece.electrons);
 }
 
-RateImage FrameTransfer::smeared(const RateImage& light, const Exposure& exposure) const {
-  RateImage result = light;
+ExpectedElectronImage FrameTransfer::smeared(const ExpectedElectronImage& light,
+                                             const Exposure& exposure) const {
+  ExpectedElectronImage result = light;
   add(light, exposure, sums_of(light), 0, result.pixels);
   return result;
 }

@@ -24,11 +24,11 @@ struct FrameTransfer {
   Prepared prepare(const ExposureFacts& exposed) const { return sums_of(exposed.light); }
   void apply(const ExposureFacts& exposed, const Prepared& sums, Piece& piece) const;
   /// The same for a whole image.
-  RateImage smeared(const RateImage& light, const Exposure& exposure) const;
+  ExpectedElectronImage smeared(const ExpectedElectronImage& light, const Exposure& exposure) const;
 
  private:
-  Prepared sums_of(const RateImage& light) const;
-  void add(const RateImage& light, const Exposure& exposure, const Prepared& sums,
+  Prepared sums_of(const ExpectedElectronImage& light) const;
+  void add(const ExpectedElectronImage& light, const Exposure& exposure, const Prepared& sums,
            std::size_t first, std::span<float> electrons) const;
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <map>
 #include <set>
 #include <string_view>
@@ -12,6 +13,16 @@ struct EffectFacts {
   std::string_view error_if_off;  // the size of what is left out
   std::string_view source;        // of the model
   bool usual = true;              // runs unless switched off; else only when switched on
+  bool switchable = true;         // else it has other choices than on and off
+};
+
+/// What decides whether effects of place and light have something to do in a sensor's frames.
+struct SceneFacts {
+  bool on_ground = true;
+  bool clouds = false;     // over a ground sensor
+  bool stars = true;       // there is a catalogue
+  bool shapes = true;      // there are objects with a shape
+  bool vignettes = false;  // the optics lose light off the axis
 };
 
 /// A closed family of effects, in the order in which they run.
@@ -55,10 +66,23 @@ class EffectSet {
   bool opengl_ = false;
 };
 
+/// Whether an effect of place or light acts in a scene.
+template <class Effect>
+bool acts(const EffectSet& switched, const SceneFacts& scene) {
+  if (!switched.has(Effect::facts)) return false;
+  if constexpr (requires { Effect::applies(scene); }) return Effect::applies(scene);
+  return true;
+}
+
 /// Seconds spent in each effect over one frame. Never part of a product whose bytes must repeat.
 struct EffectTimes {
   std::map<std::string_view, double> seconds;  // by name
   double& operator[](const EffectFacts& effect) { return seconds[effect.name]; }
+  double sum_s() const {
+    double sum = 0.0;
+    for (const auto& [name, s] : seconds) sum += s;
+    return sum;
+  }
   double operator[](const EffectFacts& effect) const {
     const auto found = seconds.find(effect.name);
     return found == seconds.end() ? 0.0 : found->second;

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "core/effects/effects.h"
 #include "core/facets/facet_light.h"
 
 namespace dmise {
@@ -9,6 +10,11 @@ namespace dmise {
 /// `rings` rings around the nadir as the object sees it, each into 4 x `rings` patches. Clouds,
 /// seas and air are in the one albedo.
 struct Earthshine {
+  static constexpr EffectFacts facts{
+      "earthshine", "sunlight that the Earth throws on objects (off unless asked for)",
+      "up to 0.4 of full sunlight on what faces the Earth; all that there is in its shadow",
+      "a diffuse Earth, ring by ring", false};
+
   double albedo = 0.3;
   int rings = 8;
 };

@@ -55,8 +55,10 @@ double sum_of(const FacetSet& set, const double* area_m2, const Vec<Body>& sun,
 
 }  // namespace
 
-FacetLight::FacetLight(Mesh mesh, const Band& band)
-    : mesh_(std::move(mesh)), set_(facet_set(mesh_, band)), convex_(is_convex(mesh_)) {}
+FacetLight::FacetLight(Mesh mesh, const Band& band, bool emits)
+    : mesh_(std::move(mesh)), set_(facet_set(mesh_, band)), convex_(is_convex(mesh_)) {
+  if (!emits) std::fill(set_.emitted.begin(), set_.emitted.end(), 0.0);
+}
 
 std::vector<double> FacetLight::free_area_m2(const FacetShadow* sun,
                                              const FacetShadow& viewer) const {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/base/simd_level.h"
+#include "core/effects/effects.h"
 #include "core/facets/facet_set.h"
 #include "core/facets/facet_shadow.h"
 
@@ -15,12 +16,22 @@ struct LightSource {
   double share = 1.0;
 };
 
+/// What surfaces radiate by their temperature.
+struct ThermalEmission {
+  static constexpr EffectFacts facts{
+      "thermal_emission", "objects with a shape radiate by their warmth",
+      "all that there is in the shadow beyond 5 um; nothing below 2.5 um",
+      "Planck's law and Kirchhoff's"};
+  static bool applies(const SceneFacts& scene) { return scene.shapes; }
+};
+
 /// Light of an object that is not resolved: its facets summed, in one band, each with what the
 /// others leave free to the light and to the viewer. Facets are flat and light is parallel, so that
 /// the sum is exact up to rounding (1e-9). Light that goes from facet to facet is left out.
 class FacetLight {
  public:
-  FacetLight(Mesh mesh, const Band& band);
+  /// Without `emits` its warmth radiates nothing.
+  FacetLight(Mesh mesh, const Band& band, bool emits = true);
 
   const Mesh& mesh() const { return mesh_; }
   const FacetSet& facets() const { return set_; }

@@ -168,7 +168,8 @@ void BlurGrid::resample(FftBuffer& cells, PointSpread::Resampling resampling, Th
   });
 }
 
-void BlurGrid::add_positive(const FftBuffer& cells, RateImage& light, Threads& threads) const {
+void BlurGrid::add_positive(const FftBuffer& cells, ExpectedElectronImage& light,
+                            Threads& threads) const {
   Light total;
   for (const Light& row : of_row_) {
     total.bright += row.bright;
@@ -186,7 +187,8 @@ void BlurGrid::add_positive(const FftBuffer& cells, RateImage& light, Threads& t
   });
 }
 
-void BlurGrid::blur_into(RateImage& light, PointSpread::Resampling resampling, Threads& threads) {
+void BlurGrid::blur_into(ExpectedElectronImage& light, PointSpread::Resampling resampling,
+                         Threads& threads) {
   if (light.columns != columns_ || light.rows != rows_) throw Error("blur: size of the image");
   if (spectra_.empty()) throw Error("blur: no kernel was set");
   find_lit_rows(threads);

@@ -40,7 +40,8 @@ class BlurGrid {
   int half_cells() const { return half_; }
 
   /// Blurs what lies on the cells and adds it, resampled, to the frame. Overwrites the cells.
-  void blur_into(RateImage& light, PointSpread::Resampling resampling, Threads& threads);
+  void blur_into(ExpectedElectronImage& light, PointSpread::Resampling resampling,
+                 Threads& threads);
 
   /// Floats of one transform along columns and rows.
   int transform_columns() const { return fft_.columns(); }
@@ -52,7 +53,7 @@ class BlurGrid {
   void weigh(int node, Threads& threads);
   FftBuffer& blur(Threads& threads);
   void resample(FftBuffer& cells, PointSpread::Resampling resampling, Threads& threads);
-  void add_positive(const FftBuffer& cells, RateImage& light, Threads& threads) const;
+  void add_positive(const FftBuffer& cells, ExpectedElectronImage& light, Threads& threads) const;
 
   int columns_, rows_, oversampling_, half_, field_columns_, field_rows_;
   RealFft2 fft_;

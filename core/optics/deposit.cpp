@@ -152,8 +152,8 @@ Deposited operator+(const Deposited& a, const Deposited& b) {
           (a.y_px * a.signal_e + b.y_px * b.signal_e) / sum};
 }
 
-std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf, RateImage& image,
-                               Threads& threads, SimdLevel level) {
+std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
+                               ExpectedElectronImage& image, Threads& threads, SimdLevel level) {
   return deposit(arcs, psf,
                  DepositView{.pixels = image.pixels.data(),
                              .columns = image.columns,

@@ -52,8 +52,9 @@ struct DepositView {
 /// along the path, panels of 2 sigma with five Gauss-Legendre nodes. The bytes do not depend on the
 /// number of threads or the instruction set. Throws `Error` naming the arc when a number of it is
 /// not finite or the signal is negative.
-std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf, RateImage& image,
-                               Threads& threads, SimdLevel level = best_simd_level());
+std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
+                               ExpectedElectronImage& image, Threads& threads,
+                               SimdLevel level = best_simd_level());
 
 std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
                                const DepositView& view, Threads& threads,

@@ -79,7 +79,8 @@ void DirectBlur::for_pieces(const Arc& arc, const Extent& reach, const Use& use)
   visit(visit, 0.0, 1.0, 0);
 }
 
-void DirectBlur::add(const Arc& piece, int row_begin, int row_end, RateImage& light) const {
+void DirectBlur::add(const Arc& piece, int row_begin, int row_end,
+                     ExpectedElectronImage& light) const {
   // The piece on cells of its own, from the first cell of a pixel on.
   Arc arc = on_cells(piece);
   const Extent e = extent(arc);
@@ -129,7 +130,7 @@ void DirectBlur::add(const Arc& piece, int row_begin, int row_end, RateImage& li
   }
 }
 
-std::vector<Deposited> DirectBlur::deposit(std::span<const Arc> arcs, RateImage& light,
+std::vector<Deposited> DirectBlur::deposit(std::span<const Arc> arcs, ExpectedElectronImage& light,
                                            Threads& threads) {
   if (shares_.empty()) throw Error("blur: no kernel was set");
   const double reach = reach_px_ + double(table_.size) / k_ + 1.0;

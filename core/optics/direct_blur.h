@@ -20,13 +20,14 @@ class DirectBlur {
 
   /// Adds arcs (in pixels) to the image and tells what of each fell inside, before blurring. The
   /// bytes do not depend on the number of threads.
-  std::vector<Deposited> deposit(std::span<const Arc> arcs, RateImage& light, Threads& threads);
+  std::vector<Deposited> deposit(std::span<const Arc> arcs, ExpectedElectronImage& light,
+                                 Threads& threads);
 
  private:
   struct Patch;
   template <class Use>
   void for_pieces(const Arc& arc, const Extent& reach, const Use& use) const;
-  void add(const Arc& piece, int row_begin, int row_end, RateImage& light) const;
+  void add(const Arc& piece, int row_begin, int row_end, ExpectedElectronImage& light) const;
   Arc on_cells(const Arc& arc) const;
 
   int k_, half_, reach_px_, side_;  // `side_`: pixels of the summed kernel

@@ -12,7 +12,7 @@
 //   static std::span<const ImageParameter> parameters();
 //   void switch_off();                      leaves it parameters with which it does nothing
 //   bool applies() const;                   whether it has something to do
-//   apply(RateImage&, Threads&) const;
+//   apply(ExpectedElectronImage&, Threads&) const;
 // To add one: write its file pair, list it in core/optics/image_optics.h, test it.
 namespace dmise {
 

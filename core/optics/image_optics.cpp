@@ -24,7 +24,7 @@ ImageOptics acting_optics(const ImageOptics& optics, const EffectSet& effects) {
   return acting;
 }
 
-void apply_image_optics(const ImageOptics& acting, RateImage& image, Threads& threads,
+void apply_image_optics(const ImageOptics& acting, ExpectedElectronImage& image, Threads& threads,
                         EffectTimes& times) {
   using Clock = std::chrono::steady_clock;
   ImageEffects::for_each([&]<class Effect>() {

@@ -18,7 +18,7 @@ std::span<const ImageParameter> image_parameters();
 ImageOptics acting_optics(const ImageOptics& optics, const EffectSet& effects);
 
 /// Applies those that have something to do to the light of a frame.
-void apply_image_optics(const ImageOptics& acting, RateImage& image, Threads& threads,
+void apply_image_optics(const ImageOptics& acting, ExpectedElectronImage& image, Threads& threads,
                         EffectTimes& times);
 
 }  // namespace dmise

@@ -17,8 +17,8 @@ std::span<const ImageParameter> LensGhost::parameters() {
   return table;
 }
 
-void LensGhost::apply(RateImage& image, Threads& threads) const {
-  const RateImage source = image;
+void LensGhost::apply(ExpectedElectronImage& image, Threads& threads) const {
+  const ExpectedElectronImage source = image;
   const int columns = image.columns, rows = image.rows, reach = int(ghost_radius_px);
   std::vector<int> half_width;  // of the disc, by the distance of a row from its middle
   std::size_t pixels = 0;

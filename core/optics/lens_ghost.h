@@ -17,7 +17,7 @@ struct LensGhost {
   static std::span<const ImageParameter> parameters();
   void switch_off() { ghost_fraction = 0.0; }
   bool applies() const { return ghost_fraction > 0.0; }
-  void apply(RateImage& image, Threads& threads) const;
+  void apply(ExpectedElectronImage& image, Threads& threads) const;
 };
 
 }  // namespace dmise

@@ -1,6 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "core/effects/effects.h"
+
 namespace dmise {
 
 /// A Zernike term of the optics' wavefront, Noll's index; the rms in metres of path.
@@ -23,6 +25,10 @@ struct FieldAberrations {
 
 /// How a camera blurs a point, before its pixels integrate the light.
 struct PointSpread {
+  static constexpr EffectFacts facts{"psf", "blur of the optics",
+                                     "light falls on a point of no size",
+                                     "Gaussian, or Fourier optics of the pupil"};
+
   enum class Model {
     gaussian,     // round, of `psf_fwhm_px` and diffraction in quadrature
     diffraction,  // of the pupil: wavefront, spiders, turbulence, jitter

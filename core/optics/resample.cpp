@@ -41,9 +41,9 @@ std::vector<Taken> between_centres(int from, int to) {
   return all;
 }
 
-RateImage resample(const RateImage& image, const std::vector<Taken>& across,
-                   const std::vector<Taken>& down) {
-  RateImage out(int(across.size()), int(down.size()));
+ExpectedElectronImage resample(const ExpectedElectronImage& image, const std::vector<Taken>& across,
+                               const std::vector<Taken>& down) {
+  ExpectedElectronImage out(int(across.size()), int(down.size()));
   for (int y = 0; y < out.rows; ++y)
     for (int x = 0; x < out.columns; ++x) {
       const Taken &h = across[std::size_t(x)], &v = down[std::size_t(y)];
@@ -56,7 +56,7 @@ RateImage resample(const RateImage& image, const std::vector<Taken>& across,
   return out;
 }
 
-void check(const RateImage& image, int columns, int rows) {
+void check(const ExpectedElectronImage& image, int columns, int rows) {
   if (image.pixels.empty() || columns < 1 || rows < 1) throw Error("resample: an empty image");
 }
 
@@ -68,12 +68,12 @@ ResamplingCells resampling_cells(int k, PointSpread::Resampling resampling) {
   return {(k - 1) / 2, count, float(k * k) / float(count * count)};
 }
 
-RateImage resample_area(const RateImage& image, int columns, int rows) {
+ExpectedElectronImage resample_area(const ExpectedElectronImage& image, int columns, int rows) {
   check(image, columns, rows);
   return resample(image, by_area(image.columns, columns), by_area(image.rows, rows));
 }
 
-RateImage resample_bilinear(const RateImage& image, int columns, int rows) {
+ExpectedElectronImage resample_bilinear(const ExpectedElectronImage& image, int columns, int rows) {
   check(image, columns, rows);
   return resample(image, between_centres(image.columns, columns),
                   between_centres(image.rows, rows));

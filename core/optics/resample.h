@@ -15,11 +15,11 @@ ResamplingCells resampling_cells(int oversampling, PointSpread::Resampling resam
 /// An image on other pixels of any size that cover the same field; the light of each is the
 /// integral over its area of the image taken as constant within its own pixels. Exact flux; the MTF
 /// is the new pixel's own times sinc(nu w), w the old pixel's width.
-RateImage resample_area(const RateImage& image, int columns, int rows);
+ExpectedElectronImage resample_area(const ExpectedElectronImage& image, int columns, int rows);
 
 /// The same by the value at the new pixel's centre, linear between the centres around it, times the
 /// ratio of areas: the paper's. Light is lost or won where the new pixels don't average over the
 /// old ones, see docs/models/optics.md; beyond the outermost centres the edge's value holds.
-RateImage resample_bilinear(const RateImage& image, int columns, int rows);
+ExpectedElectronImage resample_bilinear(const ExpectedElectronImage& image, int columns, int rows);
 
 }  // namespace dmise

@@ -1,5 +1,9 @@
 #pragma once
+#include <array>
+#include <string_view>
+
 #include "core/base/pixel.h"
+#include "core/effects/effects.h"
 
 namespace dmise {
 
@@ -7,6 +11,11 @@ struct Optics;
 
 /// Light lost off the axis, besides what the projection does to a pixel's solid angle.
 struct Vignetting {
+  static constexpr EffectFacts facts{
+      "vignetting", "lenses lose light off the axis", "none to a magnitude in the corners",
+      "cos theta of the pupil, and a power of the distance from the axis"};
+  static bool applies(const SceneFacts& scene) { return scene.vignettes; }
+
   /// The entrance pupil is seen foreshortened: cos theta. With a gnomonic lens, whose pixels' solid
   /// angle goes as cos^3 theta, the sky falls off as cos^4 theta.
   bool natural = false;

@@ -1,4 +1,5 @@
 #pragma once
+#include "core/effects/effects.h"
 #include "core/photometry/spectrum.h"
 
 namespace dmise {
@@ -6,6 +7,11 @@ namespace dmise {
 /// Light of the upper atmosphere at night: brightest towards the horizon, where the path through
 /// its layer is longest.
 struct Airglow {
+  static constexpr EffectFacts facts{"airglow", "light of the upper atmosphere",
+                                     "22.4 mag/arcsec2 at the zenith",
+                                     "van Rhijn 1921, Publ. Astr. Lab. Groningen 31"};
+  static bool applies(const SceneFacts& scene) { return scene.on_ground; }
+
   double zenith_v_mag_per_arcsec2 = 22.4;  // at the ground; 21.9 to 22.6 over the solar cycle
   double layer_height_m = 90e3;
 };

@@ -1,49 +1,14 @@
 #pragma once
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
 
-#include "core/base/units.h"
-#include "core/effects/effects.h"
-#include "core/frames/earth_orientation.h"
-#include "core/frames/geodesy.h"
-#include "core/sky/refraction.h"
-#include "core/sky/sun_moon.h"
+#include "core/effects/acting_effects.h"
+#include "core/sky/observer.h"
+#include "core/sky/place_effects.h"
+#include "core/sky/star_place.h"
 
 namespace dmise {
-
-/// The air over a ground observer.
-struct Air {
-  Vec<Gcrs> zenith;  // unit, normal of the ellipsoid
-  Refraction refraction;
-};
-
-/// A camera at one instant.
-struct Observer {
-  Tt time;
-  SolarSystem solar_system;
-  Vec<Gcrs> position_m;        // geocentric
-  Vec<Gcrs> velocity_m_per_s;  // geocentric
-  std::optional<Air> air;      // none in space
-};
-
-Observer ground_observer(const Site& site, const EarthOrientation& earth, SimTime t, const Tt& tt,
-                         const SolarSystem& solar_system, const Refraction& refraction);
-Observer space_observer(const Vec<Gcrs>& position_m, const Vec<Gcrs>& velocity_m_per_s,
-                        const Tt& tt, const SolarSystem& solar_system);
-
-/// A star as a catalogue gives it, ICRS, at `epoch_jyear`.
-struct StarPlace {
-  double ra_rad = 0.0;
-  double dec_rad = 0.0;
-  double pm_ra_cosdec_rad_per_yr = 0.0;  // on the sky, so finite at the poles
-  double pm_dec_rad_per_yr = 0.0;
-  double parallax_rad = 0.0;
-  double radial_velocity_m_per_s = 0.0;  // receding is positive
-  double epoch_jyear = 2000.0;           // Julian year, TT
-};
 
 /// Columns of a catalogue, for batches: all of one length, `radial_velocity_m_per_s` may be empty.
 struct StarColumns {
@@ -61,9 +26,8 @@ struct SatellitePlace {
   double light_time_s = 0.0;  // 0 when switched off
 };
 
-/// Apparent directions at a camera, in GCRS axes: what an observer constant costs is paid once.
-/// Each correction runs when `effects` has it: proper_motion, parallax, light_deflection,
-/// annual_aberration, diurnal_aberration, light_time, refraction. Immutable after construction.
+/// Apparent directions at a camera, in GCRS axes: `PlaceEffects` in their order, those that are
+/// switched on. What an observer constant costs is paid once. Immutable after construction.
 class ApparentPlaces {
  public:
   ApparentPlaces(const Observer& observer, const EffectSet& effects);
@@ -85,17 +49,11 @@ class ApparentPlaces {
   /// observer's geocentric velocity alone. Throws `Error` for a satellite at the observer.
   template <class PositionAt>
   SatellitePlace satellite(PositionAt&& position_at) const {
-    const Vec<Gcrs> now_m = position_at(0.0) - observer_.position_m;
+    const auto line_m = [&](double dt_s) { return position_at(dt_s) - observer_m_; };
+    const Vec<Gcrs> now_m = line_m(0.0);
     SatellitePlace place{.range_m = norm(now_m)};
-    Vec<Gcrs> then_m = now_m;
-    if (light_time_) {
-      // Each turn gains a factor v/c: three end below a picosecond.
-      for (int i = 0; i < 3; ++i) {
-        place.light_time_s = norm(then_m) / speed_of_light_m_per_s;
-        then_m = position_at(-place.light_time_s) - observer_.position_m;
-      }
-    }
-    finish(then_m, place);
+    const auto* light_time = effects_.find<LightTime>();
+    finish(light_time ? light_time->apply(line_m, now_m, place.light_time_s) : now_m, place);
     return place;
   }
 
@@ -105,21 +63,12 @@ class ApparentPlaces {
   }
 
  private:
-  Vec<Gcrs> bent_and_aberrated(Vec<Gcrs> p) const;
-  Vec<Gcrs> through_air(const Vec<Gcrs>& direction, double distance_m) const;
+  Vec<Gcrs> bent_and_aberrated(Vec<Gcrs> direction) const;
   void finish(const Vec<Gcrs>& line_m, SatellitePlace& place) const;
 
-  Observer observer_;
-  Vec<Gcrs> barycentric_au_;
-  Vec<Gcrs> from_sun_;  // unit
-  double sun_distance_au_ = 1.0;
-  double years_ = 0.0;              // of `time`, Julian year
-  Vec<Gcrs> star_velocity_c_;       // that aberrates stars, in units of light's
-  Vec<Gcrs> satellite_velocity_c_;  // that aberrates satellites
-  double star_inverse_gamma_ = 1.0;
-  double satellite_inverse_gamma_ = 1.0;
-  bool proper_motion_, parallax_, deflection_, star_aberration_, satellite_aberration_, light_time_,
-      refraction_;
+  Vec<Gcrs> observer_m_;  // geocentric
+  ActingEffects<PlaceEffects> effects_;
+  std::optional<Aberration> of_stars_, of_satellites_;
 };
 
 }  // namespace dmise

@@ -1,9 +1,14 @@
 #pragma once
+#include "core/effects/effects.h"
 
 namespace dmise {
 
 /// Light of the stars below the catalogue's limit, above the atmosphere, smeared out.
 struct FaintStarlight {
+  static constexpr EffectFacts facts{"faint_starlight", "stars below the catalogue's limit",
+                                     "22.2 to 24.5 mag/arcsec2",
+                                     "Leinert et al. 1998, A&AS 127, 1, section 10"};
+
   double brighter_limit_v_mag = 9.0;  // stars brighter than this are drawn one by one
 };
 

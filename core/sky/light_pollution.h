@@ -1,5 +1,6 @@
 #pragma once
 #include <vector>
+#include "core/effects/effects.h"
 
 #include "core/frames/vec.h"
 #include "core/photometry/spectrum.h"
@@ -23,6 +24,11 @@ struct CityGlow {
 
 /// Light of lamps scattered by the air.
 struct LightPollution {
+  static constexpr EffectFacts facts{"light_pollution", "light of lamps scattered by the air",
+                                     "18 mag/arcsec2 in a city",
+                                     "a zenith brightness and its rise to the horizon"};
+  static bool applies(const SceneFacts& scene) { return scene.on_ground; }
+
   double zenith_v_mag_per_arcsec2 = 18.0;  // of the even part alone
   LampMix lamps;
   std::vector<CityGlow> cities;

@@ -1,4 +1,7 @@
 #pragma once
+#include <optional>
+
+#include "core/effects/effects.h"
 #include "core/frames/oblate_earth.h"
 
 namespace dmise {
@@ -28,5 +31,31 @@ class FreeSight {
 };
 
 bool line_of_sight_clear(const Vec<Gcrs>& from_m, const Vec<Gcrs>& to_m, const OblateEarth& earth);
+
+/// The Earth hides what is behind it: below the apparent horizon on the ground, behind the
+/// ellipsoid in orbit.
+class EarthOccultation {
+ public:
+  static constexpr EffectFacts facts{"earth_occultation", "the Earth hides what is behind it",
+                                     "objects and stars behind it are drawn",
+                                     "line of sight and ellipsoid"};
+
+  /// `up`: unit, the normal of the ellipsoid at a ground sensor. `sight`: of one in orbit.
+  EarthOccultation(const Vec<Gcrs>& up, const std::optional<FreeSight>& sight)
+      : up_(up), sight_(sight) {}
+
+  /// Whether it hides what is infinitely far in an apparent direction (unit).
+  bool hides_direction(const Vec<Gcrs>& apparent) const {
+    return sight_ ? !sight_->clear_direction(apparent) : dot(up_, apparent) < 0.0;
+  }
+  /// Whether it hides an object at `position_m` (geocentric) that is seen in a direction (unit).
+  bool hides_object(const Vec<Gcrs>& position_m, const Vec<Gcrs>& apparent) const {
+    return sight_ ? !sight_->clear(position_m) : dot(up_, apparent) < 0.0;
+  }
+
+ private:
+  Vec<Gcrs> up_;
+  std::optional<FreeSight> sight_;  // in orbit
+};
 
 }  // namespace dmise

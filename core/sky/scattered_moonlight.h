@@ -1,9 +1,15 @@
 #pragma once
+#include "core/effects/effects.h"
 
 namespace dmise {
 
 /// Moonlight scattered by the air.
 struct ScatteredMoonlight {
+  static constexpr EffectFacts facts{"scattered_moonlight", "moonlight scattered by the air",
+                                     "up to 18 mag/arcsec2 at full Moon",
+                                     "Krisciunas & Schaefer 1991, PASP 103, 1033"};
+  static bool applies(const SceneFacts& scene) { return scene.on_ground; }
+
   double factor = 1.0;  // for hazier air than that of the source
 };
 

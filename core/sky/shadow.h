@@ -1,6 +1,7 @@
 #pragma once
 #include <span>
 
+#include "core/effects/effects.h"
 #include "core/frames/oblate_earth.h"
 
 namespace dmise {
@@ -10,6 +11,10 @@ namespace dmise {
 /// refracted and absorbed light at the shadow's edge is left out.
 class EarthShadow {
  public:
+  static constexpr EffectFacts facts{
+      "shadow", "objects are dimmed by the Earth's penumbra and umbra",
+      "objects in shadow are drawn fully lit", "two discs: the Sun's and the Earth's"};
+
   /// `sun_m`: geocentric position of the Sun.
   EarthShadow(const Vec<Gcrs>& sun_m, const OblateEarth& earth);
 

@@ -42,6 +42,14 @@ std::optional<SkyParts> sky_parts_named(std::string_view preset) {
   return parts;
 }
 
+SkyParts acting_sky(const SkyParts& parts, const EffectSet& switched, const SceneFacts& scene) {
+  SkyParts acting = parts;
+  SkyPartEffects::for_each([&]<class Part>() {
+    if (!acts<Part>(switched, scene)) (acting.*sky_part<Part>).reset();
+  });
+  return acting;
+}
+
 SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& band,
                    const Curve& extinction)
     : parts_(parts), scene_(scene) {
@@ -56,10 +64,7 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
     k_v_ = zenith_extinction_mag(johnson_v(), extinction);
     diffuse_mag_ = diffuse_share_of_extinction * zenith_extinction_mag(band, extinction);
   } else {
-    parts_.airglow.reset();
-    parts_.scattered_moonlight.reset();
-    parts_.twilight.reset();
-    parts_.light_pollution.reset();
+    parts_ = acting_sky(parts, {}, {.on_ground = false});
   }
   if (parts_.twilight)
     twilight_scale_s10_ = parts_.twilight->factor * twilight_zenith_s10(sun_altitude_rad) /

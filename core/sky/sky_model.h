@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -32,6 +33,30 @@ struct SkyParts {
   std::optional<Twilight> twilight;
   std::optional<LightPollution> light_pollution;
 };
+
+/// Those that can be switched.
+using SkyPartEffects = EffectList<Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight,
+                                  Twilight, LightPollution>;
+
+/// Where such a part stands; null for other types.
+template <class Part>
+inline constexpr std::nullptr_t sky_part = nullptr;
+template <>
+inline constexpr auto sky_part<Airglow> = &SkyParts::airglow;
+template <>
+inline constexpr auto sky_part<ZodiacalLight> = &SkyParts::zodiacal_light;
+template <>
+inline constexpr auto sky_part<FaintStarlight> = &SkyParts::faint_starlight;
+template <>
+inline constexpr auto sky_part<ScatteredMoonlight> = &SkyParts::scattered_moonlight;
+template <>
+inline constexpr auto sky_part<Twilight> = &SkyParts::twilight;
+template <>
+inline constexpr auto sky_part<LightPollution> = &SkyParts::light_pollution;
+
+/// The parts that act: without those that are switched off or have no air to be in.
+SkyParts acting_sky(const SkyParts& parts, const EffectSet& switched, const SceneFacts& scene);
+
 enum class SkyPart {
   uniform,
   airglow,

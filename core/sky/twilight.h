@@ -1,10 +1,17 @@
 #pragma once
+#include "core/effects/effects.h"
 #include "core/photometry/spectrum.h"
 
 namespace dmise {
 
 /// Sunlight scattered high up while the Sun is below the horizon: brightest above where it stands.
 struct Twilight {
+  static constexpr EffectFacts facts{
+      "twilight", "sunlight scattered by the air with the Sun below the horizon",
+      "18 mag/arcsec2 with the Sun 10 deg down",
+      "Patat et al. 2006, A&A 455, 385; Schaefer 1993, Vistas in Astronomy 36, 311"};
+  static bool applies(const SceneFacts& scene) { return scene.on_ground; }
+
   double factor = 1.0;
 };
 

@@ -1,10 +1,16 @@
 #pragma once
+#include "core/effects/effects.h"
 
 namespace dmise {
 
 /// Sunlight scattered by interplanetary dust, above the atmosphere, of the Sun's colour; its yearly
 /// change (10 %) is left out.
 struct ZodiacalLight {
+  static constexpr EffectFacts facts{
+      "zodiacal_light", "sunlight scattered by dust between the planets",
+      "23.3 mag/arcsec2 at the ecliptic poles, 22 and brighter near the ecliptic",
+      "Leinert et al. 1998, A&AS 127, 1, table 17"};
+
   double factor = 1.0;  // on the table
 };
 

@@ -7,11 +7,10 @@
 #include "core/detection/components.h"
 #include "core/detection/detect.h"
 #include "core/detector/expected_noise.h"
-#include "core/effects/light_effects.h"
+#include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
-#include "core/optics/vignetting.h"
-#include "sensors/pipeline/light.h"
 #include "sensors/pipeline/sky_layer.h"
+#include "sensors/pipeline/throughput.h"
 
 namespace dmise {
 namespace {
@@ -79,14 +78,15 @@ PixelBackground background_at_centre(const View& view, double drawn_to_v_mag) {
   double sky_e = 0.0;
   const auto gcrs_from_camera = view.camera_from_gcrs(middle).inverse();
   const Vec<Gcrs> boresight = gcrs_from_camera * Vec<CameraFrame>{0, 0, 1};
-  if (sensor.effects.has(effect::sky) && !Hidden(view, middle).direction(boresight))
+  const auto earth = view.earth_occultation(middle);
+  if (sensor.effects.has(SkyBackground::facts) && !(earth && earth->hides_direction(boresight)))
     sky_e =
         sky_over(view, drawn_to_v_mag).photons_per_s_m2_sr(view.enu_from_gcrs(middle) * boresight) *
-        Light(view).electrons_per_photon_m2() * view.times().seconds() *
-        pixel_solid_angle_sr(optics, centre) * relative_illumination(optics, centre);
+        Throughput(view).electrons_per_photon_m2() * view.times().seconds() *
+        pixel_solid_angle_sr(optics, centre) * view.illumination(centre);
   const Detector detector = acting_detector(sensor.camera.detector, sensor.effects);
   constexpr int side = 8;  // the median of a few: hot pixels are drawn by place
-  RateImage light(side, side);
+  ExpectedElectronImage light(side, side);
   std::fill(light.pixels.begin(), light.pixels.end(), float(sky_e));
   Threads threads(1);
   auto noise = expected_noise(light, sensor.camera.detector,

@@ -5,14 +5,14 @@
 #include <limits>
 
 #include "core/base/units.h"
-#include "core/effects/light_effects.h"
+#include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
 #include "core/visibility/field_of_view.h"
-#include "sensors/pipeline/light.h"
 #include "sensors/pipeline/object_sampler.h"
 #include "sensors/pipeline/objects_in_field.h"
 #include "sensors/pipeline/star_layer.h"
+#include "sensors/pipeline/throughput.h"
 
 namespace dmise {
 namespace {
@@ -55,34 +55,37 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
   const Vec<Gcrs> boresight = camera_from_gcrs.inverse() * Vec<CameraFrame>{0, 0, 1};
   const Vec<Gcrs> here_m = view.observer(middle).position_m, up = view.up(middle);
   const Vec<Gcrs> to_sun_m = view.environment().sun_m - here_m;
-  const Hidden hidden(view, middle);
+  const auto earth = view.earth_occultation(middle);
+  const auto hides = [&](const Vec<Gcrs>& direction) {
+    return earth && earth->hides_direction(direction);
+  };
   FrameOutlook out{.frame = view.times().frame, .middle = middle};
   if (view.on_ground()) {
     out.boresight_elevation_rad = elevation_rad(up, boresight);
     out.sun_elevation_rad = elevation_rad(up, to_sun_m);
     out.moon_elevation_rad = elevation_rad(up, view.environment().moon_m - here_m);
   }
-  out.boresight_hidden = hidden.direction(boresight) ||
-                         (out.boresight_elevation_rad && *out.boresight_elevation_rad < 0.0);
+  out.boresight_hidden =
+      hides(boresight) || (out.boresight_elevation_rad && *out.boresight_elevation_rad < 0.0);
   if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) {
     const auto index = object_index(view.world().roster(), target->object, target->where);
     const Vec<Gcrs> position_m = view.world().motion(index, middle).position_m;
     const Vec<Gcrs> line = position_m - here_m;
     if (view.on_ground()) out.target_elevation_rad = elevation_rad(up, line);
-    out.target_hidden =
-        view.on_ground() ? *out.target_elevation_rad < 0.0 : hidden.object(position_m, unit(line));
+    out.target_hidden = view.on_ground() ? *out.target_elevation_rad < 0.0
+                                         : earth && earth->hides_object(position_m, unit(line));
   }
-  out.sun_in_field = FieldOfView(optics).contains(camera_from_gcrs * to_sun_m) &&
-                     !hidden.direction(unit(to_sun_m));
+  out.sun_in_field =
+      FieldOfView(optics).contains(camera_from_gcrs * to_sun_m) && !hides(unit(to_sun_m));
 
   const double reach_px = 5 * scene.psf_sigma_px + 1;  // of a source's light
   double drawn_to_v_mag = -std::numeric_limits<double>::infinity();
-  if (scene.stars && sensor.effects.has(effect::stars)) {
+  if (scene.stars && sensor.effects.has(StarBackground::facts)) {
     const StarLayer layer(sensor, scene.stars);
     drawn_to_v_mag = std::min(scene.faintest_star_mag, layer.faintest_filled_v_mag());
     out.stars = layer.count(view, scene.faintest_star_mag, reach_px);
   }
-  if (scene.count_objects && sensor.effects.has(effect::objects))
+  if (scene.count_objects && sensor.effects.has(SpaceObjects::facts))
     out.objects = objects_with_light(view, scene.shapes, reach_px);
 
   out.background = background_at_centre(view, drawn_to_v_mag);
@@ -102,12 +105,12 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
   const double diagonal_px = std::hypot(optics.columns, optics.rows);
   const auto limit = detection_limit(out.background.noise_e, scene.psf_sigma_px,
                                      std::min(out.streak_px, diagonal_px), out.star_px);
-  const Light light(view);
-  const double through = light.transmission(boresight);
+  const Throughput throughput(view);
+  const double through = throughput.of_sunlight(boresight);
   if (!(through > 0.0)) return out;
   out.extinction_mag = magnitude_of_light(through);
   const auto v_mag = [&](double e_per_s) {
-    return light.zero_point_mag() + magnitude_of_light(e_per_s / through);
+    return throughput.zero_point_mag() + magnitude_of_light(e_per_s / through);
   };
   out.point_limit_v_mag = v_mag(limit.point_e / view.times().seconds());
   if (limit.found_point_e)

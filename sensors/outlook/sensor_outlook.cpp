@@ -8,7 +8,7 @@
 #include "core/base/printable.h"
 #include "core/base/units.h"
 #include "core/detection/components.h"
-#include "core/effects/light_effects.h"
+#include "core/effects/frame_effects.h"
 #include "core/optics/psf_plan.h"
 #include "core/optics/psf_table.h"
 #include "nodes/environment/environment_actor.h"
@@ -50,7 +50,7 @@ double psf_sigma_px(const SensorConfig& sensor) {
   const double fwhm_px =
       plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing, sensor.exposure_s)
           .fwhm_px;
-  const double sigma_px = sensor.effects.has(effect::psf) ? fwhm_px / fwhm_per_sigma : 0.0;
+  const double sigma_px = sensor.effects.has(PointSpread::facts) ? fwhm_px / fwhm_per_sigma : 0.0;
   return std::sqrt(sigma_px * sigma_px + 1.0 / 12);
 }
 
@@ -157,7 +157,7 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
 
   Worlds worlds(scenario, sensor, clock);
   std::uint32_t looks = options.most_frames;
-  if (frames > 0 && sensor.effects.has(effect::objects) && !population.roster.objects.empty()) {
+  if (frames > 0 && sensor.effects.has(SpaceObjects::facts) && !population.roster.objects.empty()) {
     const auto ticks = worlds.ticks_of(frame_times(sensor, 1));
     const std::size_t states =
         3 * std::size_t(ticks.last - ticks.first + 1) * population.roster.objects.size();
@@ -168,7 +168,7 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
   }
   const ObjectPopulation& seen = out.objects_counted ? population : needed;
   const StateSource source(seen, clock, threads);
-  const ObjectShapes shapes(scenario.own_objects, sensor.camera.band);
+  const ObjectShapes shapes(scenario.own_objects, sensor.camera.band, sensor.effects);
   const OutlookScene scene{.stars = std::move(stars),
                            .faintest_star_mag = scenario.faintest_star_mag,
                            .shapes = &shapes,

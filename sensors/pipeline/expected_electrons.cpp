@@ -3,18 +3,32 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/effects/light_effects.h"
+#include "core/effects/frame_effects.h"
 #include "sensors/pipeline/object_layer.h"
 #include "sensors/pipeline/objects_in_field.h"
-#include "sensors/pipeline/screen.h"
+#include "sensors/pipeline/occlusion_mask.h"
 #include "sensors/pipeline/sky_layer.h"
 #include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
 namespace {
 
+/// What the stages of a frame's light work on.
+struct LightFrame {
+  const View& view;
+  const LightSources& sources;
+  OpticsStage& optics;
+  ExpectedElectronImage& image;
+  Threads& threads;
+  EffectTimes& times;
+  const LightOptions& options;
+  double drawn_to_v_mag;
+  OcclusionMask mask{image.columns, image.rows};
+  LightTruth truth{};
+};
+
 /// Electrons of a source that just stands out of a pixel's noise of sky, dark current and read-out.
-double faintest_e(const View& view, const RateImage& sky) {
+double faintest_e(const View& view, const ExpectedElectronImage& sky) {
   const auto& d = view.sensor().camera.detector;
   const double sky_e = sky.at(sky.columns / 2, sky.rows / 2);
   const double noise_e =
@@ -22,44 +36,96 @@ double faintest_e(const View& view, const RateImage& sky) {
   return 10.0 * std::max(1.0, noise_e);
 }
 
+struct SkyStage : SkyBackground {
+  static void apply(LightFrame& f) {
+    fill_sky(f.view, f.drawn_to_v_mag, f.image, f.threads, f.sources.evaluator);
+  }
+  static void leave_out(LightFrame& f) { apply(f); }
+};
+
+/// The blur before the first source: kernels of the exposure.
+struct KernelStage : PointSpread {
+  static void apply(LightFrame& f) { f.optics.begin(f.view.times(), faintest_e(f.view, f.image)); }
+};
+
+struct ObjectStage : SpaceObjects {
+  static void apply(LightFrame& f) {
+    f.truth.objects = draw_objects(f.view, objects_in_field(f.view, f.sources.shapes),
+                                   f.sources.shapes, f.optics, f.mask, f.image);
+  }
+};
+
+/// The sky behind what objects cover.
+struct OcclusionStage : Occlusion {
+  static void apply(LightFrame& f) {
+    if (f.mask.empty() || !f.view.sensor().effects.has(SkyBackground::facts)) return;
+    ExpectedElectronImage behind(f.image.columns, f.image.rows);
+    fill_sky_behind(f.view, f.drawn_to_v_mag, behind, f.threads);
+    f.mask.take_hidden(behind, f.image);
+  }
+};
+
+struct StarStage : StarBackground {
+  static void apply(LightFrame& f) {
+    if (f.sources.stars)
+      f.truth.stars = f.sources.stars->draw(f.view, f.optics, f.mask, f.image,
+                                            f.sources.faintest_star_mag, f.options.stars, f.times);
+  }
+};
+
+/// The blur after the last source.
+struct BlurStage : PointSpread {
+  static void apply(LightFrame& f) { f.optics.finish(f.image); }
+};
+
+/// In the order in which they run. A stage has the facts of its effect and
+///   static void apply(LightFrame&);
+///   static void leave_out(LightFrame&);   where there is something to do when the effect is off
+using LightStages =
+    EffectList<SkyStage, KernelStage, ObjectStage, OcclusionStage, StarStage, BlurStage>;
+
+/// Runs a stage. Its effect is charged what the stage does not charge to others.
+template <class Stage>
+void run(LightFrame& frame) {
+  double stage_s = 0.0;
+  const double before_s = frame.times.sum_s();
+  {
+    Stopwatch timing(stage_s);
+    Stage::apply(frame);
+  }
+  frame.times[Stage::facts] += std::max(0.0, stage_s - (frame.times.sum_s() - before_s));
+}
+
 }  // namespace
 
 double LightSources::drawn_to_v_mag(const EffectSet& effects) const {
-  if (!stars || !effects.has(effect::stars)) return -std::numeric_limits<double>::infinity();
+  if (!stars || !effects.has(StarBackground::facts))
+    return -std::numeric_limits<double>::infinity();
   return std::min(faintest_star_mag, stars->faintest_filled_v_mag());
 }
 
 LightTruth expected_electrons(const View& view, const LightSources& sources, OpticsStage& optics,
-                              RateImage& image, Threads& threads, EffectTimes& times,
+                              ExpectedElectronImage& image, Threads& threads, EffectTimes& times,
                               const LightOptions& options) {
   const EffectSet& effects = view.sensor().effects;
-  const double drawn_to_v_mag = sources.drawn_to_v_mag(effects);
-  LightTruth truth;
-  fill_sky(view, drawn_to_v_mag, image, threads, times, sources.evaluator);
-  if (options.sky) *options.sky = image;
-  {
-    Stopwatch timing(times[effect::psf]);
-    optics.begin(view.times(), faintest_e(view, image));
-  }
-  Screen screen(image.columns, image.rows);
-  if (effects.has(effect::objects))
-    truth.objects = draw_objects(view, objects_in_field(view, sources.shapes), sources.shapes,
-                                 optics, screen, image, times);
-  if (!screen.empty()) {
-    RateImage behind(image.columns, image.rows);
-    fill_sky_behind(view, drawn_to_v_mag, behind, threads);
-    screen.take_hidden(behind, image);
-  }
-  if (sources.stars && effects.has(effect::stars))
-    truth.stars = sources.stars->draw(view, optics, screen, image, sources.faintest_star_mag,
-                                      options.stars, times);
-  {
-    Stopwatch timing(times[effect::psf]);
-    optics.finish(image);
-  }
+  LightFrame frame{.view = view,
+                   .sources = sources,
+                   .optics = optics,
+                   .image = image,
+                   .threads = threads,
+                   .times = times,
+                   .options = options,
+                   .drawn_to_v_mag = sources.drawn_to_v_mag(effects)};
+  LightStages::for_each([&]<class Stage>() {
+    if (acts<Stage>(effects, view.scene()))
+      run<Stage>(frame);
+    else if constexpr (requires { Stage::leave_out(frame); })
+      Stage::leave_out(frame);
+    if (std::is_same_v<Stage, SkyStage> && options.sky) *options.sky = image;
+  });
   apply_image_optics(acting_optics(view.sensor().camera.optics.image, effects), image, threads,
                      times);
-  return truth;
+  return std::move(frame.truth);
 }
 
 }  // namespace dmise

@@ -26,7 +26,7 @@ struct LightSources {
 
 /// What else may be asked of an exposure's light.
 struct LightOptions {
-  RateImage* sky = nullptr;                 // filled with the light of the sky alone
+  ExpectedElectronImage* sky = nullptr;     // filled with the light of the sky alone
   std::vector<StarTruth>* stars = nullptr;  // gets the stars as they were drawn
 };
 
@@ -41,7 +41,7 @@ struct LightTruth {
 /// or, of a view whose sensor has that, for a part of it. Adds the seconds of each stage to
 /// `times`.
 LightTruth expected_electrons(const View& view, const LightSources& sources, OpticsStage& optics,
-                              RateImage& image, Threads& threads, EffectTimes& times,
+                              ExpectedElectronImage& image, Threads& threads, EffectTimes& times,
                               const LightOptions& options = {});
 
 }  // namespace dmise

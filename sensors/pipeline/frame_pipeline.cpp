@@ -9,7 +9,7 @@
 #include "core/config/effect_list.h"
 #include "core/detection/detect.h"
 #include "core/detector/expose.h"
-#include "core/effects/light_effects.h"
+#include "core/effects/frame_effects.h"
 #include "core/image/fits_cards.h"
 #include "sensors/pipeline/expected_electrons.h"
 #include "sensors/pipeline/header_of.h"
@@ -41,14 +41,15 @@ struct FramePipeline::Work {
   std::optional<StarLayer> stars;
   std::optional<GlEvaluator> evaluator;
   OpticsStage optics;
-  RateImage light;         // kept between frames: memory that is new costs more than filling it
+  ExpectedElectronImage
+      light;               // kept between frames: memory that is new costs more than filling it
   CountImage used_counts;  // of a frame that is done with, without the memory behind them
   DetectorMemory detector_memory;
 
   Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)
       : settings(std::move(s)), threads(t), optics(settings.sensor, settings.seed, t) {
     const auto& grid = settings.sensor.camera.optics;
-    light = room_for_image<RateImage>(grid);
+    light = room_for_image<ExpectedElectronImage>(grid);
     light.columns = grid.columns;
     light.rows = grid.rows;
     light.pixels.resize(std::size_t(grid.columns) * std::size_t(grid.rows));
@@ -66,7 +67,10 @@ struct FramePipeline::Work {
 
   std::string plan() const {
     std::string text;
-    for (const EffectFacts* effect : effects_in(settings.sensor, stars.has_value()))
+    SceneFacts scene = scene_facts(settings.sensor);
+    scene.stars = stars.has_value();
+    scene.shapes = settings.shapes && !settings.shapes->empty();
+    for (const EffectFacts* effect : effects_in(settings.sensor, scene))
       text += (text.empty() ? "" : " ") + std::string(effect->name);
     return text;
   }
@@ -99,7 +103,7 @@ RadianceMap FramePipeline::Work::radiance_in(const PipelineSettings::Part& part,
   if (evaluator) part_optics.draw_by(*evaluator);
   std::optional<StarLayer> part_stars;
   if (stars) part_stars.emplace(sensor, stars->map());
-  RateImage image(light.columns, light.rows);
+  ExpectedElectronImage image(light.columns, light.rows);
   EffectTimes elsewhere;
   expected_electrons(view, sources(part_stars ? &*part_stars : nullptr, part.shapes.get()),
                      part_optics, image, threads, elsewhere);
@@ -156,7 +160,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
                                    .stars = settings.star_truth ? &frame.stars : nullptr});
   frame.truths = std::move(truth.objects);
   // Until the next frame the memory is for counts.
-  if (stars && has(effect::stars))
+  if (stars && has(StarBackground::facts))
     if (const auto& file = stars->map()->file) file->release();
   if (settings.output.radiance_exr)
     for (const auto& part : settings.radiance_parts)

@@ -21,19 +21,19 @@ struct BandRadiance {
 
 /// What the counts of a frame were drawn from. Only what the scenario asks for is filled in.
 struct FramePlanes {
-  RateImage sources, background;  // expected photo-electrons a second
-  ElectronImage noise;            // expected standard deviation from frame to frame [e-]
+  ExpectedElectronImage sources, background;  // expected photo-electrons a second
+  ElectronImage noise;  // expected standard deviation from frame to frame [e-]
   RadianceMap radiance;
   std::vector<BandRadiance> radiance_parts;  // in parts of the band, where they are asked for
 };
 
 /// What `light` [e-] of an exposure is at the aperture.
-RadianceMap radiance_of(const View& view, double exposure_s, const RateImage& light,
+RadianceMap radiance_of(const View& view, double exposure_s, const ExpectedElectronImage& light,
                         Threads& threads);
 
 /// Call when `light` [e-] holds all that falls on the detector during `exposure` and the
 /// background, where it is wanted, the sky alone.
 void make_planes(const OutputConfig& wanted, const View& view, const Exposure& exposure,
-                 const RateImage& light, Threads& threads, FramePlanes& planes);
+                 const ExpectedElectronImage& light, Threads& threads, FramePlanes& planes);
 
 }  // namespace dmise

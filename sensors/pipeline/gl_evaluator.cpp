@@ -38,7 +38,7 @@ std::vector<Deposited> GlEvaluator::add(std::span<const Arc> points, const PsfTa
   return result;
 }
 
-void GlEvaluator::add_sky(std::span<const SkyPatch> patches, RateImage& image) {
+void GlEvaluator::add_sky(std::span<const SkyPatch> patches, ExpectedElectronImage& image) {
   renderer().add_patches(patches, {image.pixels.data(), image.columns, image.rows, image.columns});
 }
 

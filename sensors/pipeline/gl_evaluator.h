@@ -20,7 +20,7 @@ class GlEvaluator {
   /// Throws `Error` for an arc that moves, or that `deposit` refuses, and where there is no OpenGL.
   std::vector<Deposited> add(std::span<const Arc> points, const PsfTable& psf,
                              const DepositView& view, Threads& threads);
-  void add_sky(std::span<const SkyPatch> patches, RateImage& image);
+  void add_sky(std::span<const SkyPatch> patches, ExpectedElectronImage& image);
 
   /// What draws.
   std::string description();

@@ -5,12 +5,11 @@
 #include <optional>
 
 #include "core/base/version.h"
-#include "core/effects/place_effects.h"
 #include "core/optics/projection.h"
 #include "core/time/iso8601.h"
 #include "core/wcs/wcs_fit.h"
-#include "sensors/pipeline/light.h"
 #include "sensors/pipeline/observation_of.h"
+#include "sensors/pipeline/throughput.h"
 
 namespace dmise {
 namespace {
@@ -24,7 +23,7 @@ Wcs wcs_of(const View& view) {
   const auto camera_from_gcrs = view.camera_from_gcrs(middle);
   const auto gcrs_from_camera = camera_from_gcrs.inverse();
   std::optional<CameraAir> air;
-  if (view.on_ground() && sensor.effects.has(effect::refraction))
+  if (view.on_ground() && sensor.effects.has(AtmosphericRefraction::facts))
     air = CameraAir{camera_from_gcrs * view.up(middle), view.refraction()};
   const auto star_at = [&](PixelPosition pixel) -> std::optional<Vec<Gcrs>> {
     const auto seen = unproject(optics, pixel);
@@ -65,8 +64,8 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
                 .detector = detector,
                 .psf_fwhm_px = psf_fwhm_px,
                 .band = sensor.camera.band,
-                .zero_point_mag = Light(view).zero_point_mag(),
-                .extinction_mag_per_airmass = Light(view).extinction_mag_per_airmass(),
+                .zero_point_mag = Throughput(view).zero_point_mag(),
+                .extinction_mag_per_airmass = Throughput(view).extinction_mag_per_airmass(),
                 .projection = optics.projection,
                 .focal_length_px = optics.focal_length_px(),
                 .sensor_position_m = observer.position_m,
@@ -83,7 +82,7 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
     h.site = SitePlace{site->latitude_deg * deg, site->longitude_deg * deg, site->height_m,
                        itrs_from_geodetic(*site)};
     h.air = view.weather();
-    if (!sensor.effects.has(effect::refraction)) h.air->pressure_hpa = 0.0;
+    if (!sensor.effects.has(AtmosphericRefraction::facts)) h.air->pressure_hpa = 0.0;
   }
   const double most_dn = std::exp2(detector.adc_bits) - 1;
   const double well_e = h.full_well_e * (1.0 - detector.nonlinearity) *

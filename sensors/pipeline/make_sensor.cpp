@@ -32,13 +32,14 @@ std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std
                                              const std::string& directory,
                                              std::shared_ptr<const StarMap> stars,
                                              Threads& threads) {
+  const SensorConfig& sensor = sensor_named(scenario, name);
   std::vector<PipelineSettings::Part> parts;
   if (scenario.output.radiance_bands > 1)
-    for (const Band& part :
-         parts_of(sensor_named(scenario, name).camera.band, scenario.output.radiance_bands))
-      parts.push_back({part, std::make_shared<const ObjectShapes>(scenario.own_objects, part)});
+    for (const Band& part : parts_of(sensor.camera.band, scenario.output.radiance_bands))
+      parts.push_back(
+          {part, std::make_shared<const ObjectShapes>(scenario.own_objects, part, sensor.effects)});
   return std::make_unique<SensorEvaluator>(
-      PipelineSettings{.sensor = sensor_named(scenario, name),
+      PipelineSettings{.sensor = sensor,
                        .clock = make_clock(scenario),
                        .seed = scenario.seed,
                        .digest = digest,
@@ -46,7 +47,7 @@ std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std
                        .star_truth = scenario.output.star_truth,
                        .output = scenario.output,
                        .shapes = std::make_shared<const ObjectShapes>(
-                           scenario.own_objects, sensor_named(scenario, name).camera.band),
+                           scenario.own_objects, sensor.camera.band, sensor.effects),
                        .radiance_parts = std::move(parts)},
       RunGrid{.tick_length = scenario.tick,
               .duration = scenario.duration,

@@ -6,11 +6,9 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/effects/light_effects.h"
 #include "core/optics/snapshots.h"
 #include "sensors/pipeline/object_sampler.h"
 #include "sensors/pipeline/shape_exposure.h"
-#include "sensors/pipeline/stopwatch.h"
 #include "sensors/render/resolution.h"
 
 namespace dmise {
@@ -61,10 +59,9 @@ bool is_resolved_at(const View& view, const ObjectSampler& sampler, std::size_t 
 
 Deposited draw_resolved(const View& view, const ObjectSampler& sampler, std::size_t object,
                         const std::vector<ShapeSnapshot>& snapshots, OpticsStage& stage,
-                        Screen& screen, RateImage& image) {
+                        OcclusionMask& mask, ExpectedElectronImage& image) {
   try {
-    return draw_shape(sampler.shapes(), snapshots, view.sensor().camera.optics, stage, screen,
-                      image);
+    return draw_shape(view, sampler.shapes(), snapshots, stage, mask, image);
   } catch (const Error& error) {
     throw Error("object " + view.world().roster().objects[object].name + ": " + error.what());
   }
@@ -84,7 +81,7 @@ std::vector<std::size_t> nearest_first(const View& view, std::vector<std::size_t
 
 std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
                          const std::vector<std::size_t>& objects, OpticsStage& stage,
-                         Screen& screen, RateImage& image) {
+                         OcclusionMask& mask, ExpectedElectronImage& image) {
   const auto& exposure = view.times();
   const auto& optics = view.sensor().camera.optics;
   // Instants of the finest division; coarser ones take every so manieth.
@@ -119,12 +116,12 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
       if (std::size_t(2 * poses) >= samples.size()) samples = samples_of(object, changing_arcs);
       light =
           draw_resolved(view, sampler, object, snapshots_of(view, sampler, object, samples, poses),
-                        stage, screen, image);
+                        stage, mask, image);
     } else {
       auto arcs = shaped ? shape_arcs(view, sampler, object, samples)
                          : arcs_of(samples, exposure.seconds());
       if (const int count = view.sensor().effects.snapshots()) arcs = as_snapshots(arcs, count);
-      arcs = screen.past(arcs);
+      arcs = mask.past(arcs);
       for (const auto& part : stage.add(arcs, image)) light = light + part;
     }
     bool enters = false;
@@ -183,10 +180,9 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
 }  // namespace
 
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
-                                const ObjectShapes* shapes, OpticsStage& optics, Screen& screen,
-                                RateImage& image, EffectTimes& times) {
-  Stopwatch timing(times[effect::objects]);
-  return paint(view, ObjectSampler(view, shapes), objects, optics, screen, image);
+                                const ObjectShapes* shapes, OpticsStage& optics,
+                                OcclusionMask& mask, ExpectedElectronImage& image) {
+  return paint(view, ObjectSampler(view, shapes), objects, optics, mask, image);
 }
 
 }  // namespace dmise

@@ -5,8 +5,8 @@
 #include "core/base/parallel.h"
 #include "core/products/truth.h"
 #include "sensors/pipeline/object_shapes.h"
+#include "sensors/pipeline/occlusion_mask.h"
 #include "sensors/pipeline/optics_stage.h"
-#include "sensors/pipeline/screen.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -14,11 +14,11 @@ namespace dmise {
 // Space objects as streaks: those that the field, the horizon, the Earth and its shadow leave, each
 // along its own path with its own brightness over the exposure.
 
-/// Adds their light to `image` and tells what was drawn. An object of which no light fell inside
-/// and whose path did not enter the frame has no entry. `screen`, as yet empty, gets what objects
+/// Adds their light to `image` and returns what was drawn. An object of which no light fell inside
+/// and whose path did not enter the frame has no entry. `mask`, as yet empty, gets what objects
 /// with a shape hide; they hide each other and points by their ranges.
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
-                                const ObjectShapes* shapes, OpticsStage& optics, Screen& screen,
-                                RateImage& image, EffectTimes& times);
+                                const ObjectShapes* shapes, OpticsStage& optics,
+                                OcclusionMask& mask, ExpectedElectronImage& image);
 
 }  // namespace dmise

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/effects/light_effects.h"
+#include "core/facets/earthshine.h"
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
 
@@ -13,25 +13,26 @@ namespace dmise {
 ObjectSampler::ObjectSampler(const View& view, const ObjectShapes* shapes)
     : view_(view),
       shapes_(shapes),
-      light_(view),
-      shadow_(view.environment().sun_m, oblate_earth(view.earth())),
-      with_shadow_(view.sensor().effects.has(effect::shadow)),
-      with_earthshine_(view.sensor().effects.has(effect::earthshine)),
-      zero_mag_(object_photons_per_s_m2(0.0, view.sensor().camera.band)) {}
+      throughput_(view),
+      with_earthshine_(acts<Earthshine>(view.sensor().effects, view.scene())),
+      zero_mag_(object_photons_per_s_m2(0.0, view.sensor().camera.band)) {
+  if (acts<EarthShadow>(view.sensor().effects, view.scene()))
+    shadow_.emplace(view.environment().sun_m, oblate_earth(view.earth()));
+}
 
 ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at) const {
   const Motion motion = view_.world().motion(object, at.time);
   const auto place = at.places.satellite(motion.position_m, motion.slope_m_per_s);
   ObjectSample s;
   s.pixel = project(view_.sensor().camera.optics, at.camera * place.direction);
-  s.sunlit = with_shadow_ ? shadow_.sunlit_fraction(motion.position_m) : 1.0;
-  const bool hidden = at.hidden.object(motion.position_m, place.direction);
+  s.sunlit = shadow_ ? shadow_->sunlit_fraction(motion.position_m) : 1.0;
+  const bool hidden = at.earth && at.earth->hides_object(motion.position_m, place.direction);
   const ObjectShape* own_shape = shape(object);
   if (hidden || (s.sunlit <= 0.0 && !own_shape && !with_earthshine_)) return s;
   s.electrons_per_photon_m2 =
-      transmission(place.direction) * flicker(object, place.direction) *
-      light_.electrons_per_photon_m2() *
-      (s.pixel ? relative_illumination(view_.sensor().camera.optics, *s.pixel) : 1.0);
+      throughput_.of_air({place.direction, sun_bv, SightLine::Source::object,
+                          view_.world().roster().objects[object].catalogue_number}) *
+      throughput_.electrons_per_photon_m2() * (s.pixel ? view_.illumination(*s.pixel) : 1.0);
   const double photons =
       own_shape ? shape_photons(object, *own_shape, at.time, at.observer, s.sunlit)
                 : zero_mag_ * light_of_magnitude(magnitude(object, motion, at)) * s.sunlit +
@@ -90,15 +91,6 @@ double ObjectSampler::earthshine_photons(std::size_t object, const Motion& motio
                                            .sun_distance_au = seen.sun_distance_au,
                                            .sunlit = source.share});
   return zero_mag_ * light_of_magnitude(sun_v_mag) * light;
-}
-
-double ObjectSampler::transmission(const Vec<Gcrs>& apparent) const {
-  return light_.transmission(apparent);
-}
-
-double ObjectSampler::flicker(std::size_t object, const Vec<Gcrs>& apparent) const {
-  return light_.flicker(apparent, Light::Flickering::object,
-                        view_.world().roster().objects[object].catalogue_number);
 }
 
 std::vector<Arc> arcs_of(const std::vector<ObjectSample>& samples, double seconds) {

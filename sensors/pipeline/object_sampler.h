@@ -5,8 +5,8 @@
 #include "core/optics/deposit.h"
 #include "core/photometry/diffuse_sphere.h"
 #include "core/sky/shadow.h"
-#include "sensors/pipeline/light.h"
 #include "sensors/pipeline/object_shapes.h"
+#include "sensors/pipeline/throughput.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -24,14 +24,14 @@ struct ExposureInstant {
   SimTime time;
   ApparentPlaces places;
   Rotation<CameraFrame, Gcrs> camera;
-  Hidden hidden;
+  std::optional<EarthOccultation> earth;
   ObserverState observer;
 
   ExposureInstant(const View& view, SimTime t)
       : time(t),
         places(view.places(t)),
         camera(view.camera_from_gcrs(t)),
-        hidden(view, t),
+        earth(view.earth_occultation(t)),
         observer(view.observer(t)) {}
 };
 
@@ -60,16 +60,14 @@ class ObjectSampler {
                        const ObserverState& observer, double sunlit) const;
 
  private:
-  double transmission(const Vec<Gcrs>& apparent) const;
   double earthshine_photons(std::size_t object, const Motion& motion,
                             const ExposureInstant& at) const;
-  double flicker(std::size_t object, const Vec<Gcrs>& apparent) const;
 
   const View& view_;
   const ObjectShapes* shapes_;
-  Light light_;
-  EarthShadow shadow_;
-  bool with_shadow_, with_earthshine_;
+  Throughput throughput_;
+  std::optional<EarthShadow> shadow_;
+  bool with_earthshine_;
   double zero_mag_;
 };
 

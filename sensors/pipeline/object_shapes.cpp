@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/effects/light_effects.h"
 #include "core/facets/earthshine.h"
 #include "core/photometry/diffuse_sphere.h"
 #include "core/photometry/magnitude.h"
@@ -12,12 +11,14 @@
 
 namespace dmise {
 
-ObjectShapes::ObjectShapes(const std::vector<OwnObject>& objects, const Band& band)
+ObjectShapes::ObjectShapes(const std::vector<OwnObject>& objects, const Band& band,
+                           const EffectSet& effects)
     : sun_photons_(object_photons_per_s_m2(sun_v_mag, band)) {
+  const bool emits = acts<ThermalEmission>(effects, {});
   for (const auto& object : objects)
     if (object.geometry)
       shapes_.emplace(object.catalogue_number,
-                      ObjectShape{FacetLight(*object.geometry->mesh, band),
+                      ObjectShape{FacetLight(*object.geometry->mesh, band, emits),
                                   dmise::radius_m(*object.geometry->mesh)});
 }
 
@@ -49,7 +50,7 @@ std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTim
                  .range_m = norm(to_viewer),
                  .sun_distance_au = norm(to_sun) / au_m,
                  .earthshine = {}};
-  if (rings > 0 && view.sensor().effects.has(effect::earthshine))
+  if (rings > 0 && acts<Earthshine>(view.sensor().effects, view.scene()))
     pose.earthshine = earthshine_on(position_m, view.environment().sun_m, body_from_gcrs, rings);
   return pose;
 }

@@ -39,8 +39,10 @@ std::vector<LightSource> earthshine_on(const Vec<Gcrs>& position_m, const Vec<Gc
 /// first of them is near enough to show it.
 class ObjectShapes {
  public:
-  ObjectShapes(const std::vector<OwnObject>& objects, const Band& band);
+  ObjectShapes(const std::vector<OwnObject>& objects, const Band& band,
+               const EffectSet& effects = {});
 
+  bool empty() const { return shapes_.empty(); }
   /// Null for an object without a shape.
   const ObjectShape* of(std::uint32_t catalogue_number) const;
 

@@ -5,7 +5,6 @@
 
 #include "core/base/error.h"
 #include "core/config/band_wavelengths.h"
-#include "core/effects/light_effects.h"
 #include "core/optics/projection.h"
 
 namespace dmise {
@@ -15,7 +14,7 @@ using Method = PointSpread::Method;
 
 PsfPlan plan_of(const SensorConfig& sensor) {
   const Camera& camera = sensor.camera;
-  if (sensor.effects.has(effect::psf))
+  if (sensor.effects.has(PointSpread::facts))
     return plan_psf(camera.optics, camera.band.centre_m, sensor.seeing, sensor.exposure_s);
   return {.why = "off"};
 }
@@ -44,7 +43,7 @@ std::vector<FieldPlace> field_places(const Optics& o) {
 
 OpticsStage::OpticsStage(const SensorConfig& sensor, std::uint64_t seed, Threads& threads)
     : optics_(sensor.camera.optics),
-      blurs_(sensor.effects.has(effect::psf)),
+      blurs_(sensor.effects.has(PointSpread::facts)),
       plan_(plan_of(sensor)),
       threads_(threads) {
   const Band& band = sensor.camera.band;
@@ -82,7 +81,8 @@ void OpticsStage::make_kernels() {
   has_kernels_ = true;
 }
 
-std::vector<Deposited> OpticsStage::sum_directly(std::span<const Arc> arcs, RateImage& light) {
+std::vector<Deposited> OpticsStage::sum_directly(std::span<const Arc> arcs,
+                                                 ExpectedElectronImage& light) {
   if (optics_.spread.grid_columns * optics_.spread.grid_rows == 1) {
     if (!direct_ready_) direct_->set_kernel(central_);
     direct_ready_ = true;
@@ -119,7 +119,7 @@ std::vector<Deposited> OpticsStage::put(std::span<const Arc> arcs, const Deposit
   return result;
 }
 
-std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, RateImage& light) {
+std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, ExpectedElectronImage& light) {
   if (!model_)
     return put(arcs, DepositView{.pixels = light.pixels.data(),
                                  .columns = light.columns,
@@ -153,7 +153,7 @@ std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, RateImage& li
   return result;
 }
 
-void OpticsStage::finish(RateImage& light) {
+void OpticsStage::finish(ExpectedElectronImage& light) {
   if (!model_) return;
   if (grid_) grid_->blur_into(light, optics_.spread.resampling, threads_);
   threads_.for_ranges(light.pixels.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {

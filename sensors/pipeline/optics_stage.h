@@ -36,14 +36,14 @@ class OpticsStage {
   /// of the faintest source that matters.
   void begin(const FrameTimes& exposure, double limit_e);
   /// Puts light on the plane and tells what of each arc fell inside the frame.
-  std::vector<Deposited> add(std::span<const Arc> arcs, RateImage& light);
+  std::vector<Deposited> add(std::span<const Arc> arcs, ExpectedElectronImage& light);
   /// Blurs what was not yet and adds it; the frame's light is complete and nowhere negative.
-  void finish(RateImage& light);
+  void finish(ExpectedElectronImage& light);
 
  private:
   void make_kernels();
   std::vector<Deposited> put(std::span<const Arc> arcs, const DepositView& view);
-  std::vector<Deposited> sum_directly(std::span<const Arc> arcs, RateImage& light);
+  std::vector<Deposited> sum_directly(std::span<const Arc> arcs, ExpectedElectronImage& light);
 
   Optics optics_;
   bool blurs_;  // the effect psf is on

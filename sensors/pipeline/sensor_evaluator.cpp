@@ -4,8 +4,9 @@
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
-#include "core/effects/light_effects.h"
-#include "core/effects/place_effects.h"
+#include "core/effects/frame_effects.h"
+#include "core/sky/air_effects.h"
+#include "core/sky/place_effects.h"
 
 namespace dmise {
 
@@ -34,12 +35,13 @@ std::vector<std::string> SensorEvaluator::consumes() const {
   const EffectSet& effects = sensor_.effects;
   const bool on_ground = std::holds_alternative<SiteConfig>(sensor_.place);
   std::vector<std::string> topics;
-  if (effects.has(effect::objects) || !on_ground ||
+  if (effects.has(SpaceObjects::facts) || !on_ground ||
       std::holds_alternative<PointTarget>(sensor_.pointing))
     topics.push_back(objects_topic);
   topics.push_back(environment_topic);
-  if (on_ground && (effects.has(effect::refraction) || effects.has(effect::extinction) ||
-                    effects.has(effect::sky) || sensor_.atmosphere.turbulence))
+  if (on_ground &&
+      (effects.has(AtmosphericRefraction::facts) || effects.has(AirExtinction::facts) ||
+       effects.has(SkyBackground::facts) || sensor_.atmosphere.turbulence))
     topics.push_back(site_prefix + sensor_.name);
   return topics;
 }

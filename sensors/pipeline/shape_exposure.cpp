@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/effects/light_effects.h"
+#include "core/facets/earthshine.h"
 #include "core/optics/projection.h"
 
 namespace dmise {
@@ -32,7 +32,7 @@ ArcLight light_of_arc(const View& view, const ObjectSampler& sampler, std::size_
   }
   double sum = half[0] + half[1];
   ArcLight light{.tilt = sum > 0.0 ? std::clamp(2 * (half[1] - half[0]) / sum, -1.0, 1.0) : 0.0};
-  if (view.sensor().effects.has(effect::earthshine)) {
+  if (acts<Earthshine>(view.sensor().effects, view.scene())) {
     const SimTime t = at(0.5);
     const auto pose = shape_pose(view, object, t, view.observer(t).position_m);
     if (pose) sum += halves * earthshine_photons_per_s_m2(sampler.shapes(), shape, *pose);

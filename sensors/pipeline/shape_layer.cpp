@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "sensors/pipeline/shape_window.h"
 
@@ -38,9 +39,15 @@ double reach_px(const PsfPlan& plan) {
 /// Light of snapshots on its way to the plane.
 class ShapePainter {
  public:
-  ShapePainter(const ObjectShapes& shapes, const Optics& optics, OpticsStage& stage, Screen& screen,
-               RateImage& image)
-      : shapes_(shapes), optics_(optics), stage_(stage), screen_(screen), image_(image) {}
+  ShapePainter(const View& view, const ObjectShapes& shapes, OpticsStage& stage,
+               OcclusionMask& mask, ExpectedElectronImage& image)
+      : view_(view),
+        shapes_(shapes),
+        optics_(view.sensor().camera.optics),
+        occludes_(acts<Occlusion>(view.sensor().effects, view.scene())),
+        stage_(stage),
+        mask_(mask),
+        image_(image) {}
 
   void add(const ShapeSnapshot& snapshot) {
     if (!(snapshot.photons_per_s_m2 > 0.0)) add_point(snapshot);
@@ -61,7 +68,7 @@ class ShapePainter {
 
   Deposited finish() {
     hand_over();
-    screen_.close();
+    mask_.close();
     return light_;
   }
 
@@ -80,7 +87,7 @@ class ShapePainter {
          .camera = camera,
          .oversampling = std::clamp(piece_px / std::max(camera.columns, camera.rows), 4, 64)});
     const auto middle = project(optics_, snapshot.direction);
-    const double at_middle = middle ? relative_illumination(optics_, *middle) : 1.0;
+    const double at_middle = middle ? view_.illumination(*middle) : 1.0;
     for (int y = 0; y < tile.rows; ++y)
       for (int x = 0; x < tile.columns; ++x) {
         const std::size_t pixel = std::size_t(y) * std::size_t(tile.columns) + std::size_t(x);
@@ -96,7 +103,7 @@ class ShapePainter {
         if (snapshot.photons_per_s_m2 > 0.0)
           add_light(snapshot, *place,
                     tile.radiance[pixel] * solid_angle_sr / snapshot.photons_per_s_m2 *
-                        relative_illumination(optics_, *place) / at_middle);
+                        view_.illumination(*place) / at_middle);
       }
   }
 
@@ -111,10 +118,10 @@ class ShapePainter {
       const double signal_e = share * way.signal_e;
       if (!(signal_e > 0.0)) continue;
       const Arc arc{at + way.start, at + way.middle, at + way.end, signal_e, way.tilt};
-      if (screen_.empty()) {
+      if (mask_.empty()) {
         arcs_.push_back(arc);
       } else {
-        const auto free = screen_.past({&arc, 1});
+        const auto free = mask_.past({&arc, 1});
         arcs_.insert(arcs_.end(), free.begin(), free.end());
       }
     }
@@ -123,12 +130,13 @@ class ShapePainter {
 
   void cover(const ShapeSnapshot& snapshot, const PixelPosition& at, double side_px,
              double hidden_px) {
+    if (!occludes_) return;
     const double share = snapshot.share / double(snapshot.sweep.size());
     for (const Arc& way : snapshot.sweep) {
       const int steps =
           int(std::clamp(std::ceil(2.0 * length_px(way)), 1.0, double(most_cover_steps)));
       for (int i = 0; i < steps; ++i)
-        screen_.cover(at + place(way, (i + 0.5) / steps), side_px, hidden_px * share / steps);
+        mask_.cover(at + place(way, (i + 0.5) / steps), side_px, hidden_px * share / steps);
     }
   }
 
@@ -137,20 +145,23 @@ class ShapePainter {
     arcs_.clear();
   }
 
+  const View& view_;
   const ObjectShapes& shapes_;
   const Optics& optics_;
+  const bool occludes_;
   OpticsStage& stage_;
-  Screen& screen_;
-  RateImage& image_;
+  OcclusionMask& mask_;
+  ExpectedElectronImage& image_;
   std::vector<Arc> arcs_;
   Deposited light_;
 };
 
 }  // namespace
 
-Deposited draw_shape(const ObjectShapes& shapes, const std::vector<ShapeSnapshot>& snapshots,
-                     const Optics& optics, OpticsStage& stage, Screen& screen, RateImage& image) {
-  ShapePainter painter(shapes, optics, stage, screen, image);
+Deposited draw_shape(const View& view, const ObjectShapes& shapes,
+                     const std::vector<ShapeSnapshot>& snapshots, OpticsStage& stage,
+                     OcclusionMask& mask, ExpectedElectronImage& image) {
+  ShapePainter painter(view, shapes, stage, mask, image);
   for (const auto& snapshot : snapshots) painter.add(snapshot);
   return painter.finish();
 }

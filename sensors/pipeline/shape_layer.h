@@ -3,8 +3,8 @@
 
 #include "core/base/image.h"
 #include "sensors/pipeline/object_shapes.h"
+#include "sensors/pipeline/occlusion_mask.h"
 #include "sensors/pipeline/optics_stage.h"
-#include "sensors/pipeline/screen.h"
 
 namespace dmise {
 
@@ -25,9 +25,10 @@ struct ShapeSnapshot {
 /// Draws an object with its shape: for each snapshot tiles of what the frame sees of it, finer than
 /// the camera's pixels where it is small, each of whose pixels is put on the plane through the
 /// camera's own projection and swept along. The light is that of the sweep, whatever the pose has;
-/// what nearer objects on the screen hide is left out, and the object is added to the screen.
+/// what nearer objects hide by the mask is left out, and the object is added to it.
 /// Memory is bounded by the frame. Throws `Error` for a camera inside the bounding box.
-Deposited draw_shape(const ObjectShapes& shapes, const std::vector<ShapeSnapshot>& snapshots,
-                     const Optics& optics, OpticsStage& stage, Screen& screen, RateImage& image);
+Deposited draw_shape(const View& view, const ObjectShapes& shapes,
+                     const std::vector<ShapeSnapshot>& snapshots, OpticsStage& stage,
+                     OcclusionMask& mask, ExpectedElectronImage& image);
 
 }  // namespace dmise

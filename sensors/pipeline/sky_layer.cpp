@@ -2,28 +2,17 @@
 
 #include <algorithm>
 
-#include "core/effects/light_effects.h"
+#include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
-#include "core/optics/vignetting.h"
 #include "core/sky/sky_grid.h"
-#include "sensors/pipeline/light.h"
-#include "sensors/pipeline/stopwatch.h"
+#include "sensors/pipeline/throughput.h"
 
 namespace dmise {
 namespace {
 
-SkyParts parts_switched_on(const SensorConfig& sensor, double drawn_to_v_mag) {
-  SkyParts parts = sensor.sky.parts;
+SkyParts parts_over(const View& view, double drawn_to_v_mag) {
+  SkyParts parts = acting_sky(view.sensor().sky.parts, view.sensor().effects, view.scene());
   if (parts.faint_starlight) parts.faint_starlight->brighter_limit_v_mag = drawn_to_v_mag;
-  const auto keep = [&](const EffectFacts& effect, auto& part) {
-    if (!sensor.effects.has(effect)) part.reset();
-  };
-  keep(effect::airglow, parts.airglow);
-  keep(effect::zodiacal_light, parts.zodiacal_light);
-  keep(effect::faint_starlight, parts.faint_starlight);
-  keep(effect::scattered_moonlight, parts.scattered_moonlight);
-  keep(effect::twilight, parts.twilight);
-  keep(effect::light_pollution, parts.light_pollution);
   return parts;
 }
 
@@ -42,9 +31,8 @@ SkyScene scene_of(const View& view) {
       .gcrs_from_enu = enu_from_gcrs.inverse(),
       .in_air = view.on_ground(),
       .time_s = t.seconds()};
-  const auto& clouds = view.sensor().weather.clouds;
-  if (view.on_ground() && clouds && view.sensor().effects.has(effect::clouds))
-    scene.clouds = std::make_shared<const CloudMap>(*clouds);
+  if (acts<CloudCover>(view.sensor().effects, view.scene()))
+    scene.clouds = std::make_shared<const CloudMap>(*view.sensor().weather.clouds);
   return scene;
 }
 
@@ -52,19 +40,19 @@ SkyModel sky_of(const View& view, const SkyParts& parts) {
   return SkyModel(parts, scene_of(view), view.sensor().camera.band, extinction_over(view));
 }
 
-void fill_with(const View& view, const SkyModel& sky, RateImage& image, Threads& threads,
-               GlEvaluator* evaluator = nullptr) {
+void fill_with(const View& view, const SkyModel& sky, ExpectedElectronImage& image,
+               Threads& threads, GlEvaluator* evaluator = nullptr) {
   const auto& optics = view.sensor().camera.optics;
   const auto gcrs_from_camera = view.camera_from_gcrs(view.times().middle).inverse();
   const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) * gcrs_from_camera;
-  const Hidden hidden(view, view.times().middle);
+  const auto earth = view.earth_occultation(view.times().middle);
   const double electrons_per_photon_m2 =
-      Light(view).electrons_per_photon_m2() * view.times().seconds();
+      Throughput(view).electrons_per_photon_m2() * view.times().seconds();
   const PixelFunction electrons = [&](double x, double y) {
     const auto direction = unproject(optics, {x, y});
-    if (!direction || hidden.direction(gcrs_from_camera * *direction)) return 0.0;
+    if (!direction || (earth && earth->hides_direction(gcrs_from_camera * *direction))) return 0.0;
     return sky.photons_per_s_m2_sr(enu_from_camera * *direction) * electrons_per_photon_m2 *
-           pixel_solid_angle_sr(optics, {x, y}) * relative_illumination(optics, {x, y});
+           pixel_solid_angle_sr(optics, {x, y}) * view.illumination({x, y});
   };
   if (!evaluator) {
     fill_from_grid(optics.columns, optics.rows, electrons, sky_tolerance, image.pixels.data(),
@@ -79,27 +67,24 @@ void fill_with(const View& view, const SkyModel& sky, RateImage& image, Threads&
 }  // namespace
 
 SkyModel sky_over(const View& view, double drawn_to_v_mag) {
-  return sky_of(view, parts_switched_on(view.sensor(), drawn_to_v_mag));
+  return sky_of(view, parts_over(view, drawn_to_v_mag));
 }
 
-void fill_sky(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads,
-              EffectTimes& times, GlEvaluator* evaluator) {
-  if (!view.sensor().effects.has(effect::sky)) {
+void fill_sky(const View& view, double drawn_to_v_mag, ExpectedElectronImage& image,
+              Threads& threads, GlEvaluator* evaluator) {
+  if (!acts<SkyBackground>(view.sensor().effects, view.scene())) {
     std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
     return;
   }
-  Stopwatch timing(times[effect::sky]);
   fill_with(view, sky_over(view, drawn_to_v_mag), image, threads, evaluator);
 }
 
-void fill_sky_behind(const View& view, double drawn_to_v_mag, RateImage& image, Threads& threads) {
-  SkyParts parts = parts_switched_on(view.sensor(), drawn_to_v_mag);
+void fill_sky_behind(const View& view, double drawn_to_v_mag, ExpectedElectronImage& image,
+                     Threads& threads) {
+  SkyParts parts = parts_over(view, drawn_to_v_mag);
   if (view.on_ground())
     parts = {.zodiacal_light = parts.zodiacal_light, .faint_starlight = parts.faint_starlight};
-  if (view.sensor().effects.has(effect::sky))
-    fill_with(view, sky_of(view, parts), image, threads);
-  else
-    std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
+  fill_with(view, sky_of(view, parts), image, threads);
 }
 
 }  // namespace dmise

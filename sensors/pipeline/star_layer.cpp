@@ -4,12 +4,12 @@
 #include <array>
 #include <optional>
 
-#include "core/effects/light_effects.h"
+#include "core/effects/frame_effects.h"
 #include "core/optics/deposit.h"
 #include "core/optics/projection.h"
-#include "sensors/pipeline/light.h"
 #include "sensors/pipeline/star_snapshots.h"
 #include "sensors/pipeline/stopwatch.h"
+#include "sensors/pipeline/throughput.h"
 
 namespace dmise {
 namespace {
@@ -47,13 +47,14 @@ struct StarLayer::Exposure {
   std::array<SimTime, 3> instants = {view.times().start, view.times().middle, view.times().end};
   std::array<ApparentPlaces, 3> places = {view.places(instants[0]), view.places(instants[1]),
                                           view.places(instants[2])};
-  Hidden hidden{view, instants[1]};
-  Light light{view};
+  std::optional<EarthOccultation> earth = view.earth_occultation(instants[1]);
+  Throughput throughput{view};
 
   /// Trails of those that the projection can image throughout the exposure.
   std::vector<Trail> trails(std::span<const std::uint32_t> which) const;
-  /// Shares of their light that reach the camera.
-  std::vector<double> transmission(const std::vector<Trail>& trails, EffectTimes& times) const;
+  /// Factors of the air on their light.
+  std::vector<double> factors_of_air(const std::vector<Trail>& trails, EffectTimes& times) const;
+  bool hides(const Vec<Gcrs>& apparent) const { return earth && earth->hides_direction(apparent); }
 };
 
 std::vector<Trail> StarLayer::Exposure::trails(std::span<const std::uint32_t> which) const {
@@ -81,38 +82,26 @@ std::vector<Trail> StarLayer::Exposure::trails(std::span<const std::uint32_t> wh
   return trails;
 }
 
-std::vector<double> StarLayer::Exposure::transmission(const std::vector<Trail>& trails,
-                                                      EffectTimes& times) const {
-  std::vector<double> transmission(trails.size());
-  {
-    Stopwatch timing(times[effect::extinction]);
-    for (std::size_t i = 0; i < trails.size(); ++i)
-      transmission[i] = light.air_transmission(trails[i].middle, stars.bv[trails[i].star]);
-  }
-  {
-    Stopwatch timing(times[effect::clouds]);
-    for (std::size_t i = 0; i < trails.size(); ++i)
-      transmission[i] *= light.cloud_transmission(trails[i].middle);
-  }
-  {
-    Stopwatch timing(times[effect::scintillation]);
-    for (std::size_t i = 0; i < trails.size(); ++i)
-      transmission[i] *=
-          light.flicker(trails[i].middle, Light::Flickering::star, stars.id[trails[i].star]);
-  }
-  return transmission;
+std::vector<double> StarLayer::Exposure::factors_of_air(const std::vector<Trail>& trails,
+                                                        EffectTimes& times) const {
+  std::vector<SightLine> lines;
+  lines.reserve(trails.size());
+  for (const Trail& trail : trails)
+    lines.push_back(
+        {trail.middle, stars.bv[trail.star], SightLine::Source::star, stars.id[trail.star]});
+  return throughput.of_air(lines, times);
 }
 
 namespace {
 
 /// Deposits arcs, each as far as it is not behind something.
-std::vector<Deposited> add_past(const Screen& screen, std::span<const Arc> arcs,
-                                OpticsStage& optics, RateImage& image) {
-  if (screen.empty()) return optics.add(arcs, image);
+std::vector<Deposited> add_past(const OcclusionMask& mask, std::span<const Arc> arcs,
+                                OpticsStage& optics, ExpectedElectronImage& image) {
+  if (mask.empty()) return optics.add(arcs, image);
   std::vector<Arc> free;
   std::vector<std::size_t> star;
   for (std::size_t i = 0; i < arcs.size(); ++i)
-    for (const Arc& part : screen.past(arcs.subspan(i, 1))) {
+    for (const Arc& part : mask.past(arcs.subspan(i, 1))) {
       free.push_back(part);
       star.push_back(i);
     }
@@ -149,7 +138,7 @@ std::uint32_t StarLayer::count(const View& view, double faintest_v_mag, double m
   const auto& grid = view.sensor().camera.optics;
   std::uint32_t inside = 0;
   for (const Trail& trail : exposure.trails(candidates(view, faintest_v_mag))) {
-    if (exposure.hidden.direction(trail.middle)) continue;
+    if (exposure.hides(trail.middle)) continue;
     const auto [start, middle, end] = trail.pixel;
     const auto [first_x, last_x] = std::minmax({start.x_px, middle.x_px, end.x_px});
     const auto [first_y, last_y] = std::minmax({start.y_px, middle.y_px, end.y_px});
@@ -159,61 +148,49 @@ std::uint32_t StarLayer::count(const View& view, double faintest_v_mag, double m
   return inside;
 }
 
-std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Screen& screen,
-                              RateImage& image, double faintest_v_mag,
+std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const OcclusionMask& mask,
+                              ExpectedElectronImage& image, double faintest_v_mag,
                               std::vector<StarTruth>* truth, EffectTimes& times) const {
-  std::optional<Exposure> exposure;
-  std::vector<std::uint32_t> found;
-  {
-    Stopwatch timing(times[effect::stars]);
-    exposure.emplace(Exposure{.view = view, .stars = map_->stars});
-    found = candidates(view, faintest_v_mag);
-  }
+  const Exposure exposure{.view = view, .stars = map_->stars};
+  const std::vector<std::uint32_t> found = candidates(view, faintest_v_mag);
   // OpenGL's pictures are read back whole, so that there all go at once.
   const std::size_t at_a_time =
       view.sensor().effects.snapshots() ? std::max<std::size_t>(1, found.size()) : stars_at_a_time;
   std::uint32_t inside = 0;
   for (std::size_t begin = 0; begin < found.size(); begin += at_a_time) {
     const auto which = std::span(found).subspan(begin, std::min(at_a_time, found.size() - begin));
-    inside += draw(*exposure, which, optics, screen, image, truth, times);
+    inside += draw(exposure, which, optics, mask, image, truth, times);
   }
   return inside;
 }
 
 std::uint32_t StarLayer::draw(const Exposure& exposure, std::span<const std::uint32_t> which,
-                              OpticsStage& optics, const Screen& screen, RateImage& image,
-                              std::vector<StarTruth>* truth, EffectTimes& times) const {
+                              OpticsStage& optics, const OcclusionMask& mask,
+                              ExpectedElectronImage& image, std::vector<StarTruth>* truth,
+                              EffectTimes& times) const {
   const View& view = exposure.view;
   const StarTable& stars = exposure.stars;
-  std::vector<Trail> trails;
+  std::vector<Trail> trails = exposure.trails(which);
   {
-    Stopwatch timing(times[effect::stars]);
-    trails = exposure.trails(which);
+    Stopwatch timing(times[EarthOccultation::facts]);
+    std::erase_if(trails, [&](const Trail& t) { return exposure.hides(t.middle); });
   }
-  {
-    Stopwatch timing(times[effect::earth_occultation]);
-    std::erase_if(trails, [&](const Trail& t) { return exposure.hidden.direction(t.middle); });
-  }
-  const auto transmission = exposure.transmission(trails, times);
+  const auto factor_of_air = exposure.factors_of_air(trails, times);
   const int snapshots = view.sensor().effects.snapshots();
   std::vector<Arc> arcs;
-  {
-    Stopwatch timing(times[effect::stars]);
-    const double electrons_per_rate =
-        exposure.light.electrons_per_photon_m2() * view.times().seconds();
-    const auto& camera = view.sensor().camera.optics;
-    arcs.reserve(trails.size());
-    for (std::size_t i = 0; i < trails.size(); ++i) {
-      const auto& t = trails[i];
-      arcs.push_back({t.pixel[0], t.pixel[1], t.pixel[2],
-                      light_.photons_per_s_m2(stars.v_mag[t.star], stars.bv[t.star]) *
-                          electrons_per_rate * transmission[i] *
-                          (snapshots ? 1.0 : relative_illumination(camera, t.pixel[1]))});
-    }
+  const double electrons_per_rate =
+      exposure.throughput.electrons_per_photon_m2() * view.times().seconds();
+  arcs.reserve(trails.size());
+  for (std::size_t i = 0; i < trails.size(); ++i) {
+    const auto& t = trails[i];
+    arcs.push_back({t.pixel[0], t.pixel[1], t.pixel[2],
+                    light_.photons_per_s_m2(stars.v_mag[t.star], stars.bv[t.star]) *
+                        electrons_per_rate * factor_of_air[i] *
+                        (snapshots ? 1.0 : view.illumination(t.pixel[1]))});
   }
   std::vector<Deposited> deposited;
   {
-    Stopwatch timing(times[effect::psf]);
+    Stopwatch timing(times[PointSpread::facts]);
     if (snapshots) {
       std::vector<std::uint32_t> drawn;
       std::vector<double> signal_e;
@@ -222,9 +199,9 @@ std::uint32_t StarLayer::draw(const Exposure& exposure, std::span<const std::uin
         signal_e.push_back(arcs[i].signal_e);
       }
       deposited = draw_star_snapshots(view, exposure.columns, drawn, signal_e, snapshots, optics,
-                                      screen, image);
+                                      mask, image);
     } else {
-      deposited = add_past(screen, arcs, optics, image);
+      deposited = add_past(mask, arcs, optics, image);
     }
   }
   std::uint32_t inside = 0;

@@ -7,8 +7,8 @@
 #include "core/base/parallel.h"
 #include "core/photometry/star_light.h"
 #include "core/sky/star_cache.h"
+#include "sensors/pipeline/occlusion_mask.h"
 #include "sensors/pipeline/optics_stage.h"
-#include "sensors/pipeline/screen.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -33,17 +33,17 @@ class StarLayer {
   /// How many stars have a path over the frame or within `margin_px` of it; none is drawn.
   std::uint32_t count(const View& view, double faintest_v_mag, double margin_px) const;
 
-  /// Adds the stars' light that gets past `screen` to `image`; returns how many left some in the
-  /// frame. `truth`, if not null, gets each of them. The time spent goes to the effects it was
-  /// spent for.
-  std::uint32_t draw(const View& view, OpticsStage& optics, const Screen& screen, RateImage& image,
-                     double faintest_v_mag, std::vector<StarTruth>* truth,
-                     EffectTimes& times) const;
+  /// Adds the stars' light that gets past `mask` to `image`; returns how many left some in the
+  /// frame. `truth`, if not null, gets each of them. What air, Earth and blur cost is
+  /// added to their `times`.
+  std::uint32_t draw(const View& view, OpticsStage& optics, const OcclusionMask& mask,
+                     ExpectedElectronImage& image, double faintest_v_mag,
+                     std::vector<StarTruth>* truth, EffectTimes& times) const;
 
  private:
   struct Exposure;
   std::uint32_t draw(const Exposure& exposure, std::span<const std::uint32_t> which,
-                     OpticsStage& optics, const Screen& screen, RateImage& image,
+                     OpticsStage& optics, const OcclusionMask& mask, ExpectedElectronImage& image,
                      std::vector<StarTruth>* truth, EffectTimes& times) const;
   std::vector<std::uint32_t> candidates(const View& view, double faintest_v_mag) const;
 

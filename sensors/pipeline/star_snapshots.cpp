@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/optics/projection.h"
-#include "core/optics/vignetting.h"
 
 namespace dmise {
 namespace {
@@ -17,8 +16,8 @@ constexpr int most_snapshots = 64;
 std::vector<Deposited> draw_star_snapshots(const View& view, const StarColumns& columns,
                                            const std::vector<std::uint32_t>& stars,
                                            std::span<const double> signal_e, int count,
-                                           OpticsStage& optics, const Screen& screen,
-                                           RateImage& image) {
+                                           OpticsStage& optics, const OcclusionMask& mask,
+                                           ExpectedElectronImage& image) {
   const Optics& camera = view.sensor().camera.optics;
   std::vector<Deposited> result(stars.size());
   std::vector<Vec<Gcrs>> direction(stars.size());
@@ -38,9 +37,8 @@ std::vector<Deposited> draw_star_snapshots(const View& view, const StarColumns& 
     for (std::size_t i = 0; i < stars.size(); ++i) {
       const auto pixel = project(camera, camera_from_gcrs * direction[i]);
       if (!pixel) continue;
-      const Arc point{*pixel, *pixel, *pixel,
-                      signal_e[i] / count * relative_illumination(camera, *pixel), 0.0};
-      for (const Arc& part : screen.past({&point, 1})) {
+      const Arc point{*pixel, *pixel, *pixel, signal_e[i] / count * view.illumination(*pixel), 0.0};
+      for (const Arc& part : mask.past({&point, 1})) {
         points.push_back(part);
         star_of.push_back(i);
       }

@@ -5,8 +5,8 @@
 
 #include "core/base/image.h"
 #include "core/sky/apparent.h"
+#include "sensors/pipeline/occlusion_mask.h"
 #include "sensors/pipeline/optics_stage.h"
-#include "sensors/pipeline/screen.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -18,7 +18,7 @@ namespace dmise {
 std::vector<Deposited> draw_star_snapshots(const View& view, const StarColumns& columns,
                                            const std::vector<std::uint32_t>& stars,
                                            std::span<const double> signal_e, int count,
-                                           OpticsStage& optics, const Screen& screen,
-                                           RateImage& image);
+                                           OpticsStage& optics, const OcclusionMask& mask,
+                                           ExpectedElectronImage& image);
 
 }  // namespace dmise

@@ -2,6 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/config/effect_list.h"
 #include "core/optics/projection.h"
 #include "core/visibility/sight.h"
 #include "core/visibility/target_direction.h"
@@ -37,6 +38,20 @@ View::View(const SensorConfig& sensor, const FrameTimes& times, const World& wor
     throw Error(sensor.name + ": pointing.target: " + world.roster().objects[*target_].name +
                 " is where the sensor is, at frame " + std::to_string(times.frame));
   aimed_ = pointing_scene(times.middle);
+  vignettes_ = acts<Vignetting>(sensor.effects, scene());
+}
+
+SceneFacts View::scene() const { return scene_facts(sensor_); }
+
+std::optional<EarthOccultation> View::earth_occultation(SimTime t) const {
+  if (!acts<EarthOccultation>(sensor_.effects, scene())) return std::nullopt;
+  std::optional<FreeSight> sight;
+  if (!on_ground()) sight.emplace(observer(t).position_m, oblate_earth(earth()));
+  return EarthOccultation(up(t), sight);
+}
+
+double View::illumination(PixelPosition pixel) const {
+  return vignettes_ ? relative_illumination(sensor_.camera.optics, pixel) : 1.0;
 }
 
 ObserverState View::observer(SimTime t) const {

@@ -6,6 +6,7 @@
 #include "core/config/scenario.h"
 #include "core/frames/geodesy.h"
 #include "core/sky/apparent.h"
+#include "core/sky/occultation.h"
 #include "core/visibility/pointing.h"
 #include "sensors/pipeline/frame_times.h"
 #include "sensors/pipeline/world.h"
@@ -53,6 +54,13 @@ class View {
   /// East, north and `up` at `t`; in space any east and north.
   Rotation<Enu, Gcrs> enu_from_gcrs(SimTime t) const;
 
+  /// What decides whether effects have something to do.
+  SceneFacts scene() const;
+  /// Which part of the Earth hides what is behind it at `t`; nothing where the effect is off.
+  std::optional<EarthOccultation> earth_occultation(SimTime t) const;
+  /// Light that reaches a pixel, relative to the boresight's: (0, 1].
+  double illumination(PixelPosition pixel) const;
+
   /// Pixel of an apparent direction (observed: aberration and refraction in it); nothing where the
   /// projection has no image.
   std::optional<PixelPosition> pixel(const Vec<Gcrs>& apparent, SimTime t) const;
@@ -72,6 +80,7 @@ class View {
   Weather weather_;
   Refraction refraction_;
   PointingScene aimed_;
+  bool vignettes_ = false;
 };
 
 }  // namespace dmise

@@ -7,8 +7,11 @@
 
 #include "core/base/text_file.h"
 #include "core/config/sensor_config.h"
-#include "core/effects/light_effects.h"
-#include "core/effects/place_effects.h"
+#include "core/effects/frame_effects.h"
+#include "core/facets/facet_light.h"
+#include "core/sky/air_effects.h"
+#include "core/sky/place_effects.h"
+#include "core/sky/sky_model.h"
 
 namespace dmise {
 namespace {
@@ -27,29 +30,61 @@ TEST(EffectList, ItsDocumentIsUpToDate) {
       << "dmise list effects > docs/models/effects.md";
 }
 
-TEST(EffectList, EachCanBeSwitchedByItsName) {
+bool runs(const std::vector<const EffectFacts*>& list, const EffectFacts& effect) {
+  return std::any_of(list.begin(), list.end(),
+                     [&](const EffectFacts* one) { return one->name == effect.name; });
+}
+
+TEST(EffectList, EachCanBeSwitchedByItsNameUnlessItHasOtherChoices) {
   for (const EffectFacts* effect : all_effects())
     for (const bool on : {true, false}) {
       EffectSet set;
-      read_effects(YamlValue::parse(std::string(effect->name) + (on ? ": on" : ": off"), "e.yaml"),
-                   set);
-      EXPECT_EQ(set.has(*effect), on) << effect->name;
+      const auto read = [&] {
+        read_effects(
+            YamlValue::parse(std::string(effect->name) + (on ? ": on" : ": off"), "e.yaml"), set);
+      };
+      if (effect->switchable) {
+        read();
+        EXPECT_EQ(set.has(*effect), on) << effect->name;
+      } else {
+        EXPECT_THROW(read(), ConfigError) << effect->name;
+      }
     }
 }
 
 TEST(EffectList, InSpaceThereIsNoAir) {
   SensorConfig sensor;
+  sensor.sky.parts = *sky_parts_named("dark");
+  const EffectFacts* of_air[] = {&AtmosphericRefraction::facts,
+                                 &AirExtinction::facts,
+                                 &Scintillation::facts,
+                                 &CloudCover::facts,
+                                 &Airglow::facts,
+                                 &Twilight::facts};
   sensor.place = PlatformConfig{};
-  const auto in_space = effects_in(sensor, true);
-  const auto runs = [](const auto& list, const EffectFacts& effect) {
-    return std::find(list.begin(), list.end(), &effect) != list.end();
-  };
-  for (const EffectFacts* effect :
-       {&effect::refraction, &effect::extinction, &effect::scintillation, &effect::clouds})
-    EXPECT_FALSE(runs(in_space, *effect)) << effect->name;
+  sensor.weather.clouds = UniformCloud{};
+  for (const EffectFacts* effect : of_air)
+    EXPECT_FALSE(runs(effects_in(sensor, scene_facts(sensor)), *effect)) << effect->name;
+  EXPECT_TRUE(runs(effects_in(sensor, scene_facts(sensor)), ZodiacalLight::facts));
   sensor.place = SiteConfig{};
-  EXPECT_TRUE(runs(effects_in(sensor, true), effect::refraction));
-  EXPECT_FALSE(runs(effects_in(sensor, false), effect::stars));
+  for (const EffectFacts* effect : of_air)
+    EXPECT_TRUE(runs(effects_in(sensor, scene_facts(sensor)), *effect)) << effect->name;
+}
+
+TEST(EffectList, WhatHasNothingToDoDoesNotRun) {
+  SensorConfig sensor;
+  sensor.sky.parts = *sky_parts_named("dark");
+  SceneFacts scene = scene_facts(sensor);
+  scene.stars = scene.shapes = false;
+  for (const EffectFacts* effect :
+       {&StarBackground::facts, &Occlusion::facts, &ThermalEmission::facts, &Vignetting::facts,
+        &CloudCover::facts, &LightPollution::facts})
+    EXPECT_FALSE(runs(effects_in(sensor, scene), *effect)) << effect->name;
+  EXPECT_TRUE(runs(effects_in(sensor, scene), Airglow::facts));
+  sensor.effects.set(SkyBackground::facts, false);
+  EXPECT_FALSE(runs(effects_in(sensor, scene), Airglow::facts));
+  sensor.camera.optics.vignetting.natural = true;
+  EXPECT_TRUE(runs(effects_in(sensor, scene_facts(sensor)), Vignetting::facts));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/effects/place_effects.h"
+#include "core/sky/place_effects.h"
 
 namespace dmise {
 namespace {
@@ -166,10 +166,10 @@ TEST_F(ScenarioFile, SwitchesEffectsForAllAndForOne) {
   const auto scenario =
       load("effects: {aberration: off}\n" + good + "    effects: {read_noise: off}\n");
   const auto& effects = scenario.sensors[0].effects;
-  EXPECT_FALSE(effects.has(effect::annual_aberration));
-  EXPECT_FALSE(effects.has(effect::diurnal_aberration));
+  EXPECT_FALSE(effects.has(AnnualAberration::facts));
+  EXPECT_FALSE(effects.has(DiurnalAberration::facts));
   EXPECT_FALSE(effects.has(ReadNoise::facts));
-  EXPECT_TRUE(effects.has(effect::refraction));
+  EXPECT_TRUE(effects.has(AtmosphericRefraction::facts));
 }
 
 TEST_F(ScenarioFile, SwitchesDetectionForAllAndForOne) {

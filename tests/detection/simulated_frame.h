@@ -144,7 +144,7 @@ class SimulatedFrame {
   }
 
   FrameHeader header_;
-  RateImage electrons_;
+  ExpectedElectronImage electrons_;
   std::mt19937_64 random_;
   std::vector<double> weights_;
 };

@@ -34,8 +34,8 @@ constexpr Detector busy = detector_of({.dark_e_per_s = 2,
                                        .cosmic_ray_e_per_px = 500,
                                        .reference_px = 4});
 
-RateImage some_light() {
-  RateImage light(columns, rows, 150.0f);
+ExpectedElectronImage some_light() {
+  ExpectedElectronImage light(columns, rows, 150.0f);
   for (int x = 0; x < columns; ++x) light.at(x, x % rows) = 900.0f;
   light.at(90, 80) = 40000.0f;  // blooms
   return light;
@@ -123,7 +123,7 @@ TEST(Chain, EveryEffectHasAStreamOfItsOwn) {
       only.set(e, e.name == effect.name);
     Threads one(1);
     CountImage counts;
-    expose(RateImage(1000, 100, 150.0f), d, exposure, only, one, counts);
+    expose(ExpectedElectronImage(1000, 100, 150.0f), d, exposure, only, one, counts);
     double mean = 0;
     for (auto c : counts.pixels) mean += c;
     mean /= double(counts.pixels.size());
@@ -169,7 +169,7 @@ TEST(Chain, TheBytesOfAllEffectsDependOnNeitherThreadsNorInstructionSet) {
 TEST(Flags, SayWhatBefellEachPixel) {
   Detector d = detector_of(
       {.full_well_e = 3000, .gain_e_per_dn = 0.05, .blooming = true, .reference_px = 2});
-  RateImage light(20, 40, 100.0f);
+  ExpectedElectronImage light(20, 40, 100.0f);
   light.at(10, 20) = 3000.0f * 5;   // fills itself and about two pixels above and below
   light.at(4, 4) = 3200.0f * 0.9f;  // 57,600 DN of 65,535
   Threads one(1);
@@ -212,7 +212,8 @@ TEST(CosmicRays, MoreThanCanBeSimulatedAreRefused) {
   d.cosmic_rays_per_px_s = 1e-3;
   Threads one(1);
   CountImage counts;
-  EXPECT_THROW(expose(RateImage(2000, 2000), d, {1, "s", 1, 3600.0}, {}, one, counts), Error);
+  EXPECT_THROW(expose(ExpectedElectronImage(2000, 2000), d, {1, "s", 1, 3600.0}, {}, one, counts),
+               Error);
 }
 
 }  // namespace

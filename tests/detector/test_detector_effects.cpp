@@ -22,7 +22,7 @@ EffectSet without_photon_noise() {
   return set;
 }
 
-CountImage read_out(const RateImage& light, const Detector& d, std::uint32_t frame = 1,
+CountImage read_out(const ExpectedElectronImage& light, const Detector& d, std::uint32_t frame = 1,
                     EffectSet effects = without_photon_noise(), DetectorMemory* memory = nullptr) {
   Threads two(2);
   CountImage counts;
@@ -40,7 +40,7 @@ double mean(const CountImage& image) {
 TEST(Prnu, HasItsRmsAndIsTheSameInEveryFrame) {
   Detector d = plain;
   d.prnu_rms = 0.01;
-  const RateImage light(400, 300, 10000.0f);
+  const ExpectedElectronImage light(400, 300, 10000.0f);
   const CountImage one = read_out(light, d, 1), two = read_out(light, d, 2);
   EXPECT_EQ(one.pixels, two.pixels);
   double sum2 = 0;
@@ -54,7 +54,7 @@ TEST(HotPixels, AreAsManyAndAsHotAsAskedAndStayWhereTheyAre) {
   Detector d = plain;
   d.hot_pixel_fraction = 0.01;
   d.hot_pixel_e_per_s = 50;
-  const RateImage dark(500, 400);
+  const ExpectedElectronImage dark(500, 400);
   const CountImage one = read_out(dark, d, 1), two = read_out(dark, d, 2);
   int hot = 0, moved = 0;
   for (std::size_t i = 0; i < one.pixels.size(); ++i) {
@@ -70,7 +70,7 @@ TEST(HotPixels, AreAsManyAndAsHotAsAskedAndStayWhereTheyAre) {
 TEST(ColumnNoise, IsOneOffsetAColumnAndNewInEveryFrame) {
   Detector d = plain;
   d.column_noise_e = 20;
-  const RateImage light(3000, 20, 100.0f);
+  const ExpectedElectronImage light(3000, 20, 100.0f);
   const CountImage one = read_out(light, d, 1), two = read_out(light, d, 2);
   double sum2 = 0, product = 0;
   for (int x = 0; x < 3000; ++x) {
@@ -85,8 +85,8 @@ TEST(ColumnNoise, IsOneOffsetAColumnAndNewInEveryFrame) {
 TEST(Nonlinearity, LosesItsShareAtFullWellAndAQuarterOfThatShareAtAQuarter) {
   Detector d = plain;
   d.nonlinearity = 0.04;
-  EXPECT_NEAR(mean(read_out(RateImage(4, 4, 60000.0f), d)), 60000 * 0.96, 1);
-  EXPECT_NEAR(mean(read_out(RateImage(4, 4, 15000.0f), d)), 15000 * 0.99, 1);
+  EXPECT_NEAR(mean(read_out(ExpectedElectronImage(4, 4, 60000.0f), d)), 60000 * 0.96, 1);
+  EXPECT_NEAR(mean(read_out(ExpectedElectronImage(4, 4, 15000.0f), d)), 15000 * 0.99, 1);
 }
 
 // Moore, Ninkov & Forrest 2006: with coupling a to each neighbour, neighbouring noise correlates by
@@ -106,7 +106,7 @@ TEST(InterpixelCoupling, KeepsChargeAndCorrelatesNeighbours) {
 
   Detector d = plain;
   d.interpixel_coupling = 0.01;
-  const CountImage image = read_out(RateImage(500, 500, 10000.0f), d, 1, {});
+  const CountImage image = read_out(ExpectedElectronImage(500, 500, 10000.0f), d, 1, {});
   double variance = 0, covariance = 0;
   for (int y = 0; y < 500; ++y)
     for (int x = 0; x < 499; ++x) {
@@ -137,9 +137,9 @@ TEST(Persistence, ReturnsWhatItTrappedWithItsTimeConstant) {
   d.persistence_fraction = 0.1;
   d.persistence_s = 50;
   DetectorMemory memory;
-  RateImage light(8, 8, 20000.0f);
+  ExpectedElectronImage light(8, 8, 20000.0f);
   read_out(light, d, 1, without_photon_noise(), &memory);
-  light = RateImage(8, 8);
+  light = ExpectedElectronImage(8, 8);
   const double released = 2000 * std::exp(-5.0 / 50) * (1 - std::exp(-10.0 / 50));
   EXPECT_NEAR(mean(read_out(light, d, 2, without_photon_noise(), &memory)), released, 1);
 }
@@ -165,7 +165,7 @@ TEST(ReferencePixels, SeeNeitherLightNorDarkCurrent) {
   Detector d = plain;
   d.reference_px = 4;
   d.dark_e_per_s = 100;
-  const CountImage image = read_out(RateImage(40, 30, 5000.0f), d);
+  const CountImage image = read_out(ExpectedElectronImage(40, 30, 5000.0f), d);
   EXPECT_EQ(image.at(3, 15), 200);
   EXPECT_EQ(image.at(36, 15), 200);
   EXPECT_EQ(image.at(20, 3), 200);
@@ -194,7 +194,7 @@ TEST(Detector, AllItsEffectsTogetherGiveTheSameBytesOnAnyNumberOfThreads) {
                                   .persistence_s = 100,
                                   .cosmic_rays_per_px_s = 1e-5,
                                   .reference_px = 4});
-  RateImage light(701, 503, 200.0f);
+  ExpectedElectronImage light(701, 503, 200.0f);
   light.at(300, 200) = 1e6f;
   CountImage reference;
   for (int n : {1, 2, 4}) {

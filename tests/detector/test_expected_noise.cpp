@@ -24,7 +24,7 @@ TEST(ExpectedNoise, IsTheSpreadOfManyFrames) {
                                   .column_noise_e = 6,
                                   .nonlinearity = 0.05,
                                   .reference_px = 2});
-  RateImage light(40, 30);
+  ExpectedElectronImage light(40, 30);
   for (std::size_t i = 0; i < light.pixels.size(); ++i) light.pixels[i] = float(i) * 20.0f;
   Threads one(1);
   const int frames = 400;
@@ -58,7 +58,8 @@ TEST(ExpectedNoise, OfNothingIsTheRoundingOfTheAdc) {
        {PhotonNoise::facts, DarkCurrent::facts, ReadNoise::facts, ColumnNoise::facts})
     off.set(e, false);
   Threads one(1);
-  const auto noise = expected_noise(RateImage(3, 3, 100.0f), d, {.exposure_s = 1}, off, one);
+  const auto noise =
+      expected_noise(ExpectedElectronImage(3, 3, 100.0f), d, {.exposure_s = 1}, off, one);
   EXPECT_FLOAT_EQ(noise.at(1, 1), float(2 / std::sqrt(12.0)));
 }
 

@@ -21,8 +21,8 @@ constexpr Detector kaf8300 = detector_of({.quantum_efficiency = 0.5,
                                           .adc_bits = 16});
 const Exposure exposure{.seed = 1, .sensor = "atlanta", .frame = 3, .exposure_s = 20};
 
-CountImage read_out(const RateImage& light, const Detector& detector, const EffectSet& effects = {},
-                    SaturatedPixels* saturated = nullptr) {
+CountImage read_out(const ExpectedElectronImage& light, const Detector& detector,
+                    const EffectSet& effects = {}, SaturatedPixels* saturated = nullptr) {
   Threads one(1);
   CountImage counts;
   const SaturatedPixels s = expose(light, detector, exposure, effects, one, counts);
@@ -44,7 +44,7 @@ Moments moments(const CountImage& image) {
 // of rounding.
 TEST(Expose, FollowsThePhotonTransferCurveUntilItSaturates) {
   for (float level : {0.0f, 30.0f, 300.0f, 3000.0f, 18000.0f}) {
-    const RateImage light(600, 500, level);
+    const ExpectedElectronImage light(600, 500, level);
     const Moments m = moments(read_out(light, kaf8300));
     const double signal = (level + 0.4) / 0.35, n = 300000.0;
     const double variance = signal / 0.35 + std::pow(9.3 / 0.35, 2) + 1.0 / 12;
@@ -54,7 +54,7 @@ TEST(Expose, FollowsThePhotonTransferCurveUntilItSaturates) {
 }
 
 TEST(Expose, TheAdcClipsBeforeTheWellIsFullAndBothAreCounted) {
-  RateImage light(100, 100, 10.0f);
+  ExpectedElectronImage light(100, 100, 10.0f);
   light.at(5, 6) = 24000;   // 16 bits x 0.35 e-/DN - bias: the ADC is full at 22.6 ke-
   light.at(7, 8) = 100000;  // above the well
   SaturatedPixels saturated;
@@ -66,7 +66,7 @@ TEST(Expose, TheAdcClipsBeforeTheWellIsFullAndBothAreCounted) {
 
 TEST(Expose, AFullFrameOfSaturatedPixelsIsAllFlagged) {
   SaturatedPixels saturated;
-  read_out(RateImage(33, 17, 1e7f), kaf8300, {}, &saturated);
+  read_out(ExpectedElectronImage(33, 17, 1e7f), kaf8300, {}, &saturated);
   EXPECT_EQ(saturated, (SaturatedPixels{33 * 17, 33 * 17}));
 }
 
@@ -75,7 +75,7 @@ TEST(Expose, OneBitIsAnAdcToo) {
   d.adc_bits = 1;
   d.bias_dn = 0;
   d.read_noise_e = 0;
-  const CountImage counts = read_out(RateImage(10, 10, 100.0f), d);
+  const CountImage counts = read_out(ExpectedElectronImage(10, 10, 100.0f), d);
   for (auto c : counts.pixels) EXPECT_EQ(c, 1);
 }
 
@@ -85,7 +85,7 @@ TEST(Expose, NoDetectorHasNegativeGainOr32Bits) {
                      +[](Detector& d) { d.read_noise_e = std::nan(""); }}) {
     Detector d = kaf8300;
     spoil(d);
-    EXPECT_THROW(read_out(RateImage(4, 4, 1.0f), d), ConfigError);
+    EXPECT_THROW(read_out(ExpectedElectronImage(4, 4, 1.0f), d), ConfigError);
   }
 }
 
@@ -94,7 +94,8 @@ TEST(Expose, WithoutQuantisationCountsAreWholeElectrons) {
   for (const EffectFacts& e :
        {PhotonNoise::facts, DarkCurrent::facts, ReadNoise::facts, Quantisation::facts})
     effects.set(e, false);
-  for (auto c : read_out(RateImage(40, 30, 123.4f), kaf8300, effects).pixels) EXPECT_EQ(c, 123);
+  for (auto c : read_out(ExpectedElectronImage(40, 30, 123.4f), kaf8300, effects).pixels)
+    EXPECT_EQ(c, 123);
 }
 
 // Bias, gain and well out of the way, electrons are the counts.
@@ -104,7 +105,7 @@ TEST(Expose, AddingAnEffectLeavesTheOthersNoiseUnchanged) {
   d.full_well_e = 1e6;
   d.dark_e_per_s = 0.5;
   d.read_noise_e = 30;
-  const RateImage light(200, 100, 700.0f);
+  const ExpectedElectronImage light(200, 100, 700.0f);
   const auto with = [&](std::initializer_list<EffectFacts> list) {
     EffectSet set;
     for (const EffectFacts& e : {PhotonNoise::facts, DarkCurrent::facts, ReadNoise::facts})
@@ -122,7 +123,7 @@ TEST(Expose, AddingAnEffectLeavesTheOthersNoiseUnchanged) {
 }
 
 TEST(Expose, TheBytesDependOnNeitherThreadsNorInstructionSet) {
-  RateImage light(2503, 333);
+  ExpectedElectronImage light(2503, 333);
   for (std::size_t i = 0; i < light.pixels.size(); ++i) light.pixels[i] = float(i % 1000) * 0.1f;
   CountImage reference, counts;
   Threads one(1);
@@ -139,7 +140,7 @@ TEST(Expose, TheBytesDependOnNeitherThreadsNorInstructionSet) {
 }
 
 TEST(Expose, AnotherFrameSensorOrSeedIsOtherNoise) {
-  const RateImage light(50, 50, 100.0f);
+  const ExpectedElectronImage light(50, 50, 100.0f);
   const auto base = read_out(light, kaf8300).pixels;
   Threads one(1);
   for (Exposure e : {Exposure{2, "atlanta", 3, 20}, {1, "boston", 3, 20}, {1, "atlanta", 4, 20}}) {
@@ -150,7 +151,7 @@ TEST(Expose, AnotherFrameSensorOrSeedIsOtherNoise) {
 }
 
 TEST(Expose, ANegativeOrUndefinedExpectationIsNamedByItsPixel) {
-  RateImage light(200, 200, 1.0f);
+  ExpectedElectronImage light(200, 200, 1.0f);
   light.at(17, 150) = std::numeric_limits<float>::quiet_NaN();
   for (bool noisy : {true, false}) {
     EffectSet effects;

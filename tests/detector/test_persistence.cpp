@@ -21,8 +21,8 @@ constexpr Detector trapping = detector_of({.dark_e_per_s = 1,
                                            .persistence_fraction = 0.02,
                                            .persistence_s = 1.0});
 
-RateImage light_of(std::uint32_t frame) {
-  RateImage light(60, 50, 200.0f);
+ExpectedElectronImage light_of(std::uint32_t frame) {
+  ExpectedElectronImage light(60, 50, 200.0f);
   light.at(int(frame * 7 % 60), 25) = 30000.0f;
   return light;
 }
@@ -70,7 +70,7 @@ TEST(PersistenceMemory, ReturnsAllThatItTrappedAndNoMore) {
   double returned = 0;
   const double pixels = 100 * 100, trapped = 0.02 * 40000;
   for (std::uint32_t frame = 1; frame <= 60; ++frame) {
-    const RateImage light(100, 100, frame == 1 ? 40000.0f : 0.0f);
+    const ExpectedElectronImage light(100, 100, frame == 1 ? 40000.0f : 0.0f);
     expose(light, d, {1, "s", frame, exposure_s, 0.0}, {}, one, counts, nullptr,
            {.memory = &memory});
     const double mean =

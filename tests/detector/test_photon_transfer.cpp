@@ -30,7 +30,7 @@ CountImage read_out(double light_e, const Detector& d, std::uint32_t frame = 1,
   Threads two(2);
   CountImage counts;
   const auto s =
-      expose(RateImage(side, side, float(light_e)), d,
+      expose(ExpectedElectronImage(side, side, float(light_e)), d,
              {.seed = 3, .sensor = "s", .frame = frame, .exposure_s = 1}, {}, two, counts);
   if (saturated) *saturated = s;
   return counts;
@@ -109,7 +109,7 @@ TEST(ExposureLength, OfNothingIsReadNoiseAndBiasAlone) {
   d.hot_pixel_fraction = 0.1;
   d.hot_pixel_e_per_s = 1e6;
   d.cosmic_rays_per_px_s = 1e-3;
-  expose(RateImage(300, 300), d, {1, "s", 1, 0.0}, {}, one, counts);
+  expose(ExpectedElectronImage(300, 300), d, {1, "s", 1, 0.0}, {}, one, counts);
   const Moments m =
       moments(counts.pixels.size(), [&](std::size_t i) { return counts.pixels[i] - d.bias_dn; });
   EXPECT_NEAR(m.mean, 0, 4 * 10 / 1.8 / 300);

@@ -37,14 +37,14 @@ FlagImage sample_flags(int columns = 200, int rows = 150) {
   return flags;
 }
 
-RateImage sample_plane(int columns = 200, int rows = 150) {
-  RateImage image(columns, rows);
+ExpectedElectronImage sample_plane(int columns = 200, int rows = 150) {
+  ExpectedElectronImage image(columns, rows);
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     image.pixels[i] = 1000.0f + float(i % 977) / 7.0f;
   return image;
 }
 
-Plane as_plane(const RateImage& image) {
+Plane as_plane(const ExpectedElectronImage& image) {
   return {"SOURCES", "electron/s", "expected", image.pixels.data(), image.columns, image.rows};
 }
 
@@ -114,7 +114,7 @@ TEST(Planes, AstropyReadsCompressedCountsFlagsAndPlanes) {
 }
 
 TEST(Planes, NoNanLeaves) {
-  RateImage image = sample_plane();
+  ExpectedElectronImage image = sample_plane();
   image.at(3, 0) = std::numeric_limits<float>::quiet_NaN();
   const std::string path = scratch("nan.fits");
   try {
@@ -128,7 +128,7 @@ TEST(Planes, NoNanLeaves) {
 
 // A device that is always full stands for a full disk.
 TEST(Planes, FullDiskLeavesNoHalfFileAndIsNamed) {
-  const RateImage image = sample_plane();
+  const ExpectedElectronImage image = sample_plane();
   const auto write = [&](const std::string& path) {
     if (path.ends_with("plane.fits")) write_plane(path, as_plane(image), sample_header());
     if (path.ends_with("map.exr"))

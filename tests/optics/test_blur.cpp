@@ -52,49 +52,49 @@ PsfKernel kernel_of_camera(const Optics& o, const PsfPlan& plan,
   return model.kernel({}, start_s, exposure_s);
 }
 
-RateImage by_transform(const Optics& o, std::span<const Arc> arcs, Threads& threads) {
+ExpectedElectronImage by_transform(const Optics& o, std::span<const Arc> arcs, Threads& threads) {
   const PsfPlan plan = plan_psf(o, lambda, {}, 1.0);
   BlurGrid grid(o.columns, o.rows, plan.oversampling, plan.half_cells);
   grid.set_kernels({kernel_of_camera(o, plan)}, threads);
   std::vector<Arc> on_cells;
   for (const Arc& arc : arcs) on_cells.push_back(grid.on_cells(arc));
   deposit(on_cells, make_psf_table(grid_sigma_cells), grid.cells(), threads);
-  RateImage light(o.columns, o.rows);
+  ExpectedElectronImage light(o.columns, o.rows);
   grid.blur_into(light, o.spread.resampling, threads);
   return light;
 }
 
-RateImage directly(const Optics& o, std::span<const Arc> arcs, Threads& threads) {
+ExpectedElectronImage directly(const Optics& o, std::span<const Arc> arcs, Threads& threads) {
   const PsfPlan plan = plan_psf(o, lambda, {}, 1.0);
   DirectBlur blur(plan.oversampling, plan.half_cells, o.spread.resampling);
   blur.set_kernel(kernel_of_camera(o, plan));
-  RateImage light(o.columns, o.rows);
+  ExpectedElectronImage light(o.columns, o.rows);
   blur.deposit(arcs, light, threads);
   return light;
 }
 
-RateImage analytically(const Optics& o, std::span<const Arc> arcs, Threads& threads) {
-  RateImage light(o.columns, o.rows);
+ExpectedElectronImage analytically(const Optics& o, std::span<const Arc> arcs, Threads& threads) {
+  ExpectedElectronImage light(o.columns, o.rows);
   deposit(arcs, make_psf_table(psf_sigma_px(o, lambda)), light, threads);
   return light;
 }
 
-double sum(const RateImage& image) {
+double sum(const ExpectedElectronImage& image) {
   return std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0);
 }
 
-double greatest(const RateImage& image) {
+double greatest(const ExpectedElectronImage& image) {
   return *std::max_element(image.pixels.begin(), image.pixels.end());
 }
 
-double worst(const RateImage& a, const RateImage& b) {
+double worst(const ExpectedElectronImage& a, const ExpectedElectronImage& b) {
   double d = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i)
     d = std::max(d, double(std::abs(a.pixels[i] - b.pixels[i])));
   return d;
 }
 
-PixelPosition centroid(const RateImage& image) {
+PixelPosition centroid(const ExpectedElectronImage& image) {
   double e = 0, x = 0, y = 0;
   for (int r = 0; r < image.rows; ++r)
     for (int c = 0; c < image.columns; ++c) {
@@ -116,7 +116,7 @@ TEST(Blur, AnalyticDepositAgreesWithASixteenTimesOversampledTransformTo1e4) {
     const Arc arcs[] = {point(11.37, 12.81, 1e4), streak({20.2, 25.1}, {37.7, 18.3}, 3e4),
                         streak({6.1, 30.2}, {15.4, 33.9}, 2e4, {0.4, -1.1})};
     for (const Arc& arc : arcs) {
-      const RateImage reference = analytically(o, {&arc, 1}, one);
+      const ExpectedElectronImage reference = analytically(o, {&arc, 1}, one);
       const double peak = greatest(reference);
       EXPECT_LT(worst(by_transform(o, {&arc, 1}, one), reference), 1e-4 * peak) << fwhm_px;
       EXPECT_LT(worst(directly(o, {&arc, 1}, one), reference), 1e-4 * peak) << fwhm_px;
@@ -133,8 +133,8 @@ TEST(Blur, DirectSumsAndTheTransformAreOneConvolution) {
   const Arc arcs[] = {point(40.3, 37.8, 1e4), streak({20.2, 25.1}, {67.7, 58.3}, 3e4)};
   for (int k : {0, 3, 4}) {
     o.spread.oversampling = k;
-    const RateImage a = by_transform(o, arcs, one);
-    RateImage b = directly(o, arcs, one);
+    const ExpectedElectronImage a = by_transform(o, arcs, one);
+    ExpectedElectronImage b = directly(o, arcs, one);
     for (float& e : b.pixels) e = std::max(0.0f, e);
     EXPECT_LT(worst(a, b), 2e-6 * greatest(a)) << k;
   }
@@ -147,11 +147,11 @@ TEST(Blur, TheLeastOversamplingIsRightTo1e4OfThePeak) {
   Optics o = telescope(96, 80);
   o.spread.support_px = 64;  // so that nothing of what the taper does is left
   const Arc arcs[] = {point(40.3, 37.8, 1e4), streak({20.2, 25.1}, {67.7, 58.3}, 3e4)};
-  const RateImage coarse = directly(o, arcs, one);
+  const ExpectedElectronImage coarse = directly(o, arcs, one);
   const int least = plan_psf(o, lambda, {}, 1.0).oversampling;
   EXPECT_EQ(least, 2);
   o.spread.oversampling = 4 * least;
-  const RateImage fine = directly(o, arcs, one);
+  const ExpectedElectronImage fine = directly(o, arcs, one);
   RecordProperty("deviation", std::to_string(worst(coarse, fine) / greatest(fine)));
   EXPECT_LT(worst(coarse, fine), 1e-4 * greatest(fine));
 }
@@ -167,7 +167,7 @@ TEST(Blur, RegistersPointsAndStreaksAtEveryOversampling) {
                              streak({20.27, 25.1}, {67.7, 50.3}, 3e4, {1.3, -2.2})}) {
         // Mean of a parabola in time: Simpson's rule is exact.
         const PixelPosition mean = (arc.start + arc.middle * 4.0 + arc.end) * (1.0 / 6);
-        for (const RateImage& image :
+        for (const ExpectedElectronImage& image :
              {by_transform(o, {&arc, 1}, one), directly(o, {&arc, 1}, one)}) {
           const PixelPosition seen = centroid(image);
           EXPECT_NEAR(seen.x_px, mean.x_px, 0.002) << k << bilinear;
@@ -197,7 +197,7 @@ TEST(Blur, RegistersTheDirectionsOfEveryProjectionOnBothPaths) {
         const Arc arc{at(0), at(0.5), at(1), 1e5};
         PixelPosition mean;
         for (int i = 0; i < 4000; ++i) mean = mean + at((i + 0.5) / 4000) * (1.0 / 4000);
-        for (const RateImage& image :
+        for (const ExpectedElectronImage& image :
              {by_transform(o, {&arc, 1}, one), directly(o, {&arc, 1}, one)}) {
           const PixelPosition seen = centroid(image);
           EXPECT_NEAR(seen.x_px, mean.x_px, 0.01) << projection.name() << k << turn_deg;
@@ -213,8 +213,9 @@ TEST(Blur, ABrightStarLeavesThePhotometryOfAFaintObjectAlone) {
   const Optics o = telescope(200, 160);
   const Arc faint = point(130.4, 90.7, 1e4), bright = point(60.2, 70.9, 1e11);
   const Arc both[] = {bright, faint};
-  const RateImage with = directly(o, both, one), without = directly(o, {&bright, 1}, one),
-                  alone = directly(o, {&faint, 1}, one);
+  const ExpectedElectronImage with = directly(o, both, one),
+                              without = directly(o, {&bright, 1}, one),
+                              alone = directly(o, {&faint, 1}, one);
   double seen = 0, expected = 0;
   for (int y = 80; y <= 101; ++y)
     for (int x = 120; x <= 141; ++x) {
@@ -228,10 +229,10 @@ TEST(Blur, IsNowhereNegativeBeyondRoundingAndLosesNothing) {
   Threads one(1);
   const Optics o = telescope(300, 260);
   const Arc arcs[] = {point(150.2, 130.1, 1e8), point(100.3, 90.6, 10)};
-  const RateImage a = by_transform(o, arcs, one);
+  const ExpectedElectronImage a = by_transform(o, arcs, one);
   for (float e : a.pixels) ASSERT_GE(e, 0.0f);
   EXPECT_NEAR(sum(a) / (1e8 + 10), 1.0, 1e-6);
-  const RateImage b = directly(o, arcs, one);
+  const ExpectedElectronImage b = directly(o, arcs, one);
   const double rounding = 2e-7 * greatest(b);
   for (float e : b.pixels) ASSERT_GE(e, -rounding);
   EXPECT_NEAR(sum(b) / (1e8 + 10), 1.0, 1e-6);
@@ -242,11 +243,11 @@ TEST(Blur, NothingWrapsAroundAndLightBesideTheFrameReachesIn) {
   const Optics o = telescope(120, 100);
   const Arc corner = point(119.5, 99.5, 1e6), beside = point(121.0, 50.0, 1e6),
             far = point(400.0, 50.0, 1e9);
-  const RateImage quarter = by_transform(o, {&corner, 1}, one);
+  const ExpectedElectronImage quarter = by_transform(o, {&corner, 1}, one);
   EXPECT_NEAR(sum(quarter), 2.5e5, 2.5e3);
   for (int y = 0; y < 60; ++y)
     for (int x = 0; x < 60; ++x) ASSERT_LT(quarter.at(x, y), 0.2f);
-  for (const RateImage& image :
+  for (const ExpectedElectronImage& image :
        {by_transform(o, {&beside, 1}, one), directly(o, {&beside, 1}, one)}) {
     EXPECT_GT(sum(image), 1e4);
     EXPECT_LT(sum(image), 3e5);
@@ -260,7 +261,7 @@ TEST(Blur, PrimeSizesAndSingleRowsHaveTheSamePhotometry) {
   for (auto [columns, rows] : {std::pair{2503, 61}, {61, 3329}, {1, 64}, {64, 1}, {1, 1}}) {
     const Optics o = gaussian(columns, rows, 2.1, 2);
     const Arc arc = point(columns / 2, rows / 2, 1e5);
-    const RateImage reference = analytically(o, {&arc, 1}, two);
+    const ExpectedElectronImage reference = analytically(o, {&arc, 1}, two);
     EXPECT_NEAR(sum(by_transform(o, {&arc, 1}, two)) / sum(reference), 1.0, 1e-4)
         << columns << " " << rows;
     EXPECT_NEAR(sum(directly(o, {&arc, 1}, two)) / sum(reference), 1.0, 1e-4);
@@ -272,13 +273,14 @@ TEST(Blur, StreaksOfAnyLengthKeepTheirLight) {
   const Optics o = gaussian(160, 140, 2.1, 2);
   for (double length : {0.0, 1e-9, 0.5, 60.0}) {
     const Arc arc = streak({80.3 - length / 2, 70.2}, {80.3 + length / 2, 70.2}, 1e5);
-    for (const RateImage& image : {by_transform(o, {&arc, 1}, one), directly(o, {&arc, 1}, one)}) {
+    for (const ExpectedElectronImage& image :
+         {by_transform(o, {&arc, 1}, one), directly(o, {&arc, 1}, one)}) {
       EXPECT_NEAR(sum(image) / 1e5, 1.0, 1e-6) << length;
       EXPECT_NEAR(centroid(image).x_px, 80.3, 0.001) << length;
     }
   }
   const Arc endless = streak({-5e4 + 80, 70.2}, {5e4 + 80, 70.2}, 1e8);
-  for (const RateImage& image :
+  for (const ExpectedElectronImage& image :
        {by_transform(o, {&endless, 1}, one), directly(o, {&endless, 1}, one)})
     EXPECT_NEAR(sum(image) / (1e8 * 160 / 1e5), 1.0, 1e-3);
   const Arc outside = streak({-300, -300}, {500, -400}, 1e8);
@@ -292,7 +294,7 @@ TEST(Blur, TheBytesDoNotDependOnThreads) {
   for (int i = 0; i < 60; ++i)
     arcs.push_back(streak({4.1 * i, 3.3 * i}, {4.1 * i + 9, 3.3 * i + 5}, 1e4 + i));
   Threads one(1);
-  const RateImage a = by_transform(o, arcs, one), b = directly(o, arcs, one);
+  const ExpectedElectronImage a = by_transform(o, arcs, one), b = directly(o, arcs, one);
   for (int n : {2, 4}) {
     Threads threads(n);
     EXPECT_EQ(by_transform(o, arcs, threads).pixels, a.pixels) << n;
@@ -312,10 +314,10 @@ TEST(Blur, KernelsOverTheFieldAreInterpolatedLinearly) {
     const Arc arc = point(x, 50.3, 1e5), on_cells = grid.on_cells(arc);
     grid.clear(one);
     deposit({&on_cells, 1}, make_psf_table(grid_sigma_cells), grid.cells(), one);
-    RateImage light(201, 101);
+    ExpectedElectronImage light(201, 101);
     grid.blur_into(light, PointSpread::Resampling::area, one);
-    const RateImage a = analytically(narrow, {&arc, 1}, one),
-                    b = analytically(wide, {&arc, 1}, one);
+    const ExpectedElectronImage a = analytically(narrow, {&arc, 1}, one),
+                                b = analytically(wide, {&arc, 1}, one);
     double deviation = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i)
       deviation = std::max(

@@ -14,12 +14,12 @@ namespace {
 constexpr double lambda = 0.55e-6, diameter = 0.3;
 const Blur airy{.wavelength_m = lambda, .aperture_m = diameter};
 
-double sum(const RateImage& image) {
+double sum(const ExpectedElectronImage& image) {
   return std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0);
 }
 
 /// An image on a grid of one cell a pixel, blurred.
-void blur(RateImage& image, const PsfKernel& kernel, Threads& threads, BlurGrid& grid) {
+void blur(ExpectedElectronImage& image, const PsfKernel& kernel, Threads& threads, BlurGrid& grid) {
   grid.set_kernels({kernel}, threads);
   const DepositView cells = grid.cells();
   for (int y = 0; y < image.rows; ++y)
@@ -28,7 +28,7 @@ void blur(RateImage& image, const PsfKernel& kernel, Threads& threads, BlurGrid&
   std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
   grid.blur_into(image, PointSpread::Resampling::area, threads);
 }
-void blur(RateImage& image, const PsfKernel& kernel, Threads& threads) {
+void blur(ExpectedElectronImage& image, const PsfKernel& kernel, Threads& threads) {
   BlurGrid grid(image.columns, image.rows, 1, kernel.half);
   blur(image, kernel, threads, grid);
 }
@@ -76,7 +76,7 @@ TEST(BlurGrid, IsTheConvolutionAlsoForPrimeAndTinyFrames) {
   Threads one(1);
   const PsfKernel k = optical_kernel(airy, 0.5 * lambda / diameter, 9);
   for (auto [columns, rows] : {std::pair{101, 67}, {1, 40}, {40, 1}, {1, 1}, {8, 120}}) {
-    RateImage image(columns, rows), expected(columns, rows);
+    ExpectedElectronImage image(columns, rows), expected(columns, rows);
     const RngKey key = rng_key(1, "s", 1, "e");
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
       image.pixels[i] =
@@ -99,7 +99,7 @@ TEST(BlurGrid, IsTheConvolutionAlsoForPrimeAndTinyFrames) {
 TEST(BlurGrid, KeepsTheFluxNeverGoesNegativeAndWrapsNothingAround) {
   Threads one(1);
   const PsfKernel k = optical_kernel(airy, 0.5 * lambda / diameter, 40);
-  RateImage image(400, 300);
+  ExpectedElectronImage image(400, 300);
   image.at(200, 150) = 1e6f;
   image.at(120, 80) = 10.0f;
   blur(image, k, one);
@@ -107,7 +107,7 @@ TEST(BlurGrid, KeepsTheFluxNeverGoesNegativeAndWrapsNothingAround) {
   for (float e : image.pixels) ASSERT_GE(e, 0.0f);
 
   // In the last column: what leaves on the right does not come back on the left.
-  RateImage edge(400, 300);
+  ExpectedElectronImage edge(400, 300);
   edge.at(399, 299) = 1e6f;
   blur(edge, k, one);
   for (int y = 0; y < 250; ++y)
@@ -118,18 +118,18 @@ TEST(BlurGrid, KeepsTheFluxNeverGoesNegativeAndWrapsNothingAround) {
 
 TEST(BlurGrid, TheBytesDoNotDependOnThreadsAndUseAgain) {
   const PsfKernel k = optical_kernel(airy, 0.5 * lambda / diameter, 20);
-  RateImage light(503, 331);
+  ExpectedElectronImage light(503, 331);
   const RngKey key = rng_key(1, "s", 1, "e");
   for (std::size_t i = 0; i < light.pixels.size(); ++i)
     light.pixels[i] = float(uniform_of(rng_word(key, std::uint32_t(i), 0)));
   Threads one(1);
-  RateImage reference = light;
+  ExpectedElectronImage reference = light;
   blur(reference, k, one);
   for (int n : {1, 2, 4}) {
     Threads threads(n);
     BlurGrid grid(503, 331, 1, k.half);
     for (int again = 0; again < 2; ++again) {
-      RateImage image = light;
+      ExpectedElectronImage image = light;
       blur(image, k, threads, grid);
       ASSERT_EQ(image.pixels, reference.pixels) << n;
     }
@@ -145,11 +145,11 @@ TEST(BlurGrid, AnalyticDepositAgreesWithASixteenTimesFinerTransform) {
       return jitter_otf(std::hypot(nu_x, nu_y), sigma_px * fine);
     };
     const PsfKernel k = kernel_of(gaussian, 0.5, 1.0, half);
-    RateImage grid(side * fine, side * fine);
+    ExpectedElectronImage grid(side * fine, side * fine);
     const int u = 11 * fine + 5, v = 12 * fine + 13;
     grid.at(u, v) = 1.0f;
     blur(grid, k, one);
-    RateImage direct(side, side);
+    ExpectedElectronImage direct(side, side);
     const PixelPosition at{(u + 0.5) / fine - 0.5, (v + 0.5) / fine - 0.5};
     const Arc point{at, at, at, 1.0};
     deposit(std::span(&point, 1), make_psf_table(sigma_px), direct, one);

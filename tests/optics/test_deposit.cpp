@@ -14,7 +14,7 @@ namespace {
 
 constexpr double fwhm_px = 1.5;
 
-Deposited measured(const RateImage& image) {
+Deposited measured(const ExpectedElectronImage& image) {
   double sum = 0, x = 0, y = 0;
   for (int r = 0; r < image.rows; ++r)
     for (int c = 0; c < image.columns; ++c) {
@@ -27,7 +27,8 @@ Deposited measured(const RateImage& image) {
 Arc point(double x, double y, double e) { return {{x, y}, {x, y}, {x, y}, e}; }
 Arc straight(PixelPosition a, PixelPosition b, double e) { return {a, (a + b) * 0.5, b, e}; }
 
-Deposited draw(const Arc& arc, RateImage& image, double sigma = fwhm_px / fwhm_per_sigma) {
+Deposited draw(const Arc& arc, ExpectedElectronImage& image,
+               double sigma = fwhm_px / fwhm_per_sigma) {
   Threads one(1);
   return deposit(std::span(&arc, 1), make_psf_table(sigma), image, one)[0];
 }
@@ -37,7 +38,7 @@ Deposited draw(const Arc& arc, RateImage& image, double sigma = fwhm_px / fwhm_p
 TEST(Deposit, EveryPixelIsThePathIntegralOfThePixelIntegratedGaussian) {
   for (double sigma : {0.3, 0.637, 1.7}) {
     const Arc arc{{10.2, 14.9}, {18.3, 17.2}, {24.4, 25.8}, 1000.0, 0.6};
-    RateImage image(48, 40);
+    ExpectedElectronImage image(48, 40);
     draw(arc, image, sigma);
     double worst = 0, peak = 0;
     for (int r = 0; r < image.rows; ++r)
@@ -64,7 +65,7 @@ TEST(Deposit, EveryPixelIsThePathIntegralOfThePixelIntegratedGaussian) {
 TEST(Deposit, FluxAndCentroidOfAStreakOfAnyLengthAreThoseAskedFor) {
   for (double length : {0.0, 1e-9, 1e-5, 0.5, 3.0, 77.0, 480.0})
     for (double angle : {0.0, 0.3, pi / 4, 2.0}) {
-      RateImage image(640, 560);
+      ExpectedElectronImage image(640, 560);
       const PixelPosition middle{320.31, 279.77},
           half{0.5 * length * std::cos(angle), 0.5 * length * std::sin(angle)};
       const Deposited told = draw(straight(middle - half, middle + half, 5e4), image);
@@ -80,33 +81,33 @@ TEST(Deposit, FluxAndCentroidOfAStreakOfAnyLengthAreThoseAskedFor) {
 
 TEST(Deposit, OnlyWhatFallsInsideIsDeposited) {
   // 1e5 px long and centred: the frame's share of it is its width over the length.
-  RateImage image(400, 300);
+  ExpectedElectronImage image(400, 300);
   const Deposited long_one = draw(straight({-49800.0, 150.2}, {50200.0, 150.2}, 1e6), image);
   EXPECT_NEAR(long_one.signal_e, 1e6 * 400 / 1e5, 4e-3);
   EXPECT_NEAR(measured(image).signal_e, long_one.signal_e, 4e-3);
 
-  RateImage dark(400, 300);
+  ExpectedElectronImage dark(400, 300);
   EXPECT_EQ(draw(point(-40, 20, 1e9), dark).signal_e, 0.0);
   EXPECT_EQ(draw(straight({-50, -10}, {500, -30}, 1e9), dark).signal_e, 0.0);
   EXPECT_EQ(measured(dark).signal_e, 0.0);
 
   // Centred on the frame's corner: a quarter of it. On an edge: a half.
-  RateImage corner(40, 30);
+  ExpectedElectronImage corner(40, 30);
   EXPECT_NEAR(draw(point(-0.5, -0.5, 4e4), corner).signal_e, 1e4, 0.1);
   EXPECT_NEAR(measured(corner).signal_e, 1e4, 0.1);
-  RateImage edge(40, 30);
+  ExpectedElectronImage edge(40, 30);
   EXPECT_NEAR(draw(straight({39.5, 10}, {39.5, 20}, 4e4), edge).signal_e, 2e4, 0.1);
 }
 
 TEST(Deposit, AStreakOfATrillionPixelsTakesNoLongerThanTheFrameIsWide) {
-  RateImage image(400, 300);
+  ExpectedElectronImage image(400, 300);
   const Deposited d = draw(straight({-1e12, 150.2}, {1e12, 150.2}, 1e14), image);
   EXPECT_NEAR(d.signal_e / (1e14 * 400 / 2e12), 1.0, 1e-3);
 }
 
 TEST(Deposit, SmallFramesKeepTheirLight) {
   for (auto [columns, rows] : {std::pair{1, 1}, {1, 50}, {50, 1}, {2503, 3}}) {
-    RateImage image(columns, rows);
+    ExpectedElectronImage image(columns, rows);
     const Deposited d = draw(point(0.0, 0.0, 1e4), image);
     EXPECT_NEAR(measured(image).signal_e, d.signal_e, 1e-2);
     EXPECT_GT(d.signal_e, 1e3);
@@ -119,7 +120,7 @@ TEST(Deposit, ABrightnessProfileMovesTheCentroidAsItShould) {
   const std::vector<double> brightness = {1, 1, 1, 0, 0, 0};  // equal steps of 0.2
   const auto arcs = with_brightness(whole, brightness);
   ASSERT_EQ(arcs.size(), 3u);
-  RateImage image(160, 60);
+  ExpectedElectronImage image(160, 60);
   Threads one(1);
   Deposited sum;
   for (const Deposited& d : deposit(arcs, make_psf_table(0.6), image, one)) sum = sum + d;
@@ -147,14 +148,14 @@ std::vector<Arc> star_field(int count) {
 TEST(Deposit, TheBytesDependOnNeitherThreadsNorInstructionSet) {
   const auto arcs = star_field(3000);
   const PsfTable psf = make_psf_table(fwhm_px / fwhm_per_sigma);
-  RateImage reference(3326, 2504, 1000.0f);
+  ExpectedElectronImage reference(3326, 2504, 1000.0f);
   Threads one(1);
   const auto told = deposit(arcs, psf, reference, one, SimdLevel::sse2);
   for (int count : {1, 2, 4})
     for (SimdLevel level : {SimdLevel::sse2, SimdLevel::avx2, SimdLevel::avx512}) {
       if (level > best_simd_level()) continue;
       Threads threads(count);
-      RateImage image(3326, 2504, 1000.0f);
+      ExpectedElectronImage image(3326, 2504, 1000.0f);
       const auto again = deposit(arcs, psf, image, threads, level);
       EXPECT_EQ(image.pixels, reference.pixels) << count << name(level);
       for (std::size_t i = 0; i < arcs.size(); ++i) ASSERT_EQ(again[i].x_px, told[i].x_px);
@@ -181,7 +182,7 @@ TEST(Deposit, CentroidsAgreeWithTheRequestedDirectionsInEveryProjection) {
                axis * (dot(axis, v) * (1 - std::cos(a)));
       };
       const auto at = [&](double tau) { return *project(optics, direction(tau)); };
-      RateImage image(832, 626);
+      ExpectedElectronImage image(832, 626);
       draw({at(0), at(0.5), at(1), 1e5}, image);
       PixelPosition mean;
       for (int i = 0; i < 4000; ++i) mean = mean + at((i + 0.5) / 4000) * (1.0 / 4000);
@@ -192,7 +193,7 @@ TEST(Deposit, CentroidsAgreeWithTheRequestedDirectionsInEveryProjection) {
 }
 
 TEST(Deposit, AnArcThatIsNotANumberIsNamed) {
-  RateImage image(10, 10);
+  ExpectedElectronImage image(10, 10);
   EXPECT_THROW(draw(point(std::numeric_limits<double>::quiet_NaN(), 1, 1), image), Error);
   EXPECT_THROW(draw(point(1, 1, -1), image), Error);
 }

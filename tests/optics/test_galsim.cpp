@@ -18,8 +18,8 @@ constexpr double lambda = 0.55e-6, diameter = 0.3, r0 = 0.1;
 constexpr int half = 10, side = 2 * half + 1;
 
 struct Star {
-  RateImage image;  // 101 x 101, the star in the middle; unit light
-  double beyond;    // light beyond the kernel, which it gives back to the rest
+  ExpectedElectronImage image;  // 101 x 101, the star in the middle; unit light
+  double beyond;                // light beyond the kernel, which it gives back to the rest
 
   double at(int dx, int dy) const { return double(image.at(50 + dx, 50 + dy)) * (1 - beyond); }
 };
@@ -44,7 +44,8 @@ Star star(const Optics& o, const std::optional<SensorSeeing>& seeing = {}) {
   grid.set_kernels({model.kernel({}, 0.0, 1e3)}, one);
   const Arc on_cells = grid.on_cells({{50, 50}, {50, 50}, {50, 50}, 1.0});
   deposit({&on_cells, 1}, make_psf_table(grid_sigma_cells), grid.cells(), one);
-  Star s{RateImage(o.columns, o.rows), plan.exposure == ExposureKind::lasting ? 0.0 : plan.beyond};
+  Star s{ExpectedElectronImage(o.columns, o.rows),
+         plan.exposure == ExposureKind::lasting ? 0.0 : plan.beyond};
   grid.blur_into(s.image, o.spread.resampling, one);
   return s;
 }

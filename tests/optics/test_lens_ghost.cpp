@@ -12,12 +12,13 @@ namespace {
 
 constexpr int columns = 301, rows = 200;
 
-RateImage seen(const RateImage& light, double fraction, double radius_px, int thread_count = 1) {
+ExpectedElectronImage seen(const ExpectedElectronImage& light, double fraction, double radius_px,
+                           int thread_count = 1) {
   LensGhost ghost;
   ghost.ghost_fraction = fraction;
   ghost.ghost_radius_px = radius_px;
   Threads threads(thread_count);
-  RateImage image = light;
+  ExpectedElectronImage image = light;
   ghost.apply(image, threads);
   return image;
 }
@@ -25,9 +26,9 @@ RateImage seen(const RateImage& light, double fraction, double radius_px, int th
 // A point's ghost is an even disc about its place mirrored at the centre, ((columns - 1) / 2,
 // (rows - 1) / 2), with its share of the light: share / (pi r^2) in a pixel.
 TEST(LensGhost, OfAPointIsAnEvenDiscOnTheOtherSideOfTheCentre) {
-  RateImage light(columns, rows);
+  ExpectedElectronImage light(columns, rows);
   light.at(60, 150) = 1e6f;
-  const RateImage image = seen(light, 1e-3, 20.0);
+  const ExpectedElectronImage image = seen(light, 1e-3, 20.0);
   double sum = 0, x = 0, y = 0;
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
@@ -45,14 +46,15 @@ TEST(LensGhost, OfAPointIsAnEvenDiscOnTheOtherSideOfTheCentre) {
 
 // Far from the rim the ghost of even light is even: its share of the light.
 TEST(LensGhost, OfEvenLightIsItsShare) {
-  const RateImage image = seen(RateImage(columns, rows, 5000.0f), 0.01, 7.5);
+  const ExpectedElectronImage image =
+      seen(ExpectedElectronImage(columns, rows, 5000.0f), 0.01, 7.5);
   EXPECT_NEAR(image.at(150, 100), 5050.0, 0.01);
   EXPECT_NEAR(image.at(10, 189), 5050.0, 0.01);
   EXPECT_LT(image.at(0, 0), 5030.0);  // what lies beyond the frame has no ghost in it
 }
 
 TEST(LensGhost, DoesNotDependOnThreads) {
-  RateImage light(columns, rows, 3.0f);
+  ExpectedElectronImage light(columns, rows, 3.0f);
   light.at(5, 190) = 1e5f;
   EXPECT_EQ(seen(light, 1e-4, 12.3).pixels, seen(light, 1e-4, 12.3, 3).pixels);
 }
@@ -62,12 +64,12 @@ TEST(LensGhost, SwitchedOffOrWithoutAShareItDoesNothing) {
   optics.ghost_fraction = 0.01;
   EffectSet off;
   off.set(LensGhost::facts, false);
-  RateImage image(columns, rows, 100.0f);
+  ExpectedElectronImage image(columns, rows, 100.0f);
   Threads one(1);
   EffectTimes times;
   apply_image_optics(acting_optics(optics, off), image, one, times);
   apply_image_optics({}, image, one, times);
-  EXPECT_EQ(image.pixels, RateImage(columns, rows, 100.0f).pixels);
+  EXPECT_EQ(image.pixels, ExpectedElectronImage(columns, rows, 100.0f).pixels);
   EXPECT_TRUE(times.seconds.empty());
   apply_image_optics(acting_optics(optics, {}), image, one, times);
   EXPECT_NEAR(image.at(150, 100), 101.0, 1e-4);

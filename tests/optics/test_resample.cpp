@@ -12,20 +12,20 @@
 namespace dmise {
 namespace {
 
-double sum(const RateImage& image) {
+double sum(const ExpectedElectronImage& image) {
   return std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0);
 }
 
 /// A wave along x that averages over each pixel of `columns` across a field of unit width.
-RateImage wave(int columns, double cycles) {
-  RateImage image(columns, 1);
+ExpectedElectronImage wave(int columns, double cycles) {
+  ExpectedElectronImage image(columns, 1);
   for (int x = 0; x < columns; ++x)
     image.at(x, 0) = float((2.0 + std::cos(2 * pi * cycles * (x + 0.5) / columns)) / columns);
   return image;
 }
 
 /// Its modulation.
-double modulation(const RateImage& image, double cycles) {
+double modulation(const ExpectedElectronImage& image, double cycles) {
   std::complex<double> wave_part, mean;
   for (int x = 0; x < image.columns; ++x) {
     wave_part +=
@@ -36,7 +36,7 @@ double modulation(const RateImage& image, double cycles) {
 }
 
 TEST(Resample, ByAreaKeepsEveryElectron) {
-  RateImage image(120, 90);
+  ExpectedElectronImage image(120, 90);
   const RngKey key = rng_key(1, "s", 1, "e");
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     image.pixels[i] = float(uniform_of(rng_word(key, std::uint32_t(i), 0)));
@@ -47,7 +47,7 @@ TEST(Resample, ByAreaKeepsEveryElectron) {
 TEST(Resample, BilinearLosesOrWinsTheLightOfAPointByWhereItLies) {
   // At three cells a pixel: all of a lone cell's light is multiplied by nine in the centre, and
   // none of it arrives from elsewhere. At two cells a pixel every cell counts once.
-  RateImage centre(30, 30), side(30, 30);
+  ExpectedElectronImage centre(30, 30), side(30, 30);
   centre.at(13, 13) = side.at(14, 13) = 1.0f;
   EXPECT_NEAR(sum(resample_bilinear(centre, 10, 10)), 9.0, 1e-6);
   EXPECT_EQ(sum(resample_bilinear(side, 10, 10)), 0.0);
@@ -59,7 +59,7 @@ TEST(Resample, BilinearLosesOrWinsTheLightOfAPointByWhereItLies) {
 TEST(Resample, TheTransferFunctionsAreThoseStated) {
   const int cells = 4096;
   for (double cycles : {20.0, 100.0, 200.0}) {
-    const RateImage image = wave(cells, cycles);
+    const ExpectedElectronImage image = wave(cells, cycles);
     EXPECT_NEAR(modulation(resample_area(image, 1024, 1), cycles),
                 std::abs(pixel_otf(cycles, 4.0 / cells) / pixel_otf(cycles, 1.0 / cells)), 1e-3);
     // 4096 / 1365 = 3.0007: the centres pass through all phases between two cells.

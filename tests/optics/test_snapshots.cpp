@@ -11,15 +11,15 @@
 namespace dmise {
 namespace {
 
-RateImage drawn(const std::vector<Arc>& arcs, const PsfTable& psf) {
-  RateImage image(96, 48);
+ExpectedElectronImage drawn(const std::vector<Arc>& arcs, const PsfTable& psf) {
+  ExpectedElectronImage image(96, 48);
   Threads one;
   deposit(arcs, psf, image, one);
   return image;
 }
 
 /// Light that lies in other pixels than the path integral puts it, as a share of all.
-double misplaced(const RateImage& a, const RateImage& b) {
+double misplaced(const ExpectedElectronImage& a, const ExpectedElectronImage& b) {
   double difference = 0, all = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
     difference += std::abs(double(a.pixels[i]) - double(b.pixels[i]));
@@ -45,7 +45,7 @@ TEST(Snapshots, ConvergeToThePathIntegralAtLeastAsOneOverTheirNumber) {
                             4 * streak.middle.y_px, streak.start.y_px + 3 * streak.end.y_px));
   for (const double sigma_px : {0.34, 0.8, 1.7, 4.0}) {
     const PsfTable psf = make_psf_table(sigma_px);
-    const RateImage exact = drawn({streak}, psf);
+    const ExpectedElectronImage exact = drawn({streak}, psf);
     const double bound = fastest_px / (4 * sigma_px * std::sqrt(2 * pi));
     for (int count = 1; count <= 1024; count += 1 + count / 32) {
       const double error = misplaced(exact, drawn(as_snapshots({&streak, 1}, count), psf));

@@ -24,8 +24,8 @@ using testing::HasSubstr;
 
 std::string scratch(const std::string& name) { return testing::TempDir() + "/pictures-" + name; }
 
-RateImage sample_map(int columns = 200, int rows = 150) {
-  RateImage image(columns, rows);
+ExpectedElectronImage sample_map(int columns = 200, int rows = 150) {
+  ExpectedElectronImage image(columns, rows);
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     image.pixels[i] = 1000.0f + float(i % 977) / 7.0f;
   return image;
@@ -154,7 +154,7 @@ TEST(Exr, OpenExrReadsEveryPixel) {
   const std::string python = test::python_with("OpenEXR");
   if (python.empty()) DMISE_SKIP() << "needs OpenEXR from PyPI: ./dmise setup --tests";
   for (const auto& [columns, rows] : {std::pair{1, 1}, {3, 17}, {701, 503}, {64, 16}}) {
-    RateImage image(columns, rows);
+    ExpectedElectronImage image(columns, rows);
     std::uint32_t state = 1;
     for (float& v : image.pixels) {
       state = state * 1664525u + 1013904223u;
@@ -182,7 +182,7 @@ TEST(Exr, OpenExrReadsEveryChannel) {
   const std::string python = test::python_with("OpenEXR");
   if (python.empty()) DMISE_SKIP() << "needs OpenEXR from PyPI: ./dmise setup --tests";
   constexpr int columns = 71, rows = 53;
-  std::vector<RateImage> images(3, RateImage(columns, rows));
+  std::vector<ExpectedElectronImage> images(3, ExpectedElectronImage(columns, rows));
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < images[k].pixels.size(); ++i)
       images[k].pixels[i] = float(k + 1) * 1000.0f + float(i % 97);
@@ -197,7 +197,7 @@ TEST(Exr, OpenExrReadsEveryChannel) {
   std::string expected;
   const char* names[] = {"00500.00nm", "Y", "Z"};
   for (std::size_t k = 0; k < 3; ++k) {
-    const RateImage& image = images[k];
+    const ExpectedElectronImage& image = images[k];
     char line[160];
     std::snprintf(line, sizeof line,
                   "channel %s shape %d %d float32 corners %.9g %.9g %.9g %.9g\nsum ", names[k],
@@ -216,7 +216,7 @@ TEST(Exr, OpenExrReadsEveryChannel) {
 }
 
 TEST(Exr, EqualImagesAreEqualBytesAndSmoothOnesAreSmaller) {
-  const RateImage image = sample_map();
+  const ExpectedElectronImage image = sample_map();
   const ExrImage exr{.pixels = image.pixels.data(), .columns = 200, .rows = 150};
   EXPECT_EQ(encode_exr(exr), encode_exr(exr));
   EXPECT_LT(encode_exr(exr).size(), 200 * 150 * 4 * 0.7);
@@ -224,7 +224,7 @@ TEST(Exr, EqualImagesAreEqualBytesAndSmoothOnesAreSmaller) {
 
 // What writes the time of day into the attribute capDate makes other bytes a second later.
 TEST(Exr, HoldsTheTimeOfTheExposureAndNotOfItsWriting) {
-  const RateImage image = sample_map();
+  const ExpectedElectronImage image = sample_map();
   ExrImage exr{.pixels = image.pixels.data(), .columns = 200, .rows = 150};
   const auto date_of = [](const std::string& bytes) {
     const std::string name("capDate\0string\0", 15);
@@ -237,7 +237,7 @@ TEST(Exr, HoldsTheTimeOfTheExposureAndNotOfItsWriting) {
 }
 
 TEST(Exr, RefusesWhatNoFileHolds) {
-  const RateImage image = sample_map();
+  const ExpectedElectronImage image = sample_map();
   EXPECT_THROW(encode_exr({.columns = 2, .rows = 2}), Error);
   EXPECT_THROW(encode_exr({.pixels = image.pixels.data(), .columns = 0, .rows = 2}), Error);
   EXPECT_THROW(encode_exr({.pixels = image.pixels.data(),
@@ -248,7 +248,7 @@ TEST(Exr, RefusesWhatNoFileHolds) {
 }
 
 TEST(Exr, NoNanLeaves) {
-  RateImage image = sample_map();
+  ExpectedElectronImage image = sample_map();
   image.at(0, 1) = std::numeric_limits<float>::infinity();
   EXPECT_THROW(encode_exr({.pixels = image.pixels.data(), .columns = 200, .rows = 150}), Error);
 }

@@ -44,15 +44,15 @@ class Stage {
 
   FrameProducts frame(std::uint32_t number = 1, std::size_t sensor = 0) {
     const auto& config = scenario.sensors.at(sensor);
-    FramePipeline pipeline(
-        {.sensor = config,
-         .clock = make_clock(scenario),
-         .seed = scenario.seed,
-         .digest = "test",
-         .faintest_star_mag = scenario.faintest_star_mag,
-         .star_truth = true,
-         .shapes = std::make_shared<const ObjectShapes>(scenario.own_objects, config.camera.band)},
-        stars, threads);
+    FramePipeline pipeline({.sensor = config,
+                            .clock = make_clock(scenario),
+                            .seed = scenario.seed,
+                            .digest = "test",
+                            .faintest_star_mag = scenario.faintest_star_mag,
+                            .star_truth = true,
+                            .shapes = std::make_shared<const ObjectShapes>(
+                                scenario.own_objects, config.camera.band, config.effects)},
+                           stars, threads);
     return pipeline.run(frame_times(config, number), world);
   }
 

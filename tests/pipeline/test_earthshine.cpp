@@ -1,6 +1,6 @@
 #include "core/facets/earthshine.h"
 
-#include "core/effects/light_effects.h"
+#include "core/facets/earthshine.h"
 #include "core/sky/shadow.h"
 #include "tests/pipeline/shape_scenes.h"
 
@@ -46,9 +46,9 @@ TEST(EarthshineEffect, LightsSpheresMeshesAndShapesAlike) {
 }
 
 TEST(EarthshineEffect, IsOffUnlessAskedFor) {
-  EXPECT_FALSE(EffectSet().has(effect::earthshine));
+  EXPECT_FALSE(EffectSet().has(Earthshine::facts));
   const Stage stage(scene("    radius_m: 1\n", true));
-  EXPECT_TRUE(stage.scenario.sensors[0].effects.has(effect::earthshine));
+  EXPECT_TRUE(stage.scenario.sensors[0].effects.has(Earthshine::facts));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "core/base/units.h"
-#include "core/effects/place_effects.h"
+#include "core/sky/place_effects.h"
 #include "core/sky/sun_moon.h"
 #include "sensors/pipeline/make_sensor.h"
 #include "tests/pipeline/harness.h"
@@ -104,7 +104,7 @@ TEST(Environment, RefractionIsThatOfTheSitesWeather) {
     const Vec<Gcrs> low = view.enu_from_gcrs(t).inverse() * from_horizontal({1.0, 20 * deg});
     const auto [ra, dec] = to_spherical(low);
     EffectSet none = config.effects;
-    none.set(effect::refraction, false);
+    none.set(AtmosphericRefraction::facts, false);
     const StarPlace star{.ra_rad = ra, .dec_rad = dec};
     return angle_rad(view.places(t).star(star), view.places(t, none).star(star)) / arcsec;
   };

@@ -1,6 +1,7 @@
 #include <cmath>
 
-#include "core/effects/light_effects.h"
+#include "core/effects/frame_effects.h"
+#include "core/optics/point_spread.h"
 #include "core/image/fits_file.h"
 #include "core/photometry/magnitude.h"
 #include "tests/pipeline/harness.h"
@@ -107,7 +108,7 @@ TEST(FramePipeline, TellsTheTimeOfEveryStage) {
   test::Stage stage(scenario("{}"), "ra_deg,dec_deg,mag_v\n49.7,-5.4,6\n", elements);
   const auto frame = stage.frame();
   for (const auto& effect :
-       {effect::sky, effect::stars, effect::objects, effect::psf, PhotonNoise::facts,
+       {SkyBackground::facts, StarBackground::facts, SpaceObjects::facts, PointSpread::facts, PhotonNoise::facts,
         DarkCurrent::facts, ReadNoise::facts, FullWell::facts, Quantisation::facts})
     EXPECT_GT(frame.times[effect], 0.0) << effect.name;
   double sum = frame.detection_s;

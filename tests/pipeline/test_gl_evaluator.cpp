@@ -60,19 +60,19 @@ FrameProducts frame_of(Stage& stage, std::size_t sensor, int snapshots = 0, int 
   return pipeline.run(frame_times(config, 1), stage.world);
 }
 
-double sum(const RateImage& image) {
+double sum(const ExpectedElectronImage& image) {
   return std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0);
 }
 
 /// Light that lies in other pixels, as a share of all.
-double misplaced(const RateImage& exact, const RateImage& image) {
+double misplaced(const ExpectedElectronImage& exact, const ExpectedElectronImage& image) {
   double difference = 0;
   for (std::size_t i = 0; i < exact.pixels.size(); ++i)
     difference += std::abs(double(exact.pixels[i]) - double(image.pixels[i]));
   return difference / sum(exact) / 2;
 }
 
-double worst_of_peak(const RateImage& a, const RateImage& b) {
+double worst_of_peak(const ExpectedElectronImage& a, const ExpectedElectronImage& b) {
   double worst = 0, peak = 0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
     worst = std::max(worst, std::abs(double(a.pixels[i]) - double(b.pixels[i])));
@@ -97,11 +97,11 @@ const std::vector<Field> fields = wide_fields();
 
 /// From `first` snapshots on the error falls at least as 1/N, until what is left is `rest`.
 void expect_convergence(Stage& stage, int first, double rest, const std::string& what) {
-  const RateImage exact = frame_of(stage, 0).planes.sources;
+  const ExpectedElectronImage exact = frame_of(stage, 0).planes.sources;
   ASSERT_GT(sum(exact), 0.0) << what;
   double before = 1.0;
   for (int count = first / 2; count <= 32 * first; count *= 2) {
-    const RateImage drawn = frame_of(stage, 1, count).planes.sources;
+    const ExpectedElectronImage drawn = frame_of(stage, 1, count).planes.sources;
     EXPECT_NEAR(sum(drawn) / sum(exact), 1.0, 1e-3) << what << " " << count;
     const double error = misplaced(exact, drawn);
     if (count >= first) {
@@ -134,9 +134,9 @@ TEST(GlEvaluator, SnapshotsOfAGeostationaryPointAreThePoint) {
     Stage still(simulation(600, 60) + slot + effects +
                 twice("site: savannah", "{target: slot, tracking: fixed}", 600,
                       camera(field.projection, field.deg)));
-    const RateImage exact = frame_of(still, 0).planes.sources;
+    const ExpectedElectronImage exact = frame_of(still, 0).planes.sources;
     for (const int count : {1, 3, 64}) {
-      const RateImage drawn = frame_of(still, 1, count).planes.sources;
+      const ExpectedElectronImage drawn = frame_of(still, 1, count).planes.sources;
       EXPECT_LT(worst_of_peak(exact, drawn), 1e-5) << field.projection << " " << count;
       EXPECT_NEAR(sum(drawn) / sum(exact), 1.0, 1e-5);
     }
@@ -238,7 +238,7 @@ TEST(GlEvaluator, TheScenarioAsksForIt) {
 
 TEST(GlEvaluator, RefusesWhatMoves) {
   GlEvaluator evaluator;
-  RateImage image(20, 20);
+  ExpectedElectronImage image(20, 20);
   Threads one;
   const DepositView view{image.pixels.data(), 20, 20, 20, 0, 0, 20, 20};
   const Arc moves{{5, 5}, {6, 6}, {7, 7}, 1.0}, dark{{5, 5}, {5, 5}, {5, 5}, -1.0};

@@ -1,4 +1,4 @@
-#include "sensors/pipeline/light.h"
+#include "sensors/pipeline/throughput.h"
 
 #include <cmath>
 #include <map>
@@ -24,15 +24,16 @@ TEST(LightOfARun, FlickersByYoungsLawAtSixtyDegreesFromTheZenith) {
                                    5));
   const auto& sensor = stage.scenario.sensors[0];
   const View view(sensor, frame_times(sensor, 1), stage.world);
-  const Light light(view);
+  const Throughput throughput(view);
+  const auto* scintillation = throughput.find<Scintillation>();
   const Vec<Gcrs> at = test::direction(view, 2.0, 30 * deg);
   const double sigma = std::sqrt(10e-6 * std::pow(0.02, -4.0 / 3) / 0.1 * std::pow(1.994, 3) *
                                  std::exp(-2 * 2000.0 / 8000));
-  for (const auto what : {Light::Flickering::star, Light::Flickering::object}) {
+  for (const auto what : {SightLine::Source::star, SightLine::Source::object}) {
     constexpr int count = 40000;
     double sum = 0, squares = 0;
     for (std::uint32_t i = 1; i <= count; ++i) {
-      const double f = light.flicker(at, what, i);
+      const double f = scintillation->apply({at, sun_bv, what, i});
       sum += f;
       squares += f * f;
     }
@@ -41,9 +42,10 @@ TEST(LightOfARun, FlickersByYoungsLawAtSixtyDegreesFromTheZenith) {
     EXPECT_NEAR(std::sqrt(squares / count - mean * mean) / sigma, 1.0, 0.02);
   }
   const View next(sensor, frame_times(sensor, 2), stage.world);
-  EXPECT_GT(std::abs(Light(next).flicker(at, Light::Flickering::star, 1) -
-                     light.flicker(at, Light::Flickering::star, 1)),
-            1e-3 * sigma);  // each frame draws anew
+  const SightLine star{at, sun_bv, SightLine::Source::star, 1};
+  EXPECT_GT(
+      std::abs(Throughput(next).find<Scintillation>()->apply(star) - scintillation->apply(star)),
+      1e-3 * sigma);  // each frame draws anew
 }
 
 // A satellite that is seen at 5 deg, lifted by 9.8 arcmin. Reference: the relative airmass of
@@ -91,10 +93,11 @@ TEST(LightOfARun, ASatellitesExtinctionIsThatOfItsApparentAltitude) {
 const std::string foreshortened =
     test::camera(441, 21, 0.0035, "", ", aperture_m: 0.001, vignetting: {natural: true}");
 
-std::string uniform_sky(const std::string& camera) {
+std::string uniform_sky(const std::string& camera, const std::string& effects = "") {
   return test::scenario("2018-03-06T03:00:00Z", 20, "site: atlanta", camera, "zenith", 1, 5,
                         ", sky: 18, effects: {photon_noise: off, dark_current: off, read_noise: "
-                        "off, full_well: off, extinction: off, scintillation: off}");
+                        "off, full_well: off, extinction: off, scintillation: off" +
+                            effects + "}");
 }
 
 // Reference: the cosine-fourth law (gnomonic lens): cos^4 30 deg = 0.5625.
@@ -102,13 +105,24 @@ TEST(LightOfARun, AUniformSkyFallsOffByTheCosineFourthLaw) {
   test::Stage stage(uniform_sky(foreshortened));
   const auto& sensor = stage.scenario.sensors[0];
   const View view(sensor, frame_times(sensor, 1), stage.world);
-  RateImage image(441, 21);
-  EffectTimes times;
-  fill_sky(view, 9.0, image, stage.threads, times);
+  ExpectedElectronImage image(441, 21);
+  fill_sky(view, 9.0, image, stage.threads);
   const int x = int(std::lround(220 + 350 * std::tan(30 * deg)));
   const double cosine = std::cos(std::atan((x - 220) / 350.0));
   EXPECT_NEAR(std::pow(cosine, 4), 0.5625, 0.001);
   EXPECT_NEAR(image.at(x, 10) / image.at(220, 10), std::pow(cosine, 4), 0.004);
+}
+
+// Without vignetting what is left of the law is the solid angle of a gnomonic lens's pixels, cos^3.
+TEST(LightOfARun, WithoutVignettingAUniformSkyFallsOffByTheSolidAngleAlone) {
+  test::Stage stage(uniform_sky(foreshortened, ", vignetting: off"));
+  const auto& sensor = stage.scenario.sensors[0];
+  const View view(sensor, frame_times(sensor, 1), stage.world);
+  ExpectedElectronImage image(441, 21);
+  fill_sky(view, 9.0, image, stage.threads);
+  const int x = int(std::lround(220 + 350 * std::tan(30 * deg)));
+  const double cosine = std::cos(std::atan((x - 220) / 350.0));
+  EXPECT_NEAR(image.at(x, 10) / image.at(220, 10), std::pow(cosine, 3), 0.004);
 }
 
 // A point loses the pupil's foreshortening alone: cos 30 deg, for a star and for an object.

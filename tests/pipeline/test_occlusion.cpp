@@ -125,6 +125,29 @@ TEST(Occlusion, StarsBehindAPlateAreDark) {
   }
 }
 
+// With the effect off all five stars shine, each as the free ones do.
+TEST(Occlusion, OffHidesNothing) {
+  const Sight sight = lit_sight();
+  std::string stars = "ra_deg,dec_deg,mag_v,bv\n";
+  for (int i = -2; i <= 2; ++i) {
+    const auto [ra, dec] = to_spherical(unit(sight.line + sight.right * (i * 20e-5)));
+    char line[96];
+    std::snprintf(line, sizeof line, "%.9f,%.9f,0.0,0.6\n", ra / deg, dec / deg);
+    stars += line;
+  }
+  Stage stage(text_of({.objects = black_plate(sight),
+                       .pointing = "{target: near}",
+                       .optics = sharp,
+                       .effects = "occlusion: off, sky: off, ",
+                       .more = "stars: {catalogue: stars.csv, faintest_mag: 9}\n",
+                       .gain_e_per_dn = 1000}),
+              stars);
+  const auto frame = stage.frame();
+  ASSERT_EQ(frame.stars.size(), 5u);
+  for (const auto& star : frame.stars)
+    EXPECT_NEAR(star.signal_e / frame.stars[0].signal_e, 1.0, 1e-2);
+}
+
 // From orbit all of the sky is behind.
 TEST(Occlusion, InOrbitTheSkyBehindAPlateIsDark) {
   const Sight sight = lit_sight();

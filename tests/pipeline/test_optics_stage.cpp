@@ -172,7 +172,7 @@ TEST(OpticsStage, ABrightStarLeavesThePhotometryOfAFaintOneAlone) {
   const auto light_of = [&](std::vector<Arc> arcs, double limit_e) {
     Threads one(1);
     OpticsStage stage(sensor, 1, one);
-    RateImage light(400, 300);
+    ExpectedElectronImage light(400, 300);
     stage.begin({.frame = 1, .start = {0}, .middle = sim_seconds(2.5), .end = sim_seconds(5)},
                 limit_e);
     stage.add(arcs, light);

@@ -1,5 +1,5 @@
 #include "core/sky/shadow.h"
-#include "sensors/pipeline/light.h"
+#include "sensors/pipeline/throughput.h"
 #include "sensors/render/resolution.h"
 #include "tests/pipeline/shape_scenes.h"
 
@@ -214,7 +214,7 @@ TEST(Resolved, AGlintShorterThanAPoseIsNotLost) {
   const auto frame = stage.frame();
   ASSERT_TRUE(truth_named(frame, "panel").resolved);
   EXPECT_NEAR(truth_named(frame, "panel").rendered_signal_e /
-                  (mean * times.seconds() * Light(view).electrons_per_photon_m2()),
+                  (mean * times.seconds() * Throughput(view).electrons_per_photon_m2()),
               1.0, 0.02);
 }
 

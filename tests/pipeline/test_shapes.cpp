@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/photometry/magnitude.h"
-#include "sensors/pipeline/light.h"
+#include "sensors/pipeline/throughput.h"
 #include "tests/pipeline/harness.h"
 
 namespace dmise::test {
@@ -117,7 +117,7 @@ TEST(Shapes, AGlintShorterThanASnapshotIsNotLost) {
       mean += light / steps;
       most = std::max(most, light);
     }
-    const double expected = mean * times.seconds() * Light(view).electrons_per_photon_m2();
+    const double expected = mean * times.seconds() * Throughput(view).electrons_per_photon_m2();
     const auto frame = stage.frame(number);
     EXPECT_NEAR(target_of(frame).rendered_signal_e / expected, 1.0, 0.02) << number;
     EXPECT_GT(most, 3 * mean) << number;  // there is a glint

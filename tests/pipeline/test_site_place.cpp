@@ -1,7 +1,7 @@
 #include <map>
 
 #include "core/base/units.h"
-#include "core/effects/place_effects.h"
+#include "core/sky/place_effects.h"
 #include "core/image/fits_cards.h"
 #include "tests/pipeline/wiring.h"
 
@@ -67,7 +67,7 @@ double lift_arcsec(double centre_um, double elevation_rad) {
   const View view(sensor, frame_times(sensor, 1), stage.world);
   const SimTime t = view.times().middle;
   EffectSet vacuum = sensor.effects;
-  vacuum.set(effect::refraction, false);
+  vacuum.set(AtmosphericRefraction::facts, false);
   // The star whose apparent elevation is the one asked for, by its place without air.
   StarPlace star;
   Vec<Gcrs> from = test::direction(view, 1.0, elevation_rad);

@@ -2,11 +2,10 @@
 
 #include <cmath>
 
-#include "core/effects/light_effects.h"
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/airmass.h"
-#include "sensors/pipeline/light.h"
+#include "sensors/pipeline/throughput.h"
 #include "tests/pipeline/harness.h"
 #include "tests/support/data.h"
 #include "tests/support/projections.h"
@@ -34,16 +33,15 @@ std::string scenario(const std::string& start, int minutes, const std::string& c
          camera + ", pointing: " + pointing + ", exposure_s: 1, cadence_s: 60" + more + "}]\n";
 }
 
-RateImage sky_of(test::Stage& stage, std::uint32_t frame, std::size_t sensor = 0) {
+ExpectedElectronImage sky_of(test::Stage& stage, std::uint32_t frame, std::size_t sensor = 0) {
   const auto& config = stage.scenario.sensors.at(sensor);
   const View view(config, frame_times(config, frame), stage.world);
-  RateImage image(config.camera.optics.columns, config.camera.optics.rows);
-  EffectTimes times;
-  fill_sky(view, drawn_to_v_mag, image, stage.threads, times);
+  ExpectedElectronImage image(config.camera.optics.columns, config.camera.optics.rows);
+  fill_sky(view, drawn_to_v_mag, image, stage.threads);
   return image;
 }
 
-double sum_of(const RateImage& image) {
+double sum_of(const ExpectedElectronImage& image) {
   double sum = 0;
   for (const float e : image.pixels) sum += e;
   return sum;
@@ -56,9 +54,9 @@ struct Steps {
 };
 Steps steps_over(test::Stage& stage, std::uint32_t frames) {
   Steps steps;
-  std::vector<RateImage> last;
+  std::vector<ExpectedElectronImage> last;
   for (std::uint32_t frame = 1; frame <= frames; ++frame) {
-    RateImage image = sky_of(stage, frame);
+    ExpectedElectronImage image = sky_of(stage, frame);
     if (frame == 1) steps.growth = -sum_of(image);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
       const float here = image.pixels[i];
@@ -134,7 +132,7 @@ TEST(SkyLayer, BelowTheHorizonIsDarkAndNothingIsNan) {
   test::Stage stage(scenario("2018-01-21T04:00:00Z", 2, fisheye, "zenith", ", sky: urban"),
                     "ra_deg,dec_deg,mag_v\n0,90,6\n");
   const auto& config = stage.scenario.sensors[0];
-  const RateImage image = sky_of(stage, 1);
+  const ExpectedElectronImage image = sky_of(stage, 1);
   int below = 0;
   for (int y = 0; y < image.rows; ++y)
     for (int x = 0; x < image.columns; ++x) {
@@ -166,10 +164,10 @@ TEST(SkyLayer, IsWithinItsToleranceInEveryProjection) {
     const auto& config = stage.scenario.sensors[0];
     const View view(config, frame_times(config, 1), stage.world);
     const SkyModel sky = sky_over(view, drawn_to_v_mag);
-    const RateImage image = sky_of(stage, 1);
+    const ExpectedElectronImage image = sky_of(stage, 1);
     const SimTime t = view.times().middle;
     const auto enu_from_camera = view.enu_from_gcrs(t) * view.camera_from_gcrs(t).inverse();
-    const double scale = Light(view).electrons_per_photon_m2() * view.times().seconds();
+    const double scale = Throughput(view).electrons_per_photon_m2() * view.times().seconds();
     double worst = 0;
     for (int y = 0; y < image.rows; y += 2)
       for (int x = 0; x < image.columns; x += 2) {
@@ -234,9 +232,10 @@ TEST(Air, ScintillationHasYoungsDeviationAndMeanOne) {
     FrameTimes times = frame_times(config, 1);
     times.frame = frame;
     const View view(config, times, stage.world, 7);
-    const double f = Light(view).flicker(view.up(times.middle), Light::Flickering::star, 42);
+    const SightLine star{view.up(times.middle), sun_bv, SightLine::Source::star, 42};
+    const double f = Throughput(view).find<Scintillation>()->apply(star);
     sum += f, squares += f * f;
-    EXPECT_EQ(f, Light(view).flicker(view.up(times.middle), Light::Flickering::star, 42));
+    EXPECT_EQ(f, Throughput(view).find<Scintillation>()->apply(star));
   }
   const double mean = sum / frames;
   EXPECT_NEAR(mean, 1.0, 3 * 0.0224 / std::sqrt(frames));
@@ -251,19 +250,21 @@ TEST(Air, ExtinctionIsByBandColourAndAirmass) {
                     "ra_deg,dec_deg,mag_v\n0,90,6\n");
   const auto& config = stage.scenario.sensors[0];
   const View view(config, frame_times(config, 1), stage.world);
-  const Light light(view);
+  const Throughput throughput(view);
+  const auto of_air = [&](const Vec<Gcrs>& apparent, double bv) {
+    return throughput.find<AirExtinction>()->apply({apparent, bv, SightLine::Source::star, 1});
+  };
   const auto down = [&](double zenith_deg) {
     const Vec<Gcrs> up = view.up(view.times().middle);
     const Vec<Gcrs> side = unit(cross(up, {0.1, 0.2, 0.9}));
     return up * std::cos(zenith_deg * deg) + side * std::sin(zenith_deg * deg);
   };
-  const double k_zenith = magnitude_of_light(light.air_transmission(down(0), 0.65));
+  const double k_zenith = magnitude_of_light(of_air(down(0), 0.65));
   EXPECT_NEAR(k_zenith, 0.153, 0.004);  // the curve has 0.150 at 550 nm, 0.161 at 525
-  EXPECT_NEAR(magnitude_of_light(light.air_transmission(down(60), 0.65)) / k_zenith,
-              airmass(30 * deg), 0.01);
-  EXPECT_LT(light.air_transmission(down(60), -0.3), light.air_transmission(down(60), 1.8));
+  EXPECT_NEAR(magnitude_of_light(of_air(down(60), 0.65)) / k_zenith, airmass(30 * deg), 0.01);
+  EXPECT_LT(of_air(down(60), -0.3), of_air(down(60), 1.8));
   for (const double zenith_deg : {89.0, 90.0, 91.0, 120.0, 180.0}) {
-    const double t = light.air_transmission(down(zenith_deg), 0.65);
+    const double t = of_air(down(zenith_deg), 0.65);
     EXPECT_TRUE(t > 0 && t < 0.1) << zenith_deg;
   }
 }

@@ -71,6 +71,16 @@ TEST(ThermalShapes, AWarmPlateShinesByPlancksLawAlsoBeyondTheSolarTable) {
   }
 }
 
+// A plate that reflects nothing has no light at all without its warmth, as a point and with a
+// shape.
+TEST(ThermalShapes, OffTheEffectLeavesAWarmBlackPlateDark) {
+  const std::string material = with_material().string();
+  for (const char* side_m : {"0.005", "0.5"}) {
+    Stage stage(with(scenario(side_m, "sky: off, thermal_emission: off, "), material));
+    EXPECT_EQ(stage.frame().truths.at(0).rendered_signal_e, 0.0) << side_m;
+  }
+}
+
 TEST(ThermalShapes, ASkyThatCannotBeDrawnThereIsRefusedUnlessItIsOff) {
   const std::string material = with_material().string();
   EXPECT_NO_THROW(Stage(with(scenario("1", "sky: off, "), material)));

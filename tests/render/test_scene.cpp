@@ -24,18 +24,20 @@ SceneRenderer& renderer() {
   return *loaded;
 }
 
-ScenePlane plane_of(RateImage& image) {
+ScenePlane plane_of(ExpectedElectronImage& image) {
   return {image.pixels.data(), image.columns, image.rows, image.columns};
 }
 
-RateImage drawn(const std::vector<ScenePoint>& points, double sigma, int columns, int rows) {
-  RateImage image(columns, rows);
+ExpectedElectronImage drawn(const std::vector<ScenePoint>& points, double sigma, int columns,
+                            int rows) {
+  ExpectedElectronImage image(columns, rows);
   renderer().add_points(points, sigma, plane_of(image));
   return image;
 }
 
-RateImage deposited(const std::vector<ScenePoint>& points, double sigma, int columns, int rows) {
-  RateImage image(columns, rows);
+ExpectedElectronImage deposited(const std::vector<ScenePoint>& points, double sigma, int columns,
+                                int rows) {
+  ExpectedElectronImage image(columns, rows);
   std::vector<Arc> arcs;
   for (const auto& p : points) {
     const PixelPosition at{p.x, p.y};
@@ -50,7 +52,7 @@ struct Moments {
   double light = 0, x = 0, y = 0;
 };
 
-Moments moments(const RateImage& image) {
+Moments moments(const ExpectedElectronImage& image) {
   Moments m;
   for (int y = 0; y < image.rows; ++y)
     for (int x = 0; x < image.columns; ++x) {
@@ -79,7 +81,7 @@ TEST(Scene, APointHasItsLightAndItsPlaceInEveryCell) {
   for (const double sigma : {0.02, 0.1, 0.3, 0.64, 1.0, 1.9, 2.0, 5.0, 40.0})
     for (const double phase : {0.0, 0.123, 0.5, 0.87}) {
       const double x = 300 + phase, y = 290 + 0.7 * phase;
-      const RateImage image = drawn({{x, y, 1e4}}, sigma, 600, 600);
+      const ExpectedElectronImage image = drawn({{x, y, 1e4}}, sigma, 600, 600);
       const Moments m = moments(image);
       EXPECT_NEAR(m.light / 1e4, 1.0, 3e-6) << sigma << " " << phase;
       double worst = 0, peak = 0, exact_x = 0, exact_y = 0;
@@ -105,7 +107,8 @@ TEST(Scene, APointHasItsLightAndItsPlaceInEveryCell) {
 TEST(Scene, ManyPointsAreWhatTheDepositMakesOfThem) {
   for (const double sigma : {0.1, 0.7, 3.0}) {
     const auto points = scattered(20000, 1300, 700, 30);
-    const RateImage a = deposited(points, sigma, 1300, 700), b = drawn(points, sigma, 1300, 700);
+    const ExpectedElectronImage a = deposited(points, sigma, 1300, 700),
+                                b = drawn(points, sigma, 1300, 700);
     double worst = 0, sum_a = 0, sum_b = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
       worst = std::max(worst, std::abs(double(a.pixels[i]) - b.pixels[i]));
@@ -120,18 +123,18 @@ TEST(Scene, ManyPointsAreWhatTheDepositMakesOfThem) {
 
 TEST(Scene, TheSameCallGivesTheSameBytes) {
   const auto points = scattered(5000, 600, 600, 10);
-  const RateImage once = drawn(points, 0.8, 600, 600);
+  const ExpectedElectronImage once = drawn(points, 0.8, 600, 600);
   EXPECT_EQ(once.pixels, drawn(points, 0.8, 600, 600).pixels);
 }
 
 TEST(Scene, PointsAreAddedToWhatIsThere) {
-  RateImage image(40, 30, 7.0f);
+  ExpectedElectronImage image(40, 30, 7.0f);
   const ScenePoint point{20, 15, 100};
   renderer().add_points({&point, 1}, 1.0, plane_of(image));
   EXPECT_FLOAT_EQ(image.at(0, 0), 7.0f);
   EXPECT_GT(image.at(20, 15), 20.0f);
   const ScenePoint far{1e14, -1e14, 100};
-  const RateImage before = image;
+  const ExpectedElectronImage before = image;
   renderer().add_points({&far, 1}, 1.0, plane_of(image));
   EXPECT_EQ(image.pixels, before.pixels);
 }
@@ -146,7 +149,7 @@ TEST(Scene, TheSkyIsWhatTheAnalyticGridMakesOfIt) {
   for (const PixelFunction& f : {smooth, edge})
     for (const auto& [columns, rows] :
          {std::pair{1, 1}, {1, 40}, {33, 32}, {503, 329}, {1200, 700}}) {
-      RateImage analytic(columns, rows), image(columns, rows);
+      ExpectedElectronImage analytic(columns, rows), image(columns, rows);
       fill_from_grid(columns, rows, f, 0.005, analytic.pixels.data(), one);
       renderer().add_patches(patches_of_grid(columns, rows, f, 0.005, one), plane_of(image));
       double worst = 0;
@@ -174,7 +177,7 @@ Drawn drawn_with(const std::string& environment) {
 }
 
 TEST(Scene, DISABLED_TellsItsPicture) {
-  RateImage image = drawn(scattered(20000, 1300, 700, 30), 0.7, 1300, 700);
+  ExpectedElectronImage image = drawn(scattered(20000, 1300, 700, 30), 0.7, 1300, 700);
   const PixelFunction sky = [](double x, double y) { return 200 + x * 0.1 + y * y * 1e-4; };
   Threads one;
   renderer().add_patches(patches_of_grid(1300, 700, sky, 0.005, one), plane_of(image));
@@ -203,7 +206,7 @@ TEST(Scene, EglWithoutASurfaceDrawsWhatOsmesaDraws) {
 }
 
 TEST(Scene, RefusesWhatItCannotDraw) {
-  RateImage image(10, 10);
+  ExpectedElectronImage image(10, 10);
   const ScenePoint point{5, 5, 1};
   EXPECT_THROW(renderer().add_points({&point, 1}, 0.0, plane_of(image)), Error);
   EXPECT_THROW(renderer().add_points({&point, 1}, 1.0, {}), Error);

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "core/effects/place_effects.h"
 #include "core/sky/apparent.h"
+#include "core/sky/place_effects.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
@@ -52,7 +52,7 @@ TEST(ApparentSatellites, AnnualAberrationDoesNotApply) {
   const Observer observer =
       space_observer(row.observer_m, row.observer_m_per_s, tt, solar_system(tt));
   EXPECT_EQ(ApparentPlaces(observer, {}).satellite(row.position_m, row.velocity_m_per_s).direction,
-            ApparentPlaces(observer, without(effect::annual_aberration))
+            ApparentPlaces(observer, without(AnnualAberration::facts))
                 .satellite(row.position_m, row.velocity_m_per_s)
                 .direction);
 }
@@ -72,7 +72,7 @@ TEST(ApparentSatellites, LightTimeAndAberrationHaveTheirSizes) {
   EXPECT_NEAR(angle_rad(places.satellite({4.2e7, 0, 0}, {0, 3075, 0}).astrometric, {1, 0, 0}),
               2.1 * arcsec, 0.05 * arcsec);
   const SatellitePlace still =
-      ApparentPlaces(centre, without(effect::light_time)).satellite({1e6, 0, 0}, {0, 7500, 0});
+      ApparentPlaces(centre, without(LightTime::facts)).satellite({1e6, 0, 0}, {0, 7500, 0});
   EXPECT_EQ(still.astrometric, (Vec<Gcrs>{1, 0, 0}));
   EXPECT_EQ(still.light_time_s, 0.0);
 }

@@ -4,8 +4,8 @@
 #include <numeric>
 #include <vector>
 
-#include "core/effects/place_effects.h"
 #include "core/sky/apparent.h"
+#include "core/sky/place_effects.h"
 #include "core/time/iso8601.h"
 #include "tests/support/data.h"
 
@@ -113,7 +113,7 @@ TEST(ApparentStars, StandOverASitesHorizonWhereAstropySees) {
       return enu_from_itrs(site) *
              (earth.itrs_from_gcrs({}) * ApparentPlaces(here, effects).star(star));
     };
-    EXPECT_LT(angle_rad(seen(all_but({effect::refraction})),
+    EXPECT_LT(angle_rad(seen(all_but({AtmosphericRefraction::facts})),
                         from_horizontal({row.azimuth_deg * deg, row.elevation_deg * deg})),
               2 * mas)
         << row.utc;
@@ -156,7 +156,7 @@ TEST(ApparentStars, AThousandAboveTwentyDegreesAgreeWithAstropyThroughTheAir) {
           (earth.itrs_from_gcrs({}) * ApparentPlaces(here, effects).star({v[3] * deg, v[4] * deg}));
       return angle_rad(seen, from_horizontal({azimuth_deg * deg, elevation_deg * deg}));
     };
-    worst_plain = std::max(worst_plain, off(all_but({effect::refraction}), v[5], v[6]));
+    worst_plain = std::max(worst_plain, off(all_but({AtmosphericRefraction::facts}), v[5], v[6]));
     worst_air = std::max(worst_air, off({}, v[7], v[8]));
     ++count;
   }
@@ -178,9 +178,9 @@ TEST(ApparentStars, EachCorrectionHasItsSizeAndItsSwitch) {
     return angle_rad(ApparentPlaces(here, {}).star(star),
                      ApparentPlaces(here, all_but({effect})).star(star));
   };
-  EXPECT_NEAR(moved_by(effect::proper_motion, barnard), 18.055 * 10.36 * arcsec, 0.5 * arcsec);
-  EXPECT_LT(moved_by(effect::parallax, barnard), 0.56 * arcsec);
-  EXPECT_GT(moved_by(effect::parallax, barnard), 0.1 * arcsec);
+  EXPECT_NEAR(moved_by(ProperMotion::facts, barnard), 18.055 * 10.36 * arcsec, 0.5 * arcsec);
+  EXPECT_LT(moved_by(Parallax::facts, barnard), 0.56 * arcsec);
+  EXPECT_GT(moved_by(Parallax::facts, barnard), 0.1 * arcsec);
 
   const auto largest = [&](const EffectFacts& effect) {
     double most = 0.0;
@@ -193,19 +193,19 @@ TEST(ApparentStars, EachCorrectionHasItsSizeAndItsSwitch) {
     }
     return most;
   };
-  EXPECT_NEAR(largest(effect::annual_aberration), 20.8 * arcsec, 0.4 * arcsec);
-  EXPECT_NEAR(largest(effect::diurnal_aberration), 0.32 * std::cos(33.777 * deg) * arcsec,
+  EXPECT_NEAR(largest(AnnualAberration::facts), 20.8 * arcsec, 0.4 * arcsec);
+  EXPECT_NEAR(largest(DiurnalAberration::facts), 0.32 * std::cos(33.777 * deg) * arcsec,
               0.01 * arcsec);
-  EXPECT_GT(largest(effect::light_deflection), 3 * mas);
-  EXPECT_LT(largest(effect::light_deflection), 30 * mas);
-  EXPECT_GT(largest(effect::refraction), 90 * arcsec);
-  EXPECT_EQ(largest(effect::light_time), 0.0);
+  EXPECT_GT(largest(LightDeflection::facts), 3 * mas);
+  EXPECT_LT(largest(LightDeflection::facts), 30 * mas);
+  EXPECT_GT(largest(AtmosphericRefraction::facts), 90 * arcsec);
+  EXPECT_EQ(largest(LightTime::facts), 0.0);
 }
 
 TEST(ApparentStars, AllSwitchedOffIsTheCataloguePlace) {
   const EffectSet none =
-      all_but({effect::proper_motion, effect::parallax, effect::light_deflection,
-               effect::annual_aberration, effect::diurnal_aberration, effect::refraction});
+      all_but({ProperMotion::facts, Parallax::facts, LightDeflection::facts,
+               AnnualAberration::facts, DiurnalAberration::facts, AtmosphericRefraction::facts});
   const StarPlace star{1.0, 0.5, 1e-5, 1e-5, 1e-6};
   EXPECT_LT(angle_rad(ApparentPlaces(atlanta("2018-01-20T23:40:00Z"), none).star(star),
                       from_spherical<Gcrs>(1.0, 0.5)),
@@ -214,7 +214,7 @@ TEST(ApparentStars, AllSwitchedOffIsTheCataloguePlace) {
 
 TEST(ApparentStars, RefractionLiftsTowardsTheZenithAndNothingAtIt) {
   const Observer here = atlanta("2018-01-20T23:40:00Z");
-  const ApparentPlaces with(here, {}), without(here, all_but({effect::refraction}));
+  const ApparentPlaces with(here, {}), without(here, all_but({AtmosphericRefraction::facts}));
   for (double away = 0.0; away < 3.1; away += 0.01) {
     const Vec<Gcrs> side = unit(cross(here.air->zenith, {0.1, 0.2, 0.9}));
     const auto [ra, dec] = to_spherical(here.air->zenith * std::cos(away) + side * std::sin(away));
@@ -256,7 +256,7 @@ TEST(ApparentStars, CrossThePoleAndTheTwentyFourHourLineWithoutAStep) {
 
 TEST(ApparentStars, AStarAtThePoleMovesByItsProperMotion) {
   const Observer here = atlanta("2018-01-20T23:40:00Z");
-  const ApparentPlaces places(here, all_but({effect::refraction}));
+  const ApparentPlaces places(here, all_but({AtmosphericRefraction::facts}));
   const StarPlace still{.ra_rad = 0.3, .dec_rad = pi / 2};
   StarPlace moving = still;
   moving.pm_ra_cosdec_rad_per_yr = 3 * arcsec;

@@ -1,4 +1,4 @@
-#include "sensors/pipeline/screen.h"
+#include "sensors/pipeline/occlusion_mask.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ double overlap(int pixel, double at, double half) {
 
 }  // namespace
 
-double Screen::free_at(PixelPosition at) const {
+double OcclusionMask::free_at(PixelPosition at) const {
   if (empty()) return 1.0;
   const double x = std::round(at.x_px) + margin_px, y = std::round(at.y_px) + margin_px;
   if (!(x >= covered_.left && x < covered_.right && y >= covered_.top && y < covered_.bottom))
@@ -23,7 +23,7 @@ double Screen::free_at(PixelPosition at) const {
   return free_[index(int(x), int(y))];
 }
 
-std::vector<Arc> Screen::past(std::span<const Arc> path) const {
+std::vector<Arc> OcclusionMask::past(std::span<const Arc> path) const {
   if (empty()) return {path.begin(), path.end()};
   std::vector<Arc> free;
   for (const Arc& arc : path) {
@@ -52,7 +52,7 @@ std::vector<Arc> Screen::past(std::span<const Arc> path) const {
   return free;
 }
 
-void Screen::cover(PixelPosition at, double side_px, double hidden_px) {
+void OcclusionMask::cover(PixelPosition at, double side_px, double hidden_px) {
   const double x = at.x_px + margin_px, y = at.y_px + margin_px, half = side_px / 2;
   if (!(x + half > -0.5 && y + half > -0.5 && x - half < columns_ && y - half < rows_)) return;
   const int left = std::max(0, int(std::floor(x - half + 0.5)));
@@ -70,7 +70,7 @@ void Screen::cover(PixelPosition at, double side_px, double hidden_px) {
            std::max(next_.bottom, bottom)};
 }
 
-void Screen::close() {
+void OcclusionMask::close() {
   if (next_.right == 0) return;
   if (free_.empty()) {
     free_.assign(hidden_.size(), 1.0f);
@@ -89,7 +89,8 @@ void Screen::close() {
   next_ = {};
 }
 
-void Screen::take_hidden(const RateImage& behind, RateImage& image) const {
+void OcclusionMask::take_hidden(const ExpectedElectronImage& behind,
+                                ExpectedElectronImage& image) const {
   if (empty()) return;
   for (int y = 0; y < image.rows; ++y)
     for (int x = 0; x < image.columns; ++x) {

@@ -9,11 +9,12 @@ namespace dmise {
 
 /// What objects with a shape leave of the light that comes from behind them: a share of the
 /// exposure for every pixel of the frame and of a margin about it. Objects are added nearest first.
-class Screen {
+class OcclusionMask {
  public:
   static constexpr int margin_px = 32;
 
-  Screen(int columns, int rows) : columns_(columns + 2 * margin_px), rows_(rows + 2 * margin_px) {}
+  OcclusionMask(int columns, int rows)
+      : columns_(columns + 2 * margin_px), rows_(rows + 2 * margin_px) {}
 
   /// Whether nothing is hidden anywhere.
   bool empty() const { return free_.empty(); }
@@ -29,10 +30,10 @@ class Screen {
   void close();
 
   /// Takes what is hidden of `behind` from `image`, both of the frame.
-  void take_hidden(const RateImage& behind, RateImage& image) const;
+  void take_hidden(const ExpectedElectronImage& behind, ExpectedElectronImage& image) const;
 
  private:
-  /// Pixels from the first to before the last, of the screen.
+  /// Pixels from the first to before the last, of the mask.
   struct Box {
     int left = 0, top = 0, right = 0, bottom = 0;
   };

@@ -1,0 +1,18 @@
+#pragma once
+#include "core/sky/air_extinction.h"
+#include "core/sky/cloud_cover.h"
+#include "core/sky/scintillation.h"
+
+// An effect of the air takes light of a source on its way down to a ground sensor. It is a struct
+// with
+//   static constexpr EffectFacts facts;
+//   static bool applies(const SceneFacts&);
+//   a constructor from an AirExposure
+//   double apply(const SightLine&) const;   the factor on the source's light
+// To add one: write its file pair, list it here, test it in tests/sky.
+namespace dmise {
+
+/// In the order in which they run.
+using AirEffects = EffectList<AirExtinction, CloudCover, Scintillation>;
+
+}  // namespace dmise

@@ -1,0 +1,45 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "core/effects/effects.h"
+#include "core/photometry/band.h"
+#include "core/sky/clouds.h"
+
+namespace dmise {
+
+/// What effects of the air may use of an exposure of a ground sensor.
+struct AirExposure {
+  const Band& band;
+  const Curve& extinction_mag_per_airmass;  // over wavelength
+  const std::optional<Clouds>& clouds;
+  double aperture_m, exposure_s, site_height_m;
+  double time_s;  // of mid exposure, since the start of the run
+  Vec<Gcrs> up;   // unit, at mid exposure
+  Rotation<Enu, Gcrs> enu_from_gcrs;
+  std::uint64_t seed;
+  std::string_view sensor;  // its name
+  std::uint32_t frame;
+};
+
+/// A source as a ground sensor sees it.
+struct SightLine {
+  enum class Source { star, object };
+
+  Vec<Gcrs> apparent;  // unit
+  double bv;           // colour: B - V [mag]
+  Source source;
+  std::uint32_t number;  // in its catalogue
+};
+
+inline constexpr double sun_bv = 0.65;
+
+/// Over the horizon whose zenith is `up` (unit) [rad].
+inline double elevation_over(const Vec<Gcrs>& up, const Vec<Gcrs>& direction) {
+  return std::asin(std::clamp(dot(up, direction), -1.0, 1.0));
+}
+
+}  // namespace dmise

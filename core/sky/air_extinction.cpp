@@ -1,0 +1,24 @@
+#include "core/sky/air_extinction.h"
+
+#include "core/photometry/magnitude.h"
+#include "core/sky/airmass.h"
+#include "core/sky/kept_tables.h"
+
+namespace dmise {
+
+AirExtinction::AirExtinction(const AirExposure& exposure) : up_(exposure.up) {
+  static KeptTables<std::pair<Band, Curve>, BandExtinction> tables;
+  table_ = tables.of({exposure.band, exposure.extinction_mag_per_airmass}, [&] {
+    return BandExtinction(exposure.band, exposure.extinction_mag_per_airmass);
+  });
+}
+
+double AirExtinction::apply(const SightLine& line) const {
+  return table_->of_star(airmass(elevation_over(up_, line.apparent)), line.bv);
+}
+
+double AirExtinction::sunlight_mag_per_airmass() const {
+  return magnitude_of_light(table_->of_sunlight(1.0));
+}
+
+}  // namespace dmise

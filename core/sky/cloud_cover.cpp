@@ -1,0 +1,13 @@
+#include "core/sky/cloud_cover.h"
+
+#include "core/sky/kept_tables.h"
+
+namespace dmise {
+
+CloudCover::CloudCover(const AirExposure& exposure)
+    : enu_from_gcrs_(exposure.enu_from_gcrs), time_s_(exposure.time_s) {
+  static KeptTables<Clouds, CloudMap> maps;
+  map_ = maps.of(*exposure.clouds, [&] { return CloudMap(*exposure.clouds); });
+}
+
+}  // namespace dmise

@@ -1,0 +1,24 @@
+#pragma once
+#include "core/effects/effects.h"
+#include "core/sky/observer.h"
+#include "core/sky/star_place.h"
+
+namespace dmise {
+
+/// Annual parallax: the observer is not at the barycentre of the solar system.
+class Parallax {
+ public:
+  static constexpr EffectFacts facts{"parallax", "stars seen from the Earth's place on its orbit",
+                                     "up to 0.77 arcsec", "IAU SOFA, eraPmpx"};
+
+  explicit Parallax(const Observer& observer) : barycentric_au_(barycentric_au(observer)) {}
+  /// `place`: of the star, in units of its distance.
+  void apply(const CataloguedStar& catalogued, Vec<Gcrs>& place) const {
+    place = place - catalogued.star.parallax_rad * barycentric_au_;
+  }
+
+ private:
+  Vec<Gcrs> barycentric_au_;
+};
+
+}  // namespace dmise

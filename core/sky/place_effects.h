@@ -1,0 +1,26 @@
+#pragma once
+#include "core/sky/aberration.h"
+#include "core/sky/atmospheric_refraction.h"
+#include "core/sky/light_deflection.h"
+#include "core/sky/light_time.h"
+#include "core/sky/parallax.h"
+#include "core/sky/proper_motion.h"
+
+// An effect of place leads from where a thing is to the direction from which its light is seen. It
+// is a struct with
+//   static constexpr EffectFacts facts;
+//   static bool applies(const SceneFacts&);   unless it always does
+//   a constructor from an Observer, where it has constants of one
+// and one of
+//   apply(const CataloguedStar&, Vec<Gcrs>& place) const   moves a star
+//   Vec<Gcrs> apply(const Vec<Gcrs>& direction) const      turns starlight
+//   velocity_c and displaces_satellites                    a velocity that aberrates
+//   apply of LightTime and AtmosphericRefraction, which satellites have too
+// To add one: write its file pair, list it here, test it in tests/sky.
+namespace dmise {
+
+/// In the order in which they run.
+using PlaceEffects = EffectList<ProperMotion, Parallax, LightDeflection, AnnualAberration,
+                                DiurnalAberration, LightTime, AtmosphericRefraction>;
+
+}  // namespace dmise

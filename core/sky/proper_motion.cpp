@@ -1,0 +1,28 @@
+#include "core/sky/proper_motion.h"
+
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr double julian_year_s = 365.25 * day_s;
+constexpr double light_years_per_au = au_m / speed_of_light_m_per_s / julian_year_s;
+
+}  // namespace
+
+ProperMotion::ProperMotion(const Observer& observer)
+    : barycentric_au_(barycentric_au(observer)),
+      years_(2000.0 + julian_years_since_j2000(observer.time)) {}
+
+void ProperMotion::apply(const CataloguedStar& catalogued, Vec<Gcrs>& place) const {
+  const auto& [star, outward, east, north] = catalogued;
+  const double receding_per_yr =
+      star.radial_velocity_m_per_s * (julian_year_s / au_m) * star.parallax_rad;
+  // The light also has to come in from the star's side to the observer.
+  const double years =
+      years_ - star.epoch_jyear + dot(outward, barycentric_au_) * light_years_per_au;
+  place += years * (star.pm_ra_cosdec_rad_per_yr * east + star.pm_dec_rad_per_yr * north +
+                    receding_per_yr * outward);
+}
+
+}  // namespace dmise

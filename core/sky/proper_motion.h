@@ -1,0 +1,24 @@
+#pragma once
+#include "core/effects/effects.h"
+#include "core/sky/observer.h"
+#include "core/sky/star_place.h"
+
+namespace dmise {
+
+/// Proper motion and radial velocity from the catalogue's epoch to the observer's time.
+class ProperMotion {
+ public:
+  static constexpr EffectFacts facts{
+      "proper_motion", "stars move from their catalogue's epoch to the date",
+      "up to 10.4 arcsec a year (Barnard's star)", "IAU SOFA, eraPmpx"};
+
+  explicit ProperMotion(const Observer& observer);
+  /// `place`: of the star, in units of its distance.
+  void apply(const CataloguedStar& catalogued, Vec<Gcrs>& place) const;
+
+ private:
+  Vec<Gcrs> barycentric_au_;
+  double years_;  // of the observer's time, Julian year
+};
+
+}  // namespace dmise

@@ -1,0 +1,15 @@
+#include "core/sky/star_place.h"
+
+#include <cmath>
+
+namespace dmise {
+
+CataloguedStar::CataloguedStar(const StarPlace& place) : star(place) {
+  const double sin_ra = std::sin(place.ra_rad), cos_ra = std::cos(place.ra_rad);
+  const double sin_dec = std::sin(place.dec_rad), cos_dec = std::cos(place.dec_rad);
+  outward = {cos_ra * cos_dec, sin_ra * cos_dec, sin_dec};
+  east = {-sin_ra, cos_ra, 0.0};
+  north = {-cos_ra * sin_dec, -sin_ra * sin_dec, cos_dec};
+}
+
+}  // namespace dmise

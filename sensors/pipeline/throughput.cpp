@@ -1,0 +1,75 @@
+#include "sensors/pipeline/throughput.h"
+
+#include "core/photometry/diffuse_sphere.h"
+#include "core/photometry/magnitude.h"
+#include "sensors/pipeline/stopwatch.h"
+
+namespace dmise {
+
+Curve extinction_over(const View& view) {
+  Curve curve = view.sensor().atmosphere.extinction_mag_per_airmass;
+  if (!view.air() || curve.empty()) return curve;
+  const double published = view.air()->extinction_mag_per_airmass;
+  const double here = curve.at_or_end(550 * nm);
+  if (published == here || !(here > 0)) return curve;
+  for (double& k : curve.value) k *= published / here;
+  return curve;
+}
+
+Throughput::Throughput(const View& view) {
+  const auto& sensor = view.sensor();
+  const auto& camera = sensor.camera;
+  electrons_per_photon_m2_ = camera.optics.collecting_area_m2() * camera.optics.transmission *
+                             camera.detector.quantum_efficiency;
+  zero_mag_photons_per_s_m2_ = object_photons_per_s_m2(0.0, camera.band);
+  if (!view.on_ground()) return;
+  const SimTime middle = view.times().middle;
+  const Curve extinction = extinction_over(view);
+  air_.emplace(sensor.effects, view.scene(),
+               AirExposure{.band = camera.band,
+                           .extinction_mag_per_airmass = extinction,
+                           .clouds = sensor.weather.clouds,
+                           .aperture_m = camera.optics.aperture_m,
+                           .exposure_s = view.times().seconds(),
+                           .site_height_m = view.site()->height_m,
+                           .time_s = middle.seconds(),
+                           .up = view.up(middle),
+                           .enu_from_gcrs = view.enu_from_gcrs(middle),
+                           .seed = view.seed(),
+                           .sensor = sensor.name,
+                           .frame = view.times().frame});
+}
+
+double Throughput::of_air(const SightLine& line) const {
+  double factor = 1.0;
+  if (air_) air_->for_each([&](const auto& effect) { factor *= effect.apply(line); });
+  return factor;
+}
+
+std::vector<double> Throughput::of_air(std::span<const SightLine> lines, EffectTimes& times) const {
+  std::vector<double> factors(lines.size(), 1.0);
+  if (air_)
+    air_->for_each([&](const auto& effect) {
+      Stopwatch timing(times[effect.facts]);
+      for (std::size_t i = 0; i < lines.size(); ++i) factors[i] *= effect.apply(lines[i]);
+    });
+  return factors;
+}
+
+double Throughput::of_sunlight(const Vec<Gcrs>& apparent) const {
+  const SightLine line{apparent, sun_bv, SightLine::Source::object, 0};
+  const auto* extinction = find<AirExtinction>();
+  const auto* clouds = find<CloudCover>();
+  return (extinction ? extinction->apply(line) : 1.0) * (clouds ? clouds->apply(line) : 1.0);
+}
+
+double Throughput::zero_point_mag() const {
+  return -magnitude_of_light(zero_mag_photons_per_s_m2_ * electrons_per_photon_m2_);
+}
+
+double Throughput::extinction_mag_per_airmass() const {
+  const auto* extinction = find<AirExtinction>();
+  return extinction ? extinction->sunlight_mag_per_airmass() : 0.0;
+}
+
+}  // namespace dmise

@@ -1,0 +1,49 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/effects/acting_effects.h"
+#include "core/sky/air_effects.h"
+#include "sensors/pipeline/view.h"
+
+namespace dmise {
+
+/// What becomes of light on its way from above the atmosphere to the detector, for one exposure:
+/// `AirEffects` in their order, those that act, then the optics.
+class Throughput {
+ public:
+  explicit Throughput(const View& view);
+
+  /// Collecting area x transmission of the optics x quantum efficiency: electrons a second for one
+  /// photon/s/m2 in the band [m2].
+  double electrons_per_photon_m2() const { return electrons_per_photon_m2_; }
+
+  /// Factor of the air on a source's light; 1 in space.
+  double of_air(const SightLine& line) const;
+  /// The same of many; the seconds of each effect are added to `times`.
+  std::vector<double> of_air(std::span<const SightLine> lines, EffectTimes& times) const;
+  /// Share of sunlight from an apparent direction (unit) that air and clouds leave, [0, 1].
+  double of_sunlight(const Vec<Gcrs>& apparent) const;
+
+  /// One of the effects of the air; null where it does not act.
+  template <class Effect>
+  const Effect* find() const {
+    return air_ ? air_->find<Effect>() : nullptr;
+  }
+
+  /// V magnitude of a source of the Sun's colour that gives 1 e-/s without any atmosphere.
+  double zero_point_mag() const;
+  /// What the zenith's clear air takes from sunlight in the band.
+  double extinction_mag_per_airmass() const;
+
+ private:
+  double electrons_per_photon_m2_ = 0.0;
+  double zero_mag_photons_per_s_m2_ = 0.0;
+  std::optional<ActingEffects<AirEffects>> air_;  // null: in space
+};
+
+/// Extinction over wavelength [mag/airmass] at a ground sensor, by its environment.
+Curve extinction_over(const View& view);
+
+}  // namespace dmise
