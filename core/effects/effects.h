@@ -6,7 +6,7 @@
 
 namespace dmise {
 
-/// What is said of an effect wherever it is named: scenarios, `dmise check`, run.json, docs.
+/// The description of an effect, for scenarios, `dmise check`, run.json and documents.
 struct EffectFacts {
   std::string_view name;          // as in YAML
   std::string_view what;          // one line: what it does
@@ -16,7 +16,7 @@ struct EffectFacts {
   bool switchable = true;         // else it has other choices than on and off
 };
 
-/// What decides whether effects of place and light have something to do in a sensor's frames.
+/// The facts by which effects of place and light apply to a sensor's frames or not.
 struct SceneFacts {
   bool on_ground = true;
   bool clouds = false;     // over a ground sensor

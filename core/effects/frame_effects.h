@@ -1,8 +1,8 @@
 #pragma once
 #include "core/effects/effects.h"
 
-// What a frame's light is composed of. Each is a stage of sensors/pipeline, or a choice between its
-// ways; here is what configuration and documents need of them.
+// The effects that sensors/pipeline runs as stages of a frame's light, or chooses between; here is
+// what configuration and documents need of them.
 namespace dmise {
 
 struct SkyBackground {

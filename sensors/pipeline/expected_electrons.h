@@ -20,25 +20,25 @@ struct LightSources {
   const ObjectShapes* shapes = nullptr;  // null: all objects are points
   GlEvaluator* evaluator = nullptr;      // null: light is deposited
 
-  /// V to which stars are drawn one by one: as far as they are asked for and the catalogue goes.
+  /// Returns V of the faintest stars drawn one by one: the limit asked for or the catalogue's.
   double drawn_to_v_mag(const EffectSet& effects) const;
 };
 
-/// What else may be asked of an exposure's light.
+/// Optional outputs of an exposure's light.
 struct LightOptions {
   ExpectedElectronImage* sky = nullptr;     // filled with the light of the sky alone
   std::vector<StarTruth>* stars = nullptr;  // gets the stars as they were drawn
 };
 
-/// What an exposure's light came of.
+/// The sources of an exposure's light.
 struct LightTruth {
   std::vector<Truth> objects;
   std::uint32_t stars = 0;  // that left light in the frame
 };
 
 /// Fills `image` with the electrons that the exposure of `view` expects of every pixel: the sky,
-/// objects from the nearest on, stars behind them, blurred by `optics`. For the camera's whole band
-/// or, of a view whose sensor has that, for a part of it. Adds the seconds of each stage to
+/// objects from the nearest on, stars behind them, blurred by `optics`. The band is that of the
+/// view's camera: the whole or a part. Adds the seconds of each stage to
 /// `times`.
 LightTruth expected_electrons(const View& view, const LightSources& sources, OpticsStage& optics,
                               ExpectedElectronImage& image, Threads& threads, EffectTimes& times,

@@ -18,21 +18,21 @@
 
 namespace dmise {
 
-/// Everything that comes of one exposure.
+/// All products of one exposure.
 struct FrameProducts {
   CountImage counts;
   FrameHeader header;
   FrameReport report;
   std::vector<Detection> detections;
   std::vector<Truth> truths;
-  std::vector<StarTruth> stars;  // only when asked for, as are
+  std::vector<StarTruth> stars;  // only on request, as are
   FlagImage flags;
   FramePlanes planes;
   EffectTimes times;  // wall clock, never part of a repeatable product
   double detection_s = 0.0, total_s = 0.0;
 };
 
-/// What a sensor's frames have in common.
+/// Settings that all frames of a sensor share.
 struct PipelineSettings {
   SensorConfig sensor;
   Clock clock;
@@ -62,17 +62,17 @@ class FramePipeline {
   /// persistence a frame depends on the ones before it, which are made first where they were not.
   FrameProducts run(const FrameTimes& exposure, const World& world);
 
-  /// The counts of a frame that is done with: the next one goes where they were.
+  /// Takes back the counts of a finished frame, so that the next frame reuses their memory.
   void give_back(CountImage counts);
 
-  /// The frame that must be exposed first for the detector to be in the state in which `frame`
-  /// finds it: `frame` itself, unless an earlier one left charge in traps and was made elsewhere.
+  /// Returns the frame to expose first so that the detector is in the right state for `frame`:
+  /// `frame` itself, unless an earlier one left charge in traps and was made elsewhere.
   std::uint32_t first_frame_for(std::uint32_t frame) const;
 
-  /// What of OpenGL draws points and sky; empty: they are deposited.
+  /// Describes the OpenGL that draws points and sky; empty when they are deposited.
   std::string evaluator() const;
 
-  /// Frames before any frame that a pipeline which starts with it must expose first, at most.
+  /// Returns the most frames that a new pipeline must expose before its first one.
   std::uint32_t most_frames_made_again() const;
 
  private:

@@ -27,7 +27,7 @@ struct FramePlanes {
   std::vector<BandRadiance> radiance_parts;  // in parts of the band, where they are asked for
 };
 
-/// What `light` [e-] of an exposure is at the aperture.
+/// Returns the radiance at the aperture that gives `light` [e-] in an exposure.
 RadianceMap radiance_of(const View& view, double exposure_s, const ExpectedElectronImage& light,
                         Threads& threads);
 

@@ -16,13 +16,13 @@ namespace dmise {
 /// when it first draws.
 class GlEvaluator {
  public:
-  /// As `deposit`, for arcs that do not move. What is told of them is worked out, not measured.
+  /// As `deposit`, for arcs that do not move. What it returns is computed, not measured.
   /// Throws `Error` for an arc that moves, or that `deposit` refuses, and where there is no OpenGL.
   std::vector<Deposited> add(std::span<const Arc> points, const PsfTable& psf,
                              const DepositView& view, Threads& threads);
   void add_sky(std::span<const SkyPatch> patches, ExpectedElectronImage& image);
 
-  /// What draws.
+  /// Describes the OpenGL that draws.
   std::string description();
 
  private:

@@ -5,8 +5,8 @@
 
 namespace dmise {
 
-/// What the file of a frame says of it: times, pose and place, the detector as it is in effect, and
-/// the world coordinates of the stars that each pixel sees in mid exposure.
+/// Returns the header of a frame's file: times, pose and place, the detector as it acts, and the
+/// world coordinates of the stars that each pixel sees in mid exposure.
 FrameHeader header_of(const View& view, const PipelineSettings& settings, double psf_fwhm_px);
 
 }  // namespace dmise

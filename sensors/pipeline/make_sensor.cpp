@@ -51,7 +51,7 @@ std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std
                        .radiance_parts = std::move(parts)},
       RunGrid{.tick_length = scenario.tick,
               .duration = scenario.duration,
-              .told_every = sim_seconds(
+              .environment_every = sim_seconds(
                   std::max(scenario.environment.common_every_s, scenario.environment.site_every_s)),
               .interpolation = scenario.interpolation},
       scenario.output, std::move(stars), directory + "/" + name, threads);

@@ -19,7 +19,7 @@ struct ObjectSample {
   double electrons_per_photon_m2 = 0.0;  // of the way from above the atmosphere; 0 when hidden
 };
 
-/// One instant of the exposure with all that does not depend on the object.
+/// One instant of the exposure with everything that does not depend on the object.
 struct ExposureInstant {
   SimTime time;
   ApparentPlaces places;
@@ -35,7 +35,7 @@ struct ExposureInstant {
         observer(view.observer(t)) {}
 };
 
-/// Works out where objects are seen in one exposure, and how bright.
+/// Computes where objects appear in one exposure, and how bright.
 class ObjectSampler {
  public:
   ObjectSampler(const View& view, const ObjectShapes* shapes);
@@ -45,7 +45,7 @@ class ObjectSampler {
 
   Illumination illumination(const Motion& motion, const Vec<Gcrs>& observer_m) const;
 
-  /// V above the atmosphere, fully lit.
+  /// Returns V above the atmosphere when fully lit.
   double magnitude(std::size_t object, const Motion& motion, const ExposureInstant& at) const;
 
   /// Null for an object without a shape.
@@ -71,7 +71,7 @@ class ObjectSampler {
   double zero_mag_;
 };
 
-/// Arcs between samples at even times, an odd number of them: each arc takes three.
+/// Returns arcs through an odd number of samples at even times: each arc takes three.
 std::vector<Arc> arcs_of(const std::vector<ObjectSample>& samples, double seconds);
 
 /// Between two samples in the image; 1e9 where one has no place there.

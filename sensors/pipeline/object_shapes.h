@@ -26,11 +26,11 @@ struct ShapePose {
   std::vector<LightSource> earthshine;  // where the effect is on
 };
 
-/// Rings of the Earth's face whose light makes a flux, to 1 % of earthshine, and a picture, to 10
-/// %.
+/// Rings of the Earth's face: for the flux (to 1 % of earthshine) and for pictures (to
+/// 10 %).
 inline constexpr int earthshine_flux_rings = 8, earthshine_picture_rings = 3;
 
-/// What the Earth throws on an object at `position_m`, in any axes `body_from_gcrs`.
+/// Returns the Earth's light on an object at `position_m`, in any axes `body_from_gcrs`.
 std::vector<LightSource> earthshine_on(const Vec<Gcrs>& position_m, const Vec<Gcrs>& sun_m,
                                        const Rotation<Body, Gcrs>& body_from_gcrs,
                                        int rings = earthshine_flux_rings);
@@ -48,7 +48,7 @@ class ObjectShapes {
 
   /// Throws `Error` where there is no OpenGL.
   Renderer& renderer() const;
-  /// What draws; empty before anything was drawn.
+  /// Describes the renderer; empty before anything was drawn.
   std::string renderer_description() const;
 
   /// Photons/s/m2 of the Sun at 1 au in the band.
@@ -60,7 +60,7 @@ class ObjectShapes {
   double sun_photons_ = 0.0;
 };
 
-/// Pose at `t`; nothing for an object without an attitude there. With earthshine of `rings` where
+/// Returns the pose at `t`; nothing for an object without an attitude then. With earthshine of `rings` where
 /// the effect is on.
 std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTime t,
                                     const Vec<Gcrs>& observer_m, int rings = earthshine_flux_rings);
@@ -70,7 +70,7 @@ std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTim
 double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
                               const ShapePose& pose, double sunlit);
 
-/// The part of them that the Earth throws.
+/// Returns the part of them that is earthshine.
 double earthshine_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
                                    const ShapePose& pose);
 

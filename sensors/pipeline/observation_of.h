@@ -7,7 +7,7 @@
 
 namespace dmise {
 
-/// What an archive asks of a frame. `centre`: ICRS direction of the stars in the frame's centre.
+/// Returns what archives index of a frame. `centre`: ICRS direction of the stars in the frame's centre.
 Observation observation_of(const View& view, const PipelineSettings& settings,
                            const std::optional<Vec<Gcrs>>& centre);
 

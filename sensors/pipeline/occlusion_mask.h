@@ -7,8 +7,8 @@
 
 namespace dmise {
 
-/// What objects with a shape leave of the light that comes from behind them: a share of the
-/// exposure for every pixel of the frame and of a margin about it. Objects are added nearest first.
+/// The share of the exposure in which no object with a shape hides what is behind it, for every
+/// pixel of the frame and of a margin about it. Objects are added nearest first.
 class OcclusionMask {
  public:
   static constexpr int margin_px = 32;
@@ -20,13 +20,13 @@ class OcclusionMask {
   bool empty() const { return free_.empty(); }
   /// Share of the light that gets past at the pixel that holds a place, [0, 1].
   double free_at(PixelPosition at) const;
-  /// What of a path's light gets past, cut where that changes, in steps of half a pixel.
+  /// Returns the parts of a path that are not hidden, cut in steps of half a pixel.
   std::vector<Arc> past(std::span<const Arc> path) const;
 
   /// A part of the next object: an even square of `side_px` about a place, `hidden_px` pixels times
   /// shares of the exposure in all.
   void cover(PixelPosition at, double side_px, double hidden_px);
-  /// That object is whole: it hides what is asked for or added from now on.
+  /// Ends that object: from now on it hides what is asked for or added.
   void close();
 
   /// Takes what is hidden of `behind` from `image`, both of the frame.

@@ -35,9 +35,9 @@ class OpticsStage {
   /// Starts a frame: the exposure's kernels, where they differ from the last. `limit_e`: electrons
   /// of the faintest source that matters.
   void begin(const FrameTimes& exposure, double limit_e);
-  /// Puts light on the plane and tells what of each arc fell inside the frame.
+  /// Puts light on the plane; returns what of each arc fell inside the frame.
   std::vector<Deposited> add(std::span<const Arc> arcs, ExpectedElectronImage& light);
-  /// Blurs what was not yet and adds it; the frame's light is complete and nowhere negative.
+  /// Blurs and adds what is still on the grid; then the light is complete, nowhere negative.
   void finish(ExpectedElectronImage& light);
 
  private:

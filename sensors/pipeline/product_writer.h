@@ -18,8 +18,8 @@ class ProductWriter {
   ProductWriter(std::string directory, const OutputConfig& output, Clock clock);
 
   void write(const FrameProducts& frame);
-  /// Takes the lines of frames after `last` out again, and lines that were cut short: an earlier
-  /// process was in the middle of them. Returns how many detections are left.
+  /// Removes the lines of frames after `last` and lines that an earlier process left incomplete.
+  /// Returns how many detections are left.
   long keep_frames(std::uint32_t last) const;
 
  private:

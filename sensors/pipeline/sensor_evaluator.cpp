@@ -63,7 +63,7 @@ Tick SensorEvaluator::look_back() const {
   const SimTime exposure = frame_times(sensor_, 1).end - frame_times(sensor_, 1).start;
   const auto frames = std::min(pipeline_.most_frames_made_again(), last_frame_);
   const SimTime earlier{frames * sim_seconds(sensor_.cadence_s).ns};
-  const std::int64_t ns = exposure.ns + earlier.ns + grid_.told_every.ns;
+  const std::int64_t ns = exposure.ns + earlier.ns + grid_.environment_every.ns;
   const Tick beyond = knots(grid_.interpolation) - 2;  // on either side of the exposure
   return (ns + grid_.tick_length.ns - 1) / grid_.tick_length.ns + 1 + 2 * beyond;
 }

@@ -14,7 +14,7 @@ namespace dmise {
 /// The grid of a run, as far as a sensor must know it.
 struct RunGrid {
   SimTime tick_length, duration;
-  SimTime told_every;  // the longest time between two states of the environment
+  SimTime environment_every;  // the longest time between two states of the environment
   HermiteOrder interpolation = HermiteOrder::cubic;
 
   Tick last_tick() const { return (duration.ns + tick_length.ns - 1) / tick_length.ns; }
@@ -29,28 +29,28 @@ class SensorEvaluator : public Evaluator {
 
   std::string name() const override { return sensor_.name; }
   std::vector<std::string> produces() const override;
-  /// What the plan needs: objects where they are drawn, carry the sensor or are pointed at; the air
-  /// where something of it is on.
+  /// The topics that its frames need: objects where they are drawn, carry the sensor or are its
+  /// target; the air where an effect of it acts.
   std::vector<std::string> consumes() const override;
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   /// The ticks around the exposure that is open when it resumes, those around the frames that must
   /// be made again before it, those beyond them that interpolation takes, and back to when the
-  /// environment was last told.
+  /// environment was last published.
   Tick look_back() const override;
   std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
   std::uint64_t progress() const override { return progress_; }
 
-  /// Asked between frames: true leaves the rest of a step undone.
+  /// Called between frames: true ends the step early.
   void stop_when(std::function<bool()> asked) { stop_asked_ = std::move(asked); }
   int frames_done() const { return static_cast<int>(next_frame_) - 1; }
   long detections_made() const { return detections_; }
-  /// What of OpenGL draws points and sky; empty: they are deposited.
+  /// Describes the OpenGL that draws points and sky; empty when they are deposited.
   std::string evaluator() const { return pipeline_.evaluator(); }
-  /// What draws objects with a shape ("OSMesa, llvmpipe ..."); empty if none was near enough.
+  /// Describes what draws objects with a shape ("OSMesa, llvmpipe ..."); empty if none was near enough.
   std::string renderer() const { return shapes_ ? shapes_->renderer_description() : ""; }
 
  private:
-  /// The tick at which all is known that a frame needs.
+  /// Returns the tick at which all states that a frame needs are known.
   Tick ready_at(std::uint32_t frame) const;
   void take_in(std::span<const Message> inputs);
 
@@ -67,8 +67,8 @@ class SensorEvaluator : public Evaluator {
   std::atomic<std::uint64_t> progress_{0};
 };
 
-/// Finds what sensors name in the roster: platforms and targets. Throws `ConfigError` naming the
-/// sensor and the key.
+/// Throws `ConfigError`, naming sensor and key, for a platform or target that the roster does not
+/// have.
 void check_sensors(const Scenario& scenario, const ObjectRoster& roster);
 
 }  // namespace dmise

@@ -24,7 +24,7 @@ struct ShapeSnapshot {
 
 /// Draws an object with its shape: for each snapshot tiles of what the frame sees of it, finer than
 /// the camera's pixels where it is small, each of whose pixels is put on the plane through the
-/// camera's own projection and swept along. The light is that of the sweep, whatever the pose has;
+/// camera's own projection and swept along. The sweep gives the light, the pose its distribution;
 /// what nearer objects hide by the mask is left out, and the object is added to it.
 /// Memory is bounded by the frame. Throws `Error` for a camera inside the bounding box.
 Deposited draw_shape(const View& view, const ObjectShapes& shapes,

@@ -14,7 +14,7 @@ namespace dmise {
 /// Time-delay integration of stars: `count` snapshots in the middles of equal parts of the
 /// exposure, in each of which every star is placed anew, as a point with its share of the light.
 /// `signal_e`: of each of `stars` (numbers in `columns`) over the exposure, vignetting aside.
-/// Tells what of each fell inside.
+/// Returns what of each fell inside.
 std::vector<Deposited> draw_star_snapshots(const View& view, const StarColumns& columns,
                                            const std::vector<std::uint32_t>& stars,
                                            std::span<const double> signal_e, int count,

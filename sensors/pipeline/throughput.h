@@ -9,7 +9,7 @@
 
 namespace dmise {
 
-/// What becomes of light on its way from above the atmosphere to the detector, for one exposure:
+/// The way of light from above the atmosphere to the detector, for one exposure:
 /// `AirEffects` in their order, those that act, then the optics.
 class Throughput {
  public:
@@ -34,7 +34,7 @@ class Throughput {
 
   /// V magnitude of a source of the Sun's colour that gives 1 e-/s without any atmosphere.
   double zero_point_mag() const;
-  /// What the zenith's clear air takes from sunlight in the band.
+  /// Returns the extinction of sunlight in the band by the zenith's clear air.
   double extinction_mag_per_airmass() const;
 
  private:

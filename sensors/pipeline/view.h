@@ -54,9 +54,9 @@ class View {
   /// East, north and `up` at `t`; in space any east and north.
   Rotation<Enu, Gcrs> enu_from_gcrs(SimTime t) const;
 
-  /// What decides whether effects have something to do.
+  /// Returns what decides which effects apply.
   SceneFacts scene() const;
-  /// Which part of the Earth hides what is behind it at `t`; nothing where the effect is off.
+  /// Returns the Earth's occultation of what is behind it at `t`; nothing where the effect is off.
   std::optional<EarthOccultation> earth_occultation(SimTime t) const;
   /// Light that reaches a pixel, relative to the boresight's: (0, 1].
   double illumination(PixelPosition pixel) const;

@@ -27,8 +27,8 @@ std::string PositionsEvaluator::utc(Tick tick) const {
 }
 
 Tick PositionsEvaluator::look_back() const {
-  const SimTime told_every = sim_seconds(scenario_.environment.common_every_s);
-  return (told_every.ns + scenario_.tick.ns - 1) / scenario_.tick.ns + 1;
+  const SimTime environment_every = sim_seconds(scenario_.environment.common_every_s);
+  return (environment_every.ns + scenario_.tick.ns - 1) / scenario_.tick.ns + 1;
 }
 
 void PositionsEvaluator::meet(const ObjectRoster& roster) {

@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "core/effects/frame_effects.h"
-#include "core/optics/point_spread.h"
 #include "core/image/fits_file.h"
+#include "core/optics/point_spread.h"
 #include "core/photometry/magnitude.h"
 #include "tests/pipeline/harness.h"
 
@@ -107,9 +107,9 @@ TEST(FramePipeline, BytesDoNotDependOnThreads) {
 TEST(FramePipeline, TellsTheTimeOfEveryStage) {
   test::Stage stage(scenario("{}"), "ra_deg,dec_deg,mag_v\n49.7,-5.4,6\n", elements);
   const auto frame = stage.frame();
-  for (const auto& effect :
-       {SkyBackground::facts, StarBackground::facts, SpaceObjects::facts, PointSpread::facts, PhotonNoise::facts,
-        DarkCurrent::facts, ReadNoise::facts, FullWell::facts, Quantisation::facts})
+  for (const auto& effect : {SkyBackground::facts, StarBackground::facts, SpaceObjects::facts,
+                             PointSpread::facts, PhotonNoise::facts, DarkCurrent::facts,
+                             ReadNoise::facts, FullWell::facts, Quantisation::facts})
     EXPECT_GT(frame.times[effect], 0.0) << effect.name;
   double sum = frame.detection_s;
   for (const auto& [effect, s] : frame.times.seconds) sum += s;

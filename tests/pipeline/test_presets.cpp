@@ -3,10 +3,10 @@
 
 #include "core/base/units.h"
 #include "core/config/search_path.h"
-#include "core/sky/air_effects.h"
-#include "core/sky/place_effects.h"
 #include "core/optics/projection.h"
 #include "core/photometry/star_light.h"
+#include "core/sky/air_effects.h"
+#include "core/sky/place_effects.h"
 #include "tests/pipeline/harness.h"
 
 // Every camera of launch/cameras, and one of a user's.
@@ -69,8 +69,8 @@ TEST_P(Presets, SeesAStarWithTheElectronsOfItsPhotons) {
   camera.optics.rows = std::min(camera.optics.rows, 200);
   // The mount points at the place of the catalogue; a field of seconds of arc needs the star there.
   for (const EffectFacts& e :
-       {AirExtinction::facts, Scintillation::facts, AtmosphericRefraction::facts, AnnualAberration::facts,
-        DiurnalAberration::facts, LightDeflection::facts})
+       {AirExtinction::facts, Scintillation::facts, AtmosphericRefraction::facts,
+        AnnualAberration::facts, DiurnalAberration::facts, LightDeflection::facts})
     stage.scenario.sensors[0].effects.set(e, false);
   const auto frame = stage.frame();
   const double area_m2 =

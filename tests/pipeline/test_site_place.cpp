@@ -1,8 +1,8 @@
 #include <map>
 
 #include "core/base/units.h"
-#include "core/sky/place_effects.h"
 #include "core/image/fits_cards.h"
+#include "core/sky/place_effects.h"
 #include "tests/pipeline/wiring.h"
 
 namespace dmise {

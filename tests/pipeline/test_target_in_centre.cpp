@@ -7,9 +7,9 @@
 #include "core/config/camera_config.h"
 #include "core/config/pointing_config.h"
 #include "core/config/search_path.h"
-#include "core/sky/place_effects.h"
 #include "core/frames/geodesy.h"
 #include "core/optics/projection.h"
+#include "core/sky/place_effects.h"
 #include "core/time/iso8601.h"
 #include "sensors/pipeline/sensor_evaluator.h"
 #include "sensors/pipeline/view.h"
@@ -158,8 +158,8 @@ TEST(TargetInCentre, OfEveryCameraInOrbit) {
 TEST(TargetInCentre, WithWhateverIsSwitchedOff) {
   std::vector<std::string> targets;
   const std::string objects = objects_over_atlanta(targets);
-  for (const EffectFacts& off : {AtmosphericRefraction::facts, LightTime::facts, DiurnalAberration::facts,
-                                 AnnualAberration::facts}) {
+  for (const EffectFacts& off : {AtmosphericRefraction::facts, LightTime::facts,
+                                 DiurnalAberration::facts, AnnualAberration::facts}) {
     test::Stage ground(
         scenario(objects, sensor("site: atlanta", "telescope-3m", "{target: leo-300-20}")));
     test::Stage space(scenario(space_objects,
