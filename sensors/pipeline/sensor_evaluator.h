@@ -46,7 +46,8 @@ class SensorEvaluator : public Evaluator {
   long detections_made() const { return detections_; }
   /// Describes the OpenGL that draws points and sky; empty when they are deposited.
   std::string evaluator() const { return pipeline_.evaluator(); }
-  /// Describes what draws objects with a shape ("OSMesa, llvmpipe ..."); empty if none was near enough.
+  /// Describes what draws objects with a shape ("OSMesa, llvmpipe ..."); empty if none was near
+  /// enough.
   std::string renderer() const { return shapes_ ? shapes_->renderer_description() : ""; }
 
  private:
