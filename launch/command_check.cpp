@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/json.h"
@@ -30,7 +31,7 @@ struct CheckOptions {
   bool json = false;
 };
 
-/// That products can be written there; leaves nothing behind.
+/// Throws `ConfigError` if products cannot be written to `out`; leaves nothing behind.
 void check_directory(const std::string& out) {
   namespace fs = std::filesystem;
   std::error_code ignored;
@@ -38,12 +39,12 @@ void check_directory(const std::string& out) {
   if (!at.has_filename()) at = at.parent_path();
   while (!fs::exists(at, ignored) && at.has_relative_path()) at = at.parent_path();
   if (!fs::is_directory(at, ignored))
-    throw ConfigError("--out: " + at.string() + " is no directory, got " + out);
+    throw ConfigError("--out: " + at.string() + " is not a directory, got " + out);
   if (access(at.c_str(), W_OK | X_OK) != 0)
     throw ConfigError("--out: " + at.string() + " can't be written to, got " + out);
 }
 
-/// That every process of a launch has its key.
+/// Throws `ConfigError` if a process of a launch has no key.
 void check_keys(const Scenario& scenario, const CheckOptions& options) {
   std::vector<std::string> names = nodes_of(scenario);
   names.insert(names.end(), {"time-master", broker_name, operator_name});
@@ -55,17 +56,18 @@ void check_keys(const Scenario& scenario, const CheckOptions& options) {
   if (options.hosts > 0) check_agent_keys(scenario, options.hosts, options.keys);
 }
 
-/// That each sensor can be made as the run makes it.
+/// Constructs each sensor as the run does, to find errors.
 void make_sensors(const Scenario& scenario, const std::shared_ptr<const StarMap>& stars) {
   Threads threads(1);
   for (const auto& sensor : scenario.sensors) {
     make_sensor(scenario, sensor.name, "", "", stars, threads);
-    if (sensor.effects.drawn_by_opengl()) GlEvaluator().description();  // is there one at all
+    if (sensor.effects.drawn_by_opengl())
+      GlEvaluator().description();  // throws if there is no OpenGL
   }
 }
 
-/// Of a sensor whose frames are not made by the usual way, what makes them. OpenGL is asked, so
-/// that a machine without it is found out now.
+/// Description of a sensor's evaluator, if it is not the default. Opens OpenGL, so that a machine
+/// without it is noticed now.
 std::string evaluator_of(const EffectSet& effects) {
   if (effects.snapshots() == 0) return "";
   const std::string count = "each frame is the sum of " + std::to_string(effects.snapshots()) +
@@ -73,8 +75,8 @@ std::string evaluator_of(const EffectSet& effects) {
   return effects.drawn_by_opengl() ? count + ", drawn by " + GlEvaluator().description() : count;
 }
 
-/// What runs in a sensor's frames, with its parameters.
-std::string effects_text(const SensorConfig& sensor, SceneFacts scene) {
+/// The effects of a sensor's frames, with their parameters.
+std::string effects_text(const SensorConfig& sensor, const SceneFacts& scene) {
   std::string text;
   for (const EffectFacts* effect : effects_in(sensor, scene)) {
     std::string parameters;
@@ -90,23 +92,44 @@ std::string effects_text(const SensorConfig& sensor, SceneFacts scene) {
   return text;
 }
 
-bool has_shapes(const Scenario& scenario) {
-  return std::any_of(scenario.own_objects.begin(), scenario.own_objects.end(),
-                     [](const OwnObject& object) { return object.geometry.has_value(); });
+/// The facts of a scenario that decide which effects run in the frames of `sensor`.
+SceneFacts facts_of(const Scenario& scenario, const SensorConfig& sensor, bool has_stars) {
+  SceneFacts scene = scene_facts(sensor);
+  scene.stars = has_stars;
+  scene.shapes = std::ranges::any_of(
+      scenario.own_objects, [](const OwnObject& object) { return object.geometry.has_value(); });
+  return scene;
 }
 
-/// Sensors with the same effects and parameters together.
+/// Sensors with the same effects and parameters together, in the order of the scenario.
 void print_effects(const Scenario& scenario, bool has_stars) {
-  std::map<std::string, std::string> sensors_of;
+  std::vector<std::pair<std::string, std::string>> groups;  // names of sensors, their effects
   for (const auto& sensor : scenario.sensors) {
-    SceneFacts scene = scene_facts(sensor);
-    scene.stars = has_stars;
-    scene.shapes = has_shapes(scenario);
-    std::string& names = sensors_of[effects_text(sensor, scene)];
-    names += (names.empty() ? "" : ", ") + sensor.name;
+    const std::string text = effects_text(sensor, facts_of(scenario, sensor, has_stars));
+    const auto group =
+        std::ranges::find(groups, text, &std::pair<std::string, std::string>::second);
+    if (group == groups.end())
+      groups.emplace_back(sensor.name, text);
+    else
+      group->first += ", " + sensor.name;
   }
-  for (const auto& [text, names] : sensors_of)
+  for (const auto& [names, text] : groups)
     std::printf("effects of %s:\n%s", names.c_str(), text.c_str());
+}
+
+void write_effects(JsonWriter& json, const Scenario& scenario, bool has_stars) {
+  json.key("effects").begin_object();
+  for (const auto& sensor : scenario.sensors) {
+    json.key(sensor.name).begin_array();
+    for (const EffectFacts* effect : effects_in(sensor, facts_of(scenario, sensor, has_stars))) {
+      json.begin_object().field("name", effect->name).field("what", effect->what);
+      json.key("parameters").begin_object();
+      for (const auto& [key, number] : parameters_in(sensor, *effect)) json.field(key, number);
+      json.end_object().end_object();
+    }
+    json.end_array();
+  }
+  json.end_object();
 }
 
 void print_text(const Scenario& scenario, const ScenarioOutlook& outlook, bool has_stars) {
@@ -117,7 +140,7 @@ void print_text(const Scenario& scenario, const ScenarioOutlook& outlook, bool h
     if (const std::string evaluator = evaluator_of(config.effects); !evaluator.empty())
       std::printf("%s: %s\n", sensor.sensor.c_str(), evaluator.c_str());
     if (!config.detect)
-      std::printf("%s: detection off: frames are reported, nothing is looked for in them\n",
+      std::printf("%s: detection off: frames are reported without detections\n",
                   sensor.sensor.c_str());
   }
   print_effects(scenario, has_stars);
@@ -135,7 +158,8 @@ void print_text(const Scenario& scenario, const ScenarioOutlook& outlook, bool h
                                              .c_str());
 }
 
-void print_json(const Scenario& scenario, const ScenarioOutlook& outlook, const Clock& clock) {
+void print_json(const Scenario& scenario, const ScenarioOutlook& outlook, const Clock& clock,
+                bool has_stars) {
   JsonWriter json;
   json.begin_object().field("scenario", printable(scenario.path));
   json.field("start_utc", scenario.start_utc).field("duration_s", scenario.duration.seconds());
@@ -144,6 +168,7 @@ void print_json(const Scenario& scenario, const ScenarioOutlook& outlook, const 
   json.key("sensors").begin_array();
   for (const auto& sensor : outlook.sensors) write_json(json, sensor, clock);
   json.end_array();
+  write_effects(json, scenario, has_stars);
   for (const auto& [key, lines] :
        {std::pair{"notes", &outlook.notes}, std::pair{"warnings", &outlook.warnings}}) {
     json.key(key).begin_array();
@@ -162,7 +187,7 @@ void check(const CheckOptions& options) {
   make_sensors(scenario, scene.stars);
   const auto outlook = scenario_outlook(scenario, scene, clock, {});
   if (options.json)
-    print_json(scenario, outlook, clock);
+    print_json(scenario, outlook, clock, scene.stars != nullptr);
   else
     print_text(scenario, outlook, scene.stars != nullptr);
 }
@@ -172,14 +197,15 @@ void check(const CheckOptions& options) {
 void add_check_command(CLI::App& app) {
   auto options = std::make_shared<CheckOptions>();
   auto* command = app.add_subcommand(
-      "check", "Reads a scenario and all that it names, says what each sensor will see, and warns");
+      "check", "Reads a scenario and its files, reports what each sensor will see, and warns");
   command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
-  command->add_flag("--json", options->json, "one JSON object, for machines");
-  command->add_option("--out", options->out, "also that products can be written there");
+  command->add_flag("--json", options->json, "print one JSON object");
+  command->add_option("--out", options->out, "also check that products can be written there");
   command->add_option("--keys", options->keys,
-                      "also that this directory has the key of every process of a launch");
+                      "also check that this directory has the key of every process of a launch");
   command
-      ->add_option("--hosts", options->hosts, "with --keys: also of so many agents, as in a launch")
+      ->add_option("--hosts", options->hosts,
+                   "with --keys: also of this number of agents, as in a launch")
       ->default_val(0)
       ->check(CLI::Range(0, 10000));
   command->callback([options] { check(*options); });
