@@ -5,25 +5,25 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
 #include "core/base/error.h"
 #include "core/pictures/picture_codec.h"
 
-// The module of pictures: alone in linking OpenImageIO.
+// The picture module: the only code that links OpenImageIO.
 namespace dmise {
 namespace {
 
 constexpr int rows_at_once = 16;  // a block of ZIP compression
 
-/// One line of what the library says.
+/// First line of a message of the library.
 std::string first_line(std::string words) {
   words.resize(std::min(words.find('\n'), words.size()));
   return words.empty() ? "no reason given" : words;
 }
 
-/// A file in memory, by a name that OpenImageIO can open: not every format takes its own.
+/// A file in memory with a path that OpenImageIO can open: not every format of it reads from
+/// memory.
 class MemoryFile {
  public:
   MemoryFile() : file_(::memfd_create("picture", MFD_CLOEXEC)) {
@@ -41,7 +41,7 @@ class MemoryFile {
   std::string content() const {
     std::string bytes(std::size_t(std::max<off_t>(0, ::lseek(file_, 0, SEEK_END))), '\0');
     if (::pread(file_, bytes.data(), bytes.size(), 0) != ssize_t(bytes.size()))
-      throw Error(std::string("picture is lost: ") + std::strerror(errno));
+      throw Error(std::string("picture cannot be read back: ") + std::strerror(errno));
     return bytes;
   }
 
@@ -49,7 +49,7 @@ class MemoryFile {
   int file_;
 };
 
-/// A picture that is being written.
+/// An image file being written.
 class Output {
  public:
   Output(const std::string& format, const OIIO::ImageSpec& spec)
@@ -78,24 +78,6 @@ class Output {
   std::unique_ptr<OIIO::ImageOutput> out_;
 };
 
-/// libpng prints its complaints, which come as an error too.
-class Silence {
- public:
-  Silence() : before_(stderr) {
-    if (std::FILE* nowhere = std::fopen("/dev/null", "w")) stderr = nowhere;
-  }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
-  ~Silence() {
-    if (stderr == before_) return;
-    std::fclose(stderr);
-    stderr = before_;
-  }
-
- private:
-  std::FILE* before_;
-};
-
 double linear_of_srgb(double v) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
@@ -103,7 +85,7 @@ double linear_of_srgb(double v) {
 class OiioCodec final : public PictureCodec {
  public:
   OiioCodec() {
-    // What a file holds must not depend on threads, and a node has its own.
+    // The bytes must not depend on the number of threads, and a node has threads of its own.
     OIIO::attribute("threads", 1);
     OIIO::attribute("exr_threads", -1);
   }
@@ -126,7 +108,7 @@ class OiioCodec final : public PictureCodec {
     for (const auto& channel : channels) spec.channelnames.push_back(channel.name);
     // Level 1: 3 % larger files than at 4 in a third of the time.
     spec.attribute("compression", "zip:1");
-    // Without one OpenImageIO writes the time of day.
+    // Without this, OpenImageIO writes the time of day.
     spec.attribute("DateTime", image.taken_utc);
     for (const auto& [name, value] : image.attributes) {
       if (const auto* text = std::get_if<std::string>(&value))
@@ -150,7 +132,6 @@ class OiioCodec final : public PictureCodec {
   }
 
   LinearPicture decode(std::string_view bytes, const std::string& format, PictureOf what) override {
-    const Silence silence;
     MemoryFile memory;
     memory.put(bytes);
     const auto in = OIIO::ImageInput::create(format);
@@ -160,7 +141,7 @@ class OiioCodec final : public PictureCodec {
     wanted.attribute("oiio:UnassociatedAlpha", 1);
     if (!in->open(memory.name(), spec, wanted)) fail();
     if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
-      throw Error("holds no picture");
+      throw Error("contains no image");
     const std::size_t pixels = std::size_t(spec.width) * std::size_t(spec.height);
     if (pixels > most_picture_pixels)
       throw Error("has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
@@ -172,7 +153,7 @@ class OiioCodec final : public PictureCodec {
     const bool srgb =
         what == PictureOf::light && spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
     for (float& v : picture.pixels) {
-      if (!std::isfinite(v)) throw Error("holds a value that is not finite");
+      if (!std::isfinite(v)) throw Error("contains a value that is not finite");
       if (srgb) v = float(linear_of_srgb(v));
     }
     return picture;

@@ -3,12 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <limits>
 #include <numeric>
+#include <thread>
 
 #include "core/base/error.h"
 #include "core/base/text_file.h"
@@ -121,8 +124,8 @@ TEST(Pictures, JpegKeepsASlope) {
 }
 
 TEST(Pictures, WhatIsNoneIsOneLine) {
-  EXPECT_EQ(complaint("v 1 2 3\n"), "is no PNG, TIFF, JPEG or EXR");
-  EXPECT_EQ(complaint(""), "is no PNG, TIFF, JPEG or EXR");
+  EXPECT_EQ(complaint("v 1 2 3\n"), "is not a PNG, TIFF, JPEG or EXR file");
+  EXPECT_EQ(complaint(""), "is not a PNG, TIFF, JPEG or EXR file");
   for (const std::string format : {"png", "tiff", "jpeg"}) {
     const std::string bytes = encode_picture(sample_picture(3), format);
     const std::string words = complaint(bytes.substr(0, 40));
@@ -132,6 +135,68 @@ TEST(Pictures, WhatIsNoneIsOneLine) {
   EXPECT_THROW(read_picture("/dev/zero"), ConfigError);
   EXPECT_THROW(encode_picture(Picture{}, "png"), Error);
   EXPECT_THROW(write_picture(scratch("a.bmp"), sample_picture(1)), Error);
+}
+
+/// A number of a fixed sequence (the congruential generator of Numerical Recipes).
+std::uint32_t next(std::uint32_t& state) { return state = state * 1664525u + 1013904223u; }
+
+// Whatever the bytes, reading gives a picture of finite pixels or one line, and prints nothing.
+TEST(Pictures, ChangedBytesAreAPictureOrOneLine) {
+  const RateImage map = sample_map();
+  std::vector<std::string> whole{
+      encode_exr({.pixels = map.pixels.data(), .columns = 200, .rows = 20})};
+  for (const int channels : {1, 3})
+    for (const std::string format : {"png", "tiff", "jpeg"})
+      whole.push_back(encode_picture(sample_picture(channels), format));
+  testing::internal::CaptureStderr();
+  std::uint32_t state = 1;
+  int read = 0, refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::string bytes = whole[std::size_t(i) % whole.size()];
+    // One to eight bytes anywhere, half of the time in the headers; now and then the end is lost.
+    const std::size_t reach =
+        next(state) >> 31 ? bytes.size() : std::min<std::size_t>(bytes.size(), 200);
+    for (std::uint32_t k = next(state) >> 29; k < 8; ++k)
+      bytes[next(state) % reach] = char(next(state) >> 24);
+    if (next(state) >> 29 == 0) bytes.resize(next(state) % bytes.size());
+    try {
+      const LinearPicture picture = decode_picture(bytes);
+      ASSERT_EQ(picture.pixels.size(), std::size_t(picture.columns) * std::size_t(picture.rows) *
+                                           std::size_t(picture.channels));
+      for (const float v : picture.pixels) ASSERT_TRUE(std::isfinite(v));
+      ++read;
+    } catch (const ConfigError& error) {
+      ASSERT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      ++refused;
+    }
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_GT(read, 100);
+  EXPECT_GT(refused, 100);
+}
+
+// Several threads of a process read at once: nothing is shared but the libraries.
+TEST(Pictures, ThreadsReadAtOnce) {
+  const std::string good = encode_picture(sample_picture(3), "png");
+  std::string broken = good;
+  broken[broken.size() / 2] ^= 0x55;
+  testing::internal::CaptureStderr();
+  std::vector<std::thread> threads;
+  std::atomic<int> right = 0;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&] {
+      for (int i = 0; i < 100; ++i) {
+        right += decode_picture(good).pixels.size() == 37u * 21u * 3u;
+        try {
+          decode_picture(broken);
+        } catch (const ConfigError&) {
+          ++right;
+        }
+      }
+    });
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(right, 800);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 // A header that promises 60,000 x 60,000 pixels: refused before they are looked for.
