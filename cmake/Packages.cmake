@@ -15,6 +15,7 @@ list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)  # where Debian ke
 find_package(GeographicLib REQUIRED)
 pkg_check_modules(PROMETHEUS REQUIRED IMPORTED_TARGET prometheus-cpp-core)
 pkg_check_modules(ZMQ REQUIRED IMPORTED_TARGET libzmq)
+pkg_check_modules(SODIUM REQUIRED IMPORTED_TARGET libsodium)
 pkg_check_modules(ERFA REQUIRED IMPORTED_TARGET erfa)
 pkg_check_modules(CFITSIO REQUIRED IMPORTED_TARGET cfitsio)
 pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3f)
