@@ -1,0 +1,21 @@
+#pragma once
+#include <charconv>
+#include <string>
+
+namespace dmise {
+
+constexpr std::size_t card_size = 80;
+constexpr std::size_t longest_card_text = 64;  // limit of a sensor's name
+constexpr int highest_sip_order = 9;           // by the convention
+
+/// The shortest text that reads back to the same bits, with a decimal point or an exponent.
+inline std::string number_text(double value) {
+  char buffer[40];
+  std::string text(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+  for (char& c : text)
+    if (c == 'e') c = 'E';
+  if (text.find_first_of(".E") == std::string::npos) text += ".0";
+  return text;
+}
+
+}  // namespace dmise

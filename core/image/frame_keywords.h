@@ -1,0 +1,172 @@
+#pragma once
+#include <string>
+
+#include "core/detector/detector.h"
+#include "core/image/observation_cards.h"
+#include "core/products/frame_header.h"
+
+// The keywords of a frame, listed once for writing (CardWriter) and reading (CardReader).
+namespace dmise {
+
+template <class Visitor>
+void visit_pixel_coordinate(Visitor& v, const char* key, double& zero_based, const char* comment) {
+  double one_based = zero_based + 1.0;
+  v.number(key, one_based, comment);
+  zero_based = one_based - 1.0;
+}
+
+template <class Visitor, class Frame>
+void visit_vector(Visitor& v, const std::string& key, Vec<Frame>& vector, const char* comment) {
+  v.number(key + "X", vector.x, comment);
+  v.number(key + "Y", vector.y, "");
+  v.number(key + "Z", vector.z, "");
+}
+
+template <class Visitor>
+void visit_refraction(Visitor& v, const Projection& lens, Wcs& wcs) {
+  if (!v.present("CPDIS1", wcs.refraction.has_value())) return;
+  if (!wcs.refraction) wcs.refraction.emplace();
+  WcsRefraction& r = *wcs.refraction;
+  if (!lens.row().fits_code) r.lens = lens;
+  v.lookup(1);
+  v.lookup(2);
+  visit_vector(v, "WCSZEN", r.zenith, "zenith in the camera: right, down, boresight");
+  v.number("WCSFOC", r.focal_length_px, "[px] focal length");
+  v.number("WCSPRES", r.pressure_hpa, "[hPa] of the air that refracts");
+  v.number("WCSTEMP", r.temperature_c, "[degC]");
+  v.number("WCSHUM", r.humidity, "relative humidity");
+  v.number("WCSWAVE", r.wavelength_um, "[um] wavelength");
+  v.number("WCSOFFX", r.offset_x_px, "[px] left out of the lookup tables");
+  v.number("WCSOFFY", r.offset_y_px, "");
+  v.number("WCSCELL", r.cell_px, "[px] step of the lookup tables");
+}
+
+template <class Visitor>
+void visit_wcs(Visitor& v, const Projection& lens, Wcs& wcs) {
+  const bool sip = v.present("A_ORDER", wcs.order > 0);
+  v.constant("WCSAXES", 2, "");
+  v.wcs_projection(wcs, sip);
+  v.constant("CUNIT1", "deg", "");
+  v.constant("CUNIT2", "deg", "");
+  visit_pixel_coordinate(v, "CRPIX1", wcs.crpix_x, "centre of the first pixel is 1");
+  visit_pixel_coordinate(v, "CRPIX2", wcs.crpix_y, "");
+  v.angle("CRVAL1", wcs.ra_rad, "[deg] right ascension of the reference pixel");
+  v.angle("CRVAL2", wcs.dec_rad, "[deg] declination of the reference pixel");
+  v.number("CD1_1", wcs.cd_deg[0], "[deg/px]");
+  v.number("CD1_2", wcs.cd_deg[1], "[deg/px]");
+  v.number("CD2_1", wcs.cd_deg[2], "[deg/px]");
+  v.number("CD2_2", wcs.cd_deg[3], "[deg/px]");
+  v.number_constant("LONPOLE", 180.0, "[deg] also where the reference is a celestial pole");
+  v.constant("RADESYS", "ICRS", "places are astrometric: as in a star catalogue");
+  v.sip(wcs);
+  visit_refraction(v, lens, wcs);
+  v.number("WCSRMS", wcs.rms_px, "[px] rms of the WCS where the sky is seen");
+  v.number("WCSMAX", wcs.max_px, "[px] largest error of the WCS there");
+}
+
+template <class Visitor>
+void visit_field(Visitor& v, const std::string& key, double& value, const char* comment) {
+  v.number(key, value, comment);
+}
+template <class Visitor>
+void visit_field(Visitor& v, const std::string& key, int& value, const char* comment) {
+  v.integer(key, value, comment);
+}
+template <class Visitor>
+void visit_field(Visitor& v, const std::string& key, bool& value, const char* comment) {
+  v.flag(key, value, comment);
+}
+
+// Parameters that every frame's header has anyway are copied from there, not written twice.
+template <class Visitor>
+void visit_detector(Visitor& v, FrameHeader& h) {
+  if (!v.present("ADCBITS", h.detector.has_value())) return;
+  if (!h.detector) h.detector.emplace();
+  Detector& d = *h.detector;
+  for (const DetectorParameter& p : detector_parameters()) {
+    const std::string keyword(p.keyword), comment(p.meaning);
+    const bool unusual = p.number_of(d) != p.number_of({});
+    if (!keyword.empty() && (in_every_header(p) || v.present(keyword.c_str(), unusual)))
+      std::visit([&](auto member) { visit_field(v, keyword, d.*member, comment.c_str()); },
+                 p.value);
+  }
+  d.dark_e_per_s = h.dark_e_per_s;
+  d.read_noise_e = h.read_noise_e;
+  d.full_well_e = h.full_well_e;
+  d.gain_e_per_dn = h.gain_e_per_dn;
+  d.bias_dn = h.bias_dn;
+}
+
+template <class Visitor>
+void visit(Visitor& v, FrameHeader& h) {
+  v.text("INSTRUME", h.sensor, "sensor");
+  visit_observation(v, h.observation);
+  v.integer("FRAMENUM", h.frame, "frame of this sensor, counts from 1");
+  v.constant("TIMESYS", "UTC", "");
+  v.utc("DATE-OBS", h.start_utc, "start of the exposure");
+  v.utc("DATE-BEG", h.start_utc, "start of the exposure");
+  v.utc("DATE-AVG", h.middle_utc, "middle of the exposure");
+  v.utc("DATE-END", h.end_utc, "end of the exposure");
+  v.integer("SIMT-BEG", h.start.ns, "[ns] start, since the scenario's start");
+  v.integer("SIMT-AVG", h.middle.ns, "[ns] middle");
+  v.integer("SIMT-END", h.end.ns, "[ns] end");
+  v.number("EXPTIME", h.exposure_s, "[s]");
+  v.text("MOUNT", h.mount, "how the camera is carried");
+  v.text("FILTER", h.band.name, "band");
+  v.number("BANDCEN", h.band.centre_m, "[m] centre of the band");
+  v.number("BANDWID", h.band.width_m, "[m] full width of the band");
+  v.number("GAIN", h.gain_e_per_dn, "[e-/DN]");
+  v.number("BIASLVL", h.bias_dn, "[DN] count of no electron");
+  v.number("RDNOISE", h.read_noise_e, "[e-] rms");
+  v.number("DARKCUR", h.dark_e_per_s, "[e-/s/px]");
+  v.number("FULLWELL", h.full_well_e, "[e-]");
+  visit_detector(v, h);
+  v.number("SATURATE", h.saturation_dn, "[DN] counts from here on may be clipped");
+  for (const ImageParameter& p : image_parameters()) {
+    double& number = h.image_optics.*p.value;
+    if (v.present(std::string(p.keyword).c_str(), number != ImageOptics().*p.value))
+      v.number(std::string(p.keyword), number, std::string(p.meaning).c_str());
+  }
+  v.number("PSFFWHM", h.psf_fwhm_px, "[px] Gaussian, before pixel integration");
+  v.number("PHOTZP", h.zero_point_mag, "[mag] of 1 e-/s, without atmosphere");
+  v.number("EXTINCT", h.extinction_mag_per_airmass, "[mag/airmass]");
+  if (v.present("R0", h.r0_m > 0)) {
+    v.number("R0", h.r0_m, "[m] Fried parameter, zenith, 500 nm");
+    v.number("ISOPLAN", h.isoplanatic_angle_rad, "[rad] isoplanatic angle, likewise");
+    v.number("TAU0", h.tau0_s, "[s] coherence time r0 / wind, likewise");
+  }
+  v.projection("PROJNAME", h.projection, "of the lens");
+  v.number("FOCALPX", h.focal_length_px, "[px] focal length");
+  constexpr const char* attitudes[3] = {"QBEG", "QAVG", "QEND"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string key = attitudes[i];
+    Quaternion& q = h.camera_from_gcrs[i];
+    v.number(key + "0", q.w, "quaternion camera from GCRS, scalar first");
+    v.number(key + "1", q.x, "");
+    v.number(key + "2", q.y, "");
+    v.number(key + "3", q.z, "");
+  }
+  visit_vector(v, "SENPOS", h.sensor_position_m, "[m] sensor, GCRS, mid exposure");
+  visit_vector(v, "SENVEL", h.sensor_velocity_m_per_s, "[m/s] sensor, GCRS, mid exposure");
+  visit_vector(v, "EARVEL", h.earth_velocity_m_per_s, "[m/s] Earth, barycentric, GCRS axes");
+  if (v.present("OBSGEO-X", h.site.has_value())) {
+    if (!h.site) h.site.emplace();
+    visit_vector(v, "OBSGEO-", h.site->position_m, "[m] site, ITRS");
+    v.angle("SITELAT", h.site->latitude_rad, "[deg] geodetic latitude");
+    v.angle("SITELONG", h.site->longitude_rad, "[deg] longitude, east positive");
+    v.number("SITEELEV", h.site->height_m, "[m] height above the ellipsoid");
+  }
+  if (v.present("PRESSURE", h.air.has_value())) {
+    if (!h.air) h.air.emplace();
+    v.number("PRESSURE", h.air->pressure_hpa,
+             "[hPa] of the air that refracts, 0: refraction is off");
+    v.number("AIRTEMP", h.air->temperature_c, "[deg C]");
+    v.number("HUMIDITY", h.air->humidity, "relative, 0 to 1");
+  }
+  visit_wcs(v, h.projection, h.wcs);
+  v.integer("SEED", h.seed, "of the random draws");
+  v.text("SCENARIO", h.scenario_digest, "digest of the scenario");
+  v.text("CREATOR", h.software, "");
+}
+
+}  // namespace dmise
