@@ -4,14 +4,22 @@
 
 #include "core/base/json.h"
 #include "core/base/units.h"
+#include "core/products/detection_fields.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
 namespace {
 
-constexpr double arcsec2 = arcsec * arcsec;
+double in_unit(double value, double unit) { return value / unit; }
+template <class T>
+const T& in_unit(const T& value, int) {
+  return value;
+}
 
-/// Adds keys that share a form.
+const char* name_of(DetectionKind kind) { return detection_kind_name(kind); }
+const char* name_of(ExposureEpoch epoch) { return exposure_epoch_name(epoch); }
+
+/// Writes keys of common forms.
 class Line {
  public:
   explicit Line(const UtcText& utc) : utc_(utc) { json_.begin_object(); }
@@ -21,7 +29,7 @@ class Line {
     json_.field(name, value);
     return *this;
   }
-  /// null where it was not measured.
+  /// null if it was not measured.
   template <class T>
   Line& measured(std::string_view name, const T& value, bool was) {
     if (was) return field(name, value);
@@ -114,35 +122,15 @@ const char* exposure_epoch_name(ExposureEpoch epoch) {
 
 std::string to_json(const Detection& d, const UtcText& utc) {
   Line line(utc);
-  line.field("id", d.id).field("sensor", d.sensor).field("frame", d.frame).field("index", d.index);
-  line.field("kind", detection_kind_name(d.kind)).field("epoch", exposure_epoch_name(d.epoch));
-  line.time("time", d.time);
-  line.angle("ra_deg", d.ra_rad).angle("dec_deg", d.dec_rad).field("axes", "ICRS");
-  line.angle("corrected_ra_deg", d.corrected_ra_rad)
-      .angle("corrected_dec_deg", d.corrected_dec_rad);
-  line.array("covariance_arcsec2", d.covariance_rad2, arcsec2);
-  line.vector("sensor_position_gcrs_m", d.sensor_position_m);
-  line.vector("sensor_velocity_gcrs_m_per_s", d.sensor_velocity_m_per_s);
-  line.field("light_time_removed", d.light_time_removed);
-  line.field("aberration_removed", d.aberration_removed);
-  line.field("refraction_removed", d.refraction_removed);
-  line.vector("refraction_offset_gcrs_m", d.refraction_offset_m);
-  line.field("refraction_parallax_arcsec", d.refraction_parallax_rad / arcsec);
-  line.field("refraction_parallax_sigma_arcsec", d.refraction_parallax_sigma_rad / arcsec);
-  line.field("magnitude", d.magnitude).field("magnitude_sigma", d.magnitude_sigma);
-  line.field("band", d.band).field("snr", d.snr);
-  line.field("x_px", d.x_px).field("y_px", d.y_px).array("covariance_px2", d.covariance_px2);
-  line.field("signal_e", d.signal_e);
-  line.array("end1_px", std::array<double, 2>{d.end1_x_px, d.end1_y_px});
-  line.array("end2_px", std::array<double, 2>{d.end2_x_px, d.end2_y_px});
-  line.angle("end1_ra_deg", d.end1_ra_rad).angle("end1_dec_deg", d.end1_dec_rad);
-  line.angle("end2_ra_deg", d.end2_ra_rad).angle("end2_dec_deg", d.end2_dec_rad);
-  line.array("end1_covariance_arcsec2", d.end1_covariance_rad2, arcsec2);
-  line.array("end2_covariance_arcsec2", d.end2_covariance_rad2, arcsec2);
-  line.time("end1_time", d.end1_time).time("end2_time", d.end2_time);
-  line.field("direction_known", d.direction_known).field("length_px", d.length_px);
-  line.field("rate_arcsec_per_s", d.rate_rad_per_s / arcsec);
-  line.field("saturated", d.saturated).field("at_edge", d.at_edge).field("star_like", d.star_like);
+#define DMISE_VALUE(field_, key, unit) line.field(key, in_unit(d.field_, unit));
+#define DMISE_TIME(field_, key) line.time(key, d.field_);
+#define DMISE_NAME(field_, key, Enum) line.field(key, name_of(d.field_));
+#define DMISE_LIST(field_, key, unit) line.array(key, d.field_, unit);
+#define DMISE_VECTOR(field_, key) line.vector(key, d.field_);
+#define DMISE_PAIR(x, y, key) line.array(key, std::array<double, 2>{d.x, d.y});
+#define DMISE_TEXT(key, value) line.field(key, value);
+  DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_PAIR,
+                         DMISE_TEXT)
   return line.end();
 }
 

@@ -1,17 +1,8 @@
+#include "core/products/detection_fields.h"
 #include "dmise/v1/detection.pb.h"
 #include "nodes/wire/codecs.h"
 
-// Fields that have one name and type on both sides, in the order of the messages.
-// clang-format off
-#define DMISE_DETECTION_FIELDS(X) \
-  X(id) X(sensor) X(frame) X(index) X(ra_rad) X(dec_rad) X(corrected_ra_rad) X(corrected_dec_rad) \
-  X(light_time_removed) X(aberration_removed) X(refraction_removed) X(magnitude) \
-  X(magnitude_sigma) X(band) X(snr) X(x_px) X(y_px) X(signal_e) X(end1_x_px) X(end1_y_px) \
-  X(end2_x_px) X(end2_y_px) X(end1_ra_rad) X(end1_dec_rad) X(end2_ra_rad) X(end2_dec_rad) \
-  X(direction_known) X(length_px) X(rate_rad_per_s) X(saturated) X(at_edge) X(star_like) \
-  X(refraction_parallax_rad) X(refraction_parallax_sigma_rad)
-// clang-format on
-
+// Fields of a truth with the same name and type on both sides, in the order of the messages.
 // clang-format off
 #define DMISE_TRUTH_FIELDS(X) \
   X(sensor) X(frame) X(catalogue_number) X(name) X(true_range_m) X(true_ra_rad) X(true_dec_rad) \
@@ -24,44 +15,35 @@
 namespace dmise {
 namespace {
 
+#define DMISE_NONE(...)
+
 void put_detection(v1::Detection* message, const Detection& d) {
-#define X(field) message->set_##field(d.field);
-  DMISE_DETECTION_FIELDS(X)
-#undef X
-  message->set_kind(static_cast<v1::DetectionKind>(d.kind));
-  message->set_epoch(static_cast<v1::ExposureEpoch>(d.epoch));
-  message->set_time_ns(d.time.ns);
-  message->set_end1_time_ns(d.end1_time.ns);
-  message->set_end2_time_ns(d.end2_time.ns);
-  put(message->mutable_covariance_rad2(), d.covariance_rad2);
-  put(message->mutable_covariance_px2(), d.covariance_px2);
-  put(message->mutable_end1_covariance_rad2(), d.end1_covariance_rad2);
-  put(message->mutable_end2_covariance_rad2(), d.end2_covariance_rad2);
-  put(message->mutable_sensor_position_m(), d.sensor_position_m);
-  put(message->mutable_sensor_velocity_m_per_s(), d.sensor_velocity_m_per_s);
-  put(message->mutable_refraction_offset_m(), d.refraction_offset_m);
+#define DMISE_VALUE(field, key, unit) message->set_##field(d.field);
+#define DMISE_TIME(field, key) message->set_##field##_ns(d.field.ns);
+#define DMISE_NAME(field, key, Enum) message->set_##field(static_cast<v1::Enum>(d.field));
+#define DMISE_LIST(field, ...) put(message->mutable_##field(), d.field);
+#define DMISE_PAIR(x, y, key) message->set_##x(d.x), message->set_##y(d.y);
+  DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_LIST, DMISE_PAIR,
+                         DMISE_NONE)
+#undef DMISE_VALUE
+#undef DMISE_TIME
+#undef DMISE_NAME
+#undef DMISE_LIST
+#undef DMISE_PAIR
 }
 
 Detection take_detection(const v1::Detection& message) {
   Detection d;
-#define X(field) d.field = message.field();
-  DMISE_DETECTION_FIELDS(X)
-#undef X
-  if (!v1::DetectionKind_IsValid(message.kind())) throw Refused(Refusal::value, "kind: unknown");
-  if (!v1::ExposureEpoch_IsValid(message.epoch())) throw Refused(Refusal::value, "epoch: unknown");
-  d.kind = static_cast<DetectionKind>(message.kind());
-  d.epoch = static_cast<ExposureEpoch>(message.epoch());
-  d.time = {message.time_ns()};
-  d.end1_time = {message.end1_time_ns()};
-  d.end2_time = {message.end2_time_ns()};
-  d.covariance_rad2 = take<3>(message.covariance_rad2(), "covariance_rad2");
-  d.covariance_px2 = take<3>(message.covariance_px2(), "covariance_px2");
-  d.end1_covariance_rad2 = take<3>(message.end1_covariance_rad2(), "end1_covariance_rad2");
-  d.end2_covariance_rad2 = take<3>(message.end2_covariance_rad2(), "end2_covariance_rad2");
-  d.sensor_position_m = take_vec<Gcrs>(message.sensor_position_m(), "sensor_position_m");
-  d.sensor_velocity_m_per_s =
-      take_vec<Gcrs>(message.sensor_velocity_m_per_s(), "sensor_velocity_m_per_s");
-  d.refraction_offset_m = take_vec<Gcrs>(message.refraction_offset_m(), "refraction_offset_m");
+#define DMISE_VALUE(field, key, unit) d.field = message.field();
+#define DMISE_TIME(field, key) d.field = {message.field##_ns()};
+#define DMISE_NAME(field, key, Enum)                                                           \
+  if (!v1::Enum##_IsValid(message.field())) throw Refused(Refusal::value, #field ": unknown"); \
+  d.field = static_cast<Enum>(message.field());
+#define DMISE_LIST(field, key, unit) d.field = take<3>(message.field(), #field);
+#define DMISE_VECTOR(field, key) d.field = take_vec<Gcrs>(message.field(), #field);
+#define DMISE_PAIR(x, y, key) d.x = message.x(), d.y = message.y();
+  DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_PAIR,
+                         DMISE_NONE)
   return d;
 }
 

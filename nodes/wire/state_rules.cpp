@@ -2,13 +2,15 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "core/base/units.h"
+#include "core/products/detection_fields.h"
 
 namespace dmise {
 namespace {
 
-constexpr double angle_limit_rad = 2 * pi;  // right ascensions may be counted from -pi or from 0
+constexpr double angle_limit_rad = 2 * pi;  // right ascensions may start at -pi or 0
 constexpr double latitude_limit_rad = pi / 2 * (1 + 1e-12);
 constexpr double distance_limit_m = 1e15;  // 6,700 au
 constexpr double speed_limit_m_per_s = speed_of_light_m_per_s;
@@ -22,6 +24,12 @@ constexpr std::size_t text_limit_bytes = 16384;
 
 void finite(double value, const char* field) {
   if (!std::isfinite(value)) refuse(field, "must be finite");
+}
+
+/// Checks numbers of a table that also has texts and flags.
+template <class T>
+void finite_number(const T& value, const char* field) {
+  if constexpr (std::is_same_v<T, double>) finite(value, field);
 }
 
 void in_range(double value, double low, double high, const char* field) {
@@ -234,13 +242,14 @@ void check(const Detection& d) {
   vector_within(d.refraction_offset_m, distance_limit_m, "refraction_offset_m");
   not_negative(d.refraction_parallax_rad, "refraction_parallax_rad");
   not_negative(d.refraction_parallax_sigma_rad, "refraction_parallax_sigma_rad");
-  finite(d.magnitude, "magnitude");
   not_negative(d.magnitude_sigma, "magnitude_sigma");
   not_negative(d.length_px, "length_px");
   not_negative(d.rate_rad_per_s, "rate_rad_per_s");
-  for (const double value :
-       {d.snr, d.signal_e, d.x_px, d.y_px, d.end1_x_px, d.end1_y_px, d.end2_x_px, d.end2_y_px})
-    finite(value, "detection");
+#define DMISE_NONE(...)
+#define DMISE_VALUE(field, ...) finite_number(d.field, #field);
+#define DMISE_PAIR(x, y, key) finite(d.x, #x), finite(d.y, #y);
+  DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_NONE, DMISE_NONE, DMISE_NONE, DMISE_NONE, DMISE_PAIR,
+                         DMISE_NONE)
 }
 
 void check(const DetectionSet& set) {
@@ -274,7 +283,7 @@ void check(const TruthSet& set) {
   }
 }
 
-// Where each kind of state travels, and which tick and time it names.
+// Topic, tick and time of a state.
 struct Place {
   std::string topic;
   const Tick* tick = nullptr;
