@@ -57,7 +57,7 @@ std::string scenario_text(const CatalogueFile& catalogue, const std::string& nam
          "dark}\n";
 }
 
-/// What a sensor hears from the others over the exposure. They are gone when it starts.
+/// Inputs of a sensor from other nodes over the exposure, computed before it starts.
 World world_of(const Scenario& scenario, Threads& threads) {
   World world;
   const Clock clock = make_clock(scenario);
@@ -78,11 +78,11 @@ World world_of(const Scenario& scenario, Threads& threads) {
   return world;
 }
 
-/// Most memory of this process [MB] while `work` runs, as the kernel counts it. Pages of libraries
-/// count whole: what a share of them is (PSS) depends on who else runs on the machine.
+/// Peak memory of this process [MB] while `work` runs, as reported by the kernel. Pages of
+/// libraries count fully: their share (PSS) depends on other processes of the machine.
 template <class Work>
 double peak_mb(const Work& work) {
-  std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): the peak from now on
+  std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): resets the peak
   work();
   return status_mb("VmHWM");
 }
@@ -92,7 +92,7 @@ struct Measured {
   std::vector<EffectTimes> effects;
 };
 
-/// Stages are timed by the wall clock: those of the frame that others on the machine held up least.
+/// Stages are timed by the wall clock: those of the frame that was least disturbed.
 void print_stages(const Measured& m, bool json) {
   const auto best =
       std::size_t(std::min_element(m.wall_s.begin(), m.wall_s.end()) - m.wall_s.begin());
@@ -109,7 +109,7 @@ void print_stages(const Measured& m, bool json) {
   print("rest", std::max(0.0, rest_s));
 }
 
-/// What runs interleaved with others in a frame, measured for itself.
+/// Prints parts that are interleaved with others in a frame, measured separately.
 void print_shares(const Scenario& scenario, const FrameTimes& exposure, const World& world,
                   const Measured& m, std::size_t star_places, bool json) {
   const auto best =
@@ -129,7 +129,7 @@ void measure_all_sky(bool json) {
   const auto directory =
       std::filesystem::temp_directory_path() / ("dmise-bench-" + std::to_string(getpid()));
   std::filesystem::create_directories(directory);
-  if (find_catalogue("stars.dat").empty()) return;  // as on a machine without Debian's catalogues
+  if (find_catalogue("stars.dat").empty()) return;  // without Debian's catalogues
   const std::string path = (directory / "all-sky.yaml").string();
   std::ofstream(path) << scenario_text(catalogue_of_18470(directory), "all-sky");
   {

@@ -52,7 +52,7 @@ std::size_t differences(const std::vector<Sighting>& fast, const std::vector<Sig
   return differ;
 }
 
-/// One run of the whole work.
+/// One run of the whole computation.
 struct Day {
   std::size_t in_field = 0, sunlit = 0;
   std::vector<Sighting> seen;

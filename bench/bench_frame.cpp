@@ -25,7 +25,7 @@ double seconds(const std::function<void()>& work) { return median_seconds(repeat
 void measure_poisson(bool json) {
   const RngKey key = rng_key(1, "bench", 1, "photon_noise");
   const auto rate = [&](float mean) {
-    // As in a frame: piece by piece, in the cache.
+    // As in a frame: in pieces, in the cache.
     constexpr std::size_t piece = 16384, pieces = 256;
     std::vector<float> means(piece, mean), deviates(piece);
     const double s = seconds([&] {
@@ -162,7 +162,7 @@ void measure_optics(bool json) {
 }  // namespace
 
 int bench_frame(bool json) {
-  measure_all_sky(json);  // first: the memory is the process's own
+  measure_all_sky(json);  // first, because it measures memory
   measure_poisson(json);
   measure_deposit(json);
   measure_detector(json);

@@ -21,7 +21,7 @@ std::vector<MeanElements> catalogue() {
   return synthetic_catalogue({.objects = 18470, .seed = 1});
 }
 
-/// The middle of the epochs: most elements are then a day old at most.
+/// Median of the epochs: most elements are then at most a day old.
 Utc median_epoch(const std::vector<MeanElements>& elements) {
   std::vector<Utc> epochs;
   for (const auto& e : elements) epochs.push_back({e.epoch_jd1, e.epoch_jd2});
@@ -49,7 +49,7 @@ double cost_ns(HermiteOrder order, std::size_t objects) {
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     times.push_back(took.count() * 1e9 / static_cast<double>(objects));
-    if (out[size / 2] == 0.0) return 0.0;  // the result is used
+    if (out[size / 2] == 0.0) return 0.0;  // uses the result
   }
   std::nth_element(times.begin(), times.begin() + 7, times.end());
   return times[7];

@@ -27,14 +27,14 @@ Options options;
 
 constexpr int most_tries = 4;
 constexpr int pilot_sensors = 8, pilot_frames = 3;
-constexpr double share_at_first = 0.96;  // of the processors' time that the first try takes
-// The same with detection, whose frames are long beside the ticks that they have to be ready in.
+constexpr double share_at_first = 0.96;  // of the processors' time, for the first try
+// The same with detection, whose frames are long compared to the ticks of their deadline.
 constexpr double share_detecting = 0.56;
-constexpr double step = 0.95;  // from one try to the next
+constexpr double step = 0.95;  // factor between tries
 
 double cores() { return double(std::max(1u, std::thread::hardware_concurrency())); }
 
-/// Sensors whose frames take `share` of the processors' time.
+/// Number of sensors whose frames need `share` of the processors' time.
 int sensors_within(double share, double cpu_s_per_frame, double real_time) {
   return int(share * cores() * network_cadence_s / real_time / cpu_s_per_frame);
 }
@@ -59,11 +59,11 @@ NetworkRun measure(const NetworkCase& network, const std::filesystem::path& dire
 }
 
 struct Kept {
-  int sensors = 0;  // the most that were tried and kept up; 0: none did
-  NetworkRun run;   // theirs, or the last one's
+  int sensors = 0;  // largest number that kept up; 0: none
+  NetworkRun run;   // of that number, or the last one
 };
 
-/// The first of `sensors` and fewer that keeps up, none of which takes more than `share`.
+/// The largest number, from `sensors` down, that keeps up; none needs more than `share`.
 Kept keep_up(NetworkCase network, double share, const std::filesystem::path& directory) {
   Kept kept;
   for (int tried = 0; tried < most_tries && network.sensors > 0; ++tried) {
@@ -96,24 +96,23 @@ void print_memory(const NetworkRun& run, bool json) {
 }  // namespace
 
 void add_network_options(CLI::App& command) {
-  command
-      .add_option("--sensors", options.sensors, "without detection; fewer if they can't keep up")
+  command.add_option("--sensors", options.sensors, "without detection; reduced until they keep up")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  command.add_option("--frames", options.frames, "of each sensor")
+  command.add_option("--frames", options.frames, "frames per sensor")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command.add_option("--real-time", options.real_time, "simulated seconds a second")
+  command.add_option("--real-time", options.real_time, "simulated seconds per second")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();
   const auto without = command.add_flag("--without-detection-only", options.without_detection_only,
-                                        "leaves out the runs with detection");
-  command.add_flag("--detection-only", options.detecting_only, "leaves out those without")
+                                        "skip the runs with detection");
+  command.add_flag("--detection-only", options.detecting_only, "skip the runs without detection")
       ->excludes(without);
 }
 
 int bench_network(bool json) {
-  if (find_catalogue("stars.dat").empty()) return 0;  // as without Debian's catalogues
+  if (find_catalogue("stars.dat").empty()) return 0;  // without Debian's catalogues
   const auto directory =
       std::filesystem::temp_directory_path() / ("dmise-bench-network-" + std::to_string(getpid()));
   NetworkCase network{.sensors = options.sensors,

@@ -6,9 +6,9 @@ class App;
 
 namespace dmise {
 
-/// How many all-sky sensors (`NetworkCase`) keep up with real time on this machine, without and
-/// with detection, what a frame costs all processes together, and the memory of all. Takes minutes:
-/// it waits for real time.
+/// Number of all-sky sensors (`NetworkCase`) that keep up with real time on this machine, without
+/// and with detection, the cost of a frame in all processes, and the total memory. Takes minutes,
+/// because it runs in real time.
 int bench_network(bool json);
 void add_network_options(CLI::App& command);
 

@@ -19,7 +19,7 @@ namespace {
 
 Vec<Body> direction(int i) { return from_spherical<Body>(0.7 * i, std::asin(std::sin(1.3 * i))); }
 
-/// A satellite of 10,000 facets that shade each other: a tank and a ball beside it.
+/// A satellite of 10,000 facets that shadow each other: a tank with a ball beside it.
 Mesh ten_thousand_facets(const Material& material) {
   return merged(sphere(1.0, 9700, material),
                 moved(cylinder(0.5, 2.0, 80, material), {1.4, 0, 0.3}));
@@ -27,7 +27,7 @@ Mesh ten_thousand_facets(const Material& material) {
 
 Material paint() { return sandford_robertson_of("paint", {{0.55e-6}, {0.5}}, 0.4, 0.3, 0.3); }
 
-/// 1,000 convex bodies of 100 facets, each lit and seen from a side of its own: milliseconds.
+/// 1,000 convex bodies of 100 facets, each lit and seen from another side: milliseconds.
 double unresolved_ms(double& light) {
   std::vector<FacetLight> objects;
   for (int i = 0; i < 1000; ++i)
@@ -39,8 +39,8 @@ double unresolved_ms(double& light) {
   return 1e3 * median_seconds(21, all, process_seconds);
 }
 
-/// One tile of 512 x 512 pixels, 4 x 4 samples each, that the object fills: light sources, shadow,
-/// drawing, reading back and the mean over each pixel.
+/// One tile of 512 x 512 pixels, 4 x 4 samples each, filled by the object: light sources, shadows,
+/// drawing, reading back and averaging over pixels.
 double tile_ms(Renderer& renderer, double& light) {
   const FacetLight object(ten_thousand_facets(paint()), Band{});
   const double range_m = 5000.0;
@@ -59,7 +59,7 @@ double tile_ms(Renderer& renderer, double& light) {
   return 1e3 * median_seconds(9, draw, process_seconds);
 }
 
-/// 15,000 star trails of some 1.5 px on 3326 x 2504 pixels: as 32 snapshots by OpenGL and along
+/// 15,000 star trails of about 1.5 px on 3326 x 2504 pixels: as 32 snapshots by OpenGL and along
 /// their paths.
 void measure_snapshots(SceneRenderer& renderer, bool json) {
   constexpr int columns = 3326, rows = 2504, snapshots = 32;
@@ -97,7 +97,7 @@ void measure_snapshots(SceneRenderer& renderer, bool json) {
 }  // namespace
 
 int bench_render(bool json) {
-  double light = 0.0;  // so that nothing is left out
+  double light = 0.0;  // prevents elimination of the work
   print_figure({.name = "unresolved_1000_ms",
                 .value = unresolved_ms(light),
                 .unit = "ms",
@@ -115,7 +115,7 @@ int bench_render(bool json) {
                  json);
     measure_snapshots(*load_scene_renderer(), json);
   } catch (const Error& error) {
-    std::fprintf(stderr, "bench render: %s: the tile is left out\n", error.what());
+    std::fprintf(stderr, "bench render: %s: the tile is skipped\n", error.what());
   }
   if (!(light > 0)) std::fprintf(stderr, "bench render: no light\n");
   return 0;

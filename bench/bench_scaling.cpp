@@ -25,10 +25,10 @@ namespace {
 constexpr int sizes[] = {2, 4, 8, 16, 32, 64, 128, 200};
 constexpr int window_ticks = 4;
 constexpr std::size_t catalogue_objects = 18470;
-constexpr double paced_ticks_per_s = 4.0;  // what is then spent is heartbeats for the most part
+constexpr double paced_ticks_per_s = 4.0;  // mostly the cost of heartbeats
 constexpr Tick warm_up = 8;                // ticks before the first reading
 
-/// Two readings of the costs of all processes; shared by all of them.
+/// Two readings of the costs of all processes, in shared memory.
 struct Readings {
   static constexpr std::size_t most = 256;
   pid_t pids[most]{};
@@ -50,7 +50,7 @@ struct Readings {
   }
 };
 
-/// Memory that processes forked from this one share with it.
+/// Memory shared with forked processes.
 class SharedReadings {
  public:
   SharedReadings()
@@ -66,7 +66,7 @@ class SharedReadings {
   void* at_;
 };
 
-/// Publishes the states of `objects` objects every tick, and reads the costs of all.
+/// Publishes the states of `objects` objects every tick, and reads the costs of all processes.
 class Source : public Participant {
  public:
   Source(std::size_t objects, Tick last_tick, Readings& readings)
@@ -93,7 +93,7 @@ class Source : public Participant {
   Readings& readings_;
 };
 
-/// Hears the states and finds nothing.
+/// Receives the states and produces nothing.
 class Listener : public Participant {
  public:
   explicit Listener(int index) : name_("sensor-" + std::to_string(index)) {}
@@ -109,7 +109,7 @@ class Listener : public Participant {
 // Processes in the order of the readings.
 enum : std::size_t { master, broker, orbit, first_sensor };
 
-/// `real_time`: simulated seconds (ticks) a second; 0: as fast as possible.
+/// `real_time`: simulated seconds (ticks) per second; 0: as fast as possible.
 void measure(int sensors, std::size_t objects, Tick ticks, double real_time, Readings& readings) {
   const int others = 2;
   Children children(others + sensors, [&](int index, const std::string& address) {
@@ -132,7 +132,7 @@ void measure(int sensors, std::size_t objects, Tick ticks, double real_time, Rea
   readings.count = 0;
   readings.pids[readings.count++] = getpid();
   for (const pid_t pid : children.pids()) readings.pids[readings.count++] = pid;
-  options.on_bound = [&](const std::string& address) { children.tell(address); };
+  options.on_bound = [&](const std::string& address) { children.send(address); };
   const MasterResult result = run_master(options);
   if (result.exit_code != 0) throw Error(result.reason);
 }

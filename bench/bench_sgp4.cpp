@@ -31,8 +31,8 @@ struct Outputs {
   explicit Outputs(std::size_t n) : position(3 * n), velocity(3 * n), code(n) {}
 };
 
-/// Millions of states a second of one thread, whole catalogue at `times` ticks of 10 s per call, in
-/// the order given.
+/// Millions of states per second of one thread: a whole catalogue at `times` ticks of 10 s per
+/// call, in the given order.
 double states_m_per_s(const std::vector<MeanElements>& elements, SimdLevel simd, double jd1,
                       std::size_t times) {
   const Sgp4Batch batch(elements, nullptr, simd);
@@ -62,7 +62,7 @@ struct Agreement {
   std::size_t states = 0;
 };
 
-/// Against the states that the anchor wrote: object by object at its own times.
+/// Compares with the states of the anchor: object by object at its own times.
 void compare(const std::vector<MeanElements>& elements, const std::string& stem, int times,
              int step, SimdLevel simd, Agreement& sum) {
   const Sgp4Batch batch(elements, nullptr, simd);
@@ -79,7 +79,7 @@ void compare(const std::vector<MeanElements>& elements, const std::string& stem,
       const double* p = &states.at(6 * row);
       ++sum.states;
       if (code == std::uint8_t(Sgp4Code::absurd)) {
-        // The reference has no such code: it must be the radius that gives it away.
+        // The reference has no such code: the radius must be implausible.
         const double a_km =
             std::cbrt(398600.8 / std::pow(elements[i].mean_motion_rad_per_min / 60.0, 2));
         const double far_km = 2.1 * a_km * (1.0 + elements[i].eccentricity);
@@ -98,7 +98,7 @@ class Report {
  public:
   explicit Report(bool json) : json_(json) {}
 
-  /// `more_is_better` says on which side of the target the value must lie.
+  /// `more_is_better`: whether the value must be above the target.
   void line(const char* name, double value, const char* unit, const char* anchor,
             std::optional<double> anchor_value, std::optional<double> target, bool more_is_better) {
     const bool met = !target || (more_is_better ? value >= *target : value <= *target);
@@ -161,7 +161,7 @@ struct TemporaryDirectory {
   }
 };
 
-/// `copies` of a catalogue one after the other, cut at `objects`.
+/// `copies` of a catalogue one after the other, truncated to `objects`.
 std::vector<MeanElements> repeated(const std::vector<MeanElements>& elements, std::size_t objects) {
   std::vector<MeanElements> all;
   all.reserve(objects);
@@ -190,7 +190,7 @@ double cone_ms(const std::vector<MeanElements>& elements, double jd1) {
 }  // namespace
 
 int bench_sgp4(bool json) {
-  // First, while this process is small: the others begin as copies of it.
+  // First, while this process is small, because child processes start as copies of it.
   const Sgp4Scale scales[] = {sgp4_at_scale(10'000, false), sgp4_at_scale(100'000, false),
                               sgp4_at_scale(1'000'000, false)};
   const Sgp4Scale with_elements = sgp4_at_scale(1'000'000, true);

@@ -25,8 +25,7 @@
 namespace dmise {
 namespace {
 
-/// The paper's all-sky camera, 90 deg across 3326 px, gnomonic, at the zenith; Moon and dawn in the
-/// sky.
+/// The paper's all-sky camera, 90 deg across 3326 px, gnomonic, at the zenith; with Moon and dawn.
 void whole_sky(bool json) {
   constexpr int columns = 3326, rows = 2504, sampled = 7;
   const Optics optics{.focal_length_m = columns / 2.0 * 5.4e-6,
@@ -62,12 +61,11 @@ void whole_sky(bool json) {
   print_figure({"all_parts_error", worst, "1", "", 0, 0.005, true}, json);
 }
 
-/// Stars of one field as a frame needs them: found, their apparent places through the air, their
-/// photon rates.
+/// Stars of one field for a frame: search, apparent places with refraction, photon rates.
 void stars(bool json) {
   const std::string path = find_catalogue("stars.dat");
   if (path.empty()) {
-    std::fprintf(stderr, "bench sky: no stars.dat: the figures of stars are left out\n");
+    std::fprintf(stderr, "bench sky: no stars.dat: the benchmarks of stars are skipped\n");
     return;
   }
   const StarMap map = load_star_map(path);
@@ -77,7 +75,7 @@ void stars(bool json) {
       ground_observer({33.777, -84.398, 300.0}, earth_orientation(clock, {}), {}, clock.tt({}),
                       solar_system(clock.tt({})), Refraction(standard_weather(300.0)));
   const StarLight light{Band{}};
-  double rate_sum = 0.0;  // so that nothing is left out
+  double rate_sum = 0.0;  // prevents elimination of the work
   std::size_t drawn = 0;
   const Vec<Gcrs> zenith = unit(observer.position_m);
   const auto field_ms = [&](double radius_deg, double faintest_v_mag) {

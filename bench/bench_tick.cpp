@@ -30,7 +30,7 @@ struct Tock {
   std::int64_t node;
 };
 
-/// CURVE as bare as the floor: one key for the publisher, one for all who answer, no list.
+/// Minimal CURVE: one key for the publisher, one for all subscribers, no allow-list.
 struct BareKeys {
   char server_public[41] = "", server_secret[41] = "", client_public[41] = "",
        client_secret[41] = "";
@@ -86,10 +86,10 @@ double floor_per_s(int nodes, int ticks, const BareKeys& keys = {}) {
   keys.serve(acks);
   publisher.bind("tcp://127.0.0.1:*");
   acks.bind("tcp://127.0.0.1:*");
-  children.tell(publisher.get(zmq::sockopt::last_endpoint) + " " +
+  children.send(publisher.get(zmq::sockopt::last_endpoint) + " " +
                 acks.get(zmq::sockopt::last_endpoint));
   Tock tock{0, 0}, ack{};
-  for (int ready = 0; ready < nodes;) {  // tick 0 again and again, until all have connected
+  for (int ready = 0; ready < nodes;) {  // repeat tick 0 until all have connected
     publisher.send(zmq::buffer(&tock, sizeof tock));
     std::vector<zmq::pollitem_t> items{{acks.handle(), 0, ZMQ_POLLIN, 0}};
     wait_for(items, std::chrono::milliseconds(1));
@@ -106,7 +106,7 @@ double floor_per_s(int nodes, int ticks, const BareKeys& keys = {}) {
   return ticks / elapsed_s;
 }
 
-/// Ticks per second of the time-master with nodes that do nothing.
+/// Ticks per second of the time-master with idle nodes.
 double ours_per_s(int nodes, int ticks, const std::string& keys = "") {
   Children children(nodes, [&](int index, const std::string& line) {
     Idle idle(index);
@@ -117,18 +117,18 @@ double ours_per_s(int nodes, int ticks, const std::string& keys = "") {
   options.with_broker = false;
   for (int i = 0; i < nodes; ++i) options.run.expected.push_back(Idle(i).name());
   options.run.last_tick = ticks - 1;
-  options.on_bound = [&](const std::string& address) { children.tell(address); };
+  options.on_bound = [&](const std::string& address) { children.send(address); };
   const MasterResult result = run_master(options);
   if (result.exit_code != 0) throw Error(result.reason);
   return ticks / result.wall_s;
 }
 
-/// A directory of keys for the time-master and its nodes, that goes away again.
+/// A temporary directory of keys for the time-master and its nodes.
 class KeyDirectory {
  public:
   explicit KeyDirectory(int nodes) {
     std::string path = std::filesystem::temp_directory_path() / "dmise-bench-XXXXXX";
-    if (!mkdtemp(path.data())) throw Error(path + ": can't be made");
+    if (!mkdtemp(path.data())) throw Error(path + ": can't be created");
     path_ = path;
     make_key(path_, master_name, false);
     for (int i = 0; i < nodes; ++i) make_key(path_, Idle(i).name(), false);
@@ -189,7 +189,7 @@ int bench_tick(bool json) {
   for (const int nodes : {2, 4, 8, 16}) {
     const int ticks = 24000 / nodes;
     std::vector<double> floors, ours, ratios;
-    for (int i = 0; i < repeats; ++i) {  // side by side, so that both meet the same machine
+    for (int i = 0; i < repeats; ++i) {  // interleaved, for equal conditions
       floors.push_back(floor_per_s(nodes, ticks));
       ours.push_back(ours_per_s(nodes, ticks));
       ratios.push_back(ours.back() / floors.back());

@@ -17,13 +17,13 @@ namespace {
 constexpr int repeats = 3;
 
 struct Cost {
-  double messages = 0.0;   // that the master hears, a tick
-  double master_us = 0.0;  // of processor time, a tick
-  double agent_us = 0.0;   // the same of one agent, for each of its nodes
+  double messages = 0.0;   // received by the master per tick
+  double master_us = 0.0;  // processor time per tick
+  double agent_us = 0.0;   // of one agent, per node and tick
   double ticks_per_s = 0.0;
 };
 
-/// Figures that children leave for their parent.
+/// Results of child processes, in shared memory.
 class Shared {
  public:
   explicit Shared(std::size_t count)
@@ -44,7 +44,7 @@ std::string address_of(int host) {
   return "ipc://@dmise-bench-" + std::to_string(getpid()) + "-" + std::to_string(host);
 }
 
-/// `hosts` 0: the time-master hears each node itself.
+/// `hosts` 0: nodes connect to the time-master directly.
 Cost cost_of_tick(int nodes, int hosts, int ticks) {
   std::vector<std::string> addresses;
   for (int host = 0; host < hosts; ++host) addresses.push_back(address_of(host));
@@ -68,7 +68,7 @@ Cost cost_of_tick(int nodes, int hosts, int ticks) {
     for (int i = 0; i < nodes; ++i) options.run.expected.push_back(Idle(i).name());
     options.run.last_tick = ticks - 1;
     options.run.silent_after = std::chrono::seconds(60);  // on a loaded machine
-    options.on_bound = [&](const std::string& address) { children.tell(address); };
+    options.on_bound = [&](const std::string& address) { children.send(address); };
     result = run_master(options);
   }
   if (result.exit_code != 0) throw Error(result.reason);
@@ -80,7 +80,7 @@ Cost cost_of_tick(int nodes, int hosts, int ticks) {
   return cost;
 }
 
-/// Of several runs, each figure's median.
+/// Medians of several runs.
 Cost median_cost(int nodes, int hosts, int ticks) {
   std::vector<Cost> costs;
   for (int i = 0; i < repeats; ++i) costs.push_back(cost_of_tick(nodes, hosts, ticks));

@@ -2,8 +2,8 @@
 
 namespace dmise {
 
-/// What a tick costs the time-master, with all nodes its own and with them behind the agents of
-/// hosts: messages and processor time. Prints a line each.
+/// Cost of a tick for the time-master, with nodes connected directly and through the agents of
+/// hosts: messages and processor time. Prints one line each.
 void bench_tick_hosts(bool json);
 
 }  // namespace dmise

@@ -15,21 +15,21 @@ namespace dmise {
 
 std::vector<Bench> benches() {
   return {
-      {"all-sky", "the paper's all-sky frame, its stages and memory (a part of frame)",
+      {"all-sky", "the paper's all-sky frame, its stages and memory (part of frame)",
        [](bool json) {
          measure_all_sky(json);
          return 0;
        }},
       {"frame", "stages of a frame on one thread", bench_frame},
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
-      {"network", "sensors that keep up with real time, a process each, and their memory",
+      {"network", "number of sensor processes that keep up with real time, and their memory",
        bench_network, add_network_options},
       {"render", "pictures and light of objects with a shape", bench_render},
-      {"scaling", "what 2 to 200 sensor nodes cost time-master, broker and links", bench_scaling},
+      {"scaling", "cost of 2 to 200 sensor nodes in time-master, broker and links", bench_scaling},
       {"sgp4", "propagation of whole catalogues against the compiled reference",
        [](bool json) { return bench_sgp4(json) | bench_figure5(json); }},
       {"sky", "the sky of a frame and the stars of a field", bench_sky},
-      {"tick", "lock-step ticks beside the bare ZeroMQ floor", bench_tick},
+      {"tick", "lock-step ticks compared to a bare ZeroMQ floor", bench_tick},
   };
 }
 

@@ -9,12 +9,12 @@ class App;
 
 namespace dmise {
 
-/// One benchmark: prints what it measured and returns an exit code.
+/// A benchmark: prints its results and returns an exit code.
 struct Bench {
   std::string name;
   std::string what;
   std::function<int(bool json)> run;
-  std::function<void(CLI::App&)> add_options = {};  // of its own; may be empty
+  std::function<void(CLI::App&)> add_options = {};  // additional options; may be empty
 };
 
 /// All benchmarks. To add one: write bench/bench_NAME.cpp, declare and list it in benches.cpp.

@@ -9,8 +9,7 @@ struct CatalogueFile {
   std::string path, start_utc;
 };
 
-/// The real one of December 2019 where `$DMISE_DATA` has it, or one like it written into
-/// `directory`.
+/// The real one of December 2019 if `$DMISE_DATA` has it, or a similar one written to `directory`.
 CatalogueFile catalogue_of_18470(const std::filesystem::path& directory);
 
 }  // namespace dmise

@@ -10,7 +10,7 @@
 
 namespace dmise {
 
-/// Child processes that each read one line of addresses from their standard pipe before they start.
+/// Child processes that each read one line of addresses from a pipe before they start.
 class Children {
  public:
   Children(int count, const std::function<int(int index, const std::string& line)>& work) {
@@ -30,7 +30,7 @@ class Children {
       pipes_.push_back(ends[1]);
     }
   }
-  void tell(const std::string& line) {
+  void send(const std::string& line) {
     for (int& end : pipes_) {
       if (write(end, (line + "\n").data(), line.size() + 1) < 0) throw Error("a child is gone");
       close(end);

@@ -7,17 +7,17 @@
 #include "core/base/version.h"
 #include "nodes/runtime/program/command_line.h"
 
-// Started by `dmise bench`, whose arguments it takes.
+// Started by `dmise bench`, with its arguments.
 int main(int argc, char** argv) {
   dmise::return_large_blocks();
-  CLI::App app{"Measures; with --json one object a line", "dmise bench"};
+  CLI::App app{"Runs benchmarks; with --json one object per line", "dmise bench"};
   app.set_version_flag("--version", dmise::software_name());
   app.require_subcommand(1);
   int code = 0;
   for (const auto& bench : dmise::benches()) {
     auto json = std::make_shared<bool>(false);
     auto* one = app.add_subcommand(bench.name, bench.what);
-    one->add_flag("--json", *json, "one JSON object a line");
+    one->add_flag("--json", *json, "print one JSON object per line");
     if (bench.add_options) bench.add_options(*one);
     one->callback([&code, json, run = bench.run] { code = run(*json); });
   }

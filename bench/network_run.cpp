@@ -24,9 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto look_interval = std::chrono::milliseconds(1700);  // no divisor of a tick
+constexpr auto look_interval = std::chrono::milliseconds(1700);  // not a divisor of a tick
 constexpr double tick_s = 5.0;
-constexpr int shutters = 4;  // instants at which they open, a tick apart
+constexpr int shutters = 4;  // number of start times, one tick apart
 
 std::string text_of(const fs::path& path) {
   std::ifstream file(path);
@@ -40,7 +40,7 @@ double number_in(const std::string& json, const std::string& key) {
   return at == std::string::npos ? 0.0 : std::strtod(json.c_str() + at + key.size() + 3, nullptr);
 }
 
-/// `dmise launch`, its words in `log`; ends with this process.
+/// Starts `dmise launch` with its output in `log`; it ends with this process.
 pid_t launch(const fs::path& scenario, const fs::path& out, const fs::path& log) {
   const pid_t parent = getpid();
   const pid_t pid = fork();
@@ -57,7 +57,7 @@ pid_t launch(const fs::path& scenario, const fs::path& out, const fs::path& log)
   _exit(127);
 }
 
-/// Removes images that nobody writes any more.
+/// Removes images that are complete.
 void remove_frames(const fs::path& out) {
   const auto old = fs::file_time_type::clock::now() - std::chrono::seconds(4);
   std::error_code ignored;
@@ -142,7 +142,7 @@ NetworkRun run_network(const NetworkCase& network, const fs::path& directory) {
         text_of(out / "logs/time-master.log").find("all are ready") != std::string::npos;
     if (begins || Clock::now() >= next_look) {
       next_look = Clock::now() + look_interval;
-      family.look();
+      family.update();
       remove_frames(out);
     }
     if (begins) {

@@ -41,7 +41,7 @@ std::optional<Stat> stat_of(pid_t pid) {
   return stat;
 }
 
-/// A line "Key:   123 kB" of `text` in MB; 0 where there is none.
+/// A line "Key:   123 kB" of `text` in MB; 0 if there is none.
 double megabytes(const std::string& text, const std::string& key) {
   const auto at = text.find("\n" + key + ":");
   if (at == std::string::npos) return 0.0;
@@ -78,7 +78,7 @@ void look_at(pid_t pid, ProcessUse& use) {
 
 }  // namespace
 
-void ProcessFamily::look() {
+void ProcessFamily::update() {
   const auto processes = all_processes();
   const auto belongs = [&](pid_t pid) {
     for (auto at = processes.find(pid); at != processes.end();

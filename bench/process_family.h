@@ -7,31 +7,31 @@
 
 namespace dmise {
 
-/// What one process takes, as /proc says.
+/// Resources of one process, from /proc.
 struct ProcessUse {
   std::string name;          // its `--name`, or its program
-  double pss_mb = 0.0;       // now; memory shared with others divided among them [10^6 bytes]
-  double peak_pss_mb = 0.0;  // the most that was seen
-  double most_pss_mb = 0.0;  // bound of what was not seen: the peak of its resident set, less what
-                             // it shares now
-  double cpu_s = 0.0;        // of all its threads so far
+  double pss_mb = 0.0;       // proportional set size [10^6 bytes]
+  double peak_pss_mb = 0.0;  // largest observed
+  double most_pss_mb = 0.0;  // upper bound: the peak of its resident set minus
+                             // currently shared memory
+  double cpu_s = 0.0;        // of all threads
 };
 
-/// A process and its children, looked at from outside. A look at the memory of a hundred costs
-/// about 0.1 s.
+/// A process and its children, observed from outside. Reading the memory of a hundred takes about
+/// 0.1 s.
 class ProcessFamily {
  public:
   explicit ProcessFamily(pid_t parent) : parent_(parent) {}
 
-  /// Takes in who is there, what each holds and has spent.
-  void look();
-  /// Sum of PSS at the last look, and at the look when it was largest [MB].
+  /// Updates the list of processes and their resources.
+  void update();
+  /// Sum of PSS at the last update, and its maximum [MB].
   double pss_mb() const { return pss_mb_; }
   double peak_pss_mb() const { return peak_pss_mb_; }
-  /// Processor time of all, those that ended included [s].
+  /// Processor time of all processes, including ended ones [s].
   double cpu_s() const;
 
-  /// All that were ever there.
+  /// All processes observed so far.
   std::vector<ProcessUse> members() const;
 
  private:

@@ -37,7 +37,8 @@ Sgp4Scale measure(std::size_t objects, bool keep_elements) {
   for (std::size_t k = 0; k <= calls; ++k) {
     const double start = thread_seconds();
     batch.propagate(2458138.5, 10.0 / 86400.0 * double(k), position, velocity, code);
-    if (k > 0) times_s.push_back(thread_seconds() - start);  // the first one touches the arrays
+    if (k > 0)
+      times_s.push_back(thread_seconds() - start);  // the first pass page-faults the arrays
   }
   std::nth_element(times_s.begin(), times_s.begin() + long(calls / 2), times_s.end());
   return {.ns_per_object = 1e9 * times_s[calls / 2] / double(objects),
@@ -48,9 +49,9 @@ Sgp4Scale measure(std::size_t objects, bool keep_elements) {
 
 Sgp4Scale sgp4_at_scale(std::size_t objects, bool keep_elements) {
   int ends[2];
-  if (pipe(ends) != 0) throw Error("no pipe to the process that measures memory");
+  if (pipe(ends) != 0) throw Error("can't create a pipe");
   const pid_t child = fork();
-  if (child < 0) throw Error("no process to measure memory in");
+  if (child < 0) throw Error("can't start a process");
   if (child == 0) {
     int status = 1;
     try {

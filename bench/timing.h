@@ -13,12 +13,12 @@ inline double seconds_of(clockid_t clock) {
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-/// Processor time of this thread, or of all threads of the process [s]: what others do on the
-/// machine meanwhile counts little.
+/// Processor time of this thread, or of all threads of the process [s], which depends little on
+/// other processes of the machine.
 inline double thread_seconds() { return seconds_of(CLOCK_THREAD_CPUTIME_ID); }
 inline double process_seconds() { return seconds_of(CLOCK_PROCESS_CPUTIME_ID); }
 
-/// Median of what `work`, given the number of the repeat if it takes one, costs by a clock [s].
+/// Median time [s] by a clock of `work`, which may take the number of the repeat.
 template <class Work>
 double median_seconds(int repeats, Work&& work, double (*clock)() = thread_seconds) {
   std::vector<double> times;

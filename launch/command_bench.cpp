@@ -12,7 +12,7 @@
 namespace dmise {
 namespace {
 
-/// Becomes the program of the benches. Throws `Error` when there is none.
+/// Replaces this process by the benchmark program. Throws `Error` if it is missing.
 [[noreturn]] void become_bench(std::vector<std::string> arguments) {
   const std::string program = program_directory() + "/dmise-bench";
   arguments.insert(arguments.begin(), program);
@@ -26,8 +26,8 @@ namespace {
 }  // namespace
 
 void add_bench_command(CLI::App& app) {
-  auto* command = app.add_subcommand("bench", "Measures; with --json one object a line");
-  command->set_help_flag();  // the benches' program has its own
+  auto* command = app.add_subcommand("bench", "Runs benchmarks; with --json one object per line");
+  command->set_help_flag();  // the benchmark program has its own
   command->prefix_command();
   command->callback([command] { become_bench(command->remaining()); });
 }

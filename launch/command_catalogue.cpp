@@ -40,7 +40,7 @@ void add_file_options(CLI::App& command, FileOptions& options) {
       ->required();
   command.add_flag(
       "--lenient", options.lenient,
-      "read lines with a wrong or missing checksum or cut short after the last element, "
+      "accept lines with a wrong or missing checksum or truncated after the last element, "
       "with a warning each");
 }
 
@@ -58,7 +58,7 @@ Utc parse_instant(const std::string& text) {
     if (jd < 2.3e6 || jd > 2.6e6) throw ConfigError("--at: Julian date out of range, got " + text);
     if (text.find_first_of("eE") != std::string::npos)
       throw ConfigError("--at: must be a Julian date without an exponent, got " + text);
-    // Digits before the point and after it apart, so that no precision is lost.
+    // Parse digits before and after the point separately, to keep precision.
     const auto point = text.find('.');
     const double days = std::strtod(text.substr(0, point).c_str(), nullptr);
     const double part =
@@ -76,11 +76,11 @@ Utc parse_instant(const std::string& text) {
 void need_elements(const CatalogueFile& catalogue) {
   if (catalogue.elements.empty())
     throw ConfigError(catalogue.refused.empty()
-                          ? catalogue.source + ": holds no element sets"
+                          ? catalogue.source + ": contains no element sets"
                           : catalogue.describe(catalogue.refused[0]) + " (no element set is left)");
 }
 
-/// The report comes before the refusal: it says what was found instead.
+/// The report is printed before the refusal, because it says what was found instead.
 void print_info(const FileOptions& options) {
   const auto catalogue = read(options);
   std::fputs(format(report_of(catalogue)).c_str(), stdout);
@@ -135,7 +135,7 @@ void print_states(const StatesOptions& options) {
       const auto gcrs_from_teme = earth.gcrs_from_teme({0});
       append(row, gcrs_from_teme * r, gcrs_from_teme * v);
     } else {
-      // Velocity against the turning Earth: what a point fixed to it does is taken off.
+      // Velocity relative to the rotating Earth: subtract that of a fixed point.
       const auto itrs_from_teme = earth.itrs_from_teme({0});
       const auto itrs_from_gcrs = earth.itrs_from_gcrs({0});
       const Vec<Itrs> place = itrs_from_teme * r;
@@ -149,17 +149,17 @@ void print_states(const StatesOptions& options) {
 struct SynthOptions {
   std::size_t objects = 18470;
   std::uint64_t seed = 1;
-  std::string format;  // empty: 3le as far as its numbers go
+  std::string format;  // empty: 3le up to its largest number
 };
 
 void print_synthetic(const SynthOptions& options) {
-  constexpr std::size_t most_in_a_tle = 339999;  // Alpha-5 ends there
+  constexpr std::size_t most_in_a_tle = 339999;  // limit of Alpha-5
   const bool omm =
       options.format.empty() ? options.objects > most_in_a_tle : options.format == "omm";
   if (!omm && options.objects > most_in_a_tle)
-    throw ConfigError("--objects: a TLE holds numbers up to 339999; take --format omm, got " +
+    throw ConfigError("--objects: a TLE has numbers up to 339999; use --format omm, got " +
                       std::to_string(options.objects));
-  // Piece by piece: a million objects take no more memory than a few thousand.
+  // In chunks: a million objects take no more memory than a few thousand.
   constexpr std::size_t piece = 4096;
   for (std::size_t first = 0; first < options.objects; first += piece) {
     const auto elements = synthetic_catalogue({.objects = std::min(piece, options.objects - first),
@@ -176,26 +176,25 @@ void print_synthetic(const SynthOptions& options) {
 
 void add_catalogue_command(CLI::App& app) {
   auto* command =
-      app.add_subcommand("catalogue", "Element sets: what is in a file, states at a time");
+      app.add_subcommand("catalogue", "Element sets: content of a file, states at a time");
   command->require_subcommand(1);
   auto options = std::make_shared<StatesOptions>();
   auto info_options = std::make_shared<FileOptions>();
   auto* info = command->add_subcommand(
-      "info", "What a file holds: objects, orbits, epochs, what was refused");
+      "info", "Content of a file: objects, orbits, epochs, refused records");
   add_file_options(*info, *info_options);
   info->callback([info_options] { print_info(*info_options); });
 
   auto synthetic = std::make_shared<SynthOptions>();
   auto* synth = command->add_subcommand(
-      "synth", "A population like the real one (shells, GEO belt, Molniya, debris) on stdout");
-  synth->add_option("--objects", synthetic->objects, "how many")
+      "synth", "Prints a synthetic population (constellations, GEO belt, Molniya, debris)");
+  synth->add_option("--objects", synthetic->objects, "number of objects")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
-  synth->add_option("--seed", synthetic->seed, "of the random draws")->capture_default_str();
+  synth->add_option("--seed", synthetic->seed, "seed of the random numbers")->capture_default_str();
   synth
-      ->add_option(
-          "--format", synthetic->format,
-          "3le, or omm (CSV); by itself omm above 339999 objects, where a TLE's numbers end")
+      ->add_option("--format", synthetic->format,
+                   "3le, or omm (CSV); default omm above 339999 objects, the limit of a TLE")
       ->check(CLI::IsMember({"3le", "omm"}));
   synth->callback([synthetic] { print_synthetic(*synthetic); });
 
@@ -207,7 +206,7 @@ void add_catalogue_command(CLI::App& app) {
       ->default_val("teme")
       ->check(CLI::IsMember({"teme", "gcrs", "itrs"}));
   states->add_option("--earth-orientation", options->earth_orientation,
-                     "IERS finals file; without it UT1 is UTC and the pole at rest");
+                     "IERS finals file; without it UT1 equals UTC and there is no polar motion");
   states->callback([options] { print_states(*options); });
 }
 

@@ -34,23 +34,23 @@ using Clock_ = std::chrono::steady_clock;
 
 constexpr auto look_every = std::chrono::milliseconds(100);
 constexpr double answer_within_s = 0.5;
-constexpr int answers_missed = 6;  // in a row: the time-master that was there is gone
+constexpr int answers_missed = 6;  // in a row: the time-master is gone
 
 struct JoinOptions {
   std::string scenario, node, out, master, keys, host;
-  int slot = 0;                       // from 1: which sensor of the scenario; 0: any that is free
-  std::optional<std::uint64_t> seed;  // in place of the scenario's
-  std::vector<std::string> more;      // for the node's program
+  int slot = 0;                       // from 1: index of the sensor; 0: any free one
+  std::optional<std::uint64_t> seed;  // instead of the scenario's
+  std::vector<std::string> more;      // passed to the node's program
 };
 
 /// One node of a run whose time-master was started elsewhere, by `dmise launch --nodes-elsewhere`.
-/// This process becomes the node's program, so whoever started it sees the node itself.
+/// This process is replaced by the node's program, so that its parent sees the node itself.
 class Join {
  public:
   Join(const JoinOptions& options, const Scenario& scenario)
       : options_(options), scenario_(scenario) {}
 
-  /// Does not return but when there is nothing (more) to be.
+  /// Returns only if there is nothing (more) to run.
   void run() {
     if (options_.slot > int(scenario_.sensors.size())) {
       std::fprintf(stderr, "no sensor %d in %s: nothing to do\n", options_.slot,
@@ -79,7 +79,7 @@ class Join {
     return std::nullopt;
   }
 
-  /// The first sensor of the scenario that nobody is yet.
+  /// Locks the first free sensor of the scenario.
   bool take_free_sensor() {
     const auto& sensors = scenario_.sensors;
     return std::any_of(sensors.begin(), sensors.end(),
@@ -94,7 +94,7 @@ class Join {
     return true;
   }
 
-  /// The first sensor that the run waits for. At its end all are free, and nobody is wanted.
+  /// The first sensor that the run waits for. After the end of the run none is wanted.
   bool take_wanted_sensor(const RunStatus& status) {
     std::vector<std::string> wanted = status.missing;
     if (scenario_.network.on_silent_node == OnSilentNode::restart)
@@ -108,8 +108,8 @@ class Join {
 
   Security security_as(const std::string& name) const { return {options_.keys, name}; }
 
-  /// It answers from the moment when the directory of the run is ready. Throws `Error` when it does
-  /// not within `join_within_s`.
+  /// The master answers once the directory of the run is ready. Throws `Error` if it does not
+  /// within `join_within_s`.
   void wait_for_master(const std::string& name) {
     const Security security = security_as(name);
     const auto deadline =
@@ -128,9 +128,9 @@ class Join {
     }
   }
 
-  /// One too many: until the run is over, or a sensor's place is free.
+  /// Waits until the run is over or a sensor becomes free.
   void stand_by(const std::string& name) {
-    std::fprintf(stderr, "%s: nobody is missing; standing by\n", options_.node.c_str());
+    std::fprintf(stderr, "%s: no node is missing; standing by\n", options_.node.c_str());
     const Security security = security_as(name);
     int missed = 0;
     while (missed < answers_missed) {
@@ -176,7 +176,7 @@ class Join {
     return all;
   }
 
-  /// Products are written into the directory that this very run has locked, or that nobody uses.
+  /// Checks that this run has locked the output directory, or locks it.
   void enter_directory() {
     const auto deadline = Clock_::now() + std::chrono::seconds(10);
     while (true) {
@@ -187,7 +187,7 @@ class Join {
         directory_lock_->set_run_id(run_id_);
         return;
       } catch (const ConfigError&) {
-        // A launch does not know at once which run it is.
+        // A launch learns its run id only after locking.
         if ((holder && holder->run_id != 0) || Clock_::now() > deadline) throw;
       }
       pause();
@@ -201,11 +201,11 @@ class Join {
     for (auto& text : texts) words.push_back(text.data());
     words.push_back(nullptr);
     std::fprintf(stderr, "joining %s as %s\n", master_.c_str(), name.c_str());
-    // A signal that comes from here on ends the process, or is the node's.
+    // From here on signals end the process, or belong to the node.
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
     if (stop_.is_set()) throw ExitWith{130};
-    if (directory_lock_) directory_lock_->pass_on();
+    if (directory_lock_) directory_lock_->release_to_exec();
     execv(words[0], words.data());
     throw Error(texts[0] + ": " + std::strerror(errno));
   }
@@ -214,13 +214,13 @@ class Join {
   const Scenario& scenario_;
   const Event& stop_ = stop_signal();
   std::optional<FileLock> lock_;
-  std::string lock_name_;  // the sensor that this process is by the lock
+  std::string lock_name_;  // the sensor locked by this process
   std::string master_;     // numeric address
   std::uint64_t run_id_ = 0;
-  std::unique_ptr<RunLock> directory_lock_;  // of a directory that the launch does not hold
+  std::unique_ptr<RunLock> directory_lock_;  // of a directory not locked by the launch
 };
 
-/// DMISE_SLOT, if it is a number: compose leaves a Swarm's "{{.Task.Slot}}" as it stands.
+/// DMISE_SLOT, if it is a number: compose leaves a Swarm's "{{.Task.Slot}}" unexpanded.
 int slot_of_environment() {
   const char* text = std::getenv("DMISE_SLOT");
   int slot = 0;
@@ -244,7 +244,7 @@ void join(JoinOptions options) {
   if (options.seed) scenario.seed = *options.seed;
   if (options.node != broker_name && options.node != any_sensor &&
       !kind_of_node(options.node, scenario))
-    throw ConfigError(options.node + ": is no node of " + options.scenario);
+    throw ConfigError(options.node + ": is not a node of " + options.scenario);
   Join(options, scenario).run();
 }
 
@@ -254,27 +254,27 @@ void add_join_command(CLI::App& app) {
   auto options = std::make_shared<JoinOptions>();
   auto* command = app.add_subcommand(
       "join",
-      "Is one node of a run whose time-master is elsewhere (`dmise launch --nodes-elsewhere`)");
-  command->add_option("scenario", options->scenario, "scenario (YAML), that of the run")
-      ->required();
+      "Runs one node of a run whose time-master is elsewhere (`dmise launch --nodes-elsewhere`)");
+  command->add_option("scenario", options->scenario, "scenario of the run (YAML)")->required();
   command
       ->add_option("node", options->node,
-                   nodes_to_be() + ": the first that nobody is yet, and one too many stands by")
+                   nodes_to_be() + ": the first free one; a surplus process stands by")
       ->required();
   command->add_option("--master", options->master, "address of the time-master, tcp://HOST:PORT")
       ->required()
       ->check(transport_address());
-  command->add_option("--out", options->out, "directory of the run, which its nodes share")
+  command->add_option("--out", options->out, "directory of the run, shared by its nodes")
       ->default_val("out/launch");
-  command->add_option("--slot", options->slot,
-                      "of `sensor`: which of the scenario, from 1 (or DMISE_SLOT); one too many "
-                      "ends at once");
+  command->add_option(
+      "--slot", options->slot,
+      "for `sensor`: index in the scenario, from 1 (or DMISE_SLOT); a surplus process "
+      "exits at once");
   command->add_option("--keys", options->keys,
-                      "directory of keys (dmise keygen); without it loopback alone");
+                      "directory of keys (dmise keygen); without it loopback only");
   command
       ->add_option("--host", options->host,
-                   "where the node's own sockets bind, tcp://A.B.C.D:0; else this machine's "
-                   "address on the way to the time-master")
+                   "where the node's own sockets bind, tcp://A.B.C.D:0; default: this machine's "
+                   "address towards the time-master")
       ->check(transport_address());
   command->add_option("--seed", options->seed, "as given to the launch");
   command->allow_extras();  // for the node's program: --threads, --log-level

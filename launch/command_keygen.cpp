@@ -18,18 +18,19 @@ namespace {
 struct KeygenOptions {
   std::string directory, scenario;
   std::vector<std::string> names;
-  std::vector<std::string> nodes;  // for whom they may speak
-  int hosts = 0;                   // of the scenario: agents, each for its sensors
+  std::vector<std::string> nodes;  // for which they may speak
+  int hosts = 0;                   // number of agents of the scenario
   bool truth = false;
   bool rings = false;
 };
 
 void keygen(const KeygenOptions& options) {
   std::vector<std::string> names = options.names, several;
-  std::map<std::string, std::vector<std::string>> agents;  // and for whom they may speak
+  std::map<std::string, std::vector<std::string>>
+      agents;  // with the nodes for which they may speak
   std::map<std::string, std::vector<std::string>> rings;
   if (!options.nodes.empty() && options.names.empty())
-    throw ConfigError("--nodes: of which agents? name them");
+    throw ConfigError("--nodes: names of the agents are missing");
   for (const auto& name : options.names)
     if (const auto fault = fault_of_name(name))
       throw ConfigError("names: " + *fault + ", got " + printable(name));
@@ -50,10 +51,9 @@ void keygen(const KeygenOptions& options) {
     }
     rings["sensors"] = several;
   } else if (options.hosts > 0) {
-    throw ConfigError("--hosts: needs --scenario: agents speak for its sensors");
+    throw ConfigError("--hosts: needs --scenario");
   }
-  if (options.rings && several.empty())
-    throw ConfigError("--rings: needs --scenario: rings are of its sensors");
+  if (options.rings && several.empty()) throw ConfigError("--rings: needs --scenario");
   if (names.empty()) names.push_back(operator_name);
   for (const auto& name : names) {
     make_key(options.directory, name, options.truth, {agents[name].begin(), agents[name].end()});
@@ -68,28 +68,29 @@ void add_keygen_command(CLI::App& app) {
   auto options = std::make_shared<KeygenOptions>();
   auto* command =
       app.add_subcommand("keygen",
-                         "Makes keys: NAME.key, which its owner alone may read, and NAME.pub, "
-                         "which lets it in. Remove "
-                         "NAME.pub from where a process looks, and the key opens nothing any more");
+                         "Creates keys: NAME.key, which only its owner may read, and NAME.pub, "
+                         "which grants access. Remove "
+                         "NAME.pub from the directory of a process to revoke the key");
   command->add_option("directory", options->directory, "directory of keys")->required();
-  command->add_option("names", options->names, "whose keys: nodes of a run, observers, operator");
+  command->add_option("names", options->names, "names of nodes of a run, observers, operator");
   command->add_option("--scenario", options->scenario, "also for every process of this scenario");
   command->add_flag("--rings", options->rings,
                     "also rings/sensors.keys, the sensors' keys in one file, "
-                    "rings/everybody.pubs, all public halves, and with --hosts a ring of each "
+                    "rings/everybody.pubs, all public keys, and with --hosts a ring for each "
                     "agent and its sensors: for containers");
   command
       ->add_option("--nodes", options->nodes,
-                   "these are agents of hosts (dmise-host-agent) and may speak for NODE[,NODE..], "
-                   "and for nobody else")
+                   "the names are agents (dmise-host-agent) that may speak for NODE[,NODE..] "
+                   "only")
       ->delimiter(',')
       ->allow_extra_args(false);
   command
-      ->add_option("--hosts", options->hosts,
-                   "with --scenario: also for so many agents, each for the sensors that `dmise "
-                   "launch --hosts` puts behind it")
+      ->add_option(
+          "--hosts", options->hosts,
+          "with --scenario: also for this number of agents, each for the sensors that `dmise "
+          "launch --hosts` assigns to it")
       ->check(CLI::Range(0, 10000));
-  command->add_flag("--truth", options->truth, "these may hear truth");
+  command->add_flag("--truth", options->truth, "the names may receive truth");
   command->callback([options] { keygen(*options); });
 }
 

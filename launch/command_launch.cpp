@@ -40,12 +40,12 @@ using Seconds = std::chrono::duration<double>;
 
 struct LaunchOptions {
   std::string scenario, out, bind = "tcp://127.0.0.1:0", keys;
-  std::optional<std::uint64_t> seed;  // in place of the scenario's
+  std::optional<std::uint64_t> seed;  // instead of the scenario's
   int threads = 1;
-  int hosts = 0;  // > 0: sensors are behind so many agents
+  int hosts = 0;  // > 0: number of agents for the sensors
   bool force = false;
   std::string metrics, log_format = "text";  // of every process
-  bool nodes_elsewhere = false;  // on other hosts, in other containers: `dmise join` each
+  bool nodes_elsewhere = false;              // nodes are started by `dmise join`
 };
 
 std::string number(double x) {
@@ -146,7 +146,7 @@ class Launch {
     }
   }
 
-  /// Where its nodes join; one that is started again is found there.
+  /// Address of an agent for its nodes; a restarted one has the same.
   std::string agent_address(int host) const {
     return "ipc://@dmise-" + std::to_string(getpid()) + "-" + agent_name(scenario_, host);
   }
@@ -161,7 +161,7 @@ class Launch {
     processes_.start(name, arguments, log_of(name));
   }
 
-  /// Waits for the master to bind and say where.
+  /// Waits for the master to announce its address.
   std::string master_address() {
     const auto deadline = Clock_::now() + std::chrono::seconds(10);
     while (Clock_::now() < deadline) {
@@ -174,7 +174,7 @@ class Launch {
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
-    throw Error("time-master: did not say its address within 10 s");
+    throw Error("time-master: did not announce its address within 10 s");
   }
 
   void watch(const std::string& master, RunOutcome& outcome) {
@@ -186,7 +186,7 @@ class Launch {
     auto asked = Clock_::now() - std::chrono::hours(1), next_count = asked;
     auto answered = Clock_::now(), awake = answered;
     while (processes_.poll() && !stop.is_set()) {
-      // Who was itself stopped has not heard the master because it could not.
+      // While this process was suspended it could not receive anything.
       if (Seconds(Clock_::now() - awake).count() > scenario_.network.silent_after_s / 2)
         answered = Clock_::now();
       awake = Clock_::now();
@@ -200,15 +200,15 @@ class Launch {
       if (Clock_::now() - asked > std::chrono::milliseconds(200)) {
         asked = Clock_::now();
         if (ask(master, status)) answered = Clock_::now();
-        // Counting the frames of many sensors is work: a twentieth of the time at most.
+        // Counting the frames of many sensors is expensive: at most a twentieth of the time.
         if (const auto begun = Clock_::now(); begun >= next_count && progress.is_due()) {
           progress.show(progress_state(status));
           next_count = begun + 20 * (Clock_::now() - begun);
         }
       }
-      // It is stopped or gone, or what is left of its nodes does not end.
+      // The master is suspended or gone, or remaining nodes do not end.
       if (Seconds(Clock_::now() - answered).count() > scenario_.network.silent_after_s + 2.0) break;
-      for (const auto& line : restarts.look(status, Clock_::now())) {
+      for (const auto& line : restarts.check(status, Clock_::now())) {
         progress.clear_line();
         print_note(line);
       }
@@ -221,7 +221,7 @@ class Launch {
     for (const auto& node : status.nodes)
       outcome.nodes.push_back(
           {node.name, node.times.compute_s, node.times.messaging_s, node.times.waiting_s});
-    if (clock->exit_code == 0) return;  // a signal may come when all is done
+    if (clock->exit_code == 0) return;  // a signal after the end
     if (stop.is_set()) {
       outcome.status = "interrupted";
     } else {
@@ -230,7 +230,7 @@ class Launch {
     }
   }
 
-  /// False when it does not answer: it is starting, busy or gone.
+  /// False if the master does not answer: it is starting, busy or gone.
   bool ask(const std::string& master, RunStatus& status) {
     try {
       status = ask_master(master, 0.5, Security(options_.keys, operator_name));
@@ -262,8 +262,8 @@ class Launch {
     return state;
   }
 
-  /// The first cause of a failure: what the master says, or what has become of it, or of who died
-  /// before it could tell.
+  /// The first cause of a failure: reported by the master, or the end of the master, or of a node
+  /// that died before it could report.
   std::string reason(const RunStatus& status, bool clock_ended) const {
     if (!status.cause.empty()) return status.cause;
     if (clock_ended) {
@@ -281,7 +281,7 @@ class Launch {
   Tick first_tick_;
   MetricsPorts metrics_;
   Supervisor processes_;
-  std::string first_cause_;  // of a run whose master can't say it
+  std::string first_cause_;  // if the master cannot report it
   int frames_total_ = 0;
 };
 
@@ -295,7 +295,7 @@ void launch(const LaunchOptions& options) {
   if (options.hosts > 0 && !options.keys.empty())
     check_agent_keys(scenario, options.hosts, options.keys);
   if (options.seed) scenario.seed = *options.seed;
-  // What a node would complain of is better said here, once, before anything starts.
+  // Find errors here, once, before any process starts.
   const Scene scene = load_scene(scenario, make_clock(scenario));
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   const RunStart begin = prepare_directory(directory, scenario, options.force);
@@ -315,8 +315,7 @@ void add_launch_command(CLI::App& app) {
   command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
   command->add_option("--out", options->out, "directory of the products")
       ->default_val("out/launch");
-  command
-      ->add_option("--bind", options->bind, "address of the time-master; port 0 takes any free one")
+  command->add_option("--bind", options->bind, "address of the time-master; port 0: any free port")
       ->capture_default_str()
       ->check(transport_address());
   command
@@ -326,22 +325,23 @@ void add_launch_command(CLI::App& app) {
       ->check(CLI::Range(1, 256));
   command
       ->add_option("--hosts", options->hosts,
-                   "puts the sensors behind so many agents, as on so many hosts; 0: none")
+                   "number of agents that the sensors join, one per host; 0: none")
       ->default_val(0)
       ->check(CLI::Range(0, 10000));
   command->add_option("--seed", options->seed,
-                      "seed of the random draws, in place of the scenario's");
-  command->add_option(
-      "--keys", options->keys,
-      "directory of keys (dmise keygen); without it all is plain, on loopback alone");
+                      "seed of the random numbers, instead of the scenario's");
+  command->add_option("--keys", options->keys,
+                      "directory of keys (dmise keygen); without it no encryption, loopback only");
   command->add_option("--metrics", options->metrics,
-                      "serve figures for Prometheus: at [HOST:]PORT the time-master's, at the next "
-                      "ports the others'; auto: each says in its log where");
-  command->add_option("--log-format", options->log_format, "of the processes' logs: text or json")
+                      "serve Prometheus metrics: at [HOST:]PORT of the time-master, at the next "
+                      "ports of the other processes; auto: any ports, see the logs");
+  command
+      ->add_option("--log-format", options->log_format,
+                   "format of the processes' logs: text or json")
       ->capture_default_str();
   command->add_flag("--nodes-elsewhere", options->nodes_elsewhere,
-                    "start the time-master alone: each other node is started by `dmise join`");
-  command->add_flag("--force", options->force, "replace what is in the directory");
+                    "start only the time-master; other nodes are started by `dmise join`");
+  command->add_flag("--force", options->force, "replace the products in the directory");
   command->callback([options] { launch(*options); });
 }
 

@@ -81,8 +81,7 @@ void list_effects() { std::printf("%s", effects_markdown().c_str()); }
 
 void add_list_command(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "list",
-      "Names that a scenario may use: cameras, sites, filters, materials, catalogues, effects");
+      "list", "Names for scenarios: cameras, sites, filters, materials, catalogues, effects");
   command->require_subcommand(1);
   const std::map<std::string, std::pair<std::string, void (*)()>> kinds{
       {"cameras", {"for sensors[].camera", list_cameras}},

@@ -29,15 +29,15 @@ namespace {
 
 struct RunOptions {
   std::string scenario, out;
-  std::optional<std::uint64_t> seed;  // in place of the scenario's
+  std::optional<std::uint64_t> seed;  // instead of the scenario's
   int threads = 1;
   bool force = false;
 };
 
 constexpr auto patience_after_stop = std::chrono::milliseconds(1500);
 
-/// One run of a scenario in this process. Steps are made by a thread of their own, so that a
-/// request to stop is met in time also in the middle of a frame.
+/// A run of a scenario in this process. Steps are performed by a separate thread, so that a stop
+/// request is handled promptly, also in the middle of a frame.
 class EmbeddedRun {
  public:
   EmbeddedRun(const Scenario& scenario, Scene scene, const RunDirectory& directory,
@@ -71,8 +71,8 @@ class EmbeddedRun {
     found_.frames_total = frames_total_;
   }
 
-  /// Returns when all ticks are done, one failed, or a stop was asked for. In the last case the
-  /// step being made may go on in its thread for a while: `in_step()`.
+  /// Returns when all ticks are done, one failed, or a stop was requested. In the last case the
+  /// current step may continue in its thread for a while: `in_step()`.
   RunOutcome run() {
     RunOutcome outcome{.how = "one process"};
     state_ = found_;
@@ -156,11 +156,11 @@ class EmbeddedRun {
   std::vector<std::unique_ptr<Participant>> participants_;
   std::vector<SensorEvaluator*> sensors_;
   int frames_total_ = 0;
-  ProgressState found_;  // before the first step: what an earlier run has left
+  ProgressState found_;  // before the first step: products of an earlier run
   std::mutex mutex_;     // guards what follows
   std::condition_variable changed_;
   ProgressState state_;
-  std::vector<std::string> notes_;  // to be told: objects that left, what draws
+  std::vector<std::string> notes_;  // to be printed: lost objects, renderers
   std::string failure_;
   bool finished_ = false;
 };
@@ -182,7 +182,7 @@ void run(const RunOptions& options) {
     finish_run(directory, scenario, outcome);
   } catch (const ExitWith&) {
   }
-  // The step that is still being made holds this scope's objects: end without taking them down.
+  // The current step still uses objects of this scope: exit without destroying them.
   std::fflush(nullptr);
   std::_Exit(exit_code(outcome.status));
 }
@@ -196,12 +196,12 @@ void add_run_command(CLI::App& app) {
   command->add_option("--out", options->out, "directory of the products")->default_val("out/run");
   command
       ->add_option("--threads", options->threads,
-                   "threads to compute with; the products do not depend on it")
+                   "number of threads; the products do not depend on it")
       ->default_val(1)
       ->check(CLI::Range(1, 256));
   command->add_option("--seed", options->seed,
-                      "seed of the random draws, in place of the scenario's");
-  command->add_flag("--force", options->force, "replace what is in the directory");
+                      "seed of the random numbers, instead of the scenario's");
+  command->add_flag("--force", options->force, "replace the products in the directory");
   command->callback([options] { run(*options); });
 }
 

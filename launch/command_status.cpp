@@ -40,8 +40,7 @@ std::string table(const RunStatus& status) {
   if (!status.start_utc.empty()) text += "start: " + printable(status.start_utc) + "\n";
   if (!status.cause.empty()) text += "cause: " + printable(status.cause) + "\n";
   if (!status.missing.empty()) text += "missing: " + printable(joined(status.missing)) + "\n";
-  if (!status.holding.empty())
-    text += "holds the clock: " + printable(joined(status.holding)) + "\n";
+  if (!status.holding.empty()) text += "waiting for: " + printable(joined(status.holding)) + "\n";
   if (status.overruns > 0) {
     std::snprintf(row, sizeof row, "overruns: %llu, at most %.2f s late\n",
                   static_cast<unsigned long long>(status.overruns), status.worst_lag_s);
@@ -63,7 +62,7 @@ std::string table(const RunStatus& status) {
   return text;
 }
 
-/// Healthy: the clock runs, or waits for the start or its end, and nobody is lost.
+/// The clock runs, or waits for the start or its end, and no node is lost.
 bool healthy(const RunStatus& status) {
   for (const auto& node : status.nodes)
     if (!node.alive && status.phase == Phase::running) return false;
@@ -98,26 +97,26 @@ void show(const StatusOptions& options) {
 void add_status_command(CLI::App& app) {
   auto options = std::make_shared<StatusOptions>();
   auto* command = app.add_subcommand(
-      "status", "Shows a run under way: its clock and its nodes; live on a terminal");
+      "status", "Shows the clock and nodes of a running run; live on a terminal");
   command->add_option("master", options->master, "address of the time-master, tcp://HOST:PORT")
       ->required()
       ->check(transport_address());
   command->add_option("--keys", options->keys, "directory with operator.key");
-  command->add_flag("--once", options->once, "once, also on a terminal");
+  command->add_flag("--once", options->once, "print once, also on a terminal");
   command->add_flag("--healthy", options->healthy,
-                    "say nothing; exit with 0 when the run has not failed and no node is lost");
+                    "print nothing; exit with 0 if the run has not failed and no node is lost");
   command->callback([options] { show(*options); });
 }
 
 void add_clock_command(CLI::App& app) {
-  auto* command = app.add_subcommand("clock", "Pauses, steps or ends a run, on a tick boundary");
+  auto* command = app.add_subcommand("clock", "Pauses, steps or ends a run at a tick boundary");
   command->require_subcommand(1);
   const std::map<std::string, std::pair<ClockAction, std::string>> actions{
-      {"pause", {ClockAction::pause, "no tick after the last granted, or after --tick"}},
-      {"step", {ClockAction::step, "--tick ticks more (1), then pause again"}},
-      {"go-on", {ClockAction::go_on, "ends a pause"}},
-      {"end", {ClockAction::end_early, "ends the run when all have done what is granted"}},
-      {"abort", {ClockAction::abort, "ends the run at once"}}};
+      {"pause", {ClockAction::pause, "stop after the last granted tick, or after --tick"}},
+      {"step", {ClockAction::step, "run --tick more ticks (default 1), then pause again"}},
+      {"go-on", {ClockAction::go_on, "end a pause"}},
+      {"end", {ClockAction::end_early, "end the run when all granted ticks are done"}},
+      {"abort", {ClockAction::abort, "end the run at once"}}};
   for (const auto& [name, action] : actions) {
     auto options = std::make_shared<StatusOptions>();
     options->tick = action.first == ClockAction::step ? 1 : 0;
@@ -127,7 +126,7 @@ void add_clock_command(CLI::App& app) {
         ->check(transport_address());
     verb->add_option("--keys", options->keys, "directory with operator.key");
     verb->add_option("--tick", options->tick, "tick, or number of ticks");
-    verb->add_option("--reason", options->reason, "to be named as the cause");
+    verb->add_option("--reason", options->reason, "cause to record");
     verb->callback([options, what = action.first] {
       std::fputs(table(control_master(options->master, patience_s, what, options->tick,
                                       options->reason, security_of(*options)))

@@ -50,7 +50,7 @@ TimeGrid time_grid(const VisibleOptions& options, const Scenario& scenario, cons
   const double steps = duration_s / options.step_s;
   if (steps > most_steps)
     throw ConfigError("--step: " + std::to_string(std::llround(steps)) +
-                      " instants, more than 5000000: take a longer step or a shorter --duration");
+                      " instants, more than 5000000: use a longer step or a shorter --duration");
   return covering_grid(from, sim_seconds(duration_s), sim_seconds(options.step_s));
 }
 
@@ -62,8 +62,8 @@ bool wanted(const Pass& pass, const VisibleOptions& options) {
          pass.least_sun_elevation_rad < *options.night_deg * deg;
 }
 
-/// The first few; `where` the others are told.
-void say_notes(const std::vector<std::string>& notes, const char* where) {
+/// Prints the first few notes; `where` says where to find the others.
+void print_notes(const std::vector<std::string>& notes, const char* where) {
   constexpr std::size_t most = 5;
   for (std::size_t k = 0; k < std::min(most, notes.size()); ++k) print_note(notes[k]);
   if (notes.size() > most)
@@ -75,14 +75,14 @@ std::vector<std::string> lost_notes(const Sightings& sightings, const ObjectPopu
   std::vector<std::string> notes;
   for (const LostObject& lost : sightings.lost) {
     const MeanElements& e = population.elements[lost.object];
-    notes.push_back(std::to_string(e.catalogue_number) + " " + e.name + " leaves at " +
+    notes.push_back(std::to_string(e.catalogue_number) + " " + e.name + " has no state from " +
                     format_utc(clock.utc(lost.time), 0) + ": SGP4 code " +
                     std::to_string(int(lost.code)) + ", " + std::string(describe(lost.code)));
   }
   return notes;
 }
 
-/// Index of an object that SGP4 moves.
+/// Index of an object that SGP4 propagates.
 std::size_t followed(const ObjectPopulation& population, const std::string& name,
                      const std::string& what) {
   const std::size_t i = object_index(population.roster, name, what);
@@ -125,7 +125,7 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
   std::sort(passes.begin(), passes.end(), [&](const Pass& a, const Pass& b) {
     return a.rise.time != b.rise.time ? a.rise.time < b.rise.time : a.object < b.object;
   });
-  if (first) say_notes(lost_notes(found, population, clock), " without a state");
+  if (first) print_notes(lost_notes(found, population, clock), " without a state");
 
   const PassList list{sensor, clock, population.elements, passes};
   if (options.csv) {
@@ -163,7 +163,7 @@ void visible(const VisibleOptions& options) {
   const Clock clock = make_clock(scenario);
   const TimeGrid grid = time_grid(options, scenario, clock);
   const ObjectPopulation population = load_objects(scenario, clock);
-  say_notes(population.notes, "; dmise check tells all");
+  print_notes(population.notes, "; dmise check lists all");
   if (const std::size_t others = population.roster.objects.size() - population.elements.size())
     std::fprintf(stderr, "note: %zu of %zu objects are left out: no element sets\n", others,
                  population.roster.objects.size());
@@ -184,12 +184,13 @@ void visible(const VisibleOptions& options) {
 void add_visible_command(CLI::App& app) {
   auto o = std::make_shared<VisibleOptions>();
   auto* command = app.add_subcommand(
-      "visible", "Who passes through the sensors' fields, when, how far and how lit");
+      "visible",
+      "Lists passes of objects through the sensors' fields: times, ranges, illumination");
   command->add_option("scenario", o->scenario, "scenario (YAML)")->required();
-  command->add_option("--sensor", o->sensors, "of this sensor alone (may be given several times)")
+  command->add_option("--sensor", o->sensors, "only this sensor (may be repeated)")
       ->allow_extra_args(false);
-  command->add_option("--from", o->from, "UTC (ISO 8601); the scenario's start otherwise");
-  command->add_option("--duration", o->duration_s, "seconds; the scenario's otherwise")
+  command->add_option("--from", o->from, "UTC (ISO 8601); default: the scenario's start");
+  command->add_option("--duration", o->duration_s, "seconds; default: the scenario's")
       ->check(CLI::Range(1e-3, 3.2e8));
   command
       ->add_option(
@@ -198,32 +199,32 @@ void add_visible_command(CLI::App& app) {
           "not depend on it")
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 3600.0));
-  auto* sunlit = command->add_flag("--sunlit", o->sunlit, "passes that are sunlit for a part");
+  auto* sunlit = command->add_flag("--sunlit", o->sunlit, "only passes that are partly sunlit");
   command
       ->add_flag("--dark", o->dark,
-                 "passes that are in the Earth's shadow for a part; draws that part")
+                 "only passes that are partly in the Earth's shadow; plots that part")
       ->excludes(sunlit);
   command
-      ->add_option("--night", o->night_deg,
-                   "only while the Sun is lower than this over the site [deg]; -6 without a value")
+      ->add_option(
+          "--night", o->night_deg,
+          "only while the Sun is below this elevation at the site [deg]; -6 without a value")
       ->expected(0, 1)
       ->default_str("-6")
       ->check(CLI::Range(-90.0, 90.0));
-  command->add_option("--rows", o->rows, "passes shown in the table; 0 for all")
+  command->add_option("--rows", o->rows, "number of passes in the table; 0: all")
       ->capture_default_str();
-  auto* csv = command->add_flag("--csv", o->csv, "prints CSV in place of the table");
-  command->add_flag("--jsonl", o->jsonl, "prints one JSON object a line in place of the table")
+  auto* csv = command->add_flag("--csv", o->csv, "print CSV instead of the table");
+  command->add_flag("--jsonl", o->jsonl, "print one JSON object per line instead of the table")
       ->excludes(csv);
   command->add_option("--out", o->out, "directory of passes.csv, passes.jsonl, figure.svg and .png")
       ->capture_default_str();
-  command->add_flag("--print-only", o->print_only, "writes no files");
+  command->add_flag("--print-only", o->print_only, "write no files");
   command
-      ->add_option("--threads", o->threads,
-                   "threads to compute with; the products do not depend on it")
+      ->add_option("--threads", o->threads, "number of threads; the products do not depend on it")
       ->capture_default_str()
       ->check(CLI::Range(1, 256));
   command->footer(
-      "An object is visible when it stands in the camera's frame, above the sensor's mask_deg and "
+      "An object is visible if it is in the camera's frame, above the sensor's mask_deg and "
       "not behind\nthe Earth; '<' and '>' mark passes cut by the span. docs/models/visibility.md");
   command->callback([o] { visible(*o); });
 }

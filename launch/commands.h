@@ -7,10 +7,10 @@ class App;
 
 namespace dmise {
 
-// The subcommands of `dmise`. Each adds itself to the command line; its work runs in the callback
-// and throws `ConfigError` (exit 2), `Error` (exit 1) or `ExitWith`.
+// Subcommands of `dmise`. Each adds itself to the command line; its callback does the work and
+// throws `ConfigError` (exit 2), `Error` (exit 1) or `ExitWith`.
 
-/// Ends the program with a code of its own; what there was to say has been said.
+/// Ends the program with a specific exit code, without a further message.
 struct ExitWith {
   int code = 0;
 };

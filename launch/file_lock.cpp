@@ -16,7 +16,7 @@ FileLock::FileLock(const std::string& path) {
   std::error_code code;
   std::filesystem::create_directories(std::filesystem::path(path).parent_path(), code);
   fd_ = open(path.c_str(), O_RDWR | O_CREAT, 0666);
-  if (fd_ < 0) throw Error(path + ": can't be made: " + std::strerror(errno));
+  if (fd_ < 0) throw Error(path + ": can't be created: " + std::strerror(errno));
 }
 
 FileLock::~FileLock() {
@@ -26,7 +26,7 @@ FileLock::~FileLock() {
 FileLock::FileLock(FileLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
 
 bool FileLock::take() {
-  // Its owner is the open file, not the process: fcntl(2), open file description locks.
+  // Owned by the open file, not by the process: fcntl(2), open file description locks.
   struct flock whole {};
   whole.l_type = F_WRLCK;
   whole.l_whence = SEEK_SET;

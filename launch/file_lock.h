@@ -3,18 +3,18 @@
 
 namespace dmise {
 
-/// A lock on a file, which is made if need be and stays. The lock is the kernel's: it ends with the
-/// process, however that ends, so nobody finds a stale one, and is seen by all that share the file
-/// system, also from different containers. A program that takes this one's place (exec) keeps it.
+/// A kernel lock on a file, which is created if necessary and kept. It ends with the process in
+/// every case, so it is never stale, and is visible to all that share the file system, also from
+/// different containers. It survives exec.
 class FileLock {
  public:
-  /// Makes the file and the directories above it. Throws `Error` when that fails.
+  /// Creates the file and its parent directories. Throws `Error` if that fails.
   explicit FileLock(const std::string& path);
   ~FileLock();
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&&) = delete;
 
-  /// False when another process holds it.
+  /// False if another process holds it.
   bool take();
 
  private:

@@ -23,7 +23,7 @@ std::string first_line(const std::string& path) {
   return line;
 }
 
-/// Name of the namespace that `/proc/self/ns/pid` stands for.
+/// Name of the current pid namespace.
 std::string pid_namespace() {
   char name[64];
   const ssize_t n = readlink("/proc/self/ns/pid", name, sizeof name);
@@ -35,7 +35,7 @@ struct ProcessStat {
   std::uint64_t start = 0;  // [clock ticks since boot]
 };
 
-/// proc(5): the name of the program, in parentheses, may hold anything.
+/// proc(5): the program's name, in parentheses, may contain any character.
 std::optional<ProcessStat> stat_of(std::int64_t pid) {
   const std::string text = first_line("/proc/" + std::to_string(pid) + "/stat");
   const auto end = text.rfind(')');
@@ -44,7 +44,7 @@ std::optional<ProcessStat> stat_of(std::int64_t pid) {
   ProcessStat stat;
   std::string skipped;
   fields >> stat.state;
-  constexpr int before_start = 18;  // of the fields from ppid, the fourth, to the 22nd
+  constexpr int before_start = 18;  // fields between the fourth, ppid, and the 22nd
   for (int i = 0; i < before_start; ++i) fields >> skipped;
   if (!(fields >> stat.start)) return std::nullopt;
   return stat;
@@ -54,7 +54,7 @@ bool process_has_ended(const LockHolder& holder, LockSight::KernelLock kernel_lo
   if (const auto stat = stat_of(holder.pid))
     return stat->start != holder.start || stat->state == 'Z' || stat->state == 'X';
   if (kill(pid_t(holder.pid), 0) != 0 && errno == ESRCH) return true;
-  // It, or another of its number, belongs to somebody else, and /proc hides it.
+  // The process, or another with its pid, belongs to another user, and /proc hides it.
   return holder.kernel_lock && kernel_lock == LockSight::KernelLock::free;
 }
 
@@ -159,13 +159,13 @@ bool has_ended(const LockHolder& holder, const LockHolder& self, const LockSight
   if (!holder.boot.empty() && holder.boot == self.boot) {
     if (holder.pid_namespace == self.pid_namespace)
       return process_has_ended(holder, sight.kernel_lock);
-    // In another container of this kernel, where its number means nothing here.
+    // In another container of this kernel, where its pid is meaningless here.
     if (holder.kernel_lock && sight.kernel_lock == free) return true;
   } else if (holder.host == self.host && holder.machine == self.machine &&
              sight.age_s > sight.uptime_s) {
-    return true;  // it was last heard before this machine started
+    return true;  // last touched before this machine started
   }
-  // A time to come says nothing: the file system's clock was set back.
+  // A time in the future is useless: the file system's clock was set back.
   return sight.age_s > lock_silent_s || (sight.age_s < 0.0 && sight.watched_s > 2 * lock_beat_s);
 }
 

@@ -7,18 +7,16 @@
 
 namespace dmise {
 
-/// Where each process of a run serves its figures: one port after the other.
+/// Assigns consecutive metrics ports to the processes of a run.
 class MetricsPorts {
  public:
-  /// `where`: of the first process, as for its --metrics; empty: nobody serves any. Throws
-  /// `ConfigError`.
+  /// `where`: value of --metrics for the first process; empty: none. Throws `ConfigError`.
   explicit MetricsPorts(const std::string& where);
 
-  /// The value of --metrics for the next process to start; empty: none. Throws `ConfigError` when
-  /// there is no port left.
+  /// Value of --metrics for the next process; empty: none. Throws `ConfigError` if no port is left.
   std::string next(const std::string& name);
 
-  /// Writes what has been given out for Prometheus's `file_sd_configs`; nothing for "auto", where
+  /// Writes the assigned addresses for Prometheus's `file_sd_configs`; nothing for "auto", where
   /// the processes choose.
   void write_targets(const std::string& path) const;
 

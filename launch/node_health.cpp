@@ -4,7 +4,7 @@
 
 namespace dmise {
 
-std::string complaint_of(const RunStatus& status, const std::string& name) {
+std::string health_problem(const RunStatus& status, const std::string& name) {
   if (status.phase == Phase::failed) return "the run has failed: " + status.cause;
   if (name == master_name) return "";
   for (const NodeStatus& node : status.nodes)
@@ -15,7 +15,7 @@ std::string complaint_of(const RunStatus& status, const std::string& name) {
                        " (last tick done: " + std::to_string(node.done) + ")";
   const auto& missing = status.missing;
   const bool expected = std::find(missing.begin(), missing.end(), name) != missing.end();
-  return name + (expected ? " has not joined" : " is no node of this run");
+  return name + (expected ? " has not joined" : " is not a node of this run");
 }
 
 }  // namespace dmise

@@ -5,8 +5,8 @@
 
 namespace dmise {
 
-/// Why the process `name` is no healthy part of its run, as the time-master sees it; "" if it is.
-/// Of the time-master itself: why the run is not.
-std::string complaint_of(const RunStatus& status, const std::string& name);
+/// Returns why the process `name` is not healthy according to the time-master; "" if it is. For the
+/// time-master itself: why the run is not.
+std::string health_problem(const RunStatus& status, const std::string& name);
 
 }  // namespace dmise

@@ -50,7 +50,7 @@ std::optional<Tick> unfinished_frame(const std::string& node, const Scenario& sc
   return tick_needed(scenario.interpolation, end, scenario.tick, scenario.last_tick());
 }
 
-/// What is written of the last tick may be a part of it.
+/// The last tick in the files may be incomplete.
 std::optional<Tick> unfinished_positions(const std::string&, const Scenario&,
                                          const std::string& directory) {
   return std::max<Tick>(0, last_tick_written(directory));

@@ -11,28 +11,29 @@
 
 namespace dmise {
 
-/// What the participants of a run in one process are made of.
+/// Inputs for the participants of a run in one process.
 struct NodeParts {
   const Scenario& scenario;
-  Scene& scene;  // what it holds is moved into whoever needs it alone
+  Scene& scene;  // parts with a single user are moved out
   std::string digest, directory;
   Threads& threads;
-  std::function<void(const std::string&)> note;  // called for each line to be shown
+  std::function<void(const std::string&)> note;  // prints a line
 };
 
-/// What `dmise run` knows of a kind of node beyond its row in core/config/node_kinds.h.
+/// Properties of a kind of node for `dmise run`, in addition to its row in
+/// core/config/node_kinds.h.
 struct NodeMaker {
   const char* kind;
   std::unique_ptr<Participant> (*make)(const std::string& node, NodeParts&);
-  /// The first tick of which a node's products are not whole; nothing if all are.
+  /// The first tick with incomplete products of a node; empty if all are complete.
   std::optional<Tick> (*unfinished)(const std::string& node, const Scenario&,
                                     const std::string& directory);
 };
 
-/// Throws `Error` for a kind that has no maker.
+/// Throws `Error` for a kind without a maker.
 const NodeMaker& maker_of(const NodeKind& kind);
 
-/// Frames of a sensor from the first on whose line is whole: it is written last of all.
+/// Number of frames of a sensor up to the first without a complete line, which is written last.
 std::uint32_t frames_finished(const std::string& sensor, const std::string& directory);
 
 }  // namespace dmise

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view tcp = "tcp://";
 
-/// Where "HOST" of "tcp://HOST:PORT" ends; npos when it is no such address.
+/// End of "HOST" in "tcp://HOST:PORT"; npos for other addresses.
 std::size_t end_of_host(const std::string& address) {
   return address.starts_with(tcp) ? address.rfind(':') : std::string::npos;
 }

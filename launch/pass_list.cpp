@@ -17,10 +17,10 @@ std::string printed(const char* format, double value) {
   return text;
 }
 
-/// One value of a pass: a text, a number with so many decimals, a truth, or nothing.
+/// A value of a pass: text, number with decimals, flag, or empty.
 struct Value {
   enum class Kind { none, text, number, flag } kind = Kind::none;
-  std::string text;  // as CSV shows it, quotes aside
+  std::string text;  // as in CSV, without quotes
 };
 Value of(const std::string& text) { return {Value::Kind::text, text}; }
 Value of(bool flag) { return {Value::Kind::flag, flag ? "true" : "false"}; }
@@ -87,7 +87,7 @@ std::string of_day(const Clock& clock, SimTime t) {
   return format_utc(clock.utc(t), 1).substr(11, 10);
 }
 
-/// "all", "no", or from when to when.
+/// "all", "no", or the sunlit interval.
 std::string light(const PassList& list, const Pass& p) {
   const double length_s = (p.set.time - p.rise.time).seconds();
   if (!p.lit_from) return "no";
@@ -123,9 +123,9 @@ std::string pass_table(const PassList& list, std::size_t rows) {
             "         highest    azimuth  nearest     rate      sunlit             Sun\n"
           : "   number  name                      orbit  rise (UTC)               nearest     set"
             "         nearest     rate      sunlit\n";
-  std::size_t told = 0;
+  std::size_t rows_done = 0;
   for (const Pass& p : list.passes) {
-    if (rows && told++ == rows) break;
+    if (rows && rows_done++ == rows) break;
     const MeanElements& e = list.elements[p.object];
     char row[320];
     int used =

@@ -7,22 +7,22 @@
 
 namespace dmise {
 
-/// Passes of one sensor with what their texts need; plain references, alive while used.
+/// Passes of one sensor with references to their context, which must outlive it.
 struct PassList {
   const SensorConfig& sensor;
   const Clock& clock;
   const std::vector<MeanElements>& elements;
-  const std::vector<Pass>& passes;  // in the order in which they are told
+  const std::vector<Pass>& passes;  // in order of output
 };
 
-/// Columns for people: at most `rows` passes, 0 for all.
+/// Table for display: at most `rows` passes, 0 for all.
 std::string pass_table(const PassList& list, std::size_t rows);
 
-/// A line of names, then one a pass: UTC to 10 ms, degrees, kilometres; empty where there is
-/// nothing to say (no azimuth in orbit, no sunlit part).
+/// A header line, then one per pass: UTC to 10 ms, degrees, kilometres; empty for missing values
+/// (no azimuth in orbit, no sunlit part).
 std::string pass_csv(const PassList& list, bool with_header = true);
 
-/// The same as one JSON object a pass, null for what is empty.
+/// The same as one JSON object per pass, null for missing values.
 std::string pass_jsonl(const PassList& list);
 
 /// "LEO", "MEO", "GEO", "HEO" or "far".

@@ -13,7 +13,7 @@ RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bo
   switch (directory.content()) {
     case RunDirectory::Content::same_run_complete:
       if (!force) {
-        std::printf("%s holds this run, complete; --force does it again\n",
+        std::printf("%s contains this run, complete; --force repeats it\n",
                     directory.path().c_str());
         if (!has_index_page(directory)) write_index_page(directory, scenario);
         std::fputs(what_to_open(directory, scenario).c_str(), stdout);
@@ -24,7 +24,7 @@ RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bo
       if (!force)
         throw ConfigError(
             directory.path() +
-            ": holds the products of another run; --force replaces them, --out writes "
+            ": contains the products of another run; --force replaces them, --out writes "
             "elsewhere");
       break;
     case RunDirectory::Content::same_run_unfinished:
@@ -34,8 +34,9 @@ RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bo
       break;
   }
   if (start.first_tick > 0) {
-    std::printf("%s holds this run, cut short: going on at tick %ld of %ld; --force starts anew\n",
-                directory.path().c_str(), long(start.first_tick), long(scenario.last_tick()));
+    std::printf(
+        "%s contains this run, interrupted: continuing at tick %ld of %ld; --force restarts\n",
+        directory.path().c_str(), long(start.first_tick), long(scenario.last_tick()));
     std::fflush(stdout);
   } else {
     directory.clear();
@@ -48,9 +49,9 @@ void finish_run(const RunDirectory& directory, const Scenario& scenario, RunOutc
   try {
     directory.merge_lines();
     write_index_page(directory, scenario);
-    write_run_record(directory, scenario, outcome);  // last: it says that all is there
+    write_run_record(directory, scenario, outcome);  // last, because it marks completion
   } catch (const Error& error) {
-    // What went wrong first is told; where that was a full disk, this is its echo.
+    // Report the first error; if that was a full disk, this one is a consequence.
     if (outcome.status != "failed") outcome.reason = error.what();
     outcome.status = "failed";
   }

@@ -6,21 +6,21 @@
 
 namespace dmise {
 
-/// What a run finds to do.
+/// How a run starts in its directory.
 struct RunStart {
-  bool needed = true;   // false: the same run is complete (said on stdout)
-  Tick first_tick = 0;  // > 0: an earlier run of the same was cut short here
+  bool needed = true;   // false: the same run is complete (printed)
+  Tick first_tick = 0;  // > 0: continues an interrupted run
 };
 
-/// Decides what a run does with its directory: goes on with the same run if it was cut short, else
-/// clears it. Throws `ConfigError` when another run is there and `force` is off.
+/// Prepares the directory of a run: continues an interrupted run, or clears it. Throws
+/// `ConfigError` if another run is there and `force` is off.
 RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bool force);
 
 /// Merges the lines, writes run.json and index.html and prints the summary; throws `ExitWith` or
 /// the failure itself unless the run is complete.
 void finish_run(const RunDirectory& directory, const Scenario& scenario, RunOutcome outcome);
 
-/// Exit code that a status stands for: complete 0, interrupted 130, failed 1.
+/// Exit code of a status: complete 0, interrupted 130, failed 1.
 int exit_code(const std::string& status);
 
 }  // namespace dmise

@@ -35,7 +35,7 @@ bool Progress::due(bool last) {
 }
 
 void Progress::show_share(double share, const std::string& what) {
-  // Work that ends before a line would be due elsewhere than on a terminal says nothing.
+  // Without a terminal, work that ends before the first line is silent.
   if (!terminal_ && Seconds(std::chrono::steady_clock::now() - start_).count() < interval_s_)
     return;
   if (!due(false)) return;

@@ -4,26 +4,26 @@
 
 namespace dmise {
 
-/// What a running simulation tells whoever waits for it.
+/// Progress of a running simulation.
 struct ProgressState {
   double simulated_s = 0.0;
   double duration_s = 0.0;
   int frames = 0, frames_total = 0;
   long detections = 0;
-  std::string waiting_for;  // the nodes that hold the clock, empty if unknown
+  std::string waiting_for;  // nodes that the clock waits for, empty if unknown
 };
 
-/// A bar redrawn in place on a terminal; one line at most every `interval_s` elsewhere.
+/// A progress bar on a terminal; otherwise at most one line every `interval_s`.
 class Progress {
  public:
   explicit Progress(double interval_s = 5.0);
   ~Progress();
   void show(const ProgressState& state, bool last = false);
-  /// Whether `show` would say anything now.
+  /// Whether `show` would print now.
   bool is_due() const;
-  /// The same for other work, `share` of it in [0, 1] done.
+  /// The same for other work, with the fraction `share` in [0, 1] done.
   void show_share(double share, const std::string& what);
-  /// Ends the line being redrawn, so that other text can follow.
+  /// Clears the bar, so that other text can follow.
   void clear_line();
 
  private:

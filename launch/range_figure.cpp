@@ -15,7 +15,7 @@ namespace {
 
 constexpr double night_rad = -6.0 * deg;  // end of civil twilight
 
-// Colours that also the colour-blind tell apart (Okabe and Ito).
+// Colour-blind safe colours (Okabe and Ito).
 struct Kind {
   OrbitRegime regime;
   const char* name;
@@ -141,7 +141,7 @@ Chart range_figure(const SensorTrack& track, const TimeGrid& grid,
   const std::string start = format_utc(clock.utc(grid.from), 0);
   chart.subtitle = where(track) + "; " + field(track.sensor().camera.optics) + "; catalogue of " +
                    std::to_string(elements.size()) + " objects, every " + seconds(grid.step) +
-                   " s; (n): how many are drawn";
+                   " s; (n): number drawn";
   chart.x = {.label = "Time [UTC], from " + start,
              .least = 0.0,
              .most = std::max((grid.last() - grid.from).seconds(), 1e-3) / 3600.0,

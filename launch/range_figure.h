@@ -9,17 +9,17 @@
 namespace dmise {
 
 struct RangeFigureOptions {
-  bool dark = false;                      // the objects in the Earth's shadow, not the sunlit ones
-  std::optional<double> night_below_rad;  // only while the Sun is lower than this at the site
+  bool dark = false;                      // objects in the Earth's shadow instead of sunlit ones
+  std::optional<double> night_below_rad;  // only while the Sun is below this at the site
 };
 
-/// Range against time of all objects in a sensor's field and sunlit: Figure 5 of the DMISE-GHOST
-/// paper. A line for each stay, coloured by the kind of orbit; on the ground the night is shaded.
+/// Range against time of all sunlit objects in a sensor's field: Figure 5 of the DMISE-GHOST paper.
+/// One line per pass, coloured by orbit class; night is shaded on the ground.
 Chart range_figure(const SensorTrack& track, const TimeGrid& grid,
                    const std::vector<MeanElements>& elements, const Sightings& sightings,
                    const RangeFigureOptions& options);
 
-/// Elevation of the Sun over a site at every instant of the grid; empty in orbit.
+/// Elevation of the Sun at a site at every instant of the grid; empty in orbit.
 std::vector<double> sun_elevations_rad(const SensorTrack& track, const TimeGrid& grid);
 
 }  // namespace dmise

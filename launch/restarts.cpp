@@ -4,7 +4,7 @@
 
 namespace dmise {
 
-std::vector<std::string> Restarts::look(const RunStatus& status, Instant now) {
+std::vector<std::string> Restarts::check(const RunStatus& status, Instant now) {
   std::vector<std::string> lines;
   if (network_.on_silent_node != OnSilentNode::restart || status.phase == Phase::failed ||
       status.phase == Phase::ended)
@@ -17,19 +17,18 @@ std::vector<std::string> Restarts::look(const RunStatus& status, Instant now) {
     if (why.empty() || child.starts > network_.restarts) continue;
     processes_.restart(name);
     last_[name] = now;
-    lines.push_back(name + " " + why + " and was started again (" +
-                    std::to_string(child.starts - 1) + " of " + std::to_string(network_.restarts) +
-                    ")");
+    lines.push_back(name + " " + why + " and was restarted (" + std::to_string(child.starts - 1) +
+                    " of " + std::to_string(network_.restarts) + ")");
   }
   return lines;
 }
 
-/// Empty when the child need not be started again.
+/// Why the child is to be restarted; empty if it is not.
 std::string Restarts::reason(const Child& child, const RunStatus& status, Instant now) const {
-  if (child.name == "time-master") return "";  // nobody survives it
+  if (child.name == "time-master") return "";  // the run cannot continue without it
   if (child.exit_code && *child.exit_code > killed_by)
     return std::string("was killed (") + strsignal(*child.exit_code - killed_by) + ")";
-  // A process that has just been started takes its time to join.
+  // A process that was just started needs time to join.
   const auto last = last_.find(child.name);
   if (last != last_.end() &&
       std::chrono::duration<double>(now - last->second).count() < network_.join_within_s)

@@ -10,7 +10,7 @@
 
 namespace dmise {
 
-/// Starts nodes again that have died, or that the time-master has not heard for too long, where the
+/// Restarts nodes that have died, or that the time-master has not heard for too long, if the
 /// scenario says `on_silent_node: restart`.
 class Restarts {
  public:
@@ -19,15 +19,15 @@ class Restarts {
   Restarts(Supervisor& processes, const NetworkConfig& network)
       : processes_(processes), network_(network) {}
 
-  /// `status`: what the master said last. Returns who was started again and why, one line each.
-  std::vector<std::string> look(const RunStatus& status, Instant now);
+  /// `status`: the latest of the master. Returns the restarts with reasons, one line each.
+  std::vector<std::string> check(const RunStatus& status, Instant now);
 
  private:
   std::string reason(const Child& child, const RunStatus& status, Instant now) const;
 
   Supervisor& processes_;
   const NetworkConfig& network_;
-  std::map<std::string, Instant> last_;  // start of each that was started again
+  std::map<std::string, Instant> last_;  // time of the last restart
 };
 
 }  // namespace dmise

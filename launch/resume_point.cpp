@@ -17,7 +17,7 @@ void mark_begun(const RunDirectory& directory) {
 
 Tick resume_tick(const Scenario& scenario, const RunDirectory& directory) {
   std::error_code ignored;
-  // Without it nothing tells which run the frames are of.
+  // Without it the frames cannot be attributed to a run.
   if (!std::filesystem::exists(directory.path() + "/run.json", ignored)) return 0;
   std::uint32_t finished = 0;
   for (const auto& sensor : scenario.sensors)

@@ -4,11 +4,11 @@
 
 namespace dmise {
 
-/// Says in run.json which run writes here, so that it can be known again if it is cut short.
+/// Writes run.json with the digest of the run, so that it can be recognised if interrupted.
 void mark_begun(const RunDirectory& directory);
 
-/// The first tick that a run has to make which finds in `directory` what an earlier one of the same
-/// digest has left: that of the first frame that any sensor has not finished. 0: from the start.
+/// First tick that a run must perform, given products in `directory` of a run of the same digest:
+/// that of the first unfinished frame of any sensor. 0: from the start.
 Tick resume_tick(const Scenario& scenario, const RunDirectory& directory);
 
 }  // namespace dmise

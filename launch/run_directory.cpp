@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Number behind the first `"key":` of a JSON line written by JsonWriter; 0 if there is none.
+/// Number after the first `"key":` of a JSON line written by JsonWriter; 0 if there is none.
 double number_in(const std::string& line, const std::string& key) {
   const auto at = line.find("\"" + key + "\":");
   return at == std::string::npos ? 0.0 : std::strtod(line.c_str() + at + key.size() + 3, nullptr);
@@ -29,7 +29,7 @@ std::int64_t integer_in(const std::string& line, const std::string& key) {
                                  : std::strtoll(line.c_str() + at + key.size() + 3, nullptr, 10);
 }
 
-/// Whole lines of a file; one without its newline was cut short and is left out.
+/// Complete lines of a file; one without its newline was interrupted and is dropped.
 std::vector<std::string> whole_lines(const std::string& path) {
   std::vector<std::string> lines;
   std::ifstream file(path);
@@ -71,7 +71,7 @@ RunDirectory::Content RunDirectory::content() const {
 
 void RunDirectory::clear() {
   std::error_code ignored;
-  // A sensor's directory, of this run or another, is one with a frames.jsonl in it.
+  // A subdirectory with a frames.jsonl is a sensor's, of this run or another.
   for (const auto& entry : fs::directory_iterator(path_, ignored))
     if (entry.is_directory(ignored) && fs::exists(entry.path() / "frames.jsonl", ignored))
       fs::remove_all(entry.path(), ignored);
@@ -81,13 +81,13 @@ void RunDirectory::clear() {
     fs::remove(file(name), ignored);
   for (const auto& entry : fs::directory_iterator(file("positions"), ignored))
     if (entry.path().extension() == ".oem") fs::remove(entry.path(), ignored);
-  fs::remove(file("positions"), ignored);  // unless there is anything else in it
+  fs::remove(file("positions"), ignored);  // if it is empty
 }
 
 void RunDirectory::merge_lines() const {
   for (const std::string name : {"detections.jsonl", "truth.jsonl", "frames.jsonl"}) {
     if (name == "truth.jsonl" && !scenario_.output.truth) continue;
-    // (time, sensor, place in the sensor's own file): never the order of arrival.
+    // (time, sensor, index in the sensor's file): independent of the order of arrival.
     std::vector<std::tuple<std::int64_t, std::string, std::size_t, std::string>> rows;
     for (const auto& sensor : scenario_.sensors) {
       auto lines = whole_lines(file(sensor.name) + "/" + name);

@@ -8,12 +8,11 @@
 
 namespace dmise {
 
-/// The directory that a run writes into, which is its own as long as this lives, and what its
-/// run.json says of it.
+/// Output directory of a run, locked for the lifetime of this object, and its run.json.
 class RunDirectory {
  public:
-  /// Makes `path` and locks it. Throws `Error` "PATH: reason" when that can't be written to, and
-  /// `ConfigError` when it is in use.
+  /// Creates and locks `path`. Throws `Error` "PATH: reason" if it cannot be written, and
+  /// `ConfigError` if it is in use.
   RunDirectory(std::string path, const Scenario& scenario, std::string digest);
 
   const std::string& path() const { return path_; }
@@ -23,11 +22,12 @@ class RunDirectory {
   enum class Content { empty, same_run_complete, same_run_unfinished, another_run };
   Content content() const;
 
-  /// Removes what an earlier run left, this or another: sensors' products, merged files, run.json.
+  /// Removes products of an earlier run, this or another: sensors' products, merged files,
+  /// run.json.
   void clear();
 
   /// Merges the sensors' lines into detections.jsonl, truth.jsonl and frames.jsonl, sorted by
-  /// (time, sensor, index). A line cut short by an interruption is left out.
+  /// (time, sensor, index). An incomplete last line is dropped.
   void merge_lines() const;
 
  private:
@@ -38,22 +38,22 @@ class RunDirectory {
   std::unique_ptr<RunLock> lock_;
 };
 
-/// Digest of all that decides the products: the resolved scenario and the bytes of its catalogues;
-/// the first 128 bits of their SHA-256.
+/// Digest of everything that determines the products: the resolved scenario and the bytes of its
+/// catalogues; the first 128 bits of their SHA-256.
 std::string scenario_digest(const Scenario& scenario);
 
-/// Per sensor, summed over its lines in frames.jsonl, detections.jsonl and cost.jsonl.
+/// Totals of a sensor over its lines in frames.jsonl, detections.jsonl and cost.jsonl.
 struct SensorSummary {
   std::string name;
   int frames = 0;
   int detections = 0;
   int objects = 0;  // with light in a frame, from the truth
   double seconds_per_frame = 0.0;
-  double memory_mb = 0.0;  // largest PSS reported
+  double memory_mb = 0.0;  // largest reported PSS
 };
 std::vector<SensorSummary> summarise(const Scenario& scenario, const std::string& run_path);
 
-/// Whole lines of a file; 0 where there is none.
+/// Number of complete lines of a file; 0 if it does not exist.
 long count_lines(const std::string& path);
 
 }  // namespace dmise

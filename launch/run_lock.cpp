@@ -39,7 +39,7 @@ class File {
   int fd_;
 };
 
-/// fcntl(2), open file description locks: owned by the open file, whoever inherits it.
+/// fcntl(2), open file description locks: owned by the open file and inherited.
 struct flock whole_file() {
   struct flock whole {};
   whole.l_type = F_WRLCK;
@@ -53,7 +53,7 @@ KernelLock look_at_kernel_lock(int fd) {
   return whole.l_type == F_UNLCK ? KernelLock::free : KernelLock::held;
 }
 
-/// Nothing when the file system has no such locks.
+/// Empty if the file system does not support such locks.
 std::optional<bool> take_kernel_lock(int fd) {
   struct flock whole = whole_file();
   if (fcntl(fd, F_OFD_SETLK, &whole) == 0) return true;
@@ -79,7 +79,7 @@ bool same_file(const struct stat& a, const struct stat& b) {
   return a.st_ino == b.st_ino && a.st_dev == b.st_dev;
 }
 
-/// Whether the path still leads to the open file.
+/// Whether the path still refers to the open file.
 bool is_at(int fd, const std::string& path) {
   struct stat open {
   }, there{};
@@ -94,28 +94,28 @@ double uptime_s() {
   return seconds(up);
 }
 
-/// Of the file system: the time at which it says that `fd` is touched now.
-double touch(int fd) {
+/// Touches `fd` and returns the file system's time.
+double update_mtime(int fd) {
   futimens(fd, nullptr);
   struct stat now {};
   fstat(fd, &now);
   return seconds(now.st_mtim);
 }
 
-/// Makes `path` another name of the file `made` unless there is one. The answer of a link over a
-/// network may be lost, the link is not.
+/// Links `path` to the file `made` unless it exists. Over a network the answer may be lost, but not
+/// the link.
 bool link_new(const std::string& made, const std::string& path, int fd) {
   if (link(made.c_str(), path.c_str()) == 0) return true;
   const int reason = errno;
   if (is_at(fd, path)) return true;
   if (reason == EEXIST) return false;
   if (reason == EPERM || reason == EOPNOTSUPP || reason == ENOSYS || reason == EMLINK) {
-    // No hard links: whoever makes the empty file moves the whole one over it.
+    // No hard links: the creator of the empty file replaces it by the complete one.
     const File placed(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
     if (!placed && errno == EEXIST) return false;
     if (placed && rename(made.c_str(), path.c_str()) == 0) return true;
   }
-  throw Error(path + ": can't be made: " + std::strerror(errno));
+  throw Error(path + ": can't be created: " + std::strerror(errno));
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ RunLock::RunLock(std::string directory, std::function<void(const std::string&)> 
   Watch watch{.touched = 0.0, .since = Clock_::now()};
   while (!try_to_take(watch, Clock_::now() >= deadline))
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  // Signals are for the threads that wait for them.
+  // Signals are handled by the threads that wait for them.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -150,7 +150,7 @@ RunLock::~RunLock() {
   close(fd_);
 }
 
-/// False when it is worth another try; `last`: throws instead.
+/// False to try again; `last`: throws instead.
 bool RunLock::try_to_take(Watch& watch, bool last) {
   const std::string made = path_ + "." + self_.token;
   // Without O_CLOEXEC: the run's processes hold the lock too.
@@ -169,7 +169,7 @@ bool RunLock::try_to_take(Watch& watch, bool last) {
 
   const File other(open(path_.c_str(), O_RDWR | O_CLOEXEC));
   if (!other) {
-    if (errno == ENOENT) return false;  // it has just ended
+    if (errno == ENOENT) return false;  // just released
     throw Error(path_ + ": can't be opened: " + std::strerror(errno));
   }
   struct stat seen {};
@@ -177,17 +177,17 @@ bool RunLock::try_to_take(Watch& watch, bool last) {
   if (const double touched = seconds(seen.st_mtim); touched != watch.touched)
     watch = {.touched = touched, .since = Clock_::now()};
   const LockSight sight{
-      .age_s = touch(file.get()) - watch.touched,
+      .age_s = update_mtime(file.get()) - watch.touched,
       .kernel_lock = look_at_kernel_lock(other.get()),
       .uptime_s = uptime_s(),
       .watched_s = std::chrono::duration<double>(Clock_::now() - watch.since).count()};
   const auto holder = parse_lock(content_of(other.get()));
   if (!holder) {
-    // It is being made, or was cut short when the power went.
+    // It is being created, or was truncated by a power failure.
     const bool old = sight.age_s > std::min(lock_silent_s, sight.uptime_s);
     if (sight.kernel_lock == KernelLock::held || !old) {
       if (!last) return false;
-      throw ConfigError(directory_ + ": is in use: " + path_ + " is there and says not by whom");
+      throw ConfigError(directory_ + ": is in use: " + path_ + " exists without a holder");
     }
   } else if (!has_ended(*holder, self_, sight)) {
     LockSight of_itself = sight;
@@ -196,18 +196,19 @@ bool RunLock::try_to_take(Watch& watch, bool last) {
                          has_ended(*holder, self_, of_itself);
     const bool watching = sight.age_s < 0.0 && holder->boot != self_.boot;
     if ((orphans || watching) && !last) return false;
-    throw ConfigError(directory_ + ": is in use by " +
-                      (orphans ? "processes that are left of " : "") + describe(*holder));
+    throw ConfigError(directory_ + ": is in use by " + (orphans ? "processes left by " : "") +
+                      describe(*holder));
   }
-  // One at a time takes it over: who has locked the old file finds whether it is still the one.
+  // One process at a time takes it over: after locking the old file it checks that it is still in
+  // place.
   const auto taken = take_kernel_lock(other.get());
   if ((taken && !*taken) || !is_at(other.get(), path_)) {
     if (!last) return false;
-    throw ConfigError(directory_ + ": is in use: others take it over at this moment");
+    throw ConfigError(directory_ + ": is in use: another process is taking it over");
   }
   if (rename(made.c_str(), path_.c_str()) != 0)
     throw Error(path_ + ": can't be replaced: " + std::strerror(errno));
-  // Without locks by the kernel another may have replaced it too: the last one has it.
+  // Without kernel locks another process may have replaced it too: the last one wins.
   if (!taken) std::this_thread::sleep_for(std::chrono::seconds(1));
   if (!is_at(file.get(), path_)) return false;
   fd_ = file.release();
@@ -227,28 +228,28 @@ void RunLock::beat() {
   }
 }
 
-/// Empty while the lock is held. What can't be looked at now is looked at again.
+/// Empty while the lock is held. A failed check is repeated later.
 std::string RunLock::loss() const {
   struct stat mine {
   }, there{};
   if (fstat(fd_, &mine) != 0) return "";
   if (stat(path_.c_str(), &there) != 0)
-    return errno == ENOENT ? path_ + ": was removed while the run was under way" : "";
+    return errno == ENOENT ? path_ + ": was removed during the run" : "";
   if (same_file(mine, there)) return "";
   const File file(open(path_.c_str(), O_RDONLY | O_CLOEXEC));
   const auto holder = file ? parse_lock(content_of(file.get())) : std::nullopt;
   return directory_ + ": was taken by " + (holder ? describe(*holder) : "another process") +
-         " while this run was silent";
+         " while this run was suspended";
 }
 
 void RunLock::set_run_id(std::uint64_t run_id) {
   if (self_.run_id == run_id) return;
   self_.run_id = run_id;
-  const std::string text = lock_text(self_);  // as long as the one that it replaces
+  const std::string text = lock_text(self_);  // same length as the text it replaces
   [[maybe_unused]] const ssize_t n = pwrite(fd_, text.data(), text.size(), 0);
 }
 
-void RunLock::pass_on() {
+void RunLock::release_to_exec() {
   {
     std::lock_guard lock(mutex_);
     ending_ = true;
@@ -266,7 +267,7 @@ std::optional<LockHolder> RunLock::written_in(const std::string& directory) {
 std::unique_ptr<RunLock> lock_directory(const std::string& directory) {
   std::error_code code;
   std::filesystem::create_directories(directory, code);
-  if (code) throw Error(directory + ": can't be made: " + code.message());
+  if (code) throw Error(directory + ": can't be created: " + code.message());
   return std::make_unique<RunLock>(directory);
 }
 

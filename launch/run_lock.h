@@ -12,17 +12,16 @@
 
 namespace dmise {
 
-/// The right to write products into a directory, of one run at a time: `DIRECTORY/.run-lock`, a
-/// file that says who holds it. It appears whole or not at all (link), so that one of many that
-/// start at once has it, on any file system that hosts share. Its holder also locks it by fcntl,
-/// which processes that it starts inherit: the directory is locked until the last of them is gone.
-/// The holder touches the file every `lock_beat_s`. The lock of a process that has ended is taken
-/// over (`has_ended`).
+/// Exclusive right to write products into a directory: `DIRECTORY/.run-lock`, a file that names the
+/// holder. It is created atomically (link), so that one of several simultaneous starts wins, on any
+/// file system that hosts share. The holder also locks it by fcntl, which child processes inherit:
+/// the directory is locked until the last of them has ended. The holder touches the file every
+/// `lock_beat_s`. The lock of an ended process is taken over (`has_ended`).
 class RunLock {
  public:
-  /// Throws `ConfigError` "DIRECTORY: is in use by ..." when another process holds it, and `Error`
-  /// when the file can't be written. Processes that a dead holder has left get `patience_s` to end.
-  /// `on_loss` is called, from a thread, with one line when the lock was removed or taken by force.
+  /// Throws `ConfigError` "DIRECTORY: is in use by ..." if another process holds it, and `Error` if
+  /// the file cannot be written. Processes left by a dead holder get `patience_s` to end. `on_loss`
+  /// is called, from a thread, with one line if the lock was removed or taken by force.
   explicit RunLock(std::string directory,
                    std::function<void(const std::string&)> on_loss = end_process,
                    double patience_s = 15.0);
@@ -31,20 +30,20 @@ class RunLock {
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
 
-  /// Tells which run the directory is locked by, so that `dmise join` knows it.
+  /// Stores the run id in the lock, for `dmise join`.
   void set_run_id(std::uint64_t run_id);
 
-  /// Leaves the lock to the program that this process becomes by exec.
-  void pass_on();
+  /// Leaves the lock to the program that replaces this process by exec.
+  void release_to_exec();
 
-  /// What the lock file of a directory says, whether its holder lives or not.
+  /// Content of the lock file of a directory, whether its holder is alive or not.
   static std::optional<LockHolder> written_in(const std::string& directory);
 
-  /// Says the line on stderr and ends the process with 1: somebody else writes where it does.
+  /// Prints the line on stderr and exits with 1: another process writes to the same directory.
   static void end_process(const std::string& line);
 
  private:
-  /// Since when another's lock has been looked at without being touched.
+  /// How long another holder's lock has been observed without a touch.
   struct Watch {
     double touched = 0.0;
     std::chrono::steady_clock::time_point since;
@@ -63,7 +62,7 @@ class RunLock {
   std::thread beating_;
 };
 
-/// Makes a directory and locks it.
+/// Creates a directory and locks it.
 std::unique_ptr<RunLock> lock_directory(const std::string& directory);
 
 }  // namespace dmise

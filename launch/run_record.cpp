@@ -25,7 +25,7 @@ bool exists(const std::string& path) {
   return fs::exists(path, ignored);
 }
 
-/// What objects between ticks are off by, as measured on a catalogue.
+/// Interpolation error of objects between ticks, as measured on a catalogue.
 void write_interpolation(JsonWriter& json, const Scenario& scenario) {
   const double tick_s = scenario.tick.seconds();
   const auto error = stated_interpolation_error(scenario.interpolation, tick_s);

@@ -7,7 +7,7 @@
 
 namespace dmise {
 
-/// Where one node's time went [s of wall clock].
+/// Wall-clock time of one node by activity [s].
 struct NodeTimes {
   std::string name;
   double compute_s = 0.0, messaging_s = 0.0, waiting_s = 0.0;
@@ -22,16 +22,16 @@ struct RunOutcome {
   std::vector<NodeTimes> nodes;
 };
 
-/// Writes run.json: what ran, seed, digests, plan, time per effect and frame. The only product that
-/// holds wall-clock values, beside the sensors' cost.jsonl that it gathers.
+/// Writes run.json: what ran, seed, digests, plan, time per effect and frame. The only product with
+/// wall-clock values, besides the sensors' cost.jsonl that it summarises.
 void write_run_record(const RunDirectory& directory, const Scenario& scenario,
                       const RunOutcome& outcome);
 
-/// Writes index.html: the sensors, their frames and pictures.
+/// Writes index.html: the sensors with their frames and pictures.
 void write_index_page(const RunDirectory& directory, const Scenario& scenario);
 bool has_index_page(const RunDirectory& directory);
 
-/// Lines that say what to look at: the first marked picture and the page, where there are such.
+/// Suggests what to open: the first marked picture and the index page, if they exist.
 std::string what_to_open(const RunDirectory& directory, const Scenario& scenario);
 
 /// The table at the end of a run and what to open.

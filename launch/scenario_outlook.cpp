@@ -50,7 +50,7 @@ void print_outlook(const Scenario& scenario, const Scene& scene, const Clock& cl
   for (const auto& sensor : outlook.sensors) print_note(sensor.sensor + ": " + short_text(sensor));
   for (const auto& warning : outlook.warnings) print_warning(warning);
   if (const std::size_t others = scenario.sensors.size() - first.sensors.size())
-    print_note("dmise check says the same of " + std::to_string(others) + " more sensors");
+    print_note("dmise check reports the same for " + std::to_string(others) + " more sensors");
 }
 
 }  // namespace dmise

@@ -7,17 +7,17 @@
 
 namespace dmise {
 
-/// What a run reads before its first frame. All that is wrong with it is said before the run's
+/// Inputs that a run reads before its first frame. All errors in them are reported before the run's
 /// directory is touched.
 struct Scene {
   ObjectPopulation population;
   std::shared_ptr<const StarMap> stars;  // null: none
 };
 
-/// Throws `ConfigError` with the place of the key at fault.
+/// Throws `ConfigError` with the position of the invalid key.
 Scene load_scene(const Scenario& scenario, const Clock& clock);
 
-/// What is worth knowing of a scenario before it runs.
+/// Notes, warnings and outlooks of a scenario before it runs.
 struct ScenarioOutlook {
   std::size_t objects = 0;
   std::vector<SensorOutlook> sensors;
@@ -27,8 +27,8 @@ struct ScenarioOutlook {
 ScenarioOutlook scenario_outlook(const Scenario& scenario, const Scene& scene, const Clock& clock,
                                  const OutlookOptions& options);
 
-/// At the start of a run: notes and warnings, and a line for each of the first sensors, on stderr.
-/// Looks at three frames of each and counts objects of small populations only.
+/// At the start of a run: prints notes and warnings, and a line for each of the first sensors, on
+/// stderr. Examines three frames of each and counts objects of small populations only.
 void print_outlook(const Scenario& scenario, const Scene& scene, const Clock& clock);
 
 }  // namespace dmise

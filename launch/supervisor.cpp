@@ -21,7 +21,7 @@ namespace {
 
 using Milliseconds = std::chrono::milliseconds;
 
-/// In the child: becomes the program, or tells `report` why not.
+/// In the child: executes the program, or writes the error to `report`.
 [[noreturn]] void become(const std::vector<std::string>& arguments, const std::string& log_path,
                          bool keep_log, pid_t parent, int report) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -152,7 +152,7 @@ std::string last_line(const std::string& path) {
   if (last.starts_with('{'))  // of a log in JSON
     if (const auto event = nlohmann::json::parse(last, nullptr, false); event.is_object())
       return event.value("text", last);
-  constexpr std::string_view before_message = " error: ";  // time, node and level stand before it
+  constexpr std::string_view before_message = " error: ";  // follows time, node and level
   const auto at = last.find(before_message);
   return at == std::string::npos ? last : last.substr(at + before_message.size());
 }

@@ -14,12 +14,12 @@ struct Child {
   std::vector<std::string> arguments;
   pid_t pid = 0;
   int starts = 1;
-  std::optional<int> exit_code;  // 128 + signal when killed by one
-  std::string log_path;          // what it wrote to stderr
+  std::optional<int> exit_code;  // 128 + signal if killed
+  std::string log_path;          // its stderr
 };
 
-/// Starts the processes of a run and sees them all to their end: no child outlives it, also when it
-/// is itself killed (PR_SET_PDEATHSIG).
+/// Starts the processes of a run and waits for their end: no child outlives it, also if it is
+/// killed (PR_SET_PDEATHSIG).
 class Supervisor {
  public:
   Supervisor() = default;
@@ -31,19 +31,18 @@ class Supervisor {
   void start(const std::string& name, const std::vector<std::string>& arguments,
              const std::string& log_path);
 
-  /// Starts a child that has ended, or kills one that has not and starts it, once more. Its log
-  /// goes on.
+  /// Restarts a child, killing it if it is still running. Its log continues.
   void restart(const std::string& name);
 
-  /// Takes note of who has ended. True while somebody runs.
+  /// Reaps children that have ended. True while any is running.
   bool poll();
-  /// SIGTERM to all that run; SIGKILL to those that still do `patience` later.
+  /// Sends SIGTERM to all running children, and SIGKILL to those still running `patience` later.
   void stop(std::chrono::milliseconds patience);
 
   const std::vector<Child>& children() const { return children_; }
-  /// Null when there is no child of that name.
+  /// Null if there is no child of that name.
   const Child* find(const std::string& name) const;
-  /// The first child seen to end with a code other than 0.
+  /// The first child found to have ended with a code other than 0.
   const Child* first_failure() const;
 
  private:
@@ -54,12 +53,12 @@ class Supervisor {
   std::optional<std::size_t> first_failure_;
 };
 
-constexpr int killed_by = 128;  // codes above stand for signals
+constexpr int killed_by = 128;  // codes above are signals
 
-/// How a child has ended: "beta was killed (Killed)", or "beta: " and its last words.
+/// How a child has ended: "beta was killed (Killed)", or "beta: " and its last line.
 std::string end_of(const Child& child);
 
-/// The message of the last line of a log that is not empty.
+/// The message of the last non-empty line of a log.
 std::string last_line(const std::string& path);
 
 /// Directory of the running program.

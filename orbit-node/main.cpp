@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   CLI::App app("Publishes the states of all objects of a scenario.", "dmise-orbit-node");
   dmise::add_common_flags(app, flags);
   app.add_option("--config", config, "scenario (YAML)")->required();
-  app.add_option("--threads", threads, "threads to compute with")->check(CLI::Range(1, 256));
+  app.add_option("--threads", threads, "number of threads")->check(CLI::Range(1, 256));
   return dmise::run_program(app, flags, argc, argv, [&] {
     const dmise::Scenario scenario = dmise::load_scenario(config);
     dmise::Threads pool(threads);

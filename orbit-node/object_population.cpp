@@ -44,7 +44,7 @@ void require_all_found(const ObjectSource& source, const std::vector<MeanElement
 
 std::string prefix(const std::string& where) { return where.empty() ? "" : where + ": "; }
 
-/// What `read` gives; what it complains of names the scenario's key first.
+/// Returns `read()`; its errors get the scenario's key as a prefix.
 auto at_key(const std::string& where, const auto& read) {
   try {
     return read();
@@ -53,7 +53,7 @@ auto at_key(const std::string& where, const auto& read) {
   }
 }
 
-/// Adds objects one by one; the state is what is there already.
+/// Adds objects one by one.
 class Loader {
  public:
   Loader(const Scenario& scenario, const Clock& clock)
@@ -86,7 +86,7 @@ class Loader {
 
   void add(const ObjectSource& source) {
     auto catalogue = at_key(source.where, [&] { return read_catalogue(source.path); });
-    for (auto& e : catalogue.elements) e.name = printable(e.name);  // as it is shown and told
+    for (auto& e : catalogue.elements) e.name = printable(e.name);  // as displayed and published
     if (catalogue.elements.empty())
       throw ConfigError(prefix(source.where) + source.path + ": no element set could be read" +
                         (catalogue.refused.empty()
@@ -103,7 +103,7 @@ class Loader {
     for (const auto& problem : catalogue.refused) note(catalogue.describe(problem) + " (left out)");
     for (const auto& problem : catalogue.warnings) note(catalogue.describe(problem));
     for (const auto& e : catalogue.elements) {
-      // Number 0 (not catalogued) is no one object.
+      // Number 0 (not catalogued) does not identify an object.
       if (!wanted(source, e) ||
           (e.catalogue_number != 0 && !taken_.insert(e.catalogue_number).second))
         continue;
@@ -146,21 +146,21 @@ class Loader {
                           std::to_string(other.catalogue_number) + " to take its place)");
   }
 
-  /// A trajectory must have to do with the run, and cover it where a sensor depends on it.
+  /// Checks that a trajectory overlaps the run, and covers it if a sensor depends on it.
   void check_span(const OwnObject& object, const Trajectory& path) {
     const TrajectorySpan span = span_of(path);
     const SimTime end = scenario_.time_of(scenario_.last_tick());
     const auto after = [](const Tai& a, const Tai& b) { return seconds_between(b, a) > 1e-9; };
-    const std::string told = object.motion.oem_path + ": the trajectory of " + object.name +
+    const std::string text = object.motion.trajectory_path + ": the trajectory of " + object.name +
                              " spans " + span_text(path) + ", the run " + format_utc(start_) +
                              " to " + format_utc(clock_.utc(end));
     if (after(clock_.tai({0}), span.stop) || after(span.start, clock_.tai(end)))
-      throw ConfigError(object.where + ": " + told);
+      throw ConfigError(object.where + ": " + text);
     if (!after(span.start, clock_.tai({0})) && !after(clock_.tai(end), span.stop)) return;
     for (const auto& sensor : scenario_.sensors)
       if (depends_on(sensor, object))
-        throw ConfigError(object.where + ": sensor " + sensor.name + " depends on it, but " + told);
-    note(told + ": it is in the scene while it has a state");
+        throw ConfigError(object.where + ": sensor " + sensor.name + " depends on it, but " + text);
+    note(text + ": it is in the scene only within that span");
   }
 
   void check_span(const OwnObject& object, const Attitude& attitude) const {

@@ -16,9 +16,9 @@ struct ObjectAttitude {
   Attitude model;
 };
 
-/// The objects of a scenario: their facts, what moves them, how they stand. The roster holds those
-/// that SGP4 moves, catalogues' first, then those of the other models: object i has `elements[i]`
-/// or `models[i - elements.size()]`.
+/// Objects of a scenario: properties, motion models and attitudes. The roster holds objects moved
+/// by SGP4 first, those of catalogues before the scenario's, then those of other models: object i
+/// has `elements[i]` or `models[i - elements.size()]`.
 struct ObjectPopulation {
   ObjectRoster roster;
   std::vector<MeanElements> elements;
@@ -27,10 +27,10 @@ struct ObjectPopulation {
   std::vector<std::string> notes;  // one line each: records refused, stale elements, short spans
 };
 
-/// Reads the scenario's catalogues. An object named by several keeps its first; one of the
-/// scenario's own takes the place of a catalogue's with its number. Throws `ConfigError` if `only`
-/// names an object that is not there, if a trajectory or an attitude has nothing to do with the
-/// time of the run, or if it ends within and a sensor depends on it.
+/// Reads the scenario's catalogues. An object in several catalogues is taken from the first; an
+/// object of the scenario replaces a catalogue's object of its number. Throws `ConfigError` if
+/// `only` names a missing object, if a trajectory or an attitude does not overlap the run, or if it
+/// ends during the run and a sensor depends on it.
 ObjectPopulation load_objects(const Scenario& scenario, const Clock& clock);
 
 }  // namespace dmise

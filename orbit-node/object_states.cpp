@@ -13,7 +13,7 @@ namespace dmise {
 namespace {
 
 constexpr std::int64_t half_step_ns = std::int64_t(slope_half_step_s * 1e9);
-constexpr double least_height_m = 1.0;  // over the ellipsoid, of what moves freely
+constexpr double least_height_m = 1.0;  // above the ellipsoid, of freely moving objects
 
 void set(std::vector<double>& xyz, std::size_t count, std::size_t i, const Vec<Gcrs>& v) {
   xyz[i] = v.x;
@@ -38,19 +38,19 @@ bool is_fixed(const MotionModel& model) {
 
 }  // namespace
 
-/// One instant with what the models ask of it.
+/// One instant with the inputs of the models.
 struct StateSource::Instant {
   SimTime time;
   Tai tai;
   EarthOrientation earth;
-  // SGP4's, in TEME: 3 x elements.
+  // States of SGP4 in TEME: 3 x elements.
   std::vector<double> position_m, velocity_m_per_s;
   std::vector<std::uint8_t> code;
 
   Instant(const Clock& clock, SimTime t)
       : time(t), tai(clock.tai(t)), earth(earth_orientation(clock, t)) {}
 
-  /// The path of one of the other models; its velocity is the slope of the position.
+  /// State from another model; its velocity is the slope of the position.
   Placed placed(const MotionModel& model) const {
     if (const auto* path = std::get_if<Trajectory>(&model); path && !covers(*path, tai))
       return {{}, std::uint8_t(MotionCode::outside_span)};
@@ -152,7 +152,7 @@ void StateSource::add_attitudes(const Instant (&instants)[3], ObjectStates& stat
       return AttitudeScene{instants[j].time.seconds(), placed.state.position_m,
                            placed.state.velocity_m_per_s, sun_m[j]};
     };
-    // At an end of a trajectory or a table the rate is one-sided.
+    // At an end of a trajectory or a table the rate is a one-sided difference.
     const AttitudeScene now = *scene(1);
     const auto within = [&](const std::optional<AttitudeScene>& s) {
       const auto* table = std::get_if<TableAttitude>(&model);

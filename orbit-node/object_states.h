@@ -5,17 +5,17 @@
 
 namespace dmise {
 
-/// States of a population at any time, in GCRS, all motion models behind one call.
+/// States of a population at any time, in GCRS, for all motion models.
 class StateSource {
  public:
   /// `population` must outlive it.
   StateSource(const ObjectPopulation& population, Clock clock, Threads& threads);
 
-  /// Slopes are symmetric differences of SGP4 over `slope_half_step_s`, the exact slope of the path
-  /// for the other models. A function of `time` alone.
+  /// Slopes are symmetric differences of SGP4 over `slope_half_step_s`, and exact for the other
+  /// models. Depends on `time` alone.
   ObjectStates at(Tick tick, SimTime time) const;
 
-  /// Why object `i` has no state: one line that names it and, of a trajectory, the span.
+  /// Returns why object `i` has no state: one line that names it and the span of a trajectory.
   std::string why_absent(std::size_t i, const ObjectStates& states) const;
 
  private:

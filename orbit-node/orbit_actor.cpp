@@ -15,7 +15,7 @@ OrbitActor::OrbitActor(const Scenario& scenario, Clock clock, ObjectPopulation p
       told_(population_.roster.objects.size()) {}
 
 std::vector<Message> OrbitActor::resume(Tick tick, std::span<const Message>) {
-  if (tick == 0) return {};  // the step does
+  if (tick == 0) return {};  // published by the step
   return {{objects_topic, tick, std::make_shared<State>(population_.roster)}};
 }
 

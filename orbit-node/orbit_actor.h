@@ -11,11 +11,11 @@
 
 namespace dmise {
 
-/// States of all objects of a scenario at every tick, in GCRS.
+/// Publishes states of all objects of a scenario at every tick, in GCRS.
 class OrbitActor : public Actor {
  public:
   OrbitActor(const Scenario& scenario, Clock clock, Threads& threads);
-  /// Of objects that are loaded already.
+  /// For objects that are already loaded.
   OrbitActor(const Scenario& scenario, Clock clock, ObjectPopulation population, Threads& threads);
 
   std::string name() const override { return orbit_node; }
@@ -24,8 +24,8 @@ class OrbitActor : public Actor {
   std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
   std::uint64_t progress() const override { return steps_; }
 
-  /// Calls `tell` with one line for each object that has no state, at the first tick where that is
-  /// so; from the thread that calls `step`.
+  /// Calls `report` with one line for each object without a state, at the first such tick; from the
+  /// thread that calls `step`.
   void on_absence(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
 
   const std::vector<std::string>& notes() const { return population_.notes; }

@@ -10,29 +10,29 @@ namespace {
 
 constexpr std::chrono::seconds patience{5};
 
-void say_lost(const std::string& name, Tick done, const std::string& what_follows) {
+void log_lost(const std::string& name, Tick done, const std::string& what_follows) {
   log_event(spdlog::level::warn, "node_lost", {{"name", name}, {"done_tick", done}},
             fmt::format("{} is lost: {} (last tick done: {})", name, what_follows, done));
 }
 
 }  // namespace
 
-void ClockWatch::look(const Coordinator& coordinator, Instant now) {
+void ClockWatch::check(const Coordinator& coordinator, Instant now) {
   if (coordinator.over()) return;
   const auto all = {&coordinator.members(), &coordinator.behind()};
   for (const std::string& name : joined_)
     if (std::none_of(all.begin(), all.end(),
                      [&](const auto* some) { return some->contains(name); }))
-      say_lost(name, -1, "waiting for another of its name");
+      log_lost(name, -1, "waiting for another process of its name");
   joined_.clear();
   for (const auto* members : all)
     for (const auto& [name, member] : *members) {
       if (member.is_guest()) continue;
       joined_.insert(name);
       if (!member.silent && !member.dropped) lost_.erase(name);
-      if (member.silent && lost_.insert(name).second) say_lost(name, member.done, "waiting for it");
+      if (member.silent && lost_.insert(name).second) log_lost(name, member.done, "waiting for it");
       if (member.dropped && lost_.insert(name).second)
-        say_lost(name, member.done, "the run goes on without it");
+        log_lost(name, member.done, "the run goes on without it");
     }
   const auto state = std::pair(coordinator.granted(), coordinator.holding());
   if (state != seen_) {
@@ -50,7 +50,7 @@ void ClockWatch::look(const Coordinator& coordinator, Instant now) {
         fmt::format("tick {} of {}: {}", coordinator.granted(), coordinator.options().last_tick,
                     !holding.empty() ? "waiting for " + holding
                     : paused         ? "paused"
-                                     : "real time holds the clock"));
+                                     : "waiting for real time"));
     quiet_since_ = now;
   }
 }

@@ -8,15 +8,15 @@
 
 namespace dmise {
 
-/// Says on the log who is lost, and whom everybody waits for when nothing has moved for a while.
+/// Logs lost nodes, and the nodes waited for when the clock has been still for a while.
 class ClockWatch {
  public:
-  void look(const Coordinator& coordinator, Instant now);
+  void check(const Coordinator& coordinator, Instant now);
 
  private:
-  std::pair<Tick, std::vector<std::string>> seen_;  // granted, and who holds the clock
+  std::pair<Tick, std::vector<std::string>> seen_;  // granted tick, and nodes waited for
   Instant quiet_since_{0};
-  std::set<std::string> joined_, lost_;  // as last seen, as last said
+  std::set<std::string> joined_, lost_;  // as last seen, as last logged
 };
 
 }  // namespace dmise

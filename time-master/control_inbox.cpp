@@ -8,13 +8,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A pass: the clock is looked at after each.
+// Length of a pass, after which the clock is checked.
 constexpr int most_messages = 2000;
 constexpr int most_strangers = 64;
 constexpr milliseconds most_time{5};
 constexpr milliseconds most_time_of_strangers{2};
-constexpr int looks_at_time = 16;  // messages between two looks
-// A Join with 4,000 topics of a usual name; the clock's own messages may be longer.
+constexpr int looks_at_time = 16;  // messages between two checks of the time
+// A Join with 4,000 topics of usual length; the clock's own messages may be longer.
 constexpr std::size_t longest_of_a_stranger = 256 << 10;
 
 }  // namespace
@@ -22,10 +22,10 @@ constexpr std::size_t longest_of_a_stranger = 256 << 10;
 bool ControlInbox::receive(ControlMessage* message) {
   while (router_.recv(message->sender, zmq::recv_flags::dontwait)) {
     int frames = 1;
-    // The frames of a message arrive together.
+    // Frames of a message arrive together.
     for (bool more = message->sender.more(); more; more = message->body.more()) {
       if (!router_.recv(message->body, zmq::recv_flags::none)) break;
-      connections_.took(message->body);
+      connections_.count_read(message->body);
       ++frames;
     }
     if (frames == 2) return true;
@@ -57,7 +57,7 @@ std::optional<std::chrono::nanoseconds> ControlInbox::next_due() {
   return strangers_.next_due(now());
 }
 
-void ControlInbox::hear_strangers(const std::function<void(ControlMessage&)>& hear) {
+void ControlInbox::deliver_strangers(const std::function<void(ControlMessage&)>& hear) {
   if (strangers_.size() == 0) return;
   const auto until = now() + most_time_of_strangers;
   for (int count = 0; count < most_strangers && now() < until; ++count) {

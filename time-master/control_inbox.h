@@ -17,25 +17,25 @@ struct ControlMessage {
   std::string_view from() const { return sender.to_string_view(); }
 };
 
-/// What comes to the time-master's ROUTER, in passes of bounded length, so that the clock is looked
-/// at between two: first what comes from those for whom the clock waits, then, if there is time,
-/// the others in turns.
+/// Reads the time-master's ROUTER in passes of bounded length, so that the clock is checked in
+/// between: first messages of processes that the clock waits for, then, if there is time, those of
+/// others in turns.
 class ControlInbox {
  public:
-  /// Takes a message, or leaves it to its turn among strangers by returning false.
+  /// Handles a message, or returns false to queue it among strangers.
   using Take = std::function<bool(ControlMessage&)>;
 
   ControlInbox(zmq::socket_t& router, PeerMonitor& connections)
       : router_(router), connections_(connections), strangers_(StrangerLimits{}) {}
 
-  /// Reads what has come, and offers each message to `take`. True when nothing is left to read.
+  /// Reads waiting messages and offers each to `take`. True if nothing is left to read.
   bool read(const Take& take);
-  /// Hands over what has waited and is due.
-  void hear_strangers(const std::function<void(ControlMessage&)>& hear);
-  /// When `hear_strangers` has something to do, if it has.
+  /// Delivers queued messages that are due.
+  void deliver_strangers(const std::function<void(ControlMessage&)>& hear);
+  /// When `deliver_strangers` has work, if it has.
   std::optional<std::chrono::nanoseconds> next_due();
-  /// Messages ignored since the last call: of peers that send too many, too large or of too many
-  /// frames.
+  /// Messages ignored since the last call: from peers that send too many, too large ones or too
+  /// many frames.
   std::uint64_t take_ignored() { return std::exchange(ignored_, 0) + strangers_.take_ignored(); }
 
  private:

@@ -33,7 +33,7 @@ void Coordinator::done(const std::string& name, TickTally tally, Instant now) {
   Member* member = active(name);
   if (!member || over()) return;
   heard(*member, now);
-  if (tally.tick <= member->done) return;  // said twice
+  if (tally.tick <= member->done) return;  // repeated
   const Tick next = member->node.schedule.next_after(member->done);
   if (member->is_guest()) {
     if (member->observer) member->done = tally.tick;
@@ -50,17 +50,18 @@ void Coordinator::done(const std::string& name, TickTally tally, Instant now) {
   if (notes(*member, std::move(tally))) grant(now);
 }
 
-/// False when a tick that is done again is not what it was: then the run has failed.
+/// Compares a repeated tick with the first time; on a difference the run fails and false is
+/// returned.
 bool Coordinator::notes(Member& member, TickTally tally) {
   if (!member.agent)
     for (TopicTally& topic : tally.topics) topic.incarnation = member.incarnation;
-  const auto at = std::lower_bound(member.said.begin(), member.said.end(), tally.tick,
+  const auto at = std::lower_bound(member.manifests.begin(), member.manifests.end(), tally.tick,
                                    [](const TickTally& t, Tick tick) { return t.tick < tick; });
-  if (at == member.said.end() || at->tick != tally.tick) {
-    member.said.insert(at, std::move(tally));
+  if (at == member.manifests.end() || at->tick != tally.tick) {
+    member.manifests.insert(at, std::move(tally));
     return true;
   }
-  // An agent that is new does not know what others wanted to be told by the one before.
+  // A new agent does not know which topics its predecessor was asked to report.
   const bool same =
       member.agent
           ? at->digest == tally.digest
@@ -69,7 +70,7 @@ bool Coordinator::notes(Member& member, TickTally tally) {
                        [](const TopicTally& a, const TopicTally& b) { return a.same_content(b); });
   if (!same) {
     fail_run(member.node.name + ": tick " + std::to_string(tally.tick) +
-             ", done again after a restart, is not what it was");
+             ", repeated after a restart, differs from the first time");
     return false;
   }
   *at = std::move(tally);  // the sequence numbers are those of the new process
@@ -85,7 +86,7 @@ void Coordinator::grant(Instant now) {
                                              : "; the first that was lost was " + first_dropped_));
   granted_ =
       std::max(granted_, std::min({slowest + options_.window_ticks, end_, pace_.limit(now)}));
-  // At a tick at which nobody works the clock passes too.
+  // Ticks at which no node works pass at once.
   const Tick over_to = std::min(slowest, granted_);
   if (over_to > settled_) settle(over_to, now);
   if (over_to >= end_) phase_ = Phase::ended;
@@ -93,10 +94,10 @@ void Coordinator::grant(Instant now) {
 
 void Coordinator::settle(Tick last, Instant now) {
   for (auto& [name, member] : members_)
-    while (!member.said.empty() && member.said.front().tick <= last) {
-      const TickTally& tally = member.said.front();
+    while (!member.manifests.empty() && member.manifests.front().tick <= last) {
+      const TickTally& tally = member.manifests.front();
       digest_ += member.agent ? tally.digest : content_digest(name, tally);
-      member.said.pop_front();
+      member.manifests.pop_front();
     }
   while (settled_ < last) pace_.finished(++settled_, now);
 }
@@ -164,7 +165,7 @@ std::vector<std::string> Coordinator::holding() const {
     if (member.silent) names.push_back(name);
   const Tick slowest = slowest_done();
   if (!names.empty() || slowest >= granted_) return names;
-  std::map<std::string, std::string> late_topics;  // of those who are behind: whose they are
+  std::map<std::string, std::string> late_topics;  // topics of slow nodes, with their publishers
   const auto late = [&](const Member& member) {
     return member.keeps_time && member.active() && member.reaches() == slowest;
   };
@@ -193,7 +194,7 @@ Tick Coordinator::slowest_done() const {
   for (const auto& [name, member] : members_) {
     if (!member.keeps_time || !member.active()) continue;
     slowest = std::min(slowest, member.reaches());
-    if (slowest <= settled_) break;  // nobody is further behind
+    if (slowest <= settled_) break;  // the slowest
   }
   return slowest;
 }

@@ -1,4 +1,4 @@
-// Who dies, hangs, falls silent or leaves, and what becomes of the run.
+// Nodes that die, hang, fall silent or leave, and the consequences for the run.
 #include <algorithm>
 
 #include "core/base/printable.h"
@@ -25,7 +25,7 @@ void Coordinator::heartbeat(const std::string& name, bool computing, std::uint64
 }
 
 void Coordinator::heard(Member& member, Instant now) {
-  member.pulse.hear(now);
+  member.pulse.heard_at(now);
   member.silent = false;
   check_by(member.pulse.deadline(options_, !over()));
 }
@@ -74,11 +74,11 @@ void Coordinator::check(Instant now) {
     check_by(started_ + options_.start_within);
   }
   for (const std::string& name : silent_behind_) look_at(behind_.at(name), now);
-  std::vector<std::string> names;  // lost() may take a member away
+  std::vector<std::string> names;  // lost() may remove a member
   for (const auto& [name, member] : members_) names.push_back(name);
   for (const std::string& name : names)
     if (Member* member = active(name)) look_at(*member, now);
-  look_for_stalled(now);
+  find_stalled(now);
   grant(now);
 }
 
@@ -95,9 +95,9 @@ void Coordinator::look_at(Member& member, Instant now) {
            after_tick(member));
 }
 
-/// A node that lives and yet never begins what it could: what it needs does not reach it, or it is
-/// at fault itself. No heartbeat tells.
-void Coordinator::look_for_stalled(Instant now) {
+/// A node that is alive but does not begin a tick: its inputs do not arrive, or it is faulty.
+/// Heartbeats do not reveal it.
+void Coordinator::find_stalled(Instant now) {
   if (options_.stalled_after.count() == 0 || phase_ != Phase::running || now < next_look_) return;
   next_look_ = now + options_.stalled_after / 8;
   const std::vector<std::string> names = holding();
@@ -112,7 +112,7 @@ void Coordinator::look_for_stalled(Instant now) {
     const Member& stalled = member_of(who);
     return fail_run(who + " has not begun tick " +
                     std::to_string(stalled.node.schedule.next_after(stalled.done)) + " for " +
-                    in_seconds(now - *since) + ", though all that it needs is published" +
+                    in_seconds(now - *since) + ", although all its inputs are published" +
                     after_tick(stalled));
   }
 }
@@ -149,14 +149,14 @@ void Coordinator::silence(Member& member, Instant now) {
 }
 
 void Coordinator::drop(Member& member, Instant now) {
-  // It may have died with messages of ticks that it called done: they count for nobody who is
-  // behind.
+  // It may have died with messages of ticks that it reported as done; consumers that are behind do
+  // not get them.
   if (first_dropped_.empty()) first_dropped_ = member.node.name;
   member.left = true;
   member.dropped = true;
   member.closed_from = std::min(member.done, slowest_done()) + 1;
-  while (!member.said.empty() && member.said.back().tick >= member.closed_from)
-    member.said.pop_back();
+  while (!member.manifests.empty() && member.manifests.back().tick >= member.closed_from)
+    member.manifests.pop_back();
   grant(now);
 }
 

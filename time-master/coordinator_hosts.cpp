@@ -1,4 +1,4 @@
-// Agents, and the nodes behind them: the clock waits for a host, and still knows each of its nodes.
+// Agents and the nodes behind them: the clock waits for a host, but knows each of its nodes.
 #include <algorithm>
 
 #include "time-master/coordinator.h"
@@ -17,7 +17,7 @@ std::optional<std::string> Coordinator::join_agent(const Request& request, Insta
   const std::string& name = request.node.name;
   if (is_expected(name)) return name + " is a node of this run and can't be the name of an agent";
   if (options_.on_silent == SilentPolicy::drop)
-    return "a run that goes on without lost nodes (drop) can't have agents";
+    return "a run that continues without lost nodes (drop) can't have agents";
   const auto earlier = members_.find(name);
   if (earlier == members_.end()) {
     if (phase_ != Phase::gathering) return "the run has started: no agent may join";
@@ -65,7 +65,7 @@ std::optional<std::string> Coordinator::join_behind(const Request& request, Inst
   if (members_.contains(name) || earlier != behind_.end())
     return "a node named " + name + " has already joined";
   behind_[name] = fresh(request, now);
-  agent.pulse.hear(now);
+  agent.pulse.heard_at(now);
   add_each(&agent.node.produces, request.node.produces);
   add_each(&agent.node.consumes, request.node.consumes);
   connect_if_complete(now);
@@ -120,7 +120,7 @@ void Coordinator::forget(const std::string& name) {
   std::erase_if(silent_behind_, [&](const auto& node) { return !behind_.contains(node); });
   const auto member = members_.find(name);
   if (member == members_.end()) return;
-  // Names of observers and agents are without number: nothing is kept of them.
+  // Names of observers and agents are unlimited: their counters are not kept.
   if (!is_expected(name)) incarnations_.erase(name);
   forgotten_.push_back(member->first);
   members_.erase(member);

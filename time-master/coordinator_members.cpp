@@ -1,4 +1,4 @@
-// Who joins, takes another's place, watches, and when all are there.
+// Joining, replacing and observing, and the start of a run.
 #include <algorithm>
 
 #include "core/base/printable.h"
@@ -77,7 +77,7 @@ std::optional<std::string> Coordinator::rejoin(Member& member, const Request& re
   if (before.produces != request.node.produces || before.consumes != request.node.consumes ||
       before.look_back != request.node.look_back || !(before.schedule == request.node.schedule) ||
       member.keeps_time != request.keeps_time)
-    return name + " joins again with other topics than before";
+    return name + " rejoins with other topics than before";
   if (auto refusal = take_place(member, now)) return refusal;
   ++topology_version_;
   start_if_ready(now);
@@ -91,8 +91,8 @@ std::optional<std::string> Coordinator::take_place(Member& member, Instant now) 
     return "the run is over";
   }
   member.incarnation = ++incarnations_[name];
-  // It may have died with messages of ticks that it called done: it does again what anybody may
-  // still need. Their tallies stay, to be compared.
+  // It may have died with messages of ticks that it reported as done: it repeats what anybody may
+  // still need. Their tallies are kept for comparison.
   member.resumes_at = settled_ + 1;
   member.done = member.resumes_at - 1;
   member.pulse = Pulse::begin(now);

@@ -1,4 +1,4 @@
-// dmise-time-master: keeps the clock of one run, from the first node that joins to the last tick.
+// dmise-time-master: runs the clock of one run, from the first node that joins to the last tick.
 #include "core/base/whole_file.h"
 #include "nodes/runtime/program/command_line.h"
 #include "nodes/runtime/program/program.h"
@@ -19,15 +19,16 @@ int main(int argc, char** argv) {
   std::string report;
   double silent_after_s = 5.0, progress_after_s = 0.0, stalled_after_s = 60.0, start_within_s = 0.0,
          rejoin_within_s = 0.0;
-  CLI::App app("Keeps the clock of one run.", "dmise-time-master");
+  CLI::App app("Runs the clock of one run.", "dmise-time-master");
   dmise::add_common_flags(app, flags);
-  app.add_option("--bind", options.address, "the address that everybody must know; port 0: any")
+  app.add_option("--bind", options.address, "address that all processes connect to; port 0: any")
       ->capture_default_str()
       ->check(dmise::transport_address());
   app.add_option("--announce", options.announce_file, "file to write the address to");
   app.add_option("--announce-fd", options.announce_fd, "file descriptor to write the address to");
   app.add_option("--report", report, "file for the outcome of the run, in JSON");
-  app.add_option("--expect", options.run.expected, "names of the nodes that keep time: a,b,c")
+  app.add_option("--expect", options.run.expected,
+                 "names of the nodes that the clock waits for: a,b,c")
       ->required()
       ->delimiter(',');
   app.add_flag("!--no-broker", options.with_broker, "run without a broker: no topics");
@@ -38,15 +39,15 @@ int main(int argc, char** argv) {
   app.add_option("--start", options.start_utc, "UTC of the first tick (ISO 8601), for observers");
   app.add_option("--window", options.run.window_ticks, "ticks that a node may run ahead")
       ->capture_default_str();
-  app.add_option("--silent-after", silent_after_s, "a node unheard of for so long is lost [s]")
+  app.add_option("--silent-after", silent_after_s, "silence after which a node is lost [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--progress-after", progress_after_s,
-                 "a step without progress for so long is hung [s]; 0: no limit")
+                 "time without progress after which a step is hung [s]; 0: no limit")
       ->capture_default_str();
   app.add_option("--stalled-after", stalled_after_s,
-                 "longest time that a node neither computes nor is done, though all that it needs "
-                 "is published [s]; 0: no limit")
+                 "longest time that a node is neither computing nor done although its inputs "
+                 "are published [s]; 0: no limit")
       ->capture_default_str();
   app.add_option("--start-within", start_within_s,
                  "longest wait for all nodes to be ready [s]; 0: no limit")
@@ -56,19 +57,19 @@ int main(int argc, char** argv) {
                                                             {"drop", dmise::SilentPolicy::drop}};
   app.add_option("--on-silent", options.run.on_silent,
                  "what a lost node means: fail, wait (for it, or another process of its name) or "
-                 "drop (go on without it)")
+                 "drop (continue without it)")
       ->transform(CLI::CheckedTransformer(policies));
   app.add_option("--rejoin-within", rejoin_within_s,
                  "longest wait for a lost node [s]; 0: no limit")
       ->capture_default_str();
   app.add_option("--max-rejoins", options.run.max_rejoins,
-                 "processes that may follow the first of a name; -1: any number")
+                 "restarts allowed per node; -1: any number")
       ->capture_default_str();
   app.add_option("--first-tick", options.run.first_tick,
-                 "tick to start at: goes on with a run that was interrupted")
+                 "tick to start at, to continue an interrupted run")
       ->capture_default_str();
   app.add_option("--real-time", options.run.pace.factor,
-                 "simulated seconds a second; 0: as fast as possible")
+                 "simulated seconds per second; 0: as fast as possible")
       ->capture_default_str();
   return dmise::run_program(app, flags, argc, argv, [&] {
     options.run.last_tick = ticks - 1;

@@ -12,11 +12,11 @@
 namespace dmise {
 
 struct MasterOptions {
-  std::string address = "tcp://127.0.0.1:0";  // of the one socket that everybody must know
-  CoordinatorOptions run;  // `expected`: nodes that keep time, without the broker
+  std::string address = "tcp://127.0.0.1:0";  // of the socket that all processes connect to
+  CoordinatorOptions run;  // `expected`: nodes that the clock waits for, without the broker
   bool with_broker = true;
   SimTime tick_length{1'000'000'000};
-  std::string start_utc;  // of tick 0 (ISO 8601), for those who ask; empty: not told
+  std::string start_utc;  // of tick 0 (ISO 8601), for status; may be empty
   std::string keys;       // directory of keys; empty: plain, loopback alone
   Event* stop = nullptr;
   std::string announce_file;  // the address is written here when bound
@@ -24,11 +24,11 @@ struct MasterOptions {
   std::function<void(const std::string& address)> on_bound;
 };
 
-/// Says where a master listens, in all the ways that `options` ask for. Throws `Error`.
+/// Announces the address of a master in all the ways that `options` name. Throws `Error`.
 void announce(const MasterOptions& options, const std::string& address);
 
-/// Keeps the clock of one run until every tick is done or the run fails. Throws `ConfigError` for
-/// options that make no sense and `Error` when the address can't be bound.
+/// Runs the clock of one run until every tick is done or the run fails. Throws `ConfigError` for
+/// invalid options and `Error` if the address cannot be bound.
 MasterResult run_master(const MasterOptions& options);
 
 }  // namespace dmise

@@ -4,30 +4,30 @@
 #include "nodes/runtime/protocol/peer_directory.h"
 #include "time-master/coordinator.h"
 
-// What the time-master hears and says: coordinator's types <-> messages.
+// Conversion between the coordinator's types and messages.
 namespace dmise {
 
 v1::Phase to_wire(Phase phase);
 
-/// What a process says of itself in a Join without fault.
+/// Converts a valid Join.
 Coordinator::Request request_of(const v1::Join& join);
 TickTally tally_of(const v1::Done& done);
 
-/// Adds a tick's manifest to a grant, but for topics that are not in `wanted`.
+/// Adds a tick's manifest to a grant, only for topics in `wanted`.
 void add_published(v1::Grant* grant, const std::set<std::string, std::less<>>& wanted,
                    const TickTally& tally);
 
-/// `topology` as the process `name` needs it.
+/// `topology` as needed by the process `name`.
 v1::Topology topology_for(const std::string& name, v1::Topology topology,
                           const Coordinator& coordinator);
 
-/// Sets the grant as it is now, without manifests.
+/// Sets the current grant, without manifests.
 void describe(v1::Grant* grant, std::uint64_t run_id, const Coordinator& coordinator);
 
-/// Sets what `status` and observers want to know of the clock and its nodes.
+/// Sets the state of the clock and its nodes for `status` and observers.
 void describe(v1::Endpoints* endpoints, const Coordinator& coordinator);
 
-/// Does what `control` asks.
+/// Executes `control`.
 void apply(const v1::Control& control, Coordinator& coordinator, Instant now);
 
 }  // namespace dmise

@@ -74,7 +74,8 @@ v1::MasterMessage MasterPublisher::grant_for(const Coordinator::Member& member) 
   const auto& needs = member.node.consumes;
   const std::set<std::string, std::less<>> wanted(needs.begin(), needs.end());
   for (const auto& [name, other] : coordinator_.members())
-    for (const TickTally& tally : other.said) add_published(answer.mutable_grant(), wanted, tally);
+    for (const TickTally& tally : other.manifests)
+      add_published(answer.mutable_grant(), wanted, tally);
   return answer;
 }
 
@@ -93,7 +94,7 @@ void MasterPublisher::send_topology() {
 }
 
 void MasterPublisher::send_topology_to(const Peer& peer, const v1::Topology& topology) {
-  if (!peer.join.host().empty()) return;  // its agent tells it
+  if (!peer.join.host().empty()) return;  // its agent informs it
   const std::string& name = peer.join.name();
   v1::MasterMessage message;
   *message.mutable_topology() = topology_for(name, topology, coordinator_);

@@ -11,10 +11,10 @@
 
 namespace dmise {
 
-/// What the time-master says: grants to all, answers to one, and who is where to each.
+/// Sends the time-master's messages: grants to all, replies to one, and the topology to each.
 class MasterPublisher {
  public:
-  /// `router`: the socket of all conversations; `ticks`: the PUB that all hear. All outlive this.
+  /// `router`: the socket of all conversations; `ticks`: the PUB of grants. All must outlive this.
   MasterPublisher(zmq::socket_t& router, zmq::socket_t& ticks, std::uint64_t run_id,
                   const Coordinator& coordinator, const PeerDirectory& directory)
       : router_(router),
@@ -25,25 +25,26 @@ class MasterPublisher {
 
   void reply(std::string_view routing_id, const v1::MasterMessage& message);
   void refuse(std::string_view routing_id, const std::string& reason, const std::string& name);
-  /// To be told to all who consume with what is said next.
+  /// Records a manifest, sent to its consumers with the next message.
   void note(const TickTally& tally);
-  /// An observer has joined a run under way: nobody else needs to know, but agents what it wants.
+  /// An observer has joined a running run: only agents need to know its topics.
   void announce_observer(const std::string& name);
-  /// Says what has changed since it was last said; true if something had.
+  /// Sends what has changed since the last call; true if anything had.
   bool publish_changes();
-  /// Says the grant as it is now.
+  /// Sends the current grant.
   void publish();
 
   v1::MasterMessage welcome(const std::string& name, const std::string& tick_endpoint,
                             std::uint64_t heartbeat_token) const;
-  /// The grant as it is now.
+  /// The current grant.
   v1::MasterMessage grant() const;
-  /// The same for the process `member`, with the manifests of all that it may still wait for.
+  /// The grant for the process `member`, with the manifests of all ticks that it may still wait
+  /// for.
   v1::MasterMessage grant_for(const Coordinator::Member& member) const;
-  /// The run's last word to a process that is no longer part of it.
+  /// The final message to a process that is no longer part of the run.
   v1::MasterMessage expelled(const std::string& cause) const;
 
-  /// As last said.
+  /// Phase as last sent.
   Phase phase() const { return phase_; }
 
  private:
@@ -56,9 +57,9 @@ class MasterPublisher {
   const Coordinator& coordinator_;
   const PeerDirectory& directory_;
   v1::Grant grant_;
-  v1::Grant fresh_;                              // `published` that has not been told yet
-  std::set<std::string, std::less<>> consumed_;  // topics that somebody consumes
-  std::uint64_t topology_version_ = 0;           // as last told
+  v1::Grant fresh_;                              // `published` that has not been sent yet
+  std::set<std::string, std::less<>> consumed_;  // topics with consumers
+  std::uint64_t topology_version_ = 0;           // as last sent
   Phase phase_ = Phase::gathering;
   Tick granted_ = -1;
 };

@@ -10,23 +10,23 @@
 
 namespace dmise {
 
-/// How a run went, as its master saw it.
+/// Outcome of a run, as seen by its master.
 struct MasterResult {
   int exit_code = 0;                       // 0: every tick was done
   std::string reason;                      // first cause of a code other than 0
   Tick granted = -1;                       // last tick granted
   double wall_s = 0.0;                     // from the first grant to the end
-  std::map<std::string, TimeSplit> times;  // of each process, as of its last word
-  std::vector<std::string> dropped;        // nodes that the run went on without
-  std::map<std::string, int> restarts;  // processes that followed the first, where there were any
-  std::uint64_t digest = 0;             // of all that was published; the same for the same run
-  std::uint64_t overruns = 0;           // of real time: ticks not over when the next was due
+  std::map<std::string, TimeSplit> times;  // of each process, as last reported
+  std::vector<std::string> dropped;        // nodes that the run continued without
+  std::map<std::string, int> restarts;     // number of restarts, if any
+  std::uint64_t digest = 0;                // of everything published; the same for the same run
+  std::uint64_t overruns = 0;              // ticks not done when the next was due in real time
   double worst_lag_s = 0.0;
-  std::uint64_t messages = 0;  // heard from the first grant to the end
+  std::uint64_t messages = 0;  // received from the first grant to the end
   double cpu_s = 0.0;          // of the master's whole process in that time
 };
 
-/// What the coordinator knows of it.
+/// Result of a coordinator's run.
 MasterResult result_of(const Coordinator& coordinator);
 
 /// One JSON object: status, cause, granted_tick, wall_s, digest, overruns, worst_lag_s, dropped,

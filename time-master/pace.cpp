@@ -41,7 +41,7 @@ Tick Pace::limit(Instant now) const {
   if (!epoch_ || now < *epoch_) return first_tick_ - 1;
   const double ticks =
       double((now - *epoch_).count()) * options_.factor / double(options_.tick_length.ns);
-  if (ticks > 9e15) return limit;  // beyond what doubles count
+  if (ticks > 9e15) return limit;  // beyond the integers of doubles
   // Rounding may be off by one at the very instant at which a tick is due.
   Tick tick = first_tick_ + Tick(ticks);
   while (due(tick + 1) <= now) ++tick;

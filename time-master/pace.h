@@ -9,12 +9,11 @@ namespace dmise {
 
 struct PaceOptions {
   SimTime tick_length{1'000'000'000};
-  double factor = 0.0;  // simulated seconds a second; 0: as fast as possible
+  double factor = 0.0;  // simulated seconds per second; 0: as fast as possible
 };
 
-/// How far the clock may go, whatever the nodes have done: real time times a factor, a pause,
-/// single steps. A tick that is late is never left out: the clock catches up, and the overrun is
-/// counted.
+/// Limits how far the clock may advance, independent of nodes: real time times a factor, pauses,
+/// single steps. Late ticks are never skipped: the clock catches up, and the overrun is counted.
 class Pace {
  public:
   /// Throws `ConfigError` for a factor that is negative or not finite.
@@ -24,9 +23,9 @@ class Pace {
   void start(Instant now);
   /// No tick after `tick` until `step` or `go_on`.
   void pause(Tick tick) { pause_after_ = tick; }
-  /// Paused: `ticks` more. Otherwise nothing.
+  /// If paused, allows `ticks` more.
   void step(Tick ticks);
-  /// The ticks left waiting by a pause are due from now on; the pause counts as no overrun.
+  /// Ticks held by a pause are due from now on; the pause is not an overrun.
   void go_on(Instant now);
   /// All nodes have done `tick`.
   void finished(Tick tick, Instant now);
@@ -34,10 +33,10 @@ class Pace {
   bool paused() const { return pause_after_.has_value(); }
   /// Last tick that may be granted.
   Tick limit(Instant now) const;
-  /// When the tick after `granted` is due; none when the wall clock does not matter.
+  /// When the tick after `granted` is due; empty if it is independent of real time.
   std::optional<Instant> due_after(Tick granted) const;
 
-  /// Ticks that were not over when the next was due, and by how much at most.
+  /// Ticks that were not done when the next was due, and the largest delay.
   std::uint64_t overruns() const { return overruns_; }
   Instant worst_lag() const { return worst_lag_; }
 

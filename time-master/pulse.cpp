@@ -10,13 +10,13 @@ std::string in_seconds(Instant duration) {
   return text;
 }
 
-void Pulse::hear(Instant now) {
+void Pulse::heard_at(Instant now) {
   heard = now;
   suspected.reset();
 }
 
 void Pulse::beat(bool is_computing, std::uint64_t step_progress, Instant now) {
-  hear(now);
+  heard_at(now);
   if (!is_computing || !computing || step_progress != progress) progressed = now;
   computing = is_computing;
   if (computing) stalled.reset();

@@ -12,14 +12,14 @@
 namespace dmise {
 
 struct StrangerLimits {
-  std::size_t messages_of_a_peer = 8;  // that wait at once
-  std::size_t messages = 4096;         // the same of all peers
-  std::size_t bytes = 16 << 20;        // the same
+  std::size_t messages_of_a_peer = 8;  // queued
+  std::size_t messages = 4096;         // queued, of all peers
+  std::size_t bytes = 16 << 20;        // queued, of all peers
   RateLimit rate;                      // of each peer
 };
 
-/// Messages of those for whom the clock does not wait, until there is time for them: peers take
-/// turns, each at a bounded rate, and what a peer sends beyond its bounds is ignored and counted.
+/// Queue of messages of processes that the clock does not wait for: peers take turns, each at a
+/// limited rate, and messages beyond the limits are ignored and counted.
 template <class Message>
 class StrangerQueue {
  public:
@@ -42,7 +42,7 @@ class StrangerQueue {
     return true;
   }
 
-  /// The next message whose turn it is; none while those who wait are beyond their rate.
+  /// The next message in turn; empty while the waiting peers are beyond their rate.
   std::optional<Message> take(Instant now) {
     for (std::size_t looked = turns_.size(); looked > 0; --looked) {
       const std::string peer = std::move(turns_.front());
@@ -65,7 +65,7 @@ class StrangerQueue {
     return std::nullopt;
   }
 
-  /// When `take` has something, unless more comes; none when nobody waits.
+  /// When `take` returns a message, unless more arrive; empty if none are waiting.
   std::optional<Instant> next_due(Instant now) {
     std::optional<Instant> next;
     for (const std::string& peer : turns_) {

@@ -8,14 +8,14 @@
 
 namespace dmise {
 
-/// How often something may happen: `burst` times at once, then once each `interval`.
+/// Rate limit: `burst` events at once, then one per `interval`.
 struct RateLimit {
   int burst = 32;
   Instant interval = std::chrono::milliseconds(10);
 };
 
-/// What is left of a RateLimit, by the generic cell rate algorithm (ITU-T I.371). A bucket that is
-/// full again is as good as a new one.
+/// State of a RateLimit, by the generic cell rate algorithm (ITU-T I.371). A full bucket equals a
+/// new one.
 class TokenBucket {
  public:
   bool take(const RateLimit& limit, Instant now) {
@@ -33,7 +33,7 @@ class TokenBucket {
   Instant full_at_{0};
 };
 
-/// A bucket for each of any number of peers; nothing is kept of those who are quiet.
+/// A bucket for each peer; nothing is stored for idle peers.
 class PeerRates {
  public:
   explicit PeerRates(const RateLimit& limit) : limit_(limit) {}
@@ -42,7 +42,7 @@ class PeerRates {
   Instant next(std::string_view peer, Instant now) { return bucket(peer, now).next(limit_); }
   std::size_t size() const { return buckets_.size(); }
 
-  /// Forgets those who are quiet. `take` does so now and then.
+  /// Removes idle peers. `take` does so from time to time.
   void forget_quiet(Instant now) {
     for (auto bucket = buckets_.begin(); bucket != buckets_.end();)
       bucket = bucket->second.is_full(now) ? buckets_.erase(bucket) : std::next(bucket);

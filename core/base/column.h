@@ -8,8 +8,8 @@
 
 namespace dmise {
 
-/// Values that nobody changes any more, wherever they lie: in a vector that was filled, in a file
-/// that is mapped. Copies share the values and what holds them.
+/// Read-only array that shares ownership of its storage: a filled vector or a mapped file. Copies
+/// share the storage.
 template <class T>
 class Column {
  public:
@@ -21,7 +21,7 @@ class Column {
     values_ = *kept;
     owner_ = std::move(kept);
   }
-  /// `owner` holds what `values` shows.
+  /// `owner` keeps the storage of `values` alive.
   Column(std::span<const T> values, std::shared_ptr<const void> owner)
       : values_(values), owner_(std::move(owner)) {}
 

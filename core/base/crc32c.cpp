@@ -36,7 +36,7 @@ std::uint32_t by_tables(const unsigned char* p, std::size_t size, std::uint32_t 
   return c;
 }
 
-/// By the processor's own instruction.
+/// With the SSE 4.2 instruction.
 __attribute__((target("sse4.2"))) std::uint32_t by_instruction(const unsigned char* p,
                                                                std::size_t size, std::uint32_t c) {
   std::uint64_t wide = c;

@@ -4,13 +4,13 @@
 
 namespace dmise {
 
-/// Anything that a caller can report in one line. Programs exit 1 on it.
+/// Base of all errors; the message is one line. Programs exit 1 on it.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The input is at fault: `file:line:column: key: reason, got value`. Programs exit 2 on it.
+/// Invalid input: `file:line:column: key: reason, got value`. Programs exit 2 on it.
 class ConfigError : public Error {
  public:
   using Error::Error;

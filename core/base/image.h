@@ -6,7 +6,7 @@
 namespace dmise {
 
 /// Row-major image. (0, 0) is the centre of the first pixel, x along columns, y along rows (down).
-/// `Carrier` makes images of different physics different types: a signature reads as the physics.
+/// `Carrier` makes images of different quantities different types.
 template <class T, class Carrier>
 struct Image {
   int columns = 0;
@@ -29,9 +29,9 @@ struct Image {
 using ExpectedElectronImage = Image<float, struct ExpectedElectronCarrier>;
 /// Electrons collected, after the random draws, before digitisation [e-].
 using ElectronImage = Image<float, struct ElectronCarrier>;
-/// What the camera delivers [DN].
+/// Digitised counts, the output of the camera [DN].
 using CountImage = Image<std::uint16_t, struct CountCarrier>;
-/// 8-bit picture for people, one to three interleaved channels.
+/// 8-bit picture for display, one to three interleaved channels.
 struct Picture {
   int columns = 0;
   int rows = 0;

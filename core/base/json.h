@@ -5,9 +5,9 @@
 
 namespace dmise {
 
-/// Writes one JSON value, keys in the order they are given. Doubles are the shortest text that
-/// reads back to the same bits, so equal values are equal bytes; NaN and infinities throw `Error`
-/// with the key: no NaN leaves the program.
+/// Writes one JSON value; keys keep the order of the calls. A double is the shortest text that
+/// reads back to the same bits, so equal values give equal bytes. Throws `Error` with the key for
+/// NaN and infinities.
 class JsonWriter {
  public:
   JsonWriter& begin_object();
@@ -24,7 +24,7 @@ class JsonWriter {
   JsonWriter& value(std::string_view text);
   JsonWriter& value(const char* text) { return value(std::string_view(text)); }
   JsonWriter& null();
-  /// `text` is JSON already.
+  /// Inserts `text`, which must be valid JSON.
   JsonWriter& raw(std::string_view text);
 
   template <class T>

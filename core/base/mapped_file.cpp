@@ -23,7 +23,7 @@ MappedFile::MappedFile(const std::string& path) {
   if (size > 0 && (at = mmap(nullptr, size, PROT_READ, MAP_SHARED, file, 0)) == MAP_FAILED)
     reason = errno;
   close(file);
-  if (!regular) throw Error(path + ": is no regular file");
+  if (!regular) throw Error(path + ": is not a regular file");
   if (reason != 0) throw Error(path + ": can't be mapped: " + std::strerror(reason));
   bytes_ = {static_cast<const std::byte*>(at), size};
 }

@@ -10,7 +10,7 @@ namespace dmise {
 
 void return_large_blocks() {
   mallopt(M_MMAP_THRESHOLD, 1 << 18);
-  mallopt(M_TRIM_THRESHOLD, 1 << 22);  // what is below the limit is soon asked for again
+  mallopt(M_TRIM_THRESHOLD, 1 << 22);  // smaller blocks are soon reused
 }
 
 namespace {

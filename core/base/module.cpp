@@ -19,7 +19,7 @@ std::string path_of(const Module& module) {
   return (program.parent_path().parent_path() / "lib" / file).string();
 }
 
-/// Threads that libraries start as they are loaded take no signal.
+/// Signals are blocked while loading, so that threads which libraries start at that time take none.
 void* loaded_from(const std::string& path) {
   sigset_t all, before;
   sigfillset(&all);
@@ -36,7 +36,7 @@ void* made_by_module(const Module& module, const char* entry) {
   void* const loaded = loaded_from(path);
   if (!loaded) throw Error(name + " module cannot be loaded: " + ::dlerror());
   const auto make = reinterpret_cast<void* (*)(std::string&)>(::dlsym(loaded, entry));
-  if (!make) throw Error(path + ": is no " + name + " module");
+  if (!make) throw Error(path + ": is not a " + name + " module");
   std::string reason;
   void* const made = make(reason);
   if (!made) throw Error(name + ": " + reason);

@@ -3,14 +3,15 @@
 
 namespace dmise {
 
-/// A part of the program that costs nothing until it is asked for.
+/// A shared object that is loaded when it is first needed.
 struct Module {
   const char* name;         // of the shared object: lib/libdmise_NAME.so beside the programs' bin
   const char* environment;  // names another file
 };
 
-/// Loads the module at its first entry and returns what `entry`, a function `T*(std::string&
-/// reason)`, makes: the caller's. Throws `Error` "NAME: reason" when it cannot be had.
+/// Loads the module at the first call and returns the object that its function `entry`, of type
+/// `T*(std::string& reason)`, makes; the caller owns it. Throws `Error` "NAME: reason" if it cannot
+/// be loaded or made.
 void* made_by_module(const Module& module, const char* entry);
 
 }  // namespace dmise

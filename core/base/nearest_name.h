@@ -5,7 +5,7 @@
 
 namespace dmise {
 
-/// The one of `names` that is likeliest meant by `word`; empty if none is near.
+/// Returns the entry of `names` closest to `word` by edit distance; empty if none is close.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace dmise

@@ -4,8 +4,8 @@
 
 namespace dmise {
 
-/// Threads that one process computes with. Results never depend on their number: work is cut into
-/// ranges by `grain` alone, and a range writes only what is its own.
+/// Pool of threads for parallel loops. Results never depend on the number of threads: ranges are
+/// cut by `grain` alone, and each writes only its own part of the output.
 class Threads {
  public:
   /// `count` threads including the caller's, >= 1; 1 starts none.

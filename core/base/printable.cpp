@@ -9,10 +9,10 @@ namespace {
 
 struct CodePoint {
   std::uint32_t value = 0;
-  std::size_t bytes = 0;  // 0: no UTF-8
+  std::size_t bytes = 0;  // 0: not UTF-8
 };
 
-/// The code point that `text` begins with: neither overlong nor a surrogate.
+/// Decodes the first code point of `text`; overlong forms and surrogates are invalid.
 CodePoint code_point(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char lead = byte(0);
@@ -29,8 +29,9 @@ CodePoint code_point(std::string_view text) {
   return {value, bytes};
 }
 
-/// C0, DEL, C1, separators of lines, marks of direction, the byte order mark.
-bool is_obeyed(std::uint32_t c) {
+/// True for what a terminal acts on: C0, DEL, C1, line separators, marks of direction, byte order
+/// mark.
+bool is_control(std::uint32_t c) {
   return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0x61c || (c >= 0x200e && c <= 0x200f) ||
          (c >= 0x2028 && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069) || c == 0xfeff;
 }
@@ -50,7 +51,7 @@ std::string printable(std::string_view text, std::size_t most_bytes) {
     const CodePoint c = code_point(text.substr(at));
     if (c.bytes == 0)
       append_escape(out, "\\x%02x", static_cast<unsigned char>(text[at]));
-    else if (!is_obeyed(c.value))
+    else if (!is_control(c.value))
       out += text.substr(at, c.bytes);
     else if (c.value == '\n')
       out += "\\n";

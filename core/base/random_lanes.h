@@ -2,11 +2,11 @@
 #include "core/base/lanes.h"
 #include "core/base/rng.h"
 
-// core/base/rng.h in lanes.
+// Vectorised forms of core/base/rng.h.
 namespace dmise::DMISE_SIMD {
 
-/// Words of `Pixels` consecutive pixels from `first` on, a multiple of rng_group: Philox4x32-10,
-/// several vectors of blocks side by side, for one alone would wait for its own multiplications.
+/// Words of `Pixels` consecutive pixels from `first` on, a multiple of rng_group: Philox4x32-10 on
+/// several vectors of blocks at a time, which hides the latency of its multiplications.
 template <int Pixels>
 DMISE_INLINE void words_of(const RngKey& key, std::uint32_t first, std::uint32_t draw,
                            std::uint32_t* words) {
@@ -29,7 +29,7 @@ DMISE_INLINE void words_of(const RngKey& key, std::uint32_t first, std::uint32_t
       for (int j = 0; j < abreast; ++j) {
         const U64 p0 = multiply_low(c0[j], zero + 0xD2511F53u);
         const U64 p1 = multiply_low(c2[j], zero + 0xCD9E8D57u);
-        // The high halves hold rubbish from here on; `multiply_low` ignores them.
+        // The high halves are undefined from here on; `multiply_low` ignores them.
         c0[j] = (p1 >> 32) ^ c1[j] ^ (zero + k0);
         c1[j] = p1;
         c2[j] = (p0 >> 32) ^ c3[j] ^ (zero + k1);

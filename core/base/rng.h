@@ -6,12 +6,12 @@
 
 #include "core/base/simd_level.h"
 
-// Random numbers that are a function of what they are for: (seed, sensor name, frame, effect name,
-// pixel). No state, no order: any thread may draw any pixel, and adding an effect leaves the
-// numbers of the others as they were. Philox4x32-10 of Salmon, Moraes, Dror & Shaw 2011 (SC'11).
+// Random numbers as a pure function of (seed, sensor name, frame, effect name, pixel). There is no
+// state and no order: any thread may draw any pixel, and adding an effect does not change the
+// numbers of the others. Philox4x32-10 of Salmon, Moraes, Dror & Shaw 2011 (SC'11).
 namespace dmise {
 
-/// Names a stream of random numbers, one per (seed, sensor, frame, effect).
+/// Key of a stream of random numbers, one per (seed, sensor, frame, effect).
 struct RngKey {
   std::array<std::uint32_t, 2> key{};     // of Philox: hash of seed, sensor and effect
   std::array<std::uint32_t, 2> stream{};  // counter words 2 and 3: frame, more of the hash
@@ -29,8 +29,8 @@ std::array<std::uint32_t, 4> rng_block(const RngKey& key, std::uint32_t block, s
 /// shuffling): pixel 32 g + i has word 2 (i / 16) + i % 2 of block 8 g + (i % 16) / 2.
 inline constexpr std::uint32_t rng_group = 32;
 
-/// The uniform 32-bit word of a pixel (or of any item that is counted). Draws 0, 1, 2, ... of one
-/// pixel are independent.
+/// The uniform 32-bit word of a pixel (or any other index). Draws 0, 1, 2, ... of one pixel are
+/// independent.
 std::uint32_t rng_word(const RngKey& key, std::uint32_t pixel, std::uint32_t draw);
 
 /// Words of `count` consecutive pixels from `first`: out[i] = rng_word(key, first + i, draw).

@@ -1,7 +1,7 @@
 #pragma once
 #include "core/base/rng.h"
 
-// rng.cpp's loops, one copy per instruction set.
+// The loops of rng.cpp, compiled once per instruction set.
 #define DMISE_RNG_KERNELS(level)                                                             \
   namespace dmise::level {                                                                   \
   /* rng_words for `first` and `count` that are multiples of rng_group. */                   \

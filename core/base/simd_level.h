@@ -2,13 +2,13 @@
 
 namespace dmise {
 
-/// Instruction sets that kernels are compiled for. Kernels of pixels give the same bytes on all of
-/// them: they are the same operations, each rounded as IEEE 754 says, on more or fewer lanes. Those
-/// of orbits take fused multiply-adds where there are any, and say how far apart they are.
+/// Instruction sets that kernels are compiled for. Pixel kernels give the same bytes on all of
+/// them: the same IEEE 754 operations on more or fewer lanes. Orbit kernels use fused multiply-adds
+/// where available and state how much their results differ.
 enum class SimdLevel { sse2, avx2, avx512 };
 
-/// The best that this processor runs (avx2: with FMA); `DMISE_SIMD=sse2|avx2|avx512` in the
-/// environment lowers it.
+/// Returns the best level that this processor supports (avx2 includes FMA); the environment
+/// variable `DMISE_SIMD=sse2|avx2|avx512` lowers it.
 SimdLevel best_simd_level();
 
 const char* name(SimdLevel level);

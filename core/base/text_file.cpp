@@ -13,7 +13,7 @@
 namespace dmise {
 namespace {
 
-/// To the end of an open file, which is closed.
+/// Reads an open file to its end and closes it.
 std::string read_to_end(int descriptor, const std::string& name, std::size_t limit_bytes) {
   gzFile file = gzdopen(descriptor, "rb");
   if (!file) {

@@ -1,7 +1,7 @@
 #pragma once
 #include <numbers>
 
-// Factors to SI, for the edges: `1.2 * arcsec`, `angle_rad / deg`.
+// Factors to SI, for input and output: `1.2 * arcsec`, `angle_rad / deg`.
 namespace dmise {
 
 inline constexpr double pi = std::numbers::pi;

@@ -5,13 +5,12 @@
 
 namespace dmise {
 
-/// A file that comes into being whole or not at all: its pieces go to PATH.partial, which is
-/// flushed to the disk and renamed once all are there. Methods throw `Error` "PATH: reason"; what
-/// is not finished leaves nothing behind.
+/// Writes a file atomically: data goes to PATH.partial, which is flushed to the disk and renamed
+/// when it is complete. Methods throw `Error` "PATH: reason"; an unfinished file is removed.
 class WholeFile {
  public:
   explicit WholeFile(std::string path) : WholeFile(std::move(path), true) {}
-  /// Goes on behind what somebody else wrote to PATH.partial.
+  /// Continues a PATH.partial that another writer began.
   static WholeFile begun(std::string path) { return WholeFile(std::move(path), false); }
   static std::string partial_of(const std::string& path) { return path + ".partial"; }
   WholeFile(const WholeFile&) = delete;
@@ -28,7 +27,7 @@ class WholeFile {
   int file_ = -1;
 };
 
-/// A file of this content.
+/// Writes `content` to a file atomically.
 void write_file_whole(const std::string& path, std::string_view content);
 
 }  // namespace dmise

@@ -45,7 +45,7 @@ SpinningAttitude read_spinning(const YamlValue& value) {
     attitude.gcrs_from_body = read_quaternion(*start);
   const double phase_rad = map.number_or("phase_deg", 0.0, Bounds::between(-360, 360)) * deg;
   map.done();
-  // The phase is what the body has turned by at the start.
+  // The phase is the rotation of the body at the start.
   SpinningAttitude turn{.axis = attitude.axis, .rate_rad_per_s = phase_rad};
   const auto ahead = gcrs_from_body(Attitude(turn), {.time_s = 1.0});
   Rotation<Body, Body> in_body;

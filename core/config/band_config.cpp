@@ -68,7 +68,7 @@ QuantumEfficiency read_quantum_efficiency(const YamlValue& value) {
   QuantumEfficiency efficiency{.relative = curve_beside(value)};
   auto& values = efficiency.relative.value;
   efficiency.peak = *std::max_element(values.begin(), values.end());
-  if (!(efficiency.peak > 0)) value.fail("the curve lets no light through");
+  if (!(efficiency.peak > 0)) value.fail("the curve transmits no light");
   for (double& v : values) v /= efficiency.peak;
   return efficiency;
 }

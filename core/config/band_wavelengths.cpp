@@ -17,7 +17,7 @@ std::vector<WavelengthShare> wavelengths_of(const Band& band, int count) {
     sum += share;
   }
   for (WavelengthShare& w : all) w.share /= sum;
-  // The one nearest to the centre first: screens are sampled for it.
+  // The one closest to the centre first: screens are sampled for it.
   const auto middle = std::min_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
     return std::abs(a.wavelength_m - band.centre_m) < std::abs(b.wavelength_m - band.centre_m);
   });

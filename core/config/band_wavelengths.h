@@ -6,8 +6,7 @@
 
 namespace dmise {
 
-/// Wavelengths in the middle of `count` equal parts of a band, with the parts' shares of its
-/// response.
+/// Centres of `count` equal parts of a band, with the parts' fractions of its response.
 std::vector<WavelengthShare> wavelengths_of(const Band& band, int count);
 
 }  // namespace dmise

@@ -10,7 +10,7 @@
 namespace dmise {
 namespace {
 
-/// The band as the detector sees it: one spectral integral for filter and quantum efficiency.
+/// The band as the detector sees it: filter times quantum efficiency, in one spectral integral.
 void apply_quantum_efficiency(const YamlValue& value, Camera& camera) {
   const QuantumEfficiency efficiency = read_quantum_efficiency(value);
   camera.detector.quantum_efficiency = efficiency.peak;
@@ -40,7 +40,7 @@ Camera read_camera(const YamlValue& value) {
   YamlMap map(value);
   Camera camera;
   camera.name = map.text_or("name", "camera");
-  map.find("source");  // for people
+  map.find("source");  // informative only
   camera.optics = read_optics(map.require("optics"));
   camera.detector = read_detector(map.require("detector"));
   camera.band = read_band(map.require("band"));

@@ -4,12 +4,11 @@
 
 namespace dmise {
 
-/// Reads `detector:` of a camera: the fields of `Detector` by their names. Throws `ConfigError` for
-/// figures that no detector can have.
+/// Reads `detector:` of a camera: the fields of `Detector` by name. Throws `ConfigError` for
+/// invalid parameters.
 Detector read_detector(const YamlValue& value);
 
-/// Refuses an exposure that the detector can't be simulated in: one of more than
-/// `most_cosmic_hits`.
+/// Throws `ConfigError` for an exposure with more than `most_cosmic_hits` expected cosmic-ray hits.
 void check_exposure(const Camera& camera, const YamlValue& exposure_s);
 
 }  // namespace dmise

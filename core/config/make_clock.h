@@ -4,7 +4,7 @@
 
 namespace dmise {
 
-/// The scenario's clock, with its Earth orientation file if it names one.
+/// Makes the scenario's clock, with its Earth orientation file if it names one.
 Clock make_clock(const Scenario& scenario);
 
 }  // namespace dmise

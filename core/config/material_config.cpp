@@ -15,7 +15,7 @@ std::vector<double> numbers(const YamlValue& value, Bounds bounds) {
   return all;
 }
 
-/// A table beside `wavelength_um`, or one number for all wavelengths.
+/// Reads a table over `wavelength_um`, or one number for all wavelengths.
 Curve read_curve(const YamlValue& value, const std::vector<double>& wavelength_m) {
   const Bounds share = Bounds::between(0.0, 1.0);
   if (value.is_scalar()) return {{0.55e-6}, {value.number(share)}};

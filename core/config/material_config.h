@@ -9,19 +9,20 @@
 
 namespace dmise {
 
-/// Materials by name, from a file of the form of launch/materials/library.yaml.
+/// Materials by name, from a file in the format of launch/materials/library.yaml.
 class MaterialLibrary {
  public:
   MaterialLibrary() = default;
-  /// Throws `ConfigError` with `file:line:column`, also for a material that would reflect more than
-  /// falls in.
+  /// Throws `ConfigError` with `file:line:column`, also for a material that violates energy
+  /// conservation.
   explicit MaterialLibrary(const std::string& path);
 
-  /// The one that comes with the installation; read once.
+  /// The installed library; read once.
   static const MaterialLibrary& shipped();
 
   std::optional<Material> find(std::string_view name) const;
-  /// The named one. Throws `ConfigError` at `value` with the nearest name.
+  /// Returns the material that `value` names. Throws `ConfigError` at `value` with the nearest
+  /// name.
   Material require(const YamlValue& value) const;
   const std::map<std::string, Material, std::less<>>& all() const { return materials_; }
 
@@ -29,7 +30,7 @@ class MaterialLibrary {
   std::map<std::string, Material, std::less<>> materials_;
 };
 
-/// One material of its mapping.
+/// Reads one material from its mapping.
 Material read_material(const std::string& name, const YamlValue& value);
 
 }  // namespace dmise

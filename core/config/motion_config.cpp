@@ -18,7 +18,7 @@ namespace dmise {
 namespace {
 
 constexpr double farthest_m = 1e12;
-constexpr double least_height_m = 0.01;  // of a fixed object over the ellipsoid
+constexpr double least_height_m = 0.01;  // of a fixed object above the ellipsoid
 constexpr Bounds within_reach = {.least = -farthest_m, .most = farthest_m};
 
 template <class F>
@@ -43,7 +43,7 @@ KeplerElements read_elements(YamlMap& map) {
     map.value().fail("needs either semi_major_axis_m or periapsis_m (from the Earth's centre)",
                      false);
   if (axis && k.eccentricity >= 1)
-    eccentricity.fail("must be < 1 with semi_major_axis_m; open orbits take periapsis_m");
+    eccentricity.fail("must be < 1 with semi_major_axis_m; open orbits need periapsis_m");
   const Bounds size = {.least = 0.0, .most = farthest_m, .least_open = true};
   k.periapsis_m = axis ? axis->number(size) * (1 - k.eccentricity) : periapsis->number(size);
   k.inclination_rad = map.number("inclination_deg", Bounds::between(0, 180)) * deg;
@@ -58,7 +58,7 @@ KeplerElements read_elements(YamlMap& map) {
   if (const auto mean = map.find("mean_anomaly_deg")) {
     if (map.find("true_anomaly_deg"))
       mean->fail("give either true_anomaly_deg or mean_anomaly_deg", false);
-    if (k.eccentricity >= 1) mean->fail("open orbits take true_anomaly_deg", false);
+    if (k.eccentricity >= 1) mean->fail("open orbits need true_anomaly_deg", false);
     const double e_rad =
         eccentric_anomaly_rad(mean->number(Bounds::between(-360, 360)) * deg, k.eccentricity);
     k.true_anomaly_rad =
@@ -136,10 +136,10 @@ MeanElements read_sgp4(const YamlValue& value) {
   }
 }
 
-Trajectory read_trajectory(const YamlValue& value, std::string& path) {
-  path = find_beside(value.text(), value.file());
+std::string file_of(const YamlValue& value) {
+  std::string path = find_beside(value.text(), value.file());
   if (path.empty()) value.fail("there is no such file");
-  return read_oem(path);
+  return path;
 }
 
 }  // namespace
@@ -152,7 +152,8 @@ MotionConfig read_motion(const YamlValue& value, const Utc& start) {
   map.done();
   if (map.keys().size() != 1) value.fail("give one of two_body, oem, fixed, sgp4", false);
   if (two_body) motion.model = MotionModel(read_two_body(*two_body, start, motion.warnings));
-  if (oem) motion.model = MotionModel(read_trajectory(*oem, motion.oem_path));
+  if (oem) motion.trajectory_path = file_of(*oem);
+  if (oem) motion.model = MotionModel(read_oem(motion.trajectory_path));
   if (fixed) motion.model = read_fixed(*fixed);
   if (sgp4) motion.model = read_sgp4(*sgp4);
   return motion;

@@ -9,15 +9,15 @@
 
 namespace dmise {
 
-/// How an object of the scenario's own moves: an element set for SGP4, or any other model.
+/// Motion of an object of the scenario: an element set for SGP4, or another model.
 struct MotionConfig {
   std::variant<MotionModel, MeanElements> model;
-  std::string oem_path;                    // resolved; empty for other models
+  std::string trajectory_path;             // of an OEM, resolved; empty for other models
   std::vector<std::string> warnings = {};  // see `disproportions_of_orbit`
 };
 
-/// Reads one of `two_body`, `oem`, `fixed`, `sgp4`; `start` is the epoch where two_body names none.
-/// Throws `ConfigError` `file:line:column: key: reason`, and of an OEM its own line.
+/// Reads one of `two_body`, `oem`, `fixed`, `sgp4`; `start` is the default epoch of two_body.
+/// Throws `ConfigError` `file:line:column: key: reason`, for an OEM with its own line.
 MotionConfig read_motion(const YamlValue& value, const Utc& start);
 
 }  // namespace dmise

@@ -13,9 +13,9 @@ inline constexpr const char *orbit_node = "orbit-node", *environment_node = "env
 /// A kind of node of a run. To add one: write its participant and its program, give it a row here
 /// and a maker in launch/node_makers.cpp, and a service in launch/stack/compose.yaml.
 struct NodeKind {
-  const char* name;                 // of its only node, unless each sensor is one
-  const char* program;              // beside the command
-  std::vector<std::string> topics;  // published; what ends with / goes on with a sensor's name
+  const char* name;                 // node name, unless each sensor is a node
+  const char* program;              // in the directory of the command
+  std::vector<std::string> topics;  // published; a sensor's name is appended to a trailing /
   bool (*wanted)(const Scenario&);
   bool writes_products = false;  // into the directory of the run
   bool each_sensor = false;
@@ -23,11 +23,11 @@ struct NodeKind {
 
 /// The table of kinds, in the order in which their nodes are started and called.
 std::span<const NodeKind> node_kinds();
-/// The kind of a node of the scenario, wanted or not; null for any other name.
+/// Kind of a node of the scenario, needed by it or not; null for any other name.
 const NodeKind* kind_of_node(const std::string& name, const Scenario& scenario);
-/// Names of the nodes of a kind that the scenario wants.
+/// Names of the nodes of a kind that the scenario needs.
 std::vector<std::string> nodes_of(const NodeKind& kind, const Scenario& scenario);
-/// Names of all nodes that the scenario wants.
+/// Names of all nodes that the scenario needs.
 std::vector<std::string> nodes_of(const Scenario& scenario);
 
 }  // namespace dmise

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t longest = 64;
 
-// Members of the network besides the nodes of the table. Directories of a run, of keys.
+// Names taken by other members of the network and by directories of runs and keys.
 constexpr std::array<std::string_view, 7> reserved = {
     "time-master", "broker", "operator", "host-agent", "logs", "positions", "rings"};
 

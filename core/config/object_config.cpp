@@ -27,7 +27,7 @@ ObjectSource read_object_source(const YamlValue& value) {
                                            : find_beside(source.named, value.file());
   if (source.path.empty())
     catalogue.fail(source.named == "gpredict"
-                       ? "Debian's gpredict catalogue is not there; ./dmise setup fetches it"
+                       ? "Debian's gpredict catalogue is missing; ./dmise setup fetches it"
                        : "there is no such file");
   read_sphere(map, source.radius_m, source.albedo);
   if (const auto facts = map.find("facts")) {
@@ -53,7 +53,7 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start) {
   OwnObject object;
   const auto name = map.require("name");
   object.where = name.place();
-  object.name = printable(name.text());  // as it is shown and told, and found by
+  object.name = printable(name.text());  // in the form that is displayed, published and searched
   if (object.name.empty() || object.name.size() > longest_name_bytes)
     name.fail("must have 1 to 64 characters");
   object.catalogue_number =
@@ -61,11 +61,11 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start) {
   object.motion = read_motion(map.require("motion"), start);
   if (const auto attitude = map.find("attitude")) object.attitude = read_attitude(*attitude);
   if (const auto panel = map.find("panel")) {
-    if (!object.attitude) panel->fail("needs an attitude, to know where the Sun is", false);
+    if (!object.attitude) panel->fail("needs an attitude", false);
     object.panel = read_panel(*panel);
   }
   if (const auto geometry = map.find("geometry")) {
-    if (!object.attitude) geometry->fail("needs an attitude, to know how it is turned", false);
+    if (!object.attitude) geometry->fail("needs an attitude", false);
     object.geometry = read_geometry(*geometry);
   }
   read_sphere(map, object.sphere.radius_m, object.sphere.albedo);

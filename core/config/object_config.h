@@ -16,7 +16,7 @@ namespace dmise {
 struct ObjectSource {
   std::string path;       // resolved
   std::string named;      // as in the scenario: "gpredict" or a path
-  double radius_m = 1.0;  // of the equivalent diffuse sphere, where nothing better is known
+  double radius_m = 1.0;  // of the equivalent diffuse sphere, by default
   double albedo = 0.2;
   std::string facts_path;               // CSV of brightness facts by catalogue number, may be empty
   std::vector<std::string> only;        // catalogue numbers or names; empty: all
@@ -24,20 +24,20 @@ struct ObjectSource {
   std::vector<std::string> only_where;  // likewise of each name
 };
 
-/// An object of the scenario's own: `{name: inspector, motion: {..}, attitude: nadir}`.
+/// An object of the scenario: `{name: inspector, motion: {..}, attitude: nadir}`.
 struct OwnObject {
   std::string name;
   std::string where;                   // `file:line:column: objects[2]`, for messages
-  std::uint32_t catalogue_number = 0;  // 0: it gets one, see `first_own_number`
+  std::uint32_t catalogue_number = 0;  // 0: assigned, see `first_own_number`
   MotionConfig motion;
   std::optional<AttitudeConfig> attitude;
   std::optional<SunTrackingPanel> panel;
   std::optional<GeometryConfig> geometry;
-  DiffuseSphere sphere;  // where there is no geometry
+  DiffuseSphere sphere;  // without a geometry
 };
 
-/// Numbers from here on are given to objects without one, in the scenario's order: products name
-/// objects by number, and no catalogue goes so far.
+/// First catalogue number assigned to objects without one, in the scenario's order: products
+/// identify objects by number, and catalogues stay below.
 inline constexpr std::uint32_t first_own_number = 990'000'001;
 
 struct ObjectsConfig {
@@ -49,11 +49,11 @@ struct ObjectsConfig {
 ObjectsConfig read_objects(const YamlValue& value, const Utc& start);
 
 class JsonWriter;
-/// What of them decides the products, without the content of files.
+/// Writes the part that determines the products, without the content of files.
 void write_objects(JsonWriter& json, const std::vector<ObjectSource>& catalogues,
                    const std::vector<OwnObject>& own);
 
-/// Every file that they name, in order; an empty path where one may be named and is not.
+/// All files that they name, in order; an empty path for an optional file that is not given.
 std::vector<std::string> files_of(const std::vector<ObjectSource>& catalogues,
                                   const std::vector<OwnObject>& own);
 

@@ -95,7 +95,7 @@ std::vector<std::string> files_of(const std::vector<ObjectSource>& catalogues,
     files.push_back(source.facts_path);
   }
   for (const auto& object : own) {
-    files.push_back(object.motion.oem_path);
+    files.push_back(object.motion.trajectory_path);
     files.push_back(object.attitude ? object.attitude->table_path : "");
     files.push_back(object.geometry ? object.geometry->obj_path : "");
     files.push_back(object.geometry ? object.geometry->materials_path : "");

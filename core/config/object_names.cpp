@@ -17,8 +17,8 @@ std::string upper_case(std::string_view text) {
 }  // namespace
 
 std::string nearest_object(std::string_view word, const std::vector<std::string>& names) {
-  std::vector<std::string> ways;               // of writing them
-  std::map<std::string, std::string> name_of;  // the first with that way
+  std::vector<std::string> ways;               // spellings
+  std::map<std::string, std::string> name_of;  // first name with that spelling
   const auto add = [&](std::string_view way, const std::string& name) {
     if (way.empty()) return;
     ways.push_back(upper_case(way));

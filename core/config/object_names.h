@@ -5,8 +5,8 @@
 
 namespace dmise {
 
-/// The one of `names` that is likeliest meant by `word`, whatever its case; of "OSCAR 7 (AO-7)"
-/// each of both names counts too. Empty if none is near.
+/// Returns the entry of `names` closest to `word`, ignoring case; for "OSCAR 7 (AO-7)" both names
+/// count. Empty if none is close.
 std::string nearest_object(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace dmise

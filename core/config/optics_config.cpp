@@ -50,8 +50,8 @@ std::vector<WavefrontTerm> read_wavefront(const YamlValue& value) {
   return terms;
 }
 
-// psf: gaussian has its width, psf: diffraction all that makes a pupil; the keys of one are refused
-// with the other.
+// psf: gaussian has its width, psf: diffraction the parameters of a pupil; keys of the other are
+// refused.
 PointSpread read_point_spread(YamlMap& map, Optics& optics) {
   PointSpread s;
   const auto model = map.find("psf");
@@ -126,7 +126,7 @@ Vignetting read_vignetting(const YamlValue& value) {
 [[noreturn]] void fail_fold(const YamlValue& optics, double fold_rad) {
   char at[32];
   std::snprintf(at, sizeof at, "%.4g", fold_rad / deg);
-  optics.fail("distortion: the image turns back on itself " + std::string(at) +
+  optics.fail("distortion: the image folds back at " + std::string(at) +
                   " deg from the boresight, within the frame",
               false);
 }

@@ -12,7 +12,7 @@ Optics read_optics(const YamlValue& value);
 /// Reads `seeing:` of a sensor.
 SensorSeeing read_seeing(const YamlValue& value);
 
-/// What of them decides a frame, beside the camera's geometry; nothing for the defaults.
+/// Writes the optics that determine a frame, besides the camera's geometry; defaults are omitted.
 void write_optics_json(JsonWriter& json, const Optics& optics);
 void write_seeing_json(JsonWriter& json, const SensorSeeing& seeing);
 

@@ -16,8 +16,7 @@ OutputConfig read_output(const YamlValue& value) {
   }
   const auto saturation = map.find("saturation");
   if (saturation) output.saturation = saturation->flag();
-  if (output.saturation && !output.fits)
-    saturation->fail("its place is in the FITS file: needs fits");
+  if (output.saturation && !output.fits) saturation->fail("is stored in the FITS file: needs fits");
   output.png = map.flag_or("png", true);
   output.truth = map.flag_or("truth", true);
   output.star_truth = map.flag_or("star_truth", false);

@@ -149,15 +149,15 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
                       : name == "target"   ? Tracking::target
                                            : Tracking::moving;
     if (sensor.tracking == Tracking::target && !target)
-      tracking->fail("there is no target to follow", false);
+      tracking->fail("there is no target to track", false);
     if (sensor.tracking == Tracking::moving && !moves && !scan)
-      tracking->fail("needs a pointing that moves: rates or scan", false);
+      tracking->fail("needs a moving pointing: rates or scan", false);
     if (sensor.tracking == Tracking::fixed && !on_ground && (sky || target || scan))
-      tracking->fail("in orbit, fixed goes with zenith and body only; take sidereal or target");
+      tracking->fail("in orbit, fixed needs a zenith or body pointing; use sidereal or target");
   }
   sensor.roll_deg = map.number_or("roll_deg", 0.0, any_angle);
   if (body && sensor.roll_deg != 0.0)
-    map.require("roll_deg").fail("a camera fixed to a body is turned by up", false);
+    map.require("roll_deg").fail("a camera fixed to a body is rolled by up", false);
   map.done();
 }
 

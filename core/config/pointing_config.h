@@ -4,14 +4,14 @@
 
 namespace dmise {
 
-/// Reads `pointing:` of a sensor with `tracking` and `roll_deg` in it. Throws `ConfigError`.
+/// Reads `pointing:` of a sensor, including `tracking` and `roll_deg`. Throws `ConfigError`.
 void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor);
 
-/// How fast a pointing moves by itself [deg/s]; 0 for one that stands or follows something.
+/// Angular rate of a pointing [deg/s]; 0 if it is fixed or follows a target.
 double turn_rate_deg_per_s(const Pointing& pointing);
 
 class JsonWriter;
-/// What of it decides the products.
+/// Writes the part that determines the products.
 void write_pointing(JsonWriter& json, const Pointing& pointing);
 
 }  // namespace dmise

@@ -10,13 +10,13 @@
 namespace dmise {
 namespace {
 
-/// What a length of a telescope usually is, and the unit that a figure beyond was likely meant in.
+/// Usual range of a length of a telescope.
 struct UsualLength {
   const char* key;
   double least_m, most_m;
 };
-// Pixels from 0.5 um (telephones) to 0.2 mm; the longest focal length of an optical telescope is
-// below 200 m only in interferometers, 60 m in single ones; apertures to 39 m (ELT).
+// Pixels from 0.5 um (telephones) to 0.2 mm; focal lengths above 60 m occur only in
+// interferometers; apertures up to 39 m (ELT).
 constexpr std::array<UsualLength, 3> usual = {
     {{"pixel_pitch_m", 0.5e-6, 2e-4}, {"focal_length_m", 5e-4, 100.0}, {"aperture_m", 2e-4, 45.0}}};
 
@@ -57,7 +57,7 @@ std::vector<std::string> disproportions_of_camera(const YamlValue& camera, const
       if (value_m < length.least_m || value_m > length.most_m)
         lines.push_back(at->complaint(unusual(value_m, length)));
     }
-  if (!lines.empty()) return lines;  // what is made of them tells nothing more
+  if (!lines.empty()) return lines;  // derived values add nothing
   const Optics& o = read.optics;
   constexpr double most_f_number = 100.0, widest_m = 1.0, finest_arcsec = 0.005, coarsest_deg = 3.0;
   if (o.f_number() > most_f_number)

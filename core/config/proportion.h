@@ -7,10 +7,10 @@
 
 namespace dmise {
 
-// Figures that a model can compute with and no telescope has, mostly a unit's power of ten off.
-// Each line is `file:line:column: key: reason, got value`; empty: all are in proportion.
+// Warns of unusual values that a model can compute with but no telescope has, mostly errors of a
+// unit. Each line is `file:line:column: key: reason, got value`; empty: all values are usual.
 
-/// Of the mapping `camera`, as read into `read`.
+/// Of the mapping `camera`, parsed into `read`.
 std::vector<std::string> disproportions_of_camera(const YamlValue& camera, const Camera& read);
 
 /// Of the mapping `two_body`, whose orbit has these apsides from the Earth's centre (apoapsis

@@ -17,18 +17,18 @@
 namespace dmise {
 namespace {
 
-/// Both ends of the run must have a Sun, so that no run stops on the way for want of one.
+/// Checks that the ephemeris covers both ends of the run, so that no run stops half way.
 void check_span(const Scenario& scenario, const YamlValue& start, const YamlValue& duration) {
   const Clock clock(parse_utc(scenario.start_utc));
   const std::string span = std::to_string(ephemeris_first_year) + " to " +
                            std::to_string(ephemeris_last_year) + ", the years of the ephemeris";
   if (!ephemeris_covers(clock.tt({0}))) start.fail("must be within " + span);
-  const SimTime margin = sim_seconds(1.0);  // slopes look a little beyond the last tick
+  const SimTime margin = sim_seconds(1.0);  // slopes need times after the last tick
   if (!ephemeris_covers(clock.tt(scenario.time_of(scenario.last_tick()) + margin)))
     duration.fail("the run must end within " + span);
 }
 
-/// A run lasts as long as it says, and is made in ticks.
+/// Checks that the duration is a whole number of ticks.
 void check_whole_ticks(const Scenario& scenario, const YamlValue& duration) {
   const std::int64_t tick_ns = scenario.tick.ns, whole = scenario.duration.ns / tick_ns;
   if (whole * tick_ns == scenario.duration.ns) return;
@@ -73,7 +73,7 @@ void read_simulation(const YamlValue& value, Scenario& scenario) {
   map.done();
 }
 
-/// Objects between ticks must be where they are to about a metre.
+/// Checks that interpolation between ticks is accurate to about a metre.
 void check_tick(const Scenario& scenario, const YamlValue& tick) {
   if (scenario.objects.empty() && scenario.own_objects.empty()) return;
   const double longest_s = longest_tick_s(scenario.interpolation);
@@ -98,7 +98,7 @@ void read_stars(const YamlValue& value, Scenario& scenario) {
                                      : find_beside(scenario.star_catalogue_named, value.file());
   if (scenario.star_catalogue_path.empty())
     catalogue.fail(scenario.star_catalogue_named == "kstars"
-                       ? "Debian's kstars catalogue is not there; ./dmise setup fetches it"
+                       ? "Debian's kstars catalogue is missing; ./dmise setup fetches it"
                        : "there is no such file");
   scenario.faintest_star_mag = map.number_or("faintest_mag", 9.5, Bounds::between(-2.0, 30.0));
   map.done();

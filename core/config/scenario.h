@@ -18,7 +18,7 @@
 
 namespace dmise {
 
-/// What a camera preset (launch/cameras/NAME.yaml) holds.
+/// Content of a camera preset (launch/cameras/NAME.yaml).
 struct Camera {
   std::string name;
   Optics optics;
@@ -33,16 +33,16 @@ struct SiteConfig {
   double latitude_deg = 0.0;   // geodetic, [-90, 90]
   double longitude_deg = 0.0;  // east, [-180, 360)
   double height_m = 0.0;       // above the ellipsoid, [-500, 9000]
-  Surroundings surroundings;   // the site's own; the sensor's come first
+  Surroundings surroundings;   // of the site; the sensor's take precedence
 };
 
-/// A sensor aboard an object, named by number or name.
+/// A sensor aboard an object, given by number or name.
 struct PlatformConfig {
   std::string object;
   std::string where = {};  // `file:line:column: sensors[0].platform`, for messages
 };
 
-/// Where the boresight points. On the ground "up" is the zenith; in orbit away from the Earth.
+/// Boresight towards the zenith on the ground, away from the Earth in orbit.
 struct PointUp {};
 struct PointHorizon {
   double azimuth_deg = 0.0;  // from north through east; at the start of the run
@@ -55,15 +55,15 @@ struct PointSky {
 };
 struct PointTarget {
   std::string object;      // catalogue number or name
-  bool geometric = false;  // at the straight line to it, not at the place where it is seen
+  bool geometric = false;  // along the straight line, not the apparent direction
   std::string where = {};  // `file:line:column: sensors[0].pointing.target`, for messages
 };
 /// Fixed to the body of the platform.
 struct PointBody {
   Rotation<Body, CameraFrame> body_from_camera;
 };
-/// Turns evenly about an axis, which keeps to the stars or, with a start on the horizon's grid, to
-/// the ground.
+/// Rotates uniformly about an axis that is fixed relative to the stars or, for a start by azimuth
+/// and elevation, to the ground.
 struct PointScan {
   std::variant<PointSky, PointHorizon> start;
   std::array<double, 3> axis{0, 0, 1};  // unit; GCRS axes, or east, north, up
@@ -71,12 +71,12 @@ struct PointScan {
 };
 using Pointing = std::variant<PointUp, PointHorizon, PointSky, PointTarget, PointBody, PointScan>;
 
-/// What the camera does while the shutter is open.
+/// Motion of the camera during an exposure.
 enum class Tracking {
-  fixed,     // turns with the Earth (ground), or keeps its attitude to the local vertical (orbit)
-  sidereal,  // keeps its attitude to the stars
+  fixed,     // relative to the Earth (ground) or the local vertical (orbit)
+  sidereal,  // relative to the stars
   target,    // follows the target
-  moving,    // moves as its pointing does
+  moving,    // follows the pointing
 };
 /// "fixed", ... as in YAML and in frames.
 const char* tracking_name(Tracking tracking);
@@ -88,23 +88,23 @@ struct SensorConfig {
   Camera camera;
   Pointing pointing;
   Tracking tracking = Tracking::fixed;
-  double roll_deg = 0.0;  // turns the image's up (-y), which is north, or the zenith for a pointing
-                          // on the horizon's grid, towards east (towards growing azimuth)
+  double roll_deg = 0.0;  // rotates the image's up (-y), which is north, or zenith for a pointing
+                          // by azimuth and elevation, towards east (increasing azimuth)
   double exposure_s = 0.0;
   double cadence_s = 0.0;
   double first_exposure_s = 0.0;  // after the start of the run
   SkyConfig sky;
-  AtmosphereConfig atmosphere;         // of a sensor on the ground
-  WeatherConfig weather;               // likewise
+  AtmosphereConfig atmosphere;         // on the ground
+  WeatherConfig weather;               // on the ground
   std::optional<SensorSeeing> seeing;  // none: no turbulence
-  double mask_deg = 0.0;  // least elevation for `dmise visible`, on the ground, [0, 89]
+  double mask_deg = 0.0;  // minimum elevation for `dmise visible`, on the ground, [0, 89]
   EffectSet effects;
-  bool detect = true;  // off: frames are reported, nothing is looked for in them
+  bool detect = true;  // false: frames are reported without detection
 };
 
 enum class OnSilentNode { fail, wait, drop, restart };
 
-/// How often the environment is told [s]; rounded up to whole ticks.
+/// Publication interval of the environment [s]; rounded up to whole ticks.
 struct EnvironmentConfig {
   double common_every_s = 0.0;  // Sun, Moon, Earth; 0: every tick
   double site_every_s = 60.0;   // weather of each site
@@ -116,28 +116,28 @@ struct NetworkConfig {
   double silent_after_s = 5.0;
   double join_within_s = 30.0;
   int restarts = 5;        // of each node, under `restart`
-  double real_time = 0.0;  // simulated seconds a second; 0: as fast as possible
+  double real_time = 0.0;  // simulated seconds per second; 0: as fast as possible
 };
 
-/// What a sensor writes of every frame.
+/// Output files of every frame.
 struct OutputConfig {
   bool fits = true;
-  bool fits_rice = false;   // compressed without loss
-  bool saturation = false;  // the pixels' flags, a second image in the FITS file
+  bool fits_rice = false;   // lossless compression
+  bool saturation = false;  // pixel flags, a second image in the FITS file
   bool png = true;
   bool truth = true;
   bool star_truth = false;  // frame-NNNNNN.stars.csv: every star drawn
   int preview_width_px = 1663;
   bool radiance_exr = false;  // frame-NNNNNN-radiance.exr
-  int radiance_bands = 1;     // its channels: the band, or beside it so many parts of it
-  // frame-NNNNNN-PLANE.fits: what the counts were drawn from.
+  int radiance_bands = 1;     // channels: the band, and its parts if > 1
+  // frame-NNNNNN-PLANE.fits: expectations that the counts were drawn from.
   bool sources = false, background = false, noise = false;
-  // Of cameras, platforms, own objects, Sun and Moon at every tick.
+  // Positions of cameras, platforms, own objects, Sun and Moon at every tick.
   bool positions_csv = false, positions_jsonl = false, positions_oem = false;
   bool positions() const { return positions_csv || positions_jsonl || positions_oem; }
 };
 
-/// A whole scenario, resolved: presets read, paths found, defaults filled in, everything checked.
+/// A complete scenario: presets read, paths resolved, defaults filled in, everything checked.
 struct Scenario {
   std::string path;
   std::string start_utc;  // ISO 8601
@@ -147,7 +147,7 @@ struct Scenario {
   std::uint64_t seed = 1;
   std::string earth_orientation_path;  // IERS finals file, may be empty
   std::vector<ObjectSource> objects;   // catalogues
-  std::vector<OwnObject> own_objects;  // the scenario's own
+  std::vector<OwnObject> own_objects;  // defined by the scenario
   std::string star_catalogue_path;     // empty: no stars
   std::string star_catalogue_named;
   std::string star_catalogue_where;  // `file:line:column: stars.catalogue`, for messages
@@ -156,7 +156,7 @@ struct Scenario {
   EnvironmentConfig environment;
   NetworkConfig network;
   OutputConfig output;
-  std::vector<std::string> warnings;  // what can be meant but hardly is; each names its place
+  std::vector<std::string> warnings;  // unusual values; each names its key
 
   /// The last tick: the first at or after the end of the run.
   Tick last_tick() const { return (duration.ns + tick.ns - 1) / tick.ns; }
@@ -167,7 +167,7 @@ struct Scenario {
 /// value`.
 Scenario load_scenario(const std::string& path);
 
-/// What decides the products, in a fixed order: the same text gives the same bytes.
+/// Canonical JSON of everything that determines the products: the same text gives the same bytes.
 std::string physics_json(const Scenario& scenario);
 
 const SensorConfig& sensor_named(const Scenario& scenario, const std::string& name);

@@ -33,7 +33,7 @@ SiteConfig read_site(const YamlValue& value) {
   YamlMap map(value);
   SiteConfig site;
   site.name = map.text_or("name", "");
-  map.find("source");  // for people
+  map.find("source");  // informative only
   site.latitude_deg = map.number("latitude_deg", Bounds::between(-90.0, 90.0));
   site.longitude_deg = map.number("longitude_deg", Bounds::between(-180.0, 360.0));
   site.height_m = map.number_or("height_m", 0.0, Bounds::between(-500.0, 9000.0));
@@ -42,16 +42,16 @@ SiteConfig read_site(const YamlValue& value) {
   return site;
 }
 
-/// Trails are one parabola each: over 10 deg they are still within 1e-4 of a focal length.
+/// A trail is one parabola: over 10 deg it is accurate to 1e-4 of a focal length.
 constexpr double most_turn_deg = 10.0;
 
-/// Of a camera fixed to the horizon's grid; of one that follows the sky the zenith's, 1.
+/// Airmass of a camera at fixed azimuth and elevation; 1 for one that follows the sky.
 double airmass_of(const Pointing& pointing) {
   const auto* fixed = std::get_if<PointHorizon>(&pointing);
   return fixed ? std::max(1.0, airmass(fixed->elevation_deg * deg)) : 1.0;
 }
 
-/// Sky, air and weather: the sensor's own, else its site's, else the usual ones.
+/// Sky, atmosphere and weather: the sensor's, else its site's, else the defaults.
 void read_sensor_surroundings(YamlMap& map, SensorConfig& sensor) {
   const auto* site = std::get_if<SiteConfig>(&sensor.place);
   Surroundings around = site ? site->surroundings : Surroundings{};
@@ -66,8 +66,8 @@ void read_sensor_surroundings(YamlMap& map, SensorConfig& sensor) {
   sensor.weather = around.weather.value_or(WeatherConfig{});
 }
 
-// Refuses what no kernel can be made of: a complaint "a.b: reason" at that key, or at the last one
-// on the way to it that this file has (a camera may be a preset).
+// Refuses a point spread without a possible kernel. An error "a.b: reason" is reported at that key,
+// or at its nearest ancestor in this file (a camera may be a preset).
 void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
   const Camera& camera = sensor.camera;
   try {

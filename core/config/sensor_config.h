@@ -4,12 +4,11 @@
 
 namespace dmise {
 
-/// Reads `effects:` of a scenario or a sensor onto what is switched on already. Throws
-/// `ConfigError`.
+/// Reads `effects:` of a scenario or a sensor and applies it to `effects`. Throws `ConfigError`.
 void read_effects(const YamlValue& value, EffectSet& effects);
 
-/// Reads one of `sensors:`; `effects` and `detect` are those of the scenario, `duration` that of
-/// the run. Throws `ConfigError`.
+/// Reads one of `sensors:`; `effects` and `detect` are the scenario's, `duration` the run's. Throws
+/// `ConfigError`.
 SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, bool detect,
                          SimTime duration);
 

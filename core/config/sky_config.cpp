@@ -26,7 +26,7 @@ bool is_number(const YamlValue& value) {
   return value.is_scalar() && value.text().find_first_not_of("+-.0123456789") == std::string::npos;
 }
 
-/// Lamps that bring the zenith to `zenith`, together with the natural sky.
+/// Adds lamps that bring the zenith to `zenith` together with the natural sky.
 void read_zenith(const YamlValue& value, SkyConfig& sky) {
   const double zenith = value.number(brightness);
   sky.zenith_mag_per_arcsec2 = zenith;
@@ -244,7 +244,7 @@ bool names_profile(const YamlValue& seeing) {
 
 SensorSeeing read_seeing_profile(const YamlValue& value, double airmass,
                                  std::optional<TurbulenceConfig>& turbulence_over) {
-  constexpr double wavelength_m = 500 * nm;  // that of `SensorSeeing::r0_m`
+  constexpr double wavelength_m = 500 * nm;  // of `SensorSeeing::r0_m`
   YamlMap map(value);
   turbulence_over = read_turbulence_keys(map);
   SensorSeeing seeing;

@@ -4,7 +4,7 @@
 
 namespace dmise {
 
-// What decides the light of the sky in a sensor's frames, as `physics_json` writes it.
+// JSON of the sky and atmosphere of a sensor, for `physics_json`.
 void write_curve(JsonWriter& json, std::string_view key, const Curve& curve);
 void write_surroundings(JsonWriter& json, const SensorConfig& sensor);
 

@@ -23,7 +23,7 @@ namespace {
   throw ConfigError(printable(file) + place + ": " + why);
 }
 
-/// Counts what a document would become, with aliases expanded.
+/// Counts the size of a document with expanded aliases.
 class Counter : public YAML::EventHandler {
  public:
   Counter(const std::string& file, const YamlLimits& limits) : file_(file), limits_(limits) {}
@@ -39,7 +39,7 @@ class Counter : public YAML::EventHandler {
   }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     for (const Open& open : open_)
-      if (open.anchor == anchor) refuse(file_, mark, "an alias within what it stands for");
+      if (open.anchor == anchor) refuse(file_, mark, "an alias within its own anchor");
     const Size size = anchored_[anchor];
     if (open_.size() + size.depth > limits_.depth) refuse_depth(mark);
     add(mark, size.values);
@@ -64,12 +64,11 @@ class Counter : public YAML::EventHandler {
   struct Open {
     YAML::anchor_t anchor;
     std::size_t values_before;
-    std::size_t deepest = 1;  // of what is in it, itself included
+    std::size_t deepest = 1;  // of its content, itself included
   };
 
   [[noreturn]] void refuse_depth(const YAML::Mark& mark) const {
-    refuse(file_, mark,
-           "lists and mappings in one another deeper than " + std::to_string(limits_.depth));
+    refuse(file_, mark, "lists and mappings nested deeper than " + std::to_string(limits_.depth));
   }
 
   void add(const YAML::Mark& mark, std::size_t values) {
@@ -100,10 +99,10 @@ class Counter : public YAML::EventHandler {
   const YamlLimits& limits_;
   std::size_t documents_ = 0, values_ = 0;
   std::vector<Open> open_;
-  std::map<YAML::anchor_t, Size> anchored_;  // what each stands for, once it is closed
+  std::map<YAML::anchor_t, Size> anchored_;  // size of each closed anchor
 };
 
-/// A stream over text, which it does not copy.
+/// A stream over text without copying it.
 class TextBuffer : public std::streambuf {
  public:
   explicit TextBuffer(const std::string& text) {

@@ -24,7 +24,7 @@ std::string number_text(double x) {
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
 }
 
-/// Where a value stands in its file; put into words for a complaint alone, as keys may be long.
+/// Path of a value in its file; formatted only for messages, because keys may be long.
 struct NodePath {
   const NodePath* outer = nullptr;  // null: the file itself
   std::string key;
@@ -175,7 +175,7 @@ std::string YamlMap::child_path(std::string_view key) const {
 
 std::optional<YamlValue> YamlMap::find(std::string_view key) {
   known_.emplace(key);
-  const YAML::Node& map = value_.node_;  // const, so that looking does not insert
+  const YAML::Node& map = value_.node_;  // const, so that a lookup does not insert
   const YAML::Node child = map[std::string(key)];
   if (!child.IsDefined()) return std::nullopt;
   YamlValue value(child, value_.file_, child_path(key));
@@ -185,7 +185,7 @@ std::optional<YamlValue> YamlMap::find(std::string_view key) {
 
 YamlValue YamlMap::require(std::string_view key) {
   if (auto value = find(key)) return *value;
-  // A misspelt key is worth more than "is missing".
+  // A suggestion for a misspelt key is better than "is missing".
   for (const auto& entry : value_.node_) {
     const std::string name = entry.first.Scalar();
     if (!known_.contains(name) && nearest_name(name, {std::string(key)}) == key)

@@ -15,7 +15,7 @@
 
 namespace dmise {
 
-/// Range that a number must lie in; the reason given when it does not.
+/// Range of a number, and the reason for it in messages.
 struct Bounds {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
@@ -26,11 +26,11 @@ struct Bounds {
   static Bounds between(double least, double most) { return {.least = least, .most = most}; }
 };
 
-/// A value of a YAML file that knows where it stands: every complaint reads
-/// `file:line:column: key.path: reason, got value`.
+/// A value of a YAML file with its position: every error reads `file:line:column: key.path: reason,
+/// got value`.
 class YamlValue {
  public:
-  /// Reads a whole file. Throws `ConfigError`, also for a key given twice.
+  /// Reads a whole file. Throws `ConfigError`, also for a duplicate key.
   static YamlValue load(const std::string& path);
   static YamlValue parse(const std::string& text, const std::string& file);
 
@@ -46,7 +46,7 @@ class YamlValue {
   std::int64_t integer(std::int64_t least, std::int64_t most) const;
   std::string text() const;
   bool flag() const;  // on/off, true/false, yes/no
-  /// One of `choices`; the nearest is suggested.
+  /// One of `choices`; an error suggests the nearest.
   std::string choice(std::span<const std::string_view> choices) const;
   std::string choice(std::initializer_list<std::string_view> choices) const {
     return choice(std::span(choices.begin(), choices.size()));
@@ -56,7 +56,7 @@ class YamlValue {
   std::vector<double> numbers(std::size_t count, Bounds bounds = {}) const;
 
   [[noreturn]] void fail(const std::string& reason, bool show_value = true) const;
-  /// `file:line:column: key.path: reason, got value`, as `fail` throws it.
+  /// Text of the error that `fail` throws: `file:line:column: key.path: reason, got value`.
   std::string complaint(const std::string& reason, bool show_value = true) const;
 
  private:
@@ -69,8 +69,8 @@ class YamlValue {
   std::string path_;
 };
 
-/// The keys of a YAML mapping. Each model reads its own; `done()` refuses those that nobody read
-/// and suggests the nearest one that would have been.
+/// The keys of a YAML mapping. Each model reads its own; `done()` refuses keys that were not read
+/// and suggests the nearest known one.
 class YamlMap {
  public:
   explicit YamlMap(const YamlValue& value);

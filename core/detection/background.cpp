@@ -11,8 +11,7 @@ struct Sky {
   float level = 0.0f, sigma = 0.0f;
 };
 
-/// Median of integers as if each were spread evenly over its unit: finer than the counts
-/// themselves.
+/// Median of integers as if each were spread evenly over its bin: finer than one count.
 double spread_median(const std::vector<std::uint32_t>& histogram, std::size_t low, std::size_t high,
                      double count) {
   double below = 0.0;
@@ -34,7 +33,7 @@ Sky clipped_sky(std::vector<std::uint16_t>& values) {
   const double first_median = quantile(0.5);
   const double low = quantile(0.1587);
   double sigma = std::max(first_median - low, 0.5), centre = first_median;
-  // All further work is on a histogram of the values near the median.
+  // The rest works on a histogram of the values near the median.
   const double reach = 6 * sigma + 2;
   const auto base = std::int64_t(std::max(0.0, std::floor(centre - reach)));
   const std::size_t bins = std::size_t(2 * reach) + 2;
@@ -68,8 +67,8 @@ Sky clipped_sky(std::vector<std::uint16_t>& values) {
   return {float(level), float(sigma)};
 }
 
-/// Middle value of each cell and its neighbours; at the frame's edges only of those that have an
-/// opposite, so that a gradient stays what it is.
+/// Median of each cell and its neighbours; at the frame's edges only neighbours with an opposite
+/// count, so that gradients are preserved.
 std::vector<float> median_3x3(const std::vector<float>& mesh, int columns, int rows) {
   std::vector<float> out(mesh.size()), near;
   for (int j = 0; j < rows; ++j)
@@ -97,7 +96,7 @@ float median_of(std::vector<float> values) {
 Background::Between Background::between(int pixel, int pixels, int cells) {
   const float place = (float(pixel) + 0.5f) * float(cells) / float(pixels) - 0.5f;
   const int cell = std::clamp(int(std::floor(place)), 0, std::max(0, cells - 2));
-  return {cell, cells > 1 ? place - float(cell) : 0.0f};  // beyond the outer centres it goes on
+  return {cell, cells > 1 ? place - float(cell) : 0.0f};  // extrapolates beyond the outer centres
 }
 
 Background::Background(const CountImage& counts, int cell_px, Threads& threads)

@@ -6,11 +6,11 @@
 
 namespace dmise {
 
-/// Level and noise of the sky over a frame [DN], from a mesh of cells: in each the counts are
-/// clipped at 3 sigma until nothing changes, the level is 2.5 median - 1.5 mean (Bertin & Arnouts
-/// 1996, A&AS 117, 393; the median where the two disagree by more than 0.3 sigma). A median over 3
-/// x 3 cells removes what a bright source leaves; between the cells' centres it is bilinear, to the
-/// frame's edges it goes on straight.
+/// Level and noise of the sky over a frame [DN], from a mesh of cells. Counts of a cell are clipped
+/// at 3 sigma until convergence; the level is 2.5 median - 1.5 mean (Bertin & Arnouts 1996, A&AS
+/// 117, 393), or the median if the two differ by more than 0.3 sigma. A median over 3 x 3 cells
+/// removes bright sources; values are bilinear between the cells' centres and extrapolated to the
+/// frame's edges.
 class Background {
  public:
   Background(const CountImage& counts, int cell_px, Threads& threads);
@@ -25,8 +25,7 @@ class Background {
   float median_sigma_dn() const;
 
  private:
-  /// Place of a pixel among the cells' centres: between `cell` and the next, with the next one's
-  /// weight.
+  /// Position of a pixel between cell centres: `cell`, and the weight of the next.
   struct Between {
     int cell;
     float next;

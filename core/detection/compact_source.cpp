@@ -12,11 +12,11 @@ namespace dmise {
 namespace {
 
 struct Light {
-  std::vector<FitPixel> told;     // pixels to fit
-  std::vector<FitPixel> clipped;  // as bright as they could be
+  std::vector<FitPixel> usable;   // pixels to fit
+  std::vector<FitPixel> clipped;  // saturated
 };
 
-/// The component's pixels and those that touch them.
+/// Pixels of a component and their neighbours.
 Light light_around(const Scene& scene, const Component& component) {
   std::map<int, std::vector<std::pair<int, int>>> rows;
   for (const Run& run : component.runs)
@@ -31,13 +31,13 @@ Light light_around(const Scene& scene, const Component& component) {
     for (const auto& [first, last] : spans)
       for (int x = std::max(first, done + 1); x <= last; ++x) {
         done = x;
-        (scene.tells_light(x, y) ? out.told : out.clipped).push_back(scene.pixel(x, y));
+        (scene.is_usable(x, y) ? out.usable : out.clipped).push_back(scene.pixel(x, y));
       }
   }
   return out;
 }
 
-/// Moments of the light: centroid, and the trail that an even line of the same spread would be.
+/// Moments of the light: centroid, and the uniform trail of the same spread.
 Trail moments(const std::vector<FitPixel>& pixels, double sigma_px) {
   double f = 0, x = 0, y = 0;
   for (const auto& p : pixels) {
@@ -67,15 +67,15 @@ Trail moments(const std::vector<FitPixel>& pixels, double sigma_px) {
   return trail;
 }
 
-/// Relative error of the PSF beyond `clipped` pixels.
+/// Relative error of the PSF outside `clipped` pixels.
 double wings_error(std::size_t clipped, double sigma_px, const DetectorSettings& settings) {
   const double radius_in_sigmas = std::sqrt(double(clipped) / pi) / sigma_px;
   return std::clamp(settings.wings_error * radius_in_sigmas * radius_in_sigmas,
                     settings.least_wings_error, settings.most_wings_error);
 }
 
-/// A fit of the wings alone. Its flux is that of the wings times a factor which the PSF gives, and
-/// which is off by 0.01 for each square of the sigma at which they begin (2 ln of peak over clip).
+/// Fits the wings alone. The flux is that of the wings times a factor given by the PSF, with an
+/// error of 0.01 for each square of the sigma at which they begin (2 ln of peak over clip).
 std::optional<Source> from_wings(const Scene& scene, const Trail& start, bool streak,
                                  const std::vector<FitPixel>& clipped, double model_error) {
   auto source = fit_source(scene, start, streak, 0.3 * model_error);
@@ -91,9 +91,9 @@ std::optional<Source> from_wings(const Scene& scene, const Trail& start, bool st
   return source;
 }
 
-/// Would the source clip a pixel that is clipped? Wings alone may be anything's.
-bool fills_the_wells(const Scene& scene, const Source& source,
-                     const std::vector<FitPixel>& clipped) {
+/// Whether the source would clip a pixel that is clipped; wings alone are ambiguous.
+bool explains_saturation(const Scene& scene, const Source& source,
+                         const std::vector<FitPixel>& clipped) {
   return std::any_of(clipped.begin(), clipped.end(), [&](const FitPixel& p) {
     return trail_value(source.trail(), scene.sigma_px, p.x, p.y) > 0.7 * p.signal_e;
   });
@@ -116,14 +116,14 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
   FitSettings fit_settings;
   fit_settings.sigma_px = scene.sigma_px;
   fit_settings.model_error = model_error;
-  fit_settings.settled_chi2 = 0.05;  // small against every margin
+  fit_settings.settled_chi2 = 0.05;  // small compared to every margin
   fit_settings.most_steps = 8;
   const TrailFit as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings);
   if (as_star.good(0.5)) return std::nullopt;
   const bool stars_trail = star.length_px >= settings.least_difference_px;
   TrailFit as_point;
   if (stars_trail) {
-    Trail point = light;  // not where the star's trail ended up, which may be anywhere along it
+    Trail point = light;  // not from the fitted star trail, which may lie anywhere along it
     point.length_px = 0.0;
     as_point = fit_trails(pixels, {point}, {trail_place}, fit_settings);
   }
@@ -133,7 +133,7 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
 
   const auto believable = [&](const std::optional<Source>& source) {
     return source && source->snr() >= settings.least_snr &&
-           (!saturated || fills_the_wells(scene, *source, clipped));
+           (!saturated || explains_saturation(scene, *source, clipped));
   };
   const auto fitted = [&](const Trail& start, bool streak) {
     return saturated ? from_wings(scene, start, streak, clipped, model_error)
@@ -144,7 +144,7 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
   if (may_be_point && as_point.good(5.0) &&
       as_point.deviance < as_line.deviance + settings.blend_margin) {
     auto source = fitted(as_point.trails[0], false);
-    // A star that the frame's edge cuts has the shape of a point.
+    // A star cut by the frame's edge looks like a point.
     if (believable(source) && !source->at_edge && point_beats_star(scene, *source, settings))
       return source;
     return std::nullopt;

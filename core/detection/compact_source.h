@@ -7,9 +7,9 @@
 
 namespace dmise {
 
-/// Judges a component no longer than a few PSFs: is it what a star makes there, or blended stars,
-/// or a point where stars trail, or a short streak? Nothing for stars, and for what can't be told
-/// from them.
+/// Classifies a component no longer than a few PSFs: a star of this frame, blended stars, a point
+/// among trailed stars, or a short streak. Empty for stars and for sources that cannot be
+/// distinguished from them.
 std::optional<Source> judge_compact(const Scene& scene, const Component& component,
                                     const DetectorSettings& settings);
 

@@ -15,7 +15,7 @@ struct PeakedRun {
   int peak_x;
 };
 
-/// One side of the Gaussian: k[0] at the centre; the whole of it sums to 1.
+/// Half of a Gaussian kernel: k[0] is the centre; the whole sums to 1.
 std::vector<float> half_kernel(double sigma_px) {
   const int radius = std::max(1, int(std::ceil(3 * sigma_px)));
   std::vector<double> k(std::size_t(radius) + 1);
@@ -29,7 +29,7 @@ std::vector<float> half_kernel(double sigma_px) {
   return out;
 }
 
-/// out = sum over i of k[|i|] in[+i rows], over `count` columns; `row(i)` gives the row at offset
+/// out = sum over i of k[|i|] in[+i rows], over `count` columns; `row(i)` returns the row at offset
 /// i.
 template <class Row>
 void weigh_rows(const std::vector<float>& k, Row row, float* out, int count) {
@@ -49,7 +49,7 @@ class Band {
   std::vector<PeakedRun> runs(int first_row, int last_row, float low, float unit) {
     const int columns = counts_.columns, radius = int(kernel_.size()) - 1;
     const int padded = columns + 2 * radius;
-    // Rows of the band and its neighbours, smoothed along x; outside the frame there is no light.
+    // Rows of the band and its neighbours, smoothed along x; there is no light outside the frame.
     const int held = last_row - first_row + 2 * radius;
     const auto width = std::size_t(columns);
     std::vector<float> smoothed(std::size_t(held) * width, 0.0f);
@@ -126,7 +126,7 @@ class Sets {
 
 std::vector<Component> connect(const std::vector<PeakedRun>& runs, float high) {
   Sets sets(runs.size());
-  std::size_t above = 0;  // first run of the row above that may still touch
+  std::size_t above = 0;  // first run of the previous row that may still touch
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Run& run = runs[i].run;
     while (above < i &&

@@ -7,12 +7,12 @@
 
 namespace dmise {
 
-/// Pixels [first_x, last_x] of one row that stand above the threshold.
+/// Pixels [first_x, last_x] of one row above the threshold.
 struct Run {
   int y = 0, first_x = 0, last_x = 0;
 };
 
-/// Pixels that touch each other (8-connected), as runs by rising row and column.
+/// Connected pixels (8-connected), as runs by rising row and column.
 struct Component {
   std::vector<Run> runs;
   int min_x = 0, max_x = 0, min_y = 0, max_y = 0;
@@ -21,15 +21,15 @@ struct Component {
   int peak_x = 0, peak_y = 0;
 };
 
-/// Convolves the frame less its background with a Gaussian of `sigma_px` (the matched filter of a
-/// point source, in units of its own noise), keeps what exceeds `low` and returns the connected
-/// pieces that reach `high` somewhere, by rising (row, column) of their first pixel. Works in bands
-/// of rows: beside the frame only a few of them are held. Equal for any number of threads.
+/// Convolves the background-subtracted frame with a Gaussian of `sigma_px` (the matched filter of a
+/// point source, in units of its noise), keeps pixels above `low` and returns the connected
+/// components with a pixel above `high`, by rising (row, column) of their first pixel. Works in
+/// bands of rows, to save memory. Equal for any number of threads.
 std::vector<Component> find_components(const CountImage& counts, const Background& background,
                                        double sigma_px, double low, double high, Threads& threads);
 
-/// Sum of the squares of the unit-sum Gaussian on the pixel grid: a point source of flux F in white
-/// noise s has matched-filter SNR F sqrt(this) / s.
+/// Sum of squares of the unit-sum Gaussian on the pixel grid: a point source of flux F in white
+/// noise s has the matched-filter SNR F sqrt(this) / s.
 double kernel_square_sum(double sigma_px);
 
 }  // namespace dmise

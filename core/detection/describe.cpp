@@ -24,10 +24,10 @@ Tangent tangent_at(const Vec<Gcrs>& direction) {
   return {east, cross(direction, east)};
 }
 
-/// Derivatives of a place in the image by the seven parameters of a trail.
+/// Derivatives of an image position by the seven parameters of a trail.
 using PlaceBy = std::array<std::array<double, 2>, 7>;
 
-/// var x, cov xy, var y of a place that moves with the fitted parameters.
+/// var x, cov xy, var y of a position that depends on the fitted parameters.
 std::array<double, 3> covariance_of(const Source& source, const PlaceBy& by) {
   std::vector<std::array<double, 2>> j;
   for (unsigned bit = 0; bit < by.size(); ++bit)
@@ -43,7 +43,8 @@ std::array<double, 3> covariance_of(const Source& source, const PlaceBy& by) {
   return out;
 }
 
-/// The same in var(ra cos dec), cov, var(dec) [rad^2] around a pixel, with the WCS's own error.
+/// The same as var(ra cos dec), cov, var(dec) [rad^2] around a pixel, including the error of the
+/// WCS.
 std::array<double, 3> on_the_sky(const std::array<double, 3>& covariance_px2, const Wcs& wcs,
                                  PixelPosition at) {
   const Tangent tangent = tangent_at(wcs_direction(wcs, at));
@@ -61,7 +62,7 @@ std::array<double, 3> on_the_sky(const std::array<double, 3>& covariance_px2, co
           nx * nx * xx + 2 * nx * ny * xy + ny * ny * yy};
 }
 
-/// Centroid of light: the slope moves it off the line's middle.
+/// Centroid of light: a brightness slope moves it off the line's middle.
 void describe_centroid(const Source& source, Detection& d) {
   const Trail& t = source.trail();
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
@@ -78,7 +79,7 @@ void describe_centroid(const Source& source, Detection& d) {
   d.covariance_px2 = covariance_of(source, by);
 }
 
-/// A point of the bent line: -1 and 1 are its ends, 0 its middle.
+/// A point of the curved line: -1 and 1 are its ends, 0 its middle.
 struct LinePoint {
   PixelPosition place;
   std::array<double, 3> covariance_px2;
@@ -106,8 +107,8 @@ void add_along(std::array<double, 3>& covariance, double x, double y, double var
   covariance[2] += variance * y * y;
 }
 
-/// An end, with what the terms that a trail leaves out of its bend (the third power) and of its
-/// brightness (the second) do there: sizes measured on low orbits.
+/// An end of the line, with errors for neglected terms of a trail's curvature (third power) and
+/// brightness (second): sizes measured on low orbits.
 LinePoint line_end(const Source& source, const FrameHeader& header, double side, double arc_rad) {
   LinePoint end = line_point(source, side);
   const Trail& t = source.trail();
@@ -146,7 +147,7 @@ void describe_ends(const Source& source, const FrameHeader& header, Detection& d
   d.rate_rad_per_s = source.streak ? angle_rad(end1, end2) / header.exposure_s : 0.0;
 }
 
-/// The line's point where the object was at mid exposure, and the error of that along the line.
+/// The object's position on the line at mid exposure, and its error along the line.
 struct MidPoint {
   LinePoint point;
   Vec<Gcrs> track;  // from end to end

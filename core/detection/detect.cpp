@@ -19,20 +19,20 @@
 namespace dmise {
 namespace {
 
-/// Gaussian of the header's PSF as pixels see it.
+/// Gaussian width of the header's PSF including pixel integration.
 double effective_sigma_px(double fwhm_px) {
   const double sigma = fwhm_px / std::sqrt(8 * std::log(2.0));
   return std::sqrt(sigma * sigma + 1.0 / 12);
 }
 
-/// The lowest count of a clipped pixel: those at the full well are read with noise.
+/// Lowest count of a clipped pixel: pixels at the full well have read noise.
 double lowest_clipped_dn(const FrameHeader& header) {
   const double column_e = header.detector ? header.detector->column_noise_e : 0.0;
   return header.saturation_dn -
          5 * std::hypot(header.read_noise_e, column_e) / header.gain_e_per_dn;
 }
 
-/// Ratio of the axes of the component's pixels, whatever their brightness.
+/// Axis ratio of the component's pixels, unweighted.
 double elongation(const Component& c) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
   for (const Run& run : c.runs)
@@ -52,8 +52,8 @@ double elongation(const Component& c) {
   return std::sqrt((mean + half) / std::max(mean - half, 1.0 / 12));
 }
 
-/// Longer than a star's light can be there; where it is not much longer, not round either, as the
-/// brightest stars are.
+/// Whether a component is longer than a star can be; if only slightly longer, it must also be
+/// elongated, because the brightest stars are round.
 bool is_long(const Scene& scene, const Component& c) {
   const double star_px = scene.star_trail(c.peak_x, c.peak_y).length_px;
   const double extent_px = std::hypot(c.max_x - c.min_x + 1, c.max_y - c.min_y + 1);
@@ -63,11 +63,11 @@ bool is_long(const Scene& scene, const Component& c) {
 
 struct Judged {
   std::vector<Source> sources;
-  std::uint32_t star_like = 0;  // components that gave none
+  std::uint32_t star_like = 0;  // components classified as stars
 };
 
-/// Compact components each for itself, in parallel; long ones by falling size, so that a streak's
-/// largest piece finds the whole of it and the others know.
+/// Compact components are classified independently, in parallel; long ones by falling size, so that
+/// a streak's largest piece finds the whole of it and the others are recognised as pieces.
 Judged judge(const Scene& scene, const std::vector<Component>& components,
              const DetectorSettings& settings, Threads& threads) {
   std::vector<const Component*> longs, compacts;
@@ -100,7 +100,7 @@ bool before(const Source& a, const Source& b) {
   return a.trail().x_px < b.trail().x_px;
 }
 
-/// By falling SNR; what lies on the light of a stronger streak is a piece of it.
+/// By falling SNR; sources on a stronger streak are pieces of it.
 std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
   std::vector<Source> out;
   std::sort(all.begin(), all.end(), before);
@@ -114,9 +114,9 @@ std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
   return out;
 }
 
-/// A faint streak must stand out among the lines beside it too: where several stars share every few
-/// pixels, some of them always stand in a row. The light of stars scatters from line to line with a
-/// longer tail than the noise of the pixels, so it counts for more.
+/// A faint streak must also stand out against parallel lines beside it: where several stars share
+/// every few pixels, some are aligned by chance. The scatter of stars has a longer tail than pixel
+/// noise, so it is weighted higher.
 bool is_row_of_stars(const Scene& scene, const Source& source, const DetectorSettings& settings) {
   if (!source.streak) return false;
   const double snr_per_px = source.snr() / std::sqrt(std::max(source.trail().length_px, 1.0));
@@ -137,7 +137,7 @@ PixelPosition centre_of(const CountImage& counts) {
   return {(counts.columns - 1) / 2.0, (counts.rows - 1) / 2.0};
 }
 
-/// What the header alone says.
+/// The part of the report that follows from the header.
 FrameReport unmeasured_report(const CountImage& counts, const FrameHeader& header) {
   FrameReport r;
   r.sensor = header.sensor;

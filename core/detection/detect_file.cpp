@@ -11,7 +11,7 @@ std::string utc_in_frame(const FrameHeader& header, SimTime time) {
                             : time == header.start ? header.start_utc
                                                    : header.end_utc;
   if (time != header.start && time != header.middle && time != header.end)
-    throw Error("no time of this exposure: " + std::to_string(time.ns) + " ns");
+    throw Error("not a time of this exposure: " + std::to_string(time.ns) + " ns");
   return text.ends_with('Z') ? text : text + "Z";
 }
 

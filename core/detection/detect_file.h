@@ -7,20 +7,20 @@
 
 namespace dmise {
 
-/// Detections in a FITS frame as JSON lines: the same bytes as when the frame was made, since a
-/// detector is given `as_in_file(header)` there. `report` is the frame's, without what only a
-/// renderer knows.
+/// Detections in a FITS frame as JSON lines: the same bytes as when the frame was made, because
+/// detection uses `as_in_file(header)` there. `report` is the frame's, without what only a renderer
+/// knows.
 struct FileDetections {
-  std::vector<std::string> lines;  // one for each detection, by falling SNR
+  std::vector<std::string> lines;  // one per detection, by falling SNR
   std::string report;
 };
 
-/// Throws `ConfigError` "PATH: KEYWORD: reason" when the file is no such frame.
+/// Throws `ConfigError` "PATH: KEYWORD: reason" if the file is not such a frame.
 FileDetections detect_file(const std::string& path, const DetectorSettings& settings,
                            Threads& threads);
 
-/// UTC text of times in the frame: the header's own for start, middle and end of the exposure (with
-/// the Z that FITS leaves out); other times don't occur in detections.
+/// UTC text of a time in the frame: the header's own for start, middle and end of the exposure
+/// (with a Z, which FITS omits). Throws `Error` for other times.
 std::string utc_in_frame(const FrameHeader& header, SimTime time);
 
 }  // namespace dmise

@@ -10,9 +10,9 @@ namespace dmise {
 /// ISO 8601 text of a simulation time.
 using UtcText = std::function<std::string(SimTime)>;
 
-// One line of JSON each, without the line's end, keys always in the same order. Times are
-// nanoseconds since the scenario's start and UTC; angles degrees; units stand in the keys. A value
-// that is not finite throws `Error` with its key.
+// One line of JSON each, without the line end, with a fixed order of keys. Times are in nanoseconds
+// since the scenario's start and UTC; angles in degrees; units are in the keys. Throws `Error` with
+// the key for a value that is not finite.
 std::string to_json(const Detection& detection, const UtcText& utc);
 std::string to_json(const FrameReport& report, const UtcText& utc);
 std::string to_json(const Truth& truth, const UtcText& utc);

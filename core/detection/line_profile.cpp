@@ -36,7 +36,7 @@ Slice slice_at(const Scene& scene, const Line& line, int major, double offset_px
     gg += g * g;
     variance += g * g * (pixel.variance_e2 + std::max(pixel.signal_e, 0.0f));
   }
-  // Less than half a profile inside the frame says nothing.
+  // Less than half a profile inside the frame is not used.
   if (gg < 0.25 * cosine / (2 * sigma * std::sqrt(pi))) return {};
   return {gd / gg, variance / (gg * gg)};
 }
@@ -60,7 +60,7 @@ double median_level(const std::vector<Slice>& s) {
   return *middle;
 }
 
-std::array<double, 2> held_mean(const std::vector<Slice>& s, double level) {
+std::array<double, 2> clipped_mean(const std::vector<Slice>& s, double level) {
   double sum = 0.0, variance = 0.0;
   for (const Slice& slice : s) {
     sum += std::min(slice.e_per_px, 2 * level);
@@ -80,17 +80,17 @@ double rise_above_neighbours(const Scene& scene, const Trail& trail) {
   for (int k = -neighbours; k <= neighbours; ++k) {
     if (std::abs(k) < 2) continue;
     const auto other = slices(scene, line, extent.from, extent.to, k * step_px);
-    if (2 * other.size() > own.size()) beside.push_back(held_mean(other, level)[0]);
+    if (2 * other.size() > own.size()) beside.push_back(clipped_mean(other, level)[0]);
   }
   if (beside.size() < least_neighbours) return std::numeric_limits<double>::infinity();
-  // Stars only add light, so the scatter upwards counts, if it is the larger.
+  // Stars only add light, so upward scatter counts if it is larger.
   const double middle = median(beside);
   const auto high = beside.begin() + std::ptrdiff_t(beside.size() * 9 / 10);
   std::nth_element(beside.begin(), high, beside.end());
   const double upwards = (*high - middle) / 1.2816;
   for (double& value : beside) value = std::abs(value - middle);
   const double scatter = std::max(1.4826 * median(beside), upwards);
-  return (held_mean(own, level)[0] - middle) / std::max(scatter, 1e-12);
+  return (clipped_mean(own, level)[0] - middle) / std::max(scatter, 1e-12);
 }
 
 }  // namespace dmise

@@ -6,16 +6,16 @@
 
 #include "core/detection/scene.h"
 
-// Light along a line, slice by slice.
+// Light along a line in slices.
 namespace dmise {
 
 struct Point {
   double x, y;
-  double weight = 1.0;  // by brightness: the ridge counts, not the skirts
+  double weight = 1.0;  // by brightness, to follow the ridge
 };
 
-/// A line cut into slices: one for each column (or row, where it is steeper than 45 degrees). It
-/// may be bent as a trail is, and goes on beyond the trail's ends.
+/// A line divided into slices: one per column (or row, if it is steeper than 45 degrees). It may be
+/// curved as a trail is, and extends beyond the trail's ends.
 struct Line {
   double x = 0.0, y = 0.0;  // a point on it
   double ux = 1.0, uy = 0.0;
@@ -36,7 +36,7 @@ struct Line {
   }
 };
 
-/// Through a trail, bent as it is.
+/// Line through a trail, with its curvature.
 inline Line line_of(const Trail& t) {
   return {t.x_px,
           t.y_px,
@@ -59,22 +59,21 @@ inline Extent extent_of(const Line& line, double half_length_px) {
 
 /// Electrons per px of length in one slice, by the matched profile across.
 struct Slice {
-  double e_per_px = 0.0, variance = 0.0;  // variance 0: no pixel to look at
+  double e_per_px = 0.0, variance = 0.0;  // variance 0: no valid pixel
 };
 
 Slice slice_at(const Scene& scene, const Line& line, int major, double offset_px);
 
-/// Of `from` to `to`, without those that have no pixel to look at.
+/// Slices `from` to `to`, without those that have no valid pixel.
 std::vector<Slice> slices(const Scene& scene, const Line& line, int from, int to, double offset_px);
 
 double median_level(const std::vector<Slice>& s);
 
-/// Mean with what rises above twice `level` (a star on the line) cut off, and its SNR.
-std::array<double, 2> held_mean(const std::vector<Slice>& s, double level);
+/// Mean with values clipped at twice `level` (a star on the line), and its SNR.
+std::array<double, 2> clipped_mean(const std::vector<Slice>& s, double level);
 
-/// How far a trail's light rises above that of the parallel lines beside it, in units of their own
-/// scatter: where faint stars lie close together, that is more than the noise of the pixels.
-/// Infinite where there are too few lines to tell.
+/// Excess of a trail's light over parallel lines beside it, in units of their scatter: where faint
+/// stars are dense, that exceeds the pixel noise. Infinite if there are too few lines.
 double rise_above_neighbours(const Scene& scene, const Trail& trail);
 
 }  // namespace dmise

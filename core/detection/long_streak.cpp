@@ -14,20 +14,19 @@ namespace dmise {
 namespace {
 
 constexpr int most_lines = 4;              // in one component
-constexpr double worth_another_px = 50.0;  // a shorter one whose first line is none holds no other
-constexpr int window_px = 16;              // by which a streak grows
-constexpr double growth_snr = 4.0;         // of a window that goes on
-constexpr double gap_snr = 6.0;            // of one beyond a gap
-constexpr double chain_px = 30.0;  // blends of stars are not longer, but by their own trails
-constexpr int most_rounds = 6;     // of fitting and following
+constexpr double worth_another_px = 50.0;  // a shorter component is given up after one failed line
+constexpr int window_px = 16;              // step of growth
+constexpr double growth_snr = 4.0;         // to continue into the next window
+constexpr double gap_snr = 6.0;            // to continue beyond a gap
+constexpr double chain_px = 30.0;          // longest blend of stars, without their trails
+constexpr int most_rounds = 6;             // of fitting and growing
 
 Line line_through(const Point& a, const Point& b) {
   const double length = std::hypot(b.x - a.x, b.y - a.y);
   return {a.x, a.y, (b.x - a.x) / length, (b.y - a.y) / length};
 }
 
-/// The line that most of the points lie on, by pairs of points far apart; nothing shorter than
-/// `least`.
+/// The line with the most points, from pairs of distant points; empty below `least_px`.
 std::optional<Line> main_line(const std::vector<Point>& points, double width_px, double least_px) {
   const std::size_t step = points.size() / 400 + 1,
                     anchors = std::min<std::size_t>(40, points.size());
@@ -71,8 +70,8 @@ Line refined(const std::vector<Point>& points, const Line& line, double width_px
   return {line.x + x, line.y + y, std::cos(angle), std::sin(angle)};
 }
 
-/// Follows the line beyond one end while light of about the same level goes on, a window at a time,
-/// also over one dark window.
+/// Extends the line beyond one end while light of about the same level continues, one window at a
+/// time, also across one dark window.
 void grow(const Scene& scene, const Line& line, Extent& extent, int way, double level) {
   const int limit = line.by_columns() ? scene.counts.columns : scene.counts.rows;
   int gap = 0;
@@ -82,7 +81,7 @@ void grow(const Scene& scene, const Line& line, Extent& extent, int way, double 
     if (last < 0 || first >= limit) return;
     double best_snr = 0.0, best_mean = 0.0;
     for (const double offset : {0.0, -0.7, 0.7}) {
-      const auto [mean, snr] = held_mean(slices(scene, line, first, last, offset), level);
+      const auto [mean, snr] = clipped_mean(slices(scene, line, first, last, offset), level);
       if (snr > best_snr) {
         best_snr = snr;
         best_mean = mean;
@@ -102,7 +101,7 @@ void grow(const Scene& scene, const Line& line, Extent& extent, int way, double 
   }
 }
 
-/// Where the light ends: the cut that best parts slices near `level` from slices near zero.
+/// Ends of the light: the cuts that best separate slices near `level` from slices near zero.
 Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, double level) {
   const auto end = [&](int inside, int outside) {
     const int way = outside > inside ? 1 : -1;
@@ -110,7 +109,7 @@ Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, doubl
     int best = inside;
     for (int k = inside; k != outside + way; k += way) {
       const Slice s = slice_at(scene, line, k, 0.0);
-      // A star on the line tells nothing of the line.
+      // A star on the line carries no information.
       if (!(s.variance > 0) || s.e_per_px > 2 * level + 4 * std::sqrt(s.variance)) continue;
       sum += std::clamp(s.e_per_px, -level, 2 * level) - level / 2;
       if (sum > most) {
@@ -124,8 +123,8 @@ Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, doubl
   return {end(middle, extent.from - window_px), end(middle, extent.to + window_px)};
 }
 
-/// A trail cut into pieces long enough to be seen: shares of those that carry its light, and of
-/// those that carry more than twice of it. None where there are too few pieces to tell.
+/// Evenness of a trail, divided into pieces long enough to be significant: fractions of pieces with
+/// its light, and with more than twice its light. Empty if there are too few pieces.
 struct Evenness {
   double lit = 0.0, over = 1.0;
 };
@@ -147,7 +146,7 @@ Evenness evenness_of(const Scene& scene, const Trail& t) {
   }
   if (all.size() < 6) return {};
   noise = std::sqrt(noise / double(all.size()));
-  // Pieces long enough to carry 4 sigma each, at least 2 px.
+  // Pieces long enough for 4 sigma each, at least 2 px.
   const auto length = std::size_t(std::clamp(std::ceil(std::pow(4 * noise / level, 2)), 2.0, 1e6));
   int pieces = 0, lit = 0, over = 0;
   for (std::size_t i = 0; i + length <= all.size(); i += length) {
@@ -170,13 +169,13 @@ bool is_continuous(const Scene& scene, const Trail& t) {
   return e.lit >= 0.8 && e.over <= 0.3;
 }
 
-/// Not worth a fit: a first guess, off its line and its ends as it may be, is not so uneven.
+/// Not worth a fit: even an inaccurate first guess is not this uneven.
 bool is_hopeless(const Scene& scene, const Trail& t) {
   const Evenness e = evenness_of(scene, t);
   return e.lit < 0.5 || e.over > 0.4;
 }
 
-/// A trail along the line from end to end of the extent.
+/// A trail along the line over the extent.
 Trail trail_along(const Line& line, const Extent& extent, double level) {
   const Point a = line.at(extent.from - 0.5), b = line.at(extent.to + 0.5);
   Trail t;
@@ -189,7 +188,7 @@ Trail trail_along(const Line& line, const Extent& extent, double level) {
   return t;
 }
 
-/// Fit and follow in turn until the ends stay where they are.
+/// Alternates fitting and growing until the ends are stable.
 std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
                                 const DetectorSettings& settings) {
   std::optional<Source> source;
@@ -209,12 +208,12 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
     if (!source || source->trail().length_px < 6 * scene.sigma_px) return std::nullopt;
     const bool columns = line.by_columns();
     line = line_of(source->trail());
-    if ((line.by_columns() ? line.ux : line.uy) < 0) {  // along rising columns (rows)
+    if ((line.by_columns() ? line.ux : line.uy) < 0) {  // towards rising columns (rows)
       line.ux = -line.ux;
       line.uy = -line.uy;
       line.sagitta_px = -line.sagitta_px;
     }
-    if (line.by_columns() != columns && round > 0) break;  // at 45 degrees: either will do
+    if (line.by_columns() != columns && round > 0) break;  // near 45 degrees: either works
     extent = extent_of(line, source->trail().length_px / 2);
   }
   if (!is_continuous(scene, source->trail())) return std::nullopt;
@@ -231,8 +230,8 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
   return source;
 }
 
-/// Points of the component off the streaks found before. Weights are the light, up to where the
-/// brightest fifth begins: a star on a streak must not pull more than the streak.
+/// Points of the component off known streaks. Weights are the light, limited to the level of the
+/// brightest fifth: a star on a streak must not outweigh the streak.
 std::vector<Point> free_points(const Scene& scene, const Component& component, double skirt_px,
                                const std::vector<Source>& found) {
   std::vector<Point> points;
@@ -258,7 +257,7 @@ std::vector<Point> free_points(const Scene& scene, const Component& component, d
 void find_long_streaks(const Scene& scene, const Component& component,
                        const DetectorSettings& settings, std::vector<Source>& found) {
   const double width_px = 1.5 * scene.sigma_px + 0.5, least_px = 8 * scene.sigma_px;
-  // As far out as a streak of the component's peak stays above the connecting threshold.
+  // The distance at which a streak with the component's peak falls below the connecting threshold.
   const double rise = std::log(std::max(component.peak_snr / settings.connect_snr, 1.0));
   const double skirt_px = std::max(3.0, 2 * std::sqrt(rise)) * scene.sigma_px + 1.5;
   std::vector<Point> points = free_points(scene, component, skirt_px, found);

@@ -7,11 +7,10 @@
 
 namespace dmise {
 
-/// Straight (or slightly bent) lines of light in a component much longer than a star: satellites'
-/// streaks with whatever stars touch them, crossing streaks apart. Each is followed along its
-/// direction beyond the component, over gaps, as far as its brightness goes on. Chains of blended
-/// stars, which are neither even nor narrow, give nothing. Appends to `found`; what lies on a
-/// streak found before is taken for a piece of it.
+/// Finds straight (or slightly curved) streaks in a component much longer than a star, separated
+/// from stars they touch and from crossing streaks. Each is followed beyond the component, across
+/// gaps, as far as its brightness continues. Chains of blended stars, which are neither even nor
+/// narrow, are rejected. Appends to `found`; light on a known streak is part of it.
 void find_long_streaks(const Scene& scene, const Component& component,
                        const DetectorSettings& settings, std::vector<Source>& found);
 

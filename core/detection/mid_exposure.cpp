@@ -9,11 +9,11 @@ namespace {
 constexpr double earth_gm_m3_per_s2 = 3.986004415e14;
 constexpr double least_height_m = 100e3, largest_radius_m = 1e9;
 
-/// Lines of sight at start and end of the exposure, from where the sensor was.
+/// Lines of sight at start and end of the exposure, from the sensor's positions.
 struct Sight {
   Vec<Gcrs> sensor_m, direction;
 
-  /// Beyond the sensor, at a distance from the Earth's centre that is larger than the sensor's.
+  /// Position along a line at a distance from the Earth's centre greater than the sensor's.
   Vec<Gcrs> at_radius_m(double radius_m) const {
     const double along = dot(sensor_m, direction);
     const double square = along * along - dot(sensor_m, sensor_m) + radius_m * radius_m;
@@ -23,7 +23,7 @@ struct Sight {
 
 struct Places {
   Vec<Gcrs> start_m, end_m;
-  double excess_rad;  // of the angle between them over that of the orbit
+  double excess_rad;  // of the angle between them over the orbit's
 };
 
 Places places_at(const Sight& start, const Sight& end, double radius_m, double exposure_s,
@@ -35,13 +35,13 @@ Places places_at(const Sight& start, const Sight& end, double radius_m, double e
   return p;
 }
 
-/// Direction at mid exposure on the orbit through both lines of sight.
+/// Direction at mid exposure on the orbit through both lines of sight; empty if there is none.
 std::optional<Vec<Gcrs>> on_an_orbit(const FrameHeader& header, const Sight& start,
                                      const Sight& end, double radial_share) {
   const auto at = [&](double radius_m) {
     return places_at(start, end, radius_m, header.exposure_s, radial_share);
   };
-  // The angle grows with the radius, the orbit's falls.
+  // The angle grows with the radius, the orbit's decreases.
   double low_m = norm(header.sensor_position_m) + least_height_m, high_m = largest_radius_m;
   if (!(at(low_m).excess_rad < 0 && at(high_m).excess_rad > 0)) return std::nullopt;
   for (int step = 0; step < 60; ++step) {

@@ -3,21 +3,22 @@
 
 namespace dmise {
 
-/// Radial speed of a detected object, over its orbital speed: standard deviation (decision 0065).
+/// Standard deviation of a detected object's radial speed, relative to its orbital speed (decision
+/// 0065).
 inline constexpr double radial_speed_share = 0.02;
 
-/// Where between the ends of its streak an object was at mid exposure. Even motion through space is
-/// uneven on the sky: for an arc A seen at an angle a from the closest approach the object is
-/// tan(a) A^2 / 4 past the middle, whatever its brightness did.
+/// Position of an object at mid exposure along its streak. Uniform motion in space is not uniform
+/// on the sky: for an arc A seen at an angle a from the closest approach the object is tan(a) A^2 /
+/// 4 past the middle, whatever its brightness.
 struct MidExposure {
-  Vec<Gcrs> direction;     // unit; only its place along the streak counts
-  double sigma_rad = 0.0;  // of that
+  Vec<Gcrs> direction;     // unit; only its component along the streak matters
+  double sigma_rad = 0.0;  // along the streak
 };
 
-/// `end1`, `end2`: as the WCS has them. From the ground tan(a) is that of the circular orbit
-/// through both lines of sight, the mean of both ways of motion; `sigma_rad` is half of what these
-/// differ by and what a radial speed changes. Without such an orbit, and in space: the middle, with
-/// tan(a) = 1 as the standard deviation; half the arc where an end is cut off.
+/// `end1`, `end2`: directions from the WCS. From the ground tan(a) is that of the circular orbit
+/// through both lines of sight, the mean over both directions of motion; `sigma_rad` combines half
+/// their difference and the effect of a radial speed. Without such an orbit, and in space: the
+/// middle, with tan(a) = 1 as the standard deviation; half the arc if an end is cut off.
 MidExposure mid_exposure(const FrameHeader& header, const Vec<Gcrs>& end1, const Vec<Gcrs>& end2,
                          bool at_edge);
 

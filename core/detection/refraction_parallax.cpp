@@ -9,7 +9,7 @@ namespace dmise {
 namespace {
 
 constexpr double earth_radius_m = 6371e3;
-constexpr double least_range_m = 100e3;  // keeps a site above the lowest altitude finite
+constexpr double least_range_m = 100e3;  // keeps ranges finite for high sites
 
 double range_m(double from_centre_m, double sine_of_elevation, double altitude_m) {
   const double along = from_centre_m * sine_of_elevation, radius_m = earth_radius_m + altitude_m;
@@ -31,7 +31,7 @@ RefractionParallax refraction_parallax(const FrameHeader& header, const Vec<Gcrs
   const double aside_m = refraction->aside_m(refraction->apparent_from_true_rad(std::asin(sine)));
   p.offset_m = p.upwards * aside_m;
 
-  constexpr int steps = 64;  // of the logarithm of altitude: the moments to 1e-4
+  constexpr int steps = 64;  // in the logarithm of altitude: moments to 1e-4
   double mean = 0.0, square = 0.0;
   for (int i = 0; i < steps; ++i) {
     const double altitude_m =

@@ -8,22 +8,22 @@
 
 namespace dmise {
 
-/// A frame as the fits see it: electrons less background, noise, saturation, star trails.
+/// A frame prepared for fits: background-subtracted electrons, noise, saturation, star trails.
 struct Scene {
   const CountImage& counts;
   const Background& background;
   const StarMotion& stars;
   double gain_e_per_dn;
-  double saturation_dn;  // counts from here on may be clipped, noise of reading allowed for
-  double sigma_px;       // of a point source's Gaussian, pixel included
-  bool blooming;         // charge above the full well runs along columns
+  double saturation_dn;  // lowest possibly clipped count, with read noise
+  double sigma_px;       // of a point source, including the pixel
+  bool blooming;         // charge above the full well flows along columns
 
   bool contains(int x, int y) const {
     return x >= 0 && y >= 0 && x < counts.columns && y < counts.rows;
   }
   bool saturated(int x, int y) const { return counts.at(x, y) >= saturation_dn; }
-  /// Not clipped itself, nor the pixel that takes what is left of a neighbour's overflow.
-  bool tells_light(int x, int y) const {
+  /// Whether a pixel is neither clipped nor next to a clipped pixel's overflow.
+  bool is_usable(int x, int y) const {
     if (saturated(x, y)) return false;
     return !blooming ||
            !((y > 0 && saturated(x, y - 1)) || (y + 1 < counts.rows && saturated(x, y + 1)));
@@ -33,7 +33,7 @@ struct Scene {
     return {x, y, float((counts.at(x, y) - background.level_dn(x, y)) * gain_e_per_dn),
             float(noise_e * noise_e)};
   }
-  /// A star's light at `place`, without flux.
+  /// Trail of a star at a position, without flux.
   Trail star_trail(double x_px, double y_px) const {
     const PixelPosition d = stars.trail_at({x_px, y_px});
     Trail trail;
@@ -45,20 +45,20 @@ struct Scene {
   }
 };
 
-/// A source after its last fit: what a detection is made of.
+/// A source after its final fit.
 struct Source {
   TrailFit fit;       // trails[0]; line parameters free if `streak`
-  unsigned free = 0;  // which of them
+  unsigned free = 0;  // mask of the free ones
   bool streak = false;
   bool saturated = false;
   bool at_edge = false;
-  double model_error = 0.0;  // relative, of the PSF, by which hypotheses are compared
+  double model_error = 0.0;  // relative error of the PSF in comparisons
 
   const Trail& trail() const { return fit.trails[0]; }
   double snr() const { return trail().flux_e / std::sqrt(fit.cov(2, 2)); }
 };
 
-/// Length of the smallest difference between two trails whose directions have no sign [px].
+/// Length of the smallest difference between two trails, up to their sign [px].
 inline double trail_difference_px(const Trail& a, const Trail& b) {
   const double ax = a.length_px * std::cos(a.angle_rad), ay = a.length_px * std::sin(a.angle_rad);
   const double bx = b.length_px * std::cos(b.angle_rad), by = b.length_px * std::sin(b.angle_rad);

@@ -7,13 +7,13 @@
 namespace dmise {
 namespace {
 
-constexpr double bent_from_px = 15.0;     // a shorter streak is taken as straight
-constexpr double sloped_from_px = 15.0;   // and as evenly bright
-constexpr int most_rounds = 8;            // of fitting and leaving out
-constexpr double settled_px = 0.5;        // ends that move less stay
-constexpr double background_prior = 0.1;  // of the mesh, in units of a pixel's noise
+constexpr double bent_from_px = 15.0;     // shorter streaks are straight
+constexpr double sloped_from_px = 15.0;   // and uniformly bright
+constexpr int most_rounds = 8;            // of fitting and rejecting
+constexpr double settled_px = 0.5;        // convergence of the ends
+constexpr double background_prior = 0.1;  // error of the mesh, in units of a pixel's noise
 
-/// Drops pixels that stand out of the model, with their neighbours, up or far down.
+/// Rejects pixels far above or below the model, with their neighbours.
 std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels, const Trail& trail,
                                        double background_e, double tolerance, double sigma_px) {
   std::vector<const FitPixel*> outliers;
@@ -36,7 +36,7 @@ std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels, cons
   return out;
 }
 
-/// Is a pixel clipped within one of the line?
+/// Whether a pixel within one pixel of the line is clipped.
 bool is_saturated(const Scene& scene, const Trail& trail) {
   const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
   const int steps = int(std::ceil(trail.length_px)) + 1;
@@ -52,8 +52,8 @@ bool is_saturated(const Scene& scene, const Trail& trail) {
   return false;
 }
 
-/// Takes `trail` to `target`, but neither end farther than `limit_px`: the light beyond was not
-/// looked at. Returns how far the farther end wanted to go.
+/// Moves `trail` to `target`, but neither end by more than `limit_px`: light beyond was not
+/// examined. Returns the requested distance of the farther end.
 double move_ends(Trail& trail, const Trail& target, double limit_px) {
   const auto end = [](const Trail& t, double side) {
     return PixelPosition{t.x_px + side * t.length_px / 2 * std::cos(t.angle_rad),
@@ -92,7 +92,7 @@ std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double
   std::vector<FitPixel> out;
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x)
-      if (lies_on(trail, x, y, margin_px) && scene.tells_light(x, y))
+      if (lies_on(trail, x, y, margin_px) && scene.is_usable(x, y))
         out.push_back(scene.pixel(x, y));
   return out;
 }
@@ -131,7 +131,7 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
        ++round) {
     if (!plausible(scene, trail)) return std::nullopt;
     const auto all = pixels_near(scene, trail, margin_px);
-    // Of a start only the brightness is known, and only of a streak's.
+    // A starting trail has a known brightness only for a streak.
     pixels = round > 0
                  ? without_outliers(all, trail, source.fit.background_e, tolerance, scene.sigma_px)
              : streak && start.length_px > sloped_from_px

@@ -8,7 +8,7 @@
 namespace dmise {
 namespace {
 
-constexpr int most_stars = 4;  // in a row, that may pass for a streak
+constexpr int most_stars = 4;  // in a row, that may imitate a streak
 
 /// `count` stars in a row along the line, which share its flux.
 std::vector<Trail> stars_along(const Trail& line, const Trail& star, int count) {
@@ -24,12 +24,12 @@ std::vector<Trail> stars_along(const Trail& line, const Trail& star, int count) 
   return out;
 }
 
-/// Length of the trail across the direction of another.
+/// Length of the trail perpendicular to another.
 double across_px(const Trail& trail, const Trail& other) {
   return trail.length_px * std::abs(std::sin(trail.angle_rad - other.angle_rad));
 }
 
-/// Could the line be what noise left of one star's trail, wherever along that it lies?
+/// Whether the line may be a noisy piece of one star's trail.
 bool is_piece_of_star(const Scene& scene, const Trail& line, const Trail& star, double margin_px,
                       const DetectorSettings& settings, const FitSettings& fit_settings) {
   const double spare_px = star.length_px - line.length_px;
@@ -89,7 +89,7 @@ bool beats_stars(const Scene& scene, const Source& source, const DetectorSetting
   fit_settings.most_steps = 15;
   if (is_piece_of_star(scene, line, star, margin_px, settings, fit_settings)) return false;
   const double as_line = fit_trails(pixels, {line}, {trail_line}, fit_settings).deviance;
-  // More stars fit better by chance, by about one for each of their parameters beyond the line's.
+  // More stars fit better by chance, by about one per additional parameter.
   for (int count = 2; count <= most_stars; ++count) {
     const double freedom = 3.0 * count - 5.0;
     const double as_stars = deviance_of_stars(pixels, line, star, count, fit_settings) + freedom;

@@ -6,23 +6,22 @@
 
 namespace dmise {
 
-// What else could have made the light: the questions that a streak must answer before it is
-// believed.
+// Tests of alternative explanations by stars that a streak must pass.
 
-/// Deviance of the pixels when `count` stars in a row along the line are fitted to them.
+/// Deviance of the pixels for a fit of `count` stars in a row along the line.
 double deviance_of_stars(const std::vector<FitPixel>& pixels, const Trail& line, const Trail& star,
                          int count, const FitSettings& settings);
 
-/// Is it as long as a star's trail there and along it? At the frame's edge, which may have cut it:
-/// no longer, and along it.
+/// Whether a source has the length and direction of a star's trail; at the frame's edge, which may
+/// have cut it: at most the length, and the direction.
 bool moves_like_star(const Source& source, const Trail& star, double tolerance_px);
 
-/// Is a point a better account of the light around the source than a star's trail, also where only
-/// the trail's ends would be?
+/// Whether a point explains the light around the source better than a star's trail, also than one
+/// of which only an end is there.
 bool point_beats_star(const Scene& scene, const Source& source, const DetectorSettings& settings);
 
-/// Is a line a better account of the light around the source than two, three or four stars in a
-/// row, and than one star whose trail it is a piece of?
+/// Whether a line explains the light around the source better than two, three or four stars in a
+/// row, and than a piece of one star's trail.
 bool beats_stars(const Scene& scene, const Source& source, const DetectorSettings& settings);
 
 }  // namespace dmise

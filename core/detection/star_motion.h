@@ -6,15 +6,15 @@
 
 namespace dmise {
 
-/// How the star field moves over the detector during the exposure, from the header's attitudes and
-/// projection. Distortion and differential refraction are left out: of a trail they change per
-/// mille.
+/// Motion of the star field over the detector during the exposure, from the header's attitudes and
+/// projection. Distortion and differential refraction are neglected: they change a trail by parts
+/// per thousand.
 class StarMotion {
  public:
   StarMotion(const FrameHeader& header, int columns, int rows);
 
-  /// Displacement [px] from start to end of the exposure of the star that is at `pixel` in its
-  /// middle; zero where the projection has no place for it.
+  /// Displacement [px] from start to end of the exposure of the star at `pixel` in its middle; zero
+  /// where the projection has no image.
   PixelPosition trail_at(PixelPosition pixel) const;
 
  private:

@@ -43,7 +43,7 @@ class NormalTable {
 };
 const NormalTable normal;
 
-/// A trail made ready to be evaluated.
+/// A trail prepared for evaluation.
 class Evaluator {
  public:
   Evaluator(const Trail& trail, double sigma_px)
@@ -56,7 +56,7 @@ class Evaluator {
   double operator()(double px, double py, std::array<double, trail_parameters>& d) const {
     const double dx = px - t_.x_px, dy = py - t_.y_px;
     const double along = dx * cos_ + dy * sin_, across = dy * cos_ - dx * sin_;
-    double a = 0.0, a_along = 0.0, a_length = 0.0;  // of the light along the line, per px
+    double a = 0.0, a_along = 0.0, a_length = 0.0;  // light along the line, per px
     double w = 1.0, w_along = 0.0, w_length = 0.0, w_slope = 0.0;
     double bend = 0.0, bend_along = 0.0, bend_length = 0.0, bend_sagitta = 0.0;
     const double length = t_.length_px;
@@ -105,7 +105,7 @@ class Evaluator {
 using Vector = std::array<double, most_parameters>;
 using Matrix = std::array<Vector, most_parameters>;
 
-/// Lower Cholesky factor in place of the lower triangle; false when not positive definite.
+/// Replaces the lower triangle by its Cholesky factor; false if not positive definite.
 bool cholesky(Matrix& m, std::size_t n) {
   for (std::size_t j = 0; j < n; ++j) {
     for (std::size_t k = 0; k < j; ++k) m[j][j] -= m[j][k] * m[j][k];
@@ -152,9 +152,8 @@ class Problem {
 
   std::size_t size() const { return size_; }
 
-  /// Everything about one state of the fit. Weights come from the model itself, so each state has
-  /// its own; `merit` is its chi2 by the weights of the state before, which is what a step must
-  /// lower.
+  /// One state of the fit. Weights depend on the model, so each state has its own; `merit` is its
+  /// chi2 with the weights of the previous state, which a step must reduce.
   struct Linear {
     State state;
     Matrix matrix{};
@@ -190,7 +189,7 @@ class Problem {
       out.merit += residual * residual / (before ? (*before)[p] : variance);
       out.variance[p] = variance;
       product *= variance;
-      if (product > 1e200 || product < 1e-200) {  // a logarithm for many pixels at once
+      if (product > 1e200 || product < 1e-200) {  // one logarithm for many pixels
         logs += std::log(product);
         product = 1.0;
       }

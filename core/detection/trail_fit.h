@@ -4,9 +4,9 @@
 
 namespace dmise {
 
-/// Light of one source: a line from end to end, convolved with a round Gaussian. Length 0 is a
-/// point. The line may bend (`sagitta_px`, of a parabola whose mean offset from the chord's middle
-/// line is zero) and brighten towards one end (`slope`, relative, at +length/2).
+/// Light of one source: a line convolved with a round Gaussian. Length 0 is a point. The line may
+/// be curved (`sagitta_px`, of a parabola with zero mean offset from the chord) and have a
+/// brightness gradient (`slope`, relative, at +length/2).
 struct Trail {
   double x_px = 0.0, y_px = 0.0;
   double flux_e = 0.0;
@@ -16,7 +16,7 @@ struct Trail {
   double sagitta_px = 0.0;
 };
 
-/// Which parameters of a trail a fit may move, in the order of the result's covariance.
+/// Parameters of a trail that a fit may vary, in the order of the result's covariance.
 enum TrailParameter : unsigned {
   trail_x = 1u << 0,
   trail_y = 1u << 1,
@@ -30,7 +30,7 @@ inline constexpr unsigned trail_place = trail_x | trail_y | trail_flux;
 inline constexpr unsigned trail_line = trail_place | trail_length | trail_angle;
 inline constexpr unsigned trail_bent_line = trail_line | trail_slope | trail_sagitta;
 
-/// A pixel less its background [e-], and the variance that it has without the source [e-^2].
+/// Background-subtracted pixel [e-], and its variance without the source [e-^2].
 struct FitPixel {
   int x = 0, y = 0;
   float signal_e = 0.0f;
@@ -38,11 +38,11 @@ struct FitPixel {
 };
 
 struct FitSettings {
-  double sigma_px = 1.0;            // of the Gaussian, pixel included
+  double sigma_px = 1.0;            // of the Gaussian, including the pixel
   double model_error = 0.0;         // relative error of the model, added to the noise
-  double background_sigma_e = 0.0;  // > 0: an even background is fitted too, with this prior
+  double background_sigma_e = 0.0;  // > 0: fits a constant background with this prior
   int most_steps = 12;
-  double settled_chi2 = 1e-4;  // a step that gains less is the last
+  double settled_chi2 = 1e-4;  // convergence: smallest gain of a step
 };
 
 struct TrailFit {
@@ -57,16 +57,16 @@ struct TrailFit {
 
   double cov(int i, int j) const { return covariance[std::size_t(i * parameters + j)]; }
   double reduced_chi2() const { return degrees > 0 ? chi2 / degrees : 0.0; }
-  /// Within `sigmas` of what noise alone would leave.
+  /// Whether the chi2 is within `sigmas` of its expectation.
   bool good(double sigmas) const;
 };
 
-/// Electrons of the trail in pixel (x, y). The square pixel's integral is taken as a Gaussian wider
-/// by 1/12 px^2 (that is in `sigma_px`): 0.4 % at the peak for a FWHM of 1.5 px.
+/// Electrons of the trail in pixel (x, y). The pixel's integral is approximated by a Gaussian wider
+/// by 1/12 px^2 (included in `sigma_px`): 0.4 % error at the peak for a FWHM of 1.5 px.
 double trail_value(const Trail& trail, double sigma_px, double x, double y);
 
-/// Least squares (Levenberg-Marquardt) with the noise of background and photons. `free` has one
-/// mask of `TrailParameter` for each trail; at most 12 parameters in all.
+/// Least-squares fit (Levenberg-Marquardt) with the noise of background and photons. `free` has one
+/// mask of `TrailParameter` per trail; at most 12 parameters in total.
 TrailFit fit_trails(const std::vector<FitPixel>& pixels, std::vector<Trail> start,
                     const std::vector<unsigned>& free, const FitSettings& settings);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t column_grain = 16, row_grain = 64, pixel_grain = 16384;
 
-// Moves `excess` (one value a row) along a column in one direction, and fills it up on the way.
+// Moves `excess` (one value per row) along a column in one direction, filling pixels on the way.
 template <class Pixel>
 void run(int rows, int step, float well, const std::vector<float>& excess, const Pixel& pixel) {
   double carried = 0.0;
@@ -27,12 +27,12 @@ void run(int rows, int step, float well, const std::vector<float>& excess, const
   }
 }
 
-// Shares out what is above the well in one column; `excess` has room for each row.
+// Distributes the charge above the well in one column; `excess` has room for each row.
 void bloom_column(int x, float well, ElectronImage& electrons, std::vector<float>& excess,
                   FlagImage* flags) {
   const int rows = electrons.rows;
   const auto pixel = [&](int y) -> float& { return electrons.at(x, y); };
-  std::vector<float> own(flags ? excess.size() : 0);  // what a pixel holds of its own
+  std::vector<float> own(flags ? excess.size() : 0);  // charge of the pixel itself
   for (int y = 0; y < rows; ++y) {
     float& e = pixel(y);
     excess[std::size_t(y)] = 0.5f * std::max(0.0f, e - well);
@@ -78,7 +78,7 @@ std::span<const DetectorParameter> Blooming::parameters() {
   return table;
 }
 
-// Without a full well nothing runs over.
+// Without a full well nothing overflows.
 bool Blooming::applies(const Detector& detector) const {
   return blooming && detector.well_is_limited;
 }

@@ -3,10 +3,10 @@
 
 namespace dmise {
 
-/// Lets charge above the full well run along its column, half up and half down, into pixels with
-/// room; what reaches an end of the column is drained.
+/// Charge above the full well flows along its column, half up and half down, into pixels below
+/// their well; charge that reaches an end of the column is drained.
 struct Blooming {
-  static constexpr EffectFacts facts{"blooming", "charge above the full well runs along the column",
+  static constexpr EffectFacts facts{"blooming", "charge above the full well flows along columns",
                                      "it is lost",
                                      "Janesick 2001, Scientific Charge-Coupled Devices"};
   bool blooming = false;
@@ -18,7 +18,8 @@ struct Blooming {
   void apply(const ExposureFacts& exposed, const WholeImage& image) const;
 };
 
-/// Returns how many pixels end full. Sets `flag_full_well` and `flag_bloomed` if `flags` are given.
+/// Returns how many pixels are full afterwards. Sets `flag_full_well` and `flag_bloomed` if `flags`
+/// are given.
 std::size_t bloom(double full_well_e, ElectronImage& electrons, Threads& threads,
                   FlagImage* flags = nullptr);
 

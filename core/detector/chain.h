@@ -13,7 +13,7 @@ namespace dmise {
 
 enum class Reach { piece, neighbours, image };
 
-/// What an effect needs of the image.
+/// Which part of the image an effect needs.
 template <class Effect>
 constexpr Reach reach_of() {
   using X = const ExposureFacts&;
@@ -23,7 +23,7 @@ constexpr Reach reach_of() {
   return Reach::piece;
 }
 
-/// What an effect prepares before the first pixel.
+/// Result of an effect's `prepare`.
 template <class Effect>
 auto prepared(const Effect& effect, const ExposureFacts& exposed) {
   if constexpr (requires { effect.prepare(exposed); })
@@ -57,8 +57,8 @@ class ActingEffect {
   Prepared prepared_;
 };
 
-/// The effects of a family that apply to one exposure. It owns their switching, their random keys
-/// and the record of their time. It visits the list once a piece, never once a pixel.
+/// The effects of a family that apply to one exposure, with their random keys and timing.
+/// Dispatches once per piece, never per pixel.
 template <class List>
 class Chain;
 
@@ -68,7 +68,7 @@ class Chain<EffectList<Effects...>> {
   static constexpr std::size_t size = sizeof...(Effects);
   using Seconds = std::array<double, size>;
 
-  /// `exposed` but for its keys. What it refers to must outlive the chain.
+  /// `exposed` without its keys. Objects it refers to must outlive the chain.
   Chain(ExposureFacts exposed, Seconds& seconds) {
     Laps laps;
     each_slot([&]<class Effect>(std::size_t i, std::optional<ActingEffect<Effect>>& slot) {
@@ -76,14 +76,15 @@ class Chain<EffectList<Effects...>> {
       if (!effect.applies(exposed.detector)) return;
       const Exposure& named = exposed.exposure;
       exposed.key = rng_key(named.seed, named.sensor, named.frame, Effect::facts.name);
-      // Frame 0, which no exposure has.
+      // Frame 0 does not exist otherwise.
       exposed.fixed_key = rng_key(named.seed, named.sensor, 0, Effect::facts.name);
       slot.emplace(effect, exposed);
       laps.charge(seconds[i]);
     });
   }
 
-  /// The first effect from `from` on that needs pixels beyond its piece; `size` if there is none.
+  /// Index of the first effect from `from` on that needs pixels outside its piece; `size` if there
+  /// is none.
   std::size_t next_beyond_pieces(std::size_t from) const {
     std::size_t found = size;
     each([&](std::size_t i, const auto& effect) {
@@ -99,8 +100,8 @@ class Chain<EffectList<Effects...>> {
     return reach;
   }
 
-  /// Runs effects `begin` to before `end` on a piece. The first may need the pixels around it,
-  /// which are those of `image`.
+  /// Runs the effects [begin, end) on a piece. The first may need neighbouring pixels, which it
+  /// takes from `image`.
   void run(std::size_t begin, std::size_t end, const ElectronImage* image, Piece& piece,
            Seconds& seconds) const {
     Laps laps;
@@ -124,7 +125,7 @@ class Chain<EffectList<Effects...>> {
     });
   }
 
-  /// Adds the seconds of the effects that ran to `times`.
+  /// Adds the run times of the effects to `times`.
   void record(const Seconds& seconds, EffectTimes& times) const {
     each([&]<class Effect>(std::size_t i, const ActingEffect<Effect>&) {
       times[Effect::facts] += seconds[i];

@@ -5,11 +5,11 @@
 
 namespace dmise {
 
-/// A normal offset of every column, new in each frame.
+/// A normal deviate per column, new in each frame.
 struct ColumnNoise {
   static constexpr EffectFacts facts{"column_noise",
-                                     "every column is read with an offset, new in each frame",
-                                     "none", "normal distribution, assumed"};
+                                     "random offset of every column, new in each frame", "none",
+                                     "normal distribution, assumed"};
   double column_noise_e = 0.0;  // rms
   bool operator==(const ColumnNoise&) const = default;
 

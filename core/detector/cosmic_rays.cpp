@@ -12,8 +12,8 @@
 namespace dmise {
 namespace {
 
-// Share of a track of `length` from `from` in the direction `slope` at which each pixel border of
-// one axis is crossed, appended to `cuts`.
+// Appends to `cuts` the fractions of a track of `length` from `from` in the direction `slope` at
+// which it crosses pixel borders of one axis.
 void add_crossings(double from, double extent, std::vector<double>& cuts) {
   if (extent == 0.0) return;
   const double low = std::min(from, from + extent), high = std::max(from, from + extent);

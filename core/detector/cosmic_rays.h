@@ -5,23 +5,23 @@
 
 namespace dmise {
 
-/// Charge that a cosmic ray left in a pixel.
+/// Charge deposited by a cosmic ray in a pixel.
 struct CosmicCharge {
   std::uint32_t pixel;
   float electrons;
 };
 
-/// Most cosmic ray hits in one exposure: more are refused.
+/// Limit on the number of hits in one exposure.
 inline constexpr double most_cosmic_hits = 1e7;
 
-/// Straight tracks through the sensitive layer, isotropic from above, each pixel charged by the
-/// length of track within it. Landau's fluctuations are left out: charge follows the length alone.
+/// Straight tracks through the sensitive layer, isotropic from above; each pixel is charged by the
+/// track length inside it. Landau fluctuations are neglected.
 struct CosmicRays {
   static constexpr EffectFacts facts{"cosmic_rays", "charged particles leave tracks",
                                      "no false points and streaks",
                                      "geometry of isotropic flux through a slab"};
   double cosmic_rays_per_px_s = 0.0;    // hits
-  double cosmic_ray_e_per_px = 1000.0;  // charge left in a pixel pitch of track
+  double cosmic_ray_e_per_px = 1000.0;  // charge per pixel pitch of track
   double cosmic_ray_depth_px = 1.0;     // depth of the sensitive layer in pixel pitches
   bool operator==(const CosmicRays&) const = default;
 
@@ -30,10 +30,10 @@ struct CosmicRays {
   bool applies(const Detector&) const {
     return cosmic_rays_per_px_s > 0.0 && cosmic_ray_e_per_px > 0.0;
   }
-  /// Charges of one exposure, by rising pixel.
+  /// Charges of one exposure, sorted by pixel.
   using Prepared = std::vector<CosmicCharge>;
   Prepared charges(int columns, int rows, double exposure_s, const RngKey& key) const;
-  /// Throws `Error` for more than `most_cosmic_hits` expected hits.
+  /// Throws `Error` if more than `most_cosmic_hits` hits are expected.
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& charges, Piece& piece) const;
 };

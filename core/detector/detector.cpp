@@ -63,7 +63,7 @@ std::vector<DetectorParameter> all_parameters() {
   return all;
 }
 
-/// What is wrong with a number for a parameter; empty: nothing.
+/// Returns why a number is invalid for a parameter; empty if it is valid.
 std::string complaint(const DetectorParameter& p, double number) {
   const bool above = p.least_open ? number > p.least : number >= p.least;
   if (above && number <= p.most) return "";

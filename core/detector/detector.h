@@ -21,34 +21,35 @@
 
 namespace dmise {
 
-/// What happens between the light on the pixels and the counts, in the order in which it happens.
+/// Effects between light on the pixels and counts, in running order.
 using DetectorEffects =
     EffectList<FrameTransfer, PixelResponse, PhotonNoise, DarkCurrent, HotPixels, CosmicRays,
                ReferencePixels, Persistence, FullWell, Blooming, InterpixelCoupling, Nonlinearity,
                ColumnNoise, ReadNoise, Quantisation>;
 
-/// A detector's parameters, those of its effects first. What is 0 does nothing and costs nothing.
+/// Parameters of a detector, those of its effects first. Effects with parameters of 0 do nothing
+/// and cost nothing.
 struct Detector : DetectorEffects::Parameters {
   double quantum_efficiency = 1.0;  // mean over the band, (0, 1]
 
   bool operator==(const Detector&) const = default;
 };
 
-/// Those that every header and digest has, in the order that products keep; then the others, which
-/// stand there when they are not at their defaults.
+/// All parameters in the order of products: those in every header and digest, then the others,
+/// which are included if they are not at their defaults.
 std::span<const DetectorParameter> detector_parameters();
 bool in_every_header(const DetectorParameter& parameter);
 
-/// The first fault, if any.
+/// Returns the first invalid parameter, if any.
 std::optional<DetectorFault> fault_of(const Detector& detector);
-/// Throws `ConfigError` "detector.KEY: reason, got value" when there is one.
+/// Throws `ConfigError` "detector.KEY: reason, got value" if a parameter is invalid.
 void check(const Detector& detector);
 
-/// The detector as it acts on a frame: effects that are off have parameters with which they do
-/// nothing; dark currents and their reference are those at `temperature_c`.
+/// Returns the detector for a frame: the parameters of effects that are off are neutral; dark
+/// currents and their reference are those at `temperature_c`.
 Detector acting_detector(const Detector& detector, const EffectSet& effects);
 
-/// The effects that have something to do in a frame of a detector as it acts, in their order.
+/// Effects that change anything in a frame of `acting`, in running order.
 std::vector<const EffectFacts*> applying_effects(const Detector& acting);
 
 }  // namespace dmise

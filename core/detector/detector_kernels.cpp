@@ -5,9 +5,9 @@
 namespace dmise::DMISE_SIMD {
 namespace {
 
-constexpr std::size_t group = 4 * rng_group;  // pixels that are worked on together
+constexpr std::size_t group = 4 * rng_group;  // pixels processed together
 
-// One group of pixels; false, and nothing written, when one of the means can't be.
+// One group of pixels; false, and nothing written, if one of the means is invalid.
 DMISE_INLINE bool poisson_group(const RngKey& key, std::uint32_t first, const float* mean,
                                 float* out) {
   I32 fine = I32{} - 1, large = fine;
@@ -38,7 +38,7 @@ DMISE_INLINE bool poisson_group(const RngKey& key, std::uint32_t first, const fl
         const F64 wide = __builtin_convertvector(load<F32Half>(mean + i + h), F64);
         const U64 a = __builtin_convertvector(load<U32Half>(high + i + h), U64);
         const U64 b = __builtin_convertvector(load<U32Half>(low + i + h), U64);
-        // Lanes of the other branch must not keep the search going.
+        // Lanes of the other branch must not prolong the search.
         const F64 u = wide < 24.0 ? uniform_of(a, b) : F64{};
         const F64 k = poisson_small(wide < 24.0 ? wide : F64{}, u);
         store(few + h, __builtin_convertvector(k, F32Half));
@@ -50,8 +50,8 @@ DMISE_INLINE bool poisson_group(const RngKey& key, std::uint32_t first, const fl
   return true;
 }
 
-// Calls work(pixels of a whole group from i on, how many of them count); a group that is not whole
-// is copied out of and into `data`.
+// Calls work(group from i on, number of valid pixels); an incomplete group is copied out of and
+// back into `data`.
 template <class T, class Work>
 DMISE_INLINE void in_groups(T* data, std::size_t count, T fill, const Work& work) {
   std::size_t i = 0;
@@ -119,7 +119,7 @@ void add_normal(const RngKey& key, std::uint32_t first, float sigma, float* sum,
   in_groups(sum, count, 0.0f, [&](std::size_t i, float* e) {
     alignas(64) std::uint32_t words[group];
     words_of<group>(key, first + std::uint32_t(i), 0, words);
-    for (std::size_t j = 0; j < group; j += 2 * lanes) {  // two, to hide each other's latency
+    for (std::size_t j = 0; j < group; j += 2 * lanes) {  // two, to hide latency
       const F32 a = normal_of_words(load<U32>(words + j));
       const F32 b = normal_of_words(load<U32>(words + j + lanes));
       store(e + j, load<F32>(e + j) + sigma * a);

@@ -4,7 +4,7 @@
 
 #include "core/base/rng.h"
 
-// The detector's loops over pixels, one copy per instruction set. `first` is a multiple of
+// The detector's loops over pixels, compiled once per instruction set. `first` is a multiple of
 // rng_group.
 namespace dmise {
 
@@ -36,7 +36,7 @@ DMISE_DETECTOR_KERNELS(avx2)
 DMISE_DETECTOR_KERNELS(avx512)
 #undef DMISE_DETECTOR_KERNELS
 
-/// `kernel_of(level, sse2::f, avx2::f, avx512::f)` is the one of the three for `level`.
+/// Returns the function for `level`: `kernel_of(level, sse2::f, avx2::f, avx512::f)`.
 template <class Function>
 Function* kernel_of(SimdLevel level, Function* sse2, Function* avx2, Function* avx512) {
   return level == SimdLevel::avx512 ? avx512 : level == SimdLevel::avx2 ? avx2 : sse2;

@@ -3,10 +3,10 @@
 
 namespace dmise {
 
-/// Standard deviation [e-] from frame to frame that `expose` gives each pixel: photons, dark
-/// current, hot pixels, columns, reading and rounding, of the effects that are on. Not in it: what
-/// is the same in every frame (prnu), cosmic rays, what clipping takes away, charge of persistence,
-/// and the mixing by interpixel coupling. Non-linearity acts by its slope.
+/// Standard deviation [e-] between frames that `expose` gives each pixel: photons, dark current,
+/// hot pixels, columns, read noise and rounding, of the effects that are on. Not included: fixed
+/// patterns (prnu), cosmic rays, clipping, persistence, and mixing by interpixel coupling.
+/// Nonlinearity acts by its slope.
 ElectronImage expected_noise(const ExpectedElectronImage& light, const Detector& detector,
                              const Exposure& exposure, const EffectSet& effects, Threads& threads);
 

@@ -24,7 +24,7 @@ void check(const ExpectedElectronImage& light, const Exposure& exposure) {
   if (!(exposure.idle_s >= 0.0)) throw Error("expose: idle_s must be >= 0");
 }
 
-/// Names the first pixel from `begin` on that expects no number of electrons.
+/// Throws an error that names the first pixel from `begin` on without a valid expectation.
 [[noreturn]] void refuse(const ExpectedElectronImage& light, std::size_t begin) {
   std::size_t i = begin;
   while (light.pixels[i] >= 0.0f && light.pixels[i] <= poisson_largest_mean) ++i;
@@ -95,7 +95,7 @@ SaturatedPixels expose(const ExpectedElectronImage& light, const Detector& param
     });
   };
 
-  // Pieces run as far as the next effect that needs more of the image.
+  // Pieces run up to the next effect that needs more of the image.
   std::size_t end = chain.next_beyond_pieces(0);
   if (end < DetectorChain::size) resize_like(light, image);
   on_pieces(0, end, true, false);

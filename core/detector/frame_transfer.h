@@ -5,15 +5,15 @@
 
 namespace dmise {
 
-/// Smear of a CCD without a shutter: its image is shifted under the mask, towards row 0, while
-/// light still falls. A pixel gains the light of every row that it passes, times the time that a
-/// row takes over the exposure. The rows' own responses are left out of that gain.
+/// Smear of a shutterless CCD: the image is shifted under the mask, towards row 0, while it is
+/// still exposed. A pixel gains the light of every row that it passes, times the shift time per row
+/// over the exposure time. Pixel response is not applied to that gain.
 struct FrameTransfer {
   static constexpr EffectFacts facts{
-      "frame_transfer", "light still falls while the image is shifted under the mask",
+      "frame_transfer", "the image is still exposed while it is shifted under the mask",
       "no smear: the light of the rows passed, times a row's time over the exposure",
       "Ruyten 1999, Opt. Lett. 24, 878"};
-  double frame_transfer_s = 0.0;  // in which all rows are shifted; 0: a shutter, no smear
+  double frame_transfer_s = 0.0;  // time to shift all rows; 0: a shutter, no smear
   bool operator==(const FrameTransfer&) const = default;
 
   static std::span<const DetectorParameter> parameters();

@@ -12,7 +12,7 @@ std::span<const DetectorParameter> FullWell::parameters() {
 }
 
 bool FullWell::applies(const Detector& detector) const {
-  return well_is_limited && !detector.blooming;  // which decides then
+  return well_is_limited && !detector.blooming;  // blooming handles the excess
 }
 
 void FullWell::apply(const ExposureFacts& exposed, Piece& piece) const {

@@ -3,9 +3,9 @@
 
 namespace dmise {
 
-/// A pixel holds `full_well_e` electrons; more are lost, unless they bloom.
+/// A pixel holds at most `full_well_e` electrons; the excess is lost, unless it blooms.
 struct FullWell {
-  static constexpr EffectFacts facts{"full_well", "a pixel holds so many electrons and no more",
+  static constexpr EffectFacts facts{"full_well", "limit of electrons per pixel",
                                      "no saturation before the ADC",
                                      "Janesick 2001, Scientific Charge-Coupled Devices"};
   double full_well_e = 1e5;

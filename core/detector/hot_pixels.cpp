@@ -19,7 +19,7 @@ std::span<const DetectorParameter> HotPixels::parameters() {
 
 HotPixels::Prepared HotPixels::among(std::size_t pixels, const RngKey& fixed_key) const {
   Prepared hot;
-  // From one to the next: the distance is geometrically distributed.
+  // The distance to the next hot pixel is geometrically distributed.
   const double step = std::log1p(-std::min(hot_pixel_fraction, 1.0 - 1e-9));
   if (!(step < 0.0)) return hot;
   double at = -1.0;

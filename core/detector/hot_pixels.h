@@ -5,17 +5,17 @@
 
 namespace dmise {
 
-/// A pixel with more dark current than the others.
+/// A pixel with excess dark current.
 struct HotPixel {
   std::uint32_t pixel;
   float dark_e_per_s;
 };
 
-/// Pixels that are hot with some probability and stay so. Their extra dark current is exponentially
-/// distributed and gives each a Poisson deviate of its own in every frame.
+/// A random, fixed subset of pixels is hot. Their excess dark current is exponentially distributed
+/// and adds a Poisson deviate in every frame.
 struct HotPixels {
   static constexpr EffectFacts facts{"hot_pixels",
-                                     "some pixels have far more dark current than the rest",
+                                     "some pixels have far more dark current than others",
                                      "no false points", "exponential distribution, assumed"};
   double hot_pixel_fraction = 0.0;  // of all pixels, 0..1
   double hot_pixel_e_per_s = 0.0;   // mean of their extra dark current at dark_reference_c
@@ -26,7 +26,7 @@ struct HotPixels {
   bool applies(const Detector&) const {
     return hot_pixel_fraction > 0.0 && hot_pixel_e_per_s > 0.0;
   }
-  /// Those among `pixels`, by rising index.
+  /// The hot pixels among `pixels`, sorted by index.
   using Prepared = std::vector<HotPixel>;
   Prepared among(std::size_t pixels, const RngKey& fixed_key) const;
   Prepared prepare(const ExposureFacts& exposed) const {

@@ -22,7 +22,7 @@ void couple(double coupling, const ElectronImage& electrons, std::size_t first,
             std::span<float> signal) {
   const auto columns = std::size_t(electrons.columns), rows = std::size_t(electrons.rows);
   const auto share = float(coupling);
-  // Row by row: where a neighbour is missing, the pixel itself stands for it and gains nothing.
+  // Row by row; a missing neighbour is replaced by the pixel itself, which contributes nothing.
   for (std::size_t i = 0; i < signal.size();) {
     const std::size_t y = (first + i) / columns, begin = (first + i) % columns;
     const std::size_t end = std::min(columns, begin + signal.size() - i);

@@ -3,10 +3,10 @@
 
 namespace dmise {
 
-/// A share of every pixel's signal is seen by each of its four neighbours instead.
+/// A fraction of every pixel's signal appears in each of its four neighbours instead.
 struct InterpixelCoupling {
   static constexpr EffectFacts facts{
-      "interpixel_coupling", "a pixel's signal is seen by its neighbours",
+      "interpixel_coupling", "part of a pixel's signal appears in its neighbours",
       "noise of neighbours uncorrelated; shot noise looks 1 - 8 times the coupling smaller with it",
       "Moore, Ninkov & Forrest 2006, Opt. Eng. 45, 076402"};
   double interpixel_coupling = 0.0;  // share seen by each of four neighbours

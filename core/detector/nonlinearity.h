@@ -5,7 +5,7 @@ namespace dmise {
 
 /// e (1 - l e / W): a relative loss l at the full well W.
 struct Nonlinearity {
-  static constexpr EffectFacts facts{"nonlinearity", "the amplifier loses a share of large signals",
+  static constexpr EffectFacts facts{"nonlinearity", "the amplifier's gain falls with the signal",
                                      "a straight response", "Janesick 2007, Photon Transfer"};
   double nonlinearity = 0.0;  // relative loss of signal at full well, 0..0.5
   bool operator==(const Nonlinearity&) const = default;

@@ -3,7 +3,7 @@
 
 namespace dmise {
 
-/// A Poisson deviate for the expected electrons of every pixel.
+/// Replaces the expected electrons of every pixel by a Poisson deviate.
 struct PhotonNoise {
   static constexpr EffectFacts facts{"photon_noise", "photons arrive at random (Poisson)",
                                      "expected electrons instead of a draw",

@@ -5,15 +5,15 @@
 
 namespace dmise {
 
-/// What befell a pixel; its flags are a sum of these. The bits are part of the file format.
+/// Defects of a pixel, as a sum of bits. The bits are part of the file format.
 enum PixelFlag : std::uint8_t {
-  flag_full_well = 1,  // collected all that it holds
-  flag_adc_high = 2,   // at the highest count of the ADC
-  flag_bloomed = 4,    // charge of a full neighbour ran into it
+  flag_full_well = 1,  // reached the full well
+  flag_adc_high = 2,   // at the ADC's highest count
+  flag_bloomed = 4,    // received charge of a full neighbour
   flag_hot = 8,        // on the sensor's list of hot pixels
   flag_cosmic_ray = 16,
-  flag_reference = 32,  // of the border that sees no light
-  flag_adc_low = 64,    // at count 0, where lower signals end up too
+  flag_reference = 32,  // in the border without light
+  flag_adc_low = 64,    // at count 0, possibly clipped
 };
 
 struct PixelFlagName {

@@ -3,10 +3,10 @@
 
 namespace dmise {
 
-/// Pixel response non-uniformity: light times 1 + rms z with a normal deviate z that a pixel keeps,
-/// never below 0.
+/// Pixel response non-uniformity: multiplies the light by 1 + rms z, with a fixed normal deviate z
+/// per pixel, but not below 0.
 struct PixelResponse {
-  static constexpr EffectFacts facts{"prnu", "every pixel responds to light a little differently",
+  static constexpr EffectFacts facts{"prnu", "pixel response non-uniformity",
                                      "a fixed pattern: 0.01 of the light in a usual camera",
                                      "Janesick 2007, Photon Transfer"};
   double prnu_rms = 0.0;  // relative

@@ -28,7 +28,7 @@ void poisson(const RngKey& key, std::uint32_t first, const float* mean, std::siz
     const float* bad = std::find_if_not(means + done, means + n, is_mean);
     refuse(at + std::uint32_t(bad - means), *bad);
   };
-  // Pixels before the first whole group: as the end of one of which the rest is thrown away.
+  // Pixels before the first whole group: computed as the end of a group.
   const std::size_t skipped = first % rng_group;
   const std::size_t head = skipped ? std::min<std::size_t>(count, rng_group - skipped) : 0;
   if (head) {
@@ -63,7 +63,8 @@ void ConstantPoisson::add(const RngKey& key, std::uint32_t first, float* sum, st
     bool whole = steps_ > 0 && at % rng_group == 0;
     if (whole) {
       std::fill_n(deviates, n, 0.0f);
-      // Where the 32 bits leave it open (once in 2^32 draws a threshold) the general way decides.
+      // If the 32 bits equal a threshold (probability 2^-32 per threshold), the general method
+      // decides.
       whole = !exceeded(key, at, thresholds_, steps_, deviates, n);
     }
     if (!whole) poisson(key, at, means, n, deviates, level);

@@ -5,17 +5,16 @@
 #include "core/base/rng.h"
 #include "core/base/simd_level.h"
 
-// Poisson deviates: the quantile function of one uniform number a pixel. So a deviate grows with
-// its mean and never falls, and every mean uses the same one number.
+// Poisson deviates by inversion: the quantile function of one uniform number per pixel. A deviate
+// increases monotonically with its mean, and every mean uses the same one number.
 //
 // mean < 24:  the distribution function summed upwards in double precision against 52 random bits.
 // mean >= 24: N = floor(x) with Q(x, mean) = u for the regularised incomplete gamma function, by
-// its
-//             uniform expansion in s = w / sqrt(mean), w = normal quantile of u (Temme 1979, SIAM
-//             J. Math. Anal. 10, 757; Giles 2016, ACM TOMS 42, 7): x = mean + sqrt(mean) w + w^2
-//             B(s) + C0(s) + C1(s) / mean with B, C0, C1 fitted as polynomials, in single precision
-//             with 32 random bits. The probabilities differ from Poisson's by so little that the
-//             non-centrality of a chi-square over n draws is below 4e-11 n at 24 and falls from
+//             its uniform expansion in s = w / sqrt(mean), w = normal quantile of u (Temme 1979,
+//             SIAM J. Math. Anal. 10, 757; Giles 2016, ACM TOMS 42, 7): x = mean + sqrt(mean) w +
+//             w^2 B(s) + C0(s) + C1(s) / mean with B, C0, C1 fitted as polynomials, in single
+//             precision with 32 random bits. Against exact Poisson deviates, the non-centrality of
+//             a chi-square over n draws is below 4e-11 n at 24 and decreases from there.
 //             there.
 namespace dmise {
 

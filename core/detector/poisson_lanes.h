@@ -1,7 +1,7 @@
 #pragma once
 #include "core/base/random_lanes.h"
 
-// core/detector/poisson.h in lanes.
+// Vectorised core/detector/poisson.h.
 namespace dmise::DMISE_SIMD {
 
 using F32Half = float __attribute__((vector_size(DMISE_SIMD_BYTES / 2)));
@@ -44,7 +44,7 @@ struct Reciprocals {
 };
 inline constexpr Reciprocals reciprocals;
 
-/// Number of k with u > P(N <= k), for means below 24 (others give rubbish, and end too).
+/// Number of k with u > P(N <= k), for means below 24 (for others undefined, but it terminates).
 DMISE_INLINE F64 poisson_small(F64 mean, F64 u) {
   F64 p = exp_minus(mean), cumulative = p, k{};
   for (int i = 1; i < 129; ++i) {
@@ -57,7 +57,7 @@ DMISE_INLINE F64 poisson_small(F64 mean, F64 u) {
   return k;
 }
 
-/// By the expansion, for means from 24 on.
+/// By the expansion, for means >= 24.
 DMISE_INLINE F32 poisson_large(F32 mean, U32 word) {
   const F32 root = sqrt(mean), y = 1.0f / root;
   const F32 w = normal_of_words(word);
@@ -82,7 +82,7 @@ DMISE_INLINE F32 poisson_large(F32 mean, U32 word) {
   d = d * s + 0.0164811869f;
   d = d * s - 0.0197157343f;
   const F32 beyond = root * w + (w * w * b + (c + d * (y * y)));
-  // Whole part aside, so that nothing is lost: from 2^23 on a float has no other.
+  // Split off the integer part to keep precision: from 2^23 on a float is an integer.
   const F32 whole = mean < 0x1p23f ? floor(min(mean, splat(0x1p23f))) : mean;
   return max(whole + floor((mean - whole) + beyond), F32{});
 }

@@ -3,8 +3,8 @@
 
 namespace dmise {
 
-/// Amplifier and converter: round(e / gain + bias) within 0 and 2^bits - 1. Switched off, counts
-/// are whole electrons without bias, limited by the image's 16 bits alone.
+/// Amplifier and converter: round(e / gain + bias) within 0 and 2^bits - 1. If it is off, counts
+/// are whole electrons without bias, limited to 16 bits.
 struct Quantisation {
   static constexpr EffectFacts facts{"quantisation", "gain, bias, ADC range and rounding",
                                      "one DN an electron, no bias, 16 bits", "EMVA Standard 1288"};
@@ -16,7 +16,7 @@ struct Quantisation {
   static std::span<const DetectorParameter> parameters();
   static std::optional<DetectorFault> fault(const Detector& detector);
   void switch_off() { *this = {}; }
-  bool applies(const Detector&) const { return true; }  // there is no frame without counts
+  bool applies(const Detector&) const { return true; }  // a frame always has counts
   void apply(const ExposureFacts& exposed, Piece& piece) const;
 };
 

@@ -3,7 +3,7 @@
 
 namespace dmise {
 
-/// A normal deviate for every pixel, new in each frame.
+/// A normal deviate per pixel, new in each frame.
 struct ReadNoise {
   static constexpr EffectFacts facts{"read_noise", "noise of the read-out amplifier", "none",
                                      "Janesick 2001, Scientific Charge-Coupled Devices"};

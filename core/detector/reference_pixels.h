@@ -5,11 +5,11 @@
 
 namespace dmise {
 
-/// A border of pixels that are read like the others but collect nothing.
+/// A border of pixels that are read but collect nothing.
 struct ReferencePixels {
   static constexpr EffectFacts facts{"reference_pixels",
-                                     "a border that sees neither light nor dark current",
-                                     "the border sees as the rest does", "geometry"};
+                                     "border pixels without light and dark current",
+                                     "the border collects light as the rest does", "geometry"};
   int reference_px = 0;  // width of the border
   bool operator==(const ReferencePixels&) const = default;
 
@@ -19,13 +19,13 @@ struct ReferencePixels {
   void apply(const ExposureFacts& exposed, Piece& piece) const;
 };
 
-/// Calls visit(begin, end) for the ranges of `count` pixels from `first` on, counted from there,
-/// that lie in a border `border_px` wide.
+/// Calls visit(begin, end) for the ranges of `count` pixels from `first` on, relative to `first`,
+/// that are in a border `border_px` wide.
 template <class Visit>
 void visit_border(int border_px, int columns, int rows, std::size_t first, std::size_t count,
                   const Visit& visit) {
   const auto width = std::size_t(columns), border = std::size_t(border_px);
-  // Row by row: whole ones at the top and bottom, both ends of the others.
+  // Row by row: whole rows at the top and bottom, both ends of the others.
   for (std::size_t i = 0; i < count;) {
     const std::size_t x = (first + i) % width, y = (first + i) / width;
     const std::size_t end = std::min(count, i + width - x);

@@ -16,7 +16,7 @@ std::vector<LightSource> earthshine_sources(const Earthshine& earthshine, const 
   const Vec<Body> down = earth_m / distance_m;
   const Vec<Body> away = std::abs(down.x) < 0.6 ? Vec<Body>{1, 0, 0} : Vec<Body>{0, 1, 0};
   const Vec<Body> u = unit(cross(away, down)), v = cross(down, u);
-  // Rings of equal width in the squared sine of the angle from the nadir, which is what counts on a
+  // Rings of equal width in the squared sine of the angle from the nadir, the weight of light on a
   // plate that faces the Earth.
   const double limb2 = radius_m * radius_m / (distance_m * distance_m);
   const int patches = 4 * earthshine.rings;

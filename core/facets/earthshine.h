@@ -6,9 +6,9 @@
 
 namespace dmise {
 
-/// Sunlight that the Earth throws on an object: the Earth as a diffuse sphere of 6371 km, cut into
-/// `rings` rings around the nadir as the object sees it, each into 4 x `rings` patches. Clouds,
-/// seas and air are in the one albedo.
+/// Sunlight reflected by the Earth onto an object: the Earth as a diffuse sphere of 6371 km,
+/// divided into `rings` rings around the nadir as seen from the object, each of 4 x `rings`
+/// patches. One albedo stands for clouds, seas and air.
 struct Earthshine {
   static constexpr EffectFacts facts{
       "earthshine", "sunlight that the Earth throws on objects (off unless asked for)",
@@ -19,9 +19,8 @@ struct Earthshine {
   int rings = 8;
 };
 
-/// `earth_m`: the Earth's centre as seen from the object; `to_sun` unit, for the Earth as for the
-/// object. No source where the object sees no lit ground. Throws `Error` for an object inside the
-/// Earth.
+/// `earth_m`: the Earth's centre relative to the object; `to_sun`: unit vector, the same for Earth
+/// and object. Empty if no lit ground is visible. Throws `Error` for an object inside the Earth.
 std::vector<LightSource> earthshine_sources(const Earthshine& earthshine, const Vec<Body>& earth_m,
                                             const Vec<Body>& to_sun);
 

@@ -14,7 +14,7 @@ constexpr double touching = 1e-12;  // of the facet's edges
 struct Line {
   Point from;
   double ds, dt;
-  bool has_direction;  // its ends are far enough apart to tell
+  bool has_direction;  // its ends are distinct
 
   Line(const Point& a, const Point& b) : from(a), ds(b.s - a.s), dt(b.t - a.t) {
     const double length = std::hypot(ds, dt);
@@ -62,7 +62,7 @@ FacetPiece side(const FacetPiece& piece, const Line& line, double sign) {
   return part;
 }
 
-/// Pieces with room for one more corner: one that has none is halved first.
+/// Appends a piece, halved first if it has no room for one more corner.
 void add_piece(const FacetPiece& piece, std::vector<FacetPiece>& pieces) {
   if (area_share(piece) < least_share) return;
   if (piece.corners + 1 < FacetPiece::most_corners) {

@@ -30,14 +30,14 @@ DMISE_INLINE F64 light(const FacetArrays& f, std::size_t i, const FacetDirection
   const F64 reflected = load<F64>(f.diffuse + i) * falloff_in * falloff_out * out +
                         specular * fade * (e2 + e2) / (four_pi * norm * root * root);
   const F64 all = load<F64>(f.area_m2 + i) * in * reflected;
-  const F64 least = splat(1e-100);  // whose square is not 0
+  const F64 least = splat(1e-100);  // its square is not 0
   return in > least && out > least ? all : zero;
 }
 
 }  // namespace
 
 double facet_sum(const FacetArrays& facets, const FacetDirections& at) {
-  // Eight sums, whatever the width: the same bytes on every instruction set.
+  // Eight partial sums at every vector width: the same bytes on every instruction set.
   constexpr int vectors = 8 / wide_lanes;
   F64 sums[vectors] = {};
   for (std::size_t i = 0; i < facets.count; i += 8)

@@ -3,14 +3,14 @@
 
 namespace dmise {
 
-/// Arrays of a FacetSet, `count` a multiple of 8. `area_m2` may be of the part that is free.
+/// Arrays of a FacetSet, `count` a multiple of 8. `area_m2` may be the unobstructed area only.
 struct FacetArrays {
   std::size_t count;
   const double *normal_x, *normal_y, *normal_z, *area_m2;
   const double *diffuse, *taken, *grazing2, *lobe2;
 };
 
-/// Unit directions from the object.
+/// Unit vectors from the object.
 struct FacetDirections {
   double sun[3], viewer[3];
   double inverse_half2;  // 1 / |sun + viewer|^2, capped

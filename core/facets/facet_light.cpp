@@ -12,7 +12,7 @@ namespace {
 double sum_of(const FacetSet& set, const double* area_m2, const Vec<Body>& sun,
               const Vec<Body>& viewer, SimdLevel level) {
   const Vec<Body> half = sun + viewer;
-  std::vector<double> flat_m2;  // without facets whose normals a height map tilts
+  std::vector<double> flat_m2;  // without facets that have a height map
   const double* const free_m2 = area_m2;
   if (!set.bumps.empty()) {
     flat_m2.assign(area_m2, area_m2 + set.area_m2.size());
@@ -117,7 +117,7 @@ double FacetLight::emitted_photons_per_s_sr(const Vec<Body>& to_viewer) const {
 std::vector<LightSource> sun_disc(const Vec<Body>& to_sun, double angular_radius_rad) {
   const Vec<Body> away = std::abs(to_sun.x) < 0.6 ? Vec<Body>{1, 0, 0} : Vec<Body>{0, 1, 0};
   const Vec<Body> u = unit(cross(away, to_sun)), v = cross(to_sun, u);
-  // Mean square radius of a disc is half its radius squared; six of seven points bear it.
+  // The mean square radius of a disc is half its squared radius; six of seven points carry it.
   const double reach = std::tan(angular_radius_rad * std::sqrt(7.0 / 12.0));
   std::vector<LightSource> sources{{to_sun, 1.0 / 7.0}};
   for (int i = 0; i < 6; ++i) {

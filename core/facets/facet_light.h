@@ -10,7 +10,7 @@
 
 namespace dmise {
 
-/// Parallel light on an object, as a share of the Sun's at its place.
+/// Parallel light on an object, as a fraction of the Sun's irradiance there.
 struct LightSource {
   Vec<Body> to_source{0, 0, 1};  // unit
   double share = 1.0;
@@ -25,9 +25,9 @@ struct ThermalEmission {
   static bool applies(const SceneFacts& scene) { return scene.shapes; }
 };
 
-/// Light of an object that is not resolved: its facets summed, in one band, each with what the
-/// others leave free to the light and to the viewer. Facets are flat and light is parallel, so that
-/// the sum is exact up to rounding (1e-9). Light that goes from facet to facet is left out.
+/// Light of an unresolved object: the sum over its facets in one band, each with the part that
+/// other facets leave visible from source and viewer. Facets are flat and light is parallel, so the
+/// sum is exact up to rounding (1e-9). Interreflection is neglected.
 class FacetLight {
  public:
   /// Without `emits` its warmth radiates nothing.
@@ -37,20 +37,20 @@ class FacetLight {
   const FacetSet& facets() const { return set_; }
   bool convex() const { return convex_; }
 
-  /// Radiant intensity towards the viewer for a unit irradiance [m2/sr]: times the Sun's
-  /// photons/s/m2 at the object it is photons/s/sr, over the distance squared photons/s/m2. Unit
-  /// directions.
+  /// Radiant intensity towards the viewer per unit irradiance [m2/sr]: multiplied by the Sun's
+  /// photons/s/m2 at the object it gives photons/s/sr, divided by the distance squared
+  /// photons/s/m2. Directions are unit vectors.
   double reflected_m2_per_sr(const Vec<Body>& to_sun, const Vec<Body>& to_viewer,
                              SimdLevel level = best_simd_level()) const;
   /// The same for several sources.
   double reflected_m2_per_sr(std::span<const LightSource> sources,
                              const Vec<Body>& to_viewer) const;
 
-  /// What it radiates by its warmth [photons/s/sr].
+  /// Thermal emission [photons/s/sr].
   double emitted_photons_per_s_sr(const Vec<Body>& to_viewer) const;
 
  private:
-  /// Area of each facet that both see; empty when nothing hides anything.
+  /// Area of each facet that is visible from both; empty if nothing is hidden.
   std::vector<double> free_area_m2(const FacetShadow* sun, const FacetShadow& viewer) const;
 
   Mesh mesh_;
@@ -58,8 +58,8 @@ class FacetLight {
   bool convex_ = false;
 };
 
-/// Directions that stand for the Sun's disc, of equal share: its middle and six around it at
-/// sqrt(7/12) of `angular_radius_rad`, which has the disc's second moment.
+/// Directions of equal weight that represent the Sun's disc: its centre and six around it at
+/// sqrt(7/12) of `angular_radius_rad`, which have the disc's second moment.
 std::vector<LightSource> sun_disc(const Vec<Body>& to_sun, double angular_radius_rad);
 
 }  // namespace dmise

@@ -7,7 +7,7 @@
 namespace dmise {
 namespace {
 
-/// What the arrays hold of one material.
+/// Array entries of one material.
 struct Coefficients {
   double diffuse = 0.0, taken = 1.0, grazing2 = 0.0, lobe2 = 1.0;
   double phong_scale = 0.0, exponent = 0.0;

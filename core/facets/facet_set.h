@@ -8,11 +8,11 @@
 
 namespace dmise {
 
-/// The facets of a mesh with what they do to light of one band, as arrays for the kernels. All
-/// models run through one formula, of Sandford-Robertson, whose diffuse part with grazing 0 is
-/// Lambert's; Phong's lobe is added where there is one.
+/// The facets of a mesh with their reflectance in one band, as arrays for the kernels. All models
+/// use the formula of Sandford-Robertson, whose diffuse part with grazing 0 is Lambert's; Phong's
+/// lobe is added if there is one.
 struct FacetSet {
-  std::size_t count = 0;  // facets; the arrays go on to a multiple of 8 with facets of no area
+  std::size_t count = 0;  // facets; arrays are padded to a multiple of 8 with zero area
   std::vector<double> normal_x, normal_y, normal_z;
   std::vector<double> area_m2;
   std::vector<double> diffuse;   // rho_D / (pi G^2) [1/sr]
@@ -30,11 +30,11 @@ struct FacetSet {
 
   /// Share of red, green and blue of a picture in the reflectance, by material.
   std::vector<std::array<float, 3>> colour_weights;
-  /// Mean over a facet of its picture, which is in `diffuse`; empty without pictures.
+  /// Mean of the picture over each facet, already included in `diffuse`; empty without pictures.
   std::vector<float> colour_mean;
 
-  /// A facet with a height map: normals that stand for it, not unit but means, so that Lambert's
-  /// part is exact where none turns away from the light.
+  /// A facet with a height map: representative normals, which are means rather than unit vectors,
+  /// so that Lambert's part is exact where none is turned away from the light.
   struct Bumps {
     std::uint32_t facet;
     std::size_t begin, end;  // in `bump_normals`

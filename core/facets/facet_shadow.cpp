@@ -6,14 +6,14 @@
 namespace dmise {
 namespace {
 
-/// Two directions square to `d` and to each other.
+/// Two unit vectors perpendicular to `d` and to each other.
 std::array<Vec<Body>, 2> across(const Vec<Body>& d) {
   const Vec<Body> away = std::abs(d.x) < 0.6 ? Vec<Body>{1, 0, 0} : Vec<Body>{0, 1, 0};
   const Vec<Body> u = unit(cross(away, d));
   return {u, cross(d, u)};
 }
 
-/// Facets that are seen this nearly edge-on have no shadow worth drawing.
+/// Facets this close to edge-on cast no shadow.
 constexpr double least_cosine = 1e-9;
 
 }  // namespace
@@ -22,7 +22,7 @@ FacetShadow::FacetShadow(const Mesh& mesh, const Vec<Body>& direction)
     : mesh_(mesh), direction_(direction) {
   const auto [u, v] = across(direction);
   const std::size_t count = mesh.triangles.size();
-  std::vector<Vec<Body>> place(mesh.vertex_m.size());  // across, across, along
+  std::vector<Vec<Body>> place(mesh.vertex_m.size());  // two across the direction, one along it
   for (std::size_t i = 0; i < place.size(); ++i) {
     const auto& p = mesh.vertex_m[i];
     place[i] = {dot(p, u), dot(p, v), dot(p, direction)};
@@ -88,8 +88,8 @@ bool FacetShadow::blocks(const Box& box, const Box& other) const {
          other.v1 > box.v0 && other.v0 < box.v1;
 }
 
-/// Calls `work` for each facet whose box stands before that of `facet`, once; stops when it says
-/// so.
+/// Calls `work` once for each facet whose box is in front of that of `facet`, until it returns
+/// false.
 template <class Work>
 void FacetShadow::for_blockers(std::size_t facet, Work&& work) const {
   const Box& box = box_[facet];
@@ -100,7 +100,7 @@ void FacetShadow::for_blockers(std::size_t facet, Work&& work) const {
       for (std::uint32_t i = cell_begin_[cell]; i < cell_begin_[cell + 1]; ++i) {
         const std::uint32_t other = in_cell_[i];
         if (other == facet || !blocks(box, box_[other])) continue;
-        // One that lies in several cells counts in the first that both share.
+        // A facet in several cells is visited in the first cell that both share.
         const auto [oc0, or0, oc1, or1] = cells_of(box_[other]);
         if (std::max(oc0, c0) != c || std::max(or0, r0) != r) continue;
         if (!work(other)) return;
@@ -127,7 +127,7 @@ void FacetShadow::cut(std::size_t facet, std::vector<FacetPiece>& pieces) const 
   const Vec<Body> normal = twice / std::sqrt(length2);
   const Vec<Body> to_s = cross(e2, twice) / length2, to_t = cross(twice, e1) / length2;
   for_blockers(facet, [&](std::uint32_t other) {
-    // The part of the blocker above this facet's plane, thrown on it along the light.
+    // The part of the blocker above this facet's plane, projected on it along the light.
     std::array<Vec<Body>, 3> p;
     std::array<double, 3> height;
     for (int i = 0; i < 3; ++i) {

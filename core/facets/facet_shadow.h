@@ -6,9 +6,9 @@
 
 #include "core/materials/mesh.h"
 
-// What of each facet parallel light from one direction reaches past the other facets, by clipping
-// polygons: exact for flat facets, up to rounding. The Sun is a point here: the half-shadow that
-// its 0.27 deg of radius draw (5 mm a metre behind the edge) is left out.
+// Visibility of facets in parallel light by clipping polygons against other facets: exact for flat
+// facets, up to rounding. The Sun is a point here: the penumbra of its 0.27 deg radius (5 mm per
+// metre behind the edge) is neglected.
 namespace dmise {
 
 /// A convex part of a facet in the facet's own coordinates: (0, 0), (1, 0), (0, 1) are its corners.
@@ -23,27 +23,29 @@ struct FacetPiece {
   static FacetPiece whole() { return {{{{0, 0}, {1, 0}, {0, 1}}}, 3}; }
 };
 
-/// Share of the facet's area that a piece has.
+/// Area of a piece as a fraction of the facet's area.
 double area_share(const FacetPiece& piece);
 
-/// What of `pieces` lies outside the convex polygon `hole` (counter-clockwise), as convex pieces;
-/// parts below 1e-12 of the facet are dropped.
+/// Subtracts the convex polygon `hole` (counter-clockwise) from `pieces`, leaving convex pieces;
+/// pieces below 1e-12 of the facet are dropped.
 void subtract(std::span<const FacetPiece::Point> hole, std::vector<FacetPiece>& pieces);
 
-/// Facets that stand in the way of light along one direction, found by a grid across it. Of solids
-/// and sheets with backs (mesh_repair.h) those that face the light are enough.
+/// Facets that block light along one direction, found with a grid perpendicular to it. For solids
+/// and sheets with backs (mesh_repair.h) the facets that face the light suffice.
 class FacetShadow {
  public:
-  /// `direction`: unit, from the object to the source or to the viewer. The mesh must outlive it.
+  /// `direction`: unit vector from the object to the source or viewer. The mesh must outlive this
+  /// object.
   FacetShadow(const Mesh& mesh, const Vec<Body>& direction);
 
   /// Cosine between the facet's normal and the direction.
   double cosine(std::size_t facet) const { return cosine_[facet]; }
 
-  /// Cuts out of the pieces of `facet` what others hide. A facet that faces away is left alone.
+  /// Subtracts what other facets hide from the pieces of `facet`. Does nothing for a facet that
+  /// faces away.
   void cut(std::size_t facet, std::vector<FacetPiece>& pieces) const;
 
-  /// Whether any other facet may stand in the way of this one.
+  /// Whether another facet may block this one.
   bool may_be_hidden(std::size_t facet) const;
 
  private:
@@ -59,7 +61,7 @@ class FacetShadow {
   double slack_m_ = 0.0;
   std::vector<double> cosine_;
   std::vector<Box> box_;
-  // Grid: facets that face the light by cell, in rows.
+  // Grid: facets facing the light, by cell, in rows.
   double u0_ = 0.0, v0_ = 0.0, per_u_ = 0.0, per_v_ = 0.0;
   int side_ = 1;
   std::vector<std::uint32_t> cell_begin_, in_cell_;

@@ -12,9 +12,9 @@ constexpr double most_points = 5e7;   // over all facets
 constexpr double most_normals = 2e6;  // of height maps, over all facets
 constexpr int most_bins = 16;         // of a facet's slopes along each axis
 
-/// Share of red, green and blue in what a material reflects in the band.
+/// Weights of red, green and blue in the material's reflectance in the band.
 std::array<float, 3> weights_of(const Material& material, const Band& band) {
-  const Curve& diffuse = material.diffuse;  // blue, green, red, as MTL's colours become
+  const Curve& diffuse = material.diffuse;  // blue, green, red: order of MTL's colours
   std::array<double, 3> part{};
   for (std::size_t i = 0; i < 3; ++i) {
     Material one = material;
@@ -26,7 +26,7 @@ std::array<float, 3> weights_of(const Material& material, const Band& band) {
   return {float(part[0] / sum), float(part[1] / sum), float(part[2] / sum)};
 }
 
-/// Points that fill a triangle evenly, by the R2 sequence of M. Roberts (2018).
+/// Evenly distributed points in a triangle: the R2 sequence of M. Roberts (2018).
 std::array<float, 2> point_in_triangle(std::size_t i) {
   double s = 0.5 + 0.7548776662466927 * double(i), t = 0.5 + 0.5698402909980532 * double(i);
   s -= std::floor(s);

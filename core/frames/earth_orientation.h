@@ -8,9 +8,9 @@ namespace dmise {
 struct Cirs {};  // celestial intermediate: GCRS turned to the CIP of date, x axis at the CIO
 struct Tirs {};  // terrestrial intermediate: CIRS turned by the Earth rotation angle
 
-/// Orientation of the Earth around one instant. Precession, nutation and polar motion are those of
-/// `time`; the rotation angles run on from there, so that the error of the frozen part grows by
-/// less than 2 microarcseconds a second (0.12 mas in a minute). Plain data: the environment node
+/// Orientation of the Earth around one instant. Precession, nutation and polar motion are frozen at
+/// `time` and the rotation angles advance from there; the error of the frozen part grows by less
+/// than 2 microarcseconds a second (0.12 mas in a minute). Plain data: the environment node
 /// publishes it.
 struct EarthOrientation {
   SimTime time;
@@ -31,13 +31,13 @@ struct EarthOrientation {
   bool operator==(const EarthOrientation&) const = default;
 };
 
-/// Series for precession and nutation: a knob of accuracy against time.
+/// Precession-nutation series, in order of decreasing accuracy and cost.
 enum class Nutation {
   iau2006_2000a,  // 1365 terms; the celestial pole to 0.3 mas (free core nutation left out)
   iau2000b,       // 77 terms; within 1 mas of the full series, 1995 to 2050
 };
 
-/// The orientation at `time`, whose readings the other arguments are.
+/// Returns the orientation at `time`; `tt` and `ut1` must be the same instant.
 EarthOrientation earth_orientation(SimTime time, const Tt& tt, const Ut1& ut1,
                                    double polar_motion_x_rad, double polar_motion_y_rad,
                                    Nutation nutation = Nutation::iau2006_2000a);

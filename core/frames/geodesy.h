@@ -4,7 +4,7 @@
 
 namespace dmise {
 
-/// Of revolution, flattened at the poles.
+/// Ellipsoid of revolution, flattened at the poles.
 struct Ellipsoid {
   double equatorial_radius_m = 6378137.0;  // WGS 84 (NIMA TR8350.2)
   double flattening = 1 / 298.257223563;   // [0, 1)
@@ -17,7 +17,7 @@ inline constexpr Ellipsoid wgs84{};
 inline constexpr Ellipsoid grs80{6378137.0, 1 / 298.257222101};
 inline constexpr Ellipsoid wgs72{6378135.0, 1 / 298.26};
 
-/// A place by geodetic coordinates; height above the ellipsoid.
+/// Geodetic coordinates; height above the ellipsoid.
 struct Site {
   double latitude_deg = 0.0;   // [-90, 90]
   double longitude_deg = 0.0;  // east; any turn
@@ -27,13 +27,14 @@ struct Site {
   bool operator==(const Site&) const = default;
 };
 
-/// A direction over a site's horizon.
+/// Direction relative to a site's horizon.
 struct Horizontal {
   double azimuth_rad = 0.0;    // from north through east, [0, 2 pi)
   double elevation_rad = 0.0;  // [-pi/2, pi/2]
 };
 
-/// By GeographicLib. Throws `Error` for a latitude beyond the poles or numbers that are not finite.
+/// Computed by GeographicLib. Throws `Error` for a latitude beyond the poles or numbers that are
+/// not finite.
 Vec<Itrs> itrs_from_geodetic(const Site& site);
 
 /// The inverse: round trip within 1e-8 m to 2000 km of height, 5e-8 m at GEO (Karney).

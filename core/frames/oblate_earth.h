@@ -9,15 +9,15 @@ struct OblateEarth {
   Vec<Gcrs> pole{0, 0, 1};  // unit
   Ellipsoid ellipsoid = wgs84;
 
-  /// Space stretched along the axis so that the ellipsoid becomes a sphere of the equatorial
-  /// radius. Linear: straight lines stay straight, what touches still touches.
+  /// Scales space along the axis so that the ellipsoid becomes a sphere of the equatorial radius.
+  /// The map is linear: straight lines stay straight and tangents stay tangents.
   Vec<Gcrs> stretched(const Vec<Gcrs>& v) const {
     const double f = ellipsoid.flattening;
     return v + pole * (dot(v, pole) * (f / (1 - f)));
   }
 };
 
-/// With the axis at the celestial intermediate pole, 0.3 arcsec from the figure's at most.
+/// With the axis at the celestial intermediate pole, at most 0.3 arcsec from the figure axis.
 inline OblateEarth oblate_earth(const EarthOrientation& earth, const Ellipsoid& ellipsoid = wgs84) {
   return {earth.cirs_from_gcrs.inverse() * Vec<Cirs>{0, 0, 1}, ellipsoid};
 }

@@ -8,8 +8,8 @@
 
 namespace dmise {
 
-/// Unit quaternion of a rotation of axes, scalar first: v_to = q v_from q*. Which frames it joins
-/// is in the variable's name.
+/// Unit quaternion of a rotation of axes, scalar first: v_to = q v_from q*. The variable's name
+/// says which frames it relates.
 struct Quaternion {
   double w = 1.0, x = 0.0, y = 0.0, z = 0.0;
 

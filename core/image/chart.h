@@ -30,29 +30,29 @@ struct ChartAxis {
   std::vector<ChartTick> ticks;
 };
 
-/// A part of the x axis shaded from top to bottom.
+/// A range of the x axis shaded from top to bottom.
 struct ChartBand {
   double from = 0.0, to = 0.0;
 };
 
-/// Lines over two axes with a legend, for a picture or a page. Plain data.
+/// Line chart with two axes and a legend, for a picture or a page.
 struct Chart {
   std::string title, subtitle;
   ChartAxis x, y;
-  std::vector<ChartSeries> series;  // the first at the bottom
+  std::vector<ChartSeries> series;  // drawn in this order
   std::vector<ChartBand> bands;
   std::string bands_label;  // in the legend
   int width_px = 1400, height_px = 820;
 };
 
-/// Ticks at 1, 2 and 5 times powers of ten, with labels such as "20,000", and short ones at the
-/// other multiples: for a logarithmic axis over [least, most].
+/// Ticks of a logarithmic axis over [least, most]: at 1, 2 and 5 times powers of ten, with labels
+/// such as "20,000", and short ones at the other multiples.
 std::vector<ChartTick> logarithmic_ticks(double least, double most);
 
-/// Scalable Vector Graphics 1.1. Equal charts give equal text.
+/// Renders as SVG 1.1. Equal charts give equal text.
 std::string chart_svg(const Chart& chart);
 
-/// The same in pixels, edges smoothed.
+/// Renders as an antialiased picture.
 Picture chart_picture(const Chart& chart);
 
 }  // namespace dmise

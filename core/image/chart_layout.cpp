@@ -8,7 +8,7 @@ namespace {
 
 constexpr Colour ink = {32, 36, 42}, dim = {96, 102, 110}, paper = {255, 255, 255};
 constexpr Colour grid_colour = {222, 225, 229}, band_colour = {238, 240, 244};
-constexpr double simplified_px = 0.3;  // a line may be moved by this to save points
+constexpr double simplified_px = 0.3;  // tolerance of line simplification
 
 /// Marks the points of `line` between a and b that keep it within `simplified_px` (Douglas and
 /// Peucker 1973).
@@ -45,7 +45,7 @@ std::vector<PagePoint> simplified(const std::vector<PagePoint>& line) {
   return out;
 }
 
-/// Where an axis puts a value, 0 at its beginning and 1 at its end.
+/// Position of a value on an axis, 0 at its beginning and 1 at its end.
 double share(const ChartAxis& axis, double value) {
   if (!axis.logarithmic) return (value - axis.least) / (axis.most - axis.least);
   return std::log(std::max(value, 1e-300) / axis.least) / std::log(axis.most / axis.least);
@@ -115,7 +115,7 @@ class Page {
       if (on_page.size() == 1) on_page.push_back({on_page[0].x_px + 0.7, on_page[0].y_px});
       all.push_back(simplified(on_page));
     }
-    // The more there are, the thinner each, so that what lies below still shows.
+    // The more lines, the fainter each, so that lines below remain visible.
     const double opacity = std::clamp(30.0 / std::sqrt(double(all.size()) + 1), 0.3, 1.0);
     pen_.lines(all, {series.colour, 1.0, opacity}, {left, top}, width_, height_);
   }

@@ -7,14 +7,14 @@
 namespace dmise {
 namespace {
 
-/// Columns of the 5 x 7 font that a letter uses.
+/// Columns of the 5 x 7 font that a glyph uses.
 struct Extent {
   int first = 0, last = 2;  // a blank's
   double advance() const { return last - first + 2.6; }
 };
 
 Extent extent_of(char letter) {
-  if (letter >= '0' && letter <= '9') return {0, glyph_columns - 1};  // figures keep their columns
+  if (letter >= '0' && letter <= '9') return {0, glyph_columns - 1};  // digits have equal width
   unsigned used = 0;
   for (const auto row : glyph(letter)) used |= row;
   if (used == 0) return {};
@@ -24,13 +24,12 @@ Extent extent_of(char letter) {
   return e;
 }
 
-/// Letters that the font sets on the base line for want of room below.
-bool hangs(char letter) {
+/// Letters with a descender that the font draws on the base line.
+bool has_descender(char letter) {
   return letter == 'g' || letter == 'p' || letter == 'q' || letter == 'y' || letter == ',';
 }
 
-/// Draws with smoothed edges: how far a pixel's centre is from a line says how much of it is
-/// covered.
+/// Antialiased drawing: the coverage of a pixel is its centre's distance from the line.
 class PicturePen : public ChartPen {
  public:
   PicturePen(int columns, int rows)
@@ -69,7 +68,7 @@ class PicturePen : public ChartPen {
     for (const char letter : text) {
       const auto rows = glyph(letter);
       const Extent extent = extent_of(letter);
-      const double drop = hangs(letter) ? 1.5 * dot : 0.0;
+      const double drop = has_descender(letter) ? 1.5 * dot : 0.0;
       const auto set = [&](int x, int y) {
         return x >= 0 && y >= 0 && x < glyph_columns && y < glyph_rows &&
                (rows[std::size_t(y)] >> (glyph_columns - 1 - x) & 1);
@@ -109,10 +108,10 @@ class PicturePen : public ChartPen {
   static constexpr double cells_high = 9.5;  // dots in the size of a text
 
   struct Window {
-    int x1 = 0, y1 = 0, x2 = 0, y2 = 0;  // the second pair is outside
+    int x1 = 0, y1 = 0, x2 = 0, y2 = 0;  // the second pair is exclusive
   };
 
-  // Between begin() and end() segments cover pixels without adding up where they meet.
+  // Between begin() and end() overlapping segments do not add up.
   void begin() { touched_ = {picture_.columns, picture_.rows, 0, 0}; }
   void end(const Stroke& stroke) {
     for (int y = touched_.y1; y < touched_.y2; ++y)

@@ -71,10 +71,10 @@ class SvgPen : public ChartPen {
     }
     if (!whole) text_ += " clip-path=\"url(#" + id + ")\"";
     text_ += ">\n";
-    // A path for each line, or the opacity of lines that cross would not add up.
+    // One path per line; otherwise the opacity of crossing lines would not add up.
     for (const auto& line : lines) {
       text_ += "<path d=\"";
-      long x = 0, y = 0;  // in tenths of a pixel, so that rounding doesn't add up
+      long x = 0, y = 0;  // in tenths of a pixel, to avoid accumulated rounding
       for (std::size_t k = 0; k < line.size(); ++k) {
         const long u = std::lround(10 * line[k].x_px), v = std::lround(10 * line[k].y_px);
         text_ += (k == 0   ? "M"
@@ -100,7 +100,7 @@ class SvgPen : public ChartPen {
   }
 
   double text_width_px(const std::string& text, double size_px) const override {
-    return 0.53 * size_px * double(text.size());  // of a sans-serif face, on average
+    return 0.53 * size_px * double(text.size());  // average of a sans-serif face
   }
 
  private:

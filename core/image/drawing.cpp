@@ -18,7 +18,7 @@ void set(Picture& picture, long x, long y, Colour colour) {
   at[2] = colour.blue;
 }
 
-/// Cuts a segment to the picture (Liang-Barsky), so that a far end costs nothing.
+/// Clips a segment to the picture (Liang-Barsky), so that distant ends are cheap.
 bool clip(const Picture& picture, double& x1, double& y1, double& x2, double& y2) {
   double from = 0.0, to = 1.0;
   const auto side = [&](double step, double room) {

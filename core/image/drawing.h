@@ -9,23 +9,23 @@ struct Colour {
   std::uint8_t red = 0, green = 0, blue = 0;
 };
 
-// Drawing on RGB pictures. Coordinates: (0, 0) is the centre of the first pixel; what falls outside
-// is not drawn.
+// Drawing on RGB pictures. (0, 0) is the centre of the first pixel; everything is clipped to the
+// picture.
 
-/// The same picture in three channels, with `strip_rows` black rows below.
+/// Converts a grey picture to three channels, with `strip_rows` black rows added below.
 Picture to_rgb(const Picture& grey, int strip_rows = 0);
 
-/// One pixel wide.
+/// Draws a line one pixel wide.
 void draw_line(Picture& picture, double x1, double y1, double x2, double y2, Colour colour);
 void draw_circle(Picture& picture, double x, double y, double radius, Colour colour);
-/// A rectangle with round ends around the segment, `half_width` from it.
+/// Draws a segment of width 2 `half_width` with round ends.
 void draw_capsule(Picture& picture, double x1, double y1, double x2, double y2, double half_width,
                   Colour colour);
 
-/// Upper left corner at (x, y); 5 x 7 letters in cells of 6 x 8, times `scale`. Characters without
-/// a glyph show as a box.
+/// Draws text with its upper left corner at (x, y): 5 x 7 letters in cells of 6 x 8, times `scale`.
+/// Characters without a glyph become a box.
 void draw_text(Picture& picture, int x, int y, std::string_view text, Colour colour, int scale = 1);
-/// Columns that `text` takes.
+/// Width of `text` in columns.
 int text_width(std::string_view text, int scale = 1);
 
 }  // namespace dmise

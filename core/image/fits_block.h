@@ -5,21 +5,21 @@
 #include <string>
 #include <string_view>
 
-// What every FITS file is made of: blocks of 2880 bytes, cards of 80 characters (FITS Standard 4.0,
+// Structure of FITS files: blocks of 2880 bytes, cards of 80 characters (FITS Standard 4.0,
 // sections 3.1 and 3.2).
 namespace dmise {
 
 constexpr std::size_t fits_block_bytes = 2880, fits_card_bytes = 80;
 
-/// Takes the bytes of a file piece by piece.
+/// Receives the bytes of a file in pieces.
 using ByteSink = std::function<void(std::string_view piece)>;
 
-/// What fills the last block of `bytes`.
+/// Padding that completes the last block after `bytes`.
 inline std::string fits_padding(std::size_t bytes, char with) {
   return std::string((fits_block_bytes - bytes % fits_block_bytes) % fits_block_bytes, with);
 }
 
-/// A header of these cards, its end and padding with it.
+/// A header of these cards, with END and padding.
 inline std::string fits_header(std::span<const std::string> cards) {
   std::string header;
   for (const std::string& card : cards) header += card;

@@ -20,7 +20,7 @@ namespace dmise {
 namespace {
 
 constexpr long widest_side = 1 << 16;
-// The best that Rice's code does is a few bits for 32 pixels: a file that claims more is a bomb.
+// Rice compresses 32 pixels to a few bits at best: a file that claims more is malicious.
 constexpr std::size_t most_pixels_per_byte = 128;
 
 std::array<long, 2> image_shape(Fits& fits, std::size_t file_bytes, const std::string& name) {
@@ -29,10 +29,10 @@ std::array<long, 2> image_shape(Fits& fits, std::size_t file_bytes, const std::s
   fits_get_hdu_type(fits.file, &type, &fits.status);
   if (fits.status == 0 && type == IMAGE_HDU)
     fits_get_img_param(fits.file, 2, &bits, &axes, shape.data(), &fits.status);
-  if (fits.status == 0 && axes == 0) {  // an empty primary: a compressed image may follow
+  if (fits.status == 0 && axes == 0) {  // empty primary HDU: a compressed image may follow
     fits_movabs_hdu(fits.file, 2, &type, &fits.status);
     if (fits.status != 0 || !fits_is_compressed_image(fits.file, &fits.status))
-      throw ConfigError(name + ": NAXIS: holds no image");
+      throw ConfigError(name + ": NAXIS: contains no image");
     fits_get_img_param(fits.file, 2, &bits, &axes, shape.data(), &fits.status);
   }
   if (fits.status != 0) throw ConfigError(name + ": not a FITS image: " + fits.reason());
@@ -68,8 +68,8 @@ int integer_of(const FitsValues& values, const std::string& key) {
   return at == values.end() ? 0 : std::atoi(at->second.c_str());
 }
 
-/// A RICE_1 image of one tile a row, unpacked here: CFITSIO's own decoder reads beyond hostile
-/// bytes.
+/// Decodes a RICE_1 image with one tile per row. CFITSIO's own decoder reads out of bounds on
+/// malformed input.
 void read_rice(Fits& fits, const FitsValues& values, const std::string& name, CountImage& counts) {
   const auto type = values.find("ZCMPTYPE");
   if (type == values.end() || type->second != "RICE_1")
@@ -113,7 +113,7 @@ void require_unsigned_counts(const FitsValues& values, const std::string& name) 
     throw ConfigError(name + ": BSCALE: must be 1, got " + bscale->second);
 }
 
-/// What each bit of a pixel's flags says.
+/// Cards that name the bits of a pixel's flags.
 std::vector<std::string> flag_cards(const FrameHeader& header) {
   std::vector<std::string> cards = {text_card("EXTNAME", "FLAGS", "what befell each pixel"),
                                     text_card("INSTRUME", header.sensor, "sensor"),
@@ -129,15 +129,14 @@ std::vector<std::string> flag_cards(const FrameHeader& header) {
 std::vector<std::string> frame_cards(const CountImage& counts, const FrameHeader& header,
                                      const FlagImage* flags) {
   if (flags && (flags->columns != counts.columns || flags->rows != counts.rows))
-    throw Error("FITS can't be written: flags of another shape than the counts");
+    throw Error("FITS can't be written: flags and counts differ in size");
   auto cards = fits_cards(header);
   cards.insert(cards.begin(), text_card("BUNIT", "adu", "unit of the pixels: counts of the ADC"));
   return cards;
 }
 
-/// What moves pixels along an axis, for readers that know CPDISj = 'LOOKUP'. astropy, which is the
-/// one in use, takes the node of a pixel as (pixel - CRVAL) / CDELT + CRPIX with both counted from
-/// 0.
+/// Writes the distortion tables along both axes, for readers that know CPDISj = 'LOOKUP'. astropy
+/// computes the node of a pixel as (pixel - CRVAL) / CDELT + CRPIX with both counted from 0.
 void put_shift_tables(const ByteSink& file, const CountImage& counts, const Wcs& wcs) {
   if (!wcs.refraction) return;
   const ShiftTable table = shift_table(wcs, counts.columns, counts.rows);
@@ -179,7 +178,7 @@ Frame decode_frame(std::string_view bytes, const std::string& name) {
     throw ConfigError(name + ": SIMPLE: not a FITS file");
   require_harmless_headers(bytes, name);
   Fits fits;
-  void* memory = const_cast<char*>(bytes.data());  // opened for reading only
+  void* memory = const_cast<char*>(bytes.data());  // opened read-only
   std::size_t memory_size = bytes.size();
   fits_open_memfile(&fits.file, "frame", READONLY, &memory, &memory_size, 0, nullptr, &fits.status);
   if (fits.status != 0) throw ConfigError(name + ": not a FITS file: " + fits.reason());
@@ -187,7 +186,7 @@ Frame decode_frame(std::string_view bytes, const std::string& name) {
   LONGLONG end = 0;
   fits_get_hduaddrll(fits.file, nullptr, nullptr, &end, &fits.status);
   if (fits.status != 0 || std::size_t(end) > bytes.size())
-    throw ConfigError(name + ": is cut short: " + std::to_string(bytes.size()) + " of " +
+    throw ConfigError(name + ": is truncated: " + std::to_string(bytes.size()) + " of " +
                       std::to_string(end) + " bytes");
   const FitsValues values = read_cards(fits, name);
   Frame frame;

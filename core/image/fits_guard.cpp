@@ -17,7 +17,7 @@ std::string keyword_of(std::string_view card) {
   return std::string(card.substr(0, std::min<std::size_t>(8, card.find_first_of(" ="))));
 }
 
-/// Throws for a card that does harm; gives its value as a number, 0 if it is none.
+/// Returns the value of a card as a number, 0 if it is none; throws for a harmful card.
 double checked_value(std::string_view card, const std::string& name) {
   const auto fail = [&](const std::string& reason) {
     throw ConfigError(name + ": " + keyword_of(card) + ": " + reason);

@@ -5,7 +5,7 @@
 
 namespace dmise {
 
-/// An open FITS file; closed on the way out whatever happens.
+/// An open FITS file, closed by its destructor.
 struct Fits {
   fitsfile* file = nullptr;
   int status = 0;

@@ -31,14 +31,14 @@ void draw_truth(Picture& picture, const Preview& preview, const Truth& truth, in
   const double x2 = preview.place(truth.end_x_px), y2 = preview.place(truth.end_y_px);
   if (std::hypot(x2 - x1, y2 - y1) < 8) {
     draw_circle(picture, xm, ym, 9, truth_colour);
-  } else {  // beside the light, not over it
+  } else {  // beside the source, not over it
     const double length = std::hypot(x2 - x1, y2 - y1);
     const double nx = -(y2 - y1) / length * 9, ny = (x2 - x1) / length * 9;
     draw_line(picture, x1 + nx, y1 + ny, xm + nx, ym + ny, truth_colour);
     draw_line(picture, xm + nx, ym + ny, x2 + nx, y2 + ny, truth_colour);
     draw_line(picture, x1 - nx, y1 - ny, xm - nx, ym - ny, truth_colour);
     draw_line(picture, xm - nx, ym - ny, x2 - nx, y2 - ny, truth_colour);
-    draw_circle(picture, x1, y1, 9, truth_colour);  // where it was at the start
+    draw_circle(picture, x1, y1, 9, truth_colour);  // start of the exposure
   }
   draw_text(picture, int(x1) + 14, int(y1) - 12, truth.name, truth_colour, text_scale);
 }
@@ -55,7 +55,7 @@ void draw_detection(Picture& picture, const Preview& preview, const Detection& d
             "#" + std::to_string(d.index) + " " + printed("%.1f", d.magnitude), colour, text_scale);
 }
 
-/// The largest of 1, 2, 5 x 10^n seconds of arc that is no longer than `room_px` picture pixels.
+/// Largest of 1, 2, 5 x 10^n arcsec that is at most `room_px` picture pixels long.
 void draw_scale_bar(Picture& picture, int x, int y, double arcsec_per_px, double room_px,
                     int scale) {
   constexpr std::array<std::pair<double, const char*>, 15> lengths = {{{0.1, "0.1\""},

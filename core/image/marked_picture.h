@@ -9,8 +9,8 @@
 namespace dmise {
 
 /// The preview in colour with truth (green) and detections (cyan streaks, yellow points) drawn in
-/// and a strip of text below: sensor, time, exposure, legend, scale bar, where north and east are.
-/// For eyes only: it shows truth, so it is never published.
+/// and a strip of text below: sensor, time, exposure, legend, scale bar, directions of north and
+/// east. Never published, because it shows truth.
 Picture marked_picture(const Preview& preview, const FrameHeader& header,
                        const std::vector<Truth>& truths, const std::vector<Detection>& detections);
 

@@ -3,7 +3,7 @@
 
 namespace dmise {
 
-/// The keywords of an observation, named once for writing and reading.
+/// Keywords of an observation, listed once for writing and reading.
 template <class Visitor>
 void visit_observation(Visitor& v, Observation& o) {
   v.optional_text("OBJECT", o.object, "what is pointed at");

@@ -8,7 +8,7 @@
 namespace dmise {
 namespace {
 
-/// Mean over `factor` x `factor` squares; what is left over at the right and bottom is dropped.
+/// Mean over `factor` x `factor` squares; remaining columns and rows are dropped.
 Image<float, struct Averaged> average(const CountImage& counts, int factor) {
   Image<float, Averaged> out(std::max(1, counts.columns / factor),
                              std::max(1, counts.rows / factor));
@@ -27,9 +27,9 @@ struct Sky {
   float median, sigma;
 };
 
-/// Median and noise (from it down to the 16 % point), of at most 2^16 pixels. Where more than a few
-/// pixels would be white, an object fills a part of the frame: the noise is then taken as large as
-/// keeps all but the brightest of them below white.
+/// Median and noise (from the median and the 16 % quantile) of at most 2^16 pixels. If more than a
+/// few pixels would be white, an object fills a part of the frame: the noise is then increased
+/// until all but the brightest of them are below white.
 Sky sky_of(const std::vector<float>& pixels, const PictureSettings& settings) {
   std::vector<float> sample;
   const std::size_t step = pixels.size() / 65536 + 1;
@@ -45,7 +45,7 @@ Sky sky_of(const std::vector<float>& pixels, const PictureSettings& settings) {
   const auto beyond =
       std::count_if(sample.begin(), sample.end(), [&](float v) { return v > white; });
   if (double(beyond) <= settings.white_share * double(sample.size())) return {median, sigma};
-  const double brightest = 0.01 * double(beyond) / double(sample.size());  // of those
+  const double brightest = 0.01 * double(beyond) / double(sample.size());  // of these pixels
   return {median, float((quantile(1.0 - brightest) - median) / settings.white_sigma)};
 }
 

@@ -9,9 +9,9 @@ namespace dmise {
 
 enum class FitsPlace { primary, extension };
 
-/// A FITS image whose pixels are stored as they are: 16-bit unsigned (BZERO 32768), 8-bit, or
-/// 32-bit floats, first row first; `cards` follow the structural ones. Handed on in pieces of 64
-/// KB, so that an image is not held twice.
+/// Writes a FITS image with uncompressed pixels: 16-bit unsigned (BZERO 32768), 8-bit, or 32-bit
+/// floats, first row first; `cards` follow the structural ones. Written in pieces of 64 KB, so that
+/// the image is not copied.
 void put_image(const ByteSink& file, FitsPlace place, std::span<const std::uint16_t> pixels,
                int columns, std::span<const std::string> cards);
 void put_image(const ByteSink& file, FitsPlace place, std::span<const std::uint8_t> pixels,

@@ -6,20 +6,20 @@
 
 namespace dmise {
 
-/// A quantity known for every pixel, written beside a frame.
+/// A quantity per pixel, written beside a frame.
 struct Plane {
   std::string name;               // EXTNAME: "SOURCES"
   std::string unit;               // BUNIT, as FITS spells it: "electron/s"
-  std::string what;               // for people, the comment of EXTNAME
+  std::string what;               // comment of EXTNAME
   const float* pixels = nullptr;  // rows x columns
   int columns = 0, rows = 0;
 };
 
-/// A FITS image of 32-bit floats with the frame's own header and world coordinates. Equal input
+/// Encodes a FITS image of 32-bit floats with the frame's header and world coordinates. Equal input
 /// gives equal bytes. Throws `Error`, also for a value that is not finite.
 std::string encode_plane(const Plane& plane, const FrameHeader& header);
 
-/// Whole or not at all; an `Error` names the file.
+/// Writes it atomically; an `Error` names the file.
 void write_plane(const std::string& path, const Plane& plane, const FrameHeader& header);
 
 }  // namespace dmise

@@ -6,17 +6,17 @@ namespace dmise {
 namespace {
 
 constexpr unsigned split_bits = 4;      // of a block's code
-constexpr unsigned largest_split = 14;  // this code means: differences as they are
+constexpr unsigned largest_split = 14;  // code of uncompressed differences
 constexpr unsigned pixel_bits = 16;
 
-/// Bits of a byte string, the highest first.
+/// Reads bits, most significant first.
 class Bits {
  public:
   explicit Bits(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
   bool failed() const { return failed_; }
 
-  /// `count` <= 24 bits as a number.
+  /// The next `count` <= 24 bits as a number.
   unsigned take(unsigned count) {
     while (held_ < count) {
       if (at_ == bytes_.size()) {
@@ -30,7 +30,7 @@ class Bits {
     return unsigned(store_ >> held_) & ((1u << count) - 1);
   }
 
-  /// How many zeros stand before the next one, which is taken too; at most `limit`.
+  /// Number of zeros before the next one, which is consumed too; at most `limit`.
   unsigned zeros(unsigned limit) {
     unsigned count = 0;
     while (!failed_ && take(1) == 0)

@@ -14,8 +14,8 @@
 namespace dmise {
 namespace {
 
-/// What the system says to a longer file, as CFITSIO does not keep what it said.
-int why_no_more(const std::string& path) {
+/// Returns the errno of extending the file, which CFITSIO does not report.
+int errno_of_extending(const std::string& path) {
   const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC);
   if (file < 0) return errno;
   const int reason = posix_fallocate(file, lseek(file, 0, SEEK_END), 1 << 20);
@@ -26,14 +26,14 @@ int why_no_more(const std::string& path) {
 }  // namespace
 
 TiledFile::TiledFile(std::string path) : path_(std::move(path)) {
-  if (path_.starts_with(' ')) path_ = "./" + path_;  // CFITSIO passes over blanks
+  if (path_.starts_with(' ')) path_ = "./" + path_;  // CFITSIO skips leading blanks
   if (path_.size() >= FLEN_FILENAME) throw Error("can't be written: name too long");
-  unlink(path_.c_str());  // of a process that was killed
+  unlink(path_.c_str());  // left by a killed process
   errno = 0;
   fits_create_diskfile(&fits_.file, path_.c_str(), &fits_.status);
   fits_create_img(fits_.file, BYTE_IMG, 0, nullptr, &fits_.status);
   require_ok();
-  errno = 0;  // set where CFITSIO looked whether the file was there
+  errno = 0;  // set by CFITSIO's test for an existing file
 }
 
 TiledFile::~TiledFile() {
@@ -68,7 +68,7 @@ void TiledFile::close() {
   fits_flush_file(fits_.file, &fits_.status);
   fits_get_hduaddrll(fits_.file, nullptr, nullptr, &end, &fits_.status);
   fits_close_file(std::exchange(fits_.file, nullptr), &fits_.status);
-  // The last block is written on the way out, where CFITSIO does not look whether it could be.
+  // CFITSIO writes the last block on close without checking for errors.
   std::error_code failed;
   if (fits_.status == 0 && std::filesystem::file_size(path_, failed) != std::uintmax_t(end))
     fits_.status = WRITE_ERROR;
@@ -79,7 +79,7 @@ void TiledFile::close() {
 
 void TiledFile::require_ok() {
   if (fits_.status == 0) return;
-  const int reason = errno != 0 ? errno : why_no_more(path_);
+  const int reason = errno != 0 ? errno : errno_of_extending(path_);
   throw Error("can't be written: " +
               (reason != 0 ? std::string(std::strerror(reason)) : fits_.reason()));
 }

@@ -7,15 +7,15 @@
 
 namespace dmise {
 
-/// A new FITS file of an empty primary HDU and images compressed by RICE_1 without loss, a tile a
-/// row (FITS Standard 4.0, section 10), by CFITSIO, which writes each row as it is compressed.
-/// Throws `Error` with the reason; what is not closed is removed.
+/// Writes a FITS file of an empty primary HDU and images losslessly compressed by RICE_1, one tile
+/// per row (FITS Standard 4.0, section 10), with CFITSIO, which writes each row as it is
+/// compressed. Throws `Error` with the reason; an unclosed file is removed.
 class TiledFile {
  public:
   explicit TiledFile(std::string path);
   ~TiledFile();
 
-  /// 16-bit unsigned or 8-bit; `cards` follow the structural ones.
+  /// Appends an image of 16-bit unsigned or 8-bit pixels; `cards` follow the structural ones.
   void add(std::span<const std::uint16_t> pixels, int columns, std::span<const std::string> cards);
   void add(std::span<const std::uint8_t> pixels, int columns, std::span<const std::string> cards);
   void close();

@@ -15,7 +15,7 @@ constexpr double pole_cos_out = 1e-6;  // f is finite down to here
 
 double per_sr(const Lambert& m, const Reflection&, double) { return m.reflectance / pi; }
 
-/// With the lobe's 1/cos_out held below `least_cos`.
+/// With 1/cos_out of the lobe limited to 1/`least_cos`.
 double per_sr(const SandfordRobertson& m, const Reflection& at, double least_cos) {
   const double mean = sandford_robertson_mean(m.grazing);
   const double falloff_in = sandford_robertson_falloff(at.cos_in, m.grazing);
@@ -48,8 +48,8 @@ double reflectance(const SandfordRobertson& m, double cos_in) {
                    sandford_robertson_mean(m.grazing);
 }
 
-/// Lobe about the mirror direction, in polar angle from it (cos^(n+1) = w^2, so that the
-/// lobe is nearly even) and azimuth.
+/// Integrates the lobe about the mirror direction, in polar angle from it (cos^(n+1) = w^2, so that
+/// the lobe is nearly uniform) and azimuth.
 double reflectance(const Phong& m, double cos_in) {
   constexpr int steps = 400;
   const double sin_in = std::sqrt(std::max(0.0, 1.0 - cos_in * cos_in));
@@ -137,7 +137,7 @@ double sandford_robertson_mean(double grazing) {
   if (b2 == 0.0) return 1.0;
   const double x = 1.0 - b2;
   if (std::abs(x) > 0.2) return (1.0 + b2 / x * std::log(b2)) / x;
-  // The closed form is 0/0 at b = 1: its series there, sum of x^k / ((k + 1) (k + 2)).
+  // The closed form is 0/0 at b = 1; near it, the series sum of x^k / ((k + 1) (k + 2)).
   double sum = 0.0, power = 1.0;
   for (int k = 0; k < 24; ++k, power *= x) sum += power / ((k + 1.0) * (k + 2.0));
   return sum;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\v\f";
 
-/// What of a foreign text is shown: printable and short.
+/// Printable, shortened form of input text for messages.
 std::string shown(std::string_view text) {
   std::string s;
   for (const char c : text.substr(0, 60)) s += c >= ' ' && c < 127 ? c : '?';
@@ -59,7 +59,7 @@ double LineFields::number(std::size_t field) const {
   if (error == std::errc::result_out_of_range && end == text.data() + text.size()) {
     if (text.find("e-") == text.npos && text.find("E-") == text.npos)
       fail("number too large", fields_[field]);
-    return 0.0;  // nearer to 0 than a double
+    return 0.0;  // below the smallest double
   }
   if (error != std::errc{} || end != text.data() + text.size())
     fail("must be a number", fields_[field]);

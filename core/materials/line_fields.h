@@ -6,8 +6,8 @@
 
 namespace dmise {
 
-/// Reads a text of keyword lines (OBJ, MTL): fields between blanks, comments from # on, lines
-/// continued by a backslash. Complaints read `file:line: keyword: reason, got value`.
+/// Reads a text of keyword lines (OBJ, MTL): fields separated by blanks, comments from # on, lines
+/// continued by a backslash. Errors read `file:line: keyword: reason, got value`.
 class LineFields {
  public:
   LineFields(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
@@ -21,10 +21,10 @@ class LineFields {
   std::string_view keyword() const { return fields_[0]; }
   std::size_t size() const { return fields_.size(); }
   std::string_view operator[](std::size_t i) const { return fields_[i]; }
-  /// All behind the keyword, for names with blanks in them. Throws `ConfigError` if nothing is.
+  /// Everything after the keyword, for names with blanks. Throws `ConfigError` if it is empty.
   std::string rest() const;
 
-  /// A finite number of magnitude up to 1e12.
+  /// A finite number of magnitude up to 1e12. Throws `ConfigError` otherwise.
   double number(std::size_t field) const;
 
   [[noreturn]] void fail(const std::string& reason) const;

@@ -12,7 +12,7 @@ double or_zero(const Curve& curve, double wavelength_m) {
   return curve.empty() ? 0.0 : curve.at_or_end(wavelength_m);
 }
 
-/// The model with each table read by `value`.
+/// The model with each table evaluated by `value`.
 template <class Value>
 Brdf brdf_of(const Material& m, Value&& value) {
   switch (m.model) {
@@ -79,8 +79,8 @@ void check_material(const Material& m) {
   take(m.emissivity, "emissivity");
   take(m.diffuse, "diffuse");
   take(m.specular, "specular");
-  if (wavelengths.empty()) throw Error(name + ": has no value at any wavelength");
-  // Sums of tables are linear between the samples of all of them.
+  if (wavelengths.empty()) throw Error(name + ": no value at any wavelength");
+  // Sums of tables are linear between the samples of all tables.
   for (const double wavelength_m : wavelengths) check_brdf(brdf_at(m, wavelength_m), name);
   if (!(m.temperature_k >= 0.0 && m.temperature_k <= 3000.0))
     throw Error(name + ": temperature_k must be in [0, 3000], got " +

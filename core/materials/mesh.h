@@ -11,8 +11,8 @@
 
 namespace dmise {
 
-/// A surface of flat triangles in the axes of its body. Seen and lit from the side from which the
-/// corners run counter-clockwise.
+/// A surface of flat triangles in the axes of its body. The visible and lit side is the one from
+/// which the corners run counter-clockwise.
 struct Mesh {
   struct Triangle {
     std::array<std::uint32_t, 3> corner;
@@ -43,16 +43,16 @@ double surface_m2(const Mesh& mesh);
 /// Greatest distance of a vertex from the origin of the body's axes [m].
 double radius_m(const Mesh& mesh);
 
-/// Whether every vertex lies behind every facet's plane, to 1e-9 of the size: nothing hides or
-/// shadows anything then.
+/// Whether every vertex lies behind every facet's plane, to 1e-9 of the size, so that no facet
+/// hides or shadows another.
 bool is_convex(const Mesh& mesh);
 
-/// The triangles of both; equal materials are shared.
+/// The triangles of both; equal materials are merged.
 Mesh merged(const Mesh& a, const Mesh& b);
 
 Mesh moved(Mesh mesh, const Vec<Body>& by_m);
 Mesh scaled(Mesh mesh, double factor);
-/// Its inside out: for the back of a sheet.
+/// The mesh with its sides exchanged, for the back of a sheet.
 Mesh reversed(Mesh mesh);
 
 }  // namespace dmise

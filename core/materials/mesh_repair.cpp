@@ -27,7 +27,7 @@ void drop_empty(Mesh& mesh, MeshLines& lines, std::vector<std::string>& notes) {
     if (!has_area(mesh, mesh.triangles[i])) {
       if (first_dropped == mesh.triangles.size()) {
         first_dropped = i;
-        notes.push_back(lines.of(i) + ": facet without area left out");
+        notes.push_back(lines.of(i) + ": facet without area dropped");
       }
       continue;
     }
@@ -38,10 +38,10 @@ void drop_empty(Mesh& mesh, MeshLines& lines, std::vector<std::string>& notes) {
   if (dropped > 1) notes.back() += " (the first of " + std::to_string(dropped) + ")";
   mesh.triangles.resize(kept);
   lines.line.resize(kept);
-  if (kept == 0) throw ConfigError(lines.file + ": has no facet with an area");
+  if (kept == 0) throw ConfigError(lines.file + ": no facet has an area");
 }
 
-/// Number of the first vertex at the same place, for each vertex.
+/// For each vertex, the index of the first vertex at the same position.
 std::vector<std::uint32_t> welded(const Mesh& mesh) {
   std::map<std::tuple<double, double, double>, std::uint32_t> seen;
   std::vector<std::uint32_t> place(mesh.vertex_m.size());
@@ -75,15 +75,15 @@ std::vector<Edge> sorted_edges(const Mesh& mesh) {
   return edges;
 }
 
-/// Surfaces as sets of triangles joined by edges that just two share.
+/// Surfaces as sets of triangles connected by edges that exactly two of them share.
 struct Surfaces {
-  std::vector<std::uint32_t> of;  // surface of a triangle, named by one of its triangles
+  std::vector<std::uint32_t> of;  // surface of each triangle, identified by one of its triangles
   struct Neighbour {
     std::uint32_t triangle;
-    bool agrees;  // both run the same way round
+    bool agrees;  // both have the same orientation
   };
   std::vector<std::vector<Neighbour>> neighbours;
-  std::vector<bool> open;  // by the surface's name
+  std::vector<bool> open;  // by surface
 
   explicit Surfaces(const Mesh& mesh) {
     const auto edges = sorted_edges(mesh);
@@ -115,9 +115,10 @@ struct Surfaces {
     return t;
   }
 
-  /// Finds the one other triangle of the same surface at this edge; without just one it is open.
+  /// Finds the only other triangle of the same surface at this edge; the surface is open if there
+  /// is none or more than one.
   void join(const std::vector<Edge>& edges, std::size_t begin, std::size_t end, std::size_t i) {
-    constexpr std::size_t crowded = 64;  // more at one edge are no solid's
+    constexpr std::size_t crowded = 64;  // more at one edge are not a solid
     const auto surface = of[edges[i].triangle];
     std::size_t others = 0, other = i;
     for (std::size_t j = begin; j < std::min(end, begin + crowded); ++j)
@@ -133,8 +134,8 @@ struct Surfaces {
   }
 };
 
-/// Turns the triangles of a closed surface to agree with its first; false if they cannot. `members`
-/// becomes its triangles.
+/// Orients the triangles of a closed surface like its first; false if impossible. `members` is set
+/// to its triangles.
 bool agree(const Surfaces& surfaces, std::uint32_t first, std::vector<signed char>& turned,
            std::vector<std::uint32_t>& members) {
   members.assign(1, first);
@@ -153,8 +154,7 @@ bool agree(const Surfaces& surfaces, std::uint32_t first, std::vector<signed cha
   return orientable;
 }
 
-/// Six times the volume within a closed surface, from a place of its own so that far ones are
-/// exact.
+/// Six times the volume of a closed surface, relative to one of its points to avoid cancellation.
 double six_volumes(const Mesh& mesh, const std::vector<std::uint32_t>& members) {
   const Vec<Body> from = mesh.vertex_m[mesh.triangles[members[0]].corner[0]];
   double sum = 0.0;
@@ -174,7 +174,7 @@ std::vector<std::string> repair(Mesh& mesh, MeshLines lines) {
   const Surfaces surfaces(mesh);
   const std::size_t count = mesh.triangles.size();
   std::vector<signed char> turned(count, -1);
-  std::vector<bool> one_sided(count, false);  // by the surface's name: no outside can be told
+  std::vector<bool> one_sided(count, false);  // by surface: it has no outside
   for (std::uint32_t t = 0; t < count; ++t) {
     const auto surface = surfaces.of[t];
     if (surfaces.open[surface] || turned[t] >= 0) continue;
@@ -209,13 +209,13 @@ std::vector<std::string> repair(Mesh& mesh, MeshLines lines) {
       mesh.triangles.back().turn_over();
     }
   constexpr std::size_t most_notes = 20;
-  std::size_t told = 0;
+  std::size_t sheet_count = 0;
   for (const auto& [surface, sheet] : sheets)
-    if (++told <= most_notes)
+    if (++sheet_count <= most_notes)
       notes.push_back(lines.of(sheet.first) + ": open surface of " + facets_text(sheet.second) +
                       ": a sheet, given a back");
-  if (told > most_notes)
-    notes.push_back(lines.file + ": and " + std::to_string(told - most_notes) +
+  if (sheet_count > most_notes)
+    notes.push_back(lines.file + ": and " + std::to_string(sheet_count - most_notes) +
                     " more open surfaces");
   return notes;
 }

@@ -6,22 +6,22 @@
 
 namespace dmise {
 
-/// Where each triangle of a mesh comes from, for messages: `file:line`.
+/// Source line of each triangle, for messages: `file:line`.
 struct MeshLines {
   std::string file;
-  std::vector<std::uint32_t> line;  // one a triangle
+  std::vector<std::uint32_t> line;  // of each triangle
 
   std::string of(std::size_t triangle) const { return file + ":" + std::to_string(line[triangle]); }
 };
 
-/// Makes a mesh one that light can be computed with, and tells what had to be done, one line each:
-///  - facets without area (below 1e-9 of the square of their longest edge) are left out;
-///  - a closed surface whose facets disagree in their sense of turning, or that is inside out, is
-///    turned to face outwards;
-///  - an open surface, or one that has no outside, is a sheet: each of its facets gets a back of
-///    the same material.
-/// Surfaces are told apart by their edges; vertices at equal places count as one. Throws
-/// `ConfigError` when no facet is left.
+/// Repairs a mesh for radiometry and returns one line per repair:
+/// - facets without area (below 1e-9 of the square of their longest edge) are dropped;
+/// - a closed surface with inconsistently oriented facets, or inside out, is turned to face
+///   outwards;
+/// - an open surface, or one without an outside, is a sheet: each facet gets a back of the same
+///   material.
+/// Surfaces are connected components of shared edges; vertices at equal positions count as one.
+/// Throws `ConfigError` if no facet is left.
 std::vector<std::string> repair(Mesh& mesh, MeshLines lines);
 
 }  // namespace dmise

@@ -13,14 +13,14 @@ namespace {
 
 using Colour = std::array<double, 3>;  // red, green, blue
 
-/// What the lines of one `newmtl` said.
+/// Content of one `newmtl` block.
 struct Entry {
   std::string name, where;
   std::optional<Colour> diffuse;
   Colour specular{};
   double exponent = 1.0;
   std::optional<Material> named;
-  double temperature_k = -1.0, thermal_emissivity = -1.0;  // < 0: not said
+  double temperature_k = -1.0, thermal_emissivity = -1.0;  // < 0: not given
   std::shared_ptr<Texture> colour_map, slope_map;
   double height_m = 1.0;
 };
@@ -58,7 +58,7 @@ Material material_of(Entry entry, std::vector<std::string>& notes) {
     for (int i = 0; i < 3; ++i) most = std::max(most, diffuse[i] + entry.specular[i]);
     if (most > 1.0) {
       notes.push_back(entry.where + ": newmtl " + entry.name +
-                      ": Kd + Ks above 1, scaled down to reflect no more than falls in");
+                      ": Kd + Ks above 1, scaled down to conserve energy");
       for (int i = 0; i < 3; ++i) {
         diffuse[i] /= most;
         entry.specular[i] /= most;
@@ -91,7 +91,7 @@ bool is_height_map(std::string_view key) {
   return key == "map_Bump" || key == "map_bump" || key == "bump";
 }
 
-/// `map_Kd [options] file`: what of it can be used. `height_m` is told by -bm.
+/// Parses `map_Kd [options] file`; -bm sets `height_m`.
 std::shared_ptr<Texture> texture_of(const LineFields& fields, double& height_m) {
   Texture t{.where = fields.where() + ": " + std::string(fields.keyword())};
   std::size_t i = 1;
@@ -149,7 +149,7 @@ std::map<std::string, Material> parse_mtl(std::string_view text, const std::stri
       if (materials.count(entry->name)) fields.fail("defined twice", entry->name);
       continue;
     }
-    if (!entry) fields.fail("stands before any newmtl");
+    if (!entry) fields.fail("precedes any newmtl");
     if (key == "Kd") {
       entry->diffuse = colour(fields);
     } else if (key == "Ks") {

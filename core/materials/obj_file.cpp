@@ -51,7 +51,7 @@ class Reader {
     } else if (key == "mtllib") {
       library();
     } else if (key == "l" || key == "p") {
-      once(left_out_, "lines and points have no area and are left out");
+      once(left_out_, "lines and points have no area and are ignored");
     } else if (key != "vn" && key != "o" && key != "g" && key != "s" && key != "mg" &&
                key != "bevel" && key != "c_interp" && key != "d_interp" && key != "lod" &&
                key != "usemap" && key != "maplib" && key != "shadow_obj" && key != "trace_obj") {
@@ -63,14 +63,14 @@ class Reader {
     for (const std::string_view known :
          {"vp", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole",
           "scrv", "sp", "end", "con", "ctech", "stech"})
-      if (key == known) fields_.fail("free-form curves and surfaces cannot be used");
-    if (key == "call" || key == "csh") fields_.fail("commands are not followed");
+      if (key == known) fields_.fail("free-form curves and surfaces are not supported");
+    if (key == "call" || key == "csh") fields_.fail("commands are not supported");
     fields_.fail("unknown keyword");
   }
 
-  void once(bool& told, const char* what) {
-    if (!told) model_.notes.push_back(fields_.where() + ": " + what);
-    told = true;
+  void once(bool& noted, const char* what) {
+    if (!noted) model_.notes.push_back(fields_.where() + ": " + what);
+    noted = true;
   }
 
   float texture_number(std::size_t field) const {
@@ -116,7 +116,7 @@ class Reader {
 
   void face() {
     const std::size_t corners = fields_.size() - 1;
-    if (corners < 3) fields_.fail("a face needs three corners");
+    if (corners < 3) fields_.fail("a face needs at least three corners");
     if (corners > most_corners)
       fields_.fail("a face has at most " + std::to_string(most_corners) + " corners");
     std::vector<Corner> of;
@@ -143,11 +143,11 @@ class Reader {
     if (model_.mesh.triangles.size() > most_facets) fields_.fail("too many facets");
   }
 
-  /// The material in use without its pictures, for faces that have no place on them.
+  /// The current material without its pictures, for faces without texture coordinates.
   std::uint32_t untextured() {
     const Material& used = model_.mesh.materials[material_];
     if (!used.colour_map && !used.slope_map) return material_;
-    once(no_place_, "faces without vt go without the pictures of their material");
+    once(no_place_, "faces without vt do not use the pictures of their material");
     const auto [found, is_new] =
         untextured_.try_emplace(material_, std::uint32_t(model_.mesh.materials.size()));
     if (is_new) {
@@ -182,11 +182,11 @@ class Reader {
 
   std::shared_ptr<const Texture> loaded(const Texture& described, bool colour) {
     try {
-      if (!sources_.read_picture) throw Error("pictures are not read here");
+      if (!sources_.read_picture) throw Error("pictures are not supported here");
       auto picture =
           sources_.read_picture(described.file, colour ? PictureOf::light : PictureOf::quantity);
       texels_ += picture.pixels.size();
-      if (texels_ > most_texels) throw Error("the pictures of the model are too large together");
+      if (texels_ > most_texels) throw Error("the pictures of the model are too large in total");
       return std::make_shared<const Texture>(colour ? colour_texture(described, std::move(picture))
                                                     : slope_texture(described, picture));
     } catch (const Error& error) {
@@ -202,7 +202,7 @@ class Reader {
     } catch (const Error& error) {
       fields_.fail(error.what());
     }
-    // Errors in it name its own lines.
+    // Errors in it name their own file and line.
     const auto path = std::filesystem::path(fields_.file()).parent_path() / name;
     defined_.merge(parse_mtl(text, path.string(), sources_.library, model_.notes));
   }

@@ -9,31 +9,31 @@
 
 namespace dmise {
 
-/// A mesh that was read and what was left out or put right in reading it, one line each.
+/// A mesh with notes on what was ignored or repaired, one line each.
 struct ObjModel {
   Mesh mesh;
   std::vector<std::string> notes;
 };
 
-/// Where an OBJ file finds what it names.
+/// Access to the files that an OBJ file names.
 struct ObjSources {
   std::function<std::string(const std::string& name)> read_mtl;  // text of a material file
   MaterialByName library;
   std::function<LinearPicture(const std::string& name, PictureOf what)> read_picture;
 };
 
-/// More facets are refused.
+/// Limit on the number of facets.
 inline constexpr std::size_t most_facets = 4'000'000;
 
-/// Reads a Wavefront OBJ, lengths in metres: v, vt, f (any number of corners, absolute and negative
-/// numbers, with and without texture and normal), usemtl, mtllib, o, g, s. Vertex normals are not
-/// needed: facets are flat. A material is looked for in the material files, then in the library;
-/// facets before any usemtl are grey (Lambert 0.2), with a note. Lines and points have no area and
-/// are left out; free-form curves and surfaces are refused. The mesh is repaired (mesh_repair.h).
-/// Throws `ConfigError` with `file:line`.
+/// Parses a Wavefront OBJ, lengths in metres: v, vt, f (any number of corners, absolute and
+/// negative indices, with and without texture and normal), usemtl, mtllib, o, g, s. Vertex normals
+/// are ignored: facets are flat. A material is looked up in the material files, then in the
+/// library; facets before any usemtl are grey (Lambert 0.2), with a note. Lines and points are
+/// ignored; free-form curves and surfaces are refused. The mesh is repaired (mesh_repair.h). Throws
+/// `ConfigError` with `file:line`.
 ObjModel parse_obj(std::string_view text, const std::string& file, const ObjSources& sources);
 
-/// Reads it from a file; material files and pictures stand beside it.
+/// Reads an OBJ file; material files and pictures are relative to its directory.
 ObjModel load_obj(const std::string& path, const MaterialByName& library);
 
 }  // namespace dmise

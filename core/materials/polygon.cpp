@@ -16,9 +16,9 @@ double turn(const Point& a, const Point& b, const Point& c) {
 
 bool same(const Point& a, const Point& b) { return a.x == b.x && a.y == b.y; }
 
-/// The corners on the coordinate plane that the face is nearest to, counter-clockwise.
+/// Projects the corners on the coordinate plane closest to the face's plane, counter-clockwise.
 std::vector<Point> flattened(const std::vector<Vec<Body>>& corners) {
-  Vec<Body> normal;  // Newell's sum: right for faces that are not quite flat
+  Vec<Body> normal;  // Newell's method: valid for faces that are not quite flat
   for (std::size_t i = 0; i < corners.size(); ++i)
     normal += cross(corners[i], corners[(i + 1) % corners.size()]);
   const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
@@ -48,7 +48,7 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<Vec<Body
     if (!(turn(a, b, c) > 0)) return false;
     for (std::size_t k = 2; k + 1 < n; ++k) {
       const Point& p = points[left[(i + k) % n]];
-      if (same(p, a) || same(p, b) || same(p, c)) continue;  // the seam to a hole
+      if (same(p, a) || same(p, b) || same(p, c)) continue;  // seam to a hole
       if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
     }
     return true;

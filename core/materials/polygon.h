@@ -7,9 +7,9 @@
 
 namespace dmise {
 
-/// Cuts a face of n corners, convex or not, into n - 2 triangles of its corners' numbers (0..n-1)
-/// that keep its sense of turning: ears, on the plane that it faces most. A face that crosses
-/// itself is cut in a fan. Quadratic in n.
+/// Triangulates a face of n corners, convex or not, into n - 2 triangles of corner indices (0..n-1)
+/// with its orientation, by ear clipping on the coordinate plane that it faces most. A
+/// self-intersecting face becomes a fan. O(n^2).
 std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<Vec<Body>>& corners);
 
 }  // namespace dmise

@@ -22,7 +22,7 @@ void add_face(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std
   mesh.triangles.push_back({{a, c, d}});
 }
 
-/// Vertices of a geodesic sphere, each made once.
+/// Vertices of a geodesic sphere without duplicates.
 class Geodesic {
  public:
   Geodesic(int frequency, double radius_m) : n_(frequency), radius_m_(radius_m) {}

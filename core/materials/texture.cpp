@@ -15,7 +15,7 @@ int wrapped(int i, int count, bool clamp) {
 
 struct Between {
   int low, high;
-  float share;  // of the higher
+  float share;  // weight of the higher texel
 };
 
 Between between(float place, int count, bool clamp) {

@@ -19,7 +19,7 @@ double radiance_below(double wavelength_m, double temperature_k) {
   const double scale =
       2.0 * kt * kt * kt * kt /
       (planck_j_s * planck_j_s * planck_j_s * speed_of_light_m_per_s * speed_of_light_m_per_s);
-  if (x < 0.02) {  // nearly all of it: pi^4/15 less what lies beyond, x^3/3 - x^4/8 + x^5/60
+  if (x < 0.02) {  // pi^4/15 less the tail, x^3/3 - x^4/8 + x^5/60
     return scale * (pi * pi * pi * pi / 15 - x * x * x * (1.0 / 3 - x / 8 + x * x / 60));
   }
   double sum = 0.0;

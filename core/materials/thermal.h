@@ -1,7 +1,7 @@
 #pragma once
 #include "core/materials/material.h"
 
-// What a warm surface radiates by itself: grey and diffuse, Planck's law.
+// Thermal emission of a surface: grey and diffuse, Planck's law.
 namespace dmise {
 
 /// Spectral radiance of a black body [W/m2/sr/m]; 0 at 0 K.
@@ -12,8 +12,8 @@ double planck_w_per_m2_sr_m(double wavelength_m, double temperature_k);
 /// Transfer 11, 451.
 double black_body_radiance_w_per_m2_sr(double temperature_k, double low_m, double high_m);
 
-/// The same in photons [1/s/m2/sr] within a band and its response; midpoint sum, below 1e-3 of it
-/// for bands of up to half their wavelength.
+/// The same in photons [1/s/m2/sr] within a band, weighted by its response; midpoint sum with a
+/// relative error below 1e-3 for bands of up to half their wavelength.
 double black_body_radiance_photons_per_s_m2_sr(double temperature_k, const Band& band);
 
 /// Photons/s/m2/sr that a material emits in a band, the same in every direction.

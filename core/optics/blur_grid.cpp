@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t row_grain = 8;
 
-// Weight of node `node` of `count` equally spaced from the first to the last of `length` pixels:
-// 1 there, falling to 0 at the next ones. One node weighs 1 everywhere.
+// Linear interpolation weight of node `node` of `count` equally spaced from the first to the last
+// of `length` pixels: 1 there, 0 at its neighbours. A single node has weight 1 everywhere.
 float hat(int node, int count, double at, double length) {
   if (count == 1) return 1.0f;
   const double x = std::clamp(at / (length - 1.0), 0.0, 1.0) * (count - 1);
@@ -107,7 +107,7 @@ void BlurGrid::find_lit_rows(Threads& threads) {
   });
 }
 
-// Light near one node of the field, weighed by its share of the linear interpolation.
+// Light near one node of the field, weighted by the linear interpolation.
 void BlurGrid::weigh(int node, Threads& threads) {
   const int node_x = node % field_columns_, node_y = node / field_columns_;
   const auto stride = std::size_t(fft_.stride());
@@ -142,8 +142,8 @@ FftBuffer& BlurGrid::blur(Threads& threads) {
   return sum_;
 }
 
-// Puts each pixel's light at the start of its first row of cells, and sums what is above and below
-// 0.
+// Shifts each pixel's light to the start of its first row of cells, and sums what is above and
+// below 0.
 void BlurGrid::resample(FftBuffer& cells, PointSpread::Resampling resampling, Threads& threads) {
   const int k = oversampling_;
   const auto stride = std::size_t(fft_.stride());

@@ -8,42 +8,42 @@
 
 namespace dmise {
 
-/// The image plane on cells finer than pixels, with a margin as wide as the kernel: light beside
-/// the frame reaches into it, and nothing wraps around. Blurred by one pair of transforms a frame,
-/// or by one forward transform a kernel where kernels differ over the field. All memory is made
-/// once.
+/// The image plane on cells smaller than pixels, with a margin as wide as the kernel, so that light
+/// beside the frame contributes and nothing wraps around. Blurred with one pair of transforms per
+/// frame, or with one forward transform per kernel if kernels vary over the field. All memory is
+/// allocated in the constructor.
 ///
-/// What stays is right to 1e-6 of the frame's brightest cell (single precision). Rounding makes
-/// some dark pixels negative by that much: they become 0, and the rest is scaled by the light that
-/// adds, so that the sum is kept.
+/// Accurate to 1e-6 of the frame's brightest cell (single precision). Dark pixels that rounding
+/// makes negative are set to 0, and the rest is rescaled to keep the sum.
 class BlurGrid {
  public:
-  /// `field_columns` x `field_rows` kernels, linear between; 1 x 1: one for the whole frame.
+  /// `field_columns` x `field_rows` kernels with linear interpolation; 1 x 1: one for the whole
+  /// frame.
   BlurGrid(int columns, int rows, int oversampling, int half_cells, int field_columns = 1,
            int field_rows = 1);
 
-  /// Kernels row by row; each of the grid's `half_cells`.
+  /// Kernels in row-major order; each must have the grid's `half_cells`.
   void set_kernels(const std::vector<PsfKernel>& kernels, Threads& threads);
 
-  /// Empties the cells.
+  /// Sets all cells to 0.
   void clear(Threads& threads);
   bool is_empty() const { return empty_; }
 
-  /// The cells, to put light on; told is what falls inside the frame.
+  /// View of the cells for depositing light; `Deposited` reports the part inside the frame.
   DepositView cells();
-  /// Place of a pixel coordinate on the cells, and back.
+  /// Converts a pixel coordinate to cells, and back.
   PixelPosition cell_of(PixelPosition pixel) const;
   PixelPosition pixel_of(PixelPosition cell) const;
-  /// An arc in pixels as one in cells.
+  /// Converts an arc from pixels to cells.
   Arc on_cells(const Arc& arc) const;
   int oversampling() const { return oversampling_; }
   int half_cells() const { return half_; }
 
-  /// Blurs what lies on the cells and adds it, resampled, to the frame. Overwrites the cells.
+  /// Blurs the cells and adds the result, resampled, to the frame. Overwrites the cells.
   void blur_into(ExpectedElectronImage& light, PointSpread::Resampling resampling,
                  Threads& threads);
 
-  /// Floats of one transform along columns and rows.
+  /// Size of one transform in floats, along columns and rows.
   int transform_columns() const { return fft_.columns(); }
   int transform_rows() const { return fft_.rows(); }
   std::size_t memory_bytes() const;

@@ -8,8 +8,7 @@
 
 namespace dmise {
 
-/// The optics of a camera and the geometry of its pixels. `transmission` is that of the optics and
-/// filter together.
+/// The optics of a camera and the geometry of its pixels. `transmission` includes the filter.
 struct Optics {
   Projection projection;
   double focal_length_m = 0.0;
@@ -22,18 +21,18 @@ struct Optics {
   double psf_fwhm_px = 1.5;   // of the lens and focus (Gaussian), before pixel integration; >= 0
   PointSpread spread;         // how points are blurred, and by which method
   Vignetting vignetting;
-  ImageOptics image;                 // that act on the whole image
-  bool equivalent_aperture = false;  // allows N < 0.5: the aperture is a collecting area only
+  ImageOptics image;                 // effects on the whole image
+  bool equivalent_aperture = false;  // allows N < 0.5: aperture is only a collecting area
 
-  /// Area of the entrance pupil less its obscuration [m2].
+  /// Area of the entrance pupil without the obscuration [m2].
   double collecting_area_m2() const;
   double pixel_angle_rad() const { return pixel_pitch_m / focal_length_m; }  // at the centre
   double focal_length_px() const { return focal_length_m / pixel_pitch_m; }
   double f_number() const { return focal_length_m / aperture_m; }
 };
 
-/// Throws `ConfigError` "optics.KEY: reason, got value" for figures that no camera can have. Below
-/// a focal ratio of 0.5 radiance would not be conserved: refused unless `equivalent_aperture`.
+/// Throws `ConfigError` "optics.KEY: reason, got value" for impossible parameters. A focal ratio
+/// below 0.5 violates conservation of radiance and is refused unless `equivalent_aperture`.
 void check(const Optics& optics);
 
 }  // namespace dmise

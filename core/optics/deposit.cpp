@@ -20,7 +20,7 @@ constexpr double node_weights[panel_nodes] = {0.2369268850561891, 0.478628670499
                                               0.5688888888888889, 0.4786286704993665,
                                               0.2369268850561891};
 
-// The arc as a polynomial of time: place = start + tau (slope + tau curve).
+// The arc as a polynomial of time: position = start + tau (slope + tau curve).
 struct Motion {
   PixelPosition start, slope, curve;
 
@@ -43,7 +43,7 @@ struct Box {
   }
 };
 
-// Holds the parabola between two times: the hull of its Bezier points.
+// Bounding box of the parabola between two times: the hull of its Bezier points.
 Box bounds(const Motion& m, double tau0, double tau1) {
   const PixelPosition a = m.at(tau0), c = m.at(tau1);
   const PixelPosition b = a + (m.slope + m.curve * (2.0 * tau0)) * (0.5 * (tau1 - tau0));
@@ -98,7 +98,7 @@ void for_panels(const Arc& arc, const PsfTable& psf, const Box& box, const Use& 
   visit(visit, 0.0, count);
 }
 
-// Sum and first moment of a node's shares on one axis over `pixels` pixels from `from` on.
+// Sum and first moment of a node's weights on one axis over `pixels` pixels from `from` on.
 std::array<double, 2> shares_inside(const PsfTable& psf, int at, float phase, int from,
                                     int pixels) {
   const float position = phase * float(psf.phases);

@@ -10,7 +10,7 @@ constexpr int block = 8;  // the stride of a table is a multiple of it
 DMISE_INLINE int smaller(int a, int b) { return a < b ? a : b; }
 DMISE_INLINE int larger(int a, int b) { return a > b ? a : b; }
 
-// Shares of one node on one axis, from `offset` on in a zeroed row.
+// Weights of one node on one axis, from `offset` on in a zeroed row.
 DMISE_INLINE void place(const PsfTableView& t, float phase, float scale, int offset, float* row) {
   const float at = phase * float(t.phases);
   const int p = smaller(int(at), t.phases - 1);

@@ -10,7 +10,7 @@ struct PanelView {
   int nodes = 0;  // 1 or panel_nodes
   float weight[panel_nodes];
   int column[panel_nodes], row[panel_nodes];         // floor of the position
-  float phase_x[panel_nodes], phase_y[panel_nodes];  // the rest, [0, 1]
+  float phase_x[panel_nodes], phase_y[panel_nodes];  // fraction, [0, 1]
 };
 
 struct PsfTableView {

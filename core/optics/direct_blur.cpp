@@ -31,8 +31,8 @@ DirectBlur::DirectBlur(int oversampling, int half_cells, PointSpread::Resampling
       resampling_(resampling),
       table_(make_psf_table(grid_sigma_cells)) {}
 
-// shares_[phase][dy][dx]: what a cell of that phase within its pixel gives to the pixel dx, dy
-// away.
+// shares_[phase][dy][dx]: light that a cell of that phase within its pixel gives to the pixel (dx,
+// dy) away.
 void DirectBlur::set_kernel(const PsfKernel& kernel) {
   if (kernel.half != half_) throw Error("blur: size of the kernel");
   const auto each = std::size_t(side_) * std::size_t(side_);
@@ -81,7 +81,7 @@ void DirectBlur::for_pieces(const Arc& arc, const Extent& reach, const Use& use)
 
 void DirectBlur::add(const Arc& piece, int row_begin, int row_end,
                      ExpectedElectronImage& light) const {
-  // The piece on cells of its own, from the first cell of a pixel on.
+  // The piece on its own cells, starting at the first cell of a pixel.
   Arc arc = on_cells(piece);
   const Extent e = extent(arc);
   const int margin = table_.size / 2 + 1;
@@ -99,7 +99,7 @@ void DirectBlur::add(const Arc& piece, int row_begin, int row_end,
   dmise::deposit(std::span(&arc, 1), table_, DepositView{patch.data(), columns, rows, columns},
                  alone);
 
-  // Summed in double precision: a thousand small parts make a pixel.
+  // Summed in double precision: a pixel is the sum of a thousand small parts.
   const int x_begin = std::max(0, left_px - reach_px_),
             x_end = std::min(light.columns, left_px + (columns - 1) / k_ + reach_px_ + 1);
   const int y_begin = std::max(row_begin, top_px - reach_px_),

@@ -8,18 +8,18 @@
 
 namespace dmise {
 
-/// The convolution of `BlurGrid` summed source by source: the same cells, the same kernel, the same
-/// pixels, but each pixel is right to 1e-6 of itself, so that a bright source leaves its faint
-/// neighbours alone, and only what sources cover is computed. Costs (12 k + trail)
-/// (12 k) (2 half / k)^2 multiplications a source of k cells a pixel.
+/// The convolution of `BlurGrid` summed per source: the same cells, kernel and pixels, but each
+/// pixel is accurate to 1e-6 of itself, so that bright sources do not disturb faint neighbours, and
+/// only the area covered by sources is computed. Costs (12 k + trail) (12 k) (2 half / k)^2
+/// multiplications per source for k cells per pixel.
 class DirectBlur {
  public:
   DirectBlur(int oversampling, int half_cells, PointSpread::Resampling resampling);
 
   void set_kernel(const PsfKernel& kernel);
 
-  /// Adds arcs (in pixels) to the image and tells what of each fell inside, before blurring. The
-  /// bytes do not depend on the number of threads.
+  /// Adds arcs (in pixels) to the image and returns what is inside the frame for each, before
+  /// blurring. The bytes do not depend on the number of threads.
   std::vector<Deposited> deposit(std::span<const Arc> arcs, ExpectedElectronImage& light,
                                  Threads& threads);
 
@@ -33,7 +33,7 @@ class DirectBlur {
   int k_, half_, reach_px_, side_;  // `side_`: pixels of the summed kernel
   PointSpread::Resampling resampling_;
   PsfTable table_;
-  std::vector<float> shares_;  // for each of k x k cells of a pixel: side x side pixels
+  std::vector<float> shares_;  // for each of the k x k cells of a pixel: side x side
 };
 
 }  // namespace dmise

@@ -15,7 +15,7 @@ constexpr int row_group = 8;
 constexpr int column_group = 16;  // complex numbers: 128 bytes of a row
 constexpr unsigned flags = FFTW_ESTIMATE;
 
-// FFTW's planner is the one part of it that threads must not enter together.
+// FFTW's planner is not thread-safe.
 std::mutex& planner() {
   static std::mutex mutex;
   return mutex;
@@ -42,7 +42,7 @@ FftBuffer::FftBuffer(std::size_t floats) : data_(fftwf_alloc_real(floats)), size
   std::memset(data_.get(), 0, floats * sizeof(float));
 }
 
-// Rows are planned by groups and one by one (for the rest); columns in groups of a work area.
+// Rows are planned in groups and singly (for the remainder); columns in groups of a work area.
 struct RealFft2::Plans {
   fftwf_plan rows_forward = nullptr, rows_inverse = nullptr;
   fftwf_plan row_forward = nullptr, row_inverse = nullptr;
@@ -84,8 +84,8 @@ RealFft2::RealFft2(int columns, int rows) : plans_(new Plans), columns_(columns)
 
 RealFft2::~RealFft2() = default;
 
-// Whole groups of rows of which one holds light, so that the plan, and with it every bit, is the
-// same whatever the others hold.
+// Transforms whole groups of rows if one of them has light, so that the plan, and with it every
+// bit, does not depend on the others.
 void RealFft2::forward_rows(FftBuffer& image, const std::vector<char>& lit,
                             Threads& threads) const {
   threads.for_ranges(std::size_t(rows_), row_group, [&](std::size_t begin, std::size_t end) {
@@ -116,7 +116,7 @@ void RealFft2::inverse_rows(FftBuffer& image, int wanted_begin, int wanted_end,
   });
 }
 
-// Calls use(group, work) for each group of columns; `work` is the thread's, kept between calls.
+// Calls use(group, work) for each group of columns; `work` belongs to the thread and is reused.
 template <class Use>
 void RealFft2::column_groups(Threads& threads, const Use& use) const {
   const auto groups = std::size_t(stride_ / (2 * column_group));

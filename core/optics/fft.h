@@ -5,16 +5,16 @@
 
 #include "core/base/parallel.h"
 
-// Transforms by FFTW in single precision. Plans are estimated, never measured, and every thread
+// Single-precision transforms by FFTW. Plans are estimated, never measured, and every thread
 // transforms whole groups of a fixed number of rows or columns: the bytes depend neither on timing
-// nor on the number of threads. On another instruction set FFTW may choose other code, and results
+// nor on the number of threads. On another instruction set FFTW may use other code, and results
 // differ by rounding, below 3e-7 of the largest value.
 namespace dmise {
 
 /// Smallest n >= at_least whose prime factors are 2, 3, 5 and 7; even if asked for. at_least >= 1.
 int good_fft_size(int at_least, bool even = false);
 
-/// Memory aligned as FFTW likes it, all zero at first.
+/// Zero-initialised memory with FFTW's alignment.
 class FftBuffer {
  public:
   FftBuffer() = default;
@@ -33,8 +33,8 @@ class FftBuffer {
   std::size_t size_ = 0;
 };
 
-/// Real transform of an image in place. A row of `columns` floats stands at the start of `stride`
-/// floats; its half spectrum, columns / 2 + 1 complex numbers, takes their place.
+/// In-place real transform of an image. A row of `columns` floats is stored in `stride` floats; its
+/// half spectrum of columns / 2 + 1 complex numbers replaces it.
 class RealFft2 {
  public:
   /// `columns` even.
@@ -48,20 +48,19 @@ class RealFft2 {
   int stride() const { return stride_; }
   std::size_t floats() const { return std::size_t(stride_) * std::size_t(rows_); }
 
-  /// Half spectrum of the image, as `spectrum` for `convolve`: columns in groups, scaled so that
-  /// `convolve` with the spectrum of a unit impulse at (0, 0) changes nothing. Overwrites the
-  /// image.
+  /// Half spectrum of the image for `convolve`: columns in groups, scaled so that convolving with
+  /// the spectrum of a unit impulse at (0, 0) is the identity. Overwrites the image.
   using Spectrum = std::vector<std::complex<float>>;
   Spectrum spectrum(FftBuffer& image, Threads& threads) const;
   void spectrum(FftBuffer& image, Threads& threads, Spectrum& result) const;
 
-  /// Circular convolution in place with the image whose spectrum is given. Rows that are not `lit`
-  /// are taken as zero whatever they hold; only rows [wanted_begin, wanted_end) are made.
+  /// In-place circular convolution with the image of the given spectrum. Rows that are not `lit`
+  /// are treated as zero; only rows [wanted_begin, wanted_end) are computed.
   void convolve(FftBuffer& image, const std::vector<char>& lit, int wanted_begin, int wanted_end,
                 const Spectrum& spectrum, Threads& threads) const;
 
-  /// The same in two halves, so that images with kernels of their own share one inverse transform:
-  /// adds the product of two spectra to `sum`, which starts as zeros, and transforms back.
+  /// The same in two steps, so that images with different kernels share one inverse transform: adds
+  /// the product of two spectra to `sum`, initially zero, and transforms back.
   void add_product(FftBuffer& image, const std::vector<char>& lit, const Spectrum& spectrum,
                    FftBuffer& sum, Threads& threads) const;
   void invert(FftBuffer& sum, int wanted_begin, int wanted_end, Threads& threads) const;
@@ -81,8 +80,8 @@ class RealFft2 {
   int columns_, rows_, stride_;
 };
 
-/// Complex transform of a square of side n, in place, sign as FFTW_FORWARD, not normalised. For
-/// pupils and screens, which are small.
+/// In-place complex transform of a square of side n, sign FFTW_FORWARD, not normalised. For pupils
+/// and phase screens, which are small.
 class ComplexFft2 {
  public:
   explicit ComplexFft2(int side);

@@ -12,8 +12,8 @@ FrozenFlow::FrozenFlow(int side, double outer_scale, const RngKey& key)
   for (Field& f : kept_) f.block = std::numeric_limits<std::int64_t>::min();
 }
 
-// Tori are drawn in pairs; four are kept, so that the two that a window fades between and the
-// other halves of their pairs stay.
+// Tori are drawn in pairs; four are cached: the two that a window blends and the other halves of
+// their pairs.
 const FrozenFlow::Field& FrozenFlow::field(std::int64_t block) {
   const std::int64_t pair = block >= 0 ? block / 2 : (block - 1) / 2;
   Field* slots = kept_ + 2 * (pair & 1);
@@ -43,7 +43,7 @@ PhaseScreen FrozenFlow::at(double distance, double direction_rad, double r0_samp
   PhaseScreen window{side, std::vector<float>(std::size_t(side) * std::size_t(side))};
   const auto add = [&](const Field& f, double weight) {
     for (int y = 0; y < side; ++y) {
-      // What the wind brings comes from the side it blows from.
+      // The wind brings new phase from its upwind side.
       const float* row = f.phase.data() + std::size_t((y - up + torus) % torus * torus);
       float* out = window.phase_rad.data() + std::size_t(y) * std::size_t(side);
       for (int x = 0; x < side; ++x)

@@ -20,7 +20,7 @@ std::span<const ImageParameter> LensGhost::parameters() {
 void LensGhost::apply(ExpectedElectronImage& image, Threads& threads) const {
   const ExpectedElectronImage source = image;
   const int columns = image.columns, rows = image.rows, reach = int(ghost_radius_px);
-  std::vector<int> half_width;  // of the disc, by the distance of a row from its middle
+  std::vector<int> half_width;  // of the disc, by row distance from its centre
   std::size_t pixels = 0;
   for (int dy = 0; dy <= reach; ++dy) {
     half_width.push_back(int(std::sqrt(ghost_radius_px * ghost_radius_px - dy * dy)));
@@ -28,7 +28,7 @@ void LensGhost::apply(ExpectedElectronImage& image, Threads& threads) const {
   }
   const double share = ghost_fraction / double(pixels);
   threads.for_ranges(std::size_t(rows), 64, [&](std::size_t begin, std::size_t end) {
-    // Sums from the left of the rows that the ghost's rows are made of.
+    // Running sums of the rows that contribute to the ghost's rows.
     const int first = std::max(0, rows - int(end) - reach);
     const int last = std::min(rows - 1, rows - 1 - int(begin) + reach);
     const auto stride = std::size_t(columns) + 1;

@@ -3,13 +3,13 @@
 
 namespace dmise {
 
-/// A ghost of the light in the frame, reflected twice between glass surfaces: its copy by point
-/// reflection at the centre of the image, out of focus, so that a star's is a disc. What it has is
-/// not taken from the direct light: `transmission` is that of the direct way.
+/// Ghost image from two reflections between glass surfaces: a copy of the image, point-reflected at
+/// its centre and out of focus, so that a star becomes a disc. Its light is added: `transmission`
+/// is that of the direct path.
 struct LensGhost {
   static constexpr EffectFacts facts{
-      "lens_ghost", "glass surfaces throw a faint mirrored copy of bright light",
-      "no ghosts: 1e-5 to 1e-3 of what is bright", "Smith 2008, Modern Optical Engineering"};
+      "lens_ghost", "reflections between lens surfaces add a faint mirrored copy of the image",
+      "no ghosts: 1e-5 to 1e-3 of bright sources", "Smith 2008, Modern Optical Engineering"};
   double ghost_fraction = 0.0;    // of the light, 0..0.1
   double ghost_radius_px = 10.0;  // of the disc that a point becomes
   bool operator==(const LensGhost&) const = default;

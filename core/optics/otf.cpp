@@ -8,7 +8,7 @@
 namespace dmise {
 namespace {
 
-// Overlap of two unit-diameter discs whose centres are x diameters apart, as a share of one.
+// Overlap of two unit-diameter discs whose centres are x diameters apart, as a fraction of one.
 double disc_overlap(double x) {
   if (x >= 1.0) return 0.0;
   return 2 / pi * (std::acos(x) - x * std::sqrt(1 - x * x));

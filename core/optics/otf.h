@@ -17,14 +17,14 @@ double long_exposure_otf(double nu_per_rad, double wavelength_m, double r0_m);
 /// A square pixel's side, sin(pi w nu) / (pi w nu) along one axis; its sign is kept.
 double pixel_otf(double nu_per_rad, double pixel_rad);
 
-/// Gaussian pointing jitter (or any Gaussian blur) of standard deviation `sigma_rad` an axis.
+/// Gaussian pointing jitter (or any Gaussian blur) of standard deviation `sigma_rad` per axis.
 double jitter_otf(double nu_per_rad, double sigma_rad);
 
 /// Defocus by the geometrical blur disc of angular diameter `disc_rad`: 2 J1(x) / x, x = pi disc
 /// nu; good when the disc is larger than the Airy pattern. Its sign is kept.
 double defocus_otf(double nu_per_rad, double disc_rad);
 
-/// What blurs a camera's light before its pixels integrate it.
+/// Blur of a camera before pixel integration.
 struct Blur {
   double wavelength_m = 0.55e-6;
   double aperture_m = 0.1;

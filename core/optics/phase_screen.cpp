@@ -34,7 +34,7 @@ double kolmogorov_structure(double separation, double r0) {
 
 double von_karman_structure(double separation, double r0, double outer_scale) {
   if (!std::isfinite(outer_scale)) return kolmogorov_structure(separation, r0);
-  // Below this the difference of the two terms loses its digits.
+  // Below this the difference of the two terms loses precision.
   const double x = 2 * pi * separation / outer_scale;
   if (x < 1e-6) return kolmogorov_structure(separation, r0);
   const double scale = 2 * std::tgamma(11.0 / 6) /
@@ -53,8 +53,8 @@ KolmogorovScreens::KolmogorovScreens(int side, double outer_scale)
   if (side < 2 || side > 1024) throw Error("phase screen: side must be 2..1024 samples");
   if (!(outer_scale > 0.0)) throw Error("phase screen: the outer scale must be > 0");
   field_ = FftBuffer(2 * std::size_t(torus_) * std::size_t(torus_));
-  // Eigenvalues: the cosine transform of the covariance, in double precision, for they span more
-  // than seven digits.
+  // Eigenvalues: the cosine transform of the covariance, in double precision, because they span
+  // more than seven digits.
   const int n = torus_ / 2 + 1;
   std::vector<double> lambda(std::size_t(n) * std::size_t(n));
   for (int y = 0; y < n; ++y)
@@ -100,7 +100,7 @@ void KolmogorovScreens::transform_noise(const RngKey& key, std::uint32_t draw) {
   fft_.transform(field_);
 }
 
-// Real and imaginary part are independent fields; each has a tilt that puts c2 r^2 right.
+// Real and imaginary part are independent fields; each has a tilt that corrects c2 r^2.
 KolmogorovScreens::Tilt KolmogorovScreens::tilt(const RngKey& key, std::uint32_t draw,
                                                 std::uint32_t part) const {
   const auto along = [&](std::uint32_t axis) {

@@ -33,8 +33,8 @@ double pixel_solid_angle_sr(const Optics& o, PixelPosition pixel) {
 
 namespace {
 
-/// Largest angle from the boresight [rad] of places spread along the frame's rim; nothing if one
-/// images no direction.
+/// Largest angle from the boresight [rad] along the frame's rim; empty if a sampled place images no
+/// direction.
 std::optional<double> rim_angle_rad(const Optics& o) {
   constexpr int steps = 16;  // along each side
   const double x = 0.5 * o.columns / o.focal_length_px(), y = 0.5 * o.rows / o.focal_length_px();

@@ -5,17 +5,17 @@
 #include "core/frames/vec.h"
 #include "core/optics/camera.h"
 
-// Where light from a direction meets the detector: in focal lengths as the camera's `Projection`
-// says, with the boresight at the image's centre, ((columns - 1) / 2, (rows - 1) / 2).
+// Maps directions to detector pixels with the camera's `Projection`, with the boresight at the
+// image's centre, ((columns - 1) / 2, (rows - 1) / 2).
 namespace dmise {
 
 PixelPosition principal_point(const Optics& optics);
 
-/// Pixel of a direction (any length > 0), also outside the frame. Nothing where the projection has
-/// no image: 90 deg and more from the boresight for the gnomonic, exactly behind for a fisheye.
+/// Pixel of a direction (any length > 0), also outside the frame. Empty where the projection has no
+/// image: 90 deg and more from the boresight for the gnomonic, exactly behind for a fisheye.
 std::optional<PixelPosition> project(const Optics& optics, const Vec<CameraFrame>& direction);
 
-/// Direction of a pixel, a unit vector. Nothing where no direction is imaged: beyond pi f
+/// Direction of a pixel, a unit vector. Empty where no direction is imaged: beyond pi f
 /// (equidistant) or 2 f (equisolid) from the principal point.
 std::optional<Vec<CameraFrame>> unproject(const Optics& optics, PixelPosition pixel);
 
@@ -23,11 +23,10 @@ std::optional<Vec<CameraFrame>> unproject(const Optics& optics, PixelPosition pi
 /// direction is imaged. Relative error of using the centre: about (pixel angle)^2.
 double pixel_solid_angle_sr(const Optics& optics, PixelPosition pixel);
 
-/// Angle from the boresight of the farthest place of the frame [rad, 0..pi].
+/// Angle from the boresight of the farthest point of the frame [rad, 0..pi].
 double half_diagonal_rad(const Optics& optics);
 
-/// Angle from the boresight [rad] at which the projection turns back on itself, if that is within
-/// the frame.
+/// Angle from the boresight [rad] at which the projection folds back, if that is within the frame.
 std::optional<double> fold_in_frame_rad(const Optics& optics);
 
 }  // namespace dmise

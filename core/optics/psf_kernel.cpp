@@ -11,9 +11,9 @@ namespace {
 PsfKernel make(const TransferFunction& otf, double cutoff_per_rad, double cell_rad, int half,
                bool point_spread, double* lost) {
   if (!(cell_rad > 0.0) || half < 0 || half > 2048) throw Error("psf kernel: cell or size");
-  // Fine grid: an odd number of samples a cell, so that a sample is each cell's centre, and enough
-  // that the transfer function ends before its Nyquist frequency. Its period is twice the kernel's
-  // side, so that what wraps around comes from far outside.
+  // Fine grid: an odd number of samples per cell, so that a sample is at each cell's centre, and
+  // enough that the transfer function ends below the Nyquist frequency. The period is twice the
+  // kernel's side, so that aliased light comes from far outside.
   int fine = int(std::ceil(2.0 * cutoff_per_rad * cell_rad));
   fine = std::max(1, fine + (fine + 1) % 2);
   const int period_cells = good_fft_size(2 * (2 * half + 1) + 16, true);
@@ -22,7 +22,7 @@ PsfKernel make(const TransferFunction& otf, double cutoff_per_rad, double cell_r
   FftBuffer data(2 * std::size_t(n) * std::size_t(n));
   const double step = 1.0 / (period_cells * cell_rad);
   const auto frequency = [&](int i) { return step * (i <= n / 2 ? i : i - n); };
-  // Even in both axes: a quarter is enough.
+  // Symmetric in both axes: a quarter is enough.
   std::vector<double> cell(std::size_t(n) / 2 + 1);
   for (int i = 0; i <= n / 2; ++i)
     cell[std::size_t(i)] = point_spread ? pixel_otf(frequency(i), cell_rad) : 1.0;
@@ -65,7 +65,7 @@ PsfKernel signed_kernel_of(const TransferFunction& otf, double cutoff_per_rad, d
 }
 
 PsfKernel optical_kernel(const Blur& blur, double cell_rad, int half, double* lost) {
-  // Where the first of diffraction, turbulence and jitter has left less than 1e-9.
+  // Frequency at which diffraction, turbulence or jitter alone is below 1e-9.
   double cutoff = std::min(blur.aperture_m, 2.9 * blur.r0_m) / blur.wavelength_m;
   if (blur.jitter_rad > 0.0) cutoff = std::min(cutoff, 1.03 / blur.jitter_rad);
   return kernel_of(

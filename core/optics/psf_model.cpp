@@ -12,8 +12,8 @@ namespace {
 
 using Model = PointSpread::Model;
 
-/// The kernel brought to nothing over its outer half: cut off at once, what the deposits'
-/// Gaussian was divided out of would ring along the edge. Sums to 1.
+/// Tapers the kernel over its outer half: with a sharp edge, the division by the Gaussian of the
+/// deposits would ring. Normalises the sum to 1.
 template <class T>
 PsfKernel tapered(const std::vector<T>& values, int half) {
   PsfKernel kernel{half, std::vector<float>(values.size())};
@@ -33,7 +33,7 @@ PsfKernel tapered(const std::vector<T>& values, int half) {
 }
 PsfKernel tapered(const PsfKernel& kernel) { return tapered(kernel.values, kernel.half); }
 
-constexpr std::size_t most_places = 256;  // whose centring is remembered
+constexpr std::size_t most_places = 256;  // with cached centring
 
 /// Noll's terms that are odd about the centre.
 bool has_odd_order(int noll) {
@@ -58,8 +58,8 @@ PsfModel::PsfModel(const Optics& optics, std::vector<WavelengthShare> band, cons
                   seeing_->outer_scale_m / grids_[0].step_m, turbulence);
 }
 
-// The tilts that put the centroid of the kernel without air, as far as it reaches, on the axis:
-// first by the wavefront's mean slope, then by what is seen to be left.
+// Tilts that put the centroid of the truncated kernel without air on the axis: first by the
+// wavefront's mean slope, then by the remaining offset.
 std::array<ZernikeTerm, 2> PsfModel::centring(const FieldPlace& place,
                                               std::size_t wavelength) const {
   const double wavelength_m = band_[wavelength].wavelength_m;
@@ -102,7 +102,7 @@ double PsfModel::air_otf(double nu, double wavelength_m) const {
 }
 
 double PsfModel::extra_otf(double nu_x, double nu_y, double wavelength_m) const {
-  // The grid holds nothing beyond half a cycle a cell.
+  // The grid holds no frequency above half a cycle per cell.
   if (std::max(std::abs(nu_x), std::abs(nu_y)) * cell_rad_ > 0.5 + 1e-9) return 0.0;
   const double nu = std::hypot(nu_x, nu_y);
   double h = jitter_otf(nu, optics_.spread.jitter_rad) * air_otf(nu, wavelength_m) /

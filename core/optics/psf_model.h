@@ -9,27 +9,27 @@
 
 namespace dmise {
 
-/// Makes the kernels that a plan asks for, on the cells of its oversampled grid:
-///   diffraction (obscuration, spiders, wavefront) x turbulence x jitter, over the wavelengths,
-/// divided by the Gaussian of `grid_sigma_cells` that deposits on the grid have, and not integrated
-/// over cells, which deposits are. With bilinear resampling times pixel / cell. A kernel fades out
-/// over the outer half of its radius. The pupil's own aberrations leave the light's centroid where
-/// a point is: what they displace is part of a camera's plate solution.
+/// Computes the kernels of a plan on the cells of its oversampled grid:
+///  diffraction (obscuration, spiders, wavefront) x turbulence x jitter, over the wavelengths,
+/// divided by the Gaussian of `grid_sigma_cells` of deposits on the grid, and not integrated over
+/// cells, because deposits are. With bilinear resampling, multiplied by pixel / cell. A kernel
+/// tapers off over the outer half of its radius. Aberrations of the pupil do not move the centroid:
+/// that displacement is part of a camera's plate solution.
 class PsfModel {
  public:
-  /// `turbulence` names the random numbers of this sensor's air. The first wavelength share is the
-  /// one screens are sampled for. Throws as `sample_pupils` does.
+  /// `turbulence` is the random key of this sensor's turbulence. Screens are sampled for the first
+  /// wavelength. Throws as `sample_pupils` does.
   PsfModel(const Optics& optics, std::vector<WavelengthShare> band, const PsfPlan& plan,
            const std::optional<SensorSeeing>& seeing, const RngKey& turbulence);
 
-  /// True when each exposure has kernels of its own.
+  /// Whether each exposure has its own kernels.
   bool changes() const { return flow_.has_value(); }
 
   /// Kernel of an exposure that starts at `start_s` of simulation time and lasts `exposure_s`.
   PsfKernel kernel(const FieldPlace& place, double start_s, double exposure_s);
 
-  /// Share of the light beyond the kernel's end, given back by scaling; of the last symmetric
-  /// kernel made.
+  /// Fraction of the light beyond the kernel's end, redistributed by scaling; of the last symmetric
+  /// kernel computed.
   double lost() const { return lost_; }
 
  private:
@@ -46,13 +46,13 @@ class PsfModel {
   PsfPlan plan_;
   std::optional<SensorSeeing> seeing_;
   double cell_rad_;
-  std::vector<PupilGrid> grids_;  // one a wavelength
+  std::vector<PupilGrid> grids_;  // one per wavelength
   struct Centred {
     FieldPlace place;
     std::size_t wavelength;
     std::array<ZernikeTerm, 2> tilt;
   };
-  std::vector<Centred> centred_;  // of the places asked for
+  std::vector<Centred> centred_;  // cache
   std::optional<FrozenFlow> flow_;
   double lost_ = 0.0;
 };

@@ -13,14 +13,14 @@ namespace {
 using Method = PointSpread::Method;
 using Model = PointSpread::Model;
 
-// Where exp(-3.44 x^(5/3)) and a Gaussian of unit width have fallen to 1e-4.
+// Where exp(-3.44 x^(5/3)) and a Gaussian of unit width fall to 1e-4.
 constexpr double long_exposure_end = 1.806;  // lambda nu / r0
 constexpr double gaussian_end = 0.683;       // sigma nu
 constexpr double narrow_px = 0.25;
-// Beyond it deposits on the grid alias by more than 1e-4 of the peak.
+// Above this, deposits on the grid alias by more than 1e-4 of the peak.
 constexpr double most_cycles_per_cell = 0.40;
 
-// Of kernels: without and with a disc of defocus.
+// Kernel sizes without and with a defocus disc.
 constexpr int usual_half_cells = 512, widest_half_cells = 1024;
 
 bool is_aberrated(const PointSpread& s) {
@@ -120,7 +120,7 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
   plan.method = s.method != Method::automatic ? s.method
                 : cells <= largest_grid_cells ? Method::transform
                                               : Method::direct;
-  // Wide kernels cost a transform little, sums and screens much.
+  // Wide kernels are cheap for a transform, expensive for sums and screens.
   const bool cheap = plan.method == Method::transform && plan.screens == 0;
   const double airy_widths = cheap ? 64.0 : 24.0;
   const double widest_px = std::max({8.0, 1.0 * o.columns, 1.0 * o.rows});
@@ -128,7 +128,7 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
       s.support_px > 0 ? s.support_px
       : plain          ? 5.0 * plan.fwhm_px
                        : std::max(std::min(airy_widths * m.airy_px, widest_px), 5.0 * plan.fwhm_px);
-  // The disc of a defocus lies within the inner half, which does not fade.
+  // The defocus disc must be within the inner half, which does not taper.
   const double disc_cells = s.support_px > 0 ? 0.0 : 1.05 * m.defocus_px * plan.oversampling;
   if (disc_cells > widest_half_cells)
     refuse("defocus_m", "its disc of " + std::to_string(std::lround(m.defocus_px)) +
@@ -137,8 +137,8 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
                             " px");
   const int half = std::clamp(int(std::ceil(support_px * plan.oversampling)), 8, usual_half_cells);
   plan.half_cells = std::max(half, int(std::ceil(disc_cells)));
-  // Beyond r: 0.2 (lambda / D) / r of an Airy pattern, more by the edge of an obscuration; the
-  // kernel fades out around three quarters of its radius.
+  // Beyond r: 0.2 (lambda / D) / r of an Airy pattern, more with an obscuration; the kernel tapers
+  // off around three quarters of its radius.
   if (!plain)
     plan.beyond = std::min(1.0, 0.2 * m.airy_px / (1.0 - o.obscuration) /
                                     (0.75 * plan.half_cells / plan.oversampling));

@@ -9,10 +9,10 @@
 namespace dmise {
 namespace {
 
-// Share of a unit Gaussian at 0 between a and b.
+// Fraction of a unit Gaussian at 0 between a and b.
 double share(double a, double b, double sigma) {
   const double s = 1.0 / (sigma * std::sqrt(2.0));
-  // On the side where erfc keeps its digits.
+  // On the side where erfc keeps its precision.
   if (a > 0) return 0.5 * (std::erfc(a * s) - std::erfc(b * s));
   if (b < 0) return 0.5 * (std::erfc(-b * s) - std::erfc(-a * s));
   return 0.5 * (std::erf(b * s) - std::erf(a * s));

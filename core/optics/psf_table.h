@@ -6,14 +6,14 @@
 namespace dmise {
 
 inline constexpr double fwhm_per_sigma = 2.3548200450309493;  // 2 sqrt(2 ln 2)
-/// Narrower Gaussians than this are deposited with this width; it moves light by less than 0.1 px.
+/// Narrower Gaussians are deposited with this width; it moves light by less than 0.1 px.
 inline constexpr double narrowest_sigma_px = 0.02;
 
-/// A round Gaussian integrated over square pixels, as a table over the sub-pixel position: pixels
+/// A round Gaussian integrated over square pixels, tabulated over the sub-pixel position: pixels
 /// are separable, so one axis is enough. With c the centre on an axis, `weights` has for each phase
-/// c - floor(c) the shares of the `size` pixels from floor(c) + first on. Shares of a phase sum to
-/// 1: what lies beyond 5 sigma goes to the outermost pixels. Between phases shares are interpolated
-/// linearly, with an error below 2e-7.
+/// c - floor(c) the fractions of the `size` pixels from floor(c) + first on. The fractions of a
+/// phase sum to 1: light beyond 5 sigma is added to the outermost pixels. Linear interpolation
+/// between phases has an error below 2e-7.
 struct PsfTable {
   double sigma_px = 0.0;
   int phases = 0;              // intervals
@@ -23,11 +23,11 @@ struct PsfTable {
   std::vector<float> weights;  // (phases + 1) x stride
 };
 
-/// `sigma_px` in 0..500.
+/// `sigma_px` must be in 0..500; throws `Error` otherwise.
 PsfTable make_psf_table(double sigma_px);
 
-/// Standard deviation of the Gaussian with the half width at half maximum of the Airy pattern of a
-/// circular aperture, 0.514 lambda / D [px] (obscuration not considered).
+/// Standard deviation of the Gaussian with the half width at half maximum of a circular aperture's
+/// Airy pattern, 0.514 lambda / D [px], ignoring the obscuration.
 double diffraction_sigma_px(const Optics& optics, double wavelength_m);
 
 /// Width of the camera's PSF before pixel integration: `psf_fwhm_px` and diffraction in quadrature.

@@ -20,7 +20,7 @@ std::array<int, 2> orders(int noll) {
 
 double factorial(int n) { return std::tgamma(n + 1.0); }
 
-// Share of open pupil at a place, in aperture diameters from the centre.
+// Whether the pupil is open at a position in aperture diameters from the centre.
 bool is_open(const Pupil& p, double x, double y) {
   const double r = std::hypot(x, y);
   if (r > 0.5 || r < 0.5 * p.obscuration) return false;
@@ -33,7 +33,7 @@ bool is_open(const Pupil& p, double x, double y) {
   return true;
 }
 
-// Share of a sample's cell that is open, by 4 x 4 points.
+// Fraction of a sample's cell that is open, by 4 x 4 points.
 double open_share(const Pupil& p, double x, double y, double step) {
   const double r = std::hypot(x, y);
   if (r > 0.5 + step) return 0.0;
@@ -65,7 +65,7 @@ double zernike(int noll, double rho, double theta_rad) {
 PupilGrid pupil_grid(const Pupil& pupil, double wavelength_m, double cell_rad, int half,
                      double r0_m, int samples) {
   PupilGrid g;
-  // Intensity ends at D / lambda: two samples for each lambda / D.
+  // The intensity spectrum ends at D / lambda: two samples for each lambda / D.
   const int fine = int(std::ceil(2.0 * pupil.aperture_m / wavelength_m * cell_rad));
   g.fine = std::max(1, fine + (fine + 1) % 2);
   // step = lambda / (side cell / fine): more samples make finer steps and a wider image.
@@ -152,7 +152,7 @@ PsfKernel pupil_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
   const ComplexFft2 fft(n);
   fft.transform(field);
 
-  // Intensity, then its transfer function times the rest's, then back.
+  // Intensity, then its transfer function multiplied by the other blur, then back.
   double light = 0.0;
   for (std::size_t i = 0; i < field.size(); i += 2) {
     const double e = double(field.data()[i]) * field.data()[i] +
@@ -165,7 +165,7 @@ PsfKernel pupil_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
   const auto frequency = [&](int i) {
     return (i <= n / 2 ? i : i - n) * double(grid.fine) / (n * grid.cell_rad);
   };
-  // Forward once more instead of back: the image comes out mirrored, so conjugate first.
+  // Forward transform instead of inverse: mirrored, so conjugate first.
   const double scale = double(grid.fine) * grid.fine / (light * double(n) * n);
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x) {
@@ -191,8 +191,8 @@ PsfKernel pupil_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
 }
 
 std::array<ZernikeTerm, 2> centring_tilt(const Pupil& pupil) {
-  // Only terms of azimuthal order 1 have a mean slope; on the edge of radius rho their cosine (or
-  // sine) has the amplitude zernike(noll, rho, 0 or 90 deg).
+  // Only terms of azimuthal order 1 have a mean slope; at radius rho their cosine (or sine) has the
+  // amplitude zernike(noll, rho, 0 or 90 deg).
   std::array<ZernikeTerm, 2> tilt{{{2, 0.0}, {3, 0.0}}};
   const double e = pupil.obscuration;
   for (const ZernikeTerm& t : pupil.wavefront) {

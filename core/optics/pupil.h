@@ -14,8 +14,8 @@ struct ZernikeTerm {
   double rms_rad = 0.0;
 };
 
-/// Value of Noll's polynomial, rms 1 over the unit disc, at radius `rho` 0..1 and angle
-/// `theta_rad`.
+/// Noll's polynomial, rms 1 over the unit disc, at radius `rho` 0..1 and angle `theta_rad`. Throws
+/// `Error` for an index outside 1..66.
 double zernike(int noll, double rho, double theta_rad);
 
 /// The pupil of a telescope.
@@ -27,45 +27,45 @@ struct Pupil {
   std::vector<ZernikeTerm> wavefront;
 };
 
-/// Sampling of a pupil for kernels of given cells: the pupil plane's step follows from the
-/// wavelength and the cells.
+/// Sampling of a pupil for kernels of given cells: the step in the pupil plane follows from
+/// wavelength and cells.
 struct PupilGrid {
   int side = 0;           // samples of the pupil plane, and of the image it transforms to
   double step_m = 0.0;    // between samples
   double cell_rad = 0.0;  // of the kernel
-  int fine = 1;           // image samples a cell along one axis, odd
+  int fine = 1;           // image samples per cell and axis, odd
 };
 
 /// Finest useful grid for cells of `cell_rad`, kernels of `half` cells and turbulence of `r0_m`
-/// (may be infinite): at least three samples in r0 and `samples` across the aperture.
+/// (may be infinite): at least three samples per r0 and `samples` across the aperture.
 PupilGrid pupil_grid(const Pupil& pupil, double wavelength_m, double cell_rad, int half,
                      double r0_m, int samples = 32);
 
 /// Instantaneous kernel |F{A exp(i phi)}|^2 through a screen sampled at the grid's step, integrated
-/// over cells. `screen` may be smaller than the grid as long as it covers the aperture; null: no
-/// turbulence. `first_x`, `first_y`: the sample of the screen that meets the aperture's first
-/// one (frozen flow).
+/// over cells. `screen` may be smaller than the grid if it covers the aperture; null: no
+/// turbulence. `first_x`, `first_y`: sample of the screen at the aperture's first sample (frozen
+/// flow).
 PsfKernel short_exposure_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
                                 const PhaseScreen* screen, int first_x = 0, int first_y = 0);
 
-/// A screen in front of the aperture, whose first corner meets the screen's sample (0, 0); between
-/// samples the phase is linear.
+/// A screen in front of the aperture, with its sample (0, 0) at the aperture's first corner; phase
+/// is linear between samples.
 struct ScreenAhead {
   const PhaseScreen* screen = nullptr;  // null: no turbulence
   double step_m = 0.0;                  // between samples
-  double scale = 1.0;  // of its phase: wavelength of the screen / that of the light
+  double scale = 1.0;                   // of its phase: wavelength of the screen / of the light
 };
 
-/// Kernel of the pupil through a screen, its transfer function multiplied by `extra` (what blurs
-/// besides, real and even). Sums to 1; negative values are kept.
+/// Kernel of the pupil through a screen, with its transfer function multiplied by `extra` (further
+/// blur, real and even). Sums to 1; negative values are kept.
 PsfKernel pupil_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
                        const ScreenAhead& ahead, const TransferFunction& extra);
 
-/// Tilt [rad rms of Noll's terms 2 and 3] that puts the light's centroid back on the axis against
-/// the pupil's own terms: the mean slope of the wavefront over the open annulus.
+/// Tilt [rad rms of Noll's terms 2 and 3] that centres the light despite the pupil's own terms:
+/// minus the mean slope of the wavefront over the open annulus.
 std::array<ZernikeTerm, 2> centring_tilt(const Pupil& pupil);
 
-/// Samples across the aperture, the side a screen needs.
+/// Number of samples across the aperture, which a screen must cover.
 int aperture_samples(const Pupil& pupil, const PupilGrid& grid);
 
 /// Mean of kernels of one size.

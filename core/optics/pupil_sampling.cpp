@@ -13,7 +13,7 @@ namespace {
 
 using Model = PointSpread::Model;
 
-/// Samples across the aperture of a pupil without turbulence: the kernel is right to 1e-3 of its
+/// Samples across the aperture of a pupil without turbulence: the kernel is accurate to 1e-3 of its
 /// peak.
 constexpr int still_samples = 128, turbulent_samples = 48;
 
@@ -22,7 +22,7 @@ bool needs_pupil(const PointSpread& s, const PsfPlan& plan) {
   return has_screens(plan) || (s.model != Model::gaussian && (aberrated || s.field.any()));
 }
 
-/// The steepest slope over the field. Its terms grow outwards: the centre and the corners do.
+/// The steepest slope over the field. Terms grow outwards, so centre and corners suffice.
 double steepest_in_field(const Optics& optics, double wavelength_m) {
   double steepest = steepest_slope(pupil_at(optics, {}, wavelength_m));
   if (!optics.spread.field.any()) return steepest;
@@ -33,7 +33,7 @@ double steepest_in_field(const Optics& optics, double wavelength_m) {
   return steepest;
 }
 
-/// The key of what makes most of the slope.
+/// The key of the largest contribution to the slope.
 std::string steepest_key(const Optics& optics, double wavelength_m) {
   Optics wavefront = optics, field = optics, defocus = optics;
   wavefront.spread.field = field.spread.field = defocus.spread.field = {};
@@ -64,8 +64,8 @@ Pupil pupil_at(const Optics& optics, const FieldPlace& place, double wavelength_
     if (rms_m != 0.0) p.wavefront.push_back({noll, rms_m * rad_per_m});
   };
   for (const WavefrontTerm& t : s.wavefront) add(t.noll, t.rms_m);
-  // A detector off the focus sees rho^2 delta / (8 N^2) of path, and Noll's term 4 is sqrt(3) (2
-  // rho^2 - 1).
+  // A defocused detector sees rho^2 delta / (8 N^2) of path; Noll's term 4 is sqrt(3) (2 rho^2 -
+  // 1).
   const double n = optics.f_number();
   add(4, s.defocus_m / (16 * std::sqrt(3.0) * n * n));
   const double r = place.radius, a = place.angle_rad;
@@ -79,7 +79,7 @@ Pupil pupil_at(const Optics& optics, const FieldPlace& place, double wavelength_
 
 double steepest_slope(const Pupil& pupil) {
   if (pupil.wavefront.empty()) return 0.0;
-  constexpr int radii = 16, angles = 64;  // Noll's 66 has ten periods around the edge
+  constexpr int radii = 16, angles = 64;  // Noll's term 66 has ten periods around the edge
   constexpr double h = 1e-4;
   std::vector<ZernikeTerm> terms = pupil.wavefront;
   const auto tilt = centring_tilt(pupil);
@@ -107,7 +107,7 @@ std::vector<PupilGrid> sample_pupils(const Optics& optics, const std::vector<Wav
   const bool screens = has_screens(plan);
   const double cell_rad = optics.pixel_angle_rad() / plan.oversampling;
   for (const WavelengthShare& w : band) {
-    constexpr double margin = 1.05;  // for what lies between the places asked
+    constexpr double margin = 1.05;  // for positions between the sampled ones
     const double slope = steepest_in_field(optics, w.wavelength_m);
     const double steep = std::ceil(margin * 2 * slope / pi);
     if (steep > most_pupil_samples)

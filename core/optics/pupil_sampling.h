@@ -7,13 +7,13 @@
 
 namespace dmise {
 
-/// A wavelength and its share of the light; the shares of a band sum to 1.
+/// A wavelength and its fraction of the light; the fractions of a band sum to 1.
 struct WavelengthShare {
   double wavelength_m = 0.0;
   double share = 1.0;
 };
 
-/// A place in the field: distance and angle (from +x to +y) from the principal point, 1 at the
+/// Position in the field: distance and angle (from +x to +y) from the principal point, 1 at the
 /// frame's farthest corner.
 struct FieldPlace {
   double radius = 0.0;
@@ -22,21 +22,20 @@ struct FieldPlace {
   bool operator==(const FieldPlace&) const = default;
 };
 
-/// True when exposures are seen through drawn screens.
+/// Whether exposures use drawn screens.
 bool has_screens(const PsfPlan& plan);
 
-/// A camera's pupil as a place in its field sees it.
+/// A camera's pupil as seen from a position in the field.
 Pupil pupil_at(const Optics& optics, const FieldPlace& place, double wavelength_m);
 
-/// The steepest slope of a pupil's wavefront, its centring tilt included [rad of phase over the
-/// aperture's radius].
+/// Steepest slope of a pupil's wavefront, including its centring tilt [rad of phase per aperture
+/// radius].
 double steepest_slope(const Pupil& pupil);
 
-/// Grids of the pupil for each wavelength, the first the one screens are sampled for; none where
-/// the camera's kernel needs no pupil. So fine that the wavefront turns by less than pi between
-/// samples anywhere in the field: otherwise light would come out of the transform where none falls.
-/// Throws `ConfigError` "seeing.r0_m: reason" or "optics.KEY: reason" where that takes more than
-/// `most_pupil_samples` across the aperture.
+/// Grids of the pupil for each wavelength; screens are sampled for the first. Empty if the camera's
+/// kernel needs no pupil. Fine enough that the wavefront changes by less than pi between samples
+/// anywhere in the field: otherwise light would alias. Throws `ConfigError` "seeing.r0_m: reason"
+/// or "optics.KEY: reason" if that takes more than `most_pupil_samples` across the aperture.
 std::vector<PupilGrid> sample_pupils(const Optics& optics, const std::vector<WavelengthShare>& band,
                                      const PsfPlan& plan,
                                      const std::optional<SensorSeeing>& seeing);

@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-/// What a new pixel takes along one axis: `weights` of old pixels from `first` on.
+/// Contributions to a new pixel along one axis: `weights` of old pixels from `first` on.
 struct Taken {
   int first = 0;
   std::vector<double> weights;

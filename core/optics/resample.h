@@ -2,24 +2,24 @@
 #include "core/base/image.h"
 #include "core/optics/point_spread.h"
 
-// From an oversampled image to the detector's pixels.
+// Resampling of an oversampled image to the detector's pixels.
 namespace dmise {
 
-/// Which of a pixel's k x k cells are summed, along one axis, and the factor of the sum.
+/// The range of a pixel's k x k cells that are summed, along one axis, and the factor of the sum.
 struct ResamplingCells {
   int first = 0, count = 1;
   float scale = 1.0f;
 };
 ResamplingCells resampling_cells(int oversampling, PointSpread::Resampling resampling);
 
-/// An image on other pixels of any size that cover the same field; the light of each is the
-/// integral over its area of the image taken as constant within its own pixels. Exact flux; the MTF
-/// is the new pixel's own times sinc(nu w), w the old pixel's width.
+/// Resamples an image to pixels of any size over the same field; each is the integral over its area
+/// of the image, constant within its own pixels. Flux is exact; the MTF is the new pixel's own
+/// times sinc(nu w), w the old pixel's width.
 ExpectedElectronImage resample_area(const ExpectedElectronImage& image, int columns, int rows);
 
-/// The same by the value at the new pixel's centre, linear between the centres around it, times the
-/// ratio of areas: the paper's. Light is lost or won where the new pixels don't average over the
-/// old ones, see docs/models/optics.md; beyond the outermost centres the edge's value holds.
+/// Resamples by the value at the new pixel's centre, linear between the surrounding centres, times
+/// the ratio of areas (the method of the paper). Does not conserve flux if the new pixels do not
+/// average over the old ones, see docs/models/optics.md; constant beyond the outermost centres.
 ExpectedElectronImage resample_bilinear(const ExpectedElectronImage& image, int columns, int rows);
 
 }  // namespace dmise

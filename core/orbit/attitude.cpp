@@ -11,14 +11,14 @@ namespace dmise {
 
 namespace {
 
-/// Part of `v` square to the unit vector `axis`.
+/// Part of `v` perpendicular to the unit vector `axis`.
 template <class F>
 Vec<F> square_to(const Vec<F>& axis, const Vec<F>& v) {
   return v - axis * dot(axis, v);
 }
 
-/// A unit vector square to the unit vector `axis`: along `wanted` as far as that goes, else along
-/// the coordinate axis that is farthest from it.
+/// Returns a unit vector perpendicular to the unit vector `axis`: the projection of `wanted`, or of
+/// the coordinate axis farthest from `axis` if that vanishes.
 template <class F>
 Vec<F> unit_square_to(const Vec<F>& axis, const Vec<F>& wanted) {
   const Vec<F> across = square_to(axis, wanted);

@@ -13,16 +13,16 @@ struct Panel {};  // axes of a panel: z its normal, x its hinge
 /// z to the Earth's centre, y against the orbit's normal, x forward (the local orbital frame).
 struct NadirAttitude {};
 
-/// z to the Earth's centre and turned about it until y, the hinge of the panels, is square to the
-/// Sun.
+/// z to the Earth's centre, rotated about it so that y, the hinge of the panels, is perpendicular
+/// to the Sun.
 struct SunYawAttitude {};
 
-/// Keeps its axes to the stars.
+/// Fixed relative to the stars.
 struct InertialAttitude {
   Rotation<Gcrs, Body> gcrs_from_body;
 };
 
-/// Turns about an axis fixed in the body and to the stars.
+/// Rotates uniformly about an axis that is fixed in the body and relative to the stars.
 struct SpinningAttitude {
   Rotation<Gcrs, Body> gcrs_from_body;  // at time 0
   Vec<Body> axis{0.0, 0.0, 1.0};        // any length > 0
@@ -39,7 +39,7 @@ struct TableAttitude {
 using Attitude =
     std::variant<NadirAttitude, SunYawAttitude, InertialAttitude, SpinningAttitude, TableAttitude>;
 
-/// What an attitude may depend on.
+/// Inputs of an attitude model.
 struct AttitudeScene {
   double time_s = 0.0;   // since the run's start
   Vec<Gcrs> position_m;  // geocentric
@@ -47,12 +47,12 @@ struct AttitudeScene {
   Vec<Gcrs> sun_m;  // geocentric
 };
 
-/// Attitude of a body. Where a direction gives no axis (moving straight up, the Sun at the zenith)
-/// the next best one does, so that the result is always a rotation. Throws `Error` for a position
-/// of zero, an axis of zero, and a time outside a table, naming its span.
+/// Returns the attitude of a body. If a direction does not define an axis (vertical motion, the Sun
+/// at the zenith) another axis is substituted, so that the result is always a rotation. Throws
+/// `Error` for a zero position, a zero axis, and a time outside a table.
 Rotation<Gcrs, Body> gcrs_from_body(const Attitude& attitude, const AttitudeScene& scene);
 
-/// A flat panel that turns about a hinge to face the Sun as well as it can.
+/// A flat panel that rotates about a hinge to face the Sun as well as possible.
 struct SunTrackingPanel {
   Vec<Body> hinge{0.0, 1.0, 0.0};
   Vec<Body> normal{0.0, 0.0, 1.0};  // at angle 0; its part along the hinge is left out
@@ -60,8 +60,8 @@ struct SunTrackingPanel {
   bool operator==(const SunTrackingPanel&) const = default;
 };
 
-/// Right-handed angle about the hinge [rad, -pi..pi] at which the normal is nearest to
-/// `sun_direction`; 0 with the Sun along the hinge, where all are alike.
+/// Right-handed angle about the hinge [rad, -pi..pi] at which the normal is closest to
+/// `sun_direction`; 0 if the Sun is along the hinge.
 double panel_angle_rad(const SunTrackingPanel& panel, const Vec<Body>& sun_direction);
 
 /// Axes of the panel at that angle.

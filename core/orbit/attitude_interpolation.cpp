@@ -23,14 +23,14 @@ Quaternion normalised(const Quaternion& q) {
   return {q.w / length, q.x / length, q.y / length, q.z / length};
 }
 
-/// Turn by |v| about v.
+/// Rotation by |v| about v.
 Quaternion turn(const Vec<Gcrs>& v) {
   const double angle_rad = norm(v);
   const double s = angle_rad > 1e-12 ? std::sin(angle_rad / 2) / angle_rad : 0.5;
   return {std::cos(angle_rad / 2), v.x * s, v.y * s, v.z * s};
 }
 
-/// The inverse, by the short way: |v| <= pi.
+/// Inverse of `turn`, with |v| <= pi.
 Vec<Gcrs> turn_vector(const Quaternion& any) {
   const Quaternion q = normalised(any);
   const Vec<Gcrs> v{q.x, q.y, q.z};
@@ -44,7 +44,7 @@ Vec<Gcrs> turned(const Quaternion& q, const Vec<Gcrs>& v) {
   return v + q.w * t + cross(axis, t);
 }
 
-/// Slope of the turn vector `v` when the turn's own angular velocity is `rate`.
+/// Derivative of the rotation vector `v` for an angular velocity `rate`.
 Vec<Gcrs> turn_vector_slope(const Vec<Gcrs>& v, const Vec<Gcrs>& rate) {
   const double a = norm(v);
   const double c = a > 1e-4 ? (1 - a / 2 / std::tan(a / 2)) / (a * a) : 1.0 / 12;

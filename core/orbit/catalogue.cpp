@@ -13,7 +13,7 @@ namespace dmise {
 
 namespace {
 
-/// First line that says something: not blank, not a comment.
+/// First line that is neither blank nor a comment.
 std::string_view first_line(std::string_view text) {
   LineReader lines(text);
   while (const auto line = lines.next())
@@ -23,21 +23,21 @@ std::string_view first_line(std::string_view text) {
 
 CatalogueFormat format_of(std::string_view text, const std::string& source) {
   const std::string_view line = first_line(text);
-  if (line.empty()) throw ConfigError(source + ": holds no element sets");
+  if (line.empty()) throw ConfigError(source + ": contains no element sets");
   if (line[0] == '[' && line.size() > 1 && line[1] >= '0' && line[1] <= '9')
     return CatalogueFormat::gpredict;
   if (line[0] == '[' || line[0] == '{') return CatalogueFormat::omm_json;
   if (line[0] == '<') return CatalogueFormat::omm_xml;
   if (line.substr(0, 14) == "CCSDS_OMM_VERS") return CatalogueFormat::omm_kvn;
   if (line.substr(0, 6) == "CCSDS_")
-    throw ConfigError(source + ": holds no mean elements" + got(line));
+    throw ConfigError(source + ": contains no mean elements" + got(line));
   const std::string header = upper_case(line);
   if (header.find("NORAD_CAT_ID") != std::string::npos && header.find(',') != std::string::npos)
     return CatalogueFormat::omm_csv;
   return CatalogueFormat::tle;
 }
 
-/// Leaves the newest set of each object at its place in the file.
+/// Keeps the newest set of each object, at its place in the file.
 void keep_newest(CatalogueFile& file) {
   std::unordered_map<std::uint32_t, std::size_t> newest;  // catalogue number -> index
   std::vector<bool> dropped(file.elements.size(), false);

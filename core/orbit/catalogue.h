@@ -8,27 +8,28 @@
 
 namespace dmise {
 
-/// Formats of element sets, told apart by their content.
+/// Formats of element sets, recognised by content.
 enum class CatalogueFormat { tle, gpredict, omm_json, omm_csv, omm_xml, omm_kvn };
 
 /// "TLE/3LE", "OMM (JSON)", ...
 const char* name_of(CatalogueFormat format);
 
 struct CatalogueOptions {
-  /// TLE: read lines with a wrong or missing checksum and lines cut short after the last element,
-  /// with a warning each. By default they are refused: nothing else tells a damaged line.
+  /// TLE: accept lines with a wrong or missing checksum and lines truncated after the last element,
+  /// with a warning each. They are refused by default: nothing else reveals a damaged line.
   bool lenient = false;
-  /// Keep all element sets of one object. By default the newest is kept and the others are counted.
+  /// Keep all element sets of an object. By default only the newest is kept and the others are
+  /// counted.
   bool keep_every_epoch = false;
 };
 
-/// Why one record was refused, or what is odd about one that was read.
+/// Why a record was refused, or a warning about one that was read.
 struct CatalogueProblem {
   int line = 0;        // where the record begins, from 1
   std::string reason;  // `reason, got "value"`
 };
 
-/// A catalogue as read. Every record is in exactly one of `elements`, `refused` and `superseded`.
+/// A parsed catalogue. Every record is in exactly one of `elements`, `refused` and `superseded`.
 struct CatalogueFile {
   std::string source;  // path, or what the caller calls the text
   CatalogueFormat format = CatalogueFormat::tle;
@@ -42,13 +43,14 @@ struct CatalogueFile {
   std::string describe(const CatalogueProblem& problem) const;
 };
 
-/// Reads a catalogue file (gzip too): TLE with or without names (also "0 NAME"), gpredict's
-/// satellites.dat, OMM in JSON, CSV, XML or KVN. A bad record never takes others with it. Of two
-/// sets of one object with one epoch the later in the file is kept; number 0 (not catalogued) is no
-/// one object. Throws `ConfigError` when the file can't be read or is in none of these formats.
+/// Reads a catalogue file (optionally gzip): TLE with or without names (also "0 NAME"), gpredict's
+/// satellites.dat, OMM in JSON, CSV, XML or KVN. A bad record does not affect others. Of two sets
+/// of one object with equal epochs the later in the file is kept; number 0 (not catalogued) never
+/// identifies an object. Throws `ConfigError` if the file cannot be read or has none of these
+/// formats.
 CatalogueFile read_catalogue(const std::string& path, const CatalogueOptions& options = {});
 
-/// The same from a text; `source` names it in messages.
+/// Parses a catalogue from text; `source` names it in messages.
 CatalogueFile parse_catalogue(std::string_view text, const std::string& source,
                               const CatalogueOptions& options = {});
 

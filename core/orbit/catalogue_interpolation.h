@@ -16,13 +16,13 @@ struct CatalogueInterpolationOptions {
   int samples = 8;    // equidistant inner points of each
 };
 
-/// What interpolation between ticks costs each object of a catalogue, against propagating it.
+/// Error of interpolation between ticks for each object of a catalogue, relative to SGP4.
 struct CatalogueInterpolationError {
   std::vector<double> max_m;       // greatest distance found; 0 where there is a code
   std::vector<std::uint8_t> code;  // of the first time at which SGP4 had no state, else 0
 };
 
-/// Measures it from `start` on, in TEME, with slopes that are symmetric differences of the
+/// Measures the error from `start` on, in TEME, with slopes from symmetric differences of the
 /// positions.
 CatalogueInterpolationError measure_catalogue_interpolation(
     const Sgp4Batch& batch, const Utc& start, const CatalogueInterpolationOptions& options,

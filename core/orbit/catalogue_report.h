@@ -9,13 +9,14 @@
 
 namespace dmise {
 
-/// Elements older than this are marked: in low orbit SGP4 is tens of kilometres off by then.
+/// Elements older than this are reported as stale: in low orbit SGP4 is then tens of kilometres
+/// off.
 inline constexpr double stale_after_days = 30.0;
 
 /// `at` minus the epoch of the elements [days]; < 0 before it.
 double element_age_days(const MeanElements& elements, const Utc& at);
 
-/// Kinds of orbit, by the usual bounds.
+/// Orbit classes by period and eccentricity.
 enum class OrbitRegime { low, medium, geosynchronous, highly_elliptic, beyond };
 
 /// "low (period < 127 min)", ...
@@ -23,7 +24,7 @@ const char* name_of(OrbitRegime regime);
 
 OrbitRegime regime_of(const MeanElements& elements);
 
-/// What `dmise catalogue info FILE` says.
+/// Content of `dmise catalogue info FILE`.
 struct CatalogueReport {
   std::string source;
   CatalogueFormat format = CatalogueFormat::tle;
@@ -36,17 +37,16 @@ struct CatalogueReport {
   std::size_t stale = 0;          // at `at`
   std::size_t by_regime[5] = {};  // indexed by OrbitRegime
   std::optional<Utc> oldest_epoch, newest_epoch;
-  Utc at;                                                   // what ages are counted to
+  Utc at;                                                   // reference time of ages
   double lowest_perigee_km = 0.0, highest_apogee_km = 0.0;  // above 6378.135 km
   double greatest_eccentricity = 0.0;
   std::vector<std::string> problems;  // `file:line: reason`, refused first, then warnings
 };
 
-/// `at` counts ages; without it the newest epoch of the file does.
+/// Ages are counted to `at`, or to the newest epoch of the file.
 CatalogueReport report_of(const CatalogueFile& file, const std::optional<Utc>& at = std::nullopt);
 
-/// The report as lines of text, with the first `problems` of its problems and the number of the
-/// rest.
+/// Formats the report as text, with at most `problems` problems and the number of the others.
 std::string format(const CatalogueReport& report, std::size_t problems = 10);
 
 }  // namespace dmise

@@ -8,9 +8,8 @@ namespace {
 
 using namespace sgp4;
 
-/// Inside a cone of less than 90
-/// degrees: d . axis > 0 and (d . axis)^2 >= cos^2 d^2, with the axis divided by the cosine. A
-/// wider one is what lies not inside the opposite one, the apex left out.
+/// Inside a cone of less than 90 degrees: d . axis > 0 and (d . axis)^2 >= cos^2 d^2, with the axis
+/// divided by the cosine. A wider cone is the complement of the opposite one, without the apex.
 template <bool Wide>
 DMISE_INLINE Mask in_cone(Pack x, Pack y, Pack z, const PreparedCone& c) {
   const Pack dx = x - c.apex[0];
@@ -33,7 +32,7 @@ void words_of(const double* x, const double* y, const double* z, std::size_t wor
       const std::size_t i = 64 * w + k;
       const Mask in = in_cone<Wide>(load(x + i), load(y + i), load(z + i), cone);
 #if defined(__AVX512F__)
-      // Past the ports that the arithmetic waits for.
+      // Overlaps the store with the arithmetic.
       store_bits(bytes + k / 8, in.a), store_bits(bytes + k / 8 + 1, in.b);
 #else
       bits64 |= std::uint64_t(bits(in) & all_lanes) << k;

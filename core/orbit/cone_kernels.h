@@ -10,7 +10,7 @@ struct PreparedCone {
   bool wide;       // more than 90 degrees: axis and angle are those of the opposite cone
 };
 
-/// On `words` times 64 objects, their coordinates aligned to 64 bytes.
+/// Tests `words` times 64 objects; coordinates are aligned to 64 bytes.
 struct ConeKernels {
   /// Which objects are not at the origin.
   void (*present)(const double* x, const double* y, const double* z, std::size_t words,

@@ -38,7 +38,7 @@ void cone_test(std::span<const double> position_m, std::span<const Cone> cones,
   const std::size_t words = cone_words(n);
   if (position_m.size() != 3 * n || inside.size() != words * cones.size())
     throw Error("cone test of " + std::to_string(n) + " objects and " +
-                std::to_string(cones.size()) + " cones: got room for " +
+                std::to_string(cones.size()) + " cones: output has space for " +
                 std::to_string(inside.size()) + " words");
   std::vector<PreparedCone> prepared(cones.size());
   std::transform(cones.begin(), cones.end(), prepared.begin(), prepare);

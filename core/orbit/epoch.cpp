@@ -40,7 +40,7 @@ std::optional<int> digits(std::string_view text, std::size_t at, std::size_t wid
 /// Length of the UTC day that begins at `midnight` [s]: 86400, or 86401 with a leap second.
 double utc_day_length_s(double midnight) {
   double tai1 = 0, tai2 = 0, next1 = 0, next2 = 0;
-  // Years before 1960 and beyond ERFA's table answer "dubious": there 86400 s is what is meant.
+  // ERFA calls years before 1960 and beyond its table dubious; their days have 86400 s.
   if (eraUtctai(midnight, 0.0, &tai1, &tai2) != 0) return 86400.0;
   if (eraUtctai(midnight + 1.0, 0.0, &next1, &next2) != 0) return 86400.0;
   return std::round(((next1 - tai1) + (next2 - tai2)) * 86400.0);

@@ -7,7 +7,7 @@
 
 namespace dmise {
 
-/// Days from `from` to `to` for putting epochs in order: a leap second between them is left out.
+/// Days from `from` to `to` for sorting epochs; ignores leap seconds.
 inline double epoch_days_between(const Utc& from, const Utc& to) {
   return (to.jd1 - from.jd1) + (to.jd2 - from.jd2);
 }
@@ -32,11 +32,11 @@ struct CalendarTime {
 /// Source: CCSDS 301.0-B-4, ASCII time codes A and B.
 std::optional<CalendarTime> parse_calendar_time(std::string_view text);
 
-/// The same as UTC; second 60 on a day without a leap second is nothing.
+/// The same as UTC; empty for second 60 on a day without a leap second.
 std::optional<Utc> parse_iso_epoch(std::string_view text);
 
-/// `2018-01-20T23:40:00.123` with `decimals` in [0, 6] of a second, nearest: of any year, where
-/// `format_utc` begins with 1972.
+/// `2018-01-20T23:40:00.123` with `decimals` in [0, 6] of a second, rounded to nearest; for any
+/// year, while `format_utc` starts in 1972.
 std::string format_iso_epoch(const Utc& epoch, int decimals = 3);
 
 }  // namespace dmise

@@ -2,7 +2,7 @@
 
 namespace dmise {
 
-// Each knot's two basis polynomials are built on its Lagrange polynomial L:
+// The two basis polynomials of each knot are built from its Lagrange polynomial L:
 // (1 - 2 L'(x_k) (x - x_k)) L^2 for the position and (x - x_k) L^2 for the slope.
 HermiteWeights hermite_weights(int first, int count, double u, double tick_s) {
   HermiteWeights w;

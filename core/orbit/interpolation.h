@@ -11,8 +11,8 @@
 
 namespace dmise {
 
-/// Hermite interpolation of positions between ticks of one length, on positions and slopes. A slope
-/// is the derivative of the position, never SGP4's velocity: that differs from it by centimetres to
+/// Hermite interpolation of positions between equidistant ticks from positions and slopes. A slope
+/// is the derivative of the position, not SGP4's velocity, which differs from it by centimetres to
 /// metres per second.
 enum class HermiteOrder {
   cubic = 3,    // the two ticks around the time; error ~ h^4
@@ -20,18 +20,18 @@ enum class HermiteOrder {
   septic = 7,   // and one tick on either side; error ~ h^8
 };
 
-/// Ticks before and behind the interval that an order needs.
+/// Number of ticks before the interval that an order needs.
 constexpr int ticks_before(HermiteOrder order) { return order == HermiteOrder::cubic ? 0 : 1; }
 constexpr int ticks_behind(HermiteOrder order) { return order == HermiteOrder::septic ? 2 : 1; }
 constexpr int knots(HermiteOrder order) { return (static_cast<int>(order) + 1) / 2; }
 
-/// First and last of the ticks that an order takes.
+/// First and last tick that an order uses.
 struct KnotTicks {
   Tick first = 0, last = 0;
 };
 
-/// Those for the interval that begins at tick `interval`, of a run of ticks 0 to `last_tick` >= 1:
-/// where one would lie outside the run, all move inwards. With too few ticks, all there are.
+/// Ticks for the interval that begins at tick `interval`, in a run of ticks 0 to `last_tick` >= 1:
+/// shifted inwards at the ends of the run; all ticks if there are too few.
 constexpr KnotTicks knot_ticks(HermiteOrder order, Tick interval, Tick last_tick) {
   const Tick count = std::min<Tick>(knots(order), last_tick + 1);
   const Tick first =
@@ -39,13 +39,13 @@ constexpr KnotTicks knot_ticks(HermiteOrder order, Tick interval, Tick last_tick
   return {first, first + count - 1};
 }
 
-/// The last tick that must be known before the state at `t` within the run can be told.
+/// Last tick that must be known to interpolate at `t` within the run.
 constexpr Tick tick_needed(HermiteOrder order, SimTime t, SimTime tick_length, Tick last_tick) {
   const Tick after = std::max<Tick>(1, (t.ns + tick_length.ns - 1) / tick_length.ns);
   return knot_ticks(order, after - 1, last_tick).last;
 }
 
-/// `order`, or the highest that the ticks 0 to `last_tick` >= 1 allow.
+/// `order`, or the highest order that the ticks 0 to `last_tick` >= 1 allow.
 constexpr HermiteOrder order_within(HermiteOrder order, Tick last_tick) {
   return static_cast<HermiteOrder>(std::min<Tick>(static_cast<Tick>(order), 2 * last_tick + 1));
 }
@@ -61,13 +61,13 @@ Vec<F> symmetric_slope(const Vec<F>& before_m, const Vec<F>& after_m,
   return (after_m - before_m) / (2.0 * half_step_s);
 }
 
-/// What one time within an interval is made of: the same for all objects, so worked out once.
+/// Weights of one time within an interval, common to all objects.
 struct HermiteWeights {
   int first = 0;  // tick of the first knot, relative to the tick that begins the interval
   int count = 0;
   std::array<double, 4> position{};  // factors of the positions
   std::array<double, 4> slope_s{};   // factors of the slopes
-  // Derivatives of both by the time.
+  // Time derivatives of both.
   std::array<double, 4> position_per_s{}, slope{};
 };
 
@@ -102,9 +102,9 @@ struct InterpolationError {
   double worst_time_s = 0.0;  // where the greatest was found
 };
 
-/// Measures what interpolation costs one object: `position_m(t_s)` against its interpolation at
-/// `samples` equidistant inner points of each of `intervals` ticks from `start_s`, with slopes as
-/// `symmetric_slope` takes them. There is no analytic bound for SGP4: this is the error statement.
+/// Measures the interpolation error of one object: compares `position_m(t_s)` with its
+/// interpolation at `samples` equidistant inner points of each of `intervals` ticks from `start_s`,
+/// with slopes from `symmetric_slope`. SGP4 has no analytic bound.
 template <class F>
 InterpolationError measure_interpolation(const std::function<Vec<F>(double)>& position_m,
                                          HermiteOrder order, double start_s, double tick_s,

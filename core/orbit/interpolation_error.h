@@ -6,24 +6,24 @@
 
 namespace dmise {
 
-/// What interpolation between ticks costs the objects of a catalogue [m]: of each the greatest
-/// distance from SGP4 itself, of these the median and the greatest.
+/// Interpolation error of the objects of a catalogue [m]: the greatest distance from SGP4 of each
+/// object, of these the median and the maximum.
 struct StatedInterpolationError {
   double median_m = 0.0, worst_m = 0.0;
 };
 
-/// Measured by `dmise bench interpolation` on the 18,470 element sets of 2019-12-19, at the tick
-/// itself or the next longer one measured (5, 10, 20, 30, 60, 120, 180, 240, 300 s); nothing
-/// beyond. In the first and last tick of a run order 7 is up to 3.2 times worse: its ticks lie to
-/// one side.
+/// Measured by `dmise bench interpolation` on the 18,470 element sets of 2019-12-19, at this tick
+/// or the next longer one measured (5, 10, 20, 30, 60, 120, 180, 240, 300 s); empty beyond. In the
+/// first and last tick of a run order 7 is up to 3.2 times worse, because its ticks lie on one
+/// side.
 std::optional<StatedInterpolationError> stated_interpolation_error(HermiteOrder order,
                                                                    double tick_s);
 
-/// In words: "order 3, ticks of 5 s: 1.3e-05 m median, 5.9e-05 m at worst".
+/// As text: "order 3, ticks of 5 s: 1.3e-05 m median, 5.9e-05 m at worst".
 std::string interpolation_text(HermiteOrder order, double tick_s);
 
-/// The longest tick [s] that a scenario with objects may have: the longest measured whose greatest
-/// error is about a metre.
+/// Longest tick [s] that a scenario with objects may have: the longest measured one with a maximum
+/// error of about a metre.
 double longest_tick_s(HermiteOrder order);
 
 }  // namespace dmise

@@ -31,7 +31,7 @@ std::string_view describe(MotionCode code) {
     case MotionCode::outside_span:
       return "outside the span of its trajectory";
     case MotionCode::underground:
-      return "its path leads into the Earth";
+      return "its path enters the Earth";
     case MotionCode::ok:
       break;
   }

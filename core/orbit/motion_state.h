@@ -12,7 +12,7 @@ struct MotionState {
   Vec<F> velocity_m_per_s;  // relative to the axes of F
 };
 
-/// A state in the frame that its source is given in; turning it needs the Earth's orientation.
+/// A state in the frame of its source; conversion needs the Earth's orientation.
 using FramedState = std::variant<MotionState<Gcrs>, MotionState<Itrs>, MotionState<Teme>>;
 
 /// From `from` to `to` [s]; good to 10 ps within years.

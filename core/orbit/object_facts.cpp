@@ -85,7 +85,7 @@ ObjectFactsFile parse_object_facts(std::string_view text, const std::string& sou
       file.refused.push_back({lines.line(), error.what()});
     }
   }
-  if (!columns) throw ConfigError(source + ": holds no header");
+  if (!columns) throw ConfigError(source + ": has no header");
   return file;
 }
 

@@ -12,7 +12,7 @@
 
 namespace dmise {
 
-/// What is known of an object that tells how bright it is.
+/// Known properties of an object that determine its brightness.
 struct ObjectFacts {
   std::optional<double> standard_magnitude;  // V at 1000 km, half lit, the Sun at 1 au
   std::optional<double> rcs_m2;              // radar cross-section
@@ -27,13 +27,13 @@ struct ObjectFactsFile {
 };
 
 /// Reads a CSV with a header: catalogue_number (or NORAD_CAT_ID), and any of standard_magnitude,
-/// rcs_m2, length_m, width_m, height_m, albedo; other columns are passed over, blank fields are
-/// unknown. Of two rows of one object the later is refused. Throws `ConfigError` without a column
-/// of numbers.
+/// rcs_m2, length_m, width_m, height_m, albedo; other columns are ignored, blank fields are
+/// unknown. Of two rows of one object the later is refused. Throws `ConfigError` if there is no
+/// column of numbers.
 ObjectFactsFile read_object_facts(const std::string& path);
 ObjectFactsFile parse_object_facts(std::string_view text, const std::string& source);
 
-/// Which fact a sphere was made from, best first.
+/// The property that a sphere was derived from, best first.
 enum class BrightnessSource { standard_magnitude, dimensions, rcs, none };
 
 struct ObjectSphere {
@@ -41,9 +41,9 @@ struct ObjectSphere {
   BrightnessSource source = BrightnessSource::none;
 };
 
-/// The sphere that stands for an object: of its standard magnitude; else of its mean cross-section
-/// (a quarter of the surface of its box or cylinder); else of its radar cross-section, a crude
-/// stand-in; else the default.
+/// Returns the equivalent sphere of an object: from its standard magnitude; else from its mean
+/// cross-section (a quarter of the surface of its box or cylinder); else from its radar
+/// cross-section, a crude substitute; else `unknown`.
 ObjectSphere sphere_of(const ObjectFacts& facts, const DiffuseSphere& unknown = {});
 
 }  // namespace dmise

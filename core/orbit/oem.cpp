@@ -21,7 +21,7 @@ enum class TimeSystem { utc, tai, tt, gps };
 constexpr double tt_minus_tai_s = 32.184;
 constexpr double tai_minus_gps_s = 19.0;
 
-/// Reads one file from top to bottom; the state is what has been said so far.
+/// Parses one file from top to bottom; the members are the state of the parser.
 class OemReader {
  public:
   OemReader(std::string_view text, const std::string& source) : lines_(text) {
@@ -62,7 +62,7 @@ class OemReader {
     finish_segment();
     if (!is_oem_) throw ConfigError(trajectory_.source + ": not a CCSDS OEM: no CCSDS_OEM_VERS");
     if (trajectory_.segments.empty())
-      throw ConfigError(trajectory_.source + ": holds no ephemeris segment");
+      throw ConfigError(trajectory_.source + ": contains no ephemeris segment");
     return std::move(trajectory_);
   }
 
@@ -180,7 +180,8 @@ class OemReader {
     s.velocity_m_per_s.push_back(turned({value[3], value[4], value[5]}));
   }
 
-  /// EME2000 into GCRS by the constant bias between them (23 mas); the rest as it is.
+  /// Rotates EME2000 to GCRS by the constant bias between them (23 mas); other frames are
+  /// unchanged.
   Vec<OemAxes> turned(const Vec<OemAxes>& v) const {
     if (!declared_.eme2000) return v;
     double bias[3][3], precession[3][3], both[3][3];
@@ -193,7 +194,7 @@ class OemReader {
   void finish_segment() {
     if (!segment_) return;
     OemSegment& s = *segment_;
-    if (s.time_s.size() < 2) fail("a segment needs two ephemeris lines", s.object_name);
+    if (s.time_s.size() < 2) fail("a segment needs at least two ephemeris lines", s.object_name);
     s.usable_start_s = s.time_s.front();
     s.usable_stop_s = s.time_s.back();
     if (!declared_.usable_start.empty())

@@ -8,12 +8,12 @@
 namespace dmise {
 
 enum class OemFrame { gcrs, itrs, teme };
-/// Axes of the segment at hand, whichever `OemSegment::frame` says.
+/// Axes of the current segment, which `OemSegment::frame` names.
 struct OemAxes {};
 enum class OemInterpolation { linear, lagrange, hermite };
 
-/// One segment of a trajectory: between its ephemeris lines it is smooth, from one to the next it
-/// may jump (a manoeuvre).
+/// One segment of a trajectory. It is smooth inside; between segments the trajectory may jump (a
+/// manoeuvre).
 struct OemSegment {
   std::string object_name;
   std::string object_id;
@@ -27,21 +27,21 @@ struct OemSegment {
   std::vector<Vec<OemAxes>> velocity_m_per_s;
 };
 
-/// A trajectory as a CCSDS Orbit Ephemeris Message (502.0-B) gives it.
+/// A trajectory from a CCSDS Orbit Ephemeris Message (502.0-B).
 struct Trajectory {
   std::string source;  // for messages
   Tai reference;       // first ephemeris time
   std::vector<OemSegment> segments;
 };
 
-/// Reads an OEM in KVN: geocentric, in ICRF/GCRF, EME2000 (turned to GCRS by the frame bias), ITRF
-/// or TEME; times in UTC, TAI, TT or GPS. Without INTERPOLATION the lines are joined by Hermite
-/// polynomials of degree 7 on positions and velocities. Covariances are passed over. Throws
+/// Reads an OEM in KVN: geocentric, in ICRF/GCRF, EME2000 (rotated to GCRS by the frame bias), ITRF
+/// or TEME; times in UTC, TAI, TT or GPS. Without INTERPOLATION, lines are joined by Hermite
+/// polynomials of degree 7 on positions and velocities. Covariances are ignored. Throws
 /// `ConfigError` `file:line: reason, got "value"`.
 Trajectory read_oem(const std::string& path);
 Trajectory parse_oem(std::string_view text, const std::string& source);
 
-/// Whether a segment covers `time`; its ends do, to a nanosecond.
+/// Whether a segment covers `time`, ends included, to a nanosecond.
 bool covers(const Trajectory& trajectory, const Tai& time);
 
 /// First and last time that any segment covers.
@@ -53,11 +53,11 @@ TrajectorySpan span_of(const Trajectory& trajectory);
 /// "2018-01-21T00:00:00.000 to 2018-01-21T02:00:00.000 UTC", for messages.
 std::string span_text(const Trajectory& trajectory);
 
-/// Throws `Error` that names the object and the span when `time` lies outside it.
+/// Throws `Error` with the object and the span if `time` is outside it.
 FramedState state_at(const Trajectory& trajectory, const Tai& time);
 
-/// The same, but the velocity is the slope of the interpolated position: what interpolation between
-/// ticks needs. They differ where the file asks for Lagrange or linear interpolation.
+/// The same with the derivative of the interpolated position as velocity, which interpolation
+/// between ticks needs. They differ if the file asks for Lagrange or linear interpolation.
 FramedState path_at(const Trajectory& trajectory, const Tai& time);
 
 }  // namespace dmise

@@ -64,7 +64,7 @@ void OemFile::keep_before(const std::string& utc) {
     keep = end + 1;
   }
   if (keep == 0) return begin();
-  if (last.empty() && meta > 0) keep = meta;  // nothing is left of its last segment
+  if (last.empty() && meta > 0) keep = meta;  // its last segment is empty
   write_file_whole(path_, text.substr(0, keep));
   open("r+b");
   held_utc_.clear();

@@ -6,30 +6,30 @@
 
 namespace dmise {
 
-/// Whose ephemeris a file holds.
+/// Metadata of an ephemeris file.
 struct OemSubject {
   std::string object_name;
   std::string object_id;      // international designator, or whatever names it
   std::string creation_date;  // of a simulation: its start, so that the bytes repeat
 };
 
-/// A CCSDS Orbit Ephemeris Message (502.0-B) in KVN that grows by a state at a time, in GCRF and
-/// UTC; after each it is whole, with a right STOP_TIME. A segment begins with its second state: one
-/// alone is no ephemeris and is left out.
+/// Writes a CCSDS Orbit Ephemeris Message (502.0-B) in KVN, one state at a time, in GCRF and UTC;
+/// the file is complete, with a correct STOP_TIME, after each. A segment starts with its second
+/// state: a single state is no ephemeris and is omitted.
 class OemFile {
  public:
-  /// Writes nothing yet. Times are texts of one length that sort as they run (`format_utc`).
+  /// Does not write yet. Times are texts of one length that sort chronologically (`format_utc`).
   OemFile(std::string path, OemSubject subject);
   ~OemFile();
   OemFile(const OemFile&) = delete;
   OemFile& operator=(const OemFile&) = delete;
 
-  /// Begins anew. Throws `Error` "PATH: reason", as all do.
+  /// Starts a new file. Throws `Error` "PATH: reason", as all methods do.
   void begin();
-  /// Takes up what an earlier process wrote, without the states at `utc` and later.
+  /// Continues the file of an earlier process, without the states at `utc` and later.
   void keep_before(const std::string& utc);
-  /// `previous_utc`: the time of the state before, had there been one: if it is not that of the
-  /// last one added, a new segment begins.
+  /// `previous_utc`: time of the preceding state of the object; if it is not that of the last one
+  /// added, a new segment begins.
   void add(const std::string& utc, const std::string& previous_utc, const Vec<Gcrs>& position_m,
            const Vec<Gcrs>& slope_m_per_s);
 

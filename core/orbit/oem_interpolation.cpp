@@ -37,7 +37,7 @@ Basis lagrange_basis(const double* knots, int count, int k, double t) {
   return b;
 }
 
-/// What the velocity of an interpolated state is, where the two differ (Lagrange, linear).
+/// Velocity of an interpolated state, if the two differ (Lagrange, linear).
 enum class Velocity { as_listed, slope_of_position };
 
 MotionState<OemAxes> interpolated(const OemSegment& s, double t_s, Velocity velocity) {
@@ -77,10 +77,10 @@ MotionState<F> in_frame(const MotionState<OemAxes>& s) {
           {s.velocity_m_per_s.x, s.velocity_m_per_s.y, s.velocity_m_per_s.z}};
 }
 
-/// Times are known to a nanosecond: an end of the span is within it.
+/// Times are known to a nanosecond, so the span is extended by that.
 constexpr double time_tolerance_s = 1e-9;
 
-/// The last segment that covers the time, since it begins after a jump; null if none does.
+/// Returns the last segment that covers the time, which begins after a jump; null if there is none.
 const OemSegment* segment_at(const Trajectory& trajectory, double t_s) {
   const OemSegment* segment = nullptr;
   for (const OemSegment& s : trajectory.segments)

@@ -9,11 +9,11 @@
 
 namespace dmise {
 
-/// One Orbit Mean-elements Message (CCSDS 502.0-B) as key and text, whatever notation it came in.
+/// One Orbit Mean-elements Message (CCSDS 502.0-B) as keys and texts, independent of notation.
 class OmmFields {
  public:
   void set(std::string_view key, std::string_view value) { fields_.emplace_back(key, value); }
-  /// The text, trimmed; empty when there is none.
+  /// Trimmed text of a key; empty if missing.
   std::string_view get(std::string_view key) const;
   bool empty() const { return fields_.empty(); }
   void clear() { fields_.clear(); }
@@ -22,19 +22,18 @@ class OmmFields {
   std::vector<std::pair<std::string, std::string>> fields_;
 };
 
-/// Elements of a message whose theory is SGP4 (centre Earth, frame TEME, time UTC where it says
-/// so). NORAD_CAT_ID has 1 to 9 digits; OBJECT_ID "1998-067A" becomes "98067A". Throws
-/// `RecordError`.
+/// Elements of a message whose theory is SGP4 (centre Earth, frame TEME and time UTC if stated).
+/// NORAD_CAT_ID has 1 to 9 digits; OBJECT_ID "1998-067A" becomes "98067A". Throws `RecordError`.
 MeanElements elements_of(const OmmFields& omm);
 
-// One reader a notation. A message at fault is refused alone; a text that is not JSON or XML at all
+// One reader per notation. A bad message is refused alone; text that is not JSON or XML at all
 // throws `ConfigError` with its line.
 void read_omm_json(std::string_view text, CatalogueFile& file);
 void read_omm_csv(std::string_view text, CatalogueFile& file);
 void read_omm_xml(std::string_view text, CatalogueFile& file);
 void read_omm_kvn(std::string_view text, CatalogueFile& file);
 
-/// Adds the message that begins at `line` to `file`, or the reason why not.
+/// Adds the message that begins at `line` to `file`, or the reason why it is refused.
 void add_omm(const OmmFields& omm, int line, CatalogueFile& file);
 
 }  // namespace dmise

@@ -8,7 +8,7 @@ namespace dmise {
 
 namespace {
 
-/// Characters of a text that count the lines they pass.
+/// Iterator over characters that counts lines.
 class CountingIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -32,7 +32,7 @@ class CountingIterator {
   int* line_;
 };
 
-/// Takes events of the parser: objects at the top, or in the array at the top, are messages.
+/// SAX handler: objects at the top level, or in the top-level array, are messages.
 class MessageHandler : public nlohmann::json_sax<nlohmann::json> {
  public:
   MessageHandler(CatalogueFile& file, const int& line) : file_(file), line_(line) {}
@@ -67,7 +67,7 @@ class MessageHandler : public nlohmann::json_sax<nlohmann::json> {
   }
   bool start_array(std::size_t) override {
     if (message_depth_ == 0 && depth_ == 1)
-      file_.refused.push_back({line_, "an array where a message should be"});
+      file_.refused.push_back({line_, "expected a message, got an array"});
     ++depth_;
     return true;
   }
@@ -77,8 +77,7 @@ class MessageHandler : public nlohmann::json_sax<nlohmann::json> {
   }
   bool parse_error(std::size_t, const std::string& token,
                    const nlohmann::detail::exception&) override {
-    throw ConfigError(file_.source + ":" + std::to_string(line_) + ": not JSON from here on" +
-                      got(token));
+    throw ConfigError(file_.source + ":" + std::to_string(line_) + ": invalid JSON" + got(token));
   }
 
  private:

@@ -15,7 +15,7 @@ void read_omm_csv(std::string_view text, CatalogueFile& file) {
     }
     if (values.size() != keys.size()) {
       file.refused.push_back({lines.line(), std::to_string(values.size()) +
-                                                " fields where the header has " +
+                                                " fields, but the header has " +
                                                 std::to_string(keys.size()) + got(*next)});
       continue;
     }
@@ -43,7 +43,7 @@ void read_omm_kvn(std::string_view text, CatalogueFile& file) {
     }
     const std::string key = upper_case(trimmed(line.substr(0, equals)));
     std::string_view value = trimmed(line.substr(equals + 1));
-    if (key == "CCSDS_OMM_VERS") {  // begins the next message
+    if (key == "CCSDS_OMM_VERS") {  // starts the next message
       finish();
       first_line = lines.line();
     }

@@ -8,7 +8,7 @@ namespace dmise {
 
 namespace {
 
-/// Lines of a text by offsets that only grow: a whole document costs one pass.
+/// Line numbers of ascending offsets, in one pass over the text.
 class LineCounter {
  public:
   explicit LineCounter(std::string_view text) : text_(text) {}
@@ -28,7 +28,7 @@ class LineCounter {
   int line_ = 1;
 };
 
-/// Every element with a text and no element inside it is a field.
+/// Every element with a text and without child elements is a field.
 struct FieldCollector : pugi::xml_tree_walker {
   OmmFields omm;
 
@@ -47,9 +47,9 @@ void read_omm_xml(std::string_view text, CatalogueFile& file) {
   LineCounter lines(text);
   if (!result)
     throw ConfigError(file.source + ":" + std::to_string(lines.line_at(result.offset)) +
-                      ": not XML from here on: " + result.description());
+                      ": invalid XML: " + result.description());
 
-  // Without recursion: depth is the writer's choice.
+  // Iterative, because the depth is up to the input.
   pugi::xml_node node = document.first_child();
   while (node) {
     const bool is_message = std::string_view(node.name()) == "omm";

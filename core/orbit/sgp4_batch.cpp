@@ -33,7 +33,7 @@ constexpr std::size_t tile_of_thread = 1024;
 void check_sizes(std::size_t n, std::span<const double> position, std::span<const double> velocity,
                  std::span<const std::uint8_t> code) {
   if (position.size() != 3 * n || velocity.size() != 3 * n || code.size() != n)
-    throw Error("SGP4 output of " + std::to_string(n) + " states: got room for " +
+    throw Error("SGP4 output of " + std::to_string(n) + " states: output has space for " +
                 std::to_string(position.size()) + " position, " + std::to_string(velocity.size()) +
                 " velocity components and " + std::to_string(code.size()) + " codes");
 }
@@ -47,7 +47,7 @@ void put_failure(const Output& out, std::size_t i, std::uint8_t code) {
 }  // namespace
 
 struct Sgp4Batch::State {
-  /// Lane `slot` of a group, counted through its blocks; or the code of an object that has none.
+  /// Lane number within a group, or the code of an object without a model.
   struct Place {
     std::uint8_t group = 0, code = 0;
     std::uint32_t slot = 0;
@@ -84,7 +84,7 @@ struct Sgp4Batch::State {
            (jd2 - s.epoch_jd2.lane[lane]) * minutes_per_day;
   }
 
-  /// Tile by tile of the output, so that it stays in the cache while the groups fill it.
+  /// Works on one tile of the output after the other, so that it stays in the cache.
   void run_all(const Instants& times, const Output& out, Threads* threads) const {
     const std::size_t tile = std::max<std::size_t>(tile_states / times.count, block_lanes);
     const auto work = [&](std::size_t begin, std::size_t end) {
@@ -99,7 +99,7 @@ struct Sgp4Batch::State {
       work(begin, std::min(begin + tile, places.size()));
   }
 
-  /// Eight lanes put together from anywhere in one group.
+  /// Eight lanes gathered from anywhere in one group.
   struct Gathered {
     NearTerms<Lanes> near;
     DeepTerms<Lanes> far;
@@ -168,7 +168,7 @@ Sgp4Batch::Sgp4Batch(std::span<const MeanElements> elements, Threads* threads, S
 }
 
 void Sgp4Batch::append(std::span<const MeanElements> elements, Threads* threads) {
-  // In pieces, so that the models of a large catalogue never all lie side by side.
+  // In pieces, to limit the memory for the models of a large catalogue.
   constexpr std::size_t piece = 4096;
   std::vector<Model> models(std::min(piece, elements.size()));
   for (std::size_t start = 0; start < elements.size(); start += piece) {
@@ -204,7 +204,7 @@ void Sgp4Batch::propagate(std::span<const Utc> times, std::span<double> position
                           Threads* threads) const {
   const std::size_t n = size();
   check_sizes(times.size() * n, position_m, velocity_m_per_s, code);
-  // Some at once: enough to leave the terms in the first cache, few enough streams of output.
+  // A few at once: enough to reuse the terms from the L1 cache, few enough output streams.
   constexpr std::size_t times_at_once = 8;
   for (std::size_t start = 0; start < times.size(); start += times_at_once) {
     const std::size_t count = std::min(times_at_once, times.size() - start);

@@ -21,12 +21,12 @@ enum class Sgp4Code : std::uint8_t {
   perturbed_eccentricity = 3,  // after the lunar and solar terms: < 0 or > 1
   semilatus_rectum = 4,        // < 0
   decayed = 6,                 // below the Earth's equatorial radius
-  // Ours, where the reference reports 0: farther than 2.2 a (1 + e), not finite, or asked for a
-  // time more than 1e8 minutes (190 years) from its epoch.
+  // Not in the reference, which reports 0: farther than 2.2 a (1 + e), not finite, or at a time
+  // more than 1e8 minutes (190 years) from the epoch.
   absurd = 7,
 };
 
-/// "mean eccentricity outside [0, 1)" and the like, for a log line.
+/// Text for a log line, such as "mean eccentricity outside [0, 1)".
 std::string_view describe(Sgp4Code code);
 
 struct Sgp4State {
@@ -37,23 +37,22 @@ struct Sgp4State {
 
 /// SGP4/SDP4 (WGS72, improved mode 'i') for whole catalogues: AIAA 2006-6753, Spacetrack Report 3.
 ///
-/// Every state is a function of the element set and the time alone, to the bit: it depends on no
-/// earlier call, no other object, no thread. Calls are const, take no memory and may run at the
-/// same time. Where `code` is not ok the state is zeros. Instruction sets differ by less than 1e-8
-/// km.
+/// A state depends on the element set and the time alone, to the bit: not on earlier calls, other
+/// objects or threads. Calls are const, allocate nothing and may run concurrently. If `code` is not
+/// ok, the state is zeros. Instruction sets differ by less than 1e-8 km.
 class Sgp4Batch {
  public:
-  /// Element sets that SGP4 can't start from get their code; nothing throws.
+  /// Element sets that SGP4 cannot initialise get their code; does not throw.
   explicit Sgp4Batch(std::span<const MeanElements> elements, Threads* threads = nullptr,
                      SimdLevel simd = best_simd_level());
-  /// Of no objects yet.
+  /// Empty batch.
   explicit Sgp4Batch(SimdLevel simd);
   ~Sgp4Batch();
   Sgp4Batch(Sgp4Batch&&) noexcept;
   Sgp4Batch& operator=(Sgp4Batch&&) noexcept;
 
-  /// Adds objects behind those that it holds, so that a great catalogue need not lie in memory
-  /// beside its terms. Alone among the calls, not while another thread is in one.
+  /// Appends objects, so that a large catalogue need not be in memory beside its terms. The only
+  /// call that must not run concurrently with others.
   void append(std::span<const MeanElements> elements, Threads* threads = nullptr);
 
   std::size_t size() const;
@@ -66,9 +65,9 @@ class Sgp4Batch {
                  std::span<double> velocity_m_per_s, std::span<std::uint8_t> code,
                  Threads* threads = nullptr) const;
 
-  /// The same at several instants: those of `times[k]` begin at [3 k size()] and [k size()], and
-  /// are to the bit those of a call of their own. Cheaper than that: a block's terms are read once
-  /// for some of the times.
+  /// The same at several instants: results of `times[k]` begin at [3 k size()] and [k size()] and
+  /// equal those of a separate call to the bit. Cheaper, because a block's terms are read once for
+  /// several times.
   void propagate(std::span<const Utc> times, std::span<double> position_m,
                  std::span<double> velocity_m_per_s, std::span<std::uint8_t> code,
                  Threads* threads = nullptr) const;

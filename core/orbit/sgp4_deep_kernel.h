@@ -1,5 +1,4 @@
-// Deep space on packs of objects: the Sun's, the Moon's and the resonant terms. Included only by
-// sgp4_kernel.h.
+// Deep-space terms on packs of objects: Sun, Moon and resonance. Included only by sgp4_kernel.h.
 #pragma once
 #include "core/orbit/sgp4_kernels.h"
 #include "core/orbit/sgp4_terms.h"
@@ -72,15 +71,15 @@ struct Resonant {
 };
 
 /// Longitude and mean motion at `t`, by Euler-Maclaurin steps of 720 min on the grid from the
-/// epoch: the last node of the grid is the same whatever was asked before. `node` is a memo of it:
-/// used where it lies between epoch and t, replaced by the one that t needs.
+/// epoch; the last node of the grid does not depend on earlier calls. `node` caches it: used if it
+/// lies between epoch and t, replaced by the node that t needs.
 template <class Terms>
 DMISE_INLINE Resonant integrate(const Terms& b, int first, Pack t, ResonanceNode& node) {
   constexpr double step = resonance_step_min;
   const Pack steps = abs(t) * (1.0 / step);
   Pack whole = madd(steps, 1.0, round_magic) - round_magic;
   whole = select(steps < whole, whole - 1.0, whole);
-  // abs(t) / step was rounded: put right by the remainder.
+  // abs(t) / step was rounded: corrected by the remainder.
   const Pack rest = nmadd(whole, step, abs(t));
   whole = select(Pack(step) <= rest, whole + 1.0, select(rest < 0.0, whole - 1.0, whole));
   const Pack target = copy_sign(whole * step, t);

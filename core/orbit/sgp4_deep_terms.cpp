@@ -6,13 +6,13 @@
 namespace dmise::sgp4 {
 namespace {
 
-/// Where a perturbing body's orbit lies against the satellite's node, and how hard it pulls.
+/// Orientation of a perturbing body's orbit relative to the satellite's node, and its strength.
 struct Body {
   double sin_g, cos_g, sin_i, cos_i, sin_h, cos_h;
   double strength, rate, eccentricity;
 };
 
-/// Rates that one body gives to the mean elements [rad/min].
+/// Rates of the mean elements caused by one body [rad/min].
 struct BodyRates {
   double e, i, m, gh, h;
 };
@@ -81,7 +81,7 @@ BodyRates body_terms(const Body& b, const MeanElements& el, double n, double sin
   out.h2 = -2.0 * s2 * z22;
   out.h3 = -2.0 * s2 * (z23 - z21);
 
-  // Within 3 deg of the equator the node's rate is left out.
+  // Within 3 deg of the equator the node's rate is omitted.
   constexpr double near_equator = 5.2359877e-2;
   const bool flat =
       el.inclination_rad < near_equator || el.inclination_rad > two_pi / 2.0 - near_equator;

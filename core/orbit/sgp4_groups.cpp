@@ -21,7 +21,7 @@ Shape shape_of(double eccentricity) {
 void* new_piece(bool whole) {
   void* piece = std::aligned_alloc(piece_bytes, piece_bytes);
   if (!piece) throw std::bad_alloc();
-  if (whole) madvise(piece, piece_bytes, MADV_HUGEPAGE);  // a wish: without it, slower
+  if (whole) madvise(piece, piece_bytes, MADV_HUGEPAGE);  // optional, for speed
   return piece;
 }
 
@@ -44,7 +44,7 @@ void Group::add(const Model& m, std::uint32_t object) {
   shape = shape_of(m.eccentricity);
   const int lane = static_cast<int>(index.size() % block_lanes);
   index.push_back(object);
-  // A new block holds its first object in every lane, so that no lane computes on nothing.
+  // A new block holds its first object in every lane, so that every lane has valid input.
   const int end = lane == 0 ? block_lanes : lane + 1;
   const auto take = [&](auto& blocks, const auto& one) {
     auto& block = lane == 0 ? blocks.add() : blocks.back();
@@ -58,7 +58,7 @@ void Group::add(const Model& m, std::uint32_t object) {
 
 void Group::make_memos() {
   if (resonance == Resonance::none) return;
-  if (nodes.size() > 0) nodes.back() = no_node();  // of a block that may have got more objects
+  if (nodes.size() > 0) nodes.back() = no_node();  // its block may have gained objects
   while (nodes.size() < blocks()) nodes.add() = no_node();
   busy = std::make_unique<std::atomic_flag[]>(blocks());
 }

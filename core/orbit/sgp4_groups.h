@@ -14,11 +14,11 @@ namespace dmise::sgp4 {
 
 inline constexpr std::size_t piece_bytes = std::size_t{1} << 21;  // a huge page
 
-/// `piece_bytes` that take no memory before they are written to; `whole` says that all of it is
-/// going to be used, and so may lie on a huge page.
+/// Allocates `piece_bytes` of memory that is committed when first written. `whole`: all of it will
+/// be used, so huge pages are allowed.
 void* new_piece(bool whole);
 
-/// Blocks in pieces that never move, so that growing takes no second copy.
+/// Blocks in chunks that never move, so that growing never copies.
 template <class Block>
 class Blocks {
  public:
@@ -33,7 +33,7 @@ class Blocks {
   const Block& operator[](std::size_t k) const {
     return pieces_[k / per_piece].get()[k % per_piece];
   }
-  /// Where the blocks that lie side by side with block `k` end.
+  /// End of the run of contiguous blocks that contains block `k`.
   std::size_t end_of_piece(std::size_t k) const { return (k / per_piece + 1) * per_piece; }
 
  private:
@@ -48,7 +48,7 @@ class Blocks {
 
 ResonanceNode no_node();
 
-/// Objects that go the same road through the model, in blocks, in the order of the catalogue.
+/// Objects that take the same branches of the model, in blocks, in catalogue order.
 struct Group {
   bool deep = false;
   Resonance resonance = Resonance::none;
@@ -58,14 +58,14 @@ struct Group {
   Blocks<DeepTerms<Lanes>> far;
   Blocks<SynchronousTerms<Lanes>> day;
   Blocks<HalfDayTerms<Lanes>> half_day;
-  // A memo of each block's integrator: whoever holds the block's lock starts from it and leaves its
-  // own behind; who doesn't starts from the epoch and finds the same, later.
+  // Cached integrator node of each block: the thread that holds the block's lock starts from it and
+  // updates it; others start from the epoch and find the same result more slowly.
   mutable Blocks<ResonanceNode> nodes;
   std::unique_ptr<std::atomic_flag[]> busy;
 
-  /// Takes object number `object` in; all of a group have the same `group_of`.
+  /// Adds object number `object`; all objects of a group have the same `group_of`.
   void add(const Model& model, std::uint32_t object);
-  /// To be called after the last of some additions.
+  /// Call after the last of a series of additions.
   void make_memos();
 
   std::size_t blocks() const { return deep ? far.size() : near.size(); }

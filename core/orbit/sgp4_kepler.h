@@ -1,6 +1,5 @@
-// Kepler's equation on packs of objects, as SGP4 iterates it: with the reference's own steps and
-// stop, after which the last step is in the anomaly but not in its sine and cosine. Included only
-// by sgp4_kernel.h.
+// Kepler's equation on packs of objects, with the iteration and the stopping rule of the reference:
+// the last step enters the anomaly but not its sine and cosine. Included only by sgp4_kernel.h.
 #pragma once
 #include "core/orbit/sgp4_kernels.h"
 #include "core/orbit/sgp4_trig.h"
@@ -8,7 +7,8 @@
 namespace dmise::sgp4 {
 namespace {
 
-/// Kepler's equation solved for the sine and cosine of the eccentric longitude, and what they give.
+/// Solution of Kepler's equation: sine and cosine of the eccentric longitude, and derived
+/// quantities.
 struct Anomaly {
   SinCos e;
   Pack e_sin, e_cos;  // e sin E, e cos E of the eccentric anomaly
@@ -24,9 +24,9 @@ DMISE_INLINE Pack inverse_of_one_minus_6(Pack x) {
   return madd(madd(x2, x2, x2), y, y);
 }
 
-/// Small eccentricity: the reference's iteration as turns from `u`, given its sine and cosine.
-/// Three evaluations settle e < 0.026, four e < 0.18; lanes that they don't settle are in
-/// `outside`.
+/// Small eccentricity: the reference's iteration as rotations from `u`, given its sine and cosine.
+/// Three evaluations suffice for e < 0.026, four for e < 0.18; lanes that have not converged are
+/// marked in `outside`.
 template <Shape shape>
 DMISE_INLINE Anomaly solve_kepler_by_turns(SinCos su, Pack ax, Pack ay, Mask& outside) {
   static_assert(shape != Shape::any);
@@ -39,8 +39,8 @@ DMISE_INLINE Anomaly solve_kepler_by_turns(SinCos su, Pack ax, Pack ay, Mask& ou
     out.e_cos = nmadd(sin0, turn.sin, cos0 * turn.cos);
     return turn;
   };
-  // The reference may stop here, with a last step below 1e-12: the first one is good to 3e-15 where
-  // it does. 1 / rho moves little from there: its series is good to 4e-10 of a step of e^3 / 2.
+  // The reference may stop here, with a last step below 1e-12, where the first one is good to
+  // 3e-15. The series of 1 / rho is good to 4e-10 of a step of e^3 / 2.
   out.inv_rho =
       shape == Shape::circle ? inverse_of_one_minus_6(cos0) : Pack(1.0) / (Pack(1.0) - cos0);
   Pack d = sin0 * out.inv_rho;
@@ -59,8 +59,8 @@ DMISE_INLINE Anomaly solve_kepler_by_turns(SinCos su, Pack ax, Pack ay, Mask& ou
   return out;
 }
 
-/// Any eccentricity: the reference's iteration, lane by lane to its own stop. Sine and cosine are
-/// turned by small steps and taken anew after greater ones.
+/// Any eccentricity: the reference's iteration, each lane to its own stop. Sine and cosine are
+/// rotated by small steps and recomputed after larger ones.
 DMISE_INLINE Anomaly solve_kepler(Pack u, Pack ax, Pack ay) {
   const Pack turns = madd(u, 0.5 * inv_pi, round_magic) - round_magic;
   u = minus_k_pi(u, turns + turns);
@@ -76,7 +76,7 @@ DMISE_INLINE Anomaly solve_kepler(Pack u, Pack ax, Pack ay) {
     active = active & (Pack(1e-12) <= abs(step));
     if (k == 9 || !any(active)) break;
     step = select(Pack(0.95) <= abs(step), copy_sign(0.95, step), step);
-    step = select(active, step, 0.0);  // a settled lane finds the same again
+    step = select(active, step, 0.0);  // a converged lane stays unchanged
     anomaly = anomaly + step;
     const Mask large = ~(abs(step) <= small_angle);
     const SinCos from = e;

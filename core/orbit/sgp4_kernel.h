@@ -1,16 +1,15 @@
-// SGP4 on packs of objects, the one source of every instruction set: included by
-// sgp4_kernel_{sse2,avx2,avx512}.cpp alone. Each lane's result depends on that lane alone: where
-// lanes of a pack want different roads, the pack takes both and each lane keeps its own.
+// SGP4 on packs of objects, one source for every instruction set: included only by
+// sgp4_kernel_{sse2,avx2,avx512}.cpp. Each lane's result depends on that lane alone: if the lanes
+// of a pack take different branches, the pack evaluates both and each lane selects its own.
 //
-// Against the reference's scalar code, without changing what is computed:
-// - mean anomaly and argument of perigee are only ever needed as their sum, and the node apart;
-// - (sin u, cos u) of the short-period terms are turned by their small corrections, so that no arc
-//   tangent is taken; sin and cos of the eccentric anomaly are turned from those of the longitude;
-// - near a circle, inverses and roots close to 1 are short series: what bounds a pack is the chain
-//   of its divisions, not their number of operations;
-// - Kepler's iterations are the reference's own, including its stop, after which the last
-// correction
-//   is in the anomaly but not in its sine and cosine.
+// Changes of form, not of result, against the scalar reference:
+// - mean anomaly and argument of perigee are used only as their sum, and the node separately;
+// - (sin u, cos u) are rotated by the small short-period corrections, so that no arc tangent is
+//   needed; sin and cos of the eccentric anomaly are rotated from those of the longitude;
+// - near a circle, inverses and roots close to 1 are short series: the latency of the divisions
+//   limits a pack, not the number of operations;
+// - Kepler's iteration is the reference's, including its stopping rule, after which the last
+//   correction is in the anomaly but not in its sine and cosine.
 #pragma once
 #include "core/orbit/sgp4_kepler.h"
 #include "core/orbit/sgp4_kernels.h"
@@ -23,8 +22,8 @@ namespace {
 
 DMISE_INLINE Pack at(const Lanes& lanes, int first) { return load(lanes.lane + first); }
 
-/// What of the next block to ask for while this one is worked on: in four places, since the cache
-/// has room for few requests at once, and more would hold up this block's own.
+/// Prefetch of the next block, issued in four places because the cache holds few outstanding
+/// requests.
 struct Ahead {
   const char* from = nullptr;
   std::size_t quarter_bytes = 0;
@@ -43,7 +42,7 @@ DMISE_INLINE Ahead part_of(const Block* block, std::size_t part, std::size_t par
   return {reinterpret_cast<const char*>(block) + start, start < sizeof *block ? quarter : 0};
 }
 
-/// Mean elements at the time, periodic terms of the Sun and Moon included.
+/// Mean elements at the time, including periodic terms of the Sun and Moon.
 struct Mean {
   Pack e;          // eccentricity
   Pack argp;       // argument of perigee
@@ -60,10 +59,10 @@ struct Mean {
 struct States {
   Pack x, y, z, vx, vy, vz;
   Mask bad;
-  Pack code;  // where bad
+  Pack code;  // error, 0 if none
 };
 
-/// `a` turned by a correction: by a tiny one, or by any.
+/// `a` rotated by a correction; `Tiny`: by at most tiny_angle.
 template <bool Tiny>
 DMISE_INLINE SinCos corrected(SinCos a, Pack by) {
   if constexpr (Tiny) return turned(a, tiny_sin_cos(by));
@@ -77,9 +76,9 @@ DMISE_INLINE SinCos corrected(SinCos a, Pack by) {
   return turned(a, turn);
 }
 
-/// Long- and short-period terms and the state. All shapes but `any` take the short cuts that hold
-/// for small eccentricity above the surface and mark in `outside` the lanes for which they don't.
-/// What does not depend on the anomaly stands before it, to fill the waits of Kepler's iterations.
+/// Long- and short-period terms and the state. All shapes but `any` use approximations for small
+/// eccentricity above the surface and mark the lanes outside their range in `outside`. Terms
+/// independent of the anomaly come first, to hide the latency of Kepler's iteration.
 template <Shape shape>
 DMISE_INLINE States finish(const Mean& m, Mask& outside) {
   constexpr bool turns = shape != Shape::any;
@@ -162,7 +161,7 @@ DMISE_INLINE States finish(const Mean& m, Mask& outside) {
   out.vz = inc.sin * wy;
 
   if constexpr (turns) outside = outside | ~(k2 <= tiny_angle / 1.5);
-  // Only a lane whose radius is an ordinary number between these is good; not a number is not.
+  // Only lanes with a radius between these are good; NaN fails the test.
   const Mask in_range = (Pack(earth_radius_m) <= r_m) & (r_m <= m.farthest_m);
   out.bad = m.code1 | m.code2 | m.code3 | ~in_range;
   if (any(out.bad)) [[unlikely]] {
@@ -175,7 +174,7 @@ DMISE_INLINE States finish(const Mean& m, Mask& outside) {
   return out;
 }
 
-/// Puts the general road's states in the lanes of `outside`.
+/// Recomputes the lanes of `outside` by the general branch.
 [[gnu::noinline]] void replace_outside(const Mean& m, Mask outside, States& s) {
   Mask unused;
   const States full = finish<Shape::any>(m, unused);
@@ -189,7 +188,7 @@ DMISE_INLINE States finish(const Mean& m, Mask& outside) {
   s.vz = select(outside, full.vz, s.vz);
 }
 
-/// `finish`, each lane by the road that holds for it.
+/// `finish`, with the valid branch for each lane.
 template <Shape shape>
 DMISE_INLINE States finish_each(const Mean& m) {
   Mask outside;
@@ -210,13 +209,13 @@ DMISE_INLINE Pack minutes(const SecularTerms<Lanes>& s, int first, double jd1, d
          (Pack(jd2) - at(s.epoch_jd2, first)) * minutes_per_day;
 }
 
-// What is not a number passes these tests and fails the last one, on the radius.
+// NaN passes these tests and fails the last one, on the radius.
 DMISE_INLINE Mask eccentricity_fails(Pack e) { return (e < -0.001) | (Pack(1.0) <= e); }
 DMISE_INLINE Pack within_span(Pack t) {
   return select(abs(t) <= longest_span_min, t, __builtin_nan(""));
 }
 
-/// Writes a pack's states to `to`, codes included; zeros where there is none.
+/// Writes a pack's states and codes to `to`; zeros where there is no state.
 DMISE_INLINE void put(const States& s, int first, BlockStates& to) {
   store(to.position[0] + first, s.x);
   store(to.position[1] + first, s.y);
@@ -248,7 +247,8 @@ DMISE_INLINE BlockPlaces block_places(const std::uint32_t* index, std::size_t ob
   return places;
 }
 
-/// Writes a pack's states, zeros and a code where there is none. `out` is that of the time.
+/// Writes a pack's states; zeros and a code where there is no state. `out` is the output of the
+/// time.
 DMISE_INLINE void put(States s, int first, const BlockPlaces& places, const Output& out) {
   const Places& a = places.of[first / one_lanes];
   const Places& b = places.of[first / one_lanes + 1];

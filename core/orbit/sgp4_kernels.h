@@ -4,8 +4,8 @@
 
 #include "core/orbit/sgp4_terms.h"
 
-// What each instruction set's file gives to Sgp4Batch. No header with inline functions of its own
-// may be included here: it would be compiled for a set that the machine may not have.
+// Functions that each instruction set's file provides to Sgp4Batch. Do not include headers with
+// inline functions here: they would be compiled for an instruction set that the machine may lack.
 namespace dmise::sgp4 {
 
 /// States of one block [m, m/s], zeros where the code is not 0.
@@ -16,7 +16,7 @@ struct alignas(64) BlockStates {
 };
 
 /// The caller's arrays: x at [i], y at [i + stride], z at [i + 2 stride], one time after the other.
-/// Codes are 0 already: kernels write the others.
+/// Codes are initialised to 0: kernels write only the others.
 struct Output {
   double* position;
   double* velocity;
@@ -33,17 +33,17 @@ struct Instants {
   std::size_t count;
 };
 
-/// How far an orbit is from a circle: which road through Kepler's equation is likely to hold.
+/// Range of eccentricity, which selects the solver of Kepler's equation.
 enum class Shape : std::uint8_t { circle, oval, any };
 
-/// Terms of one block of deep-space objects; those of its resonance or null.
+/// Terms of one block of deep-space objects, and of its resonance or null.
 struct DeepBlock {
   const DeepTerms<Lanes>* terms;
   const SynchronousTerms<Lanes>* day;
   const HalfDayTerms<Lanes>* half_day;
-  ResonanceNode* node;  // where to start from and what is left behind, with a resonance
+  ResonanceNode* node;  // in and out: integrator node, with a resonance
   Shape shape;
-  const DeepTerms<Lanes>* next = nullptr;  // the block to come, or null
+  const DeepTerms<Lanes>* next = nullptr;  // next block to prefetch, or null
 };
 
 struct Kernels {

@@ -1,7 +1,7 @@
-// Doubles side by side, as many as the instruction set that this file is compiled for has lanes:
-// 8 with AVX-512 (F, DQ), 4 with AVX2 and FMA, else 2 with SSE2. Included only by sgp4_kernel.h, in
-// one file for each instruction set; everything has internal linkage, so that no function compiled
-// for one set is linked into code that runs on another.
+// Vectors of doubles, as wide as the instruction set that this file is compiled for: 8 lanes with
+// AVX-512 (F, DQ), 4 with AVX2 and FMA, else 2 with SSE2. Included only by sgp4_kernel.h, in one
+// file per instruction set; everything has internal linkage, so that no function compiled for one
+// set is linked into code that runs on another.
 #pragma once
 #include <immintrin.h>
 
@@ -37,7 +37,7 @@ struct One {
 DMISE_INLINE One load_one(const double* p) { return _mm512_load_pd(p); }
 DMISE_INLINE void store(double* p, One a) { _mm512_store_pd(p, a.v); }
 DMISE_INLINE void store_anywhere(double* p, One a) { _mm512_storeu_pd(p, a.v); }
-/// The lanes of `mask` alone, to an address aligned to nothing.
+/// Stores the lanes of `mask` to an unaligned address.
 DMISE_INLINE void store_some(double* p, One a, unsigned mask) {
   _mm512_mask_storeu_pd(p, __mmask8(mask), a.v);
 }
@@ -181,7 +181,7 @@ DMISE_INLINE OneMask and_at_most(OneMask m, One a, One b) { return m & (a <= b);
 DMISE_INLINE OneMask and_less(OneMask m, One a, One b) { return m & (a < b); }
 #endif
 
-// Two of them in step: one alone waits for its own results most of the time.
+// Two vectors side by side, to hide the latency of each.
 struct Mask {
   OneMask a, b;
 };

@@ -1,6 +1,5 @@
-// Where the lanes of a block go in the caller's arrays. Groups take their objects from all over the
-// catalogue, in its order: most lanes have a neighbour for a neighbour. Included only by
-// sgp4_kernel.h.
+// Stores the lanes of a block to the caller's arrays. Groups take their objects in catalogue order,
+// so neighbouring lanes often have neighbouring destinations. Included only by sgp4_kernel.h.
 #pragma once
 #include "core/orbit/sgp4_kernels.h"
 #include "core/orbit/sgp4_pack.h"
@@ -13,13 +12,13 @@ struct Six {
   One value[6];
 };
 
-/// The places of one vector's lanes, `index` ascending.
+/// Destinations of one vector's lanes, `index` ascending.
 struct Places {
   const std::uint32_t* index;
   unsigned count;  // of lanes that hold an object: the first ones
   bool whole;      // all lanes, neighbours
 #if defined(__AVX512F__)
-  // All within 16 from the first: two stores, of what belongs to each half, moved into place.
+  // All within 16 from the first: two compressed stores, one per half.
   bool close;
   __mmask8 low, high;
   __m512i from_low, from_high;
@@ -50,10 +49,10 @@ DMISE_INLINE Places places_of(const std::uint32_t* index, std::size_t objects) {
   return p;
 }
 
-/// Neighbours together, run by run.
+/// Stores runs of neighbours together.
 DMISE_INLINE void put_runs(const Six& s, const Places& p, const Output& out) {
   for (unsigned lane = 0, next; lane < p.count; lane = next) {
-    const std::uint32_t to = p.index[lane] - lane;  // of lane 0; what lies before the run stays
+    const std::uint32_t to = p.index[lane] - lane;  // of lane 0; elements before it are kept
     for (next = lane + 1; next < p.count && p.index[next] - next == to; ++next) {
     }
     const unsigned run = (1u << next) - (1u << lane);

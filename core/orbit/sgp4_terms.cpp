@@ -3,18 +3,18 @@
 #include <cmath>
 
 // Equations: Hoots & Roehrich, Spacetrack Report 3 (1980), as revised by Vallado, Crawford, Hujsak
-// & Kelso, AIAA 2006-6753. Products and sums are taken in the paper's order: the longitude of an
-// object that the atmosphere brakes hard is quadratic in time with a factor of 1e4 and more, so
-// that the last bit of a term is 1e-7 km after a week.
+// & Kelso, AIAA 2006-6753. Products and sums keep the paper's order: with strong drag the longitude
+// is quadratic in time with a factor of 1e4 and more, so that the last bit of a term becomes 1e-7
+// km after a week.
 namespace dmise::sgp4 {
 namespace {
 
 double cube(double x) { return x * x * x; }
 double fourth(double x) { return x * x * x * x; }
 
-/// Greenwich mean sidereal time, IAU 1982 [rad, 0..2 pi), as AIAA 2006-6753 evaluates it. The
-/// published implementation rounds the epoch to one double here (up to 20 us, 1.5e-9 rad, felt only
-/// by resonant orbits); so do we, to agree with it.
+/// Greenwich mean sidereal time, IAU 1982 [rad, 0..2 pi), as AIAA 2006-6753 evaluates it: the epoch
+/// is rounded to one double (up to 20 us, 1.5e-9 rad, relevant only to resonant orbits), as in the
+/// published implementation.
 double sidereal_time(const MeanElements& e) {
   const double days = e.epoch_jd1 + e.epoch_jd2 - 2433281.5;
   const double t = (days + 2433281.5 - 2451545.0) / 36525.0;
@@ -68,7 +68,7 @@ Model initialise(const MeanElements& el) {
     return model;
   }
 
-  // Atmosphere: the density function's parameters fall with the perigee.
+  // Atmosphere: the parameters of the density function depend on the perigee.
   const double perigee = a * (1.0 - e);
   const double perigee_km = (perigee - 1.0) * earth_radius_km;
   double s_km = 78.0;

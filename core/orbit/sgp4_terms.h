@@ -4,7 +4,7 @@
 
 #include "core/orbit/elements.h"
 
-// What SGP4 keeps of one element set, and the same for eight of them side by side.
+// Terms of one element set for SGP4, and the same for blocks of objects.
 namespace dmise::sgp4 {
 
 // WGS72, as AIAA 2006-6753 takes it.
@@ -27,15 +27,14 @@ inline constexpr double longest_span_min = 1e8;
 inline constexpr double sun_rate = 1.19459e-5, sun_eccentricity = 0.01675;
 inline constexpr double moon_rate = 1.5835218e-4, moon_eccentricity = 0.05490;
 
-/// Objects side by side in one block of terms: the lanes of AVX-512; narrower machines take it in
-/// pieces.
+/// Objects per block of terms: a multiple of the lanes of every instruction set.
 inline constexpr int block_lanes = 16;
 struct alignas(64) Lanes {
   double lane[block_lanes];
 };
 
-// T is double for one object and Lanes for a block. Every term is a T, so that a block is filled
-// term by term. Times in minutes, angles in radians, lengths in Earth radii where no unit is named.
+// T is double for one object and Lanes for a block. Times in minutes, angles in radians, lengths in
+// Earth radii unless stated.
 
 template <class T>
 struct SecularTerms {
@@ -88,17 +87,17 @@ struct HalfDayTerms {
   T d2201, d2211, d3210, d3222, d4410, d4422, d5220, d5232, d5421, d5433;
 };
 
-/// The last integrator node that a block's lanes were carried to, and the slopes there. `time` is a
-/// multiple of 720 min from the epoch; not a number where there is none.
+/// The integrator node last reached by a block's lanes, and the slopes there. `time` is a multiple
+/// of 720 min from the epoch; NaN if there is none.
 struct ResonanceNode {
   Lanes time, lambda, n, n_dot, n_ddot;
 };
 
 enum class Resonance : std::uint8_t { none, day, half_day };
 
-/// Everything of one object.
+/// All terms of one object.
 struct Model {
-  std::uint8_t code = 0;  // not 0: SGP4 can't start from the elements
+  std::uint8_t code = 0;  // not 0: SGP4 cannot be initialised
   bool deep = false;
   Resonance resonance = Resonance::none;
   double eccentricity = 0.0, inclination_rad = 0.0;

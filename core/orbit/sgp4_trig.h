@@ -31,7 +31,7 @@ DMISE_INLINE Reduced reduce_pi(Pack x) {
   return {minus_k_pi(x, shifted - round_magic), shifted};
 }
 
-// Polynomials in t are taken as two in t^2: a chain half as long.
+// Polynomials in t are split into two in t^2, which halves the dependency chain.
 
 /// error 1.1e-16 and 3.0e-15.
 DMISE_INLINE SinCos sin_cos(Pack x) {

@@ -49,7 +49,7 @@ constexpr std::array families = {
     Family{"TRANSFER", 0.04, Shape::transfer, 200, 700, 0, 0},
 };
 
-/// The random numbers of one object, in the order in which they are asked for.
+/// Random numbers of one object, in the order of use.
 class Draws {
  public:
   Draws(const RngKey& key, std::uint32_t object) : key_(key), object_(object) {}
@@ -95,7 +95,7 @@ PublishedOrbit orbit_of(const Family& family, Draws& draws) {
       break;
     case Shape::sun_synchronous: {
       set_heights(perigee_km, perigee_km + draws.exponential(8), orbit);
-      // The node keeps step with the Sun where cos i = -(a / 12352 km)^3.5.
+      // The node is Sun-synchronous if cos i = -(a / 12352 km)^3.5.
       const double cosine = -std::pow((earth_radius_km + perigee_km) / 12352.0, 3.5);
       orbit.inclination_deg += std::acos(cosine) / deg;
       break;

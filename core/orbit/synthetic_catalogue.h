@@ -15,9 +15,9 @@ struct SyntheticCatalogueOptions {
   Utc newest_epoch{2458138.5, 0.0};  // 2018-01-20; epochs lie within the three days before it
 };
 
-/// A population like the catalogued one of the 2020s, for tests of scale: object i is a function of
-/// (seed, i) alone, so a smaller catalogue is the beginning of a greater one. Numbers run from 1.
-/// Elements have the digits of a TLE, so a written catalogue reads back to the same bits.
+/// Generates a population like the catalogued one of the 2020s, for tests of scale: object i is a
+/// function of (seed, i) alone, so a smaller catalogue is a prefix of a larger one. Numbers start
+/// at 1. Elements have the digits of a TLE, so a written catalogue reads back to the same bits.
 ///
 /// Shares: 39 % shells of constellations (550 km at 53.0 deg, 540 at 53.2, 570 at 70, 560 at 97.6,
 /// 1200 at 87.9), 18 % payloads and stages (Sun-synchronous 450-850 km; 65, 74, 83 deg to 1500 km),

@@ -5,40 +5,40 @@
 #include <string_view>
 #include <vector>
 
-// Small strict readers of text fields, shared by the catalogue formats.
+// Strict parsers of text fields, shared by the catalogue formats.
 namespace dmise {
 
-/// `text` without blanks, tabs and carriage returns at both ends.
+/// Returns `text` without leading and trailing blanks, tabs and carriage returns.
 std::string_view trimmed(std::string_view text);
 
-/// The whole of `text` as a finite number; a leading '+' is allowed.
+/// Parses the whole of `text` as a finite number; a leading '+' is allowed.
 std::optional<double> parse_real(std::string_view text);
 
-/// The whole of `text` as a decimal integer >= 0 that fits.
+/// Parses the whole of `text` as a decimal integer >= 0 in range.
 std::optional<std::uint32_t> parse_count(std::string_view text);
 
-/// The whole of `text` as a decimal integer, either sign.
+/// Parses the whole of `text` as a signed decimal integer in range.
 std::optional<int> parse_integer(std::string_view text);
 
-/// `, got "text"`, with at most 80 characters of it and no control characters: for messages.
+/// Returns `, got "text"` for messages, with at most 80 characters and no control characters.
 std::string got(std::string_view text);
 
 /// `text` in upper case (ASCII).
 std::string upper_case(std::string_view text);
 
-/// Fields of one line of CSV (RFC 4180; a quoted field ends on its line).
+/// Splits one line of CSV (RFC 4180; a quoted field ends on its line).
 std::vector<std::string> csv_fields(std::string_view line);
 
 /// `text` without the UTF-8 byte order mark, if it begins with one.
 std::string_view without_byte_order_mark(std::string_view text);
 
-/// Cuts a text into lines; knows LF and CRLF and counts from 1.
+/// Splits a text into lines ended by LF or CRLF, counted from 1.
 class LineReader {
  public:
   explicit LineReader(std::string_view text) : rest_(text) {}
-  /// The next line without its end, trailing blanks kept; nothing at the end of the text.
+  /// The next line without its end, trailing blanks kept; empty at the end of the text.
   std::optional<std::string_view> next();
-  /// Number of the line that `next` gave last.
+  /// Number of the line last returned by `next`.
   int line() const { return line_; }
 
  private:

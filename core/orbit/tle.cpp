@@ -50,7 +50,7 @@ Utc epoch_field(std::string_view field) {
   return {julian_midnight(full, static_cast<int>(*day)), *fraction};
 }
 
-/// Refuses a line whose columns don't line up: a lost or doubled character shifts every field.
+/// Refuses a misaligned line: a lost or doubled character shifts every field.
 void check_layout(std::string_view line, char number, std::initializer_list<std::size_t> blanks,
                   std::initializer_list<std::size_t> points) {
   const std::string name = std::string("line ") + number;
@@ -66,7 +66,8 @@ void check_layout(std::string_view line, char number, std::initializer_list<std:
       throw RecordError(name + " has no '.' in column " + std::to_string(column) + got(line));
 }
 
-/// Cuts what follows column 69, checks length and checksum. `needed`: last column with an element.
+/// Drops text after column 69 and checks length and checksum. `needed`: last column with an
+/// element.
 std::string_view checked_line(std::string_view line, char number, std::size_t needed, bool lenient,
                               std::string* warning) {
   const std::string name = std::string("line ") + number;

@@ -6,20 +6,19 @@
 
 namespace dmise {
 
-/// Catalogue number from the five columns of a TLE: digits with blanks before them, or Alpha-5 (a
-/// letter but I and O for the first two digits, A0000 = 100000 to Z9999 = 339999). Throws
+/// Parses the catalogue number in the five columns of a TLE: digits with leading blanks, or Alpha-5
+/// (a letter other than I and O for the first two digits, A0000 = 100000 to Z9999 = 339999). Throws
 /// `RecordError`. Source: space-track.org, "Alpha-5".
 std::uint32_t parse_alpha5(std::string_view columns);
 
 /// Sum of digits, and of 1 for each '-', modulo 10, over the first 68 columns.
 int tle_checksum(std::string_view line);
 
-/// Elements from the two lines of a TLE (without a name). Columns after the 69th are ignored if the
-/// 70th is blank. Blanks stand for zeros where a field has leading ones, and for a whole
-/// derivative, drag term, type or number. Ephemeris types 0, 2 and 3 (all SGP4/SDP4) are read. With
-/// `lenient`, what `CatalogueOptions::lenient` lets pass is said in `warning`. Throws
-/// `RecordError`. Source: Vallado et al., AIAA 2006-6753, appendix B; conversions are those of its
-/// code.
+/// Parses the two lines of a TLE. Columns after the 69th are ignored if the 70th is blank. Blanks
+/// count as zeros in leading digits and in a blank derivative, drag term, type or number. Ephemeris
+/// types 0, 2 and 3 (all SGP4/SDP4) are accepted. With `lenient`, defects allowed by
+/// `CatalogueOptions::lenient` are described in `warning`. Throws `RecordError`. Source: Vallado et
+/// al., AIAA 2006-6753, appendix B, with the conversions of its code.
 MeanElements parse_tle(std::string_view line1, std::string_view line2, bool lenient = false,
                        std::string* warning = nullptr);
 

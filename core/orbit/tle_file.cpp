@@ -7,7 +7,8 @@ namespace dmise {
 
 namespace {
 
-/// Whether a line is (meant as) line `number` of an element set and not a name such as "1KUNS-PF".
+/// Whether a line is meant as line `number` of an element set rather than a name such as
+/// "1KUNS-PF".
 bool is_element_line(std::string_view line, char number) {
   if (line.size() < 8 || line[0] != number || line[1] != ' ') return false;
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -58,7 +59,7 @@ void read_tle(std::string_view text, bool lenient, CatalogueFile& file) {
       name = {};
       continue;
     }
-    if (line1.number) name = {};  // it was the name of the line 1 that is refused now
+    if (line1.number) name = {};  // the name belongs to the refused line 1
     refuse(line1, "line 1 without a line 2 after it");
     if (is_element_line(line.text, '1')) {
       line1 = line;

@@ -89,8 +89,8 @@ TwoBodyState propagate_two_body(const TwoBodyState& start, double dt_s, double g
                             : std::sqrt(1 - conic.alpha * p);
   conic.q = p / (1 + conic.e);
 
-  // Axes of the conic. The direction of the periapsis is laid so that the start is met exactly,
-  // however ill a near circle defines it.
+  // Axes of the conic. The periapsis direction is chosen so that the start is met exactly, even if
+  // a near-circular orbit defines it poorly.
   const long double s0 = anomaly_of(conic, sigma, e_u0);
   const UniversalFunctions u0 = universal_functions(s0, conic.alpha);
   const long double root_p = std::sqrt(p);

@@ -8,7 +8,7 @@ inline constexpr double earth_gm_m3_per_s2 = 3.986004415e14;
 
 using TwoBodyState = MotionState<Gcrs>;
 
-/// Osculating elements; `eccentricity` >= 1 with the same fields is a parabola or a hyperbola.
+/// Osculating elements of an ellipse, or of a parabola or hyperbola for `eccentricity` >= 1.
 struct KeplerElements {
   double periapsis_m = 0.0;   // distance of the periapsis from the Earth's centre, > 0
   double eccentricity = 0.0;  // >= 0
@@ -18,13 +18,13 @@ struct KeplerElements {
   double true_anomaly_rad = 0.0;  // < acos(-1/e) off the periapsis for e >= 1
 };
 
-/// State of the elements in GCRS. Throws `Error` naming the element that is out of range.
+/// State of the elements in GCRS. Throws `Error` naming an element that is out of range.
 TwoBodyState state_of(const KeplerElements& elements, double gm_m3_per_s2 = earth_gm_m3_per_s2);
 
 /// State `dt_s` later (or earlier, < 0) on the conic through `start`: circular, elliptic,
 /// parabolic, hyperbolic or radial (through the centre and back on the same line). Energy and
-/// angular momentum hold to 1e-12 of v^2/2 + gm/r after 1e5 turns. Throws `Error` for a state at
-/// the centre or not finite, and when the result is the centre itself.
+/// angular momentum are conserved to 1e-12 of v^2/2 + gm/r after 1e5 turns. Throws `Error` for a
+/// state at the centre or not finite, and if the result is the centre itself.
 TwoBodyState propagate_two_body(const TwoBodyState& start, double dt_s,
                                 double gm_m3_per_s2 = earth_gm_m3_per_s2);
 

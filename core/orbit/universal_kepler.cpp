@@ -11,7 +11,7 @@ namespace {
 
 constexpr long double pi_l = std::numbers::pi_v<long double>;
 
-/// Real root of  q s + e s^3 / 6 = t  for t >= 0: what the equation is near the periapsis.
+/// Real root of  q s + e s^3 / 6 = t  for t >= 0, the limit of the equation near the periapsis.
 long double cubic_root(long double q, long double e, long double t) {
   const long double a = e / 6;
   if (a == 0) return t / q;
@@ -22,7 +22,7 @@ long double cubic_root(long double q, long double e, long double t) {
   return 2 / w * std::sinh(std::asinh(x) / 3);
 }
 
-/// A first guess not far from the root, and on the side from which Newton's steps go one way.
+/// Initial guess near the root, on the side from which Newton's method converges monotonically.
 long double starting_anomaly(const Conic& conic, long double t) {
   const long double cubic = cubic_root(conic.q, conic.e, t);
   if (conic.alpha >= 0)
@@ -64,8 +64,8 @@ long double universal_anomaly(const Conic& conic, long double time) {
   const long double longest = conic.alpha > 0 ? pi_l / std::sqrt(conic.alpha)
                                               : std::numeric_limits<long double>::infinity();
   long double s = std::min(starting_anomaly(conic, t), longest);
-  // Convex and increasing: after one step the iterates come down to the root. They stop when
-  // rounding no longer lets them.
+  // The function is convex and increasing: after one step the iterates decrease towards the root.
+  // Stops when rounding prevents further decrease.
   for (int k = 0; k < 200; ++k) {
     const UniversalFunctions u = universal_functions(s, conic.alpha);
     const long double excess = conic.q * s + conic.e * u.u3 - t;

@@ -3,9 +3,10 @@
 namespace dmise {
 
 // Motion on a conic as a function of the universal anomaly `s`, counted from the periapsis, in
-// units where mu = 1 (time carries sqrt(mu)). All conics are one here, and nothing cancels near e
-// = 1. In extended precision: a phase of 1e5 orbits leaves few digits of a double. Source: Battin,
-// An Introduction to the Mathematics and Methods of Astrodynamics, section 4.5.
+// units where mu = 1 (time carries sqrt(mu)). One formulation covers all conics, without
+// cancellation near e = 1. Extended precision, because the phase after 1e5 orbits uses up most
+// digits of a double. Source: Battin, An Introduction to the Mathematics and Methods of
+// Astrodynamics, section 4.5.
 
 /// U0 to U3: s^k / k! (1 - alpha s^2 / ((k+1)(k+2)) + ...).
 struct UniversalFunctions {

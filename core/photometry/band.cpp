@@ -56,7 +56,7 @@ Band band_of(std::string name, Curve response) {
     area += (b - a) * (ya + yb) / 2;
     moment += (b - a) * (ya * (2 * a + b) + yb * (a + 2 * b)) / 6;
   }
-  if (!(area > 0)) throw Error("band " + name + ": lets no light through");
+  if (!(area > 0)) throw Error("band " + name + ": transmits no light");
   Band band{std::move(name), moment / area, 0.0, std::move(response)};
   band.width_m = area / *std::max_element(band.response.value.begin(), band.response.value.end());
   check_band(band);

@@ -8,7 +8,7 @@
 
 namespace dmise {
 
-/// A band in wavelength: a top hat, or a curve of response to photons where `response` has samples.
+/// A band in wavelength: a top hat, or a photon response curve if `response` has samples.
 struct Band {
   std::string name = "V";
   double centre_m = 0.55e-6;
@@ -28,22 +28,22 @@ struct Band {
 /// 1181; Doi et al. 2010, AJ 139, 1628 (with telescope, camera and 1.3 airmasses; scaled to a peak
 /// of 1).
 std::optional<Band> filter_named(std::string_view name);
-/// Their names.
+/// Returns the names that `filter_named` knows.
 std::vector<std::string> filter_names();
 
-/// A band from a curve; centre and width become its mean wavelength and equivalent width. Throws
-/// `Error` when the curve is not one of a response: see `check_curve`, values above 1, no width.
+/// Makes a band of a curve; centre and width are its mean wavelength and equivalent width. Throws
+/// `Error` if the curve fails `check_curve`, exceeds 1 or has no width.
 Band band_of(std::string name, Curve response);
 
-/// The band behind another piece of glass, detector or air: the product of the responses, sampled
-/// every 2 nm or finer, so that its integral is right to 1e-4. Outside its samples `transmission`
-/// is its end value.
+/// Returns the band behind a further element (glass, detector, air): the product of the responses,
+/// sampled every 2 nm or finer, so that its integral is correct to 1e-4. Outside its samples
+/// `transmission` keeps its end values.
 Band through(const Band& band, const Curve& transmission);
 
 /// Wavelengths [m] between which the band is linear; at least two.
 std::vector<double> knots(const Band& band);
 
-/// Throws `Error` "band NAME: reason" unless the band is one light can pass.
+/// Throws `Error` "band NAME: reason" unless the band is finite, positive and transmits light.
 void check_band(const Band& band);
 
 }  // namespace dmise

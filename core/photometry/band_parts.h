@@ -5,8 +5,8 @@
 
 namespace dmise {
 
-/// A band cut into `count` parts of equal width, from blue to red; parts that no light passes are
-/// left out. What passes them sums to what passes the band.
+/// Cuts a band into `count` parts of equal width, from blue to red, leaving out parts without
+/// response. The parts sum to the band.
 std::vector<Band> parts_of(const Band& band, int count);
 
 }  // namespace dmise

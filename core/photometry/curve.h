@@ -3,7 +3,7 @@
 
 namespace dmise {
 
-/// A quantity tabulated over wavelength, linear between its samples.
+/// A quantity tabulated over wavelength, interpolated linearly.
 struct Curve {
   std::vector<double> wavelength_m;  // ascending
   std::vector<double> value;

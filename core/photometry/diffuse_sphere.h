@@ -11,7 +11,7 @@ struct DiffuseSphere {
   bool operator==(const DiffuseSphere&) const = default;
 };
 
-/// Where it is seen from.
+/// Geometry and illumination of an observed object.
 struct Illumination {
   double range_m = 1e6;          // observer to object
   double phase_rad = 0.0;        // Sun-object-observer, [0, pi]; beyond it is clamped
@@ -19,7 +19,7 @@ struct Illumination {
   double sunlit = 1.0;           // fraction of the solar disc that shines on it, [0, 1]
 };
 
-/// What an object of no light is given [mag].
+/// Magnitude given to an object without light [mag].
 inline constexpr double darkest_mag = 99.0;
 
 /// F(phi) = 2/(3 pi^2) ((pi - phi) cos phi + sin phi): 2/(3 pi) at 0, exactly 0 at pi, relative
@@ -27,14 +27,14 @@ inline constexpr double darkest_mag = 99.0;
 /// synchronous orbits".
 double diffuse_phase_function(double phase_rad);
 
-/// Fraction of the Sun's irradiance at 1 au that arrives from it: sunlit A rho F / (d^2 R^2), A =
-/// pi r^2. Throws `Error` for range or distance <= 0 or not finite.
+/// Fraction of the Sun's irradiance at 1 au that the sphere sends to the observer: sunlit A rho F /
+/// (d^2 R^2), A = pi r^2. Throws `Error` for range or distance <= 0 or not finite.
 double diffuse_sphere_light(const DiffuseSphere& sphere, const Illumination& seen);
 
-/// V magnitude above the atmosphere, `darkest_mag` at most.
+/// V magnitude above the atmosphere, at most `darkest_mag`.
 double diffuse_sphere_magnitude(const DiffuseSphere& sphere, const Illumination& seen);
 
-/// Photons/s/m2 above the atmosphere of sunlight that has `v_mag`, seen in `band`; 0 from
+/// Photons/s/m2 above the atmosphere in `band` of sunlight of magnitude `v_mag`; 0 from
 /// `darkest_mag` on.
 double object_photons_per_s_m2(double v_mag, const Band& band);
 
@@ -46,7 +46,7 @@ struct StandardMagnitude {
   double phase_rad = 1.5707963267948966;
 };
 
-/// V magnitude of it from elsewhere, its phase curve that of a diffuse sphere.
+/// V magnitude in another geometry, with the phase curve of a diffuse sphere.
 double magnitude_from_standard(const StandardMagnitude& standard, const Illumination& seen);
 
 /// Radius [m] of the diffuse sphere of that brightness. Throws `Error` for a standard phase where

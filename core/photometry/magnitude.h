@@ -3,7 +3,7 @@
 
 namespace dmise {
 
-/// V magnitude of the Sun at 1 au by which the brightness of objects is reckoned. The reference
+/// V magnitude of the Sun at 1 au on which the brightness of objects is based. The reference
 /// spectra give it within 0.02 (`sun_magnitude`).
 inline constexpr double sun_v_mag = -26.76;
 
@@ -18,14 +18,14 @@ double ab_zero_point_photons_per_s_m2(const Band& band);
 /// Magnitude of the Sun at 1 au in `band`, from the reference spectra.
 double sun_magnitude(const Band& band);
 
-/// Photons/s/m2 in `band` of sunlight that has `v_mag` (Johnson V): the Moon, a grey object, the
-/// zodiacal light.
+/// Photons/s/m2 in `band` of sunlight of magnitude `v_mag` (Johnson V): the Moon, a grey object,
+/// the zodiacal light.
 double sunlight_photons_per_s_m2(double v_mag, const Band& band);
 
 /// The Johnson V in which catalogues give magnitudes (bessell-V).
 const Band& johnson_v();
 
-/// Factor of light that a difference of `mag` magnitudes makes: 10^(-0.4 mag).
+/// Flux ratio of `mag` magnitudes: 10^(-0.4 mag).
 double light_of_magnitude(double mag);
 /// Its inverse; `light` > 0.
 double magnitude_of_light(double light);

@@ -9,19 +9,18 @@ struct Spectrum {
   Curve irradiance;
 };
 
-/// The Sun at 1 au above the atmosphere, 0.2-5 um. Source: ASTM E490-00a, hat means every 5 nm up
-/// to 1.1 um.
+/// The Sun at 1 au above the atmosphere, 0.2-5 um. Source: ASTM E490-00a, averaged with triangular
+/// weights every 5 nm up to 1.1 um.
 const Spectrum& solar_spectrum();
-/// The same for what reflects it, 0.2-100 um: beyond 5 um a black body of 5050 K, the Sun's
-/// brightness temperature at 10 um (Vernazza, Avrett & Loeser 1976, ApJS 30, 1), scaled to follow
-/// on: up to 13 % too much there, where what is warm outshines it.
+/// The same for reflected sunlight, 0.2-100 um: beyond 5 um a black body of 5050 K, the Sun's
+/// brightness temperature at 10 um (Vernazza, Avrett & Loeser 1976, ApJS 30, 1), scaled to be
+/// continuous: up to 13 % too bright there, where thermal emission dominates.
 const Spectrum& sunlight_spectrum();
-/// Vega above the atmosphere, 0.2-2.195 um. Source: CALSPEC alpha_lyr_mod_001, hat means likewise.
+/// Vega above the atmosphere, 0.2-2.195 um. Source: CALSPEC alpha_lyr_mod_001, averaged likewise.
 const Spectrum& vega_spectrum();
 
-/// Photons/s/m2 that a spectrum sends through a band: the integral of irradiance x response x
-/// wavelength / (h c), exact for both as tabulated. Throws `Error` when the band reaches beyond the
-/// spectrum.
+/// Photons/s/m2 of a spectrum in a band: the integral of irradiance x response x wavelength / (h
+/// c), exact for both as tabulated. Throws `Error` if the band reaches beyond the spectrum.
 double photon_rate_per_m2(const Spectrum& spectrum, const Band& band);
 
 /// The same for a black body, up to a factor common to all bands, at `temperature_k` > 0. Relative

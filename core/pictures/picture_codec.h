@@ -3,13 +3,13 @@
 
 namespace dmise {
 
-/// What the module does: bytes of picture files to and from pixels that were checked. Methods throw
-/// `Error` with the library's words.
+/// Interface of the picture module: encodes and decodes picture files. The caller has checked the
+/// pixels. Methods throw `Error` with the library's message.
 class PictureCodec {
  public:
   virtual ~PictureCodec() = default;
   virtual std::string encode(const Picture& picture, const std::string& format) = 0;
-  /// `channels` in the order of the file.
+  /// Writes `channels` in the given order.
   virtual std::string encode_exr(const ExrImage& image,
                                  const std::vector<ExrChannel>& channels) = 0;
   virtual LinearPicture decode(std::string_view bytes, const std::string& format,

@@ -37,7 +37,7 @@ std::string format_of(std::string_view bytes) {
   if (bytes.starts_with("\xff\xd8\xff"sv)) return "jpeg";
   if (bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv)) return "tiff";
   if (bytes.starts_with("\x76\x2f\x31\x01"sv)) return "openexr";
-  throw ConfigError("is no PNG, TIFF, JPEG or EXR");
+  throw ConfigError("is not a PNG, TIFF, JPEG or EXR file");
 }
 
 void check_name(const std::string& name) {
@@ -45,7 +45,7 @@ void check_name(const std::string& name) {
     throw Error("EXR can't be written: a name must have 1..31 characters, got " + name);
 }
 
-/// In the order in which the file has them: by name.
+/// Channels in file order: by name.
 std::vector<ExrChannel> channels_of(const ExrImage& image) {
   std::vector<ExrChannel> channels{{image.channel, image.pixels}};
   channels.insert(channels.end(), image.more.begin(), image.more.end());
@@ -66,7 +66,7 @@ std::vector<ExrChannel> channels_of(const ExrImage& image) {
   return channels;
 }
 
-/// `work`'s result; its errors name the file.
+/// Returns `work()`; errors get the file's name.
 template <class Work>
 auto of_file(const std::string& path, Work&& work) {
   try {

@@ -16,7 +16,7 @@
 
 namespace dmise {
 
-/// Where a ground sensor stands.
+/// Position of a ground sensor.
 struct SitePlace {
   double latitude_rad = 0.0, longitude_rad = 0.0;  // geodetic
   double height_m = 0.0;                           // above the scenario's ellipsoid
@@ -25,14 +25,14 @@ struct SitePlace {
   bool operator==(const SitePlace&) const = default;
 };
 
-/// Everything that a frame says of itself: what its FITS header holds and all that a detector may
-/// know. Nothing in it depends on the wall clock or on how the run was started.
+/// All metadata of a frame: the content of its FITS header and the only input of detection besides
+/// the counts. Independent of the wall clock and of how the run was started.
 struct FrameHeader {
   std::string sensor;          // at most 64 printable ASCII characters, as all texts here
   std::uint32_t frame = 0;     // counts from 1
   SimTime start, middle, end;  // of the exposure
   std::string start_utc, middle_utc,
-      end_utc;  // ISO 8601; FITS knows no Z: one at the end is dropped
+      end_utc;  // ISO 8601; FITS has no Z: a trailing one is dropped
   double exposure_s = 0.0;
   std::string mount;     // "fixed", "sidereal", ...
   std::string software;  // name and version
@@ -44,14 +44,14 @@ struct FrameHeader {
   double read_noise_e = 0.0;  // rms
   double dark_e_per_s = 0.0;
   double full_well_e = 0.0;
-  ImageOptics image_optics;          // in effect
-  std::optional<Detector> detector;  // all figures in effect; none in files from elsewhere
-  double saturation_dn = 0.0;        // the lowest count that may be clipped: full well or ADC
+  ImageOptics image_optics;          // effects that are on
+  std::optional<Detector> detector;  // effects that are on; empty in foreign files
+  double saturation_dn = 0.0;        // lowest count that may be clipped: full well or ADC
   double psf_fwhm_px = 0.0;          // Gaussian, before pixel integration
   Band band;
-  double zero_point_mag = 0.0;              // of a source that gives 1 e-/s, without any atmosphere
+  double zero_point_mag = 0.0;              // of a source of 1 e-/s, without atmosphere
   double extinction_mag_per_airmass = 0.0;  // of the atmosphere in this band; 0 in space
-  // Turbulence towards the zenith at 500 nm; all 0 where none is given.
+  // Turbulence towards the zenith at 500 nm; all 0 if none is given.
   double r0_m = 0.0, isoplanatic_angle_rad = 0.0, tau0_s = 0.0;
 
   Observation observation;
@@ -64,8 +64,8 @@ struct FrameHeader {
   Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // geocentric, mid exposure
   Vec<Gcrs> earth_velocity_m_per_s;                      // of the geocentre, barycentric, GCRS axes
   std::optional<SitePlace> site;                         // of a ground sensor
-  // Air that refracts the light of a ground sensor's frame, pressure 0 where refraction is off.
-  // None in space and in files that do not say.
+  // Air that refracts in a ground sensor's frame, pressure 0 if refraction is off. Empty in space
+  // and in files without it.
   std::optional<Weather> air;
 
   bool operator==(const FrameHeader&) const = default;

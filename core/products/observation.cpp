@@ -12,7 +12,7 @@ std::string header_text(const std::string& text) {
     if (written > longest) break;
     kept += c >= 0x20 && c <= 0x7e ? c : '?';
   }
-  // FITS takes blanks at the end for none.
+  // FITS ignores trailing blanks.
   kept.resize(kept.find_last_not_of(' ') + 1);
   return kept;
 }

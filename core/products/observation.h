@@ -4,10 +4,10 @@
 
 namespace dmise {
 
-/// What an archive asks of a frame beside what a detector must know: each is left out where it
-/// makes no sense, and may be missing in files from elsewhere.
+/// Metadata for archives that detection does not need: each is omitted where it is meaningless, and
+/// may be missing in foreign files.
 struct Observation {
-  std::string object;                     // pointed at, by name; empty: none
+  std::string object;                     // name of the target; empty: none
   std::string telescope;                  // the camera's name; empty: none
   std::optional<double> start_mjd;        // UTC, start of the exposure
   std::optional<double> ra_rad, dec_rad;  // ICRS of the stars in the frame's centre, mid exposure
@@ -18,8 +18,8 @@ struct Observation {
   bool operator==(const Observation&) const = default;
 };
 
-/// `text` as a FITS header can hold it: printable ASCII (others become ?), at most as many
-/// characters as fit with their quotes doubled.
+/// Converts `text` for a FITS header: printable ASCII (others become ?), truncated to fit with its
+/// quotes doubled.
 std::string header_text(const std::string& text);
 
 }  // namespace dmise

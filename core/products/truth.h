@@ -6,8 +6,8 @@
 
 namespace dmise {
 
-/// One object in one frame as it was: `true_*` by the full physics, `rendered_*` as the plan drew
-/// it. Travels on its own endpoint; only a scorer joins it with detections.
+/// True state of one object in one frame: `true_*` by the full physics, `rendered_*` as drawn.
+/// Published on its own endpoint; only a scorer combines it with detections.
 struct Truth {
   std::string sensor;
   std::uint32_t frame = 0;
@@ -25,8 +25,8 @@ struct Truth {
   double rendered_x_px = 0.0,
          rendered_y_px = 0.0;  // centroid of the light in the frame; 0 without light
   double start_x_px = 0.0, start_y_px = 0.0, middle_x_px = 0.0, middle_y_px = 0.0, end_x_px = 0.0,
-         end_y_px = 0.0;  // where the object is; may lie outside the frame
-  bool in_frame = false;  // some of its light fell inside
+         end_y_px = 0.0;  // position of the object; may be outside the frame
+  bool in_frame = false;  // some of its light is in the frame
   bool whole = false;     // start, middle and end are inside
   bool resolved = false;  // drawn with its shape, not as a point
 

@@ -7,7 +7,7 @@
 
 namespace dmise {
 
-/// What follows for a projection of the same image height r(theta) all around its axis. `Lens` has
+/// Base of projections whose image height r(theta) is the same all around the axis. `Lens` has
 ///   height(theta_rad)      image height r in focal lengths
 ///   theta_rad(height)      its inverse; nothing beyond the projection
 ///   per_sine(x, y, z)      r / sin(theta) of a unit vector; nothing where it has no image

@@ -48,7 +48,7 @@ BrownConrady::Distorted BrownConrady::distort(Place at) const {
           .yy = radial + 2 * y * y * by_t + 6 * p1 * y + 2 * p2 * x};
 }
 
-// Newton's method; a step that leaves the disc or does not come nearer is halved.
+// Newton's method; a step that leaves the disc or does not reduce the distance is halved.
 std::optional<BrownConrady::Place> BrownConrady::undistort(Place wanted) const {
   const double r = std::hypot(wanted.x, wanted.y);
   const double inside = r < 0.5 * limit_ ? 1.0 : 0.5 * limit_ / r;

@@ -8,7 +8,7 @@
 
 namespace dmise {
 
-/// A gnomonic lens with radial and tangential distortion, as OpenCV has it: with x, y the gnomonic
+/// A gnomonic lens with radial and tangential distortion, OpenCV's model: with x, y the gnomonic
 /// place in focal lengths, r^2 = x^2 + y^2 and R = 1 + k1 r^2 + k2 r^4 + k3 r^6
 ///   x' = x R + 2 p1 x y + p2 (r^2 + 2 x^2),  y' = y R + p1 (r^2 + 2 y^2) + 2 p2 x y.
 /// This is the gradient of a potential, so one to one on any disc where its matrix of derivatives

@@ -2,11 +2,11 @@
 
 namespace dmise {
 
-/// A number that a calibration gives a lens.
+/// One calibrated coefficient of a lens.
 struct ProjectionCoefficient {
   const char* key;    // in YAML, under `distortion`
-  const char* card;   // in FITS headers, of the lens
-  int pv = 0;         // m of the FITS card PV2_m, of a projection that FITS has with coefficients
+  const char* card;   // FITS card
+  int pv = 0;         // m of PV2_m, if FITS has the projection
   double most = 0.0;  // its range is -most..most
   const char* comment;
 };

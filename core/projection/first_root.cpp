@@ -11,7 +11,7 @@ double value(std::span<const double> c, double x) {
   return sum;
 }
 
-/// Where the polynomial changes its sign between `a` and `b`, on the side of `b`.
+/// Returns the sign change of the polynomial between `a` and `b`, rounded towards `b`.
 double bisect(std::span<const double> c, double a, double b) {
   const bool positive = value(c, a) > 0.0;
   for (double middle = 0.5 * (a + b); middle > a && middle < b; middle = 0.5 * (a + b))
@@ -19,7 +19,7 @@ double bisect(std::span<const double> c, double a, double b) {
   return b;
 }
 
-/// 0, the turning points in between in ascending order, and `upto`.
+/// Returns 0, the turning points in between in ascending order, and `upto`.
 std::vector<double> monotone_pieces(std::span<const double> c, double upto) {
   std::vector<double> ends{0.0};
   if (c.size() > 2) {

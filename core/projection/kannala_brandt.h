@@ -8,8 +8,8 @@
 namespace dmise {
 
 /// A calibrated fisheye: r = theta + k1 theta^3 + k2 theta^5 + k3 theta^7 + k4 theta^9 in focal
-/// lengths, as OpenCV's fisheye model has it, here also beyond 90 deg. What lies beyond the angle
-/// at which r no longer rises has no image. In FITS it is the polynomial ZPN. Source: Kannala &
+/// lengths, the fisheye model of OpenCV extended beyond 90 deg. Directions beyond the angle at
+/// which r stops rising have no image. The FITS projection is the polynomial ZPN. Source: Kannala &
 /// Brandt 2006, IEEE Trans. Pattern Anal. Mach. Intell. 28, 1335, expression 6.
 class KannalaBrandt : public AxiallySymmetric<KannalaBrandt> {
  public:

@@ -11,7 +11,7 @@
 namespace dmise {
 namespace {
 
-/// Participants so that producers come before consumers, otherwise in the order given.
+/// Orders participants so that producers precede consumers, otherwise as given.
 std::vector<std::unique_ptr<Participant>> in_running_order(
     std::vector<std::unique_ptr<Participant>> waiting) {
   std::map<std::string, std::string> producer;
@@ -32,7 +32,7 @@ std::vector<std::unique_ptr<Participant>> in_running_order(
                          [&](const auto& topic) { return available.contains(topic); });
     });
     if (next == waiting.end())
-      throw Error(waiting.front()->name() + " waits for a topic that waits for it");
+      throw Error(waiting.front()->name() + " is part of a dependency cycle between topics");
     for (auto& topic : (*next)->produces()) available.insert(std::move(topic));
     ordered.push_back(std::move(*next));
     waiting.erase(next);
@@ -65,7 +65,7 @@ void SimulationController::run(Tick last, const std::function<bool(Tick)>& after
         std::vector<Message> inputs;
         for (const auto& topic : node.consumes) {
           auto& messages = waiting[i][topic];
-          // What is left of ticks that nobody looks back to.
+          // Drop ticks that no look-back needs.
           const Tick needed = start - node.look_back - (node.schedule.period - 1);
           std::erase_if(messages, [&](const Message& m) {
             return m.tick < needed && !is_retained(*m.state);
@@ -78,7 +78,7 @@ void SimulationController::run(Tick last, const std::function<bool(Tick)>& after
       if (tick < start) continue;
       std::vector<Message> outputs;
       if (tick == start && first > 0) {
-        std::map<std::string, std::vector<Message>> now;  // this tick's are not past
+        std::map<std::string, std::vector<Message>> now;  // without this tick's
         for (auto& [topic, messages] : waiting[i]) {
           const auto at = std::stable_partition(messages.begin(), messages.end(),
                                                 [&](const Message& m) { return m.tick < tick; });

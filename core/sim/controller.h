@@ -7,22 +7,22 @@
 
 namespace dmise {
 
-/// Drives actors and evaluators through the ticks in one process, without a socket: at every tick
-/// each participant runs once, after those whose topics it consumes.
+/// Runs actors and evaluators tick by tick in one process, without sockets: each participant runs
+/// once per tick, after the producers of its topics.
 class SimulationController {
  public:
-  /// Throws `Error` if a consumed topic has no producer, has two, or producers wait for each other.
+  /// Throws `Error` if a consumed topic has no producer or two, or for a dependency cycle.
   explicit SimulationController(std::vector<std::unique_ptr<Participant>> participants);
 
-  /// Runs ticks first..last. After each tick `after_tick(tick)` decides whether to go on. With
-  /// `first` > 0 the work of an earlier process is taken up: each participant resumes so early that
-  /// those who depend on it can look back.
+  /// Runs ticks first..last. After each tick `after_tick(tick)` decides whether to continue.
+  /// `first` > 0 continues the work of an earlier process: each participant resumes early enough
+  /// for the look-back of its consumers.
   void run(Tick last, const std::function<bool(Tick)>& after_tick, Tick first = 0);
 
   const std::vector<std::unique_ptr<Participant>>& participants() const { return participants_; }
 
  private:
-  std::vector<std::unique_ptr<Participant>> participants_;  // in the order of running
+  std::vector<std::unique_ptr<Participant>> participants_;  // in running order
 };
 
 }  // namespace dmise

@@ -10,7 +10,7 @@
 
 namespace dmise {
 
-/// All that one sensor has to say of one frame; `detections` may be empty.
+/// Detections of one sensor in one frame; `detections` may be empty.
 struct DetectionSet {
   std::string sensor;
   std::uint32_t frame = 0;
@@ -27,22 +27,22 @@ struct TruthSet {
   bool operator==(const TruthSet&) const = default;
 };
 
-/// The State interface: everything that actors and evaluators tell each other. To add one: list it
-/// here, give it a message in proto/ and a pair of functions in nodes/wire.
+/// Everything that actors and evaluators exchange. To add a state: list it here, give it a message
+/// in proto/ and a pair of functions in nodes/wire.
 using State = std::variant<ObjectRoster, ObjectStates, EnvironmentState, FrameReport, DetectionSet,
                            TruthSet, SiteState>;
 
-/// One state, published on a topic for a tick. A topic may carry none, one or several a tick.
+/// One state, published on a topic for a tick. A topic may carry none, one or several per tick.
 struct Message {
   std::string topic;
   Tick tick = 0;
   std::shared_ptr<const State> state;
 };
 
-// Topics. A sensor's own are `prefix + sensor name`.
+// Topics. A sensor's own topics are `prefix + sensor name`.
 inline constexpr const char* objects_topic = "state/objects";  // roster (tick 0), then states
 inline constexpr const char* environment_topic = "env/common";
-inline constexpr const char* site_prefix = "env/site/";  // the air over a ground sensor
+inline constexpr const char* site_prefix = "env/site/";  // the atmosphere above a ground sensor
 inline constexpr const char* frame_prefix = "frame/";
 inline constexpr const char* detection_prefix = "detection/";
 inline constexpr const char* truth_prefix = "truth/";  // own endpoint, own security domain

@@ -9,57 +9,56 @@
 
 namespace dmise {
 
-/// An Actor or an Evaluator. It does not know whether it runs in one process under the
-/// SimulationController or in a process of its own under nodes/runtime: both call `step` once for
-/// each tick 0, 1, 2, ... last, in order.
+/// An actor or an evaluator. Both the SimulationController, in one process, and nodes/runtime, in a
+/// process per participant, call `step` once for each tick 0, 1, 2, ... last, in order.
 class Participant {
  public:
   virtual ~Participant() = default;
 
   virtual std::string name() const = 0;
-  virtual std::vector<std::string> produces() const = 0;  // topics, whole names
-  virtual std::vector<std::string> consumes() const = 0;  // topics, whole names
+  virtual std::vector<std::string> produces() const = 0;  // full topic names
+  virtual std::vector<std::string> consumes() const = 0;  // full topic names
 
-  /// Whether it can't work without this topic: then it is lost with who publishes it. Otherwise,
-  /// when a run goes on without that node, nothing comes on the topic any more.
+  /// Whether it cannot work without this topic: it is then lost together with the publisher.
+  /// Otherwise the topic falls silent if the run continues without the publisher.
   virtual bool needs(const std::string& topic) const {
     static_cast<void>(topic);
     return true;
   }
 
-  /// The ticks at which it works; `step` is called for no other.
+  /// The ticks at which it works; `step` is called for no other tick.
   virtual Schedule schedule() const { return {}; }
 
-  /// The work of one tick. `inputs`: all messages of the consumed topics since the last step,
-  /// ordered by (place of the topic in consumes(), order of publication). Returns what is
-  /// published.
+  /// Performs the work of one tick. `inputs`: all messages of the consumed topics since the last
+  /// step, ordered by (index of the topic in consumes(), order of publication). Returns the
+  /// messages to publish.
   virtual std::vector<Message> step(Tick tick, std::span<const Message> inputs) = 0;
 
-  /// Ticks before the one at which it resumes whose inputs it needs to go on as if nothing had
-  /// happened.
+  /// Number of ticks before the one at which it resumes whose inputs it needs to continue
+  /// seamlessly.
   virtual Tick look_back() const { return 0; }
 
-  /// Takes up the work of an earlier process: the next `step` is that of `tick` or the first of its
-  /// schedule after. `past`: what was consumed in the look_back() ticks before, and what was said
-  /// once and for all. Returns what it has said once and for all itself (a roster), to be published
-  /// again.
+  /// Continues the work of an earlier process: the next `step` is that of `tick` or the first of
+  /// its schedule after. `past`: inputs of the look_back() ticks before, and retained messages.
+  /// Returns its own retained messages (a roster), to be published again.
   virtual std::vector<Message> resume(Tick tick, std::span<const Message> past) {
     static_cast<void>(tick), static_cast<void>(past);
     return {};
   }
 
-  /// How far the work of the current tick is, for the progress deadline: any number that grows.
-  /// Called from another thread than `step`.
+  /// Progress within the current tick, for the progress deadline: any increasing number. Called
+  /// from another thread than `step`.
   virtual std::uint64_t progress() const { return 0; }
 };
 
-/// Has a state over time and tells it: platforms, Sun, Moon, Earth, skies. Asks nobody.
+/// Has a state that evolves in time and publishes it: platforms, Sun, Moon, Earth, skies. Consumes
+/// no topics.
 class Actor : public Participant {
  public:
   std::vector<std::string> consumes() const final { return {}; }
 };
 
-/// Asks for states and makes a product of them: images, tables, detections.
+/// Consumes states and makes products: images, tables, detections.
 class Evaluator : public Participant {};
 
 }  // namespace dmise

@@ -3,7 +3,7 @@
 
 namespace dmise {
 
-/// Returns true for what holds for a whole run: who subscribes later needs it as well.
+/// Whether a message holds for the whole run, so that late subscribers need it as well.
 inline bool is_retained(const State& state) { return std::holds_alternative<ObjectRoster>(state); }
 
 }  // namespace dmise

@@ -2,13 +2,13 @@
 
 namespace dmise {
 
-/// Where a run is in its life.
+/// Phase of a run.
 enum class Phase {
   gathering,   // expected nodes join
-  connecting,  // all have joined, each makes sure that it hears what it needs
+  connecting,  // all have joined and check their subscriptions
   running,
   ended,   // every tick is done
-  failed,  // the time-master knows the cause
+  failed,  // see the time-master for the cause
 };
 
 /// Returns "gathering", "connecting", ...

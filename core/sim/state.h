@@ -10,10 +10,10 @@
 #include "core/orbit/attitude_interpolation.h"
 #include "core/sim/geometry.h"
 
-// What actors tell evaluators: plain data, the same in one process and across a network.
+// Data exchanged between actors and evaluators, the same in one process and across a network.
 namespace dmise {
 
-/// Facts of one object that do not change over a run.
+/// Constant properties of one object.
 struct ObjectInfo {
   std::uint32_t catalogue_number = 0;  // up to 9 digits
   std::string name;
@@ -25,17 +25,17 @@ struct ObjectInfo {
   bool operator==(const ObjectInfo&) const = default;
 };
 
-/// All objects of a run; a position in this list is the object's index everywhere else.
+/// All objects of a run; the position in this list is the object's index everywhere else.
 struct ObjectRoster {
   std::vector<ObjectInfo> objects;
 
   bool operator==(const ObjectRoster&) const = default;
 };
 
-/// States of all objects at one tick in GCRS, structure of arrays. Slope is the derivative of the
-/// position (symmetric difference of the propagator), for interpolation; velocity is the model's
-/// own. An object with `code` != 0 has no state: its numbers are 0. Few objects have an attitude:
-/// theirs stand in arrays of their own, in the order of `attitude_object`.
+/// States of all objects at one tick in GCRS, as a structure of arrays. Slope is the derivative of
+/// the position (symmetric difference of the propagator), for interpolation; velocity is the
+/// model's. An object with `code` != 0 has no state: its numbers are 0. Attitudes, which few
+/// objects have, are in separate arrays, in the order of `attitude_object`.
 struct ObjectStates {
   Tick tick = 0;
   SimTime time;
@@ -54,13 +54,13 @@ struct ObjectStates {
   Vec<Gcrs> slope(std::size_t i) const {
     return {slope_m_per_s[i], slope_m_per_s[count + i], slope_m_per_s[2 * count + i]};
   }
-  /// Attitude of object `i`; nothing if it has none.
+  /// Attitude of object `i`; empty if it has none.
   std::optional<AttitudeState> attitude(std::size_t i) const;
 
   bool operator==(const ObjectStates&) const = default;
 };
 
-/// The air over one ground sensor, at one tick; it holds until the next one is told.
+/// Atmosphere above one ground sensor, at one tick; valid until the next one.
 struct SiteState {
   Tick tick = 0;
   SimTime time;
@@ -68,7 +68,7 @@ struct SiteState {
   double extinction_mag_per_airmass = 0.0;  // of light at 550 nm
   double pressure_hpa = 0.0, temperature_c = 0.0, humidity = 0.0;
   double cloud_transmission = 1.0;  // at the zenith now, [0, 1]
-  // Turbulence towards the zenith at 500 nm; all 0 where no profile is given.
+  // Turbulence towards the zenith at 500 nm; all 0 without a profile.
   double r0_m = 0.0;
   double isoplanatic_angle_rad = 0.0;
   double tau0_s = 0.0;
@@ -77,7 +77,7 @@ struct SiteState {
   bool operator==(const SiteState&) const = default;
 };
 
-/// The world that all sensors share, at one tick.
+/// Environment common to all sensors, at one tick.
 struct EnvironmentState {
   Tick tick = 0;
   SimTime time;

@@ -9,30 +9,31 @@
 
 namespace dmise {
 
-/// What a node has published on one topic at one tick, as it says itself. What is said once and for
-/// all (a roster) does not count: a process that follows another says it again.
+/// What a node has published on one topic at one tick, as it reports. Retained messages (a roster)
+/// do not count: a process that replaces another publishes them again.
 struct TopicTally {
   std::string topic;
-  std::uint64_t messages = 0;       // of this tick, a watermark counts
+  std::uint64_t messages = 0;       // of this tick, including the watermark
   std::uint64_t last_sequence = 0;  // of the publisher on this topic
   std::uint64_t digest = 0;         // of kinds, payloads and arrays; not of envelopes
-  std::uint64_t incarnation = 0;    // of the process that said so
+  std::uint64_t incarnation = 0;    // of the reporting process
 
-  /// The same content, whatever process published it: sequences count within an incarnation.
+  /// Whether the content is the same, whatever process published it: sequences count within an
+  /// incarnation.
   bool same_content(const TopicTally& other) const {
     return topic == other.topic && messages == other.messages && digest == other.digest;
   }
 };
 
-/// A node's whole manifest of one tick, or of all nodes of a host what others want to know.
+/// A node's manifest of one tick, or that of a host for topics needed by others.
 struct TickTally {
   Tick tick = 0;
   std::vector<TopicTally> topics;  // in the order of the node's list
   std::uint64_t digest = 0;        // of a host: the sum of its nodes' content_digest
 };
 
-/// What a node's tick adds to the digest of a run, which is the sum over all nodes and ticks: who
-/// adds them up, and in which order, makes no difference. 0 for a node without topics.
+/// Contribution of a node's tick to the digest of a run, which is the sum over all nodes and ticks
+/// and hence independent of their order. 0 for a node without topics.
 inline std::uint64_t content_digest(std::string_view node, const TickTally& tally) {
   if (tally.topics.empty()) return 0;
   std::uint64_t digest = fold_digest(0, std::uint64_t(tally.tick));

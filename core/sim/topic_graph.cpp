@@ -8,7 +8,7 @@ namespace {
 
 enum class Visit { none, open, closed };
 
-// Depth first along "consumes from"; meeting an open node again closes a loop.
+// Depth-first search along "consumes from"; an open node closes a loop.
 struct LoopSearch {
   const std::vector<NodeTopics>& nodes;
   const std::map<std::string, std::size_t>& producer_of;
@@ -67,7 +67,7 @@ std::map<std::string, Tick> history_ticks(const std::vector<NodeTopics>& nodes) 
             return std::find(other.consumes.begin(), other.consumes.end(), topic) !=
                    other.consumes.end();
           });
-      // One that works every n-th tick takes the inputs of the n - 1 ticks before as well.
+      // A node with period n consumes the inputs of the n - 1 ticks before as well.
       if (depends) ticks = std::max(ticks, other.look_back + other.schedule.period - 1 + of(other));
     }
     return history[node.name] = ticks;

@@ -8,7 +8,7 @@
 
 namespace dmise {
 
-/// What a node publishes and needs.
+/// Topics that a node publishes and consumes.
 struct NodeTopics {
   std::string name;
   std::vector<std::string> produces;
@@ -17,13 +17,13 @@ struct NodeTopics {
   Schedule schedule;
 };
 
-/// Why these nodes can't run together: a topic that nobody produces, one with two producers, or
-/// nodes that would wait for each other within a tick. Empty when they can.
+/// Returns why these nodes cannot run together: a topic without a producer or with two, or a
+/// dependency cycle within a tick. Empty if they can.
 std::optional<std::string> topic_fault(const std::vector<NodeTopics>& nodes);
 
 /// For nodes that can run together, by name: how many ticks before tick k a node must have
-/// published for all who depend on it to be able to resume at k. A consumer needs its look-back,
-/// and what it must have published itself for its own consumers: the longest sum along the graph.
+/// published so that all its dependants can resume at k. A consumer needs its look-back, and what
+/// it must have published for its own consumers: the longest sum along the graph.
 std::map<std::string, Tick> history_ticks(const std::vector<NodeTopics>& nodes);
 
 }  // namespace dmise

@@ -10,14 +10,14 @@
 
 namespace dmise {
 
-/// What the four time scales read at a simulation time. Arithmetic is in whole nanoseconds of TAI:
-/// nothing accumulates, whatever the length of a run. Immutable; shared between threads freely.
+/// Converts simulation time to UTC, TAI, TT and UT1. All arithmetic is in whole nanoseconds of TAI,
+/// so errors never accumulate. Immutable; may be shared between threads.
 class Clock {
  public:
-  /// `start`: UTC at simulation time 0, taken to the nanosecond, not before 1972 (`Error`).
-  /// `iers`: Earth rotation. Where it does not cover the start, UT1 is UTC there and polar motion
-  /// 0; where it ends within a run, its last values are kept. Either way UT1 then runs on with TAI,
-  /// so that the Earth does not jump at a leap second.
+  /// `start`: UTC at simulation time 0, rounded to the nanosecond; throws `Error` before 1972.
+  /// `iers`: Earth rotation. If the table does not cover the start, UT1 equals UTC there and polar
+  /// motion is 0; if it ends during the run, its last values are kept. In both cases UT1 then
+  /// advances with TAI, so that the Earth does not jump at a leap second.
   explicit Clock(const Utc& start, std::shared_ptr<const IersTable> iers = nullptr);
 
   Utc utc(SimTime t) const;
@@ -31,9 +31,9 @@ class Clock {
   /// Exact to the nanosecond.
   SimTime sim_time(const Utc& utc) const;
 
-  /// What a run from simulation time 0 to `end` should tell its user, one line each, empty when all
-  /// is measured: leap seconds that nobody can know yet, UT1 taken for UTC and the size of that
-  /// error.
+  /// Returns warnings for a run from simulation time 0 to `end`, one line each; empty when all data
+  /// are measured: leap seconds that are not yet announced, UT1 approximated by UTC and the size of
+  /// that error.
   std::vector<std::string> warnings(SimTime end) const;
 
  private:
@@ -41,7 +41,7 @@ class Clock {
 
   TaiInstant start_;
   std::shared_ptr<const IersTable> iers_;
-  EarthRotationParameters unmeasured_;  // where `iers_` says nothing
+  EarthRotationParameters unmeasured_;  // outside `iers_`
 };
 
 }  // namespace dmise

@@ -41,7 +41,7 @@ IersTable IersTable::read_finals2000a(const std::string& path) {
     const std::optional<double> mjd = field(line, 8, 15);
     if (!mjd) throw fail("no modified Julian date in columns 8-15 (not a finals2000A file?)");
 
-    // Bulletin B stands at the end of the line, in one piece.
+    // Bulletin B is at the end of the line.
     std::optional<double> x = field(line, 135, 144), y = field(line, 145, 154),
                           dut1 = field(line, 155, 165);
     if (!x || !y || !dut1)
@@ -54,7 +54,7 @@ IersTable IersTable::read_finals2000a(const std::string& path) {
       throw fail("days are not consecutive, got " + std::to_string(day));
     table.days_.push_back({*dut1 - tai_minus_utc_s(day), *x * arcsec, *y * arcsec});
   }
-  if (table.days_.empty()) throw ConfigError(path + ": no Earth orientation in it");
+  if (table.days_.empty()) throw ConfigError(path + ": contains no Earth orientation data");
   return table;
 }
 

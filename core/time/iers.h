@@ -6,7 +6,7 @@
 
 namespace dmise {
 
-/// What the IERS measures of the Earth's rotation at one instant.
+/// Measured or predicted Earth rotation at one instant (IERS).
 struct EarthRotationParameters {
   double ut1_minus_tai_s = 0.0;  // continuous, unlike UT1 - UTC
   double polar_motion_x_rad = 0.0;
@@ -17,12 +17,11 @@ struct EarthRotationParameters {
 class IersTable {
  public:
   /// Reads a `finals2000A` file (plain or gzip): Bulletin B where a line has it, else Bulletin A,
-  /// measured or predicted; ends where the predictions do. Throws `ConfigError` "PATH:LINE:
-  /// reason".
+  /// measured or predicted; ends with the predictions. Throws `ConfigError` "PATH:LINE: reason".
   static IersTable read_finals2000a(const std::string& path);
 
-  /// Linear between the daily values (error below 0.1 ms); nothing outside the table.
-  /// `utc_mjd`: days and fraction, UTC.
+  /// Linear between the daily values (error below 0.1 ms); empty outside the table. `utc_mjd`: days
+  /// and fraction, UTC.
   std::optional<EarthRotationParameters> at(double utc_mjd) const;
 
   const EarthRotationParameters& last() const { return days_.back(); }

@@ -11,7 +11,7 @@
 namespace dmise {
 namespace {
 
-// Takes the text apart from the left; every failure names the whole text.
+// Parses the text from the left; every error quotes the whole text.
 class Reader {
  public:
   explicit Reader(std::string_view text) : text_(text), rest_(text) {}
@@ -66,7 +66,7 @@ Utc parse_utc(std::string_view text) {
   in.expect('-');
   const int day = in.number(2);
   double zero = 0.0, mjd = 0.0;
-  if (eraCal2jd(year, month, day, &zero, &mjd) != 0) in.fail("no such day");
+  if (eraCal2jd(year, month, day, &zero, &mjd) != 0) in.fail("day does not exist");
   if (year < 1972)
     throw BeforeLeapSeconds(
         "not a UTC time: before 1972, when UTC was not yet whole seconds from TAI, got \"" +
@@ -83,10 +83,10 @@ Utc parse_utc(std::string_view text) {
   const std::int64_t ns = in.take('.') ? in.nanoseconds() : 0;
   in.take('Z');
   if (!in.at_end()) in.fail("text after the time");
-  if (hour > 23 || minute > 59 || second > 60) in.fail("no such time of day");
+  if (hour > 23 || minute > 59 || second > 60) in.fail("time of day does not exist");
   const std::int64_t second_of_day = (hour * 60 + minute) * 60 + second;
   if (second == 60 && (second_of_day != 86400 || utc_day_length_s(utc.mjd) != 86401))
-    in.fail("no leap second then");
+    in.fail("no leap second at that time");
   utc.ns_of_day = second_of_day * ns_per_s + ns;
   return to_julian_date(utc);
 }

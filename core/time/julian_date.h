@@ -4,8 +4,8 @@
 
 namespace dmise {
 
-// Time scales. Each is its own type of date: a UTC can't be passed for a TT, nor one taken from the
-// other; `core/time/clock.h` converts.
+// Time scales. Each has its own type of date, so that a UTC cannot be passed for a TT or subtracted
+// from one; `core/time/clock.h` converts.
 struct UtcScale {};  // quasi Julian date: the fraction of a day with a leap second counts 86401 s
 struct TaiScale {};
 struct TtScale {};   // TAI + 32.184 s; stands in for TDB, from which it differs by less than 2 ms

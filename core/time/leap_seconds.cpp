@@ -31,11 +31,11 @@ std::vector<LeapSecond> read_table() {
     if (rows[i].iyear >= 1972)
       table.push_back(
           {mjd_of(rows[i].iyear, rows[i].month, 1), static_cast<int>(std::lround(rows[i].delat))});
-  if (table.empty()) throw Error("ERFA gives no leap seconds");
+  if (table.empty()) throw Error("ERFA has no leap seconds");
   return table;
 }
 
-// ERFA's table can be replaced while a program runs, so it is read once and kept.
+// ERFA's table can be replaced while a program runs, so it is copied once.
 const std::vector<LeapSecond>& table() {
   static const std::vector<LeapSecond> rows = read_table();
   return rows;
@@ -58,7 +58,7 @@ int utc_day_length_s(std::int64_t mjd) {
 }
 
 bool leap_seconds_uncertain(std::int64_t mjd) {
-  table();  // before eraDat, so that the first caller alone initialises ERFA's table
+  table();  // before eraDat: initialises ERFA's table exactly once
   int year = 0, month = 0, day = 0;
   double fraction = 0.0, delta = 0.0;
   if (eraJd2cal(mjd_zero_jd, static_cast<double>(mjd), &year, &month, &day, &fraction) != 0)

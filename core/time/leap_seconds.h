@@ -5,7 +5,7 @@
 
 namespace dmise {
 
-/// A UTC instant in whole numbers: no rounding anywhere between a scenario's text and its clock.
+/// UTC instant in whole numbers, so that a scenario's times are never rounded.
 struct UtcInstant {
   std::int64_t mjd = 0;        // UTC day
   std::int64_t ns_of_day = 0;  // [0, day length): up to 86401e9 on a day with a leap second
@@ -28,8 +28,8 @@ int tai_minus_utc_s(std::int64_t mjd);
 /// Length of the UTC day `mjd` [s]: 86400, 86401 when it ends with a leap second.
 int utc_day_length_s(std::int64_t mjd);
 
-/// True where ERFA calls the year dubious: so far beyond its table that leap seconds may have been
-/// announced since. UTC is then ahead by that many seconds; nothing else is affected.
+/// True if ERFA calls the year dubious: so far beyond its table that leap seconds may have been
+/// announced since. Only UTC is affected, by that many seconds.
 bool leap_seconds_uncertain(std::int64_t mjd);
 
 TaiInstant to_tai(const UtcInstant& utc);

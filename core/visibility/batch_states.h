@@ -5,7 +5,7 @@
 
 namespace dmise {
 
-/// States of a whole batch at one instant: the components of all objects one after the other.
+/// States of a whole batch at one instant, as a structure of arrays.
 struct BatchStates {
   std::vector<double> position_m, velocity_m_per_s;  // 3 n
   std::vector<std::uint8_t> code;                    // n

@@ -3,18 +3,18 @@
 
 namespace dmise {
 
-/// How fast a camera moves and turns over some time, in the axes in which objects are bounded.
+/// Linear and angular speed of a camera over some time, in the axes in which objects are bounded.
 struct CameraMotion {
   double speed_m_per_s = 0.0;   // in TEME
   double turn_rad_per_s = 0.0;  // of its own axes, in TEME
 };
 
-/// From the camera at two instants some seconds apart, with a quarter more. Still for a camera
-/// fixed to the Earth, in axes that turn with it; 0 turn for one that keeps to the stars; infinite
-/// where the camera is there at one of the instants alone, 0 where at none.
+/// Bound from the camera at two instants some seconds apart, plus a quarter. Zero for a camera
+/// fixed to the Earth, in axes that rotate with it; zero turn for one fixed relative to the stars;
+/// infinite if the camera exists at only one of the instants, 0 if at none.
 CameraMotion camera_motion(const SensorTrack& track, const CameraMoment& a, const CameraMoment& b);
 
-/// The greater of each.
+/// The maximum of each.
 CameraMotion either(const CameraMotion& a, const CameraMotion& b);
 
 }  // namespace dmise

@@ -5,10 +5,10 @@
 
 namespace dmise {
 
-/// An instant between `a` and `b` at which `distance_m` is below 0, if there is one. The distances
-/// at both ends are not. `may_cross(d_a, d_b, seconds)` says whether a thing at these distances can
-/// come to 0 in between: where it can, the time is cut in halves, down to `shortest_s`. What
-/// touches for longer is found for certain when `may_cross` is right.
+/// Returns an instant between `a` and `b` at which `distance_m` is below 0, if there is one; at
+/// both ends it is not. `may_cross(d_a, d_b, seconds)` says whether an object at these distances
+/// can reach 0 in between: if it can, the interval is bisected down to `shortest_s`. Longer
+/// crossings are found for certain if `may_cross` is conservative.
 template <class MayTouch, class Distance>
 std::optional<SimTime> crossing_between(SimTime a, double a_m, SimTime b, double b_m,
                                         double shortest_s, const MayTouch& may_cross,

@@ -6,16 +6,16 @@
 
 namespace dmise {
 
-/// Which directions fall on a camera's frame, and how far a place is from all those that do.
+/// The directions that a camera's frame covers, and lower bounds of distances from them.
 class FieldOfView {
  public:
   explicit FieldOfView(const Optics& optics);
 
-  /// Whether light along `line` (any length > 0) meets the frame; its edge counts.
+  /// Whether light along `line` (any length > 0) hits the frame, edges included.
   bool contains(const Vec<CameraFrame>& line) const;
 
-  /// The place `from_camera_m` is at least this far [m] from every place in the field; <= 0 when it
-  /// may be in it. Changes by no more than the place moves. Exact beside the edges of a gnomonic
+  /// Lower bound of the distance [m] of a position from the field of view; <= 0 if it may be
+  /// inside. Changes by at most the motion of the position. Exact beside the edges of a gnomonic
   /// frame; for other projections it is that of the cone around the frame.
   double outside_m(const Vec<CameraFrame>& from_camera_m) const;
 
@@ -23,8 +23,8 @@ class FieldOfView {
   Optics optics_;
   bool flat_ = false;                         // gnomonic: the edges are planes through the camera
   std::array<Vec<CameraFrame>, 4> outwards_;  // unit normals of those planes
-  double cone_cos_ = 0.0, cone_sin_ = 0.0;    // of the half angle around the others
-  bool everything_ = false;                   // that cone is the whole sphere
+  double cone_cos_ = 0.0, cone_sin_ = 0.0;    // of the half angle of the cone
+  bool everything_ = false;                   // the cone is the whole sphere
 };
 
 /// The same for a cone around `axis` (unit): distance to it, <= 0 inside.

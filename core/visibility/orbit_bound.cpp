@@ -6,7 +6,7 @@
 namespace dmise {
 namespace {
 
-constexpr double mu_m3_per_s2 = 3.986008e14;  // WGS 72, as SGP4 takes it
+constexpr double mu_m3_per_s2 = 3.986008e14;  // WGS 72, as in SGP4
 constexpr double earth_rate_rad_per_s = 7.292115855306587e-5;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -22,7 +22,7 @@ OrbitBound orbit_bound(const Vec<Teme>& position_m, const Vec<Teme>& velocity_m_
   const double e = std::sqrt(std::max(0.0, 1.0 - h_squared / (mu_m3_per_s2 * axis)));
   const double fastest = mu_m3_per_s2 * (1.0 + e) / std::sqrt(h_squared);
   const double farthest = 1.03 * axis * (1.0 + e);
-  // |v - w x r|^2 = v^2 - 2 w h_z + (w rho)^2, rho the distance from the Earth's axis.
+  // v - w x r|^2 = v^2 - 2 w h_z + (w rho)^2, with rho the distance from the Earth's axis.
   const double w = earth_rate_rad_per_s;
   const double turning =
       1.03 * fastest * fastest - 2.0 * w * momentum.z + w * w * farthest * farthest;

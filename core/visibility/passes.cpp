@@ -10,7 +10,7 @@ namespace {
 
 constexpr double top_error_s = 0.05;
 
-/// Where one object and the camera are at one instant.
+/// Position of one object relative to the camera at one instant.
 struct Place {
   CameraMoment camera;
   Sgp4State state;
@@ -21,7 +21,7 @@ struct Place {
   double range_m() const { return ok() ? norm(line_m()) : 1e300; }
 };
 
-/// One object as a sensor has it, at any instants.
+/// Evaluates one object relative to a sensor at any instant.
 class Follower {
  public:
   Follower(const Sgp4Batch& batch, const SensorTrack& track, const Sight& sight,
@@ -53,7 +53,7 @@ class Follower {
   double sunlit(const Place& p) const {
     return p.ok() ? Sunlight(track_.sky(), p.time()).fraction(p.state.position_m) : 0.0;
   }
-  /// Greatest at the top of a pass.
+  /// Maximal at the top of a pass.
   double height(const Place& p) const {
     if (!p.ok()) return -1e300;
     return track_.site() ? dot(p.camera.up, p.line_m()) / p.range_m() : -p.range_m();
@@ -83,7 +83,7 @@ class Follower {
     return m;
   }
 
-  /// Where `test` turns between two instants for which it differs.
+  /// The instant at which `test` changes between two instants for which it differs.
   template <class Test>
   SimTime turning(SimTime a, SimTime b, bool at_a, Test&& test) const {
     while ((b - a).seconds() > event_error_s) {
@@ -97,7 +97,7 @@ class Follower {
     return {a.ns + (b.ns - a.ns) / 2};
   }
 
-  /// Where `value` is greatest between two instants around its peak.
+  /// The instant of the maximum of `value` between two instants around it.
   template <class Value>
   Place peak(SimTime a, SimTime b, Value&& value) const {
     for (;;) {
@@ -113,7 +113,7 @@ class Follower {
   }
 
  private:
-  /// As many instants inside as the propagator takes at a time, evenly.
+  /// Evenly spaced instants inside, as many as the propagator computes at once.
   static std::vector<SimTime> between(SimTime a, SimTime b) {
     constexpr int parts = 17;
     std::vector<SimTime> times;
@@ -139,7 +139,7 @@ std::vector<SimTime> instants_along(SimTime rise, SimTime set) {
   return times;
 }
 
-/// When it is sunlit, from places along the pass.
+/// Finds the sunlit time from positions along the pass.
 void find_light(const Follower& object, const std::vector<Place>& places, Pass& pass) {
   bool was_lit = false;
   SimTime since{};
@@ -161,7 +161,7 @@ void find_light(const Follower& object, const std::vector<Place>& places, Pass& 
   }
 }
 
-/// Looks along a pass from its rise to its set and fills in the rest.
+/// Computes a pass from its rise and set.
 void describe(const Follower& object, SimTime rise, SimTime set, Pass& pass) {
   const auto places = object.along(instants_along(rise, set));
   find_light(object, places, pass);

@@ -12,7 +12,7 @@ Rotation<CameraFrame, Gcrs> at_direction(const Vec<Gcrs>& direction, double roll
   return camera_at<Gcrs>(ra, dec, roll_rad);
 }
 
-/// Turns vectors about `axis` (unit), right-handed.
+/// Rotates vectors about `axis` (unit), right-handed.
 template <class F>
 Rotation<F, F> turned(const std::array<double, 3>& axis, double angle_rad) {
   const double half = 0.5 * angle_rad, s = std::sin(half);
@@ -25,13 +25,13 @@ struct Aim {
 
   double roll_rad() const { return sensor.roll_deg * deg; }
 
-  /// Longitude of ENU runs from east through north.
+  /// Longitude in ENU runs from east through north.
   Rotation<CameraFrame, Gcrs> in_enu(double longitude_rad, double latitude_rad, double roll) const {
     return camera_at<Enu>(longitude_rad, latitude_rad, roll) * enu_from_itrs(*scene.site) *
            scene.itrs_from_gcrs;
   }
   Rotation<CameraFrame, Gcrs> operator()(PointUp) const {
-    // Coming from longitude -90 deg (south), north is up and east is where longitude grows.
+    // From longitude -90 deg (south), north is up and east is where longitude increases.
     if (scene.site) return in_enu(-pi / 2, pi / 2, roll_rad());
     return at_direction(scene.observer.position_m, roll_rad());
   }
@@ -47,7 +47,7 @@ struct Aim {
                            (p.dec_deg + p.dec_rate_deg_per_s * t_s) * deg, roll_rad());
   }
   Rotation<CameraFrame, Gcrs> operator()(const PointBody& p) const {
-    if (!scene.gcrs_from_body) throw Error("pointing.body: the platform has no attitude here");
+    if (!scene.gcrs_from_body) throw Error("pointing.body: the platform has no attitude");
     return (*scene.gcrs_from_body * p.body_from_camera).inverse();
   }
   Rotation<CameraFrame, Gcrs> operator()(const PointScan& p) const {
@@ -81,7 +81,7 @@ Rotation<CameraFrame, Gcrs> camera_from_gcrs(const SensorConfig& sensor, const P
       break;
   }
   if (!now.site) return aim(sensor, now);
-  // Fixed to the ground: the attitude to the Earth is that of the instant of aiming.
+  // Fixed to the ground: the attitude relative to the Earth is that of the instant of aiming.
   return aim(sensor, aimed) * aimed.itrs_from_gcrs.inverse() * now.itrs_from_gcrs;
 }
 

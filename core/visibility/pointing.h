@@ -9,9 +9,9 @@
 namespace dmise {
 
 /// Camera axes for a boresight at (`longitude_rad`, `latitude_rad`) of frame `F`: the image's up
-/// (-y) points along increasing latitude turned by `roll_rad` towards increasing longitude. Defined
-/// at the poles too, where the longitude chooses. Seen from inside the sphere: with north up, east
-/// is left.
+/// (-y) points along increasing latitude rotated by `roll_rad` towards increasing longitude.
+/// Defined at the poles too, by the longitude. Seen from inside the sphere: with north up, east is
+/// left.
 template <class F>
 Rotation<CameraFrame, F> camera_at(double longitude_rad, double latitude_rad, double roll_rad) {
   const double cl = std::cos(longitude_rad), sl = std::sin(longitude_rad);
@@ -28,13 +28,13 @@ Rotation<CameraFrame, F> camera_at(double longitude_rad, double latitude_rad, do
   return r;
 }
 
-/// Where an observer is, at one instant.
+/// State of an observer at one instant.
 struct ObserverState {
   Vec<Gcrs> position_m;
   Vec<Gcrs> velocity_m_per_s;  // geocentric
 };
 
-/// What the attitude of a camera may depend on at one instant.
+/// Inputs of a camera's attitude at one instant.
 struct PointingScene {
   SimTime time;
   ObserverState observer;
@@ -44,11 +44,12 @@ struct PointingScene {
   std::optional<Rotation<Gcrs, Body>> gcrs_from_body;  // of the platform; for PointBody only
 };
 
-/// Attitude with which a camera would point at its goal at the instant of `scene`. Throws `Error`
-/// for one that is fixed to a body without an attitude.
+/// Attitude of a camera that points at its goal at the instant of `scene`. Throws `Error` for one
+/// fixed to a body without an attitude.
 Rotation<CameraFrame, Gcrs> aim(const SensorConfig& sensor, const PointingScene& scene);
 
-/// Attitude at the instant `now` of an exposure aimed at the instant `aimed`, as the tracking says.
+/// Attitude at the instant `now` of an exposure aimed at the instant `aimed`, according to the
+/// tracking.
 Rotation<CameraFrame, Gcrs> camera_from_gcrs(const SensorConfig& sensor, const PointingScene& aimed,
                                              const PointingScene& now);
 

@@ -6,7 +6,7 @@
 namespace dmise {
 namespace {
 
-/// A target nearer than this is the sensor's own host, under another number: no direction.
+/// A target closer than this is the sensor's own platform, under another number.
 constexpr double least_distance_m = 1.0;
 
 }  // namespace
@@ -25,7 +25,7 @@ SensorTrack::SensorTrack(const SensorConfig& sensor, const SkyHours& sky, const 
   if (std::holds_alternative<PointUp>(sensor.pointing) ||
       (std::holds_alternative<PointHorizon>(sensor.pointing) &&
        turn_rate_deg_per_s(sensor.pointing) == 0.0)) {
-    // With ITRS in the place of GCRS: such a pointing depends on the Earth's axes alone.
+    // With ITRS instead of GCRS: such a pointing depends on the Earth's axes alone.
     const auto camera = aim(sensor, PointingScene{.site = &*site_});
     fixed_.emplace();
     fixed_->m = camera.m;
@@ -83,7 +83,8 @@ CameraMoment SensorTrack::at(SimTime t) const {
     now.there = norm(scene.towards_target) > least_distance_m;
     if (!now.there) return now;
     if (geometric_) {
-      // `Sight` takes straight lines: in them the target stands off the axis, where it is seen.
+      // `Sight` uses straight lines: relative to them the target is off the axis, at its apparent
+      // direction.
       const Vec<Gcrs> line = unit(scene.towards_target);
       const Vec<Gcrs> seen = apparent_direction(sensor_, scene, refraction_, target->position_m,
                                                 target->velocity_m_per_s);

@@ -10,11 +10,11 @@
 
 namespace dmise {
 
-/// Where a camera is and looks at one instant, in the frame of SGP4's states.
+/// Position and attitude of a camera at one instant, in the frame of SGP4's states.
 struct CameraMoment {
   SimTime time;
   Utc utc;
-  bool there = true;  // false when the platform, or the target to point at, has no state
+  bool there = true;  // false if the platform, or the target, has no state
   Vec<Teme> apex_m;
   Rotation<CameraFrame, Teme> camera_from_teme;
   Vec<Teme> up;                         // unit: zenith of a ground site; 0 in orbit
@@ -26,12 +26,11 @@ struct CameraMoment {
   }
 };
 
-/// A sensor's place and attitude over time. The camera is taken as aimed at every instant: a
-/// pointing at the zenith or by azimuth and elevation turns with the Earth, one at the sky or a
-/// target follows it.
+/// Position and attitude of a sensor over time, aimed at every instant: a pointing at the zenith or
+/// by azimuth and elevation rotates with the Earth, one at the sky or a target follows it.
 class SensorTrack {
  public:
-  /// `platform` and `target` are objects of `batch`, where the sensor has them. What is given must
+  /// `platform` and `target` are objects of `batch`, if the sensor has them. The arguments must
   /// outlive the track.
   SensorTrack(const SensorConfig& sensor, const SkyHours& sky, const Sgp4Batch& batch,
               std::optional<std::size_t> platform, std::optional<std::size_t> target);
@@ -39,11 +38,11 @@ class SensorTrack {
   const SensorConfig& sensor() const { return sensor_; }
   const SkyHours& sky() const { return sky_; }
   const std::optional<Site>& site() const { return site_; }
-  /// The object that carries the sensor; it does not see itself.
+  /// The object that carries the sensor, which does not see itself.
   std::optional<std::size_t> platform() const { return platform_; }
-  /// Whether the camera is fixed to the turning Earth.
+  /// Whether the camera is fixed to the rotating Earth.
   bool fixed_to_earth() const { return fixed_.has_value(); }
-  /// Whether its axes keep their attitude to the stars.
+  /// Whether its axes are fixed relative to the stars.
   bool fixed_to_stars() const;
 
   CameraMoment at(SimTime t) const;
@@ -58,7 +57,7 @@ class SensorTrack {
   std::optional<std::size_t> platform_, target_;
   std::optional<Site> site_;
   Vec<Itrs> site_m_, up_;
-  bool geometric_ = false;  // points at the straight line to its target
+  bool geometric_ = false;  // points along the straight line to its target
   Refraction refraction_;
   std::optional<Rotation<CameraFrame, Itrs>> fixed_;
 };

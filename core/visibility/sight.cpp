@@ -8,13 +8,13 @@
 namespace dmise {
 namespace {
 
-/// How far the segment between two places would have to move to clear the Earth; 0 when it does.
+/// Distance by which the segment between two positions misses clearing the Earth; 0 if it is clear.
 double behind_earth_m(const Vec<Gcrs>& a_m, const Vec<Gcrs>& b_m, const OblateEarth& earth) {
   const Vec<Gcrs> a = earth.stretched(a_m), b = earth.stretched(b_m), line = b - a;
   const double length_squared = dot(line, line);
   const double at = length_squared > 0.0 ? std::clamp(-dot(a, line) / length_squared, 0.0, 1.0) : 0;
   const double depth = earth.ellipsoid.equatorial_radius_m - norm(a + line * at);
-  // Stretching lengthens a step by 1 / (1 - f) at most.
+  // Stretching lengthens a vector by at most 1 / (1 - f).
   return std::max(0.0, depth) * (1.0 - earth.ellipsoid.flattening);
 }
 
@@ -26,7 +26,7 @@ Sight::Sight(const SensorConfig& sensor)
   mask_sin_ = std::sin(sensor.mask_deg * deg);
 }
 
-// The mask's cone opens around the zenith: its half angle is what is left to 90 deg.
+// The mask is a cone around the zenith with a half angle of 90 deg minus the mask.
 double Sight::below_mask_m(const CameraMoment& now, const Vec<Teme>& from_camera_m) const {
   if (mask_sin_ == 0.0) return -dot(from_camera_m, now.up);
   return outside_cone_m(from_camera_m, now.up, mask_sin_, mask_cos_);

@@ -4,20 +4,20 @@
 
 namespace dmise {
 
-/// Whether a sensor sees a place at an instant: in its true field, above its mask, not behind the
-/// Earth. Straight lines at one time: light time, aberration (together below 30 arcsec) and
-/// refraction (1 arcmin at 45 deg of elevation, 0.57 deg at the horizon) are left out.
+/// Visibility of a position for a sensor at an instant: in its true field, above its mask, not
+/// behind the Earth. Straight lines at one time: neglects light time and aberration (together below
+/// 30 arcsec) and refraction (1 arcmin at 45 deg of elevation, 0.57 deg at the horizon).
 class Sight {
  public:
-  /// Nearer than this is the sensor's own host, under whatever number: not seen.
+  /// Closer objects are the sensor's own platform, under any number: not seen.
   static constexpr double nearest_m = 1.0;
 
   explicit Sight(const SensorConfig& sensor);
 
   bool visible(const CameraMoment& now, const Vec<Teme>& position_m) const;
 
-  /// At least this far [m] from every place that is visible; <= 0 where it may be visible itself.
-  /// Changes by no more than the place moves in the camera's axes, or than the camera moves.
+  /// Lower bound of the distance [m] from every visible position; <= 0 if it may be visible.
+  /// Changes by at most the motion of the position in the camera's axes plus that of the camera.
   double hidden_m(const CameraMoment& now, const Vec<Teme>& position_m) const;
 
  private:

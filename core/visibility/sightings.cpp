@@ -12,9 +12,9 @@
 namespace dmise {
 namespace {
 
-/// Neighbouring instants lie no farther apart than this: a camera's motion is taken from them.
+/// Maximum distance of neighbouring instants, from which a camera's motion is bounded.
 constexpr double longest_look_s = 10.0;
-/// Instants of the whole catalogue lie about this far apart, and bounds on speed hold this long.
+/// Approximate distance of instants for the whole catalogue; bounds on speed hold this long.
 constexpr double stride_s = 300.0;
 constexpr double bound_holds_s = 3600.0;
 
@@ -58,7 +58,7 @@ class Search {
   }
 
  private:
-  /// What one range of objects found.
+  /// Results of one range of objects.
   struct Found {
     std::vector<Sighting> seen;
     std::vector<SeenRun> runs;
@@ -115,12 +115,12 @@ class Search {
   }
 
   const CameraMoment& camera(std::size_t step) const { return cameras_[step - first_instant_]; }
-  /// Of the camera from one instant to the next.
+  /// Motion of the camera from one instant to the next.
   const CameraMotion& motion(std::size_t step) const { return motions_[step - first_instant_]; }
   const Sunlight& light(std::size_t step) const { return lights_[step - first_instant_]; }
 
-  /// Whether an object this far from being visible at two instants can be so between them, with a
-  /// camera that moves so.
+  /// Whether an object at these distances from being visible at two instants may be visible between
+  /// them, given the camera's motion.
   bool may_come(std::size_t i, double hidden_a, double hidden_b, double range_m, double s,
                 const CameraMotion& motion) const {
     if (!(hidden_a > 0.0) || !(hidden_b > 0.0)) return true;
@@ -148,8 +148,8 @@ class Search {
     const std::size_t first = found_.size();
     found_.resize(first + (candidates_.size() + grain - 1) / grain);
     threads_.for_ranges(candidates_.size(), grain, [&](std::size_t begin, std::size_t end) {
-      Looker looker{*this, found_[first + begin / grain]};
-      for (std::size_t k = begin; k < end; ++k) looker.look(candidates_[k], from, to);
+      Examiner examiner{*this, found_[first + begin / grain]};
+      for (std::size_t k = begin; k < end; ++k) examiner.examine(candidates_[k], from, to);
     });
     for (std::size_t i = 0; i < batch_.size(); ++i) {
       const std::uint8_t code = before_.code[i] ? before_.code[i] : after_.code[i];
@@ -160,8 +160,8 @@ class Search {
     }
   }
 
-  /// Looks at single objects, with room for their states.
-  struct Looker {
+  /// Examines single objects, with buffers for their states.
+  struct Examiner {
     const Search& search;
     Found& found;
     std::vector<double> minutes, position, velocity, hidden;
@@ -174,13 +174,13 @@ class Search {
       search.batch_.propagate_times(object, {minutes.data(), count}, position, velocity, code);
     }
 
-    /// All instants in [from, to] at which it may be visible, without `from` unless that is 0.
-    void look(std::uint32_t object, std::size_t from, std::size_t to) {
+    /// Finds all instants in [from, to] at which it may be visible; `from` only if it is 0.
+    void examine(std::uint32_t object, std::size_t from, std::size_t to) {
       const Search& s = search;
       std::size_t begin = from, end = to;
       if (!s.before_.code[object] && !s.after_.code[object] && !(s.motion_.turn_rad_per_s > 0.0)) {
-        // It needs so many steps to come into sight from either end; one more on each side, so that
-        // crossings are seen between neighbours.
+        // It needs this many steps to become visible from either end; one more on each side, so
+        // that crossings are found between neighbours.
         const double step_m = (s.reach_[object] + s.motion_.speed_m_per_s) * s.step_s_;
         begin += std::size_t(std::clamp(s.hidden_before_[object] / step_m, 0.0, double(to - from)));
         end -= std::size_t(std::clamp(s.hidden_after_[object] / step_m, 0.0, double(to - from)));
@@ -212,11 +212,11 @@ class Search {
         const bool none = code[k] && code[k + 1];
         const bool there = s.camera(begin + k).there || s.camera(begin + k + 1).there;
         if (!visible[k] && !visible[k + 1] && !none && there)
-          look_between(object, begin + k, hidden[k], hidden[k + 1], range_m);
+          examine_between(object, begin + k, hidden[k], hidden[k + 1], range_m);
       }
     }
 
-    /// It is visible at this instant.
+    /// Records that it is visible at this instant.
     template <class Sunlit>
     void note(std::uint32_t object, std::size_t step, double range_m, Sunlit&& sunlit) {
       if (const auto of_grid = search.grid_.of_grid(step))
@@ -229,9 +229,9 @@ class Search {
         runs.push_back({object, step, step});
     }
 
-    /// Looks for an instant strictly between two neighbours at which it is visible.
-    void look_between(std::uint32_t object, std::size_t step, double hidden_a_m, double hidden_b_m,
-                      double range_m) {
+    /// Searches for an instant strictly between two neighbours at which it is visible.
+    void examine_between(std::uint32_t object, std::size_t step, double hidden_a_m,
+                         double hidden_b_m, double range_m) {
       const Search& s = search;
       const SimTime a = s.grid_.at(step), b = s.grid_.at(step + 1);
       const auto when = crossing_between(
@@ -253,7 +253,7 @@ class Search {
 
   Sightings sorted() {
     Sightings all;
-    // Ranges were filled in order of time: a stable count by object leaves each object's in order.
+    // Ranges were filled in order of time: a stable counting sort by object keeps that order.
     std::vector<std::size_t> place(batch_.size() + 1, 0);
     for (const Found& f : found_)
       for (const Sighting& s : f.seen) ++place[s.object + 1];
@@ -282,13 +282,13 @@ class Search {
 
   BatchStates before_, after_, ahead_;  // at both ends of a stride, and at the end of the part
   std::vector<double> hidden_before_, hidden_after_;
-  std::vector<double> reach_;  // how fast objects can be in the axes of the bounds [m/s]
+  std::vector<double> reach_;  // bounds on the objects' speeds in the axes of the bounds [m/s]
   std::vector<OrbitBound> bound_before_;
   std::vector<CameraMoment> cameras_;  // of the part, from step `first_instant_`
   std::vector<Sunlight> lights_;       // the same
   std::size_t first_instant_ = 0;
   std::vector<CameraMotion> motions_;  // of the part, between its instants
-  CameraMotion motion_;                // the greatest of the stride
+  CameraMotion motion_;                // maximum of the stride
   std::vector<std::uint32_t> candidates_;
   std::vector<Found> found_;
   std::map<std::uint32_t, LostObject> lost_;

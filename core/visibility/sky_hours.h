@@ -8,9 +8,9 @@
 
 namespace dmise {
 
-/// Earth and Sun over a span of time, worked out once an hour: what is given for an instant is a
-/// function of the instant alone. Precession and nutation are held for the hour (4 mas at its
-/// ends), the Sun moves straight between its ends (0.02 arcsec). Immutable.
+/// Earth and Sun over a span of time, computed once an hour; the result depends on the instant
+/// alone. Precession and nutation are constant over the hour (4 mas at its ends), the Sun moves
+/// linearly (0.02 arcsec). Immutable.
 class SkyHours {
  public:
   /// For instants in [from, to].
@@ -32,15 +32,15 @@ class SkyHours {
   std::vector<Hour> hours_;
 };
 
-/// An object counts as sunlit from half of the Sun's disc on.
+/// Minimum fraction of the Sun's disc for an object to count as sunlit.
 inline constexpr double lit_fraction = 0.5;
 
-/// The Sun's light at one instant, for states as SGP4 gives them.
+/// Sunlight at one instant, for states from SGP4.
 class Sunlight {
  public:
   Sunlight(const SkyHours& sky, SimTime t);
 
-  /// Fraction of the Sun's disc seen past the oblate Earth, 0..1; 0 inside the Earth.
+  /// Fraction of the Sun's disc visible past the oblate Earth, 0..1; 0 inside the Earth.
   double fraction(const Vec<Teme>& position_m) const;
   const Vec<Gcrs>& sun_m() const { return sun_m_; }
   const Rotation<Gcrs, Teme>& gcrs_from_teme() const { return gcrs_from_teme_; }

@@ -12,7 +12,7 @@ Refraction configured_refraction(const SensorConfig& sensor) {
 Vec<Gcrs> apparent_direction(const SensorConfig& sensor, const PointingScene& scene,
                              const Refraction& refraction, const Vec<Gcrs>& position_m,
                              const Vec<Gcrs>& slope_m_per_s) {
-  // Satellites share the Earth's motion: of the solar system nothing is asked.
+  // Satellites share the Earth's motion, so the solar system is not needed.
   Observer observer{.position_m = scene.observer.position_m,
                     .velocity_m_per_s = scene.observer.velocity_m_per_s};
   if (scene.site) {

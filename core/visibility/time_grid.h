@@ -8,7 +8,7 @@
 
 namespace dmise {
 
-/// Instants `from + k step`, k = 0 .. steps, the last of them `end` where that is earlier.
+/// Instants `from + k step`, k = 0 .. steps; the last is `end` if that is earlier.
 struct TimeGrid {
   SimTime from, step;
   std::size_t steps = 0;
@@ -20,14 +20,13 @@ struct TimeGrid {
   SimTime last() const { return at(steps); }
 };
 
-/// The instants that cover a span [> 0] by steps of `step` [> 0], the last one shorter where they
-/// don't fit.
+/// The grid that covers a span [> 0] in steps of `step` [> 0]; the last step may be shorter.
 inline TimeGrid covering_grid(SimTime from, SimTime span, SimTime step) {
   return {from, step, std::size_t((span.ns + step.ns - 1) / step.ns), from + span};
 }
 
-/// The instants of a grid, and others between them in equal parts, so that neighbours are not
-/// farther apart than a given time. Counted through; the grid's own where its step is no longer.
+/// A grid with equally spaced instants inserted, so that neighbours are not farther apart than a
+/// given time. Equal to the grid if its step is no longer.
 class FineGrid {
  public:
   FineGrid(const TimeGrid& grid, SimTime longest)
@@ -36,19 +35,19 @@ class FineGrid {
     if (grid.steps == 0) return;
     const std::int64_t whole = std::int64_t(grid.steps - 1);
     const std::int64_t rest_ns = (grid.last() - grid.at(grid.steps - 1)).ns;
-    // Parts whose beginning lies before the end; the last of them may be shorter.
+    // Parts that begin before the end; the last of them may be shorter.
     steps_ = std::size_t(whole * parts_ + (rest_ns * parts_ + grid.step.ns - 1) / grid.step.ns);
   }
 
   std::size_t steps() const { return steps_; }
-  /// No two neighbours are farther apart.
+  /// Maximum distance of neighbours [s].
   double step_s() const { return grid_.step.seconds() / double(parts_); }
   SimTime at(std::size_t k) const {
     const std::int64_t whole = std::int64_t(k) / parts_, part = std::int64_t(k) % parts_;
     return std::min(grid_.last(),
                     SimTime{grid_.at(std::size_t(whole)).ns + part * grid_.step.ns / parts_});
   }
-  /// The instant of the grid that this is, if it is one.
+  /// Index in the original grid, if the instant belongs to it.
   std::optional<std::uint32_t> of_grid(std::size_t k) const {
     if (k == steps_) return std::uint32_t(grid_.steps);
     if (std::int64_t(k) % parts_ != 0) return std::nullopt;

@@ -52,7 +52,7 @@ std::optional<RefractionShift> air_of(const Wcs& wcs) {
   return wcs.refraction ? std::optional<RefractionShift>(wcs) : std::nullopt;
 }
 
-/// On the projection's plane [rad], east and north.
+/// Position on the projection plane [rad], east and north.
 std::array<double, 2> plane_of_focal(const Wcs& wcs, PixelPosition place) {
   return {(wcs.cd_deg[0] * place.x_px + wcs.cd_deg[1] * place.y_px) * deg,
           (wcs.cd_deg[2] * place.x_px + wcs.cd_deg[3] * place.y_px) * deg};
@@ -79,7 +79,7 @@ std::optional<PixelPosition> wcs_focal_place(const Wcs& wcs, const Vec<Gcrs>& di
 Vec<Gcrs> wcs_direction(const Wcs& wcs, PixelPosition pixel) {
   auto [xi, eta] = plane_of_focal(wcs, wcs_focal_place(wcs, pixel));
   auto local = wcs.projection.direction_of(xi, eta);
-  if (!local) {  // at the rim, or just within
+  if (!local) {  // at the rim
     const double shrink = wcs.projection.rim() * (1 - 1e-12) / std::hypot(xi, eta);
     local = wcs.projection.direction_of(xi * shrink, eta * shrink);
   }
@@ -95,7 +95,7 @@ std::optional<PixelPosition> wcs_pixel(const Wcs& wcs, const Vec<Gcrs>& directio
   double u = uu + evaluate(wcs.ap, wcs.order, uu, vv).value;
   double v = vv + evaluate(wcs.bp, wcs.order, uu, vv).value;
   const double tolerance = 1e-9 + 1e-14 * (std::abs(u) + std::abs(v));
-  // The slope of the air's part, below 0.2, is left out: each step leaves a fifth.
+  // The slope of the refraction, below 0.2, is ignored: each step leaves a fifth of the error.
   const int most_steps = air ? 40 : 20;
   for (int i = 0; i < most_steps; ++i) {
     const PolynomialValue f = evaluate(wcs.a, wcs.order, u, v);

@@ -15,16 +15,16 @@ namespace dmise {
 namespace {
 
 constexpr int fit_points = 24, check_points = 37, table_points = 33;
-// What lies between the points that are looked at.
+// Allowances for errors between the sampled points.
 constexpr double between_points = 1.3, between_cells = 1.1;
 constexpr double good_px = 0.08;  // of a WCS as a whole
 constexpr double good_low_order_px = 0.01;
 constexpr int highest_order = 9;  // of SIP, by its convention
 constexpr double good_table_px = 0.06;
 constexpr double least_cell_px = 3.0;
-// Near the opposite of the axis, where a projection turns without bounds, nothing is fitted.
+// Nothing is fitted near the antipode of the axis, where a projection diverges.
 constexpr double farthest_fitted_cos = -0.9;
-constexpr double low_rad = 20 * deg;  // refraction is straight enough above
+constexpr double low_rad = 20 * deg;  // above it polynomials represent refraction
 constexpr int most_nodes = 400;       // of a lookup table's longer side
 
 struct Sample {
@@ -59,8 +59,8 @@ std::vector<std::array<int, 2>> terms(int order) {
   return list;
 }
 
-/// Least squares of a pair of quantities by polynomials in (u / half u, v / half v), to which
-/// (`shift`) something may be added in the terms of first order.
+/// Least-squares fit of a pair of quantities by polynomials in (u / half u, v / half v); `shift`
+/// adds to the first-order terms.
 class Polynomials {
  public:
   Polynomials(int order, const std::array<double, 2>& half)
@@ -100,7 +100,7 @@ class Polynomials {
   std::vector<double> a_, b_;
 };
 
-/// What the samples of one frame are fitted with.
+/// Samples of one frame and the fit to them.
 class Fit {
  public:
   Fit(const Optics& optics, const SkyOfPixel& sky)
@@ -129,7 +129,7 @@ class Fit {
   Vec<Gcrs> reference_;
 };
 
-/// Where a direction lies on the plane of a WCS whose CD matrix is that of 1 rad a pixel.
+/// Position of a direction on the plane of a WCS whose CD matrix is 1 rad per pixel.
 std::optional<PixelPosition> on_plane(const Wcs& w, const Vec<Gcrs>& direction) {
   Wcs plain;
   plain.projection = w.projection;
@@ -139,7 +139,7 @@ std::optional<PixelPosition> on_plane(const Wcs& w, const Vec<Gcrs>& direction) 
   return wcs_focal_place(plain, direction);
 }
 
-/// The same of what takes part in a fit.
+/// The same for directions that take part in a fit; else empty.
 std::optional<PixelPosition> fitted_place(const Wcs& w, const Vec<Gcrs>& direction) {
   if (dot(from_spherical<Gcrs>(w.ra_rad, w.dec_rad), direction) < farthest_fitted_cos)
     return std::nullopt;
@@ -150,7 +150,7 @@ void Fit::fit_forward(Wcs& w, const std::vector<PixelPosition>& shifts) const {
   Vec<Gcrs> reference = reference_;
   std::vector<double> c;
   std::vector<std::array<int, 2>> list;
-  // The constant term moves the reference direction until it is nothing.
+  // The reference direction is moved until the constant term vanishes.
   for (int pass = 0; pass < 4; ++pass) {
     const auto [ra, dec] = to_spherical(reference);
     w.ra_rad = ra;
@@ -199,8 +199,8 @@ void Fit::fit_inverse(Wcs& w, const std::vector<PixelPosition>& shifts) const {
   }
 }
 
-/// By how much bilinear values of the table miss, at most, where the sky is seen: at the middle of
-/// cells spread over the frame and along the horizon.
+/// Largest error of bilinear values of the table where sky is visible: at the centres of cells
+/// spread over the frame and along the horizon.
 double Fit::table_error_px(const Wcs& w) const {
   const RefractionShift air(w);
   const double cell = w.refraction->cell_px;
@@ -246,7 +246,7 @@ double Fit::table_error_px(const Wcs& w) const {
   return worst;
 }
 
-/// The error goes with the square of the step.
+/// The error is proportional to the square of the step.
 void Fit::choose_table(Wcs& w) const {
   const double longer = std::max(optics_.columns, optics_.rows);
   double& cell = w.refraction->cell_px;
@@ -274,7 +274,7 @@ void Fit::measure(Wcs& w) const {
   for (const Sample& s : checks_) {
     if (any_sky && air->elevation_rad(s.pixel) < 0.0) continue;
     const auto wanted = wcs_focal_place(w, s.direction);
-    if (!wanted) {  // beyond what the projection holds: wrong by more than the frame
+    if (!wanted) {  // outside the projection: off by more than the frame
       worst = std::max(worst, std::hypot(optics_.columns, optics_.rows));
       continue;
     }

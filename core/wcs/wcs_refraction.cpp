@@ -10,7 +10,7 @@ namespace dmise {
 namespace {
 
 constexpr double slope_over_rad = 0.01 * deg;
-constexpr double lowest_smooth_rad = -3 * deg;  // of what a table goes on below the horizon
+constexpr double lowest_smooth_rad = -3 * deg;  // end of the smooth extension below the horizon
 
 const WcsRefraction& required(const Wcs& wcs) {
   if (!wcs.refraction) throw Error("the WCS has no refraction");

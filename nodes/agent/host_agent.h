@@ -9,7 +9,7 @@ namespace dmise {
 struct HostAgentOptions {
   std::string name;                        // of the agent in the run
   std::string master;                      // address of the time-master
-  std::string bind = "tcp://127.0.0.1:0";  // the nodes of the host join here; also ipc://PATH
+  std::string bind = "tcp://127.0.0.1:0";  // nodes of the host join here; also ipc://PATH
   double join_within_s = 30.0;
   std::string keys;  // directory of keys; empty: plain, loopback alone
   Event* stop = nullptr;
@@ -21,16 +21,16 @@ struct HostAgentOptions {
 struct HostAgentResult {
   int exit_code = 0;
   std::string reason;
-  std::uint64_t messages_in = 0;   // published elsewhere: each once, whoever listens here
-  std::uint64_t messages_out = 0;  // published here
-  std::uint64_t refused = 0;       // with keys: published here in another's name
-  double cpu_s = 0.0;              // of its process while the run went
+  std::uint64_t messages_in = 0;   // published elsewhere, each counted once
+  std::uint64_t messages_out = 0;  // published on this host
+  std::uint64_t refused = 0;       // with keys: published here under another's name
+  double cpu_s = 0.0;              // of this process during the run
 };
 
-/// Stands between the nodes of one host and the run. To its nodes it is the time-master and the
-/// broker; to the run it is one member, which has done a tick when all its nodes have. With keys it
-/// lets its nodes speak for themselves alone, and needs a key that may speak for them. Does not
-/// throw and does not print; it logs.
+/// Runs the agent of a host, which connects the nodes of the host to the run. To its nodes it is
+/// the time-master and the broker; to the run it is one member, which has done a tick when all its
+/// nodes have. With keys, its nodes may only use their own names, and the agent needs a key that is
+/// granted to speak for them. Does not throw and does not print; it logs.
 HostAgentResult run_host_agent(const HostAgentOptions& options);
 
 }  // namespace dmise

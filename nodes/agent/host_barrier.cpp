@@ -8,9 +8,9 @@ namespace {
 
 constexpr Tick no_tick = std::numeric_limits<Tick>::max();
 
-/// Where the manifest of a tick is, or belongs.
-std::deque<TickTally>::iterator place_of(Tick tick, std::deque<TickTally>& said) {
-  return std::lower_bound(said.begin(), said.end(), tick,
+/// Position of a tick's manifest, existing or not.
+std::deque<TickTally>::iterator place_of(Tick tick, std::deque<TickTally>& manifests) {
+  return std::lower_bound(manifests.begin(), manifests.end(), tick,
                           [](const TickTally& t, Tick wanted) { return t.tick < wanted; });
 }
 
@@ -18,7 +18,7 @@ std::deque<TickTally>::iterator place_of(Tick tick, std::deque<TickTally>& said)
 
 void HostBarrier::join(const std::string& name, Schedule schedule, std::uint64_t incarnation,
                        Tick resumes_at, Instant now) {
-  asking_.erase(name);
+  joining_.erase(name);
   Node& node = nodes_[name];
   node.schedule = schedule;
   node.incarnation = incarnation;
@@ -33,20 +33,20 @@ HostBarrier::Node* HostBarrier::active(const std::string& name) {
   return found != nodes_.end() && !found->second.left ? &found->second : nullptr;
 }
 
-bool HostBarrier::knows_living(const std::string& name) const {
+bool HostBarrier::has_live_process(const std::string& name) const {
   const auto found = nodes_.find(name);
-  if (found == nodes_.end()) return asking_.contains(name);
+  if (found == nodes_.end()) return joining_.contains(name);
   return !found->second.silent && !found->second.left && !found->second.pulse.suspected;
 }
 
-void HostBarrier::tell(News::What what, const std::string& name, const Node& node,
-                       const std::string& reason) {
+void HostBarrier::report(News::What what, const std::string& name, const Node& node,
+                         const std::string& reason) {
   if (!over_) news_.push_back({what, name, node.incarnation, reason, node.done});
 }
 
 void HostBarrier::hear(const std::string& name, Node& node, Instant now) {
-  node.pulse.hear(now);
-  if (std::exchange(node.silent, false)) tell(News::What::found, name, node, "");
+  node.pulse.heard_at(now);
+  if (std::exchange(node.silent, false)) report(News::What::found, name, node, "");
 }
 
 void HostBarrier::ready(const std::string& name, Instant now) {
@@ -72,7 +72,7 @@ void HostBarrier::done(const std::string& name, TickTally tally, Instant now) {
   Node* node = active(name);
   if (!node || over_) return;
   hear(name, *node, now);
-  if (tally.tick <= node->done) return;  // said twice
+  if (tally.tick <= node->done) return;  // repeated
   const Tick next = node->schedule.next_after(node->done);
   if (tally.tick != next)
     return fail(name, "tick " + std::to_string(tally.tick) + " is done, but " +
@@ -82,14 +82,15 @@ void HostBarrier::done(const std::string& name, TickTally tally, Instant now) {
   for (TopicTally& topic : tally.topics) topic.incarnation = node->incarnation;
   const Tick tick = tally.tick;
   if (!notes(name, *node, std::move(tally)))
-    fail(name, "tick " + std::to_string(tick) + ", done again after a restart, is not what it was");
+    fail(name, "tick " + std::to_string(tick) +
+                   ", repeated after a restart, differs from the first time");
 }
 
 bool HostBarrier::notes(const std::string& name, Node& node, TickTally tally) {
   tally.digest = content_digest(name, tally);
-  const auto at = place_of(tally.tick, node.said);
-  if (at == node.said.end() || at->tick != tally.tick) {
-    node.said.insert(at, std::move(tally));
+  const auto at = place_of(tally.tick, node.manifests);
+  if (at == node.manifests.end() || at->tick != tally.tick) {
+    node.manifests.insert(at, std::move(tally));
     return true;
   }
   if (at->digest != tally.digest) return false;
@@ -101,11 +102,11 @@ void HostBarrier::leave(const std::string& name, bool interrupted) {
   Node* node = active(name);
   if (!node) return;
   node->left = true;
-  tell(News::What::lost, name, *node, interrupted ? "was interrupted" : "left before the end");
+  report(News::What::lost, name, *node, interrupted ? "was interrupted" : "left before the end");
 }
 
 void HostBarrier::fail(const std::string& name, const std::string& reason) {
-  if (Node* node = active(name)) tell(News::What::failed, name, *node, reason);
+  if (Node* node = active(name)) report(News::What::failed, name, *node, reason);
 }
 
 void HostBarrier::check(Instant now) {
@@ -113,7 +114,7 @@ void HostBarrier::check(Instant now) {
     if (node.left || node.silent) continue;
     const std::string trouble = node.pulse.trouble(limits_, !over_, now);
     if (trouble.empty()) continue;
-    tell(News::What::lost, name, node, trouble);
+    report(News::What::lost, name, node, trouble);
     (over_ ? node.left : node.silent) = true;
   }
 }
@@ -124,26 +125,27 @@ void HostBarrier::excuse(Instant since, Instant now) {
 
 void HostBarrier::settled(Tick tick) {
   for (auto& [name, node] : nodes_)
-    while (!node.said.empty() && node.said.front().tick <= tick) node.said.pop_front();
+    while (!node.manifests.empty() && node.manifests.front().tick <= tick)
+      node.manifests.pop_front();
 }
 
 Tick HostBarrier::slowest() const {
   Tick slowest = no_tick;
   for (const auto& [name, node] : nodes_) {
     slowest = std::min(slowest, node.reaches());
-    if (slowest <= taken_) break;  // nobody is further behind
+    if (slowest <= taken_) break;  // the slowest
   }
   return slowest;
 }
 
 std::optional<TickTally> HostBarrier::take_done(Tick granted) {
-  if (nodes_.empty() || !asking_.empty() || taken_ >= std::min(slowest(), granted) ||
+  if (nodes_.empty() || !joining_.empty() || taken_ >= std::min(slowest(), granted) ||
       !missing().empty())
     return std::nullopt;
   TickTally all{++taken_, {}, 0};
   for (auto& [name, node] : nodes_) {
-    const auto at = place_of(taken_, node.said);
-    if (at == node.said.end() || at->tick != taken_) continue;
+    const auto at = place_of(taken_, node.manifests);
+    if (at == node.manifests.end() || at->tick != taken_) continue;
     all.topics.insert(all.topics.end(), at->topics.begin(), at->topics.end());
     all.digest += at->digest;
   }
@@ -151,7 +153,7 @@ std::optional<TickTally> HostBarrier::take_done(Tick granted) {
 }
 
 bool HostBarrier::all_ready() const {
-  return !nodes_.empty() && asking_.empty() && missing().empty() &&
+  return !nodes_.empty() && joining_.empty() && missing().empty() &&
          std::all_of(nodes_.begin(), nodes_.end(), [](const auto& entry) {
            return entry.second.ready && !entry.second.silent && !entry.second.left;
          });

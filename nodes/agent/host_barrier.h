@@ -13,10 +13,9 @@
 
 namespace dmise {
 
-/// What the agent of a host knows of its nodes, as a state machine that has never seen a socket:
-/// who is there and lives, and which tick all of them have done. It decides nothing: what a lost
-/// node means, who may join and what is granted are the Coordinator's. `model/lockstep_host.pml` is
-/// its model.
+/// State of a host's nodes as a state machine without sockets: who is present and alive, and which
+/// tick all of them have done. It decides nothing: the Coordinator decides what a lost node means,
+/// who may join and what is granted. `model/lockstep_host.pml` is its model.
 class HostBarrier {
  public:
   struct Node {
@@ -26,13 +25,13 @@ class HostBarrier {
     bool silent = false;
     bool left = false;
     Tick done = -1;
-    std::deque<TickTally> said;  // of ticks that may have to be done again
+    std::deque<TickTally> manifests;  // of ticks that may be repeated
     Pulse pulse;
 
-    /// Nobody waits for it up to and with this tick.
+    /// Nobody waits for it up to and including this tick.
     Tick reaches() const { return schedule.next_after(done) - 1; }
   };
-  /// To be told to the master.
+  /// A report to the master.
   struct News {
     enum class What { lost, found, failed };
     What what;
@@ -44,14 +43,16 @@ class HostBarrier {
 
   explicit HostBarrier(PulseLimits limits) : limits_(limits) {}
 
-  /// The nodes of this host: those who are not there yet are waited for. An agent that follows a
-  /// lost one knows nobody, and what some of them have done is not what the host has.
+  /// The nodes of this host, including those that have not joined yet. An agent that replaces a
+  /// lost one starts without nodes, and ticks that some of them have done do not count for the
+  /// host.
   void expects(std::set<std::string> names) { expected_ = std::move(names); }
-  /// A process asks to join, and the master has not answered yet: nothing counts as done meanwhile.
-  void asks(const std::string& name) { asking_.insert(name); }
-  void refused(const std::string& name) { asking_.erase(name); }
-  /// The master has accepted it; it says done from `resumes_at` on. What a process of its name has
-  /// said before is done again.
+  /// A process requests to join, and the master has not answered yet: nothing counts as done
+  /// meanwhile.
+  void begin_join(const std::string& name) { joining_.insert(name); }
+  void refused(const std::string& name) { joining_.erase(name); }
+  /// The master has accepted it; its first tick is `resumes_at`. Later ticks of an earlier process
+  /// of its name are repeated.
   void join(const std::string& name, Schedule schedule, std::uint64_t incarnation, Tick resumes_at,
             Instant now);
   void ready(const std::string& name, Instant now);
@@ -60,26 +61,26 @@ class HostBarrier {
   void suspect(const std::string& name, Instant now);
   void leave(const std::string& name, bool interrupted);
   void fail(const std::string& name, const std::string& reason);
-  /// The agent did itself not run between `since` and `now`: it could hear nobody.
+  /// The agent was suspended between `since` and `now` and could not receive anything.
   void excuse(Instant since, Instant now);
-  /// It has been lost before the start: as if it had never joined.
+  /// It was lost before the start: as if it had never joined.
   void forget(const std::string& name) { nodes_.erase(name); }
-  /// Finds who has been silent or without progress for too long.
+  /// Finds nodes that have been silent or without progress for too long.
   void check(Instant now);
-  /// Nobody is missed any more.
+  /// Stops all checks.
   void run_is_over() { over_ = true; }
-  /// No tick up to and with this one will be done again.
+  /// No tick up to and including this one will be repeated.
   void settled(Tick tick);
 
-  /// The next tick that all nodes have done, once: what they published at it, in the order of their
-  /// names, and its digest. Never after `granted`.
+  /// Returns, once, the next tick that all nodes have done: what they published at it, in the order
+  /// of their names, and its digest. Never after `granted`.
   std::optional<TickTally> take_done(Tick granted);
   std::vector<News> take_news() { return std::exchange(news_, {}); }
   bool all_ready() const;
-  /// Those whom the others wait for: not there, lost, or furthest behind.
+  /// The nodes that the others wait for: not joined, lost, or furthest behind.
   std::vector<std::string> holding() const;
-  /// Whether this process may still take a name.
-  bool knows_living(const std::string& name) const;
+  /// Whether a live process has this name.
+  bool has_live_process(const std::string& name) const;
   bool deserted() const;
   const std::map<std::string, Node>& nodes() const { return nodes_; }
   const PulseLimits& limits() const { return limits_; }
@@ -87,7 +88,8 @@ class HostBarrier {
  private:
   Node* active(const std::string& name);
   void hear(const std::string& name, Node& node, Instant now);
-  void tell(News::What what, const std::string& name, const Node& node, const std::string& reason);
+  void report(News::What what, const std::string& name, const Node& node,
+              const std::string& reason);
   bool notes(const std::string& name, Node& node, TickTally tally);
   Tick slowest() const;
   std::vector<std::string> missing() const;
@@ -95,7 +97,7 @@ class HostBarrier {
   PulseLimits limits_;
   std::map<std::string, Node> nodes_;
   std::set<std::string> expected_;
-  std::set<std::string> asking_;
+  std::set<std::string> joining_;
   std::vector<News> news_;
   Tick taken_ = -1;
   bool over_ = false;

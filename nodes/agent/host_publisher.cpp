@@ -27,22 +27,23 @@ void HostPublisher::refuse(std::string_view routing_id, const std::string& reaso
 void HostPublisher::set_grant(v1::Grant grant, Tick settled) {
   changed_ = changed_ || !same_state(grant, grant_);
   grant_ = std::move(grant);
-  for (auto& [topic, tallies] : said_)
+  for (auto& [topic, tallies] : manifests_)
     while (!tallies.empty() && tallies.front().tick() <= settled) tallies.pop_front();
 }
 
 void HostPublisher::note(const v1::TopicTally& tally) {
   if (!consumed_.contains(tally.topic())) return;
-  auto& said = said_[tally.topic()];
-  const auto same = std::find_if(said.begin(), said.end(), [&](const v1::TopicTally& other) {
-    return other.tick() == tally.tick() && other.incarnation() == tally.incarnation();
-  });
-  if (same != said.end()) return;
-  said.push_back(tally);
+  auto& manifests = manifests_[tally.topic()];
+  const auto same =
+      std::find_if(manifests.begin(), manifests.end(), [&](const v1::TopicTally& other) {
+        return other.tick() == tally.tick() && other.incarnation() == tally.incarnation();
+      });
+  if (same != manifests.end()) return;
+  manifests.push_back(tally);
   *fresh_.add_published() = tally;
 }
 
-void HostPublisher::say(bool anyhow) {
+void HostPublisher::publish(bool anyhow) {
   if (!anyhow && !changed_ && fresh_.published().empty()) return;
   changed_ = false;
   grant_.mutable_published()->Swap(fresh_.mutable_published());
@@ -55,8 +56,8 @@ v1::MasterMessage HostPublisher::grant_for(const v1::Join& node) const {
   v1::MasterMessage answer;
   *answer.mutable_grant() = grant_;
   for (const std::string& topic : node.consumes())
-    if (const auto said = said_.find(topic); said != said_.end())
-      for (const v1::TopicTally& tally : said->second)
+    if (const auto manifests = manifests_.find(topic); manifests != manifests_.end())
+      for (const v1::TopicTally& tally : manifests->second)
         *answer.mutable_grant()->add_published() = tally;
   return answer;
 }
@@ -82,7 +83,7 @@ void HostPublisher::send_topology(const v1::Topology& topology, const std::strin
   theirs.set_subscribe_endpoint(subscribe_endpoint);
   theirs.set_broker_password(password);
   for (const v1::NodeStart& start : topology.starts()) {
-    // What was said before it joined is meant for the process before it.
+    // Manifests from before it joined are meant for its predecessor.
     const Peer* peer = directory_.find(start.name(), start.incarnation());
     if (!peer) continue;
     theirs.set_resume_tick(start.resume_tick());

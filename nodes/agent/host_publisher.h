@@ -13,7 +13,7 @@
 
 namespace dmise {
 
-/// What an agent says to the nodes of its host, in the words of the time-master.
+/// Sends messages of an agent to the nodes of its host, in place of the time-master.
 class HostPublisher {
  public:
   HostPublisher(zmq::socket_t& router, zmq::socket_t& ticks, const PeerDirectory& directory)
@@ -21,17 +21,17 @@ class HostPublisher {
 
   void reply(std::string_view routing_id, const v1::MasterMessage& message);
   void refuse(std::string_view routing_id, const std::string& reason);
-  /// The grant that holds from now on, without manifests.
+  /// Sets the current grant, without manifests.
   void set_grant(v1::Grant grant, Tick settled);
-  /// What somebody has published; told to those of this host who consume it.
+  /// Records a publication, for the nodes of this host that consume it.
   void note(const v1::TopicTally& tally);
-  /// Says grant and manifests if there is something new, or anyhow.
-  void say(bool anyhow);
-  /// The same for one node, with the manifests of all that it may still wait for.
+  /// Sends grant and manifests if they have changed, or always if `anyhow`.
+  void publish(bool anyhow);
+  /// The grant for one node, with the manifests of all ticks that it may still wait for.
   v1::MasterMessage grant_for(const v1::Join& node) const;
-  /// The run's last word to a process that is no longer part of it.
+  /// The final message to a process that is no longer part of the run.
   v1::MasterMessage expelled(const std::string& cause) const;
-  /// Tells each node who is where: the agent itself is their broker.
+  /// Sends each node the topology, with the agent as its broker.
   void send_topology(const v1::Topology& topology, const std::string& publish_endpoint,
                      const std::string& subscribe_endpoint, const std::string& password);
 
@@ -40,10 +40,11 @@ class HostPublisher {
   zmq::socket_t& ticks_;
   const PeerDirectory& directory_;
   v1::Grant grant_;
-  v1::Grant fresh_;  // `published` that has not been told yet
+  v1::Grant fresh_;  // `published` that has not been sent yet
   bool changed_ = false;
-  std::set<std::string, std::less<>> consumed_;             // topics that somebody here consumes
-  std::map<std::string, std::deque<v1::TopicTally>> said_;  // of ticks not settled, by topic
+  std::set<std::string, std::less<>> consumed_;  // topics consumed on this host
+  std::map<std::string, std::deque<v1::TopicTally>>
+      manifests_;  // tallies of ticks not settled, by topic
 };
 
 }  // namespace dmise

@@ -1,4 +1,4 @@
-// dmise-host-agent: stands between the nodes of one host and the run.
+// dmise-host-agent: connects the nodes of one host to the run.
 #include "core/base/error.h"
 #include "nodes/agent/host_agent.h"
 #include "nodes/runtime/program/command_line.h"
@@ -7,11 +7,11 @@
 int main(int argc, char** argv) {
   dmise::CommonFlags flags{.name = "host-1"};
   dmise::HostAgentOptions options;
-  CLI::App app("Stands between the nodes of one host and the run, as one of its members.",
+  CLI::App app("Connects the nodes of one host to the run, as one of its members.",
                "dmise-host-agent");
   dmise::add_common_flags(app, flags);
   app.add_option("--bind", options.bind,
-                 "the address that the nodes of this host take for the time-master's: "
+                 "the address that the nodes of this host join: "
                  "tcp://HOST:PORT or ipc://PATH")
       ->capture_default_str()
       ->check(dmise::transport_address());

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double turbulence_wavelength_m = 500 * nm;
 
-/// Ticks from one state to the next, one at least.
+/// Ticks between two states, at least one.
 Tick period(double every_s, SimTime tick_length) {
   const double ticks = std::ceil(every_s / tick_length.seconds() - 1e-9);
   return std::max<Tick>(1, Tick(ticks));

@@ -1,4 +1,5 @@
-// dmise-environment-node: publishes Sun, Moon, the Earth's orientation and the skies of a scenario.
+// dmise-environment-node: publishes Sun, Moon, the Earth's orientation and the atmospheres of a
+// scenario.
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
 #include "nodes/environment/environment_actor.h"
@@ -9,10 +10,11 @@ int main(int argc, char** argv) {
   dmise::CommonFlags flags{.name = dmise::environment_node};
   std::string config;
   int threads = 1;
-  CLI::App app("Publishes what all sensors of a scenario share.", "dmise-environment-node");
+  CLI::App app("Publishes Sun, Moon, Earth orientation and the atmosphere above each site.",
+               "dmise-environment-node");
   dmise::add_common_flags(app, flags);
   app.add_option("--config", config, "scenario (YAML)")->required();
-  app.add_option("--threads", threads, "accepted as by all nodes; one is used");
+  app.add_option("--threads", threads, "accepted for compatibility; one thread is used");
   return dmise::run_program(app, flags, argc, argv, [&] {
     const dmise::Scenario scenario = dmise::load_scenario(config);
     dmise::EnvironmentActor actor(scenario, dmise::make_clock(scenario));

@@ -5,7 +5,7 @@
 #include "core/frames/vec.h"
 #include "nodes/wire/state_codec.h"
 
-// One pair of functions for each state: core type <-> message of proto/. Private to nodes/wire.
+// One pair of functions per state: core type <-> message of proto/. Private to nodes/wire.
 namespace dmise {
 
 Encoded encode_body(const ObjectRoster&);
@@ -24,7 +24,7 @@ FrameReport decode_report(std::string_view payload);
 DetectionSet decode_detections(std::string_view payload);
 TruthSet decode_truths(std::string_view payload);
 
-/// The message of type `M` that `payload` is.
+/// Parses `payload` as a message of type `M`; throws `Refused`.
 template <class M>
 M parse(std::string_view payload) {
   M message;

@@ -8,7 +8,8 @@
 
 namespace dmise {
 
-/// Joins one message into the digest of its topic and tick: what it says, not who sent it when.
+/// Adds one message to the digest of its topic and tick: content only, independent of sender and
+/// time.
 inline std::uint64_t fold_content(std::uint64_t digest, MessageKind kind, std::string_view payload,
                                   std::string_view arrays) {
   const auto crc = [](std::string_view bytes) {

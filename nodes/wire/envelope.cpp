@@ -8,12 +8,13 @@
 namespace dmise {
 namespace {
 
-// The seal ends the envelope: the tag of field 15, fixed32, then the CRC, little endian. Fields may
-// be appended to a serialised message, so the whole is an Envelope to any Protocol Buffers library.
+// The seal at the end of the envelope: the tag of field 15, fixed32, then the CRC, little endian.
+// Fields may be appended to a serialised message, so the result is an Envelope for any Protocol
+// Buffers library.
 constexpr char seal_tag = 0x7d;
 constexpr std::size_t seal_bytes = 5;
 
-// A message that can't be parsed is refused and counted here; the library would also print it.
+// Unparsable messages are refused and counted here; do not let the library print them too.
 [[maybe_unused]] const auto printing = google::protobuf::SetLogHandler(nullptr);
 
 std::uint32_t seal_of(std::string_view topic, std::string_view unsealed, std::string_view payload,

@@ -15,7 +15,7 @@ inline constexpr std::size_t max_envelope_bytes = 1024;
 inline constexpr std::size_t max_payload_bytes = std::size_t(16) << 20;
 inline constexpr std::size_t max_array_bytes = std::size_t(256) << 20;
 
-/// What a message carries; values are those of Kind in proto/dmise/v1/node.proto.
+/// Kind of a message; values are those of Kind in proto/dmise/v1/node.proto.
 enum class MessageKind : std::uint8_t {
   probe = 1,
   watermark = 2,
@@ -26,7 +26,7 @@ enum class MessageKind : std::uint8_t {
   detection_set = 7,
   truth_set = 8,
   site_state = 9,
-  position = 100,  // where a topic is, in an answer to a resend request
+  position = 100,  // sequence position of a topic, in an answer to a resend request
 };
 
 struct Envelope {
@@ -55,11 +55,11 @@ struct Frames {
   bool operator==(const Frames&) const = default;
 };
 
-/// Puts topic, envelope and content together and seals them with their CRC-32C.
+/// Assembles topic, envelope and content and seals them with their CRC-32C.
 Frames seal(std::string topic, const Envelope& envelope, std::string payload = {},
             std::string arrays = {});
 
-/// The envelope of three or four frames whose seal holds. Throws `Refused` otherwise.
+/// Returns the envelope of three or four frames with a valid seal. Throws `Refused` otherwise.
 Envelope open(std::span<const std::string_view> frames);
 
 }  // namespace dmise

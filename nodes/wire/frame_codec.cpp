@@ -2,7 +2,7 @@
 #include "dmise/v1/frame.pb.h"
 #include "nodes/wire/codecs.h"
 
-// Fields that have one name and type on both sides, in the order of the message.
+// Fields with the same name and type on both sides, in the order of the message.
 // clang-format off
 #define DMISE_REPORT_FIELDS(X) \
   X(sensor) X(frame) X(boresight_ra_rad) X(boresight_dec_rad) X(limiting_magnitude) \

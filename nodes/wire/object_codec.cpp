@@ -60,7 +60,7 @@ std::optional<SunTrackingPanel> decode_panel(const v1::SunTrackingPanel& p) {
                           .normal = {p.normal_x(), p.normal_y(), p.normal_z()}};
 }
 
-/// How many objects have an attitude: the extent of their list of indices, 0 without one.
+/// Number of objects with an attitude: the extent of their list of indices, 0 without one.
 std::size_t attitude_count(const v1::ObjectStates& message) {
   for (const auto& layout : message.arrays()) {
     if (layout.name() != "attitude_object") continue;
@@ -126,7 +126,7 @@ Encoded encode_body(const ObjectStates& states) {
 ObjectStates decode_states(std::string_view payload, std::string_view arrays) {
   const auto message = parse<v1::ObjectStates>(payload);
   if (message.count() > max_array_bytes)
-    throw Refused(Refusal::payload, "count: more objects than an array frame holds");
+    throw Refused(Refusal::payload, "count: more objects than fit in an array frame");
   ObjectStates states;
   states.tick = message.tick();
   states.time = {message.time_ns()};

@@ -12,7 +12,7 @@
 
 namespace dmise {
 
-/// What every message of a run agrees with.
+/// Parameters that every message of a run must match.
 struct RunFacts {
   std::uint64_t run_id = 0;
   SimTime tick_length{1};
@@ -30,21 +30,21 @@ struct Received {
   std::uint64_t content_digest = 0;  // of kind, payload and arrays
 };
 
-/// The gate behind every subscription: frames in, messages out; what fails a check is counted by
-/// reason and never acted on.
+/// Validates received messages for every subscription. Messages that fail a check are counted by
+/// reason and dropped.
 class Receiver {
  public:
   explicit Receiver(RunFacts run) : run_(run) {}
 
-  /// Messages on `topic` are accepted from this publisher alone. Others' are refused.
+  /// Accepts messages on `topic` only from this publisher.
   void allow(const std::string& topic, const std::string& publisher, std::uint64_t incarnation);
 
-  /// Empty when the message is refused.
+  /// Empty if the message is refused.
   std::optional<Received> receive(std::span<const std::string_view> frames);
 
   std::uint64_t refused(Refusal reason) const { return refused_[std::size_t(reason)]; }
   std::uint64_t refused() const;
-  /// Of the last message refused; empty if none was.
+  /// Reason of the last refusal; empty if there was none.
   const std::string& last_refusal() const { return last_refusal_; }
 
  private:

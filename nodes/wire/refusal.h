@@ -7,17 +7,17 @@
 
 namespace dmise {
 
-/// Why a message was not acted on. Counted by reason.
+/// Reasons for refusing a message, as counted.
 enum class Refusal : std::uint8_t {
   frames,          // number or size of the frames
   envelope,        // not an Envelope
   seal,            // CRC-32C of the message
   schema_version,  // of another version of the wire
   run,             // of another run
-  topic,           // nobody's, or not the publisher's, or the kind does not belong there
+  topic,           // unknown, or not the publisher's, or of another kind
   tick,            // outside the run, or tick and time disagree
   payload,         // not the message that the envelope announces, or sizes that disagree
-  value,           // a number that is not finite or not in its range, or a text that is none
+  value,           // a number that is not finite or out of range, or invalid text
   count
 };
 

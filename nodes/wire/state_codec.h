@@ -8,18 +8,18 @@
 
 namespace dmise {
 
-/// A state as it travels: third and fourth frame.
+/// A serialised state: third and fourth frame.
 struct Encoded {
   MessageKind kind = MessageKind::watermark;
   std::string payload;
   std::string arrays;
 };
 
-/// Any state; `decode` gives it back bit by bit. Throws `Refused` (reason `value`, naming the
-/// field) when the state breaks the rules of `state_rules.h`: what would be refused is not sent.
+/// Serialises any state; `decode` restores it to the bit. Throws `Refused` (reason `value`, naming
+/// the field) if the state violates `state_rules.h`: a state that would be refused is never sent.
 Encoded encode(const State& state);
 
-/// Throws `Refused`.
+/// Inverse of `encode`. Throws `Refused`.
 State decode(MessageKind kind, std::string_view payload, std::string_view arrays);
 
 }  // namespace dmise

@@ -1,4 +1,4 @@
-// dmise-sensor-node: one sensor of a scenario as a process of its own: renders, detects, publishes.
+// dmise-sensor-node: runs one sensor of a scenario: renders, detects, publishes.
 #include <spdlog/spdlog.h>
 
 #include "core/base/error.h"
@@ -12,18 +12,19 @@ int main(int argc, char** argv) {
   dmise::CommonFlags flags;
   std::string config, out = "out/node", digest;
   int threads = 1;
-  CLI::App app("Renders what one sensor of a scenario sees, finds what moved, publishes it.",
-               "dmise-sensor-node");
+  CLI::App app(
+      "Renders the frames of one sensor of a scenario, detects moving objects, publishes both.",
+      "dmise-sensor-node");
   dmise::add_common_flags(app, flags);
   app.add_option("--config", config, "scenario (YAML)")->required();
-  app.add_option("--out", out, "directory of the run; this sensor writes into its own below it")
+  app.add_option("--out", out, "directory of the run; this sensor writes to a subdirectory")
       ->capture_default_str();
   app.add_option("--digest", digest, "digest of the run, written into every frame");
-  app.add_option("--threads", threads, "threads to compute with")->check(CLI::Range(1, 256));
+  app.add_option("--threads", threads, "number of threads")->check(CLI::Range(1, 256));
   return dmise::run_program(app, flags, argc, argv, [&] {
     dmise::Scenario scenario = dmise::load_scenario(config);
     if (app.count("--seed")) scenario.seed = flags.seed;
-    if (flags.name.empty()) throw dmise::ConfigError("--name: is required: which sensor this is");
+    if (flags.name.empty()) throw dmise::ConfigError("--name: is required: the sensor's name");
     dmise::Threads pool(threads);
     const auto sensor =
         dmise::make_sensor(scenario, flags.name, digest, out, dmise::load_stars(scenario), pool);

@@ -8,7 +8,7 @@
 namespace dmise {
 namespace {
 
-/// Twice the angle from the boresight of what falls (x, y) [px] beside it.
+/// Twice the angle from the boresight of a point (x, y) [px] from the centre.
 double across_rad(const Optics& optics, double x_px, double y_px) {
   const PixelPosition centre = principal_point(optics);
   const auto direction = unproject(optics, {centre.x_px + x_px, centre.y_px + y_px});

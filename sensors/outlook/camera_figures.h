@@ -3,7 +3,7 @@
 
 namespace dmise {
 
-/// What a camera's optics and grid come to, from edge to edge of the outermost pixels.
+/// Field of view and scale of a camera, from edge to edge of the outermost pixels.
 struct CameraFigures {
   double width_rad = 0.0, height_rad = 0.0;  // through the boresight, along columns and rows
   double diagonal_rad = 0.0;                 // through the boresight, from corner to corner
@@ -11,7 +11,7 @@ struct CameraFigures {
   double f_number = 0.0;
 };
 
-/// Fields reach to 360 deg where the image is smaller than the frame.
+/// Fields are up to 360 deg if the image is smaller than the frame.
 CameraFigures camera_figures(const Optics& optics);
 
 }  // namespace dmise

@@ -53,16 +53,17 @@ DetectionLimit detection_limit(double noise_e, double sigma_px, double streak_px
   DetectionLimit limit{.streak_px = streak_px};
   limit.point_e = electrons_of(point_limit_snr, 1.0 / kernel_square_sum(sigma_px), noise_e);
   if (const DetectorSettings search; star_px >= search.least_difference_px) {
-    // Beyond a few widths a longer trail is no less like a point: it is cut for the sum's sake.
+    // Beyond a few widths the correlation no longer changes: limit the length of the sum.
     const double unlike = 1.0 - correlation_squared(sigma_px, std::min(star_px, 100 * sigma_px));
     const double snr = std::max(point_limit_snr, std::sqrt(search.blend_margin / unlike));
     limit.found_point_e = electrons_of(snr, 1.0 / kernel_square_sum(sigma_px), noise_e);
   }
-  const double width_px = 2 * std::sqrt(pi) * sigma_px;  // that as much noise as the blur's has
+  const double width_px =
+      2 * std::sqrt(pi) * sigma_px;  // effective width of the matched filter's noise
   const double places = std::max(1.0, streak_px / width_px);
   const double lift = places > 1.0 ? normal_quantile(std::pow(0.5, 1.0 / places)) : 0.0;
   const double density = electrons_of(streak_limit_snr - lift, width_px * width_px, noise_e);
-  // `electrons_of` is for a point of these pixels; along a streak its density is that over a width.
+  // `electrons_of` is for a point of these pixels; a streak's density is over one width.
   limit.streak_e_per_px =
       std::max(density / width_px,
                electrons_of(point_limit_snr, width_px * std::max(width_px, streak_px), noise_e) /
@@ -85,7 +86,7 @@ PixelBackground background_at_centre(const View& view, double drawn_to_v_mag) {
         Throughput(view).electrons_per_photon_m2() * view.times().seconds() *
         pixel_solid_angle_sr(optics, centre) * view.illumination(centre);
   const Detector detector = acting_detector(sensor.camera.detector, sensor.effects);
-  constexpr int side = 8;  // the median of a few: hot pixels are drawn by place
+  constexpr int side = 8;  // the median of a few pixels, because some are hot
   ExpectedElectronImage light(side, side);
   std::fill(light.pixels.begin(), light.pixels.end(), float(sky_e));
   Threads threads(1);

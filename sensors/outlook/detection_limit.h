@@ -5,36 +5,36 @@
 
 namespace dmise {
 
-/// Light that stands out of the noise.
+/// Faintest detectable light.
 struct DetectionLimit {
   double point_e = 0.0;                 // electrons of a point in the exposure
-  std::optional<double> found_point_e;  // of one that is told from stars, in half of all frames
-  double streak_e_per_px = 0.0;         // electrons a pixel of its length of a streak ...
+  std::optional<double> found_point_e;  // of one distinguished from stars in half of all frames
+  double streak_e_per_px = 0.0;         // electrons per pixel of length of a streak ...
   double streak_px = 0.0;               // ... of this length
 };
 
-/// SNR of the matched filter that a point's fit must reach, and a pixel of a streak in the frame
-/// filtered for points (`DetectorSettings`).
+/// Required SNR of a point's fit, and of a pixel of a streak in the frame filtered for points
+/// (`DetectorSettings`).
 inline constexpr double point_limit_snr = 6.0, streak_limit_snr = 5.0;
 
-/// For pixels of `noise_e` rms without the source, and the Gaussian `sigma_px` that pixels see.
+/// For pixels of `noise_e` rms without the source, and the Gaussian `sigma_px` including the pixel.
 ///
-/// A point of N electrons has SNR N / sqrt(N + A noise^2), where A is one over the sum of the
-/// squares of its shares of light in the pixels. A streak of density d has SNR d / noise at every
-/// place of its length in the frame filtered for points; of the L / (2 sqrt(pi) sigma) places that
-/// are independent the highest is above the threshold in half of all frames. Its whole must reach
-/// the point's SNR as well.
+/// A point of N electrons has SNR N / sqrt(N + A noise^2), where A is the inverse of the sum of
+/// squares of its fractions of light in the pixels. A streak of density d has SNR d / noise
+/// everywhere along its length in the frame filtered for points; the maximum of the L / (2 sqrt(pi)
+/// sigma) independent positions is above the threshold in half of all frames. The whole streak must
+/// reach the point's SNR as well.
 ///
-/// A point is told from stars' trails of `star_px`, if they are long enough at all, by its shape:
-/// the trail fits it worse by SNR^2 (1 - r^2), where r is the correlation of both shapes, and that
-/// must reach the search's margin (`DetectorSettings::blend_margin`).
+/// A point is distinguished from star trails of `star_px`, if they are long enough, by its shape:
+/// the trail fits it worse by SNR^2 (1 - r^2), where r is the correlation of both shapes, which
+/// must reach the margin `DetectorSettings::blend_margin`.
 DetectionLimit detection_limit(double noise_e, double sigma_px, double streak_px, double star_px);
 
-/// Shorter streaks are told from a few stars in a row by their shape, which takes more light than
-/// is told here.
+/// Shorter streaks are distinguished from a few stars in a row by shape, which needs more light
+/// than stated here.
 inline constexpr double shortest_streak_px = 16.0;
 
-/// Background of the frame's centre, without any source, and what it fluctuates by.
+/// Background at the frame's centre, without sources, and its fluctuation.
 struct PixelBackground {
   double electrons = 0.0;  // expected: sky and dark current
   double noise_e = 0.0;    // from frame to frame

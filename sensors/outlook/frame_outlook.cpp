@@ -78,7 +78,7 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
   out.sun_in_field =
       FieldOfView(optics).contains(camera_from_gcrs * to_sun_m) && !hides(unit(to_sun_m));
 
-  const double reach_px = 5 * scene.psf_sigma_px + 1;  // of a source's light
+  const double reach_px = 5 * scene.psf_sigma_px + 1;  // radius of a source's light
   double drawn_to_v_mag = -std::numeric_limits<double>::infinity();
   if (scene.stars && sensor.effects.has(StarBackground::facts)) {
     const StarLayer layer(sensor, scene.stars);

@@ -10,9 +10,8 @@
 
 namespace dmise {
 
-/// What one frame will show, at mid exposure, without making it. Elevations are those of centres
-/// seen from the sensor's place through no air, above the horizon of the ellipsoid; on the ground
-/// alone.
+/// Prediction of one frame, at mid exposure, without rendering it. Elevations are of centres,
+/// without refraction, above the horizon of the ellipsoid; on the ground only.
 struct FrameOutlook {
   std::uint32_t frame = 0;
   SimTime middle;
@@ -22,32 +21,32 @@ struct FrameOutlook {
   bool target_hidden = false;
   bool sun_in_field = false;
   PixelBackground background;   // at the frame's centre
-  double full_e = 0.0;          // more than this and the pixel is saturated
+  double full_e = 0.0;          // saturation level
   double extinction_mag = 0.0;  // along the boresight
   double streak_deg_per_s = 0.0, streak_px = 0.0;
   double star_px = 0.0;  // length of a star's trail at the centre
-  // None of a saturated or hidden sky; of points that are told from stars where those trail; of
-  // streaks that are long enough.
+  // Empty for a saturated or hidden sky; `found_point_v_mag` also if stars do not trail,
+  // `streak_limit_v_mag` also for streaks that are too short.
   std::optional<double> point_limit_v_mag, found_point_v_mag, streak_limit_v_mag;
   std::optional<std::uint32_t> stars, objects;  // with light in the frame
 };
 
-/// Rate of the streaks whose limit is told: of a satellite 1000 km overhead.
+/// Rate of the streaks of the limit: a satellite 1000 km overhead.
 inline constexpr double usual_rate_deg_per_s = 0.42;
 
-/// What it needs beside the view. `stars` and `shapes` may be null. Objects are counted where
-/// `count_objects`, for the world may hold some of them only.
+/// Further inputs besides the view. `stars` and `shapes` may be null. Objects are counted if
+/// `count_objects`, because the world may hold only some of them.
 struct OutlookScene {
   std::shared_ptr<const StarMap> stars;
   double faintest_star_mag = 0.0;
   const ObjectShapes* shapes = nullptr;
-  double psf_sigma_px = 0.0;  // as pixels see it
+  double psf_sigma_px = 0.0;  // including the pixel
   bool count_objects = true;
 };
 
 FrameOutlook frame_outlook(const View& view, const OutlookScene& scene);
 
-/// Objects whose path comes lit into the frame or within `margin_px` of it.
+/// Objects whose sunlit path is in the frame or within `margin_px` of it.
 std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes, double margin_px);
 
 }  // namespace dmise

@@ -23,7 +23,7 @@ using Frames = std::vector<FrameOutlook>;
   return text;
 }
 
-/// Least and greatest of what frames have of a figure.
+/// Minimum and maximum of a quantity over frames.
 struct Range {
   double least = 0.0, most = 0.0;
   bool any = false;
@@ -46,7 +46,7 @@ std::string text_of(const Range& range, const char* format) {
   return least == most ? least : least + " to " + most;
 }
 
-/// From the first frame looked at to the last, with what is beyond both in between.
+/// From the first examined frame to the last, with extremes in between.
 std::string course_of(const Frames& frames, std::optional<double> FrameOutlook::*figure) {
   const Range range = range_of(frames, figure, deg);
   const double first = (frames.front().*figure).value_or(0.0) / deg;
@@ -115,7 +115,7 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
          (o.on_ground ? "below the horizon " : "at the Earth ") + of_frames(m));
   if (const auto n = count_if(o.frames, [](auto& f) { return f.sun_in_field; }))
     warn("the Sun is in the field " + of_frames(n));
-  // Civil twilight ends at -6 deg: above it no star is found by eye.
+  // Civil twilight ends at -6 deg: above it no star is visible by eye.
   const auto day = [](const FrameOutlook& f) {
     return f.sun_elevation_rad && *f.sun_elevation_rad > -6.0 * deg;
   };
@@ -174,7 +174,7 @@ std::vector<std::string> lines_of(const SensorOutlook& o) {
     text += (text.empty() ? "" : ", ") + text_of(objects, "%.0f") +
             (objects.most == 1.0 ? " lit object" : " lit objects");
   if (!text.empty()) say(text + " in the field (" + looked_at(o) + " looked at)");
-  if (!o.objects_counted) say("objects in the field are not counted: there are too many");
+  if (!o.objects_counted) say("objects in the field are not counted: too many");
   return lines;
 }
 

@@ -17,9 +17,9 @@
 namespace dmise {
 namespace {
 
-constexpr std::uint32_t most_frames_with_states = 2000;  // of a platform or a target
+constexpr std::uint32_t most_frames_with_states = 2000;  // for a platform or a target
 
-/// Those objects of a population alone. `indices` ascend.
+/// The subset of a population. `indices` ascend.
 ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::size_t>& indices) {
   ObjectPopulation some;
   for (const std::size_t i : indices) {
@@ -35,7 +35,7 @@ ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::siz
   return some;
 }
 
-/// The objects without which the sensor has no place or no direction.
+/// Objects that the sensor's position or direction depends on.
 std::set<std::size_t> needed_objects(const SensorConfig& sensor, const ObjectRoster& roster) {
   std::set<std::size_t> needed;
   if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place))
@@ -45,7 +45,7 @@ std::set<std::size_t> needed_objects(const SensorConfig& sensor, const ObjectRos
   return needed;
 }
 
-/// Gaussian that pixels see.
+/// Gaussian width including the pixel.
 double psf_sigma_px(const SensorConfig& sensor) {
   const double fwhm_px =
       plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing, sensor.exposure_s)
@@ -54,7 +54,7 @@ double psf_sigma_px(const SensorConfig& sensor) {
   return std::sqrt(sigma_px * sigma_px + 1.0 / 12);
 }
 
-/// Worlds around frames of one sensor, as the run's actors would tell them.
+/// Worlds around frames of one sensor, as published by the run's actors.
 class Worlds {
  public:
   Worlds(const Scenario& scenario, const SensorConfig& sensor, const Clock& clock)
@@ -63,7 +63,7 @@ class Worlds {
   struct Ticks {
     Tick first = 0, last = 0;
   };
-  /// Those that the states of a frame are interpolated between.
+  /// Ticks that the states of a frame are interpolated from.
   Ticks ticks_of(const FrameTimes& exposure) const {
     const Tick last_tick = scenario_.last_tick();
     const Tick before = std::max<Tick>(0, exposure.start.ns / scenario_.tick.ns - 1);
@@ -91,7 +91,7 @@ class Worlds {
   }
 
  private:
-  /// A scenario of this sensor whose environment tells at every tick.
+  /// A scenario of this sensor alone with an environment at every tick.
   static Scenario alone(const Scenario& scenario, const SensorConfig& sensor) {
     Scenario one;
     one.tick = scenario.tick;
@@ -105,7 +105,7 @@ class Worlds {
   EnvironmentActor environment_;
 };
 
-/// `count` of the frames 1 to `frames`, with the first and the last.
+/// `count` of the frames 1 to `frames`, including the first and the last.
 std::vector<std::uint32_t> evenly(std::uint32_t frames, std::uint32_t count) {
   count = std::min(count, frames);
   if (count == 0) return {};
@@ -116,7 +116,7 @@ std::vector<std::uint32_t> evenly(std::uint32_t frames, std::uint32_t count) {
   return chosen;
 }
 
-/// The first frame looked at where an object that the sensor needs has no state, and which.
+/// The first examined frame at which an object needed by the sensor has no state.
 struct Loss {
   std::uint32_t frame = 0;
   std::string why;
@@ -198,7 +198,7 @@ std::vector<std::string> catalogue_warnings(const Scenario& scenario,
   char text[200];
   std::snprintf(text, sizeof text,
                 "half of the %zu element sets are %.0f days or more from the start of the run: "
-                "places are off by kilometres to tens of kilometres",
+                "positions are off by kilometres to tens of kilometres",
                 population.elements.size(), *middle);
   const std::string where = scenario.objects.empty() ? scenario.path : scenario.objects[0].where;
   return {where + ": " + text};

@@ -1,5 +1,5 @@
-// dmise-positions-node: writes where a scenario's cameras and their platforms, its own objects, Sun
-// and Moon are.
+// dmise-positions-node: writes the positions of a scenario's cameras and platforms, its own
+// objects, Sun and Moon.
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
 #include "nodes/runtime/node/node.h"
@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   dmise::add_common_flags(app, flags);
   app.add_option("--config", config, "scenario (YAML)")->required();
   app.add_option("--out", out, "directory of the run")->capture_default_str();
-  app.add_option("--threads", threads, "accepted as by all nodes; one is used");
+  app.add_option("--threads", threads, "accepted for compatibility; one thread is used");
   return dmise::run_program(app, flags, argc, argv, [&] {
     const dmise::Scenario scenario = dmise::load_scenario(config);
     if (!scenario.output.positions())

@@ -35,7 +35,7 @@ PositionFiles::PositionFiles(std::string directory, const OutputConfig& output,
   const std::string made = with_oem_ ? directory_ + "/positions" : directory_;
   std::error_code code;
   std::filesystem::create_directories(made, code);
-  if (code) throw Error(made + ": can't be made: " + code.message());
+  if (code) throw Error(made + ": can't be created: " + code.message());
 }
 
 PositionFiles::~PositionFiles() {

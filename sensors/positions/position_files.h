@@ -12,8 +12,8 @@
 
 namespace dmise {
 
-/// positions.csv, positions.jsonl and positions/NAME-NUMBER.oem in a run's directory, which grow by
-/// a tick at a time and hold no wall clock. All throw `Error` "PATH: reason".
+/// Writes positions.csv, positions.jsonl and positions/NAME-NUMBER.oem in a run's directory, tick
+/// by tick, without wall-clock times. All methods throw `Error` "PATH: reason".
 class PositionFiles {
  public:
   PositionFiles(std::string directory, const OutputConfig& output, std::string creation_date);
@@ -21,11 +21,11 @@ class PositionFiles {
   PositionFiles(const PositionFiles&) = delete;
   PositionFiles& operator=(const PositionFiles&) = delete;
 
-  /// The objects that have an ephemeris file; called once, before the others.
+  /// Opens the objects' ephemeris files; call once, before the others.
   void open_ephemerides(const std::vector<ObjectInfo>& objects);
-  /// Keeps what an earlier process wrote of ticks before `tick`, whose time is `utc`.
+  /// Keeps rows of an earlier process before `tick`, whose time is `utc`.
   void keep_before(Tick tick, const std::string& utc);
-  /// All rows of one tick; `previous_utc`: the time of the tick before.
+  /// Adds all rows of one tick; `previous_utc`: the time of the previous tick.
   void add(const std::vector<PositionRow>& rows, const std::string& previous_utc);
 
  private:
@@ -38,12 +38,12 @@ class PositionFiles {
 
   std::string directory_, creation_date_;
   bool with_oem_;
-  Table csv_, json_;                                               // without a path: not wanted
+  Table csv_, json_;                                               // path empty: not written
   std::map<std::uint32_t, std::unique_ptr<OemFile>> ephemerides_;  // by catalogue number
 };
 
-/// Last tick of which positions.csv or positions.jsonl in a run's directory holds a whole line; -1:
-/// none does.
+/// Last tick with a complete line in positions.csv or positions.jsonl of a run's directory; -1 if
+/// there is none.
 Tick last_tick_written(const std::string& directory);
 
 }  // namespace dmise

@@ -15,7 +15,7 @@ std::string number(double x) {
   return {text, std::to_chars(text, text + sizeof text, x).ptr};
 }
 
-/// As RFC 4180 has it.
+/// Quoted as in RFC 4180.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";

@@ -9,7 +9,7 @@
 
 namespace dmise {
 
-/// Where one thing is at one tick.
+/// Position of one thing at one tick.
 struct PositionRow {
   Tick tick = 0;
   std::string time_utc;  // nine decimals
@@ -24,11 +24,11 @@ struct PositionRow {
 /// Header of the CSV table, with its newline.
 std::string csv_header();
 
-/// One line each, with its newline; numbers are the shortest texts that read back to the same.
+/// One line each, with its newline; numbers are the shortest text that reads back to the same bits.
 std::string csv_line(const PositionRow& row);
 std::string json_line(const PositionRow& row);
 
-/// The tick of a whole line written by either; nothing for any other line.
+/// The tick of a complete line written by either; empty for any other line.
 std::optional<Tick> tick_of_line(const std::string& line);
 
 }  // namespace dmise

@@ -11,7 +11,7 @@
 namespace dmise {
 namespace {
 
-/// The one of the two signs whose w is not negative.
+/// The equivalent quaternion with w >= 0.
 Quaternion upright(const Quaternion& q) { return q.w < 0 ? Quaternion{-q.w, -q.x, -q.y, -q.z} : q; }
 
 }  // namespace

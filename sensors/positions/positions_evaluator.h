@@ -12,20 +12,19 @@
 
 namespace dmise {
 
-/// Writes at every tick where cameras, their platforms and targets, the scenario's own objects, Sun
-/// and Moon are, in GCRS. A camera's attitude is the one with which it would be aimed at that
-/// instant, whether or not its shutter is open.
+/// Writes at every tick the positions of cameras, their platforms and targets, the scenario's own
+/// objects, Sun and Moon, in GCRS. A camera's attitude is that of aiming at that instant, also
+/// between exposures.
 class PositionsEvaluator : public Evaluator {
  public:
-  /// Throws `Error` when `directory` can't be written.
+  /// Throws `Error` if `directory` cannot be written.
   PositionsEvaluator(const Scenario& scenario, Clock clock, const std::string& directory);
 
   std::string name() const override { return positions_node; }
   std::vector<std::string> produces() const override { return {}; }
   std::vector<std::string> consumes() const override { return {objects_topic, environment_topic}; }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
-  /// The tick before, whose state may be the first of an ephemeris, and back to when the
-  /// environment was last told.
+  /// The previous tick, which may be the first of an ephemeris, and the latest environment state.
   Tick look_back() const override;
   std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
   std::uint64_t progress() const override { return steps_; }

@@ -3,14 +3,14 @@
 
 namespace dmise {
 
-/// Pixels of a tile.
+/// A rectangle of pixels of a tile.
 struct PixelBox {
   int left = 0, top = 0, columns = 0, rows = 0;
 };
 
 /// Adds the mean of each pixel's samples to the tile: of up to three bands from `first_band` on
-/// and, if wished, of the fourth channel to the coverage. `samples`: box.rows x oversampling rows
-/// of box.columns x oversampling samples of four floats.
+/// and, if `with_coverage`, of the fourth channel to the coverage. `samples`: box.rows x
+/// oversampling rows of box.columns x oversampling samples of four floats.
 void add_box_means(const float* samples, const PixelBox& box, int oversampling,
                    std::size_t first_band, bool with_coverage, Tile& tile);
 

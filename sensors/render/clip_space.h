@@ -5,7 +5,7 @@
 
 namespace dmise {
 
-/// The camera's mapping to clip space: linear, so that what lies behind the camera is clipped.
+/// The camera's mapping to clip space: linear, so that geometry behind the camera is clipped.
 class ClipSpace {
  public:
   explicit ClipSpace(const TileScene& scene)
@@ -31,7 +31,7 @@ class ClipSpace {
                     2.0 * (camera.principal_y_px - camera.top + 0.5) / rows - 1.0, 1});
   }
 
-  /// In camera axes [m].
+  /// Position in camera axes [m].
   glm::dvec3 place(const Vec<Body>& v) const { return camera_from_body_ * glm_of(v) + object_m_; }
   double near_m() const { return near_; }
 

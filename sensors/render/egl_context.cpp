@@ -13,7 +13,7 @@
 namespace dmise {
 namespace {
 
-/// libEGL's functions, by address.
+/// Function pointers of libEGL.
 struct Egl {
   PFNEGLGETPROCADDRESSPROC get = nullptr;
 

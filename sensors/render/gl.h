@@ -3,7 +3,7 @@
 
 #include "sensors/render/gl_context.h"
 
-// The functions of OpenGL 4.5 core that the renderer uses, by address: libGL is never linked.
+// Function pointers of OpenGL 4.5 core: libGL is never linked.
 #define DMISE_GL_FUNCTIONS(F)                                  \
   F(PFNGLGETSTRINGPROC, GetString)                             \
   F(PFNGLGETERRORPROC, GetError)                               \
@@ -66,10 +66,10 @@ struct Gl {
 #undef DMISE_GL_MEMBER
 };
 
-/// Functions of a current context. Throws `Error` naming one that is missing.
+/// Loads the functions of the current context. Throws `Error` naming a missing one.
 Gl load_gl(GlContext& context);
 
-/// What draws: "OSMesa, llvmpipe (...), OpenGL 4.5 ...".
+/// Description for the log: "OSMesa, llvmpipe (...), OpenGL 4.5 ...".
 std::string description_of(const Gl& gl, const GlContext& context);
 
 }  // namespace dmise

@@ -31,7 +31,7 @@ std::unique_ptr<GlContext> open_gl() {
   if (wish == "osmesa") return open_osmesa();
   if (wish == "egl") {
     if (auto context = open_egl(true)) return context;
-    throw Error("DMISE_RENDERER=egl: no OpenGL 4.5 through EGL here");
+    throw Error("DMISE_RENDERER=egl: no OpenGL 4.5 through EGL");
   }
   if (!wish.empty()) throw Error("DMISE_RENDERER: must be osmesa or egl, got " + std::string(wish));
   if (auto context = open_egl()) return context;

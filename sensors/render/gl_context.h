@@ -4,7 +4,7 @@
 
 namespace dmise {
 
-/// A current OpenGL 4.5 core context that draws into memory.
+/// A current OpenGL 4.5 core context with an off-screen framebuffer.
 class GlContext {
  public:
   virtual ~GlContext() = default;
@@ -13,14 +13,15 @@ class GlContext {
   virtual std::string name() const = 0;  // "OSMesa", "EGL"
 };
 
-/// Mesa's software rasteriser. Throws `Error` when libOSMesa is absent or has no OpenGL 4.5.
+/// Mesa's software rasteriser. Throws `Error` if libOSMesa is missing or has no OpenGL 4.5.
 std::unique_ptr<GlContext> open_osmesa();
 
-/// EGL without a surface, on a graphics card; nothing where there is none (a software device does
-/// not count) or the build has no EGL.
+/// EGL without a surface, on a graphics card; null if there is none (software devices do not count)
+/// or the build has no EGL.
 std::unique_ptr<GlContext> open_egl(bool also_software = false);
 
-/// `DMISE_RENDERER=osmesa|egl` in the environment, else EGL where a graphics card is, else OSMesa.
+/// Selected by `DMISE_RENDERER=osmesa|egl` in the environment; default EGL on a graphics card, else
+/// OSMesa.
 std::unique_ptr<GlContext> open_gl();
 
 }  // namespace dmise

@@ -20,7 +20,7 @@ namespace {
 /// Samples of one piece per axis: 4 MB of colour.
 constexpr int piece_samples = 512;
 
-/// From this many radii on the same of an object is seen from the camera as along one direction.
+/// From this number of radii on an object is seen along parallel directions.
 constexpr double parallel_from = 1e4;
 
 class GlRenderer final : public Renderer {
@@ -71,7 +71,7 @@ class GlRenderer final : public Renderer {
     check_outside(*scene.mesh, scene.camera_from_body, scene.object_m);
   }
 
-  /// A program with the buffers that it reads.
+  /// A program with its input buffers.
   struct Stage {
     unsigned program = 0, arrays = 0, buffers[3] = {0, 0, 0};  // vertices, indices, textures
     int piece = -1, source = -1, weights = -1;
@@ -91,11 +91,11 @@ class GlRenderer final : public Renderer {
     }
     if (gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
       throw Error("OpenGL cannot draw into RGBA32F");
-    // Depth runs from 1 at the nearest to 0: floats are finest where perspective is coarsest.
+    // Depth runs from 1 at the nearest point to 0: floats are finest where perspective is coarsest.
     gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     gl_.Enable(GL_DEPTH_TEST);
     gl_.DepthFunc(GL_GREATER);
-    // Snapped corners move a plane by 1/256 of a sample's slope; this is more.
+    // Snapping of corners moves a plane by 1/256 of a sample's slope; the offset is larger.
     gl_.PolygonOffset(-0.05f, -4.0f);
     gl_.ClearDepth(0.0);
     gl_.ClearColor(0, 0, 0, 0);
@@ -173,7 +173,8 @@ class GlRenderer final : public Renderer {
     }
   }
 
-  /// Indices of the triangles in the box, by material where they have pictures; underlays first.
+  /// Indices of the triangles in the box, sorted by material if they have pictures; underlays
+  /// first.
   void choose(const TileMesh& mesh, const PixelBox& box, std::size_t materials) {
     indices_.clear();
     ranges_.clear();
@@ -203,7 +204,7 @@ class GlRenderer final : public Renderer {
     const Material& m = scene.mesh->materials[material];
     textures_.bind_colours(m.colour_map);
     textures_.bind_slopes(m.slope_map);
-    glm::mat3 rows(0.0f);  // one a band
+    glm::mat3 rows(0.0f);  // one per band
     for (std::size_t k = 0; k < 3 && first_band + k < scene.bands.size(); ++k) {
       const auto& w = scene.bands[first_band + k].facets->colour_weights[material];
       rows[glm::length_t(k)] = m.colour_map ? glm::vec3(w[0], w[1], w[2]) : glm::vec3(1, 0, 0);
@@ -211,7 +212,7 @@ class GlRenderer final : public Renderer {
     gl_.UniformMatrix3fv(stage.weights, 1, GL_TRUE, &rows[0][0]);
   }
 
-  /// Leaves the samples in `samples_`; false when nothing lies in the box.
+  /// Draws into `samples_`; false if the box is empty.
   bool draw_piece(const TileScene& scene, const Stage& stage, const TileMesh& mesh,
                   const PixelBox& box, std::size_t first_band) {
     choose(mesh, box, scene.mesh->materials.size());

@@ -5,7 +5,7 @@
 
 namespace dmise {
 
-/// The renderer on the best OpenGL that this machine has. Throws `Error` without one.
+/// The renderer with the best available OpenGL. Throws `Error` without one.
 std::unique_ptr<Renderer> make_gl_renderer();
 
 }  // namespace dmise

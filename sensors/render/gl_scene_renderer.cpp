@@ -31,7 +31,7 @@ struct PatchInstance {
   float coefficient[16];
 };
 
-/// Cells, last ones not in it.
+/// A rectangle of cells, with exclusive ends.
 struct Box {
   int left = 0, top = 0, right = 0, bottom = 0;
 };
@@ -42,7 +42,7 @@ struct Stage {
   int piece = -1, spread = -1;
 };
 
-/// Which pieces of a plane each box meets: the boxes' numbers, piece by piece, in order.
+/// Assigns boxes to the pieces of a plane that they overlap, in order.
 class Pieces {
  public:
   explicit Pieces(const ScenePlane& plane)
@@ -57,7 +57,7 @@ class Pieces {
             std::min(top + piece_cells, plane_.rows)};
   }
 
-  /// `box_of(i)`: cut to the plane, empty if beside it.
+  /// `box_of(i)`: clipped to the plane, empty if outside.
   template <class BoxOf>
   void sort(std::size_t boxes, const BoxOf& box_of) {
     first_.assign(std::size_t(count()) + 1, 0);
@@ -222,7 +222,7 @@ class GlSceneRenderer final : public SceneRenderer {
     gl_.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, int(count));
   }
 
-  /// Draws piece by piece, clearing and reading what the boxes in it cover, and adds to the plane.
+  /// Draws piece by piece, clears and reads the covered area, and adds it to the plane.
   template <class BoxOf, class Draw>
   void pieces_of(const ScenePlane& plane, std::size_t boxes, const BoxOf& box_of,
                  const Draw& draw_piece) {

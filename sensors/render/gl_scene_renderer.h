@@ -5,7 +5,7 @@
 
 namespace dmise {
 
-/// The scene renderer on the best OpenGL that this machine has. Throws `Error` without one.
+/// The scene renderer with the best available OpenGL. Throws `Error` without one.
 std::unique_ptr<SceneRenderer> make_gl_scene_renderer();
 
 }  // namespace dmise

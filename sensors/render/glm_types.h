@@ -3,8 +3,8 @@
 
 #include "core/frames/vec.h"
 
-// GLM carries the renderer's geometry, as OpenGL sees it. It ends at the renderer's interface:
-// outside, the frame of a vector is part of its type.
+// GLM types of the renderer's geometry. They are used only inside the renderer; outside, the frame
+// of a vector is part of its type.
 namespace dmise {
 
 template <class F>
@@ -12,7 +12,7 @@ glm::dvec3 glm_of(const Vec<F>& v) {
   return {v.x, v.y, v.z};
 }
 
-/// GLM's matrices are columns of vectors.
+/// GLM's matrices are arrays of columns.
 template <class To, class From>
 glm::dmat3 glm_of(const Rotation<To, From>& rotation) {
   glm::dmat3 columns;

@@ -17,7 +17,7 @@ T* made(std::unique_ptr<T> (*make)(), std::string& reason) {
 
 }  // namespace
 
-// Entries of the shared object. Null with the reason when there is no OpenGL here.
+// Entry points of the shared object. Null with the reason if there is no OpenGL.
 extern "C" dmise::Renderer* dmise_make_renderer(std::string& reason) {
   return made(dmise::make_gl_renderer, reason);
 }

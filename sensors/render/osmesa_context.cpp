@@ -10,10 +10,10 @@
 namespace dmise {
 namespace {
 
-// The library stays loaded: its threads and tables outlive a context.
+// The library is never unloaded: its threads and tables outlive a context.
 void* osmesa_library() {
   static void* const library = [] {
-    // The rasteriser works on the calling thread; who wants more of them says so.
+    // The rasteriser uses the calling thread unless the variable is set.
     ::setenv("LP_NUM_THREADS", "0", 0);
     for (const char* name : {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"})
       if (void* found = ::dlopen(name, RTLD_NOW | RTLD_LOCAL)) return found;
@@ -67,7 +67,7 @@ class OsmesaContext final : public GlContext {
 
  private:
   OSMesaContext context_ = nullptr;
-  std::array<unsigned char, 4> surface_{};  // pictures are drawn into a framebuffer object
+  std::array<unsigned char, 4> surface_{};  // unused: drawing is into a framebuffer object
 };
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace dmise {
 
-/// Samples of the tile that a rasteriser gives to triangles, against their areas: the grid sees a
-/// little more or less of a narrow shape than there is, which is put right by its radiance.
+/// Compares the number of samples that a rasteriser assigns to triangles with their area: the grid
+/// over- or underestimates narrow shapes, which is corrected in their radiance.
 class SampleCount {
  public:
   using Triangle = std::array<glm::dvec3, 3>;  // corners in camera axes [m]
@@ -41,17 +41,17 @@ class SampleCount {
     for (double row = std::ceil(low - 0.5) + 0.5; row < high; row += 1.0) add_row(at, row);
   }
 
-  /// Of triangles that are long and at most 32 samples wide.
+  /// Whether the triangles are long and at most 32 samples wide.
   bool narrow() const {
     const double width = longest_ > 0.0 ? 2.0 * area_ / longest_ : 0.0;
     return width < 32.0 && longest_ > 2.5 * width;
   }
 
-  /// Wholly in the tile with too few samples to tell.
+  /// Entirely in the tile with too few samples.
   bool sparse() const { return inside_ && count_ < fewest; }
   double area() const { return area_; }  // in samples
 
-  /// Area over samples; 1 for what is not wholly in the tile or has too few samples to tell.
+  /// Area per sample; 1 if not entirely in the tile or with too few samples.
   double correction() const { return inside_ && count_ >= fewest ? area_ / count_ : 1.0; }
 
  private:

@@ -2,12 +2,12 @@
 
 namespace dmise {
 
-// Points are squares of cells as wide as the Gaussian reaches. OpenGL's own points would vanish
-// with their centre, and are of limited size.
+// Points are squares of cells of the Gaussian's extent. OpenGL's own points vanish with their
+// centre, and their size is limited.
 
 inline constexpr const char* point_vertex_shader =
-    R"(layout(location = 0) in vec2 cell_in;   // the place's floor, counted from the piece's first cell
-layout(location = 1) in vec2 phase_in;  // and the rest of it, [0, 1)
+    R"(layout(location = 0) in vec2 cell_in;  // floor of the position, from the piece's first cell
+layout(location = 1) in vec2 phase_in;  // fraction of the position, [0, 1)
 layout(location = 2) in float light_in;
 uniform vec4 piece;                     // 2 / columns, 2 / rows, reach in cells
 flat out vec2 cell;
@@ -62,7 +62,7 @@ void main() {
 )";
 
 inline constexpr const char* patch_vertex_shader =
-    R"(layout(location = 0) in vec4 box_in;  // first and last cell + 1, counted from the piece's first
+    R"(layout(location = 0) in vec4 box_in;  // first and last + 1, from the piece's first cell
 layout(location = 1) in vec4 map_in;  // u0, du, v0, dv
 layout(location = 2) in vec4 c0_in;   // coefficients of v^0
 layout(location = 3) in vec4 c1_in;

@@ -2,12 +2,11 @@
 
 namespace dmise {
 
-// The models of core/materials/brdf.h with what depends on the source alone taken out: a facet's
-// radiance is diffuse g(out) + specular lobe / max(cos_out,
-// least_cos_out) + emitted.
+// The models of core/materials/brdf.h with source-dependent factors precomputed: a facet's radiance
+// is diffuse g(out) + specular lobe / max(cos_out, least_cos_out) + emitted.
 
-// With `TEXTURED` defined a material's pictures take part: its colours as a factor of the diffuse
-// part, weighted for the bands, its heights by turning the normal against their gradient.
+// With `TEXTURED`, a material's pictures are applied: colours as a factor of the diffuse part,
+// weighted by band, heights by tilting the normal against their gradient.
 inline constexpr const char* vertex_shader = R"(
 layout(location = 0) in vec4 clip;
 layout(location = 1) in vec3 view_in;

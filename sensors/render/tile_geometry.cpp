@@ -31,7 +31,7 @@ TileCamera tile_around(const Mesh& mesh, const Rotation<CameraFrame, Body>& came
     return tile;
   }
   if (!behind) {
-    // A pixel spans from -0.5 to 0.5 about its centre.
+    // A pixel spans -0.5 to 0.5 about its centre.
     const auto clamped = [](double v, double least, double most) {
       return int(std::clamp(v, least, most));
     };

@@ -83,7 +83,7 @@ class Builder {
 
   bool faces_camera(std::size_t f) const { return glm::dot(normal_of(f), corner(f, 0)) < 0.0; }
 
-  /// Everything of a corner that does not depend on its place.
+  /// Attributes of a corner that do not depend on its position.
   TileVertex surface(std::size_t f, bool lit) const {
     TileVertex v{};
     v.normal = normal_of(f);
@@ -208,8 +208,8 @@ class Builder {
     for (std::size_t i = 0; i < parts.size(); ++i) add(look, f, parts[i], places[i]);
   }
 
-  /// What the shader makes of a look at the middle of a triangle, times its area, less its own
-  /// emission, which stays with the samples.
+  /// Light of a triangle as shaded at its centre, times its area, without its own emission, which
+  /// is drawn by samples.
   void add_speck(const TileVertex& look, const SampleCount::Triangle& p, double area_samples) {
     const glm::dvec3 middle = (p[0] + p[1] + p[2]) / 3.0;
     const glm::dvec3 n(look.normal);

@@ -60,15 +60,15 @@ TEST_F(TextFile, RefusesWhatIsNoRegularFile) {
     }
     return std::string();
   };
-  EXPECT_EQ(refusal(path("fifo")), path("fifo") + ": is no regular file but a FIFO");
-  EXPECT_EQ(refusal("/dev/zero"), "/dev/zero: is no regular file but a device");
-  EXPECT_EQ(refusal("/dev/null"), "/dev/null: is no regular file but a device");
+  EXPECT_EQ(refusal(path("fifo")), path("fifo") + ": is a FIFO, not a regular file");
+  EXPECT_EQ(refusal("/dev/zero"), "/dev/zero: is a device, not a regular file");
+  EXPECT_EQ(refusal("/dev/null"), "/dev/null: is a device, not a regular file");
   EXPECT_EQ(refusal("/proc/self/status"),
-            "/proc/self/status: is no regular file but made up by the kernel");
+            "/proc/self/status: is a virtual file of the kernel, not a regular file");
   EXPECT_EQ(refusal("/sys/kernel/uevent_seqnum"),
-            "/sys/kernel/uevent_seqnum: is no regular file but made up by the kernel");
+            "/sys/kernel/uevent_seqnum: is a virtual file of the kernel, not a regular file");
   fs::create_symlink(path("fifo"), path("link"));
-  EXPECT_EQ(refusal(path("link")), path("link") + ": is no regular file but a FIFO");
+  EXPECT_EQ(refusal(path("link")), path("link") + ": is a FIFO, not a regular file");
 }
 
 TEST_F(TextFile, LeavesTheOldFileWhenTheNewOneCannotBeWritten) {

@@ -63,7 +63,7 @@ TEST(OpticsConfig, ReadsTheCoefficientsOfAFisheye) {
 // at r = 1.28.
 TEST(OpticsConfig, RefusesAFisheyeThatTurnsBackInTheFrame) {
   EXPECT_EQ(refusal_of_wide("projection: kannala_brandt\ndistortion: {k1: -0.4}\n"),
-            "camera.yaml:1:1: distortion: the image turns back on itself 52.3 deg from the "
+            "camera.yaml:1:1: distortion: the image folds back at 52.3 deg from the "
             "boresight, within the frame");
   EXPECT_EQ(refusal_of_wide("projection: kannala_brandt\ndistortion: {k1: -0.01}\n"), "");
   EXPECT_EQ(refusal("distortion: {k1: 0.1}\n")
@@ -78,7 +78,7 @@ TEST(OpticsConfig, RefusesAFisheyeThatTurnsBackInTheFrame) {
 // By hand: r - 0.3 r^3 turns back at r = 1 / sqrt(0.9), 46.51 deg.
 TEST(OpticsConfig, RefusesALensWhoseDistortionFoldsInTheFrame) {
   EXPECT_NE(refusal_of_wide("projection: brown_conrady\ndistortion: {k1: -0.3}\n")
-                .find("distortion: the image turns back on itself 46.51 deg"),
+                .find("distortion: the image folds back at 46.51 deg"),
             std::string::npos);
   EXPECT_EQ(refusal_of_wide("projection: brown_conrady\ndistortion: {k1: 0.1, p1: 1e-3}\n"), "");
   EXPECT_EQ(read("projection: brown_conrady\ndistortion: {k2: 0.1, p2: 1e-3}\n").projection,

@@ -19,10 +19,9 @@ std::string refusal(const std::string& text, const YamlLimits& limits = {}) {
 
 // YAML 1.2, 7.1: an alias may stand within what it refers to; no configuration is such a circle.
 TEST(YamlLimits, RefusesCircles) {
-  EXPECT_EQ(refusal("a: &a [*a]\n"), "s.yaml:1:8: an alias within what it stands for");
-  EXPECT_EQ(refusal("a: &a {b: {c: [1, *a]}}\n"),
-            "s.yaml:1:19: an alias within what it stands for");
-  EXPECT_EQ(refusal("&r\na: *r\n"), "s.yaml:2:4: an alias within what it stands for");
+  EXPECT_EQ(refusal("a: &a [*a]\n"), "s.yaml:1:8: an alias within its own anchor");
+  EXPECT_EQ(refusal("a: &a {b: {c: [1, *a]}}\n"), "s.yaml:1:19: an alias within its own anchor");
+  EXPECT_EQ(refusal("&r\na: *r\n"), "s.yaml:2:4: an alias within its own anchor");
   EXPECT_THROW(YamlValue::parse("a: &a [*a]\n", "s.yaml"), ConfigError);
 }
 
@@ -64,7 +63,7 @@ TEST(YamlLimits, BoundsDepthAlsoThroughAliases) {
            std::string(std::size_t(depth - 1), ']') + "\n";
   };
   EXPECT_EQ(refusal(nested(64)), "");
-  EXPECT_EQ(refusal(nested(65)), "s.yaml:1:67: lists and mappings in one another deeper than 64");
+  EXPECT_EQ(refusal(nested(65)), "s.yaml:1:67: lists and mappings nested deeper than 64");
   EXPECT_TRUE(refusal(nested(1'000'000)).ends_with("deeper than 64"));
   // Each line is one deeper than the one that it names.
   std::string text = "a0: &a0 [1]\n";

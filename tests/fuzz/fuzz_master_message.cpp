@@ -129,7 +129,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       node.work();
     }
   } catch (const Error&) {
-    // What came is not what its publisher says: the node ends there.
+    // What came differs from its publisher's manifest: the node ends there.
   }
   return 0;
 }

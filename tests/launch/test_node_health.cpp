@@ -12,17 +12,17 @@ TEST(NodeHealth, IsThatOfTheNodeAsTheTimeMasterHearsIt) {
   status.nodes = {{.name = "alpha", .done = 6, .times = {}},
                   {.name = "beta", .done = 4, .alive = false, .times = {}}};
   status.missing = {"gamma"};
-  EXPECT_EQ(complaint_of(status, "alpha"), "");
-  EXPECT_EQ(complaint_of(status, "beta"), "the time-master has lost beta (last tick done: 4)");
-  EXPECT_EQ(complaint_of(status, "gamma"), "gamma has not joined");
-  EXPECT_EQ(complaint_of(status, "delta"), "delta is no node of this run");
-  EXPECT_EQ(complaint_of(status, "time-master"), "");
+  EXPECT_EQ(health_problem(status, "alpha"), "");
+  EXPECT_EQ(health_problem(status, "beta"), "the time-master has lost beta (last tick done: 4)");
+  EXPECT_EQ(health_problem(status, "gamma"), "gamma has not joined");
+  EXPECT_EQ(health_problem(status, "delta"), "delta is not a node of this run");
+  EXPECT_EQ(health_problem(status, "time-master"), "");
   status.phase = Phase::ended;
-  EXPECT_EQ(complaint_of(status, "beta"), "");  // has left after the last tick
+  EXPECT_EQ(health_problem(status, "beta"), "");  // has left after the last tick
   status.phase = Phase::failed;
   status.cause = "beta has been silent";
   for (const char* name : {"alpha", "time-master"})
-    EXPECT_EQ(complaint_of(status, name), "the run has failed: beta has been silent");
+    EXPECT_EQ(health_problem(status, name), "the run has failed: beta has been silent");
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST(Mtl, TakesANamedMaterialAndItsWarmth) {
 }
 
 TEST(Mtl, WhatCannotBeUsedPointsAtItsLine) {
-  EXPECT_EQ(complaint("\n# x\nKd 1 1 1\n"), "a.mtl:3: Kd: stands before any newmtl");
+  EXPECT_EQ(complaint("\n# x\nKd 1 1 1\n"), "a.mtl:3: Kd: precedes any newmtl");
   EXPECT_EQ(complaint("newmtl a\nKd 1 x 1\n"), "a.mtl:2: Kd: must be a number, got x");
   EXPECT_EQ(complaint("newmtl a\nKd nan 0 0\n"), "a.mtl:2: Kd: number too large, got nan");
   EXPECT_EQ(complaint("newmtl a\nbrdf kaptn\n"),

@@ -117,9 +117,9 @@ TEST(Obj, AFacetWithoutAreaIsLeftOutWithItsLine) {
   const auto model = parse("usemtl kapton\n" + corners + faces + "f 1 2 2\nf 1 1 1\n");
   EXPECT_EQ(model.mesh.triangles.size(), 12u);
   EXPECT_EQ(model.notes,
-            std::vector<std::string>{"a.obj:16: facet without area left out (the first of 2)"});
+            std::vector<std::string>{"a.obj:16: facet without area dropped (the first of 2)"});
   EXPECT_EQ(complaint("usemtl kapton\nv 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"),
-            "a.obj: has no facet with an area");
+            "a.obj: no facet has an area");
 }
 
 // An L of six corners: its area is 3, a fan from its first corner would give more.
@@ -154,13 +154,13 @@ TEST(Obj, WhatCannotBeUsedPointsAtItsLine) {
   EXPECT_EQ(complaint("v 0 0 1e400\n"), "a.obj:1: v: number too large, got 1e400");
   EXPECT_EQ(complaint("v 0 0 inf\n"), "a.obj:1: v: number too large, got inf");
   EXPECT_EQ(complaint("v 0 0 1,5\n"), "a.obj:1: v: must be a number, got 1,5");
-  EXPECT_EQ(complaint(corners + "f 1 2\n"), "a.obj:9: f: a face needs three corners");
+  EXPECT_EQ(complaint(corners + "f 1 2\n"), "a.obj:9: f: a face needs at least three corners");
   EXPECT_EQ(complaint(corners + "f 1 2 9\n"), "a.obj:9: f: no such vertex (8 so far), got 9");
   EXPECT_EQ(complaint(corners + "f 1 2 -9\n"), "a.obj:9: f: no such vertex (8 so far), got -9");
   EXPECT_EQ(complaint(corners + "f 1 2 0\n").substr(0, 26), "a.obj:9: f: corner must be");
   EXPECT_EQ(complaint(corners + "f 1 2 3/a\n").substr(0, 26), "a.obj:9: f: corner must be");
   EXPECT_EQ(complaint("curv 0 1 2\n"),
-            "a.obj:1: curv: free-form curves and surfaces cannot be used");
+            "a.obj:1: curv: free-form curves and surfaces are not supported");
   EXPECT_EQ(complaint("<html>\n"), "a.obj:1: <html>: unknown keyword");
   EXPECT_EQ(complaint(""), "a.obj: has no face");
 }
@@ -170,7 +170,7 @@ TEST(Obj, PicturesStandBesideTheModelAndBadOnesPointAtTheirLine) {
   EXPECT_EQ(complaint_of_files("Kd 1 1 1\nmap_Kd obj-none.png"),
             "obj-a.mtl:3: map_Kd: obj-none.png: No such file or directory");
   EXPECT_EQ(complaint_of_files("map_Kd obj-a.obj"),
-            "obj-a.mtl:2: map_Kd: obj-a.obj: is no PNG, TIFF, JPEG or EXR");
+            "obj-a.mtl:2: map_Kd: obj-a.obj: is not a PNG, TIFF, JPEG or EXR file");
   EXPECT_EQ(complaint_of_files("bump ../../dev/zero").substr(0, 17), "obj-a.mtl:2: bump");
   EXPECT_EQ(complaint_of_files("map_Kd obj-bright.exr"),
             "obj-a.mtl:2: map_Kd: values must be from 0 to 1, got 3.500000");
@@ -188,7 +188,7 @@ TEST(Obj, PlacesOnPicturesFollowTheirCorners) {
       "mtllib a.mtl\nusemtl hull\n" + corners + "vt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 4/-1\nf 2 3 4\n",
       "a.obj", sources);
   EXPECT_EQ(model.notes.front(),
-            "a.obj:15: faces without vt go without the pictures of their material");
+            "a.obj:15: faces without vt do not use the pictures of their material");
   ASSERT_EQ(model.mesh.triangles.size(), 4u);
   for (const auto& t : model.mesh.triangles)
     for (std::size_t i = 0; i < 3; ++i) {

@@ -156,10 +156,10 @@ TEST(Oem, FaultsPointAtTheirLine) {
        "t:11: expected a time and 6 or 9 numbers"},
       {header + meta() + "2026-01-01T00:00:00 1 2 3 4 5 x\n", "t:11: not a number, got \"x\""},
       {header + meta() + "2026-13-01T00:00:00 1 2 3 4 5 6\n", "t:11: not a time"},
-      {header + meta() + lines(0, 0), "a segment needs two ephemeris lines"},
+      {header + meta() + lines(0, 0), "a segment needs at least two ephemeris lines"},
       {header + "META_START\nREF_FRAME = GCRF\nMETA_STOP\n", "t:6: segment without TIME_SYSTEM"},
       {meta() + lines(0, 2), "t: not a CCSDS OEM"},
-      {header, "t: holds no ephemeris segment"}};
+      {header, "t: contains no ephemeris segment"}};
   for (const auto& c : cases) {
     try {
       parse_oem(c.text, "t");

@@ -134,7 +134,7 @@ TEST(Omm, RefusedMessageIsNamedWithItsLineAndTakesNoOtherWithIt) {
               "t:" + std::to_string(c.line) + ": MEAN_MOTION is not a number, got \"fast\"");
   }
   EXPECT_EQ(parse_catalogue(two_rows, "t").refused[1].reason,
-            "2 fields where the header has 17, got \"1,2\"");
+            "2 fields, but the header has 17, got \"1,2\"");
 }
 
 TEST(Omm, WhatIsNotSgp4IsRefused) {

@@ -140,13 +140,13 @@ TEST(CameraModes, WhatCannotBeIsNamed) {
       {"{body: {body_from_camera: [3, 0, 0, 0]}}", "body.body_from_camera"},
       {"{body: {up: [0, 0, 1]}}", "body: give either boresight (and up) or body_from_camera"},
       {"{body: {boresight: [0, 0, 1]}, roll_deg: 3}",
-       "roll_deg: a camera fixed to a body is turned by up"},
+       "roll_deg: a camera fixed to a body is rolled by up"},
       {"{scan: {ra_deg: 3, dec_deg: 4, rate_deg_per_s: 1}}", "scan.axis"},
       {"{scan: {ra_deg: 3, dec_deg: 4, axis: [1, 0, 0]}}", "scan.rate_deg_per_s"},
       {"{scan: {azimuth_deg: 3, elevation_deg: 4, axis: [1, 0, 0], rate_deg_per_s: 1}}",
        "scan: azimuth and elevation are for a sensor on the ground"},
       {"{ra_deg: 1, dec_deg: 2, ra_rate_deg_per_s: .nan}", "ra_rate_deg_per_s"},
-      {"{ra_deg: 1, dec_deg: 2, tracking: moving}", "needs a pointing that moves: rates or scan"},
+      {"{ra_deg: 1, dec_deg: 2, tracking: moving}", "needs a moving pointing: rates or scan"},
       {"{ra_deg: 1, dec_deg: 2, target: x}",
        "give one of azimuth_deg and elevation_deg, ra_deg and dec_deg, target, body, scan"}};
   for (const auto& [text, message] : cases) {

@@ -15,21 +15,21 @@ TEST(Addresses, OfSocketsAreTaken) {
   for (const char* good : {"tcp://127.0.0.1:7998", "tcp://127.0.0.1:0", "tcp://*:5",
                            "tcp://[::1]:5", "tcp://time-master:7660", "tcp://10.0.0.1:*",
                            "ipc:///tmp/x", "ipc://@x", "inproc://x", "tcp://h:65535"})
-    EXPECT_EQ(complaint_of_address(good), "");
+    EXPECT_EQ(address_error(good), "");
 }
 
 TEST(Addresses, WithoutTheirTransportAreShownWithIt) {
-  EXPECT_EQ(complaint_of_address("127.0.0.1:7998"),
+  EXPECT_EQ(address_error("127.0.0.1:7998"),
             "must be tcp://HOST:PORT, did you mean tcp://127.0.0.1:7998?, got 127.0.0.1:7998");
   for (const char* near : {"localhost:7998", "tcp:localhost:7998", "tcp:/localhost:7998",
                            "http://localhost:7998", "//localhost:7998", "udp://localhost:7998"})
-    EXPECT_THAT(complaint_of_address(near), HasSubstr("did you mean tcp://localhost:7998?"));
-  EXPECT_THAT(complaint_of_address("[::1]:7"), HasSubstr("tcp://[::1]:7?"));
+    EXPECT_THAT(address_error(near), HasSubstr("did you mean tcp://localhost:7998?"));
+  EXPECT_THAT(address_error("[::1]:7"), HasSubstr("tcp://[::1]:7?"));
   for (const char* bad :
        {"", "7998", "127.0.0.1", "tcp://127.0.0.1", "tcp://127.0.0.1:", "tcp://:7", "tcp://h:65536",
         "tcp://h:-1", "tcp://h:7x", "tcp://a b:7", "ipc://", "tcp://a:b:7", "tcp://"}) {
-    EXPECT_THAT(complaint_of_address(bad), HasSubstr("must be tcp://HOST:PORT")) << bad;
-    EXPECT_THAT(complaint_of_address(bad), EndsWith(std::string("got ") + bad));
+    EXPECT_THAT(address_error(bad), HasSubstr("must be tcp://HOST:PORT")) << bad;
+    EXPECT_THAT(address_error(bad), EndsWith(std::string("got ") + bad));
   }
 }
 

@@ -88,7 +88,7 @@ TEST_F(KeyFiles, WithoutEndAreSaid) {
   std::filesystem::remove(path("b.pub"));
   std::ofstream(path("b.pub")).close();
   std::filesystem::resize_file(path("b.pub"), std::uintmax_t(1) << 40);  // sparse
-  EXPECT_EQ(fault_of(keys.directory), path("b.pub") + ": is longer than a file of keys can be");
+  EXPECT_EQ(fault_of(keys.directory), path("b.pub") + ": is too long for a key file");
 }
 
 // A run that has begun goes on: whoever has no good file is refused.

@@ -53,7 +53,7 @@ TEST(ConnectionLimits, CloseAMessageWithoutEnd) {
     ++said;
   }
   ASSERT_EQ(closed.size(), 1u);
-  EXPECT_THAT(closed[0], HasSubstr("closed a connection that sends faster than it can be heard"));
+  EXPECT_THAT(closed[0], HasSubstr("closed a connection that sends faster than it is read"));
   EXPECT_LE(said, 30);  // 4 MiB, what the system keeps beside, and one look a MiB
   EXPECT_TRUE(place.has(0));
 }
@@ -70,7 +70,7 @@ TEST(ConnectionLimits, LetThoseSendWhoAreHeard) {
     wait_for(items, seconds(20));
     auto message = receive(place.socket);
     ASSERT_EQ(message.size(), 2u);
-    place.monitor.took(message[1]);
+    place.monitor.count_read(message[1]);
     ASSERT_THAT(place.monitor.enforce(now()), IsEmpty());
   }
 }
@@ -99,7 +99,7 @@ TEST(ConnectionLimits, CloseStrangersBeyondTheirNumberButNobodyWhoIsKnown) {
   wait_for(items, seconds(20));
   auto message = receive(place.socket);
   ASSERT_EQ(message.size(), 2u);
-  place.monitor.belongs(message[1], "a");
+  place.monitor.identify(message[1], "a");
   EXPECT_EQ(place.monitor.name_of(message[1]), "a");
 
   std::vector<std::unique_ptr<RawPeer>> strangers;

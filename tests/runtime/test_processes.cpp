@@ -132,7 +132,7 @@ TEST(Processes, WhoCannotDoWithoutALostNodeIsLostWithIt) {
   for (const char* name : {"a", "b"}) {
     EXPECT_EQ(stack.nodes[name]->exit_code(), 1);
     EXPECT_THAT(stack.nodes[name]->output(),
-                HasSubstr("nothing comes on state/objects from tick "));
+                HasSubstr("nothing is published on state/objects from tick "));
   }
 }
 
@@ -141,7 +141,7 @@ TEST(Processes, ANodeThatDiesBeforeTheStartIsNamed) {
   stack.start("orbit");
   ASSERT_TRUE(stack.master->says("orbit joined"));
   stack.nodes["orbit"]->kill(SIGKILL);
-  EXPECT_TRUE(stack.master->says("orbit is lost: waiting for another of its name"));
+  EXPECT_TRUE(stack.master->says("orbit is lost: waiting for another process of its name"));
 }
 
 TEST(Processes, TheRunWaitsForAStoppedNodeByPolicy) {

@@ -123,7 +123,7 @@ TEST(Security, KnowsWhoSpeaks) {
   auto message = server.hears(patience);
   ASSERT_EQ(message.size(), 2u);
   EXPECT_EQ(sender_of(message[1]), "a");
-  EXPECT_FALSE(may_hear_truth(message[1]));
+  EXPECT_FALSE(may_receive_truth(message[1]));
 }
 
 TEST(Security, RefusesPlainClientsAndKeysThatAreNotOnTheList) {
@@ -146,7 +146,7 @@ TEST(Security, ServesTruthToThoseWhoMayHearIt) {
   Client scorer(server, Security(keys.directory, "scorer"));
   auto message = server.hears(patience);
   ASSERT_EQ(message.size(), 2u);
-  EXPECT_TRUE(may_hear_truth(message[1]));
+  EXPECT_TRUE(may_receive_truth(message[1]));
 }
 
 TEST(Security, ListsAreReadAnewForEveryConnection) {

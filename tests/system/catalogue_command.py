@@ -98,7 +98,7 @@ def test(binary, directory):
 
     (directory / "empty.json").write_text("[]")
     _, err = dmise("states", directory / "empty.json", "--at", "2458139.75", code=2)
-    check("empty.json: holds no element sets" in err, "an empty list is refused")
+    check("empty.json: contains no element sets" in err, "an empty list is refused")
 
     for arguments, said in ((("states", path, "--at", "tomorrow"), "--at: must be a UTC time"),
                             (("states", path, "--at", "1e9"), "--at: Julian date out of range, got 1e9"),

@@ -59,7 +59,7 @@ def laughs(lines):
 def hostile_yaml(binary, directory):
     long_key = "k" * 5_000_000
     for name, text, words in [
-        ("circle", "a: &a [*a]\n", ["circle.yaml:1:8: an alias within what it stands for"]),
+        ("circle", "a: &a [*a]\n", ["circle.yaml:1:8: an alias within its own anchor"]),
         ("circle-of-two", "a: &a {b: &b [*a]}\n", ["circle-of-two.yaml:1:15: an alias"]),
         ("laughs", laughs(12), ["laughs.yaml:6:", "more than 500000 values"]),
         ("list", "a: [" + "1, " * 5_000_000 + "1]\n", ["list.yaml:1:", "more than 500000 values"]),
@@ -82,9 +82,9 @@ def hostile_yaml(binary, directory):
         refused(directory, [binary, "check", path], name, *words)
         path.unlink()
     check(peak_mb() < MOST_MB, f"readers of hostile YAML took {peak_mb():.0f} MB at most, {MOST_MB} allowed")
-    refused(directory, [binary, "check", "/dev/zero"], "a device", "/dev/zero: is no regular file but a device")
+    refused(directory, [binary, "check", "/dev/zero"], "a device", "/dev/zero: is a device, not a regular file")
     os.mkfifo(directory / "fifo")
-    refused(directory, [binary, "check", directory / "fifo"], "a FIFO", "fifo: is no regular file but a FIFO")
+    refused(directory, [binary, "check", directory / "fifo"], "a FIFO", "fifo: is a FIFO, not a regular file")
     odd = directory / "a\x1b[31m\nb.yaml"
     odd.write_text("a: [\n")
     refused(directory, [binary, "check", odd], "a name of a file", "a\\x1b[31m\\nb.yaml:")

@@ -65,7 +65,7 @@ def test(binary, directory):
             code, text = says(binary, "health", name, DMISE_MASTER=master)
             check(code == 0 and text.startswith("healthy"), f"{name} is {text}")
         code, text = says(binary, "health", "gamma", "--master", master)
-        check(code == 1 and "gamma is no node of this run" in text, f"no other is: {text}")
+        check(code == 1 and "gamma is not a node of this run" in text, f"no other is: {text}")
         run.interrupt()
         run.finish()
         code, text = says(binary, "health", "alpha", "--master", master)

@@ -52,7 +52,7 @@ def at_the_same_moment(binary, directory, scenario, reference, rounds=3, starter
                 codes.append(run.finish()[0])
         first_words = [run.stdout for run, code in zip(runs, codes) if code == 0]
         # Who comes when the first has finished finds its products complete.
-        worked = [words for words in first_words if "holds this run, complete" not in words]
+        worked = [words for words in first_words if "contains this run, complete" not in words]
         check(len(worked) == 1 and set(codes) <= {0, 2}, f"{starters} at once: one of them runs, codes {codes}")
         check_same(out, reference, "its products are those of an undisturbed run")
 
@@ -162,7 +162,7 @@ def on_a_full_disk(binary, directory):
 
     (reference / "index.html").unlink()  # as a disk that was full at the very end left a complete run
     with Run(binary, "run", scenario, "--out", reference) as run:
-        check(run.finish()[0] == 0 and "holds this run, complete" in run.stdout, run.stdout.splitlines()[0])
+        check(run.finish()[0] == 0 and "contains this run, complete" in run.stdout, run.stdout.splitlines()[0])
         for file in re.findall(r"^(?:open|or) +(.*)$", run.stdout, re.MULTILINE):
             check(pathlib.Path(file).exists(), f"what is offered to be opened is there: {file}")
         check((reference / "index.html").exists(), "the page is made again")

@@ -166,7 +166,7 @@ TEST(Coordinator, NamesAPublisherThatLivesAndNeverSaysATick) {
     EXPECT_GE(named_s, 60);
     EXPECT_LE(named_s, 70);
     EXPECT_THAT(master.cause(), HasSubstr("orbit has not begun tick 0 for 6"));
-    EXPECT_THAT(master.cause(), HasSubstr("though all that it needs is published"));
+    EXPECT_THAT(master.cause(), HasSubstr("although all its inputs are published"));
   }
 }
 

@@ -138,7 +138,7 @@ TEST(HostBarrier, AProcessThatFollowsAnotherDoesAgainWhatTheRunMayStillNeed) {
   for (Tick tick = 0; tick < 4; ++tick) host.done("a", tick), host.done("b", tick);
   EXPECT_THAT(host.told(), ElementsAre(0, 1, 2, 3));
   host.barrier.settled(1);
-  host.barrier.asks("a");
+  host.barrier.begin_join("a");
   host.done("b", 4);
   EXPECT_THAT(host.told(), IsEmpty());
   host.barrier.join("a", {}, 2, 2, seconds(1));
@@ -162,7 +162,7 @@ TEST(HostBarrier, WhatIsDoneAgainMustBeTheSame) {
   const auto news = host.barrier.take_news();
   ASSERT_EQ(news.size(), 1u);
   EXPECT_EQ(news[0].what, What::failed);
-  EXPECT_EQ(news[0].reason, "tick 0, done again after a restart, is not what it was");
+  EXPECT_EQ(news[0].reason, "tick 0, repeated after a restart, differs from the first time");
 }
 
 TEST(HostBarrier, ATickOutOfTurnIsAFault) {
@@ -179,7 +179,7 @@ TEST(HostBarrier, IsReadyWhenAllAre) {
   EXPECT_FALSE(host.barrier.all_ready());
   host.barrier.ready("b", seconds(0));
   EXPECT_TRUE(host.barrier.all_ready());
-  host.barrier.asks("c");
+  host.barrier.begin_join("c");
   EXPECT_FALSE(host.barrier.all_ready());
 }
 

@@ -102,7 +102,7 @@ TEST(Rejoin, MustSayTheSameOfATickDoneAgain) {
     EXPECT_EQ(run.master.phase(), same ? Phase::running : Phase::failed);
     if (!same) {
       EXPECT_EQ(run.master.cause(),
-                "camera: tick 1, done again after a restart, is not what it was");
+                "camera: tick 1, repeated after a restart, differs from the first time");
     }
   }
 }

@@ -4,31 +4,30 @@
 
 #include "core/base/error.h"
 #include "nodes/runtime/master_link/master_link.h"
+#include "nodes/runtime/master_link/run_result.h"
 #include "nodes/runtime/observability/metrics.h"
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/transport/peer_monitor.h"
 #include "nodes/runtime/transport/relay.h"
 
 namespace dmise {
 namespace {
 
-using std::chrono::duration;
-using std::chrono::duration_cast;
 using std::chrono::milliseconds;
-using std::chrono::nanoseconds;
 
-constexpr milliseconds look_interval{50};  // at who sends too much
-constexpr milliseconds drained{100};       // nothing more comes when it was quiet for so long
+constexpr milliseconds look_interval{50};  // between checks of connection limits
+constexpr milliseconds drained{100};       // silence after which the sockets count as drained
 
-/// Where an earlier broker of this run was bound, so that nobody has to look for the new one.
+/// Endpoints of an earlier broker of this run, reused so that connections need not change.
 BrokerEndpoints earlier_broker(const BrokerOptions& options) {
   try {
     return ask_master(options.master, std::min(options.join_within_s, 2.0),
                       Security(options.keys, broker_name))
         .broker;
   } catch (const Error&) {
-    return {};  // the master is starting; joining will tell
+    return {};  // the master is starting; joining will show
   }
 }
 
@@ -37,7 +36,7 @@ std::string bind_again(zmq::socket_t& socket, const std::string& earlier,
   if (!earlier.empty()) try {
       return bind_to(socket, earlier, security, domain);
     } catch (const Error&) {
-      // Taken by somebody else: all will be told the new address.
+      // Taken by another process: nodes receive the new address.
     }
   return bind_to(socket, configured, security, domain);
 }
@@ -52,7 +51,7 @@ void serve(const BrokerOptions& options, BrokerResult* result) {
 
   PeerMonitor subscriptions(context, subscribers, bytes_alone(max_subscriptions_bytes));
 
-  // The limit on a queue, and who may come in, is that of the moment when an endpoint is bound.
+  // Queue limits and access are those at the time of binding an endpoint.
   v1::Join join;
   join.set_name(broker_name);
   const BrokerEndpoints earlier = earlier_broker(options);
@@ -68,7 +67,7 @@ void serve(const BrokerOptions& options, BrokerResult* result) {
   endpoints->set_password(security.password());
 
   MasterLink link(context, options.master, options.stop, security);
-  link.join(join, duration_cast<nanoseconds>(duration<double>(options.join_within_s)));
+  link.join(join, from_seconds(options.join_within_s));
   link.keep({}, std::nullopt);
 
   auto busy = now();
@@ -85,15 +84,15 @@ void serve(const BrokerOptions& options, BrokerResult* result) {
       subscriptions.forget(subscriptions.broken());
       next_look = now() + look_interval;
     }
-    link.take_published();  // manifests, which are nothing to a broker
-    const int forward = security.on() ? pass_checked(publishers, subscribers,
-                                                     publishes_or_is_passed_on, &result->refused)
-                                      : pass_on(publishers, subscribers);
-    const int back = pass_subscriptions(subscribers, publishers);
+    link.take_published();  // manifests, which a broker ignores
+    const int forward = security.on() ? relay_checked(publishers, subscribers,
+                                                      publishes_or_is_forwarded, &result->refused)
+                                      : relay_messages(publishers, subscribers);
+    const int back = relay_subscriptions(subscribers, publishers);
     result->messages += std::uint64_t(forward);
     if (forward + back > 0) busy = now();
     if (Metrics* metrics = Metrics::of_process())
-      metrics->tell(BrokerFigures{.messages = result->messages, .refused = result->refused});
+      metrics->set(BrokerFigures{.messages = result->messages, .refused = result->refused});
   }
   const bool interrupted = link.stopped() && !link.over();
   link.leave(interrupted, {});
@@ -104,15 +103,7 @@ void serve(const BrokerOptions& options, BrokerResult* result) {
 }  // namespace
 
 BrokerResult run_broker(const BrokerOptions& options) {
-  BrokerResult result;
-  try {
-    serve(options, &result);
-  } catch (const std::exception& error) {
-    result.exit_code = 1;
-    result.reason = error.what();
-    spdlog::error("{}", result.reason);
-  }
-  return result;
+  return result_of_run<BrokerResult>([&](BrokerResult* result) { serve(options, result); });
 }
 
 }  // namespace dmise

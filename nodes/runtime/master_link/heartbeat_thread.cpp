@@ -18,7 +18,7 @@ using std::chrono::duration;
 
 namespace {
 
-constexpr std::chrono::milliseconds look_interval{100};  // at who asks too much
+constexpr std::chrono::milliseconds look_interval{100};  // between checks of connection limits
 constexpr int questions_at_once = 64;
 
 }  // namespace
@@ -63,10 +63,10 @@ void HeartbeatThread::run() {
                                        {heartbeat_.handle(), 0, ZMQ_POLLIN, 0}};
     if (resend_) items.push_back({resend_->handle(), 0, ZMQ_POLLIN, 0});
     wait_for(items, next_beat - now());
-    // A process that was itself stopped has not heard the master because it could not.
+    // While this process was suspended it could not receive anything.
     if (now() - awake > options_.silent_after / 2) heard_ = now();
     awake = now();
-    hear();
+    handle_replies();
     if (resend_) answer();
     if (askers_ && now() >= next_look) {
       for (const std::string& closed : askers_->enforce(now())) spdlog::warn("{}", closed);
@@ -94,7 +94,7 @@ void HeartbeatThread::beat() {
   heartbeat_.send(to_frame(message), zmq::send_flags::none);
 }
 
-void HeartbeatThread::hear() {
+void HeartbeatThread::handle_replies() {
   while (const auto frame = receive_one(heartbeat_)) {
     v1::MasterMessage message;
     if (!from_frame(*frame, &message) || message.grant().run_id() != options_.run_id ||
@@ -121,19 +121,19 @@ void HeartbeatThread::post(const v1::Grant& grant) {
 }
 
 void HeartbeatThread::answer() {
-  // Whoever asks again before there was time to answer is answered once: it knows more by then.
-  // The heartbeat waits for no more questions than a few.
+  // Repeated questions that wait together are answered once, with the latest content. The heartbeat
+  // never waits for more than a few questions.
   std::map<std::tuple<std::string, std::string, bool>, v1::ResendRequest> questions;
   for (int i = 0; i < questions_at_once; ++i) {
     auto message = receive(*resend_);
     if (message.empty()) break;
-    for (std::size_t i = 1; i < message.size(); ++i) askers_->took(message[i]);
+    for (std::size_t i = 1; i < message.size(); ++i) askers_->count_read(message[i]);
     v1::ResendRequest request;
     if (message.size() != 2 || !from_frame(message[1], &request) ||
         request.run_id() != options_.run_id || fault_of(request))
       continue;
     if (options_.security.on() && request.topic().starts_with(truth_prefix) &&
-        !may_hear_truth(message[1]))
+        !may_receive_truth(message[1]))
       continue;
     questions[{message[0].to_string(), request.topic(), request.catch_up()}] = request;
   }
@@ -147,7 +147,7 @@ void HeartbeatThread::leave_if_stuck() {
   if (!over_since_ && (over_ || (options_.stop && options_.stop->is_set()))) over_since_ = now();
   if (!over_since_ || !computing_.load(std::memory_order_relaxed)) return;
   if (now() - *over_since_ < options_.stop_within) return;
-  spdlog::error("{}: stops in the middle of a step", options_.name);
+  spdlog::error("{}: stopping in the middle of a step", options_.name);
   _exit(1);
 }
 

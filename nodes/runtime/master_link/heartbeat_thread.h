@@ -23,18 +23,18 @@ struct HeartbeatOptions {
   std::uint64_t incarnation = 0;
   std::uint64_t heartbeat_token = 0;
   std::chrono::nanoseconds heartbeat{};
-  std::chrono::nanoseconds silent_after{};  // of the master
-  std::chrono::nanoseconds stop_within{0};  // a step that goes on for longer after the end of the
-                                            // run or `stop` ends the process; 0: never
+  std::chrono::nanoseconds silent_after{};  // timeout of the master
+  std::chrono::nanoseconds stop_within{0};  // ends the process if a step lasts longer than this
+                                            // after the end of the run or `stop`; 0: never
   const Event* stop = nullptr;              // may be null
-  std::function<std::uint64_t()> progress;  // of the step; called from the heartbeat's thread
+  std::function<std::uint64_t()> progress;  // of the step; called from the heartbeat thread
   std::function<std::vector<SharedFrames>(const v1::ResendRequest&)> resend;
-  std::function<void(v1::Heartbeat*)> add_to_heartbeat;  // may be empty; called there as well
+  std::function<void(v1::Heartbeat*)>
+      add_to_heartbeat;  // may be empty; called from the heartbeat thread
 };
 
-/// A node's second thread: tells the master that the process lives and how far its step is, hears
-/// the grant again in the answers, and sends again what others have missed - also during a long
-/// step.
+/// A node's second thread: sends heartbeats with the progress of the step, receives the grant in
+/// the replies, and resends messages that others have missed, also during a long step.
 class HeartbeatThread {
  public:
   /// `resend_socket`: a bound ROUTER, or none.
@@ -46,14 +46,14 @@ class HeartbeatThread {
 
   void set_computing(bool computing) { computing_.store(computing, std::memory_order_relaxed); }
   void set_times(const TimeSplit& times);
-  /// Set when `latest` has something new; cleared by `latest`.
+  /// Set if `latest` has new content; cleared by `latest`.
   const Event& news() const { return news_; }
   v1::Grant latest();
 
  private:
   void run();
   void beat();
-  void hear();
+  void handle_replies();
   void answer();
   void post(const v1::Grant& grant);
   void leave_if_stuck();

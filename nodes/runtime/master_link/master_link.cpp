@@ -21,7 +21,7 @@ MasterLink::MasterLink(zmq::context_t& context, std::string master, const Event*
       stop_(stop),
       control_(make_socket(context, zmq::socket_type::dealer, max_control_bytes)),
       ticks_(make_socket(context, zmq::socket_type::sub, max_control_bytes)) {
-  control_.set(zmq::sockopt::linger, 1000);  // last words
+  control_.set(zmq::sockopt::linger, 1000);  // for the last messages
   connect_to(control_, master_, security_, master_name);
 }
 
@@ -31,13 +31,13 @@ v1::Welcome MasterLink::join(const v1::Join& request, nanoseconds within) {
   name_ = request.name();
   v1::NodeMessage message;
   *message.mutable_join() = request;
-  tell(message);
+  sign_and_send(message);
   const auto deadline = now() + within;
   while (!answer_ && now() < deadline && !stopped()) wait({}, deadline - now());
   if (stopped()) throw Error("interrupted");
   if (!answer_) {
     control_.set(zmq::sockopt::linger, 0);
-    throw Error("no time-master answers at " + master_);
+    throw Error("no answer from a time-master at " + master_);
   }
   if (answer_->has_refuse())
     throw Error("refused by the time-master at " + master_ + ": " + answer_->refuse().reason());
@@ -64,7 +64,7 @@ void MasterLink::keep(HeartbeatOptions options, std::optional<zmq::socket_t> res
 void MasterLink::ready() {
   v1::NodeMessage message;
   message.mutable_ready();
-  tell(message);
+  sign_and_send(message);
 }
 
 void MasterLink::done(const TickTally& tally) {
@@ -77,7 +77,7 @@ void MasterLink::done(const TickTally& tally) {
     published->set_last_sequence(topic.last_sequence);
     published->set_digest(topic.digest);
   }
-  tell(message);
+  sign_and_send(message);
 }
 
 void MasterLink::leave(bool interrupted, const TimeSplit& times) {
@@ -85,18 +85,18 @@ void MasterLink::leave(bool interrupted, const TimeSplit& times) {
   auto* leave = message.mutable_leave();
   leave->set_interrupted(interrupted);
   put(leave->mutable_times(), times);
-  tell(message);
+  sign_and_send(message);
 }
 
 void MasterLink::failed(const std::string& reason) {
   v1::NodeMessage message;
   message.mutable_failed()->set_reason(reason);
-  tell(message);
+  sign_and_send(message);
 }
 
-void MasterLink::say(v1::NodeMessage message) { tell(message); }
+void MasterLink::send(v1::NodeMessage message) { sign_and_send(message); }
 
-void MasterLink::tell(v1::NodeMessage& message) {
+void MasterLink::sign_and_send(v1::NodeMessage& message) {
   message.set_run_id(welcome_.run_id());
   control_.send(to_frame(message), zmq::send_flags::none);
 }
@@ -109,27 +109,27 @@ void MasterLink::wait(const std::vector<zmq::socket_t*>& sockets, nanoseconds at
   if (stop_) items_.push_back({nullptr, stop_->fd(), ZMQ_POLLIN, 0});
   if (heartbeat_) items_.push_back({nullptr, heartbeat_->news().fd(), ZMQ_POLLIN, 0});
   wait_for(items_, at_most);
-  if (items_[0].revents) hear_ticks();
-  if (items_[1].revents) hear_control();
+  if (items_[0].revents) handle_ticks();
+  if (items_[1].revents) handle_control();
   if (heartbeat_ && items_.back().revents) take(heartbeat_->latest());
 }
 
-void MasterLink::hear_ticks() {
+void MasterLink::handle_ticks() {
   while (const auto frame = receive_one(ticks_)) {
     if (!from_frame(*frame, &scratch_) || scratch_.run_id() != welcome_.run_id() ||
         fault_of(scratch_))
       continue;
-    hears_ticks_ = true;
+    receives_ticks_ = true;
     take(scratch_);
   }
 }
 
-void MasterLink::hear_control() {
+void MasterLink::handle_control() {
   while (const auto frame = receive_one(control_)) {
     v1::MasterMessage message;
     if (!from_frame(*frame, &message)) continue;
     if (const auto fault = fault_of(message)) {
-      spdlog::warn("refused what the time-master says: {}", *fault);
+      spdlog::warn("refused a message of the time-master: {}", *fault);
       continue;
     }
     if (message.has_welcome() || message.has_refuse()) {
@@ -149,7 +149,7 @@ void MasterLink::hear_control() {
 void MasterLink::take(const v1::Grant& grant) {
   granted_ = std::max<Tick>(granted_, grant.tick());
   deserted_ = deserted_ || grant.deserted();
-  if (!over() && phase_ != grant.phase()) {  // a grant heard late does not go back
+  if (!over() && phase_ != grant.phase()) {  // ignore an outdated grant
     const bool later = int(grant.phase()) > int(phase_);
     if (later) phase_ = grant.phase();
     if (phase_ == v1::PHASE_FAILED) cause_ = grant.cause();

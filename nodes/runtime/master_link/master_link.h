@@ -11,20 +11,20 @@
 
 namespace dmise {
 
-/// A process's side of the conversation with the time-master: joins, hears grants (published, and
-/// repeated in answers to heartbeats), reports, leaves. Used from one thread.
+/// A process's connection to the time-master: joins, receives grants (published, and repeated in
+/// replies to heartbeats), reports, leaves. Used from one thread.
 class MasterLink {
  public:
   MasterLink(zmq::context_t& context, std::string master, const Event* stop,
              const Security& security = {});
   ~MasterLink();
 
-  /// Throws `Error` when refused or when there is no answer within the time.
+  /// Throws `Error` if refused or if there is no answer within the time.
   v1::Welcome join(const v1::Join& request, std::chrono::nanoseconds within);
 
-  /// Starts the heartbeat. Only what `join` does not know needs to be set in `options`.
+  /// Starts the heartbeat. `options` needs only what `join` does not know.
   void keep(HeartbeatOptions options, std::optional<zmq::socket_t> resend_socket);
-  /// Told to the master with the next heartbeat.
+  /// Sent with the next heartbeat.
   void set_computing(bool computing) { heartbeat_->set_computing(computing); }
   void set_times(const TimeSplit& times) { heartbeat_->set_times(times); }
 
@@ -32,11 +32,11 @@ class MasterLink {
   void done(const TickTally& tally);
   void leave(bool interrupted, const TimeSplit& times);
   void failed(const std::string& reason);
-  /// Anything else, over the connection that stands for the process.
-  void say(v1::NodeMessage message);
+  /// Sends any other message, over the connection that identifies the process.
+  void send(v1::NodeMessage message);
 
-  /// Waits until the master says something, one of `sockets` is readable, the process is asked to
-  /// stop, or the time is over; takes in what the master said.
+  /// Waits until a message of the master arrives, one of `sockets` is readable, the process is
+  /// asked to stop, or the time is over; handles the messages.
   void wait(const std::vector<zmq::socket_t*>& sockets, std::chrono::nanoseconds at_most);
 
   Tick granted() const { return granted_; }
@@ -45,23 +45,23 @@ class MasterLink {
   const std::string& cause() const { return cause_; }
   bool deserted() const { return deserted_; }
   bool stopped() const { return stop_ && stop_->is_set(); }
-  /// A grant came over the published channel: none will be missed.
-  bool hears_ticks() const { return hears_ticks_; }
+  /// Whether a grant arrived over the published channel, so that none will be missed.
+  bool receives_ticks() const { return receives_ticks_; }
   const std::string& name() const { return name_; }
   const std::optional<v1::Topology>& topology() const { return topology_; }
-  /// Grows with every topology heard.
+  /// Increases with every topology received.
   std::uint64_t topology_version() const { return topology_version_; }
-  /// What publishers have told the master since the last call.
+  /// Manifests published since the last call.
   std::vector<v1::TopicTally> take_published() { return std::exchange(published_, {}); }
   const std::vector<v1::ClosedTopic>& closed() const { return closed_; }
-  /// Answers to Join that are for others, since the last call: an agent asks for its nodes.
+  /// Answers to Join for other processes since the last call: an agent joins for its nodes.
   std::vector<v1::MasterMessage> take_answers() { return std::exchange(answers_, {}); }
   const v1::Welcome& welcome() const { return welcome_; }
 
  private:
-  void tell(v1::NodeMessage& message);
-  void hear_control();
-  void hear_ticks();
+  void sign_and_send(v1::NodeMessage& message);
+  void handle_control();
+  void handle_ticks();
   void take(const v1::Grant& grant);
 
   zmq::context_t& context_;
@@ -76,7 +76,7 @@ class MasterLink {
 
   v1::Welcome welcome_;
   std::optional<v1::MasterMessage> answer_;  // to Join
-  std::vector<v1::MasterMessage> answers_;   // the same, for others
+  std::vector<v1::MasterMessage> answers_;   // to Join of others
   std::optional<v1::Topology> topology_;
   std::uint64_t topology_version_ = 0;
   std::vector<v1::ClosedTopic> closed_;
@@ -86,7 +86,7 @@ class MasterLink {
   v1::Phase phase_ = v1::PHASE_GATHERING;
   std::string cause_;
   bool deserted_ = false;
-  bool hears_ticks_ = false;
+  bool receives_ticks_ = false;
 };
 
 }  // namespace dmise

@@ -6,24 +6,24 @@
 
 #include "core/base/error.h"
 #include "nodes/runtime/master_link/master_link.h"
+#include "nodes/runtime/master_link/run_result.h"
 #include "nodes/runtime/node/node_inputs.h"
 #include "nodes/runtime/observability/metrics.h"
 #include "nodes/runtime/process/json_log.h"
 #include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/transport/broker_place.h"
 #include "nodes/runtime/transport/peer_monitor.h"
 
 namespace dmise {
 namespace {
 
-using std::chrono::duration;
-using std::chrono::duration_cast;
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 constexpr milliseconds probe_interval{10};
 constexpr milliseconds idle{1000};
-constexpr milliseconds look_interval{100};  // at who subscribes to too much
+constexpr milliseconds look_interval{100};  // between checks of connection limits
 
 bool is_direct(const std::string& topic) { return topic.starts_with(truth_prefix); }
 
@@ -93,7 +93,7 @@ class Node {
       request.set_resend_endpoint(bind_to(*resend, options_.host, security_, Domain::data));
     }
 
-    const auto within = duration_cast<nanoseconds>(duration<double>(options_.join_within_s));
+    const auto within = from_seconds(options_.join_within_s);
     const v1::Welcome welcome = link_.join(request, within);
     run_ = {welcome.run_id(), {welcome.tick_ns()}, welcome.last_tick()};
     incarnation_ = welcome.incarnation();
@@ -102,7 +102,7 @@ class Node {
     outbox_.emplace(run_, request.name(), incarnation_, produces_,
                     Tick(welcome.window_ticks()) + 1);
     HeartbeatOptions heartbeat;
-    heartbeat.stop_within = duration_cast<nanoseconds>(duration<double>(options_.stop_within_s));
+    heartbeat.stop_within = from_seconds(options_.stop_within_s);
     heartbeat.progress = [this] { return participant_.progress(); };
     heartbeat.resend = [this](const v1::ResendRequest& request) {
       return request.catch_up() ? outbox_->catch_up(request.topic(), request.from_tick())
@@ -112,8 +112,8 @@ class Node {
     spdlog::debug("joined {}", options_.master);
   }
 
-  /// Connects to everybody and waits for the start, or catches up with a run that has started.
-  /// False when the run is over before.
+  /// Connects to all publishers and waits for the start, or catches up with a run under way. False
+  /// if the run is over before.
   bool gather() {
     while (!link_.topology() && going()) link_.wait({}, idle);
     if (!going()) return false;
@@ -132,7 +132,7 @@ class Node {
       link_.wait(inputs_.sockets(), probe_interval);
       follow_topology();
       receive_data();
-      if (!said_ready && (inputs_.probed() || first.running()) && link_.hears_ticks()) {
+      if (!said_ready && (inputs_.probed() || first.running()) && link_.receives_ticks()) {
         link_.ready();
         said_ready = true;
       }
@@ -161,7 +161,7 @@ class Node {
   }
 
   void work() {
-    std::vector<Message> carried = take_up();  // published with the first step's
+    std::vector<Message> carried = resume_participant();  // published with the first step's
     for (Tick tick = schedule_.next_after(from_tick_ - 1); tick <= run_.last_tick;
          tick = schedule_.next_after(tick)) {
       if (!await(tick)) return;
@@ -173,12 +173,12 @@ class Node {
       {
         const Stopwatch watch(&result_->times.compute_s);
         link_.set_computing(true);
-        tell_metrics(true);
+        update_metrics(true);
         for (Message& message : participant_.step(tick, inputs))
           outputs.push_back(std::move(message));
         link_.set_computing(false);
       }
-      if (link_.stopped()) return;  // a step that was asked to stop may be half done
+      if (link_.stopped()) return;  // an interrupted step may be incomplete
       const Stopwatch watch(&result_->times.messaging_s);
       for (const SharedFrames& frames : outbox_->pack(tick, outputs)) publish(frames);
       count(outputs, &result_->times);
@@ -186,7 +186,7 @@ class Node {
       result_->done = tick;
       ++steps_;
       link_.set_times(result_->times);
-      tell_metrics(false);
+      update_metrics(false);
     }
     while (!link_.over() && !link_.stopped()) {
       link_.wait({}, idle);
@@ -194,18 +194,18 @@ class Node {
     }
   }
 
-  /// Throws when the run goes on without somebody without whom the participant can't.
+  /// Throws if the run continues without a publisher that the participant needs.
   void need_inputs_of(Tick tick) const {
     for (const auto& topic : link_.closed())
       if (tick >= Tick(topic.from_tick()) && inputs_.consumes(topic.topic()) &&
           participant_.needs(topic.topic()))
-        throw Error("nothing comes on " + topic.topic() + " from tick " +
+        throw Error("nothing is published on " + topic.topic() + " from tick " +
                     std::to_string(topic.from_tick()) + " on");
   }
 
-  /// After a restart, or where an earlier run stopped: gives the participant what it needs to go
-  /// on.
-  std::vector<Message> take_up() {
+  /// After a restart, or at the end of an earlier run: gives the participant the inputs it needs to
+  /// continue.
+  std::vector<Message> resume_participant() {
     if (incarnation_ == 1 && from_tick_ == 0) return {};
     std::vector<Message> past;
     if (!consumes_.empty() && first_input() < from_tick_) {
@@ -213,19 +213,19 @@ class Node {
       past = inputs_.take(from_tick_ - 1);
     }
     log_event(spdlog::level::info, "resumed", {{"tick", std::int64_t(from_tick_)}},
-              fmt::format("takes up its work at tick {}", from_tick_));
+              fmt::format("resumes at tick {}", from_tick_));
     link_.set_computing(true);
     auto carried = participant_.resume(from_tick_, past);
     link_.set_computing(false);
     return carried;
   }
 
-  /// Until the tick is granted and its inputs are here. False when the run is over.
+  /// Waits until the tick is granted and its inputs are complete. False if the run is over.
   bool await(Tick tick) {
-    inputs_.be_patient_again();
+    inputs_.reset_patience();
     while (going()) {
       follow_topology();
-      inputs_.hear(link_.closed(), link_.take_published());
+      inputs_.update_topics(link_.closed(), link_.take_published());
       const bool granted = link_.granted() >= tick || tick < resume_tick_;
       if (granted && inputs_.complete(tick)) return true;
       const nanoseconds patience = granted ? inputs_.ask_for(tick) : nanoseconds(idle);
@@ -234,7 +234,7 @@ class Node {
         link_.wait(inputs_.sockets(), patience);
       }
       receive_data();
-      tell_metrics(false);
+      update_metrics(false);
     }
     return false;
   }
@@ -255,7 +255,7 @@ class Node {
     sent_bytes_ += frames->bytes();
   }
 
-  void tell_metrics(bool computing) const {
+  void update_metrics(bool computing) const {
     Metrics* metrics = Metrics::of_process();
     if (!metrics) return;
     NodeFigures figures = inputs_.figures();
@@ -267,7 +267,7 @@ class Node {
     figures.sent = sent_;
     figures.sent_bytes = sent_bytes_;
     figures.times = result_->times;
-    metrics->tell(figures);
+    metrics->set(figures);
   }
 
   bool going() const { return !link_.over() && !link_.stopped(); }
@@ -275,8 +275,8 @@ class Node {
   void finish() {
     result_->refused = inputs_.refused();
     result_->last_refusal = inputs_.last_refusal();
-    result_->asked_again = inputs_.asked_again();
-    result_->asked_for_known = inputs_.asked_for_known();
+    result_->resend_requests = inputs_.resend_requests();
+    result_->resend_requests_known = inputs_.resend_requests_known();
     result_->lost = inputs_.lost();
     result_->missed = inputs_.missed();
     const bool interrupted = link_.stopped() && link_.phase() != v1::PHASE_ENDED;
@@ -285,7 +285,7 @@ class Node {
     direct_.close();
     inputs_.close();
     data_door_.reset();
-    data_context_.close();  // everything published is on its way before the node leaves
+    data_context_.close();  // flushes everything published before the node leaves
     link_.leave(interrupted, result_->times);
     if (link_.phase() == v1::PHASE_FAILED) throw Error(link_.cause());
     if (interrupted) throw Error("interrupted");
@@ -301,7 +301,7 @@ class Node {
   zmq::context_t control_context_{1}, data_context_{1};
   ZapAuthenticator control_door_;
   std::optional<ZapAuthenticator> data_door_;
-  std::optional<Outbox> outbox_;  // used by the link's heartbeat: outlives it
+  std::optional<Outbox> outbox_;  // used by the heartbeat thread, must outlive it
   MasterLink link_;
   zmq::socket_t publish_, direct_;
   std::optional<PeerMonitor> listeners_;  // of `direct_`
@@ -317,19 +317,8 @@ class Node {
 }  // namespace
 
 NodeResult run_node(Participant& participant, const NodeOptions& options) {
-  NodeResult result;
-  try {
-    Node node(participant, options);
-    node.run(&result);
-  } catch (const ConfigError& error) {
-    result.exit_code = 2;
-    result.reason = error.what();
-  } catch (const std::exception& error) {
-    result.exit_code = 1;
-    result.reason = error.what();
-  }
-  if (result.exit_code != 0) spdlog::error("{}", result.reason);
-  return result;
+  return result_of_run<NodeResult>(
+      [&](NodeResult* result) { Node(participant, options).run(result); });
 }
 
 }  // namespace dmise

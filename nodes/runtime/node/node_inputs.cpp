@@ -14,9 +14,10 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
-constexpr milliseconds gap_patience{20};          // it is published: late or lost
-constexpr milliseconds gap_patience_limit{4000};  // doubled whenever it was only late
-constexpr milliseconds quiet_patience{500};  // nothing is known of it: the producer may be slow
+constexpr milliseconds gap_patience{20};          // for messages known to be published
+constexpr milliseconds gap_patience_limit{4000};  // doubled whenever they were only late
+constexpr milliseconds quiet_patience{
+    500};  // for topics of unknown state: the producer may be slow
 constexpr milliseconds quiet_patience_limit{8000};  // doubled each time up to this
 constexpr milliseconds idle{1000};
 
@@ -65,7 +66,7 @@ void NodeInputs::follow(const v1::Publisher& publisher) {
         topic, {std::max<Tick>(1, Tick(publisher.period_ticks())), Tick(publisher.offset_ticks())});
     if (!follows_another) continue;
     inbox_.restart(topic);
-    asked_ = nanoseconds{0};  // ask where it is without delay
+    asked_ = nanoseconds{0};  // request its position without delay
   }
   if (!direct.empty()) {
     source.direct = make_socket(context_, zmq::socket_type::sub, max_data_bytes);
@@ -89,10 +90,10 @@ void NodeInputs::begin_at(Tick tick, bool catch_up) {
   asked_ = now();
 }
 
-void NodeInputs::hear(const std::vector<v1::ClosedTopic>& closed,
-                      const std::vector<v1::TopicTally>& said) {
+void NodeInputs::update_topics(const std::vector<v1::ClosedTopic>& closed,
+                               const std::vector<v1::TopicTally>& published) {
   for (const auto& topic : closed) inbox_.close(topic.topic(), topic.from_tick());
-  for (const auto& tally : said) {
+  for (const auto& tally : published) {
     const auto publisher = publisher_of_.find(tally.topic());
     if (publisher == publisher_of_.end() ||
         sources_.at(publisher->second).incarnation != tally.incarnation())
@@ -108,21 +109,21 @@ void NodeInputs::receive() {
     if (source.direct) receive_from(*source.direct, &name, Inbox::Way::direct);
     if (source.asker) receive_from(*source.asker, &name, Inbox::Way::answer);
   }
-  learn_patience();
-  say_forged();
+  adapt_patience();
+  log_forged();
 }
 
-void NodeInputs::say_forged() {
+void NodeInputs::log_forged() {
   if (inbox_.forged() == forged_said_) return;
-  spdlog::warn("threw away {} messages that their publishers have not sent",
+  spdlog::warn("dropped {} messages that their publishers have not sent",
                inbox_.forged() - forged_said_);
   forged_said_ = inbox_.forged();
 }
 
-/// `publisher`: the only one who may speak there; null: anyone.
+/// `publisher`: the only permitted publisher; null: any.
 void NodeInputs::receive_from(zmq::socket_t& socket, const std::string* publisher, Inbox::Way way) {
   for (auto message = dmise::receive(socket); !message.empty(); message = dmise::receive(socket)) {
-    // A subscription also matches topics that only begin like it.
+    // A subscription also matches topics with the same prefix.
     const auto expected = publisher_of_.find(message[0].to_string());
     if (expected == publisher_of_.end()) continue;
     if (publisher && expected->second != *publisher) {
@@ -148,7 +149,7 @@ nanoseconds NodeInputs::ask_for(Tick tick) {
   if (wants.empty()) return idle;
   const bool gap = std::any_of(wants.begin(), wants.end(), [](const auto& w) { return w.gap; });
   const Missing missing = gap ? Missing::gap : Missing::quiet;
-  // Patience begins when it is known that something is missing. 0: to be asked without delay.
+  // Patience starts when a gap is known. 0: request without delay.
   if (missing > missing_ && asked_.count() != 0) asked_ = now();
   missing_ = missing;
   const nanoseconds patience = gap ? std::max(gap_, again_) : quiet_;
@@ -168,20 +169,21 @@ nanoseconds NodeInputs::ask_for(Tick tick) {
   return patience;
 }
 
-/// What was asked for and came twice was only late: a network of many takes its time, and asking
-/// again makes it more.
-void NodeInputs::learn_patience() {
+/// A requested message that came twice was only late: a large network takes time, and requests make
+/// it slower.
+void NodeInputs::adapt_patience() {
   if (!duplicates_when_asked_ || inbox_.duplicates() == *duplicates_when_asked_) return;
   duplicates_when_asked_.reset();
   gap_ = std::min<nanoseconds>(2 * gap_, gap_patience_limit);
 }
 
-void NodeInputs::be_patient_again() {
+void NodeInputs::reset_patience() {
   asked_ = now();
   missing_ = Missing::nothing;
   quiet_ = quiet_patience;
   again_ = nanoseconds{0};
-  gap_ = std::max<nanoseconds>(gap_patience, gap_ - gap_ / 16);  // the rush may be over
+  gap_ = std::max<nanoseconds>(gap_patience,
+                               gap_ - gap_ / 16);  // decreases when the network is faster again
 }
 
 void NodeInputs::ask(const std::string& topic, std::uint64_t from_sequence,
@@ -206,7 +208,7 @@ void NodeInputs::ask(const std::string& topic, std::uint64_t from_sequence,
 
 NodeFigures NodeInputs::figures() const {
   NodeFigures figures{.received = received_,
-                      .asked_again = asked_again_,
+                      .resend_requests = asked_again_,
                       .missed = inbox_.missed(),
                       .queued = inbox_.queued()};
   for (std::size_t i = 0; receiver_ && i < figures.refused.size(); ++i)

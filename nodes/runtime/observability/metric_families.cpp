@@ -10,7 +10,7 @@ namespace {
 using prometheus::MetricType;
 using Labels = std::vector<prometheus::ClientMetric::Label>;
 
-/// Collects samples; those of one name follow each other.
+/// Collects samples; samples of one name must be consecutive.
 class Builder {
  public:
   void gauge(const char* name, const char* help, double value, Labels labels = {}) {
@@ -45,25 +45,27 @@ void add_node(Builder& b, const NodeStatus& node, const RunStatus& status) {
   const Labels of{{"node", node.name}};
   const bool holds =
       std::find(status.holding.begin(), status.holding.end(), node.name) != status.holding.end();
-  b.gauge("dmise_clock_node_up", "1 while the time-master hears the node.", node.alive, of);
-  b.gauge("dmise_clock_held", "1 while everybody waits for the node.", holds, of);
+  b.gauge("dmise_clock_node_up", "1 while the time-master receives the node's heartbeats.",
+          node.alive, of);
+  b.gauge("dmise_clock_held", "1 while the clock waits for the node.", holds, of);
   b.gauge("dmise_clock_node_done_tick", "Last tick that the node has done; -1 before the first.",
           double(node.done), of);
-  b.counter("dmise_clock_node_restarts_total", "Processes that followed the node's first.",
+  b.counter("dmise_clock_node_restarts_total", "Processes of the node after its first.",
             double(node.incarnation - 1), of);
-  b.counter("dmise_clock_node_frames_total", "Frames published, as the node last said.",
+  b.counter("dmise_clock_node_frames_total", "Frames published, as last reported by the node.",
             double(node.times.frames), of);
-  b.counter("dmise_clock_node_detections_total", "Detections published, as the node last said.",
-            double(node.times.detections), of);
-  add_times(b, "dmise_clock_node_seconds_total", "How the node spent its time, as it last said.",
-            node.times, node.name);
+  b.counter("dmise_clock_node_detections_total",
+            "Detections published, as last reported by the node.", double(node.times.detections),
+            of);
+  add_times(b, "dmise_clock_node_seconds_total",
+            "Time of the node by activity, as last reported by it.", node.times, node.name);
 }
 
 }  // namespace
 
 MetricFamilies families_of_build(const std::string& program, const std::string& node) {
   Builder b;
-  b.gauge("dmise_build_info", "Always 1: which program this is.", 1,
+  b.gauge("dmise_build_info", "Always 1; labels identify the program.", 1,
           {{"version", DMISE_VERSION}, {"program", program}, {"node", node}});
   return b.take();
 }
@@ -73,7 +75,7 @@ MetricFamilies families_of(const ProcessFigures& f, double started_s) {
   b.counter("process_cpu_seconds_total", "User and system time spent.", f.cpu_s);
   b.gauge("process_resident_memory_bytes", "Memory in use.", double(f.resident_bytes));
   b.gauge("process_open_fds", "Open file descriptors.", double(f.open_files));
-  b.gauge("process_start_time_seconds", "When the process started, since 1970.", started_s);
+  b.gauge("process_start_time_seconds", "Start time of the process since 1970.", started_s);
   return b.take();
 }
 
@@ -88,7 +90,7 @@ MetricFamilies families_of(const NodeFigures& f, const std::string& node) {
   b.gauge("dmise_node_computing", "1 inside a step.", f.computing, of);
   b.gauge("dmise_node_incarnation", "Processes of this name so far, this one included.",
           double(f.incarnation), of);
-  add_times(b, "dmise_node_seconds_total", "How this process spent its time.", f.times, node);
+  add_times(b, "dmise_node_seconds_total", "Time of this process by activity.", f.times, node);
   b.counter("dmise_node_frames_total", "Frames published.", double(f.times.frames), of);
   b.counter("dmise_node_detections_total", "Detections published.", double(f.times.detections), of);
   b.counter("dmise_node_sent_messages_total", "Messages published.", double(f.sent), of);
@@ -99,20 +101,20 @@ MetricFamilies families_of(const NodeFigures& f, const std::string& node) {
   for (std::size_t i = 0; i < f.refused.size(); ++i)
     b.counter("dmise_node_refused_messages_total", "Messages received that failed a check.",
               double(f.refused[i]), {{"node", node}, {"reason", std::string(name(Refusal(i)))}});
-  b.counter("dmise_node_resend_requests_total", "Questions for messages that were missing.",
-            double(f.asked_again), of);
-  b.counter("dmise_node_missed_messages_total", "Messages that nobody kept; of an observer.",
+  b.counter("dmise_node_resend_requests_total", "Requests for missing messages.",
+            double(f.resend_requests), of);
+  b.counter("dmise_node_missed_messages_total", "Messages no longer available; of an observer.",
             double(f.missed), of);
-  b.gauge("dmise_node_queued_messages", "Messages received and not used yet.", double(f.queued),
+  b.gauge("dmise_node_queued_messages", "Messages received but not yet used.", double(f.queued),
           of);
   return b.take();
 }
 
 MetricFamilies families_of(const BrokerFigures& f) {
   Builder b;
-  b.counter("dmise_broker_messages_total", "Messages passed on.", double(f.messages));
+  b.counter("dmise_broker_messages_total", "Messages forwarded.", double(f.messages));
   b.counter("dmise_broker_refused_messages_total",
-            "Messages in the name of another than their sender.", double(f.refused));
+            "Messages under another name than their sender's.", double(f.refused));
   return b.take();
 }
 
@@ -128,10 +130,10 @@ MetricFamilies families_of(const RunStatus& s) {
           double(s.settled));
   b.gauge("dmise_clock_last_tick", "Last tick of the run.", double(s.last_tick));
   b.gauge("dmise_clock_tick_seconds", "Simulated length of a tick.", s.tick_length.seconds());
-  b.gauge("dmise_clock_paused", "1 while somebody has asked the clock to wait.", s.paused);
+  b.gauge("dmise_clock_paused", "1 while the clock is paused on request.", s.paused);
   b.gauge("dmise_clock_missing_nodes", "Expected nodes that have not joined.",
           double(s.missing.size()));
-  b.counter("dmise_clock_overruns_total", "Ticks not over when real time reached the next.",
+  b.counter("dmise_clock_overruns_total", "Ticks not done when real time reached the next.",
             double(s.overruns));
   b.gauge("dmise_clock_worst_lag_seconds", "Largest delay behind real time.", s.worst_lag_s);
   for (const NodeStatus& node : s.nodes) add_node(b, node, s);

@@ -7,8 +7,8 @@
 #include "nodes/runtime/observability/figures.h"
 #include "nodes/runtime/observability/status.h"
 
-// Figures as families of metrics. Names follow Prometheus's conventions: base units, which end the
-// name, and _total for what only grows. docs/operations.md lists them.
+// Counters as families of metrics. Names follow Prometheus's conventions: base units at the end of
+// the name, and _total for counters. docs/operations.md lists them.
 namespace dmise {
 
 using MetricFamilies = std::vector<prometheus::MetricFamily>;

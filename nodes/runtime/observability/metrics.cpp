@@ -42,7 +42,7 @@ MetricsAddress metrics_address(const std::string& text) {
   return address;
 }
 
-/// The last figures told.
+/// The latest values.
 struct Metrics::Board {
   Board(std::string program_name, std::string node_name)
       : program(std::move(program_name)), node(std::move(node_name)) {}
@@ -87,17 +87,17 @@ Metrics::~Metrics() { metrics_of_process = nullptr; }
 
 Metrics* Metrics::of_process() { return metrics_of_process.load(std::memory_order_relaxed); }
 
-void Metrics::tell(const NodeFigures& figures) {
+void Metrics::set(const NodeFigures& figures) {
   const std::lock_guard lock(board_->mutex);
   board_->of_node = figures;
 }
 
-void Metrics::tell(const BrokerFigures& figures) {
+void Metrics::set(const BrokerFigures& figures) {
   const std::lock_guard lock(board_->mutex);
   board_->of_broker = figures;
 }
 
-void Metrics::tell(const RunStatus& status) {
+void Metrics::set(const RunStatus& status) {
   const std::lock_guard lock(board_->mutex);
   board_->of_run = status;
 }

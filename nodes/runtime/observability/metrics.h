@@ -14,11 +14,11 @@ struct MetricsAddress {
   int port = 0;  // 0: any free one
 };
 
-/// Reads "auto", "PORT" or "HOST:PORT". Throws `ConfigError`.
+/// Parses "auto", "PORT" or "HOST:PORT". Throws `ConfigError`.
 MetricsAddress metrics_address(const std::string& text);
 
-/// The figures of this process, served at /metrics over HTTP in Prometheus's text format from a
-/// thread of their own. The process tells its figures as they change; a scrape takes the last.
+/// Serves metrics of this process at /metrics over HTTP in Prometheus's text format from a thread
+/// of its own. The process sets values as they change; a scrape returns the latest.
 class Metrics {
  public:
   /// `where`: see metrics_address. Throws `ConfigError`, or `Error` when the port is taken.
@@ -27,15 +27,15 @@ class Metrics {
   Metrics(const Metrics&) = delete;
   Metrics& operator=(const Metrics&) = delete;
 
-  /// Those of this process; null when it serves none: the usual case, which costs this look.
+  /// The instance of this process; null if it serves none, the usual case.
   static Metrics* of_process();
 
   const std::string& url() const { return url_; }
 
-  void tell(const NodeFigures& figures);
-  void tell(const BrokerFigures& figures);
-  /// What the time-master knows.
-  void tell(const RunStatus& status);
+  void set(const NodeFigures& figures);
+  void set(const BrokerFigures& figures);
+  /// State of the run, of the time-master.
+  void set(const RunStatus& status);
 
  private:
   struct Board;

@@ -20,7 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds without_files{100};  // until there may be one to accept with
+constexpr std::chrono::milliseconds without_files{100};  // wait for a free descriptor
 
 struct Client {
   int fd;
@@ -39,7 +39,7 @@ std::string refusal(const char* status) {
   return answer_of(status, "text/plain", std::string(status) + "\n");
 }
 
-/// The answer to a request, or "" while its head is not whole.
+/// The answer to a request, or "" while its head is incomplete.
 std::string answer_to(const std::string& request, const std::function<std::string()>& page) {
   if (request.size() > MetricsServer::longest_request)
     return refusal("431 Request Header Fields Too Large");
@@ -51,7 +51,7 @@ std::string answer_to(const std::string& request, const std::function<std::strin
   return answer_of("200 OK", "text/plain; version=0.0.4; charset=utf-8", page());
 }
 
-/// Reads or writes what is possible now; false when the client is done with, or gone.
+/// Reads or writes what is possible; false if the client is finished or gone.
 bool serve(Client* client, short events, const std::function<std::string()>& page) {
   if (client->answer.empty()) {
     char buffer[2048];
@@ -71,7 +71,7 @@ bool serve(Client* client, short events, const std::function<std::string()>& pag
   return client->sent < client->answer.size();
 }
 
-/// Those who are connected, the oldest first.
+/// Connected clients, the oldest first.
 class Clients {
  public:
   ~Clients() {

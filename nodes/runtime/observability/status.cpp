@@ -40,7 +40,7 @@ v1::Control::Action to_wire(ClockAction action) {
   return v1::Control::ACTION_ABORT;
 }
 
-/// A conversation with a time-master. Throws `Error` when there is no answer within the time.
+/// A conversation with a time-master. Throws `Error` if there is no answer within the time.
 class Conversation {
  public:
   Conversation(const std::string& address, double within_s, const Security& security)
@@ -58,7 +58,7 @@ class Conversation {
     const auto frame = receive_one(socket_);
     v1::MasterMessage answer;
     if (!frame || !from_frame(*frame, &answer) || !answer.has_endpoints())
-      throw Error("no time-master answers at " + address_);
+      throw Error("no answer from a time-master at " + address_);
     return status_of(answer.endpoints());
   }
 

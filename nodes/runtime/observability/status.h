@@ -19,12 +19,12 @@ struct NodeStatus {
   TimeSplit times;
 };
 
-/// Where a broker is bound.
+/// Addresses of a broker.
 struct BrokerEndpoints {
   std::string publish, subscribe, observe;
 };
 
-/// What the time-master tells anybody who asks.
+/// State of a run as reported by its time-master.
 struct RunStatus {
   std::uint64_t run_id = 0;
   Phase phase = Phase::gathering;
@@ -32,31 +32,30 @@ struct RunStatus {
   Tick granted = -1;
   Tick last_tick = 0;
   SimTime tick_length;
-  std::string start_utc;  // of tick 0; empty when the master was not told
-  Tick settled = -1;      // all have done it
+  std::string start_utc;  // of tick 0; empty if unknown
+  Tick settled = -1;      // last tick done by all
   bool paused = false;
-  std::uint64_t overruns = 0;  // of real time
+  std::uint64_t overruns = 0;  // ticks behind real time
   double worst_lag_s = 0.0;
-  std::uint64_t digest = 0;      // of all that was published in settled ticks
-  std::string observe_endpoint;  // subscribe here; empty while there is no broker
+  std::uint64_t digest = 0;      // of everything published in settled ticks
+  std::string observe_endpoint;  // to subscribe to; empty without a broker
   BrokerEndpoints broker;        // of the last broker; empty before the first
   std::vector<NodeStatus> nodes;
   std::vector<std::string> missing;
-  std::vector<std::string> holding;  // who holds the clock
+  std::vector<std::string> holding;  // nodes that the clock waits for
 };
 
-/// What the master's answer says.
+/// Converts the master's answer.
 RunStatus status_of(const v1::Endpoints& answer);
 
 enum class ClockAction { pause, step, go_on, end_early, abort };
 
-/// Asks the clock to do something and returns what became of it. `tick`: to pause after, or how
-/// many to step.
+/// Controls the clock and returns the resulting state. `tick`: to pause after, or number of steps.
 RunStatus control_master(const std::string& address, double within_s, ClockAction action,
                          Tick tick = 0, const std::string& reason = "",
                          const Security& security = {});
 
-/// Asks the master at `address`. Throws `Error` when it does not answer in time.
+/// Queries the master at `address`. Throws `Error` if it does not answer in time.
 RunStatus ask_master(const std::string& address, double within_s, const Security& security = {});
 
 }  // namespace dmise

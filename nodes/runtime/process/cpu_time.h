@@ -3,7 +3,7 @@
 
 namespace dmise {
 
-/// Returns the seconds that all threads of this process have computed.
+/// Returns the CPU seconds of all threads of this process.
 inline double process_cpu_seconds() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);

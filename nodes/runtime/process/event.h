@@ -3,7 +3,7 @@
 
 namespace dmise {
 
-/// A flag that a poll can wait for. Setting it is safe in a signal handler and from any thread.
+/// A flag that a poll can wait for. May be set in a signal handler and from any thread.
 class Event {
  public:
   Event();
@@ -13,11 +13,11 @@ class Event {
 
   void set();
   bool is_set() const { return flag_.load(std::memory_order_acquire); }
-  /// Takes the flag down again.
+  /// Resets the flag.
   void clear();
   /// Readable while the flag is set.
   int fd() const { return fd_; }
-  /// For work that looks now and then whether it should go on.
+  /// For long computations that check whether to continue.
   const std::atomic<bool>& flag() const { return flag_; }
 
  private:
@@ -25,7 +25,7 @@ class Event {
   int fd_ = -1;
 };
 
-/// The event that SIGINT and SIGTERM set from now on: the polite end of a program.
+/// The event that SIGINT and SIGTERM set from now on, for an orderly exit.
 Event& stop_signal();
 
 }  // namespace dmise

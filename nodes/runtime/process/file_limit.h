@@ -2,8 +2,8 @@
 
 namespace dmise {
 
-/// Lets this process open as many files as the system lets it, at most 65,536: each connection is
-/// one, and the usual soft limit is 1,024.
+/// Raises the limit of open files as far as the system permits, to at most 65,536: each connection
+/// is one, and the usual soft limit is 1,024.
 void raise_file_limit();
 
 }  // namespace dmise

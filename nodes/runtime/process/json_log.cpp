@@ -15,8 +15,8 @@ struct Event {
   std::initializer_list<LogField> fields;
 };
 
-// The event that this thread is saying: a log without a queue formats it before `log` returns.
-thread_local const Event* said = nullptr;
+// The event being logged by this thread; without a queue it is formatted before `log` returns.
+thread_local const Event* current_event = nullptr;
 
 std::string rfc3339(spdlog::log_clock::time_point time) {
   const auto us = std::chrono::floor<std::chrono::microseconds>(time.time_since_epoch());
@@ -34,11 +34,11 @@ class JsonFormatter : public spdlog::formatter {
     line["time"] = rfc3339(message.time);
     line["level"] = text_of(spdlog::level::to_string_view(message.level));
     line["node"] = text_of(message.logger_name);
-    line["event"] = said ? said->name : "message";
+    line["event"] = current_event ? current_event->name : "message";
     line["text"] = text_of(message.payload);
     Json& fields = line["fields"] = Json::object();
-    if (said)
-      for (const auto& [key, value] : said->fields)
+    if (current_event)
+      for (const auto& [key, value] : current_event->fields)
         std::visit([&, k = std::string(key)](const auto& v) { fields[k] = v; }, value);
     const std::string text = line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     out.append(text.data(), text.data() + text.size());
@@ -53,9 +53,9 @@ class JsonFormatter : public spdlog::formatter {
 void log_event(spdlog::level::level_enum level, std::string_view event,
                std::initializer_list<LogField> fields, const std::string& text) {
   const Event now{event, fields};
-  said = &now;
+  current_event = &now;
   spdlog::log(level, "{}", text);
-  said = nullptr;
+  current_event = nullptr;
 }
 
 std::unique_ptr<spdlog::formatter> json_formatter() { return std::make_unique<JsonFormatter>(); }

@@ -14,12 +14,12 @@ namespace dmise {
 using LogValue = std::variant<std::int64_t, std::uint64_t, double, bool, std::string>;
 using LogField = std::pair<std::string_view, LogValue>;
 
-/// Says `text`. Where the log is JSON the line has `event`, a name that does not change with the
-/// wording, and `fields`, what the text is about as values.
+/// Logs `text`. In a JSON log the line also has `event`, a name independent of the wording, and
+/// `fields`, the values in the text.
 void log_event(spdlog::level::level_enum level, std::string_view event,
                std::initializer_list<LogField> fields, const std::string& text);
 
-/// Writes an event as one line of JSON (RFC 8259) with the keys
+/// Formats an event as one line of JSON (RFC 8259) with the keys
 ///   time    UTC, RFC 3339 with microseconds: "2026-01-31T12:00:00.000000Z"
 ///   level   trace, debug, info, warning, error or critical
 ///   node    the log's name

@@ -8,8 +8,8 @@
 
 namespace dmise {
 
-/// A log of what strangers do: ten lines of each kind in 10 s, and a line with the number of the
-/// others. Used from one thread.
+/// Rate-limited log of the actions of unknown peers: ten lines of each kind in 10 s, and the number
+/// of the others. Used from one thread.
 class LimitedLog {
  public:
   ~LimitedLog() { sum_up(true); }
@@ -19,10 +19,10 @@ class LimitedLog {
   void warn(const std::string& kind, const std::string& text) {
     if (admits(kind)) spdlog::warn("{}", text);
   }
-  /// Says how many lines were left out, once their interval is over.
+  /// Logs how many lines were suppressed, once their interval is over.
   void sum_up(bool at_end = false) {
     for (const auto& [kind, count] : lines_.take_left_out(now(), at_end))
-      spdlog::warn("{} more {}, not written one by one", count, kind);
+      spdlog::warn("{} more {} suppressed", count, kind);
   }
 
  private:

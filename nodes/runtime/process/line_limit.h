@@ -9,13 +9,13 @@
 
 namespace dmise {
 
-/// Lines of one kind that a log takes: the first few of each interval; the others are counted.
+/// Limits log lines of one kind: admits the first few of each interval and counts the others.
 class LineLimit {
  public:
   explicit LineLimit(std::uint64_t most = 10, Instant interval = std::chrono::seconds(10))
       : most_(most), interval_(interval) {}
 
-  /// Whether a line of this kind is written. Kinds are few: they are names of ours.
+  /// Whether to write a line of this kind. The set of kinds must be small.
   bool admit(const std::string& kind, Instant now) {
     Count& count = counts_.try_emplace(kind, Count{now, 0, 0}).first->second;
     if (now - count.since >= interval_ && count.left_out == 0) count = {now, 0, 0};
@@ -27,7 +27,7 @@ class LineLimit {
     return false;
   }
 
-  /// Kinds with how many lines were left out, once their interval is over, or of all (`at_end`).
+  /// Kinds with the number of suppressed lines, once their interval is over, or all (`at_end`).
   std::vector<std::pair<std::string, std::uint64_t>> take_left_out(Instant now,
                                                                    bool at_end = false) {
     std::vector<std::pair<std::string, std::uint64_t>> left_out;

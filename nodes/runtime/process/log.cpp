@@ -11,7 +11,7 @@ namespace dmise {
 
 namespace {
 
-/// The text of an event, on one line that a terminal does not obey: names in it come from files and
+/// The text of an event on one line without control characters: names in it come from files and
 /// from the network.
 class PrintablePayload : public spdlog::custom_flag_formatter {
  public:
@@ -40,7 +40,7 @@ void start_log(const std::string& name, const std::string& level, const std::str
   auto sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
   auto logger = std::make_shared<spdlog::logger>(name, sink);
   logger->set_formatter(format == "json" ? json_formatter() : text_formatter());
-  spdlog::set_default_logger(logger);  // first: what is wrong below is said in the log
+  spdlog::set_default_logger(logger);  // first, so that errors below are logged
   if (format != "json" && format != "text")
     throw ConfigError("log-format: must be text or json, got " + format);
   const auto parsed = spdlog::level::from_str(level);

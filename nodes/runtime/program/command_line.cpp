@@ -29,7 +29,7 @@ bool is_host_and_port(std::string_view text) {
   return host.find_first_of(":/ ") == host.npos;
 }
 
-/// What stands between "SCHEME:" (or nothing) and slashes, and the address's end.
+/// Splits off "SCHEME:" and slashes.
 std::string_view without_scheme(std::string_view text) {
   const auto slashes = text.find("//");
   if (slashes != text.npos) return text.substr(slashes + 2);
@@ -58,7 +58,7 @@ std::vector<std::string> options_of(const std::vector<const CLI::App*>& chain) {
 
 }  // namespace
 
-std::string complaint_of_address(const std::string& address) {
+std::string address_error(const std::string& address) {
   for (const std::string_view local : {"ipc://", "inproc://"})
     if (address.starts_with(local) && address.size() > local.size()) return "";
   // tcp://INTERFACE;HOST:PORT is ZeroMQ's too.
@@ -71,13 +71,13 @@ std::string complaint_of_address(const std::string& address) {
 }
 
 CLI::Validator transport_address() {
-  return {[](std::string& address) { return complaint_of_address(address); }, "", "address"};
+  return {[](std::string& address) { return address_error(address); }, "", "address"};
 }
 
 std::string unknown_argument(const CLI::App& app) {
   const auto chain = chain_of(app);
   for (auto at = chain.rbegin(); at != chain.rend(); ++at) {
-    // Words first: the value of an unknown option is none of its own.
+    // The value of an unknown option is not an argument itself.
     const auto left = (*at)->remaining(false);
     const auto flag = std::find_if(left.begin(), left.end(),
                                    [](const std::string& word) { return word.starts_with('-'); });
@@ -105,7 +105,7 @@ int end_of_command_line(const CLI::App& app, const CLI::ParseError& error) {
   for (const CLI::App* part : chain_of(app))
     command += (command.empty() ? "" : " ") + part->get_name();
   std::string unknown = unknown_argument(app);
-  // What is missing is told first only where nothing can be mistaken for it.
+  // An unknown argument explains more than a missing one.
   const std::string reason = unknown.empty() ? error.what() : unknown;
   std::fprintf(stderr, "%s: %s (%s --help)\n", command.c_str(), reason.c_str(), command.c_str());
   return 2;

@@ -4,19 +4,19 @@
 
 namespace dmise {
 
-/// Empty for an address that a socket takes: tcp://HOST:PORT (PORT 0 to 65535, or *), ipc:// or
-/// inproc://. Else why not, with the address that is likely meant.
-std::string complaint_of_address(const std::string& address);
+/// Returns why a socket does not accept an address, with a suggestion; empty for tcp://HOST:PORT
+/// (PORT 0 to 65535, or *), ipc:// and inproc://.
+std::string address_error(const std::string& address);
 
-/// Lets an option take only such addresses.
+/// Restricts an option to such addresses.
 CLI::Validator transport_address();
 
-/// What to say of the first argument that nobody takes: "unknown option --thread, did you mean
-/// --threads?". Empty when there is none.
+/// Describes the first unknown argument: "unknown option --thread, did you mean --threads?". Empty
+/// if there is none.
 std::string unknown_argument(const CLI::App& app);
 
-/// Says what is wrong with a command line, or prints the help that was asked for. Returns the exit
-/// code of the program: 0 or 2.
+/// Prints what is wrong with a command line, or the requested help. Returns the exit code of the
+/// program: 0 or 2.
 int end_of_command_line(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace dmise

@@ -16,23 +16,23 @@ void add_common_flags(CLI::App& app, CommonFlags& flags) {
       ->capture_default_str()
       ->check(transport_address());
   app.add_option("--host", flags.host,
-                 "where this node's own sockets bind, as others reach them; port 0: any")
+                 "where this node's own sockets bind, reachable by others; port 0: any")
       ->capture_default_str()
       ->check(transport_address());
   app.add_option("--keys", flags.keys,
-                 "directory of keys (dmise keygen); without it all is plain, on loopback alone");
+                 "directory of keys (dmise keygen); without it no encryption, loopback only");
   app.add_option("--via", flags.via,
                  "with keys: name of the agent whose address --master is, if it is not the "
                  "time-master's own");
   app.add_option("--log-level", flags.log_level, "trace, debug, info, warning, error or off")
       ->capture_default_str();
-  app.add_option("--log-format", flags.log_format, "text or json: an object a line")
+  app.add_option("--log-format", flags.log_format, "text or json (one object per line)")
       ->capture_default_str();
   app.add_option("--metrics", flags.metrics,
-                 "serve figures for Prometheus at [HOST:]PORT, or auto: any free port; the host is "
+                 "serve Prometheus metrics at [HOST:]PORT, or auto: any free port; the host is "
                  "127.0.0.1 unless given");
-  app.add_option("--seed", flags.seed, "seed of every random draw")->capture_default_str();
-  app.add_flag("--check", flags.check, "look at flags and files, then stop");
+  app.add_option("--seed", flags.seed, "seed of all random numbers")->capture_default_str();
+  app.add_flag("--check", flags.check, "check flags and files, then exit");
   app.set_version_flag("--version", std::string("dmise ") + DMISE_VERSION);
 }
 

@@ -60,16 +60,17 @@ bool good(const v1::Broker& broker) {
 }
 
 Fault fault_in(const v1::Join& join) {
-  if (!is_name(join.name())) return "join: a name has 1 to 256 bytes and no control characters";
+  if (!is_name(join.name()))
+    return "join: the name must have 1 to 256 bytes and no control characters";
   if (!are_names(join.produces()) || !are_names(join.produces_direct()) ||
       !are_names(join.consumes()))
-    return "join: topics are names, and at most 4096";
-  if (!is_text(join.host())) return "join: its host can't be a name";
+    return "join: topics must be names, at most 4096";
+  if (!is_text(join.host())) return "join: invalid host name";
   if (!is_text(join.direct_endpoint()) || !is_text(join.resend_endpoint()) || !good(join.broker()))
-    return "join: an address can't be one";
+    return "join: invalid address";
   return unless(is_count(join.look_back_ticks()) && is_count(join.period_ticks()) &&
                     is_count(join.offset_ticks()),
-                "join: its period, offset and look-back must be ticks of a run");
+                "join: period, offset and look-back must be ticks of a run");
 }
 
 bool good(const v1::Publisher& publisher) {
@@ -83,14 +84,14 @@ Fault fault_in(const v1::Welcome& welcome) {
   const std::int64_t tick_ns = welcome.tick_ns(), last_tick = welcome.last_tick();
   if (tick_ns < 1 || !is_tick(last_tick) ||
       last_tick > std::numeric_limits<std::int64_t>::max() / tick_ns - 1)
-    return "welcome: a run of so many ticks of that length is none";
+    return "welcome: invalid number or length of ticks";
   if (welcome.window_ticks() < 1 || welcome.window_ticks() > 1'000'000)
     return "welcome: window_ticks must be 1 to 1000000";
   return unless(welcome.heartbeat_s() > 0.0 && is_duration(welcome.heartbeat_s(), 3600.0) &&
                     welcome.silent_after_s() > 0.0 && is_duration(welcome.silent_after_s(), 1e6) &&
                     is_text(welcome.tick_endpoint()) && is_text(welcome.name()) &&
                     is_tick(welcome.resume_tick()) && is_duration(welcome.progress_after_s(), 1e6),
-                "welcome: heartbeat_s, silent_after_s or tick_endpoint can't be one");
+                "welcome: invalid heartbeat_s, silent_after_s or tick_endpoint");
 }
 
 Fault fault_in(const v1::Topology& topology) {
@@ -109,7 +110,7 @@ Fault fault_in(const v1::Topology& topology) {
                     is_text(topology.subscribe_endpoint()) && is_text(topology.broker_password()) &&
                     is_tick(topology.resume_tick()) && is_tick(topology.from_tick()) &&
                     topology.from_tick() <= topology.resume_tick(),
-                "topology: a publisher, address or tick can't be one");
+                "topology: invalid publisher, address or tick");
 }
 
 }  // namespace
@@ -122,22 +123,22 @@ std::optional<std::string> fault_of(const v1::NodeMessage& message) {
       return unless(is_tick(message.done().tick()) &&
                         message.done().published_size() <= most_topics &&
                         good_tallies(message.done().published()),
-                    "done: a tick or topic can't be one");
+                    "done: invalid tick or topic");
     case v1::NodeMessage::kHeartbeat:
       return unless(is_name(message.heartbeat().name()) && good(message.heartbeat().times()) &&
                         good_beats(message.heartbeat().nodes()) &&
                         are_names(message.heartbeat().holding()),
-                    "heartbeat: a name or time can't be one");
+                    "heartbeat: invalid name or time");
     case v1::NodeMessage::kLeave:
       return unless(good(message.leave().times()) && good_beats(message.leave().nodes()),
-                    "leave: a time can't be one");
+                    "leave: invalid time");
     case v1::NodeMessage::kNodeNews:
       return unless(is_name(message.node_news().name()) && message.node_news().done_tick() >= -1 &&
                         message.node_news().done_tick() <= most_ticks,
-                    "node news: a name or tick can't be one");
+                    "node news: invalid name or tick");
     case v1::NodeMessage::kControl:
       return unless(message.control().tick() >= -1 && message.control().tick() <= most_ticks,
-                    "control: its tick can't be one");
+                    "control: invalid tick");
     case v1::NodeMessage::BODY_NOT_SET:
       return "says nothing";
     default:
@@ -153,7 +154,7 @@ std::optional<std::string> fault_of(const v1::Grant& grant) {
                                 [](const v1::ClosedTopic& topic) {
                                   return is_name(topic.topic()) && is_tick(topic.from_tick());
                                 }),
-                "grant: a tick or topic can't be one");
+                "grant: invalid tick or topic");
 }
 
 std::optional<std::string> fault_of(const v1::MasterMessage& message) {
@@ -173,7 +174,7 @@ std::optional<std::string> fault_of(const v1::MasterMessage& message) {
 
 std::optional<std::string> fault_of(const v1::ResendRequest& request) {
   return unless(is_name(request.topic()) && is_tick(request.from_tick()),
-                "resend request: its topic or tick can't be one");
+                "resend request: invalid topic or tick");
 }
 
 std::string one_line(std::string text) {

@@ -9,7 +9,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t waiting_limit = 4096;  // messages of a topic; others are asked for again
+constexpr std::size_t waiting_limit = 4096;  // messages of a topic; others are requested again
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void Inbox::restart(const std::string& name) {
   topic->doubted = false;
   topic->ready.erase(topic->ready.upper_bound(topic->complete_to), topic->ready.end());
   topic->heard.erase(topic->heard.upper_bound(topic->complete_to), topic->heard.end());
-  topic->said.clear();
+  topic->manifests.clear();
 }
 
 void Inbox::accept(const Received& message, Way way) {
@@ -69,8 +69,8 @@ void Inbox::accept(const Received& message, Way way) {
   if (topic.positioned && sequence - topic.next_sequence >= waiting_limit) return;
   const auto [entry, fresh] = topic.waiting.try_emplace(sequence);
   if (!fresh) ++duplicates_;
-  if (!fresh && sure && !entry->second.sure && !topic.said.contains(envelope.tick))
-    topic.unsaid = true;
+  if (!fresh && sure && !entry->second.sure && !topic.manifests.contains(envelope.tick))
+    topic.unannounced = true;
   if (fresh || (sure && !entry->second.sure)) entry->second = {message, sure};
   if (topic.waiting.size() > waiting_limit) topic.waiting.erase(std::prev(topic.waiting.end()));
   settle(topic);
@@ -91,13 +91,13 @@ void Inbox::position(Topic& topic, const Envelope& envelope) {
   settle(topic);
 }
 
-/// What is said once and for all counts whatever its tick.
+/// Retained messages count whatever their tick.
 void Inbox::keep_lasting(Topic& topic, const Received& message) {
   if (message.state && is_retained(*message.state) && !std::exchange(topic.has_lasting, true))
     topic.lasting.push_back({topic.name, message.envelope.tick, message.state});
 }
 
-/// Delivers what is next and sure, or is what the manifest says, tick by tick.
+/// Delivers the next messages tick by tick, if they are trusted or match the manifest.
 void Inbox::settle(Topic& topic) {
   if (!topic.positioned) return;
   for (;;) {
@@ -117,13 +117,14 @@ void Inbox::settle(Topic& topic) {
   }
 }
 
-/// True when the manifest of the next tick says that its last message was one that was passed.
+/// Whether the manifest of the next tick says that a skipped message was its last.
 bool Inbox::contradicts(const Topic& topic) const {
-  const auto said = topic.said.find(topic.schedule.next_after(topic.complete_to));
-  return said != topic.said.end() && said->second.last_sequence < topic.next_sequence;
+  const auto manifest = topic.manifests.find(topic.schedule.next_after(topic.complete_to));
+  return manifest != topic.manifests.end() && manifest->second.last_sequence < topic.next_sequence;
 }
 
-/// What waits up to `end` ends a tick. False when it can't count, or not yet.
+/// Accepts the waiting messages up to `end` if they complete a tick. False if they cannot count, or
+/// not yet.
 bool Inbox::settle_group(Topic& topic, std::map<std::uint64_t, Waiting>::iterator end) {
   const auto last = std::prev(end);
   const Tick tick = last->second.message.envelope.tick;
@@ -137,20 +138,21 @@ bool Inbox::settle_group(Topic& topic, std::map<std::uint64_t, Waiting>::iterato
     ++tally.messages;
     tally.digest = fold_digest(tally.digest, message.content_digest);
   }
-  const auto said = topic.said.find(tick);
-  // A process that follows another says again what counts already.
+  const auto manifest = topic.manifests.find(tick);
+  // A process that replaces another repeats what counts already.
   const bool known = one_tick && tick <= topic.complete_to;
   const bool next = tick == topic.schedule.next_after(topic.complete_to);
-  const bool agrees = said != topic.said.end() && said->second.messages == tally.messages &&
-                      said->second.digest == tally.digest &&
-                      said->second.last_sequence == last->first;
-  if (!known && one_tick && next && said == topic.said.end()) return false;  // not said yet
+  const bool agrees =
+      manifest != topic.manifests.end() && manifest->second.messages == tally.messages &&
+      manifest->second.digest == tally.digest && manifest->second.last_sequence == last->first;
+  if (!known && one_tick && next && manifest == topic.manifests.end())
+    return false;  // no manifest yet
   if (!known && !(one_tick && next && agrees)) {
-    // Nothing but the manifest of the next tick can show whose fault it is.
-    if (topic.said.contains(topic.schedule.next_after(topic.complete_to))) doubt(topic);
+    // Only the manifest of the next tick can show which message is wrong.
+    if (topic.manifests.contains(topic.schedule.next_after(topic.complete_to))) doubt(topic);
     return false;
   }
-  topic.unsaid = topic.unsaid && known;
+  topic.unannounced = topic.unannounced && known;
   for (auto entry = topic.waiting.begin(); entry != end; entry = topic.waiting.erase(entry))
     deliver(topic, entry->second.message);
   return true;
@@ -167,7 +169,7 @@ void Inbox::deliver(Topic& topic, const Received& message) {
   const Tick tick = envelope.tick;
   const bool once = message.state && is_retained(*message.state);
   if (once && std::exchange(topic.has_lasting, true)) {
-    // Known: a process that follows another says it again.
+    // Known: repeated by a process that replaces another.
   } else if (once && tick <= topic.complete_to) {
     topic.lasting.push_back({topic.name, tick, message.state});
   } else if (tick > topic.complete_to && tick < topic.closed_from && message.state) {
@@ -187,8 +189,8 @@ void Inbox::deliver(Topic& topic, const Received& message) {
 void Inbox::published(const TopicTally& tally, Tick tick) {
   Topic* topic = find(tally.topic);
   if (!topic) return;
-  if (tick <= topic->complete_to && !topic->heard.contains(tick)) return;  // taken
-  topic->said[tick] = tally;
+  if (tick <= topic->complete_to && !topic->heard.contains(tick)) return;  // already taken
+  topic->manifests[tick] = tally;
   if (tick <= topic->complete_to)
     compare(*topic, tick);
   else
@@ -196,13 +198,13 @@ void Inbox::published(const TopicTally& tally, Tick tick) {
 }
 
 void Inbox::compare(const Topic& topic, Tick tick) const {
-  const auto said = topic.said.find(tick);
+  const auto manifest = topic.manifests.find(tick);
   const auto heard = topic.heard.find(tick);
-  if (said == topic.said.end() || heard == topic.heard.end()) return;
-  if (said->second.messages != heard->second.messages ||
-      said->second.digest != heard->second.digest)
-    throw Error(topic.name + ": what came of tick " + std::to_string(tick) +
-                " is not what its publisher says");
+  if (manifest == topic.manifests.end() || heard == topic.heard.end()) return;
+  if (manifest->second.messages != heard->second.messages ||
+      manifest->second.digest != heard->second.digest)
+    throw Error(topic.name + ": the content of tick " + std::to_string(tick) +
+                " differs from its publisher's manifest");
 }
 
 void Inbox::close(const std::string& name, Tick from_tick) {
@@ -235,7 +237,7 @@ std::vector<Message> Inbox::take(Tick tick) {
       std::move(of_tick->second.begin(), of_tick->second.end(), std::back_inserter(messages));
     topic.ready.erase(topic.ready.begin(), last);
     topic.heard.erase(topic.heard.begin(), topic.heard.upper_bound(tick));
-    topic.said.erase(topic.said.begin(), topic.said.upper_bound(tick));
+    topic.manifests.erase(topic.manifests.begin(), topic.manifests.upper_bound(tick));
   }
   return messages;
 }
@@ -249,23 +251,23 @@ std::size_t Inbox::queued() const {
   return messages;
 }
 
-/// True when something is known to be published and is not here, or nobody else vouches for it.
+/// True if something is known to be published and missing, or nobody else vouches for it.
 bool Inbox::lacks_published(const Topic& topic) {
-  if (topic.doubted) return topic.said.upper_bound(topic.complete_to) != topic.said.end();
-  if (topic.unsaid && !topic.waiting.empty()) return true;
+  if (topic.doubted) return topic.manifests.upper_bound(topic.complete_to) != topic.manifests.end();
+  if (topic.unannounced && !topic.waiting.empty()) return true;
   std::uint64_t next = topic.next_sequence;
   for (const auto& [sequence, waiting] : topic.waiting)
     if (sequence != next++) return true;
-  return std::any_of(topic.said.begin(), topic.said.end(),
-                     [&](const auto& said) { return said.second.last_sequence >= next; });
+  return std::any_of(topic.manifests.begin(), topic.manifests.end(),
+                     [&](const auto& manifest) { return manifest.second.last_sequence >= next; });
 }
 
 std::vector<Inbox::Want> Inbox::wanted(Tick tick) const {
   std::vector<Want> wants;
   for (const Topic& topic : topics_) {
     if (topic.positioned && topic.covers(tick)) continue;
-    // Of a process that follows another: it has said again what is complete here, and need not keep
-    // that; what is missing before it is never asked for.
+    // A replacing process has repeated what is complete here and need not keep it; what is missing
+    // before it is never requested.
     const bool known = !topic.waiting.empty() &&
                        topic.waiting.begin()->first > topic.next_sequence &&
                        topic.waiting.begin()->second.message.envelope.tick <= topic.complete_to;

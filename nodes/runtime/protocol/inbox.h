@@ -11,88 +11,89 @@
 
 namespace dmise {
 
-/// What a node has received and not yet used: brings each topic's messages into the order of their
-/// sequence numbers, whatever the order of arrival, knows when a tick is complete, and compares
-/// what came with what its publisher says it published. What came through the broker counts when
-/// the publisher's manifest of the tick, which comes from the time-master, agrees with it: anybody
-/// may have sent it. If not, it is thrown away and the publisher itself is asked.
+/// Messages that a node has received and not yet used. Orders each topic's messages by sequence
+/// number, whatever the order of arrival, knows when a tick is complete, and compares messages with
+/// their publisher's manifest. A message from the broker, which anybody may have sent, counts only
+/// if the publisher's manifest of the tick, received from the time-master, agrees with it;
+/// otherwise it is dropped and requested from the publisher.
 class Inbox {
  public:
-  /// How a message came.
+  /// Path of a message.
   enum class Way {
-    broker,  // from whoever reaches the broker
+    broker,  // through the broker, untrusted
     direct,  // over a connection to its publisher
-    answer,  // the same, to a question of ours: it may say where a topic is (POSITION)
+    answer,  // reply of the publisher to a request; may be a POSITION
   };
-  /// Messages to be asked for again.
+  /// Messages to be requested.
   struct Want {
     std::string topic;
     std::uint64_t from_sequence = 0;
-    std::optional<Tick> from_tick;  // instead: it is not known where the topic is, or earlier ticks
-                                    // are complete and need not be kept
-    bool gap = false;               // known to be published: this one is lost or late
+    std::optional<Tick> from_tick;  // instead of a sequence: the position of the topic is unknown,
+                                    // or earlier ticks are complete and need not be kept
+    bool gap = false;               // known to be published: lost or late
   };
 
   explicit Inbox(std::vector<std::string> topics);
 
-  /// Before anything else: ticks before `tick` are not needed, but what was said once and for all
-  /// is. With `catch_up` nothing counts before a POSITION has said where each topic is.
+  /// Call first: ticks before `tick` are not needed, but retained messages are. With `catch_up`
+  /// nothing counts before a POSITION has given each topic's sequence number.
   void begin_at(Tick tick, bool catch_up);
   void set_schedule(const std::string& topic, Schedule schedule);
-  /// Another process publishes on `topic` from now on: its numbers start again, so that it must be
-  /// asked where it is, and what it says of ticks that are complete is known already.
+  /// Another process publishes on `topic` from now on: its sequence numbers restart, so its
+  /// position must be requested, and its messages of complete ticks are known.
   void restart(const std::string& topic);
 
-  /// Takes a message that passed the receiver; duplicates and probes change nothing but `probed`.
+  /// Takes a validated message; duplicates and probes change nothing but `probed`.
   void accept(const Received& message, Way way = Way::answer);
-  /// What the publisher says of a tick. Throws `Error` when it has itself sent something else.
+  /// Takes the publisher's manifest of a tick. Throws `Error` if the publisher itself has sent
+  /// something else.
   void published(const TopicTally& tally, Tick tick);
-  /// Nothing is said on `topic` from this tick on.
+  /// Nothing is published on `topic` from this tick on.
   void close(const std::string& topic, Tick from_tick);
 
-  /// True once a probe (or anything later) was received over every topic.
+  /// Whether a probe or later message was received on every topic.
   bool probed() const;
-  /// True when it is known where every topic is.
+  /// Whether the position of every topic is known.
   bool positioned() const;
-  /// True when every topic is complete for `tick`.
+  /// Whether every topic is complete for `tick`.
   bool complete(Tick tick) const;
-  /// The messages of all ticks up to a complete one that were not taken, ordered by (place of the
-  /// topic, sequence); forgets them.
+  /// Removes and returns the messages of all ticks up to a complete one, ordered by (index of the
+  /// topic, sequence).
   std::vector<Message> take(Tick tick);
-  /// Topics that keep `tick` from being complete.
+  /// Missing messages that keep `tick` from being complete.
   std::vector<Want> wanted(Tick tick) const;
 
-  /// Messages received and not yet taken.
+  /// Number of messages received and not yet taken.
   std::size_t queued() const;
   std::uint64_t duplicates() const { return duplicates_; }
-  /// Messages that nobody keeps any more; only those who hold nobody's time have such.
+  /// Number of messages no longer available, only for nodes that the clock does not wait for.
   std::uint64_t missed() const { return missed_; }
-  /// Messages thrown away because their publisher's manifest says otherwise.
+  /// Number of messages dropped because their publisher's manifest differs.
   std::uint64_t forged() const { return forged_; }
 
  private:
   struct Waiting {
     Received message;
-    bool sure = false;  // it came from its publisher
+    bool sure = false;  // from its publisher
   };
   struct Topic {
     std::string name;
     Schedule schedule;
     bool probed = false;
     bool positioned = true;
-    bool has_lasting = false;  // heard what is said once and for all
-    bool doubted = false;      // something else came through the broker than was published: the
-                               // publisher is asked for everything from then on
-    bool unsaid = false;       // manifests come only after the publisher was asked: it is behind an
-                               // agent whose other nodes wait for this one
-    std::uint64_t next_sequence = 1;  // the first that does not count yet
+    bool has_lasting = false;  // has the retained messages
+    bool doubted = false;      // messages from the broker differed from the published ones:
+                               // everything is requested from the publisher from then on
+    bool unannounced = false;  // manifests arrive only after the publisher was asked: it is behind
+                               // an agent whose other nodes wait for this one
+    std::uint64_t next_sequence = 1;  // of the next message to count
     Tick complete_to = -1;
     Tick closed_from = INT64_MAX;
     std::map<std::uint64_t, Waiting> waiting;    // do not count yet
-    std::vector<Message> lasting;                // said once and for all, before the first tick
+    std::vector<Message> lasting;                // retained, before the first tick
     std::map<Tick, std::vector<Message>> ready;  // by tick
     std::map<Tick, TopicTally> heard;            // what counts, of ticks not yet taken
-    std::map<Tick, TopicTally> said;             // what the publisher says of them
+    std::map<Tick, TopicTally> manifests;        // the publisher's manifests of them
 
     bool covers(Tick tick) const {
       return schedule.next_after(complete_to) > tick || tick >= closed_from;

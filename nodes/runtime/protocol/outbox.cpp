@@ -121,7 +121,7 @@ std::vector<SharedFrames> Outbox::catch_up(const std::string& topic, Tick from_t
       messages.push_back(entry.frames);
     }
   if (from_tick < position.tick && !messages.empty() && next_tick_ - keep_ticks_ <= from_tick)
-    position.tick = from_tick;  // nothing was forgotten: it has worked at no tick between
+    position.tick = from_tick;  // complete: there was no step in between
   position.time = run_.time_of(position.tick);
   frames.push_back(std::make_shared<const Frames>(seal(topic, position)));
   frames.insert(frames.end(), messages.begin(), messages.end());

@@ -13,30 +13,30 @@ namespace dmise {
 
 using SharedFrames = std::shared_ptr<const Frames>;
 
-/// What a node publishes: seals and numbers its messages, closes each topic at each tick, and keeps
-/// the last ticks for whoever asks again. `since` may be called from another thread.
+/// Messages that a node publishes: seals and numbers them, closes each topic at each tick, and
+/// keeps the last ticks for requests. `since` may be called from another thread.
 class Outbox {
  public:
-  /// `keep_ticks`: as many ticks as a consumer may be behind.
+  /// `keep_ticks`: the largest number of ticks that a consumer may be behind.
   Outbox(RunFacts run, std::string publisher, std::uint64_t incarnation,
          std::vector<std::string> topics, Tick keep_ticks);
 
-  /// As many ticks as a consumer may ask for, from now on. Before the first `pack`.
+  /// Sets the number of ticks to keep from now on. Call before the first `pack`.
   void keep(Tick ticks) { keep_ticks_ = ticks; }
 
   std::vector<SharedFrames> probes() const;
 
-  /// The messages of one tick in order of sending; a topic with nothing to say gets a watermark.
+  /// The messages of one tick in order of sending; a topic without messages gets a watermark.
   /// Throws `Error` for a topic that is not this node's or a message of another tick.
   std::vector<SharedFrames> pack(Tick tick, const std::vector<Message>& messages);
 
-  /// What the last `pack` has published.
+  /// Manifest of the last `pack`.
   const TickTally& tally() const { return tally_; }
 
-  /// What is kept of a topic from a sequence number on.
+  /// Kept messages of a topic from a sequence number on.
   std::vector<SharedFrames> since(const std::string& topic, std::uint64_t sequence) const;
-  /// What was said once and for all, a POSITION, and what is kept from a tick on. None for a topic
-  /// that is not this node's.
+  /// Retained messages, a POSITION, and the kept messages from a tick on. Empty for a topic that is
+  /// not this node's.
   std::vector<SharedFrames> catch_up(const std::string& topic, Tick from_tick) const;
 
  private:
@@ -56,7 +56,7 @@ class Outbox {
   TickTally tally_;
   mutable std::mutex mutex_;  // guards what follows
   std::map<std::string, std::deque<Kept>> kept_;
-  std::map<std::string, SharedFrames> lasting_;  // the last that was said once and for all
+  std::map<std::string, SharedFrames> lasting_;  // the last retained message
   std::map<std::string, std::uint64_t> next_;    // sequence number of the next message
   Tick next_tick_ = 0;
 };

@@ -16,10 +16,10 @@ void fill(v1::Publisher* publisher, const Peer& peer) {
   publisher->set_offset_ticks(peer.join.offset_ticks());
 }
 
-/// Whoever asks is told where a broker is, not how to get in.
-void tell_addresses(v1::Broker* told, const v1::Broker& broker) {
-  *told = broker;
-  told->clear_password();
+/// Publishes the addresses of a broker without its password.
+void set_addresses(v1::Broker* public_broker, const v1::Broker& broker) {
+  *public_broker = broker;
+  public_broker->clear_password();
 }
 
 }  // namespace
@@ -94,7 +94,7 @@ void PeerDirectory::describe(v1::Endpoints* endpoints) const {
     endpoints->set_observe_endpoint(broker->second.join.broker().observe_endpoint());
   for (const auto& [name, peer] : peers_) {
     if (peer.join.has_broker())
-      tell_addresses(endpoints->mutable_broker(), peer.join.broker());
+      set_addresses(endpoints->mutable_broker(), peer.join.broker());
     else if (!peer.join.agent() && !peer.join.observer())
       fill(endpoints->add_publishers(), peer);
   }

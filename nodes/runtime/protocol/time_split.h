@@ -4,13 +4,13 @@
 
 namespace dmise {
 
-/// How a process spent the time of a run, and what it made in it.
+/// How a process spent the time of a run, and its products.
 struct TimeSplit {
   double compute_s = 0.0;        // in steps
   double messaging_s = 0.0;      // encoding, sending, receiving, checking
   double waiting_s = 0.0;        // for the clock or for inputs
   std::uint64_t frames = 0;      // published
-  std::uint64_t detections = 0;  // in all that were published
+  std::uint64_t detections = 0;  // in all published frames
 
   bool operator==(const TimeSplit&) const = default;
 };

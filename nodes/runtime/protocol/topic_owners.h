@@ -7,17 +7,17 @@
 
 namespace dmise {
 
-/// Who publishes which topic of a run: one name each, for good once the run has begun.
+/// Publisher of each topic of a run: one name each, fixed once the run has begun.
 class TopicOwners {
  public:
-  /// Why `join` can't publish what it says; nothing when it can.
+  /// Returns why `join` cannot publish its topics; empty if it can.
   std::optional<std::string> fault_of(const v1::Join& join) const;
   /// It has joined: its topics are its own.
   void add(const v1::Join& join);
-  /// It has left before the run began: others may publish its topics.
+  /// It has left before the start: others may publish its topics.
   void remove(const std::string& node);
-  /// Takes out of `done`, which came over the connection of `member`, what it tells of topics of
-  /// others: neither its own, nor of a node behind that agent. False when there was such.
+  /// Removes from `done`, received over the connection of `member`, topics that belong neither to
+  /// it nor to a node behind that agent. False if there were any.
   bool keep_own(const std::string& member, v1::Done* done) const;
 
  private:

@@ -30,10 +30,10 @@ std::string path_of(const std::string& directory, const std::string& name, const
   return directory + "/" + name + ending;
 }
 
-/// Writes a new file; nobody else can have opened it before its mode was set.
+/// Writes a new file, with its mode set before anybody else can open it.
 void write_new(const std::string& path, mode_t mode, const std::string& text) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-  if (file < 0 && errno == EEXIST) throw ConfigError(path + ": there is such a key already");
+  if (file < 0 && errno == EEXIST) throw ConfigError(path + ": this key exists already");
   const bool written = file >= 0 && fchmod(file, mode) == 0 &&
                        write(file, text.data(), text.size()) == ssize_t(text.size()) &&
                        fsync(file) == 0;
@@ -47,7 +47,7 @@ bool is_key(const std::string& text) {
   return text.size() == key_characters && zmq_z85_decode(bytes, text.c_str());
 }
 
-// Words of NAME.pub, each with a value after it.
+// Words of NAME.pub, each followed by a value.
 constexpr const char* may_word = "may";
 constexpr const char* speaks_for_word = "speaks-for";
 
@@ -58,7 +58,7 @@ struct Entry {
   std::set<std::string> nodes;
 };
 
-/// The text of a file of keys. Throws `ConfigError`; waits for nobody who might write to it.
+/// Reads a key file. Throws `ConfigError`; never blocks on a writer.
 std::string text_of_file(const std::string& path) {
   const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (file < 0) throw ConfigError(path + ": can't be read: " + std::strerror(errno));
@@ -68,7 +68,7 @@ std::string text_of_file(const std::string& path) {
   if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode))
     fault = "must be a regular file";
   else if (status.st_size > longest_file)
-    fault = "is longer than a file of keys can be";
+    fault = "is too long for a key file";
   char buffer[4096];
   while (fault.empty()) {
     const ssize_t size = read(file, buffer, sizeof buffer);
@@ -76,7 +76,7 @@ std::string text_of_file(const std::string& path) {
     if (size < 0) fault = std::string("can't be read: ") + std::strerror(errno);
     if (size <= 0) break;
     text.append(buffer, std::size_t(size));
-    if (off_t(text.size()) > longest_file) fault = "is longer than a file of keys can be";
+    if (off_t(text.size()) > longest_file) fault = "is too long for a key file";
   }
   close(file);
   if (!fault.empty()) throw ConfigError(path + ": " + fault);
@@ -90,8 +90,8 @@ void require_key(const std::string& path, const char* half, const std::string& k
                       " characters of Z85");
 }
 
-/// What a NAME.key or NAME.pub says, or each part of a ring behind its "name NAME". Throws
-/// `ConfigError` for a file that is none or not whole.
+/// Entries of a NAME.key or NAME.pub, or of each "name NAME" in a ring. Throws `ConfigError` for an
+/// invalid or incomplete file.
 std::vector<Entry> read_entries(const fs::path& path) {
   std::vector<Entry> entries{{path.stem().string(), {}, false, {}}};
   std::istringstream file(text_of_file(path));
@@ -118,7 +118,7 @@ std::vector<Entry> read_entries(const fs::path& path) {
   return entries;
 }
 
-/// Files of a directory whose names end with `ending`, in the order of their names.
+/// Files of a directory with this suffix, sorted by name.
 std::vector<std::string> files_in(const std::string& directory, const std::string& ending) {
   std::vector<std::string> paths;
   std::error_code ignored;
@@ -132,7 +132,7 @@ std::string text_of(const KeyPair& key) {
   return "public " + key.public_key + "\nsecret " + key.secret_key + "\n";
 }
 
-/// The open half, and what it lets its owner do.
+/// Text of a public key with its grants.
 std::string text_of(const AllowedKey& allowed) {
   std::string text = "public " + allowed.public_key + "\n";
   if (allowed.truth) text += std::string(may_word) + " truth\n";
@@ -140,7 +140,7 @@ std::string text_of(const AllowedKey& allowed) {
   return text;
 }
 
-/// The clock, its broker and its operator speak for themselves.
+/// Throws `ConfigError` for the clock, its broker and its operator, for which no agent may speak.
 void require_node(const std::string& name) {
   const bool word = !name.empty() && std::none_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isspace(c) || std::iscntrl(c);
@@ -150,14 +150,14 @@ void require_node(const std::string& name) {
     if (name == own) throw ConfigError("no agent may speak for " + name);
 }
 
-/// Mode bits of a file; 0 when it is not there.
+/// Mode bits of a file; 0 if it does not exist.
 mode_t mode_of(const std::string& path) {
   struct stat status {};
   return stat(path.c_str(), &status) == 0 ? status.st_mode : 0;
 }
 
-/// The ring that has a key of `name`, which is written to `key`. Throws `ConfigError` when none has
-/// and one could not be read: it may be that of another.
+/// Finds the ring that contains a key of `name`, which is stored in `key`. Throws `ConfigError` if
+/// none has it and one could not be read.
 std::optional<std::string> ring_of(const std::string& directory, const std::string& ending,
                                    const std::string& name, KeyPair* key) {
   std::optional<ConfigError> fault;
@@ -174,7 +174,7 @@ std::optional<std::string> ring_of(const std::string& directory, const std::stri
   return std::nullopt;
 }
 
-/// The file that holds the pair of `name`, if there is one.
+/// The file with the key pair of `name`, if there is one.
 std::optional<std::string> file_of_key(const std::string& directory, const std::string& name) {
   const std::string own = path_of(directory, name, ".key");
   if (mode_of(own)) return own;
@@ -187,7 +187,7 @@ void make_key(const std::string& directory, const std::string& name, bool truth,
               const std::set<std::string>& nodes) {
   for (const auto& node : nodes) require_node(node);
   if (mkdir(directory.c_str(), 0700) != 0 && errno != EEXIST)
-    throw Error(directory + ": can't be made: " + std::strerror(errno));
+    throw Error(directory + ": can't be created: " + std::strerror(errno));
   char public_key[key_characters + 1], secret_key[key_characters + 1];
   if (zmq_curve_keypair(public_key, secret_key) != 0)
     throw Error("this build of ZeroMQ has no CURVE");
@@ -207,7 +207,7 @@ void make_rings(const std::string& directory,
     open_halves += "name " + owner.name + "\n" + text_of(owner);
   const std::string below = directory + "/rings";
   if (mkdir(below.c_str(), 0700) != 0 && errno != EEXIST)
-    throw Error(below + ": can't be made: " + std::strerror(errno));
+    throw Error(below + ": can't be created: " + std::strerror(errno));
   for (const auto& [ring, text] : pairs) write_new(path_of(below, ring, ".keys"), 0600, text);
   write_new(path_of(below, "everybody", ".pubs"), 0644, open_halves);
 }

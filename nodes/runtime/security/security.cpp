@@ -31,7 +31,7 @@ const char* name_of(Domain domain) {
   return "truth";
 }
 
-/// One property as ZMTP writes it: length, name, length in four bytes, value.
+/// One ZMTP property: length, name, length in four bytes, value.
 std::string property(std::string_view name, std::string_view value) {
   std::string text(1, static_cast<char>(name.size()));
   text += name;
@@ -44,7 +44,7 @@ std::string property_of(zmq::message_t& frame, const char* name) {
   return value ? value : "";
 }
 
-/// What a key may do beside coming in.
+/// Grants of a key, as properties of its connection.
 std::string properties_of(const AllowedKey& owner) {
   std::string properties;
   if (owner.truth) properties += property(truth_property, "1");
@@ -54,7 +54,7 @@ std::string properties_of(const AllowedKey& owner) {
   return properties;
 }
 
-/// Takes the same time wherever they differ.
+/// Comparison in constant time.
 bool is_same(std::string_view a, std::string_view b) {
   unsigned different = a.size() != b.size();
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
@@ -64,7 +64,7 @@ bool is_same(std::string_view a, std::string_view b) {
 
 void say_password(zmq::socket_t& socket, const std::string& password) {
   if (password.empty()) {
-    zmq_setsockopt(socket.handle(), ZMQ_PLAIN_USERNAME, nullptr, 0);  // no mechanism again
+    zmq_setsockopt(socket.handle(), ZMQ_PLAIN_USERNAME, nullptr, 0);  // back to no mechanism
     return;
   }
   socket.set(zmq::sockopt::plain_username, "node");
@@ -181,7 +181,7 @@ struct ZapAuthenticator::Work {
           welcome ? properties_of(who->second) : "");
   }
 
-  /// The same with two credentials: user name and password.
+  /// The same for two credentials: user name and password.
   void answer_plain(const std::vector<std::string>& request) {
     const bool welcome =
         request.size() == 8 && request[5] == "PLAIN" && is_same(request[7], password);
@@ -218,9 +218,9 @@ ZapAuthenticator::~ZapAuthenticator() = default;
 
 std::string sender_of(zmq::message_t& frame) { return property_of(frame, "User-Id"); }
 
-bool may_hear_truth(zmq::message_t& frame) { return property_of(frame, truth_property) == "1"; }
+bool may_receive_truth(zmq::message_t& frame) { return property_of(frame, truth_property) == "1"; }
 
-bool is_agents(zmq::message_t& frame) {
+bool is_agent_key(zmq::message_t& frame) {
   return zmq_msg_gets(frame.handle(), nodes_property) != nullptr;
 }
 

@@ -6,16 +6,16 @@
 
 namespace dmise {
 
-/// Where a socket is connected to the broker of a run.
+/// Connection of a socket to the broker of a run.
 class BrokerPlace {
  public:
   explicit BrokerPlace(zmq::socket_t& socket) : socket_(socket) {}
 
   bool known() const { return !endpoint_.empty(); }
 
-  /// Connects to the broker, anew to one that follows another at the same place: ZeroMQ never again
-  /// connects to where it has met a socket of the wrong kind, and a stranger may have had the
-  /// address in between.
+  /// Connects to the broker, reconnecting if another broker replaced it at the same address: ZeroMQ
+  /// never reconnects to an address where it met a socket of the wrong type, and another process
+  /// may have used the address in between.
   void follow(const std::string& endpoint, std::uint64_t incarnation, const Security& security = {},
               const std::string& password = "") {
     if (endpoint == endpoint_ && incarnation == incarnation_) return;

@@ -10,7 +10,7 @@ std::optional<std::string> fault_of_join(const v1::Join& join, zmq::message_t& f
   const std::string granted = "; dmise keygen --nodes makes keys that may";
   if (join.host().empty() && join.name() != who)
     return "the key of " + who + " is not that of " + join.name();
-  if (join.agent() && !is_agents(frame))
+  if (join.agent() && !is_agent_key(frame))
     return "the key of " + who + " may not speak for nodes" + granted;
   if (join.host().empty()) return std::nullopt;
   if (join.host() != who) return "the key of " + who + " is not that of " + join.host();
@@ -31,14 +31,14 @@ std::optional<std::string> fault_of_sender(const v1::NodeMessage& message, zmq::
                                              : connection.empty() || connection == who;
   if (own) return std::nullopt;
   return message.has_control() ? who + " is not the operator"
-                               : "what " + who + " says in another name";
+                               : "a message of " + who + " under another name";
 }
 
 bool publishes_itself(zmq::message_t& topic, const std::string& publisher) {
   return sender_of(topic) == publisher;
 }
 
-bool publishes_or_is_passed_on(zmq::message_t& topic, const std::string& publisher) {
+bool publishes_or_is_forwarded(zmq::message_t& topic, const std::string& publisher) {
   return publishes_itself(topic, publisher) || may_speak_for(topic, publisher);
 }
 

@@ -26,13 +26,13 @@ using std::chrono::nanoseconds;
 constexpr std::int64_t handshake_bytes = 64 << 10;  // allowed beside messages
 constexpr nanoseconds look_interval = std::chrono::milliseconds(250);
 
-/// Bytes of a frame on the way: ZMTP 3.1 (RFC 37) and, with CURVE (RFC 26), its MESSAGE command.
+/// Size of a frame on the wire: ZMTP 3.1 (RFC 37) and, with CURVE (RFC 26), its MESSAGE command.
 std::int64_t bytes_on_wire(std::size_t bytes, bool sealed) {
   const std::size_t body = bytes + (sealed ? 33 : 0);
   return std::int64_t(body + (body > 255 ? 9 : 2));
 }
 
-/// Bytes that a connection has brought into this process; nothing where the system does not count.
+/// Bytes received over a connection; empty if the system does not count them.
 std::optional<std::int64_t> bytes_brought(int fd) {
   tcp_info info{};
   socklen_t size = sizeof info;
@@ -53,11 +53,11 @@ std::string in_mib(std::int64_t bytes) {
 ConnectionLimits limits_for(std::size_t nodes, double share) {
   rlimit files{};
   const bool known = getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur != RLIM_INFINITY;
-  constexpr double own = 128.0;  // of the process itself
+  constexpr double own = 128.0;  // descriptors of the process itself
   const double needed = own + 3.0 * double(nodes);
   const double left = known ? share * (double(files.rlim_cur) - needed) : 1024.0;
   ConnectionLimits limits;
-  // While the nodes of a run come, nobody knows them.
+  // While nodes join, their connections are still anonymous.
   limits.most_strangers = std::size_t(std::clamp(left, 16.0, 1024.0)) + 2 * nodes;
   limits.usual_strangers = limits.most_strangers / 2;
   return limits;
@@ -81,7 +81,7 @@ PeerMonitor::PeerMonitor(zmq::context_t& context, zmq::socket_t& watched,
   events_.connect(address);
 }
 
-void PeerMonitor::hear() {
+void PeerMonitor::read_events() {
   for (auto event = receive(events_); !event.empty(); event = receive(events_)) {
     // First frame: uint16 event, uint32 file descriptor, in the order of this machine.
     if (event[0].size() < 6) continue;
@@ -107,13 +107,13 @@ PeerMonitor::Connection* PeerMonitor::connection_of(zmq::message_t& frame) {
   if (fd < 0) return nullptr;
   auto found = at_.find(fd);
   if (found == at_.end()) {
-    hear();
+    read_events();
     found = at_.find(fd);
   }
   return found == at_.end() ? nullptr : &connections_.at(found->second);
 }
 
-void PeerMonitor::belongs(zmq::message_t& frame, const std::string& name, bool guest) {
+void PeerMonitor::identify(zmq::message_t& frame, const std::string& name, bool guest) {
   if (Connection* connection = connection_of(frame)) {
     connection->name = name;
     connection->guest = guest;
@@ -126,7 +126,7 @@ const std::string& PeerMonitor::name_of(zmq::message_t& frame) {
   return connection ? connection->name : nobody;
 }
 
-void PeerMonitor::took(zmq::message_t& frame) {
+void PeerMonitor::count_read(zmq::message_t& frame) {
   Connection* connection = limits_ ? connection_of(frame) : nullptr;
   if (!connection) return;
   if (!sealed_) sealed_ = watched_.get(zmq::sockopt::mechanism) == ZMQ_CURVE;
@@ -149,7 +149,7 @@ void PeerMonitor::look_at(Connection& connection, std::vector<std::string>* clos
   if (!brought || *brought - connection.taken_bytes <= most + handshake_bytes) return;
   connection.closed = true;
   shutdown(connection.fd, SHUT_RDWR);
-  closed->push_back(fmt::format("closed a connection{} that sends faster than it can be heard: {}",
+  closed->push_back(fmt::format("closed a connection{} that sends faster than it is read: {}",
                                 connection.name.empty() ? "" : " of " + connection.name,
                                 in_mib(*brought - connection.taken_bytes)));
 }
@@ -157,7 +157,7 @@ void PeerMonitor::look_at(Connection& connection, std::vector<std::string>* clos
 std::vector<std::string> PeerMonitor::enforce(nanoseconds now) {
   std::vector<std::string> closed;
   if (!limits_) return closed;
-  hear();
+  read_events();
   const bool at_all = now >= next_look_;
   if (at_all) next_look_ = now + look_interval;
   std::vector<Connection*> strangers;
@@ -182,13 +182,13 @@ std::vector<std::string> PeerMonitor::enforce(nanoseconds now) {
     connection->closed = true;
     shutdown(connection->fd, SHUT_RDWR);
   }
-  closed.push_back(fmt::format("closed {} connections of strangers: at most {} are borne with",
-                               refused, limits_->usual_strangers));
+  closed.push_back(fmt::format("closed {} anonymous connections: at most {} are allowed", refused,
+                               limits_->usual_strangers));
   return closed;
 }
 
 std::vector<std::uint64_t> PeerMonitor::broken() {
-  hear();
+  read_events();
   return std::exchange(broken_, {});
 }
 

@@ -9,54 +9,53 @@
 
 namespace dmise {
 
-/// What a socket that others connect to bears with.
+/// Limits of a socket that others connect to.
 struct ConnectionLimits {
-  /// Connections of those who have not proved to be somebody: of more, the oldest are closed once
-  /// they have had `grace`; of more than `most`, the newest at once.
+  /// Limits of anonymous connections: beyond this number, the oldest are closed after `grace`;
+  /// beyond `most`, the newest at once.
   std::size_t usual_strangers = 256;
   std::size_t most_strangers = 1024;
   std::chrono::nanoseconds grace = std::chrono::seconds(2);
-  /// Bytes of one connection that have come in and that nobody has taken: messages that wait, and a
-  /// message of many frames whose last does not come. A stranger's are few, for an empty frame is
-  /// two bytes on the way and 64 in ZeroMQ's queue.
+  /// Bytes of one connection received but not read: waiting messages, and incomplete messages of
+  /// many frames. Small for anonymous connections, because an empty frame has two bytes on the wire
+  /// and 64 in ZeroMQ's queue.
   std::int64_t stranger_bytes = 512 << 10;
   std::int64_t known_bytes = 64 << 20;
 };
 
-/// Limits for two sockets of a process: as many connections as file descriptors allow, less those
-/// that `nodes` nodes need. `share`: of what is left for strangers.
+/// Limits for two sockets of a process: as many connections as file descriptors allow, minus those
+/// that `nodes` nodes need. `share`: fraction for anonymous connections.
 ConnectionLimits limits_for(std::size_t nodes, double share);
 
-/// Bounds the bytes of a connection alone, not how many there are.
+/// Limits the bytes of each connection only, not the number of connections.
 ConnectionLimits bytes_alone(std::int64_t stranger_bytes);
 
-/// Knows which node is behind a connection of a socket, tells when a connection breaks, and closes
-/// those that go beyond the limits. A hint, not proof: nodes may come back.
+/// Maps connections of a socket to nodes, reports broken connections, and closes those beyond the
+/// limits. A broken connection is a hint, not a proof: nodes may reconnect.
 class PeerMonitor {
  public:
   /// Without `limits` nothing is closed.
   PeerMonitor(zmq::context_t& context, zmq::socket_t& watched,
               std::optional<ConnectionLimits> limits = std::nullopt);
 
-  /// `frame` came from the node `name`. `guest`: whose connection is held to the bounds of
-  /// strangers.
-  void belongs(zmq::message_t& frame, const std::string& name, bool guest = false);
-  /// Whose connection `frame` came over; "" if it is not known.
+  /// `frame` came from the node `name`. `guest`: the limits of anonymous connections apply.
+  void identify(zmq::message_t& frame, const std::string& name, bool guest = false);
+  /// Name of the connection of `frame`; "" if unknown.
   const std::string& name_of(zmq::message_t& frame);
-  /// A frame has been taken from the socket.
-  void took(zmq::message_t& frame);
-  /// Whether answers to the sender of `frame` pile up because it does not read.
+  /// A frame was read from the socket.
+  void count_read(zmq::message_t& frame);
+  /// Whether replies to the sender of `frame` accumulate because it does not read.
   static bool is_stuck(zmq::message_t& frame);
-  /// Closes what goes beyond the limits, and tells why: "closed a connection that ...". Looks at
-  /// strangers at each call and at others now and then.
+  /// Closes connections beyond the limits and returns log lines: "closed a connection that ...".
+  /// Checks anonymous connections at each call, others from time to time.
   std::vector<std::string> enforce(std::chrono::nanoseconds now);
 
-  /// Connections that broke since the last call. What they brought before is with the watched
-  /// socket by then: hear it, then forget them.
+  /// Connections that broke since the last call. Their messages are still in the watched socket:
+  /// read them, then forget the connections.
   std::vector<std::uint64_t> broken();
-  /// Whose connections these are.
+  /// Names of connections.
   std::vector<std::string> names_of(const std::vector<std::uint64_t>& connections) const;
-  /// Forgets them, and gives the nodes that have none left.
+  /// Forgets connections and returns the nodes without any left.
   std::vector<std::string> forget(const std::vector<std::uint64_t>& connections);
   void* handle() { return events_.handle(); }
   std::size_t size() const { return at_.size(); }
@@ -70,20 +69,20 @@ class PeerMonitor {
     std::chrono::nanoseconds since{0};
     std::int64_t taken_bytes = 0;
   };
-  void hear();
+  void read_events();
   std::uint64_t add(int fd);
   Connection* connection_of(zmq::message_t& frame);
   void look_at(Connection& connection, std::vector<std::string>* closed) const;
 
   zmq::socket_t& watched_;
   zmq::socket_t events_;
-  std::optional<bool> sealed_;  // each frame of CURVE is longer on the way
+  std::optional<bool> sealed_;  // frames of CURVE are longer on the wire
   std::optional<ConnectionLimits> limits_;
-  std::map<std::uint64_t, Connection> connections_;  // by the order in which they came
-  std::map<int, std::uint64_t> at_;                  // those that are open, by file descriptor
+  std::map<std::uint64_t, Connection> connections_;  // by order of arrival
+  std::map<int, std::uint64_t> at_;                  // open ones, by file descriptor
   std::vector<std::uint64_t> broken_;
   std::uint64_t count_ = 0;
-  std::chrono::nanoseconds next_look_{0};  // at those who are known
+  std::chrono::nanoseconds next_look_{0};  // at known nodes
 };
 
 }  // namespace dmise

@@ -11,7 +11,7 @@
 namespace dmise {
 namespace {
 
-/// Whether the sender of a message may speak as the publisher that its envelope names.
+/// Whether the sender of a message may use the publisher's name in its envelope.
 bool is_allowed(std::vector<zmq::message_t>& message, MayPublish may_publish) {
   try {
     return may_publish(message[0], std::string(open(views(message)).publisher));
@@ -22,7 +22,7 @@ bool is_allowed(std::vector<zmq::message_t>& message, MayPublish may_publish) {
 
 }  // namespace
 
-int pass_on(zmq::socket_t& from, zmq::socket_t& to) {
+int relay_messages(zmq::socket_t& from, zmq::socket_t& to) {
   int messages = 0;
   zmq::message_t frame;
   while (messages < relay_burst && from.recv(frame, zmq::recv_flags::dontwait)) {
@@ -38,8 +38,8 @@ int pass_on(zmq::socket_t& from, zmq::socket_t& to) {
   return messages;
 }
 
-int pass_checked(zmq::socket_t& from, zmq::socket_t& to, MayPublish may_publish,
-                 std::uint64_t* refused) {
+int relay_checked(zmq::socket_t& from, zmq::socket_t& to, MayPublish may_publish,
+                  std::uint64_t* refused) {
   int messages = 0;
   for (auto message = receive(from); !message.empty(); message = receive(from)) {
     if (is_allowed(message, may_publish)) {
@@ -47,14 +47,14 @@ int pass_checked(zmq::socket_t& from, zmq::socket_t& to, MayPublish may_publish,
         to.send(message[i],
                 i + 1 < message.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
     } else if ((*refused)++ == 0) {
-      spdlog::warn("refused a message of {} in another name", sender_of(message[0]));
+      spdlog::warn("refused a message of {} under another name", sender_of(message[0]));
     }
     if (++messages >= relay_burst) break;
   }
   return messages;
 }
 
-int pass_subscriptions(zmq::socket_t& from, zmq::socket_t& to) {
+int relay_subscriptions(zmq::socket_t& from, zmq::socket_t& to) {
   int messages = 0;
   for (auto message = receive(from); !message.empty(); message = receive(from)) {
     const std::string_view frame = message[0].to_string_view();

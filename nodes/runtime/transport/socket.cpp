@@ -7,7 +7,7 @@
 namespace dmise {
 namespace {
 
-constexpr std::size_t copied_bytes = 16384;  // a larger frame is handed over instead
+constexpr std::size_t copied_bytes = 16384;  // larger frames are passed without copying
 
 std::string reason(const zmq::error_t& error) {
   std::string text = error.what();
@@ -72,7 +72,7 @@ std::vector<zmq::message_t> receive(zmq::socket_t& socket) {
   zmq::message_t frame;
   if (!socket.recv(frame, zmq::recv_flags::dontwait)) return message;
   message.push_back(std::move(frame));
-  for (bool more = message.back().more(); more;) {  // the frames of a message arrive together
+  for (bool more = message.back().more(); more;) {  // frames of a message arrive together
     zmq::message_t next;
     if (!socket.recv(next, zmq::recv_flags::none)) break;
     more = next.more();
@@ -113,7 +113,7 @@ void wait_for(std::vector<zmq::pollitem_t>& items, std::chrono::nanoseconds at_m
   try {
     zmq::poll(items, std::max(ms, std::chrono::milliseconds(0)));
   } catch (const zmq::error_t& error) {
-    if (error.num() != EINTR) throw;  // a signal: its event is set
+    if (error.num() != EINTR) throw;  // interrupted by a signal, whose event is set
   }
 }
 

@@ -9,35 +9,34 @@
 #include "nodes/runtime/security/security.h"
 #include "nodes/wire/envelope.h"
 
-// Sockets as this project uses them: sizes capped, handshakes timed, no lingering but for last
-// words.
+// Sockets with the settings of this project: size limits, handshake timeouts, linger only for last
+// messages.
 namespace dmise {
 
 inline constexpr std::int64_t max_control_bytes = 1 << 20;
 inline constexpr std::int64_t max_data_bytes = max_array_bytes + (1 << 20);
 
-/// Largest inbound message of sockets that publish: subscriptions, which libzmq walks by recursion
-/// when it removes them, and what the handshake with keys needs.
+/// Largest inbound message of publishing sockets: subscriptions, which libzmq removes recursively,
+/// and the CURVE handshake.
 inline constexpr std::int64_t max_subscription_bytes = 1024;
-/// Frames of one message that are kept; what has more is cut there, and refused for their number.
+/// Number of frames kept of one message; longer messages are truncated and then refused.
 inline constexpr std::size_t max_frames = 8;
-/// Messages kept for a peer of a ROUTER, or a subscriber on a socket that anybody may reach, who
-/// does not read; what comes then is dropped.
+/// Messages queued for a peer of a ROUTER, or for a subscriber of a public socket, that does not
+/// read; further ones are dropped.
 inline constexpr int max_unread = 4096;
-/// The same where an answer may be a whole tick of states; who has not read it asks again.
+/// The same where a reply may be a whole tick of states; peers repeat unanswered requests.
 inline constexpr int max_unread_answers = 256;
-/// A question for what was published.
+/// Largest request for published messages.
 inline constexpr std::int64_t max_question_bytes = 4096;
-/// Requests that wait at a ROUTER, of each peer; the rest waits on its side.
+/// Requests queued at a ROUTER per peer; others wait at the peer.
 inline constexpr int max_waiting = 1024;
-/// Bytes sent over one connection that may be kept unheard: of control messages, of questions for
-/// what was published, and of all subscriptions. In frames of one byte they take twenty times as
-/// much.
+/// Bytes of one connection that may be queued unread: of control messages, of requests, and of all
+/// subscriptions. In frames of one byte they take twenty times as much memory.
 inline constexpr std::int64_t max_unheard_bytes = 4 << 20;
 inline constexpr std::int64_t max_unheard_questions_bytes = 1 << 20;
 inline constexpr std::int64_t max_subscriptions_bytes = 512 << 10;
 
-/// Queues without limit, for those of a run are bounded by its window; but for a ROUTER's.
+/// Queues are unlimited, because those of a run are bounded by its window, except at a ROUTER.
 zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
                           std::int64_t max_message_bytes);
 
@@ -46,17 +45,17 @@ zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
 std::string bind_to(zmq::socket_t& socket, const std::string& address,
                     const Security& security = {}, Domain domain = Domain::control);
 
-/// `peer`: who is there. Throws `Error` "ADDRESS: reason" when the address can't be one, and
-/// `ConfigError` when `security` does not allow it.
+/// `peer`: name of the process there. Throws `Error` "ADDRESS: reason" for an invalid address, and
+/// `ConfigError` if `security` does not allow it.
 void connect_to(zmq::socket_t& socket, const std::string& address, const Security& security = {},
                 const std::string& peer = "");
 
-/// `address` ("tcp://HOST:PORT") with port 0: any free one on the same host.
+/// `address` ("tcp://HOST:PORT") with port 0: any free port on the same host.
 std::string any_port(const std::string& address);
 
-/// All frames of one message, up to `max_frames`, or none when there is no message now.
+/// All frames of one message, up to `max_frames`; empty if no message is waiting.
 std::vector<zmq::message_t> receive(zmq::socket_t& socket);
-/// The only frame of a message; empty when there is no message now or it has several.
+/// The only frame of a message; empty if no message is waiting or it has several frames.
 std::optional<zmq::message_t> receive_one(zmq::socket_t& socket);
 
 /// Sends a message of three or four frames; large frames are not copied. `prefix`: routing id, if
@@ -66,7 +65,7 @@ void send(zmq::socket_t& socket, const std::shared_ptr<const Frames>& frames,
 
 std::vector<std::string_view> views(const std::vector<zmq::message_t>& message);
 
-/// One message of Protocol Buffers as a frame.
+/// Serialises a Protocol Buffers message to a frame.
 template <class M>
 zmq::message_t to_frame(const M& message) {
   zmq::message_t frame(message.ByteSizeLong());
