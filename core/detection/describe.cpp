@@ -191,6 +191,8 @@ void describe_direction(const Source& source, const FrameHeader& header, Detecti
   const double e = dot(mid.track, tangent.east), n = dot(mid.track, tangent.north);
   const double chord = std::hypot(e, n);
   if (!(chord > 0)) return;
+  const double angle = std::atan2(e, n);
+  d.position_angle_rad = angle < 0 ? angle + 2 * pi : angle;
   add_along(d.covariance_rad2, e / chord, n / chord, mid.sigma_rad * mid.sigma_rad);
 }
 

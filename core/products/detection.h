@@ -65,6 +65,10 @@ struct Detection {
   std::array<double, 3> end1_covariance_rad2{}, end2_covariance_rad2{};
   double length_px = 0.0;       // between the ends; 0 for a point
   double rate_rad_per_s = 0.0;  // angular, along the streak
+  // Direction of a streak on the sky at mid exposure, from end 1 to end 2: position angle from
+  // north through east, [0, 2 pi); 0 for a point. Against the motion if it went from end 2 to
+  // end 1.
+  double position_angle_rad = 0.0;
   bool saturated = false;  // a pixel is at full well or at the ADC's limit
   bool at_edge = false;    // touches the frame's edge: an end is missing
   bool star_like = false;  // has the shape and direction of a star's trail

@@ -57,6 +57,7 @@
   VALUE(direction_known, "direction_known", 1)                                          \
   VALUE(length_px, "length_px", 1)                                                      \
   VALUE(rate_rad_per_s, "rate_arcsec_per_s", arcsec)                                    \
+  VALUE(position_angle_rad, "position_angle_deg", deg)                                   \
   VALUE(saturated, "saturated", 1)                                                      \
   VALUE(at_edge, "at_edge", 1)                                                          \
   VALUE(star_like, "star_like", 1)

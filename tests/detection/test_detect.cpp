@@ -282,6 +282,21 @@ TEST(Detect, MagnitudeFollowsFromTheZeroPoint) {
   EXPECT_NEAR(d.rate_rad_per_s, 60 / all_sky_focal_px / 20, 0.02 * 60 / all_sky_focal_px / 20);
 }
 
+// By hand: columns run north and rows west, so that a line at the angle a from +x towards +y has
+// the position angle -a from north through east. End 1 is the one with smaller x.
+TEST(Detect, PositionAngleIsFromNorthThroughEast) {
+  const auto header = camera_header(400, 400, all_sky_focal_px, declination, 20, true);
+  Threads threads;
+  for (const double angle : {0.7, -0.7, 1.4}) {
+    SimulatedFrame frame(header, 400, 400, sky_e, 10);
+    frame.add_streak(200, 200, 60, angle, 60000.0);
+    const auto result = detect(frame.expose(), header, {}, threads);
+    ASSERT_EQ(result.detections.size(), 1u);
+    const double expected = angle > 0 ? 2 * pi - angle : -angle;
+    EXPECT_NEAR(result.detections[0].position_angle_rad, expected, 0.01);
+  }
+}
+
 /// Squared error of the direction at mid exposure by its covariance, without aberration.
 double nees_of_direction(const Detection& d, const Wcs& wcs, PixelPosition truth) {
   const auto place = to_spherical(wcs_direction(wcs, truth));

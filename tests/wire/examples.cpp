@@ -176,6 +176,7 @@ Detection detection(Numbers& n, std::uint32_t index) {
   d.direction_known = index % 2;
   d.length_px = n.in(0, 100);
   d.rate_rad_per_s = n.in(0, 0.1);
+  d.position_angle_rad = angle();
   d.saturated = d.at_edge = index % 2;
   d.star_like = index % 3;
   return d;
