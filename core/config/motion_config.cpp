@@ -9,6 +9,7 @@
 #include "core/config/search_path.h"
 #include "core/frames/geodesy.h"
 #include "core/frames/oblate_earth.h"
+#include "core/orbit/geodetic_track.h"
 #include "core/orbit/kepler.h"
 #include "core/orbit/tle.h"
 #include "core/time/clock.h"
@@ -144,16 +145,19 @@ std::string file_of(const YamlValue& value) {
 
 }  // namespace
 
-MotionConfig read_motion(const YamlValue& value, const Utc& start) {
+MotionConfig read_motion(const YamlValue& value, const Utc& start, const std::string& name) {
   YamlMap map(value);
   MotionConfig motion;
   const auto two_body = map.find("two_body"), oem = map.find("oem"), fixed = map.find("fixed"),
-             sgp4 = map.find("sgp4");
+             track = map.find("track"), sgp4 = map.find("sgp4");
   map.done();
-  if (map.keys().size() != 1) value.fail("give one of two_body, oem, fixed, sgp4", false);
+  if (map.keys().size() != 1) value.fail("give one of two_body, oem, fixed, track, sgp4", false);
   if (two_body) motion.model = MotionModel(read_two_body(*two_body, start, motion.warnings));
-  if (oem) motion.trajectory_path = file_of(*oem);
+  if (oem || track) motion.trajectory_path = file_of(oem ? *oem : *track);
   if (oem) motion.model = MotionModel(read_oem(motion.trajectory_path));
+  if (track)
+    motion.model =
+        MotionModel(read_geodetic_track(motion.trajectory_path, Clock(start).tai({0}), name));
   if (fixed) motion.model = read_fixed(*fixed);
   if (sgp4) motion.model = read_sgp4(*sgp4);
   return motion;

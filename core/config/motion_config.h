@@ -12,12 +12,13 @@ namespace dmise {
 /// Motion of an object of the scenario: an element set for SGP4, or another model.
 struct MotionConfig {
   std::variant<MotionModel, MeanElements> model;
-  std::string trajectory_path;             // of an OEM, resolved; empty for other models
+  std::string trajectory_path;             // of an OEM or a track, resolved; empty for other models
   std::vector<std::string> warnings = {};  // see `disproportions_of_orbit`
 };
 
-/// Reads one of `two_body`, `oem`, `fixed`, `sgp4`; `start` is the default epoch of two_body.
-/// Throws `ConfigError` `file:line:column: key: reason`, for an OEM with its own line.
-MotionConfig read_motion(const YamlValue& value, const Utc& start);
+/// Reads one of `two_body`, `oem`, `fixed`, `track`, `sgp4` of the object `name`; `start` is the
+/// default epoch of two_body and time 0 of a track. Throws `ConfigError` `file:line:column: key:
+/// reason`, for a file with its own line.
+MotionConfig read_motion(const YamlValue& value, const Utc& start, const std::string& name);
 
 }  // namespace dmise

@@ -58,7 +58,7 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start) {
     name.fail("must have 1 to 64 characters");
   object.catalogue_number =
       static_cast<std::uint32_t>(map.integer_or("catalogue_number", 0, 1, 999'999'999));
-  object.motion = read_motion(map.require("motion"), start);
+  object.motion = read_motion(map.require("motion"), start, object.name);
   if (const auto attitude = map.find("attitude")) object.attitude = read_attitude(*attitude);
   if (const auto panel = map.find("panel")) {
     if (!object.attitude) panel->fail("needs an attitude", false);

@@ -112,7 +112,9 @@ TEST(ObjectConfig, SaysWhereAndWhy) {
   EXPECT_EQ(complaint("- {name: x, motion: {flying: {}}}"),
             "s.yaml:2:22: objects[0].motion.flying: unknown key");
   EXPECT_EQ(complaint("- {name: x, motion: {}}"),
-            "s.yaml:2:21: objects[0].motion: give one of two_body, oem, fixed, sgp4");
+            "s.yaml:2:21: objects[0].motion: give one of two_body, oem, fixed, track, sgp4");
+  EXPECT_EQ(complaint("- {name: x, motion: {track: none.csv}}"),
+            "s.yaml:2:27: objects[0].motion.track: there is no such file, got none.csv");
   EXPECT_EQ(complaint("- {name: x, motion: {oem: none.oem}}"),
             "s.yaml:2:27: objects[0].motion.oem: there is no such file, got none.oem");
   EXPECT_EQ(complaint("- {name: x, motion: {fixed: {itrs_m: [1, 2]}}}"),
@@ -126,7 +128,7 @@ TEST(ObjectConfig, SaysWhereAndWhy) {
       complaint("- {name: x, motion: {two_body: {semi_major_axis_m: 7e6, eccentricity: 1, "
                 "inclination_deg: 0}}}"),
       "s.yaml:2:71: objects[0].motion.two_body.eccentricity: must be < 1 with semi_major_axis_m; "
-      "open orbits take periapsis_m, got 1");
+      "open orbits need periapsis_m, got 1");
   EXPECT_EQ(complaint("- {name: x, motion: {two_body: {periapsis_m: 7e6, eccentricity: 2, "
                       "inclination_deg: 0, true_anomaly_deg: 121}}}"),
             "s.yaml:2:106: objects[0].motion.two_body.true_anomaly_deg: must be inside the "
@@ -141,7 +143,7 @@ TEST(ObjectConfig, SaysWhereAndWhy) {
       "y, "
       "z], its length is 0.000000");
   EXPECT_EQ(complaint("- {name: x, " + fixed + ", panel: {hinge: [0, 1, 0]}}"),
-            "s.yaml:2:60: objects[0].panel: needs an attitude, to know where the Sun is");
+            "s.yaml:2:60: objects[0].panel: needs an attitude");
   EXPECT_EQ(complaint("- {name: x, " + fixed + "}\n- {name: x, " + fixed + "}"),
             "s.yaml:3:10: objects[1].name: another object has this name, got x");
 }
