@@ -61,6 +61,25 @@ double lambert(double reflectance, double cos_in) {
   return reflectance / pi * sun_photons * cos_in;
 }
 
+/// The light of the pixels of a tile is that of the object's facets, from 60 sides: to 5e-3 of
+/// itself and `floor` of the brightest.
+void expect_pixels_sum_to_the_facets(const FacetLight& object, int pixels, int oversampling,
+                                     double floor) {
+  const auto directions = even_directions<Body>(60);
+  const TileCamera camera = camera_around(1.8, far_m, pixels);
+  double brightest = 0;
+  for (const Vec<Body>& side : directions)
+    brightest = std::max(brightest, object.reflected_m2_per_sr(side, side));
+  for (int i = 0; i < 60; ++i) {
+    const Vec<Body> sun = directions[std::size_t(i)];
+    const Vec<Body> viewer = directions[std::size_t((i * 7 + 3) % 60)];
+    const double expected = object.reflected_m2_per_sr(sun, viewer);
+    const double got = flux(draw(object, sun, viewer, camera, 0.4 * i, oversampling), camera) *
+                       far_m * far_m / sun_photons;
+    EXPECT_NEAR(got, expected, 5e-3 * expected + floor * brightest) << i;
+  }
+}
+
 TEST(Texture, ACheckerboardIsWhereItsPlacesSay) {
   const Mesh mesh = textured(square, "Kd 0.9 0.9 0.9\nmap_Kd a.png\n", picture_of(3, check));
   const FacetLight object(mesh, Band{});
@@ -102,25 +121,12 @@ TEST(Texture, MeansAgreeWithTheIntegral) {
 }
 
 TEST(Texture, PixelsSumToTheFacets) {
-  const auto directions = even_directions<Body>(60);
   const FacetLight object(
       textured(cube, "Kd 0.7 0.7 0.7\nKs 0.2 0.2 0.2\nNs 8\nmap_Kd a.png\n", picture_of(3, check)),
       Band{});
   for (const int pixels : {8, 60}) {
-    const TileCamera camera = camera_around(1.8, far_m, pixels);
-    double brightest = 0;
-    for (int i = 0; i < 60; ++i)
-      brightest = std::max(brightest, object.reflected_m2_per_sr(directions[std::size_t(i)],
-                                                                 directions[std::size_t(i)]));
-    for (int i = 0; i < 60; ++i) {
-      const Vec<Body> sun = directions[std::size_t(i)];
-      const Vec<Body> viewer = directions[std::size_t((i * 7 + 3) % 60)];
-      const double expected = object.reflected_m2_per_sr(sun, viewer);
-      const double got =
-          flux(draw(object, sun, viewer, camera, 0.4 * i, pixels < 10 ? 64 : 16), camera) * far_m *
-          far_m / sun_photons;
-      EXPECT_NEAR(got, expected, 5e-3 * expected + 5e-6 * brightest) << i << " " << pixels;
-    }
+    SCOPED_TRACE(pixels);
+    expect_pixels_sum_to_the_facets(object, pixels, pixels < 10 ? 64 : 16, 5e-6);
   }
 }
 
@@ -162,7 +168,6 @@ TEST(Bump, ASlopeTiltsTheNormalByItsGradient) {
 
 // Waves of 0.1 m peak to peak over 1 m: slopes to 17 deg.
 TEST(Bump, PixelsSumToTheFacets) {
-  const auto directions = even_directions<Body>(60);
   const FacetLight object(
       textured(cube, "Kd 0.5 0.5 0.5\nKs 0.3 0.3 0.3\nNs 4\nbump -bm 0.1 h.png\n",
                picture_of(1,
@@ -171,19 +176,7 @@ TEST(Bump, PixelsSumToTheFacets) {
                                    0.25 * std::sin(4 * pi * (y + 0.5) / side);
                           })),
       Band{});
-  const TileCamera camera = camera_around(1.8, far_m, 60);
-  double brightest = 0;
-  for (int i = 0; i < 60; ++i)
-    brightest = std::max(brightest, object.reflected_m2_per_sr(directions[std::size_t(i)],
-                                                               directions[std::size_t(i)]));
-  for (int i = 0; i < 60; ++i) {
-    const Vec<Body> sun = directions[std::size_t(i)];
-    const Vec<Body> viewer = directions[std::size_t((i * 7 + 3) % 60)];
-    const double expected = object.reflected_m2_per_sr(sun, viewer);
-    const double got =
-        flux(draw(object, sun, viewer, camera, 0.4 * i, 16), camera) * far_m * far_m / sun_photons;
-    EXPECT_NEAR(got, expected, 5e-3 * expected + 5e-4 * brightest) << i;
-  }
+  expect_pixels_sum_to_the_facets(object, 60, 16, 5e-4);
 }
 
 TEST(Texture, EqualScenesAreEqualPixels) {

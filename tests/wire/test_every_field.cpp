@@ -2,7 +2,6 @@
 #include <google/protobuf/message.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -25,13 +24,6 @@ using google::protobuf::Message;
 using namespace test;
 
 using Visit = std::function<void(const std::string& path)>;
-
-/// Coefficients of projections are on the wire once a row of their table has some.
-bool never_set(const FieldDescriptor& f) {
-  return f.name().ends_with("coefficients") &&
-         std::ranges::all_of(Projection::rows(),
-                             [](const auto& row) { return row.coefficients.empty(); });
-}
 
 /// Gives a singular field, or the first element of a repeated one, another value.
 void change(Message& m, const FieldDescriptor* f) {
@@ -77,7 +69,6 @@ void for_each_changed_field(Message& m, const std::string& path, const Visit& vi
   const auto* r = m.GetReflection();
   for (int i = 0; i < m.GetDescriptor()->field_count(); ++i) {
     const FieldDescriptor* f = m.GetDescriptor()->field(i);
-    if (never_set(*f)) continue;
     const std::string here = path + f->name();
     if (f->is_repeated() && r->FieldSize(m, f) == 0) {
       ADD_FAILURE() << here << ": the example has none";
@@ -209,7 +200,6 @@ TEST(EveryField, IsEncoded) {
     for (int i = 0; i < m.GetDescriptor()->field_count(); ++i) {
       const FieldDescriptor* f = m.GetDescriptor()->field(i);
       const int size = f->is_repeated() ? r->FieldSize(m, f) : r->HasField(m, f);
-      if (never_set(*f)) continue;
       set[f->full_name()] |= size > 0;
       if (f->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) continue;
       for (int k = 0; k < size; ++k)
