@@ -114,7 +114,7 @@ TEST(ObjectConfig, SaysWhereAndWhy) {
   EXPECT_EQ(complaint("- {name: x, motion: {}}"),
             "s.yaml:2:21: objects[0].motion: give one of two_body, oem, fixed, track, sgp4");
   EXPECT_EQ(complaint("- {name: x, motion: {track: none.csv}}"),
-            "s.yaml:2:27: objects[0].motion.track: there is no such file, got none.csv");
+            "s.yaml:2:29: objects[0].motion.track: there is no such file, got none.csv");
   EXPECT_EQ(complaint("- {name: x, motion: {oem: none.oem}}"),
             "s.yaml:2:27: objects[0].motion.oem: there is no such file, got none.oem");
   EXPECT_EQ(complaint("- {name: x, motion: {fixed: {itrs_m: [1, 2]}}}"),

@@ -211,7 +211,7 @@ TEST_F(RunLocks, StandUntilTheLastProcessOfADeadRunHasEnded) {
   ASSERT_EQ(read(ready[0], &node, sizeof node), ssize_t(sizeof node));
   kill(launcher, SIGKILL);
   waitpid(launcher, nullptr, 0);
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("left of"), HasSubstr(std::to_string(launcher))));
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("left by"), HasSubstr(std::to_string(launcher))));
   kill(node, SIGKILL);
   const RunLock lock(directory);  // waits for the node's end
 }

@@ -39,9 +39,9 @@ void serve(const std::string& master, const PassOn& pass_on) {
     for (auto m = receive(subscribers); !m.empty(); m = receive(subscribers))
       publishers.send(m[0], zmq::send_flags::none);
     for (auto m = receive(publishers); !m.empty(); m = receive(publishers))
-      relay_messages(subscribers, std::make_shared<Frames>(
-                                      Frames{m[0].to_string(), m[1].to_string(), m[2].to_string(),
-                                             m.size() > 3 ? m[3].to_string() : ""}));
+      pass_on(subscribers,
+              std::make_shared<Frames>(Frames{m[0].to_string(), m[1].to_string(), m[2].to_string(),
+                                              m.size() > 3 ? m[3].to_string() : ""}));
   }
   link.leave(false, {});
 }

@@ -23,15 +23,15 @@ def test(binary, directory):
     path = directory / "effects.yaml"
     path.write_text(SCENARIO)
 
-    def said(*options):
+    def output(*options):
         done = subprocess.run([binary, "check", path, *options], capture_output=True, text=True)
         check(done.returncode == 0, f"check {' '.join(options)} passes {done.stderr}")
         return done.stdout
 
-    groups = re.findall(r"^effects of (.*):$", said(), re.M)
+    groups = re.findall(r"^effects of (.*):$", output(), re.M)
     check(groups == ["zulu, mike", "alpha"], f"sensors come in the order of the scenario: {groups}")
 
-    effects = json.loads(said("--json"))["effects"]
+    effects = json.loads(output("--json"))["effects"]
     check(list(effects) == ["zulu", "alpha", "mike"], f"every sensor has its effects: {list(effects)}")
     names = {sensor: [effect["name"] for effect in listed] for sensor, listed in effects.items()}
     off = [name for name in names["zulu"] if name not in names["alpha"]]

@@ -163,7 +163,7 @@ TEST(Hosts, FailTheRunWhenWhatIsDoneAgainDiffers) {
   run.master.lost_behind("a", 1, "has closed its connection", 0);
   run.master.join(behind("host", "a"));
   run.master.done("host", {0, {}, 99});
-  EXPECT_THAT(run.master.cause(), HasSubstr("is not what it was"));
+  EXPECT_THAT(run.master.cause(), HasSubstr("differs from the first time"));
 }
 
 TEST(Hosts, WordsOfAnEarlierProcessDoNotCount) {
