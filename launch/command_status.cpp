@@ -96,8 +96,8 @@ void show(const StatusOptions& options) {
 
 void add_status_command(CLI::App& app) {
   auto options = std::make_shared<StatusOptions>();
-  auto* command = app.add_subcommand(
-      "status", "Shows the clock and nodes of a run; live on a terminal");
+  auto* command =
+      app.add_subcommand("status", "Shows the clock and nodes of a run; live on a terminal");
   command->add_option("master", options->master, "address of the time-master, tcp://HOST:PORT")
       ->required()
       ->check(transport_address());

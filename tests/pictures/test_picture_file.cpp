@@ -142,7 +142,7 @@ std::uint32_t next(std::uint32_t& state) { return state = state * 1664525u + 101
 
 // Whatever the bytes, reading gives a picture of finite pixels or one line, and prints nothing.
 TEST(Pictures, ChangedBytesAreAPictureOrOneLine) {
-  const RateImage map = sample_map();
+  const ExpectedElectronImage map = sample_map();
   std::vector<std::string> whole{
       encode_exr({.pixels = map.pixels.data(), .columns = 200, .rows = 20})};
   for (const int channels : {1, 3})
