@@ -163,7 +163,7 @@ TEST_F(ObjectStatesTest, AnObjectThatDecaysLeavesTheSceneWithOneLine) {
   }
   ASSERT_EQ(told.size(), 2u);
   EXPECT_THAT(told[0], testing::HasSubstr("falls (990000001)"));
-  EXPECT_THAT(told[0], testing::HasSubstr("into the Earth"));
+  EXPECT_THAT(told[0], testing::HasSubstr("enters the Earth"));
   EXPECT_THAT(told[1], testing::AllOf(testing::HasSubstr("(28872)"), testing::HasSubstr("code 6")));
 }
 

@@ -45,7 +45,7 @@ prove() {
   say "demonstration done after $((SECONDS - began)) s"
 
   in_root "$work" "$inside/dmise" demo >"$log.again" 2>&1 || die "again failed: $(tail -n 1 "$log.again")"
-  grep -q 'holds this run, complete' "$log.again" || die "a second ./dmise demo did the work again"
+  grep -q 'contains this run, complete' "$log.again" || die "a second ./dmise demo did the work again"
 }
 
 [[ ${DMISE_BARE_ROOT:-0} == 1 ]] || { say "skipped: set DMISE_BARE_ROOT=1 to spend a build on it"; exit 77; }

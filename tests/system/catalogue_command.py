@@ -111,7 +111,7 @@ def test(binary, directory):
                             (("info", directory / "absent"), "absent: No such file"),
                             (("synth", "--objects", "0"), "--objects: "),
                             (("synth", "--objects", "1000001"), "--objects: "),
-                            (("synth", "--objects", "400000", "--format", "3le"), "--objects: a TLE holds")):
+                            (("synth", "--objects", "400000", "--format", "3le"), "--objects: a TLE has numbers")):
         check(said in dmise(*arguments, code=2)[1], f"refused: {said}")
 
     # Populations: the same seed the same bytes, numbers up to a million, readable by others.

@@ -118,7 +118,7 @@ def test(binary, directory):
         first_frame(out, "alpha")
         os.kill(sensors["alpha"].process.pid, signal.SIGKILL)
         check(joins_as(spare) == "alpha", "a spare takes the place of a sensor that was killed")
-        wait_until(lambda: "takes up its work" in (out / "logs/time-master.log").read_text()
+        wait_until(lambda: "resumes at tick" in (out / "logs/time-master.log").read_text()
                    or "process 2 of its name" in (out / "logs/time-master.log").read_text(),
                    "the time-master to take it")
         began = time.monotonic()
@@ -139,7 +139,7 @@ def test(binary, directory):
         code, err = says(binary, "join", scenario, "sensor", "--slot", 3, "--master", stack.address, *stack.keys)
         check(code == 0 and "nothing to do" in err, f"a slot too many ends at once: {err}")
         code, err = says(binary, "join", scenario, "gamma", "--master", stack.address, *stack.keys)
-        check(code == 2 and "no node" in err, f"a node that nobody knows is refused: {err}")
+        check(code == 2 and "not a node of" in err, f"a node that nobody knows is refused: {err}")
         code, err = says(binary, "join", scenario, "alpha", "--master", "tcp://10.9.8.7:1")
         check(code == 2 and "keys" in err, f"no keys, no other address than loopback: {err}")
 

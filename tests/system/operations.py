@@ -69,7 +69,7 @@ def test(binary, directory):
         run.interrupt()
         run.finish()
         code, text = says(binary, "health", "alpha", "--master", master)
-        check(code == 1 and "no time-master answers" in text, f"nor after the end: {text}")
+        check(code == 1 and "no answer from a time-master" in text, f"nor after the end: {text}")
         for name in PROCESSES:
             check(all(list(e) == ["time", "level", "node", "event", "text", "fields"] for e in events(out, name)),
                   f"{name}: {len(events(out, name))} lines of JSON")

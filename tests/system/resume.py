@@ -49,7 +49,7 @@ def goes_on(binary, command, scenario, out, reference):
             frames, detections = (whole_lines(reference / f"{name}.jsonl") for name in ("frames", "detections"))
             check((last[2], last[4]) == (frames, detections),
                   f"at the end it tells frames {last[2]}, detections {last[4]}: {detections} lines are there")
-        check(code == 0 and "going on at tick" in run.stdout, f"{command}: {run.stdout.splitlines()[0]}")
+        check(code == 0 and "continuing at tick" in run.stdout, f"{command}: {run.stdout.splitlines()[0]}")
     check_same(out, reference, f"{command}: the products are those of a run that was not cut short")
 
 

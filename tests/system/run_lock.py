@@ -102,7 +102,8 @@ def joined_elsewhere(binary, directory, scenario):
             Run(binary, "launch", scenario, "--out", theirs, "--nodes-elsewhere"):
         address = mine / "logs/master.address"
         wait_until(lambda: address.exists() and address.read_text().strip(), "the time-master")
-        wait_until(lambda: json.loads((theirs / ".run-lock").read_text())["run"].strip("0"), "the other run's name")
+        lock = theirs / ".run-lock"
+        wait_until(lambda: lock.exists() and json.loads(lock.read_text())["run"].strip("0"), "the other run's name")
         refused(binary, ("join", scenario, "alpha", "--master", address.read_text().strip(), "--out", theirs),
                 f"{theirs}: is in use by pid", "--nodes-elsewhere")
         launch.interrupt()

@@ -65,7 +65,7 @@ check_setup() {
   docker cp demo:/src/out/demo "$work/demo" >/dev/null
   check_demonstration "$work/demo"
   docker exec demo ./dmise demo >"$work/demo.log" 2>&1
-  grep -q 'holds this run, complete' "$work/demo.log" || die "a second ./dmise demo did the work again"
+  grep -q 'contains this run, complete' "$work/demo.log" || die "a second ./dmise demo did the work again"
   docker rm -f demo >/dev/null
   say "ok: the demonstration is whole, after $((SECONDS - began)) s"
   write_proof "$(setup_proof)" "$((SECONDS - began))"
