@@ -163,7 +163,7 @@ TEST(Omm, BrokenFileIsAnErrorWithItsLine) {
       parse_catalogue(text, "t");
       ADD_FAILURE() << text;
     } catch (const ConfigError& error) {
-      EXPECT_THAT(error.what(), testing::ContainsRegex("^t:[0-9]+: not (JSON|XML) from here on"));
+      EXPECT_THAT(error.what(), testing::ContainsRegex("^t:[0-9]+: invalid (JSON|XML)"));
     }
   }
   EXPECT_THROW(parse_catalogue("CCSDS_OEM_VERS = 2.0\n", "t"), ConfigError);
