@@ -76,8 +76,8 @@ DepositView BlurGrid::cells() {
           .stride = fft_.stride(),
           .left = half_,
           .top = half_,
-          .told_columns = columns_ * oversampling_,
-          .told_rows = rows_ * oversampling_};
+          .frame_columns = columns_ * oversampling_,
+          .frame_rows = rows_ * oversampling_};
 }
 
 PixelPosition BlurGrid::cell_of(PixelPosition p) const {

@@ -123,9 +123,9 @@ Deposited inside(const Arc& arc, const PsfTable& psf, const DepositView& view) {
     for (int k = 0; k < panel.nodes; ++k) {
       const double w = panel.weight[k];
       const auto [sx, mx] =
-          shares_inside(psf, panel.column[k], panel.phase_x[k], view.left, view.told_columns);
+          shares_inside(psf, panel.column[k], panel.phase_x[k], view.left, view.frame_columns);
       const auto [sy, my] =
-          shares_inside(psf, panel.row[k], panel.phase_y[k], view.top, view.told_rows);
+          shares_inside(psf, panel.row[k], panel.phase_y[k], view.top, view.frame_rows);
       signal += w * sx * sy;
       x += w * mx * sy;
       y += w * sx * my;
@@ -159,12 +159,12 @@ std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
                              .columns = image.columns,
                              .rows = image.rows,
                              .stride = image.columns,
-                             .told_columns = image.columns,
-                             .told_rows = image.rows},
+                             .frame_columns = image.columns,
+                             .frame_rows = image.rows},
                  threads, level);
 }
 
-Deposited told(const Arc& arc, const PsfTable& psf, const DepositView& view) {
+Deposited deposited_in_frame(const Arc& arc, const PsfTable& psf, const DepositView& view) {
   return inside(arc, psf, view);
 }
 

@@ -44,7 +44,7 @@ struct DepositView {
   float* pixels = nullptr;
   int columns = 0, rows = 0;
   std::ptrdiff_t stride = 0;
-  int left = 0, top = 0, told_columns = 0, told_rows = 0;
+  int left = 0, top = 0, frame_columns = 0, frame_rows = 0;
 };
 
 /// Adds arcs to `image` [e-] and returns what is inside the frame for each. Light per pixel is
@@ -60,8 +60,8 @@ std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
                                const DepositView& view, Threads& threads,
                                SimdLevel level = best_simd_level());
 
-/// Returns the part of an arc inside the counted part of a view, without writing pixels.
-Deposited told(const Arc& arc, const PsfTable& psf, const DepositView& view);
+/// Returns the part of an arc inside the frame of a view, without writing pixels.
+Deposited deposited_in_frame(const Arc& arc, const PsfTable& psf, const DepositView& view);
 
 /// The part of an arc between two times in 0..1.
 Arc part_of(const Arc& arc, double tau_begin, double tau_end);

@@ -148,11 +148,11 @@ std::vector<Deposited> DirectBlur::deposit(std::span<const Arc> arcs, ExpectedEl
   std::vector<Deposited> result(arcs.size());
   const DepositView frame{.columns = light.columns * k_,
                           .rows = light.rows * k_,
-                          .told_columns = light.columns * k_,
-                          .told_rows = light.rows * k_};
+                          .frame_columns = light.columns * k_,
+                          .frame_rows = light.rows * k_};
   threads.for_ranges(arcs.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      Deposited d = told(on_cells(arcs[i]), table_, frame);
+      Deposited d = deposited_in_frame(on_cells(arcs[i]), table_, frame);
       if (d.signal_e > 0.0) {
         d.x_px = (d.x_px - 0.5 * (k_ - 1)) / k_;
         d.y_px = (d.y_px - 0.5 * (k_ - 1)) / k_;

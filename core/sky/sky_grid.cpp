@@ -239,8 +239,8 @@ std::vector<SkyPatch> patches_of_grid(int columns, int rows, const PixelFunction
   std::vector<SkyPatch> patches;
   if (columns <= 0 || rows <= 0) return patches;
   Grid grid{columns, rows, f, tolerance, nullptr};
-  const SkyGridReport told = visit_cells(grid, threads, &patches);
-  if (report) *report = told;
+  const SkyGridReport done = visit_cells(grid, threads, &patches);
+  if (report) *report = done;
   return patches;
 }
 

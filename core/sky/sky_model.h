@@ -80,7 +80,7 @@ std::optional<SkyParts> sky_parts_named(std::string_view preset);
 inline constexpr double mean_moon_distance_m = 384.4e6;
 
 /// What the sky depends on at one site and time. Directions are unit: the Sun's without refraction,
-/// as twilight is told by its true depression, the Moon's apparent.
+/// as twilight goes by its true depression, the Moon's apparent.
 struct SkyScene {
   Vec<Enu> sun{0, 0, -1};
   Vec<Enu> moon{0, 0, -1};

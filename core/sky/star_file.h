@@ -30,7 +30,7 @@ struct StarReading {
 std::optional<StarFormat> guess_star_format(std::string_view text);
 
 /// Reads a catalogue's text; `name` is the file as problems call it. Throws `ConfigError` when the
-/// whole is unusable: a header without the needed columns, a format that can't be told, no star at
+/// whole is unusable: a header without the needed columns, an unknown format, no star at
 /// all.
 StarReading parse_stars(std::string_view text, const std::string& name,
                         std::optional<StarFormat> format = std::nullopt);

@@ -33,7 +33,7 @@ std::vector<Deposited> GlEvaluator::add(std::span<const Arc> points, const PsfTa
   renderer().add_points(points_, psf.sigma_px, {view.pixels, view.columns, view.rows, view.stride});
   std::vector<Deposited> result(points.size());
   threads.for_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) result[i] = told(points[i], psf, view);
+    for (std::size_t i = begin; i < end; ++i) result[i] = deposited_in_frame(points[i], psf, view);
   });
   return result;
 }

@@ -125,8 +125,8 @@ std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, ExpectedElect
                                  .columns = light.columns,
                                  .rows = light.rows,
                                  .stride = light.columns,
-                                 .told_columns = light.columns,
-                                 .told_rows = light.rows});
+                                 .frame_columns = light.columns,
+                                 .frame_rows = light.rows});
   const auto is_bright = [&](const Arc& arc) { return !grid_ || arc.signal_e > bright_e_; };
   if (!grid_) return sum_directly(arcs, light);
 

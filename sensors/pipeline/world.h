@@ -47,9 +47,9 @@ class World {
   /// Attitude between the ticks around `t`; nothing for an object without one. `t` as for `motion`.
   std::optional<Rotation<Gcrs, Body>> gcrs_from_body(std::size_t i, SimTime t) const;
 
-  /// The environment at `t`: that last told at or before it, run on by its rates (`run_on`).
+  /// The environment at `t`: that last published at or before it, run on by its rates (`run_on`).
   EnvironmentState environment(SimTime t) const;
-  /// The air over a ground sensor as last told at or before `t`; null if it never was.
+  /// The air over a ground sensor as last published at or before `t`; null if it never was.
   const SiteState* site(const std::string& sensor, SimTime t) const;
 
  private:
