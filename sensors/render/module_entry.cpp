@@ -17,11 +17,12 @@ T* made(std::unique_ptr<T> (*make)(), std::string& reason) {
 
 }  // namespace
 
-// Entries of the shared object. Null with the reason when there is no OpenGL here.
-extern "C" dmise::Renderer* dmise_make_renderer(std::string& reason) {
+// Entries of the shared object: a Renderer, a SceneRenderer. Null with the reason when there is no
+// OpenGL here.
+extern "C" void* dmise_make_renderer(std::string& reason) {
   return made(dmise::make_gl_renderer, reason);
 }
 
-extern "C" dmise::SceneRenderer* dmise_make_scene_renderer(std::string& reason) {
+extern "C" void* dmise_make_scene_renderer(std::string& reason) {
   return made(dmise::make_gl_scene_renderer, reason);
 }
