@@ -8,6 +8,8 @@ set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g")
 
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)  # for clang-tidy
+
 set(DMISE_SANITIZE "" CACHE STRING "sanitizers to build with, as for -fsanitize=")
 option(DMISE_FUZZ "build the libFuzzer targets (clang)" OFF)
 option(DMISE_WERROR "treat warnings as errors" ON)
@@ -23,7 +25,7 @@ if(DMISE_WERROR)
   add_compile_options(-Werror)
 endif()
 if(DMISE_SANITIZE)
-  add_compile_options(-fsanitize=${DMISE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+  add_compile_options(-fsanitize=${DMISE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${DMISE_SANITIZE})
 endif()
 if(DMISE_FUZZ)

@@ -142,7 +142,8 @@ void StateSource::add_attitudes(const Instant (&instants)[3], ObjectStates& stat
   states.gcrs_from_body.assign(4 * m, 0.0);
   states.attitude_rate_rad_per_s.assign(3 * m, 0.0);
   for (std::size_t a = 0; a < m; ++a) {
-    const auto& [object, model] = population_.attitudes[a];
+    const std::size_t object = population_.attitudes[a].object;
+    const Attitude& model = population_.attitudes[a].model;
     states.attitude_object.push_back(static_cast<std::uint32_t>(object));
     if (states.code[object]) continue;
     const auto scene = [&](std::size_t j) -> std::optional<AttitudeScene> {

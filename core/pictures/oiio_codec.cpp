@@ -163,10 +163,10 @@ class OiioCodec final : public PictureCodec {
 }  // namespace
 }  // namespace dmise
 
-// Entry of the shared object. Null with the reason when OpenImageIO does not start.
-extern "C" dmise::PictureCodec* dmise_make_picture_codec(std::string& reason) {
+// Entry of the shared object: a PictureCodec. Null with the reason when OpenImageIO does not start.
+extern "C" void* dmise_make_picture_codec(std::string& reason) {
   try {
-    return new dmise::OiioCodec;
+    return static_cast<dmise::PictureCodec*>(new dmise::OiioCodec);
   } catch (const std::exception& error) {
     reason = error.what();
     return nullptr;

@@ -58,7 +58,7 @@ double psf_sigma_px(const SensorConfig& sensor) {
 class Worlds {
  public:
   Worlds(const Scenario& scenario, const SensorConfig& sensor, const Clock& clock)
-      : scenario_(scenario), sensor_(sensor), environment_(alone(scenario, sensor), clock) {}
+      : scenario_(scenario), environment_(alone(scenario, sensor), clock) {}
 
   struct Ticks {
     Tick first = 0, last = 0;
@@ -101,7 +101,6 @@ class Worlds {
   }
 
   const Scenario& scenario_;
-  const SensorConfig& sensor_;
   EnvironmentActor environment_;
 };
 

@@ -18,10 +18,10 @@ T* made(std::unique_ptr<T> (*make)(), std::string& reason) {
 }  // namespace
 
 // Entry points of the shared object. Null with the reason if there is no OpenGL.
-extern "C" dmise::Renderer* dmise_make_renderer(std::string& reason) {
+extern "C" void* dmise_make_renderer(std::string& reason) {
   return made(dmise::make_gl_renderer, reason);
 }
 
-extern "C" dmise::SceneRenderer* dmise_make_scene_renderer(std::string& reason) {
+extern "C" void* dmise_make_scene_renderer(std::string& reason) {
   return made(dmise::make_gl_scene_renderer, reason);
 }

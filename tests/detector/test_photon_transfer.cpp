@@ -54,7 +54,8 @@ const Camera cameras[] = {
                              .adc_bits = 12})}};
 
 TEST(PhotonTransfer, FollowsItsLineUntilSaturationAndFallsToNothingThere) {
-  for (const auto& [name, d] : cameras) {
+  for (const auto& camera : cameras) {
+    const Detector& d = camera.detector;
     const double adc_e = (std::exp2(d.adc_bits) - 1 - d.bias_dn) * d.gain_e_per_dn;
     const double limit_e = std::min(adc_e, d.full_well_e);
     for (double light = 1; light < 4 * limit_e; light *= 1.6) {
@@ -66,11 +67,13 @@ TEST(PhotonTransfer, FollowsItsLineUntilSaturationAndFallsToNothingThere) {
       if (light + 6 * noise_e < limit_e) {
         const double variance = m.mean / k + std::pow(d.read_noise_e / k, 2) + 1.0 / 12;
         // Counts of whole electrons lie on a comb when K < 1; over it the mean still holds.
-        EXPECT_NEAR(m.variance / variance, 1.0, 4.5 * std::sqrt(2 / pixels)) << name << light;
-        EXPECT_NEAR(m.mean, light / k, 4.5 * std::sqrt(variance / pixels)) << name << light;
+        EXPECT_NEAR(m.variance / variance, 1.0, 4.5 * std::sqrt(2 / pixels))
+            << camera.name << light;
+        EXPECT_NEAR(m.mean, light / k, 4.5 * std::sqrt(variance / pixels)) << camera.name << light;
       } else if (light - 6 * noise_e > limit_e) {
         // Read noise is all that is left, and nothing where the ADC clips.
-        EXPECT_LE(m.variance, (std::pow(d.read_noise_e / k, 2) + 1.0 / 12) * 1.02) << name << light;
+        EXPECT_LE(m.variance, (std::pow(d.read_noise_e / k, 2) + 1.0 / 12) * 1.02)
+            << camera.name << light;
       }
     }
   }

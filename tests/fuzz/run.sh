@@ -6,7 +6,7 @@
 # N is for each target (5 seconds unless said); FILE gets a line of figures for each. TARGET is tle, omm, ...; all of them unless said.
 # Targets start from tests/fuzz/corpus/TARGET; what they find interesting is kept for the next run in
 # BIN_DIRECTORY/../corpus, an input that fails in BIN_DIRECTORY/../findings. One by hand:
-#   build/fuzz/bin/fuzz_tle -runs=1000000 -max_len=2048 FOLDER tests/fuzz/corpus/tle
+#   build/asan/bin/fuzz_tle -runs=1000000 -max_len=2048 FOLDER tests/fuzz/corpus/tle
 set -euo pipefail
 
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")

@@ -11,7 +11,6 @@
 #include "tests/runtime/until_lost.h"
 #include "tests/support/process.h"
 #include "tests/support/report.h"
-#include "tests/support/tsan.h"
 
 namespace dmise {
 namespace {

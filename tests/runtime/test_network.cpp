@@ -8,7 +8,6 @@
 #include "nodes/runtime/transport/socket.h"
 #include "tests/runtime/network_threads.h"
 #include "tests/runtime/toy.h"
-#include "tests/support/tsan.h"
 
 namespace dmise {
 namespace {
@@ -270,7 +269,7 @@ TEST(Network, AnObserverHearsTheWholeRunWithoutJoining) {
   auto observer = make_socket(context, zmq::socket_type::sub, max_data_bytes);
   observer.set(zmq::sockopt::subscribe, objects_topic);
   connect_to(observer, status.observe_endpoint);
-  auto nodes = {start(orbit, master.address), start(camera, master.address)};
+  [[maybe_unused]] const auto nodes = {start(orbit, master.address), start(camera, master.address)};
 
   std::uint64_t sequence = 0;
   for (Tick tick = -1; tick < 30;) {
@@ -300,7 +299,7 @@ TEST(Network, AnObserverThatStopsReadingSlowsNobodyAndSeesItsGap) {
   observer.set(zmq::sockopt::rcvhwm, 1);
   observer.set(zmq::sockopt::subscribe, objects_topic);
   connect_to(observer, status.observe_endpoint);
-  auto nodes = {start(orbit, master.address), start(camera, master.address)};
+  [[maybe_unused]] const auto nodes = {start(orbit, master.address), start(camera, master.address)};
   while (status.granted < last_tick - 20 && status.phase != Phase::failed)
     status = ask_master(master.address, 5);  // and does not read
 
