@@ -15,8 +15,8 @@ namespace dmise {
 // along its own path with its own brightness over the exposure.
 
 /// Adds their light to `image` and returns what was drawn. An object of which no light fell inside
-/// and whose path did not enter the frame has no entry. `mask`, empty at first, collects what objects
-/// with a shape hide; nearer ones hide farther ones.
+/// and whose path did not enter the frame has no entry. `mask`, empty at first, collects what
+/// objects with a shape hide; nearer ones hide farther ones.
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
                                 const ObjectShapes* shapes, OpticsStage& optics,
                                 OcclusionMask& mask, ExpectedElectronImage& image);

@@ -60,8 +60,8 @@ class ObjectShapes {
   double sun_photons_ = 0.0;
 };
 
-/// Returns the pose at `t`; nothing for an object without an attitude then. With earthshine of `rings` where
-/// the effect is on.
+/// Returns the pose at `t`; nothing for an object without an attitude then. With earthshine of
+/// `rings` where the effect is on.
 std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTime t,
                                     const Vec<Gcrs>& observer_m, int rings = earthshine_flux_rings);
 

@@ -7,7 +7,8 @@
 
 namespace dmise {
 
-/// Returns what archives index of a frame. `centre`: ICRS direction of the stars in the frame's centre.
+/// Returns what archives index of a frame. `centre`: ICRS direction of the stars in the frame's
+/// centre.
 Observation observation_of(const View& view, const PipelineSettings& settings,
                            const std::optional<Vec<Gcrs>>& centre);
 

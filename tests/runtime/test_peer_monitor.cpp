@@ -106,7 +106,8 @@ TEST(ConnectionLimits, CloseStrangersBeyondTheirNumberButNobodyWhoIsKnown) {
   for (int i = 0; i < 30; ++i)
     strangers.push_back(std::make_unique<RawPeer>(place.address, "DEALER"));
   ASSERT_TRUE(place.has(31));
-  EXPECT_THAT(place.monitor.enforce(now()), ElementsAre(HasSubstr("closed 10 anonymous connections")));
+  EXPECT_THAT(place.monitor.enforce(now()),
+              ElementsAre(HasSubstr("closed 10 anonymous connections")));
   EXPECT_TRUE(place.has(21));
   // The others have had their time then, and the oldest go.
   EXPECT_THAT(place.monitor.enforce(now() + seconds(3)),
