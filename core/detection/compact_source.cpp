@@ -104,7 +104,7 @@ bool explains_saturation(const Scene& scene, const Source& source,
 std::optional<Source> judge_compact(const Scene& scene, const Component& component,
                                     const DetectorSettings& settings) {
   const Light around = light_around(scene, component);
-  const std::vector<FitPixel>& pixels = around.told;
+  const std::vector<FitPixel>& pixels = around.usable;
   const std::vector<FitPixel>& clipped = around.clipped;
   if (pixels.size() < 8) return std::nullopt;
   const bool saturated = !clipped.empty();
