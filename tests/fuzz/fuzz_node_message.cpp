@@ -74,7 +74,7 @@ struct Master {
     v1::MasterMessage message;
     describe(message.mutable_grant(), 1, coordinator);
     for (const auto& [name, member] : coordinator.members())
-      for (const TickTally& tally : member.said)
+      for (const TickTally& tally : member.manifests)
         add_published(message.mutable_grant(), {"state", "image"}, tally);
     if (fault_of(message)) __builtin_trap();
     if (coordinator.topology_version() != told) {
