@@ -106,6 +106,10 @@ def read(path, build):
 
 def main():
     build, *arguments = sys.argv[1:]
+    for name in arguments:
+        if name != "--all" and arguments[0] != "--since" and not Path(name).is_file():
+            print(f"tidy: {name}: no such file; usage: ./dmise tidy [--all | FILE..]", file=sys.stderr)
+            return 2
     build = Path(build).resolve()
     commands, includes = commands_of(build), Includes()
     (build / "tidy").mkdir(exist_ok=True)
