@@ -39,6 +39,7 @@ fi
 
 # A library in C that is asked for too much gets no memory, as without ASan; our own `new` is a finding.
 export ASAN_OPTIONS=allocator_may_return_null=1
+export LSAN_OPTIONS=suppressions=$here/../sanitizers/lsan.supp:print_suppressions=0
 
 findings=0
 for target in "${targets[@]}"; do

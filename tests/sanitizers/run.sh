@@ -21,6 +21,7 @@ case $kind in
   address)
     left_out=$(sed -e 's/#.*//' -e 's/[[:space:]]*$//' -e '/^$/d' "$here/left-out.txt" | paste -sd :)
     export ASAN_OPTIONS=log_path=$reports/address:detect_stack_use_after_return=1
+    export LSAN_OPTIONS=suppressions=$here/lsan.supp:print_suppressions=0
     export UBSAN_OPTIONS=log_path=$reports/undefined:print_stacktrace=1
     ;;
   thread)
