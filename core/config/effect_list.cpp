@@ -118,7 +118,8 @@ std::vector<std::pair<std::string_view, double>> parameters_in(const SensorConfi
   const Vignetting& v = camera.optics.vignetting;
   if (effect.name == Vignetting::facts.name)
     return {{"natural", v.natural}, {"corner", v.corner}, {"power", v.power}};
-  if (effect.name == Streak::facts.name) return {{"snapshots", sensor.effects.snapshots()}};
+  if (effect.name == Streak::facts.name && sensor.effects.snapshots() > 0)
+    return {{"snapshots", sensor.effects.snapshots()}};
   std::vector<std::pair<std::string_view, double>> numbers;
   ImageEffects::for_each([&]<class Effect>() {
     if (Effect::facts.name == effect.name)

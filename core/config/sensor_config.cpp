@@ -103,6 +103,9 @@ void read_effects(const YamlValue& value, EffectSet& effects) {
   for (const EffectFacts* effect : all_effects())
     if (effect->switchable)
       if (const auto flag = map.find(effect->name)) effects.set(*effect, flag->flag());
+  if (const auto streak = map.find(Streak::facts.name))
+    streak->fail("can't be switched; integration: analytic or snapshots chooses how it is drawn",
+                 false);
   if (const auto both = map.find("aberration")) {
     effects.set(AnnualAberration::facts, both->flag());
     effects.set(DiurnalAberration::facts, both->flag());

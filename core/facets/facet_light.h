@@ -18,10 +18,11 @@ struct LightSource {
 
 /// What surfaces radiate by their temperature.
 struct ThermalEmission {
-  static constexpr EffectFacts facts{
-      "thermal_emission", "objects with a shape radiate by their warmth",
-      "all that there is in the shadow beyond 5 um; nothing below 2.5 um",
-      "Planck's law and Kirchhoff's"};
+  static constexpr EffectFacts facts{"thermal_emission",
+                                     "objects with a shape radiate by their warmth",
+                                     "at 300 K 1e-3 of the sunlight that a reflectance of 0.3 "
+                                     "returns at 2.5 um, 7 times it at 5 um",
+                                     "Planck's law and Kirchhoff's"};
   static bool applies(const SceneFacts& scene) { return scene.shapes; }
 };
 

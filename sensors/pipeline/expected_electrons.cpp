@@ -39,12 +39,14 @@ double faintest_e(const View& view, const ExpectedElectronImage& sky) {
 struct SkyStage : SkyBackground {
   static void apply(LightFrame& f) {
     fill_sky(f.view, f.drawn_to_v_mag, f.image, f.threads, f.sources.evaluator);
+    if (f.options.sky) *f.options.sky = f.image;
   }
   static void leave_out(LightFrame& f) { apply(f); }
 };
 
 /// The blur before the first source: kernels of the exposure.
-struct KernelStage : PointSpread {
+struct KernelStage {
+  static constexpr const EffectFacts& facts = PointSpread::facts;
   static void apply(LightFrame& f) { f.optics.begin(f.view.times(), faintest_e(f.view, f.image)); }
 };
 
@@ -74,7 +76,8 @@ struct StarStage : StarBackground {
 };
 
 /// The blur after the last source.
-struct BlurStage : PointSpread {
+struct BlurStage {
+  static constexpr const EffectFacts& facts = PointSpread::facts;
   static void apply(LightFrame& f) { f.optics.finish(f.image); }
 };
 
@@ -121,7 +124,6 @@ LightTruth expected_electrons(const View& view, const LightSources& sources, Opt
       run<Stage>(frame);
     else if constexpr (requires { Stage::leave_out(frame); })
       Stage::leave_out(frame);
-    if (std::is_same_v<Stage, SkyStage> && options.sky) *options.sky = image;
   });
   apply_image_optics(acting_optics(view.sensor().camera.optics.image, effects), image, threads,
                      times);

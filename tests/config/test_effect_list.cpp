@@ -52,6 +52,18 @@ TEST(EffectList, EachCanBeSwitchedByItsNameUnlessItHasOtherChoices) {
     }
 }
 
+TEST(EffectList, AStreakThatIsSwitchedOffPointsToItsChoices) {
+  EffectSet set;
+  try {
+    read_effects(YamlValue::parse("streak: off", "e.yaml"), set);
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("integration: analytic or snapshots"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(EffectList, InSpaceThereIsNoAir) {
   SensorConfig sensor;
   sensor.sky.parts = *sky_parts_named("dark");

@@ -100,29 +100,28 @@ std::string uniform_sky(const std::string& camera, const std::string& effects = 
                             effects + "}");
 }
 
-// Reference: the cosine-fourth law (gnomonic lens): cos^4 30 deg = 0.5625.
-TEST(LightOfARun, AUniformSkyFallsOffByTheCosineFourthLaw) {
-  test::Stage stage(uniform_sky(foreshortened));
+/// The sky's fall from the centre to 30 deg off it, and the cosine of that pixel's angle.
+std::pair<double, double> fall_at_30_deg(const std::string& effects) {
+  test::Stage stage(uniform_sky(foreshortened, effects));
   const auto& sensor = stage.scenario.sensors[0];
   const View view(sensor, frame_times(sensor, 1), stage.world);
   ExpectedElectronImage image(441, 21);
   fill_sky(view, 9.0, image, stage.threads);
   const int x = int(std::lround(220 + 350 * std::tan(30 * deg)));
-  const double cosine = std::cos(std::atan((x - 220) / 350.0));
+  return {image.at(x, 10) / image.at(220, 10), std::cos(std::atan((x - 220) / 350.0))};
+}
+
+// Reference: the cosine-fourth law (gnomonic lens): cos^4 30 deg = 0.5625.
+TEST(LightOfARun, AUniformSkyFallsOffByTheCosineFourthLaw) {
+  const auto [fall, cosine] = fall_at_30_deg("");
   EXPECT_NEAR(std::pow(cosine, 4), 0.5625, 0.001);
-  EXPECT_NEAR(image.at(x, 10) / image.at(220, 10), std::pow(cosine, 4), 0.004);
+  EXPECT_NEAR(fall, std::pow(cosine, 4), 0.004);
 }
 
 // Without vignetting what is left of the law is the solid angle of a gnomonic lens's pixels, cos^3.
 TEST(LightOfARun, WithoutVignettingAUniformSkyFallsOffByTheSolidAngleAlone) {
-  test::Stage stage(uniform_sky(foreshortened, ", vignetting: off"));
-  const auto& sensor = stage.scenario.sensors[0];
-  const View view(sensor, frame_times(sensor, 1), stage.world);
-  ExpectedElectronImage image(441, 21);
-  fill_sky(view, 9.0, image, stage.threads);
-  const int x = int(std::lround(220 + 350 * std::tan(30 * deg)));
-  const double cosine = std::cos(std::atan((x - 220) / 350.0));
-  EXPECT_NEAR(image.at(x, 10) / image.at(220, 10), std::pow(cosine, 3), 0.004);
+  const auto [fall, cosine] = fall_at_30_deg(", vignetting: off");
+  EXPECT_NEAR(fall, std::pow(cosine, 3), 0.004);
 }
 
 // A point loses the pupil's foreshortening alone: cos 30 deg, for a star and for an object.

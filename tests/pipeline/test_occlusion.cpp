@@ -93,10 +93,8 @@ TEST(Occlusion, APointBehindAPlateIsDarkAndOneBeforeItIsNot) {
   }
 }
 
-// Stars 20 px apart along a line: those behind the plate of 32 x 32 px are gone, with a blur summed
-// directly and with one by transform.
-TEST(Occlusion, StarsBehindAPlateAreDark) {
-  const Sight sight = lit_sight();
+/// A catalogue of stars 20 px apart along a line, the middle one behind the plate.
+std::string five_stars(const Sight& sight) {
   std::string stars = "ra_deg,dec_deg,mag_v,bv\n";
   for (int i = -2; i <= 2; ++i) {
     const auto [ra, dec] = to_spherical(unit(sight.line + sight.right * (i * 20e-5)));
@@ -104,6 +102,14 @@ TEST(Occlusion, StarsBehindAPlateAreDark) {
     std::snprintf(line, sizeof line, "%.9f,%.9f,0.0,0.6\n", ra / deg, dec / deg);
     stars += line;
   }
+  return stars;
+}
+
+// Stars 20 px apart along a line: those behind the plate of 32 x 32 px are gone, with a blur summed
+// directly and with one by transform.
+TEST(Occlusion, StarsBehindAPlateAreDark) {
+  const Sight sight = lit_sight();
+  const std::string stars = five_stars(sight);
   for (const std::string& optics : {sharp, blurred}) {
     Stage stage(text_of({.objects = black_plate(sight),
                          .pointing = "{target: near}",
@@ -128,13 +134,7 @@ TEST(Occlusion, StarsBehindAPlateAreDark) {
 // With the effect off all five stars shine, each as the free ones do.
 TEST(Occlusion, OffHidesNothing) {
   const Sight sight = lit_sight();
-  std::string stars = "ra_deg,dec_deg,mag_v,bv\n";
-  for (int i = -2; i <= 2; ++i) {
-    const auto [ra, dec] = to_spherical(unit(sight.line + sight.right * (i * 20e-5)));
-    char line[96];
-    std::snprintf(line, sizeof line, "%.9f,%.9f,0.0,0.6\n", ra / deg, dec / deg);
-    stars += line;
-  }
+  const std::string stars = five_stars(sight);
   Stage stage(text_of({.objects = black_plate(sight),
                        .pointing = "{target: near}",
                        .optics = sharp,
