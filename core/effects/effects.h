@@ -1,10 +1,14 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <map>
 #include <set>
+#include <span>
 #include <string_view>
 
 namespace dmise {
+
+inline constexpr std::array<std::string_view, 2> off_and_on{"off", "on"};
 
 /// The description of an effect, for scenarios, `dmise check`, run.json and documents.
 struct EffectFacts {
@@ -14,6 +18,12 @@ struct EffectFacts {
   std::string_view source;        // of the model
   bool usual = true;              // runs unless switched off; else only when switched on
   bool switchable = true;         // else it has other choices than on and off
+  std::span<const std::string_view> levels = off_and_on;  // by rising accuracy, to the reference
+  int usual_level = -1;                                   // without a plan; -1: the reference
+
+  int reference() const { return int(levels.size()) - 1; }
+  /// Returns the level of a frame that nobody planned.
+  int unplanned() const { return !usual ? 0 : usual_level < 0 ? reference() : usual_level; }
 };
 
 /// The facts by which effects of place and light apply to a sensor's frames or not.
@@ -40,18 +50,34 @@ struct EffectList {
   }
 };
 
-/// Which effects run: the usual ones but for those that a scenario switches.
+/// At which level each effect runs: the usual ones but for those that a scenario or a plan sets.
 class EffectSet {
  public:
-  bool has(const EffectFacts& effect) const {
-    return effect.usual != switched_.contains(effect.name);
+  int level(const EffectFacts& effect) const {
+    const auto found = level_.find(effect.name);
+    return found == level_.end() ? effect.unplanned() : found->second;
+  }
+  /// Whether it runs at all.
+  bool has(const EffectFacts& effect) const { return level(effect) > 0; }
+  void set_level(const EffectFacts& effect, int level) {
+    if (level == effect.unplanned())
+      level_.erase(effect.name);
+    else
+      level_[effect.name] = level;
   }
   void set(const EffectFacts& effect, bool on) {
-    if (on == effect.usual)
-      switched_.erase(effect.name);
-    else
-      switched_.insert(effect.name);
+    set_level(effect, !on ? 0 : effect.usual ? effect.unplanned() : effect.reference());
   }
+  /// The same by the user's wish, which no plan changes.
+  void force_level(const EffectFacts& effect, int level) {
+    set_level(effect, level);
+    forced_.insert(effect.name);
+  }
+  void force(const EffectFacts& effect, bool on) {
+    set(effect, on);
+    forced_.insert(effect.name);
+  }
+  bool is_forced(const EffectFacts& effect) const { return forced_.contains(effect.name); }
   /// Snapshots along an exposure in which light is integrated; 0: along the path, exactly.
   int snapshots() const { return snapshots_; }
   void set_snapshots(int count) { snapshots_ = count; }
@@ -61,7 +87,8 @@ class EffectSet {
   bool operator==(const EffectSet&) const = default;
 
  private:
-  std::set<std::string_view> switched_;  // not as usual
+  std::map<std::string_view, int> level_;  // those that are not as usual
+  std::set<std::string_view> forced_;
   int snapshots_ = 0;
   bool opengl_ = false;
 };

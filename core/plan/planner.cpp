@@ -1,0 +1,155 @@
+#include "core/plan/planner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/plan/knapsack.h"
+
+namespace dmise {
+namespace {
+
+/// Multiples of the standard budget that are tried for a given time: powers of the fourth root of
+/// two from 2^-10 on, and at last any error.
+constexpr int scales = 81;
+double scale_of(int step) { return std::exp2(-10.0 + 0.25 * step); }
+
+/// The levels of an effect that may be taken.
+struct Levels {
+  const PlannableEffect* effect;
+  bool forced = false;
+  std::vector<int> level;
+  KnapsackChoice options;
+};
+
+void check(double value, const char* what) {
+  if (std::isnan(value) || value < 0.0)
+    throw Error(std::string("accuracy: ") + what + " must be >= 0, got " + std::to_string(value));
+}
+
+KnapsackOption option_of(const PlannableEffect& effect, int level, const PlanFacts& facts) {
+  KnapsackOption option{.error = level == effect.facts->reference() || !effect.error
+                                     ? ErrorBound{}
+                                     : effect.error(level, facts),
+                        .cost_s = effect.cost_s ? effect.cost_s(level, facts) : 0.0};
+  bool valid = option.cost_s >= 0.0 && std::isfinite(option.cost_s);
+  for (const auto& kind : error_kinds) valid = valid && option.error.*kind.value >= 0.0;
+  if (!valid)
+    throw Error("plan: effect " + std::string(effect.facts->name) + ", level " +
+                std::string(effect.facts->levels[std::size_t(level)]) +
+                ": its error or cost is no number");
+  return option;
+}
+
+Levels levels_of(const PlannableEffect& effect, const PlanFacts& facts, const EffectSet& asked) {
+  Levels levels{.effect = &effect, .forced = asked.is_forced(*effect.facts)};
+  const int unplanned = asked.level(*effect.facts);
+  // What a scenario must ask for, and what states no error, is left as it is.
+  const bool fixed = levels.forced || !effect.error || !effect.facts->usual;
+  for (int level = 0; level <= effect.facts->reference(); ++level) {
+    if (fixed && level != unplanned) continue;
+    KnapsackOption option = option_of(effect, level, facts);
+    if (fixed) option.error = {};
+    levels.level.push_back(level);
+    levels.options.push_back(option);
+  }
+  return levels;
+}
+
+EffectPlan plan_within(const std::vector<Levels>& levels, const PlanFacts& facts,
+                       const EffectSet& asked, const ErrorBound& budget) {
+  std::vector<KnapsackChoice> choices;
+  for (const auto& l : levels) choices.push_back(l.options);
+  const KnapsackResult result = solve_knapsack(choices, budget);
+  EffectPlan plan{.effects = asked, .budget = budget, .least_cost_s = result.least_cost_s};
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const Levels& l = levels[i];
+    const std::size_t taken = result.option[i];
+    PlannedEffect planned{.facts = l.effect->facts,
+                          .level = l.level[taken],
+                          .error = l.options[taken].error,
+                          .cost_s = l.options[taken].cost_s,
+                          .forced = l.forced,
+                          .decided = l.level.size() > 1};
+    if (planned.decided && planned.level > 0)
+      planned.cheaper = l.effect->error(planned.level - 1, facts);
+    plan.effects.set_level(*l.effect->facts, planned.level);
+    plan.error += planned.error;
+    plan.cost_s += planned.cost_s;
+    plan.planned.push_back(planned);
+  }
+  return plan;
+}
+
+EffectPlan plan_in_time(const std::vector<Levels>& levels, const PlanFacts& facts,
+                        const EffectSet& asked, double seconds) {
+  const auto plan_at = [&](int step) {
+    ErrorBound budget = not_bounded;
+    if (step < scales)
+      for (const auto& kind : error_kinds)
+        budget.*kind.value = standard_budget.*kind.value * scale_of(step);
+    return plan_within(levels, facts, asked, budget);
+  };
+  EffectPlan plan = plan_within(levels, facts, asked, {});
+  if (plan.cost_s <= seconds) return plan;
+  int too_slow = -1, fast_enough = scales;
+  plan = plan_at(scales);
+  plan.in_time = plan.cost_s <= seconds;
+  if (!plan.in_time) return plan;
+  while (fast_enough - too_slow > 1) {
+    const int middle = (too_slow + fast_enough) / 2;
+    EffectPlan tried = plan_at(middle);
+    if (tried.cost_s <= seconds)
+      fast_enough = middle, plan = std::move(tried);
+    else
+      too_slow = middle;
+  }
+  return plan;
+}
+
+}  // namespace
+
+const PlannedEffect* EffectPlan::find(const EffectFacts& effect) const {
+  for (const auto& p : planned)
+    if (p.facts->name == effect.name) return &p;
+  return nullptr;
+}
+
+EffectPlan plan_effects(std::span<const PlannableEffect> effects, const PlanFacts& facts,
+                        const EffectSet& asked, const Accuracy& accuracy) {
+  for (const auto& kind : error_kinds) check(accuracy.budget.*kind.value, kind.key);
+  check(accuracy.seconds_per_frame, "seconds_per_frame");
+  std::vector<Levels> levels;
+  for (const auto& effect : effects)
+    if (!effect.applies || effect.applies(facts)) levels.push_back(levels_of(effect, facts, asked));
+  if (accuracy.name == "seconds")
+    return plan_in_time(levels, facts, asked, accuracy.seconds_per_frame);
+  return plan_within(levels, facts, asked, accuracy.budget);
+}
+
+std::string why(const PlannedEffect& planned, const EffectPlan& plan) {
+  if (planned.forced) return "as the scenario says";
+  if (!planned.decided) return "always";
+  const bool at_reference = planned.level == planned.facts->reference();
+  const ErrorBound& error = at_reference ? planned.cheaper : planned.error;
+  const ErrorKind* worst = nullptr;
+  double most = 0.0;
+  for (const auto& kind : error_kinds) {
+    const double budget = plan.budget.*kind.value, value = error.*kind.value;
+    const double share = value == 0.0 ? 0.0 : budget > 0.0 ? value / budget : unbounded;
+    if (share > most || (share == most && share > 0.0 && !worst)) most = share, worst = &kind;
+  }
+  if (!worst) return at_reference ? "nothing to save" : "no error here";
+  const double value = error.*worst->value;
+  char text[96];
+  if (std::isinf(value))
+    std::snprintf(text, sizeof text, "must not be left out here");
+  else
+    std::snprintf(text, sizeof text, "%s%.2g %s of %.2g",
+                  at_reference ? "the next lower level would cost " : "", value, worst->unit,
+                  plan.budget.*worst->value);
+  return text;
+}
+
+}  // namespace dmise
