@@ -57,10 +57,10 @@ constexpr std::string_view always_listed[] = {"proper_motion",
 /// What makes expected electrons of sources and of the sky, in the order in which it runs. The
 /// sky's parts, the air's effects and those of the image have lists of their own, where they run.
 using LightEffects =
-    EffectList<SkyBackground, Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight, Twilight,
-               LightPollution, SpaceObjects, EarthShadow, Earthshine, ThermalEmission,
+    EffectList<SkyBackground, SkyGrid, Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight,
+               Twilight, LightPollution, SpaceObjects, EarthShadow, Earthshine, ThermalEmission,
                StarBackground, EarthOccultation, AirExtinction, CloudCover, Scintillation,
-               Vignetting, Streak, Occlusion, Drawing, PointSpread>;
+               Vignetting, Streak, Occlusion, Drawing, PointSpread, PsfWavelengths>;
 
 std::vector<const EffectFacts*> list() {
   std::vector<const EffectFacts*> all;
@@ -91,7 +91,8 @@ std::span<const EffectFacts* const> all_effects() {
 SceneFacts scene_facts(const SensorConfig& sensor) {
   return {.on_ground = std::holds_alternative<SiteConfig>(sensor.place),
           .clouds = sensor.weather.clouds.has_value(),
-          .vignettes = sensor.camera.optics.vignetting.any()};
+          .vignettes = sensor.camera.optics.vignetting.any(),
+          .diffracts = sensor.camera.optics.spread.model == PointSpread::Model::diffraction};
 }
 
 std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const SceneFacts& scene) {
@@ -110,6 +111,53 @@ std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const Sce
        applying_effects(acting_detector(sensor.camera.detector, sensor.effects)))
     running.push_back(effect);
   return running;
+}
+
+namespace {
+
+/// An effect with its error and cost as `parameters` have it; static functions of it where it has
+/// no parameters there.
+template <class Effect, class Parameters>
+PlannableEffect plannable(const Parameters& parameters) {
+  PlannableEffect p{.facts = &Effect::facts};
+  const auto has_static_error = requires(const PlanFacts& f) { Effect::error(0, f); };
+  const auto has_static_cost = requires(const PlanFacts& f) { Effect::cost_s(0, f); };
+  if constexpr (has_static_error) {
+    p.error = [](int level, const PlanFacts& f) { return Effect::error(level, f); };
+  } else if constexpr (requires(const Effect& e, const PlanFacts& f) { e.error(0, f); }) {
+    const Effect effect = parameters;
+    p.error = [effect](int level, const PlanFacts& f) { return effect.error(level, f); };
+  }
+  if constexpr (has_static_cost)
+    p.cost_s = [](int level, const PlanFacts& f) { return Effect::cost_s(level, f); };
+  return p;
+}
+
+}  // namespace
+
+std::vector<PlannableEffect> plannable_effects(const SensorConfig& sensor,
+                                               const SceneFacts& scene) {
+  std::vector<PlannableEffect> list;
+  const auto add_applying = [&]<class Effect>() {
+    if constexpr (requires { Effect::applies(scene); })
+      if (!Effect::applies(scene)) return;
+    if constexpr (requires { sensor.sky.parts.*sky_part<Effect>; })
+      if constexpr (!std::is_null_pointer_v<decltype(sky_part<Effect>)>)
+        if (!(sensor.sky.parts.*sky_part<Effect>)) return;
+    list.push_back(plannable<Effect>(sensor));
+  };
+  PlaceEffects::for_each(add_applying);
+  LightEffects::for_each(add_applying);
+  const ImageOptics& optics = sensor.camera.optics.image;
+  ImageEffects::for_each([&]<class Effect>() {
+    if (static_cast<const Effect&>(optics).applies()) list.push_back(plannable<Effect>(optics));
+  });
+  const Detector& detector = sensor.camera.detector;
+  DetectorEffects::for_each([&]<class Effect>() {
+    if (static_cast<const Effect&>(detector).applies(detector))
+      list.push_back(plannable<Effect>(detector));
+  });
+  return list;
 }
 
 std::vector<std::pair<std::string_view, double>> parameters_in(const SensorConfig& sensor,
@@ -142,8 +190,10 @@ std::string effects_markdown() {
       "for\n"
       "`streak` (`integration: analytic | snapshots`, `snapshots: N`) and `evaluator` (`analytic "
       "|\n"
-      "opengl`), which have other choices. `dmise check` shows which run and with what.\n\n"
-      "| effect | what it does | left out | source | parameters |\n|---|---|---|---|---|\n";
+      "opengl`), which have other choices, or set to a level, `{stars: v9}`; without levels it is\n"
+      "off or on. `dmise check` shows which run and with what, `dmise explain` why.\n\n"
+      "| effect | what it does | left out | source | levels | parameters |\n"
+      "|---|---|---|---|---|---|\n";
   for (const EffectFacts* effect : all_effects()) {
     std::string keys;
     for (const auto& [key, number] : parameters_in({}, *effect))
@@ -151,24 +201,35 @@ std::string effects_markdown() {
     for (const auto cell : {effect->name, effect->what, effect->error_if_off, effect->source})
       text +=
           (cell == effect->name ? "| `" + std::string(cell) + "`" : "| " + std::string(cell)) + " ";
-    text += "| " + keys + " |\n";
+    std::string levels;
+    if (effect->levels.size() > 2)
+      for (const auto level : effect->levels)
+        levels += (levels.empty() ? "" : ", ") + std::string(level);
+    text += "| " + levels + " | " + keys + " |\n";
   }
   return text;
 }
 
-std::vector<std::string_view> effects_in_digest(const EffectSet& effects) {
-  std::vector<std::string_view> names;
+std::vector<std::string> effects_in_digest(const EffectSet& effects) {
+  std::vector<std::string> names;
+  const auto add = [&](const EffectFacts& effect) {
+    const int level = effects.level(effect);
+    const bool graded = level > 0 && level != effect.unplanned() && effect.levels.size() > 2;
+    names.push_back(std::string(effect.name) +
+                    (graded ? ":" + std::string(effect.levels[std::size_t(level)]) : "") +
+                    (effects.is_forced(effect) ? "!" : ""));
+  };
   const auto named = [](std::string_view name) {
     return *std::find_if(all_effects().begin(), all_effects().end(),
                          [&](const EffectFacts* effect) { return effect->name == name; });
   };
   for (const auto name : always_listed)
-    if (effects.has(*named(name))) names.push_back(name);
+    if (effects.has(*named(name)) || effects.is_forced(*named(name))) add(*named(name));
   for (const EffectFacts* effect : all_effects())
     if (std::find(std::begin(always_listed), std::end(always_listed), effect->name) ==
             std::end(always_listed) &&
-        effects.has(*effect) != effect->usual)
-      names.push_back(effect->name);
+        (effects.level(*effect) != effect->unplanned() || effects.is_forced(*effect)))
+      add(*effect);
   return names;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/config/scenario.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 
@@ -18,6 +19,10 @@ SceneFacts scene_facts(const SensorConfig& sensor);
 /// What runs in a sensor's frames, in the same order. `scene` as above, with what else is known.
 std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const SceneFacts& scene);
 
+/// The same for the planner, with errors and costs by the sensor's parameters, and all that the
+/// scenario switches off. `sensor` need not outlive them.
+std::vector<PlannableEffect> plannable_effects(const SensorConfig& sensor, const SceneFacts& scene);
+
 /// The parameters of an effect in a sensor: key and number.
 std::vector<std::pair<std::string_view, double>> parameters_in(const SensorConfig& sensor,
                                                                const EffectFacts& effect);
@@ -27,6 +32,6 @@ std::string effects_markdown();
 
 /// The names of the effects that a run's digest lists: those that run, of the ones that it always
 /// had, and what else is not as usual.
-std::vector<std::string_view> effects_in_digest(const EffectSet& effects);
+std::vector<std::string> effects_in_digest(const EffectSet& effects);
 
 }  // namespace dmise

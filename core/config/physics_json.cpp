@@ -53,8 +53,16 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   json.field("first_exposure_s", s.first_exposure_s);
   write_surroundings(json, s);
   json.key("effects").begin_array();
-  for (const auto name : effects_in_digest(s.effects)) json.value(name);
+  for (const auto& name : effects_in_digest(s.effects)) json.value(name);
   json.end_array();
+  if (s.accuracy.is_planned()) {
+    json.key("accuracy").begin_object();
+    if (s.accuracy.name == "seconds")
+      json.field("seconds_per_frame", s.accuracy.seconds_per_frame);
+    else
+      for (const auto& kind : error_kinds) json.field(kind.key, s.accuracy.budget.*kind.value);
+    json.end_object();
+  }
   if (s.effects.snapshots() > 0) json.field("snapshots", s.effects.snapshots());
   if (!s.detect) json.field("detection", false);
   if (s.effects.drawn_by_opengl()) json.field("evaluator", "opengl");

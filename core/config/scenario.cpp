@@ -147,6 +147,8 @@ Scenario load_scenario(const std::string& path) {
   if (const auto stars = map.find("stars")) read_stars(*stars, scenario);
   EffectSet effects;
   if (const auto value = map.find("effects")) read_effects(*value, effects);
+  Accuracy accuracy = standard_accuracy();
+  if (const auto value = map.find("accuracy")) accuracy = read_accuracy(*value);
   const bool detect = map.flag_or("detection", true);
   const auto sensors = map.require("sensors");
   SensorNames names;
@@ -154,7 +156,7 @@ Scenario load_scenario(const std::string& path) {
     if (value.is_map())
       if (const auto name = YamlMap(value).find("name"))
         if (const auto fault = names.fault_of(name->text())) name->fail(*fault);
-    scenario.sensors.push_back(read_sensor(value, effects, detect, scenario.duration));
+    scenario.sensors.push_back(read_sensor(value, effects, accuracy, detect, scenario.duration));
   }
   for (const auto& sensor : scenario.sensors)
     for (const auto& line : sensor.camera.warnings)

@@ -10,6 +10,7 @@
 #include "core/config/object_config.h"
 #include "core/config/sky_config.h"
 #include "core/detector/detector.h"
+#include "core/effects/accuracy.h"
 #include "core/effects/effects.h"
 #include "core/optics/camera.h"
 #include "core/optics/seeing.h"
@@ -98,7 +99,10 @@ struct SensorConfig {
   WeatherConfig weather;               // on the ground
   std::optional<SensorSeeing> seeing;  // none: no turbulence
   double mask_deg = 0.0;  // minimum elevation for `dmise visible`, on the ground, [0, 89]
-  EffectSet effects;
+  EffectSet effects;     // by the user; what a plan leaves to choose is as it is without a plan
+  Accuracy accuracy{};   // what frames are planned for; none: effects run as above
+  /// Of a sensor that is planned: effects of the scenario before the plan, for truth.
+  std::optional<EffectSet> unplanned = {};
   bool detect = true;  // false: frames are reported without detection
 };
 

@@ -96,19 +96,40 @@ void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
   }
 }
 
+/// "off", "on" or the name of a level.
+void read_level(const YamlValue& value, const EffectFacts& effect, EffectSet& effects) {
+  const std::string text = value.is_scalar() ? value.text() : "";
+  const auto found = std::find(effect.levels.begin(), effect.levels.end(), text);
+  if (found != effect.levels.end() && effect.levels.size() > 2) {
+    effects.force_level(effect, int(found - effect.levels.begin()));
+  } else if (!effect.can_be_off()) {
+    value.choice(effect.levels);
+  } else if (effect.levels.size() == 2) {
+    effects.force(effect, value.flag());
+  } else {
+    static constexpr std::string_view flags[] = {"on", "off", "true", "false", "yes", "no"};
+    if (std::find(std::begin(flags), std::end(flags), text) == std::end(flags)) {
+      std::vector<std::string_view> names(effect.levels.begin(), effect.levels.end());
+      names.push_back("on");
+      value.choice(names);
+    }
+    effects.force(effect, value.flag());
+  }
+}
+
 }  // namespace
 
 void read_effects(const YamlValue& value, EffectSet& effects) {
   YamlMap map(value);
   for (const EffectFacts* effect : all_effects())
     if (effect->switchable)
-      if (const auto flag = map.find(effect->name)) effects.set(*effect, flag->flag());
+      if (const auto level = map.find(effect->name)) read_level(*level, *effect, effects);
   if (const auto streak = map.find(Streak::facts.name))
     streak->fail("can't be switched; integration: analytic or snapshots chooses how it is drawn",
                  false);
   if (const auto both = map.find("aberration")) {
-    effects.set(AnnualAberration::facts, both->flag());
-    effects.set(DiurnalAberration::facts, both->flag());
+    effects.force(AnnualAberration::facts, both->flag());
+    effects.force(DiurnalAberration::facts, both->flag());
   }
   constexpr int usual_snapshots = 16;
   const auto integration = map.find("integration");
@@ -128,12 +149,44 @@ void read_effects(const YamlValue& value, EffectSet& effects) {
   map.done();
 }
 
-SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, bool detect,
-                         SimTime duration) {
+Accuracy read_accuracy(const YamlValue& value) {
+  if (value.is_scalar()) {
+    const std::string name = value.choice({"draft", "standard", "reference", "off"});
+    return name == "draft"       ? draft_accuracy()
+           : name == "standard"  ? standard_accuracy()
+           : name == "reference" ? reference_accuracy()
+                                 : Accuracy{};
+  }
+  YamlMap map(value);
+  if (const auto seconds = map.find("seconds_per_frame")) {
+    const double limit_s = seconds->number({.least = 0.0, .most = 86400.0, .least_open = true});
+    map.done();
+    return {.name = "seconds", .budget = {}, .seconds_per_frame = limit_s};
+  }
+  Accuracy accuracy{.name = "budget", .budget = standard_budget};
+  bool any = false;
+  for (const auto& kind : error_kinds)
+    if (const auto number = map.find(kind.key)) {
+      accuracy.budget.*kind.value = number->number(Bounds::between(0.0, 1e6));
+      any = true;
+    }
+  map.done();
+  if (!any)
+    value.fail(
+        "needs one of photometry_mag, position_px, background_sigma, noise or "
+        "seconds_per_frame",
+        false);
+  return accuracy;
+}
+
+SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const Accuracy& accuracy,
+                         bool detect, SimTime duration) {
   YamlMap map(value);
   SensorConfig sensor;
   sensor.where = value.place();
   sensor.effects = effects;
+  sensor.accuracy = accuracy;
+  if (const auto own = map.find("accuracy")) sensor.accuracy = read_accuracy(*own);
   sensor.detect = map.flag_or("detection", detect);
   sensor.name = map.require("name").text();
   const auto site = map.find("site");
@@ -168,7 +221,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, bool 
   }
   read_sensor_surroundings(map, sensor);
   if (sensor.atmosphere.refraction)
-    sensor.effects.set(AtmosphericRefraction::facts, *sensor.atmosphere.refraction);
+    sensor.effects.force(AtmosphericRefraction::facts, *sensor.atmosphere.refraction);
   if (const auto mask = map.find("mask_deg")) {
     if (platform) mask->fail("a mask is for a sensor on the ground", false);
     sensor.mask_deg = mask->number(Bounds::between(0.0, 89.0));

@@ -19,6 +19,11 @@ struct ColumnNoise {
   using Prepared = std::vector<float>;  // by column [e-]
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& offsets_e, Piece& piece) const;
+  /// Four deviations.
+  ErrorBound error(int, const PlanFacts& f) const {
+    return f.without_light([&](const SkySample&) { return 4.0 * column_noise_e; });
+  }
+  static double cost_s(int level, const PlanFacts& f) { return level * 0.3e-9 * f.pixels(); }
 };
 
 }  // namespace dmise

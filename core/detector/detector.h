@@ -49,6 +49,10 @@ void check(const Detector& detector);
 /// currents and their reference are those at `temperature_c`.
 Detector acting_detector(const Detector& detector, const EffectSet& effects);
 
+/// The same with dark current and read noise within the photons' Gaussian draw, at that level of
+/// it; not the read noise of a detector that reads charge or neighbours after the draw.
+Detector drawn_together(const Detector& acting, const EffectSet& effects);
+
 /// Effects that change anything in a frame of `acting`, in running order.
 std::vector<const EffectFacts*> applying_effects(const Detector& acting);
 

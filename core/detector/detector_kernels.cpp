@@ -128,6 +128,19 @@ void add_normal(const RngKey& key, std::uint32_t first, float sigma, float* sum,
   });
 }
 
+void add_normal_of_light(const RngKey& key, std::uint32_t first, float offset, float variance,
+                         float* light, std::size_t count) {
+  in_groups(light, count, 0.0f, [&](std::size_t i, float* e) {
+    alignas(64) std::uint32_t words[group];
+    words_of<group>(key, first + std::uint32_t(i), 0, words);
+    for (std::size_t j = 0; j < group; j += lanes) {
+      const F32 mean = max(load<F32>(e + j) + splat(offset), F32{});
+      const F32 sigma = sqrt(mean + splat(variance));
+      store(e + j, mean + sigma * normal_of_words(load<U32>(words + j)));
+    }
+  });
+}
+
 bool copy_light(const float* in, std::size_t count, float* out) {
   std::int32_t bad = 0;
   for (std::size_t i = 0; i < count; ++i) {

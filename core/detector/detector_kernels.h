@@ -23,6 +23,9 @@ inline constexpr int poisson_most_steps = 128;
                     int steps, float* sum, std::size_t count);                                     \
   void add_normal(const RngKey& key, std::uint32_t first, float sigma, float* sum,                 \
                   std::size_t count);                                                              \
+  /* e += offset + sqrt(e + offset + variance) x a normal deviate; e + offset held at 0 below. */  \
+  void add_normal_of_light(const RngKey& key, std::uint32_t first, float offset, float variance,   \
+                           float* e, std::size_t count);                                           \
   /* out = in; false when a value is not in 0..1e12. */                                            \
   bool copy_light(const float* in, std::size_t count, float* out);                                 \
   /* Clips at `limit` and returns how many reached it. */                                          \

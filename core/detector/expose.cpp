@@ -54,7 +54,7 @@ SaturatedPixels expose(const ExpectedElectronImage& light, const Detector& param
                        CountImage& counts, EffectTimes* times, const ExposeOptions& options) {
   dmise::check(parameters);
   check(light, exposure);
-  const Detector detector = acting_detector(parameters, effects);
+  const Detector detector = drawn_together(acting_detector(parameters, effects), effects);
   resize_like(light, counts);
   if (options.flags) resize_like(light, *options.flags);
   DetectorMemory own;

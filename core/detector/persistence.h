@@ -52,6 +52,7 @@ struct Persistence {
   using Prepared = Release;
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& release, Piece& piece) const;
+  static double cost_s(int level, const PlanFacts& f) { return level * 12e-9 * f.pixels(); }
 };
 
 /// Number of frames of a window at a cadence > 0 [s]: after it `persistence_forgotten` is left.

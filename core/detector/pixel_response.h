@@ -16,6 +16,15 @@ struct PixelResponse {
   void switch_off() { prnu_rms = 0.0; }
   bool applies(const Detector&) const { return prnu_rms > 0.0; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;
+  /// Four deviations of one pixel that holds all light of a source or of the sky.
+  ErrorBound error(int, const PlanFacts& f) const {
+    ErrorBound error =
+        f.without_light([&](const SkySample& s) { return 4.0 * prnu_rms * s.sky_e; });
+    error.photometry_mag = 1.086 * 4.0 * prnu_rms;
+    error.position_px = 4.0 * prnu_rms * f.fwhm_px;
+    return error;
+  }
+  static double cost_s(int level, const PlanFacts& f) { return level * 3e-9 * f.pixels(); }
 };
 
 }  // namespace dmise

@@ -14,6 +14,12 @@ struct ReadNoise {
   void switch_off() { read_noise_e = 0.0; }
   bool applies(const Detector&) const { return read_noise_e > 0.0; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;
+  /// Its time is in that of the photons' noise.
+  static ErrorBound error(int, const PlanFacts& f) {
+    return {.noise = f.without_light([&](const SkySample&) {
+                        return f.read_noise_e * f.read_noise_e;
+                      }).noise};
+  }
 };
 
 }  // namespace dmise

@@ -21,6 +21,8 @@ struct EffectFacts {
   std::span<const std::string_view> levels = off_and_on;  // by rising accuracy, to the reference
   int usual_level = -1;                                   // without a plan; -1: the reference
 
+  /// Whether the first level is to leave it out.
+  bool can_be_off() const { return levels.front() == "off"; }
   int reference() const { return int(levels.size()) - 1; }
   /// Returns the level of a frame that nobody planned.
   int unplanned() const { return !usual ? 0 : usual_level < 0 ? reference() : usual_level; }
@@ -33,6 +35,7 @@ struct SceneFacts {
   bool stars = true;       // there is a catalogue
   bool shapes = true;      // there are objects with a shape
   bool vignettes = false;  // the optics lose light off the axis
+  bool diffracts = false;  // their blur depends on the wavelength
 };
 
 /// A closed family of effects, in the order in which they run.
@@ -58,7 +61,7 @@ class EffectSet {
     return found == level_.end() ? effect.unplanned() : found->second;
   }
   /// Whether it runs at all.
-  bool has(const EffectFacts& effect) const { return level(effect) > 0; }
+  bool has(const EffectFacts& effect) const { return level(effect) > 0 || !effect.can_be_off(); }
   void set_level(const EffectFacts& effect, int level) {
     if (level == effect.unplanned())
       level_.erase(effect.name);

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/effects/effects.h"
+#include "core/effects/plan_facts.h"
 
 // The effects that sensors/pipeline runs as stages of a frame's light, or chooses between; here is
 // what configuration and documents need of them.
@@ -8,17 +8,86 @@ namespace dmise {
 struct SkyBackground {
   static constexpr EffectFacts facts{"sky", "sky background", "no background and no noise of it",
                                      "the sum of its parts"};
+  static ErrorBound error(int, const PlanFacts& f) {
+    return f.without_light([](const SkySample& s) { return s.sky_e; });
+  }
 };
 
 struct SpaceObjects {
   static constexpr EffectFacts facts{"objects", "space objects", "no objects",
                                      "diffuse spheres and facets"};
+  static ErrorBound error(int, const PlanFacts& f) {
+    return f.objects > 0 ? not_bounded : ErrorBound{};
+  }
+  static double cost_s(int level, const PlanFacts& f) { return level * 57e-6 * double(f.objects); }
 };
 
 struct StarBackground {
-  static constexpr EffectFacts facts{"stars", "star background", "no stars",
-                                     "Debian's star catalogues"};
+  /// To which V magnitude stars are drawn one by one; fainter ones are in the smooth starlight.
+  static constexpr std::array<std::string_view, 18> levels{
+      "off", "v0", "v1",  "v2",  "v3",  "v4",  "v5",  "v6",  "v7",
+      "v8",  "v9", "v10", "v11", "v12", "v13", "v14", "v15", "all"};
+  static constexpr EffectFacts facts{
+      "stars", "star background", "no stars", "Debian's star catalogues", true, true, levels};
   static bool applies(const SceneFacts& scene) { return scene.stars; }
+  /// Returns the limit of a level; infinity at the reference.
+  static double limit_v_mag(int level) {
+    return level == 0 ? -unbounded : level == facts.reference() ? unbounded : level - 1.0;
+  }
+  static ErrorBound error(int level, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f) {
+    constexpr double star_s = 1.9e-6;
+    return star_s * (level == facts.reference() ? f.stars : f.stars_to(limit_v_mag(level)));
+  }
+};
+
+/// How the smooth sky comes to the pixels.
+struct SkyGrid {
+  /// Relative error of the grid between pixels at which the sky is looked at.
+  static constexpr std::array<double, 5> tolerance{0.05, 0.02, 0.005, 0.001, 0.0};
+  static constexpr std::array<std::string_view, 5> levels{"5%", "2%", "0.5%", "0.1%", "pixel"};
+  static constexpr EffectFacts facts{"sky_grid",
+                                     "the sky between the pixels at which it is looked at",
+                                     "an error of 0.5 % of the sky; every pixel at the reference",
+                                     "bicubic patches, cut in four where they do not hold",
+                                     true,
+                                     true,
+                                     levels,
+                                     2};
+  static ErrorBound error(int level, const PlanFacts& f) {
+    return f.without_light(
+        [&](const SkySample& s) { return tolerance[std::size_t(level)] * s.sky_e; });
+  }
+  static double cost_s(int level, const PlanFacts& f) {
+    constexpr double look_s = 0.9e-6, fill_s = 1.2e-9;
+    constexpr std::array<double, 5> looks{0.6, 0.8, 1.0, 2.0, 0.0};
+    return level == facts.reference()
+               ? look_s * f.pixels()
+               : fill_s * f.pixels() + looks[std::size_t(level)] * 0.2e-6 * f.sky_looks();
+  }
+};
+
+/// Wavelengths of the band for which the blur is computed.
+struct PsfWavelengths {
+  static constexpr std::array<int, 4> count{1, 3, 5, 9};
+  static constexpr std::array<std::string_view, 4> levels{"1", "3", "5", "9"};
+  static constexpr EffectFacts facts{"psf_wavelengths",
+                                     "wavelengths of the band for which the blur is computed",
+                                     "0.05 (width / wavelength)^2 of the light in an aperture",
+                                     "Fourier optics of the pupil, by wavelength",
+                                     true,
+                                     true,
+                                     levels,
+                                     0};
+  static bool applies(const SceneFacts& scene) { return scene.diffracts; }
+  static ErrorBound error(int level, const PlanFacts& f) {
+    const double width = f.relative_bandwidth / count[std::size_t(level)];
+    return {.photometry_mag = 0.05 * width * width, .position_px = 0.005 * width * f.fwhm_px};
+  }
+  /// Of kernels that are kept a hundredth, since they are computed once for many frames.
+  static double cost_s(int level, const PlanFacts& f) {
+    return count[std::size_t(level)] * f.kernel_s * (f.kernels_change ? 1.0 : 0.01);
+  }
 };
 
 struct Occlusion {
@@ -27,6 +96,9 @@ struct Occlusion {
       "stars, sky and farther objects shine through an object of many pixels",
       "coverage of each pixel, nearest object first"};
   static bool applies(const SceneFacts& scene) { return scene.shapes; }
+  static ErrorBound error(int, const PlanFacts& f) {
+    return f.resolved > 0 ? not_bounded : ErrorBound{};
+  }
 };
 
 /// How light moves over the plane: along its path, exactly, or as snapshots.
@@ -50,5 +122,14 @@ struct Drawing {
       true,
       false};
 };
+
+inline ErrorBound StarBackground::error(int level, const PlanFacts& f) {
+  // The brightest star that is left out, in its brightest pixel.
+  const double v_mag =
+      level == 0 ? f.brightest_star_mag : std::max(limit_v_mag(level), f.brightest_star_mag);
+  if (f.stars <= (level == 0 ? 0.0 : f.stars_to(limit_v_mag(level)))) return {};
+  const double star_e = f.star_zero_e * std::pow(10.0, -0.4 * v_mag);
+  return f.without_light([&](const SkySample&) { return star_e * f.star_peak_share; });
+}
 
 }  // namespace dmise

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -10,11 +11,14 @@
 
 namespace dmise {
 
+/// Parts of the sky by their place in SkySample::part_e.
+inline constexpr std::size_t most_sky_parts = 7;
+
 /// Where the sky is looked at to plan an exposure: a pixel's light and noise there [e-].
 struct SkySample {
-  double sky_e = 0.0;          // all parts
-  double noise_e = 1.0;        // of sky, dark current and read-out, > 0
-  std::vector<double> part_e;  // in the order of the sky's parts
+  double sky_e = 0.0;                           // all parts
+  double noise_e = 1.0;                         // of sky, dark current and read-out, > 0
+  std::array<double, most_sky_parts> part_e{};  // in the order of the sky's parts
 };
 
 /// What is known of a sensor and one exposure before it is made: by it effects state their errors
@@ -23,12 +27,11 @@ struct PlanFacts {
   SceneFacts scene;
   // The sensor.
   int columns = 1, rows = 1;
-  double pixel_rad = 1e-5;  // the finest scale of the field
-  double aperture_m = 0.1, obscuration = 0.0;
-  double exposure_s = 1.0;
-  double wavelength_m = 550e-9, relative_bandwidth = 0.2;
+  double pixel_rad = 1e-5;          // the finest scale of the field
+  double relative_bandwidth = 0.2;  // width over centre
   double fwhm_px = 1.0;
-  double peak_share = 1.0;  // of a point's light in its brightest pixel, most
+  double peak_share = 1.0;       // of a point's light in its brightest pixel, most
+  double star_peak_share = 1.0;  // the same of a star, which may leave a trail
   // Light between sources.
   std::vector<SkySample> sky;  // over the field, where it sees the sky; at least one
   double dark_e = 0.0, read_noise_e = 0.0;
@@ -42,11 +45,11 @@ struct PlanFacts {
   bool sees_horizon = false;                                         // the Earth is in the field
   double least_illumination = 1.0;                                   // by vignetting
   // Stars.
-  std::array<double, 32> stars_brighter{};  // in the field, by whole V magnitudes from 0
+  double stars = 0.0;                       // in the field, to the scenario's limit
+  std::array<double, 32> stars_brighter{};  // the same by whole V magnitudes from 0
   double star_zero_e = 0.0;                 // of a star of V = 0 over the exposure
   double star_shift_rad = 0.0;              // of proper motion since the catalogue's epoch, largest
   double star_parallax_rad = 0.0;
-  double star_trail_px = 0.0;        // least
   double brightest_star_mag = -1.5;  // in the field
   // Objects.
   std::size_t objects = 0, shapes = 0, resolved = 0;
@@ -54,11 +57,12 @@ struct PlanFacts {
   bool near_shadow = false;     // an object is in the Earth's shadow or close
   double brightest_object_e = 0.0;
   // The blur.
-  bool diffraction = false, turbulence = false, kernels_change = false;
-  double grid_cells = 0.0;  // of the transform, 0: none
-  int kernel_half_cells = 0, field_kernels = 1, screens = 0;
+  bool kernels_change = false;  // with every exposure
+  double kernel_s = 0.0;        // of all kernels of one wavelength
 
   double pixels() const { return double(columns) * rows; }
+  /// Returns how often the sky is looked at for its grid, about.
+  double sky_looks() const { return 3.0 * (columns / 32.0 + 2.0) * (rows / 32.0 + 2.0); }
   double stars_to(double v_mag) const {
     if (v_mag < 0.0) return 0.0;
     const double last = double(stars_brighter.size()) - 1.0;
@@ -71,6 +75,31 @@ struct PlanFacts {
   }
   /// Returns the largest share of a pixel's noise that `light_e` is in the field.
   double in_noise(double light_e) const { return light_e / least_noise_e(); }
+  /// Error of sources that are misplaced by an angle.
+  ErrorBound shifted_by(double angle_rad) const { return {.position_px = angle_rad / pixel_rad}; }
+  /// Error of the frame without light that `light_e(sample)` gives everywhere.
+  template <class Light>
+  ErrorBound without_light(const Light& light_e) const {
+    ErrorBound error;
+    for (const auto& s : sky) {
+      const double light = light_e(s), share = light / (s.noise_e * s.noise_e);
+      error.background_sigma = std::max(error.background_sigma, light / s.noise_e);
+      error.noise = std::max(error.noise, 1.0 - std::sqrt(std::max(0.0, 1.0 - share)));
+    }
+    return error;
+  }
+  /// The same for a part of the sky, which may be brighter between the samples.
+  ErrorBound without_part(std::size_t part) const {
+    constexpr double between_samples = 1.25;
+    return without_light([&](const SkySample& s) { return between_samples * s.part_e[part]; });
+  }
+  /// Returns the light of the brightest pixel, at most.
+  double brightest_pixel_e() const {
+    double sky_e = 0.0;
+    for (const auto& s : sky) sky_e = std::max(sky_e, s.sky_e);
+    return 1.25 * sky_e + dark_e + brightest_e() * peak_share;
+  }
+  /// Returns the light of the brightest source, at most.
   double brightest_e() const {
     const double star_e =
         stars_brighter.back() > 0.0 ? star_zero_e * std::pow(10.0, -0.4 * brightest_star_mag) : 0.0;
@@ -78,12 +107,11 @@ struct PlanFacts {
   }
 };
 
-/// An effect as the planner sees it.
+/// An effect of one sensor as the planner sees it.
 struct PlannableEffect {
   const EffectFacts* facts = nullptr;
-  ErrorBound (*error)(int level, const PlanFacts&) = nullptr;
-  double (*cost_s)(int level, const PlanFacts&) = nullptr;
-  bool (*applies)(const PlanFacts&) = nullptr;
+  std::function<ErrorBound(int level, const PlanFacts&)> error{};  // none: it runs as it is asked
+  std::function<double(int level, const PlanFacts&)> cost_s{};     // none: it costs nothing
 };
 
 }  // namespace dmise

@@ -18,6 +18,14 @@ struct LensGhost {
   void switch_off() { ghost_fraction = 0.0; }
   bool applies() const { return ghost_fraction > 0.0; }
   void apply(ExpectedElectronImage& image, Threads& threads) const;
+  ErrorBound error(int, const PlanFacts& f) const {
+    const double disc_px = std::max(1.0, 3.14159 * ghost_radius_px * ghost_radius_px);
+    ErrorBound error = f.without_light(
+        [&](const SkySample& s) { return ghost_fraction * (f.brightest_e() / disc_px + s.sky_e); });
+    error.photometry_mag = 1.086 * ghost_fraction;
+    return error;
+  }
+  static double cost_s(int level, const PlanFacts& f) { return level * 10e-9 * f.pixels(); }
 };
 
 }  // namespace dmise

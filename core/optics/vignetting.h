@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "core/base/pixel.h"
-#include "core/effects/effects.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 
@@ -16,6 +16,14 @@ struct Vignetting {
       "corners too bright: 0.16 mag at 30 deg by the pupil alone",
       "cos theta of the pupil, and a power of the distance from the axis"};
   static bool applies(const SceneFacts& scene) { return scene.vignettes; }
+
+  static ErrorBound error(int, const PlanFacts& f) {
+    const double lost = 1.0 - f.least_illumination;
+    ErrorBound error = f.without_light([&](const SkySample& s) { return lost * s.sky_e; });
+    error.photometry_mag = -2.5 * std::log10(std::max(f.least_illumination, 1e-9));
+    return error;
+  }
+  static double cost_s(int level, const PlanFacts& f) { return level * 10e-9 * f.stars; }
 
   /// The entrance pupil is seen foreshortened: cos theta. With a gnomonic lens, whose pixels' solid
   /// angle goes as cos^3 theta, the sky falls off as cos^4 theta.

@@ -121,8 +121,7 @@ EffectPlan plan_effects(std::span<const PlannableEffect> effects, const PlanFact
   for (const auto& kind : error_kinds) check(accuracy.budget.*kind.value, kind.key);
   check(accuracy.seconds_per_frame, "seconds_per_frame");
   std::vector<Levels> levels;
-  for (const auto& effect : effects)
-    if (!effect.applies || effect.applies(facts)) levels.push_back(levels_of(effect, facts, asked));
+  for (const auto& effect : effects) levels.push_back(levels_of(effect, facts, asked));
   if (accuracy.name == "seconds")
     return plan_in_time(levels, facts, asked, accuracy.seconds_per_frame);
   return plan_within(levels, facts, asked, accuracy.budget);

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/effects/effects.h"
+#include "core/effects/plan_facts.h"
 #include "core/sky/observer.h"
 
 namespace dmise {
@@ -12,6 +12,9 @@ class AtmosphericRefraction {
                                      "58 arcsec at 45 deg elevation, 5.3 arcmin at 10",
                                      "IAU SOFA, eraRefco; Bennett 1982, J. Navigation 35, 255"};
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
+
+  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_by(f.refraction_rad); }
+  static double cost_s(int level, const PlanFacts& f) { return level * 430e-9 * f.stars; }
 
   explicit AtmosphericRefraction(const Observer& observer) : air_(*observer.air) {}
   /// Takes and returns unit vectors; `distance_m` along the straight line, `Refraction::star` of

@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 
+#include "core/effects/plan_facts.h"
 #include "core/sky/air_exposure.h"
 
 namespace dmise {
@@ -12,6 +13,9 @@ class CloudCover {
                                      "as if the sky were clear",
                                      "a map of optical depth that the wind moves"};
   static bool applies(const SceneFacts& scene) { return scene.on_ground && scene.clouds; }
+
+  static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
+  static double cost_s(int level, const PlanFacts& f) { return level * 300e-9 * f.stars; }
 
   explicit CloudCover(const AirExposure& exposure);
   /// Share of a source's light that comes through, [0, 1].

@@ -1,6 +1,6 @@
 #pragma once
 #include "core/base/units.h"
-#include "core/effects/effects.h"
+#include "core/effects/plan_facts.h"
 #include "core/frames/vec.h"
 
 namespace dmise {
@@ -10,6 +10,9 @@ struct LightTime {
   static constexpr EffectFacts facts{"light_time",
                                      "objects are seen where they were when the light left",
                                      "up to 5.2 arcsec", "three iterations of range / c"};
+
+  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_by(f.light_time_rad); }
+  static double cost_s(int level, const PlanFacts& f) { return level * 1e-6 * double(f.objects); }
 
   /// `line_m(dt_s)`: from the observer now to the object at now + dt_s. Returns the line along
   /// which its light comes [m] and sets `light_time_s`.

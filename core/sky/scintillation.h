@@ -1,5 +1,6 @@
 #pragma once
 #include "core/base/rng.h"
+#include "core/effects/plan_facts.h"
 #include "core/sky/air_exposure.h"
 
 namespace dmise {
@@ -21,6 +22,14 @@ class Scintillation {
       "scintillation", "turbulence makes point sources scintillate (Young)",
       "4 % for 0.3 m and 0.1 s at an airmass of 1.5", "Young 1967, AJ 72, 747"};
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
+
+  /// Four deviations: one source in 16,000 is beyond.
+  static ErrorBound error(int, const PlanFacts& f) {
+    return {.photometry_mag = 1.086 * 4.0 * f.scintillation};
+  }
+  static double cost_s(int level, const PlanFacts& f) {
+    return level * 181e-9 * (f.stars + double(f.objects));
+  }
 
   explicit Scintillation(const AirExposure& exposure);
   double apply(const SightLine& line) const;

@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "core/effects/effects.h"
+#include "core/effects/plan_facts.h"
 #include "core/frames/oblate_earth.h"
 
 namespace dmise {
@@ -14,6 +14,11 @@ class EarthShadow {
   static constexpr EffectFacts facts{
       "shadow", "objects are dimmed by the Earth's penumbra and umbra",
       "objects in shadow are drawn fully lit", "two discs: the Sun's and the Earth's"};
+
+  static ErrorBound error(int, const PlanFacts& f) {
+    return f.near_shadow ? not_bounded : ErrorBound{};
+  }
+  static double cost_s(int level, const PlanFacts& f) { return level * 2e-6 * double(f.objects); }
 
   /// `sun_m`: geocentric position of the Sun.
   EarthShadow(const Vec<Gcrs>& sun_m, const OblateEarth& earth);

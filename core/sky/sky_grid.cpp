@@ -244,4 +244,12 @@ std::vector<SkyPatch> patches_of_grid(int columns, int rows, const PixelFunction
   return patches;
 }
 
+void fill_every_pixel(int columns, int rows, const PixelFunction& f, float* out, Threads& threads) {
+  threads.for_ranges(std::size_t(rows), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y)
+      for (int x = 0; x < columns; ++x)
+        out[y * std::size_t(columns) + std::size_t(x)] = float(f(double(x), double(y)));
+  });
+}
+
 }  // namespace dmise

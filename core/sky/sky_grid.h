@@ -24,6 +24,9 @@ struct SkyGridReport {
 SkyGridReport fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
                              float* out, Threads& threads);
 
+/// The same without a grid: `f` at every pixel's centre.
+void fill_every_pixel(int columns, int rows, const PixelFunction& f, float* out, Threads& threads);
+
 /// The same grid as the patches from which those pixels come, for who draws them otherwise. Later
 /// ones cover earlier ones.
 std::vector<SkyPatch> patches_of_grid(int columns, int rows, const PixelFunction& f,

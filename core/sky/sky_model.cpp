@@ -141,10 +141,15 @@ std::array<double, sky_part_count> SkyModel::parts_s10(const Vec<Enu>& direction
   return s10;
 }
 
+std::array<double, sky_part_count> SkyModel::photons_of_parts(const Vec<Enu>& direction) const {
+  auto parts = parts_s10(direction);
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i] *= photons_of_s10_[i];
+  return parts;
+}
+
 double SkyModel::photons_per_s_m2_sr(const Vec<Enu>& direction) const {
-  const auto s10 = parts_s10(direction);
   double sum = 0.0;
-  for (std::size_t i = 0; i < s10.size(); ++i) sum += photons_of_s10_[i] * s10[i];
+  for (const double part : photons_of_parts(direction)) sum += part;
   return sum;
 }
 

@@ -104,6 +104,9 @@ class SkyModel {
   /// Photons/s/m2/sr from a direction (unit) at the camera; below the horizon what is on it.
   double photons_per_s_m2_sr(const Vec<Enu>& direction) const;
 
+  /// The same of each part, in the order of `SkyPart`.
+  std::array<double, sky_part_count> photons_of_parts(const Vec<Enu>& direction) const;
+
   /// V brightness of one part [S10]; 0 where it is off.
   double part_s10(SkyPart part, const Vec<Enu>& direction) const;
   /// V brightness of each part [S10], in the order of `SkyPart`.

@@ -52,8 +52,9 @@ struct KernelStage {
 
 struct ObjectStage : SpaceObjects {
   static void apply(LightFrame& f) {
-    f.truth.objects = draw_objects(f.view, objects_in_field(f.view, f.sources.shapes),
-                                   f.sources.shapes, f.optics, f.mask, f.image);
+    f.truth.objects = draw_objects(
+        f.view, f.sources.objects ? *f.sources.objects : objects_in_field(f.view, f.sources.shapes),
+        f.sources.shapes, f.optics, f.mask, f.image);
   }
 };
 
@@ -71,7 +72,8 @@ struct StarStage : StarBackground {
   static void apply(LightFrame& f) {
     if (f.sources.stars)
       f.truth.stars = f.sources.stars->draw(f.view, f.optics, f.mask, f.image,
-                                            f.sources.faintest_star_mag, f.options.stars, f.times);
+                                            f.sources.limit_v_mag(f.view.sensor().effects),
+                                            f.options.stars, f.times);
   }
 };
 
@@ -101,10 +103,15 @@ void run(LightFrame& frame) {
 
 }  // namespace
 
+double LightSources::limit_v_mag(const EffectSet& effects) const {
+  return std::min(faintest_star_mag,
+                  StarBackground::limit_v_mag(effects.level(StarBackground::facts)));
+}
+
 double LightSources::drawn_to_v_mag(const EffectSet& effects) const {
   if (!stars || !effects.has(StarBackground::facts))
     return -std::numeric_limits<double>::infinity();
-  return std::min(faintest_star_mag, stars->faintest_filled_v_mag());
+  return std::min(limit_v_mag(effects), stars->faintest_filled_v_mag());
 }
 
 LightTruth expected_electrons(const View& view, const LightSources& sources, OpticsStage& optics,

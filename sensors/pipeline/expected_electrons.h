@@ -17,8 +17,12 @@ namespace dmise {
 struct LightSources {
   const StarLayer* stars = nullptr;  // null: none
   double faintest_star_mag = 9.5;
-  const ObjectShapes* shapes = nullptr;  // null: all objects are points
-  GlEvaluator* evaluator = nullptr;      // null: light is deposited
+  const ObjectShapes* shapes = nullptr;               // null: all objects are points
+  GlEvaluator* evaluator = nullptr;                   // null: light is deposited
+  const std::vector<std::size_t>* objects = nullptr;  // in the field; null: yet to be found
+
+  /// Returns V of the faintest stars asked for.
+  double limit_v_mag(const EffectSet& effects) const;
 
   /// Returns V of the faintest stars drawn one by one: the limit asked for or the catalogue's.
   double drawn_to_v_mag(const EffectSet& effects) const;

@@ -12,7 +12,9 @@
 #include "core/effects/frame_effects.h"
 #include "core/image/fits_cards.h"
 #include "sensors/pipeline/expected_electrons.h"
+#include "sensors/pipeline/exposure_planner.h"
 #include "sensors/pipeline/header_of.h"
+#include "sensors/pipeline/objects_in_field.h"
 #include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
@@ -40,22 +42,44 @@ struct FramePipeline::Work {
   Threads& threads;
   std::optional<StarLayer> stars;
   std::optional<GlEvaluator> evaluator;
-  OpticsStage optics;
+  SensorConfig planned;                    // the sensor with the effects of the exposure at hand
+  std::optional<ExposurePlanner> planner;  // none: effects run as they are asked for
+  std::optional<OpticsStage> optics;
   ExpectedElectronImage
       light;               // kept between frames: memory that is new costs more than filling it
   CountImage used_counts;  // of a frame that is done with, without the memory behind them
   DetectorMemory detector_memory;
 
   Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)
-      : settings(std::move(s)), threads(t), optics(settings.sensor, settings.seed, t) {
+      : settings(std::move(s)), threads(t), planned(settings.sensor) {
     const auto& grid = settings.sensor.camera.optics;
     light = room_for_image<ExpectedElectronImage>(grid);
     light.columns = grid.columns;
     light.rows = grid.rows;
     light.pixels.resize(std::size_t(grid.columns) * std::size_t(grid.rows));
     used_counts = room_for_image<CountImage>(grid);
-    if (settings.sensor.effects.drawn_by_opengl()) optics.draw_by(evaluator.emplace());
+    if (settings.sensor.effects.drawn_by_opengl()) evaluator.emplace();
+    make_optics();
     if (map) stars.emplace(settings.sensor, std::move(map));
+    if (!settings.sensor.accuracy.is_planned()) return;
+    planned.unplanned = settings.sensor.effects;
+    planner.emplace(settings.sensor, stars ? stars->map().get() : nullptr,
+                    settings.faintest_star_mag, settings.shapes.get());
+  }
+
+  void make_optics() {
+    optics.emplace(planned, settings.seed, threads);
+    if (evaluator) optics->draw_by(*evaluator);
+  }
+
+  /// Sets the effects of an exposure.
+  void set_effects(const EffectSet& effects) {
+    const auto same_level = [&](const EffectFacts& effect) {
+      return planned.effects.level(effect) == effects.level(effect);
+    };
+    const bool same_blur = same_level(PointSpread::facts) && same_level(PsfWavelengths::facts);
+    planned.effects = effects;
+    if (!same_blur) make_optics();
   }
 
   void give_back(CountImage counts) {
@@ -63,15 +87,19 @@ struct FramePipeline::Work {
     release_pages(bytes_of(used_counts));
   }
 
-  bool has(const EffectFacts& effect) const { return settings.sensor.effects.has(effect); }
+  bool has(const EffectFacts& effect) const { return planned.effects.has(effect); }
 
   std::string plan() const {
     std::string text;
-    SceneFacts scene = scene_facts(settings.sensor);
+    SceneFacts scene = scene_facts(planned);
     scene.stars = stars.has_value();
     scene.shapes = settings.shapes && !settings.shapes->empty();
-    for (const EffectFacts* effect : effects_in(settings.sensor, scene))
+    for (const EffectFacts* effect : effects_in(planned, scene)) {
+      const int level = planned.effects.level(*effect);
       text += (text.empty() ? "" : " ") + std::string(effect->name);
+      if (level != effect->reference())
+        text += ":" + std::string(effect->levels[std::size_t(level)]);
+    }
     return text;
   }
 
@@ -90,13 +118,15 @@ struct FramePipeline::Work {
 };
 
 std::uint32_t FramePipeline::Work::first_frame_for(std::uint32_t frame) const {
-  if (!has(Persistence::facts) || detector_memory.persistence.next_frame == frame) return frame;
+  if (!settings.sensor.effects.has(Persistence::facts) ||
+      detector_memory.persistence.next_frame == frame)
+    return frame;
   return persistence_first_frame(settings.sensor.camera.detector, settings.sensor.cadence_s, frame);
 }
 
 RadianceMap FramePipeline::Work::radiance_in(const PipelineSettings::Part& part,
                                              const FrameTimes& times, const World& world) {
-  SensorConfig sensor = settings.sensor;
+  SensorConfig sensor = planned;
   sensor.camera.band = part.band;
   const View view(sensor, times, world, settings.seed);
   OpticsStage part_optics(sensor, settings.seed, threads);
@@ -127,7 +157,7 @@ std::string FramePipeline::evaluator() const {
 std::uint32_t FramePipeline::most_frames_made_again() const {
   const auto& sensor = work_->settings.sensor;
   const auto& detector = sensor.camera.detector;
-  if (!work_->has(Persistence::facts) || !(detector.persistence_fraction > 0.0)) return 0;
+  if (!sensor.effects.has(Persistence::facts) || !(detector.persistence_fraction > 0.0)) return 0;
   return 2 * std::min(persistence_window(detector.persistence_s, sensor.cadence_s), 1u << 30);
 }
 
@@ -149,13 +179,23 @@ FrameProducts FramePipeline::run(const FrameTimes& times, const World& world) {
 void FramePipeline::give_back(CountImage counts) { work_->give_back(std::move(counts)); }
 
 FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& world) {
-  const auto& sensor = settings.sensor;
   FrameProducts frame;
+  std::optional<std::vector<std::size_t>> objects;
+  if (planner) {
+    const View view(settings.sensor, times, world, settings.seed);
+    objects.emplace();
+    if (settings.sensor.effects.has(SpaceObjects::facts))
+      objects = objects_in_field(view, settings.shapes.get());
+    frame.plan = planner->plan(view, *objects);
+    set_effects(frame.plan.effects);
+  }
+  const SensorConfig& sensor = planned;
   const View view(sensor, times, world, settings.seed);
+  LightSources light_sources = sources(stars ? &*stars : nullptr, settings.shapes.get());
+  if (objects) light_sources.objects = &*objects;
   frame.counts = std::exchange(used_counts, {});
   const bool keeps_sky = settings.output.sources || settings.output.background;
-  auto truth = expected_electrons(view, sources(stars ? &*stars : nullptr, settings.shapes.get()),
-                                  optics, light, threads, frame.times,
+  auto truth = expected_electrons(view, light_sources, *optics, light, threads, frame.times,
                                   {.sky = keeps_sky ? &frame.planes.background : nullptr,
                                    .stars = settings.star_truth ? &frame.stars : nullptr});
   frame.truths = std::move(truth.objects);
@@ -165,7 +205,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   if (settings.output.radiance_exr)
     for (const auto& part : settings.radiance_parts)
       frame.planes.radiance_parts.push_back({part.band, radiance_in(part, times, world)});
-  frame.header = header_of(view, settings, optics.fwhm_px());
+  frame.header = header_of(view, settings, optics->fwhm_px());
   const Exposure exposure{.seed = settings.seed,
                           .sensor = sensor.name,
                           .frame = times.frame,

@@ -5,6 +5,7 @@
 #include "core/base/image.h"
 #include "core/base/parallel.h"
 #include "core/config/scenario.h"
+#include "core/plan/planner.h"
 #include "core/products/detection.h"
 #include "core/products/frame_header.h"
 #include "core/products/truth.h"
@@ -28,6 +29,7 @@ struct FrameProducts {
   std::vector<StarTruth> stars;  // only on request, as are
   FlagImage flags;
   FramePlanes planes;
+  EffectPlan plan;    // of this exposure; no effects in it: unplanned
   EffectTimes times;  // wall clock, never part of a repeatable product
   double detection_s = 0.0, total_s = 0.0;
 };

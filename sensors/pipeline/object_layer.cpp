@@ -100,6 +100,7 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
   };
 
   std::map<std::size_t, Truth> truth_of;  // by object
+  std::optional<ApparentPlaces> true_places;
   for (const std::size_t object : nearest_first(view, objects, instant(changing_arcs))) {
     std::vector<ObjectSample> samples = samples_of(object, plain_arcs);
     const ObjectSample start = samples[0], middle = samples[1], end = samples[2];
@@ -131,7 +132,8 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
     const ExposureInstant& mid = instant(changing_arcs);
     const auto& facts = view.world().roster().objects[object];
     const Motion motion = view.world().motion(object, mid.time);
-    const auto place = mid.places.satellite(motion.position_m, motion.slope_m_per_s);
+    if (!true_places) true_places.emplace(view.true_places(mid.time));
+    const auto place = true_places->satellite(motion.position_m, motion.slope_m_per_s);
     const auto [ra, dec] = to_spherical(place.astrometric);
     const auto [apparent_ra, apparent_dec] = to_spherical(place.aberrated);
     Truth truth{.sensor = view.sensor().name,

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/config/band_wavelengths.h"
+#include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 
 namespace dmise {
@@ -47,6 +48,9 @@ OpticsStage::OpticsStage(const SensorConfig& sensor, std::uint64_t seed, Threads
       plan_(plan_of(sensor)),
       threads_(threads) {
   const Band& band = sensor.camera.band;
+  optics_.spread.wavelengths =
+      std::max(optics_.spread.wavelengths,
+               PsfWavelengths::count[std::size_t(sensor.effects.level(PsfWavelengths::facts))]);
   if (plan_.method == Method::deposit) {
     const double sigma_px = !blurs_ ? 0.0
                             : optics_.spread.model == PointSpread::Model::gaussian

@@ -54,14 +54,20 @@ void fill_with(const View& view, const SkyModel& sky, ExpectedElectronImage& ima
     return sky.photons_per_s_m2_sr(enu_from_camera * *direction) * electrons_per_photon_m2 *
            pixel_solid_angle_sr(optics, {x, y}) * view.illumination({x, y});
   };
+  const int level = view.sensor().effects.level(SkyGrid::facts);
+  const double tolerance = SkyGrid::tolerance[std::size_t(level)];
   if (!evaluator) {
-    fill_from_grid(optics.columns, optics.rows, electrons, sky_tolerance, image.pixels.data(),
-                   threads);
+    if (tolerance > 0.0)
+      fill_from_grid(optics.columns, optics.rows, electrons, tolerance, image.pixels.data(),
+                     threads);
+    else
+      fill_every_pixel(optics.columns, optics.rows, electrons, image.pixels.data(), threads);
     return;
   }
   std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
-  evaluator->add_sky(
-      patches_of_grid(optics.columns, optics.rows, electrons, sky_tolerance, threads), image);
+  evaluator->add_sky(patches_of_grid(optics.columns, optics.rows, electrons,
+                                     std::max(tolerance, SkyGrid::tolerance[3]), threads),
+                     image);
 }
 
 }  // namespace

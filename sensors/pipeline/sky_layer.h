@@ -12,9 +12,9 @@ namespace dmise {
 SkyModel sky_over(const View& view, double drawn_to_v_mag);
 
 /// Fills `image` with the expected electrons of the sky: `sky_over` at each pixel's centre times
-/// the pixel's own solid angle; 0 where the Earth hides it. From a grid, within `sky_tolerance` of
-/// the evaluation of every pixel. All zero with the effect off. With an `evaluator` that one draws
-/// the grid.
+/// the pixel's own solid angle; 0 where the Earth hides it. From a grid, within the tolerance of
+/// `SkyGrid` at the sensor's level. All zero with the effect off. With an `evaluator` that one
+/// draws the grid.
 void fill_sky(const View& view, double drawn_to_v_mag, ExpectedElectronImage& image,
               Threads& threads, GlEvaluator* evaluator = nullptr);
 
@@ -22,7 +22,5 @@ void fill_sky(const View& view, double drawn_to_v_mag, ExpectedElectronImage& im
 /// light and faint starlight, as the air and lamps shine before objects; in orbit all of it.
 void fill_sky_behind(const View& view, double drawn_to_v_mag, ExpectedElectronImage& image,
                      Threads& threads);
-
-inline constexpr double sky_tolerance = 0.005;  // relative
 
 }  // namespace dmise

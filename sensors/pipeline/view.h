@@ -48,6 +48,10 @@ class View {
   /// Where light seems to come from, at `t`, with the sensor's effects.
   ApparentPlaces places(SimTime t) const { return places(t, sensor_.effects); }
   ApparentPlaces places(SimTime t, const EffectSet& effects) const;
+  /// The same with all that the scenario asks for, whatever was planned: for truth.
+  ApparentPlaces true_places(SimTime t) const {
+    return places(t, sensor_.unplanned ? *sensor_.unplanned : sensor_.effects);
+  }
   /// Normal of the ellipsoid at a ground sensor; for a sensor in orbit, away from the Earth's
   /// centre.
   Vec<Gcrs> up(SimTime t) const;

@@ -19,12 +19,12 @@ const std::vector<PlannableEffect> effects{
      [](int level, const PlanFacts&) {
        return ErrorBound{.photometry_mag = level == 0 ? 1.0 : level == 1 ? 0.1 : 0.001};
      },
-     [](int level, const PlanFacts&) { return std::pow(10.0, level - 3.0); }, nullptr},
+     [](int level, const PlanFacts&) { return std::pow(10.0, level - 3.0); }},
     {&plain, [](int, const PlanFacts& f) { return ErrorBound{.position_px = f.refraction_rad}; },
-     [](int level, const PlanFacts&) { return 0.01 * level; }, nullptr},
+     [](int level, const PlanFacts&) { return 0.01 * level; }},
     {&on_wish, [](int, const PlanFacts&) { return ErrorBound{.photometry_mag = 0.5}; },
-     [](int level, const PlanFacts&) { return 5.0 * level; }, nullptr},
-    {&fixed, nullptr, [](int, const PlanFacts&) { return 0.002; }, nullptr}};
+     [](int level, const PlanFacts&) { return 5.0 * level; }},
+    {&fixed, nullptr, [](int, const PlanFacts&) { return 0.002; }}};
 
 EffectPlan plan(const Accuracy& accuracy, const EffectSet& asked = {}, double position_px = 0.2) {
   PlanFacts facts;

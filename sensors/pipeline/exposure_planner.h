@@ -1,0 +1,46 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "core/effects/plan_facts.h"
+#include "core/optics/psf_plan.h"
+#include "core/plan/planner.h"
+#include "core/sky/star_map.h"
+#include "sensors/pipeline/object_shapes.h"
+#include "sensors/pipeline/view.h"
+
+namespace dmise {
+
+/// Plans the effects of one sensor's exposures.
+class ExposurePlanner {
+ public:
+  /// `sensor` and `shapes` must outlive it. `stars`, `shapes`: null for none.
+  ExposurePlanner(const SensorConfig& sensor, const StarMap* stars, double faintest_star_mag,
+                  const ObjectShapes* shapes);
+
+  /// What is known of an exposure before it is made. `view`: of the sensor as it was asked for;
+  /// `objects`: those in its field.
+  PlanFacts facts(const View& view, const std::vector<std::size_t>& objects) const;
+
+  /// The same for the same arguments, on any machine.
+  EffectPlan plan(const View& view, const std::vector<std::size_t>& objects) const;
+
+ private:
+  void look_at_sky(const View& view, PlanFacts& facts) const;
+  void look_at_stars(const View& view, PlanFacts& facts) const;
+  void look_at_objects(const View& view, const std::vector<std::size_t>& objects,
+                       PlanFacts& facts) const;
+
+  const SensorConfig& sensor_;
+  const StarMap* stars_;
+  const ObjectShapes* shapes_;
+  double faintest_star_mag_;
+  std::vector<PlannableEffect> effects_;
+  PlanFacts of_sensor_;                          // what no exposure changes
+  std::array<double, 32> catalogue_brighter_{};  // stars of the whole sky, by whole V magnitudes
+  double fastest_rad_per_yr_ = 0.0, largest_parallax_rad_ = 0.0, zero_photons_per_s_m2_ = 0.0;
+};
+
+}  // namespace dmise
