@@ -16,6 +16,7 @@ struct ExitWith {
 };
 
 void add_check_command(CLI::App& app);
+void add_explain_command(CLI::App& app);
 void add_run_command(CLI::App& app);
 void add_launch_command(CLI::App& app);
 void add_join_command(CLI::App& app);

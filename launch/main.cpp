@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", dmise::software_name());
   app.require_subcommand(1);
   dmise::add_check_command(app);
+  dmise::add_explain_command(app);
   dmise::add_run_command(app);
   dmise::add_launch_command(app);
   dmise::add_join_command(app);

@@ -44,8 +44,8 @@ struct StarBackground {
 /// How the smooth sky comes to the pixels.
 struct SkyGrid {
   /// Relative error of the grid between pixels at which the sky is looked at.
-  static constexpr std::array<double, 5> tolerance{0.05, 0.02, 0.005, 0.001, 0.0};
-  static constexpr std::array<std::string_view, 5> levels{"5%", "2%", "0.5%", "0.1%", "pixel"};
+  static constexpr std::array<double, 5> tolerance{0.02, 0.005, 0.001, 0.0002, 0.0};
+  static constexpr std::array<std::string_view, 5> levels{"2%", "0.5%", "0.1%", "0.02%", "pixel"};
   static constexpr EffectFacts facts{"sky_grid",
                                      "the sky between the pixels at which it is looked at",
                                      "an error of 0.5 % of the sky; every pixel at the reference",
@@ -53,17 +53,23 @@ struct SkyGrid {
                                      true,
                                      true,
                                      levels,
-                                     2};
+                                     1};
+  static constexpr double cell_px = 32.0;
+  /// Of an uncut patch: the zodiacal table bends at its nodes by 0.1 of the light a radian.
+  static double of_patches(const PlanFacts& f) { return 0.1 * cell_px * f.pixel_rad; }
+  static bool is_cut(int level, const PlanFacts& f) {
+    return of_patches(f) > 0.7 * tolerance[std::size_t(level)];
+  }
   static ErrorBound error(int level, const PlanFacts& f) {
-    return f.without_light(
-        [&](const SkySample& s) { return tolerance[std::size_t(level)] * s.sky_e; });
+    const double most = std::min(0.7 * tolerance[std::size_t(level)], of_patches(f));
+    return f.without_light([&](const SkySample& s) { return most * s.sky_e; });
   }
   static double cost_s(int level, const PlanFacts& f) {
-    constexpr double look_s = 0.9e-6, fill_s = 1.2e-9;
-    constexpr std::array<double, 5> looks{0.6, 0.8, 1.0, 2.0, 0.0};
-    return level == facts.reference()
-               ? look_s * f.pixels()
-               : fill_s * f.pixels() + looks[std::size_t(level)] * 0.2e-6 * f.sky_looks();
+    constexpr double look_s = 0.32e-6, fill_s = 2.0e-9;
+    constexpr std::array<double, 4> looks_more{0.0, 0.05, 2.0, 8.0};
+    if (level == facts.reference()) return look_s * f.pixels();
+    const double more = is_cut(level, f) ? looks_more[std::size_t(level)] : 0.0;
+    return fill_s * f.pixels() + more * look_s * f.sky_looks();
   }
 };
 

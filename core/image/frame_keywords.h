@@ -165,6 +165,13 @@ void visit(Visitor& v, FrameHeader& h) {
   }
   visit_wcs(v, h.projection, h.wcs);
   v.integer("SEED", h.seed, "of the random draws");
+  if (v.present("ACCURACY", !h.accuracy.empty())) {
+    v.text("ACCURACY", h.accuracy, "what the plan of effects was made for");
+    v.number("ERRPHOT", h.error.photometry_mag, "[mag] bound of what the plan leaves out");
+    v.number("ERRPOS", h.error.position_px, "[px] likewise");
+    v.number("ERRBACK", h.error.background_sigma, "[noise of a pixel] of the background, likewise");
+    v.number("ERRNOISE", h.error.noise, "of a pixel's noise, relative, likewise");
+  }
   v.text("SCENARIO", h.scenario_digest, "digest of the scenario");
   v.text("CREATOR", h.software, "");
 }

@@ -15,6 +15,9 @@ namespace {
 constexpr int scales = 81;
 double scale_of(int step) { return std::exp2(-10.0 + 0.25 * step); }
 
+constexpr double largest = std::numeric_limits<double>::max();
+constexpr ErrorBound largest_budget{largest, largest, largest, largest};
+
 /// The levels of an effect that may be taken.
 struct Levels {
   const PlannableEffect* effect;
@@ -51,6 +54,8 @@ Levels levels_of(const PlannableEffect& effect, const PlanFacts& facts, const Ef
     if (fixed && level != unplanned) continue;
     KnapsackOption option = option_of(effect, level, facts);
     if (fixed) option.error = {};
+    // What must not be left out stays, whatever the budget.
+    if (!option.error.within(largest_budget)) continue;
     levels.level.push_back(level);
     levels.options.push_back(option);
   }
@@ -72,8 +77,10 @@ EffectPlan plan_within(const std::vector<Levels>& levels, const PlanFacts& facts
                           .cost_s = l.options[taken].cost_s,
                           .forced = l.forced,
                           .decided = l.level.size() > 1};
-    if (planned.decided && planned.level > 0)
-      planned.cheaper = l.effect->error(planned.level - 1, facts);
+    for (int lower = planned.level - 1; planned.decided && lower >= 0; --lower) {
+      planned.cheaper = l.effect->error(lower, facts);
+      if (planned.cheaper != planned.error) break;
+    }
     plan.effects.set_level(*l.effect->facts, planned.level);
     plan.error += planned.error;
     plan.cost_s += planned.cost_s;

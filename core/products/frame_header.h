@@ -6,6 +6,7 @@
 
 #include "core/base/sim_time.h"
 #include "core/detector/detector.h"
+#include "core/effects/accuracy.h"
 #include "core/frames/quaternion.h"
 #include "core/frames/vec.h"
 #include "core/optics/camera.h"
@@ -38,6 +39,9 @@ struct FrameHeader {
   std::string software;  // name and version
   std::string scenario_digest;
   std::uint64_t seed = 0;
+
+  std::string accuracy;  // what the frame was planned for; empty: all effects as asked for
+  ErrorBound error;      // of the plan
 
   double gain_e_per_dn = 1.0;
   double bias_dn = 0.0;

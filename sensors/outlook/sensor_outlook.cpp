@@ -11,39 +11,13 @@
 #include "core/effects/frame_effects.h"
 #include "core/optics/psf_plan.h"
 #include "core/optics/psf_table.h"
-#include "nodes/environment/environment_actor.h"
+#include "sensors/outlook/frame_worlds.h"
 #include "sensors/outlook/outlook_text.h"
 
 namespace dmise {
 namespace {
 
 constexpr std::uint32_t most_frames_with_states = 2000;  // for a platform or a target
-
-/// The subset of a population. `indices` ascend.
-ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::size_t>& indices) {
-  ObjectPopulation some;
-  for (const std::size_t i : indices) {
-    for (const auto& attitude : all.attitudes)
-      if (attitude.object == i)
-        some.attitudes.push_back({some.roster.objects.size(), attitude.model});
-    some.roster.objects.push_back(all.roster.objects[i]);
-    if (i < all.elements.size())
-      some.elements.push_back(all.elements[i]);
-    else
-      some.models.push_back(all.models[i - all.elements.size()]);
-  }
-  return some;
-}
-
-/// Objects that the sensor's position or direction depends on.
-std::set<std::size_t> needed_objects(const SensorConfig& sensor, const ObjectRoster& roster) {
-  std::set<std::size_t> needed;
-  if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place))
-    needed.insert(object_index(roster, platform->object, platform->where));
-  if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
-    needed.insert(object_index(roster, target->object, target->where));
-  return needed;
-}
 
 /// Gaussian width including the pixel.
 double psf_sigma_px(const SensorConfig& sensor) {
@@ -52,67 +26,6 @@ double psf_sigma_px(const SensorConfig& sensor) {
           .fwhm_px;
   const double sigma_px = sensor.effects.has(PointSpread::facts) ? fwhm_px / fwhm_per_sigma : 0.0;
   return std::sqrt(sigma_px * sigma_px + 1.0 / 12);
-}
-
-/// Worlds around frames of one sensor, as published by the run's actors.
-class Worlds {
- public:
-  Worlds(const Scenario& scenario, const SensorConfig& sensor, const Clock& clock)
-      : scenario_(scenario), environment_(alone(scenario, sensor), clock) {}
-
-  struct Ticks {
-    Tick first = 0, last = 0;
-  };
-  /// Ticks that the states of a frame are interpolated from.
-  Ticks ticks_of(const FrameTimes& exposure) const {
-    const Tick last_tick = scenario_.last_tick();
-    const Tick before = std::max<Tick>(0, exposure.start.ns / scenario_.tick.ns - 1);
-    return {knot_ticks(scenario_.interpolation, before, last_tick).first,
-            tick_needed(scenario_.interpolation, exposure.end, scenario_.tick, last_tick)};
-  }
-
-  World around(const FrameTimes& exposure, const ObjectPopulation& population,
-               const StateSource& source) {
-    World world(scenario_.interpolation, scenario_.last_tick());
-    world.add(std::make_shared<const ObjectRoster>(population.roster));
-    const Ticks ticks = ticks_of(exposure);
-    for (Tick tick = ticks.first; tick <= ticks.last; ++tick) {
-      if (!population.roster.objects.empty())
-        world.add(std::make_shared<const ObjectStates>(source.at(tick, scenario_.time_of(tick))));
-      if (scenario_.time_of(tick) > exposure.end) continue;
-      for (const auto& message : environment_.step(tick, {})) {
-        if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
-          world.add(std::shared_ptr<const EnvironmentState>(message.state, state));
-        if (const auto* state = std::get_if<SiteState>(message.state.get()))
-          world.add(std::shared_ptr<const SiteState>(message.state, state));
-      }
-    }
-    return world;
-  }
-
- private:
-  /// A scenario of this sensor alone with an environment at every tick.
-  static Scenario alone(const Scenario& scenario, const SensorConfig& sensor) {
-    Scenario one;
-    one.tick = scenario.tick;
-    one.environment = {.common_every_s = 0.0, .site_every_s = 0.0};
-    one.sensors = {sensor};
-    return one;
-  }
-
-  const Scenario& scenario_;
-  EnvironmentActor environment_;
-};
-
-/// `count` of the frames 1 to `frames`, including the first and the last.
-std::vector<std::uint32_t> evenly(std::uint32_t frames, std::uint32_t count) {
-  count = std::min(count, frames);
-  if (count == 0) return {};
-  if (count == 1) return {1};
-  std::vector<std::uint32_t> chosen;
-  for (std::uint32_t k = 0; k < count; ++k)
-    chosen.push_back(1 + std::uint32_t(std::uint64_t(frames - 1) * k / (count - 1)));
-  return chosen;
 }
 
 /// The first examined frame at which an object needed by the sensor has no state.
@@ -154,7 +67,7 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
   if (loss && loss->frame == 1) throw ConfigError(sensor.where + ": " + loss->why);
   const std::uint32_t frames = loss ? loss->frame - 1 : out.frames_in_run;
 
-  Worlds worlds(scenario, sensor, clock);
+  FrameWorlds worlds(scenario, sensor, clock);
   std::uint32_t looks = options.most_frames;
   if (frames > 0 && sensor.effects.has(SpaceObjects::facts) && !population.roster.objects.empty()) {
     const auto ticks = worlds.ticks_of(frame_times(sensor, 1));

@@ -8,6 +8,7 @@
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "core/optics/psf_table.h"
+#include "core/photometry/magnitude.h"
 #include "core/photometry/star_light.h"
 #include "core/sky/airmass.h"
 #include "core/sky/scintillation.h"
@@ -195,8 +196,9 @@ void ExposurePlanner::look_at_stars(const View& view, PlanFacts& f) const {
   f.star_shift_rad = fastest_rad_per_yr_ * std::abs(years);
   f.star_parallax_rad = 1.02 * largest_parallax_rad_;
   const Throughput throughput(view);
-  f.star_zero_e =
-      zero_photons_per_s_m2_ * throughput.electrons_per_photon_m2() * view.times().seconds();
+  f.star_zero_e = zero_photons_per_s_m2_ * throughput.electrons_per_photon_m2() *
+                  view.times().seconds() *
+                  (view.on_ground() ? light_of_magnitude(0.9 * f.zenith_extinction_mag) : 1.0);
   // The shortest trail: of the directions at which the sky is looked at.
   const auto start = view.camera_from_gcrs(view.times().start);
   const auto end = view.camera_from_gcrs(view.times().end);

@@ -206,6 +206,10 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     for (const auto& part : settings.radiance_parts)
       frame.planes.radiance_parts.push_back({part.band, radiance_in(part, times, world)});
   frame.header = header_of(view, settings, optics->fwhm_px());
+  if (planner) {
+    frame.header.accuracy = sensor.accuracy.name;
+    frame.header.error = frame.plan.error;
+  }
   const Exposure exposure{.seed = settings.seed,
                           .sensor = sensor.name,
                           .frame = times.frame,

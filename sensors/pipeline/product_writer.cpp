@@ -17,6 +17,7 @@
 #include "core/image/marked_picture.h"
 #include "core/image/plane_file.h"
 #include "core/pictures/picture_file.h"
+#include "core/plan/plan_json.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
@@ -150,7 +151,9 @@ void ProductWriter::write(const FrameProducts& f) {
   cost.field("total_s", f.total_s).field("detection_s", f.detection_s).field("pss_mb", pss_mb());
   cost.key("effects_s").begin_object();
   for (const EffectFacts* effect : all_effects()) cost.field(effect->name, f.times[*effect]);
-  cost.end_object().end_object();
+  cost.end_object();
+  if (!f.plan.planned.empty()) write_plan(cost.key("plan"), f.plan);
+  cost.end_object();
   append("cost.jsonl", cost.take() + "\n");
   append("frames.jsonl", to_json(f.report, utc) + "\n");
 }

@@ -66,7 +66,7 @@ void fill_with(const View& view, const SkyModel& sky, ExpectedElectronImage& ima
   }
   std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
   evaluator->add_sky(patches_of_grid(optics.columns, optics.rows, electrons,
-                                     std::max(tolerance, SkyGrid::tolerance[3]), threads),
+                                     std::max(tolerance, SkyGrid::tolerance[2]), threads),
                      image);
 }
 

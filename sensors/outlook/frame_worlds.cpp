@@ -1,0 +1,82 @@
+#include "sensors/outlook/frame_worlds.h"
+
+#include <algorithm>
+
+namespace dmise {
+namespace {
+
+/// A scenario of this sensor alone with an environment at every tick.
+Scenario alone(const Scenario& scenario, const SensorConfig& sensor) {
+  Scenario one;
+  one.tick = scenario.tick;
+  one.environment = {.common_every_s = 0.0, .site_every_s = 0.0};
+  one.sensors = {sensor};
+  return one;
+}
+
+}  // namespace
+
+ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::size_t>& indices) {
+  ObjectPopulation some;
+  for (const std::size_t i : indices) {
+    for (const auto& attitude : all.attitudes)
+      if (attitude.object == i)
+        some.attitudes.push_back({some.roster.objects.size(), attitude.model});
+    some.roster.objects.push_back(all.roster.objects[i]);
+    if (i < all.elements.size())
+      some.elements.push_back(all.elements[i]);
+    else
+      some.models.push_back(all.models[i - all.elements.size()]);
+  }
+  return some;
+}
+
+std::set<std::size_t> needed_objects(const SensorConfig& sensor, const ObjectRoster& roster) {
+  std::set<std::size_t> needed;
+  if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place))
+    needed.insert(object_index(roster, platform->object, platform->where));
+  if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
+    needed.insert(object_index(roster, target->object, target->where));
+  return needed;
+}
+
+FrameWorlds::FrameWorlds(const Scenario& scenario, const SensorConfig& sensor, const Clock& clock)
+    : scenario_(scenario), environment_(alone(scenario, sensor), clock) {}
+
+FrameWorlds::Ticks FrameWorlds::ticks_of(const FrameTimes& exposure) const {
+  const Tick last_tick = scenario_.last_tick();
+  const Tick before = std::max<Tick>(0, exposure.start.ns / scenario_.tick.ns - 1);
+  return {knot_ticks(scenario_.interpolation, before, last_tick).first,
+          tick_needed(scenario_.interpolation, exposure.end, scenario_.tick, last_tick)};
+}
+
+World FrameWorlds::around(const FrameTimes& exposure, const ObjectPopulation& population,
+                          const StateSource& source) {
+  World world(scenario_.interpolation, scenario_.last_tick());
+  world.add(std::make_shared<const ObjectRoster>(population.roster));
+  const Ticks ticks = ticks_of(exposure);
+  for (Tick tick = ticks.first; tick <= ticks.last; ++tick) {
+    if (!population.roster.objects.empty())
+      world.add(std::make_shared<const ObjectStates>(source.at(tick, scenario_.time_of(tick))));
+    if (scenario_.time_of(tick) > exposure.end) continue;
+    for (const auto& message : environment_.step(tick, {})) {
+      if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
+        world.add(std::shared_ptr<const EnvironmentState>(message.state, state));
+      if (const auto* state = std::get_if<SiteState>(message.state.get()))
+        world.add(std::shared_ptr<const SiteState>(message.state, state));
+    }
+  }
+  return world;
+}
+
+std::vector<std::uint32_t> evenly(std::uint32_t frames, std::uint32_t count) {
+  count = std::min(count, frames);
+  if (count == 0) return {};
+  if (count == 1) return {1};
+  std::vector<std::uint32_t> chosen;
+  for (std::uint32_t k = 0; k < count; ++k)
+    chosen.push_back(1 + std::uint32_t(std::uint64_t(frames - 1) * k / (count - 1)));
+  return chosen;
+}
+
+}  // namespace dmise

@@ -1,0 +1,43 @@
+#pragma once
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include "core/config/scenario.h"
+#include "core/time/clock.h"
+#include "nodes/environment/environment_actor.h"
+#include "orbit-node/object_states.h"
+#include "sensors/pipeline/frame_times.h"
+#include "sensors/pipeline/world.h"
+
+namespace dmise {
+
+/// The subset of a population. `indices` ascend.
+ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::size_t>& indices);
+
+/// Objects that the sensor's position or direction depends on.
+std::set<std::size_t> needed_objects(const SensorConfig& sensor, const ObjectRoster& roster);
+
+/// Worlds around frames of one sensor, as published by the run's actors.
+class FrameWorlds {
+ public:
+  FrameWorlds(const Scenario& scenario, const SensorConfig& sensor, const Clock& clock);
+
+  struct Ticks {
+    Tick first = 0, last = 0;
+  };
+  /// Ticks that the states of a frame are interpolated from.
+  Ticks ticks_of(const FrameTimes& exposure) const;
+
+  World around(const FrameTimes& exposure, const ObjectPopulation& population,
+               const StateSource& source);
+
+ private:
+  const Scenario& scenario_;
+  EnvironmentActor environment_;
+};
+
+/// `count` of the frames 1 to `frames`, including the first and the last.
+std::vector<std::uint32_t> evenly(std::uint32_t frames, std::uint32_t count);
+
+}  // namespace dmise

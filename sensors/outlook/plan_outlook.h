@@ -1,0 +1,26 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/plan/planner.h"
+#include "core/sky/star_map.h"
+#include "sensors/outlook/frame_worlds.h"
+
+namespace dmise {
+
+/// Frames of a sensor that have one plan, and the plan of the first of them.
+struct PlanSpan {
+  std::uint32_t first_frame = 1, last_frame = 1;
+  SimTime start, end;  // of the first and the last exposure
+  EffectPlan plan;
+};
+
+/// Plans the frames of a sensor as its run does, at most `most_frames` of them, evenly over the
+/// run. Empty for a sensor that is not planned. `stars` may be null.
+std::vector<PlanSpan> plan_outlook(const Scenario& scenario, const SensorConfig& sensor,
+                                   const ObjectPopulation& population, const Clock& clock,
+                                   const StarMap* stars, Threads& threads,
+                                   std::uint32_t most_frames);
+
+}  // namespace dmise
