@@ -19,6 +19,7 @@
 #include "launch/notes.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
+#include "launch/recorded_plans.h"
 #include "launch/run_record.h"
 #include "launch/scenario_outlook.h"
 #include "nodes/runtime/process/event.h"
@@ -28,7 +29,7 @@ namespace dmise {
 namespace {
 
 struct RunOptions {
-  std::string scenario, out;
+  std::string scenario, out, plan;
   std::optional<std::uint64_t> seed;  // instead of the scenario's
   int threads = 1;
   bool force = false;
@@ -168,6 +169,7 @@ class EmbeddedRun {
 void run(const RunOptions& options) {
   Scenario scenario = load_scenario(options.scenario);
   if (options.seed) scenario.seed = *options.seed;
+  if (!options.plan.empty()) replay_plans(options.plan, scenario);
   Scene scene = load_scene(scenario, make_clock(scenario));
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   const RunStart begin = prepare_directory(directory, scenario, options.force);
@@ -201,6 +203,8 @@ void add_run_command(CLI::App& app) {
       ->check(CLI::Range(1, 256));
   command->add_option("--seed", options->seed,
                       "seed of the random numbers, instead of the scenario's");
+  command->add_option("--plan", options->plan,
+                      "run.json of a run: its frames' levels of effects instead of a plan");
   command->add_flag("--force", options->force, "replace the products in the directory");
   command->callback([options] { run(*options); });
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/detector/detector.h"
 #include "core/effects/frame_effects.h"
 #include "core/facets/earthshine.h"
@@ -158,6 +160,32 @@ std::vector<PlannableEffect> plannable_effects(const SensorConfig& sensor,
       list.push_back(plannable<Effect>(detector));
   });
   return list;
+}
+
+EffectSet recorded_effects(std::span<const PlannableEffect> effects, const SensorConfig& sensor,
+                           std::uint32_t frame) {
+  const auto fail = [&](const std::string& reason) {
+    throw ConfigError("recorded plan of " + sensor.name + ", frame " + std::to_string(frame) +
+                      ": " + reason);
+  };
+  const auto recorded = sensor.recorded_plans.find(frame);
+  if (recorded == sensor.recorded_plans.end()) fail("there is none");
+  EffectSet set = sensor.effects;
+  for (const auto& effect : effects) {
+    const EffectFacts& facts = *effect.facts;
+    const auto named = recorded->second.find(std::string(facts.name));
+    if (named == recorded->second.end())
+      fail("no level of " + std::string(facts.name) + ", which the scenario has");
+    const auto level = std::find(facts.levels.begin(), facts.levels.end(), named->second);
+    if (level == facts.levels.end())
+      fail(std::string(facts.name) + " has no level " + printable(named->second));
+    set.force_level(facts, int(level - facts.levels.begin()));
+  }
+  for (const auto& [name, level] : recorded->second)
+    if (std::none_of(effects.begin(), effects.end(),
+                     [&](const PlannableEffect& effect) { return effect.facts->name == name; }))
+      fail(printable(name) + " is no effect of the scenario's sensor");
+  return set;
 }
 
 std::vector<std::pair<std::string_view, double>> parameters_in(const SensorConfig& sensor,

@@ -23,6 +23,12 @@ std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const Sce
 /// scenario switches off. `sensor` need not outlive them.
 std::vector<PlannableEffect> plannable_effects(const SensorConfig& sensor, const SceneFacts& scene);
 
+/// The levels of a frame of a sensor's recorded plans, all forced. Throws `ConfigError` that names
+/// the sensor, the frame and what of the record does not fit: a frame or an effect that it does not
+/// have, an effect or a level that there is not.
+EffectSet recorded_effects(std::span<const PlannableEffect> effects, const SensorConfig& sensor,
+                           std::uint32_t frame);
+
 /// The parameters of an effect in a sensor: key and number.
 std::vector<std::pair<std::string_view, double>> parameters_in(const SensorConfig& sensor,
                                                                const EffectFacts& effect);

@@ -65,6 +65,15 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   }
   if (s.effects.snapshots() > 0) json.field("snapshots", s.effects.snapshots());
   if (!s.detect) json.field("detection", false);
+  if (!s.recorded_plans.empty()) {
+    json.key("recorded_plans").begin_object();
+    for (const auto& [frame, levels] : s.recorded_plans) {
+      json.key(std::to_string(frame)).begin_object();
+      for (const auto& [effect, level] : levels) json.field(effect, level);
+      json.end_object();
+    }
+    json.end_object();
+  }
   if (s.effects.drawn_by_opengl()) json.field("evaluator", "opengl");
   json.end_object();
 }

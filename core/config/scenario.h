@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -82,6 +83,9 @@ enum class Tracking {
 /// "fixed", ... as in YAML and in frames.
 const char* tracking_name(Tracking tracking);
 
+/// Names of the levels of effects by frame and name of the effect.
+using RecordedPlans = std::map<std::uint32_t, std::map<std::string, std::string>>;
+
 struct SensorConfig {
   std::string name;
   std::string where = {};  // `file:line:column: sensors[0]`, for messages
@@ -99,11 +103,12 @@ struct SensorConfig {
   WeatherConfig weather;               // on the ground
   std::optional<SensorSeeing> seeing;  // none: no turbulence
   double mask_deg = 0.0;  // minimum elevation for `dmise visible`, on the ground, [0, 89]
-  EffectSet effects;     // by the user; what a plan leaves to choose is as it is without a plan
-  Accuracy accuracy{};   // what frames are planned for; none: effects run as above
+  EffectSet effects;      // by the user; what a plan leaves to choose is as it is without a plan
+  Accuracy accuracy{};    // what frames are planned for; none: effects run as above
   /// Of a sensor that is planned: effects of the scenario before the plan, for truth.
   std::optional<EffectSet> unplanned = {};
-  bool detect = true;  // false: frames are reported without detection
+  bool detect = true;                 // false: frames are reported without detection
+  RecordedPlans recorded_plans = {};  // of a run that is replayed; empty: frames are planned
 };
 
 enum class OnSilentNode { fail, wait, drop, restart };

@@ -16,6 +16,7 @@ struct Blooming {
   void switch_off() { blooming = false; }
   bool applies(const Detector& detector) const;
   void apply(const ExposureFacts& exposed, const WholeImage& image) const;
+  static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
   static double cost_s(int level, const PlanFacts& f) { return level * 1e-9 * f.pixels(); }
 };
 

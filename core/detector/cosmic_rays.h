@@ -36,6 +36,7 @@ struct CosmicRays {
   /// Throws `Error` if more than `most_cosmic_hits` hits are expected.
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& charges, Piece& piece) const;
+  static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
   static double cost_s(int level, const PlanFacts& f) { return level * 0.05e-9 * f.pixels(); }
 };
 

@@ -23,6 +23,7 @@ struct FrameTransfer {
   using Prepared = std::vector<double>;
   Prepared prepare(const ExposureFacts& exposed) const { return sums_of(exposed.light); }
   void apply(const ExposureFacts& exposed, const Prepared& sums, Piece& piece) const;
+  static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
   static double cost_s(int level, const PlanFacts& f) { return level * 1.5e-9 * f.pixels(); }
   /// The same for a whole image.
   ExpectedElectronImage smeared(const ExpectedElectronImage& light, const Exposure& exposure) const;

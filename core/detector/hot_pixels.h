@@ -33,6 +33,7 @@ struct HotPixels {
     return among(exposed.light.pixels.size(), exposed.fixed_key);
   }
   void apply(const ExposureFacts& exposed, const Prepared& hot, Piece& piece) const;
+  static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
   static double cost_s(int level, const PlanFacts& f) { return level * 0.05e-9 * f.pixels(); }
 };
 

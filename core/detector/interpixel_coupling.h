@@ -16,6 +16,7 @@ struct InterpixelCoupling {
   void switch_off() { interpixel_coupling = 0.0; }
   bool applies(const Detector&) const { return interpixel_coupling > 0.0; }
   void apply(const ExposureFacts& exposed, const ElectronImage& electrons, Piece& piece) const;
+  static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
   static double cost_s(int level, const PlanFacts& f) { return level * 2.5e-9 * f.pixels(); }
 };
 

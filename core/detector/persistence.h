@@ -52,6 +52,7 @@ struct Persistence {
   using Prepared = Release;
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& release, Piece& piece) const;
+  static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
   static double cost_s(int level, const PlanFacts& f) { return level * 12e-9 * f.pixels(); }
 };
 

@@ -17,6 +17,7 @@ struct ReferencePixels {
   void switch_off() { reference_px = 0; }
   bool applies(const Detector&) const { return reference_px > 0; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;
+  static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
   static double cost_s(int level, const PlanFacts& f) { return level * 0.05e-9 * f.pixels(); }
 };
 

@@ -11,6 +11,7 @@ struct SkyBackground {
   static ErrorBound error(int, const PlanFacts& f) {
     return f.without_light([](const SkySample& s) { return s.sky_e; });
   }
+  static double cost_s(int level, const PlanFacts& f) { return level * 2.0e-9 * f.pixels(); }
 };
 
 struct SpaceObjects {
@@ -65,11 +66,9 @@ struct SkyGrid {
     return f.without_light([&](const SkySample& s) { return most * s.sky_e; });
   }
   static double cost_s(int level, const PlanFacts& f) {
-    constexpr double look_s = 0.32e-6, fill_s = 2.0e-9;
     constexpr std::array<double, 4> looks_more{0.0, 0.05, 2.0, 8.0};
-    if (level == facts.reference()) return look_s * f.pixels();
-    const double more = is_cut(level, f) ? looks_more[std::size_t(level)] : 0.0;
-    return fill_s * f.pixels() + more * look_s * f.sky_looks();
+    if (level == facts.reference()) return f.sky_look_s * f.pixels();
+    return is_cut(level, f) ? looks_more[std::size_t(level)] * f.sky_look_s * f.sky_looks() : 0.0;
   }
 };
 
@@ -79,7 +78,7 @@ struct PsfWavelengths {
   static constexpr std::array<std::string_view, 4> levels{"1", "3", "5", "9"};
   static constexpr EffectFacts facts{"psf_wavelengths",
                                      "wavelengths of the band for which the blur is computed",
-                                     "0.05 (width / wavelength)^2 of the light in an aperture",
+                                     "with one, 0.02 mag x width / wavelength in an aperture of the blur",
                                      "Fourier optics of the pupil, by wavelength",
                                      true,
                                      true,
@@ -88,7 +87,7 @@ struct PsfWavelengths {
   static bool applies(const SceneFacts& scene) { return scene.diffracts; }
   static ErrorBound error(int level, const PlanFacts& f) {
     const double width = f.relative_bandwidth / count[std::size_t(level)];
-    return {.photometry_mag = 0.05 * width * width, .position_px = 0.005 * width * f.fwhm_px};
+    return {.photometry_mag = 0.02 * width, .position_px = 0.007 * width * f.fwhm_px};
   }
   /// Of kernels that are kept a hundredth, since they are computed once for many frames.
   static double cost_s(int level, const PlanFacts& f) {

@@ -34,6 +34,7 @@ struct PlanFacts {
   double star_peak_share = 1.0;  // the same of a star, which may leave a trail
   // Light between sources.
   std::vector<SkySample> sky;  // over the field, where it sees the sky; at least one
+  double sky_look_s = 0.32e-6;  // what one look at all parts costs
   double dark_e = 0.0, read_noise_e = 0.0;
   // The air.
   double most_airmass = 1.0, zenith_extinction_mag = 0.0;

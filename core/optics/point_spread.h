@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "core/effects/effects.h"
+#include "core/effects/plan_facts.h"
 
 namespace dmise {
 
@@ -28,6 +28,10 @@ struct PointSpread {
   static constexpr EffectFacts facts{"psf", "blur of the optics",
                                      "light falls on a point of no size",
                                      "Gaussian, or Fourier optics of the pupil"};
+
+  static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
+  /// Of what is deposited, source by source; stars have it in theirs.
+  static double cost_s(int level, const PlanFacts& f) { return level * 20e-6 * double(f.objects); }
 
   enum class Model {
     gaussian,     // round, of `psf_fwhm_px` and diffraction in quadrature

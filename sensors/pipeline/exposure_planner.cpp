@@ -71,7 +71,7 @@ ExposurePlanner::ExposurePlanner(const SensorConfig& sensor, const StarMap* star
   f.read_noise_e = sensor.camera.detector.read_noise_e;
   f.dark_e = dark_rate_e_per_s(sensor.camera.detector) * sensor.exposure_s;
   if (blur.method != PointSpread::Method::deposit) {
-    constexpr double cell_s = 60e-9;
+    constexpr double cell_s = 300e-9;
     const double cells = 4.0 * blur.half_cells * blur.half_cells;
     f.kernels_change = blur.screens > 0;
     f.kernel_s = cell_s * cells * std::max(1, blur.screens) * optics.spread.grid_columns *
@@ -155,6 +155,7 @@ void ExposurePlanner::look_at_sky(const View& view, PlanFacts& f) const {
     }
   if (f.sky.empty()) f.sky.push_back({.noise_e = std::sqrt(std::max(f.dark_e + read_e2, 1e-6))});
   if (!view.on_ground()) {
+    f.sky_look_s = 0.16e-6;
     // A limb between the samples: the field against the Earth's disc.
     const Vec<Gcrs> here_m = view.observer(middle).position_m;
     const double earth_rad =
@@ -274,7 +275,11 @@ PlanFacts ExposurePlanner::facts(const View& view, const std::vector<std::size_t
 }
 
 EffectPlan ExposurePlanner::plan(const View& view, const std::vector<std::size_t>& objects) const {
-  return plan_effects(effects_, facts(view, objects), sensor_.effects, sensor_.accuracy);
+  const PlanFacts known = facts(view, objects);
+  if (sensor_.recorded_plans.empty())
+    return plan_effects(effects_, known, sensor_.effects, sensor_.accuracy);
+  return plan_effects(effects_, known, recorded_effects(effects_, sensor_, view.times().frame),
+                      sensor_.accuracy);
 }
 
 }  // namespace dmise

@@ -25,6 +25,8 @@ class ExposurePlanner {
   PlanFacts facts(const View& view, const std::vector<std::size_t>& objects) const;
 
   /// The same for the same arguments, on any machine.
+  /// That of a run that is replayed, if the sensor has one. Throws `Error` that names what of it
+  /// does not fit the sensor.
   EffectPlan plan(const View& view, const std::vector<std::size_t>& objects) const;
 
  private:

@@ -61,7 +61,7 @@ struct FramePipeline::Work {
     if (settings.sensor.effects.drawn_by_opengl()) evaluator.emplace();
     make_optics();
     if (map) stars.emplace(settings.sensor, std::move(map));
-    if (!settings.sensor.accuracy.is_planned()) return;
+    if (!settings.sensor.accuracy.is_planned() && settings.sensor.recorded_plans.empty()) return;
     planned.unplanned = settings.sensor.effects;
     planner.emplace(settings.sensor, stars ? stars->map().get() : nullptr,
                     settings.faintest_star_mag, settings.shapes.get());

@@ -19,13 +19,16 @@ namespace dmise::test {
 class Stage {
  public:
   explicit Stage(const std::string& yaml, const std::string& stars_csv = "",
-                 const std::string& elements = "") {
+                 const std::string& elements = "", int thread_count = 1)
+      : threads(thread_count) {
     setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
     directory = std::filesystem::path(testing::TempDir()) /
                 ("stage-" + std::to_string(getpid()) + "-" +
                  testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(directory);
-    write("scenario.yaml", yaml);
+    // Tests of physics are of all effects, unless they are about accuracy.
+    const bool planned = yaml.find("accuracy:") != std::string::npos;
+    write("scenario.yaml", planned ? yaml : yaml + "\naccuracy: off\n");
     write("stars.csv", stars_csv);
     write("objects.tle", elements);
     scenario = load_scenario((directory / "scenario.yaml").string());
@@ -57,7 +60,7 @@ class Stage {
   }
 
   std::filesystem::path directory;
-  Threads threads{1};
+  Threads threads;
   Scenario scenario;
   World world;
   std::shared_ptr<const StarMap> stars;

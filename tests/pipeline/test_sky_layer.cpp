@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/airmass.h"
@@ -178,7 +179,8 @@ TEST(SkyLayer, IsWithinItsToleranceInEveryProjection) {
                              pixel_solid_angle_sr(config.camera.optics, pixel);
         worst = std::max(worst, std::abs(image.at(x, y) / exact - 1));
       }
-    EXPECT_LT(worst, SkyGrid::tolerance[std::size_t(SkyGrid::facts.unplanned())]) << projection.name;
+    EXPECT_LT(worst, SkyGrid::tolerance[std::size_t(SkyGrid::facts.unplanned())])
+        << projection.name;
   }
 }
 

@@ -1,0 +1,146 @@
+#include "sensors/pipeline/exposure_planner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/config/effect_list.h"
+#include "core/effects/frame_effects.h"
+#include "core/sky/air_effects.h"
+#include "core/sky/place_effects.h"
+#include "tests/pipeline/harness.h"
+
+namespace dmise {
+namespace {
+
+const std::string element_set =
+    "GOES 16\n"
+    "1 41866U 16071A   18019.87773469 -.00000245  00000-0  00000-0 0  9992\n"
+    "2 41866   0.0069 115.0916 0001074 269.6956 335.2025  1.00271237  4322\n";
+
+struct Scene {
+  std::string accuracy = "standard", start = "2018-01-21T00:15:00Z", camera = "geo-watch",
+              place = "site: savannah", pointing = "{azimuth_deg: 168.7, elevation_deg: 52}",
+              effects = "{}", more = "";
+  double exposure_s = 5.0;
+  std::string star_v_mag = "6";
+
+  std::string yaml() const {
+    return "accuracy: " + accuracy + "\nsimulation: {start: " + start +
+           ", duration_s: 30, tick_s: 5}\nobjects: [{catalogue: objects.tle}]\n"
+           "stars: {catalogue: stars.csv, faintest_mag: 15}\neffects: " +
+           effects + "\nsensors:\n  - {name: watch, " + place + ", camera: " + camera +
+           ", pointing: " + pointing + ", exposure_s: " + std::to_string(exposure_s) +
+           ", cadence_s: 10" + more + "}\n";
+  }
+  FrameProducts frame(int threads = 1) const {
+    return test::Stage(yaml(), "ra_deg,dec_deg,mag_v,bv\n49.7,-5.4," + star_v_mag + ",0.65\n",
+                       element_set, threads)
+        .frame();
+  }
+};
+
+bool runs(const FrameProducts& frame, const EffectFacts& effect) {
+  return frame.plan.effects.has(effect);
+}
+
+TEST(ExposurePlanner, EveryStageOfAFrameIsAnEffectOfItsPlan) {
+  for (const char* camera : {"geo-watch", "telescope-3m"}) {
+    const FrameProducts frame = Scene{.camera = camera}.frame();
+    double named_s = 0.0;
+    for (const auto& [name, seconds] : frame.times.seconds) {
+      EXPECT_TRUE(std::ranges::any_of(
+          all_effects(), [&](const EffectFacts* effect) { return effect->name == name; }))
+          << name << " of " << camera;
+      named_s += seconds;
+    }
+    EXPECT_GT(named_s, 0.5 * (frame.total_s - frame.detection_s)) << camera;
+  }
+}
+
+TEST(ExposurePlanner, ErrorsStayWithinTheBudgetThatIsStated) {
+  for (const char* accuracy : {"draft", "standard", "reference", "{position_px: 3}",
+                               "{photometry_mag: 0, background_sigma: 1000}"}) {
+    const FrameProducts frame = Scene{.accuracy = accuracy}.frame();
+    EXPECT_TRUE(frame.plan.error.within(frame.plan.budget)) << accuracy;
+    EXPECT_LE(frame.plan.least_cost_s, frame.plan.cost_s) << accuracy;
+    EXPECT_EQ(frame.header.error, frame.plan.error);
+    EXPECT_FALSE(frame.header.accuracy.empty());
+  }
+}
+
+TEST(ExposurePlanner, LessAccuracyNeverCostsMore) {
+  const double reference_s = Scene{.accuracy = "reference"}.frame().plan.cost_s,
+               standard_s = Scene{.accuracy = "standard"}.frame().plan.cost_s,
+               draft_s = Scene{.accuracy = "draft"}.frame().plan.cost_s;
+  EXPECT_LT(standard_s, reference_s);
+  EXPECT_LE(draft_s, standard_s);
+}
+
+TEST(ExposurePlanner, KeepsATimePerFrame) {
+  const FrameProducts quick = Scene{.accuracy = "{seconds_per_frame: 0.08}"}.frame();
+  EXPECT_LE(quick.plan.cost_s, 0.08);
+  EXPECT_TRUE(quick.plan.in_time);
+  EXPECT_FALSE(Scene{.accuracy = "{seconds_per_frame: 1e-5}"}.frame().plan.in_time);
+}
+
+TEST(ExposurePlanner, InDaylightThereAreNoStars) {
+  const FrameProducts day =
+      Scene{.start = "2018-01-21T17:00:00Z", .exposure_s = 0.01, .star_v_mag = "12"}.frame();
+  EXPECT_FALSE(runs(day, StarBackground::facts));
+  EXPECT_TRUE(runs(day, Twilight::facts));
+  EXPECT_TRUE(runs(Scene{}.frame(), StarBackground::facts));
+}
+
+TEST(ExposurePlanner, WhatIsForcedStays) {
+  const FrameProducts frame = Scene{.accuracy = "draft",
+                                    .effects =
+                                        "{light_deflection: on, scintillation: on, sky_grid: "
+                                        "0.02%, extinction: off}"}
+                                  .frame();
+  EXPECT_TRUE(runs(frame, LightDeflection::facts));
+  EXPECT_TRUE(runs(frame, Scintillation::facts));
+  EXPECT_FALSE(runs(frame, AirExtinction::facts));
+  EXPECT_NE(frame.report.plan.find("sky_grid:0.02%"), std::string::npos) << frame.report.plan;
+}
+
+TEST(ExposurePlanner, TruthIsOfAllPhysicsWhateverThePlanLeavesOut) {
+  const auto truth_of = [](const std::string& accuracy) {
+    return Scene{.accuracy = accuracy, .effects = "{shadow: off}"}.frame().truths.at(0);
+  };
+  const Truth full = truth_of("off"), draft = truth_of("{position_px: 1000}");
+  EXPECT_EQ(full.true_ra_rad, draft.true_ra_rad);
+  EXPECT_EQ(full.apparent_ra_rad, draft.apparent_ra_rad);
+  EXPECT_EQ(full.apparent_dec_rad, draft.apparent_dec_rad);
+  EXPECT_EQ(full.true_magnitude, draft.true_magnitude);
+}
+
+TEST(ExposurePlanner, ThreadsDoNotChangeAPlannedFrame) {
+  for (const char* accuracy : {"draft", "standard", "{seconds_per_frame: 0.1}"}) {
+    const FrameProducts one = Scene{.accuracy = accuracy}.frame(1),
+                        three = Scene{.accuracy = accuracy}.frame(3);
+    EXPECT_EQ(one.counts.pixels, three.counts.pixels) << accuracy;
+    EXPECT_EQ(one.report.plan, three.report.plan);
+  }
+}
+
+TEST(ExposurePlanner, FactsAtTheirLimitsGiveAPlan) {
+  for (const double exposure_s : {1e-6, 1.0, 10.0})
+    for (const char* start :
+         {"2018-01-20T22:58:30Z", "2018-01-21T05:00:00Z", "2018-01-20T12:24:00Z"})
+      for (const char* pointing : {"zenith", "{azimuth_deg: 90, elevation_deg: 0.0}",
+                                   "{azimuth_deg: 250, elevation_deg: -5}"})
+        for (const char* camera : {"omnissa-swir", "telescope-3m"}) {
+          const FrameProducts frame =
+              Scene{
+                  .start = start, .camera = camera, .pointing = pointing, .exposure_s = exposure_s}
+                  .frame();
+          EXPECT_TRUE(frame.plan.error.within(frame.plan.budget))
+              << exposure_s << " " << start << " " << pointing << " " << camera;
+          EXPECT_TRUE(std::isfinite(frame.plan.cost_s));
+        }
+}
+
+}  // namespace
+}  // namespace dmise
