@@ -19,9 +19,12 @@ struct ColumnNoise {
   using Prepared = std::vector<float>;  // by column [e-]
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& offsets_e, Piece& piece) const;
-  /// Four deviations.
+  /// Five and a half deviations: one column in 26 million is beyond.
   ErrorBound error(int, const PlanFacts& f) const {
-    return f.without_light([&](const SkySample&) { return 4.0 * column_noise_e; });
+    return {.background_sigma = f.in_noise(5.5 * column_noise_e),
+            .noise = f.without_light([&](const SkySample&) {
+                        return column_noise_e * column_noise_e;
+                      }).noise};
   }
   static double cost_s(int level, const PlanFacts& f) { return level * 0.3e-9 * f.pixels(); }
 };

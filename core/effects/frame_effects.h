@@ -55,20 +55,27 @@ struct SkyGrid {
                                      true,
                                      levels,
                                      1};
-  static constexpr double cell_px = 32.0;
-  /// Of an uncut patch: the zodiacal table bends at its nodes by 0.1 of the light a radian.
-  static double of_patches(const PlanFacts& f) { return 0.1 * cell_px * f.pixel_rad; }
-  static bool is_cut(int level, const PlanFacts& f) {
-    return of_patches(f) > 0.7 * tolerance[std::size_t(level)];
+  /// Of the light, on uncut patches of 32 px: the zodiacal table bends at its nodes by 0.1 a
+  /// radian, the other parts by 0.5 a square radian.
+  static double of_patches(const SkySample& s, const PlanFacts& f) {
+    const double patch_rad = 32.0 * f.pixel_rad, zodiacal_e = s.part_e[2];
+    return 0.1 * patch_rad * zodiacal_e + 0.5 * patch_rad * patch_rad * (s.sky_e - zodiacal_e);
+  }
+  /// What cutting leaves, at most.
+  static double of_cut(int level, const SkySample& s) {
+    return 0.7 * tolerance[std::size_t(level)] * s.sky_e;
   }
   static ErrorBound error(int level, const PlanFacts& f) {
-    const double most = std::min(0.7 * tolerance[std::size_t(level)], of_patches(f));
-    return f.without_light([&](const SkySample& s) { return most * s.sky_e; });
+    return f.without_light(
+        [&](const SkySample& s) { return std::min(of_cut(level, s), of_patches(s, f)); });
   }
   static double cost_s(int level, const PlanFacts& f) {
     constexpr std::array<double, 4> looks_more{0.0, 0.05, 2.0, 8.0};
     if (level == facts.reference()) return f.sky_look_s * f.pixels();
-    return is_cut(level, f) ? looks_more[std::size_t(level)] * f.sky_look_s * f.sky_looks() : 0.0;
+    const bool is_cut = std::any_of(f.sky.begin(), f.sky.end(), [&](const SkySample& s) {
+      return of_patches(s, f) > of_cut(level, s);
+    });
+    return is_cut ? looks_more[std::size_t(level)] * f.sky_look_s * f.sky_looks() : 0.0;
   }
 };
 
@@ -76,18 +83,22 @@ struct SkyGrid {
 struct PsfWavelengths {
   static constexpr std::array<int, 4> count{1, 3, 5, 9};
   static constexpr std::array<std::string_view, 4> levels{"1", "3", "5", "9"};
-  static constexpr EffectFacts facts{"psf_wavelengths",
-                                     "wavelengths of the band for which the blur is computed",
-                                     "with one, 0.02 mag x width / wavelength in an aperture of the blur",
-                                     "Fourier optics of the pupil, by wavelength",
-                                     true,
-                                     true,
-                                     levels,
-                                     0};
+  static constexpr EffectFacts facts{
+      "psf_wavelengths",
+      "wavelengths of the band for which the blur is computed",
+      "with one, 0.02 mag x width / wavelength in an aperture of the blur",
+      "Fourier optics of the pupil, by wavelength",
+      true,
+      true,
+      levels,
+      0};
   static bool applies(const SceneFacts& scene) { return scene.diffracts; }
   static ErrorBound error(int level, const PlanFacts& f) {
     const double width = f.relative_bandwidth / count[std::size_t(level)];
-    return {.photometry_mag = 0.02 * width, .position_px = 0.007 * width * f.fwhm_px};
+    ErrorBound error = f.dimmed_by(0.02 * width);
+    error.position_px = 0.007 * width * f.fwhm_px;
+    error.background_sigma = 0.1 * std::min(1.0, 3.0 * width);
+    return error;
   }
   /// Of kernels that are kept a hundredth, since they are computed once for many frames.
   static double cost_s(int level, const PlanFacts& f) {
@@ -133,8 +144,11 @@ inline ErrorBound StarBackground::error(int level, const PlanFacts& f) {
   const double v_mag =
       level == 0 ? f.brightest_star_mag : std::max(limit_v_mag(level), f.brightest_star_mag);
   if (f.stars <= (level == 0 ? 0.0 : f.stars_to(limit_v_mag(level)))) return {};
-  const double star_e = f.star_zero_e * std::pow(10.0, -0.4 * v_mag);
-  return f.without_light([&](const SkySample&) { return star_e * f.star_peak_share; });
+  const double star_e = f.star_zero_e * std::pow(10.0, -0.4 * v_mag) * f.star_peak_share;
+  // The smooth starlight that stands for all of them.
+  const double limit = std::max(0.0, limit_v_mag(level));
+  const double smooth_e = f.starlight_e[std::size_t(std::min(limit, 31.0))];
+  return f.without_light([&](const SkySample&) { return std::max(star_e, smooth_e); });
 }
 
 }  // namespace dmise

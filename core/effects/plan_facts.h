@@ -33,7 +33,7 @@ struct PlanFacts {
   double peak_share = 1.0;       // of a point's light in its brightest pixel, most
   double star_peak_share = 1.0;  // the same of a star, which may leave a trail
   // Light between sources.
-  std::vector<SkySample> sky;  // over the field, where it sees the sky; at least one
+  std::vector<SkySample> sky;   // over the field, where it sees the sky; at least one
   double sky_look_s = 0.32e-6;  // what one look at all parts costs
   double dark_e = 0.0, read_noise_e = 0.0;
   // The air.
@@ -51,6 +51,8 @@ struct PlanFacts {
   double star_zero_e = 0.0;                 // of a star of V = 0 over the exposure
   double star_shift_rad = 0.0;              // of proper motion since the catalogue's epoch, largest
   double star_parallax_rad = 0.0;
+  /// Faint starlight of a pixel, most, with stars drawn to each whole V magnitude from 0.
+  std::array<double, 32> starlight_e{};
   double brightest_star_mag = -1.5;  // in the field
   // Objects.
   std::size_t objects = 0, shapes = 0, resolved = 0;
@@ -76,8 +78,24 @@ struct PlanFacts {
   }
   /// Returns the largest share of a pixel's noise that `light_e` is in the field.
   double in_noise(double light_e) const { return light_e / least_noise_e(); }
-  /// Error of sources that are misplaced by an angle.
-  ErrorBound shifted_by(double angle_rad) const { return {.position_px = angle_rad / pixel_rad}; }
+  /// Error of sources that are misplaced by an angle, with what their faint edges leave beside
+  /// them.
+  ErrorBound shifted_by(double angle_rad) const {
+    constexpr double off_axis = 1.08, edge = 0.35, of_light = 0.02;
+    const double px = off_axis * angle_rad / pixel_rad;
+    const double background_sigma = std::min(1.0, edge * px / std::hypot(fwhm_px / 2.355, 0.3));
+    return {.photometry_mag = of_light * px,
+            .position_px = px,
+            .background_sigma = background_sigma,
+            .noise = 0.5 * background_sigma / std::max(1.0, least_noise_e())};
+  }
+  /// Error of sources whose light is off by a factor, likewise.
+  ErrorBound dimmed_by(double magnitude) const {
+    const double background_sigma = 0.1 * std::min(1.0, magnitude);
+    return {.photometry_mag = magnitude,
+            .background_sigma = background_sigma,
+            .noise = 0.5 * background_sigma / std::max(1.0, least_noise_e())};
+  }
   /// Error of the frame without light that `light_e(sample)` gives everywhere.
   template <class Light>
   ErrorBound without_light(const Light& light_e) const {

@@ -27,11 +27,11 @@ bool is_no_worse(const Option& a, const Option& b) {
   return true;
 }
 
-/// The options that can be in an optimum: possible, and none as good in everything. The exact one
-/// is first among equals.
+/// The options that can be in an optimum: possible, and none as good in everything. Among equals
+/// the first, which does the least.
 std::vector<Option> useful(const KnapsackChoice& choice, const ErrorBound& budget) {
   std::vector<Option> options;
-  for (std::size_t i = choice.size(); i-- > 0;) {
+  for (std::size_t i = 0; i < choice.size(); ++i) {
     Option option{.cost_s = choice[i].cost_s, .index = i};
     bool possible = true;
     for (std::size_t k = 0; k < kinds; ++k) {

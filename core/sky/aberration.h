@@ -38,7 +38,9 @@ struct DiurnalAberration {
       "diurnal_aberration", "the observer's geocentric motion displaces everything",
       "0.32 arcsec on the ground, 5.2 in a low orbit", "IAU SOFA, eraAb"};
   static constexpr bool displaces_satellites = true;
-  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_by(f.diurnal_aberration_rad); }
+  static ErrorBound error(int, const PlanFacts& f) {
+    return f.shifted_by(f.diurnal_aberration_rad);
+  }
   static double cost_s(int level, const PlanFacts& f) { return level * 6e-9 * f.stars; }
 
   explicit DiurnalAberration(const Observer& observer);

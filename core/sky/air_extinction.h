@@ -16,7 +16,7 @@ class AirExtinction {
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
 
   static ErrorBound error(int, const PlanFacts& f) {
-    return {.photometry_mag = 1.1 * f.zenith_extinction_mag * f.most_airmass};
+    return f.dimmed_by(1.1 * f.zenith_extinction_mag * f.most_airmass);
   }
   static double cost_s(int level, const PlanFacts& f) { return level * 82e-9 * f.stars; }
 

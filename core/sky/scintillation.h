@@ -25,7 +25,7 @@ class Scintillation {
 
   /// Four deviations: one source in 16,000 is beyond.
   static ErrorBound error(int, const PlanFacts& f) {
-    return {.photometry_mag = 1.086 * 4.0 * f.scintillation};
+    return f.dimmed_by(1.086 * 4.0 * f.scintillation);
   }
   static double cost_s(int level, const PlanFacts& f) {
     return level * 181e-9 * (f.stars + double(f.objects));

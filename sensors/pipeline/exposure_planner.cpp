@@ -13,6 +13,7 @@
 #include "core/sky/airmass.h"
 #include "core/sky/scintillation.h"
 #include "core/sky/shadow.h"
+#include "core/sky/sky_frames.h"
 #include "sensors/pipeline/object_sampler.h"
 #include "sensors/pipeline/sky_layer.h"
 #include "sensors/pipeline/throughput.h"
@@ -97,6 +98,7 @@ ExposurePlanner::ExposurePlanner(const SensorConfig& sensor, const StarMap* star
     zero_photons_per_s_m2_ = std::max(zero_photons_per_s_m2_, light.photons_per_s_m2(0.0, bv));
   if (!stars) return;
   const StarTable& table = stars->stars;
+  faintest_filled_v_mag_ = dmise::faintest_filled_v_mag(table.v_mag);
   for (std::size_t i = 0; i < table.v_mag.size(); ++i) {
     if (table.v_mag[i] > faintest_star_mag) continue;
     const auto first = std::size_t(std::clamp(std::ceil(double(table.v_mag[i])), 0.0, 31.0));
@@ -122,10 +124,20 @@ void ExposurePlanner::look_at_sky(const View& view, PlanFacts& f) const {
                   FreeSight(view.observer(middle).position_m, oblate_earth(view.earth())));
   const bool with_sky = sensor_.effects.has(SkyBackground::facts);
   const Throughput throughput(view);
-  const SkyModel sky = sky_over(view, faintest_star_mag_);
+  const double drawn_to_v_mag = stars_ && sensor_.effects.has(StarBackground::facts)
+                                    ? std::min(faintest_star_mag_, faintest_filled_v_mag_)
+                                    : -unbounded;
+  const SkyModel sky = sky_over(view, drawn_to_v_mag);
   const double electrons = throughput.electrons_per_photon_m2() * view.times().seconds();
   const double read_e2 =
       f.read_noise_e * f.read_noise_e + std::pow(sensor_.camera.detector.gain_e_per_dn, 2) / 12.0;
+  const Vec<Gcrs> galactic_pole = galactic_from_gcrs().inverse() * Vec<Galactic>{0, 0, 1};
+  const auto faint_s10 = [&](double limit_v_mag, double sine) {
+    FaintStarlight starlight = *sensor_.sky.parts.faint_starlight;
+    starlight.brighter_limit_v_mag = limit_v_mag;
+    return faint_starlight_s10(starlight, sine);
+  };
+  double nearest_to_galaxy = 1.0, e_per_s10 = 0.0;
   double lowest_rad = pi / 2;
   for (int i = 0; i < looks; ++i)
     for (int j = 0; j < looks; ++j) {
@@ -151,8 +163,18 @@ void ExposurePlanner::look_at_sky(const View& view, PlanFacts& f) const {
         }
       }
       s.noise_e = std::sqrt(std::max(s.sky_e + f.dark_e + read_e2, 1e-6));
+      if (s.part_e[3] > 0.0) {
+        const double sine = dot(galactic_pole, gcrs);
+        nearest_to_galaxy = std::min(nearest_to_galaxy, std::abs(sine));
+        e_per_s10 =
+            std::max(e_per_s10, s.part_e[3] / std::max(faint_s10(drawn_to_v_mag, sine), 1e-9));
+      }
       f.sky.push_back(s);
     }
+  for (std::size_t m = 0; e_per_s10 > 0.0 && m < f.starlight_e.size(); ++m)
+    f.starlight_e[m] = 1.25 * e_per_s10 *
+                       std::max(0.0, faint_s10(double(m), nearest_to_galaxy) -
+                                         faint_s10(drawn_to_v_mag, nearest_to_galaxy));
   if (f.sky.empty()) f.sky.push_back({.noise_e = std::sqrt(std::max(f.dark_e + read_e2, 1e-6))});
   if (!view.on_ground()) {
     f.sky_look_s = 0.16e-6;

@@ -42,7 +42,8 @@ class ExposurePlanner {
   std::vector<PlannableEffect> effects_;
   PlanFacts of_sensor_;                          // what no exposure changes
   std::array<double, 32> catalogue_brighter_{};  // stars of the whole sky, by whole V magnitudes
-  double fastest_rad_per_yr_ = 0.0, largest_parallax_rad_ = 0.0, zero_photons_per_s_m2_ = 0.0;
+  double fastest_rad_per_yr_ = 0.0, largest_parallax_rad_ = 0.0, zero_photons_per_s_m2_ = 0.0,
+         faintest_filled_v_mag_ = 0.0;
 };
 
 }  // namespace dmise
