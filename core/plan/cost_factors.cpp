@@ -1,0 +1,63 @@
+#include "core/plan/cost_factors.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+
+namespace dmise {
+namespace {
+
+constexpr double largest_factor = 1e6;
+
+}  // namespace
+
+std::string cost_factors_path() {
+  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg)
+    return std::string(xdg) + "/dmise/cost-factors.txt";
+  if (const char* home = std::getenv("HOME"); home && *home)
+    return std::string(home) + "/.cache/dmise/cost-factors.txt";
+  return "";
+}
+
+CostFactors load_cost_factors(const std::string& path) {
+  CostFactors factors;
+  std::error_code ignored;
+  if (path.empty() || !std::filesystem::exists(path, ignored)) return factors;
+  std::istringstream lines(read_text_file(path, 1u << 20));
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream words(line);
+    std::string name, rest;
+    double factor = 0.0;
+    if (!(words >> name >> factor) || words >> rest || !(factor > 0.0) || factor > largest_factor)
+      throw ConfigError(path + ":" + std::to_string(number) +
+                        ": must be NAME FACTOR with a factor in (0, 1e6], got " + line);
+    factors[name] = factor;
+  }
+  return factors;
+}
+
+std::string cost_factors_text(const CostFactors& factors) {
+  std::string text =
+      "# Written by dmise bench calibrate: cost of effects on this machine over the shipped "
+      "table.\n";
+  for (const auto& [name, factor] : factors) {
+    char line[128];
+    std::snprintf(line, sizeof line, "%s %.4g\n", name.c_str(), factor);
+    text += line;
+  }
+  return text;
+}
+
+double predicted_s(const PlannedEffect& effect, const CostFactors& factors) {
+  const auto found = factors.find(effect.facts->name);
+  return effect.cost_s * (found == factors.end() ? 1.0 : found->second);
+}
+
+}  // namespace dmise
