@@ -1,0 +1,239 @@
+#include "sensors/accuracy/frame_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/detector/expected_noise.h"
+#include "core/detector/expected_signal.h"
+#include "core/optics/projection.h"
+
+namespace dmise {
+namespace {
+
+constexpr double widths = 3.0;            // of the point spread, around a trail
+constexpr double background_share = 0.5;  // of the noise: more light of sources is no background
+
+ExpectedElectronImage light_of(const FrameProducts& frame, double exposure_s) {
+  ExpectedElectronImage light = frame.planes.background;
+  for (std::size_t i = 0; i < light.pixels.size(); ++i)
+    light.pixels[i] =
+        float((double(light.pixels[i]) + frame.planes.sources.pixels[i]) * exposure_s);
+  return light;
+}
+
+ExpectedElectronImage sky_of(const FrameProducts& frame, double exposure_s) {
+  ExpectedElectronImage sky = frame.planes.background;
+  for (float& e : sky.pixels) e = float(e * exposure_s);
+  return sky;
+}
+
+double distance_px(PixelPosition p, PixelPosition from, PixelPosition to) {
+  const PixelPosition way = to - from, past = p - from;
+  const double length2 = way.x_px * way.x_px + way.y_px * way.y_px;
+  const double at =
+      length2 > 0.0 ? std::clamp((past.x_px * way.x_px + past.y_px * way.y_px) / length2, 0.0, 1.0)
+                    : 0.0;
+  return std::hypot(past.x_px - at * way.x_px, past.y_px - at * way.y_px);
+}
+
+/// Calls `visit(pixel index, x, y)` for the pixels of a capsule; false: it reaches out of the
+/// frame.
+template <class Visit>
+bool for_capsule(const ReferenceSource& s, int columns, int rows, Visit&& visit) {
+  const auto [left, right] = std::minmax(s.from.x_px, s.to.x_px);
+  const auto [top, bottom] = std::minmax(s.from.y_px, s.to.y_px);
+  const double x0 = left - s.margin_px, x1 = right + s.margin_px;
+  const double y0 = top - s.margin_px, y1 = bottom + s.margin_px;
+  const int last_x = int(std::ceil(std::min(x1, columns - 1.0)));
+  const int last_y = int(std::ceil(std::min(y1, rows - 1.0)));
+  for (int y = int(std::max(0.0, y0)); y <= last_y; ++y)
+    for (int x = int(std::max(0.0, x0)); x <= last_x; ++x)
+      if (distance_px({double(x), double(y)}, s.from, s.to) <= s.margin_px)
+        visit(std::size_t(y) * std::size_t(columns) + std::size_t(x), x, y);
+  return x0 >= 0.0 && y0 >= 0.0 && x1 <= columns - 1.0 && y1 <= rows - 1.0;
+}
+
+/// Places of the light of a star whose trail has its centroid at `centroid`.
+std::pair<PixelPosition, PixelPosition> trail_of_star(const View& view, PixelPosition centroid) {
+  const FrameTimes& t = view.times();
+  if (const auto direction = unproject(view.sensor().camera.optics, centroid)) {
+    const auto apparent = view.camera_from_gcrs(t.middle).inverse() * *direction;
+    const auto from = view.pixel(apparent, t.start), to = view.pixel(apparent, t.end);
+    if (from && to) return {*from, *to};
+  }
+  return {centroid, centroid};
+}
+
+}  // namespace
+
+FrameComparison::Expected FrameComparison::expected(const FrameProducts& frame,
+                                                    const EffectSet& effects) const {
+  const auto exposure = scene_.exposure();
+  const auto& detector = scene_.sensor().camera.detector;
+  const auto light = light_of(frame, exposure.exposure_s);
+  const auto sky = sky_of(frame, exposure.exposure_s);
+  return {expected_signal(light, detector, exposure, effects, scene_.threads()),
+          expected_signal(sky, detector, exposure, effects, scene_.threads()),
+          expected_noise(light, detector, exposure, effects, scene_.threads())};
+}
+
+FrameComparison::FrameComparison(const SceneFrames& scene, const FrameProducts& reference,
+                                 const EffectSet& effects)
+    : scene_(scene), effects_(effects), light_(light_of(reference, scene.times().seconds())) {
+  reference_ = expected(reference, effects);
+  const Detector detector = acting_detector(scene.sensor().camera.detector, effects);
+  const double rest_e2 = detector.dark_e_per_s * scene.times().seconds() +
+                         detector.read_noise_e * detector.read_noise_e;
+  const std::size_t pixels = light_.pixels.size();
+  sigma_e_.resize(pixels);
+  background_.resize(pixels);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    sigma_e_[i] = float(std::sqrt(std::max(1.0, light_.pixels[i] + rest_e2)));
+    const double sources_e = double(reference_.signal.pixels[i]) - reference_.sky.pixels[i];
+    background_[i] = std::abs(sources_e) < background_share * sigma_e_[i];
+  }
+  find_sources(reference);
+}
+
+void FrameComparison::measure(ReferenceSource source) {
+  const double full_e = 0.9 * scene_.sensor().camera.detector.full_well_e;
+  double e = 0.0, x_e = 0.0, y_e = 0.0, snr2 = 0.0, peak_e = 0.0;
+  bool saturated = false;
+  const bool whole =
+      for_capsule(source, light_.columns, light_.rows, [&](std::size_t i, int x, int y) {
+        const double here = double(reference_.signal.pixels[i]) - reference_.sky.pixels[i];
+        e += here;
+        x_e += here * x;
+        y_e += here * y;
+        snr2 += here * here / (double(sigma_e_[i]) * sigma_e_[i]);
+        saturated = saturated || light_.pixels[i] > full_e;
+        if (here > peak_e) peak_e = here, source.peak_sigma = here / sigma_e_[i];
+      });
+  if (!(e > 0.0)) return;
+  source.light_e = e;
+  source.centroid = {x_e / e, y_e / e};
+  source.snr = std::sqrt(snr2);
+  source.whole = whole;
+  source.counts = whole && !saturated && source.snr >= least_snr;
+  if (source.snr >= least_snr_of_source) sources_.push_back(std::move(source));
+}
+
+// Light of a neighbour that moves over the edge of a capsule would be taken for an error.
+void FrameComparison::see_who_counts() {
+  constexpr double faint_share = 0.002;  // of a neighbour's light
+  struct Owner {
+    std::uint32_t brightest = 0;  // source + 1
+    float light_e = 0.0f, next_e = 0.0f;
+  };
+  std::vector<Owner> owners(light_.pixels.size());
+  for (std::size_t s = 0; s < sources_.size(); ++s)
+    for_capsule(sources_[s], light_.columns, light_.rows, [&](std::size_t i, int, int) {
+      Owner& owner = owners[i];
+      const auto e = float(sources_[s].light_e);
+      background_[i] = false;
+      if (e > owner.light_e)
+        owner = {std::uint32_t(s + 1), e, owner.light_e};
+      else
+        owner.next_e = std::max(owner.next_e, e);
+    });
+  for (std::size_t s = 0; s < sources_.size(); ++s)
+    for_capsule(sources_[s], light_.columns, light_.rows, [&](std::size_t i, int, int) {
+      const float other_e = owners[i].brightest == s + 1 ? owners[i].next_e : owners[i].light_e;
+      if (other_e > faint_share * sources_[s].light_e) sources_[s].counts = false;
+    });
+}
+
+void FrameComparison::find_sources(const FrameProducts& reference) {
+  const View view(scene_.sensor(), scene_.times(), scene_.world(), scene_.scenario().seed);
+  const auto& optics = scene_.sensor().camera.optics;
+  const double margin_px = widths * std::hypot(1.0, reference.header.psf_fwhm_px);
+  for (const StarTruth& star : reference.stars) {
+    const auto [from, to] = trail_of_star(view, {star.x_px, star.y_px});
+    measure({.name = "star " + std::to_string(star.id),
+             .from = from,
+             .to = to,
+             .margin_px = margin_px});
+  }
+  for (const Truth& object : reference.truths) {
+    if (!object.in_frame) continue;
+    double size_px = 0.0;
+    for (const OwnObject& own : scene_.scenario().own_objects)
+      if (own.name == object.name && own.geometry)
+        size_px = radius_m(*own.geometry->mesh) / std::max(1.0, object.true_range_m) /
+                  optics.pixel_angle_rad();
+    measure({.name = object.name,
+             .from = {object.start_x_px, object.start_y_px},
+             .to = {object.end_x_px, object.end_y_px},
+             .margin_px = margin_px + size_px});
+  }
+  see_who_counts();
+  // Light of sources beyond the frame may move in.
+  const int rim_px = int(std::ceil(margin_px));
+  for (int y = 0; y < light_.rows; ++y)
+    for (int x = 0; x < light_.columns; ++x)
+      if (std::min({x, y, light_.columns - 1 - x, light_.rows - 1 - y}) < rim_px)
+        background_[std::size_t(y) * std::size_t(light_.columns) + std::size_t(x)] = false;
+}
+
+FrameError FrameComparison::error_of(const FrameProducts& frame, const EffectSet& effects) const {
+  const Expected made = expected(frame, effects);
+  FrameError error;
+  ErrorBound& largest = error.largest;
+  double sum2 = 0.0;
+  for (std::size_t i = 0; i < sigma_e_.size(); ++i) {
+    const double difference =
+        (double(made.signal.pixels[i]) - reference_.signal.pixels[i]) / sigma_e_[i];
+    sum2 += difference * difference;
+    if (!background_[i]) continue;
+    largest.background_sigma = std::max(largest.background_sigma, std::abs(difference));
+    const double noise = reference_.noise.pixels[i];
+    largest.noise = std::max(largest.noise, std::abs(made.noise.pixels[i] - noise) / noise);
+  }
+  error.residual_sigma = std::sqrt(sum2 / double(sigma_e_.size()));
+  for (const auto& source : sources_) {
+    double e = 0.0, x_e = 0.0, y_e = 0.0;
+    for_capsule(source, light_.columns, light_.rows, [&](std::size_t i, int x, int y) {
+      const double difference = (double(made.signal.pixels[i]) - made.sky.pixels[i]) -
+                                (double(reference_.signal.pixels[i]) - reference_.sky.pixels[i]);
+      e += difference;
+      x_e += difference * (x - source.centroid.x_px);
+      y_e += difference * (y - source.centroid.y_px);
+    });
+    if (!source.counts) {
+      // Too faint for photometry: the light that it lacks, in its brightest pixel.
+      if (source.whole && source.snr < least_snr)
+        largest.background_sigma =
+            std::max(largest.background_sigma, std::abs(e) / source.light_e * source.peak_sigma);
+      continue;
+    }
+    const double ratio = std::max(1e-10, 1.0 + e / source.light_e);
+    const SourceError one{.name = source.name,
+                          .light_e = source.light_e,
+                          .snr = source.snr,
+                          .photometry_mag = std::abs(2.5 * std::log10(ratio)),
+                          .position_px = std::hypot(x_e, y_e) / source.light_e};
+    largest.photometry_mag = std::max(largest.photometry_mag, one.photometry_mag);
+    largest.position_px = std::max(largest.position_px, one.position_px);
+    error.sources.push_back(one);
+  }
+  largest.noise = std::max(largest.noise, skewness_error(effects));
+  return error;
+}
+
+// The quantile of a distribution at 3 sigma lies at 3 + 4/3 of its skewness (Cornish and Fisher).
+double FrameComparison::skewness_error(const EffectSet& effects) const {
+  const EffectFacts& photons = PhotonNoise::facts;
+  if (photons.levels[std::size_t(effects.level(photons))] != "gaussian") return 0.0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < light_.pixels.size(); ++i) {
+    const double noise = reference_.noise.pixels[i];
+    largest = std::max(largest, 4.0 / 9.0 * light_.pixels[i] / (noise * noise * noise));
+  }
+  return largest;
+}
+
+std::size_t FrameComparison::background_pixels() const {
+  return std::size_t(std::count(background_.begin(), background_.end(), true));
+}
+
+}  // namespace dmise

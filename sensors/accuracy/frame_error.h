@@ -1,0 +1,74 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/effects/accuracy.h"
+#include "sensors/accuracy/scene_frames.h"
+
+namespace dmise {
+
+/// A star or object of the reference frame, in a capsule of three point spreads around its trail.
+struct ReferenceSource {
+  bool whole = false;   // its capsule is within the frame
+  bool counts = false;  // bright, whole, alone and not saturated: errors are its own
+  std::string name;
+  PixelPosition from, to;   // of its trail
+  double margin_px = 0.0;   // around it
+  double light_e = 0.0;     // in the capsule
+  double peak_sigma = 0.0;  // in its brightest pixel, in the noise there
+  PixelPosition centroid;   // of its light
+  double snr = 0.0;         // by a matched filter
+};
+
+/// What one source lacks of the reference.
+struct SourceError {
+  std::string name;
+  double light_e = 0.0, snr = 0.0;
+  double photometry_mag = 0.0, position_px = 0.0;
+};
+
+/// What a frame lacks of the reference.
+struct FrameError {
+  ErrorBound largest;
+  std::vector<SourceError> sources;  // of those that count
+  double residual_sigma = 0.0;       // rms of the difference of all pixels, in their noise
+};
+
+/// Of sources that count.
+inline constexpr double least_snr = 5.0;
+/// Of sources whose capsule is no background.
+inline constexpr double least_snr_of_source = 0.5;
+
+/// Compares frames of one exposure with its reference, by what they expect of every pixel:
+/// docs/accuracy.md gives the definitions.
+class FrameComparison {
+ public:
+  /// `reference`: as `SceneFrames::make` gives it, with the levels of its effects.
+  FrameComparison(const SceneFrames& scene, const FrameProducts& reference,
+                  const EffectSet& effects);
+
+  const std::vector<ReferenceSource>& sources() const { return sources_; }
+  FrameError error_of(const FrameProducts& frame, const EffectSet& effects) const;
+  /// Returns how many pixels count as background.
+  std::size_t background_pixels() const;
+
+ private:
+  struct Expected {
+    ElectronImage signal, sky, noise;
+  };
+  Expected expected(const FrameProducts& frame, const EffectSet& effects) const;
+  void find_sources(const FrameProducts& reference);
+  void measure(ReferenceSource source);
+  void see_who_counts();
+  double skewness_error(const EffectSet& effects) const;
+
+  const SceneFrames& scene_;
+  EffectSet effects_;
+  ExpectedElectronImage light_;
+  Expected reference_;
+  std::vector<float> sigma_e_;  // sqrt(light + dark + read^2) of each pixel
+  std::vector<bool> background_;
+  std::vector<ReferenceSource> sources_;
+};
+
+}  // namespace dmise

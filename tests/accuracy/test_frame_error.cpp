@@ -1,0 +1,115 @@
+#include "sensors/accuracy/frame_error.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "core/base/error.h"
+
+namespace dmise {
+namespace {
+
+/// A star of 1e5 e- in the middle of 64 x 64 pixels, on a sky without structure.
+class FrameErrors : public testing::Test {
+ protected:
+  FrameErrors() {
+    setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
+    directory_ = std::filesystem::path(testing::TempDir()) /
+                 ("accuracy-" + std::to_string(getpid()) + "-" +
+                  testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(directory_);
+    std::ofstream(directory_ / "stars.csv") << "ra_deg,dec_deg,mag_v,id,bv\n85.2,0.7,9,1,0.6\n";
+    std::ofstream(directory_ / "scene.yaml") << R"(
+simulation: {start: 2018-01-21T00:15:00Z, duration_s: 5, tick_s: 5, seed: 1}
+objects: [{name: carrier, motion: {two_body: {semi_major_axis_m: 7178137, eccentricity: 0,
+  inclination_deg: 98.6, raan_deg: 0, true_anomaly_deg: 0}}}]
+stars: {catalogue: stars.csv, faintest_mag: 12}
+effects: {annual_aberration: off, diurnal_aberration: off}
+detection: off
+sensors:
+  - name: eye
+    platform: carrier
+    camera:
+      optics: {columns: 64, rows: 64, pixel_pitch_m: 1.0e-5, focal_length_m: 0.1, aperture_m: 0.05}
+      detector: {full_well_e: 1000000, gain_e_per_dn: 2, read_noise_e: 5}
+      band: {centre_m: 0.55e-6, width_m: 0.1e-6}
+    pointing: {ra_deg: 85.2, dec_deg: 0.7}
+    exposure_s: 1
+    cadence_s: 5
+    sky: 20
+)";
+    frames_.emplace(load_scenario((directory_ / "scene.yaml").string()), "eye", 1, threads_);
+    reference_ = frames_->make(frames_->sensor());
+    comparison_.emplace(*frames_, reference_, frames_->sensor().effects);
+  }
+  ~FrameErrors() override { std::filesystem::remove_all(directory_); }
+
+  FrameError error_of(const FrameProducts& frame) const {
+    return comparison_->error_of(frame, frames_->sensor().effects);
+  }
+  FrameProducts with_sources(const ExpectedElectronImage& sources) const {
+    FrameProducts frame;
+    frame.planes.background = reference_.planes.background;
+    frame.planes.sources = sources;
+    return frame;
+  }
+
+  Threads threads_{1};
+  std::filesystem::path directory_;
+  std::optional<SceneFrames> frames_;
+  FrameProducts reference_;
+  std::optional<FrameComparison> comparison_;
+};
+
+TEST_F(FrameErrors, OfTheReferenceAreNone) {
+  ASSERT_EQ(comparison_->sources().size(), 1u);
+  EXPECT_TRUE(comparison_->sources()[0].counts);
+  EXPECT_NEAR(comparison_->sources()[0].centroid.x_px, 31.5, 0.1);
+  const FrameError error = error_of(with_sources(reference_.planes.sources));
+  for (const auto& kind : error_kinds) EXPECT_EQ(error.largest.*kind.value, 0.0) << kind.key;
+  EXPECT_EQ(error.residual_sigma, 0.0);
+}
+
+TEST_F(FrameErrors, OnePercentOfLightIsOnePercentInMagnitudes) {
+  auto sources = reference_.planes.sources;
+  for (float& e : sources.pixels) e *= 1.01f;
+  const FrameError error = error_of(with_sources(sources));
+  EXPECT_NEAR(error.largest.photometry_mag, 2.5 * std::log10(1.01), 1e-5);
+  EXPECT_NEAR(error.largest.position_px, 0.0, 1e-5);
+}
+
+TEST_F(FrameErrors, AShiftByAPixelIsAPixel) {
+  auto sources = reference_.planes.sources;
+  for (int y = 0; y < sources.rows; ++y)
+    std::rotate(sources.row(y), sources.row(y) + sources.columns - 1,
+                sources.row(y) + sources.columns);
+  const FrameError error = error_of(with_sources(sources));
+  EXPECT_NEAR(error.largest.position_px, 1.0, 2e-3);
+  EXPECT_NEAR(error.largest.photometry_mag, 0.0, 2e-3);
+  EXPECT_LT(error.largest.background_sigma, 0.01);  // a misplaced source is no background
+}
+
+TEST_F(FrameErrors, BackgroundIsMeasuredInItsNoise) {
+  FrameProducts frame = with_sources(reference_.planes.sources);
+  const double sky_e = frame.planes.background.at(12, 12);  // in 1 s
+  const double noise_e = std::sqrt(sky_e + 25.0);
+  frame.planes.background.at(12, 12) += float(0.3 * noise_e);
+  const FrameError error = error_of(frame);
+  EXPECT_NEAR(error.largest.background_sigma, 0.3, 1e-4);
+  EXPECT_EQ(error.largest.photometry_mag, 0.0);
+  // Noise of the sky, the read-out and rounding to 2 e-.
+  const double variance = sky_e + 25.0 + 4.0 / 12.0;
+  EXPECT_NEAR(error.largest.noise, std::sqrt(1.0 + 0.3 * noise_e / variance) - 1.0, 1e-4);
+}
+
+TEST_F(FrameErrors, RefusesAFrameThatDoesNotExist) {
+  EXPECT_THROW(SceneFrames(frames_->scenario(), "eye", 2, threads_), ConfigError);
+  EXPECT_THROW(SceneFrames(frames_->scenario(), "ear", 1, threads_), ConfigError);
+}
+
+}  // namespace
+}  // namespace dmise
