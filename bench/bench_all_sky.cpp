@@ -125,13 +125,19 @@ void print_shares(const Scenario& scenario, const FrameTimes& exposure, const Wo
 
 }  // namespace
 
+std::string all_sky_scenario(const std::filesystem::path& directory) {
+  if (find_catalogue("stars.dat").empty()) return "";
+  const std::string path = (directory / "all-sky.yaml").string();
+  std::ofstream(path) << scenario_text(catalogue_of_18470(directory), "all-sky");
+  return path;
+}
+
 void measure_all_sky(bool json) {
   const auto directory =
       std::filesystem::temp_directory_path() / ("dmise-bench-" + std::to_string(getpid()));
   std::filesystem::create_directories(directory);
-  if (find_catalogue("stars.dat").empty()) return;  // without Debian's catalogues
-  const std::string path = (directory / "all-sky.yaml").string();
-  std::ofstream(path) << scenario_text(catalogue_of_18470(directory), "all-sky");
+  const std::string path = all_sky_scenario(directory);
+  if (path.empty()) return;
   {
     const Scenario scenario = load_scenario(path);
     Threads one(1);

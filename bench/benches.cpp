@@ -1,6 +1,8 @@
 #include "bench/benches.h"
 
 #include "bench/bench_all_sky.h"
+#include "bench/bench_calibrate.h"
+#include "bench/bench_effects.h"
 #include "bench/bench_figure5.h"
 #include "bench/bench_frame.h"
 #include "bench/bench_interpolation.h"
@@ -20,6 +22,10 @@ std::vector<Bench> benches() {
          measure_all_sky(json);
          return 0;
        }},
+      {"calibrate", "measures what effects cost here, for predicted seconds", bench_calibrate,
+       add_calibrate_options},
+      {"effects", "errors and times of planned frames over scenes drawn at random", bench_effects,
+       add_effects_options},
       {"frame", "stages of a frame on one thread", bench_frame},
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
       {"network", "number of sensor processes that keep up with real time, and their memory",
