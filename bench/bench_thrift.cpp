@@ -42,6 +42,8 @@ Raced race(const SceneFrames& frames, const std::vector<Accuracy>& accuracies) {
   raced.stages.resize(accuracies.size());
   for (int turn = 0; turn < turns; ++turn)
     for (std::size_t i = 0; i < chains.size(); ++i) {
+      if (turn > 0 && !frames.can_repeat())
+        chains[i] = frames.pipeline(planned_for(frames.sensor(), accuracies[i]), false);
       const double start = thread_seconds();
       FrameProducts frame = chains[i]->run(frames.times(), frames.world());
       const double seconds = thread_seconds() - start;

@@ -86,7 +86,7 @@ CroppedCamera cropped_camera(const std::string& name, int side_px, SceneDice& di
   if (camera.diffraction) optics["most_screens"] = "2";  // more of them only take longer
   if (camera.diffraction && dice.chance(0.5))
     optics["wavelengths"] = std::to_string(2 + dice.below(7));
-  if (camera.diffraction && dice.chance(0.15)) {
+  if (name.starts_with("hawaii") && dice.chance(0.15)) {
     optics["psf_grid"] = "{columns: 3, rows: 3}";
     optics["field_nm"] = "{coma: " + number(dice.uniform(5.0, 80.0)) + "}";
   }

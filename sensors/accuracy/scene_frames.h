@@ -24,6 +24,8 @@ class SceneFrames {
   /// Returns the chain of a sensor that differs from the scenario's in its effects and accuracy.
   /// With `planes`: it gives light and true stars too.
   std::unique_ptr<FramePipeline> pipeline(const SensorConfig& as, bool planes) const;
+  /// Whether a chain can make the frame more than once: not if the detector keeps charge in traps.
+  bool can_repeat() const { return !(sensor().camera.detector.persistence_fraction > 0.0); }
   /// Makes the frame by a new chain, with its light and true stars.
   FrameProducts make(const SensorConfig& as) const;
 
