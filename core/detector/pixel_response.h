@@ -16,13 +16,14 @@ struct PixelResponse {
   void switch_off() { prnu_rms = 0.0; }
   bool applies(const Detector&) const { return prnu_rms > 0.0; }
   void apply(const ExposureFacts& exposed, Piece& piece) const;
-  /// Of a source four deviations of one pixel that holds all of its light, of the sky five and a
-  /// half: one pixel in 26 million is beyond.
+  /// Of a source four deviations of the pattern under it, of the sky five and a half of a pixel:
+  /// one source in 16,000 and one pixel in 26 million are beyond.
   ErrorBound error(int, const PlanFacts& f) const {
     ErrorBound error =
         f.without_light([&](const SkySample& s) { return 5.5 * prnu_rms * s.sky_e; });
-    error.photometry_mag = 1.086 * 4.0 * prnu_rms;
-    error.position_px = 4.0 * prnu_rms * f.fwhm_px;
+    const double of_source = 4.0 * prnu_rms * f.pattern_share();
+    error.photometry_mag = 1.086 * of_source;
+    error.position_px = of_source * std::max(1.0, f.fwhm_px);
     return error;
   }
   static double cost_s(int level, const PlanFacts& f) { return level * 3e-9 * f.pixels(); }

@@ -59,7 +59,7 @@ struct SkyGrid {
   /// radian, the other parts by 0.5 a square radian.
   static double of_patches(const SkySample& s, const PlanFacts& f) {
     const double patch_rad = 32.0 * f.pixel_rad, zodiacal_e = s.part_e[2];
-    return 0.1 * patch_rad * zodiacal_e + 0.5 * patch_rad * patch_rad * (s.sky_e - zodiacal_e);
+    return 0.1 * patch_rad * zodiacal_e + 1.5 * patch_rad * patch_rad * (s.sky_e - zodiacal_e);
   }
   /// What cutting leaves, at most.
   static double of_cut(int level, const SkySample& s) {
@@ -96,7 +96,7 @@ struct PsfWavelengths {
   static ErrorBound error(int level, const PlanFacts& f) {
     const double width = f.relative_bandwidth / count[std::size_t(level)];
     ErrorBound error = f.dimmed_by(0.02 * width);
-    error.position_px = 0.007 * width * f.fwhm_px;
+    error.position_px = 0.0055 * width * f.fwhm_px;
     error.background_sigma = 0.1 * std::min(1.0, 3.0 * width);
     return error;
   }

@@ -89,6 +89,12 @@ struct PlanFacts {
             .background_sigma = background_sigma,
             .noise = 0.5 * background_sigma / std::max(1.0, least_noise_e())};
   }
+  /// Returns the root of the sum of squares of a point's light by pixels: a pattern of independent
+  /// pixels changes the light of a point by so much of itself.
+  double pattern_share() const {
+    const double sigma_px = std::hypot(fwhm_px / 2.355, 0.29);
+    return std::min(1.0, 0.2821 / sigma_px);
+  }
   /// Error of sources whose light is off by a factor, likewise.
   ErrorBound dimmed_by(double magnitude) const {
     const double background_sigma = 0.1 * std::min(1.0, magnitude);
