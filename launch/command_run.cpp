@@ -170,6 +170,7 @@ void run(const RunOptions& options) {
   Scenario scenario = load_scenario(options.scenario);
   if (options.seed) scenario.seed = *options.seed;
   if (!options.plan.empty()) replay_plans(options.plan, scenario);
+  scenario.network.publish_states = false;  // nobody outside this process can take them
   Scene scene = load_scene(scenario, make_clock(scenario));
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   const RunStart begin = prepare_directory(directory, scenario, options.force);

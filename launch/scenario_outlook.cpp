@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "launch/notes.h"
+#include "orbit-node/load_objects.h"
 #include "sensors/outlook/outlook_text.h"
 #include "sensors/pipeline/make_sensor.h"
 

@@ -1,8 +1,14 @@
 #include "orbit-node/orbit_actor.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace dmise {
+namespace {
+
+constexpr std::int64_t look_every_ns = 60'000'000'000;  // for absent objects
+
+}  // namespace
 
 OrbitActor::OrbitActor(const Scenario& scenario, Clock clock, Threads& threads)
     : OrbitActor(scenario, clock, load_objects(scenario, clock), threads) {}
@@ -10,22 +16,43 @@ OrbitActor::OrbitActor(const Scenario& scenario, Clock clock, Threads& threads)
 OrbitActor::OrbitActor(const Scenario& scenario, Clock clock, ObjectPopulation population,
                        Threads& threads)
     : tick_length_(scenario.tick),
+      last_tick_(scenario.last_tick()),
+      publishes_states_(scenario.network.publish_states || scenario.nodes_take_states()),
       population_(std::move(population)),
       source_(population_, std::move(clock), threads),
       told_(population_.roster.objects.size()) {}
 
+std::vector<std::string> OrbitActor::produces() const {
+  if (!publishes_states_) return {roster_topic};
+  return {roster_topic, objects_topic};
+}
+
+std::vector<Message> OrbitActor::rosters(Tick tick) const {
+  const auto roster = std::make_shared<const State>(published_roster(population_));
+  std::vector<Message> messages;
+  for (auto& topic : produces()) messages.push_back({std::move(topic), tick, roster});
+  return messages;
+}
+
 std::vector<Message> OrbitActor::resume(Tick tick, std::span<const Message>) {
   if (tick == 0) return {};  // published by the step
-  return {{objects_topic, tick, std::make_shared<State>(population_.roster)}};
+  return rosters(tick);
+}
+
+bool OrbitActor::is_looked_at(Tick tick) const {
+  const Tick every = std::max<Tick>(1, look_every_ns / tick_length_.ns);
+  return tell_ && (tick % every == 0 || tick == last_tick_);
 }
 
 std::vector<Message> OrbitActor::step(Tick tick, std::span<const Message>) {
   std::vector<Message> messages;
-  if (tick == 0)
-    messages.push_back({objects_topic, tick, std::make_shared<State>(population_.roster)});
-  ObjectStates states = source_.at(tick, {tick * tick_length_.ns});
-  tell_absent(states);
-  messages.push_back({objects_topic, tick, std::make_shared<State>(std::move(states))});
+  if (tick == 0) messages = rosters(tick);
+  if (publishes_states_ || is_looked_at(tick)) {
+    ObjectStates states = source_.at(tick, {tick * tick_length_.ns});
+    tell_absent(states);
+    if (publishes_states_)
+      messages.push_back({objects_topic, tick, std::make_shared<State>(std::move(states))});
+  }
   ++steps_;
   return messages;
 }

@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "core/config/node_kinds.h"
+#include "core/propagation/object_states.h"
 #include "core/sim/participant.h"
-#include "orbit-node/object_states.h"
+#include "orbit-node/load_objects.h"
 
 namespace dmise {
 
-/// Publishes states of all objects of a scenario at every tick, in GCRS.
+/// Publishes the roster of a scenario and, unless nobody takes them, the states of all its objects
+/// at every tick, in GCRS.
 class OrbitActor : public Actor {
  public:
   OrbitActor(const Scenario& scenario, Clock clock, Threads& threads);
@@ -19,22 +21,26 @@ class OrbitActor : public Actor {
   OrbitActor(const Scenario& scenario, Clock clock, ObjectPopulation population, Threads& threads);
 
   std::string name() const override { return orbit_node; }
-  std::vector<std::string> produces() const override { return {objects_topic}; }
+  std::vector<std::string> produces() const override;
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
   std::uint64_t progress() const override { return steps_; }
 
   /// Calls `report` with one line for each object without a state, at the first such tick; from the
-  /// thread that calls `step`.
+  /// thread that calls `step`. Without states to publish, ticks are a minute apart for this.
   void on_absence(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
 
   const std::vector<std::string>& notes() const { return population_.notes; }
   const ObjectRoster& roster() const { return population_.roster; }
 
  private:
+  std::vector<Message> rosters(Tick tick) const;
+  bool is_looked_at(Tick tick) const;
   void tell_absent(const ObjectStates& states);
 
   SimTime tick_length_;
+  Tick last_tick_;
+  bool publishes_states_;
   ObjectPopulation population_;
   StateSource source_;
   std::function<void(const std::string&)> tell_;

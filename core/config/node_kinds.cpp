@@ -10,7 +10,7 @@ bool always(const Scenario&) { return true; }
 const std::vector<NodeKind> table{
     {.name = orbit_node,
      .program = "dmise-orbit-node",
-     .topics = {"state/objects"},
+     .topics = {"state/roster", "state/objects"},
      .wanted = always},
     {.name = environment_node,
      .program = "dmise-environment-node",

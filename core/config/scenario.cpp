@@ -126,6 +126,8 @@ void read_network(const YamlValue& value, NetworkConfig& network) {
   network.restarts = static_cast<int>(map.integer_or("restarts", 5, 1, 1000000));
   network.real_time = map.number_or("real_time", 0.0, Bounds::between(0.0, 1e6));
   network.join_within_s = map.number_or("join_within_s", 30.0, Bounds::between(0.1, 86400.0));
+  network.publish_states = map.flag_or("publish_states", true);
+  network.sensors_propagate = map.flag_or("sensors_propagate", true);
   map.done();
 }
 

@@ -126,6 +126,10 @@ struct NetworkConfig {
   double join_within_s = 30.0;
   int restarts = 5;        // of each node, under `restart`
   double real_time = 0.0;  // simulated seconds per second; 0: as fast as possible
+  // States are published for subscribers that are not nodes of the scenario as well.
+  bool publish_states = true;
+  // Sensors propagate the objects that may be in their field; false: they take published states.
+  bool sensors_propagate = true;
 };
 
 /// Output files of every frame.
@@ -170,6 +174,8 @@ struct Scenario {
   /// The last tick: the first at or after the end of the run.
   Tick last_tick() const { return (duration.ns + tick.ns - 1) / tick.ns; }
   SimTime time_of(Tick k) const { return {k * tick.ns}; }
+  /// Whether nodes of the scenario need the states of objects published.
+  bool nodes_take_states() const { return output.positions() || !network.sensors_propagate; }
 };
 
 /// Reads and checks a scenario. Throws `ConfigError` with `file:line:column: key: reason, got

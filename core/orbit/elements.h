@@ -26,6 +26,8 @@ struct MeanElements {
   int element_number = 0;
   int revolution = 0;  // revolution number at epoch
   char classification = 'U';
+
+  bool operator==(const MeanElements&) const = default;
 };
 
 }  // namespace dmise

@@ -40,6 +40,7 @@ struct Message {
 };
 
 // Topics. A sensor's own topics are `prefix + sensor name`.
+inline constexpr const char* roster_topic = "state/roster";    // at tick 0
 inline constexpr const char* objects_topic = "state/objects";  // roster (tick 0), then states
 inline constexpr const char* environment_topic = "env/common";
 inline constexpr const char* site_prefix = "env/site/";  // the atmosphere above a ground sensor

@@ -8,6 +8,7 @@
 #include "core/frames/earth_orientation.h"
 #include "core/frames/vec.h"
 #include "core/orbit/attitude_interpolation.h"
+#include "core/orbit/elements.h"
 #include "core/sim/geometry.h"
 
 // Data exchanged between actors and evaluators, the same in one process and across a network.
@@ -28,6 +29,7 @@ struct ObjectInfo {
 /// All objects of a run; the position in this list is the object's index everywhere else.
 struct ObjectRoster {
   std::vector<ObjectInfo> objects;
+  std::vector<MeanElements> elements;  // of the first objects, those that SGP4 moves
 
   bool operator==(const ObjectRoster&) const = default;
 };

@@ -16,7 +16,7 @@ Encoded encode_body(const FrameReport&);
 Encoded encode_body(const DetectionSet&);
 Encoded encode_body(const TruthSet&);
 
-ObjectRoster decode_roster(std::string_view payload);
+ObjectRoster decode_roster(std::string_view payload, std::string_view arrays);
 ObjectStates decode_states(std::string_view payload, std::string_view arrays);
 EnvironmentState decode_environment(std::string_view payload);
 SiteState decode_site(std::string_view payload);

@@ -16,8 +16,8 @@ constexpr const char* type_name = sizeof(T) == 1   ? "uint8"
                                   : sizeof(T) == 4 ? "uint32"
                                                    : "float64";
 
-template <class T>
-void append_array(v1::ObjectStates* message, std::string* bytes, const char* name,
+template <class T, class M>
+void append_array(M* message, std::string* bytes, const char* name,
                   std::initializer_list<std::size_t> shape, const std::vector<T>& values) {
   auto* layout = message->add_arrays();
   layout->set_name(name);
@@ -27,8 +27,8 @@ void append_array(v1::ObjectStates* message, std::string* bytes, const char* nam
   bytes->append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
 }
 
-template <class T>
-std::vector<T> take_array(const v1::ObjectStates& message, std::string_view bytes, const char* name,
+template <class T, class M>
+std::vector<T> take_array(const M& message, std::string_view bytes, const char* name,
                           std::initializer_list<std::size_t> shape) {
   for (const auto& layout : message.arrays()) {
     if (layout.name() != name) continue;
@@ -60,6 +60,27 @@ std::optional<SunTrackingPanel> decode_panel(const v1::SunTrackingPanel& p) {
                           .normal = {p.normal_x(), p.normal_y(), p.normal_z()}};
 }
 
+/// What SGP4 takes of an element set, in the order of the array.
+constexpr double MeanElements::*element_rows[] = {&MeanElements::epoch_jd1,
+                                                  &MeanElements::epoch_jd2,
+                                                  &MeanElements::mean_motion_rad_per_min,
+                                                  &MeanElements::eccentricity,
+                                                  &MeanElements::inclination_rad,
+                                                  &MeanElements::raan_rad,
+                                                  &MeanElements::argument_of_perigee_rad,
+                                                  &MeanElements::mean_anomaly_rad,
+                                                  &MeanElements::bstar_per_earth_radius};
+constexpr std::size_t rows_of_elements = std::size(element_rows);
+
+/// Number of objects with elements: the second extent of their array, 0 without one.
+std::size_t element_count(const v1::ObjectRoster& message) {
+  if (message.arrays_size() == 0) return 0;
+  const auto& layout = message.arrays(0);
+  if (layout.shape_size() != 2 || layout.shape(1) > std::uint64_t(message.objects_size()))
+    throw Refused(Refusal::payload, "elements: wrong type or shape");
+  return layout.shape(1);
+}
+
 /// Number of objects with an attitude: the extent of their list of indices, 0 without one.
 std::size_t attitude_count(const v1::ObjectStates& message) {
   for (const auto& layout : message.arrays()) {
@@ -86,10 +107,18 @@ Encoded encode_body(const ObjectRoster& roster) {
     o->set_element_age_s(object.element_age_s);
     if (object.panel) encode_panel(*object.panel, o->mutable_panel());
   }
-  return {MessageKind::object_roster, message.SerializeAsString(), {}};
+  std::string arrays;
+  if (const std::size_t k = roster.elements.size(); k > 0) {
+    std::vector<double> values;
+    values.reserve(rows_of_elements * k);
+    for (const auto row : element_rows)
+      for (const MeanElements& elements : roster.elements) values.push_back(elements.*row);
+    append_array(&message, &arrays, "elements", {rows_of_elements, k}, values);
+  }
+  return {MessageKind::object_roster, message.SerializeAsString(), std::move(arrays)};
 }
 
-ObjectRoster decode_roster(std::string_view payload) {
+ObjectRoster decode_roster(std::string_view payload, std::string_view arrays) {
   const auto message = parse<v1::ObjectRoster>(payload);
   ObjectRoster roster;
   roster.objects.reserve(std::size_t(message.objects_size()));
@@ -100,6 +129,13 @@ ObjectRoster decode_roster(std::string_view payload) {
                               .geometry = DiffuseSphere{o.radius_m(), o.albedo()},
                               .element_age_s = o.element_age_s(),
                               .panel = o.has_panel() ? decode_panel(o.panel()) : std::nullopt});
+  if (const std::size_t k = element_count(message); k > 0) {
+    const auto values = take_array<double>(message, arrays, "elements", {rows_of_elements, k});
+    roster.elements.resize(k);
+    for (std::size_t row = 0; row < rows_of_elements; ++row)
+      for (std::size_t i = 0; i < k; ++i)
+        roster.elements[i].*element_rows[row] = values[row * k + i];
+  }
   return roster;
 }
 

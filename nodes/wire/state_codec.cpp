@@ -11,12 +11,12 @@ Encoded encode(const State& state) {
 }
 
 State decode(MessageKind kind, std::string_view payload, std::string_view arrays) {
-  if (kind != MessageKind::object_states && !arrays.empty())
+  if (kind != MessageKind::object_states && kind != MessageKind::object_roster && !arrays.empty())
     throw Refused(Refusal::payload, "arrays that this kind does not have");
   State state = [&]() -> State {
     switch (kind) {
       case MessageKind::object_roster:
-        return decode_roster(payload);
+        return decode_roster(payload, arrays);
       case MessageKind::object_states:
         return decode_states(payload, arrays);
       case MessageKind::environment_state:

@@ -119,6 +119,12 @@ void check(const ObjectRoster& roster) {
     finite(object.element_age_s, "element_age_s");
     if (object.panel) check(*object.panel);
   }
+  if (roster.elements.size() > roster.objects.size()) refuse("elements", "of more objects");
+  for (const MeanElements& e : roster.elements)
+    for (const double value :
+         {e.epoch_jd1, e.epoch_jd2, e.mean_motion_rad_per_min, e.eccentricity, e.inclination_rad,
+          e.raan_rad, e.argument_of_perigee_rad, e.mean_anomaly_rad, e.bstar_per_earth_radius})
+      finite(value, "elements");
 }
 
 void check_attitudes(const ObjectStates& s) {
@@ -290,7 +296,7 @@ struct Place {
   const SimTime* time = nullptr;
 };
 
-Place place(const ObjectRoster&) { return {objects_topic}; }
+Place place(const ObjectRoster&) { return {roster_topic}; }
 Place place(const ObjectStates& s) { return {objects_topic, &s.tick, &s.time}; }
 Place place(const EnvironmentState& s) { return {environment_topic, &s.tick, &s.time}; }
 Place place(const SiteState& s) { return {site_prefix + s.sensor, &s.tick, &s.time}; }
@@ -306,7 +312,10 @@ void check(const State& state) {
 
 void check_place(const std::string& topic, const Envelope& envelope, const State& state) {
   const Place where = std::visit([](const auto& s) { return place(s); }, state);
-  if (topic != where.topic) throw Refused(Refusal::topic, topic + ": a state of " + where.topic);
+  // The roster precedes the states on their topic as well.
+  const bool on_either = topic == objects_topic && std::holds_alternative<ObjectRoster>(state);
+  if (topic != where.topic && !on_either)
+    throw Refused(Refusal::topic, topic + ": a state of " + where.topic);
   if ((where.tick && *where.tick != envelope.tick) || (where.time && *where.time != envelope.time))
     throw Refused(Refusal::tick, topic + ": the state is of another tick than its envelope");
 }

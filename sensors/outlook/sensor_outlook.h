@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "core/propagation/object_states.h"
 #include "core/time/clock.h"
-#include "orbit-node/object_states.h"
 #include "sensors/outlook/camera_figures.h"
 #include "sensors/outlook/frame_outlook.h"
 

@@ -161,7 +161,12 @@ std::uint32_t FramePipeline::most_frames_made_again() const {
   return 2 * std::min(persistence_window(detector.persistence_s, sensor.cadence_s), 1u << 30);
 }
 
-FrameProducts FramePipeline::run(const FrameTimes& times, const World& world) {
+FrameProducts FramePipeline::run(const FrameTimes& times, const World& world,
+                                 StatesInField* states) {
+  const auto make = [&](const FrameTimes& exposure) {
+    if (!states) return work_->make(exposure, world);
+    return work_->make(exposure, states->around(world, work_->settings.sensor, exposure));
+  };
   FrameProducts frame;
   double total_s = 0.0;
   {
@@ -169,8 +174,8 @@ FrameProducts FramePipeline::run(const FrameTimes& times, const World& world) {
     auto earlier = first_frame_for(times.frame);
     if (earlier < times.frame) work_->detector_memory.persistence = {};
     for (; earlier < times.frame; ++earlier)
-      work_->give_back(work_->make(frame_times(work_->settings.sensor, earlier), world).counts);
-    frame = work_->make(times, world);
+      work_->give_back(make(frame_times(work_->settings.sensor, earlier)).counts);
+    frame = make(times);
   }
   frame.total_s = total_s;
   return frame;

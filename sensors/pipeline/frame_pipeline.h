@@ -15,6 +15,7 @@
 #include "sensors/pipeline/frame_times.h"
 #include "sensors/pipeline/object_shapes.h"
 #include "sensors/pipeline/star_layer.h"
+#include "sensors/pipeline/states_in_field.h"
 #include "sensors/pipeline/world.h"
 
 namespace dmise {
@@ -44,6 +45,8 @@ struct PipelineSettings {
   bool star_truth = false;
   OutputConfig output;                         // flags and planes that are wanted
   std::shared_ptr<const ObjectShapes> shapes;  // null: all objects are points
+  // The scenario's own objects, for a sensor that propagates states; null: it takes published ones.
+  std::shared_ptr<const std::vector<OwnObject>> propagated;
   /// Parts of the band in which the radiance map has channels, with the surfaces in them.
   struct Part {
     Band band;
@@ -62,7 +65,9 @@ class FramePipeline {
 
   /// Makes one frame. `world` holds the states from the exposure of `first_frame_for` it on: with
   /// persistence a frame depends on the ones before it, which are made first where they were not.
-  FrameProducts run(const FrameTimes& exposure, const World& world);
+  /// With `states` it holds ticks without states, which `states` propagates.
+  FrameProducts run(const FrameTimes& exposure, const World& world,
+                    StatesInField* states = nullptr);
 
   /// Takes back the counts of a finished frame, so that the next frame reuses their memory.
   void give_back(CountImage counts);

@@ -27,6 +27,11 @@ std::shared_ptr<const StarMap> load_stars(const Scenario& scenario) {
   }
 }
 
+std::shared_ptr<const std::vector<OwnObject>> propagated_by_sensors(const Scenario& scenario) {
+  if (!scenario.network.sensors_propagate) return nullptr;
+  return std::make_shared<const std::vector<OwnObject>>(scenario.own_objects);
+}
+
 std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,
                                              const std::string& digest,
                                              const std::string& directory,
@@ -48,6 +53,7 @@ std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std
                        .output = scenario.output,
                        .shapes = std::make_shared<const ObjectShapes>(
                            scenario.own_objects, sensor.camera.band, sensor.effects),
+                       .propagated = propagated_by_sensors(scenario),
                        .radiance_parts = std::move(parts)},
       RunGrid{.tick_length = scenario.tick,
               .duration = scenario.duration,

@@ -10,6 +10,9 @@ namespace dmise {
 /// directory ($XDG_CACHE_HOME/dmise or ~/.cache/dmise) for the next process.
 std::shared_ptr<const StarMap> load_stars(const Scenario& scenario);
 
+/// The scenario's own objects if its sensors propagate states; null if they take published ones.
+std::shared_ptr<const std::vector<OwnObject>> propagated_by_sensors(const Scenario& scenario);
+
 /// The sensor `name` of the scenario. `digest` goes into its frames; `directory` is the run's, the
 /// sensor writes into its own below it.
 std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,

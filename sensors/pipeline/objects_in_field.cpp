@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "core/base/units.h"
 #include "core/optics/projection.h"
+#include "core/orbit/cone_test.h"
 #include "core/visibility/crossing.h"
 #include "core/visibility/field_of_view.h"
 #include "core/visibility/sight.h"
@@ -23,6 +25,19 @@ constexpr double greatest_pull_m_per_s2 = 20.0;
 /// missed.
 constexpr double shortest_share = 1e-3;
 constexpr double shortest_crossing_s = 0.02;
+
+/// Greatest acceleration and speed of what orbits the Earth above its surface.
+constexpr double greatest_fall_m_per_s2 = 10.0;
+constexpr double greatest_speed_m_per_s = 11300.0;
+
+/// SGP4's velocity differs from the derivative of its position by less.
+constexpr double greatest_slope_error_m_per_s = 20.0;
+
+/// Rounding, and frames that turn a little between two times.
+constexpr double rough_margin_m = 1000.0;
+
+/// Cones wider than this, and cameras that turn more during half the exposure, are not told apart.
+constexpr double widest_rough_cone_rad = 170.0 * deg, most_turning_rad = 0.1;
 
 /// The camera's turning is taken from attitudes no farther apart than this.
 constexpr double longest_look_s = 10.0;
@@ -63,6 +78,9 @@ class FieldCone {
         return true;
     return false;
   }
+
+  /// Objects of `rough` that `crossed_by` may accept.
+  std::vector<std::uint32_t> candidates(const RoughPlaces& rough);
 
   /// `radius_m`: of the sphere about the object that holds it.
   bool crossed_by(std::size_t object, double radius_m) {
@@ -120,14 +138,79 @@ class FieldCone {
   std::map<std::int64_t, Moment> moments_;
 };
 
+std::vector<std::uint32_t> FieldCone::candidates(const RoughPlaces& rough) {
+  std::vector<std::uint32_t> found;
+  const auto all = [&] {
+    found.resize(rough.count);
+    std::iota(found.begin(), found.end(), 0u);
+    return found;
+  };
+  const double turning_rad = turn_rad_per_s_ * half_s_;
+  const double half_rad = std::atan2(sin_, cos_) + std::asin(std::min(1.0, turning_rad));
+  if (half_rad > widest_rough_cone_rad || turning_rad > most_turning_rad) return all();
+
+  const SimTime middle = view_.times().middle;
+  const Moment& now = moment(middle);
+  const double dt_s = (middle - rough.time).seconds();
+  const double error_m = 0.5 * greatest_fall_m_per_s2 * dt_s * dt_s +
+                         greatest_slope_error_m_per_s * std::abs(dt_s) +
+                         rough.interpolation_error_m + rough_margin_m;
+  const double pull_m_per_s = greatest_pull_m_per_s2 * half_s_ + greatest_slope_error_m_per_s +
+                              greatest_fall_m_per_s2 * std::abs(dt_s);
+  const double fastest_m_per_s =
+      greatest_speed_m_per_s + norm(now.observer.velocity_m_per_s) + pull_m_per_s;
+  // What moves this far from the cone of the middle, and twice as far because the camera turns, is
+  // in a cone whose apex lies behind.
+  const double reach_m = 2.0 * (fastest_m_per_s * half_s_ * (1.0 + turning_rad) + error_m);
+  const auto teme_from_gcrs = rough.gcrs_from_teme.inverse();
+  const Vec<Gcrs> axis = now.camera.inverse() * Vec<CameraFrame>{0, 0, 1};
+  const Vec<Gcrs> apex_m = now.observer.position_m - axis * (reach_m / std::sin(half_rad));
+  const Cone cone{teme_from_gcrs * apex_m, unit(teme_from_gcrs * axis), half_rad};
+
+  const std::size_t stride = rough.code.size(), n = rough.count;
+  std::vector<double> position_m(3 * n);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double *from_m = rough.position_m.data() + c * stride,
+                 *speed = rough.velocity_m_per_s.data() + c * stride;
+    for (std::size_t i = 0; i < n; ++i) position_m[c * n + i] = from_m[i] + speed[i] * dt_s;
+  }
+  std::vector<std::uint64_t> inside(cone_words(n));
+  cone_test(position_m, {&cone, 1}, inside);
+  std::vector<std::uint32_t> in_cone(n);
+  in_cone.resize(objects_in(inside, in_cone));
+
+  const Vec<Teme> from_m = teme_from_gcrs * now.observer.position_m;
+  const Vec<Teme> carried = teme_from_gcrs * now.observer.velocity_m_per_s;
+  for (const std::uint32_t i : in_cone) {
+    const auto& v = rough.velocity_m_per_s;
+    const Vec<Teme> line =
+        Vec<Teme>{position_m[i], position_m[n + i], position_m[2 * n + i]} - from_m;
+    const double speed =
+        norm(Vec<Teme>{v[i], v[stride + i], v[2 * stride + i]} - carried) + pull_m_per_s;
+    const double reach_of_it_m =
+        (speed + turn_rad_per_s_ * (norm(line) + error_m + speed * half_s_)) * half_s_ + error_m;
+    if (outside_cone_m(line, cone.axis, cos_, sin_) <= reach_of_it_m) found.push_back(i);
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    if (rough.code[i] != 0) found.push_back(std::uint32_t(i));
+  return found;
+}
+
 }  // namespace
+
+std::vector<std::uint32_t> may_be_in_field(const View& view, const RoughPlaces& rough) {
+  return FieldCone(view).candidates(rough);
+}
 
 std::vector<std::size_t> objects_in_field(const View& view, const ObjectShapes* shapes) {
   const auto& exposure = view.times();
   const auto& world = view.world();
   FieldCone cone(view);
   std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < world.object_count(); ++i) {
+  const auto& known = world.restricted_to();
+  const std::size_t count = known ? known->size() : world.object_count();
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = known ? (*known)[k] : k;
     if (view.platform() == i || !world.has_state(i, exposure.start) ||
         !world.has_state(i, exposure.end) || !world.has_state(i, exposure.middle))
       continue;

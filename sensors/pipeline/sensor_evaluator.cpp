@@ -19,7 +19,9 @@ SensorEvaluator::SensorEvaluator(PipelineSettings settings, const RunGrid& grid,
       shapes_(settings.shapes),
       pipeline_(settings, std::move(stars), threads),
       writer_(std::move(directory), output, settings.clock),
-      world_(grid.interpolation, grid.last_tick()) {}
+      world_(grid.interpolation, grid.last_tick()),
+      propagated_(settings.propagated),
+      clock_(settings.clock) {}
 
 Tick SensorEvaluator::ready_at(std::uint32_t frame) const {
   return tick_needed(grid_.interpolation, frame_times(sensor_, frame).end, grid_.tick_length,
@@ -37,7 +39,7 @@ std::vector<std::string> SensorEvaluator::consumes() const {
   std::vector<std::string> topics;
   if (effects.has(SpaceObjects::facts) || !on_ground ||
       std::holds_alternative<PointTarget>(sensor_.pointing))
-    topics.push_back(objects_topic);
+    topics.push_back(propagates() ? roster_topic : objects_topic);
   topics.push_back(environment_topic);
   if (on_ground &&
       (effects.has(AtmosphericRefraction::facts) || effects.has(AirExtinction::facts) ||
@@ -48,8 +50,15 @@ std::vector<std::string> SensorEvaluator::consumes() const {
 
 void SensorEvaluator::take_in(std::span<const Message> inputs) {
   for (const auto& message : inputs) {
-    if (const auto* roster = std::get_if<ObjectRoster>(message.state.get()))
-      world_.add(std::shared_ptr<const ObjectRoster>(message.state, roster));
+    if (const auto* roster = std::get_if<ObjectRoster>(message.state.get())) {
+      if (propagates()) {
+        const auto objects = propagated_objects(message.state, *propagated_, clock_);
+        world_.add(std::shared_ptr<const ObjectRoster>(objects, &objects->population.roster));
+        states_.emplace(objects, grid_.tick_length);
+      } else {
+        world_.add(std::shared_ptr<const ObjectRoster>(message.state, roster));
+      }
+    }
     if (const auto* states = std::get_if<ObjectStates>(message.state.get()))
       world_.add(std::shared_ptr<const ObjectStates>(message.state, states));
     if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
@@ -57,6 +66,10 @@ void SensorEvaluator::take_in(std::span<const Message> inputs) {
     if (const auto* state = std::get_if<SiteState>(message.state.get()))
       world_.add(std::shared_ptr<const SiteState>(message.state, state));
   }
+}
+
+void SensorEvaluator::add_tick(Tick tick) {
+  if (propagates()) world_.add_tick(tick, {tick * grid_.tick_length.ns});
 }
 
 Tick SensorEvaluator::look_back() const {
@@ -70,6 +83,8 @@ Tick SensorEvaluator::look_back() const {
 
 std::vector<Message> SensorEvaluator::resume(Tick tick, std::span<const Message> past) {
   take_in(past);
+  for (Tick before = std::max<Tick>(0, tick - look_back()); before < tick; ++before)
+    add_tick(before);
   // Frames that were not ready at the last tick made before are still to be made: none that ends
   // after it is.
   next_frame_ = tick == 0 ? 1 : frames_within(sensor_, {(tick - 1) * grid_.tick_length.ns}) + 1;
@@ -81,6 +96,7 @@ std::vector<Message> SensorEvaluator::resume(Tick tick, std::span<const Message>
 
 std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> inputs) {
   take_in(inputs);
+  add_tick(tick);
   std::vector<Message> messages;
   while (next_frame_ <= last_frame_ && !stop_asked_()) {
     const FrameTimes exposure = frame_times(sensor_, next_frame_);
@@ -88,7 +104,7 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
       world_.forget_before(frame_times(sensor_, pipeline_.first_frame_for(next_frame_)).start);
       break;
     }
-    FrameProducts frame = pipeline_.run(exposure, world_);
+    FrameProducts frame = pipeline_.run(exposure, world_, states_ ? &*states_ : nullptr);
     writer_.write(frame);
     pipeline_.give_back(std::move(frame.counts));
     detections_ += static_cast<long>(frame.detections.size());

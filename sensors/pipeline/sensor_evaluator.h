@@ -29,8 +29,8 @@ class SensorEvaluator : public Evaluator {
 
   std::string name() const override { return sensor_.name; }
   std::vector<std::string> produces() const override;
-  /// The topics that its frames need: objects where they are drawn, carry the sensor or are its
-  /// target; the air where an effect of it acts.
+  /// The topics that its frames need: the roster, or states, where objects are drawn, carry the
+  /// sensor or are its target; the air where an effect of it acts.
   std::vector<std::string> consumes() const override;
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   /// The ticks around the exposure that is open when it resumes, those around the frames that must
@@ -54,6 +54,8 @@ class SensorEvaluator : public Evaluator {
   /// Returns the tick at which all states that a frame needs are known.
   Tick ready_at(std::uint32_t frame) const;
   void take_in(std::span<const Message> inputs);
+  bool propagates() const { return propagated_ != nullptr; }
+  void add_tick(Tick tick);
 
   SensorConfig sensor_;
   RunGrid grid_;
@@ -62,6 +64,9 @@ class SensorEvaluator : public Evaluator {
   FramePipeline pipeline_;
   ProductWriter writer_;
   World world_;
+  std::shared_ptr<const std::vector<OwnObject>> propagated_;  // null: takes published states
+  Clock clock_;
+  std::optional<StatesInField> states_;  // once the roster is known
   std::function<bool()> stop_asked_ = [] { return false; };
   std::uint32_t next_frame_ = 1;
   long detections_ = 0;

@@ -1,5 +1,8 @@
 #include "sensors/pipeline/world.h"
 
+#include <algorithm>
+#include <charconv>
+
 #include "core/base/error.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
@@ -28,9 +31,37 @@ World::Around World::around(SimTime t) const {
   throw Error("no object states at " + std::to_string(t.seconds()) + " s");
 }
 
+KnotTicks World::ticks_for(SimTime start, SimTime end) const {
+  const auto ticks_at = [&](SimTime t) {
+    const Around interval = around(t);
+    const KnotTicks two{interval.before->tick, interval.after->tick};
+    if (order_ == HermiteOrder::cubic || interval.before == interval.after) return two;
+    return knot_ticks(order_, interval.before->tick, last_tick_);
+  };
+  return {ticks_at(start).first, ticks_at(end).last};
+}
+
+void World::set_states(std::vector<std::uint32_t> objects, std::vector<ObjectStates> states) {
+  for (auto& of_tick : states)
+    for (auto& held : states_)
+      if (held->tick == of_tick.tick) {
+        held = std::make_shared<const ObjectStates>(std::move(of_tick));
+        break;
+      }
+  known_ = std::move(objects);
+}
+
+std::optional<std::size_t> World::place(std::size_t i) const {
+  if (!known_) return i;
+  const auto found = std::lower_bound(known_->begin(), known_->end(), i);
+  if (found == known_->end() || *found != i) return std::nullopt;
+  return std::size_t(found - known_->begin());
+}
+
 bool World::has_state(std::size_t i, SimTime t) const {
   const auto [before, after, index] = around(t);
-  return before->code[i] == 0 && after->code[i] == 0;
+  const auto k = place(i);
+  return k && before->code[*k] == 0 && after->code[*k] == 0;
 }
 
 const ObjectStates& World::at_tick(const Around& interval, Tick tick) const {
@@ -41,13 +72,13 @@ const ObjectStates& World::at_tick(const Around& interval, Tick tick) const {
   return *states_[static_cast<std::size_t>(index)];
 }
 
-bool World::has_states(std::size_t i, const Around& interval, const KnotTicks& knots) const {
+bool World::has_states(std::size_t place, const Around& interval, const KnotTicks& knots) const {
   for (Tick tick = knots.first; tick <= knots.last; ++tick)
-    if (at_tick(interval, tick).code[i] != 0) return false;
+    if (at_tick(interval, tick).code[place] != 0) return false;
   return true;
 }
 
-Motion World::of_higher_order(std::size_t i, const Around& interval, const KnotTicks& knots,
+Motion World::of_higher_order(std::size_t place, const Around& interval, const KnotTicks& knots,
                               double u) const {
   const double tick_s = (interval.after->time - interval.before->time).seconds();
   const HermiteWeights w =
@@ -56,15 +87,18 @@ Motion World::of_higher_order(std::size_t i, const Around& interval, const KnotT
   Motion motion;
   for (std::size_t k = 0; k < static_cast<std::size_t>(w.count); ++k) {
     const ObjectStates& knot = at_tick(interval, knots.first + static_cast<Tick>(k));
-    const Vec<Gcrs> position_m = knot.position(i), slope_m_per_s = knot.slope(i);
+    const Vec<Gcrs> position_m = knot.position(place), slope_m_per_s = knot.slope(place);
     motion.position_m += position_m * w.position[k] + slope_m_per_s * w.slope_s[k];
     motion.slope_m_per_s += position_m * w.position_per_s[k] + slope_m_per_s * w.slope[k];
   }
   return motion;
 }
 
-Motion World::motion(std::size_t i, SimTime t) const {
+Motion World::motion(std::size_t object, SimTime t) const {
   const Around interval = around(t);
+  const auto known = place(object);
+  if (!known) throw Error("no states of object " + std::to_string(object));
+  const std::size_t i = *known;
   const auto [before, after, index] = interval;
   if (before == after) return {before->position(i), before->slope(i)};
   const double tick_s = (after->time - before->time).seconds();
@@ -83,7 +117,9 @@ Motion World::motion(std::size_t i, SimTime t) const {
 
 std::optional<Rotation<Gcrs, Body>> World::gcrs_from_body(std::size_t i, SimTime t) const {
   const auto [before, after, index] = around(t);
-  const auto start = before->attitude(i), end = after->attitude(i);
+  const auto k = place(i);
+  if (!k) return std::nullopt;
+  const auto start = before->attitude(*k), end = after->attitude(*k);
   if (!start || !end) return std::nullopt;
   if (before == after) return rotation_of<Gcrs, Body>(start->gcrs_from_body);
   const double tick_s = (after->time - before->time).seconds();
@@ -124,9 +160,12 @@ const SiteState* World::site(const std::string& sensor, SimTime t) const {
 std::size_t object_index(const ObjectRoster& roster, const std::string& name,
                          const std::string& what) {
   std::size_t found = roster.objects.size();
+  std::uint32_t number = 0;
+  std::from_chars(name.data(), name.data() + name.size(), number);
+  const bool is_number = std::to_string(number) == name;
   for (std::size_t i = 0; i < roster.objects.size(); ++i) {
     const auto& object = roster.objects[i];
-    if (std::to_string(object.catalogue_number) == name) return i;
+    if (is_number && object.catalogue_number == number) return i;
     if (object.name != name) continue;
     if (found < roster.objects.size())
       throw ConfigError(what + ": several objects have this name, give the catalogue number, got " +

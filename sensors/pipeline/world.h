@@ -28,6 +28,10 @@ class World {
 
   void add(std::shared_ptr<const ObjectRoster> roster) { roster_ = std::move(roster); }
   void add(std::shared_ptr<const ObjectStates> states) { states_.push_back(std::move(states)); }
+  /// Adds a tick whose states are not known: `set_states` gives those that an exposure needs.
+  void add_tick(Tick tick, SimTime time) {
+    add(std::make_shared<const ObjectStates>(ObjectStates{.tick = tick, .time = time}));
+  }
   void add(std::shared_ptr<const EnvironmentState> state) {
     environment_.push_back(std::move(state));
   }
@@ -35,8 +39,16 @@ class World {
   /// Forgets what is not needed for times >= `t`.
   void forget_before(SimTime t);
 
+  /// Ticks that the states in [start, end] are interpolated from.
+  KnotTicks ticks_for(SimTime start, SimTime end) const;
+  /// Restricts the world to `objects`, ascending indices, with their states at `ticks_for` an
+  /// exposure: `states` has those of one tick, object k of which is `objects[k]`.
+  void set_states(std::vector<std::uint32_t> objects, std::vector<ObjectStates> states);
+
   const ObjectRoster& roster() const { return *roster_; }
   std::size_t object_count() const { return roster_ ? roster_->objects.size() : 0; }
+  /// Indices of the objects whose states are known, if not all.
+  const std::optional<std::vector<std::uint32_t>>& restricted_to() const { return known_; }
 
   /// Whether object `i` has a state at both ticks around `t`.
   bool has_state(std::size_t i, SimTime t) const;
@@ -59,15 +71,18 @@ class World {
     std::size_t index = 0;  // of `before` in `states_`
   };
   Around around(SimTime t) const;
-  Motion of_higher_order(std::size_t i, const Around& interval, const KnotTicks& knots,
+  /// Place of object `i` in the states; nothing if its states are not known.
+  std::optional<std::size_t> place(std::size_t i) const;
+  Motion of_higher_order(std::size_t place, const Around& interval, const KnotTicks& knots,
                          double u) const;
-  bool has_states(std::size_t i, const Around& interval, const KnotTicks& knots) const;
+  bool has_states(std::size_t place, const Around& interval, const KnotTicks& knots) const;
   const ObjectStates& at_tick(const Around& interval, Tick tick) const;
 
   HermiteOrder order_ = HermiteOrder::cubic;
   Tick last_tick_ = std::numeric_limits<Tick>::max() / 2;
   std::shared_ptr<const ObjectRoster> roster_;
   std::deque<std::shared_ptr<const ObjectStates>> states_;
+  std::optional<std::vector<std::uint32_t>> known_;  // ascending; none: all
   std::deque<std::shared_ptr<const EnvironmentState>> environment_;
   std::deque<std::shared_ptr<const SiteState>> sites_;
 };

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
-#include "tests/orbit/elements_equal.h"
 #include "tests/support/data.h"
 
 namespace dmise {

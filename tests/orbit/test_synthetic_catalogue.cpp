@@ -10,7 +10,6 @@
 #include "core/orbit/catalogue.h"
 #include "core/orbit/catalogue_report.h"
 #include "core/orbit/element_text.h"
-#include "tests/orbit/elements_equal.h"
 #include "tests/support/data.h"
 
 namespace dmise {

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/orbit/elements_equal.h"
-
 namespace dmise {
 namespace {
 

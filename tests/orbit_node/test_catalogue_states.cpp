@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "orbit-node/object_states.h"
+#include "core/propagation/object_states.h"
 #include "sensors/pipeline/objects_in_field.h"
 #include "sensors/pipeline/view.h"
 #include "tests/orbit_node/scenario_directory.h"

@@ -1,4 +1,4 @@
-#include "orbit-node/object_states.h"
+#include "core/propagation/object_states.h"
 
 #include <gmock/gmock.h>
 

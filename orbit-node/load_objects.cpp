@@ -1,4 +1,4 @@
-#include "orbit-node/object_population.h"
+#include "orbit-node/load_objects.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,12 +2,11 @@
 #include <string>
 #include <vector>
 
-#include "core/config/scenario.h"
+#include "core/config/object_config.h"
 #include "core/orbit/attitude.h"
 #include "core/orbit/elements.h"
 #include "core/orbit/motion.h"
 #include "core/sim/state.h"
-#include "core/time/clock.h"
 
 namespace dmise {
 
@@ -20,17 +19,19 @@ struct ObjectAttitude {
 /// by SGP4 first, those of catalogues before the scenario's, then those of other models: object i
 /// has `elements[i]` or `models[i - elements.size()]`.
 struct ObjectPopulation {
-  ObjectRoster roster;
+  ObjectRoster roster;  // without elements
   std::vector<MeanElements> elements;
   std::vector<MotionModel> models;
   std::vector<ObjectAttitude> attitudes;  // by ascending index
   std::vector<std::string> notes;  // one line each: records refused, stale elements, short spans
 };
 
-/// Reads the scenario's catalogues. An object in several catalogues is taken from the first; an
-/// object of the scenario replaces a catalogue's object of its number. Throws `ConfigError` if
-/// `only` names a missing object, if a trajectory or an attitude does not overlap the run, or if it
-/// ends during the run and a sensor depends on it.
-ObjectPopulation load_objects(const Scenario& scenario, const Clock& clock);
+/// Returns the roster as it is published, with the element sets.
+ObjectRoster published_roster(const ObjectPopulation& population);
+
+/// Returns the population of a published roster: element sets are the roster's, other motions and
+/// all attitudes those of the scenario's own objects. Throws `Error` if the roster is not one of a
+/// scenario with these objects.
+ObjectPopulation population_of(const ObjectRoster& roster, const std::vector<OwnObject>& own);
 
 }  // namespace dmise

@@ -1,0 +1,40 @@
+#include "core/propagation/object_population.h"
+
+#include "core/base/error.h"
+
+namespace dmise {
+
+ObjectRoster published_roster(const ObjectPopulation& population) {
+  ObjectRoster roster = population.roster;
+  roster.elements = population.elements;
+  return roster;
+}
+
+ObjectPopulation population_of(const ObjectRoster& roster, const std::vector<OwnObject>& own) {
+  ObjectPopulation population{.roster = {.objects = roster.objects}, .elements = roster.elements};
+  std::size_t own_by_elements = 0;
+  for (const auto& object : own)
+    own_by_elements += std::holds_alternative<MeanElements>(object.motion.model);
+  const std::size_t by_elements = roster.elements.size();
+  if (by_elements < own_by_elements ||
+      by_elements + own.size() - own_by_elements != roster.objects.size())
+    throw Error("the roster is not of this scenario: " + std::to_string(roster.objects.size()) +
+                " objects, " + std::to_string(by_elements) + " of them with elements");
+  std::size_t with_elements = by_elements - own_by_elements, with_model = by_elements;
+  // As loaded: own objects in the scenario's order, those of SGP4 first.
+  std::vector<const OwnObject*> object_at(roster.objects.size(), nullptr);
+  for (const auto& object : own) {
+    const auto* model = std::get_if<MotionModel>(&object.motion.model);
+    const std::size_t i = model ? with_model++ : with_elements++;
+    if (roster.objects[i].name != object.name)
+      throw Error("the roster is not of this scenario: " + roster.objects[i].name +
+                  " in the place of " + object.name);
+    if (model) population.models.push_back(*model);
+    object_at[i] = &object;
+  }
+  for (std::size_t i = by_elements - own_by_elements; i < object_at.size(); ++i)
+    if (object_at[i]->attitude) population.attitudes.push_back({i, object_at[i]->attitude->model});
+  return population;
+}
+
+}  // namespace dmise

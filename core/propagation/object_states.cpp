@@ -1,0 +1,240 @@
+#include "core/propagation/object_states.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/frames/oblate_earth.h"
+#include "core/orbit/interpolation.h"
+#include "core/sky/sun_moon.h"
+#include "core/time/iso8601.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::int64_t half_step_ns = std::int64_t(slope_half_step_s * 1e9);
+constexpr double least_height_m = 1.0;  // above the ellipsoid, of freely moving objects
+
+void set(std::vector<double>& xyz, std::size_t count, std::size_t i, const Vec<Gcrs>& v) {
+  xyz[i] = v.x;
+  xyz[count + i] = v.y;
+  xyz[2 * count + i] = v.z;
+}
+template <class F>
+Vec<F> get(const std::vector<double>& xyz, std::size_t count, std::size_t i) {
+  return {xyz[i], xyz[count + i], xyz[2 * count + i]};
+}
+
+/// Position and velocity with the code of the motion model.
+struct Placed {
+  MotionState<Gcrs> state;
+  std::uint8_t code = 0;
+};
+
+bool is_fixed(const MotionModel& model) {
+  return std::holds_alternative<ConstantPosition<Itrs>>(model) ||
+         std::holds_alternative<ConstantPosition<Gcrs>>(model);
+}
+
+/// State from a model other than SGP4; its velocity is the slope of the position.
+Placed placed(const MotionModel& model, const StateInstant& at) {
+  if (const auto* path = std::get_if<Trajectory>(&model); path && !covers(*path, at.tai))
+    return {{}, std::uint8_t(MotionCode::outside_span)};
+  try {
+    const auto state = in_gcrs(path_at(model, at.tai), at.earth, at.time);
+    const OblateEarth body = oblate_earth(at.earth);
+    if (is_fixed(model) || norm(body.stretched(state.position_m)) >
+                               body.ellipsoid.equatorial_radius_m + least_height_m)
+      return {state, 0};
+  } catch (const Error&) {  // a path through the Earth's centre
+  }
+  return {{}, std::uint8_t(MotionCode::underground)};
+}
+
+/// States of SGP4 at one instant in TEME: 3 x elements.
+struct Sgp4States {
+  std::vector<double> position_m, velocity_m_per_s;
+  std::vector<std::uint8_t> code;
+
+  void resize(std::size_t n) {
+    position_m.resize(3 * n);
+    velocity_m_per_s.resize(3 * n);
+    code.resize(n);
+  }
+  Placed placed(std::size_t k, const StateInstant& at) const {
+    const std::size_t n = code.size();
+    return {{at.gcrs_from_teme * get<Teme>(position_m, n, k),
+             at.gcrs_from_teme * get<Teme>(velocity_m_per_s, n, k)},
+            code[k]};
+  }
+};
+
+}  // namespace
+
+/// The objects wanted at the instants of one time.
+struct StateSource::Scene {
+  const StateInstants& instants;
+  bool all = true;
+  std::span<const std::uint32_t> objects;  // unless all
+  std::size_t count = 0, with_elements = 0;
+  std::array<Sgp4States, 3> sgp4;
+
+  std::size_t object(std::size_t k) const { return all ? k : objects[k]; }
+};
+
+StateSource::StateSource(const ObjectPopulation& population, Clock clock, Threads& threads)
+    : population_(population),
+      clock_(std::move(clock)),
+      threads_(threads),
+      batch_(population.elements) {}
+
+StateInstants StateSource::instants(SimTime time) const {
+  const auto at = [&](SimTime t) {
+    const EarthOrientation earth = earth_orientation(clock_, t);
+    return StateInstant{t, clock_.tai(t), clock_.utc(t), earth, earth.gcrs_from_teme(t)};
+  };
+  return {at({time.ns - half_step_ns}), at(time), at({time.ns + half_step_ns})};
+}
+
+ObjectStates StateSource::at(Tick tick, SimTime time) const {
+  const StateInstants moments = instants(time);
+  Scene scene{.instants = moments,
+              .count = population_.roster.objects.size(),
+              .with_elements = batch_.size()};
+  for (std::size_t j = 0; j < 3 && scene.with_elements > 0; ++j) {
+    Sgp4States& s = scene.sgp4[j];
+    s.resize(scene.with_elements);
+    batch_.propagate(moments[j].utc.jd1, moments[j].utc.jd2, s.position_m, s.velocity_m_per_s,
+                     s.code, &threads_);
+  }
+  return states_of(scene, tick);
+}
+
+ObjectStates StateSource::of_some(std::span<const std::uint32_t> objects, Tick tick,
+                                  const StateInstants& instants) const {
+  const auto others = std::lower_bound(objects.begin(), objects.end(), batch_.size());
+  Scene scene{.instants = instants,
+              .all = false,
+              .objects = objects,
+              .count = objects.size(),
+              .with_elements = std::size_t(others - objects.begin())};
+  for (std::size_t j = 0; j < 3; ++j) {
+    Sgp4States& s = scene.sgp4[j];
+    s.resize(scene.with_elements);
+    batch_.propagate_some(objects.first(scene.with_elements), instants[j].utc.jd1,
+                          instants[j].utc.jd2, s.position_m, s.velocity_m_per_s, s.code);
+  }
+  return states_of(scene, tick);
+}
+
+ObjectStates StateSource::states_of(const Scene& scene, Tick tick) const {
+  ObjectStates states{.tick = tick, .time = scene.instants[1].time, .count = scene.count};
+  for (auto* numbers : {&states.position_m, &states.slope_m_per_s, &states.velocity_m_per_s})
+    numbers->assign(3 * scene.count, 0.0);
+  states.code.assign(scene.count, 0);
+  if (scene.with_elements > 0) add_sgp4(scene, states);
+  add_models(scene, states);
+  if (!population_.attitudes.empty()) add_attitudes(scene, states);
+  return states;
+}
+
+void StateSource::add_sgp4(const Scene& scene, ObjectStates& states) const {
+  const std::size_t n = states.count, k = scene.with_elements;
+  const auto& [before, now, after] = scene.sgp4;
+  const auto& at = scene.instants;
+  const double span_s = 2e-9 * half_step_ns;
+  for (std::size_t i = 0; i < k; ++i) {
+    states.code[i] = now.code[i] ? now.code[i] : before.code[i] ? before.code[i] : after.code[i];
+    if (states.code[i]) continue;
+    set(states.position_m, n, i, at[1].gcrs_from_teme * get<Teme>(now.position_m, k, i));
+    set(states.velocity_m_per_s, n, i,
+        at[1].gcrs_from_teme * get<Teme>(now.velocity_m_per_s, k, i));
+    const Vec<Gcrs> path = at[2].gcrs_from_teme * get<Teme>(after.position_m, k, i) -
+                           at[0].gcrs_from_teme * get<Teme>(before.position_m, k, i);
+    set(states.slope_m_per_s, n, i, path / span_s);
+  }
+}
+
+void StateSource::add_models(const Scene& scene, ObjectStates& states) const {
+  const StateInstant& now = scene.instants[1];
+  for (std::size_t k = scene.with_elements; k < scene.count; ++k) {
+    const MotionModel& model = population_.models[scene.object(k) - batch_.size()];
+    const Placed path = placed(model, now);
+    states.code[k] = path.code;
+    if (path.code) continue;
+    set(states.position_m, states.count, k, path.state.position_m);
+    set(states.slope_m_per_s, states.count, k, path.state.velocity_m_per_s);
+    const auto state = in_gcrs(state_at(model, now.tai), now.earth, now.time);
+    set(states.velocity_m_per_s, states.count, k, state.velocity_m_per_s);
+  }
+}
+
+void StateSource::add_attitudes(const Scene& wanted, ObjectStates& states) const {
+  struct Turning {
+    std::size_t k;
+    const Attitude& model;
+  };
+  std::vector<Turning> turning;
+  for (const ObjectAttitude& attitude : population_.attitudes) {
+    const auto& objects = wanted.objects;
+    const auto place = std::lower_bound(objects.begin(), objects.end(), attitude.object);
+    if (wanted.all)
+      turning.push_back({attitude.object, attitude.model});
+    else if (place != objects.end() && *place == attitude.object)
+      turning.push_back({std::size_t(place - objects.begin()), attitude.model});
+  }
+  if (turning.empty()) return;
+  const StateInstants& instants = wanted.instants;
+  std::array<Vec<Gcrs>, 3> sun_m;
+  for (std::size_t j = 0; j < 3; ++j) sun_m[j] = solar_system(clock_.tt(instants[j].time)).sun_m;
+  const std::size_t m = turning.size();
+  states.gcrs_from_body.assign(4 * m, 0.0);
+  states.attitude_rate_rad_per_s.assign(3 * m, 0.0);
+  for (std::size_t a = 0; a < m; ++a) {
+    const auto& [k, model] = turning[a];
+    states.attitude_object.push_back(static_cast<std::uint32_t>(k));
+    if (states.code[k]) continue;
+    const auto scene = [&, k = k](std::size_t j) -> std::optional<AttitudeScene> {
+      const Placed there =
+          k < wanted.with_elements
+              ? wanted.sgp4[j].placed(k, instants[j])
+              : placed(population_.models[wanted.object(k) - batch_.size()], instants[j]);
+      if (there.code) return std::nullopt;
+      return AttitudeScene{instants[j].time.seconds(), there.state.position_m,
+                           there.state.velocity_m_per_s, sun_m[j]};
+    };
+    // At an end of a trajectory or a table the rate is a one-sided difference.
+    const AttitudeScene now = *scene(1);
+    const auto* table = std::get_if<TableAttitude>(&model);
+    const auto within = [&](const std::optional<AttitudeScene>& s) {
+      return s &&
+             (!table || (s->time_s >= table->time_s.front() && s->time_s <= table->time_s.back()));
+    };
+    const auto before = scene(0), after = scene(2);
+    const AttitudeState state =
+        attitude_state(model, within(before) ? *before : now, now, within(after) ? *after : now);
+    const Quaternion& q = state.gcrs_from_body;
+    const double components[4] = {q.w, q.x, q.y, q.z};
+    for (std::size_t c = 0; c < 4; ++c) states.gcrs_from_body[c * m + a] = components[c];
+    set(states.attitude_rate_rad_per_s, m, a, state.rate_rad_per_s);
+  }
+}
+
+std::string StateSource::why_absent(std::size_t i, const ObjectStates& states) const {
+  const auto& object = population_.roster.objects[i];
+  std::string text = object.name + " (" + std::to_string(object.catalogue_number) +
+                     ") is not in the scene at " + format_utc(clock_.utc(states.time)) + ": ";
+  const std::size_t k = batch_.size();
+  if (i < k) {
+    const auto code = static_cast<Sgp4Code>(states.code[i]);
+    return text + "SGP4 code " + std::to_string(states.code[i]) + ", " +
+           std::string(describe(code));
+  }
+  text += describe(static_cast<MotionCode>(states.code[i]));
+  if (const auto* path = std::get_if<Trajectory>(&population_.models[i - k]))
+    text += ", " + path->source + ": " + span_text(*path);
+  return text;
+}
+
+}  // namespace dmise

@@ -1,0 +1,48 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/propagation/object_states.h"
+#include "core/sim/message.h"
+#include "sensors/pipeline/objects_in_field.h"
+
+namespace dmise {
+
+/// The objects of a roster with their motion models.
+struct PropagatedObjects {
+  PropagatedObjects(const ObjectRoster& roster, const std::vector<OwnObject>& own, Clock clock);
+
+  ObjectPopulation population;
+  std::size_t from_catalogues;  // number of the first objects, those of catalogues
+  Threads threads{1};
+  StateSource source;
+};
+
+/// The objects of a published roster. The sensors of one process share them.
+std::shared_ptr<const PropagatedObjects> propagated_objects(
+    const std::shared_ptr<const State>& roster, const std::vector<OwnObject>& own,
+    const Clock& clock);
+
+/// States that a sensor propagates itself, exposure by exposure: equal to the published states to
+/// the bit, of the objects that may be in the field alone.
+class StatesInField {
+ public:
+  StatesInField(std::shared_ptr<const PropagatedObjects> objects, SimTime tick_length);
+
+  /// Returns `world`, which has ticks without states, with those that the exposure needs: of
+  /// platform, target and all objects that may be in the field.
+  World around(const World& world, const SensorConfig& sensor, const FrameTimes& times);
+
+ private:
+  const StateInstants& instants(Tick tick, SimTime time);
+  const RoughPlaces& rough_places(SimTime t);
+
+  std::shared_ptr<const PropagatedObjects> objects_;
+  SimTime tick_length_;
+  std::map<Tick, StateInstants> instants_;  // of the last exposure's ticks
+  std::optional<RoughPlaces> rough_;
+};
+
+}  // namespace dmise
