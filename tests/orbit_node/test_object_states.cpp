@@ -167,5 +167,59 @@ TEST_F(ObjectStatesTest, AnObjectThatDecaysLeavesTheSceneWithOneLine) {
   EXPECT_THAT(told[1], testing::AllOf(testing::HasSubstr("(28872)"), testing::HasSubstr("code 6")));
 }
 
+// States of some objects, for sensors that propagate what is in their field, are those of all.
+TEST_F(ObjectStatesTest, StatesOfSomeObjectsAreThoseOfAll) {
+  const Scenario scenario = load(all_models);
+  const Clock clock = make_clock(scenario);
+  Threads threads(1);
+  const auto population = load_objects(scenario, clock);
+  const StateSource source(population, clock, threads);
+  const SimTime time = sim_seconds(30);
+  const ObjectStates all = source.at(3, time);
+  const std::size_t n = all.count;
+  for (std::uint32_t set = 0; set < (1u << n); ++set) {
+    std::vector<std::uint32_t> objects;
+    for (std::uint32_t i = 0; i < n; ++i)
+      if (set >> i & 1) objects.push_back(i);
+    const ObjectStates some = source.of_some(objects, 3, source.instants(time));
+    ASSERT_EQ(some.count, objects.size());
+    for (std::size_t k = 0; k < objects.size(); ++k) {
+      const std::size_t i = objects[k];
+      EXPECT_EQ(some.code[k], all.code[i]);
+      EXPECT_TRUE(some.position(k) == all.position(i) && some.slope(k) == all.slope(i));
+      EXPECT_EQ(some.velocity_m_per_s[k], all.velocity_m_per_s[i]);
+      ASSERT_EQ(some.attitude(k).has_value(), all.attitude(i).has_value());
+      if (const auto attitude = some.attitude(k)) {
+        EXPECT_TRUE(attitude->gcrs_from_body == all.attitude(i)->gcrs_from_body);
+        EXPECT_TRUE(attitude->rate_rad_per_s == all.attitude(i)->rate_rad_per_s);
+      }
+    }
+  }
+}
+
+// Without subscribers outside, states are published where a node of the scenario takes them.
+TEST_F(ObjectStatesTest, StatesArePublishedOnlyWhereSomebodyTakesThem) {
+  Threads threads(1);
+  const auto topics = [&](bool publish_states, bool sensors_propagate, bool positions) {
+    Scenario scenario = load(all_models);
+    scenario.network.publish_states = publish_states;
+    scenario.network.sensors_propagate = sensors_propagate;
+    scenario.output.positions_csv = positions;
+    OrbitActor actor(scenario, make_clock(scenario), threads);
+    std::vector<std::string> used;
+    for (Tick tick = 0; tick < 2; ++tick)
+      for (const auto& message : actor.step(tick, {})) used.push_back(message.topic);
+    for (const auto& topic : used) EXPECT_THAT(actor.produces(), testing::Contains(topic));
+    return used;
+  };
+  const std::string roster = roster_topic, states = objects_topic;
+  // The roster precedes the states on their topic as well.
+  const std::vector<std::string> alone{roster}, both{roster, states, states, states};
+  EXPECT_EQ(topics(false, true, false), alone);
+  EXPECT_EQ(topics(true, true, false), both);
+  EXPECT_EQ(topics(false, false, false), both);
+  EXPECT_EQ(topics(false, true, true), both);
+}
+
 }  // namespace
 }  // namespace dmise

@@ -76,7 +76,7 @@ TEST(Environment, ASensorAsksForWhatItsPlanNeeds) {
   const auto consumes = [&](const char* name) {
     return make_sensor(stage.scenario, name, "", stage.directory / "out", nullptr, one)->consumes();
   };
-  EXPECT_THAT(consumes("a"), testing::ElementsAre("state/objects", "env/common", "env/site/a"));
+  EXPECT_THAT(consumes("a"), testing::ElementsAre("state/roster", "env/common", "env/site/a"));
   EXPECT_THAT(consumes("b"), testing::ElementsAre("env/common"));
 }
 

@@ -63,10 +63,14 @@ TEST(PlatformPlace, WhoPointsAtAnObjectIsToldOfIt) {
       test::scenario("2018-03-06T12:00:00Z", 20, "site: atlanta", test::camera(8, 8, 0.1),
                      "{target: far}", 1, 5, ", effects: {objects: off}", "",
                      "objects:\n  - name: far\n    motion: {fixed: {gcrs_m: [4.2e+7, 0, 0]}}\n"));
-  const auto topics =
-      make_sensor(stage.scenario, "a", "", stage.directory / "out", nullptr, stage.threads)
-          ->consumes();
-  EXPECT_EQ(std::count(topics.begin(), topics.end(), "state/objects"), 1);
+  for (const bool propagates : {true, false}) {
+    stage.scenario.network.sensors_propagate = propagates;
+    const auto topics =
+        make_sensor(stage.scenario, "a", "", stage.directory / "out", nullptr, stage.threads)
+            ->consumes();
+    EXPECT_EQ(std::count(topics.begin(), topics.end(), "state/roster"), propagates);
+    EXPECT_EQ(std::count(topics.begin(), topics.end(), "state/objects"), !propagates);
+  }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# One process, one process per node, nodes behind agents, one thread or two, once or again: the products are the same bytes.
+# One process, one process per node, nodes behind agents, one thread or two, once or again, objects propagated by the sensors or by
+# the orbit node: the products are the same bytes.
 #
 #   run_identity.sh DMISE SCENARIO DURATION_S
 #
@@ -17,9 +18,17 @@ scenario=$work/scenario.yaml
 cp -r "$(dirname "$(readlink -f "$2")")/." "$work/"  # it may name files beside itself
 sed -E "s/duration_s: *[0-9.]+/duration_s: $3/" "$2" >"$scenario"
 
+taking=$work/taking-states.yaml  # sensors take published states instead of propagating objects
+if grep -q '^network: {' "$scenario"; then
+  sed 's/^network: {/network: {sensors_propagate: off, /' "$scenario" >"$taking"
+else
+  { cat "$scenario"; echo 'network: {sensors_propagate: off}'; } >"$taking"
+fi
+
 produce() {  # NAME COMMAND..
-  local name=$1
+  local name=$1 scenario=$scenario
   shift
+  [[ $name != *-taking-states ]] || scenario=$taking
   "$dmise" "$@" "$scenario" --out "$work/$name" >"$work/$name.log" 2>&1 ||
     fail "$name: $(tail -n 2 "$work/$name.log")"
 }
@@ -31,10 +40,12 @@ produce run-2-threads run --threads 2
 produce launch launch
 produce launch-again launch
 produce launch-hosts launch --hosts 2
+produce run-taking-states run
+produce launch-taking-states launch
 
 reference=$work/run-1-thread
 frames=$(products "$reference" | grep -cE 'frame-[0-9]+.fits$') || fail "no frame was made"
-for other in run-2-threads launch launch-again launch-hosts; do
+for other in run-2-threads launch launch-again launch-hosts run-taking-states launch-taking-states; do
   diff <(products "$reference") <(products "$work/$other") || fail "$other: other files than one process made"
   while read -r file; do
     cmp "$reference/$file" "$work/$other/$file" || fail "$other: $file differs"

@@ -22,6 +22,16 @@ ObjectRoster roster(Numbers& n) {
                          .designator = i % 2 ? "" : "1998-067A",
                          .geometry = DiffuseSphere{n.in(0.01, 50), n.in(0.01, 1)},
                          .element_age_s = n.in(-1e7, 1e7)});
+  for (std::size_t i = 0; i < 3; ++i)
+    r.elements.push_back({.epoch_jd1 = 2458138.5,
+                          .epoch_jd2 = n.in(0, 1),
+                          .mean_motion_rad_per_min = n.in(0.004, 0.07),
+                          .eccentricity = n.in(0, 0.7),
+                          .inclination_rad = n.in(0, half_turn),
+                          .raan_rad = n.in(0, 2 * half_turn),
+                          .argument_of_perigee_rad = n.in(0, 2 * half_turn),
+                          .mean_anomaly_rad = n.in(0, 2 * half_turn),
+                          .bstar_per_earth_radius = n.in(-1e-4, 1e-3)});
   const double hinge = n.in(1, 2), normal = n.in(1, 2);
   r.objects[2].panel =
       SunTrackingPanel{.hinge = {hinge, hinge, hinge}, .normal = {normal, -2 * normal, normal}};
@@ -212,7 +222,8 @@ std::vector<Example> examples(unsigned seed) {
   DetectionSet detections{.sensor = sensor, .frame = 3, .detections = {}};
   for (std::uint32_t i = 0; i < 4; ++i) detections.detections.push_back(detection(n, i));
   TruthSet truths{.sensor = sensor, .frame = 3, .truths = {truth(n), truth(n)}};
-  return {{objects_topic, tick, roster(n)},
+  const ObjectRoster objects = roster(n);
+  return {{objects_topic, tick, objects},
           {objects_topic, tick, states(n, tick)},
           {environment_topic, tick, environment(n, tick)},
           {std::string(site_prefix) + sensor, tick, site(n, tick)},
@@ -221,7 +232,8 @@ std::vector<Example> examples(unsigned seed) {
           {std::string(detection_prefix) + sensor, tick, DetectionSet{sensor, 4, {}}},
           {std::string(truth_prefix) + sensor, tick, truths},
           {objects_topic, tick,
-           ObjectStates{.tick = tick, .time = example_run().time_of(tick), .count = 0}}};
+           ObjectStates{.tick = tick, .time = example_run().time_of(tick), .count = 0}},
+          {roster_topic, tick, objects}};
 }
 
 Envelope envelope_of(const Example& example, MessageKind kind, std::uint64_t sequence) {
@@ -243,7 +255,7 @@ Frames sealed(const Example& example, std::uint64_t sequence) {
 Receiver receiver_of_examples() {
   Receiver receiver(example_run());
   for (const std::string& topic :
-       {std::string(objects_topic), std::string(environment_topic),
+       {std::string(roster_topic), std::string(objects_topic), std::string(environment_topic),
         std::string(site_prefix) + sensor, std::string(frame_prefix) + sensor,
         std::string(detection_prefix) + sensor, std::string(truth_prefix) + sensor})
     receiver.allow(topic, "source", 1);

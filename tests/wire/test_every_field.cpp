@@ -121,7 +121,7 @@ TEST(EveryField, OfAMessageIsDecoded) {
   const auto alone = [](auto decode) {
     return [decode](std::string_view payload, std::string_view) { return decode(payload); };
   };
-  every_field_is_decoded<v1::ObjectRoster, ObjectRoster>(alone(decode_roster));
+  every_field_is_decoded<v1::ObjectRoster, ObjectRoster>(decode_roster);
   every_field_is_decoded<v1::ObjectStates, ObjectStates>(decode_states);
   every_field_is_decoded<v1::EnvironmentState, EnvironmentState>(alone(decode_environment));
   every_field_is_decoded<v1::SiteState, SiteState>(alone(decode_site));

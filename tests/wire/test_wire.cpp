@@ -239,6 +239,25 @@ TEST(Wire, ArraysLieInTheStatedOrder) {
   EXPECT_EQ(x_of_first, states.gcrs_from_body[m]);
 }
 
+// Nine rows of one number for each object that SGP4 moves.
+TEST(Wire, ElementSetsOfARosterLieInTheStatedOrder) {
+  const auto all = examples(1);
+  const Example& example = all[0];
+  const auto& elements = std::get<ObjectRoster>(example.state).elements;
+  const Frames frames = sealed(example);
+  ASSERT_EQ(frames.arrays.size(), 9 * 8 * elements.size());
+  const auto number = [&](std::size_t row, std::size_t object) {
+    double value = 0;
+    std::memcpy(&value, frames.arrays.data() + 8 * (row * elements.size() + object), 8);
+    return value;
+  };
+  EXPECT_EQ(number(0, 1), elements[1].epoch_jd1);
+  EXPECT_EQ(number(3, 2), elements[2].eccentricity);
+  EXPECT_EQ(number(8, 0), elements[0].bstar_per_earth_radius);
+  expect_unsent<ObjectRoster>([](auto& r) { r.elements.resize(6); });  // of 5 objects
+  expect_unsent<ObjectRoster>([](auto& r) { r.elements[1].eccentricity = NAN; });
+}
+
 TEST(Wire, AttitudesMustBeRotationsOfObjectsThatAreThere) {
   expect_unsent<ObjectStates>([](auto& s) { s.attitude_object[1] = 7; });   // of 7
   expect_unsent<ObjectStates>([](auto& s) { s.attitude_object[1] = 0; });   // not ascending
