@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/config/scenario.h"
+#include "core/propagation/object_states.h"
 #include "core/time/clock.h"
 #include "nodes/environment/environment_actor.h"
-#include "orbit-node/object_states.h"
 #include "sensors/pipeline/frame_times.h"
 #include "sensors/pipeline/world.h"
 
