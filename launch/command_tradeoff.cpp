@@ -1,0 +1,109 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/printable.h"
+#include "core/base/text_file.h"
+#include "core/base/whole_file.h"
+#include "core/pictures/picture_file.h"
+#include "launch/commands.h"
+#include "launch/progress.h"
+#include "launch/run_directory.h"
+#include "launch/tradeoff_page.h"
+
+namespace dmise {
+namespace {
+
+struct TradeoffOptions {
+  std::string scenario, sensor, out = "out/tradeoff";
+  unsigned frame = 1;
+  int repeats = 3;
+};
+
+/// The rows of an earlier call with the same digest, which is in the file's first line.
+std::vector<TradeoffRow> known_rows(const std::string& path, const std::string& head) {
+  std::vector<TradeoffRow> rows;
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return rows;
+  std::istringstream lines(read_text_file(path, 1u << 26));
+  std::string line;
+  if (!std::getline(lines, line) || line != head) return rows;
+  while (std::getline(lines, line))
+    if (auto row = row_of_csv(line)) rows.push_back(std::move(*row));
+  return rows;
+}
+
+void tradeoff(const TradeoffOptions& options) {
+  const Scenario scenario = load_scenario(options.scenario);
+  const std::string sensor =
+      options.sensor.empty() ? scenario.sensors.front().name : options.sensor;
+  sensor_named(scenario, sensor);
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (error) throw ConfigError("--out: " + options.out + ": " + error.message());
+  const std::string digest = scenario_digest(scenario);
+  const std::string head = "# " + digest + " " + sensor + " frame " +
+                           std::to_string(options.frame) + " repeats " +
+                           std::to_string(options.repeats);
+  const std::string csv = options.out + "/tradeoff.csv";
+  auto rows = known_rows(csv, head);
+  Progress progress;
+  Threads one(1);
+  const SceneFrames scene(scenario, sensor, options.frame, one);
+  const Tradeoff trade(scene, options.repeats);
+  const auto save = [&] {
+    std::string text = head + "\n" + tradeoff_csv_header() + "\n";
+    for (const auto& row : rows) text += csv_line(row) + "\n";
+    write_file_whole(csv, text);
+  };
+  for (std::size_t i = 0; i < trade.rows().size(); ++i) {
+    const TradeoffRow& wanted = trade.rows()[i];
+    progress.show_share(double(i) / double(trade.rows().size()),
+                        "tradeoff: " + wanted.effect + " " + wanted.level);
+    bool known = false;
+    for (const auto& row : rows)
+      known = known || (row.effect == wanted.effect && row.level == wanted.level);
+    if (known) continue;
+    rows.push_back(trade.measure(i));
+    save();
+  }
+  progress.clear_line();
+  write_file_whole(options.out + "/tradeoff.json", tradeoff_json(digest, rows));
+  write_file_whole(options.out + "/index.html",
+                   tradeoff_page(printable(scenario.path) + ", sensor " + sensor + ", frame " +
+                                     std::to_string(options.frame),
+                                 rows));
+  write_file_whole(options.out + "/budgets.svg", chart_svg(budgets_chart(rows)));
+  write_picture(options.out + "/budgets.png", chart_picture(budgets_chart(rows)));
+  for (const auto& kind : error_kinds)
+    write_file_whole(options.out + "/" + kind.key + ".svg", chart_svg(effects_chart(rows, kind)));
+  std::printf("%s/index.html: %zu rows\n", options.out.c_str(), rows.size());
+}
+
+}  // namespace
+
+void add_tradeoff_command(CLI::App& app) {
+  auto options = std::make_shared<TradeoffOptions>();
+  auto* command = app.add_subcommand(
+      "tradeoff",
+      "Measures what each level of each effect, and plans for a set of budgets, cost in accuracy "
+      "and save in time against the reference of one frame; CSV, JSON, charts and a page. Goes on "
+      "where it was stopped");
+  command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
+  command->add_option("--sensor", options->sensor, "its name; the first of the scenario");
+  command->add_option("--frame", options->frame, "number of the exposure")
+      ->default_val(1)
+      ->check(CLI::Range(1u, 1000000u));
+  command->add_option("--repeats", options->repeats, "frames of each kind that are timed, in turns")
+      ->default_val(3)
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--out", options->out, "directory")->default_val("out/tradeoff");
+  command->callback([options] { tradeoff(*options); });
+}
+
+}  // namespace dmise

@@ -1,0 +1,159 @@
+#include "sensors/accuracy/tradeoff.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+namespace dmise {
+namespace {
+
+SensorConfig planned_for(SensorConfig sensor, const Accuracy& accuracy) {
+  sensor.accuracy = accuracy;
+  return sensor;
+}
+
+double processor_s() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+double seconds_of(FramePipeline& chain, const SceneFrames& scene) {
+  const double start_s = processor_s();
+  FrameProducts frame = chain.run(scene.times(), scene.world());
+  const double seconds = processor_s() - start_s;
+  chain.give_back(std::move(frame.counts));
+  return seconds - frame.detection_s;
+}
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+/// Share of the objects in the frame near whose middle something was detected.
+double share_detected(const FrameProducts& frame) {
+  const double near_px = 3.0 * std::hypot(1.0, frame.header.psf_fwhm_px);
+  int objects = 0, found = 0;
+  for (const Truth& truth : frame.truths) {
+    if (!truth.in_frame) continue;
+    ++objects;
+    found += std::ranges::any_of(frame.detections, [&](const Detection& d) {
+      return std::hypot(d.x_px - truth.rendered_x_px, d.y_px - truth.rendered_y_px) < near_px;
+    });
+  }
+  return objects > 0 ? double(found) / objects : 0.0;
+}
+
+std::string budget_name(double scale) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g x standard", scale);
+  return text;
+}
+
+}  // namespace
+
+std::string tradeoff_csv_header() {
+  std::string text = "effect,level";
+  for (const char* which : {"bound", "measured"})
+    for (const auto& kind : error_kinds) text += std::string(",") + which + "_" + kind.key;
+  return text + ",residual_sigma,detected,seconds,reference_s";
+}
+
+std::string csv_line(const TradeoffRow& row) {
+  std::ostringstream text;
+  text.precision(6);
+  text << row.effect << ',' << row.level;
+  for (const auto& error : {row.bound, row.measured})
+    for (const auto& kind : error_kinds) text << ',' << error.*kind.value;
+  text << ',' << row.residual_sigma << ',' << row.detected << ',' << row.seconds << ','
+       << row.reference_s;
+  return text.str();
+}
+
+std::optional<TradeoffRow> row_of_csv(const std::string& line) {
+  TradeoffRow row;
+  std::istringstream text(line);
+  std::vector<double> numbers;
+  std::string field;
+  if (!std::getline(text, row.effect, ',') || !std::getline(text, row.level, ','))
+    return std::nullopt;
+  while (std::getline(text, field, ',')) {
+    char* end = nullptr;
+    numbers.push_back(std::strtod(field.c_str(), &end));
+    if (end == field.c_str() || *end != '\0') return std::nullopt;
+  }
+  constexpr std::size_t kinds = std::size(error_kinds);
+  if (numbers.size() != 2 * kinds + 4) return std::nullopt;
+  for (std::size_t k = 0; k < kinds; ++k) {
+    row.bound.*error_kinds[k].value = numbers[k];
+    row.measured.*error_kinds[k].value = numbers[kinds + k];
+  }
+  row.residual_sigma = numbers[2 * kinds];
+  row.detected = numbers[2 * kinds + 1];
+  row.seconds = numbers[2 * kinds + 2];
+  row.reference_s = numbers[2 * kinds + 3];
+  return row;
+}
+
+Tradeoff::Tradeoff(const SceneFrames& scene, int repeats)
+    : scene_(scene),
+      repeats_(repeats),
+      reference_(scene.make(planned_for(scene.sensor(), reference_accuracy()))),
+      comparison_(scene, reference_, reference_.plan.effects),
+      detected_(share_detected(reference_)) {
+  for (const PlannedEffect& effect : reference_.plan.planned) {
+    if (!effect.decided) continue;
+    for (int level = 0; level < effect.facts->reference(); ++level) {
+      SensorConfig alone = planned_for(scene.sensor(), reference_accuracy());
+      alone.effects.force_level(*effect.facts, level);
+      rows_.push_back(
+          {std::string(effect.facts->name), std::string(effect.facts->levels[std::size_t(level)])});
+      sensors_.push_back(std::move(alone));
+    }
+  }
+  const auto add = [&](const std::string& name, const Accuracy& accuracy) {
+    rows_.push_back({"budget", name});
+    sensors_.push_back(planned_for(scene.sensor(), accuracy));
+  };
+  add("draft", draft_accuracy());
+  add("standard", standard_accuracy());
+  for (double scale = 1.0 / 16.0; scale <= 64.0; scale *= 4.0) {
+    Accuracy accuracy{"budget"};
+    for (const auto& kind : error_kinds)
+      accuracy.budget.*kind.value = scale * standard_budget.*kind.value;
+    add(budget_name(scale), accuracy);
+  }
+}
+
+TradeoffRow Tradeoff::measure(std::size_t index) const {
+  TradeoffRow row = rows_[index];
+  const SensorConfig& sensor = sensors_[index];
+  {
+    const FrameProducts frame = scene_.make(sensor);
+    const FrameError error = comparison_.error_of(frame, frame.plan.effects);
+    row.bound = frame.plan.error;
+    row.measured = error.largest;
+    row.residual_sigma = error.residual_sigma;
+    row.detected = share_detected(frame);
+  }
+  const SensorConfig exact = planned_for(scene_.sensor(), reference_accuracy());
+  auto reference = scene_.pipeline(exact, false), other = scene_.pipeline(sensor, false);
+  std::vector<double> seconds, reference_s;
+  for (int k = 0; k < repeats_; ++k) {
+    if (k > 0 && !scene_.can_repeat()) {
+      reference = scene_.pipeline(exact, false);
+      other = scene_.pipeline(sensor, false);
+    }
+    reference_s.push_back(seconds_of(*reference, scene_));
+    seconds.push_back(seconds_of(*other, scene_));
+  }
+  row.seconds = median(seconds);
+  row.reference_s = median(reference_s);
+  return row;
+}
+
+}  // namespace dmise

@@ -1,0 +1,46 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sensors/accuracy/frame_error.h"
+
+namespace dmise {
+
+/// One way to make a frame, beside the reference.
+struct TradeoffRow {
+  std::string effect;  // "budget" of a plan
+  std::string level;   // of the effect; the plan's accuracy
+  ErrorBound bound;    // stated by the level or plan; zero where it states none
+  ErrorBound measured;
+  double residual_sigma = 0.0;              // rms over all pixels
+  double detected = 0.0;                    // share of the true objects in the frame; 0 without any
+  double seconds = 0.0, reference_s = 0.0;  // medians of frames made in turns, without detection
+};
+
+/// A line of CSV without its end, and back; nothing for a line that is none.
+std::string tradeoff_csv_header();
+std::string csv_line(const TradeoffRow& row);
+std::optional<TradeoffRow> row_of_csv(const std::string& line);
+
+/// A ladder of levels for each effect and a set of budgets, for one exposure.
+class Tradeoff {
+ public:
+  Tradeoff(const SceneFrames& scene, int repeats);
+
+  /// The rows, yet without what is measured.
+  const std::vector<TradeoffRow>& rows() const { return rows_; }
+  TradeoffRow measure(std::size_t row) const;
+  double detected_in_reference() const { return detected_; }
+
+ private:
+  const SceneFrames& scene_;
+  int repeats_;
+  FrameProducts reference_;
+  FrameComparison comparison_;
+  double detected_ = 0.0;
+  std::vector<TradeoffRow> rows_;
+  std::vector<SensorConfig> sensors_;  // of the rows
+};
+
+}  // namespace dmise
