@@ -26,7 +26,7 @@ double seconds_of(FramePipeline& chain, const SceneFrames& scene) {
   FrameProducts frame = chain.run(scene.times(), scene.world());
   const double seconds = processor_s() - start_s;
   chain.give_back(std::move(frame.counts));
-  return seconds - frame.detection_s;
+  return seconds;
 }
 
 double median(std::vector<double> values) {
@@ -140,13 +140,14 @@ TradeoffRow Tradeoff::measure(std::size_t index) const {
     row.residual_sigma = error.residual_sigma;
     row.detected = share_detected(frame);
   }
-  const SensorConfig exact = planned_for(scene_.sensor(), reference_accuracy());
-  auto reference = scene_.pipeline(exact, false), other = scene_.pipeline(sensor, false);
+  SensorConfig exact = planned_for(scene_.sensor(), reference_accuracy()), timed = sensor;
+  exact.detect = timed.detect = false;
+  auto reference = scene_.pipeline(exact, false), other = scene_.pipeline(timed, false);
   std::vector<double> seconds, reference_s;
   for (int k = 0; k < repeats_; ++k) {
     if (k > 0 && !scene_.can_repeat()) {
       reference = scene_.pipeline(exact, false);
-      other = scene_.pipeline(sensor, false);
+      other = scene_.pipeline(timed, false);
     }
     reference_s.push_back(seconds_of(*reference, scene_));
     seconds.push_back(seconds_of(*other, scene_));
