@@ -235,7 +235,7 @@ std::string draw_object(Frame& f, const View& view, int index) {
     const double v_mag = magnitude(f, signal_e(f, dice.log_uniform(2.0, 3000.0), sky_e(f)));
     const double share = std::pow(10.0, -0.4 * (v_mag + 26.74));
     text +=
-        text_of("    radius_m: ", std::clamp(range_m * std::sqrt(share / 0.04), 1e-4, 1e5), "\n");
+        text_of("    radius_m: ", std::clamp(range_m * std::sqrt(share / 0.04), 1e-3, 1e3), "\n");
   }
   return text;
 }

@@ -11,6 +11,7 @@ namespace dmise {
 namespace {
 
 constexpr double widths = 3.0;            // of the point spread, around a trail
+constexpr double saturated_share = 0.9;   // of the full well
 constexpr double background_share = 0.5;  // of the noise: more light of sources is no background
 
 ExpectedElectronImage light_of(const FrameProducts& frame, double exposure_s) {
@@ -96,7 +97,7 @@ FrameComparison::FrameComparison(const SceneFrames& scene, const FrameProducts& 
 }
 
 void FrameComparison::measure(ReferenceSource source) {
-  const double full_e = 0.9 * scene_.sensor().camera.detector.full_well_e;
+  const double full_e = saturated_share * scene_.sensor().camera.detector.full_well_e;
   double e = 0.0, x_e = 0.0, y_e = 0.0, snr2 = 0.0, peak_e = 0.0;
   bool saturated = false;
   const bool whole =
@@ -224,11 +225,12 @@ FrameError FrameComparison::error_of(const FrameProducts& frame, const EffectSet
 double FrameComparison::skewness_error(const EffectSet& effects) const {
   const EffectFacts& photons = PhotonNoise::facts;
   if (photons.levels[std::size_t(effects.level(photons))] != "gaussian") return 0.0;
+  const double full_e = saturated_share * scene_.sensor().camera.detector.full_well_e;
   double largest = 0.0;
-  for (std::size_t i = 0; i < light_.pixels.size(); ++i) {
-    const double noise = reference_.noise.pixels[i];
-    largest = std::max(largest, 4.0 / 9.0 * light_.pixels[i] / (noise * noise * noise));
-  }
+  for (std::size_t i = 0; i < light_.pixels.size(); ++i)
+    if (light_.pixels[i] <= full_e)
+      largest =
+          std::max(largest, 4.0 / 9.0 * light_.pixels[i] / std::pow(double(sigma_e_[i]), 3.0));
   return largest;
 }
 
