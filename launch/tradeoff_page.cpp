@@ -108,7 +108,7 @@ std::string tradeoff_page(const std::string& title, const std::vector<TradeoffRo
       "<body><h1>What accuracy costs</h1><p>" +
       title + "</p>\n" + chart_svg(budgets_chart(rows));
   for (const auto& kind : error_kinds) page += "\n" + chart_svg(effects_chart(rows, kind));
-  page += "\n<table><tr><th>effect</th><th>level</th>";
+  page += "\n<p>Errors: measured / bound.</p><table><tr><th>effect</th><th>level</th>";
   for (const auto& kind : error_kinds)
     page += std::string("<th>") + kind.key + " [" + kind.unit + "]</th>";
   page +=
@@ -117,7 +117,8 @@ std::string tradeoff_page(const std::string& title, const std::vector<TradeoffRo
   for (const auto& row : rows) {
     page += "<tr><td>" + row.effect + "</td><td>" + row.level + "</td>";
     for (const auto& kind : error_kinds)
-      page += "<td>" + number(row.measured.*kind.value) + "</td>";
+      page += "<td>" + number(row.measured.*kind.value) + " / " + number(row.bound.*kind.value) +
+              "</td>";
     for (const double value : {row.residual_sigma, row.detected, row.seconds, row.reference_s})
       page += "<td>" + number(value) + "</td>";
     page += "</tr>\n";

@@ -26,7 +26,7 @@ struct ColumnNoise {
                         return column_noise_e * column_noise_e;
                       }).noise};
   }
-  static double cost_s(int level, const PlanFacts& f) { return level * 0.3e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f) { return level * 0.85e-9 * f.pixels(); }
 };
 
 }  // namespace dmise

@@ -30,6 +30,7 @@ ErrorBound PhotonNoise::error(int level, const PlanFacts& f) {
   };
   double most = 0.0;
   for (const auto& s : f.sky) most = std::max(most, skewness(s.sky_e + f.dark_e));
+  if (f.sees_horizon) most = std::max(most, skewness(f.dark_e));  // pixels that it cuts
   return {.noise = 4.0 / 9.0 * most};
 }
 

@@ -26,7 +26,7 @@ struct PixelResponse {
     error.position_px = of_source * std::max(1.0, f.fwhm_px);
     return error;
   }
-  static double cost_s(int level, const PlanFacts& f) { return level * 3e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f) { return level * 6.6e-9 * f.pixels(); }
 };
 
 }  // namespace dmise

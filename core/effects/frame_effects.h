@@ -9,7 +9,7 @@ struct SkyBackground {
   static constexpr EffectFacts facts{"sky", "sky background", "no background and no noise of it",
                                      "the sum of its parts"};
   static ErrorBound error(int, const PlanFacts& f) {
-    return f.without_light([](const SkySample& s) { return s.sky_e; });
+    return f.without_light([](const SkySample& s) { return 1.1 * s.sky_e; });
   }
   static double cost_s(int level, const PlanFacts& f) { return level * 2.0e-9 * f.pixels(); }
 };
@@ -20,7 +20,9 @@ struct SpaceObjects {
   static ErrorBound error(int, const PlanFacts& f) {
     return f.objects > 0 ? not_bounded : ErrorBound{};
   }
-  static double cost_s(int level, const PlanFacts& f) { return level * 57e-6 * double(f.objects); }
+  static double cost_s(int level, const PlanFacts& f) {
+    return level * (57e-6 * double(f.objects - f.shapes) + 12e-3 * double(f.shapes));
+  }
 };
 
 struct StarBackground {
@@ -97,7 +99,11 @@ struct PsfWavelengths {
     const double width = f.relative_bandwidth / count[std::size_t(level)];
     ErrorBound error = f.dimmed_by(0.02 * width);
     error.position_px = 0.0055 * width * f.fwhm_px;
-    error.background_sigma = 0.1 * std::min(1.0, 3.0 * width);
+    // Rings beyond three widths of a point: 0.003 of its peak, smeared by the band.
+    const double rings_e = 0.003 * std::min(1.0, 10.0 * width) * f.brightest_e() * f.peak_share;
+    const ErrorBound beside = f.without_light([&](const SkySample&) { return rings_e; });
+    error.background_sigma = beside.background_sigma;
+    error.noise = beside.noise;
     return error;
   }
   /// Of kernels that are kept a hundredth, since they are computed once for many frames.

@@ -59,6 +59,7 @@ struct PlanFacts {
   double light_time_rad = 0.0;  // way of an object while its light travels, seen from the sensor
   bool near_shadow = false;     // an object is in the Earth's shadow or close
   double brightest_object_e = 0.0;
+  static constexpr double glint_e = 1e9;  // of a shape, in a pixel
   // The blur.
   bool kernels_change = false;  // with every exposure
   double kernel_s = 0.0;        // of all kernels of one wavelength
@@ -81,7 +82,7 @@ struct PlanFacts {
   /// Error of sources that are misplaced by an angle, with what their faint edges leave beside
   /// them.
   ErrorBound shifted_by(double angle_rad) const {
-    constexpr double off_axis = 1.08, edge = 0.35, of_light = 0.02;
+    constexpr double off_axis = 1.08, edge = 0.45, of_light = 0.01;
     const double px = off_axis * angle_rad / pixel_rad;
     const double background_sigma = std::min(1.0, edge * px / std::hypot(fwhm_px / 2.355, 0.3));
     return {.photometry_mag = of_light * px,
@@ -95,9 +96,10 @@ struct PlanFacts {
     const double sigma_px = std::hypot(fwhm_px / 2.355, 0.29);
     return std::min(1.0, 0.2821 / sigma_px);
   }
-  /// Error of sources whose light is off by a factor, likewise.
+  /// Error of sources whose light is off by a factor, with that of those too faint for photometry,
+  /// which have three deviations of noise in their brightest pixel.
   ErrorBound dimmed_by(double magnitude) const {
-    const double background_sigma = 0.1 * std::min(1.0, magnitude);
+    const double background_sigma = 3.0 * std::min(1.0, magnitude);
     return {.photometry_mag = magnitude,
             .background_sigma = background_sigma,
             .noise = 0.5 * background_sigma / std::max(1.0, least_noise_e())};
@@ -122,7 +124,7 @@ struct PlanFacts {
   double brightest_pixel_e() const {
     double sky_e = 0.0;
     for (const auto& s : sky) sky_e = std::max(sky_e, s.sky_e);
-    return 1.25 * sky_e + dark_e + brightest_e() * peak_share;
+    return 1.25 * sky_e + dark_e + brightest_e() * peak_share + (shapes > 0 ? glint_e : 0.0);
   }
   /// Returns the light of the brightest source, at most.
   double brightest_e() const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace dmise {
 namespace {
@@ -167,7 +168,9 @@ std::vector<ChartTick> logarithmic_ticks(double least, double most) {
       const double at = k * std::pow(10.0, power);
       if (at < least * (1 - 1e-9) || at > most * (1 + 1e-9)) continue;
       const bool named = k == 1 || k == 2 || k == 5;
-      ticks.push_back({at, named && at >= 1 ? grouped(at) : ""});
+      char small[32];
+      std::snprintf(small, sizeof small, "%g", at);
+      ticks.push_back({at, !named ? "" : at >= 1 ? grouped(at) : small});
     }
   return ticks;
 }

@@ -77,6 +77,8 @@ EffectPlan plan_within(const std::vector<Levels>& levels, const PlanFacts& facts
                           .cost_s = l.options[taken].cost_s,
                           .forced = l.forced,
                           .decided = l.level.size() > 1};
+    if (l.effect->error && planned.level != l.effect->facts->reference())
+      planned.stated = l.effect->error(planned.level, facts);
     for (int lower = planned.level - 1; planned.decided && lower >= 0; --lower) {
       planned.cheaper = l.effect->error(lower, facts);
       if (planned.cheaper != planned.error) break;

@@ -17,6 +17,7 @@ struct PlannedEffect {
   int level = 0;
   ErrorBound error;      // of this level
   double cost_s = 0.0;   // by the shipped table
+  ErrorBound stated;     // the same, also of a level that the user forces
   ErrorBound cheaper;    // error of the next lower level; zero at the lowest
   bool forced = false;   // by the user
   bool decided = false;  // among several levels

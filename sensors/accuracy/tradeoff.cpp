@@ -136,6 +136,8 @@ TradeoffRow Tradeoff::measure(std::size_t index) const {
     const FrameProducts frame = scene_.make(sensor);
     const FrameError error = comparison_.error_of(frame, frame.plan.effects);
     row.bound = frame.plan.error;
+    for (const PlannedEffect& planned : frame.plan.planned)
+      if (planned.facts->name == row.effect) row.bound = planned.stated;
     row.measured = error.largest;
     row.residual_sigma = error.residual_sigma;
     row.detected = share_detected(frame);

@@ -132,8 +132,9 @@ LightTruth expected_electrons(const View& view, const LightSources& sources, Opt
     else if constexpr (requires { Stage::leave_out(frame); })
       Stage::leave_out(frame);
   });
-  apply_image_optics(acting_optics(view.sensor().camera.optics.image, effects), image, threads,
-                     times);
+  const ImageOptics image_optics = acting_optics(view.sensor().camera.optics.image, effects);
+  apply_image_optics(image_optics, image, threads, times);
+  if (options.sky) apply_image_optics(image_optics, *options.sky, threads, times);
   return std::move(frame.truth);
 }
 

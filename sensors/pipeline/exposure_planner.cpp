@@ -279,8 +279,6 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
     if (sampler.shape(object)) {
       ++f.shapes;
       ++f.resolved;
-      f.brightest_object_e = 1e12;  // it may glint
-      continue;
     }
     const double magnitude = sampler.magnitude(object, motion, middle);
     f.brightest_object_e =
