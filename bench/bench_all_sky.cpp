@@ -63,10 +63,12 @@ World world_of(const Scenario& scenario, Threads& threads) {
   const Clock clock = make_clock(scenario);
   OrbitActor orbit(scenario, clock, threads);
   EnvironmentActor environment(scenario, clock);
+  // A sensor has either all states, as here, or the element sets and few states.
+  ObjectRoster roster_without_elements;
   for (Tick tick = 0; tick <= scenario.last_tick(); ++tick) {
     const auto add = [&](const Message& message) {
       if (const auto* roster = std::get_if<ObjectRoster>(message.state.get()))
-        world.add(std::shared_ptr<const ObjectRoster>(message.state, roster));
+        roster_without_elements.objects = roster->objects;
       if (const auto* states = std::get_if<ObjectStates>(message.state.get()))
         world.add(std::shared_ptr<const ObjectStates>(message.state, states));
       if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
@@ -75,6 +77,7 @@ World world_of(const Scenario& scenario, Threads& threads) {
     for (const auto& message : orbit.step(tick, {})) add(message);
     for (const auto& message : environment.step(tick, {})) add(message);
   }
+  world.add(std::make_shared<const ObjectRoster>(std::move(roster_without_elements)));
   return world;
 }
 

@@ -109,6 +109,7 @@ ExposurePlanner::ExposurePlanner(const SensorConfig& sensor, const StarMap* star
   }
   for (std::size_t m = 1; m < catalogue_brighter_.size(); ++m)
     catalogue_brighter_[m] += catalogue_brighter_[m - 1];
+  if (stars->file) stars->file->release();  // the columns that only this has read
 }
 
 void ExposurePlanner::look_at_sky(const View& view, PlanFacts& f) const {
