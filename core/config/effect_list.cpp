@@ -181,10 +181,11 @@ EffectSet recorded_effects(std::span<const PlannableEffect> effects, const Senso
       fail(std::string(facts.name) + " has no level " + printable(named->second));
     set.force_level(facts, int(level - facts.levels.begin()));
   }
-  for (const auto& [name, level] : recorded->second)
-    if (std::none_of(effects.begin(), effects.end(),
-                     [&](const PlannableEffect& effect) { return effect.facts->name == name; }))
-      fail(printable(name) + " is no effect of the scenario's sensor");
+  for (const auto& planned : recorded->second)
+    if (std::none_of(effects.begin(), effects.end(), [&](const PlannableEffect& effect) {
+          return effect.facts->name == planned.first;
+        }))
+      fail(printable(planned.first) + " is no effect of the scenario's sensor");
   return set;
 }
 
