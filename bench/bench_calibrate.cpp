@@ -30,7 +30,7 @@ constexpr int repeats = 2;
 /// Adds the stages of one frame of `scenario`, predicted and measured, and which effects are in
 /// each.
 void measure(const std::string& path, std::map<std::string, StageTime>& stages,
-             std::map<std::string, std::string>& stage_of) {
+             std::map<std::string, std::string>& stages_by_effect) {
   Threads one(1);
   const Scenario scenario = load_scenario(path);
   const SceneFrames frames(scenario, scenario.sensors[0].name, 1, one);
@@ -46,7 +46,7 @@ void measure(const std::string& path, std::map<std::string, StageTime>& stages,
       known->second.measured_s = std::min(known->second.measured_s, time.measured_s);
     }
     for (const PlannedEffect& effect : frame.plan.planned)
-      stage_of[std::string(effect.facts->name)] = timed_as(effect.facts->name, frame.times);
+      stages_by_effect[std::string(effect.facts->name)] = stage_of(effect.facts->name);
     chain->give_back(std::move(frame.counts));
   }
   for (const auto& [name, time] : best) {
@@ -67,11 +67,11 @@ int bench_calibrate(bool json) {
   if (path.empty()) throw Error("calibrate: neither XDG_CACHE_HOME nor HOME is set; give --out");
   const std::string home = home_directory() + "/launch/scenarios/accuracy-";
   std::map<std::string, StageTime> stages;
-  std::map<std::string, std::string> stage_of;
+  std::map<std::string, std::string> stages_by_effect;
   for (const char* name : {"all-sky", "space", "resolved"})
-    measure(home + name + ".yaml", stages, stage_of);
+    measure(home + name + ".yaml", stages, stages_by_effect);
   CostFactors factors;
-  for (const auto& [effect, stage] : stage_of) {
+  for (const auto& [effect, stage] : stages_by_effect) {
     const StageTime& time = stages[stage];
     if (time.predicted_s > 0.0 && time.measured_s > 0.0)
       factors[effect] = std::clamp(time.measured_s / time.predicted_s, 1e-3, 1e3);

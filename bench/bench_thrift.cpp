@@ -24,6 +24,7 @@ constexpr double share_of_frame = 0.01;  // less is no stage to predict
 
 SensorConfig planned_for(SensorConfig sensor, const Accuracy& accuracy) {
   sensor.accuracy = accuracy;
+  sensor.detect = false;
   return sensor;
 }
 
@@ -60,12 +61,16 @@ Raced race(const SceneFrames& frames, const std::vector<Accuracy>& accuracies) {
 struct Predictions {
   int stages = 0, good = 0;
 
-  void take(const std::map<std::string, StageTime>& measured, double frame_s) {
+  void take(const std::map<std::string, StageTime>& measured, double frame_s, bool print) {
     for (const auto& [name, time] : measured) {
       if (time.measured_s < share_of_frame * frame_s) continue;
-      ++stages;
-      good +=
+      const bool is_good =
           time.predicted_s <= 1.5 * time.measured_s && time.predicted_s >= time.measured_s / 1.5;
+      ++stages;
+      good += is_good;
+      if (print)
+        std::printf("  %-22s %10.3f ms, predicted %10.3f ms%s\n", name.c_str(),
+                    1e3 * time.measured_s, 1e3 * time.predicted_s, is_good ? "" : "  beyond 1.5");
     }
   }
 };
@@ -96,8 +101,12 @@ void measure_thrift(bool json) {
     const Raced raced = race(frames, accuracies);
     print_figure({c.figure, raced.seconds[1] / raced.seconds[0], "1", "", 0, c.target, true}, json);
     if (c.draft) print_figure({"draft_all_sky_s", raced.seconds[2], "s", "", 0, 0.10, true}, json);
-    for (std::size_t i = 1; i < accuracies.size(); ++i)
-      predictions.take(raced.stages[i], raced.seconds[i]);
+    for (std::size_t i = 1; i < accuracies.size(); ++i) {
+      if (!json)
+        std::printf("%s, %s: %.4f s of a thread\n", c.figure, accuracies[i].name.c_str(),
+                    raced.seconds[i]);
+      predictions.take(raced.stages[i], raced.seconds[i], !json);
+    }
   }
   if (predictions.stages > 0)
     print_figure({"predicted_within_1_5", double(predictions.good) / predictions.stages, "1", "", 0,

@@ -7,6 +7,7 @@
 #include "bench/scene_dice.h"
 #include "bench/timing.h"
 #include "core/config/effect_list.h"
+#include "core/sky/light_time.h"
 #include "sensors/pipeline/exposure_planner.h"
 #include "sensors/pipeline/objects_in_field.h"
 
@@ -94,7 +95,8 @@ SceneTrial try_scene(int number, const TrialOptions& options,
   const Planner planner{frames};
   const PlanFacts facts = planner.planner.facts(planner.view, planner.objects);
   const auto effects = planner.effects();
-  for (const Accuracy& accuracy : budgets(options.seed, number)) {
+  for (const Accuracy& accuracy : options.effect.empty() ? budgets(options.seed, number)
+                                                          : std::vector<Accuracy>()) {
     const FrameProducts frame = frames.make(planned_for(frames.sensor(), accuracy));
     trial.plans.push_back({number, accuracy.name, accuracy.budget, frame.plan.error,
                            comparison.error_of(frame, frame.plan.effects).largest});
@@ -103,8 +105,8 @@ SceneTrial try_scene(int number, const TrialOptions& options,
         levels.try_emplace({std::string(effect.facts->name), effect.level},
                            LevelTrial{.bound = effect.error, .budget = accuracy.budget});
   }
-  if (options.every_level)
-    for (const PlannableEffect& effect : effects)
+  for (const PlannableEffect& effect : effects)
+    if (options.every_level || effect.facts->name == options.effect)
       for (int level = 0; effect.error && level < effect.facts->reference(); ++level)
         levels.try_emplace({std::string(effect.facts->name), level},
                            LevelTrial{.bound = effect.error(level, facts)});
@@ -115,7 +117,11 @@ SceneTrial try_scene(int number, const TrialOptions& options,
     level.scene = number;
     level.effect = key.first;
     level.level = effect->facts->levels[std::size_t(key.second)];
-    level.has_sources = trial.sources > 0;
+    level.has_sources = std::ranges::any_of(comparison.sources(), [&](const auto& source) {
+      const bool is_object = !source.name.starts_with("star ");
+      return source.counts && (is_object || key.first != LightTime::facts.name);
+    });
+    level.has_background = trial.background_pixels > 0;
     if (is_of_detector(key.first)) {  // the light is the reference's
       EffectSet alone = exact.plan.effects;
       alone.set_level(*effect->facts, key.second);

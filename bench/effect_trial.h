@@ -13,7 +13,8 @@ struct LevelTrial {
   std::string effect, level;
   ErrorBound bound, measured;
   ErrorBound budget;         // in which a plan took it; zero: none did
-  bool has_sources = false;  // photometry and positions were measured
+  bool has_sources = false;     // there are such as it concerns, whose errors count
+  bool has_background = false;  // there are pixels between sources
 
   /// Whether the bound of `kind` holds, but for the precision of what is measured.
   bool holds(const ErrorKind& kind) const;
@@ -43,6 +44,7 @@ struct SceneTrial {
 struct TrialOptions {
   std::uint64_t seed = 1;
   bool every_level = false;  // also those that no plan took
+  std::string effect;        // every level of this one alone, and no budget; empty: all
 };
 
 /// Draws scene `number`, makes its reference, its planned frames and the reference with one effect

@@ -37,11 +37,11 @@ std::string error_text(const ErrorBound& error) {
   return text.empty() ? "none" : text;
 }
 
-void print_span(const PlanSpan& span, const Clock& clock, bool all) {
+void print_span(const PlanSpan& span, const Clock& clock, const CostFactors& factors, bool all) {
   const EffectPlan& plan = span.plan;
   std::printf("  frames %u to %u, %s to %s: predicted %.3g s a frame, error %s of %s%s\n",
               span.first_frame, span.last_frame, format_utc(clock.utc(span.start), 0).c_str(),
-              format_utc(clock.utc(span.end), 0).c_str(), plan.cost_s,
+              format_utc(clock.utc(span.end), 0).c_str(), predicted_s(plan, factors),
               error_text(plan.error).c_str(), error_text(plan.budget).c_str(),
               plan.in_time ? "" : "; no plan is as fast as was asked");
   std::printf("    %-22s %-9s %9s  %-28s %s\n", "effect", "level", "cost, ms", "next lower level",
@@ -49,7 +49,7 @@ void print_span(const PlanSpan& span, const Clock& clock, bool all) {
   for (const auto& p : plan.planned) {
     if (!all && !p.decided && !p.forced) continue;
     std::printf("    %-22s %-9s %9.3f  %-28s %s\n", std::string(p.facts->name).c_str(),
-                std::string(p.level_name()).c_str(), 1e3 * p.cost_s,
+                std::string(p.level_name()).c_str(), 1e3 * predicted_s(p, factors),
                 p.decided && p.level > 0 ? error_text(p.cheaper).c_str() : "-",
                 why(p, plan).c_str());
   }
@@ -60,6 +60,7 @@ void explain(const ExplainOptions& options) {
   if (!options.sensor.empty()) sensor_named(scenario, options.sensor);
   const Clock clock = make_clock(scenario);
   const Scene scene = load_scene(scenario, clock);
+  const CostFactors factors = load_cost_factors(cost_factors_path());
   Threads threads(1);
   JsonWriter json;
   json.begin_object().field("scenario", printable(scenario.path)).key("sensors").begin_array();
@@ -75,7 +76,7 @@ void explain(const ExplainOptions& options) {
         json.field("last_frame", span.last_frame);
         json.field("start", format_utc(clock.utc(span.start), 6));
         json.field("end", format_utc(clock.utc(span.end), 6));
-        write_plan(json.key("plan"), span.plan);
+        write_plan(json.key("plan"), span.plan, factors);
         json.end_object();
       }
       json.end_array().end_object();
@@ -84,7 +85,7 @@ void explain(const ExplainOptions& options) {
     std::printf("%s: %s\n", sensor.name.c_str(),
                 sensor.accuracy.is_planned() ? ("accuracy: " + sensor.accuracy.name).c_str()
                                              : "not planned (accuracy: off)");
-    for (const auto& span : spans) print_span(span, clock, options.all);
+    for (const auto& span : spans) print_span(span, clock, factors, options.all);
   }
   json.end_array().end_object();
   if (options.json) std::printf("%s\n", json.take().c_str());

@@ -74,13 +74,31 @@ std::vector<const EffectFacts*> list() {
   return all;
 }
 
-/// Whether an effect is a part of the sky that a sensor does not have.
+/// Whether an effect is a part of the sky.
 template <class Effect>
-bool is_missing_from_sky(const SensorConfig& sensor) {
-  if constexpr (requires { sensor.sky.parts.*sky_part<Effect>; })
-    return !(sensor.effects.has(SkyBackground::facts) && sensor.sky.parts.*sky_part<Effect>);
-  else
-    return false;
+constexpr bool is_sky_part = !std::is_null_pointer_v<decltype(sky_part<Effect>)>;
+
+/// Calls `visit.template operator()<Effect>(parameters)` for the effects that apply to a sensor
+/// with these optics and detector, switched on or not.
+template <class Visit>
+void for_each_in(const SensorConfig& sensor, const SceneFacts& scene, const ImageOptics& optics,
+                 const Detector& detector, Visit&& visit) {
+  const auto visit_in_scene = [&]<class Effect>() {
+    if constexpr (requires { Effect::applies(scene); })
+      if (!Effect::applies(scene)) return;
+    if constexpr (is_sky_part<Effect>)
+      if (!(sensor.sky.parts.*sky_part<Effect>)) return;
+    visit.template operator()<Effect>(sensor);
+  };
+  PlaceEffects::for_each(visit_in_scene);
+  LightEffects::for_each(visit_in_scene);
+  ImageEffects::for_each([&]<class Effect>() {
+    if (static_cast<const Effect&>(optics).applies()) visit.template operator()<Effect>(optics);
+  });
+  DetectorEffects::for_each([&]<class Effect>() {
+    if (static_cast<const Effect&>(detector).applies(detector))
+      visit.template operator()<Effect>(detector);
+  });
 }
 
 }  // namespace
@@ -99,19 +117,13 @@ SceneFacts scene_facts(const SensorConfig& sensor) {
 
 std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const SceneFacts& scene) {
   std::vector<const EffectFacts*> running;
-  const auto add = [&]<class Effect>() {
-    if (acts<Effect>(sensor.effects, scene) && !is_missing_from_sky<Effect>(sensor))
-      running.push_back(&Effect::facts);
-  };
-  PlaceEffects::for_each(add);
-  LightEffects::for_each(add);
-  const ImageOptics optics = acting_optics(sensor.camera.optics.image, sensor.effects);
-  ImageEffects::for_each([&]<class Effect>() {
-    if (static_cast<const Effect&>(optics).applies()) running.push_back(&Effect::facts);
-  });
-  for (const auto* effect :
-       applying_effects(acting_detector(sensor.camera.detector, sensor.effects)))
-    running.push_back(effect);
+  const EffectSet& switched = sensor.effects;
+  for_each_in(sensor, scene, acting_optics(sensor.camera.optics.image, switched),
+              acting_detector(sensor.camera.detector, switched),
+              [&]<class Effect>(const auto&) {
+                if (is_sky_part<Effect> && !switched.has(SkyBackground::facts)) return;
+                if (switched.has(Effect::facts)) running.push_back(&Effect::facts);
+              });
   return running;
 }
 
@@ -140,25 +152,10 @@ PlannableEffect plannable(const Parameters& parameters) {
 std::vector<PlannableEffect> plannable_effects(const SensorConfig& sensor,
                                                const SceneFacts& scene) {
   std::vector<PlannableEffect> list;
-  const auto add_applying = [&]<class Effect>() {
-    if constexpr (requires { Effect::applies(scene); })
-      if (!Effect::applies(scene)) return;
-    if constexpr (requires { sensor.sky.parts.*sky_part<Effect>; })
-      if constexpr (!std::is_null_pointer_v<decltype(sky_part<Effect>)>)
-        if (!(sensor.sky.parts.*sky_part<Effect>)) return;
-    list.push_back(plannable<Effect>(sensor));
-  };
-  PlaceEffects::for_each(add_applying);
-  LightEffects::for_each(add_applying);
-  const ImageOptics& optics = sensor.camera.optics.image;
-  ImageEffects::for_each([&]<class Effect>() {
-    if (static_cast<const Effect&>(optics).applies()) list.push_back(plannable<Effect>(optics));
-  });
-  const Detector& detector = sensor.camera.detector;
-  DetectorEffects::for_each([&]<class Effect>() {
-    if (static_cast<const Effect&>(detector).applies(detector))
-      list.push_back(plannable<Effect>(detector));
-  });
+  for_each_in(sensor, scene, sensor.camera.optics.image, sensor.camera.detector,
+              [&]<class Effect>(const auto& parameters) {
+                list.push_back(plannable<Effect>(parameters));
+              });
   return list;
 }
 
@@ -220,7 +217,7 @@ std::string effects_markdown() {
       "`streak` (`integration: analytic | snapshots`, `snapshots: N`) and `evaluator` (`analytic "
       "|\n"
       "opengl`), which have other choices, or set to a level, `{stars: v9}`; without levels it is\n"
-      "off or on. `dmise check` shows which run and with what, `dmise explain` why.\n\n"
+      "off or on. `dmise check` shows which may run and with what, `dmise explain` which do and why.\n\n"
       "| effect | what it does | left out | source | levels | parameters |\n"
       "|---|---|---|---|---|---|\n";
   for (const EffectFacts* effect : all_effects()) {

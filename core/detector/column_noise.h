@@ -21,8 +21,7 @@ struct ColumnNoise {
   void apply(const ExposureFacts& exposed, const Prepared& offsets_e, Piece& piece) const;
   /// Five and a half deviations: one column in 26 million is beyond.
   ErrorBound error(int, const PlanFacts& f) const {
-    return {.background_sigma = f.in_noise(5.5 * column_noise_e),
-            .noise = f.without_light([&](const SkySample&) {
+    return {.noise = f.without_light([&](const SkySample&) {
                         return column_noise_e * column_noise_e;
                       }).noise};
   }

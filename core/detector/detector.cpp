@@ -128,14 +128,17 @@ Detector acting_detector(const Detector& detector, const EffectSet& effects) {
   return d;
 }
 
+bool reads_after_others(const Detector& d) {
+  return d.interpixel_coupling > 0.0 || d.nonlinearity > 0.0 || d.persistence_fraction > 0.0 ||
+         d.blooming || d.reference_px > 0;
+}
+
 Detector drawn_together(const Detector& acting, const EffectSet& effects) {
   Detector d = acting;
   if (effects.level(PhotonNoise::facts) != PhotonNoise::gaussian) return d;
   d.is_gaussian = true;
   std::swap(d.drawn_dark_e_per_s, d.dark_e_per_s);
-  const bool read_later = d.interpixel_coupling > 0.0 || d.nonlinearity > 0.0 ||
-                          d.persistence_fraction > 0.0 || d.blooming || d.reference_px > 0;
-  if (!read_later) std::swap(d.drawn_read_noise_e, d.read_noise_e);
+  if (!reads_after_others(d)) std::swap(d.drawn_read_noise_e, d.read_noise_e);
   return d;
 }
 

@@ -49,8 +49,12 @@ void check(const Detector& detector);
 /// currents and their reference are those at `temperature_c`.
 Detector acting_detector(const Detector& detector, const EffectSet& effects);
 
+/// Whether effects that take charge, or that of neighbours, come between the draw of photons and
+/// that of read noise.
+bool reads_after_others(const Detector& acting);
+
 /// The same with dark current and read noise within the photons' Gaussian draw, at that level of
-/// it; not the read noise of a detector that reads charge or neighbours after the draw.
+/// it; not the read noise of a detector that reads after others.
 Detector drawn_together(const Detector& acting, const EffectSet& effects);
 
 /// Effects that change anything in a frame of `acting`, in running order.

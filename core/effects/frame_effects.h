@@ -11,7 +11,7 @@ struct SkyBackground {
   static ErrorBound error(int, const PlanFacts& f) {
     return f.without_light([](const SkySample& s) { return 1.1 * s.sky_e; });
   }
-  static double cost_s(int level, const PlanFacts& f) { return level * 2.0e-9 * f.pixels(); }
+  static double cost_s(int level, const PlanFacts& f) { return level * 0.9e-9 * f.pixels(); }
 };
 
 struct SpaceObjects {
@@ -21,7 +21,7 @@ struct SpaceObjects {
     return f.objects > 0 ? not_bounded : ErrorBound{};
   }
   static double cost_s(int level, const PlanFacts& f) {
-    return level * (57e-6 * double(f.objects - f.shapes) + 12e-3 * double(f.shapes));
+    return level * (20e-6 * double(f.objects - f.shapes) + 39e-3 * double(f.shapes));
   }
 };
 
@@ -39,7 +39,7 @@ struct StarBackground {
   }
   static ErrorBound error(int level, const PlanFacts& f);
   static double cost_s(int level, const PlanFacts& f) {
-    constexpr double star_s = 1.9e-6;
+    constexpr double star_s = 1.4e-6;
     return star_s * (level == facts.reference() ? f.stars : f.stars_to(limit_v_mag(level)));
   }
 };
@@ -58,24 +58,27 @@ struct SkyGrid {
                                      levels,
                                      1};
   /// Of the light, on uncut patches of 32 px: the zodiacal table bends at its nodes by 0.1 a
-  /// radian, the other parts by 0.5 a square radian.
+  /// radian, the other parts by 0.5 a square radian; clouds have edges.
   static double of_patches(const SkySample& s, const PlanFacts& f) {
-    const double patch_rad = 32.0 * f.pixel_rad, zodiacal_e = s.part_e[2];
+    if (std::isfinite(f.cloud_detail_px)) return s.sky_e;
+    const double patch_rad = 32.0 * f.pixel_rad, zodiacal_e = s.of(SkyPart::zodiacal_light);
     return 0.1 * patch_rad * zodiacal_e + 1.5 * patch_rad * patch_rad * (s.sky_e - zodiacal_e);
   }
-  /// What cutting leaves, at most.
-  static double of_cut(int level, const SkySample& s) {
-    return 0.7 * tolerance[std::size_t(level)] * s.sky_e;
+  /// What cutting leaves, at most. It does not find pieces of cloud that are smaller than a patch.
+  static double of_cut(int level, const SkySample& s, const PlanFacts& f) {
+    constexpr double smallest_px = 64.0;
+    const double share = f.cloud_detail_px < smallest_px ? 1.0 : 0.7 * tolerance[std::size_t(level)];
+    return share * s.sky_e;
   }
   static ErrorBound error(int level, const PlanFacts& f) {
     return f.without_light(
-        [&](const SkySample& s) { return std::min(of_cut(level, s), of_patches(s, f)); });
+        [&](const SkySample& s) { return std::min(of_cut(level, s, f), of_patches(s, f)); });
   }
   static double cost_s(int level, const PlanFacts& f) {
     constexpr std::array<double, 4> looks_more{0.0, 0.05, 2.0, 8.0};
     if (level == facts.reference()) return f.sky_look_s * f.pixels();
     const bool is_cut = std::any_of(f.sky.begin(), f.sky.end(), [&](const SkySample& s) {
-      return of_patches(s, f) > of_cut(level, s);
+      return of_patches(s, f) > of_cut(level, s, f);
     });
     return is_cut ? looks_more[std::size_t(level)] * f.sky_look_s * f.sky_looks() : 0.0;
   }
@@ -99,12 +102,26 @@ struct PsfWavelengths {
     const double width = f.relative_bandwidth / count[std::size_t(level)];
     ErrorBound error = f.dimmed_by(0.02 * width);
     error.position_px = 0.0055 * width * f.fwhm_px;
-    // Rings beyond three widths of a point: 0.003 of its peak, smeared by the band.
-    const double rings_e = 0.003 * std::min(1.0, 10.0 * width) * f.brightest_e() * f.peak_share;
-    const ErrorBound beside = f.without_light([&](const SkySample&) { return rings_e; });
+    const double star = rings_in_noise(level, f, f.brightest_star_e, 0.0),
+                 object = rings_in_noise(level, f, f.brightest_object_e, f.narrowest_object_px);
+    const double light_e = std::max(star, object) * f.least_noise_e();
+    const ErrorBound beside = f.without_light([&](const SkySample&) { return light_e; });
     error.background_sigma = beside.background_sigma;
     error.noise = beside.noise;
     return error;
+  }
+  /// What is off beyond three widths of a source, in noise: there are rings or speckles of 0.003 of
+  /// a point's peak, smeared by the band; and by definition there is no background where a source
+  /// leaves more than half of the noise. An object of many speckles evens them out.
+  static double rings_in_noise(int level, const PlanFacts& f, double source_e, double size_px) {
+    constexpr double in_band[] = {1.0, 0.6, 0.4, 0.0}, peak = 4.0, narrow = 0.3;
+    const double width = f.relative_bandwidth / count[std::size_t(level)];
+    const double rings_e =
+        0.003 * std::min(1.0, 10.0 * width) * f.ring_contrast * source_e * f.peak_share;
+    const double across = narrow * size_px / f.speckle_px;
+    const double speckles = f.screens * (1.0 + across * across);
+    const double uneven = f.screens > 0 ? std::min(1.0, peak / std::sqrt(speckles)) : 1.0;
+    return std::min(f.in_noise(rings_e), 0.5 * uneven * in_band[level]);
   }
   /// Of kernels that are kept a hundredth, since they are computed once for many frames.
   static double cost_s(int level, const PlanFacts& f) {
@@ -119,7 +136,7 @@ struct Occlusion {
       "coverage of each pixel, nearest object first"};
   static bool applies(const SceneFacts& scene) { return scene.shapes; }
   static ErrorBound error(int, const PlanFacts& f) {
-    return f.resolved > 0 ? not_bounded : ErrorBound{};
+    return f.shapes > 0 ? not_bounded : ErrorBound{};
   }
 };
 
@@ -146,15 +163,20 @@ struct Drawing {
 };
 
 inline ErrorBound StarBackground::error(int level, const PlanFacts& f) {
-  // The brightest star that is left out, in its brightest pixel.
-  const double v_mag =
-      level == 0 ? f.brightest_star_mag : std::max(limit_v_mag(level), f.brightest_star_mag);
-  if (f.stars <= (level == 0 ? 0.0 : f.stars_to(limit_v_mag(level)))) return {};
-  const double star_e = f.star_zero_e * std::pow(10.0, -0.4 * v_mag) * f.star_peak_share;
-  // The smooth starlight that stands for all of them.
-  const double limit = std::max(0.0, limit_v_mag(level));
-  const double smooth_e = f.starlight_e[std::size_t(std::min(limit, 31.0))];
-  return f.without_light([&](const SkySample&) { return std::max(star_e, smooth_e); });
+  const double limit = limit_v_mag(level);
+  const double left_e = level == 0 ? f.brightest_star_e : f.brightest_left_e[f.limit(limit)];
+  if (!(left_e > 0.0)) return {};
+  // The brightest star that is left out, in its brightest pixel; and the smooth starlight that
+  // stands for all of them.
+  const double star = f.peak_in_noise(left_e * f.pattern_share(f.star_trail_px) / f.least_noise_e(),
+                                      f.star_trail_px);
+  const double light_e = std::max(star * f.least_noise_e(), f.starlight_e[f.limit(limit)]);
+  ErrorBound error = f.without_light([&](const SkySample&) { return light_e; });
+  // In the capsule of a source that counts.
+  const double share = std::min(PlanFacts::neighbour_share, left_e / f.faintest_source_e());
+  error.photometry_mag = 1.086 * share;
+  error.position_px = 3.0 * share * std::hypot(1.0, f.fwhm_px);
+  return error;
 }
 
 }  // namespace dmise

@@ -11,15 +11,30 @@
 
 namespace dmise {
 
-/// Parts of the sky by their place in SkySample::part_e.
-inline constexpr std::size_t most_sky_parts = 7;
+/// Parts of the sky, in the order in which they are listed.
+enum class SkyPart {
+  uniform,
+  airglow,
+  zodiacal_light,
+  faint_starlight,
+  scattered_moonlight,
+  twilight,
+  light_pollution,
+  count
+};
+inline constexpr std::size_t sky_part_count = static_cast<std::size_t>(SkyPart::count);
 
 /// Where the sky is looked at to plan an exposure: a pixel's light and noise there [e-].
 struct SkySample {
   double sky_e = 0.0;                           // all parts
   double noise_e = 1.0;                         // of sky, dark current and read-out, > 0
-  std::array<double, most_sky_parts> part_e{};  // in the order of the sky's parts
+  std::array<double, sky_part_count> part_e{};  // in the order of SkyPart
+
+  double of(SkyPart part) const { return part_e[static_cast<std::size_t>(part)]; }
 };
+
+/// Limits of stars by whole V magnitudes from 0.
+inline constexpr std::size_t star_limits = 32;
 
 /// What is known of a sensor and one exposure before it is made: by it effects state their errors
 /// and costs. All figures are finite.
@@ -30,12 +45,24 @@ struct PlanFacts {
   double pixel_rad = 1e-5;          // the finest scale of the field
   double relative_bandwidth = 0.2;  // width over centre
   double fwhm_px = 1.0;
-  double peak_share = 1.0;       // of a point's light in its brightest pixel, most
-  double star_peak_share = 1.0;  // the same of a star, which may leave a trail
+  double peak_share = 1.0;  // of a point's light in its brightest pixel, most
+  int screens = 0;          // of turbulence, in short exposures: a point is a cloud of speckles
+  double speckle_px = 1.0;  // width of the finest structure of a point
+  double ghost_pixel_share = 0.0;  // of a point's light, in a pixel of the lens's ghost of it
+  /// How much of the rings of diffraction pixels, seeing and jitter leave, 0..1.
+  double ring_contrast = 1.0;
   // Light between sources.
   std::vector<SkySample> sky;   // over the field, where it sees the sky; at least one
+  /// How much brighter a part of the sky may be between the samples.
+  std::array<double, sky_part_count> between_samples = [] {
+    std::array<double, sky_part_count> usual{};
+    usual.fill(1.25);
+    return usual;
+  }();
+  double cloud_detail_px = unbounded;  // size of the smallest pieces of cloud in the field
   double sky_look_s = 0.32e-6;  // what one look at all parts costs
   double dark_e = 0.0, read_noise_e = 0.0;
+  bool read_later = false;  // its noise is drawn after effects that take charge only
   // The air.
   double most_airmass = 1.0, zenith_extinction_mag = 0.0;
   double scintillation = 0.0;   // deviation of a source's light at the largest airmass
@@ -46,19 +73,23 @@ struct PlanFacts {
   bool sees_horizon = false;                                         // the Earth is in the field
   double least_illumination = 1.0;                                   // by vignetting
   // Stars.
-  double stars = 0.0;                       // in the field, to the scenario's limit
-  std::array<double, 32> stars_brighter{};  // the same by whole V magnitudes from 0
-  double star_zero_e = 0.0;                 // of a star of V = 0 over the exposure
-  double star_shift_rad = 0.0;              // of proper motion since the catalogue's epoch, largest
+  double stars = 0.0;                                 // whose places are computed, to the limit
+  std::array<double, star_limits> stars_brighter{};   // the same to each whole V magnitude
+  double brightest_star_e = 0.0;                      // light of one star in the field
+  std::array<double, star_limits> brightest_left_e{};  // the same of those beyond each limit
+  double star_trail_px = 0.0;                         // shortest
+  double star_shift_rad = 0.0;  // of proper motion since the catalogue's epoch, largest
   double star_parallax_rad = 0.0;
-  /// Faint starlight of a pixel, most, with stars drawn to each whole V magnitude from 0.
-  std::array<double, 32> starlight_e{};
-  double brightest_star_mag = -1.5;  // in the field
+  /// Faint starlight of a pixel, most, with stars drawn to each limit.
+  std::array<double, star_limits> starlight_e{};
   // Objects.
-  std::size_t objects = 0, shapes = 0, resolved = 0;
+  std::size_t objects = 0, shapes = 0;
   double light_time_rad = 0.0;  // way of an object while its light travels, seen from the sensor
   bool near_shadow = false;     // an object is in the Earth's shadow or close
   double brightest_object_e = 0.0;
+  double narrowest_object_px = 0.0;  // 0: a point
+  bool faint_objects = false;     // one may be no source that counts
+  double longest_trail_px = 0.0;  // of any source, within the frame
   static constexpr double glint_e = 1e9;  // of a shape, in a pixel
   // The blur.
   bool kernels_change = false;  // with every exposure
@@ -66,12 +97,12 @@ struct PlanFacts {
 
   double pixels() const { return double(columns) * rows; }
   /// Returns how often the sky is looked at for its grid, about.
-  double sky_looks() const { return 3.0 * (columns / 32.0 + 2.0) * (rows / 32.0 + 2.0); }
-  double stars_to(double v_mag) const {
-    if (v_mag < 0.0) return 0.0;
-    const double last = double(stars_brighter.size()) - 1.0;
-    return stars_brighter[std::size_t(std::min(v_mag, last))];
+  double sky_looks() const { return 1.7 * (columns / 32.0 + 2.0) * (rows / 32.0 + 2.0); }
+  /// Returns the place of a limit in the arrays of stars.
+  static std::size_t limit(double v_mag) {
+    return std::size_t(std::clamp(v_mag, 0.0, double(star_limits) - 1.0));
   }
+  double stars_to(double v_mag) const { return v_mag < 0.0 ? 0.0 : stars_brighter[limit(v_mag)]; }
   double least_noise_e() const {
     double least = unbounded;
     for (const auto& s : sky) least = std::min(least, s.noise_e);
@@ -79,30 +110,41 @@ struct PlanFacts {
   }
   /// Returns the largest share of a pixel's noise that `light_e` is in the field.
   double in_noise(double light_e) const { return light_e / least_noise_e(); }
+  double sigma_px() const { return std::hypot(fwhm_px / 2.355, 0.29); }
+  /// Returns the root of the sum of squares of the light by pixels of a source of trail `trail_px`:
+  /// the light of a source over its deviation by noise is that times its light over a pixel's
+  /// noise, and a pattern of independent pixels changes it by so much of itself.
+  double pattern_share(double trail_px = 0.0) const {
+    const double sigma = sigma_px();
+    return std::min(1.0, std::sqrt(0.2821 / sigma / std::max(trail_px, 3.545 * sigma)));
+  }
+  /// Returns the light of the faintest source whose photometry and position count.
+  double faintest_source_e() const { return least_snr * least_noise_e() / pattern_share(); }
+  /// Returns what of a pixel's noise a source has in its brightest pixel, at a signal to noise
+  /// ratio of its whole light.
+  double peak_in_noise(double snr, double trail_px) const {
+    const double share = trail_px > 2.0 ? std::sqrt(peak_share) / (0.5 * trail_px) : peak_share;
+    return snr * std::min(share, peak_share) / pattern_share(trail_px);
+  }
+
   /// Error of sources that are misplaced by an angle, with what their faint edges leave beside
   /// them.
+  ErrorBound shifted_stars(double angle_rad) const {
+    return shifted(angle_rad, stars > 0.0, star_trail_px);
+  }
+  ErrorBound shifted_objects(double angle_rad) const {
+    return shifted(angle_rad, faint_objects, 0.0);
+  }
   ErrorBound shifted_by(double angle_rad) const {
-    constexpr double off_axis = 1.08, edge = 0.45, of_light = 0.01;
-    const double px = off_axis * angle_rad / pixel_rad;
-    const double background_sigma = std::min(1.0, edge * px / std::hypot(fwhm_px / 2.355, 0.3));
-    return {.photometry_mag = of_light * px,
-            .position_px = px,
-            .background_sigma = background_sigma,
-            .noise = 0.5 * background_sigma / std::max(1.0, least_noise_e())};
+    return faint_objects ? shifted_objects(angle_rad) : shifted_stars(angle_rad);
   }
-  /// Returns the root of the sum of squares of a point's light by pixels: a pattern of independent
-  /// pixels changes the light of a point by so much of itself.
-  double pattern_share() const {
-    const double sigma_px = std::hypot(fwhm_px / 2.355, 0.29);
-    return std::min(1.0, 0.2821 / sigma_px);
-  }
-  /// Error of sources whose light is off by a factor, with that of those too faint for photometry,
-  /// which have three deviations of noise in their brightest pixel.
+  /// Error of sources whose light is off by a factor, with that of those too faint for photometry.
   ErrorBound dimmed_by(double magnitude) const {
-    const double background_sigma = 3.0 * std::min(1.0, magnitude);
+    const double trail_px = faint_objects ? 0.0 : star_trail_px;
+    const double background_sigma = peak_in_noise(least_snr, trail_px) * std::min(1.0, magnitude);
     return {.photometry_mag = magnitude,
             .background_sigma = background_sigma,
-            .noise = 0.5 * background_sigma / std::max(1.0, least_noise_e())};
+            .noise = noise_of(background_sigma)};
   }
   /// Error of the frame without light that `light_e(sample)` gives everywhere.
   template <class Light>
@@ -115,10 +157,10 @@ struct PlanFacts {
     }
     return error;
   }
-  /// The same for a part of the sky, which may be brighter between the samples.
-  ErrorBound without_part(std::size_t part) const {
-    constexpr double between_samples = 1.25;
-    return without_light([&](const SkySample& s) { return between_samples * s.part_e[part]; });
+  /// The same for a part of the sky.
+  ErrorBound without_part(SkyPart part) const {
+    const double most = between_samples[static_cast<std::size_t>(part)];
+    return without_light([&](const SkySample& s) { return most * s.of(part); });
   }
   /// Returns the light of the brightest pixel, at most.
   double brightest_pixel_e() const {
@@ -127,10 +169,34 @@ struct PlanFacts {
     return 1.25 * sky_e + dark_e + brightest_e() * peak_share + (shapes > 0 ? glint_e : 0.0);
   }
   /// Returns the light of the brightest source, at most.
-  double brightest_e() const {
-    const double star_e =
-        stars_brighter.back() > 0.0 ? star_zero_e * std::pow(10.0, -0.4 * brightest_star_mag) : 0.0;
-    return std::max(star_e, brightest_object_e);
+  double brightest_e() const { return std::max(brightest_star_e, brightest_object_e); }
+
+  /// Of a source that counts, and of one that is no background.
+  static constexpr double least_snr = 5.0, least_snr_of_source = 0.5;
+  /// Of a source's light: a neighbour with more is no neighbour of one that counts.
+  static constexpr double neighbour_share = 0.002;
+
+ private:
+  /// Returns the relative noise of light that is so much of a pixel's noise, which is measured as
+  /// no less than one electron.
+  double noise_of(double background_sigma) const {
+    const double noise_e = least_noise_e();
+    return std::min(1.0, 0.5 * background_sigma * std::max(1.0, noise_e) / (noise_e * noise_e));
+  }
+  ErrorBound shifted(double angle_rad, bool faint, double trail_px) const {
+    constexpr double off_axis = 1.08, steepest = 0.607;  // of a Gaussian
+    const double of_light = (screens > 0 ? 0.15 : 0.02) + (std::isfinite(cloud_detail_px) ? 0.1 : 0.0);
+    const double width_px = screens > 0 ? std::min(sigma_px(), speckle_px / 2.355) : sigma_px();
+    const double px = off_axis * angle_rad / pixel_rad;
+    // Beside sources that count there is light of their rings alone.
+    const double peak = faint || scene.diffracts ? peak_in_noise(least_snr_of_source, trail_px) : 0.0;
+    const double background_sigma =
+        peak * std::min(1.0, steepest * px / width_px) +
+        in_noise(ghost_pixel_share * brightest_e() * std::min(1.0, px));
+    return {.photometry_mag = of_light * px,
+            .position_px = px,
+            .background_sigma = background_sigma,
+            .noise = noise_of(background_sigma)};
   }
 };
 

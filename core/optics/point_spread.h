@@ -30,8 +30,10 @@ struct PointSpread {
                                      "Gaussian, or Fourier optics of the pupil"};
 
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  /// Of what is deposited, source by source; stars have it in theirs.
-  static double cost_s(int level, const PlanFacts& f) { return level * 20e-6 * double(f.objects); }
+  /// Of the plane, once; sources have that of their deposit.
+  static double cost_s(int level, const PlanFacts& f) {
+    return f.scene.diffracts ? level * 1.5e-9 * f.pixels() : 0.0;
+  }
 
   enum class Model {
     gaussian,     // round, of `psf_fwhm_px` and diffraction in quadrature

@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 
+#include "core/base/cache_directory.h"
 #include "core/base/error.h"
 #include "core/base/text_file.h"
 
@@ -17,11 +17,8 @@ constexpr double largest_factor = 1e6;
 }  // namespace
 
 std::string cost_factors_path() {
-  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg)
-    return std::string(xdg) + "/dmise/cost-factors.txt";
-  if (const char* home = std::getenv("HOME"); home && *home)
-    return std::string(home) + "/.cache/dmise/cost-factors.txt";
-  return "";
+  const std::string directory = cache_directory();
+  return directory.empty() ? "" : directory + "/cost-factors.txt";
 }
 
 CostFactors load_cost_factors(const std::string& path) {
@@ -58,6 +55,12 @@ std::string cost_factors_text(const CostFactors& factors) {
 double predicted_s(const PlannedEffect& effect, const CostFactors& factors) {
   const auto found = factors.find(effect.facts->name);
   return effect.cost_s * (found == factors.end() ? 1.0 : found->second);
+}
+
+double predicted_s(const EffectPlan& plan, const CostFactors& factors) {
+  double sum = 0.0;
+  for (const auto& effect : plan.planned) sum += predicted_s(effect, factors);
+  return sum;
 }
 
 }  // namespace dmise

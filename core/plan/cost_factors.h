@@ -10,8 +10,7 @@ namespace dmise {
 /// predicted seconds, never a plan.
 using CostFactors = std::map<std::string, double, std::less<>>;
 
-/// Where `dmise bench calibrate` keeps them: $XDG_CACHE_HOME/dmise or ~/.cache/dmise; empty if
-/// neither is known.
+/// Where `dmise bench calibrate` keeps them, in the user's cache; empty if there is none.
 std::string cost_factors_path();
 
 /// Reads a file of lines `NAME FACTOR`; nothing where there is none. Throws `ConfigError`
@@ -21,5 +20,7 @@ std::string cost_factors_text(const CostFactors& factors);
 
 /// Returns the seconds that an effect of a plan is predicted to take here.
 double predicted_s(const PlannedEffect& effect, const CostFactors& factors);
+/// The same of a frame.
+double predicted_s(const EffectPlan& plan, const CostFactors& factors);
 
 }  // namespace dmise

@@ -15,17 +15,18 @@ void write_error(JsonWriter& json, const ErrorBound& error) {
 
 }  // namespace
 
-void write_plan(JsonWriter& json, const EffectPlan& plan) {
+void write_plan(JsonWriter& json, const EffectPlan& plan, const CostFactors& factors) {
   json.begin_object();
   write_error(json.key("budget"), plan.budget);
   write_error(json.key("error"), plan.error);
-  json.field("predicted_s", plan.cost_s).field("least_s", plan.least_cost_s);
+  json.field("predicted_s", predicted_s(plan, factors)).field("least_s", plan.least_cost_s);
   if (!plan.in_time) json.field("in_time", false);
   json.key("effects").begin_object();
   for (const auto& p : plan.planned) {
     json.key(p.facts->name).begin_object().field("level", p.level_name());
-    json.field("why", why(p, plan)).field("predicted_s", p.cost_s);
-    write_error(json.key("error"), p.error);
+    if (p.cost_s > 0.0) json.field("predicted_s", predicted_s(p, factors));
+    if (p.decided || p.forced) json.field("why", why(p, plan));
+    if (p.error != ErrorBound{}) write_error(json.key("error"), p.error);
     if (p.decided && p.level > 0) write_error(json.key("error_of_next_lower"), p.cheaper);
     json.end_object();
   }

@@ -24,7 +24,7 @@ struct AnnualAberration {
                                      "up to 20.5 arcsec", "IAU SOFA, eraAb"};
   static constexpr bool displaces_satellites = false;
   static ErrorBound error(int, const PlanFacts& f) {
-    return f.shifted_by(f.stars > 0.0 ? f.annual_aberration_rad : 0.0);
+    return f.shifted_stars(f.stars > 0.0 ? f.annual_aberration_rad : 0.0);
   }
   static double cost_s(int level, const PlanFacts& f) { return level * 6e-9 * f.stars; }
 

@@ -11,7 +11,7 @@ struct Airglow {
                                      "22.4 mag/arcsec2 at the zenith",
                                      "van Rhijn 1921, Publ. Astr. Lab. Groningen 31"};
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
-  static ErrorBound error(int, const PlanFacts& f) { return f.without_part(1); }
+  static ErrorBound error(int, const PlanFacts& f) { return f.without_part(SkyPart::airglow); }
   static double cost_s(int level, const PlanFacts& f) { return level * 75e-9 * f.sky_looks(); }
 
   double zenith_v_mag_per_arcsec2 = 22.4;  // at the ground; 21.9 to 22.6 over the solar cycle

@@ -11,7 +11,7 @@ struct LightTime {
                                      "objects are seen where they were when the light left",
                                      "up to 5.2 arcsec", "three iterations of range / c"};
 
-  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_by(f.light_time_rad); }
+  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_objects(f.light_time_rad); }
   static double cost_s(int level, const PlanFacts& f) { return level * 1e-6 * double(f.objects); }
 
   /// `line_m(dt_s)`: from the observer now to the object at now + dt_s. Returns the line along

@@ -11,7 +11,7 @@ class Parallax {
   static constexpr EffectFacts facts{"parallax", "stars seen from the Earth's place on its orbit",
                                      "up to 0.77 arcsec", "IAU SOFA, eraPmpx"};
 
-  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_by(f.star_parallax_rad); }
+  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_stars(f.star_parallax_rad); }
   static double cost_s(int level, const PlanFacts& f) { return level * 2e-9 * f.stars; }
 
   explicit Parallax(const Observer& observer) : barycentric_au_(barycentric_au(observer)) {}

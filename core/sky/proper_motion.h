@@ -12,7 +12,7 @@ class ProperMotion {
       "proper_motion", "stars move from their catalogue's epoch to the date",
       "up to 10.4 arcsec a year (Barnard's star)", "IAU SOFA, eraPmpx"};
 
-  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_by(f.star_shift_rad); }
+  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_stars(f.star_shift_rad); }
   static double cost_s(int level, const PlanFacts& f) { return level * 18e-9 * f.stars; }
 
   explicit ProperMotion(const Observer& observer);

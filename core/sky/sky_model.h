@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/effects/plan_facts.h"
 #include "core/frames/vec.h"
 #include "core/sky/airglow.h"
 #include "core/sky/clouds.h"
@@ -57,17 +58,6 @@ inline constexpr auto sky_part<LightPollution> = &SkyParts::light_pollution;
 /// The parts that act: without those that are switched off or have no air to be in.
 SkyParts acting_sky(const SkyParts& parts, const EffectSet& switched, const SceneFacts& scene);
 
-enum class SkyPart {
-  uniform,
-  airglow,
-  zodiacal_light,
-  faint_starlight,
-  scattered_moonlight,
-  twilight,
-  light_pollution,
-  count
-};
-inline constexpr std::size_t sky_part_count = static_cast<std::size_t>(SkyPart::count);
 /// Names in the order of SkyPart, as in YAML.
 inline constexpr std::array<std::string_view, sky_part_count> sky_part_names = {
     "uniform",  "airglow",        "zodiacal_light", "faint_starlight", "scattered_moonlight",

@@ -12,6 +12,8 @@ namespace {
 
 constexpr double widths = 3.0;            // of the point spread, around a trail
 constexpr double saturated_share = 0.9;   // of the full well
+constexpr double rim_share = 0.1;         // of a source's light: more around it is another's
+constexpr double rim_begins = 0.8;        // of the margin
 constexpr double background_share = 0.5;  // of the noise: more light of sources is no background
 
 ExpectedElectronImage light_of(const FrameProducts& frame, double exposure_s) {
@@ -26,6 +28,34 @@ ExpectedElectronImage sky_of(const FrameProducts& frame, double exposure_s) {
   ExpectedElectronImage sky = frame.planes.background;
   for (float& e : sky.pixels) e = float(e * exposure_s);
   return sky;
+}
+
+/// Charge that a pixel holds and the converter can count.
+double most_counted_e(const Detector& detector) {
+  const double counts = std::exp2(detector.adc_bits) - 1.0 - detector.bias_dn;
+  return std::min(detector.full_well_e, counts * detector.gain_e_per_dn);
+}
+
+/// Spreads true pixels by `by` along both axes.
+std::vector<bool> spread(const std::vector<bool>& pixels, int columns, int rows, int by) {
+  const auto along = [&](const std::vector<bool>& from, int count, int length, int step, int across) {
+    std::vector<bool> to(from.size());
+    for (int line = 0; line < count; ++line) {
+      int last = -by - 1;
+      const auto at = [&](int k) { return std::size_t(line) * std::size_t(across) + std::size_t(k) * std::size_t(step); };
+      for (int k = 0; k < length; ++k) {
+        if (from[at(k)]) last = k;
+        if (k - last <= by && last >= 0) to[at(k)] = true;
+      }
+      last = length + by;
+      for (int k = length - 1; k >= 0; --k) {
+        if (from[at(k)]) last = k;
+        if (last - k <= by && last < length) to[at(k)] = true;
+      }
+    }
+    return to;
+  };
+  return along(along(pixels, rows, columns, 1, columns), columns, rows, columns, 1);
 }
 
 double distance_px(PixelPosition p, PixelPosition from, PixelPosition to) {
@@ -85,20 +115,29 @@ FrameComparison::FrameComparison(const SceneFrames& scene, const FrameProducts& 
   const Detector detector = acting_detector(scene.sensor().camera.detector, effects);
   const double rest_e2 = detector.dark_e_per_s * scene.times().seconds() +
                          detector.read_noise_e * detector.read_noise_e;
+  full_e_ = saturated_share * most_counted_e(scene.sensor().camera.detector);
   const std::size_t pixels = light_.pixels.size();
   sigma_e_.resize(pixels);
   background_.resize(pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
     sigma_e_[i] = float(std::sqrt(std::max(1.0, light_.pixels[i] + rest_e2)));
     const double sources_e = double(reference_.signal.pixels[i]) - reference_.sky.pixels[i];
-    background_[i] = std::abs(sources_e) < background_share * sigma_e_[i];
+    background_[i] =
+        std::abs(sources_e) < background_share * sigma_e_[i] && light_.pixels[i] <= full_e_;
   }
+  // Where charge has bled it bleeds elsewhere by a little less light.
+  std::vector<bool> full(pixels);
+  for (std::size_t i = 0; i < pixels; ++i) full[i] = reference_.signal.pixels[i] > full_e_;
+  const int by = int(std::ceil(widths * std::hypot(1.0, reference.header.psf_fwhm_px)));
+  const auto near_full = spread(full, light_.columns, light_.rows, by);
+  for (std::size_t i = 0; i < pixels; ++i)
+    if (near_full[i]) background_[i] = false;
   find_sources(reference);
 }
 
 void FrameComparison::measure(ReferenceSource source) {
-  const double full_e = saturated_share * scene_.sensor().camera.detector.full_well_e;
-  double e = 0.0, x_e = 0.0, y_e = 0.0, snr2 = 0.0, peak_e = 0.0;
+  double e = 0.0, x_e = 0.0, y_e = 0.0, snr2 = 0.0, peak_e = 0.0, rim_e = 0.0;
+  double pixels = 0.0, rim_pixels = 0.0;
   bool saturated = false;
   const bool whole =
       for_capsule(source, light_.columns, light_.rows, [&](std::size_t i, int x, int y) {
@@ -107,7 +146,13 @@ void FrameComparison::measure(ReferenceSource source) {
         x_e += here * x;
         y_e += here * y;
         snr2 += here * here / (double(sigma_e_[i]) * sigma_e_[i]);
-        saturated = saturated || light_.pixels[i] > full_e;
+        saturated = saturated || light_.pixels[i] > full_e_;
+        pixels += 1.0;
+        if (distance_px({double(x), double(y)}, source.from, source.to) >
+            rim_begins * source.margin_px) {
+          rim_e += here;
+          rim_pixels += 1.0;
+        }
         if (here > peak_e) peak_e = here, source.peak_sigma = here / sigma_e_[i];
       });
   if (!(e > 0.0)) return;
@@ -115,13 +160,14 @@ void FrameComparison::measure(ReferenceSource source) {
   source.centroid = {x_e / e, y_e / e};
   source.snr = std::sqrt(snr2);
   source.whole = whole;
-  source.counts = whole && !saturated && source.snr >= least_snr;
-  if (source.snr >= least_snr_of_source) sources_.push_back(std::move(source));
+  const bool in_wings = rim_e * pixels > rim_share * e * rim_pixels;
+  source.alone = !in_wings;
+  source.counts = whole && !saturated && source.snr >= PlanFacts::least_snr;
+  (source.snr >= PlanFacts::least_snr_of_source ? sources_ : faint_).push_back(std::move(source));
 }
 
 // Light of a neighbour that moves over the edge of a capsule would be taken for an error.
 void FrameComparison::see_who_counts() {
-  constexpr double faint_share = 0.002;  // of a neighbour's light
   struct Owner {
     std::uint32_t brightest = 0;  // source + 1
     float light_e = 0.0f, next_e = 0.0f;
@@ -137,11 +183,16 @@ void FrameComparison::see_who_counts() {
       else
         owner.next_e = std::max(owner.next_e, e);
     });
+  for (const auto& faint : faint_)
+    for_capsule(faint, light_.columns, light_.rows, [&](std::size_t i, int, int) {
+      owners[i].next_e = std::max(owners[i].next_e, float(faint.light_e));
+    });
   for (std::size_t s = 0; s < sources_.size(); ++s)
     for_capsule(sources_[s], light_.columns, light_.rows, [&](std::size_t i, int, int) {
       const float other_e = owners[i].brightest == s + 1 ? owners[i].next_e : owners[i].light_e;
-      if (other_e > faint_share * sources_[s].light_e) sources_[s].counts = false;
+      if (other_e > PlanFacts::neighbour_share * sources_[s].light_e) sources_[s].alone = false;
     });
+  for (auto& source : sources_) source.counts = source.counts && source.alone;
 }
 
 void FrameComparison::find_sources(const FrameProducts& reference) {
@@ -202,7 +253,7 @@ FrameError FrameComparison::error_of(const FrameProducts& frame, const EffectSet
     });
     if (!source.counts) {
       // Too faint for photometry: the light that it lacks, in its brightest pixel.
-      if (source.whole && source.snr < least_snr)
+      if (source.whole && source.alone && source.snr < PlanFacts::least_snr)
         largest.background_sigma =
             std::max(largest.background_sigma, std::abs(e) / source.light_e * source.peak_sigma);
       continue;
@@ -225,10 +276,9 @@ FrameError FrameComparison::error_of(const FrameProducts& frame, const EffectSet
 double FrameComparison::skewness_error(const EffectSet& effects) const {
   const EffectFacts& photons = PhotonNoise::facts;
   if (photons.levels[std::size_t(effects.level(photons))] != "gaussian") return 0.0;
-  const double full_e = saturated_share * scene_.sensor().camera.detector.full_well_e;
   double largest = 0.0;
   for (std::size_t i = 0; i < light_.pixels.size(); ++i)
-    if (light_.pixels[i] <= full_e)
+    if (light_.pixels[i] <= full_e_)
       largest =
           std::max(largest, 4.0 / 9.0 * light_.pixels[i] / std::pow(double(sigma_e_[i]), 3.0));
   return largest;

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "core/effects/accuracy.h"
+#include "core/effects/plan_facts.h"
 #include "sensors/accuracy/scene_frames.h"
 
 namespace dmise {
@@ -10,6 +10,7 @@ namespace dmise {
 /// A star or object of the reference frame, in a capsule of three point spreads around its trail.
 struct ReferenceSource {
   bool whole = false;   // its capsule is within the frame
+  bool alone = false;   // no other source's light is in its capsule
   bool counts = false;  // bright, whole, alone and not saturated: errors are its own
   std::string name;
   PixelPosition from, to;   // of its trail
@@ -33,11 +34,6 @@ struct FrameError {
   std::vector<SourceError> sources;  // of those that count
   double residual_sigma = 0.0;       // rms of the difference of all pixels, in their noise
 };
-
-/// Of sources that count.
-inline constexpr double least_snr = 5.0;
-/// Of sources whose capsule is no background.
-inline constexpr double least_snr_of_source = 0.5;
 
 /// Compares frames of one exposure with its reference, by what they expect of every pixel:
 /// docs/accuracy.md gives the definitions.
@@ -64,11 +60,12 @@ class FrameComparison {
 
   const SceneFrames& scene_;
   EffectSet effects_;
+  double full_e_ = 0.0;  // in brighter pixels errors do not count
   ExpectedElectronImage light_;
   Expected reference_;
   std::vector<float> sigma_e_;  // sqrt(light + dark + read^2) of each pixel
   std::vector<bool> background_;
-  std::vector<ReferenceSource> sources_;
+  std::vector<ReferenceSource> sources_, faint_;  // faint: their capsules are background
 };
 
 }  // namespace dmise

@@ -1,5 +1,6 @@
 #include "sensors/accuracy/stage_times.h"
 
+#include "core/detector/detector.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/point_spread.h"
 #include "core/sky/place_effects.h"
@@ -7,17 +8,17 @@
 
 namespace dmise {
 
-std::string_view timed_as(std::string_view effect, const EffectTimes& measured) {
-  if (measured.seconds.contains(effect)) return effect;
+std::string_view stage_of(std::string_view effect) {
   std::string_view stage = effect;
-  SkyPartEffects::for_each([&]<class Part>() {
-    if (effect == Part::facts.name) stage = SkyBackground::facts.name;
-  });
-  PlaceEffects::for_each([&]<class Place>() {
-    if (effect == Place::facts.name) stage = StarBackground::facts.name;
-  });
-  if (effect == SkyGrid::facts.name) stage = SkyBackground::facts.name;
-  if (effect == PsfWavelengths::facts.name) stage = PointSpread::facts.name;
+  const auto within = [&](const EffectFacts& part, const EffectFacts& whole) {
+    if (effect == part.name) stage = whole.name;
+  };
+  SkyPartEffects::for_each([&]<class Part>() { within(Part::facts, SkyBackground::facts); });
+  PlaceEffects::for_each([&]<class Place>() { within(Place::facts, StarBackground::facts); });
+  within(SkyGrid::facts, SkyBackground::facts);
+  within(PsfWavelengths::facts, PointSpread::facts);
+  within(DarkCurrent::facts, PhotonNoise::facts);
+  within(ReadNoise::facts, PhotonNoise::facts);
   return stage;
 }
 
@@ -25,9 +26,9 @@ std::map<std::string, StageTime> stage_times(const EffectPlan& plan, const Effec
                                              const CostFactors& factors) {
   std::map<std::string, StageTime> stages;
   for (const auto& [name, seconds] : measured.seconds)
-    stages[std::string(name)].measured_s = seconds;
+    stages[std::string(stage_of(name))].measured_s += seconds;
   for (const PlannedEffect& effect : plan.planned)
-    stages[std::string(timed_as(effect.facts->name, measured))].predicted_s +=
+    stages[std::string(stage_of(effect.facts->name))].predicted_s +=
         dmise::predicted_s(effect, factors);
   return stages;
 }

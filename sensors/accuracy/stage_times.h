@@ -11,11 +11,12 @@ struct StageTime {
   double predicted_s = 0.0, measured_s = 0.0;
 };
 
-/// The effect by whose name a frame's time shows the cost of `effect`: parts of the sky in `sky`,
-/// places of stars in `stars`, wavelengths in `psf`.
-std::string_view timed_as(std::string_view effect, const EffectTimes& measured);
+/// The effect by whose name the cost of `effect` is compared with a frame's time: parts of the sky
+/// are in `sky`, places of stars in `stars`, wavelengths in `psf`, all draws for each pixel in
+/// `photon_noise`.
+std::string_view stage_of(std::string_view effect);
 
-/// Adds up what a plan predicts for this machine and what was measured, by the names of `measured`.
+/// Adds up what a plan predicts for this machine and what was measured, by stage.
 std::map<std::string, StageTime> stage_times(const EffectPlan& plan, const EffectTimes& measured,
                                              const CostFactors& factors);
 

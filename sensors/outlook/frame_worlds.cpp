@@ -31,15 +31,6 @@ ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::siz
   return some;
 }
 
-std::set<std::size_t> needed_objects(const SensorConfig& sensor, const ObjectRoster& roster) {
-  std::set<std::size_t> needed;
-  if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place))
-    needed.insert(object_index(roster, platform->object, platform->where));
-  if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
-    needed.insert(object_index(roster, target->object, target->where));
-  return needed;
-}
-
 FrameWorlds::FrameWorlds(const Scenario& scenario, const SensorConfig& sensor, const Clock& clock)
     : scenario_(scenario), environment_(alone(scenario, sensor), clock) {}
 

@@ -8,15 +8,13 @@
 #include "core/time/clock.h"
 #include "nodes/environment/environment_actor.h"
 #include "sensors/pipeline/frame_times.h"
+#include "sensors/pipeline/objects_in_field.h"
 #include "sensors/pipeline/world.h"
 
 namespace dmise {
 
 /// The subset of a population. `indices` ascend.
 ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::size_t>& indices);
-
-/// Objects that the sensor's position or direction depends on.
-std::set<std::size_t> needed_objects(const SensorConfig& sensor, const ObjectRoster& roster);
 
 /// Worlds around frames of one sensor, as published by the run's actors.
 class FrameWorlds {

@@ -1,14 +1,11 @@
 #pragma once
-#include <array>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 #include "core/effects/plan_facts.h"
-#include "core/optics/psf_plan.h"
 #include "core/plan/planner.h"
-#include "core/sky/star_map.h"
 #include "sensors/pipeline/object_shapes.h"
+#include "sensors/pipeline/star_facts.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -16,7 +13,7 @@ namespace dmise {
 /// Plans the effects of one sensor's exposures.
 class ExposurePlanner {
  public:
-  /// `sensor` and `shapes` must outlive it. `stars`, `shapes`: null for none.
+  /// `sensor`, `stars` and `shapes` must outlive it. `stars`, `shapes`: null for none.
   ExposurePlanner(const SensorConfig& sensor, const StarMap* stars, double faintest_star_mag,
                   const ObjectShapes* shapes);
 
@@ -30,20 +27,15 @@ class ExposurePlanner {
   EffectPlan plan(const View& view, const std::vector<std::size_t>& objects) const;
 
  private:
-  void look_at_sky(const View& view, PlanFacts& facts) const;
-  void look_at_stars(const View& view, PlanFacts& facts) const;
+  void look_at_sensor();
   void look_at_objects(const View& view, const std::vector<std::size_t>& objects,
                        PlanFacts& facts) const;
 
   const SensorConfig& sensor_;
-  const StarMap* stars_;
   const ObjectShapes* shapes_;
-  double faintest_star_mag_;
+  StarFacts stars_;
   std::vector<PlannableEffect> effects_;
-  PlanFacts of_sensor_;                          // what no exposure changes
-  std::array<double, 32> catalogue_brighter_{};  // stars of the whole sky, by whole V magnitudes
-  double fastest_rad_per_yr_ = 0.0, largest_parallax_rad_ = 0.0, zero_photons_per_s_m2_ = 0.0,
-         faintest_filled_v_mag_ = 0.0;
+  PlanFacts of_sensor_;  // what no exposure changes
 };
 
 }  // namespace dmise

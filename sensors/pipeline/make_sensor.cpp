@@ -1,9 +1,9 @@
 #include "sensors/pipeline/make_sensor.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
+#include "core/base/cache_directory.h"
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
 #include "core/photometry/band_parts.h"
@@ -12,11 +12,7 @@ namespace dmise {
 
 std::shared_ptr<const StarMap> load_stars(const Scenario& scenario) {
   if (scenario.star_catalogue_path.empty()) return nullptr;
-  std::string cache;
-  if (const char* xdg = std::getenv("XDG_CACHE_HOME"))
-    cache = std::string(xdg) + "/dmise";
-  else if (const char* home = std::getenv("HOME"))
-    cache = std::string(home) + "/.cache/dmise";
+  const std::string cache = cache_directory();
   std::error_code ignored;  // without the directory nothing is kept, that is all
   if (!cache.empty()) std::filesystem::create_directories(cache, ignored);
   try {

@@ -202,6 +202,15 @@ std::vector<std::uint32_t> may_be_in_field(const View& view, const RoughPlaces& 
   return FieldCone(view).candidates(rough);
 }
 
+std::set<std::size_t> needed_objects(const SensorConfig& sensor, const ObjectRoster& roster) {
+  std::set<std::size_t> needed;
+  if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place))
+    needed.insert(object_index(roster, platform->object, platform->where));
+  if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
+    needed.insert(object_index(roster, target->object, target->where));
+  return needed;
+}
+
 std::vector<std::size_t> objects_in_field(const View& view, const ObjectShapes* shapes) {
   const auto& exposure = view.times();
   const auto& world = view.world();

@@ -1,11 +1,16 @@
 #pragma once
 #include <cstdint>
+#include <set>
 #include <vector>
 
 #include "sensors/pipeline/object_shapes.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
+
+/// Objects that the sensor's position or direction depends on. Throws `ConfigError` for one that is
+/// not in the roster.
+std::set<std::size_t> needed_objects(const SensorConfig& sensor, const ObjectRoster& roster);
 
 /// Objects whose path over the exposure may touch the frame, also between its ends: distances from
 /// the cone around the field and bounds on the speed, as `dmise visible` finds crossings. The

@@ -189,20 +189,17 @@ std::uint32_t StarLayer::draw(const Exposure& exposure, std::span<const std::uin
                         (snapshots ? 1.0 : view.illumination(t.pixel[1]))});
   }
   std::vector<Deposited> deposited;
-  {
-    Stopwatch timing(times[PointSpread::facts]);
-    if (snapshots) {
-      std::vector<std::uint32_t> drawn;
-      std::vector<double> signal_e;
-      for (std::size_t i = 0; i < arcs.size(); ++i) {
-        drawn.push_back(trails[i].star);
-        signal_e.push_back(arcs[i].signal_e);
-      }
-      deposited = draw_star_snapshots(view, exposure.columns, drawn, signal_e, snapshots, optics,
-                                      mask, image);
-    } else {
-      deposited = add_past(mask, arcs, optics, image);
+  if (snapshots) {
+    std::vector<std::uint32_t> drawn;
+    std::vector<double> signal_e;
+    for (std::size_t i = 0; i < arcs.size(); ++i) {
+      drawn.push_back(trails[i].star);
+      signal_e.push_back(arcs[i].signal_e);
     }
+    deposited = draw_star_snapshots(view, exposure.columns, drawn, signal_e, snapshots, optics,
+                                    mask, image);
+  } else {
+    deposited = add_past(mask, arcs, optics, image);
   }
   std::uint32_t inside = 0;
   for (std::size_t i = 0; i < arcs.size(); ++i) {

@@ -17,19 +17,6 @@ std::size_t count_from_catalogues(const ObjectPopulation& population,
   return population.roster.objects.size() - own.size();
 }
 
-/// Objects that the sensor's position or direction depends on.
-std::vector<std::uint32_t> needed_objects(const SensorConfig& sensor, const ObjectRoster& roster) {
-  std::vector<std::uint32_t> needed;
-  const auto add = [&](const std::string& name, const char* key) {
-    needed.push_back(std::uint32_t(object_index(roster, name, sensor.name + key)));
-  };
-  if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place))
-    add(platform->object, ": platform");
-  if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
-    add(target->object, ": pointing.target");
-  return needed;
-}
-
 /// Greatest error of cubic interpolation over a tick [m]: h^4 / 384 of the fourth derivative, which
 /// is below 1e-4 m/s^4 for whatever orbits the Earth.
 double interpolation_error_m(double tick_s) { return 1e-4 * std::pow(tick_s, 4) / 384.0; }
@@ -102,7 +89,8 @@ World StatesInField::around(const World& world, const SensorConfig& sensor,
           objects_->source.of_some(objects, tick, instants(tick, {tick * tick_length_.ns})));
     seen.set_states(std::move(objects), std::move(states));
   };
-  std::vector<std::uint32_t> objects = needed_objects(sensor, world.roster());
+  const auto needed = needed_objects(sensor, world.roster());
+  std::vector<std::uint32_t> objects(needed.begin(), needed.end());
   know(objects);
   if (!sensor.effects.has(SpaceObjects::facts)) return seen;
   {

@@ -53,6 +53,41 @@ TEST(Expose, FollowsThePhotonTransferCurveUntilItSaturates) {
   }
 }
 
+// Janesick's curve again for the draw of photons, dark current and read-out at once, and for the
+// same with traps, where charge is held at 0 and read noise is drawn later: within what its bound
+// says, at light of no electron to many.
+TEST(Expose, AGaussianDrawFollowsThePhotonTransferCurveWithinItsBound) {
+  EffectSet gaussian;
+  gaussian.set_level(PhotonNoise::facts, PhotonNoise::gaussian);
+  for (const double traps : {0.0, 1e-3})
+    for (const float level : {0.0f, 0.1f, 0.6f, 2.0f, 10.0f, 300.0f}) {
+      Detector d = kaf8300;
+      d.persistence_fraction = traps;
+      d.persistence_s = 100.0;
+      d.read_noise_e = 2.0;
+      Threads one(1);
+      CountImage counts;
+      DetectorMemory memory;
+      expose(ExpectedElectronImage(600, 500, level), d, {.seed = 1, .sensor = "a", .frame = 1,
+             .exposure_s = 20}, gaussian, one, counts, nullptr, {.memory = &memory});
+      const Moments m = moments(counts);
+      PlanFacts facts;
+      facts.sky = {{.sky_e = level, .noise_e = std::sqrt(level + 0.4 + 4.0)}};
+      facts.dark_e = 0.4;
+      facts.read_noise_e = 2.0;
+      facts.read_later = traps > 0.0;
+      const ErrorBound bound = PhotonNoise::error(PhotonNoise::gaussian, facts);
+      const double variance_e2 = level + 0.4 + 4.0, n = 300000.0, dn = 0.35;
+      const double sigma_dn = std::sqrt(variance_e2) / dn;
+      EXPECT_NEAR(m.mean, 1000 + (level + 0.4) / dn,
+                  bound.background_sigma * sigma_dn + 4 * sigma_dn / std::sqrt(n))
+          << level << " " << traps;
+      const double variance = variance_e2 / dn / dn + 1.0 / 12;
+      EXPECT_NEAR(std::sqrt(m.variance / variance), 1.0, bound.noise + 4 / std::sqrt(2 * n))
+          << level << " " << traps;
+    }
+}
+
 TEST(Expose, TheAdcClipsBeforeTheWellIsFullAndBothAreCounted) {
   ExpectedElectronImage light(100, 100, 10.0f);
   light.at(5, 6) = 24000;   // 16 bits x 0.35 e-/DN - bias: the ADC is full at 22.6 ke-

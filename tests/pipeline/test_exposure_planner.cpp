@@ -93,6 +93,33 @@ TEST(ExposurePlanner, InDaylightThereAreNoStars) {
   EXPECT_TRUE(runs(Scene{}.frame(), StarBackground::facts));
 }
 
+// Traps take the charge of a Gaussian draw: none is below 0.
+TEST(ExposurePlanner, ADraftOfADetectorWithTrapsGoesOnFrameAfterFrame) {
+  test::Stage stage(
+      Scene{.accuracy = "draft", .camera = "hawaii-4rg", .exposure_s = 0.5}.yaml(),
+      "ra_deg,dec_deg,mag_v,bv\n49.7,-5.4,6,0.65\n", element_set);
+  for (std::uint32_t frame = 1; frame <= 3; ++frame)
+    EXPECT_NO_THROW(stage.frame(frame)) << frame;
+}
+
+TEST(ExposurePlanner, StarsBesideTheFrameAreNotDrawn) {
+  const auto plan_with_star_at = [](const std::string& dec_deg) {
+    return test::Stage(Scene{.accuracy = "standard"}.yaml(),
+                       "ra_deg,dec_deg,mag_v,bv\n49.7," + dec_deg + ",6,0.65\n", element_set)
+        .frame();
+  };
+  EXPECT_TRUE(runs(plan_with_star_at("-5.4"), StarBackground::facts));
+  EXPECT_FALSE(runs(plan_with_star_at("-25.4"), StarBackground::facts));
+}
+
+TEST(ExposurePlanner, ASensorMayHaveAnAccuracyOfItsOwn) {
+  const std::string own = Scene{.accuracy = "reference", .more = ", accuracy: draft"}.yaml();
+  const FrameProducts frame =
+      test::Stage(own, "ra_deg,dec_deg,mag_v,bv\n49.7,-5.4,6,0.65\n", element_set).frame();
+  EXPECT_EQ(frame.header.accuracy, "draft");
+  EXPECT_EQ(frame.plan.budget, draft_budget);
+}
+
 TEST(ExposurePlanner, WhatIsForcedStays) {
   const FrameProducts frame = Scene{.accuracy = "draft",
                                     .effects =

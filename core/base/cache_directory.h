@@ -1,0 +1,10 @@
+#pragma once
+#include <string>
+
+namespace dmise {
+
+/// Returns where programs of this user keep what they can make again: $XDG_CACHE_HOME/dmise or
+/// ~/.cache/dmise; empty if neither variable is set. It need not exist.
+std::string cache_directory();
+
+}  // namespace dmise

@@ -1,0 +1,157 @@
+#include "sensors/pipeline/sky_facts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/units.h"
+#include "core/effects/frame_effects.h"
+#include "core/sky/airmass.h"
+#include "core/sky/cloud_cover.h"
+#include "core/sky/scintillation.h"
+#include "core/sky/sky_frames.h"
+#include "sensors/pipeline/sky_layer.h"
+#include "sensors/pipeline/throughput.h"
+
+namespace dmise {
+namespace {
+
+constexpr double near_horizon_rad = 2.0 * deg;
+
+EarthOccultation earth_seen(const View& view, SimTime t) {
+  if (view.on_ground()) return {view.up(t), std::nullopt};
+  return {view.up(t), FreeSight(view.observer(t).position_m, oblate_earth(view.earth()))};
+}
+
+/// Starlight that is not drawn star by star, by the limit of those that are.
+class StarlightByLimit {
+ public:
+  StarlightByLimit(const View& view, double drawn_to_v_mag)
+      : given_(view.sensor().sky.parts.faint_starlight),
+        drawn_to_v_mag_(drawn_to_v_mag),
+        pole_(galactic_from_gcrs().inverse() * Vec<Galactic>{0, 0, 1}) {}
+
+  void look(const Vec<Gcrs>& direction, double starlight_e) {
+    if (!(starlight_e > 0.0)) return;
+    const double sine = dot(pole_, direction);
+    least_ = std::min(least_, sine);
+    most_ = std::max(most_, sine);
+    e_per_s10_ = std::max(e_per_s10_, starlight_e / std::max(s10(drawn_to_v_mag_, sine), 1e-9));
+  }
+  /// Sets what limits add to a pixel, and how much brighter it is nearest to the galactic plane
+  /// than at the samples.
+  void add(PlanFacts& f) const {
+    if (!(e_per_s10_ > 0.0)) return;
+    const double between = 0.25 * (most_ - least_);
+    const double nearest = most_ * least_ <= 0.0
+                               ? 0.0
+                               : std::max(0.0, std::min(std::abs(most_), std::abs(least_)) - between);
+    const double sampled = std::min(std::abs(most_), std::abs(least_));
+    double& brighter = f.between_samples[static_cast<std::size_t>(SkyPart::faint_starlight)];
+    brighter *= s10(drawn_to_v_mag_, nearest) /
+                std::max(s10(drawn_to_v_mag_, most_ * least_ <= 0.0 ? between : sampled), 1e-9);
+    for (std::size_t m = 0; m < f.starlight_e.size(); ++m)
+      f.starlight_e[m] = 1.25 * e_per_s10_ *
+                         std::max(0.0, s10(double(m), nearest) - s10(drawn_to_v_mag_, nearest));
+  }
+
+ private:
+  double s10(double limit_v_mag, double sine) const {
+    FaintStarlight starlight = *given_;
+    starlight.brighter_limit_v_mag = limit_v_mag;
+    return faint_starlight_s10(starlight, sine);
+  }
+
+  std::optional<FaintStarlight> given_;
+  double drawn_to_v_mag_;
+  Vec<Gcrs> pole_;
+  double least_ = 1.0, most_ = -1.0, e_per_s10_ = 0.0;  // sines of the latitude
+};
+
+/// Whether the Earth's limb may be in the field of a sensor in space, also between the samples.
+bool sees_limb(const View& view, SimTime t) {
+  const Vec<Gcrs> here_m = view.observer(t).position_m;
+  const double earth_rad =
+      std::asin(std::min(1.0, wgs84.equatorial_radius_m / std::max(norm(here_m), 1.0)));
+  return angle_rad(boresight(view, t), -here_m) <
+         earth_rad + half_diagonal_rad(view.sensor().camera.optics) + near_horizon_rad;
+}
+
+/// Size of the smallest pieces of patchy clouds in a field that reaches down to `lowest_rad`.
+double cloud_detail_px(const View& view, double lowest_rad, double pixel_rad) {
+  const auto& clouds = view.sensor().weather.clouds;
+  const auto* patches = clouds ? std::get_if<PatchyClouds>(&*clouds) : nullptr;
+  if (!patches || !view.sensor().effects.has(CloudCover::facts)) return unbounded;
+  constexpr double finest = 1.0 / 16.0;  // of five octaves
+  const double sine = std::max(0.02, std::sin(lowest_rad));
+  return finest * patches->patch_m / patches->height_m * sine * sine / pixel_rad;
+}
+
+/// How far the field of a sensor on the ground moves over its sky from mid exposure on.
+double moves_rad(const View& view) {
+  const auto seen = [&](SimTime t) { return view.enu_from_gcrs(t) * boresight(view, t); };
+  const Vec<Enu> middle = seen(view.times().middle);
+  return std::max(angle_rad(middle, seen(view.times().start)),
+                  angle_rad(middle, seen(view.times().end)));
+}
+
+}  // namespace
+
+Vec<Gcrs> boresight(const View& view, SimTime t) {
+  return view.camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1};
+}
+
+void add_sky_facts(const View& view, double drawn_to_v_mag, PlanFacts& f) {
+  const SensorConfig& sensor = view.sensor();
+  const Optics& optics = sensor.camera.optics;
+  const SimTime middle = view.times().middle;
+  const auto gcrs_from_camera = view.camera_from_gcrs(middle).inverse();
+  const auto enu_from_gcrs = view.enu_from_gcrs(middle);
+  const EarthOccultation earth = earth_seen(view, middle);
+  const bool with_sky = sensor.effects.has(SkyBackground::facts);
+  const Throughput throughput(view);
+  const SkyModel sky = sky_over(view, drawn_to_v_mag);
+  const double electrons = throughput.electrons_per_photon_m2() * view.times().seconds();
+  const double read_e2 =
+      f.read_noise_e * f.read_noise_e + std::pow(sensor.camera.detector.gain_e_per_dn, 2) / 12.0;
+  StarlightByLimit starlight(view, drawn_to_v_mag);
+  double lowest_rad = pi / 2;
+  look_over(optics, 0.0, [&](PixelPosition at, const Vec<CameraFrame>& direction) {
+    const Vec<Gcrs> gcrs = gcrs_from_camera * direction;
+    if (earth.hides_direction(gcrs)) {
+      f.sees_horizon = true;
+      return;
+    }
+    const Vec<Enu> enu = enu_from_gcrs * gcrs;
+    if (view.on_ground())
+      lowest_rad = std::min(lowest_rad, std::asin(std::clamp(enu.z, 0.0, 1.0)));
+    SkySample s;
+    if (with_sky) {
+      const auto photons = sky.photons_of_parts(enu);
+      const double factor = electrons * pixel_solid_angle_sr(optics, at) * view.illumination(at);
+      for (std::size_t part = 0; part < photons.size(); ++part) {
+        s.part_e[part] = photons[part] * factor;
+        s.sky_e += s.part_e[part];
+      }
+    }
+    s.noise_e = std::sqrt(std::max(s.sky_e + f.dark_e + read_e2, 1e-6));
+    starlight.look(gcrs, s.of(SkyPart::faint_starlight));
+    f.sky.push_back(s);
+  });
+  starlight.add(f);
+  if (f.sky.empty()) f.sky.push_back({.noise_e = std::sqrt(std::max(f.dark_e + read_e2, 1e-6))});
+  if (!view.on_ground()) {
+    f.sky_look_s = 0.16e-6;
+    f.sees_horizon = f.sees_horizon || sees_limb(view, middle);
+    return;
+  }
+  lowest_rad = std::max(0.0, lowest_rad - moves_rad(view));
+  f.sees_horizon = f.sees_horizon || lowest_rad < near_horizon_rad;
+  f.cloud_detail_px = cloud_detail_px(view, lowest_rad, f.pixel_rad);
+  f.most_airmass = airmass(lowest_rad);
+  f.zenith_extinction_mag = throughput.extinction_mag_per_airmass();
+  f.scintillation = scintillation_sigma(optics.aperture_m, view.times().seconds(), f.most_airmass,
+                                        view.site()->height_m);
+  f.refraction_rad = view.refraction().at_apparent_rad(lowest_rad);
+}
+
+}  // namespace dmise

@@ -1,0 +1,28 @@
+#pragma once
+#include "core/effects/plan_facts.h"
+#include "core/optics/projection.h"
+#include "sensors/pipeline/view.h"
+
+namespace dmise {
+
+/// Calls `visit(pixel, direction)` for pixels over a field that have one: five along each side,
+/// from the first to the last but `margin_px`.
+template <class Visit>
+void look_over(const Optics& optics, double margin_px, Visit&& visit) {
+  constexpr int looks = 5;
+  for (int i = 0; i < looks; ++i)
+    for (int j = 0; j < looks; ++j) {
+      const PixelPosition at{i * (optics.columns - 1.0 - margin_px) / (looks - 1),
+                             j * (optics.rows - 1.0 - margin_px) / (looks - 1)};
+      if (const auto direction = unproject(optics, at)) visit(at, *direction);
+    }
+}
+
+/// Returns where the sensor points at `t`.
+Vec<Gcrs> boresight(const View& view, SimTime t);
+
+/// Sets what is known of the sky, the air and the horizon in an exposure. `drawn_to_v_mag`: stars
+/// that are drawn one by one.
+void add_sky_facts(const View& view, double drawn_to_v_mag, PlanFacts& facts);
+
+}  // namespace dmise

@@ -1,0 +1,47 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "core/effects/plan_facts.h"
+#include "core/photometry/star_light.h"
+#include "core/sky/star_map.h"
+#include "sensors/pipeline/view.h"
+
+namespace dmise {
+
+/// What is known of the stars of one sensor's fields before they are drawn.
+class StarFacts {
+ public:
+  /// `stars`: null for none; must outlive it.
+  StarFacts(const SensorConfig& sensor, const StarMap* stars, double faintest_v_mag);
+
+  /// Returns how faint the stars are that are drawn one by one at most.
+  double drawn_to_v_mag() const { return drawn_to_v_mag_; }
+
+  /// Sets what is known of the stars in an exposure. The sky's facts must be there.
+  void add(const View& view, PlanFacts& facts) const;
+
+ private:
+  void add_trails(const View& view, PlanFacts& facts) const;
+  void add_stars(const View& view, PlanFacts& facts) const;
+
+  /// Stars by whole V magnitudes: those not fainter, and the light of the brightest beyond
+  /// [photons/s/m2]; the brightest of all, and how many were looked at.
+  struct ByLimit {
+    std::array<double, star_limits> count{}, beyond{};
+    double brightest = 0.0, processed = 0.0;
+
+    void add(double v_mag, double photons);
+    void sum_up();
+  };
+
+  ByLimit counted(const View& view, const PlanFacts& facts, double radius_rad) const;
+
+  const StarMap* stars_;
+  double faintest_v_mag_, drawn_to_v_mag_;
+  StarLight light_;
+  ByLimit whole_sky_;
+  double fastest_rad_per_yr_ = 0.0, largest_parallax_rad_ = 0.0;
+};
+
+}  // namespace dmise
