@@ -136,7 +136,7 @@ class Report {
 std::optional<double> number_in(const std::string& text, const std::string& key) {
   const std::size_t at = text.find("\"" + key + "\": ");
   if (at == std::string::npos) return std::nullopt;
-  return std::atof(text.c_str() + at + key.size() + 4);
+  return std::strtod(text.c_str() + at + key.size() + 4, nullptr);
 }
 
 std::string output_of(const std::string& command) {

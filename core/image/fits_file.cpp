@@ -65,7 +65,7 @@ FitsValues read_cards(Fits& fits, const std::string& name) {
 
 int integer_of(const FitsValues& values, const std::string& key) {
   const auto at = values.find(key);
-  return at == values.end() ? 0 : std::atoi(at->second.c_str());
+  return at == values.end() ? 0 : int(std::strtol(at->second.c_str(), nullptr, 10));
 }
 
 /// Decodes a RICE_1 image with one tile per row. CFITSIO's own decoder reads out of bounds on

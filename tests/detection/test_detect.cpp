@@ -177,7 +177,8 @@ std::pair<int, int> long_streaks_found(double peak_snr, unsigned seed) {
       std::sqrt(std::pow(header.psf_fwhm_px / std::sqrt(8 * std::log(2)), 2) + 1. / 12);
   std::vector<Placed> places;
   for (int i = 0; i < 12; ++i) {  // apart from each other
-    places.push_back({400.0 + 800 * (i % 4), 420.0 + 820 * (i / 4)});
+    const int column = i % 4, row = i / 4;
+    places.push_back({400.0 + 800 * column, 420.0 + 820 * row});
     const double length = frame.uniform(200, 600);
     frame.add_streak(places.back().x, places.back().y, length, frame.uniform(0, pi),
                      peak_snr * noise_e(header) * sigma * std::sqrt(2 * pi) * length, 0.1, 1.0);
@@ -342,7 +343,9 @@ TEST(Detect, LimitingMagnitudeIsThatOfHalfThePointsFound) {
   Threads threads;
   const double limit = detect(frame.expose(), header, {}, threads).report.limiting_magnitude;
   const double flux_e = 20 * std::pow(10, -0.4 * (limit - header.zero_point_mag));
-  for (int i = 0; i < 400; ++i) frame.add_point(30 + 49 * (i % 20), 30 + 49 * (i / 20), flux_e);
+  for (int row = 0; row < 20; ++row)
+    for (int column = 0; column < 20; ++column)
+      frame.add_point(30 + 49 * column, 30 + 49 * row, flux_e);
   // Points where stars are points too: counted as star-like. At the threshold noise lifts half of
   // them above it; a little more, since the filter may peak in any pixel nearby.
   const auto found = detect(frame.expose(), header, {}, threads).report.star_like;

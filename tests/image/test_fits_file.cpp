@@ -189,7 +189,8 @@ TEST(FitsFile, AstropysWcsIsOursToAThousandthOfAPixel) {
     write_frame(path, CountImage(3326, 2504), header);
     std::string lines;
     for (int i = 0; i < 100; ++i) {
-      const double x = 36.0 * (i % 10) * 10, y = 27.0 * (i / 10) * 10;
+      const int column = i % 10, row = i / 10;
+      const double x = 360.0 * column, y = 270.0 * row;
       const auto place = to_spherical(wcs_direction(header.wcs, {x, y}));
       char line[128];
       std::snprintf(line, sizeof line, "%.3f %.3f %.14g %.14g\n", x, y, place[0] / deg,

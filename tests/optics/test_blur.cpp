@@ -260,7 +260,8 @@ TEST(Blur, PrimeSizesAndSingleRowsHaveTheSamePhotometry) {
   Threads two(2);
   for (auto [columns, rows] : {std::pair{2503, 61}, {61, 3329}, {1, 64}, {64, 1}, {1, 1}}) {
     const Optics o = gaussian(columns, rows, 2.1, 2);
-    const Arc arc = point(columns / 2, rows / 2, 1e5);
+    const int column = columns / 2, row = rows / 2;
+    const Arc arc = point(column, row, 1e5);
     const ExpectedElectronImage reference = analytically(o, {&arc, 1}, two);
     EXPECT_NEAR(sum(by_transform(o, {&arc, 1}, two)) / sum(reference), 1.0, 1e-4)
         << columns << " " << rows;

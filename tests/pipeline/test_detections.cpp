@@ -202,14 +202,13 @@ TEST_P(SaturatedTargets, AreFoundFlaggedAndTheirCovarianceIsHonest) {
                              camera_file(psf, blooming)),
                     stars);
   double place = 0.0, light = 0.0;
-  int saturated = 0, flagged = 0, found = 0;
+  int saturated = 0, flagged = 0;
   for (std::size_t k = 0; k < targets.size(); ++k) {
     const auto frame = stage.frame(1, k);
     const Truth* truth = truth_of(frame, k);
     if (!truth || truth->rendered_signal_e < 1e5) continue;  // in the Earth's shadow
     saturated += frame.report.saturated_px > 0;
     ASSERT_LE(frame.detections.size(), 1u) << k;
-    found += int(frame.detections.size());
     for (const Detection& d : frame.detections) {
       EXPECT_EQ(d.saturated, frame.report.saturated_px > 0) << k;
       if (!d.saturated) continue;
@@ -323,10 +322,12 @@ TEST_P(SaturatedStars, AreNoDetections) {
   const auto [psf, blooming, motion] = GetParam();
   const std::string camera = camera_file(psf, blooming);
   std::string csv = "ra_deg,dec_deg,mag_v,bv\n";
-  for (int i = 0; i < 100; ++i)
-    csv += std::to_string(120 + (i % 10 - 4.5) * 0.0317 + 0.0003 * i) + "," +
-           std::to_string(-20 + (i / 10 - 4.5) * 0.0289) + "," + std::to_string(i % 19 * 0.5) +
+  for (int i = 0; i < 100; ++i) {
+    const int column = i % 10, row = i / 10;
+    csv += std::to_string(120 + (column - 4.5) * 0.0317 + 0.0003 * i) + "," +
+           std::to_string(-20 + (row - 4.5) * 0.0289) + "," + std::to_string(i % 19 * 0.5) +
            ",0.5\n";
+  }
   test::Stage stage("simulation: {start: " + evening +
                         ", duration_s: 60, tick_s: 5}\nobjects: []\nstars: {catalogue: stars.csv}\n"
                         "sensors:\n- {name: s, site: {latitude_deg: -30.17, longitude_deg: -70.8, "

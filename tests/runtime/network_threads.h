@@ -28,7 +28,7 @@ struct MasterThread {
   std::future<MasterResult> result;
 };
 
-inline std::future<NodeResult> start(Participant& participant, NodeOptions options) {
+inline std::future<NodeResult> start(Participant& participant, const NodeOptions& options) {
   return std::async(std::launch::async,
                     [&participant, options] { return run_node(participant, options); });
 }

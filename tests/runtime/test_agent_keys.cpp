@@ -74,7 +74,7 @@ struct SecureAgent {
     return test::start(participant, NodeOptions{.master = address, .keys = keys, .via = name});
   }
   /// Joins by hand with the key of `who` under the name of `node`, as it would behind this agent.
-  v1::Welcome join_as(const std::string& who, v1::Join join,
+  v1::Welcome join_as(const std::string& who, const v1::Join& join,
                       std::chrono::nanoseconds within = patience) const {
     zmq::context_t context(1);
     MasterLink link(context, address, nullptr, Security(keys, who, name));

@@ -1,11 +1,12 @@
 """Reads C++ files with clang-tidy (.clang-tidy says for what); exits 1 on any warning.
 
-    tidy.py BUILD_DIRECTORY [--all | --since COMMIT | FILE..]
+    tidy.py BUILD_DIRECTORY [--seconds S] [--all | --since COMMIT | FILE..]
 
 A file that was found clean is not read again until it, what it includes from this tree, its flags or
 .clang-tidy change: BUILD_DIRECTORY/tidy.json remembers their digest. A file that was never read here is
-read if it differs from COMMIT: unless given, where this branch left main, on main the commit before. A
+read if it differs from COMMIT: unless given, where this branch left main, on main ten commits before. A
 header is read with one file that includes it. --all reads every file that is not known to be clean.
+What changed last is read first; after S seconds no further file is begun, and those left are counted.
 """
 import concurrent.futures
 import hashlib
@@ -14,6 +15,7 @@ import os
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -77,28 +79,34 @@ def digest(path, words, includes, common):
 
 def commit_before():
     left = git("merge-base", "HEAD", "origin/main") or git("merge-base", "HEAD", "main")
-    head = git("rev-parse", "HEAD")
-    return left if left and left != head else git("rev-parse", "HEAD^1")
+    if left and left != git("rev-parse", "HEAD"):
+        return left
+    commits = (git("rev-list", "--first-parent", "-n", "11", "HEAD") or "").split()
+    return commits[-1] if len(commits) > 1 else None
 
 
-def touched(commit, commands, includes):
-    """Files that differ from the commit, and for each such header one that includes it; None: all."""
-    listed = git("diff", "--name-only", commit) if commit else None
-    if listed is None:
-        return None
-    names = set(listed.split("\n")) | set((git("ls-files", "-o", "--exclude-standard") or "").split("\n"))
-    if ".clang-tidy" in names:
-        return None
-    files = names & commands.keys()
+def changed_last(commit):
+    """Names of files that differ from the commit (None: all that have a history), the last changed first."""
+    here = [*(git("diff", "--name-only", "HEAD") or "").split("\n"),
+            *(git("ls-files", "-o", "--exclude-standard") or "").split("\n")]
+    history = git("log", "--format=", "--name-only", "-m", "--first-parent", f"{commit}..HEAD" if commit else "HEAD")
+    return list(dict.fromkeys(name for name in [*here, *(history or "").split("\n")] if name))
+
+
+def touched(names, commands, includes):
+    """The named files, and for each header among them one that includes it, in their order."""
+    files = {name: None for name in names if name in commands}
     for header in (name for name in names if name.endswith(".h")):
         readers = sorted(path for path in commands if header in includes.of(path))
         own = header[:-2] + ".cpp"
-        if own not in files and not files & set(readers):
-            files.update([own] if own in readers else readers[:1])
-    return files
+        if own not in files and not files.keys() & set(readers):
+            files.update(dict.fromkeys([own] if own in readers else readers[:1]))
+    return list(files)
 
 
-def read(path, build):
+def read(path, build, end):
+    if time.monotonic() > end:
+        return path, None, "", ""
     done = subprocess.run(["clang-tidy", "--quiet", "-p", str(build / "tidy"), path], cwd=ROOT,
                           capture_output=True, text=True)
     return path, done.returncode, done.stdout, done.stderr
@@ -106,9 +114,17 @@ def read(path, build):
 
 def main():
     build, *arguments = sys.argv[1:]
+    usage = "usage: ./dmise tidy [--seconds S] [--all | FILE..]"
+    end = float("inf")
+    if arguments[:1] == ["--seconds"]:
+        if len(arguments) < 2 or not re.fullmatch(r"[1-9]\d*", arguments[1]):
+            print(f"tidy: --seconds: must be a whole number > 0; {usage}", file=sys.stderr)
+            return 2
+        end = time.monotonic() + int(arguments[1])
+        del arguments[:2]
     for name in arguments:
         if name != "--all" and arguments[0] != "--since" and not Path(name).is_file():
-            print(f"tidy: {name}: no such file; usage: ./dmise tidy [--all | FILE..]", file=sys.stderr)
+            print(f"tidy: {name}: no such file; {usage}", file=sys.stderr)
             return 2
     build = Path(build).resolve()
     commands, includes = commands_of(build), Includes()
@@ -116,26 +132,29 @@ def main():
     (build / "tidy/compile_commands.json").write_text(json.dumps(
         [{"directory": str(build), "file": str(ROOT / path), "arguments": words} for path, words in commands.items()]))
     common = subprocess.run(["clang-tidy", "--version"], capture_output=True, check=True).stdout
-    common += (ROOT / ".clang-tidy").read_bytes()
+    common += b"".join(path.read_bytes() for path in (ROOT / ".clang-tidy", ROOT / "tests/.clang-tidy"))
     record = build / "tidy.json"
     clean = json.loads(record.read_text()) if record.exists() else {}
     digests = {path: digest(path, words, includes, common) for path, words in commands.items()}
 
     changed = [path for path in commands if clean.get(path) != digests[path]]
-    if arguments[:1] == ["--all"]:
-        wanted = changed
-    elif arguments and arguments[0] != "--since":
+    if arguments and not arguments[0].startswith("--"):
         wanted = [os.path.relpath(Path(name).resolve(), ROOT) for name in arguments]
     else:
-        commit = git("rev-parse", arguments[1]) if arguments else commit_before()
-        since = touched(commit, commands, includes)
-        wanted = [path for path in changed if since is None or path in clean or path in since]
-    wanted.sort(key=lambda path: -(ROOT / path).stat().st_size)
+        every = arguments[:1] == ["--all"]
+        commit = None if every else git("rev-parse", arguments[1]) if arguments else commit_before()
+        names = changed_last(commit)
+        every = every or commit is None or any(name.endswith(".clang-tidy") for name in names)
+        first = touched(changed_last(None) if every else names, commands, includes)
+        wanted = [path for path in [*first, *(path for path in commands if every or path in clean)] if path in changed]
+        wanted = list(dict.fromkeys(wanted))
 
-    said, bad = set(), 0
+    said, bad, left = set(), 0, 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for path, code, out, errors in pool.map(lambda name: read(name, build), wanted):
-            if code == 0:
+        for path, code, out, errors in pool.map(lambda name: read(name, build, end), wanted):
+            if code is None:
+                left += 1
+            elif code == 0:
                 clean[path] = digests[path]
             else:
                 bad += 1
@@ -148,7 +167,8 @@ def main():
             if code == 0 or len(wanted) > 20:
                 record.write_text(json.dumps(clean, indent=0))
     record.write_text(json.dumps(clean, indent=0))
-    print(f"clang-tidy: {len(wanted)} of {len(commands)} files read, {bad} with warnings; "
+    print(f"clang-tidy: {len(wanted) - left} of {len(commands)} files read, {bad} with warnings; "
+          + (f"{left} that changed are left for ./dmise tidy; " if left else "") +
           f"{sum(clean.get(path) == digests[path] for path in commands)} are known to be clean")
     return 1 if bad else 0
 

@@ -19,7 +19,8 @@ inline double tle_exponent(const std::string& field) {  // " 12345-3" is 0.12345
 
 inline double julian_date_of_year(int year) {  // of January 0, 0h
   const int y = year - 1;
-  return 1721424.5 + 365.0 * y + y / 4 - y / 100 + y / 400;
+  const int leap_days = y / 4 - y / 100 + y / 400;
+  return 1721424.5 + 365.0 * y + leap_days;
 }
 
 inline MeanElements elements_from_tle(const std::string& line1, const std::string& line2,

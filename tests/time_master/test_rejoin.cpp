@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 /// Orbit and camera under `wait`, window 4; the camera looks two ticks back.
 struct Scene {
-  explicit Scene(CoordinatorOptions o = waiting()) : master(o) {
+  explicit Scene(CoordinatorOptions o = waiting()) : master(std::move(o)) {
     master.join(orbit());
     master.join(camera());
     master.ready("orbit");

@@ -148,7 +148,7 @@ void every_field_is_in_json(S (*decode)(std::string_view),
 TEST(EveryField, OfWhatIsPublishedIsInItsJsonLine) {
   const UtcText utc = [](SimTime t) { return std::to_string(t.ns); };
   const auto all = examples(6);
-  const auto payload = [&](State kind) {
+  const auto payload = [&](const State& kind) {
     return encode(example_of(all, kind.index()).state).payload;
   };
 

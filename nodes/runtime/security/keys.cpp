@@ -170,7 +170,7 @@ std::optional<std::string> ring_of(const std::string& directory, const std::stri
     } catch (const ConfigError& error) {
       if (!fault) fault = error;
     }
-  if (fault) throw *fault;
+  if (fault) throw ConfigError(*fault);
   return std::nullopt;
 }
 
