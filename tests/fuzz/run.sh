@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs libFuzzer targets and tells runs and findings; exits 1 on a finding.
+# Runs libFuzzer targets, one on each core, and tells runs and findings; exits 1 on a finding.
 #
 #   run.sh BIN_DIRECTORY [--seconds N | --runs N] [--json FILE] [TARGET..]
 #
@@ -14,14 +14,14 @@ die() { printf 'fuzz: %s\n' "$*" >&2; exit 2; }
 
 bin=$(readlink -f "${1:?BIN_DIRECTORY is missing}")
 shift
-limit=(-max_total_time=5)
+limit=-max_total_time=5
 json=/dev/null
 targets=()
 while (($#)); do
   case $1 in
     --seconds | --runs)
       [[ ${2-} =~ ^[1-9][0-9]*$ ]] || die "$1: must be a whole number > 0, got ${2-nothing}"
-      if [[ $1 == --runs ]]; then limit=("-runs=$2"); else limit=("-max_total_time=$2"); fi
+      if [[ $1 == --runs ]]; then limit=-runs=$2; else limit=-max_total_time=$2; fi
       shift ;;
     --json)
       json=$(realpath -m "${2:?--json: FILE is missing}")
@@ -41,22 +41,23 @@ fi
 export ASAN_OPTIONS=allocator_may_return_null=1
 export LSAN_OPTIONS=suppressions=$here/../sanitizers/lsan.supp:print_suppressions=0
 
-findings=0
-for target in "${targets[@]}"; do
-  kept=$bin/../corpus/$target found=$bin/../findings log=$bin/../fuzz-$target.log
-  mkdir -p "$kept" "$found"
+fuzz_one() {
+  local target=$1 code=0 runs found text
+  local kept=$bin/../corpus/$target log=$bin/../fuzz-$target.log corpus
+  mkdir -p "$kept" "$bin/../findings"
   corpus=("$kept")
   [[ ! -d $here/corpus/$target ]] || corpus+=("$here/corpus/$target")
-  before=$(find "$found" -type f | wc -l)
-  code=0
-  "$bin/fuzz_$target" "${limit[@]}" -max_len=2048 -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
-    -artifact_prefix="$found/$target-" "${corpus[@]}" >"$log" 2>&1 || code=$?
+  "$bin/fuzz_$target" "$limit" -max_len=2048 -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+    -artifact_prefix="$bin/../findings/$target-" "${corpus[@]}" >"$log" 2>&1 || code=$?
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
-  new=$(($(find "$found" -type f | wc -l) - before))
-  ((code == 0 || new > 0)) || new=1
-  findings=$((findings + new))
-  printf '%-17s %9s runs, %d findings\n' "$target" "${runs:-?}" "$new"
-  printf '{"name": "fuzz", "target": "%s", "value": %d, "findings": %d}\n' "$target" "${runs:-0}" "$new" >>"$json"
-  ((code == 0)) || { grep -m 1 -E 'runtime error|ERROR: |deadly signal' "$log" || true; echo "  log: $log"; }
-done
-((findings == 0))
+  found=$((code != 0))  # libFuzzer ends at the first
+  printf '{"name": "fuzz", "target": "%s", "value": %d, "findings": %d}\n' "$target" "${runs:-0}" "$found" >>"$json"
+  printf -v text '%-17s %9s runs, %d findings' "$target" "${runs:-?}" "$found"
+  ((code == 0)) || text+=$'\n'$(grep -m 1 -E 'runtime error|ERROR: |deadly signal' "$log" || true)$'\n'"  log: $log"
+  echo "$text"
+  return "$found"
+}
+export -f fuzz_one
+export here bin limit json
+
+printf '%s\n' "${targets[@]}" | xargs -P "$(nproc)" -I{} bash -c 'fuzz_one {}' || exit 1
