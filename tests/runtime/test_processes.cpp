@@ -276,7 +276,7 @@ TEST(Processes, AnInterruptEndsEverybodyWithinTwoSeconds) {
 
 // docs/wire.md and proto/ are enough: this node shares no code with the others.
 TEST(Processes, APythonNodeTakesPartInTheClock) {
-  setenv("PYTHONPATH", DMISE_SOURCE_DIR "/build/python", 1);
+  setenv("PYTHONPATH", DMISE_PROTO_PYTHON, 1);
   Stack stack({"--ticks", "20", "--window", "2"});
   stack.start_broker();
   for (const char* name : {"b", "a", "orbit"}) stack.start(name);
@@ -290,7 +290,7 @@ TEST(Processes, APythonNodeTakesPartInTheClock) {
 }
 
 TEST(Processes, APythonSubscriberHearsDetectionsWithoutJoining) {
-  setenv("PYTHONPATH", DMISE_SOURCE_DIR "/build/python", 1);
+  setenv("PYTHONPATH", DMISE_PROTO_PYTHON, 1);
   Stack stack({"--ticks", "100000000"});
   Child subscriber(
       {"/usr/bin/python3", DMISE_SOURCE_DIR "/clients/python/subscriber.py", stack.address});
