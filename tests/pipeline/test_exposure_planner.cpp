@@ -50,8 +50,7 @@ TEST(ExposurePlanner, EveryStageOfAFrameIsAnEffectOfItsPlan) {
     const FrameProducts frame = Scene{.camera = camera}.frame();
     double named_s = 0.0;
     for (const auto& [name, seconds] : frame.times.seconds) {
-      EXPECT_TRUE(std::ranges::any_of(
-          all_effects(), [&](const EffectFacts* effect) { return effect->name == name; }))
+      EXPECT_TRUE(std::ranges::count(all_effects(), name, &EffectFacts::name))
           << name << " of " << camera;
       named_s += seconds;
     }
