@@ -36,6 +36,7 @@ void measure(const std::string& path, std::map<std::string, StageTime>& stages,
   const SceneFrames frames(scenario, scenario.sensors[0].name, 1, one);
   SensorConfig sensor = frames.sensor();
   sensor.accuracy = standard_accuracy();
+  sensor.detect = false;
   auto chain = frames.pipeline(sensor, false);
   std::map<std::string, StageTime> best;
   for (int k = 0; k < repeats; ++k) {

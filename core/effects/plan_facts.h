@@ -124,7 +124,8 @@ struct PlanFacts {
   /// ratio of its whole light.
   double peak_in_noise(double snr, double trail_px) const {
     const double share = trail_px > 2.0 ? std::sqrt(peak_share) / (0.5 * trail_px) : peak_share;
-    return snr * std::min(share, peak_share) / pattern_share(trail_px);
+    const double speckle = screens > 0 ? 1.0 + 3.0 / std::sqrt(double(screens)) : 1.0;
+    return speckle * snr * std::min(share, peak_share) / pattern_share(trail_px);
   }
 
   /// Error of sources that are misplaced by an angle, with what their faint edges leave beside

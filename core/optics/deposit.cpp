@@ -104,9 +104,14 @@ std::array<double, 2> shares_inside(const PsfTable& psf, int at, float phase, in
   const float position = phase * float(psf.phases);
   const int p = std::min(int(position), psf.phases - 1);
   const double f = position - float(p);
+  const int first = at + psf.first;
+  if (first >= from && first + psf.size <= from + pixels) {
+    const auto &a = psf.whole[std::size_t(p)], &b = psf.whole[std::size_t(p) + 1];
+    const double sum = a[0] + f * (b[0] - a[0]);
+    return {sum, a[1] + f * (b[1] - a[1]) + sum * first};
+  }
   const float* a = psf.weights.data() + std::size_t(p) * std::size_t(psf.stride);
   const float* b = a + psf.stride;
-  const int first = at + psf.first;
   double sum = 0.0, moment = 0.0;
   const int begin = std::max(0, from - first), end = std::min(psf.size, from + pixels - first);
   for (int i = begin; i < end; ++i) {

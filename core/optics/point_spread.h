@@ -32,7 +32,7 @@ struct PointSpread {
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
   /// Of the plane, once; sources have that of their deposit.
   static double cost_s(int level, const PlanFacts& f) {
-    return f.scene.diffracts ? level * 1.5e-9 * f.pixels() : 0.0;
+    return f.scene.diffracts ? level * 2e-9 * f.pixels() : 0.0;
   }
 
   enum class Model {

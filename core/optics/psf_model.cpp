@@ -53,6 +53,7 @@ PsfModel::PsfModel(const Optics& optics, std::vector<WavelengthShare> band, cons
   if (band_.empty()) throw Error("psf: no wavelength");
   if (plan.exposure != ExposureKind::none) seeing_ = seeing;
   grids_ = sample_pupils(optics_, band_, plan_, seeing_);
+  extra_.resize(band_.size());
   if (has_screens(plan_))
     flow_.emplace(aperture_samples(pupil_at(optics_, {}, band_[0].wavelength_m), grids_[0]),
                   seeing_->outer_scale_m / grids_[0].step_m, turbulence);
@@ -61,7 +62,7 @@ PsfModel::PsfModel(const Optics& optics, std::vector<WavelengthShare> band, cons
 // Tilts that put the centroid of the truncated kernel without air on the axis: first by the
 // wavefront's mean slope, then by the remaining offset.
 std::array<ZernikeTerm, 2> PsfModel::centring(const FieldPlace& place,
-                                              std::size_t wavelength) const {
+                                              std::size_t wavelength) {
   const double wavelength_m = band_[wavelength].wavelength_m;
   const Pupil own = pupil_at(optics_, place, wavelength_m);
   std::array<ZernikeTerm, 2> tilt = centring_tilt(own);
@@ -73,9 +74,8 @@ std::array<ZernikeTerm, 2> PsfModel::centring(const FieldPlace& place,
   for (int i = 0; i < 3; ++i) {
     Pupil p = own;
     p.wavefront.insert(p.wavefront.end(), tilt.begin(), tilt.end());
-    const PsfKernel k = tapered(pupil_kernel(
-        p, grids_[wavelength], plan_.half_cells, {},
-        [&](double nu_x, double nu_y) { return extra_otf(nu_x, nu_y, wavelength_m); }));
+    const PsfKernel k =
+        tapered(pupil_kernel(p, grids_[wavelength], plan_.half_cells, {}, extra_at(wavelength)));
     double x = 0.0, y = 0.0;
     for (int dy = -k.half; dy <= k.half; ++dy)
       for (int dx = -k.half; dx <= k.half; ++dx) {
@@ -115,6 +115,15 @@ double PsfModel::extra_otf(double nu_x, double nu_y, double wavelength_m) const 
   return h;
 }
 
+const SampledOtf& PsfModel::extra_at(std::size_t wavelength) {
+  auto& sampled = extra_[wavelength];
+  if (!sampled)
+    sampled.emplace(grids_[wavelength], [&](double nu_x, double nu_y) {
+      return extra_otf(nu_x, nu_y, band_[wavelength].wavelength_m);
+    });
+  return *sampled;
+}
+
 PsfKernel PsfModel::round_kernel(double wavelength_m) {
   const bool gaussian = optics_.spread.model == Model::gaussian;
   const double sigma_rad = psf_sigma_px(optics_, wavelength_m) * optics_.pixel_angle_rad();
@@ -141,9 +150,7 @@ PsfKernel PsfModel::pupil_kernel_at(const FieldPlace& place, std::size_t wavelen
   Pupil p = pupil_at(optics_, place, wavelength_m);
   p.wavefront.insert(p.wavefront.end(), tilt.begin(), tilt.end());
   const ScreenAhead ahead{screen, grids_[0].step_m, band_[0].wavelength_m / wavelength_m};
-  return pupil_kernel(
-      p, grids_[wavelength], plan_.half_cells, ahead,
-      [&](double nu_x, double nu_y) { return extra_otf(nu_x, nu_y, wavelength_m); });
+  return pupil_kernel(p, grids_[wavelength], plan_.half_cells, ahead, extra_at(wavelength));
 }
 
 PsfKernel PsfModel::kernel(const FieldPlace& place, double start_s, double exposure_s) {

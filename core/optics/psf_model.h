@@ -36,7 +36,8 @@ class PsfModel {
   bool is_round(const FieldPlace& place) const;
   double air_otf(double nu_per_rad, double wavelength_m) const;
   double extra_otf(double nu_x, double nu_y, double wavelength_m) const;
-  std::array<ZernikeTerm, 2> centring(const FieldPlace& place, std::size_t wavelength) const;
+  const SampledOtf& extra_at(std::size_t wavelength);
+  std::array<ZernikeTerm, 2> centring(const FieldPlace& place, std::size_t wavelength);
   PsfKernel round_kernel(double wavelength_m);
   PsfKernel pupil_kernel_at(const FieldPlace& place, std::size_t wavelength,
                             const PhaseScreen* screen);
@@ -47,6 +48,7 @@ class PsfModel {
   std::optional<SensorSeeing> seeing_;
   double cell_rad_;
   std::vector<PupilGrid> grids_;  // one per wavelength
+  std::vector<std::optional<SampledOtf>> extra_;  // likewise; none: not yet asked for
   struct Centred {
     FieldPlace place;
     std::size_t wavelength;

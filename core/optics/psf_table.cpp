@@ -34,12 +34,17 @@ PsfTable make_psf_table(double sigma_px) {
   constexpr double far = 1e9;
   for (int p = 0; p <= t.phases; ++p) {
     const double c = double(p) / t.phases;
+    double sum = 0.0, moment = 0.0;
     for (int i = 0; i < t.size; ++i) {
       const double left = i == 0 ? -far : t.first + i - 0.5 - c;
       const double right = i == t.size - 1 ? far : t.first + i + 0.5 - c;
       t.weights[std::size_t(p) * std::size_t(t.stride) + std::size_t(i)] =
           float(share(left, right, t.sigma_px));
+      const double weight = t.weights[std::size_t(p) * std::size_t(t.stride) + std::size_t(i)];
+      sum += weight;
+      moment += weight * i;
     }
+    t.whole.push_back({sum, moment});
   }
   return t;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "core/optics/camera.h"
@@ -21,6 +22,8 @@ struct PsfTable {
   int size = 0;                // pixels in the window
   int stride = 0;              // of a row of `weights`, a multiple of 8; the rest is 0
   std::vector<float> weights;  // (phases + 1) x stride
+  /// Sum and first moment, from the window's first pixel on, of each phase.
+  std::vector<std::array<double, 2>> whole;
 };
 
 /// `sigma_px` must be in 0..500; throws `Error` otherwise.

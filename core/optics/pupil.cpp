@@ -98,9 +98,9 @@ PsfKernel short_exposure_kernel(const Pupil& pupil, const PupilGrid& grid, int h
         window.phase_rad.push_back(screen->at(first_x + x, first_y + y));
   }
   PsfKernel kernel = pupil_kernel(
-      pupil, grid, half, {screen ? &window : nullptr, grid.step_m}, [&](double nu_x, double nu_y) {
+      pupil, grid, half, {screen ? &window : nullptr, grid.step_m}, SampledOtf(grid, [&](double nu_x, double nu_y) {
         return pixel_otf(nu_x, grid.cell_rad) * pixel_otf(nu_y, grid.cell_rad);
-      });
+      }));
   double sum = 0.0;
   for (float& share : kernel.values) sum += share = std::max(0.0f, share);
   for (float& share : kernel.values) share = float(share / sum);
@@ -133,7 +133,8 @@ void fill_amplitude(const Pupil& pupil, const PupilGrid& grid, const ScreenAhead
       if (open == 0.0) continue;
       double phase = ahead.screen ? ahead.scale * phase_of(*ahead.screen, ratio, i, j) : 0.0;
       const double rho = std::min(1.0, 2 * std::hypot(x, y)), theta = std::atan2(y, x);
-      for (const ZernikeTerm& t : pupil.wavefront) phase += t.rms_rad * zernike(t.noll, rho, theta);
+      for (const ZernikeTerm& t : pupil.wavefront)
+        if (t.rms_rad != 0.0) phase += t.rms_rad * zernike(t.noll, rho, theta);
       const auto at = 2 * (std::size_t(j) * std::size_t(n) + std::size_t(i));
       field.data()[at] = float(open * std::cos(phase));
       field.data()[at + 1] = float(open * std::sin(phase));
@@ -142,8 +143,16 @@ void fill_amplitude(const Pupil& pupil, const PupilGrid& grid, const ScreenAhead
 
 }  // namespace
 
+SampledOtf::SampledOtf(const PupilGrid& grid, const TransferFunction& otf)
+    : side_(grid.side), values_(std::size_t(side_ / 2 + 1) * std::size_t(side_ / 2 + 1)) {
+  const auto frequency = [&](int i) { return i * double(grid.fine) / (side_ * grid.cell_rad); };
+  for (int y = 0; y <= side_ / 2; ++y)
+    for (int x = 0; x <= side_ / 2; ++x)
+      values_[place(x, y)] = otf(frequency(x), frequency(y));
+}
+
 PsfKernel pupil_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
-                       const ScreenAhead& ahead, const TransferFunction& extra) {
+                       const ScreenAhead& ahead, const SampledOtf& extra) {
   const int n = grid.side;
   if (aperture_samples(pupil, grid) > n)
     throw Error("pupil: the grid is smaller than the aperture");
@@ -162,15 +171,12 @@ PsfKernel pupil_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
     field.data()[i + 1] = 0.0f;
   }
   fft.transform(field);
-  const auto frequency = [&](int i) {
-    return (i <= n / 2 ? i : i - n) * double(grid.fine) / (n * grid.cell_rad);
-  };
   // Forward transform instead of inverse: mirrored, so conjugate first.
   const double scale = double(grid.fine) * grid.fine / (light * double(n) * n);
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x) {
       float* v = field.data() + 2 * (std::size_t(y) * std::size_t(n) + std::size_t(x));
-      const double h = scale * extra(frequency(x), frequency(y));
+      const double h = scale * extra.at(x, y);
       v[0] = float(v[0] * h);
       v[1] = float(-v[1] * h);
     }

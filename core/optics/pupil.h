@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -56,10 +57,27 @@ struct ScreenAhead {
   double scale = 1.0;                   // of its phase: wavelength of the screen / of the light
 };
 
+/// A real and even transfer function at the frequencies of a grid.
+class SampledOtf {
+ public:
+  SampledOtf(const PupilGrid& grid, const TransferFunction& otf);
+  /// At row `y` and column `x` of the transform.
+  double at(int x, int y) const {
+    return values_[place(std::min(x, side_ - x), std::min(y, side_ - y))];
+  }
+
+ private:
+  std::size_t place(int x, int y) const {
+    return std::size_t(y) * std::size_t(side_ / 2 + 1) + std::size_t(x);
+  }
+  int side_;
+  std::vector<double> values_;  // of frequencies that are not negative
+};
+
 /// Kernel of the pupil through a screen, with its transfer function multiplied by `extra` (further
 /// blur, real and even). Sums to 1; negative values are kept.
 PsfKernel pupil_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
-                       const ScreenAhead& ahead, const TransferFunction& extra);
+                       const ScreenAhead& ahead, const SampledOtf& extra);
 
 /// Tilt [rad rms of Noll's terms 2 and 3] that centres the light despite the pupil's own terms:
 /// minus the mean slope of the wavefront over the open annulus.

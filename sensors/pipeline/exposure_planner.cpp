@@ -77,7 +77,7 @@ void ExposurePlanner::look_at_sensor() {
   f.read_later = reads_after_others(detector);
   f.dark_e = dark_rate_e_per_s(detector) * sensor_.exposure_s;
   if (blur.method != PointSpread::Method::deposit) {
-    constexpr double cell_s = 300e-9;
+    constexpr double cell_s = 200e-9;
     const double cells = 4.0 * blur.half_cells * blur.half_cells;
     f.kernels_change = blur.screens > 0;
     f.kernel_s = cell_s * cells * std::max(1, blur.screens) * optics.spread.grid_columns *
