@@ -6,12 +6,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <new>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,12 +32,17 @@
 namespace dmise {
 namespace {
 
-constexpr int sizes[] = {2, 4, 8, 16, 32, 64, 128, 200};
 constexpr int window_ticks = 4;
+constexpr int most_sensors = 200;
 constexpr std::size_t catalogue_objects = 18470;
 constexpr double paced_ticks_per_s = 4.0;    // mostly the cost of heartbeats
 constexpr double target_ticks_per_s = 25.0;  // of the most sensors, with 18,470 objects
 constexpr Tick warm_up = 8;                  // ticks before the first reading
+
+struct {
+  std::vector<int> sizes{2, 4, 8, 16, 32, 64, 128, 200};
+  std::set<std::string> kinds{"barrier", "states", "fields", "paced"};
+} options;
 
 /// Two readings of the costs of all processes, in shared memory.
 struct Readings {
@@ -220,29 +227,49 @@ void print(const std::string& what, int sensors, const Readings& readings, bool 
 
 }  // namespace
 
+void add_scaling_options(CLI::App& command) {
+  command.add_option("--sensors", options.sizes, "numbers of sensors")
+      ->check(CLI::Range(1, 240))
+      ->delimiter(',');
+  command
+      .add_option("--kinds", options.kinds,
+                  "barrier: empty states; states: 18,470 objects; "
+                  "fields: telescopes that find objects themselves; paced: barrier at 4 ticks/s")
+      ->check(CLI::IsMember(options.kinds))
+      ->delimiter(',');
+}
+
 int bench_scaling(bool json) {
   spdlog::set_level(spdlog::level::err);
   const bool own_network = enter_own_network();
   const auto directory =
       std::filesystem::temp_directory_path() / ("dmise-scaling-" + std::to_string(getpid()));
-  for (const int sensors : sizes) {
+  const auto run = [&](const std::string& kind, int sensors, const Cast& cast) {
+    SharedReadings readings;
+    measure(cast, readings.get());
+    print(kind, sensors, readings.get(), own_network, json);
+    return ticks_per_s(readings.get());
+  };
+  for (const int sensors : options.sizes) {
     std::fprintf(stderr, "scaling: %d sensor nodes\n", sensors);
-    SharedReadings barrier, states, fields, pace;
-    measure(listeners(sensors, 0, warm_up + std::max(200, 20000 / sensors)), barrier.get());
-    print("barrier", sensors, barrier.get(), own_network, json);
-    measure(listeners(sensors, catalogue_objects, warm_up + std::max(24, 1600 / sensors)),
-            states.get());
-    print("states", sensors, states.get(), own_network, json);
-    const Tick ticks = warm_up + std::max(200, 2000 / sensors);
-    const Scenario scenario = telescope_network(sensors, ticks - 1, directory);
-    measure(telescopes(scenario, ticks), fields.get());
-    print("fields", sensors, fields.get(), own_network, json);
-    measure(listeners(sensors, 0, warm_up + 20, paced_ticks_per_s), pace.get());
-    print("paced", sensors, pace.get(), own_network, json);
-    if (sensors == sizes[std::size(sizes) - 1])
-      print_figure({"states_" + std::to_string(sensors) + "_ticks_per_s", ticks_per_s(fields.get()),
-                    "1/s", "empty states [1/s]", ticks_per_s(barrier.get()), target_ticks_per_s},
-                   json);
+    double empty_ticks_per_s = 0.0;
+    if (options.kinds.contains("barrier"))
+      empty_ticks_per_s =
+          run("barrier", sensors, listeners(sensors, 0, warm_up + std::max(200, 20000 / sensors)));
+    if (options.kinds.contains("states"))
+      run("states", sensors,
+          listeners(sensors, catalogue_objects, warm_up + std::max(24, 1600 / sensors)));
+    if (options.kinds.contains("fields")) {
+      const Tick ticks = warm_up + std::max(200, 2000 / sensors);
+      const Scenario scenario = telescope_network(sensors, ticks - 1, directory);
+      const double found = run("fields", sensors, telescopes(scenario, ticks));
+      if (sensors == most_sensors)
+        print_figure({"states_" + std::to_string(sensors) + "_ticks_per_s", found, "1/s",
+                      "empty states [1/s]", empty_ticks_per_s, target_ticks_per_s},
+                     json);
+    }
+    if (options.kinds.contains("paced"))
+      run("paced", sensors, listeners(sensors, 0, warm_up + 20, paced_ticks_per_s));
   }
   std::filesystem::remove_all(directory);
   return 0;

@@ -1,5 +1,9 @@
 #pragma once
 
+namespace CLI {
+class App;
+}
+
 namespace dmise {
 
 /// Networks of 2 to 200 idle sensor nodes, each a process, with orbit node, broker and time-master,
@@ -8,5 +12,6 @@ namespace dmise {
 /// states at a fixed pace, which gives the cost of time alone. bench/scaling.py fits and
 /// extrapolates the results.
 int bench_scaling(bool json);
+void add_scaling_options(CLI::App& command);
 
 }  // namespace dmise
