@@ -189,11 +189,14 @@ struct PlanFacts {
     const double of_light = (screens > 0 ? 0.15 : 0.02) + (std::isfinite(cloud_detail_px) ? 0.1 : 0.0);
     const double width_px = screens > 0 ? std::min(sigma_px(), speckle_px / 2.355) : sigma_px();
     const double px = off_axis * angle_rad / pixel_rad;
-    // Beside sources that count there is light of their rings alone.
+    // Beside sources that count there is light of their rings alone, which go from dark to bright
+    // in half of their distance.
     const double peak = faint || scene.diffracts ? peak_in_noise(least_snr_of_source, trail_px) : 0.0;
+    const double rings = scene.diffracts ? std::min(1.0, 2.0 * ring_contrast) : 0.0;
     const double background_sigma =
         peak * std::min(1.0, steepest * px / width_px) +
-        in_noise(ghost_pixel_share * brightest_e() * std::min(1.0, px));
+        in_noise(ghost_pixel_share * brightest_e() * std::min(1.0, px)) +
+        rings * 0.5 * std::min(1.0, 3.14159 * px / speckle_px);
     return {.photometry_mag = of_light * px,
             .position_px = px,
             .background_sigma = background_sigma,
