@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -53,6 +54,7 @@ constexpr HermiteOrder order_within(HermiteOrder order, Tick last_tick) {
 /// Half the step of the symmetric difference that gives a slope [s]. 3 mm/s^3 of jerk over a low
 /// orbit make 2e-5 m/s of error; the rounding of a time a year from its epoch makes as much.
 inline constexpr double slope_half_step_s = 0.125;
+inline constexpr std::int64_t slope_half_step_ns = 125'000'000;
 
 /// Derivative [m/s] from positions half a step before and after.
 template <class F>

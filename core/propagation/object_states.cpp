@@ -13,7 +13,6 @@
 namespace dmise {
 namespace {
 
-constexpr std::int64_t half_step_ns = std::int64_t(slope_half_step_s * 1e9);
 constexpr double least_height_m = 1.0;  // above the ellipsoid, of freely moving objects
 
 void set(std::vector<double>& xyz, std::size_t count, std::size_t i, const Vec<Gcrs>& v) {
@@ -89,12 +88,14 @@ StateSource::StateSource(const ObjectPopulation& population, Clock clock, Thread
       threads_(threads),
       batch_(population.elements) {}
 
-StateInstants StateSource::instants(SimTime time) const {
+StateInstants StateSource::instants(SimTime time, std::span<const EarthOrientation> known) const {
   const auto at = [&](SimTime t) {
-    const EarthOrientation earth = earth_orientation(clock_, t);
+    const auto of_t =
+        std::find_if(known.begin(), known.end(), [&](const auto& e) { return e.time == t; });
+    const EarthOrientation earth = of_t != known.end() ? *of_t : earth_orientation(clock_, t);
     return StateInstant{t, clock_.tai(t), clock_.utc(t), earth, earth.gcrs_from_teme(t)};
   };
-  return {at({time.ns - half_step_ns}), at(time), at({time.ns + half_step_ns})};
+  return {at({time.ns - slope_half_step_ns}), at(time), at({time.ns + slope_half_step_ns})};
 }
 
 ObjectStates StateSource::at(Tick tick, SimTime time) const {
@@ -143,7 +144,7 @@ void StateSource::add_sgp4(const Scene& scene, ObjectStates& states) const {
   const std::size_t n = states.count, k = scene.with_elements;
   const auto& [before, now, after] = scene.sgp4;
   const auto& at = scene.instants;
-  const double span_s = 2e-9 * half_step_ns;
+  const double span_s = 2e-9 * slope_half_step_ns;
   for (std::size_t i = 0; i < k; ++i) {
     states.code[i] = now.code[i] ? now.code[i] : before.code[i] ? before.code[i] : after.code[i];
     if (states.code[i]) continue;

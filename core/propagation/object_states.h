@@ -35,7 +35,8 @@ class StateSource {
   /// result is `objects[k]`, also in `attitude_object`.
   ObjectStates of_some(std::span<const std::uint32_t> objects, Tick tick,
                        const StateInstants& instants) const;
-  StateInstants instants(SimTime time) const;
+  /// `known`: orientations that need not be worked out.
+  StateInstants instants(SimTime time, std::span<const EarthOrientation> known = {}) const;
 
   /// Returns why object `i` has no state: one line that names it and the span of a trajectory.
   std::string why_absent(std::size_t i, const ObjectStates& states) const;

@@ -28,6 +28,12 @@ class Participant {
 
   /// The ticks at which it works; `step` is called for no other tick.
   virtual Schedule schedule() const { return {}; }
+  /// The ticks, of `schedule`, at which it may publish on one of its topics. Nobody waits for it at
+  /// others. What holds between two must be in the look-back of whoever consumes it.
+  virtual Schedule schedule_of(const std::string& topic) const {
+    static_cast<void>(topic);
+    return schedule();
+  }
 
   /// Performs the work of one tick. `inputs`: all messages of the consumed topics since the last
   /// step, ordered by (index of the topic in consumes(), order of publication). Returns the

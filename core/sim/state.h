@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -90,6 +91,8 @@ struct EnvironmentState {
   Vec<Gcrs> earth_velocity_m_per_s;   // barycentric, for annual aberration
   double tt_jd1 = 0.0, tt_jd2 = 0.0;  // two-part TT Julian date of `time` [days]
   Vec<Gcrs> moon_velocity_m_per_s;    // geocentric: the derivative of `moon_m`
+  /// `slope_half_step_s` before and after `time`, where sensors propagate objects.
+  std::optional<std::array<EarthOrientation, 2>> earth_beside;
 
   bool operator==(const EnvironmentState&) const = default;
 };

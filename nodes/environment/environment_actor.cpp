@@ -4,6 +4,7 @@
 
 #include "core/base/units.h"
 #include "core/frames/earth_orientation.h"
+#include "core/orbit/interpolation.h"
 #include "core/sky/sun_moon.h"
 
 namespace dmise {
@@ -23,6 +24,7 @@ EnvironmentActor::EnvironmentActor(const Scenario& scenario, Clock clock)
     : tick_length_(scenario.tick),
       common_period_(period(scenario.environment.common_every_s, scenario.tick)),
       site_period_(period(scenario.environment.site_every_s, scenario.tick)),
+      sensors_propagate_(scenario.network.sensors_propagate),
       clock_(std::move(clock)) {
   for (const auto& sensor : scenario.sensors) {
     if (!std::holds_alternative<SiteConfig>(sensor.place)) continue;
@@ -42,6 +44,10 @@ EnvironmentState EnvironmentActor::common(Tick tick) const {
   const SimTime time{tick * tick_length_.ns};
   const Tt tt = clock_.tt(time);
   const auto bodies = solar_system(tt);
+  std::optional<std::array<EarthOrientation, 2>> beside;
+  if (sensors_propagate_)
+    beside = {earth_orientation(clock_, {time.ns - slope_half_step_ns}),
+              earth_orientation(clock_, {time.ns + slope_half_step_ns})};
   return {.tick = tick,
           .time = time,
           .earth = earth_orientation(clock_, time),
@@ -51,7 +57,8 @@ EnvironmentState EnvironmentActor::common(Tick tick) const {
           .earth_velocity_m_per_s = bodies.earth_velocity_m_per_s,
           .tt_jd1 = tt.jd1,
           .tt_jd2 = tt.jd2,
-          .moon_velocity_m_per_s = bodies.moon_velocity_m_per_s};
+          .moon_velocity_m_per_s = bodies.moon_velocity_m_per_s,
+          .earth_beside = beside};
 }
 
 SiteState EnvironmentActor::site(const SensorConfig& sensor, Tick tick) const {

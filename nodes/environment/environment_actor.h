@@ -16,6 +16,9 @@ class EnvironmentActor : public Actor {
 
   std::string name() const override { return environment_node; }
   std::vector<std::string> produces() const override;
+  Schedule schedule_of(const std::string& topic) const override {
+    return {.period = topic == environment_topic ? common_period_ : site_period_};
+  }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   std::uint64_t progress() const override { return steps_; }
 
@@ -25,6 +28,7 @@ class EnvironmentActor : public Actor {
 
   SimTime tick_length_;
   Tick common_period_, site_period_;
+  bool sensors_propagate_;
   Clock clock_;
   std::vector<SensorConfig> ground_sensors_;
   std::map<std::string, Turbulence> turbulence_;  // towards the zenith at 500 nm, by sensor

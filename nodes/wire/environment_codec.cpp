@@ -17,20 +17,37 @@ Rotation<To, From> take_rotation(const Repeated& field, const char* name) {
   return r;
 }
 
+void put(v1::EarthOrientation* message, const EarthOrientation& earth) {
+  message->set_time_ns(earth.time.ns);
+  put_rotation(message->mutable_cirs_from_gcrs(), earth.cirs_from_gcrs);
+  put_rotation(message->mutable_itrs_from_tirs(), earth.itrs_from_tirs);
+  message->set_era_rad(earth.era_rad);
+  message->set_era_rate_rad_per_s(earth.era_rate_rad_per_s);
+  message->set_gmst82_rad(earth.gmst82_rad);
+  message->set_gmst82_rate_rad_per_s(earth.gmst82_rate_rad_per_s);
+}
+
+EarthOrientation take_earth(const v1::EarthOrientation& message) {
+  return {
+      .time = {message.time_ns()},
+      .cirs_from_gcrs = take_rotation<Cirs, Gcrs>(message.cirs_from_gcrs(), "earth.cirs_from_gcrs"),
+      .itrs_from_tirs = take_rotation<Itrs, Tirs>(message.itrs_from_tirs(), "earth.itrs_from_tirs"),
+      .era_rad = message.era_rad(),
+      .era_rate_rad_per_s = message.era_rate_rad_per_s(),
+      .gmst82_rad = message.gmst82_rad(),
+      .gmst82_rate_rad_per_s = message.gmst82_rate_rad_per_s()};
+}
+
 }  // namespace
 
 Encoded encode_body(const EnvironmentState& state) {
   v1::EnvironmentState message;
   message.set_tick(state.tick);
   message.set_time_ns(state.time.ns);
-  auto* earth = message.mutable_earth();
-  earth->set_time_ns(state.earth.time.ns);
-  put_rotation(earth->mutable_cirs_from_gcrs(), state.earth.cirs_from_gcrs);
-  put_rotation(earth->mutable_itrs_from_tirs(), state.earth.itrs_from_tirs);
-  earth->set_era_rad(state.earth.era_rad);
-  earth->set_era_rate_rad_per_s(state.earth.era_rate_rad_per_s);
-  earth->set_gmst82_rad(state.earth.gmst82_rad);
-  earth->set_gmst82_rate_rad_per_s(state.earth.gmst82_rate_rad_per_s);
+  put(message.mutable_earth(), state.earth);
+  if (state.earth_beside)
+    for (const EarthOrientation& earth : *state.earth_beside)
+      put(message.add_earth_beside(), earth);
   put(message.mutable_sun_m(), state.sun_m);
   put(message.mutable_moon_m(), state.moon_m);
   put(message.mutable_earth_barycentric_m(), state.earth_barycentric_m);
@@ -43,19 +60,16 @@ Encoded encode_body(const EnvironmentState& state) {
 
 EnvironmentState decode_environment(std::string_view payload) {
   const auto message = parse<v1::EnvironmentState>(payload);
-  const auto& earth = message.earth();
   EnvironmentState state;
   state.tick = message.tick();
   state.time = {message.time_ns()};
-  state.earth.time = {earth.time_ns()};
-  state.earth.cirs_from_gcrs =
-      take_rotation<Cirs, Gcrs>(earth.cirs_from_gcrs(), "earth.cirs_from_gcrs");
-  state.earth.itrs_from_tirs =
-      take_rotation<Itrs, Tirs>(earth.itrs_from_tirs(), "earth.itrs_from_tirs");
-  state.earth.era_rad = earth.era_rad();
-  state.earth.era_rate_rad_per_s = earth.era_rate_rad_per_s();
-  state.earth.gmst82_rad = earth.gmst82_rad();
-  state.earth.gmst82_rate_rad_per_s = earth.gmst82_rate_rad_per_s();
+  state.earth = take_earth(message.earth());
+  if (const auto& beside = message.earth_beside(); !beside.empty()) {
+    if (beside.size() != 2)
+      throw Refused(Refusal::payload,
+                    "earth_beside: must have 2 orientations, got " + std::to_string(beside.size()));
+    state.earth_beside = {take_earth(beside[0]), take_earth(beside[1])};
+  }
   state.sun_m = take_vec<Gcrs>(message.sun_m(), "sun_m");
   state.moon_m = take_vec<Gcrs>(message.moon_m(), "moon_m");
   state.earth_barycentric_m = take_vec<Gcrs>(message.earth_barycentric_m(), "earth_barycentric_m");

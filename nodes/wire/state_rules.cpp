@@ -159,13 +159,23 @@ void check(const ObjectStates& states) {
   check_attitudes(states);
 }
 
+void check(const EarthOrientation& earth) {
+  rotates(earth.cirs_from_gcrs, "earth.cirs_from_gcrs");
+  rotates(earth.itrs_from_tirs, "earth.itrs_from_tirs");
+  finite(earth.era_rad, "earth.era_rad");
+  finite(earth.era_rate_rad_per_s, "earth.era_rate_rad_per_s");
+  finite(earth.gmst82_rad, "earth.gmst82_rad");
+  finite(earth.gmst82_rate_rad_per_s, "earth.gmst82_rate_rad_per_s");
+}
+
 void check(const EnvironmentState& state) {
-  rotates(state.earth.cirs_from_gcrs, "earth.cirs_from_gcrs");
-  rotates(state.earth.itrs_from_tirs, "earth.itrs_from_tirs");
-  finite(state.earth.era_rad, "earth.era_rad");
-  finite(state.earth.era_rate_rad_per_s, "earth.era_rate_rad_per_s");
-  finite(state.earth.gmst82_rad, "earth.gmst82_rad");
-  finite(state.earth.gmst82_rate_rad_per_s, "earth.gmst82_rate_rad_per_s");
+  check(state.earth);
+  if (state.earth_beside) {
+    for (const EarthOrientation& earth : *state.earth_beside) check(earth);
+    if (state.earth_beside->front().time >= state.time ||
+        state.earth_beside->back().time <= state.time)
+      refuse("earth_beside", "must be before and after the state's time");
+  }
   vector_within(state.sun_m, distance_limit_m, "sun_m");
   vector_within(state.moon_m, distance_limit_m, "moon_m");
   vector_within(state.earth_barycentric_m, distance_limit_m, "earth_barycentric_m");

@@ -7,7 +7,6 @@
 
 #include "core/base/units.h"
 #include "core/optics/projection.h"
-#include "core/orbit/cone_test.h"
 #include "core/visibility/crossing.h"
 #include "core/visibility/field_of_view.h"
 #include "core/visibility/sight.h"
@@ -26,9 +25,8 @@ constexpr double greatest_pull_m_per_s2 = 20.0;
 constexpr double shortest_share = 1e-3;
 constexpr double shortest_crossing_s = 0.02;
 
-/// Greatest acceleration and speed of what orbits the Earth above its surface.
+/// Greatest acceleration of what orbits the Earth above its surface.
 constexpr double greatest_fall_m_per_s2 = 10.0;
-constexpr double greatest_speed_m_per_s = 11300.0;
 
 /// SGP4's velocity differs from the derivative of its position by less.
 constexpr double greatest_slope_error_m_per_s = 20.0;
@@ -80,7 +78,7 @@ class FieldCone {
   }
 
   /// Objects of `rough` that `crossed_by` may accept.
-  std::vector<std::uint32_t> candidates(const RoughPlaces& rough);
+  std::vector<std::uint32_t> candidates(RoughPlaces& rough);
 
   /// `radius_m`: of the sphere about the object that holds it.
   bool crossed_by(std::size_t object, double radius_m) {
@@ -133,72 +131,111 @@ class FieldCone {
     return outside_cone_m(line, Vec<CameraFrame>{0, 0, 1}, cos_, sin_) - radius_m_;
   }
 
+  /// Observer and camera axis at mid exposure, in the frame of the rough places.
+  struct Sight {
+    Vec<Teme> observer_m, carried_m_per_s, axis;
+  };
+  double error_m(const RoughPlaces& rough, double dt_s) const;
+  double pull_m_per_s(double dt_s) const;
+  bool holds(const Shortlist& list, const Sight& sight) const;
+  Shortlist shortlist_of(const RoughPlaces& rough, const Sight& sight) const;
+
   const View& view_;
   double cos_ = 1.0, sin_ = 0.0, half_s_ = 0.0, turn_rad_per_s_ = 0.0, radius_m_ = 0.0;
   std::map<std::int64_t, Moment> moments_;
 };
 
-std::vector<std::uint32_t> FieldCone::candidates(const RoughPlaces& rough) {
+/// Greatest distance between a straight line from a rough place and the object, `dt_s` later.
+double FieldCone::error_m(const RoughPlaces& rough, double dt_s) const {
+  return 0.5 * greatest_fall_m_per_s2 * dt_s * dt_s +
+         greatest_slope_error_m_per_s * std::abs(dt_s) + rough.interpolation_error_m +
+         rough_margin_m;
+}
+
+/// What speeds relative to the observer may grow by until the end of the exposure.
+double FieldCone::pull_m_per_s(double dt_s) const {
+  return greatest_pull_m_per_s2 * half_s_ + greatest_slope_error_m_per_s +
+         greatest_fall_m_per_s2 * std::abs(dt_s);
+}
+
+bool FieldCone::holds(const Shortlist& list, const Sight& sight) const {
+  return norm(sight.observer_m - list.observer_m) <= list.moved_m &&
+         norm(sight.axis - list.axis) <= list.turned_rad && cos_ >= list.cos_half &&
+         half_s_ <= list.half_exposure_s && turn_rad_per_s_ <= list.turn_rad_per_s &&
+         norm(sight.carried_m_per_s) <= list.observer_speed_m_per_s;
+}
+
+/// Limits are what the camera will do until the rough places are made anew, a little more than it
+/// does now.
+Shortlist FieldCone::shortlist_of(const RoughPlaces& rough, const Sight& sight) const {
+  const double span_s = rough.longest_s;
+  Shortlist list{.observer_m = sight.observer_m,
+                 .axis = sight.axis,
+                 .cos_half = cos_,
+                 .half_exposure_s = 1.01 * half_s_,
+                 .turn_rad_per_s = 1.5 * turn_rad_per_s_ + 1e-6,
+                 .observer_speed_m_per_s = 1.01 * norm(sight.carried_m_per_s) + 1.0};
+  list.moved_m = 2.0 * span_s * list.observer_speed_m_per_s + 1000.0;
+  list.turned_rad = std::min(0.4, 2.0 * span_s * list.turn_rad_per_s);
+  const double error_m = this->error_m(rough, span_s), pull_m_per_s = this->pull_m_per_s(span_s);
+  const std::size_t stride = rough.code.size();
+  const auto vec = [&](const std::vector<double>& xyz, std::size_t i) {
+    return Vec<Teme>{xyz[i], xyz[stride + i], xyz[2 * stride + i]};
+  };
+  for (std::size_t i = 0; i < rough.count; ++i) {
+    if (rough.code[i] != 0) {
+      list.without_place.push_back(std::uint32_t(i));
+      continue;
+    }
+    const Vec<Teme> place = vec(rough.position_m, i), velocity = vec(rough.velocity_m_per_s, i);
+    const Vec<Teme> line = place - sight.observer_m;
+    const double own_speed = norm(velocity);
+    const double moved_m = own_speed * span_s + list.moved_m, range_m = norm(line) + moved_m;
+    const double speed = own_speed + list.observer_speed_m_per_s + pull_m_per_s;
+    const double reach_m =
+        error_m +
+        list.half_exposure_s *
+            (speed + list.turn_rad_per_s * (range_m + error_m + speed * list.half_exposure_s));
+    if (outside_cone_m(line, sight.axis, cos_, sin_) <=
+        moved_m + 1.01 * list.turned_rad * range_m + reach_m)
+      list.places.push_back({place, velocity, std::uint32_t(i)});
+  }
+  return list;
+}
+
+std::vector<std::uint32_t> FieldCone::candidates(RoughPlaces& rough) {
   std::vector<std::uint32_t> found;
-  const auto all = [&] {
+  const double turning_rad = turn_rad_per_s_ * half_s_;
+  const double half_rad = std::atan2(sin_, cos_) + std::asin(std::min(1.0, turning_rad));
+  if (half_rad > widest_rough_cone_rad || turning_rad > most_turning_rad) {
     found.resize(rough.count);
     std::iota(found.begin(), found.end(), 0u);
     return found;
-  };
-  const double turning_rad = turn_rad_per_s_ * half_s_;
-  const double half_rad = std::atan2(sin_, cos_) + std::asin(std::min(1.0, turning_rad));
-  if (half_rad > widest_rough_cone_rad || turning_rad > most_turning_rad) return all();
-
+  }
   const SimTime middle = view_.times().middle;
   const Moment& now = moment(middle);
   const double dt_s = (middle - rough.time).seconds();
-  const double error_m = 0.5 * greatest_fall_m_per_s2 * dt_s * dt_s +
-                         greatest_slope_error_m_per_s * std::abs(dt_s) +
-                         rough.interpolation_error_m + rough_margin_m;
-  const double pull_m_per_s = greatest_pull_m_per_s2 * half_s_ + greatest_slope_error_m_per_s +
-                              greatest_fall_m_per_s2 * std::abs(dt_s);
-  const double fastest_m_per_s =
-      greatest_speed_m_per_s + norm(now.observer.velocity_m_per_s) + pull_m_per_s;
-  // What moves this far from the cone of the middle, and twice as far because the camera turns, is
-  // in a cone whose apex lies behind.
-  const double reach_m = 2.0 * (fastest_m_per_s * half_s_ * (1.0 + turning_rad) + error_m);
+  const double error_m = this->error_m(rough, dt_s), pull_m_per_s = this->pull_m_per_s(dt_s);
   const auto teme_from_gcrs = rough.gcrs_from_teme.inverse();
-  const Vec<Gcrs> axis = now.camera.inverse() * Vec<CameraFrame>{0, 0, 1};
-  const Vec<Gcrs> apex_m = now.observer.position_m - axis * (reach_m / std::sin(half_rad));
-  const Cone cone{teme_from_gcrs * apex_m, unit(teme_from_gcrs * axis), half_rad};
-
-  const std::size_t stride = rough.code.size(), n = rough.count;
-  std::vector<double> position_m(3 * n);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double *from_m = rough.position_m.data() + c * stride,
-                 *speed = rough.velocity_m_per_s.data() + c * stride;
-    for (std::size_t i = 0; i < n; ++i) position_m[c * n + i] = from_m[i] + speed[i] * dt_s;
-  }
-  std::vector<std::uint64_t> inside(cone_words(n));
-  cone_test(position_m, {&cone, 1}, inside);
-  std::vector<std::uint32_t> in_cone(n);
-  in_cone.resize(objects_in(inside, in_cone));
-
-  const Vec<Teme> from_m = teme_from_gcrs * now.observer.position_m;
-  const Vec<Teme> carried = teme_from_gcrs * now.observer.velocity_m_per_s;
-  for (const std::uint32_t i : in_cone) {
-    const auto& v = rough.velocity_m_per_s;
-    const Vec<Teme> line =
-        Vec<Teme>{position_m[i], position_m[n + i], position_m[2 * n + i]} - from_m;
-    const double speed =
-        norm(Vec<Teme>{v[i], v[stride + i], v[2 * stride + i]} - carried) + pull_m_per_s;
-    const double reach_of_it_m =
+  const Sight sight{teme_from_gcrs * now.observer.position_m,
+                    teme_from_gcrs * now.observer.velocity_m_per_s,
+                    unit(teme_from_gcrs * (now.camera.inverse() * Vec<CameraFrame>{0, 0, 1}))};
+  if (!rough.shortlist || !holds(*rough.shortlist, sight))
+    rough.shortlist = shortlist_of(rough, sight);
+  found = rough.shortlist->without_place;
+  for (const auto& [place, velocity, object] : rough.shortlist->places) {
+    const Vec<Teme> line = place + velocity * dt_s - sight.observer_m;
+    const double speed = norm(velocity - sight.carried_m_per_s) + pull_m_per_s;
+    const double reach_m =
         (speed + turn_rad_per_s_ * (norm(line) + error_m + speed * half_s_)) * half_s_ + error_m;
-    if (outside_cone_m(line, cone.axis, cos_, sin_) <= reach_of_it_m) found.push_back(i);
+    if (outside_cone_m(line, sight.axis, cos_, sin_) <= reach_m) found.push_back(object);
   }
-  for (std::size_t i = 0; i < n; ++i)
-    if (rough.code[i] != 0) found.push_back(std::uint32_t(i));
   return found;
 }
 
 }  // namespace
 
-std::vector<std::uint32_t> may_be_in_field(const View& view, const RoughPlaces& rough) {
+std::vector<std::uint32_t> may_be_in_field(const View& view, RoughPlaces& rough) {
   return FieldCone(view).candidates(rough);
 }
 

@@ -50,23 +50,32 @@ std::shared_ptr<const PropagatedObjects> propagated_objects(
 StatesInField::StatesInField(std::shared_ptr<const PropagatedObjects> objects, SimTime tick_length)
     : objects_(std::move(objects)), tick_length_(tick_length) {}
 
-const StateInstants& StatesInField::instants(Tick tick, SimTime time) {
+const StateInstants& StatesInField::instants(const World& world, Tick tick) {
   const auto found = instants_.find(tick);
   if (found != instants_.end()) return found->second;
-  return instants_.emplace(tick, objects_->source.instants(time)).first->second;
+  const SimTime time{tick * tick_length_.ns};
+  std::vector<EarthOrientation> published;
+  if (const EnvironmentState* state = world.environment_of(time)) {
+    published.push_back(state->earth);
+    if (const auto& beside = state->earth_beside)
+      published.insert(published.end(), beside->begin(), beside->end());
+  }
+  return instants_.emplace(tick, objects_->source.instants(time, published)).first->second;
 }
 
-const RoughPlaces& StatesInField::rough_places(SimTime t) {
+RoughPlaces& StatesInField::rough_places(SimTime t) {
   const SimTime time{(t.ns + rough_every_ns / 2) / rough_every_ns * rough_every_ns};
   if (rough_ && rough_->time == time) return *rough_;
   const StateSource& source = objects_->source;
   const std::size_t n = source.elements().size();
   if (!rough_) rough_.emplace();
   rough_->time = time;
+  rough_->longest_s = 0.5e-9 * double(rough_every_ns);
   rough_->gcrs_from_teme = earth_orientation(source.clock(), time).gcrs_from_teme(time);
   rough_->position_m.resize(3 * n);
   rough_->velocity_m_per_s.resize(3 * n);
   rough_->code.resize(n);
+  rough_->shortlist.reset();
   rough_->count = objects_->from_catalogues;
   rough_->interpolation_error_m = interpolation_error_m(tick_length_.seconds());
   const Utc utc = source.clock().utc(time);
@@ -85,8 +94,7 @@ World StatesInField::around(const World& world, const SensorConfig& sensor,
     objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
     std::vector<ObjectStates> states;
     for (Tick tick = ticks.first; tick <= ticks.last && !objects.empty(); ++tick)
-      states.push_back(
-          objects_->source.of_some(objects, tick, instants(tick, {tick * tick_length_.ns})));
+      states.push_back(objects_->source.of_some(objects, tick, instants(world, tick)));
     seen.set_states(std::move(objects), std::move(states));
   };
   const auto needed = needed_objects(sensor, world.roster());

@@ -36,8 +36,8 @@ class StatesInField {
   World around(const World& world, const SensorConfig& sensor, const FrameTimes& times);
 
  private:
-  const StateInstants& instants(Tick tick, SimTime time);
-  const RoughPlaces& rough_places(SimTime t);
+  const StateInstants& instants(const World& world, Tick tick);
+  RoughPlaces& rough_places(SimTime t);
 
   std::shared_ptr<const PropagatedObjects> objects_;
   SimTime tick_length_;

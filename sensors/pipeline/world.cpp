@@ -151,6 +151,12 @@ EnvironmentState World::environment(SimTime t) const {
   throw Error("no environment at " + std::to_string(t.seconds()) + " s");
 }
 
+const EnvironmentState* World::environment_of(SimTime t) const {
+  for (const auto& state : environment_)
+    if (state->time == t) return state.get();
+  return nullptr;
+}
+
 const SiteState* World::site(const std::string& sensor, SimTime t) const {
   for (auto state = sites_.rbegin(); state != sites_.rend(); ++state)
     if ((*state)->sensor == sensor && (*state)->time <= t) return state->get();

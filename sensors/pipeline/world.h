@@ -61,6 +61,8 @@ class World {
 
   /// The environment at `t`: that last published at or before it, run on by its rates (`run_on`).
   EnvironmentState environment(SimTime t) const;
+  /// That published for `t` itself; null if there is none.
+  const EnvironmentState* environment_of(SimTime t) const;
   /// The air over a ground sensor as last published at or before `t`; null if it never was.
   const SiteState* site(const std::string& sensor, SimTime t) const;
 

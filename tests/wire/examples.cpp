@@ -66,6 +66,9 @@ EnvironmentState environment(Numbers& n, Tick tick) {
   e.earth.gmst82_rad = n.in(0, 2 * half_turn);
   e.earth.era_rate_rad_per_s = n.in(7e-5, 8e-5);
   e.earth.gmst82_rate_rad_per_s = n.in(7e-5, 8e-5);
+  e.earth_beside = {e.earth, e.earth};
+  e.earth_beside->front().time.ns -= 125'000'000;
+  e.earth_beside->back().time.ns += 125'000'000;
   e.sun_m = n.vec<Gcrs>(1.5e11);
   e.moon_m = n.vec<Gcrs>(4e8);
   e.earth_barycentric_m = n.vec<Gcrs>(1.5e11);

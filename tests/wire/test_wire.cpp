@@ -204,6 +204,8 @@ TEST(Wire, DoesNotSendWhatItWouldRefuse) {
   expect_unsent<ObjectRoster>([](auto& s) { s.objects[0].geometry = DiffuseSphere{-1, 0.2}; });
   expect_unsent<ObjectRoster>([](auto& s) { s.objects[0].name = "\xff\xfe"; });
   expect_unsent<EnvironmentState>([](auto& s) { s.earth.cirs_from_gcrs.m[0][0] += 1e-6; });
+  expect_unsent<EnvironmentState>([](auto& s) { s.earth_beside->back().era_rad = nan; });
+  expect_unsent<EnvironmentState>([](auto& s) { s.earth_beside->back().time = s.time; });
   expect_unsent<EnvironmentState>([](auto& s) { s.sun_m.x = infinity; });
   expect_unsent<EnvironmentState>([](auto& s) {
     for (double& x : s.earth.itrs_from_tirs.m[2]) x = -x;  // a mirror
