@@ -7,10 +7,13 @@
 
 namespace dmise {
 
-/// Wall-clock time of one node by activity [s].
+/// Wall-clock time of one node by activity [s], and what it needed.
 struct NodeTimes {
   std::string name;
   double compute_s = 0.0, messaging_s = 0.0, waiting_s = 0.0;
+  double start_s = 0.0;  // from the start of the process until it was ready
+  std::uint64_t peak_resident_bytes = 0, private_bytes = 0;
+  std::vector<std::string> topics;  // that it subscribed to
 };
 
 /// How a run ended.

@@ -22,8 +22,11 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 constexpr milliseconds check_interval{50};
-constexpr milliseconds connecting_interval{10};  // grants repeated while subscribers connect
-constexpr milliseconds farewell{1500};           // longest wait for nodes to leave after the run
+
+/// Between grants that are repeated while subscribers connect.
+milliseconds connecting_interval(std::size_t nodes) { return milliseconds(10 + nodes); }
+
+constexpr milliseconds farewell{1500};  // longest wait for nodes to leave after the run
 
 constexpr milliseconds longest_unheard{250};   // between a connection's end and its last messages
 constexpr milliseconds guard_interval{20};     // between checks of connection limits
@@ -116,7 +119,8 @@ MasterResult MasterProcess::run() {
       update_metrics();
       look_after_strangers();
       const bool connecting = coordinator_.phase() == Phase::connecting;
-      next_check = now() + (connecting ? connecting_interval : check_interval);
+      next_check = now() + (connecting ? connecting_interval(coordinator_.members().size())
+                                       : check_interval);
       if (connecting || coordinator_.over()) publisher_.publish();
     }
     advance();

@@ -47,18 +47,14 @@ TickTally tally_of(const v1::Done& done) {
   return tally;
 }
 
-void add_published(v1::Grant* grant, const std::set<std::string, std::less<>>& wanted,
-                   const TickTally& tally) {
-  for (const TopicTally& topic : tally.topics) {
-    if (!wanted.contains(topic.topic)) continue;
-    auto* published = grant->add_published();
-    published->set_topic(topic.topic);
-    published->set_tick(tally.tick);
-    published->set_messages(topic.messages);
-    published->set_last_sequence(topic.last_sequence);
-    published->set_digest(topic.digest);
-    published->set_incarnation(topic.incarnation);
-  }
+void add_published(v1::Grant* grant, Tick tick, const TopicTally& topic) {
+  auto* published = grant->add_published();
+  published->set_topic(topic.topic);
+  published->set_tick(tick);
+  published->set_messages(topic.messages);
+  published->set_last_sequence(topic.last_sequence);
+  published->set_digest(topic.digest);
+  published->set_incarnation(topic.incarnation);
 }
 
 namespace {
@@ -127,6 +123,7 @@ void describe(v1::Endpoints* endpoints, const Coordinator& coordinator) {
     node->set_alive(member.active() && !member.silent && heard);
     node->set_incarnation(member.incarnation);
     node->set_observer(member.observer);
+    node->mutable_consumes()->Add(member.node.consumes.begin(), member.node.consumes.end());
   };
   for (const auto& [name, member] : coordinator.members()) add(name, member, true);
   for (const auto& [name, member] : coordinator.behind()) {

@@ -13,9 +13,8 @@ v1::Phase to_wire(Phase phase);
 Coordinator::Request request_of(const v1::Join& join);
 TickTally tally_of(const v1::Done& done);
 
-/// Adds a tick's manifest to a grant, only for topics in `wanted`.
-void add_published(v1::Grant* grant, const std::set<std::string, std::less<>>& wanted,
-                   const TickTally& tally);
+/// Adds a topic's manifest of `tick` to a grant.
+void add_published(v1::Grant* grant, Tick tick, const TopicTally& topic);
 
 /// `topology` as needed by the process `name`.
 v1::Topology topology_for(const std::string& name, v1::Topology topology,

@@ -1,11 +1,18 @@
 #include "time-master/master_publisher.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "nodes/runtime/transport/socket.h"
 #include "time-master/master_messages.h"
 
 namespace dmise {
+namespace {
+
+/// Manifests go to a topic's consumers alone if there are at least so many times as many processes.
+constexpr std::size_t least_crowd = 8;
+
+}  // namespace
 
 void MasterPublisher::reply(std::string_view routing_id, const v1::MasterMessage& message) {
   router_.send(zmq::buffer(routing_id), zmq::send_flags::sndmore);
@@ -20,12 +27,44 @@ void MasterPublisher::refuse(std::string_view routing_id, const std::string& rea
   reply(routing_id, answer);
 }
 
-void MasterPublisher::note(const TickTally& tally) { add_published(&fresh_, consumed_, tally); }
+void MasterPublisher::index_consumers() {
+  consumed_ = directory_.consumed();
+  narrow_.clear();
+  std::size_t connected = 0;
+  std::map<std::string, std::set<std::string>> consumers;
+  std::set<std::string> observed;
+  for (const auto& [name, peer] : directory_.all()) {
+    const std::string& host = peer.join.host();
+    connected += host.empty();
+    for (const std::string& topic : peer.join.consumes()) {
+      consumers[topic].insert(host.empty() ? name : host);
+      if (peer.join.observer()) observed.insert(topic);
+    }
+  }
+  for (const auto& [topic, names] : consumers)
+    if (names.size() * least_crowd <= connected && !observed.contains(topic))
+      narrow_[topic].assign(names.begin(), names.end());
+}
+
+void MasterPublisher::note(const TickTally& tally) {
+  for (const TopicTally& topic : tally.topics) {
+    if (!consumed_.contains(topic.topic)) continue;
+    const auto narrow = narrow_.find(topic.topic);
+    if (narrow == narrow_.end()) {
+      add_published(&fresh_, tally.tick, topic);
+    } else {
+      for (const std::string& name : narrow->second)
+        add_published(&fresh_for_[name], tally.tick, topic);
+    }
+  }
+}
 
 bool MasterPublisher::publish_changes() {
   if (coordinator_.phase() == phase_ && coordinator_.granted() == granted_ &&
-      coordinator_.topology_version() == topology_version_ && fresh_.published().empty())
+      coordinator_.topology_version() == topology_version_ && fresh_.published().empty()) {
+    publish_to_few();
     return false;
+  }
   phase_ = coordinator_.phase();
   granted_ = coordinator_.granted();
   if (coordinator_.topology_version() != topology_version_) send_topology();
@@ -38,6 +77,18 @@ void MasterPublisher::publish() {
   grant_.mutable_published()->Swap(fresh_.mutable_published());
   fresh_.clear_published();
   ticks_.send(to_frame(grant_), zmq::send_flags::none);
+  publish_to_few();
+}
+
+void MasterPublisher::publish_to_few() {
+  if (fresh_for_.empty()) return;
+  v1::MasterMessage message = grant();
+  for (auto& [name, fresh] : std::exchange(fresh_for_, {})) {
+    const auto peer = directory_.all().find(name);
+    if (peer == directory_.all().end()) continue;
+    message.mutable_grant()->mutable_published()->Swap(fresh.mutable_published());
+    reply(peer->second.routing_id, message);
+  }
 }
 
 v1::MasterMessage MasterPublisher::welcome(const std::string& name,
@@ -75,7 +126,8 @@ v1::MasterMessage MasterPublisher::grant_for(const Coordinator::Member& member) 
   const std::set<std::string, std::less<>> wanted(needs.begin(), needs.end());
   for (const auto& [name, other] : coordinator_.members())
     for (const TickTally& tally : other.manifests)
-      add_published(answer.mutable_grant(), wanted, tally);
+      for (const TopicTally& topic : tally.topics)
+        if (wanted.contains(topic.topic)) add_published(answer.mutable_grant(), tally.tick, topic);
   return answer;
 }
 
@@ -88,7 +140,7 @@ v1::MasterMessage MasterPublisher::expelled(const std::string& cause) const {
 
 void MasterPublisher::send_topology() {
   topology_version_ = coordinator_.topology_version();
-  consumed_ = directory_.consumed();
+  index_consumers();
   const v1::Topology topology = directory_.topology();
   for (const auto& [name, peer] : directory_.all()) send_topology_to(peer, topology);
 }
@@ -107,10 +159,10 @@ void MasterPublisher::send_topology_to(const Peer& peer, const v1::Topology& top
 }
 
 void MasterPublisher::announce_observer(const std::string& name) {
-  auto consumed = directory_.consumed();
+  const auto before = std::exchange(consumed_, {});
+  index_consumers();
   const bool more =
-      !std::includes(consumed_.begin(), consumed_.end(), consumed.begin(), consumed.end());
-  consumed_ = std::move(consumed);
+      !std::includes(before.begin(), before.end(), consumed_.begin(), consumed_.end());
   const v1::Topology topology = directory_.topology();
   for (const auto& [other, peer] : directory_.all())
     if (other == name || (more && peer.join.agent())) send_topology_to(peer, topology);

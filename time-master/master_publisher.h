@@ -1,7 +1,9 @@
 #pragma once
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 #include <zmq.hpp>
 
 #include "dmise/v1/node.pb.h"
@@ -25,7 +27,8 @@ class MasterPublisher {
 
   void reply(std::string_view routing_id, const v1::MasterMessage& message);
   void refuse(std::string_view routing_id, const std::string& reason, const std::string& name);
-  /// Records a manifest, sent to its consumers with the next message.
+  /// Records a manifest, sent with the next message: to all, or to its consumers alone where they
+  /// are few.
   void note(const TickTally& tally);
   /// An observer has joined a running run: only agents need to know its topics.
   void announce_observer(const std::string& name);
@@ -48,6 +51,8 @@ class MasterPublisher {
   Phase phase() const { return phase_; }
 
  private:
+  void index_consumers();
+  void publish_to_few();
   void send_topology();
   void send_topology_to(const Peer& peer, const v1::Topology& topology);
 
@@ -57,9 +62,12 @@ class MasterPublisher {
   const Coordinator& coordinator_;
   const PeerDirectory& directory_;
   v1::Grant grant_;
-  v1::Grant fresh_;                              // `published` that has not been sent yet
-  std::set<std::string, std::less<>> consumed_;  // topics with consumers
-  std::uint64_t topology_version_ = 0;           // as last sent
+  // Manifests that have not been sent yet: to all, and to single processes.
+  v1::Grant fresh_;
+  std::map<std::string, v1::Grant> fresh_for_;
+  std::set<std::string, std::less<>> consumed_;             // topics with consumers
+  std::map<std::string, std::vector<std::string>> narrow_;  // of these, with few: their names
+  std::uint64_t topology_version_ = 0;                      // as last sent
   Phase phase_ = Phase::gathering;
   Tick granted_ = -1;
 };

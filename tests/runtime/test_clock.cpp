@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "dmise/v1/node.pb.h"
+#include "dmise/v1/time.pb.h"
+#include "nodes/runtime/transport/socket.h"
 #include "tests/runtime/network_threads.h"
 #include "tests/runtime/toy.h"
 
@@ -167,6 +170,94 @@ TEST(Clock, ANodeOfALongerPeriodGetsAllThatWasSaidMeanwhile) {
   EXPECT_EQ(master.result.get().exit_code, 0);
   b.get();
   EXPECT_EQ(slow.story, "3:5 8:5 13:5 18:5 ");  // at first the roster, and ticks 0 to 3
+}
+
+/// Says something on `topic` at every `period`-th tick.
+class Rare : public Actor {
+ public:
+  Rare(std::vector<std::string> topics, Tick period)
+      : topics_(std::move(topics)), period_(period) {}
+  std::string name() const override { return "rare"; }
+  std::vector<std::string> produces() const override { return topics_; }
+  Schedule schedule_of(const std::string&) const override { return {.period = period_}; }
+  std::vector<Message> step(Tick tick, std::span<const Message>) override {
+    std::vector<Message> messages;
+    if (tick % period_ != 0) return messages;
+    for (const std::string& topic : topics_) {
+      SiteState site{.tick = tick, .time = sim_seconds(double(tick))};
+      site.sensor = topic.substr(std::string(site_prefix).size());
+      messages.push_back({topic, tick, std::make_shared<const State>(std::move(site))});
+    }
+    return messages;
+  }
+
+ private:
+  std::vector<std::string> topics_;
+  Tick period_;
+};
+
+/// Writes down at which steps it gets how many messages of its topic.
+class Reader : public Evaluator {
+ public:
+  explicit Reader(std::string name) : name_(std::move(name)) {}
+  std::string name() const override { return name_; }
+  std::vector<std::string> produces() const override { return {}; }
+  std::vector<std::string> consumes() const override { return {site_prefix + name_}; }
+  std::vector<Message> step(Tick tick, std::span<const Message> inputs) override {
+    if (!inputs.empty()) story += std::to_string(tick) + ":" + std::to_string(inputs.size()) + " ";
+    return {};
+  }
+  std::string story;
+
+ private:
+  std::string name_;
+};
+
+std::string tick_endpoint_of(const std::string& master, zmq::context_t& context) {
+  zmq::socket_t socket(context, zmq::socket_type::dealer);
+  socket.connect(master);
+  v1::NodeMessage hello;
+  hello.mutable_hello();
+  socket.send(to_frame(hello), zmq::send_flags::none);
+  zmq::message_t frame;
+  v1::MasterMessage answer;
+  return socket.recv(frame) && from_frame(frame, &answer) ? answer.endpoints().tick_endpoint() : "";
+}
+
+// Ten nodes with a topic each, which says something at every fourth tick. Manifests go to the node
+// that consumes the topic, and nothing is missed or asked for again.
+TEST(Clock, WhatFewConsumeIsToldToThemAlone) {
+  std::vector<std::unique_ptr<Reader>> readers;
+  std::vector<std::string> names{"rare"}, topics;
+  for (int i = 0; i < 10; ++i) {
+    names.push_back("reader-" + std::to_string(i));
+    topics.push_back(site_prefix + names.back());
+    readers.push_back(std::make_unique<Reader>(names.back()));
+  }
+  Rare rare(topics, 4);
+  MasterThread master(run_of(names, 9, 3));
+  zmq::context_t context(1);
+  zmq::socket_t clock(context, zmq::socket_type::sub);
+  clock.set(zmq::sockopt::subscribe, "");
+  auto broker = start_broker(master.address);
+  std::vector<std::future<NodeResult>> nodes;
+  nodes.push_back(start(rare, master.address));
+  clock.connect(tick_endpoint_of(master.address, context));
+  for (auto& reader : readers) nodes.push_back(start(*reader, master.address));
+  EXPECT_EQ(master.result.get().exit_code, 0);
+  for (auto& node : nodes) {
+    const NodeResult result = node.get();
+    EXPECT_EQ(result.exit_code, 0) << result.reason;
+    EXPECT_EQ(result.resend_requests_known, 0u);
+  }
+  for (const auto& reader : readers) EXPECT_EQ(reader->story, "0:1 4:1 8:1 ");
+  int grants = 0;
+  for (zmq::message_t frame; clock.recv(frame, zmq::recv_flags::dontwait); ++grants) {
+    v1::Grant grant;
+    ASSERT_TRUE(from_frame(frame, &grant));
+    EXPECT_EQ(grant.published_size(), 0);
+  }
+  EXPECT_GT(grants, 3);
 }
 
 }  // namespace

@@ -131,6 +131,25 @@ TEST(Outbox, KeepsTheTicksThatSomebodyMayAskFor) {
   EXPECT_TRUE(outbox.since("state/other", 0).empty());
 }
 
+TEST(Outbox, SaysNothingBetweenTheTicksOfATopic) {
+  Outbox outbox(run, "env", 1, {environment_topic}, 4);
+  outbox.set_schedule(environment_topic, {.period = 3});
+  Inbox inbox({environment_topic});
+  inbox.set_schedule(environment_topic, {.period = 3});
+  for (Tick tick = 0; tick < 7; ++tick) {
+    const bool due = tick % 3 == 0;
+    EXPECT_EQ(inbox.complete(tick), !due);
+    std::vector<Message> messages;
+    if (tick == 3) messages.push_back(environment(tick, 1));
+    const auto packed_now = packed(outbox, tick, messages);
+    EXPECT_EQ(packed_now.size(), due ? 1u : 0u);  // a watermark where there is nothing to say
+    EXPECT_EQ(outbox.tally().topics.size(), packed_now.size());
+    for (const Received& message : packed_now) inbox.accept(message);
+    EXPECT_TRUE(inbox.complete(tick));
+  }
+  EXPECT_THROW(outbox.pack(7, {environment(7, 1)}), Error);
+}
+
 TEST(Outbox, RefusesAForeignTopicAndAnotherTick) {
   Outbox outbox(run, "env", 1, {environment_topic}, 4);
   Message foreign = environment(0, 1);

@@ -9,6 +9,7 @@
 #include "core/sim/message.h"
 #include "dmise/v1/node.pb.h"
 #include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/process/process_memory.h"
 #include "nodes/runtime/protocol/control_rules.h"
 #include "nodes/runtime/protocol/time_split_codec.h"
 
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::chrono::milliseconds look_interval{100};  // between checks of connection limits
 constexpr int questions_at_once = 64;
+constexpr std::chrono::seconds gone_after{5};  // of a time-master that is silent after the end
 
 }  // namespace
 
@@ -90,6 +92,7 @@ void HeartbeatThread::beat() {
     const std::lock_guard lock(mutex_);
     put(heartbeat->mutable_times(), times_);
   }
+  put(heartbeat->mutable_times(), process_memory());
   if (options_.add_to_heartbeat) options_.add_to_heartbeat(heartbeat);
   heartbeat_.send(to_frame(message), zmq::send_flags::none);
 }
@@ -103,13 +106,20 @@ void HeartbeatThread::handle_replies() {
     heard_ = now();
     post(message.grant());
   }
-  if (const auto silence = now() - heard_; !over_ && silence > options_.silent_after) {
+  const auto silence = now() - heard_;
+  if (!over_ && silence > options_.silent_after) {
     v1::Grant lost;
     lost.set_run_id(options_.run_id);
     lost.set_phase(v1::PHASE_FAILED);
     lost.set_cause(fmt::format("the time-master at {} has been silent for {:.1f} s",
                                options_.master, duration<double>(silence).count()));
     post(lost);
+  } else if (over_ && !gone_ && silence > gone_after) {
+    v1::Grant alone;  // its last words were lost
+    alone.set_run_id(options_.run_id);
+    alone.set_deserted(true);
+    post(alone);
+    gone_ = true;
   }
 }
 

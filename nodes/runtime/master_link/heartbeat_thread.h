@@ -71,6 +71,7 @@ class HeartbeatThread {
   std::chrono::nanoseconds heard_;
   std::optional<std::chrono::nanoseconds> over_since_;
   bool over_ = false;
+  bool gone_ = false;   // the time-master, after the end
   std::thread thread_;  // last: it uses all of the above
 };
 

@@ -85,6 +85,7 @@ void MasterLink::leave(bool interrupted, const TimeSplit& times) {
   auto* leave = message.mutable_leave();
   leave->set_interrupted(interrupted);
   put(leave->mutable_times(), times);
+  put(leave->mutable_times(), process_memory());
   sign_and_send(message);
 }
 
@@ -142,6 +143,8 @@ void MasterLink::handle_control() {
     } else if (message.has_topology()) {
       topology_ = message.topology();
       ++topology_version_;
+    } else if (message.has_grant() && message.grant().run_id() == welcome_.run_id()) {
+      take(message.grant());
     }
   }
 }

@@ -11,6 +11,7 @@
 #include "nodes/runtime/observability/metrics.h"
 #include "nodes/runtime/process/json_log.h"
 #include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/process/process_memory.h"
 #include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/transport/broker_place.h"
 #include "nodes/runtime/transport/peer_monitor.h"
@@ -21,7 +22,9 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
-constexpr milliseconds probe_interval{10};
+constexpr milliseconds probe_interval{10};  // at first; twice as long each time
+constexpr milliseconds longest_probe_interval{
+    320};  // so that probes of hundreds leave time to start
 constexpr milliseconds idle{1000};
 constexpr milliseconds look_interval{100};  // between checks of connection limits
 
@@ -82,6 +85,14 @@ class Node {
     request.set_look_back_ticks(std::uint64_t(participant_.look_back()));
     request.set_period_ticks(std::uint64_t(schedule_.period));
     request.set_offset_ticks(std::uint64_t(schedule_.offset));
+    for (const std::string& topic : produces_) {
+      const Schedule own = participant_.schedule_of(topic);
+      if (own == schedule_) continue;
+      auto* schedule = request.add_schedules();
+      schedule->set_topic(topic);
+      schedule->set_period_ticks(std::uint64_t(own.period));
+      schedule->set_offset_ticks(std::uint64_t(own.offset));
+    }
     if (request.produces_direct_size() > 0) {
       listeners_.emplace(data_context_, direct_, bytes_alone(max_subscriptions_bytes));
       request.set_direct_endpoint(bind_to(direct_, options_.host, security_, Domain::truth));
@@ -101,6 +112,8 @@ class Node {
     inputs_.start(run_);
     outbox_.emplace(run_, request.name(), incarnation_, produces_,
                     Tick(welcome.window_ticks()) + 1);
+    for (const std::string& topic : produces_)
+      outbox_->set_schedule(topic, participant_.schedule_of(topic));
     HeartbeatOptions heartbeat;
     heartbeat.stop_within = from_seconds(options_.stop_within_s);
     heartbeat.progress = [this] { return participant_.progress(); };
@@ -127,12 +140,19 @@ class Node {
     inputs_.begin_at(first_input(), first.running());
     const auto probes = outbox_->probes();
     bool said_ready = false;
+    nanoseconds next_probe = now(), interval = probe_interval;
     while (link_.phase() != v1::PHASE_RUNNING && going()) {
-      for (const SharedFrames& probe : probes) publish(probe);
-      link_.wait(inputs_.sockets(), probe_interval);
+      if (now() >= next_probe) {
+        for (const SharedFrames& probe : probes) publish(probe);
+        next_probe = now() + interval;
+        interval = std::min<nanoseconds>(2 * interval, longest_probe_interval);
+      }
+      link_.wait(inputs_.sockets(), next_probe - now());
       follow_topology();
       receive_data();
       if (!said_ready && (inputs_.probed() || first.running()) && link_.receives_ticks()) {
+        result_->times.start_s = process_age_s();
+        link_.set_times(result_->times);
         link_.ready();
         said_ready = true;
       }

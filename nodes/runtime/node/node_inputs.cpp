@@ -64,6 +64,9 @@ void NodeInputs::follow(const v1::Publisher& publisher) {
     publisher_of_[topic] = publisher.name();
     inbox_.set_schedule(
         topic, {std::max<Tick>(1, Tick(publisher.period_ticks())), Tick(publisher.offset_ticks())});
+    for (const auto& own : publisher.schedules())
+      if (own.topic() == topic)
+        inbox_.set_schedule(topic, {Tick(own.period_ticks()), Tick(own.offset_ticks())});
     if (!follows_another) continue;
     inbox_.restart(topic);
     asked_ = nanoseconds{0};  // request its position without delay

@@ -102,7 +102,8 @@ RunStatus status_of(const v1::Endpoints& e) {
                             .alive = node.alive(),
                             .observer = node.observer(),
                             .incarnation = node.incarnation(),
-                            .times = take(node.times())});
+                            .times = take(node.times()),
+                            .consumes = {node.consumes().begin(), node.consumes().end()}});
   return status;
 }
 

@@ -17,6 +17,7 @@ struct NodeStatus {
   bool observer = false;
   std::uint64_t incarnation = 1;
   TimeSplit times;
+  std::vector<std::string> consumes;  // topics
 };
 
 /// Addresses of a broker.

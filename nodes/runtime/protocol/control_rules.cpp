@@ -36,7 +36,7 @@ bool good(const v1::TimeSplit& times) {
   constexpr double a_lifetime_s = 1e10;
   return is_duration(times.compute_s(), a_lifetime_s) &&
          is_duration(times.messaging_s(), a_lifetime_s) &&
-         is_duration(times.waiting_s(), a_lifetime_s);
+         is_duration(times.waiting_s(), a_lifetime_s) && is_duration(times.start_s(), a_lifetime_s);
 }
 
 template <class Tallies>
@@ -44,6 +44,15 @@ bool good_tallies(const Tallies& tallies) {
   return std::all_of(tallies.begin(), tallies.end(), [](const v1::TopicTally& tally) {
     return is_name(tally.topic()) && is_tick(tally.tick());
   });
+}
+
+template <class Schedules>
+bool good_schedules(const Schedules& schedules) {
+  return schedules.size() <= most_topics &&
+         std::all_of(schedules.begin(), schedules.end(), [](const v1::TopicSchedule& of) {
+           return is_name(of.topic()) && of.period_ticks() >= 1 && is_count(of.period_ticks()) &&
+                  is_count(of.offset_ticks());
+         });
 }
 
 template <class Beats>
@@ -69,7 +78,7 @@ Fault fault_in(const v1::Join& join) {
   if (!is_text(join.direct_endpoint()) || !is_text(join.resend_endpoint()) || !good(join.broker()))
     return "join: invalid address";
   return unless(is_count(join.look_back_ticks()) && is_count(join.period_ticks()) &&
-                    is_count(join.offset_ticks()),
+                    is_count(join.offset_ticks()) && good_schedules(join.schedules()),
                 "join: period, offset and look-back must be ticks of a run");
 }
 
@@ -77,7 +86,8 @@ bool good(const v1::Publisher& publisher) {
   return is_name(publisher.name()) && are_names(publisher.topics()) &&
          are_names(publisher.direct_topics()) && is_text(publisher.direct_endpoint()) &&
          is_text(publisher.resend_endpoint()) && is_count(publisher.keep_ticks()) &&
-         is_count(publisher.period_ticks()) && is_count(publisher.offset_ticks());
+         is_count(publisher.period_ticks()) && is_count(publisher.offset_ticks()) &&
+         good_schedules(publisher.schedules());
 }
 
 Fault fault_in(const v1::Welcome& welcome) {

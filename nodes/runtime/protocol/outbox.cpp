@@ -35,6 +35,9 @@ std::vector<SharedFrames> Outbox::pack(Tick tick, const std::vector<Message>& me
     if (message.tick != tick || !message.state)
       throw Error(publisher_ + " published a message of tick " + std::to_string(message.tick) +
                   " in tick " + std::to_string(tick));
+    if (!is_due(message.topic, tick))
+      throw Error(publisher_ + " published on " + message.topic + " in tick " +
+                  std::to_string(tick) + ", which is not in its schedule");
     last[message.topic] = &message;
   }
 
@@ -68,11 +71,13 @@ std::vector<SharedFrames> Outbox::pack(Tick tick, const std::vector<Message>& me
     if (is_retained(*message.state)) lasting[message.topic] = packed.back();
   }
   for (const std::string& topic : topics_)
-    if (!last.contains(topic)) add(topic, true, false, {});
+    if (!last.contains(topic) && is_due(topic, tick)) add(topic, true, false, {});
 
   tally_ = {tick, {}};
   for (const std::string& topic : topics_) {
-    tally_.topics.push_back(tallies.at(topic));
+    const auto tally = tallies.find(topic);
+    if (tally == tallies.end()) continue;
+    tally_.topics.push_back(tally->second);
     tally_.topics.back().topic = topic;
   }
 
@@ -83,6 +88,11 @@ std::vector<SharedFrames> Outbox::pack(Tick tick, const std::vector<Message>& me
   for (Kept& entry : kept) kept_[entry.frames->topic].push_back(std::move(entry));
   forget_before(tick - keep_ticks_ + 1);
   return packed;
+}
+
+bool Outbox::is_due(const std::string& topic, Tick tick) const {
+  const auto own = schedules_.find(topic);
+  return own == schedules_.end() || own->second.due(tick);
 }
 
 void Outbox::forget_before(Tick tick) {

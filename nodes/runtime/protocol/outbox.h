@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/sim/schedule.h"
 #include "core/sim/tally.h"
 #include "nodes/wire/receiver.h"
 
@@ -24,10 +25,14 @@ class Outbox {
   /// Sets the number of ticks to keep from now on. Call before the first `pack`.
   void keep(Tick ticks) { keep_ticks_ = ticks; }
 
+  /// Nothing is said on `topic` at other ticks. Call before the first `pack`.
+  void set_schedule(const std::string& topic, Schedule schedule) { schedules_[topic] = schedule; }
+
   std::vector<SharedFrames> probes() const;
 
-  /// The messages of one tick in order of sending; a topic without messages gets a watermark.
-  /// Throws `Error` for a topic that is not this node's or a message of another tick.
+  /// The messages of one tick in order of sending; a topic without messages gets a watermark
+  /// where its schedule has the tick. Throws `Error` for a topic that is not this node's or a
+  /// message of another tick.
   std::vector<SharedFrames> pack(Tick tick, const std::vector<Message>& messages);
 
   /// Manifest of the last `pack`.
@@ -45,6 +50,7 @@ class Outbox {
     Tick tick = 0;
     SharedFrames frames;
   };
+  bool is_due(const std::string& topic, Tick tick) const;
   void forget_before(Tick tick);
 
   RunFacts run_;
@@ -52,6 +58,7 @@ class Outbox {
   std::uint64_t incarnation_;
   std::vector<std::string> topics_;
   Tick keep_ticks_;
+  std::map<std::string, Schedule> schedules_;  // of topics, if not every tick
   std::map<std::string, std::uint64_t> sequence_;
   TickTally tally_;
   mutable std::mutex mutex_;  // guards what follows

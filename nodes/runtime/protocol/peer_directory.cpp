@@ -14,6 +14,7 @@ void fill(v1::Publisher* publisher, const Peer& peer) {
   publisher->set_resend_endpoint(peer.join.resend_endpoint());
   publisher->set_period_ticks(std::max<std::uint64_t>(1, peer.join.period_ticks()));
   publisher->set_offset_ticks(peer.join.offset_ticks());
+  *publisher->mutable_schedules() = peer.join.schedules();
 }
 
 /// Publishes the addresses of a broker without its password.
