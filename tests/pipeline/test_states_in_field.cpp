@@ -91,6 +91,12 @@ TEST(StatesInField, ASensorFindsTheSameObjectsAtTheSamePlacesByItsOwnStates) {
                               telescope + "{ra_deg: 30, dec_deg: -5, tracking: sidereal}", 20),
                         0);
   EXPECT_LT(share, 0.02);  // of the sky, its field is 0.0001
+  // Shortlists of several spans of rough places, of a camera that turns with the Earth.
+  expect_same_field(scene("duration_s: 1200, tick_s: 10",
+                          atlanta + "camera: geo-watch, pointing: {azimuth_deg: 180, "
+                                    "elevation_deg: 50}",
+                          20),
+                    60);
   for (const double exposure_s : {0.5, 62.0, 899.0})
     expect_same_field(scene("duration_s: 1798, tick_s: 31", imager, exposure_s), 0);
   expect_same_field(scene("duration_s: 62, tick_s: 31",
