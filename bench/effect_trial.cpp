@@ -95,8 +95,8 @@ SceneTrial try_scene(int number, const TrialOptions& options,
   const Planner planner{frames};
   const PlanFacts facts = planner.planner.facts(planner.view, planner.objects);
   const auto effects = planner.effects();
-  for (const Accuracy& accuracy : options.effect.empty() ? budgets(options.seed, number)
-                                                          : std::vector<Accuracy>()) {
+  for (const Accuracy& accuracy :
+       options.effect.empty() ? budgets(options.seed, number) : std::vector<Accuracy>()) {
     const FrameProducts frame = frames.make(planned_for(frames.sensor(), accuracy));
     trial.plans.push_back({number, accuracy.name, accuracy.budget, frame.plan.error,
                            comparison.error_of(frame, frame.plan.effects).largest});

@@ -12,7 +12,7 @@ struct LevelTrial {
   int scene = 0;
   std::string effect, level;
   ErrorBound bound, measured;
-  ErrorBound budget;         // in which a plan took it; zero: none did
+  ErrorBound budget;            // in which a plan took it; zero: none did
   bool has_sources = false;     // there are such as it concerns, whose errors count
   bool has_background = false;  // there are pixels between sources
 

@@ -119,8 +119,7 @@ std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const Sce
   std::vector<const EffectFacts*> running;
   const EffectSet& switched = sensor.effects;
   for_each_in(sensor, scene, acting_optics(sensor.camera.optics.image, switched),
-              acting_detector(sensor.camera.detector, switched),
-              [&]<class Effect>(const auto&) {
+              acting_detector(sensor.camera.detector, switched), [&]<class Effect>(const auto&) {
                 if (is_sky_part<Effect> && !switched.has(SkyBackground::facts)) return;
                 if (switched.has(Effect::facts)) running.push_back(&Effect::facts);
               });
@@ -152,10 +151,9 @@ PlannableEffect plannable(const Parameters& parameters) {
 std::vector<PlannableEffect> plannable_effects(const SensorConfig& sensor,
                                                const SceneFacts& scene) {
   std::vector<PlannableEffect> list;
-  for_each_in(sensor, scene, sensor.camera.optics.image, sensor.camera.detector,
-              [&]<class Effect>(const auto& parameters) {
-                list.push_back(plannable<Effect>(parameters));
-              });
+  for_each_in(
+      sensor, scene, sensor.camera.optics.image, sensor.camera.detector,
+      [&]<class Effect>(const auto& parameters) { list.push_back(plannable<Effect>(parameters)); });
   return list;
 }
 
@@ -217,7 +215,8 @@ std::string effects_markdown() {
       "`streak` (`integration: analytic | snapshots`, `snapshots: N`) and `evaluator` (`analytic "
       "|\n"
       "opengl`), which have other choices, or set to a level, `{stars: v9}`; without levels it is\n"
-      "off or on. `dmise check` shows which may run and with what, `dmise explain` which do and why.\n\n"
+      "off or on. `dmise check` shows which may run and with what, `dmise explain` which do and "
+      "why.\n\n"
       "| effect | what it does | left out | source | levels | parameters |\n"
       "|---|---|---|---|---|---|\n";
   for (const EffectFacts* effect : all_effects()) {

@@ -46,12 +46,13 @@ ErrorBound PhotonNoise::error(int level, const PlanFacts& f) {
 }
 
 double PhotonNoise::cost_s(int level, const PlanFacts& f) {
-  constexpr double gaussian_s = 3.2e-9, large_s = 3.6e-9, small_s = 9e-9, least_s = 2.6e-9, dark_s = 1.5e-9,
-                   read_s = 2.3e-9;
+  constexpr double gaussian_s = 3.2e-9, large_s = 3.6e-9, small_s = 9e-9, least_s = 2.6e-9,
+                   dark_s = 1.5e-9, read_s = 2.3e-9;
   double light_e = unbounded;
   for (const auto& s : f.sky) light_e = std::min(light_e, s.sky_e);
   // Inversion below 24 electrons, by as many steps.
-  const double poisson_s = light_e < 24.0 ? least_s + light_e / 24.0 * (small_s - least_s) : large_s;
+  const double poisson_s =
+      light_e < 24.0 ? least_s + light_e / 24.0 * (small_s - least_s) : large_s;
   const double others_s = (f.dark_e > 0.0 ? dark_s : 0.0) + (f.read_noise_e > 0.0 ? read_s : 0.0);
   return f.pixels() * (level == 0          ? others_s
                        : level == gaussian ? gaussian_s

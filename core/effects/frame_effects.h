@@ -67,7 +67,8 @@ struct SkyGrid {
   /// What cutting leaves, at most. It does not find pieces of cloud that are smaller than a patch.
   static double of_cut(int level, const SkySample& s, const PlanFacts& f) {
     constexpr double smallest_px = 64.0;
-    const double share = f.cloud_detail_px < smallest_px ? 1.0 : 0.7 * tolerance[std::size_t(level)];
+    const double share =
+        f.cloud_detail_px < smallest_px ? 1.0 : 0.7 * tolerance[std::size_t(level)];
     return share * s.sky_e;
   }
   static ErrorBound error(int level, const PlanFacts& f) {
@@ -112,8 +113,8 @@ struct PsfWavelengths {
   }
   /// What is off beyond three widths of a source, in noise: there are rings or speckles of 0.003 of
   /// a point's peak, smeared by the band; and by definition there is no background where a source
-  /// leaves more than half of the noise: twice that is left where rings are not smeared. An object of
-  /// many speckles evens them out.
+  /// leaves more than half of the noise: twice that is left where rings are not smeared. An object
+  /// of many speckles evens them out.
   static double rings_in_noise(int level, const PlanFacts& f, double source_e, double size_px) {
     constexpr double in_band[] = {2.0, 1.4, 1.0, 0.6, 0.0}, peak = 4.0, narrow = 0.5;
     const double width = f.relative_bandwidth / count[std::size_t(level)];

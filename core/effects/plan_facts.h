@@ -52,7 +52,7 @@ struct PlanFacts {
   /// How much of the rings of diffraction pixels, seeing and jitter leave, 0..1.
   double ring_contrast = 1.0;
   // Light between sources.
-  std::vector<SkySample> sky;   // over the field, where it sees the sky; at least one
+  std::vector<SkySample> sky;  // over the field, where it sees the sky; at least one
   /// How much brighter a part of the sky may be between the samples.
   std::array<double, sky_part_count> between_samples = [] {
     std::array<double, sky_part_count> usual{};
@@ -60,7 +60,7 @@ struct PlanFacts {
     return usual;
   }();
   double cloud_detail_px = unbounded;  // size of the smallest pieces of cloud in the field
-  double sky_look_s = 0.32e-6;  // what one look at all parts costs
+  double sky_look_s = 0.32e-6;         // what one look at all parts costs
   double dark_e = 0.0, read_noise_e = 0.0;
   bool read_later = false;  // its noise is drawn after effects that take charge only
   // The air.
@@ -73,11 +73,11 @@ struct PlanFacts {
   bool sees_horizon = false;                                         // the Earth is in the field
   double least_illumination = 1.0;                                   // by vignetting
   // Stars.
-  double stars = 0.0;                                 // whose places are computed, to the limit
-  std::array<double, star_limits> stars_brighter{};   // the same to each whole V magnitude
-  double brightest_star_e = 0.0;                      // light of one star in the field
+  double stars = 0.0;                                  // whose places are computed, to the limit
+  std::array<double, star_limits> stars_brighter{};    // the same to each whole V magnitude
+  double brightest_star_e = 0.0;                       // light of one star in the field
   std::array<double, star_limits> brightest_left_e{};  // the same of those beyond each limit
-  double star_trail_px = 0.0;                         // shortest
+  double star_trail_px = 0.0;                          // shortest
   double star_shift_rad = 0.0;  // of proper motion since the catalogue's epoch, largest
   double star_parallax_rad = 0.0;
   /// Faint starlight of a pixel, most, with stars drawn to each limit.
@@ -87,9 +87,9 @@ struct PlanFacts {
   double light_time_rad = 0.0;  // way of an object while its light travels, seen from the sensor
   bool near_shadow = false;     // an object is in the Earth's shadow or close
   double brightest_object_e = 0.0;
-  double narrowest_object_px = 0.0;  // 0: a point
-  bool faint_objects = false;     // one may be no source that counts
-  double longest_trail_px = 0.0;  // of any source, within the frame
+  double narrowest_object_px = 0.0;       // 0: a point
+  bool faint_objects = false;             // one may be no source that counts
+  double longest_trail_px = 0.0;          // of any source, within the frame
   static constexpr double glint_e = 1e9;  // of a shape, in a pixel
   // The blur.
   bool kernels_change = false;  // with every exposure
@@ -186,12 +186,14 @@ struct PlanFacts {
   }
   ErrorBound shifted(double angle_rad, bool faint, double trail_px) const {
     constexpr double off_axis = 1.08, steepest = 0.607;  // of a Gaussian
-    const double of_light = (screens > 0 ? 0.15 : 0.02) + (std::isfinite(cloud_detail_px) ? 0.1 : 0.0);
+    const double of_light =
+        (screens > 0 ? 0.15 : 0.02) + (std::isfinite(cloud_detail_px) ? 0.1 : 0.0);
     const double width_px = screens > 0 ? std::min(sigma_px(), speckle_px / 2.355) : sigma_px();
     const double px = off_axis * angle_rad / pixel_rad;
     // Beside sources that count there is light of their rings alone, which go from dark to bright
     // in half of their distance.
-    const double peak = faint || scene.diffracts ? peak_in_noise(least_snr_of_source, trail_px) : 0.0;
+    const double peak =
+        faint || scene.diffracts ? peak_in_noise(least_snr_of_source, trail_px) : 0.0;
     const double rings = scene.diffracts ? std::min(1.0, 2.0 * ring_contrast) : 0.0;
     const double background_sigma =
         peak * std::min(1.0, steepest * px / width_px) +

@@ -61,8 +61,7 @@ PsfModel::PsfModel(const Optics& optics, std::vector<WavelengthShare> band, cons
 
 // Tilts that put the centroid of the truncated kernel without air on the axis: first by the
 // wavefront's mean slope, then by the remaining offset.
-std::array<ZernikeTerm, 2> PsfModel::centring(const FieldPlace& place,
-                                              std::size_t wavelength) {
+std::array<ZernikeTerm, 2> PsfModel::centring(const FieldPlace& place, std::size_t wavelength) {
   const double wavelength_m = band_[wavelength].wavelength_m;
   const Pupil own = pupil_at(optics_, place, wavelength_m);
   std::array<ZernikeTerm, 2> tilt = centring_tilt(own);

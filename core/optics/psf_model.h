@@ -47,7 +47,7 @@ class PsfModel {
   PsfPlan plan_;
   std::optional<SensorSeeing> seeing_;
   double cell_rad_;
-  std::vector<PupilGrid> grids_;  // one per wavelength
+  std::vector<PupilGrid> grids_;                  // one per wavelength
   std::vector<std::optional<SampledOtf>> extra_;  // likewise; none: not yet asked for
   struct Centred {
     FieldPlace place;

@@ -97,10 +97,11 @@ PsfKernel short_exposure_kernel(const Pupil& pupil, const PupilGrid& grid, int h
       for (int x = 0; x < across; ++x)
         window.phase_rad.push_back(screen->at(first_x + x, first_y + y));
   }
-  PsfKernel kernel = pupil_kernel(
-      pupil, grid, half, {screen ? &window : nullptr, grid.step_m}, SampledOtf(grid, [&](double nu_x, double nu_y) {
-        return pixel_otf(nu_x, grid.cell_rad) * pixel_otf(nu_y, grid.cell_rad);
-      }));
+  PsfKernel kernel =
+      pupil_kernel(pupil, grid, half, {screen ? &window : nullptr, grid.step_m},
+                   SampledOtf(grid, [&](double nu_x, double nu_y) {
+                     return pixel_otf(nu_x, grid.cell_rad) * pixel_otf(nu_y, grid.cell_rad);
+                   }));
   double sum = 0.0;
   for (float& share : kernel.values) sum += share = std::max(0.0f, share);
   for (float& share : kernel.values) share = float(share / sum);
@@ -147,8 +148,7 @@ SampledOtf::SampledOtf(const PupilGrid& grid, const TransferFunction& otf)
     : side_(grid.side), values_(std::size_t(side_ / 2 + 1) * std::size_t(side_ / 2 + 1)) {
   const auto frequency = [&](int i) { return i * double(grid.fine) / (side_ * grid.cell_rad); };
   for (int y = 0; y <= side_ / 2; ++y)
-    for (int x = 0; x <= side_ / 2; ++x)
-      values_[place(x, y)] = otf(frequency(x), frequency(y));
+    for (int x = 0; x <= side_ / 2; ++x) values_[place(x, y)] = otf(frequency(x), frequency(y));
 }
 
 PsfKernel pupil_kernel(const Pupil& pupil, const PupilGrid& grid, int half,

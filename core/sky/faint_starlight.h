@@ -8,7 +8,9 @@ struct FaintStarlight {
   static constexpr EffectFacts facts{"faint_starlight", "stars below the catalogue's limit",
                                      "22.2 to 24.5 mag/arcsec2",
                                      "Leinert et al. 1998, A&AS 127, 1, section 10"};
-  static ErrorBound error(int, const PlanFacts& f) { return f.without_part(SkyPart::faint_starlight); }
+  static ErrorBound error(int, const PlanFacts& f) {
+    return f.without_part(SkyPart::faint_starlight);
+  }
   static double cost_s(int level, const PlanFacts& f) { return level * 120e-9 * f.sky_looks(); }
 
   double brighter_limit_v_mag = 9.0;  // stars brighter than this are drawn one by one

@@ -38,11 +38,14 @@ double most_counted_e(const Detector& detector) {
 
 /// Spreads true pixels by `by` along both axes.
 std::vector<bool> spread(const std::vector<bool>& pixels, int columns, int rows, int by) {
-  const auto along = [&](const std::vector<bool>& from, int count, int length, int step, int across) {
+  const auto along = [&](const std::vector<bool>& from, int count, int length, int step,
+                         int across) {
     std::vector<bool> to(from.size());
     for (int line = 0; line < count; ++line) {
       int last = -by - 1;
-      const auto at = [&](int k) { return std::size_t(line) * std::size_t(across) + std::size_t(k) * std::size_t(step); };
+      const auto at = [&](int k) {
+        return std::size_t(line) * std::size_t(across) + std::size_t(k) * std::size_t(step);
+      };
       for (int k = 0; k < length; ++k) {
         if (from[at(k)]) last = k;
         if (k - last <= by && last >= 0) to[at(k)] = true;

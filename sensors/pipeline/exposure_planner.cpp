@@ -137,9 +137,9 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
       return project(optics, at.camera * unit(position_m - at.here_m));
     };
     const auto from = pixel(start), to = pixel(end);
-    const double trail_px = from && to ? std::min(diagonal_px, std::hypot(from->x_px - to->x_px,
-                                                                          from->y_px - to->y_px))
-                                       : diagonal_px;
+    const double trail_px =
+        from && to ? std::min(diagonal_px, std::hypot(from->x_px - to->x_px, from->y_px - to->y_px))
+                   : diagonal_px;
     f.longest_trail_px = std::max(f.longest_trail_px, trail_px);
     const ObjectShape* shape = sampler.shape(object);
     if (shape) ++f.shapes;

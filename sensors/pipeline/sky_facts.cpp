@@ -42,9 +42,10 @@ class StarlightByLimit {
   void add(PlanFacts& f) const {
     if (!(e_per_s10_ > 0.0)) return;
     const double between = 0.25 * (most_ - least_);
-    const double nearest = most_ * least_ <= 0.0
-                               ? 0.0
-                               : std::max(0.0, std::min(std::abs(most_), std::abs(least_)) - between);
+    const double nearest =
+        most_ * least_ <= 0.0
+            ? 0.0
+            : std::max(0.0, std::min(std::abs(most_), std::abs(least_)) - between);
     const double sampled = std::min(std::abs(most_), std::abs(least_));
     double& brighter = f.between_samples[static_cast<std::size_t>(SkyPart::faint_starlight)];
     brighter *= s10(drawn_to_v_mag_, nearest) /
@@ -122,8 +123,7 @@ void add_sky_facts(const View& view, double drawn_to_v_mag, PlanFacts& f) {
       return;
     }
     const Vec<Enu> enu = enu_from_gcrs * gcrs;
-    if (view.on_ground())
-      lowest_rad = std::min(lowest_rad, std::asin(std::clamp(enu.z, 0.0, 1.0)));
+    if (view.on_ground()) lowest_rad = std::min(lowest_rad, std::asin(std::clamp(enu.z, 0.0, 1.0)));
     SkySample s;
     if (with_sky) {
       const auto photons = sky.photons_of_parts(enu);

@@ -29,9 +29,7 @@ double largest_sine(const Vec<Gcrs>& axis, const Vec<Gcrs>& boresight, double ha
 }
 
 /// Share of the sky within `radius_rad` of a direction.
-double share_of_sky(double radius_rad) {
-  return 0.5 * (1.0 - std::cos(std::min(radius_rad, pi)));
-}
+double share_of_sky(double radius_rad) { return 0.5 * (1.0 - std::cos(std::min(radius_rad, pi))); }
 
 }  // namespace
 
@@ -86,15 +84,16 @@ void StarFacts::add_trails(const View& view, PlanFacts& f) const {
 }
 
 /// Counts the stars of a catalogue whose trails touch a frame.
-StarFacts::ByLimit StarFacts::counted(const View& view, const PlanFacts& f, double radius_rad) const {
+StarFacts::ByLimit StarFacts::counted(const View& view, const PlanFacts& f,
+                                      double radius_rad) const {
   const Optics& optics = view.sensor().camera.optics;
   const FrameTimes& times = view.times();
   const std::array<Rotation<CameraFrame, Gcrs>, 3> camera{view.camera_from_gcrs(times.start),
                                                           view.camera_from_gcrs(times.middle),
                                                           view.camera_from_gcrs(times.end)};
   const Vec<Gcrs> aberration =
-      (1.0 / speed_of_light_m_per_s) * (view.environment().earth_velocity_m_per_s +
-                                        view.observer(times.middle).velocity_m_per_s);
+      (1.0 / speed_of_light_m_per_s) *
+      (view.environment().earth_velocity_m_per_s + view.observer(times.middle).velocity_m_per_s);
   constexpr double places_rad = 2.0 / 3600.0 * deg;
   const double margin_px =
       3.0 * std::hypot(1.0, f.fwhm_px) +

@@ -68,8 +68,9 @@ TEST(Expose, AGaussianDrawFollowsThePhotonTransferCurveWithinItsBound) {
       Threads one(1);
       CountImage counts;
       DetectorMemory memory;
-      expose(ExpectedElectronImage(600, 500, level), d, {.seed = 1, .sensor = "a", .frame = 1,
-             .exposure_s = 20}, gaussian, one, counts, nullptr, {.memory = &memory});
+      expose(ExpectedElectronImage(600, 500, level), d,
+             {.seed = 1, .sensor = "a", .frame = 1, .exposure_s = 20}, gaussian, one, counts,
+             nullptr, {.memory = &memory});
       const Moments m = moments(counts);
       PlanFacts facts;
       facts.sky = {{.sky_e = level, .noise_e = std::sqrt(level + 0.4 + 4.0)}};

@@ -94,11 +94,9 @@ TEST(ExposurePlanner, InDaylightThereAreNoStars) {
 
 // Traps take the charge of a Gaussian draw: none is below 0.
 TEST(ExposurePlanner, ADraftOfADetectorWithTrapsGoesOnFrameAfterFrame) {
-  test::Stage stage(
-      Scene{.accuracy = "draft", .camera = "hawaii-4rg", .exposure_s = 0.5}.yaml(),
-      "ra_deg,dec_deg,mag_v,bv\n49.7,-5.4,6,0.65\n", element_set);
-  for (std::uint32_t frame = 1; frame <= 3; ++frame)
-    EXPECT_NO_THROW(stage.frame(frame)) << frame;
+  test::Stage stage(Scene{.accuracy = "draft", .camera = "hawaii-4rg", .exposure_s = 0.5}.yaml(),
+                    "ra_deg,dec_deg,mag_v,bv\n49.7,-5.4,6,0.65\n", element_set);
+  for (std::uint32_t frame = 1; frame <= 3; ++frame) EXPECT_NO_THROW(stage.frame(frame)) << frame;
 }
 
 TEST(ExposurePlanner, StarsBesideTheFrameAreNotDrawn) {
