@@ -117,7 +117,7 @@ SceneTrial try_scene(int number, const TrialOptions& options,
     level.scene = number;
     level.effect = key.first;
     level.level = effect->facts->levels[std::size_t(key.second)];
-    level.has_sources = std::ranges::any_of(comparison.sources(), [&](const auto& source) {
+    level.has_sources = std::ranges::any_of(comparison.sources(), [&key = key](const auto& source) {
       const bool is_object = !source.name.starts_with("star ");
       return source.counts && (is_object || key.first != LightTime::facts.name);
     });
