@@ -132,13 +132,13 @@ class FieldCone {
   }
 
   /// Observer and camera axis at mid exposure, in the frame of the rough places.
-  struct Sight {
+  struct Stance {
     Vec<Teme> observer_m, carried_m_per_s, axis;
   };
   double error_m(const RoughPlaces& rough, double dt_s) const;
   double pull_m_per_s(double dt_s) const;
-  bool holds(const Shortlist& list, const Sight& sight) const;
-  Shortlist shortlist_of(const RoughPlaces& rough, const Sight& sight) const;
+  bool holds(const Shortlist& list, const Stance& sight) const;
+  Shortlist shortlist_of(const RoughPlaces& rough, const Stance& sight) const;
 
   const View& view_;
   double cos_ = 1.0, sin_ = 0.0, half_s_ = 0.0, turn_rad_per_s_ = 0.0, radius_m_ = 0.0;
@@ -158,7 +158,7 @@ double FieldCone::pull_m_per_s(double dt_s) const {
          greatest_fall_m_per_s2 * std::abs(dt_s);
 }
 
-bool FieldCone::holds(const Shortlist& list, const Sight& sight) const {
+bool FieldCone::holds(const Shortlist& list, const Stance& sight) const {
   return norm(sight.observer_m - list.observer_m) <= list.moved_m &&
          norm(sight.axis - list.axis) <= list.turned_rad && cos_ >= list.cos_half &&
          half_s_ <= list.half_exposure_s && turn_rad_per_s_ <= list.turn_rad_per_s &&
@@ -167,7 +167,7 @@ bool FieldCone::holds(const Shortlist& list, const Sight& sight) const {
 
 /// Limits are what the camera will do until the rough places are made anew, a little more than it
 /// does now.
-Shortlist FieldCone::shortlist_of(const RoughPlaces& rough, const Sight& sight) const {
+Shortlist FieldCone::shortlist_of(const RoughPlaces& rough, const Stance& sight) const {
   const double span_s = rough.longest_s;
   Shortlist list{.observer_m = sight.observer_m,
                  .axis = sight.axis,
@@ -217,9 +217,9 @@ std::vector<std::uint32_t> FieldCone::candidates(RoughPlaces& rough) {
   const double dt_s = (middle - rough.time).seconds();
   const double error_m = this->error_m(rough, dt_s), pull_m_per_s = this->pull_m_per_s(dt_s);
   const auto teme_from_gcrs = rough.gcrs_from_teme.inverse();
-  const Sight sight{teme_from_gcrs * now.observer.position_m,
-                    teme_from_gcrs * now.observer.velocity_m_per_s,
-                    unit(teme_from_gcrs * (now.camera.inverse() * Vec<CameraFrame>{0, 0, 1}))};
+  const Stance sight{teme_from_gcrs * now.observer.position_m,
+                     teme_from_gcrs * now.observer.velocity_m_per_s,
+                     unit(teme_from_gcrs * (now.camera.inverse() * Vec<CameraFrame>{0, 0, 1}))};
   if (!rough.shortlist || !holds(*rough.shortlist, sight))
     rough.shortlist = shortlist_of(rough, sight);
   found = rough.shortlist->without_place;
