@@ -128,6 +128,7 @@ SceneTrial try_scene(int number, const TrialOptions& options,
       level.measured = comparison.error_of(exact, alone).largest;
     } else {
       SensorConfig alone = reference;
+      alone.unplanned = reference.effects;
       alone.effects.force_level(*effect->facts, key.second);
       const FrameProducts frame = frames.make(alone);
       level.measured = comparison.error_of(frame, frame.plan.effects).largest;

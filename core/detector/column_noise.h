@@ -21,9 +21,7 @@ struct ColumnNoise {
   void apply(const ExposureFacts& exposed, const Prepared& offsets_e, Piece& piece) const;
   /// Five and a half deviations: one column in 26 million is beyond.
   ErrorBound error(int, const PlanFacts& f) const {
-    return {.noise = f.without_light([&](const SkySample&) {
-                        return column_noise_e * column_noise_e;
-                      }).noise};
+    return {.noise = f.without_charge(column_noise_e * column_noise_e).noise};
   }
   static double cost_s(int level, const PlanFacts& f) { return level * 0.85e-9 * f.pixels(); }
 };

@@ -29,9 +29,7 @@ struct DarkCurrent {
   void apply(const ExposureFacts& exposed, const Prepared& deviates, Piece& piece) const;
 
   /// Its time is in that of the photons' noise.
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.without_light([&](const SkySample&) { return f.dark_e; });
-  }
+  static ErrorBound error(int, const PlanFacts& f) { return f.without_charge(f.dark_e); }
 
   /// Factor of the dark current from the reference to the detector's temperature.
   double thermal_factor() const;

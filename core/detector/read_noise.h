@@ -16,9 +16,7 @@ struct ReadNoise {
   void apply(const ExposureFacts& exposed, Piece& piece) const;
   /// Its time is in that of the photons' noise.
   static ErrorBound error(int, const PlanFacts& f) {
-    return {.noise = f.without_light([&](const SkySample&) {
-                        return f.read_noise_e * f.read_noise_e;
-                      }).noise};
+    return {.noise = f.without_charge(f.read_noise_e * f.read_noise_e).noise};
   }
 };
 

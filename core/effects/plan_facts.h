@@ -158,6 +158,17 @@ struct PlanFacts {
     }
     return error;
   }
+  /// The same of charge that all pixels have, also those that see no sky.
+  ErrorBound without_charge(double charge_e) const {
+    const auto charge = [&](const SkySample&) { return charge_e; };
+    ErrorBound error = without_light(charge);
+    if (!sees_horizon) return error;
+    const double noise_e = std::sqrt(std::max(dark_e + read_noise_e * read_noise_e, 1e-6));
+    const double share = charge_e / (noise_e * noise_e);
+    error.background_sigma = std::max(error.background_sigma, charge_e / noise_e);
+    error.noise = std::max(error.noise, 1.0 - std::sqrt(std::max(0.0, 1.0 - share)));
+    return error;
+  }
   /// The same for a part of the sky.
   ErrorBound without_part(SkyPart part) const {
     const double most = between_samples[static_cast<std::size_t>(part)];

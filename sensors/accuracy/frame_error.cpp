@@ -70,19 +70,23 @@ double distance_px(PixelPosition p, PixelPosition from, PixelPosition to) {
   return std::hypot(past.x_px - at * way.x_px, past.y_px - at * way.y_px);
 }
 
+double distance_px(PixelPosition p, const ReferenceSource& s) {
+  return std::min(distance_px(p, s.from, s.via), distance_px(p, s.via, s.to));
+}
+
 /// Calls `visit(pixel index, x, y)` for the pixels of a capsule; false: it reaches out of the
 /// frame.
 template <class Visit>
 bool for_capsule(const ReferenceSource& s, int columns, int rows, Visit&& visit) {
-  const auto [left, right] = std::minmax(s.from.x_px, s.to.x_px);
-  const auto [top, bottom] = std::minmax(s.from.y_px, s.to.y_px);
+  const auto [left, right] = std::minmax({s.from.x_px, s.via.x_px, s.to.x_px});
+  const auto [top, bottom] = std::minmax({s.from.y_px, s.via.y_px, s.to.y_px});
   const double x0 = left - s.margin_px, x1 = right + s.margin_px;
   const double y0 = top - s.margin_px, y1 = bottom + s.margin_px;
   const int last_x = int(std::ceil(std::min(x1, columns - 1.0)));
   const int last_y = int(std::ceil(std::min(y1, rows - 1.0)));
   for (int y = int(std::max(0.0, y0)); y <= last_y; ++y)
     for (int x = int(std::max(0.0, x0)); x <= last_x; ++x)
-      if (distance_px({double(x), double(y)}, s.from, s.to) <= s.margin_px)
+      if (distance_px({double(x), double(y)}, s) <= s.margin_px)
         visit(std::size_t(y) * std::size_t(columns) + std::size_t(x), x, y);
   return x0 >= 0.0 && y0 >= 0.0 && x1 <= columns - 1.0 && y1 <= rows - 1.0;
 }
@@ -151,8 +155,7 @@ void FrameComparison::measure(ReferenceSource source) {
         snr2 += here * here / (double(sigma_e_[i]) * sigma_e_[i]);
         saturated = saturated || light_.pixels[i] > full_e_;
         pixels += 1.0;
-        if (distance_px({double(x), double(y)}, source.from, source.to) >
-            rim_begins * source.margin_px) {
+        if (distance_px({double(x), double(y)}, source) > rim_begins * source.margin_px) {
           rim_e += here;
           rim_pixels += 1.0;
         }
@@ -206,6 +209,7 @@ void FrameComparison::find_sources(const FrameProducts& reference) {
     const auto [from, to] = trail_of_star(view, {star.x_px, star.y_px});
     measure({.name = "star " + std::to_string(star.id),
              .from = from,
+             .via = {star.x_px, star.y_px},
              .to = to,
              .margin_px = margin_px});
   }
@@ -218,6 +222,7 @@ void FrameComparison::find_sources(const FrameProducts& reference) {
                   optics.pixel_angle_rad();
     measure({.name = object.name,
              .from = {object.start_x_px, object.start_y_px},
+             .via = {object.middle_x_px, object.middle_y_px},
              .to = {object.end_x_px, object.end_y_px},
              .margin_px = margin_px + size_px});
   }

@@ -13,12 +13,12 @@ struct ReferenceSource {
   bool alone = false;   // no other source's light is in its capsule
   bool counts = false;  // bright, whole, alone and not saturated: errors are its own
   std::string name;
-  PixelPosition from, to;   // of its trail
-  double margin_px = 0.0;   // around it
-  double light_e = 0.0;     // in the capsule
-  double peak_sigma = 0.0;  // in its brightest pixel, in the noise there
-  PixelPosition centroid;   // of its light
-  double snr = 0.0;         // by a matched filter
+  PixelPosition from, via, to;  // of its trail
+  double margin_px = 0.0;       // around it
+  double light_e = 0.0;         // in the capsule
+  double peak_sigma = 0.0;      // in its brightest pixel, in the noise there
+  PixelPosition centroid;       // of its light
+  double snr = 0.0;             // by a matched filter
 };
 
 /// What one source lacks of the reference.

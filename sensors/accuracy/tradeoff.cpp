@@ -109,6 +109,7 @@ Tradeoff::Tradeoff(const SceneFrames& scene, int repeats)
     if (!effect.decided) continue;
     for (int level = 0; level < effect.facts->reference(); ++level) {
       SensorConfig alone = planned_for(scene.sensor(), reference_accuracy());
+      alone.unplanned = alone.effects;
       alone.effects.force_level(*effect.facts, level);
       rows_.push_back(
           {std::string(effect.facts->name), std::string(effect.facts->levels[std::size_t(level)])});

@@ -62,7 +62,7 @@ struct FramePipeline::Work {
     make_optics();
     if (map) stars.emplace(settings.sensor, std::move(map));
     if (!settings.sensor.accuracy.is_planned() && settings.sensor.recorded_plans.empty()) return;
-    planned.unplanned = settings.sensor.effects;
+    if (!planned.unplanned) planned.unplanned = settings.sensor.effects;
     planner.emplace(settings.sensor, stars ? stars->map().get() : nullptr,
                     settings.faintest_star_mag, settings.shapes.get());
   }
