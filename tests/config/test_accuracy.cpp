@@ -63,7 +63,8 @@ TEST(EffectLevels, AnEffectCanBeForcedToALevel) {
   EXPECT_EQ(StarBackground::limit_v_mag(effects("stars: v7").level(StarBackground::facts)), 7.0);
   EXPECT_EQ(effects("{sky_grid: pixel}").level(SkyGrid::facts), SkyGrid::facts.reference());
   EXPECT_EQ(effects("{photon_noise: gaussian}").level(PhotonNoise::facts), PhotonNoise::gaussian);
-  EXPECT_EQ(effects("{psf_wavelengths: 5}").level(PsfWavelengths::facts), 2);
+  const int level = effects("{psf_wavelengths: 5}").level(PsfWavelengths::facts);
+  EXPECT_EQ(PsfWavelengths::count.at(std::size_t(level)), 5);
   EXPECT_TRUE(effects("{stars: off}").is_forced(StarBackground::facts));
   EXPECT_FALSE(effects("{stars: off}").has(StarBackground::facts));
   EXPECT_EQ(effects("{stars: on}").level(StarBackground::facts), StarBackground::facts.unplanned());
