@@ -75,7 +75,9 @@ struct Master {
     describe(message.mutable_grant(), 1, coordinator);
     for (const auto& [name, member] : coordinator.members())
       for (const TickTally& tally : member.manifests)
-        add_published(message.mutable_grant(), {"state", "image"}, tally);
+        for (const TopicTally& topic : tally.topics)
+          if (topic.topic == "state" || topic.topic == "image")
+            add_published(message.mutable_grant(), tally.tick, topic);
     if (fault_of(message)) __builtin_trap();
     if (coordinator.topology_version() != told) {
       told = coordinator.topology_version();
