@@ -1,8 +1,5 @@
 #include "core/config/band_wavelengths.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace dmise {
 
 std::vector<WavelengthShare> wavelengths_of(const Band& band, int count) {
@@ -17,11 +14,6 @@ std::vector<WavelengthShare> wavelengths_of(const Band& band, int count) {
     sum += share;
   }
   for (WavelengthShare& w : all) w.share /= sum;
-  // The one closest to the centre first: screens are sampled for it.
-  const auto middle = std::min_element(all.begin(), all.end(), [&](const auto& a, const auto& b) {
-    return std::abs(a.wavelength_m - band.centre_m) < std::abs(b.wavelength_m - band.centre_m);
-  });
-  std::iter_swap(all.begin(), middle);
   return all;
 }
 

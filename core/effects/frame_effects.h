@@ -87,8 +87,8 @@ struct SkyGrid {
 
 /// Wavelengths of the band for which the blur is computed.
 struct PsfWavelengths {
-  static constexpr std::array<int, 4> count{1, 3, 5, 9};
-  static constexpr std::array<std::string_view, 4> levels{"1", "3", "5", "9"};
+  static constexpr std::array<int, 5> count{1, 2, 3, 5, 9};
+  static constexpr std::array<std::string_view, 5> levels{"1", "2", "3", "5", "9"};
   static constexpr EffectFacts facts{
       "psf_wavelengths",
       "wavelengths of the band for which the blur is computed",
@@ -116,7 +116,7 @@ struct PsfWavelengths {
   /// leaves more than half of the noise: twice that is left where rings are not smeared. An object
   /// of many speckles evens them out.
   static double rings_in_noise(int level, const PlanFacts& f, double source_e, double size_px) {
-    constexpr double in_band[] = {2.0, 1.0, 0.6, 0.0}, peak = 4.0, narrow = 0.5;
+    constexpr double in_band[] = {2.0, 1.4, 1.0, 0.6, 0.0}, peak = 4.0, narrow = 0.5;
     const double width = f.relative_bandwidth / count[std::size_t(level)];
     const double rings_e =
         0.003 * std::min(1.0, 10.0 * width) * f.ring_contrast * source_e * f.peak_share;

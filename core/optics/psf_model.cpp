@@ -54,9 +54,10 @@ PsfModel::PsfModel(const Optics& optics, std::vector<WavelengthShare> band, cons
   if (plan.exposure != ExposureKind::none) seeing_ = seeing;
   grids_ = sample_pupils(optics_, band_, plan_, seeing_);
   extra_.resize(band_.size());
-  if (has_screens(plan_))
-    flow_.emplace(aperture_samples(pupil_at(optics_, {}, band_[0].wavelength_m), grids_[0]),
-                  seeing_->outer_scale_m / grids_[0].step_m, turbulence);
+  if (!has_screens(plan_)) return;
+  screen_grid_ = sample_screens(optics_, plan_, seeing_);
+  flow_.emplace(aperture_samples(pupil_at(optics_, {}, plan_.wavelength_m), screen_grid_),
+                seeing_->outer_scale_m / screen_grid_.step_m, turbulence);
 }
 
 // Tilts that put the centroid of the truncated kernel without air on the axis: first by the
@@ -148,7 +149,7 @@ PsfKernel PsfModel::pupil_kernel_at(const FieldPlace& place, std::size_t wavelen
     centred_.push_back({place, wavelength, tilt});
   Pupil p = pupil_at(optics_, place, wavelength_m);
   p.wavefront.insert(p.wavefront.end(), tilt.begin(), tilt.end());
-  const ScreenAhead ahead{screen, grids_[0].step_m, band_[0].wavelength_m / wavelength_m};
+  const ScreenAhead ahead{screen, screen_grid_.step_m, plan_.wavelength_m / wavelength_m};
   return pupil_kernel(p, grids_[wavelength], plan_.half_cells, ahead, extra_at(wavelength));
 }
 
@@ -164,10 +165,10 @@ PsfKernel PsfModel::kernel(const FieldPlace& place, double start_s, double expos
     for (std::size_t w = 0; w < band_.size(); ++w)
       add(pupil_kernel_at(place, w, nullptr), band_[w].share);
   } else {
-    const double r0_samples = seeing_->r0_at_m(band_[0].wavelength_m) / grids_[0].step_m;
+    const double r0_samples = seeing_->r0_at_m(plan_.wavelength_m) / screen_grid_.step_m;
     for (int i = 0; i < plan_.screens; ++i) {
       const double t = start_s + exposure_s * (i + 0.5) / plan_.screens;
-      const PhaseScreen screen = flow_->at(seeing_->wind_m_per_s * t / grids_[0].step_m,
+      const PhaseScreen screen = flow_->at(seeing_->wind_m_per_s * t / screen_grid_.step_m,
                                            seeing_->wind_direction_deg * deg, r0_samples);
       for (std::size_t w = 0; w < band_.size(); ++w)
         add(pupil_kernel_at(place, w, &screen), band_[w].share / plan_.screens);

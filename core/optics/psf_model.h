@@ -17,8 +17,8 @@ namespace dmise {
 /// that displacement is part of a camera's plate solution.
 class PsfModel {
  public:
-  /// `turbulence` is the random key of this sensor's turbulence. Screens are sampled for the first
-  /// wavelength. Throws as `sample_pupils` does.
+  /// `turbulence` is the random key of this sensor's turbulence. Screens are sampled for the
+  /// plan's wavelength, so that they are the same for any band. Throws as `sample_pupils` does.
   PsfModel(const Optics& optics, std::vector<WavelengthShare> band, const PsfPlan& plan,
            const std::optional<SensorSeeing>& seeing, const RngKey& turbulence);
 
@@ -55,6 +55,7 @@ class PsfModel {
     std::array<ZernikeTerm, 2> tilt;
   };
   std::vector<Centred> centred_;  // cache
+  PupilGrid screen_grid_{};       // at the plan's wavelength
   std::optional<FrozenFlow> flow_;
   double lost_ = 0.0;
 };

@@ -81,7 +81,7 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
                  double exposure_s) {
   const PointSpread& s = o.spread;
   const SensorSeeing* air = seeing && std::isfinite(seeing->r0_m) ? &*seeing : nullptr;
-  PsfPlan plan;
+  PsfPlan plan{.wavelength_m = wavelength_m};
   if (s.model == Model::gaussian) air = nullptr;
   if (air) {
     const double screens = std::ceil(exposure_s / air->tau0_s(wavelength_m));

@@ -17,6 +17,7 @@ enum class ExposureKind {
 
 /// How a sensor's point spread is computed, and why.
 struct PsfPlan {
+  double wavelength_m = 0.0;  // for which it was made
   PointSpread::Method method = PointSpread::Method::deposit;
   ExposureKind exposure = ExposureKind::none;
   int screens = 0;           // of `brief` and `between`

@@ -99,42 +99,54 @@ double steepest_slope(const Pupil& pupil) {
   return steepest;
 }
 
+namespace {
+
+PupilGrid sample_pupil(const Optics& optics, double wavelength_m, const PsfPlan& plan,
+                       const std::optional<SensorSeeing>& seeing) {
+  const bool screens = has_screens(plan);
+  constexpr double margin = 1.05;  // for positions between the sampled ones
+  const double slope = steepest_in_field(optics, wavelength_m);
+  const double steep = std::ceil(margin * 2 * slope / pi);
+  if (steep > most_pupil_samples)
+    throw ConfigError(steepest_key(optics, wavelength_m) + ": a wavefront of " +
+                      std::to_string(std::lround(slope / (2 * pi))) +
+                      " waves over the aperture's radius is too steep to sample: needs " +
+                      std::to_string(std::llround(steep)) + " samples across, more than " +
+                      std::to_string(most_pupil_samples));
+  const double r0_m =
+      screens ? seeing->r0_at_m(wavelength_m) : std::numeric_limits<double>::infinity();
+  const int samples = std::max(screens ? turbulent_samples : still_samples, int(steep));
+  try {
+    return pupil_grid(pupil_at(optics, {}, wavelength_m), wavelength_m,
+                      optics.pixel_angle_rad() / plan.oversampling, plan.half_cells, r0_m, samples);
+  } catch (const Error& e) {
+    throw ConfigError((screens ? std::string("seeing.r0_m") : std::string("optics.oversampling")) +
+                      ": " + e.what());
+  }
+}
+
+}  // namespace
+
+PupilGrid sample_screens(const Optics& optics, const PsfPlan& plan,
+                         const std::optional<SensorSeeing>& seeing) {
+  const PupilGrid grid = sample_pupil(optics, plan.wavelength_m, plan, seeing);
+  const int across = aperture_samples(pupil_at(optics, {}, plan.wavelength_m), grid);
+  if (across > most_pupil_samples)
+    throw ConfigError("seeing.r0_m: turbulence too strong for the aperture: needs a screen of " +
+                      std::to_string(across) + " samples across, more than " +
+                      std::to_string(most_pupil_samples));
+  return grid;
+}
+
 std::vector<PupilGrid> sample_pupils(const Optics& optics, const std::vector<WavelengthShare>& band,
                                      const PsfPlan& plan,
                                      const std::optional<SensorSeeing>& seeing) {
   std::vector<PupilGrid> grids;
   if (!needs_pupil(optics.spread, plan)) return grids;
-  const bool screens = has_screens(plan);
-  const double cell_rad = optics.pixel_angle_rad() / plan.oversampling;
-  for (const WavelengthShare& w : band) {
-    constexpr double margin = 1.05;  // for positions between the sampled ones
-    const double slope = steepest_in_field(optics, w.wavelength_m);
-    const double steep = std::ceil(margin * 2 * slope / pi);
-    if (steep > most_pupil_samples)
-      throw ConfigError(steepest_key(optics, w.wavelength_m) + ": a wavefront of " +
-                        std::to_string(std::lround(slope / (2 * pi))) +
-                        " waves over the aperture's radius is too steep to sample: needs " +
-                        std::to_string(std::llround(steep)) + " samples across, more than " +
-                        std::to_string(most_pupil_samples));
-    const double r0_m =
-        screens ? seeing->r0_at_m(w.wavelength_m) : std::numeric_limits<double>::infinity();
-    const int samples = std::max(screens ? turbulent_samples : still_samples, int(steep));
-    const Pupil pupil = pupil_at(optics, {}, w.wavelength_m);
-    try {
-      grids.push_back(pupil_grid(pupil, w.wavelength_m, cell_rad, plan.half_cells, r0_m, samples));
-    } catch (const Error& e) {
-      throw ConfigError(
-          (screens ? std::string("seeing.r0_m") : std::string("optics.oversampling")) + ": " +
-          e.what());
-    }
-  }
-  if (screens) {
-    const int across = aperture_samples(pupil_at(optics, {}, band[0].wavelength_m), grids[0]);
-    if (across > most_pupil_samples)
-      throw ConfigError("seeing.r0_m: turbulence too strong for the aperture: needs a screen of " +
-                        std::to_string(across) + " samples across, more than " +
-                        std::to_string(most_pupil_samples));
-  }
+  for (const WavelengthShare& w : band)
+    grids.push_back(sample_pupil(optics, w.wavelength_m, plan, seeing));
+  if (has_screens(plan))
+    sample_screens(optics, plan, seeing);  // refuses screens that are too large
   return grids;
 }
 

@@ -32,13 +32,18 @@ Pupil pupil_at(const Optics& optics, const FieldPlace& place, double wavelength_
 /// radius].
 double steepest_slope(const Pupil& pupil);
 
-/// Grids of the pupil for each wavelength; screens are sampled for the first. Empty if the camera's
-/// kernel needs no pupil. Fine enough that the wavefront changes by less than pi between samples
-/// anywhere in the field: otherwise light would alias. Throws `ConfigError` "seeing.r0_m: reason"
-/// or "optics.KEY: reason" if that takes more than `most_pupil_samples` across the aperture.
+/// Grids of the pupil for each wavelength. Empty if the camera's kernel needs no pupil. Fine enough
+/// that the wavefront changes by less than pi between samples anywhere in the field: otherwise
+/// light would alias. Throws `ConfigError` "seeing.r0_m: reason" or "optics.KEY: reason" if that
+/// takes more than `most_pupil_samples` across the aperture.
 std::vector<PupilGrid> sample_pupils(const Optics& optics, const std::vector<WavelengthShare>& band,
                                      const PsfPlan& plan,
                                      const std::optional<SensorSeeing>& seeing);
+
+/// Grid of the screens of turbulence, if `has_screens(plan)`: that of the plan's wavelength, so
+/// that any number of wavelengths sees the same air. Throws as `sample_pupils` does.
+PupilGrid sample_screens(const Optics& optics, const PsfPlan& plan,
+                         const std::optional<SensorSeeing>& seeing);
 
 inline constexpr int most_pupil_samples = 1024;
 

@@ -260,6 +260,43 @@ TEST(PsfModel, ManyWavelengthsAreTheMeanOfTheirKernels) {
   }
 }
 
+// The path through the air does not depend on the wavelength (Roddier 1981, Progress in Optics 19,
+// 281): its tilt moves all light of a band alike, however many parts the band is cut into, and
+// wherever its centre is among them.
+TEST(PsfModel, AnyNumberOfWavelengthsIsMovedByTheSameAir) {
+  struct Band {
+    double width, off_centre;  // of the wavelength
+  };
+  for (const double aperture_m : {0.4, 1.0})
+    for (const double r0_m : {0.08, 0.2})
+      for (const Band band : {Band{0.23, 0.0}, Band{0.23, 0.04}, Band{0.8, -0.1}}) {
+        Optics o = telescope();
+        o.aperture_m = aperture_m;
+        o.focal_length_m = 10 * aperture_m;
+        o.pixel_pitch_m = 0.4 * lambda / r0_m * o.focal_length_m;  // seeing of 2.5 pixels
+        o.spread.support_px = 15;
+        const SensorSeeing seeing{.r0_m = r0_m, .wind_m_per_s = 15.0};
+        const double exposure_s = 2.5 * seeing.tau0_s(lambda);
+        const int oversampling = plan_psf(o, lambda, seeing, exposure_s).oversampling;
+        const auto moved = [&](int count) {
+          std::vector<WavelengthShare> parts;
+          for (int i = 0; i < count; ++i)
+            parts.push_back(
+                {lambda * (1.0 + band.off_centre + band.width * ((i + 0.5) / count - 0.5)),
+                 1.0 / count});
+          const PixelPosition at = centroid(kernel_of_camera(o, seeing, exposure_s, {}, parts));
+          return PixelPosition{at.x_px / oversampling, at.y_px / oversampling};
+        };
+        const PixelPosition all = moved(9);
+        for (const int count : {1, 2, 5}) {
+          const PixelPosition at = moved(count);
+          EXPECT_LT(std::hypot(at.x_px - all.x_px, at.y_px - all.y_px), 0.05)
+              << count << " wavelengths over " << band.width << ", " << aperture_m << " m, r0 "
+              << r0_m << " m, " << band.off_centre;
+        }
+      }
+}
+
 TEST(PsfModel, FromAMillimetreOfSeeingToNoneAtAllKernelsAreFinite) {
   const auto check = [](const Optics& o, double r0_m, double exposure_s) {
     const PsfKernel k =
