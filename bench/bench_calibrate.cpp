@@ -17,7 +17,7 @@
 #include "core/config/search_path.h"
 #include "core/plan/cost_factors.h"
 #include "sensors/accuracy/scene_frames.h"
-#include "sensors/accuracy/stage_times.h"
+#include "sensors/pipeline/stage_times.h"
 
 namespace dmise {
 namespace {

@@ -14,7 +14,7 @@
 #include "bench/timing.h"
 #include "core/config/search_path.h"
 #include "sensors/accuracy/scene_frames.h"
-#include "sensors/accuracy/stage_times.h"
+#include "sensors/pipeline/stage_times.h"
 
 namespace dmise {
 namespace {

@@ -187,38 +187,48 @@ std::string draw_object(Frame& f, const View& view, int index) {
   auto& dice = f.dice;
   const bool shaped = dice.chance(0.25), centred = f.tracks_object && index == 0;
   const double size_px = shaped ? dice.log_uniform(0.3, 50.0) : 0.0;
-  double trail_px = centred            ? f.trail_px
-                    : dice.chance(0.2) ? 0.0
-                                       : dice.uniform(0.0, longest_trail_px);
+  const double wanted_px = centred            ? f.trail_px
+                           : dice.chance(0.2) ? 0.0
+                                              : dice.uniform(0.0, longest_trail_px);
   const double least_m = f.on_ground ? 2e5 : 1e3, most_m = f.on_ground ? 4e7 : 4e6;
   double range_m = dice.log_uniform(least_m, most_m);
   if (shaped)
     range_m = std::clamp(dice.uniform(1.0, 60.0) / (size_px * f.camera.pixel_rad), 200.0, most_m);
-  trail_px =
-      std::min(trail_px, fastest_object_m_per_s * f.exposure_s / (range_m * f.camera.pixel_rad));
   const double turn = dice.uniform(0.0, 2.0 * pi), centre = 0.5 * (side_px - 1.0);
   const PixelPosition middle{centred ? centre : dice.uniform(20.0, side_px - 20.0),
                              centred ? centre : dice.uniform(20.0, side_px - 20.0)};
   const FrameTimes& t = view.times();
   std::array<Vec<Gcrs>, 3> position_m;
-  Vec<Gcrs> velocity;
+  Vec<Gcrs> velocity, start_m;
   const std::array<SimTime, 3> moments{t.start, t.middle, t.end};
-  for (int pass = 0; pass < 5; ++pass) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double along = 0.5 * (double(k) - 1.0) * trail_px;
-      const PixelPosition at{middle.x_px + along * std::cos(turn),
-                             middle.y_px + along * std::sin(turn)};
-      const auto seen =
-          view.camera_from_gcrs(moments[k]).inverse() * *unproject(view.sensor().camera.optics, at);
-      const auto observer_m = view.observer(moments[k]).position_m;
-      if (pass == 0) position_m[k] = observer_m + seen * range_m;
-      const auto place = view.places(moments[k]).satellite(position_m[k], velocity);
-      const auto line = unit(position_m[k] - observer_m) + (seen - place.direction);
-      position_m[k] = observer_m + unit(line) * range_m;
+  const auto lay_path = [&] {
+    const double trail_px =
+        std::min(wanted_px, fastest_object_m_per_s * f.exposure_s / (range_m * f.camera.pixel_rad));
+    for (int pass = 0; pass < 5; ++pass) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double along = 0.5 * (double(k) - 1.0) * trail_px;
+        const PixelPosition at{middle.x_px + along * std::cos(turn),
+                               middle.y_px + along * std::sin(turn)};
+        const auto seen = view.camera_from_gcrs(moments[k]).inverse() *
+                          *unproject(view.sensor().camera.optics, at);
+        const auto observer_m = view.observer(moments[k]).position_m;
+        if (pass == 0) position_m[k] = observer_m + seen * range_m;
+        const auto place = view.places(moments[k]).satellite(position_m[k], velocity);
+        const auto line = unit(position_m[k] - observer_m) + (seen - place.direction);
+        position_m[k] = observer_m + unit(line) * range_m;
+      }
+      velocity = (position_m[2] - position_m[0]) / f.exposure_s;
     }
-    velocity = (position_m[2] - position_m[0]) / f.exposure_s;
+    start_m = position_m[1] - velocity * f.middle_s();
+  };
+  constexpr double lowest_m = 6.45e6;  // from the Earth's centre
+  lay_path();
+  // Nearer where the line of sight from an orbit meets the Earth.
+  while (!f.on_ground && range_m > 300.0 &&
+         (norm(start_m) < lowest_m || norm(start_m + velocity * f.duration_s) < lowest_m)) {
+    range_m *= 0.5;
+    lay_path();
   }
-  const auto start_m = position_m[1] - velocity * f.middle_s();
   std::string text =
       text_of("  - name: object-", index,
               "\n    motion: {two_body: {gm_m3_per_s2: 1, position_m: ", list_of(start_m),

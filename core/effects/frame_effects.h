@@ -39,8 +39,10 @@ struct StarBackground {
   }
   static ErrorBound error(int level, const PlanFacts& f);
   static double cost_s(int level, const PlanFacts& f) {
-    constexpr double star_s = 1.4e-6;
-    return star_s * (level == facts.reference() ? f.stars : f.stars_to(limit_v_mag(level)));
+    constexpr double search_s = 20e-6, star_s = 1.4e-6;
+    if (level == 0) return 0.0;
+    return search_s +
+           star_s * (level == facts.reference() ? f.stars : f.stars_to(limit_v_mag(level)));
   }
 };
 
@@ -167,12 +169,13 @@ struct Drawing {
 inline ErrorBound StarBackground::error(int level, const PlanFacts& f) {
   const double limit = limit_v_mag(level);
   const double left_e = level == 0 ? f.brightest_star_e : f.brightest_left_e[f.limit(limit)];
-  if (!(left_e > 0.0)) return {};
+  const double starlight_e = f.starlight_e[f.limit(limit)];
+  if (!(left_e > 0.0 || starlight_e > 0.0)) return {};
   // The brightest star that is left out, in its brightest pixel; and the smooth starlight that
   // stands for all of them.
   const double star = f.peak_in_noise(left_e * f.pattern_share(f.star_trail_px) / f.least_noise_e(),
                                       f.star_trail_px);
-  const double light_e = std::max(star * f.least_noise_e(), f.starlight_e[f.limit(limit)]);
+  const double light_e = std::max(star * f.least_noise_e(), starlight_e);
   ErrorBound error = f.without_light([&](const SkySample&) { return light_e; });
   // In the capsule of a source that counts.
   const double share = std::min(PlanFacts::neighbour_share, left_e / f.faintest_source_e());

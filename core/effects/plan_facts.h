@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string_view>
 #include <vector>
 
@@ -88,6 +89,7 @@ struct PlanFacts {
   bool near_shadow = false;     // an object is in the Earth's shadow or close
   double brightest_object_e = 0.0;
   double narrowest_object_px = 0.0;       // 0: a point
+  double hidden_sky_px = 0.0;             // pixels of sky behind an object, most
   bool faint_objects = false;             // one may be no source that counts
   double longest_trail_px = 0.0;          // of any source, within the frame
   static constexpr double glint_e = 1e9;  // of a shape, in a pixel
@@ -134,7 +136,11 @@ struct PlanFacts {
     return shifted(angle_rad, stars > 0.0, star_trail_px);
   }
   ErrorBound shifted_objects(double angle_rad) const {
-    return shifted(angle_rad, faint_objects, 0.0);
+    ErrorBound error = shifted(angle_rad, faint_objects, 0.0);
+    if (!faint_objects) return error;
+    // The edge of a dark object before the sky.
+    const double share = std::min(1.0, hidden_sky_px) * std::min(1.0, error.position_px);
+    return error + without_light([&](const SkySample& s) { return share * s.sky_e; });
   }
   ErrorBound shifted_by(double angle_rad) const {
     return faint_objects ? shifted_objects(angle_rad) : shifted_stars(angle_rad);
@@ -209,7 +215,7 @@ struct PlanFacts {
     const double background_sigma =
         peak * std::min(1.0, steepest * px / width_px) +
         in_noise(ghost_pixel_share * brightest_e() * std::min(1.0, px)) +
-        rings * 0.5 * std::min(1.0, 3.14159 * px / speckle_px);
+        rings * 0.5 * std::min(1.0, std::numbers::pi * px / speckle_px);
     return {.photometry_mag = of_light * px,
             .position_px = px,
             .background_sigma = background_sigma,

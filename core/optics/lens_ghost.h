@@ -1,4 +1,6 @@
 #pragma once
+#include <numbers>
+
 #include "core/optics/image_effect.h"
 
 namespace dmise {
@@ -19,7 +21,7 @@ struct LensGhost {
   bool applies() const { return ghost_fraction > 0.0; }
   void apply(ExpectedElectronImage& image, Threads& threads) const;
   ErrorBound error(int, const PlanFacts& f) const {
-    const double disc_px = std::max(1.0, 3.14159 * ghost_radius_px * ghost_radius_px);
+    const double disc_px = std::max(1.0, std::numbers::pi * ghost_radius_px * ghost_radius_px);
     ErrorBound error = f.without_light(
         [&](const SkySample& s) { return ghost_fraction * (f.brightest_e() / disc_px + s.sky_e); });
     // A faint source in the ghost of a bright one; from a tenth of its light on it is not alone.

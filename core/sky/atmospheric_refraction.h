@@ -13,7 +13,15 @@ class AtmosphericRefraction {
                                      "IAU SOFA, eraRefco; Bennett 1982, J. Navigation 35, 255"};
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
 
-  static ErrorBound error(int, const PlanFacts& f) { return f.shifted_by(f.refraction_rad); }
+  /// The sky is looked at where the air shows it: its parts change with direction, most of all near
+  /// the Moon and by the twilight.
+  static ErrorBound error(int, const PlanFacts& f) {
+    constexpr double usual_per_rad = 3.0, steep_per_rad = 10.0;
+    return f.shifted_by(f.refraction_rad) + f.without_light([&](const SkySample& s) {
+      const double steep_e = s.of(SkyPart::scattered_moonlight) + s.of(SkyPart::twilight);
+      return f.refraction_rad * (usual_per_rad * (s.sky_e - steep_e) + steep_per_rad * steep_e);
+    });
+  }
   static double cost_s(int level, const PlanFacts& f) { return level * 430e-9 * f.stars; }
 
   explicit AtmosphericRefraction(const Observer& observer) : air_(*observer.air) {}

@@ -71,17 +71,24 @@ double distance_px(PixelPosition p, PixelPosition from, PixelPosition to) {
 }
 
 double distance_px(PixelPosition p, const ReferenceSource& s) {
-  return std::min(distance_px(p, s.from, s.via), distance_px(p, s.via, s.to));
+  double least = distance_px(p, s.trail[0], s.trail[1]);
+  for (std::size_t i = 2; i < s.trail.size(); ++i)
+    least = std::min(least, distance_px(p, s.trail[i - 1], s.trail[i]));
+  return least;
 }
 
 /// Calls `visit(pixel index, x, y)` for the pixels of a capsule; false: it reaches out of the
 /// frame.
 template <class Visit>
 bool for_capsule(const ReferenceSource& s, int columns, int rows, Visit&& visit) {
-  const auto [left, right] = std::minmax({s.from.x_px, s.via.x_px, s.to.x_px});
-  const auto [top, bottom] = std::minmax({s.from.y_px, s.via.y_px, s.to.y_px});
-  const double x0 = left - s.margin_px, x1 = right + s.margin_px;
-  const double y0 = top - s.margin_px, y1 = bottom + s.margin_px;
+  double x0 = s.trail[0].x_px, x1 = x0, y0 = s.trail[0].y_px, y1 = y0;
+  for (const PixelPosition p : s.trail) {
+    x0 = std::min(x0, p.x_px);
+    x1 = std::max(x1, p.x_px);
+    y0 = std::min(y0, p.y_px);
+    y1 = std::max(y1, p.y_px);
+  }
+  x0 -= s.margin_px, x1 += s.margin_px, y0 -= s.margin_px, y1 += s.margin_px;
   const int last_x = int(std::ceil(std::min(x1, columns - 1.0)));
   const int last_y = int(std::ceil(std::min(y1, rows - 1.0)));
   for (int y = int(std::max(0.0, y0)); y <= last_y; ++y)
@@ -103,6 +110,21 @@ std::pair<PixelPosition, PixelPosition> trail_of_star(const View& view, PixelPos
 }
 
 }  // namespace
+
+std::vector<PixelPosition> line_along(PixelPosition from, PixelPosition via, PixelPosition to) {
+  constexpr double off_px = 0.05;
+  constexpr int most_chords = 64;
+  // At -1, 0 and 1: via + half * t + bend * t * t.
+  const PixelPosition half = (to - from) * 0.5, bend = (to + from) * 0.5 - via;
+  const double chords = std::ceil(std::sqrt(std::hypot(bend.x_px, bend.y_px) / off_px));
+  const int count = int(std::clamp(chords, 1.0, double(most_chords)));
+  std::vector<PixelPosition> line;
+  for (int i = 0; i <= count; ++i) {
+    const double t = 2.0 * i / count - 1.0;
+    line.push_back(via + half * t + bend * (t * t));
+  }
+  return line;
+}
 
 FrameComparison::Expected FrameComparison::expected(const FrameProducts& frame,
                                                     const EffectSet& effects) const {
@@ -208,9 +230,7 @@ void FrameComparison::find_sources(const FrameProducts& reference) {
   for (const StarTruth& star : reference.stars) {
     const auto [from, to] = trail_of_star(view, {star.x_px, star.y_px});
     measure({.name = "star " + std::to_string(star.id),
-             .from = from,
-             .via = {star.x_px, star.y_px},
-             .to = to,
+             .trail = line_along(from, {star.x_px, star.y_px}, to),
              .margin_px = margin_px});
   }
   for (const Truth& object : reference.truths) {
@@ -221,9 +241,9 @@ void FrameComparison::find_sources(const FrameProducts& reference) {
         size_px = radius_m(*own.geometry->mesh) / std::max(1.0, object.true_range_m) /
                   optics.pixel_angle_rad();
     measure({.name = object.name,
-             .from = {object.start_x_px, object.start_y_px},
-             .via = {object.middle_x_px, object.middle_y_px},
-             .to = {object.end_x_px, object.end_y_px},
+             .trail = line_along({object.start_x_px, object.start_y_px},
+                                 {object.middle_x_px, object.middle_y_px},
+                                 {object.end_x_px, object.end_y_px}),
              .margin_px = margin_px + size_px});
   }
   see_who_counts();

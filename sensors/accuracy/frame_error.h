@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/pixel.h"
 #include "core/effects/plan_facts.h"
 #include "sensors/accuracy/scene_frames.h"
 
@@ -13,12 +14,12 @@ struct ReferenceSource {
   bool alone = false;   // no other source's light is in its capsule
   bool counts = false;  // bright, whole, alone and not saturated: errors are its own
   std::string name;
-  PixelPosition from, via, to;  // of its trail
-  double margin_px = 0.0;       // around it
-  double light_e = 0.0;         // in the capsule
-  double peak_sigma = 0.0;      // in its brightest pixel, in the noise there
-  PixelPosition centroid;       // of its light
-  double snr = 0.0;             // by a matched filter
+  std::vector<PixelPosition> trail;  // corners of a line along it
+  double margin_px = 0.0;            // around it
+  double light_e = 0.0;              // in the capsule
+  double peak_sigma = 0.0;           // in its brightest pixel, in the noise there
+  PixelPosition centroid;            // of its light
+  double snr = 0.0;                  // by a matched filter
 };
 
 /// What one source lacks of the reference.
@@ -34,6 +35,10 @@ struct FrameError {
   std::vector<SourceError> sources;  // of those that count
   double residual_sigma = 0.0;       // rms of the difference of all pixels, in their noise
 };
+
+/// A line along a trail that is `from`, `via` and `to` at its start, middle and end: chords of the
+/// parabola through them, 0.05 px off it at most. At least two points.
+std::vector<PixelPosition> line_along(PixelPosition from, PixelPosition via, PixelPosition to);
 
 /// Compares frames of one exposure with its reference, by what they expect of every pixel:
 /// docs/accuracy.md gives the definitions.

@@ -3,9 +3,31 @@
 
 #include "core/base/error.h"
 #include "core/base/memory.h"
+#include "core/plan/cost_factors.h"
 #include "nodes/runtime/node/node.h"
+#include "nodes/runtime/observability/metrics.h"
 #include "nodes/runtime/program/program.h"
 #include "sensors/pipeline/make_sensor.h"
+#include "sensors/pipeline/stage_times.h"
+
+namespace {
+
+/// Adds up the stages of frames for the metrics of this process, if it serves any.
+void serve_times_of(dmise::SensorEvaluator& sensor) {
+  dmise::Metrics* metrics = dmise::Metrics::of_process();
+  if (!metrics) return;
+  sensor.when_made([metrics, figures = dmise::FrameFigures(),
+                    factors = dmise::load_cost_factors(dmise::cost_factors_path())](
+                       const dmise::FrameProducts& frame) mutable {
+    for (const auto& [stage, time] : dmise::stage_times(frame.plan, frame.times, factors)) {
+      figures.stages[stage].predicted_s += time.predicted_s;
+      figures.stages[stage].measured_s += time.measured_s;
+    }
+    metrics->set(figures);
+  });
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   dmise::return_large_blocks();
@@ -31,6 +53,7 @@ int main(int argc, char** argv) {
     if (flags.check) return 0;
     if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
     sensor->stop_when([] { return dmise::stop_signal().is_set(); });
+    serve_times_of(*sensor);
     const auto end = dmise::run_node(*sensor, {.master = flags.master,
                                                .host = flags.host,
                                                .join_within_s = scenario.network.join_within_s,

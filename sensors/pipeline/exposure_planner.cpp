@@ -142,7 +142,11 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
                    : diagonal_px;
     f.longest_trail_px = std::max(f.longest_trail_px, trail_px);
     const ObjectShape* shape = sampler.shape(object);
-    if (shape) ++f.shapes;
+    if (shape) {
+      ++f.shapes;
+      const double pixel_m = std::max(range_m, 1.0) * f.pixel_rad;
+      f.hidden_sky_px = std::max(f.hidden_sky_px, shape->silhouette_m2 / (pixel_m * pixel_m));
+    }
     narrowest_px = std::min(
         narrowest_px, shape ? 2.0 * shape->radius_m / std::max(range_m, 1.0) / f.pixel_rad : 0.0);
     const double light_e =

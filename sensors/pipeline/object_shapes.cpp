@@ -15,11 +15,14 @@ ObjectShapes::ObjectShapes(const std::vector<OwnObject>& objects, const Band& ba
                            const EffectSet& effects)
     : sun_photons_(object_photons_per_s_m2(sun_v_mag, band)) {
   const bool emits = acts<ThermalEmission>(effects, {});
-  for (const auto& object : objects)
-    if (object.geometry)
-      shapes_.emplace(object.catalogue_number,
-                      ObjectShape{FacetLight(*object.geometry->mesh, band, emits),
-                                  dmise::radius_m(*object.geometry->mesh)});
+  for (const auto& object : objects) {
+    if (!object.geometry) continue;
+    const Mesh& mesh = *object.geometry->mesh;
+    const double radius_m = dmise::radius_m(mesh);
+    shapes_.emplace(object.catalogue_number,
+                    ObjectShape{FacetLight(mesh, band, emits), radius_m,
+                                std::min(surface_m2(mesh), pi * radius_m * radius_m)});
+  }
 }
 
 const ObjectShape* ObjectShapes::of(std::uint32_t catalogue_number) const {

@@ -14,7 +14,8 @@ namespace dmise {
 /// Surface of an object in one sensor's band.
 struct ObjectShape {
   FacetLight light;
-  double radius_m = 0.0;  // of the sphere about its origin that holds it
+  double radius_m = 0.0;       // of the sphere about its origin that holds it
+  double silhouette_m2 = 0.0;  // most: its surface, and the disc of the sphere
 };
 
 /// How a shape is turned and lit at one instant, as the observer sees it.

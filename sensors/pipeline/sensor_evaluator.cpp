@@ -106,6 +106,7 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
     }
     FrameProducts frame = pipeline_.run(exposure, world_, states_ ? &*states_ : nullptr);
     writer_.write(frame);
+    made_(frame);
     pipeline_.give_back(std::move(frame.counts));
     detections_ += static_cast<long>(frame.detections.size());
     messages.push_back(

@@ -42,6 +42,8 @@ class SensorEvaluator : public Evaluator {
 
   /// Called between frames: true ends the step early.
   void stop_when(std::function<bool()> asked) { stop_asked_ = std::move(asked); }
+  /// `told` hears of each frame when its products are written.
+  void when_made(std::function<void(const FrameProducts&)> told) { made_ = std::move(told); }
   int frames_done() const { return static_cast<int>(next_frame_) - 1; }
   long detections_made() const { return detections_; }
   /// Describes the OpenGL that draws points and sky; empty when they are deposited.
@@ -68,6 +70,7 @@ class SensorEvaluator : public Evaluator {
   Clock clock_;
   std::optional<StatesInField> states_;  // once the roster is known
   std::function<bool()> stop_asked_ = [] { return false; };
+  std::function<void(const FrameProducts&)> made_ = [](const FrameProducts&) {};
   std::uint32_t next_frame_ = 1;
   long detections_ = 0;
   std::atomic<std::uint64_t> progress_{0};

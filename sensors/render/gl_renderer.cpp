@@ -44,7 +44,7 @@ class GlRenderer final : public Renderer {
     tile.coverage.assign(pixels, 0.0f);
     const bool convex = is_convex(*scene.mesh);
     std::optional<FacetShadow> viewer;
-    if (!convex && norm(scene.object_m) > parallel_from * radius_m(*scene.mesh))
+    if (!convex && views_are_parallel(scene))
       viewer.emplace(*scene.mesh, unit(scene.camera_from_body.inverse() * -scene.object_m));
     bool first = true;
     for (const auto& source : scene.sources) {
@@ -59,6 +59,15 @@ class GlRenderer final : public Renderer {
   }
 
  private:
+  /// Whether what is visible from the camera is what is visible from afar: perspective moves an
+  /// edge in front of what it hides by less than `least_seen_px`.
+  static bool views_are_parallel(const TileScene& scene) {
+    constexpr double least_seen_px = 0.02;
+    const double ratio = radius_m(*scene.mesh) / norm(scene.object_m);
+    return ratio * parallel_from < 1.0 ||
+           2.0 * ratio * ratio * scene.camera.focal_px < least_seen_px;
+  }
+
   static void check(const TileScene& scene) {
     const auto& camera = scene.camera;
     if (camera.columns < 1 || camera.rows < 1 || camera.columns > 16384 || camera.rows > 16384)

@@ -42,14 +42,13 @@ class SampleCount {
   }
 
   /// Whether the triangles are long and at most 32 samples wide.
-  bool narrow() const {
-    const double width = longest_ > 0.0 ? 2.0 * area_ / longest_ : 0.0;
-    return width < 32.0 && longest_ > 2.5 * width;
-  }
+  bool narrow() const { return width() < 32.0 && longest_ > 2.5 * width(); }
 
-  /// Entirely in the tile with too few samples.
-  bool sparse() const { return inside_ && count_ < fewest; }
-  double area() const { return area_; }  // in samples
+  /// Entirely in the tile with too few samples: of a sliver between two rows of them, rounding
+  /// decides whether it has any.
+  bool sparse() const { return inside_ && (count_ < fewest || width() < narrowest); }
+  double longest() const { return longest_; }  // side, in samples
+  double area() const { return area_; }        // in samples
 
   /// Area per sample; 1 if not entirely in the tile or with too few samples.
   double correction() const { return inside_ && count_ >= fewest ? area_ / count_ : 1.0; }
@@ -67,7 +66,9 @@ class SampleCount {
     if (right > left) count_ += std::ceil(right - 0.5) - std::ceil(left - 0.5);
   }
 
-  static constexpr double fewest = 12.0;
+  double width() const { return longest_ > 0.0 ? 2.0 * area_ / longest_ : 0.0; }
+
+  static constexpr double fewest = 12.0, narrowest = 2.0;
   TileCamera camera_;
   double oversampling_;
   double area_ = 0.0, count_ = 0.0, longest_ = 0.0;

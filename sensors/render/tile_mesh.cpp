@@ -173,7 +173,7 @@ class Builder {
       SampleCount samples(scene_.camera, scene_.oversampling);
       samples.add(p);
       if (specks_ && samples.sparse()) {
-        add_speck(look, p, samples.area());
+        add_specks(look, p);
         look = surface(f, false);
       } else if (samples.narrow()) {
         scale(look, samples.correction());
@@ -193,19 +193,45 @@ class Builder {
         return o + e1 * s + e2 * t;
       };
       for (int i = 1; i + 1 < piece.corners; ++i) {
-        parts.push_back({at(0), at(i), at(i + 1)});
+        const SampleCount::Triangle part{at(0), at(i), at(i + 1)};
+        SampleCount alone(scene_.camera, scene_.oversampling);
+        alone.add(part);
+        if (specks_ && alone.sparse()) {  // on the dark underlay
+          add_specks(surface(f, true), part);
+          continue;
+        }
+        parts.push_back(part);
         places.push_back(
             {piece.corner[0], piece.corner[std::size_t(i)], piece.corner[std::size_t(i) + 1]});
-        samples.add(parts.back());
+        samples.add(part);
       }
     }
     TileVertex look = surface(f, true);
-    if (specks_ && samples.sparse()) {  // on the dark underlay
-      if (!parts.empty()) add_speck(look, parts[0], samples.area());
-      return;
-    }
     scale(look, samples.correction());
     for (std::size_t i = 0; i < parts.size(); ++i) add(look, f, parts[i], places[i]);
+  }
+
+  /// Light of a triangle in pieces of a pixel.
+  void add_specks(const TileVertex& look, const SampleCount::Triangle& whole) {
+    constexpr std::size_t most = 4096;
+    std::vector<SampleCount::Triangle> pieces{whole};
+    for (std::size_t done = 0; done < pieces.size();) {
+      const SampleCount::Triangle p = pieces[done];
+      SampleCount samples(scene_.camera, scene_.oversampling);
+      samples.add(p);
+      if (samples.longest() <= scene_.oversampling || pieces.size() >= most) {
+        add_speck(look, p, samples.area());
+        ++done;
+        continue;
+      }
+      std::size_t side = 0;
+      const auto length = [&](std::size_t i) { return glm::length(p[(i + 1) % 3] - p[i]); };
+      for (std::size_t i = 1; i < 3; ++i)
+        if (length(i) > length(side)) side = i;
+      const glm::dvec3 middle = (p[side] + p[(side + 1) % 3]) / 2.0;
+      pieces[done] = {p[side], middle, p[(side + 2) % 3]};
+      pieces.push_back({middle, p[(side + 1) % 3], p[(side + 2) % 3]});
+    }
   }
 
   /// Light of a triangle as shaded at its centre, times its area, without its own emission, which

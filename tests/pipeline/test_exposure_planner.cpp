@@ -45,6 +45,11 @@ bool runs(const FrameProducts& frame, const EffectFacts& effect) {
   return frame.plan.effects.has(effect);
 }
 
+/// How faint stars a frame's plan draws.
+double drawn_to_v_mag(const FrameProducts& frame) {
+  return StarBackground::limit_v_mag(frame.plan.effects.level(StarBackground::facts));
+}
+
 TEST(ExposurePlanner, EveryStageOfAFrameIsAnEffectOfItsPlan) {
   for (const char* camera : {"geo-watch", "telescope-3m"}) {
     const FrameProducts frame = Scene{.camera = camera}.frame();
@@ -99,14 +104,21 @@ TEST(ExposurePlanner, ADraftOfADetectorWithTrapsGoesOnFrameAfterFrame) {
   for (std::uint32_t frame = 1; frame <= 3; ++frame) EXPECT_NO_THROW(stage.frame(frame)) << frame;
 }
 
-TEST(ExposurePlanner, StarsBesideTheFrameAreNotDrawn) {
+// Without stars the smooth starlight would stand for those brighter than the catalogue's, too.
+TEST(ExposurePlanner, StarsBesideTheFrameCostTheirSearchAlone) {
   const auto plan_with_star_at = [](const std::string& dec_deg) {
     return test::Stage(Scene{.accuracy = "standard"}.yaml(),
                        "ra_deg,dec_deg,mag_v,bv\n49.7," + dec_deg + ",6,0.65\n", element_set)
         .frame();
   };
-  EXPECT_TRUE(runs(plan_with_star_at("-5.4"), StarBackground::facts));
-  EXPECT_FALSE(runs(plan_with_star_at("-25.4"), StarBackground::facts));
+  const auto cost_of_stars = [](const FrameProducts& frame) {
+    return std::ranges::find(frame.plan.planned, &StarBackground::facts, &PlannedEffect::facts)
+        ->cost_s;
+  };
+  const FrameProducts inside = plan_with_star_at("-5.4"), beside = plan_with_star_at("-25.4");
+  EXPECT_GE(drawn_to_v_mag(inside), 6.0);
+  EXPECT_LT(cost_of_stars(beside), cost_of_stars(inside));
+  EXPECT_TRUE(beside.stars.empty());
 }
 
 TEST(ExposurePlanner, ASensorMayHaveAnAccuracyOfItsOwn) {

@@ -36,6 +36,26 @@ TEST(Tile, SumOfThePixelsIsTheUnresolvedFluxOfEveryShape) {
   }
 }
 
+// Lit sides seen almost from their edge, thinner than a sample: whether samples fall on them must
+// not decide about their light.
+TEST(Tile, ASliverBetweenTwoRowsOfSamplesHasItsLight) {
+  const Mesh mesh = box_wing({}, named("white-paint"), named("white-paint"), named("white-paint"));
+  const FacetLight object(mesh, Band{});
+  const Vec<Body> sun = unit(Vec<Body>{-0.53, 0.85, 0.1});
+  for (const double grazing : {3e-4, 1e-3, 3.4e-3, 0.01, 0.03})
+    for (int shift = 0; shift < 60; ++shift) {
+      const Vec<Body> viewer = unit(Vec<Body>{0.95, grazing, -0.3 + 1e-5 * shift});
+      TileCamera camera = camera_around(radius_m(mesh), far_m, 34);
+      camera.principal_x_px += 0.0137 * shift;
+      camera.principal_y_px += 0.0071 * shift;
+      const double expected =
+          sun_photons * object.reflected_m2_per_sr(sun, viewer) / (far_m * far_m);
+      const double got = flux(draw(object, sun, viewer, camera, 0.03 * (shift % 7), 16), camera);
+      ASSERT_GT(expected, 0.0);
+      EXPECT_NEAR(got / expected, 1.0, 5e-3) << grazing << " rad, " << shift;
+    }
+}
+
 // What the shadow takes from the picture is what it takes from the sum.
 TEST(Tile, ShowsTheShadowThatOnePartThrowsOnAnother) {
   const Material white = named("white-paint");

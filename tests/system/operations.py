@@ -59,6 +59,10 @@ def test(binary, directory):
         check(told >= 1, f"and the clock knows of them: {told:g}")
         compute = value(page_of(out, "alpha"), 'dmise_node_seconds_total{node="alpha",part="compute"}')
         check(compute > 0, f"time is split: {compute:.2f} s in steps")
+        page = page_of(out, "alpha")
+        for kind in ("", "predicted_"):
+            spent = value(page, f'dmise_sensor_stage_{kind}seconds_total{{node="alpha",stage="photon_noise"}}')
+            check(spent > 0, f"stages of frames have their {kind.replace('_', ' ')}time: {spent:.3g} s of photon noise")
 
         master = (out / "logs/master.address").read_text().strip()
         for name in [*PROCESSES]:

@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
+#include <string>
 
 #include "core/base/sim_time.h"
 #include "nodes/runtime/protocol/time_split.h"
@@ -23,6 +25,14 @@ struct NodeFigures {
   std::uint64_t missed = 0;
   std::uint64_t queued = 0;  // messages received but not yet used
   TimeSplit times;
+};
+
+/// Time of a sensor's frames by stages, all frames of this process.
+struct FrameFigures {
+  struct Stage {
+    double predicted_s = 0.0, measured_s = 0.0;
+  };
+  std::map<std::string, Stage> stages;
 };
 
 struct BrokerFigures {

@@ -110,6 +110,19 @@ MetricFamilies families_of(const NodeFigures& f, const std::string& node) {
   return b.take();
 }
 
+MetricFamilies families_of(const FrameFigures& f, const std::string& node) {
+  Builder b;
+  for (const auto& [stage, time] : f.stages) {
+    const Labels of{{"node", node}, {"stage", stage}};
+    b.counter("dmise_sensor_stage_seconds_total", "Time of a stage of all frames.", time.measured_s,
+              of);
+    b.counter("dmise_sensor_stage_predicted_seconds_total",
+              "What the plans of the same frames have predicted for this machine.",
+              time.predicted_s, of);
+  }
+  return b.take();
+}
+
 MetricFamilies families_of(const BrokerFigures& f) {
   Builder b;
   b.counter("dmise_broker_messages_total", "Messages forwarded.", double(f.messages));

@@ -18,6 +18,7 @@ MetricFamilies families_of_build(const std::string& program, const std::string& 
 MetricFamilies families_of(const ProcessFigures& figures, double started_s);
 /// `node`: its name in the run.
 MetricFamilies families_of(const NodeFigures& figures, const std::string& node);
+MetricFamilies families_of(const FrameFigures& figures, const std::string& node);
 MetricFamilies families_of(const BrokerFigures& figures);
 MetricFamilies families_of(const RunStatus& status);
 

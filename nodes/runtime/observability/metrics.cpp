@@ -54,6 +54,7 @@ struct Metrics::Board {
     {
       const std::lock_guard lock(mutex);
       if (of_node) append(&all, families_of(*of_node, node));
+      if (of_frames) append(&all, families_of(*of_frames, node));
       if (of_broker) append(&all, families_of(*of_broker));
       if (of_run) append(&all, families_of(*of_run));
     }
@@ -64,6 +65,7 @@ struct Metrics::Board {
   const double started_s = seconds_since_1970();
   mutable std::mutex mutex;  // guards what follows
   std::optional<NodeFigures> of_node;
+  std::optional<FrameFigures> of_frames;
   std::optional<BrokerFigures> of_broker;
   std::optional<RunStatus> of_run;
 };
@@ -90,6 +92,11 @@ Metrics* Metrics::of_process() { return metrics_of_process.load(std::memory_orde
 void Metrics::set(const NodeFigures& figures) {
   const std::lock_guard lock(board_->mutex);
   board_->of_node = figures;
+}
+
+void Metrics::set(const FrameFigures& figures) {
+  const std::lock_guard lock(board_->mutex);
+  board_->of_frames = figures;
 }
 
 void Metrics::set(const BrokerFigures& figures) {

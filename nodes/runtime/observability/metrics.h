@@ -33,6 +33,7 @@ class Metrics {
   const std::string& url() const { return url_; }
 
   void set(const NodeFigures& figures);
+  void set(const FrameFigures& figures);
   void set(const BrokerFigures& figures);
   /// State of the run, of the time-master.
   void set(const RunStatus& status);

@@ -1,4 +1,4 @@
-#include "sensors/accuracy/stage_times.h"
+#include "sensors/pipeline/stage_times.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "sensors/accuracy/stage_times.h"
+#include "sensors/pipeline/stage_times.h"
 
 #include "core/detector/detector.h"
 #include "core/effects/frame_effects.h"
