@@ -9,6 +9,7 @@
 #include "bench/cropped_camera.h"
 #include "bench/scene_dice.h"
 #include "core/base/units.h"
+#include "core/frames/oblate_earth.h"
 #include "core/optics/projection.h"
 
 namespace dmise {
@@ -182,14 +183,15 @@ std::string scenario_text(const Frame& f, const std::string& objects, bool stars
   return text;
 }
 
-/// An object of the scenario that crosses the field, on a straight path.
+/// An object of the scenario that crosses the field, on a straight path; nothing where the field
+/// shows the ground alone.
 std::string draw_object(Frame& f, const View& view, int index) {
   auto& dice = f.dice;
   const bool shaped = dice.chance(0.25), centred = f.tracks_object && index == 0;
   const double size_px = shaped ? dice.log_uniform(0.3, 50.0) : 0.0;
-  const double wanted_px = centred            ? f.trail_px
-                           : dice.chance(0.2) ? 0.0
-                                              : dice.uniform(0.0, longest_trail_px);
+  double wanted_px = centred            ? f.trail_px
+                     : dice.chance(0.2) ? 0.0
+                                        : dice.uniform(0.0, longest_trail_px);
   const double least_m = f.on_ground ? 2e5 : 1e3, most_m = f.on_ground ? 4e7 : 4e6;
   double range_m = dice.log_uniform(least_m, most_m);
   if (shaped)
@@ -221,14 +223,21 @@ std::string draw_object(Frame& f, const View& view, int index) {
     }
     start_m = position_m[1] - velocity * f.middle_s();
   };
-  constexpr double lowest_m = 6.45e6;  // from the Earth's centre
+  const auto is_free = [&] {
+    constexpr double least_height_m = 100.0;
+    const auto above = [](const Vec<Gcrs>& position_m) {
+      return norm(OblateEarth{}.stretched(position_m)) > wgs84.equatorial_radius_m + least_height_m;
+    };
+    return above(start_m) && above(start_m + velocity * f.duration_s);
+  };
   lay_path();
-  // Nearer where the line of sight from an orbit meets the Earth.
-  while (!f.on_ground && range_m > 300.0 &&
-         (norm(start_m) < lowest_m || norm(start_m + velocity * f.duration_s) < lowest_m)) {
-    range_m *= 0.5;
+  // Nearer where the line of sight meets the Earth, at last at rest.
+  for (; range_m > 300.0 && !is_free(); lay_path()) range_m *= 0.5;
+  if (!is_free()) {
+    wanted_px = 0.0;
     lay_path();
   }
+  if (!is_free()) return "";
   std::string text =
       text_of("  - name: object-", index,
               "\n    motion: {two_body: {gm_m3_per_s2: 1, position_m: ", list_of(start_m),

@@ -25,6 +25,7 @@
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/process/event.h"
 #include "nodes/runtime/program/command_line.h"
+#include "sensors/pipeline/recorded_plans.h"
 #include "time-master/master.h"
 
 namespace dmise {
@@ -37,7 +38,7 @@ constexpr double answer_within_s = 0.5;
 constexpr int answers_missed = 6;  // in a row: the time-master is gone
 
 struct JoinOptions {
-  std::string scenario, node, out, master, keys, host;
+  std::string scenario, node, out, plan, master, keys, host;
   int slot = 0;                       // from 1: index of the sensor; 0: any free one
   std::optional<std::uint64_t> seed;  // instead of the scenario's
   std::vector<std::string> more;      // passed to the node's program
@@ -172,6 +173,7 @@ class Join {
     if (writes_products(name)) add({"--out", options_.out});
     if (kind && kind->each_sensor)
       add({"--digest", scenario_digest(scenario_), "--seed", std::to_string(scenario_.seed)});
+    if (kind && kind->each_sensor && !options_.plan.empty()) add({"--plan", options_.plan});
     all.insert(all.end(), options_.more.begin(), options_.more.end());
     return all;
   }
@@ -242,6 +244,7 @@ void join(JoinOptions options) {
     throw ConfigError("--slot: must be from 1, got " + std::to_string(options.slot));
   Scenario scenario = load_scenario(options.scenario);
   if (options.seed) scenario.seed = *options.seed;
+  if (!options.plan.empty()) replay_plans(options.plan, scenario);
   if (options.node != broker_name && options.node != any_sensor &&
       !kind_of_node(options.node, scenario))
     throw ConfigError(options.node + ": is not a node of " + options.scenario);
@@ -277,6 +280,7 @@ void add_join_command(CLI::App& app) {
                    "address towards the time-master")
       ->check(transport_address());
   command->add_option("--seed", options->seed, "as given to the launch");
+  command->add_option("--plan", options->plan, "as given to the launch");
   command->allow_extras();  // for the node's program: --threads, --log-level
   command->callback([options, command] {
     options->more = command->remaining();

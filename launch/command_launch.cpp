@@ -31,6 +31,7 @@
 #include "nodes/runtime/program/command_line.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/make_sensor.h"
+#include "sensors/pipeline/recorded_plans.h"
 
 namespace dmise {
 namespace {
@@ -39,7 +40,7 @@ using Clock_ = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 struct LaunchOptions {
-  std::string scenario, out, bind = "tcp://127.0.0.1:0", keys;
+  std::string scenario, out, plan, bind = "tcp://127.0.0.1:0", keys;
   std::optional<std::uint64_t> seed;  // instead of the scenario's
   int threads = 1;
   int hosts = 0;  // > 0: number of agents for the sensors
@@ -141,6 +142,7 @@ class Launch {
         if (kind.writes_products) add({"--out", directory_.path()});
         if (kind.each_sensor)
           add({"--digest", directory_.digest(), "--seed", std::to_string(scenario_.seed)});
+        if (kind.each_sensor && !options_.plan.empty()) add({"--plan", options_.plan});
         start(nodes[i], kind.program, arguments);
       }
     }
@@ -301,6 +303,7 @@ void launch(const LaunchOptions& options) {
   if (options.hosts > 0 && !options.keys.empty())
     check_agent_keys(scenario, options.hosts, options.keys);
   if (options.seed) scenario.seed = *options.seed;
+  if (!options.plan.empty()) replay_plans(options.plan, scenario);
   // Find errors here, once, before any process starts.
   const Scene scene = load_scene(scenario, make_clock(scenario));
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
@@ -336,6 +339,8 @@ void add_launch_command(CLI::App& app) {
       ->check(CLI::Range(0, 10000));
   command->add_option("--seed", options->seed,
                       "seed of the random numbers, instead of the scenario's");
+  command->add_option("--plan", options->plan,
+                      "run.json of a run: its frames' levels of effects instead of a plan");
   command->add_option("--keys", options->keys,
                       "directory of keys (dmise keygen); without it no encryption, loopback only");
   command->add_option("--metrics", options->metrics,

@@ -19,10 +19,10 @@
 #include "launch/notes.h"
 #include "launch/prepare_run.h"
 #include "launch/progress.h"
-#include "launch/recorded_plans.h"
 #include "launch/run_record.h"
 #include "launch/scenario_outlook.h"
 #include "nodes/runtime/process/event.h"
+#include "sensors/pipeline/recorded_plans.h"
 #include "sensors/pipeline/sensor_evaluator.h"
 
 namespace dmise {

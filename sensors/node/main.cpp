@@ -8,6 +8,7 @@
 #include "nodes/runtime/observability/metrics.h"
 #include "nodes/runtime/program/program.h"
 #include "sensors/pipeline/make_sensor.h"
+#include "sensors/pipeline/recorded_plans.h"
 #include "sensors/pipeline/stage_times.h"
 
 namespace {
@@ -32,7 +33,7 @@ void serve_times_of(dmise::SensorEvaluator& sensor) {
 int main(int argc, char** argv) {
   dmise::return_large_blocks();
   dmise::CommonFlags flags;
-  std::string config, out = "out/node", digest;
+  std::string config, out = "out/node", digest, plan;
   int threads = 1;
   CLI::App app(
       "Renders the frames of one sensor of a scenario, detects moving objects, publishes both.",
@@ -42,10 +43,13 @@ int main(int argc, char** argv) {
   app.add_option("--out", out, "directory of the run; this sensor writes to a subdirectory")
       ->capture_default_str();
   app.add_option("--digest", digest, "digest of the run, written into every frame");
+  app.add_option("--plan", plan,
+                 "run.json of a run: its frames' levels of effects instead of a plan");
   app.add_option("--threads", threads, "number of threads")->check(CLI::Range(1, 256));
   return dmise::run_program(app, flags, argc, argv, [&] {
     dmise::Scenario scenario = dmise::load_scenario(config);
     if (app.count("--seed")) scenario.seed = flags.seed;
+    if (!plan.empty()) dmise::replay_plans(plan, scenario);
     if (flags.name.empty()) throw dmise::ConfigError("--name: is required: the sensor's name");
     dmise::Threads pool(threads);
     const auto sensor =

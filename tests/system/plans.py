@@ -62,6 +62,10 @@ def test(binary, directory):
     dmise("run", scenario("other", "reference"), "--out", replayed, "--plan", first / "run.json")
     check(pixels(replayed) == pixels(first), "a replayed plan makes the same pixels whatever the accuracy")
 
+    many = directory / "replayed-many"
+    dmise("launch", directory / "other.yaml", "--out", many, "--plan", first / "run.json", "--hosts", "1")
+    check(files(many) == files(replayed), "and a process per node replays it to the same bytes")
+
     longer = scenario("longer", "draft")
     longer.write_text(longer.read_text().replace("duration_s: 15", "duration_s: 30"))
     refusal = dmise("run", longer, "--out", directory / "refused", "--plan", first / "run.json", expect=2).stderr

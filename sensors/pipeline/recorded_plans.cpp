@@ -1,4 +1,4 @@
-#include "launch/recorded_plans.h"
+#include "sensors/pipeline/recorded_plans.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
