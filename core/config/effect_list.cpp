@@ -60,9 +60,9 @@ constexpr std::string_view always_listed[] = {"proper_motion",
 /// sky's parts, the air's effects and those of the image have lists of their own, where they run.
 using LightEffects =
     EffectList<SkyBackground, SkyGrid, Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight,
-               Twilight, LightPollution, SpaceObjects, EarthShadow, Earthshine, ThermalEmission,
-               StarBackground, EarthOccultation, AirExtinction, CloudCover, Scintillation,
-               Vignetting, Streak, Occlusion, Drawing, PointSpread, PsfWavelengths>;
+               Twilight, LightPollution, SpaceObjects, ResolvedShapes, EarthShadow, Earthshine,
+               ThermalEmission, StarBackground, EarthOccultation, AirExtinction, CloudCover,
+               Scintillation, Vignetting, Streak, Occlusion, Drawing, PointSpread, PsfWavelengths>;
 
 std::vector<const EffectFacts*> list() {
   std::vector<const EffectFacts*> all;

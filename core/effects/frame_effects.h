@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+
 #include "core/effects/plan_facts.h"
 
 // The effects that sensors/pipeline runs as stages of a frame's light, or chooses between; here is
@@ -21,7 +23,38 @@ struct SpaceObjects {
     return f.objects > 0 ? not_bounded : ErrorBound{};
   }
   static double cost_s(int level, const PlanFacts& f) {
-    return level * (20e-6 * double(f.objects - f.shapes) + 39e-3 * double(f.shapes));
+    return level * (20e-6 * double(f.objects - f.shapes) + 1e-3 * double(f.shapes));
+  }
+};
+
+/// From which size on an object with a shape is drawn as one.
+struct ResolvedShapes {
+  /// Angular radius up to which it is a point [px].
+  static constexpr std::array<double, 5> tolerance_px{1.0, 0.5, 0.2, 0.05, 0.01};
+  static constexpr std::array<std::string_view, 5> levels{"1px", "0.5px", "0.2px", "0.05px",
+                                                          "0.01px"};
+  static constexpr EffectFacts facts{"resolved_shapes",
+                                     "from which radius on objects with a shape are no points",
+                                     "a point is displaced or broadened by up to its radius",
+                                     "facets drawn by OpenGL, glints laid by area",
+                                     true,
+                                     true,
+                                     levels,
+                                     3};
+  static bool applies(const SceneFacts& scene) { return scene.shapes; }
+
+  static ErrorBound error(int level, const PlanFacts& f) {
+    double largest_px = 0.0;  // of those that are points
+    for (const double radius_px : f.shape_radius_px)
+      if (radius_px <= tolerance_px[std::size_t(level)])
+        largest_px = std::max(largest_px, radius_px);
+    return f.shifted_objects(largest_px * f.pixel_rad);
+  }
+  static double cost_s(int level, const PlanFacts& f) {
+    constexpr double shape_s = 38e-3;
+    return shape_s * double(std::ranges::count_if(f.shape_radius_px, [&](double radius_px) {
+             return radius_px > tolerance_px[std::size_t(level)];
+           }));
   }
 };
 
@@ -101,32 +134,7 @@ struct PsfWavelengths {
       levels,
       0};
   static bool applies(const SceneFacts& scene) { return scene.diffracts; }
-  static ErrorBound error(int level, const PlanFacts& f) {
-    const double width = f.relative_bandwidth / count[std::size_t(level)];
-    ErrorBound error = f.dimmed_by(0.02 * width);
-    error.position_px = 0.0055 * width * f.fwhm_px;
-    const double star = rings_in_noise(level, f, f.brightest_star_e, 0.0),
-                 object = rings_in_noise(level, f, f.brightest_object_e, f.narrowest_object_px);
-    const double light_e = std::max(star, object) * f.least_noise_e();
-    const ErrorBound beside = f.without_light([&](const SkySample&) { return light_e; });
-    error.background_sigma = beside.background_sigma;
-    error.noise = beside.noise;
-    return error;
-  }
-  /// What is off beyond three widths of a source, in noise: there are rings or speckles of 0.003 of
-  /// a point's peak, smeared by the band; and by definition there is no background where a source
-  /// leaves more than half of the noise: twice that is left where rings are not smeared. An object
-  /// of many speckles evens them out.
-  static double rings_in_noise(int level, const PlanFacts& f, double source_e, double size_px) {
-    constexpr double in_band[] = {2.0, 1.4, 1.0, 0.6, 0.0}, peak = 4.0, narrow = 0.5;
-    const double width = f.relative_bandwidth / count[std::size_t(level)];
-    const double rings_e =
-        0.003 * std::min(1.0, 10.0 * width) * f.ring_contrast * source_e * f.peak_share;
-    const double across = narrow * size_px / f.speckle_px;
-    const double speckles = f.screens * (1.0 + across * across);
-    const double uneven = f.screens > 0 ? std::min(1.0, peak / std::sqrt(speckles)) : 1.0;
-    return std::min(f.in_noise(rings_e), 0.5 * uneven * in_band[level]);
-  }
+  static ErrorBound error(int level, const PlanFacts& f);
   /// Of kernels that are kept a hundredth, since they are computed once for many frames.
   static double cost_s(int level, const PlanFacts& f) {
     return count[std::size_t(level)] * f.kernel_s * (f.kernels_change ? 1.0 : 0.01);
@@ -165,23 +173,5 @@ struct Drawing {
       true,
       false};
 };
-
-inline ErrorBound StarBackground::error(int level, const PlanFacts& f) {
-  const double limit = limit_v_mag(level);
-  const double left_e = level == 0 ? f.brightest_star_e : f.brightest_left_e[f.limit(limit)];
-  const double starlight_e = f.starlight_e[f.limit(limit)];
-  if (!(left_e > 0.0 || starlight_e > 0.0)) return {};
-  // The brightest star that is left out, in its brightest pixel; and the smooth starlight that
-  // stands for all of them.
-  const double star = f.peak_in_noise(left_e * f.pattern_share(f.star_trail_px) / f.least_noise_e(),
-                                      f.star_trail_px);
-  const double light_e = std::max(star * f.least_noise_e(), starlight_e);
-  ErrorBound error = f.without_light([&](const SkySample&) { return light_e; });
-  // In the capsule of a source that counts.
-  const double share = std::min(PlanFacts::neighbour_share, left_e / f.faintest_source_e());
-  error.photometry_mag = 1.086 * share;
-  error.position_px = 3.0 * share * std::hypot(1.0, f.fwhm_px);
-  return error;
-}
 
 }  // namespace dmise

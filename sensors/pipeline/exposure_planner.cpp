@@ -144,6 +144,8 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
     const ObjectShape* shape = sampler.shape(object);
     if (shape) {
       ++f.shapes;
+      f.shape_radius_px.push_back(shape->radius_m / std::max(range_m, 1e-3) /
+                                  optics.pixel_angle_rad());
       const double pixel_m = std::max(range_m, 1.0) * f.pixel_rad;
       f.hidden_sky_px = std::max(f.hidden_sky_px, shape->silhouette_m2 / (pixel_m * pixel_m));
     }

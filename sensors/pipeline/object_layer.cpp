@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/effects/frame_effects.h"
 #include "core/optics/snapshots.h"
 #include "sensors/pipeline/object_sampler.h"
 #include "sensors/pipeline/shape_exposure.h"
@@ -18,9 +19,6 @@ bool inside(const std::optional<PixelPosition>& p, const Optics& optics) {
   return p && p->x_px > -0.5 && p->y_px > -0.5 && p->x_px < optics.columns - 0.5 &&
          p->y_px < optics.rows - 0.5;
 }
-
-/// Drawn as a point, an object with a shape may be misplaced or widened by this much.
-constexpr double shape_error_px = 0.05;
 
 /// A path this long [px] is cut into arcs; shorter ones are one parabola to 1e-3 px.
 constexpr double straight_enough_px = 8.0;
@@ -53,8 +51,10 @@ bool is_resolved_at(const View& view, const ObjectSampler& sampler, std::size_t 
   const ObjectShape* shape = sampler.shape(object);
   const double range_m =
       norm(view.world().motion(object, at.time).position_m - at.observer.position_m);
-  return shape && is_resolved(shape->radius_m, range_m,
-                              view.sensor().camera.optics.pixel_angle_rad(), shape_error_px);
+  const int level = view.sensor().effects.level(ResolvedShapes::facts);
+  return shape &&
+         is_resolved(shape->radius_m, range_m, view.sensor().camera.optics.pixel_angle_rad(),
+                     ResolvedShapes::tolerance_px[std::size_t(level)]);
 }
 
 Deposited draw_resolved(const View& view, const ObjectSampler& sampler, std::size_t object,

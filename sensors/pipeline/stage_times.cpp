@@ -15,6 +15,7 @@ std::string_view stage_of(std::string_view effect) {
   };
   SkyPartEffects::for_each([&]<class Part>() { within(Part::facts, SkyBackground::facts); });
   PlaceEffects::for_each([&]<class Place>() { within(Place::facts, StarBackground::facts); });
+  within(ResolvedShapes::facts, SpaceObjects::facts);
   within(SkyGrid::facts, SkyBackground::facts);
   within(PsfWavelengths::facts, PointSpread::facts);
   within(DarkCurrent::facts, PhotonNoise::facts);

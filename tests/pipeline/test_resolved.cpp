@@ -44,6 +44,32 @@ std::vector<double> profile(const CountImage& counts, const Truth& truth, int pa
   return sum;
 }
 
+// A box of 0.3 pixels: as a point it is off by less than its radius, with the same light.
+TEST(Resolved, FromWhichSizeOnAShapeIsNoPointIsALevel) {
+  const auto truth_at = [](const std::string& level) {
+    return Stage(orbit_scenario(
+                     orbiting("target", 2.6,
+                              "    attitude: sun_tracking\n    geometry: {model: box, size_m: "
+                              "[2.8, 2.8, 2.8], material: white-paint}\n",
+                              6978137),
+                     "    pointing: {target: target}\n    exposure_s: 2\n",
+                     "{columns: 128, rows: 128, pixel_pitch_m: 1.0e-5, focal_length_m: 0.4, "
+                     "aperture_m: 0.04, psf_fwhm_px: 1.5}",
+                     0.1, 0, "resolved_shapes: " + level + ", "))
+        .frame()
+        .truths.at(0);
+  };
+  const Truth point = truth_at("0.5px"), shape = truth_at("0.2px"), usual = truth_at("0.05px");
+  EXPECT_FALSE(point.resolved);
+  EXPECT_TRUE(shape.resolved);
+  EXPECT_EQ(shape.rendered_x_px, usual.rendered_x_px);
+  const double off_px = std::hypot(point.rendered_x_px - shape.rendered_x_px,
+                                   point.rendered_y_px - shape.rendered_y_px);
+  EXPECT_GT(off_px, 0.01);
+  EXPECT_LT(off_px, 0.3);
+  EXPECT_NEAR(point.rendered_signal_e / shape.rendered_signal_e, 1.0, 5e-3);
+}
+
 // A box of 0.06 pixels, its lit half off its middle by 0.015, that moves over some hundred of them
 // against the path of a point.
 TEST(Resolved, AMovingObjectLeavesAStreakAsEvenAsAPointDoes) {
