@@ -1,9 +1,9 @@
 """Measures what accuracy costs in three scenarios, and writes the tables and charts of docs/accuracy.md.
 
-    accuracy.py [--repeats N] [--out DIRECTORY] [--only NAME ..]
+    accuracy.py [--repeats N] [--out DIRECTORY] [--only NAME ..] [--scenes N] [--seed N]
 
-Runs `dmise tradeoff` on launch/scenarios/accuracy-{all-sky,resolved,space}.yaml; an interrupted run goes on. Figures of
-scenarios that --only leaves out stay as they are.
+Runs `dmise tradeoff` on launch/scenarios/accuracy-{all-sky,resolved,space}.yaml; an interrupted run goes on. Then
+`dmise bench effects` for its figures. What --only or --scenes 0 leaves out stays as it is.
 """
 
 import argparse
@@ -73,6 +73,31 @@ def section(name, directory):
             f"{effect_table(rows)}\n")
 
 
+FIGURES = {
+    "scenes_within_budget": "share of random scenes whose planned frames keep every budget",
+    "scenes_bounds_hold": "share of them in which the bound of each omitted effect holds",
+    "bound_tightness": "bound over measured error, median where the bound is over a tenth of its budget",
+    "plan_ms": "planning an exposure, ms",
+    "all_sky_thrift": "`standard` over everything at the reference: all-sky sensor",
+    "space_thrift": "the same, space imager",
+    "resolved_thrift": "the same, 3 m telescope",
+    "draft_all_sky_s": "a `draft` frame of the all-sky sensor on one core, s",
+    "predicted_within_1_5": "share of stages within a factor of 1.5 of the predicted time",
+}
+
+
+def figures(scenes, seed):
+    done = subprocess.run([report.BINARY, "bench", "effects", "--json", "--scenes", str(scenes), "--seed", str(seed)],
+                          cwd=report.ROOT, check=False, capture_output=True, text=True)
+    told = [json.loads(line) for line in done.stdout.splitlines() if line.startswith('{"name":')]
+    if not told:
+        sys.exit(f"accuracy: dmise bench effects: {done.stderr.strip()[-300:]}")
+    rows = [[f"`{m['name']}`", FIGURES[m["name"]], f"{m['value']:.3g}", f"{m['target']:.3g}", "yes" if m["met"] else "no"]
+            for m in told if m["name"] in FIGURES]
+    return (f"`dmise bench effects --scenes {scenes} --seed {seed}`:\n\n"
+            + report.table(["figure", "of", "measured", "asked", "reached"], rows))
+
+
 def between(text, name, inside):
     """The text with what stands between the markers of `name` replaced."""
     begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->\n"
@@ -87,6 +112,8 @@ def main():
     parser.add_argument("--repeats", type=int, default=3, help="frames of each kind that are timed (%(default)s)")
     parser.add_argument("--out", type=pathlib.Path, default=report.ROOT / "out/accuracy")
     parser.add_argument("--only", nargs="*", choices=SCENARIOS, default=list(SCENARIOS), metavar="NAME")
+    parser.add_argument("--scenes", type=int, default=30, help="random scenes of `dmise bench effects`; 0: none")
+    parser.add_argument("--seed", type=int, default=1, help="of these scenes")
     options = parser.parse_args()
     text = DOCUMENT.read_text()
     for name in options.only:
@@ -96,6 +123,8 @@ def main():
         if done.returncode:
             sys.exit(f"accuracy: {name}: dmise tradeoff ended with {done.returncode}")
         text = between(text, name, section(name, directory))
+    if options.scenes > 0:
+        text = between(text, "figures", figures(options.scenes, options.seed))
     machine = ", ".join(f"{what}: {value}" for what, value in report.machine())
     DOCUMENT.write_text(between(text, "machine", f"Measured on {machine}.\n"))
 

@@ -25,6 +25,7 @@ DEMO = ROOT / "launch/scenarios/demo.yaml"
 RUN = ROOT / "build/benchmark-run"
 ELSEWHERE = ("scaling", "all-sky")  # a document of its own, by bench/scaling.py; a part of frame
 LONG = ("network",)  # real time, a quarter of an hour
+SHORTER = {"effects": ("--scenes", "30")}  # as in the tests
 REFEREES = ("solve_field", "source_extractor_magnitudes", "skyfield_directions", "erfa_directions",
             "fitsverify_frames")
 
@@ -74,8 +75,8 @@ def benches(names):
     rows = []
     for name in names:
         print(f"measuring {name}", file=sys.stderr)
-        done = output_of(BINARY, "bench", name, "--json")
-        figures = [line for line in done.stdout.splitlines() if line.startswith("{")]
+        done = output_of(BINARY, "bench", name, "--json", *SHORTER.get(name, ()))
+        figures = [line for line in done.stdout.splitlines() if line.startswith('{"name":')]
         for line in figures:
             m = json.loads(line)
             rows.append([m["name"], number(m["value"]), m.get("unit") or "", m.get("anchor") or "",

@@ -144,8 +144,8 @@ void add_normal_of_light(const RngKey& key, std::uint32_t first, float offset, f
 bool copy_light(const float* in, std::size_t count, float* out) {
   std::int32_t bad = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    bad |= in[i] >= 0.0f && in[i] <= 1e12f ? 0 : 1;
-    out[i] = in[i];
+    bad |= in[i] >= 0.0f && in[i] <= 3.4e38f ? 0 : 1;
+    out[i] = in[i] < 4e11f ? in[i] : 4e11f;
   }
   return bad == 0;
 }

@@ -26,7 +26,7 @@ inline constexpr int poisson_most_steps = 128;
   /* e += offset + sqrt(e + offset + variance) x a normal deviate; e + offset held at 0 below. */  \
   void add_normal_of_light(const RngKey& key, std::uint32_t first, float offset, float variance,   \
                            float* e, std::size_t count);                                           \
-  /* out = in; false when a value is not in 0..1e12. */                                            \
+  /* out = in, 4e11 at most; false when a value is negative, infinite or NaN. */                   \
   bool copy_light(const float* in, std::size_t count, float* out);                                 \
   /* Clips at `limit` and returns how many reached it. */                                          \
   std::size_t clip(float limit, float* values, std::size_t count);                                 \

@@ -1,6 +1,7 @@
 #include "core/detector/expose.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <string>
 
@@ -27,10 +28,11 @@ void check(const ExpectedElectronImage& light, const Exposure& exposure) {
 /// Throws an error that names the first pixel from `begin` on without a valid expectation.
 [[noreturn]] void refuse(const ExpectedElectronImage& light, std::size_t begin) {
   std::size_t i = begin;
-  while (light.pixels[i] >= 0.0f && light.pixels[i] <= poisson_largest_mean) ++i;
+  while (light.pixels[i] >= 0.0f && std::isfinite(light.pixels[i])) ++i;
   const auto columns = std::size_t(light.columns);
   throw Error("expose: pixel (" + std::to_string(i % columns) + ", " + std::to_string(i / columns) +
-              "): expected electrons must be in 0..1e12, got " + std::to_string(light.pixels[i]));
+              "): expected electrons must be finite and >= 0, got " +
+              std::to_string(light.pixels[i]));
 }
 
 void take_light(const ExpectedElectronImage& light, Piece& piece, SimdLevel level) {

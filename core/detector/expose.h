@@ -17,14 +17,15 @@ struct ExposeOptions {
 };
 
 /// Exposes a detector to `light`, the expected photo-electrons of each pixel during the exposure
-/// [e-] (quantum efficiency applied), and reads it out into `counts` (resized as needed, memory
-/// kept): applies all of `DetectorEffects`, in their order. The image is processed piece by piece,
-/// so that only light and counts (and `memory.electrons` for effects that need a pixel's
-/// neighbours) are held in full size. Effects that are off or have neutral parameters are skipped.
-/// Each effect has its own random stream: switching one does not change the noise of the others,
-/// and the bytes depend on neither threads nor instruction set. Adds each effect's seconds to
-/// `times` (summed over threads) if given. Throws `Error` naming the pixel if `light` is NaN or
-/// negative, and for parameters that an effect refuses.
+/// [e-] (quantum efficiency applied; above 4e11, beyond any well, it is 4e11), and reads it out
+/// into `counts` (resized as needed, memory kept): applies all of `DetectorEffects`, in their
+/// order. The image is processed piece by piece, so that only light and counts (and
+/// `memory.electrons` for effects that need a pixel's neighbours) are held in full size. Effects
+/// that are off or have neutral parameters are skipped. Each effect has its own random stream:
+/// switching one does not change the noise of the others, and the bytes depend on neither threads
+/// nor instruction set. Adds each effect's seconds to `times` (summed over threads) if given.
+/// Throws `Error` naming the pixel if `light` is negative, infinite or NaN, and for parameters that
+/// an effect refuses.
 SaturatedPixels expose(const ExpectedElectronImage& light, const Detector& detector,
                        const Exposure& exposure, const EffectSet& effects, Threads& threads,
                        CountImage& counts, EffectTimes* times = nullptr,

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/units.h"
@@ -18,12 +21,48 @@ std::array<int, 2> orders(int noll) {
   return {n, noll % 2 ? -m : m};
 }
 
-double factorial(int n) { return std::tgamma(n + 1.0); }
+/// A Zernike polynomial with its radial coefficients.
+class ZernikePolynomial {
+ public:
+  explicit ZernikePolynomial(int noll) {
+    if (noll < 1 || noll > 66) throw Error("zernike: Noll index must be 1..66");
+    const auto [n, signed_m] = orders(noll);
+    sine_ = signed_m < 0;
+    m_ = std::abs(signed_m);
+    terms_ = (n - m_) / 2 + 1;
+    const double norm = std::sqrt(m_ == 0 ? n + 1.0 : 2.0 * (n + 1));
+    for (int k = 0; k < terms_; ++k)  // of rho^(n - 2k)
+      coefficient_[std::size_t(k)] =
+          norm * (k % 2 ? -1.0 : 1.0) * factorial(n - k) /
+          (factorial(k) * factorial((n + m_) / 2 - k) * factorial((n - m_) / 2 - k));
+  }
+  /// At a place in aperture radii, at most 1 from the centre.
+  double at(std::complex<double> place) const {
+    const double rho2 = std::norm(place);
+    double radial = 0.0;
+    for (int k = 0; k < terms_; ++k) radial = radial * rho2 + coefficient_[std::size_t(k)];
+    std::complex<double> turned = 1.0;  // rho^m in the direction m theta
+    for (int i = 0; i < m_; ++i)
+      turned = {turned.real() * place.real() - turned.imag() * place.imag(),
+                turned.real() * place.imag() + turned.imag() * place.real()};
+    return radial * (sine_ ? turned.imag() : turned.real());
+  }
+
+ private:
+  static double factorial(int n) {
+    double product = 1.0;
+    for (int i = 2; i <= n; ++i) product *= i;
+    return product;
+  }
+  int m_ = 0, terms_ = 1;
+  bool sine_ = false;
+  std::array<double, 6> coefficient_{};
+};
 
 // Whether the pupil is open at a position in aperture diameters from the centre.
 bool is_open(const Pupil& p, double x, double y) {
-  const double r = std::hypot(x, y);
-  if (r > 0.5 || r < 0.5 * p.obscuration) return false;
+  const double r2 = x * x + y * y;
+  if (r2 > 0.25 || r2 < 0.25 * p.obscuration * p.obscuration) return false;
   for (int i = 0; i < p.spiders; ++i) {
     const double angle = 2 * pi * i / p.spiders;
     const double along = x * std::cos(angle) + y * std::sin(angle);
@@ -37,6 +76,7 @@ bool is_open(const Pupil& p, double x, double y) {
 double open_share(const Pupil& p, double x, double y, double step) {
   const double r = std::hypot(x, y);
   if (r > 0.5 + step) return 0.0;
+  if (p.spiders == 0 && r + step < 0.5 && r - step > 0.5 * p.obscuration) return 1.0;
   constexpr int points = 4;
   int open = 0;
   for (int j = 0; j < points; ++j)
@@ -49,17 +89,7 @@ double open_share(const Pupil& p, double x, double y, double step) {
 }  // namespace
 
 double zernike(int noll, double rho, double theta_rad) {
-  if (noll < 1 || noll > 66) throw Error("zernike: Noll index must be 1..66");
-  const auto [n, signed_m] = orders(noll);
-  const int m = std::abs(signed_m);
-  double radial = 0.0;
-  for (int k = 0; k <= (n - m) / 2; ++k)
-    radial += (k % 2 ? -1.0 : 1.0) * factorial(n - k) /
-              (factorial(k) * factorial((n + m) / 2 - k) * factorial((n - m) / 2 - k)) *
-              std::pow(rho, n - 2 * k);
-  if (m == 0) return std::sqrt(n + 1.0) * radial;
-  const double angular = signed_m < 0 ? std::sin(m * theta_rad) : std::cos(m * theta_rad);
-  return std::sqrt(2.0 * (n + 1)) * radial * angular;
+  return ZernikePolynomial(noll).at(std::polar(rho, theta_rad));
 }
 
 PupilGrid pupil_grid(const Pupil& pupil, double wavelength_m, double cell_rad, int half,
@@ -127,15 +157,18 @@ void fill_amplitude(const Pupil& pupil, const PupilGrid& grid, const ScreenAhead
   const double ratio = ahead.screen ? grid.step_m / ahead.step_m : 1.0;
   if (ahead.screen && ratio * (across - 3) > ahead.screen->side - 1)
     throw Error("pupil: the screen does not cover the aperture");
+  std::vector<std::pair<double, ZernikePolynomial>> wavefront;
+  for (const ZernikeTerm& t : pupil.wavefront)
+    if (t.rms_rad != 0.0) wavefront.emplace_back(t.rms_rad, t.noll);
   for (int j = 0; j < across; ++j)
     for (int i = 0; i < across; ++i) {
       const double x = (i - 0.5 * (across - 1)) * step, y = (j - 0.5 * (across - 1)) * step;
       const double open = open_share(pupil, x, y, step);
       if (open == 0.0) continue;
       double phase = ahead.screen ? ahead.scale * phase_of(*ahead.screen, ratio, i, j) : 0.0;
-      const double rho = std::min(1.0, 2 * std::hypot(x, y)), theta = std::atan2(y, x);
-      for (const ZernikeTerm& t : pupil.wavefront)
-        if (t.rms_rad != 0.0) phase += t.rms_rad * zernike(t.noll, rho, theta);
+      const std::complex<double> place =
+          std::complex<double>(2 * x, 2 * y) / std::max(1.0, 2 * std::hypot(x, y));
+      for (const auto& [rms_rad, polynomial] : wavefront) phase += rms_rad * polynomial.at(place);
       const auto at = 2 * (std::size_t(j) * std::size_t(n) + std::size_t(i));
       field.data()[at] = float(open * std::cos(phase));
       field.data()[at + 1] = float(open * std::sin(phase));

@@ -106,6 +106,22 @@ TEST(Expose, AFullFrameOfSaturatedPixelsIsAllFlagged) {
   EXPECT_EQ(saturated, (SaturatedPixels{33 * 17, 33 * 17}));
 }
 
+// The Sun in a field that looks at the sky for 20 s.
+TEST(Expose, LightBeyondAnyWellSaturates) {
+  for (const float light_e : {3e11f, 4e11f, 1e12f, 1.01e12f, 3e38f})
+    for (const bool noisy : {true, false}) {
+      ExpectedElectronImage light(200, 200, 1.0f);
+      light.at(17, 150) = light_e;
+      Detector detector = kaf8300;
+      detector.prnu_rms = 0.05;
+      EffectSet effects;
+      effects.set(PhotonNoise::facts, noisy);
+      SaturatedPixels saturated;
+      EXPECT_EQ(read_out(light, detector, effects, &saturated).at(17, 150), 65535) << light_e;
+      EXPECT_EQ(saturated, (SaturatedPixels{.full_well = 1, .adc = 1})) << light_e;
+    }
+}
+
 TEST(Expose, OneBitIsAnAdcToo) {
   Detector d = kaf8300;
   d.adc_bits = 1;
@@ -188,17 +204,19 @@ TEST(Expose, AnotherFrameSensorOrSeedIsOtherNoise) {
 
 TEST(Expose, ANegativeOrUndefinedExpectationIsNamedByItsPixel) {
   ExpectedElectronImage light(200, 200, 1.0f);
-  light.at(17, 150) = std::numeric_limits<float>::quiet_NaN();
-  for (bool noisy : {true, false}) {
-    EffectSet effects;
-    effects.set(PhotonNoise::facts, noisy);
-    try {
-      read_out(light, kaf8300, effects);
-      FAIL();
-    } catch (const Error& e) {
-      EXPECT_NE(std::string(e.what()).find("(17, 150)"), std::string::npos) << e.what();
+  for (const float undefined :
+       {std::numeric_limits<float>::quiet_NaN(), -1.0f, std::numeric_limits<float>::infinity()})
+    for (bool noisy : {true, false}) {
+      light.at(17, 150) = undefined;
+      EffectSet effects;
+      effects.set(PhotonNoise::facts, noisy);
+      try {
+        read_out(light, kaf8300, effects);
+        FAIL();
+      } catch (const Error& e) {
+        EXPECT_NE(std::string(e.what()).find("(17, 150)"), std::string::npos) << e.what();
+      }
     }
-  }
 }
 
 }  // namespace
