@@ -71,6 +71,7 @@ std::array<ZernikeTerm, 2> PsfModel::centring(const FieldPlace& place, std::size
   if (symmetric && own.spiders % 2 == 0) return tilt;
   // A tilt of a [rad rms] displaces by 2 a lambda / (pi D).
   const double rad_per_cell = 0.5 * pi * own.aperture_m / wavelength_m * cell_rad_;
+  constexpr double near_enough_cells = 1e-3;  // a step leaves a hundredth of the offset
   for (int i = 0; i < 3; ++i) {
     Pupil p = own;
     p.wavefront.insert(p.wavefront.end(), tilt.begin(), tilt.end());
@@ -84,6 +85,7 @@ std::array<ZernikeTerm, 2> PsfModel::centring(const FieldPlace& place, std::size
       }
     tilt[0].rms_rad -= rad_per_cell * x;
     tilt[1].rms_rad -= rad_per_cell * y;
+    if (std::hypot(x, y) < near_enough_cells) break;
   }
   return tilt;
 }
