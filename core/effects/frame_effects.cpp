@@ -53,6 +53,9 @@ ErrorBound StarBackground::error(int level, const PlanFacts& f) {
   // In the capsule of a source that counts.
   const double share = std::min(PlanFacts::neighbour_share, left_e / f.faintest_source_e());
   error.photometry_mag = 1.086 * share;
+  // One that would count itself.
+  if (left_e * f.pattern_share(f.star_trail_px) >= PlanFacts::least_snr * f.least_noise_e())
+    error.photometry_mag = unbounded;
   error.position_px = 3.0 * share * std::hypot(1.0, f.fwhm_px);
   return error;
 }

@@ -153,7 +153,8 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
         narrowest_px, shape ? 2.0 * shape->radius_m / std::max(range_m, 1.0) / f.pixel_rad : 0.0);
     const double light_e =
         electrons * light_of_magnitude(sampler.magnitude(object, motion, middle));
-    f.brightest_object_e = std::max(f.brightest_object_e, brighter * light_e);
+    f.brightest_object_e =
+        std::max(f.brightest_object_e, brighter * most_by_scintillation(f) * light_e);
     faintest_e = std::min(faintest_e, fainter * light_e);
   }
   f.narrowest_object_px = narrowest_px;

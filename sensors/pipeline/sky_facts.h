@@ -1,4 +1,6 @@
 #pragma once
+#include <cmath>
+
 #include "core/effects/plan_facts.h"
 #include "core/optics/projection.h"
 #include "sensors/pipeline/view.h"
@@ -20,6 +22,12 @@ void look_over(const Optics& optics, double margin_px, Visit&& visit) {
 
 /// Returns where the sensor points at `t`.
 Vec<Gcrs> boresight(const View& view, SimTime t);
+
+/// How much brighter a source may be than without scintillation: three deviations of a log-normal
+/// factor. The sky's facts must be there.
+inline double most_by_scintillation(const PlanFacts& facts) {
+  return std::exp(3.0 * facts.scintillation);
+}
 
 /// Sets what is known of the sky, the air and the horizon in an exposure. `drawn_to_v_mag`: stars
 /// that are drawn one by one.

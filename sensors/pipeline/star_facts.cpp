@@ -133,7 +133,8 @@ void StarFacts::add_stars(const View& view, PlanFacts& f) const {
   const ByLimit stars = is_counted ? counted(view, f, seen_rad + f.refraction_rad) : whole_sky_;
   const double electrons =
       Throughput(view).electrons_per_photon_m2() * view.times().seconds() *
-      (view.on_ground() ? light_of_magnitude(0.9 * f.zenith_extinction_mag) : 1.0);
+      (view.on_ground() ? light_of_magnitude(0.9 * f.zenith_extinction_mag) : 1.0) *
+      most_by_scintillation(f);
   // Places are computed of all stars around the field.
   const double around = share_of_sky(seen_rad + searched_rad);
   double processed = around;
