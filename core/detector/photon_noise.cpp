@@ -34,6 +34,8 @@ ErrorBound PhotonNoise::error(int level, const PlanFacts& f) {
   double most = 0.0;
   for (const auto& s : f.sky) most = std::max(most, skewness(s.sky_e + f.dark_e));
   if (f.sees_horizon) most = std::max(most, skewness(f.dark_e));  // pixels that it cuts
+  const double seen = 1.0 - std::min(1.0, f.hidden_sky_px);       // behind a dark object
+  for (const auto& s : f.sky) most = std::max(most, skewness(seen * s.sky_e + f.dark_e));
   ErrorBound error{.noise = 4.0 / 9.0 * most};
   double least_e = f.sees_horizon ? f.dark_e : unbounded;
   for (const auto& s : f.sky) least_e = std::min(least_e, s.sky_e + f.dark_e);

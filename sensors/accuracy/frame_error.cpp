@@ -5,7 +5,6 @@
 
 #include "core/detector/expected_noise.h"
 #include "core/detector/expected_signal.h"
-#include "core/optics/projection.h"
 
 namespace dmise {
 namespace {
@@ -96,17 +95,6 @@ bool for_capsule(const ReferenceSource& s, int columns, int rows, Visit&& visit)
       if (distance_px({double(x), double(y)}, s) <= s.margin_px)
         visit(std::size_t(y) * std::size_t(columns) + std::size_t(x), x, y);
   return x0 >= 0.0 && y0 >= 0.0 && x1 <= columns - 1.0 && y1 <= rows - 1.0;
-}
-
-/// Places of the light of a star whose trail has its centroid at `centroid`.
-std::pair<PixelPosition, PixelPosition> trail_of_star(const View& view, PixelPosition centroid) {
-  const FrameTimes& t = view.times();
-  if (const auto direction = unproject(view.sensor().camera.optics, centroid)) {
-    const auto apparent = view.camera_from_gcrs(t.middle).inverse() * *direction;
-    const auto from = view.pixel(apparent, t.start), to = view.pixel(apparent, t.end);
-    if (from && to) return {*from, *to};
-  }
-  return {centroid, centroid};
 }
 
 }  // namespace
@@ -224,13 +212,11 @@ void FrameComparison::see_who_counts() {
 }
 
 void FrameComparison::find_sources(const FrameProducts& reference) {
-  const View view(scene_.sensor(), scene_.times(), scene_.world(), scene_.scenario().seed);
   const auto& optics = scene_.sensor().camera.optics;
   const double margin_px = widths * std::hypot(1.0, reference.header.psf_fwhm_px);
   for (const StarTruth& star : reference.stars) {
-    const auto [from, to] = trail_of_star(view, {star.x_px, star.y_px});
     measure({.name = "star " + std::to_string(star.id),
-             .trail = line_along(from, {star.x_px, star.y_px}, to),
+             .trail = line_along(star.start, star.middle, star.end),
              .margin_px = margin_px});
   }
   for (const Truth& object : reference.truths) {

@@ -208,7 +208,8 @@ std::uint32_t StarLayer::draw(const Exposure& exposure, std::span<const std::uin
     const std::uint32_t star = trails[i].star;
     if (truth)
       truth->push_back({stars.id[star], stars.v_mag[star], stars.bv[star], deposited[i].x_px,
-                        deposited[i].y_px, deposited[i].signal_e});
+                        deposited[i].y_px, deposited[i].signal_e, trails[i].pixel[0],
+                        trails[i].pixel[1], trails[i].pixel[2]});
   }
   return inside;
 }

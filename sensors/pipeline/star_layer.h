@@ -17,8 +17,9 @@ namespace dmise {
 struct StarTruth {
   std::uint32_t id = 0;  // in its catalogue
   double v_mag = 0.0, bv = 0.0;
-  double x_px = 0.0, y_px = 0.0;  // centroid of its light in the frame
-  double signal_e = 0.0;          // expected electrons deposited in the frame
+  double x_px = 0.0, y_px = 0.0;     // centroid of its light in the frame
+  double signal_e = 0.0;             // expected electrons deposited in the frame
+  PixelPosition start, middle, end;  // of its trail, also beside the frame
 };
 
 /// The star background: every star of the field with its own place and its own trail.
