@@ -11,7 +11,7 @@ namespace {
 /// leaves more than half of the noise: twice that is left where rings are not smeared. An object
 /// of many speckles evens them out. Two wavelengths leave rings that stand still as uneven as one.
 double rings_in_noise(int level, const PlanFacts& f, double source_e, double size_px) {
-  constexpr double of_rings[] = {2.0, 2.0, 1.0, 0.65, 0.0},
+  constexpr double of_rings[] = {2.0, 2.0, 1.1, 0.85, 0.0},
                    of_speckles[] = {2.0, 1.4, 1.0, 0.65, 0.0};
   constexpr double peak = 4.0, narrow = 0.5, half_noise = 0.5;
   const double width = f.relative_bandwidth / PsfWavelengths::count[std::size_t(level)];

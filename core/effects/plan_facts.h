@@ -205,7 +205,7 @@ struct PlanFacts {
   ErrorBound shifted(double angle_rad, bool faint, double trail_px) const {
     constexpr double off_axis = 1.08, steepest = 0.607;  // of a Gaussian
     const double of_light =
-        (screens > 0 ? 0.15 : 0.02) + (std::isfinite(cloud_detail_px) ? 0.1 : 0.0);
+        (screens > 0 ? 0.15 : 0.02) + 8.0 / cloud_detail_px;  // clouds: magnitudes a piece
     const double width_px = screens > 0 ? std::min(sigma_px(), speckle_px / 2.355) : sigma_px();
     const double px = off_axis * angle_rad / pixel_rad;
     // Beside sources that count there is light of their rings alone, which go from dark to bright

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 
 #include "core/effects/plan_facts.h"
@@ -24,9 +25,10 @@ void look_over(const Optics& optics, double margin_px, Visit&& visit) {
 Vec<Gcrs> boresight(const View& view, SimTime t);
 
 /// How much brighter a source may be than without scintillation: three deviations of a log-normal
-/// factor. The sky's facts must be there.
+/// factor of mean 1, exp(3 s - s^2 / 2), which is largest at s = 3. The sky's facts must be there.
 inline double most_by_scintillation(const PlanFacts& facts) {
-  return std::exp(3.0 * facts.scintillation);
+  const double s = std::min(facts.scintillation, 3.0);
+  return std::exp(s * (3.0 - 0.5 * s));
 }
 
 /// Sets what is known of the sky, the air and the horizon in an exposure. `drawn_to_v_mag`: stars
