@@ -92,18 +92,18 @@ struct SkyGrid {
                                      true,
                                      levels,
                                      1};
-  /// Of the light, on uncut patches of 32 px: the zodiacal table bends at its nodes by 0.1 a
-  /// radian, the other parts by 0.5 a square radian; clouds have edges.
+  /// Of the light, on uncut patches of 32 px: the zodiacal table, which bends at its nodes, is
+  /// missed by 0.7 a radian of a patch, the other parts by 1.5 a square radian; clouds have edges.
   static double of_patches(const SkySample& s, const PlanFacts& f) {
     if (std::isfinite(f.cloud_detail_px)) return s.sky_e;
     const double patch_rad = 32.0 * f.pixel_rad, zodiacal_e = s.of(SkyPart::zodiacal_light);
-    return 0.1 * patch_rad * zodiacal_e + 1.5 * patch_rad * patch_rad * (s.sky_e - zodiacal_e);
+    return 0.7 * patch_rad * zodiacal_e + 1.5 * patch_rad * patch_rad * (s.sky_e - zodiacal_e);
   }
   /// What cutting leaves, at most. It does not find pieces of cloud that are smaller than a patch.
   static double of_cut(int level, const SkySample& s, const PlanFacts& f) {
     constexpr double smallest_px = 64.0;
     const double share =
-        f.cloud_detail_px < smallest_px ? 1.0 : 0.7 * tolerance[std::size_t(level)];
+        f.cloud_detail_px < smallest_px ? 1.0 : 0.9 * tolerance[std::size_t(level)];
     return share * s.sky_e;
   }
   static ErrorBound error(int level, const PlanFacts& f) {

@@ -29,7 +29,8 @@ struct Vignetting {
     const double change = lost * std::min(1.0, 2.0 * length_px / half_diagonal_px);
     error.position_px = 0.25 * change * length_px;
     // Where a source leaves less than half of the noise.
-    if (f.stars > 0.0 || f.objects > 0) error.background_sigma += 0.5 * lost;
+    if (f.stars > 0.0 || f.objects > 0)
+      error += f.without_light([&](const SkySample& s) { return 0.5 * lost * s.noise_e; });
     return error;
   }
   static double cost_s(int level, const PlanFacts& f) { return level * 10e-9 * f.stars; }

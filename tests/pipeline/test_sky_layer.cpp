@@ -6,6 +6,7 @@
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/airmass.h"
+#include "sensors/pipeline/exposure_planner.h"
 #include "sensors/pipeline/throughput.h"
 #include "tests/pipeline/harness.h"
 #include "tests/support/data.h"
@@ -181,6 +182,36 @@ TEST(SkyLayer, IsWithinItsToleranceInEveryProjection) {
       }
     EXPECT_LT(worst, SkyGrid::tolerance[std::size_t(SkyGrid::facts.unplanned())])
         << projection.name;
+  }
+}
+
+// A whole frame of an all-sky sensor, in which the zodiacal table bends at many nodes.
+TEST(SkyLayer, EachLevelOfTheGridKeepsItsBoundOverTheWholeSky) {
+  const auto stage_at = [](std::string_view level) {
+    std::string text = scenario("2018-01-21T00:15:00Z", 2, "omnissa", "zenith",
+                                ", sky: dark, effects: {sky_grid: " + std::string(level) + "}");
+    return text.replace(text.find("exposure_s: 1"), 13, "exposure_s: 20");
+  };
+  const std::string stars = "ra_deg,dec_deg,mag_v\n0,90,6\n";
+  test::Stage reference(stage_at("pixel"), stars);
+  const ExpectedElectronImage exact = sky_of(reference, 1);
+  const SensorConfig& config = reference.scenario.sensors[0];
+  const View view(config, frame_times(config, 1), reference.world);
+  const PlanFacts facts =
+      ExposurePlanner(config, reference.stars.get(), drawn_to_v_mag, nullptr).facts(view, {});
+  for (int level = 0; level < SkyGrid::facts.reference(); ++level) {
+    test::Stage stage(stage_at(SkyGrid::levels[std::size_t(level)]), stars);
+    const ExpectedElectronImage grid = sky_of(stage, 1);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
+      const double light_e = exact.pixels[i];
+      const double noise_e =
+          std::sqrt(light_e + facts.dark_e + facts.read_noise_e * facts.read_noise_e);
+      worst = std::max(worst, std::abs(grid.pixels[i] - light_e) / noise_e);
+    }
+    const double bound = SkyGrid::error(level, facts).background_sigma;
+    EXPECT_LE(worst, bound) << SkyGrid::levels[std::size_t(level)];
+    EXPECT_GT(worst, 0.1 * bound) << SkyGrid::levels[std::size_t(level)];
   }
 }
 
