@@ -111,7 +111,7 @@ struct SkyGrid {
         [&](const SkySample& s) { return std::min(of_cut(level, s, f), of_patches(s, f)); });
   }
   static double cost_s(int level, const PlanFacts& f) {
-    constexpr std::array<double, 4> looks_more{0.0, 0.05, 2.0, 8.0};
+    constexpr std::array<double, 4> looks_more{0.0, 0.05, 4.0, 20.0};
     if (level == facts.reference()) return f.sky_look_s * f.pixels();
     const bool is_cut = std::any_of(f.sky.begin(), f.sky.end(), [&](const SkySample& s) {
       return of_patches(s, f) > of_cut(level, s, f);
