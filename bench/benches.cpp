@@ -2,6 +2,7 @@
 
 #include "bench/bench_all_sky.h"
 #include "bench/bench_calibrate.h"
+#include "bench/bench_detect.h"
 #include "bench/bench_effects.h"
 #include "bench/bench_figure5.h"
 #include "bench/bench_frame.h"
@@ -24,6 +25,7 @@ std::vector<Bench> benches() {
        }},
       {"calibrate", "measures what effects cost here, for predicted seconds", bench_calibrate,
        add_calibrate_options},
+      {"detect", "detection against the ideal matched filter, its time and memory", bench_detect},
       {"effects", "errors and times of planned frames over scenes drawn at random", bench_effects,
        add_effects_options},
       {"frame", "stages of a frame on one thread", bench_frame},

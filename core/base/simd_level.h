@@ -13,4 +13,10 @@ SimdLevel best_simd_level();
 
 const char* name(SimdLevel level);
 
+/// Returns the function for `level`: `kernel_of(level, sse2::f, avx2::f, avx512::f)`.
+template <class Function>
+Function* kernel_of(SimdLevel level, Function* sse2, Function* avx2, Function* avx512) {
+  return level == SimdLevel::avx512 ? avx512 : level == SimdLevel::avx2 ? avx2 : sse2;
+}
+
 }  // namespace dmise

@@ -104,32 +104,76 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads)
       rows_(counts.rows),
       mesh_columns_(std::max(1, (counts.columns + cell_px / 2) / cell_px)),
       mesh_rows_(std::max(1, (counts.rows + cell_px / 2) / cell_px)) {
-  const std::size_t cells = std::size_t(mesh_columns_) * std::size_t(mesh_rows_);
-  level_.resize(cells);
-  sigma_.resize(cells);
-  threads.for_ranges(cells, std::size_t(mesh_columns_), [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint16_t> values;
-    for (std::size_t cell = begin; cell < end; ++cell) {
-      const int i = int(cell) % mesh_columns_, j = int(cell) / mesh_columns_;
-      const int x0 = int(std::int64_t(i) * columns_ / mesh_columns_);
-      const int x1 = int(std::int64_t(i + 1) * columns_ / mesh_columns_);
-      const int y0 = int(std::int64_t(j) * rows_ / mesh_rows_);
-      const int y1 = int(std::int64_t(j + 1) * rows_ / mesh_rows_);
-      values.clear();
-      for (int y = y0; y < y1; ++y)
-        values.insert(values.end(), counts.row(y) + x0, counts.row(y) + x1);
-      const Sky sky = clipped_sky(values);
-      level_[cell] = sky.level;
-      sigma_[cell] = sky.sigma;
-    }
-  });
   for (int x = 0; x < columns_; ++x) across_.push_back(between(x, columns_, mesh_columns_));
-  level_ = median_3x3(level_, mesh_columns_, mesh_rows_);
-  sigma_ = median_3x3(sigma_, mesh_columns_, mesh_rows_);
+  const std::size_t cells = std::size_t(mesh_columns_) * std::size_t(mesh_rows_);
+  std::vector<float> level(cells), sigma(cells);
+  const auto measure = [&](std::size_t cell, bool is_sloped, std::vector<std::uint16_t>& values) {
+    const Area area = area_of(cell);
+    values.clear();
+    for (int y = area.y0; y <= area.y1; ++y) {
+      const std::uint16_t* from = counts.row(y);
+      if (!is_sloped) {
+        values.insert(values.end(), from + area.x0, from + area.x1 + 1);
+        continue;
+      }
+      const Between v = between(y, rows_, mesh_rows_);
+      for (int x = area.x0; x <= area.x1; ++x) {
+        const float flat = float(from[x]) - at(level_, x, v) + level_[cell];
+        values.push_back(std::uint16_t(std::clamp(flat + 0.5f, 0.0f, 65535.0f)));
+      }
+    }
+    const Sky sky = clipped_sky(values);
+    level[cell] = sky.level;
+    sigma[cell] = sky.sigma;
+  };
+  const auto measure_all = [&](bool sloped) {
+    threads.for_ranges(cells, std::size_t(mesh_columns_), [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint16_t> values;
+      for (std::size_t cell = begin; cell < end; ++cell)
+        if (!sloped || is_sloped(cell)) measure(cell, sloped, values);
+    });
+    level_ = median_3x3(level, mesh_columns_, mesh_rows_);
+    sigma_ = median_3x3(sigma, mesh_columns_, mesh_rows_);
+  };
+  measure_all(false);
+  measure_all(true);
 }
 
-float Background::at(const std::vector<float>& mesh, int x, int y) const {
-  const Between u = across_[std::size_t(x)], v = between(y, rows_, mesh_rows_);
+Background::Area Background::area_of(std::size_t cell) const {
+  const auto i = std::int64_t(cell) % mesh_columns_, j = std::int64_t(cell) / mesh_columns_;
+  return {int(i * columns_ / mesh_columns_), int(j * rows_ / mesh_rows_),
+          int((i + 1) * columns_ / mesh_columns_) - 1, int((j + 1) * rows_ / mesh_rows_) - 1};
+}
+
+float Background::level_of_cell(int i, int j) const {
+  return level_[std::size_t(std::clamp(j, 0, mesh_rows_ - 1)) * std::size_t(mesh_columns_) +
+                std::size_t(std::clamp(i, 0, mesh_columns_ - 1))];
+}
+
+bool Background::is_sloped(std::size_t cell) const {
+  const int i = int(cell) % mesh_columns_, j = int(cell) / mesh_columns_;
+  const float across = 0.5f * (level_of_cell(i + 1, j) - level_of_cell(i - 1, j));
+  const float down = 0.5f * (level_of_cell(i, j + 1) - level_of_cell(i, j - 1));
+  return across * across + down * down > 0.5f * sigma_[cell] * sigma_[cell];
+}
+
+std::vector<Background::Area> Background::bent_cells(double share) const {
+  std::vector<Area> out;
+  for (std::size_t cell = 0; cell < level_.size(); ++cell) {
+    // At the border, where levels are extrapolated, the bend is the next cell's.
+    const int i = std::clamp(int(cell) % mesh_columns_, 1, std::max(mesh_columns_ - 2, 1));
+    const int j = std::clamp(int(cell) / mesh_columns_, 1, std::max(mesh_rows_ - 2, 1));
+    const float middle = 2 * level_of_cell(i, j);
+    const float across = level_of_cell(i - 1, j) + level_of_cell(i + 1, j) - middle;
+    const float down = level_of_cell(i, j - 1) + level_of_cell(i, j + 1) - middle;
+    if (std::max(std::abs(across), std::abs(down)) > 8 * share * sigma_[cell])
+      out.push_back(area_of(cell));
+  }
+  return out;
+}
+
+float Background::at(const std::vector<float>& mesh, int x, const Between& v) const {
+  const Between u = across_[std::size_t(x)];
   const float* above = mesh.data() + std::size_t(v.cell) * std::size_t(mesh_columns_) + u.cell;
   const float* below = mesh_rows_ > 1 ? above + mesh_columns_ : above;
   const int right = mesh_columns_ > 1 ? 1 : 0;

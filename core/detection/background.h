@@ -10,16 +10,23 @@ namespace dmise {
 /// at 3 sigma until convergence; the level is 2.5 median - 1.5 mean (Bertin & Arnouts 1996, A&AS
 /// 117, 393), or the median if the two differ by more than 0.3 sigma. A median over 3 x 3 cells
 /// removes bright sources; values are bilinear between the cells' centres and extrapolated to the
-/// frame's edges.
+/// frame's edges. Cells with a gradient are measured again without it: it is no noise.
 class Background {
  public:
   Background(const CountImage& counts, int cell_px, Threads& threads);
 
-  float level_dn(int x, int y) const { return at(level_, x, y); }
-  float sigma_dn(int x, int y) const { return at(sigma_, x, y); }
+  float level_dn(int x, int y) const { return at(level_, x, between(y, rows_, mesh_rows_)); }
+  float sigma_dn(int x, int y) const { return at(sigma_, x, between(y, rows_, mesh_rows_)); }
   /// The same along row `y`: `columns` values.
   void level_row(int y, float* level_dn) const { row(level_, y, level_dn); }
   void sigma_row(int y, float* sigma_dn) const { row(sigma_, y, sigma_dn); }
+  /// A rectangle of pixels, the first and the last of both coordinates.
+  struct Area {
+    int x0, y0, x1, y1;
+  };
+  /// Cells over which the level bends so much that a straight line between cells misses it by more
+  /// than `share` of its noise.
+  std::vector<Area> bent_cells(double share) const;
   /// Medians over the frame.
   float median_level_dn() const;
   float median_sigma_dn() const;
@@ -31,7 +38,11 @@ class Background {
     float next;
   };
   static Between between(int pixel, int pixels, int cells);
-  float at(const std::vector<float>& mesh, int x, int y) const;
+  /// Whether the level changes over a cell by so much that its noise is measured too high by 2 %.
+  bool is_sloped(std::size_t cell) const;
+  Area area_of(std::size_t cell) const;
+  float level_of_cell(int i, int j) const;
+  float at(const std::vector<float>& mesh, int x, const Between& down) const;
   void row(const std::vector<float>& mesh, int y, float* out) const;
 
   int columns_, rows_;  // of the frame

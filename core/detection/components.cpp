@@ -46,7 +46,8 @@ class Band {
   Band(const CountImage& counts, const Background& background, const std::vector<float>& kernel)
       : counts_(counts), background_(background), kernel_(kernel) {}
 
-  std::vector<PeakedRun> runs(int first_row, int last_row, float low, float unit) {
+  std::vector<PeakedRun> runs(int first_row, int last_row, float low, float unit,
+                              FilteredFrame* keep) {
     const int columns = counts_.columns, radius = int(kernel_.size()) - 1;
     const int padded = columns + 2 * radius;
     // Rows of the band and its neighbours, smoothed along x; there is no light outside the frame.
@@ -74,6 +75,11 @@ class Band {
           filtered.data(), columns);
       background_.sigma_row(y, sigma.data());
       append_runs(y, filtered, sigma, low, unit, out);
+      if (!keep) continue;
+      std::int16_t* kept = keep->row(y);
+      for (int x = 0; x < columns; ++x)
+        kept[x] = FilteredFrame::step_of(filtered[std::size_t(x)] / (unit * sigma[std::size_t(x)]),
+                                         (x + y) % 2 != 0);
     }
     return out;
   }
@@ -181,7 +187,8 @@ double kernel_square_sum(double sigma_px) {
 }
 
 std::vector<Component> find_components(const CountImage& counts, const Background& background,
-                                       double sigma_px, double low, double high, Threads& threads) {
+                                       double sigma_px, double low, double high, Threads& threads,
+                                       FilteredFrame* filtered) {
   const auto kernel = half_kernel(sigma_px);
   const float unit = float(std::sqrt(kernel_square_sum(sigma_px)));
   const std::size_t bands = std::size_t((counts.rows + band_rows - 1) / band_rows);
@@ -190,7 +197,8 @@ std::vector<Component> find_components(const CountImage& counts, const Backgroun
     for (std::size_t b = begin; b < end; ++b) {
       Band band(counts, background, kernel);
       const int first = int(b) * band_rows;
-      found[b] = band.runs(first, std::min(first + band_rows, counts.rows), float(low), unit);
+      found[b] =
+          band.runs(first, std::min(first + band_rows, counts.rows), float(low), unit, filtered);
     }
   });
   std::vector<PeakedRun> runs;

@@ -4,6 +4,7 @@
 #include "core/base/image.h"
 #include "core/base/parallel.h"
 #include "core/detection/background.h"
+#include "core/detection/filtered_frame.h"
 
 namespace dmise {
 
@@ -23,10 +24,12 @@ struct Component {
 
 /// Convolves the background-subtracted frame with a Gaussian of `sigma_px` (the matched filter of a
 /// point source, in units of its noise), keeps pixels above `low` and returns the connected
-/// components with a pixel above `high`, by rising (row, column) of their first pixel. Works in
-/// bands of rows, to save memory. Equal for any number of threads.
+/// components with a pixel above `high`, by rising (row, column) of their first pixel. `filtered`,
+/// if not null, is of the frame's size and gets what the filter returned. Works in bands of rows,
+/// to save memory. Equal for any number of threads.
 std::vector<Component> find_components(const CountImage& counts, const Background& background,
-                                       double sigma_px, double low, double high, Threads& threads);
+                                       double sigma_px, double low, double high, Threads& threads,
+                                       FilteredFrame* filtered = nullptr);
 
 /// Sum of squares of the unit-sum Gaussian on the pixel grid: a point source of flux F in white
 /// noise s has the matched-filter SNR F sqrt(this) / s.

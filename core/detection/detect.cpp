@@ -9,6 +9,7 @@
 #include "core/detection/compact_source.h"
 #include "core/detection/components.h"
 #include "core/detection/describe.h"
+#include "core/detection/faint_streaks.h"
 #include "core/detection/line_profile.h"
 #include "core/detection/long_streak.h"
 #include "core/detection/scene.h"
@@ -59,6 +60,13 @@ bool is_long(const Scene& scene, const Component& c) {
   const double extent_px = std::hypot(c.max_x - c.min_x + 1, c.max_y - c.min_y + 1);
   const double limit_px = star_px + 12 * scene.sigma_px + 6;
   return extent_px > limit_px && (extent_px > limit_px + 20 || elongation(c) > 2);
+}
+
+/// Hides a component and what its light reaches.
+void hide(FilteredFrame& frame, const Component& component, int reach_px) {
+  for (const Run& run : component.runs)
+    for (int y = run.y - reach_px; y <= run.y + reach_px; ++y)
+      frame.hide(y, run.first_x - reach_px, run.last_x + reach_px);
 }
 
 struct Judged {
@@ -180,18 +188,27 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
                     lowest_clipped_dn(header),
                     effective_sigma_px(header.psf_fwhm_px),
                     header.detector && header.detector->blooming};
+  FilteredFrame filtered(counts.columns, counts.rows, scene.sigma_px);
   const auto components = find_components(counts, background, scene.sigma_px, settings.connect_snr,
-                                          settings.seed_snr, threads);
+                                          settings.seed_snr, threads, &filtered);
   Judged judged = judge(scene, components, settings, threads);
+  for (Source& source : judged.sources) extend(scene, filtered, source);
+  const int reach_px = int(std::ceil(2 * scene.sigma_px));
+  for (const Component& component : components) hide(filtered, component, reach_px);
+  for (const auto& area : background.bent_cells(settings.most_bend_in_noise))
+    for (int y = area.y0; y <= area.y1; ++y) filtered.hide(y, area.x0, area.x1);
+  filtered.flatten(threads);
+  judged.star_like += std::uint32_t(std::erase_if(judged.sources, [&](const Source& source) {
+    return is_row_of_stars(scene, source, settings);
+  }));
+  for (Source& source : find_faint_streaks(scene, filtered, settings, threads))
+    judged.sources.push_back(std::move(source));
   DetectionResult result;
   result.report = make_report(counts, header, background, scene.sigma_px, settings.seed_snr);
   result.report.star_like = judged.star_like;
-  for (const Source& source : distinct(std::move(judged.sources), scene.sigma_px)) {
+  for (Source& source : distinct(std::move(judged.sources), scene.sigma_px)) {
     if (!wcs_sees_sky(header.wcs, {source.trail().x_px, source.trail().y_px})) continue;
-    if (is_row_of_stars(scene, source, settings)) {
-      ++result.report.star_like;
-      continue;
-    }
+    widen_ends(source, scene.sigma_px);
     Detection d = describe(source, header);
     d.index = std::uint32_t(result.detections.size());
     d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);

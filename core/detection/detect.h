@@ -24,6 +24,9 @@ struct DetectorSettings {
   // The same for the wings of a saturated source: per square of the sigma at which they begin, with
   // minimum and maximum.
   double wings_error = 0.02, least_wings_error = 0.1, most_wings_error = 0.5;
+  // Where the background's level is missed by more than this in units of a pixel's noise, streaks
+  // without a single bright pixel are not searched for.
+  double most_bend_in_noise = 0.15;
 };
 
 struct DetectionResult {

@@ -113,10 +113,11 @@ bool lies_on(const Trail& trail, double x_px, double y_px, double margin_px) {
 }
 
 std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool streak,
-                                 double model_error, bool draft) {
+                                 double model_error, bool draft, unsigned free) {
   Source source;
   source.streak = streak;
-  source.free = !streak                             ? unsigned(trail_place)
+  source.free = free                                ? free
+                : !streak                           ? unsigned(trail_place)
                 : start.length_px >= bent_from_px   ? unsigned(trail_bent_line)
                 : start.length_px >= sloped_from_px ? unsigned(trail_line | trail_slope)
                                                     : unsigned(trail_line);
@@ -158,6 +159,29 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
   }
   source.saturated = is_saturated(scene, trail);
   return source;
+}
+
+void widen_ends(Source& source, double sigma_px) {
+  if (!source.streak) return;
+  const Trail& t = source.trail();
+  const double snr2 = source.snr() * source.snr() / std::max(t.length_px, 1.0);
+  if (!(snr2 > 0)) return;
+  const double most_px2 = t.length_px * t.length_px / 12;
+  const double end_px2 = std::min(26 / (snr2 * snr2) * std::exp(-snr2 * sigma_px), most_px2);
+  const auto n = std::size_t(source.fit.parameters);
+  const auto add = [&](std::size_t i, std::size_t j, double value) {
+    source.fit.covariance[i * n + j] += value;
+    if (i != j) source.fit.covariance[j * n + i] += value;
+  };
+  const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
+  add(0, 0, end_px2 / 2 * c * c);
+  add(0, 1, end_px2 / 2 * c * s);
+  add(1, 1, end_px2 / 2 * s * s);
+  if (!(source.free & trail_length)) return;
+  const double e_per_px = t.flux_e / std::max(t.length_px, 1.0);
+  add(2, 2, 2 * end_px2 * e_per_px * e_per_px);
+  add(2, 3, 2 * end_px2 * e_per_px);
+  add(3, 3, 2 * end_px2);
 }
 
 }  // namespace dmise

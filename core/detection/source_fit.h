@@ -17,8 +17,15 @@ bool plausible(const Scene& scene, const Trail& trail);
 
 /// Final fit of a source that is not a star, over all pixels near `start` of any component, with a
 /// free local background; outlying pixels (stars underneath) are rejected. Empty if the fit fails
-/// or leaves the frame. A `draft` stops before the ends have converged.
+/// or leaves the frame. A `draft` stops before the ends have converged. `free`: the parameters of
+/// the trail that are fitted; 0: those that its length can show.
 std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool streak,
-                                 double model_error, bool draft = false);
+                                 double model_error, bool draft = false, unsigned free = 0);
+
+/// Adds to a streak's covariance what the curvature of chi2 does not show of its ends. Where a
+/// pixel's worth of length has an SNR below 1, an end is a step lost in noise, found with a
+/// variance of 26 / SNR^4 px^2 (Yao 1987, Annals of Statistics 15, 1321) until the blur is wider
+/// than that.
+void widen_ends(Source& source, double sigma_px);
 
 }  // namespace dmise

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/base/rng.h"
+#include "core/base/simd_level.h"
 
 // The detector's loops over pixels, compiled once per instruction set. `first` is a multiple of
 // rng_group.
@@ -38,11 +39,5 @@ DMISE_DETECTOR_KERNELS(sse2)
 DMISE_DETECTOR_KERNELS(avx2)
 DMISE_DETECTOR_KERNELS(avx512)
 #undef DMISE_DETECTOR_KERNELS
-
-/// Returns the function for `level`: `kernel_of(level, sse2::f, avx2::f, avx512::f)`.
-template <class Function>
-Function* kernel_of(SimdLevel level, Function* sse2, Function* avx2, Function* avx512) {
-  return level == SimdLevel::avx512 ? avx512 : level == SimdLevel::avx2 ? avx2 : sse2;
-}
 
 }  // namespace dmise

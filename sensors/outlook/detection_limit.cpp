@@ -6,6 +6,7 @@
 #include "core/base/units.h"
 #include "core/detection/components.h"
 #include "core/detection/detect.h"
+#include "core/detection/faint_streaks.h"
 #include "core/detector/expected_noise.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
@@ -64,10 +65,12 @@ DetectionLimit detection_limit(double noise_e, double sigma_px, double streak_px
   const double lift = places > 1.0 ? normal_quantile(std::pow(0.5, 1.0 / places)) : 0.0;
   const double density = electrons_of(streak_limit_snr - lift, width_px * width_px, noise_e);
   // `electrons_of` is for a point of these pixels; a streak's density is over one width.
-  limit.streak_e_per_px =
-      std::max(density / width_px,
-               electrons_of(point_limit_snr, width_px * std::max(width_px, streak_px), noise_e) /
-                   std::max(width_px, streak_px));
+  const double length_px = std::max(width_px, streak_px);
+  const auto of_whole = [&](double snr) {
+    return electrons_of(snr, width_px * length_px, noise_e) / length_px;
+  };
+  limit.streak_e_per_px = std::min(std::max(density / width_px, of_whole(point_limit_snr)),
+                                   of_whole(least_streak_snr(length_px)));
   return limit;
 }
 

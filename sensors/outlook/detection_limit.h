@@ -22,8 +22,9 @@ inline constexpr double point_limit_snr = 6.0, streak_limit_snr = 5.0;
 /// A point of N electrons has SNR N / sqrt(N + A noise^2), where A is the inverse of the sum of
 /// squares of its fractions of light in the pixels. A streak of density d has SNR d / noise
 /// everywhere along its length in the frame filtered for points; the maximum of the L / (2 sqrt(pi)
-/// sigma) independent positions is above the threshold in half of all frames. The whole streak must
-/// reach the point's SNR as well.
+/// sigma) independent positions is above the threshold in half of all frames, and the whole streak
+/// reaches the point's SNR. Or the whole streak reaches `least_streak_snr`, without such a
+/// position.
 ///
 /// A point is distinguished from star trails of `star_px`, if they are long enough, by its shape:
 /// the trail fits it worse by SNR^2 (1 - r^2), where r is the correlation of both shapes, which

@@ -37,6 +37,14 @@ TEST(Background, FollowsAGradient) {
   for (int x = 4; x < 640; x += 40) EXPECT_NEAR(b.level_dn(x, 250), 1000 + 0.5 * x, 2.0);
 }
 
+TEST(Background, AGradientIsNoNoise) {
+  Threads threads;
+  for (const double slope : {0.5, 5.0, 40.0}) {  // DN per px; 40 is 2,560 over a cell
+    const Background b(noise(640, 512, 1000, slope, 10, 3), 64, threads);
+    for (int x = 40; x < 640; x += 40) EXPECT_NEAR(b.sigma_dn(x, 250), 10, 0.6) << slope;
+  }
+}
+
 TEST(Background, OneSourceInTwentyPixelsHardlyLiftsIt) {
   auto counts = noise(512, 512, 1000, 0, 10, 3);
   for (int y = 3; y < 512; y += 20)

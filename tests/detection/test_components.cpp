@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/detection/simulated_frame.h"
+#include "bench/simulated_frame.h"
 
 namespace dmise {
 namespace {
@@ -19,8 +19,8 @@ double filter_sigma_px(const FrameHeader& header) {
 // Matched-filter theory: flux F at a pixel's centre peaks at F sqrt(sum p^2) / noise, standard
 // deviation 1.
 TEST(Components, PeakSnrIsTheMatchedFilters) {
-  auto header = test::camera_header(1200, 1200, 1663, 0, 20, false);
-  test::SimulatedFrame frame(header, 1200, 1200, sky_e, 1);
+  auto header = simulated::camera_header(1200, 1200, 1663, 0, 20, false);
+  simulated::SimulatedFrame frame(header, 1200, 1200, sky_e, 1);
   const double flux_e = 4000.0;
   for (int i = 0; i < 400; ++i) frame.add_point(40 + 58 * (i % 20), 40 + 58 * (i / 20), flux_e);
   Threads threads;
@@ -44,8 +44,8 @@ TEST(Components, PeakSnrIsTheMatchedFilters) {
 // A normal variable exceeds 4 with probability 3.17e-5; neighbours in the filtered frame go
 // together, so there are fewer pieces than pixels.
 TEST(Components, NoiseAloneExceedsTheThresholdAsOftenAsNormalNoise) {
-  const auto header = test::camera_header(2000, 2000, 1663, 0, 20, false);
-  test::SimulatedFrame frame(header, 2000, 2000, sky_e, 2);
+  const auto header = simulated::camera_header(2000, 2000, 1663, 0, 20, false);
+  simulated::SimulatedFrame frame(header, 2000, 2000, sky_e, 2);
   Threads threads(2);
   const CountImage counts = frame.expose();
   const Background background(counts, 64, threads);

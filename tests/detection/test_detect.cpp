@@ -6,13 +6,13 @@
 
 #include "core/detection/detection_json.h"
 #include "core/wcs/wcs.h"
-#include "tests/detection/simulated_frame.h"
+#include "bench/simulated_frame.h"
 
 namespace dmise {
 namespace {
 
-using test::camera_header;
-using test::SimulatedFrame;
+using simulated::camera_header;
+using simulated::SimulatedFrame;
 
 constexpr double all_sky_focal_px = 1663.0;
 constexpr double declination = 34 * deg;

@@ -11,7 +11,7 @@
 #include "core/detection/detect_file.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
-#include "tests/detection/simulated_frame.h"
+#include "bench/simulated_frame.h"
 
 namespace dmise {
 namespace {
@@ -75,8 +75,8 @@ TEST(DetectionJson, NoNanLeaves) {
 }
 
 TEST(DetectFile, FileGivesTheSameBytesAsTheFrameInMemory) {
-  const auto header = test::camera_header(500, 400, 1663, 34 * deg, 20, true);
-  test::SimulatedFrame simulated(header, 500, 400, 1500, 3);
+  const auto header = simulated::camera_header(500, 400, 1663, 34 * deg, 20, true);
+  simulated::SimulatedFrame simulated(header, 500, 400, 1500, 3);
   simulated.add_stars(300, 500, 1e6);
   simulated.add_streak(250, 200, 120, 0.4, 120 * 400.0);
   simulated.add_point(100, 300, 20000);

@@ -8,7 +8,7 @@
 #include "core/base/whole_file.h"
 #include "core/detection/detect.h"
 #include "core/image/fits_file.h"
-#include "tests/detection/simulated_frame.h"
+#include "bench/simulated_frame.h"
 #include "tests/support/data.h"
 
 namespace dmise {
@@ -45,8 +45,8 @@ std::vector<Measured> by_source_extractor(const std::string& fits, const FrameHe
 TEST(SourceExtractor, AgreesOnPlacesAndMagnitudes) {
   if (std::system("command -v source-extractor > /dev/null") != 0)
     DMISE_SKIP() << "needs source-extractor";
-  const auto header = test::camera_header(1000, 1000, 1663, 34 * deg, 20, true);
-  test::SimulatedFrame frame(header, 1000, 1000, 1500, 12);
+  const auto header = simulated::camera_header(1000, 1000, 1663, 34 * deg, 20, true);
+  simulated::SimulatedFrame frame(header, 1000, 1000, 1500, 12);
   for (int i = 0; i < 225; ++i)
     frame.add_point(40 + 65 * (i % 15) + frame.uniform(-.5, .5),
                     40 + 65 * (i / 15) + frame.uniform(-.5, .5),

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/detection/simulated_frame.h"
+#include "bench/simulated_frame.h"
 
 namespace dmise {
 namespace {
@@ -16,7 +16,7 @@ double trail_px(const StarMotion& motion, double x, double y) {
 // hand: a star at declination d moves by 15.041 arcsec/s cos(d); the pixel at the centre spans
 // 124.0 arcsec and the gnomonic projection stretches the edges.
 TEST(StarMotion, TrailsOfAFixedAllSkyCamera) {
-  const auto header = test::camera_header(3326, 2504, 1663.0, 34 * deg, 20, true);
+  const auto header = simulated::camera_header(3326, 2504, 1663.0, 34 * deg, 20, true);
   const StarMotion motion(header, 3326, 2504);
   EXPECT_NEAR(trail_px(motion, 1662.5, 1251.5), 2.02, 0.01);
   EXPECT_NEAR(trail_px(motion, 3325, 1251.5), 0.65, 0.01);
@@ -24,13 +24,13 @@ TEST(StarMotion, TrailsOfAFixedAllSkyCamera) {
 }
 
 TEST(StarMotion, TrackedStarsStandStill) {
-  const auto header = test::camera_header(3326, 2504, 1663.0, 34 * deg, 20, false);
+  const auto header = simulated::camera_header(3326, 2504, 1663.0, 34 * deg, 20, false);
   EXPECT_NEAR(trail_px(StarMotion(header, 3326, 2504), 100, 200), 0.0, 1e-9);
 }
 
 // In every projection a small rotation about the boresight turns the image about its centre.
 TEST(StarMotion, RollTurnsTheImageInEveryProjection) {
-  auto header = test::camera_header(1001, 1001, 600.0, 0, 20, false);
+  auto header = simulated::camera_header(1001, 1001, 600.0, 0, 20, false);
   const double roll_rad = 1e-3;
   const auto rolled = [&](double angle_rad) {
     const double c = std::cos(angle_rad), s = std::sin(angle_rad);

@@ -9,7 +9,7 @@
 #include "core/detection/star_motion.h"
 #include "core/products/frame_header.h"
 
-namespace dmise::test {
+namespace dmise::simulated {
 
 /// A header of a camera with gnomonic projection at declination `dec_rad`, columns to the north
 /// (long axis north-south), whose star field turns with the Earth for `exposure_s` (fixed mount),
@@ -56,7 +56,7 @@ inline FrameHeader camera_header(int columns, int rows, double focal_length_px, 
 }
 
 /// Expected electrons, built up source by source by brute force (pixel integrals by erf, lines by
-/// many points): independent of the detector's models.
+/// many points): independent of the detector's models and of the renderer.
 class SimulatedFrame {
  public:
   SimulatedFrame(const FrameHeader& header, int columns, int rows, double sky_e, unsigned seed)
@@ -149,4 +149,4 @@ class SimulatedFrame {
   std::vector<double> weights_;
 };
 
-}  // namespace dmise::test
+}  // namespace dmise::simulated

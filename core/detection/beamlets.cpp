@@ -1,0 +1,194 @@
+#include "core/detection/beamlets.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <utility>
+
+#include "core/detection/beamlet_kernels.h"
+
+namespace dmise {
+namespace {
+
+constexpr int shortest = 8, longest = 1024;    // rows of a beamlet
+constexpr int cell_px = 32, angle_cells = 64;  // one beamlet is kept of each
+
+/// One of the four ranges of direction: lines that pass more rows than columns or the other way
+/// round, and move to one side or the other.
+struct Orientation {
+  bool transposed = false, mirrored = false;
+
+  int minor(const FilteredFrame& f) const { return transposed ? f.rows : f.columns; }
+  int major(const FilteredFrame& f) const { return transposed ? f.columns : f.rows; }
+};
+
+/// Sums of one orientation over a block of rows, in place.
+class Block {
+ public:
+  Block(const FilteredFrame& frame, Orientation orientation, int first, int size, double least_snr,
+        SimdLevel level)
+      : frame_(frame),
+        orientation_(orientation),
+        first_(first),
+        size_(size),
+        width_(std::size_t(orientation.minor(frame) + size)),
+        least_snr_(least_snr),
+        join_(kernel_of(level, sse2::join_beamlets, avx2::join_beamlets, avx512::join_beamlets)) {
+    sums_.resize(std::size_t(size) * width_);
+    for (int k = 0; k < size; ++k) rows_.push_back(sums_.data() + std::size_t(k) * width_);
+    fill();
+    for (int n = 2; n <= size; n *= 2) levels_.push_back(level_of(n));
+  }
+
+  void find(std::vector<Beamlet>& found) {
+    sum(0, size_);
+    for (Level& level : levels_)
+      for (const Beamlet& best : level.best)
+        if (best.snr > 0) found.push_back(best);
+  }
+
+ private:
+  /// Beamlets of `length` rows.
+  struct Level {
+    int length = 0, angles = 0, cells = 0;
+    std::vector<float> noise;         // by shift, of a sum
+    std::vector<std::int16_t> least;  // by shift, of a sum that is kept
+    std::vector<Beamlet> best;        // by strip, cell of place, cell of angle
+  };
+
+  Level level_of(int n) const {
+    Level level{.length = n, .angles = std::min(n, angle_cells)};
+    if (n < shortest) return level;
+    level.cells = int(width_) / cell_px + 1;
+    for (int a = 0; a < n; ++a) {
+      const double slope = double(a) / (n - 1);
+      const double noise =
+          FilteredFrame::steps * std::sqrt(n * frame_.sum_variance(std::hypot(1.0, slope)));
+      level.noise.push_back(float(noise));
+      level.least.push_back(std::int16_t(std::min(least_snr_ * noise, 32767.0)));
+    }
+    level.best.resize(std::size_t(size_ / n) * std::size_t(level.cells) *
+                      std::size_t(level.angles));
+    return level;
+  }
+
+  /// The block's pixels, to the right of as many columns of zeros as a line can cross.
+  void fill() {
+    const int minor = orientation_.minor(frame_);
+    const int begin = std::max(-first_, 0);
+    const int used = std::min(size_, orientation_.major(frame_) - first_);
+    const auto place = [&](int m) {
+      return std::size_t(size_ + (orientation_.mirrored ? minor - 1 - m : m));
+    };
+    if (!orientation_.transposed) {
+      for (int k = begin; k < used; ++k) {
+        const std::int16_t* from = frame_.row(first_ + k);
+        if (orientation_.mirrored)
+          std::reverse_copy(from, from + minor, rows_[std::size_t(k)] + size_);
+        else
+          std::copy(from, from + minor, rows_[std::size_t(k)] + size_);
+      }
+      return;
+    }
+    constexpr int tile = 32;
+    for (int y0 = 0; y0 < minor; y0 += tile)
+      for (int k0 = begin; k0 < used; k0 += tile)
+        for (int y = y0; y < std::min(y0 + tile, minor); ++y)
+          for (int k = k0; k < std::min(k0 + tile, used); ++k)
+            rows_[std::size_t(k)][place(y)] = frame_.row(y)[first_ + k];
+  }
+
+  /// Sums the lines over `length` rows from `first` on, and all shorter ones in them.
+  void sum(int first, int length) {
+    if (length == 1) return;
+    const int half = length / 2;
+    sum(first, half);
+    sum(first + half, half);
+    const Level& level = levels_[std::size_t(std::bit_width(unsigned(length)) - 2)];
+    std::vector<std::int16_t*> joined(std::size_t(length), nullptr);
+    for (int a = 0; a < half; ++a) {
+      std::int16_t* upper = rows_[std::size_t(first + a)];
+      std::int16_t* lower = rows_[std::size_t(first + half + a)];
+      std::int16_t most[2];
+      join_(upper, lower, std::size_t(a), width_, most);
+      joined[std::size_t(2 * a)] = upper;
+      joined[std::size_t(2 * a + 1)] = lower;
+      if (length < shortest) continue;
+      for (int side = 0; side < 2; ++side)
+        if (most[side] >= level.least[std::size_t(2 * a + side)])
+          keep(first, 2 * a + side, side ? lower : upper,
+               levels_[std::size_t(std::bit_width(unsigned(length)) - 2)]);
+    }
+    std::copy(joined.begin(), joined.end(), rows_.begin() + first);
+  }
+
+  /// Keeps the largest sum of each cell of a row of sums with `shift`.
+  void keep(int first, int shift, const std::int16_t* sums, Level& level) {
+    const std::int16_t least = level.least[std::size_t(shift)];
+    const float noise = level.noise[std::size_t(shift)];
+    const std::size_t strip = std::size_t(first / level.length);
+    const std::size_t angle = std::size_t(shift * level.angles / level.length);
+    for (std::size_t x = 0; x < width_; ++x) {
+      if (sums[x] < least) continue;
+      Beamlet& best =
+          level.best[(strip * std::size_t(level.cells) + x / cell_px) * std::size_t(level.angles) +
+                     angle];
+      const float snr = float(sums[x]) / noise;
+      if (snr > best.snr) best = placed(snr, int(x) - size_, first, shift, level.length);
+    }
+  }
+
+  Beamlet placed(float snr, int from, int first, int shift, int length) const {
+    float m1 = float(from), m2 = float(from + shift);
+    if (orientation_.mirrored) {
+      m1 = float(orientation_.minor(frame_) - 1) - m1;
+      m2 = float(orientation_.minor(frame_) - 1) - m2;
+    }
+    const float k1 = float(first_ + first), k2 = k1 + float(length - 1);
+    return orientation_.transposed ? Beamlet{snr, k1, m1, k2, m2} : Beamlet{snr, m1, k1, m2, k2};
+  }
+
+  const FilteredFrame& frame_;
+  Orientation orientation_;
+  int first_, size_;  // rows
+  std::size_t width_;
+  double least_snr_;
+  decltype(&sse2::join_beamlets) join_;
+  std::vector<std::int16_t> sums_;
+  std::vector<std::int16_t*> rows_;  // by strip, then shift
+  std::vector<Level> levels_;        // of 2, 4, .. rows
+};
+
+}  // namespace
+
+std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, double least_snr, SimdLevel level,
+                                   Threads& threads) {
+  struct Task {
+    Orientation orientation;
+    int first, size;
+  };
+  std::vector<Task> tasks;
+  for (const Orientation o : {Orientation{false, false}, Orientation{false, true},
+                              Orientation{true, false}, Orientation{true, true}}) {
+    const int major = o.major(frame);
+    const int size = std::min(longest, int(std::bit_floor(unsigned(std::max(major, 1)))));
+    if (size < shortest) continue;
+    // A second set of strips begins a third of a block earlier, which is a third or two thirds of
+    // a strip at every level: a streak on the border of two strips is inside one of the other set.
+    for (const int earlier : {0, size / 3})
+      for (int first = -earlier; first < major; first += size) tasks.push_back({o, first, size});
+  }
+  std::vector<std::vector<Beamlet>> found(tasks.size());
+  threads.for_ranges(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      Block(frame, tasks[i].orientation, tasks[i].first, tasks[i].size, least_snr, level)
+          .find(found[i]);
+  });
+  std::vector<Beamlet> all;
+  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Beamlet& a, const Beamlet& b) { return a.snr > b.snr; });
+  return all;
+}
+
+}  // namespace dmise

@@ -1,0 +1,162 @@
+#include "core/detection/faint_streaks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/detection/line_search.h"
+#include "core/detection/source_fit.h"
+#include "core/detection/star_hypothesis.h"
+
+namespace dmise {
+namespace {
+
+constexpr double faint_per_px = 4.0;   // SNR over the root of the length; brighter ends are seen
+constexpr double least_share = 0.4;    // of a trail that is not hidden
+constexpr double candidate_snr = 4.7;  // of a beamlet, which may be a part of a streak
+
+Trail trail_of(const Beamlet& b) {
+  Trail t;
+  t.x_px = 0.5 * (b.x1 + b.x2);
+  t.y_px = 0.5 * (b.y1 + b.y2);
+  t.length_px = std::hypot(b.x2 - b.x1, b.y2 - b.y1);
+  t.angle_rad = std::atan2(b.y2 - b.y1, b.x2 - b.x1);
+  return t;
+}
+
+/// Whether most of a trail lies on another.
+bool is_part_of(const Trail& part, const Trail& whole, double margin_px) {
+  const double c = std::cos(part.angle_rad), s = std::sin(part.angle_rad);
+  int on = 0;
+  for (int k = -2; k <= 2; ++k) {
+    const double along = 0.25 * k * part.length_px;
+    on += lies_on(whole, part.x_px + along * c, part.y_px + along * s, margin_px);
+  }
+  return on >= 3;
+}
+
+/// Factor of the least SNR of a trail of which more than a tenth is hidden: between so many stars
+/// are others that were not, and their sums have a longer tail than noise.
+double crowding(const LineSum& line) {
+  const double hidden = 1.0 - double(line.samples) / line.slices;
+  return 1.0 + 0.5 * std::max(0.0, hidden - 0.1);
+}
+
+void hide(FilteredFrame& frame, const Trail& t, double margin_px) {
+  const double c = std::abs(std::cos(t.angle_rad)), s = std::abs(std::sin(t.angle_rad));
+  const double bend = std::abs(t.sagitta_px) + margin_px + 1;
+  const int x0 = int(t.x_px - t.length_px / 2 * c - bend),
+            x1 = int(t.x_px + t.length_px / 2 * c + bend);
+  const int y0 = int(t.y_px - t.length_px / 2 * s - bend),
+            y1 = int(t.y_px + t.length_px / 2 * s + bend);
+  for (int y = std::max(y0, 0); y <= std::min(y1, frame.rows - 1); ++y)
+    for (int x = std::max(x0, 0); x <= std::min(x1, frame.columns - 1); ++x)
+      if (lies_on(t, x, y, margin_px)) frame.hide(y, x, x);
+}
+
+/// The fit of a streak of `snr`. What it is too faint to show is not fitted.
+std::optional<Source> fitted(const Scene& scene, const Trail& trail, double snr) {
+  unsigned free = trail_line;
+  if (trail.length_px > 100) free |= trail_sagitta;
+  if (snr > 12 && trail.length_px > 15) free |= trail_slope | trail_sagitta;
+  for (const unsigned mask : {free, unsigned(trail_line), unsigned(trail_place)}) {
+    auto source = fit_source(scene, trail, true, 0.0, false, mask);
+    if (source && source->snr() > 0.7 * snr) return source;
+  }
+  return std::nullopt;
+}
+
+/// SNR of the best star's trail with its middle on a trail.
+double star_snr_on(const FilteredFrame& frame, const Trail& trail, Trail star) {
+  const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
+  double most = 0.0;
+  const int steps = int(std::ceil(trail.length_px)) + 2;
+  for (int k = -steps / 2; k <= steps / 2; ++k)
+    for (int across = -1; across <= 1; ++across) {
+      star.x_px = std::round(trail.x_px + k * c - across * s);
+      star.y_px = std::round(trail.y_px + k * s + across * c);
+      most = std::max(most, snr_along(frame, star));
+    }
+  return most;
+}
+
+bool is_streak(const Scene& scene, const Source& source, const DetectorSettings& settings) {
+  const Trail& t = source.trail();
+  if (t.length_px < 3 * scene.sigma_px || source.fit.reduced_chi2() > 2.0 ||
+      source.snr() < settings.least_snr)
+    return false;
+  const Trail star = scene.star_trail(t.x_px, t.y_px);
+  if (t.length_px < 40 + 3 * star.length_px && !beats_stars(scene, source, settings)) return false;
+  return !moves_like_star(source, scene.star_trail(t.x_px, t.y_px),
+                          settings.least_difference_px + 1);
+}
+
+}  // namespace
+
+double least_streak_snr(double length_px) {
+  return 6.5 + 0.35 * std::clamp(std::log2(length_px / 16), 0.0, 2.0);
+}
+
+void extend(const Scene& scene, const FilteredFrame& frame, Source& source) {
+  if (!source.streak || source.saturated) return;
+  const Trail& known = source.trail();
+  const double known_snr = snr_along(frame, known);
+  if (known_snr > faint_per_px * std::sqrt(std::max(known.length_px, 1.0))) return;
+  Trail longer = climbed(frame, known);
+  const double snr = snr_along(frame, longer);
+  if (longer.length_px < known.length_px + 2 * scene.sigma_px ||
+      snr * snr < known_snr * known_snr + 16)
+    return;
+  longer.flux_e = known.flux_e * longer.length_px / std::max(known.length_px, 1.0);
+  if (auto fit = fitted(scene, longer, snr))
+    if (fit->trail().length_px > known.length_px) source = std::move(*fit);
+}
+
+std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
+                                       const DetectorSettings& settings, Threads& threads) {
+  Scene seen = scene;
+  seen.hidden = &frame;
+  const std::vector<Beamlet> beamlets =
+      find_beamlets(frame, candidate_snr, best_simd_level(), threads);
+  const double margin_px = 2 * scene.sigma_px + 1;
+  std::vector<Source> found;
+  std::vector<Trail> tried;
+  for (const Beamlet& beamlet : beamlets) {
+    Trail trail = trail_of(beamlet);
+    if (snr_along(frame, trail) < 0.8 * candidate_snr) continue;  // hidden meanwhile
+    const Trail star = scene.star_trail(trail.x_px, trail.y_px);
+    const double as_star = star_snr_on(frame, trail, star);
+    if (trail.length_px < 40 && as_star > beamlet.snr * 1.2) continue;
+    if (std::any_of(tried.begin(), tried.end(),
+                    [&](const Trail& t) { return is_part_of(trail, t, margin_px); }))
+      continue;
+    // Where the light along parallel lines scatters more than noise, so must a streak.
+    const Beside around = beside(frame, trail);
+    if (beamlet.snr < around.middle + candidate_snr * around.scatter) continue;
+    trail = climbed(frame, trail);
+    tried.push_back(trail);
+    const LineSum line = sum_along(frame, trail);
+    const double snr = line.sum / line.noise;
+    if (snr < least_streak_snr(trail.length_px) || line.samples < least_share * line.slices)
+      continue;
+    const double per_px = line.sum / line.samples / FilteredFrame::steps;
+    trail.flux_e = per_px *
+                   std::sqrt(scene
+                                 .pixel(std::clamp(int(trail.x_px), 0, frame.columns - 1),
+                                        std::clamp(int(trail.y_px), 0, frame.rows - 1))
+                                 .variance_e2) *
+                   trail.length_px;
+    const Beside near = beside(frame, trail);
+    if (snr < near.middle + least_streak_snr(trail.length_px) * near.scatter * crowding(line))
+      continue;
+    const double star_snr = star_snr_on(frame, trail, star);
+    if (snr * snr - star_snr * star_snr < settings.blend_margin) continue;
+    auto source = fitted(seen, trail, snr);
+    if (!source) continue;
+    hide(frame, source->trail(), 4 * scene.sigma_px);
+    if (is_streak(scene, *source, settings)) found.push_back(std::move(*source));
+  }
+  return found;
+}
+
+}  // namespace dmise

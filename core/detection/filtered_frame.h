@@ -1,0 +1,59 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/parallel.h"
+
+namespace dmise {
+
+/// A frame through the matched filter of a point source: SNR in steps of 1/5, clipped at +-6.2.
+/// 0 stands for pixels of which nothing is known, because they were hidden.
+struct FilteredFrame {
+  static constexpr int steps = 5, most = 31;
+
+  int columns = 0, rows = 0;
+  double sigma_px = 1.0;          // of the filter
+  std::vector<std::int16_t> snr;  // rows x columns
+
+  FilteredFrame(int columns_, int rows_, double sigma)
+      : columns(columns_),
+        rows(rows_),
+        sigma_px(sigma),
+        snr(std::size_t(columns_) * std::size_t(rows_)) {}
+
+  /// `odd`: whether the pixel's column plus row is; it tells the sign of what rounds to 0.
+  static std::int16_t step_of(float value, bool odd) {
+    const float scaled = std::clamp(value * float(steps), -float(most), float(most));
+    const int step = int(scaled + (scaled < 0 ? -0.5f : 0.5f));
+    return std::int16_t(step != 0 ? step : odd ? 1 : -1);
+  }
+  std::int16_t* row(int y) { return snr.data() + std::size_t(y) * std::size_t(columns); }
+  const std::int16_t* row(int y) const {
+    return snr.data() + std::size_t(y) * std::size_t(columns);
+  }
+  /// Hides pixels [first, last] of a row, as far as they are in the frame.
+  void hide(int y, int first, int last) {
+    if (y < 0 || y >= rows) return;
+    first = std::max(first, 0);
+    last = std::min(last, columns - 1);
+    if (first <= last) std::fill(row(y) + first, row(y) + last + 1, std::int16_t(0));
+  }
+  /// Subtracts the local mean of what is not hidden and divides by its scatter, where that is more
+  /// than the noise: stars too faint to be hidden are light and scatter of the sky.
+  void flatten(Threads& threads);
+
+  /// Correlation of noise at `distance_px`.
+  double correlation(double distance_px) const {
+    return std::exp(-distance_px * distance_px / (4 * sigma_px * sigma_px));
+  }
+  /// Variance of a sum along a line over that of uncorrelated samples, `spacing_px` apart.
+  double sum_variance(double spacing_px) const {
+    double sum = 1.0;
+    for (int k = 1; k * spacing_px < 8 * sigma_px; ++k) sum += 2 * correlation(k * spacing_px);
+    return sum;
+  }
+};
+
+}  // namespace dmise

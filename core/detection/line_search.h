@@ -1,0 +1,34 @@
+#pragma once
+#include "core/detection/filtered_frame.h"
+#include "core/detection/trail_fit.h"
+
+// Sums of a filtered frame along trails. Hidden pixels and those beside the frame count neither as
+// light nor as noise.
+namespace dmise {
+
+/// Sum along a trail, its noise, and in how many rows or columns it was taken.
+struct LineSum {
+  double sum = 0.0, noise = 0.0;
+  int samples = 0;  // rows or columns that are not hidden
+  int slices = 0;   // all of them in the frame
+};
+
+LineSum sum_along(const FilteredFrame& frame, const Trail& trail);
+
+/// The sum in units of its noise: the SNR of a streak of that shape.
+double snr_along(const FilteredFrame& frame, const Trail& trail);
+
+/// The trail near `start` along which `snr_along` is largest, by steps of its offset, direction,
+/// ends and curvature; only the first two where they find too little for a streak.
+Trail climbed(const FilteredFrame& frame, const Trail& start);
+
+/// Lines parallel to a trail: the middle of their SNRs, at least 0, and its scatter, at least 1.
+/// Where faint stars are dense or the sky is uneven both exceed those of noise. The scatter is that
+/// of the upper half, because stars only add light.
+struct Beside {
+  double middle = 0.0, scatter = 1.0;
+};
+
+Beside beside(const FilteredFrame& frame, const Trail& trail);
+
+}  // namespace dmise

@@ -1,0 +1,231 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/detection/beamlets.h"
+#include "core/detection/components.h"
+#include "core/detection/detect.h"
+#include "core/detection/line_search.h"
+#include "bench/simulated_frame.h"
+
+// Streaks of which no pixel stands out of the noise.
+namespace dmise {
+namespace {
+
+using simulated::camera_header;
+using simulated::SimulatedFrame;
+
+constexpr double sky_e = 1500.0;
+
+/// Noise of unit variance through the matched filter, as `find_components` leaves it.
+FilteredFrame filtered_noise(int columns, int rows, unsigned seed) {
+  const auto header = camera_header(columns, rows, 1663, 0.6, 1e-3, true);
+  SimulatedFrame frame(header, columns, rows, sky_e, seed);
+  const CountImage counts = frame.expose();
+  Threads threads;
+  const Background background(counts, 64, threads);
+  const double sigma = header.psf_fwhm_px / std::sqrt(8 * std::log(2.0));
+  FilteredFrame filtered(columns, rows, std::sqrt(sigma * sigma + 1.0 / 12));
+  find_components(counts, background, filtered.sigma_px, 3, 5, threads, &filtered);
+  return filtered;
+}
+
+/// Flux of a streak whose ideal matched filter has `snr`: the sum of squares of a blurred line.
+double flux_of_snr(const FrameHeader& h, double length, double snr) {
+  const double variance_e2 =
+      sky_e + h.read_noise_e * h.read_noise_e + h.gain_e_per_dn * h.gain_e_per_dn / 12;
+  const double psf = h.psf_fwhm_px / std::sqrt(8 * std::log(2.0));
+  const double s = std::sqrt(psf * psf + 1.0 / 12), q = length / (2 * s);
+  const double squares = (std::erf(q) - (1 - std::exp(-q * q)) / (q * std::sqrt(pi))) /
+                         (2 * s * std::sqrt(pi) * length);
+  return snr * std::sqrt(variance_e2 / squares);
+}
+
+struct Found {
+  int found = 0, placed = 0, false_alarms = 0;
+};
+
+/// Streaks on a grid of a frame, and what the detector makes of them.
+Found found_of(double length, double snr, int frames, int stars, double sagitta = 0.0) {
+  constexpr int size = 1200;
+  const int side = length > 250 ? 2 : 3;
+  Found out;
+  Threads threads(2);
+  for (int f = 0; f < frames; ++f) {
+    const auto header = camera_header(size, size, 1663, 0.6, stars ? 20 : 1e-3, true);
+    SimulatedFrame frame(header, size, size, sky_e, 77u + unsigned(f));
+    frame.add_stars(stars, 300, 2e5);
+    std::vector<std::array<double, 3>> streaks;
+    for (int i = 0; snr > 0 && i < side * side; ++i) {
+      const double cell = double(size) / side, x = (i % side + 0.5) * cell;
+      const double y = (i / side + 0.5) * cell, angle = frame.uniform(0, pi);
+      frame.add_streak(x, y, length, angle, flux_of_snr(header, length, snr), 0, sagitta);
+      streaks.push_back({x, y, angle});
+    }
+    const auto result = detect(frame.expose(), header, {}, threads);
+    std::vector<bool> used(result.detections.size());
+    for (const auto& [x, y, angle] : streaks) {
+      bool found = false;
+      for (std::size_t k = 0; k < used.size(); ++k) {
+        const double dx = result.detections[k].x_px - x, dy = result.detections[k].y_px - y;
+        const double along = dx * std::cos(angle) + dy * std::sin(angle);
+        const double across = dy * std::cos(angle) - dx * std::sin(angle);
+        if (std::abs(along) > length / 2 || std::abs(across) > 3 + 0.03 * length) continue;
+        found = used[k] = true;
+      }
+      out.found += found;
+      ++out.placed;
+    }
+    for (const bool one : used) out.false_alarms += !one;
+  }
+  return out;
+}
+
+TEST(Beamlets, ASumAlongATrailHasTheNoiseItStates) {
+  const FilteredFrame frame = filtered_noise(1500, 1500, 3);
+  std::mt19937_64 random(5);
+  const auto uniform = [&](double a, double b) {
+    return a + (b - a) * double(random() >> 11) * 0x1p-53;
+  };
+  for (const double length : {10.0, 60.0, 400.0}) {
+    double squares = 0.0;
+    constexpr int trails = 4000;
+    for (int i = 0; i < trails; ++i) {
+      Trail t;
+      t.length_px = length;
+      t.angle_rad = uniform(0, pi);
+      t.x_px = uniform(205, 1295), t.y_px = uniform(205, 1295);
+      const double snr = snr_along(frame, t);
+      squares += snr * snr;
+    }
+    EXPECT_NEAR(std::sqrt(squares / trails), 1.0, 0.06) << length;
+  }
+}
+
+TEST(Beamlets, ALineOfAnyDirectionIsFoundWithMostOfItsSignal) {
+  for (int degrees = 0; degrees < 180; degrees += 7) {
+    FilteredFrame frame(600, 500, 0.8);
+    for (int y = 0; y < 500; ++y)
+      for (int x = 0; x < 600; ++x) frame.row(y)[x] = FilteredFrame::step_of(0, (x + y) % 2 != 0);
+    Trail t;
+    t.x_px = 290.3, t.y_px = 255.7, t.length_px = 180, t.angle_rad = degrees * deg;
+    for (int y = 0; y < 500; ++y)
+      for (int x = 0; x < 600; ++x) {
+        const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
+        const double dx = x - t.x_px, dy = y - t.y_px, across = dy * c - dx * s;
+        if (std::abs(dx * c + dy * s) > 90 || std::abs(across) > 5) continue;
+        frame.row(y)[x] = FilteredFrame::step_of(float(1.5 * std::exp(-across * across / 2.56)),
+                                                 (x + y) % 2 != 0);
+      }
+    Threads threads;
+    const auto beamlets = find_beamlets(frame, 4, SimdLevel::sse2, threads);
+    ASSERT_FALSE(beamlets.empty()) << degrees;
+    const double whole = snr_along(frame, t);
+    EXPECT_GT(beamlets.front().snr, 0.7 * whole) << degrees;
+    Trail start;
+    const Beamlet& b = beamlets.front();
+    start.x_px = (b.x1 + b.x2) / 2, start.y_px = (b.y1 + b.y2) / 2;
+    start.length_px = std::hypot(b.x2 - b.x1, b.y2 - b.y1);
+    start.angle_rad = std::atan2(b.y2 - b.y1, b.x2 - b.x1);
+    const Trail best = climbed(frame, start);
+    EXPECT_GT(snr_along(frame, best), 0.97 * whole) << degrees;
+    EXPECT_NEAR(best.length_px, 180, 9) << degrees;
+  }
+}
+
+TEST(Beamlets, AreTheSameOnEveryInstructionSetAndNumberOfThreads) {
+  const FilteredFrame frame = filtered_noise(700, 530, 9);
+  Threads one, three(3);
+  const auto expected = find_beamlets(frame, 3.5, SimdLevel::sse2, one);
+  ASSERT_GT(expected.size(), 20u);
+  for (const SimdLevel level : {SimdLevel::sse2, SimdLevel::avx2, SimdLevel::avx512}) {
+    if (level > best_simd_level()) continue;
+    const auto other = find_beamlets(frame, 3.5, level, three);
+    ASSERT_EQ(other.size(), expected.size());
+    for (std::size_t i = 0; i < other.size(); ++i) {
+      EXPECT_EQ(other[i].snr, expected[i].snr);
+      EXPECT_EQ(other[i].x1, expected[i].x1);
+      EXPECT_EQ(other[i].y2, expected[i].y2);
+    }
+  }
+}
+
+TEST(Beamlets, FramesOfAnySizeAreSearched) {
+  Threads threads;
+  for (const auto& [columns, rows] : {std::array{1, 1}, std::array{1, 900}, std::array{900, 1},
+                                      std::array{7, 7}, std::array{8, 9}, std::array{1025, 17}}) {
+    FilteredFrame frame(columns, rows, 0.8);
+    std::fill(frame.snr.begin(), frame.snr.end(), std::int16_t(FilteredFrame::most));
+    const auto beamlets = find_beamlets(frame, 4, best_simd_level(), threads);
+    for (const Beamlet& b : beamlets) EXPECT_TRUE(std::isfinite(b.snr));
+    std::fill(frame.snr.begin(), frame.snr.end(), std::int16_t(0));
+    EXPECT_TRUE(find_beamlets(frame, 4, best_simd_level(), threads).empty());
+  }
+}
+
+TEST(FaintStreaks, NoiseHasNone) { EXPECT_EQ(found_of(0, 0, 6, 0).false_alarms, 0); }
+
+/// Pd = Q(threshold - SNR) with the threshold of 7.2 that noise demands, 0.5 in SNR later. Of a
+/// length of 300 px the SNR of a pixel is below 1.
+TEST(FaintStreaks, AreFoundAtAnSnrThatTheirPixelsDoNotShow) {
+  for (const double length : {100.0, 300.0}) {
+    const Found found = found_of(length, 9.5, 4, 0);
+    EXPECT_GT(found.found, 0.85 * found.placed) << length;  // Q(7.7 - 9.5) = 0.96
+    EXPECT_EQ(found.false_alarms, 0) << length;
+  }
+}
+
+TEST(FaintStreaks, AreFoundAmongStars) {
+  const Found found = found_of(150, 12.0, 3, 1500);  // one star for every 1000 px
+  EXPECT_GE(found.found, found.placed - 2);
+  EXPECT_LE(found.false_alarms, 1);
+}
+
+TEST(FaintStreaks, MayBeBent) {
+  const Found found = found_of(200, 14.0, 3, 0, 3.0);
+  EXPECT_GE(found.found, found.placed - 1);
+}
+
+TEST(FaintStreaks, MayLeaveTheFrame) {
+  const auto header = camera_header(900, 700, 1663, 0.6, 1e-3, true);
+  int found = 0;
+  Threads threads;
+  for (int seed = 0; seed < 5; ++seed) {
+    SimulatedFrame frame(header, 900, 700, sky_e, 300u + unsigned(seed));
+    // Two thirds of it are inside.
+    frame.add_streak(880, 350 + 40 * seed, 240, 2.8, flux_of_snr(header, 240, 18));
+    const auto result = detect(frame.expose(), header, {}, threads);
+    for (const Detection& d : result.detections) found += d.at_edge;
+  }
+  EXPECT_GE(found, 4);
+}
+
+/// The covariance of the centroid, whose part along the track is that of two ends in noise.
+TEST(FaintStreaks, KnowHowBadlyTheirEndsAreKnown) {
+  const auto header = camera_header(1200, 1200, 1663, 0.6, 1e-3, true);
+  Threads threads(2);
+  std::vector<double> nees;
+  for (int f = 0; f < 5; ++f) {
+    SimulatedFrame frame(header, 1200, 1200, sky_e, 900u + unsigned(f));
+    std::vector<PixelPosition> places;
+    for (int i = 0; i < 9; ++i) {
+      places.push_back({200.0 + 400 * (i % 3), 200.0 + 400 * (i / 3)});
+      frame.add_streak(places.back().x_px, places.back().y_px, 150, frame.uniform(0, pi),
+                       flux_of_snr(header, 150, 12));
+    }
+    for (const Detection& d : detect(frame.expose(), header, {}, threads).detections)
+      for (const PixelPosition& place : places) {
+        const double dx = d.x_px - place.x_px, dy = d.y_px - place.y_px;
+        if (std::hypot(dx, dy) > 80) continue;
+        const auto [xx, xy, yy] = d.covariance_px2;
+        nees.push_back((dx * dx * yy - 2 * dx * dy * xy + dy * dy * xx) / (xx * yy - xy * xy) / 2);
+      }
+  }
+  ASSERT_GT(nees.size(), 35u);
+  std::sort(nees.begin(), nees.end());
+  // The median of chi-square of two degrees over two is 0.69.
+  EXPECT_NEAR(nees[nees.size() / 2], 0.69, 0.45);
+}
+
+}  // namespace
+}  // namespace dmise
