@@ -78,19 +78,20 @@ void add_sensor_errors(std::string& text, const Score& score) {
   struct Column {
     const char* name;
     std::optional<double> MatchErrors::*value;
-    bool mean;  // or the root of the mean square
+    enum { root, mean, square } of;  // rms, mean or mean square
   };
-  constexpr Column columns[] = {{"along px", &MatchErrors::along_px, false},
-                                {"across px", &MatchErrors::across_px, false},
-                                {"along \"", &MatchErrors::along_arcsec, false},
-                                {"across \"", &MatchErrors::across_arcsec, false},
-                                {"NEES/2 px", &MatchErrors::nees_px, true},
-                                {"NEES/2 sky", &MatchErrors::nees_sky, true},
-                                {"/ bound", &MatchErrors::over_bound, false},
-                                {"flux mag", &MatchErrors::flux, true},
-                                {"/ sigma", &MatchErrors::flux_over_sigma, false},
-                                {"end px", &MatchErrors::end_along_px, false},
-                                {"end s", &MatchErrors::end_time_s, false}};
+  static constexpr Column columns[] = {
+      {"along px", &MatchErrors::along_px, Column::root},
+      {"across px", &MatchErrors::across_px, Column::root},
+      {"along \"", &MatchErrors::along_arcsec, Column::root},
+      {"across \"", &MatchErrors::across_arcsec, Column::root},
+      {"NEES/2 px", &MatchErrors::nees_px, Column::mean},
+      {"NEES/2 sky", &MatchErrors::nees_sky, Column::mean},
+      {"/ bound", &MatchErrors::over_bound, Column::root},
+      {"flux mag", &MatchErrors::flux, Column::mean},
+      {"chi-square", &MatchErrors::flux_over_sigma, Column::square},
+      {"end px", &MatchErrors::end_along_px, Column::root},
+      {"end s", &MatchErrors::end_time_s, Column::root}};
   add(text, "\n%-29s %6s", "rms (of NEES and flux: mean)", "clean");
   for (const Column& column : columns) add(text, " %10s", column.name);
   for (const SensorScore& s : score.sensors)
@@ -102,7 +103,10 @@ void add_sensor_errors(std::string& text, const Score& score) {
       for (const Column& column : columns) {
         const auto k = std::ranges::find(error_keys, column.value, &ErrorKey::value);
         const ErrorFigure& f = figures[std::size_t(k - error_keys.begin())];
-        f.count > 0 ? add(text, " %10.4g", column.mean ? f.mean : f.rms) : add(text, " %10s", "-");
+        const double value = column.of == Column::root   ? f.rms
+                             : column.of == Column::mean ? f.mean
+                                                         : f.rms * f.rms;
+        f.count > 0 ? add(text, " %10.4g", value) : add(text, " %10s", "-");
       }
     }
   text += "\n";
@@ -141,6 +145,8 @@ void write_errors(JsonWriter& json, const std::array<ErrorFigure, error_keys.siz
       const Interval i = nees_interval(f.count);
       json.key("honest").begin_array().value(i.low).value(i.high).end_array();
     }
+    if (std::string_view(error_keys[k].key).ends_with("over_sigma") && f.count > 0)
+      json.field("reduced_chi_square", f.rms * f.rms);
     json.end_object();
   }
   json.end_object();
