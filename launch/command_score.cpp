@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/base/whole_file.h"
 #include "core/score/foreign_frames.h"
 #include "core/score/run_files.h"
@@ -25,12 +26,13 @@ struct ScoreOptions {
 ScoreInput input_of(const ScoreOptions& options) {
   if (options.run.empty() == options.frames.empty())
     throw ConfigError("score: give the directory of a run, or --frames and --truth");
-  if (!options.run.empty()) return read_run(options.run);
-  Threads threads(options.threads);
   Progress progress;
-  auto input = read_frames(
-      options.frames, options.truth, threads,
-      [&](double share, const std::string& file) { progress.show_share(share, "score: " + file); });
+  const auto show = [&](double share, const std::string& file) {
+    progress.show_share(share, "score: " + printable(file));
+  };
+  Threads threads(options.threads);
+  auto input = options.run.empty() ? read_frames(options.frames, options.truth, threads, show)
+                                   : read_run(options.run, show);
   progress.clear_line();
   return input;
 }

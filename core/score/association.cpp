@@ -17,7 +17,8 @@ struct Pair {
 /// Whether at least half of a detection's line is near the trail.
 bool lies_on(const Detection& d, const Trail& trail, double gate_px) {
   const PixelPosition centroid{d.x_px, d.y_px};
-  if (trail.nearest(centroid).distance_px > gate_px) return false;
+  if (!trail.may_be_near(centroid, gate_px) || trail.nearest(centroid).distance_px > gate_px)
+    return false;
   if (d.length_px <= 0.0) return true;
   const Trail line({d.end1_x_px, d.end1_y_px}, centroid, {d.end2_x_px, d.end2_y_px});
   constexpr int samples = 33;

@@ -147,7 +147,7 @@ std::vector<TrueSource> read_truth_csv(const std::string& path,
 }
 
 ScoreInput read_frames(const std::string& directory, const std::string& truth_csv, Threads& threads,
-                       const std::function<void(double, const std::string&)>& progress) {
+                       const ReadProgress& progress) {
   const auto files = fits_files(directory);
   ScoreInput in{.source = directory, .status = "complete"};
   in.truths = read_truth_csv(truth_csv, files);

@@ -1,5 +1,4 @@
 #pragma once
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,8 +22,8 @@ std::vector<TrueSource> read_truth_csv(const std::string& path,
                                        const std::vector<std::string>& files);
 
 /// Detects in every FITS file of a directory (.fits .fit .fts, also with .gz or .fz), with truth
-/// from a CSV. `progress` is called with the share done and the file that comes next.
+/// from a CSV.
 ScoreInput read_frames(const std::string& directory, const std::string& truth_csv, Threads& threads,
-                       const std::function<void(double, const std::string&)>& progress);
+                       const ReadProgress& progress);
 
 }  // namespace dmise

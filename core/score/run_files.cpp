@@ -16,12 +16,14 @@ namespace dmise {
 namespace {
 
 /// Calls `take` with each whole line.
-void for_lines(const std::string& path, const std::function<void(const JsonRecord&)>& take) {
+void for_lines(const std::string& path, const ReadProgress& progress,
+               const std::function<void(const JsonRecord&)>& take) {
   const std::string text = read_text_file(path, std::size_t(1) << 36);
   std::size_t begin = 0, line = 1;
-  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos;
-       begin = end + 1, ++line)
-    take(JsonRecord(text.substr(begin, end - begin), path + ":" + std::to_string(line)));
+  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    if (line % 4096 == 0) progress(double(begin) / double(text.size()), path);
+    take(JsonRecord(text.substr(begin, end - begin), path + ":" + std::to_string(line++)));
+  }
 }
 
 /// Refuses the second of two equal names.
@@ -98,7 +100,7 @@ ScoredFrame frame_of(const JsonRecord& report) {
   return f;
 }
 
-ScoreInput read_run(const std::string& directory) {
+ScoreInput read_run(const std::string& directory, const ReadProgress& progress) {
   ScoreInput in{.source = directory};
   const auto file = [&](const char* name) { return directory + "/" + name; };
   std::error_code ignored;
@@ -111,7 +113,7 @@ ScoreInput read_run(const std::string& directory) {
     cameras.emplace(sensor.get<std::string>("name"), camera_of(sensor));
 
   Unique frames, truths, detections;
-  for_lines(file("frames.jsonl"), [&](const JsonRecord& record) {
+  for_lines(file("frames.jsonl"), progress, [&](const JsonRecord& record) {
     ScoredFrame f = frame_of(record);
     const auto camera = cameras.find(f.sensor);
     if (camera == cameras.end()) record.fail("sensor", "is not in run.json: " + f.sensor);
@@ -124,12 +126,12 @@ ScoreInput read_run(const std::string& directory) {
   if (!std::filesystem::exists(file("truth.jsonl"), ignored))
     throw ConfigError(file("truth.jsonl") +
                       ": is missing: the scenario says output: {truth: false}");
-  for_lines(file("truth.jsonl"), [&](const JsonRecord& record) {
+  for_lines(file("truth.jsonl"), progress, [&](const JsonRecord& record) {
     in.truths.push_back(truth_of(record));
     const TrueSource& t = in.truths.back();
     truths.add(record, "name", t.sensor + "/" + t.frame + "/" + t.id);
   });
-  for_lines(file("detections.jsonl"), [&](const JsonRecord& record) {
+  for_lines(file("detections.jsonl"), progress, [&](const JsonRecord& record) {
     FoundSource found{.detection = detection_of(record)};
     found.sensor = found.detection.sensor;
     found.frame = std::to_string(found.detection.frame);

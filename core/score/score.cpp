@@ -1,7 +1,6 @@
 #include "core/score/score.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -10,6 +9,7 @@
 #include "core/score/association.h"
 #include "core/score/match_errors.h"
 #include "core/score/matched_filter.h"
+#include "core/score/sensor_tally.h"
 #include "core/score/trail.h"
 
 namespace dmise {
@@ -36,10 +36,6 @@ ScoredTruth known(const TrueSource& truth, const ScoredFrame* frame) {
   return t;
 }
 
-bool above(const ScoredTruth& t, const ScoreSettings& settings) {
-  return t.has_light() && (!t.snr || *t.snr >= settings.threshold_snr);
-}
-
 void judge_frame(const ScoredFrame& frame, std::span<ScoredTruth> truths,
                  std::span<const FoundSource> detections, Score& score) {
   std::vector<TrueSource> sources;
@@ -54,102 +50,11 @@ void judge_frame(const ScoredFrame& frame, std::span<ScoredTruth> truths,
       t.pieces = 1 + pairs.pieces_of_truth[k].size();
       t.clean = t.truth.whole && !t.truth.resolved && t.pieces == 1 && !d.saturated && !d.at_edge;
       t.errors = errors_of(t, d, frame);
-    } else if (t.fate == Fate::missed && !above(t, score.settings)) {
+    } else if (t.fate == Fate::missed && !t.is_above(score.settings.threshold_snr)) {
       t.fate = Fate::faint;
     }
   }
   for (const std::size_t k : pairs.false_alarms) score.false_alarms.push_back(detections[k]);
-}
-
-std::vector<Bin> bins(std::vector<double> edges) {
-  std::vector<Bin> out(edges.size() + 1);
-  for (std::size_t k = 0; k < edges.size(); ++k) out[k].to = out[k + 1].from = edges[k];
-  return out;
-}
-
-void add_to(std::vector<Bin>& bins, std::optional<double> value, const ScoredTruth& t,
-            const ScoreSettings& settings) {
-  if (!value) return;
-  for (Bin& bin : bins) {
-    if (bin.to && *value >= *bin.to) continue;
-    ++bin.truths;
-    bin.found += t.fate == Fate::found;
-    if (t.snr)
-      bin.theory = bin.theory.value_or(0.0) + theory_of_detection(*t.snr, settings.threshold_snr);
-    return;
-  }
-}
-
-void finish(std::vector<Bin>& bins) {
-  std::erase_if(bins, [](const Bin& bin) { return bin.truths == 0; });
-  for (Bin& bin : bins) {
-    bin.probability = wilson_interval(bin.found, bin.truths);
-    if (bin.theory) *bin.theory /= double(bin.truths);
-  }
-}
-
-SensorScore summary(const Score& score, const ScoreInput& input, const std::string& sensor,
-                    const std::map<FrameKey, const ScoredFrame*>& frames) {
-  const auto is_of = [&](const auto& r) { return sensor.empty() || r.sensor == sensor; };
-  const auto& settings = score.settings;
-  SensorScore s{.sensor = sensor};
-  for (const ScoredFrame& f : input.frames) {
-    if (!is_of(f)) continue;
-    ++s.frames;
-    if (f.searched)
-      s.megapixels += 1e-6 * f.columns * f.rows;
-    else
-      ++s.unsearched_frames;
-  }
-  for (const FoundSource& d : input.detections) {
-    if (!is_of(d)) continue;
-    ++s.detections;
-    const auto frame = frames.find(key_of(d));
-    s.unscored_detections += frame == frames.end() || !frame->second->searched;
-  }
-  s.false_alarms = std::size_t(std::ranges::count_if(score.false_alarms, is_of));
-  s.by_snr = bins({1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 20, 30, 50, 100, 300, 1000});
-  s.by_magnitude = bins({0, 2, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20});
-  s.by_length_px = bins({2, 5, 10, 20, 50, 100, 200, 300, 500, 1000, 2000});
-  s.by_rate = bins({1, 3, 10, 30, 100, 200, 500, 1000, 2000, 5000, 10000});
-  std::vector<Bin> one(1);
-  std::vector<DetectionTrial> trials[2];
-  for (const ScoredTruth& t : score.truths) {
-    if (!is_of(t.truth)) continue;
-    ++s.truths;
-    ++s.fates[std::size_t(t.fate)];
-    if (t.pieces > 1) ++s.in_pieces, s.further_pieces += t.pieces - 1;
-    if (!t.has_light()) continue;
-    add_to(s.by_snr, t.snr, t, settings);
-    add_to(s.by_magnitude, t.truth.magnitude, t, settings);
-    if (t.snr && std::abs(*t.snr - settings.threshold_snr) <= 4.0)
-      trials[!t.is_point()].push_back({*t.snr, t.fate == Fate::found});
-    if (above(t, settings)) {
-      add_to(one, 0.0, t, settings);
-      add_to(s.by_length_px, t.length_px, t, settings);
-      add_to(s.by_rate, t.rate_arcsec_per_s, t, settings);
-    }
-    for (const bool all : {false, true}) {
-      if (!all && !t.clean) continue;
-      for (std::size_t k = 0; k < error_keys.size(); ++k) {
-        ErrorFigure& figure = s.errors[all][!t.is_point()][k];
-        if (const auto value = t.errors.*error_keys[k].value) {
-          ++figure.count;
-          figure.mean += *value;
-          figure.rms += *value * *value;
-        }
-      }
-    }
-  }
-  for (auto* list : {&s.by_snr, &s.by_magnitude, &s.by_length_px, &s.by_rate, &one}) finish(*list);
-  s.detection = one.empty() ? Bin{.probability = {0.0, 1.0}} : one[0];
-  s.points_threshold = fitted_threshold(trials[0]);
-  s.streaks_threshold = fitted_threshold(trials[1]);
-  for (auto& kinds : s.errors)
-    for (auto& figures : kinds)
-      for (ErrorFigure& f : figures)
-        if (f.count > 0) f.mean /= double(f.count), f.rms = std::sqrt(f.rms / double(f.count));
-  return s;
 }
 
 }  // namespace
@@ -180,14 +85,20 @@ Score score(ScoreInput input, const ScoreSettings& settings) {
         std::ranges::equal_range(input.detections, key_of(frame), {}, key_of<FoundSource>);
     judge_frame(frame, truths, found, out);
   }
-  std::vector<std::string> names;
-  for (const auto& f : input.frames) names.push_back(f.sensor);
-  for (const auto& t : input.truths) names.push_back(t.sensor);
-  for (const auto& d : input.detections) names.push_back(d.sensor);
-  std::ranges::sort(names);
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  names.push_back("");
-  for (const auto& name : names) out.sensors.push_back(summary(out, input, name, frames));
+  SensorTally total("", settings);
+  std::map<std::string, SensorTally> sensors;
+  const auto add = [&](const std::string& sensor, const auto&... what) {
+    total.add(what...);
+    sensors.try_emplace(sensor, sensor, settings).first->second.add(what...);
+  };
+  for (const ScoredFrame& f : input.frames) add(f.sensor, f);
+  for (const ScoredTruth& t : out.truths) add(t.truth.sensor, t);
+  for (const FoundSource& d : input.detections) {
+    const ScoredFrame* frame = frame_of(d);
+    add(d.sensor, d, frame && frame->searched);
+  }
+  for (auto& [name, tally] : sensors) out.sensors.push_back(tally.finish());
+  out.sensors.push_back(total.finish());
   return out;
 }
 

@@ -82,6 +82,10 @@ struct ScoredTruth {
 
   bool is_point() const { return length_px < 2.0; }
   bool has_light() const { return fate <= Fate::faint; }
+  /// Whether it is expected above a threshold, or it is unknown what to expect.
+  bool is_above(double threshold_snr) const {
+    return has_light() && (!snr || *snr >= threshold_snr);
+  }
 };
 
 /// Truths with light whose `key` is in [from, to), and how many were found.

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +37,9 @@ struct ScoredFrame {
   double scale_rad_per_px = 0.0;  // at the reference pixel; 0: unknown
   bool searched = true;           // detection was on
 };
+
+/// Is called with the share done and the file that is being read.
+using ReadProgress = std::function<void(double, const std::string&)>;
 
 struct ScoreInput {
   std::string source;  // directory, for messages

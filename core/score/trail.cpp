@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace dmise {
 namespace {
@@ -21,8 +22,17 @@ Trail::Trail(PixelPosition start, PixelPosition middle, PixelPosition end)
     : start_(start),
       slope_(middle * 4.0 - start * 3.0 - end),
       bend_(start * 2.0 + end * 2.0 - middle * 4.0) {
+  for (std::size_t k = 0; k <= pieces; ++k) places_[k] = at(double(k) / pieces);
   for (std::size_t k = 1; k <= pieces; ++k)
-    arc_px_[k] = arc_px_[k - 1] + norm(at(double(k) / pieces) - at((double(k) - 1.0) / pieces));
+    arc_px_[k] = arc_px_[k - 1] + norm(places_[k] - places_[k - 1]);
+  const PixelPosition corner = start + slope_ * 0.5;  // where the tangents of the ends meet
+  std::tie(least_.x_px, most_.x_px) = std::minmax({start.x_px, corner.x_px, end.x_px});
+  std::tie(least_.y_px, most_.y_px) = std::minmax({start.y_px, corner.y_px, end.y_px});
+}
+
+bool Trail::may_be_near(PixelPosition place, double distance_px) const {
+  return place.x_px >= least_.x_px - distance_px && place.x_px <= most_.x_px + distance_px &&
+         place.y_px >= least_.y_px - distance_px && place.y_px <= most_.y_px + distance_px;
 }
 
 PixelPosition Trail::velocity(double u) const {
@@ -49,14 +59,14 @@ double Trail::arc_px(double u) const {
 }
 
 Trail::Nearest Trail::nearest(PixelPosition place) const {
-  double best_u = 0.5, best = norm(place - at(0.5));
-  for (int k = 0; k < pieces; ++k) {
-    const PixelPosition a = at(double(k) / pieces), b = at((k + 1.0) / pieces);
-    const double square = dot(b - a, b - a);
+  double best_u = 0.5, best_square = dot(place - places_[pieces / 2], place - places_[pieces / 2]);
+  for (std::size_t k = 0; k < pieces; ++k) {
+    const PixelPosition piece = places_[k + 1] - places_[k], off = place - places_[k];
+    const double square = dot(piece, piece);
     if (square <= 0.0) continue;
-    const double t = std::clamp(dot(place - a, b - a) / square, 0.0, 1.0);
-    const double distance = norm(place - (a + (b - a) * t));
-    if (distance < best) best = distance, best_u = (k + t) / pieces;
+    const double t = std::clamp(dot(off, piece) / square, 0.0, 1.0);
+    const double distance = dot(off - piece * t, off - piece * t);
+    if (distance < best_square) best_square = distance, best_u = (double(k) + t) / pieces;
   }
   // Newton's method for the foot of the perpendicular; on a tangent the first step is exact.
   double u = best_u;
@@ -70,14 +80,14 @@ Trail::Nearest Trail::nearest(PixelPosition place) const {
   if (best_u > 0.0 && best_u < 1.0 && std::abs(u - best_u) > 2.0 / pieces) u = best_u;
   Nearest found{.u = u, .along_px = arc_px(u), .across_px = cross(direction(u), place - at(u))};
   found.distance_px = norm(place - at(std::clamp(u, 0.0, 1.0)));
-  if (length_px() <= 0.0) found = {.across_px = best, .distance_px = best};
+  if (length_px() <= 0.0)
+    found = {.across_px = found.distance_px, .distance_px = found.distance_px};
   return found;
 }
 
 double Trail::length_inside_px(int columns, int rows) const {
+  if (is_inside(least_, columns, rows) && is_inside(most_, columns, rows)) return length_px();
   constexpr int steps = 1024;
-  const double most = std::max(norm(velocity(0.0)), norm(velocity(1.0)));
-  if (!(most > 0.0)) return 0.0;
   double sum = 0.0;
   for (int k = 0; k < steps; ++k) {
     const double u = (k + 0.5) / steps;

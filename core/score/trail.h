@@ -23,6 +23,8 @@ class Trail {
     double distance_px = 0.0;  // from the part with u in 0..1
   };
   Nearest nearest(PixelPosition place) const;
+  /// Whether the part with u in 0..1 may be within a distance: false only if it is not.
+  bool may_be_near(PixelPosition place, double distance_px) const;
 
   double length_px() const { return arc_px_.back(); }
   /// Length of the part inside a frame.
@@ -32,8 +34,10 @@ class Trail {
   static constexpr int pieces = 64;
   PixelPosition velocity(double u) const;  // [px per exposure]
   double arc_px(double u) const;
-  PixelPosition start_, slope_, bend_;  // start + slope u + bend u^2
+  PixelPosition start_, slope_, bend_;              // start + slope u + bend u^2
+  std::array<PixelPosition, pieces + 1> places_{};  // at equal steps of u
   std::array<double, pieces + 1> arc_px_{};
+  PixelPosition least_, most_;  // corners of a box around it
 };
 
 /// Whether a place is on a pixel of the frame.

@@ -76,9 +76,12 @@ struct RunFiles : testing::Test {
     write("truth.jsonl", to_json(truth, utc) + "\n");
     write("detections.jsonl", to_json(detection, utc) + "\n");
   }
+  ScoreInput read() const {
+    return read_run(directory, [](double, const std::string&) {});
+  }
   std::string refusal() const {
     try {
-      read_run(directory);
+      read();
     } catch (const ConfigError& e) {
       return e.what();
     }
@@ -92,7 +95,7 @@ struct RunFiles : testing::Test {
 };
 
 TEST_F(RunFiles, ReadWhatTheSensorsWrote) {
-  const ScoreInput in = read_run(directory);
+  const ScoreInput in = read();
   ASSERT_EQ(in.frames.size() + in.truths.size() + in.detections.size(), 3u);
   const ScoredFrame& f = in.frames[0];
   EXPECT_EQ(f.sensor + "/" + f.frame, "eye/3");
@@ -121,7 +124,7 @@ TEST_F(RunFiles, ReadWhatTheSensorsWrote) {
 TEST_F(RunFiles, TruthIsAsBrightAsItIsLit) {
   truth.sunlit = 0.25;
   put();
-  const ScoreInput in = read_run(directory);
+  const ScoreInput in = read();
   EXPECT_NEAR(*in.truths[0].magnitude, 9.5 + 2.5 * std::log10(4.0), 1e-12);
   EXPECT_FALSE(in.truths[0].whole);
 }
@@ -129,7 +132,7 @@ TEST_F(RunFiles, TruthIsAsBrightAsItIsLit) {
 TEST_F(RunFiles, TruthWithoutLightHasNone) {
   truth.rendered_signal_e = 0.0;
   put();
-  EXPECT_FALSE(read_run(directory).truths[0].light);
+  EXPECT_FALSE(read().truths[0].light);
 }
 
 // An instant that the camera does not image is written as (0, 0).
@@ -137,13 +140,13 @@ TEST_F(RunFiles, EndThatIsNotImagedIsWhereTheTrailGoesOn) {
   truth.whole = false;
   truth.end_x_px = truth.end_y_px = 0.0;
   put();
-  EXPECT_EQ(read_run(directory).truths[0].end, (PixelPosition{31.0, 30.0}));
+  EXPECT_EQ(read().truths[0].end, (PixelPosition{31.0, 30.0}));
 }
 
 TEST_F(RunFiles, FrameWithoutDetectionIsNotSearched) {
   report.detection_off = true;
   put();
-  const ScoreInput in = read_run(directory);
+  const ScoreInput in = read();
   EXPECT_FALSE(in.frames[0].searched);
   EXPECT_FALSE(in.frames[0].noise_e);
   EXPECT_EQ(score(in, {}).truths[0].fate, Fate::unscored);
@@ -151,12 +154,12 @@ TEST_F(RunFiles, FrameWithoutDetectionIsNotSearched) {
 
 TEST_F(RunFiles, LineThatWasInterruptedIsLeftOut) {
   write("truth.jsonl", to_json(truth, utc) + "\n" + to_json(truth, utc).substr(0, 100));
-  EXPECT_EQ(read_run(directory).truths.size(), 1u);
+  EXPECT_EQ(read().truths.size(), 1u);
 }
 
 TEST_F(RunFiles, EmptyRunIsScored) {
   for (const char* name : {"frames.jsonl", "truth.jsonl", "detections.jsonl"}) write(name, "");
-  const Score s = score(read_run(directory), {});
+  const Score s = score(read(), {});
   EXPECT_EQ(s.sensors.size(), 1u);
   EXPECT_EQ(s.sensors[0].truths, 0u);
 }
@@ -221,7 +224,7 @@ TEST_F(RunFiles, SecondLineOfOneThingIsRefused) {
 
 TEST_F(RunFiles, InterruptedRunSaysSo) {
   write("run.json", run_json("interrupted"));
-  EXPECT_EQ(read_run(directory).status, "interrupted");
+  EXPECT_EQ(read().status, "interrupted");
   write("run.json", "{\"status\":\"complete\"");
   EXPECT_NE(refusal().find("run.json: must be a JSON object"), std::string::npos);
 }

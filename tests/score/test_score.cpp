@@ -89,6 +89,7 @@ void expect_sums(const Score& s) {
   EXPECT_EQ(sum.false_alarms, s.sensors.back().false_alarms);
   EXPECT_EQ(sum.frames, s.sensors.back().frames);
   EXPECT_EQ(s.truths.size(), s.sensors.back().truths);
+  EXPECT_EQ(s.false_alarms.size(), s.sensors.back().false_alarms);
 }
 
 TEST(Score, CountsAddUp) { expect_sums(score(all_fates(), {})); }
