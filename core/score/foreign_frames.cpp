@@ -73,7 +73,7 @@ class Row {
 };
 
 std::vector<std::string> header_of(const std::string& line, const std::string& place) {
-  const auto header = csv_fields(line);
+  auto header = csv_fields(line);
   for (const auto& name : header) {
     if (std::ranges::count(header, name) > 1)
       throw ConfigError(place + ": " + printable(name, 80) + ": column is there twice");

@@ -73,7 +73,7 @@ Detection detection_of(const JsonRecord& record) {
   }
 #define DMISE_LIST(field_, key, unit)                                    \
   d.field_ = record.numbers<std::tuple_size_v<decltype(d.field_)>>(key); \
-  for (double& value : d.field_) value *= unit;
+  for (double& value : d.field_) value *= (unit);
 #define DMISE_VECTOR(field, key)           \
   {                                        \
     const auto v = record.numbers<3>(key); \

@@ -22,6 +22,18 @@ FrameKey key_of(const Record& r) {
   return {r.sensor, r.frame.size(), r.frame};
 }
 
+FrameKey key_of(const ScoredTruth& t) { return key_of(t.truth); }
+
+/// The records of a frame in a list that is sorted by frames.
+template <class Record>
+std::span<Record> of_frame(std::vector<Record>& list, const ScoredFrame& frame) {
+  const auto begin = std::partition_point(
+      list.begin(), list.end(), [&](const Record& r) { return key_of(r) < key_of(frame); });
+  const auto end = std::partition_point(
+      begin, list.end(), [&](const Record& r) { return key_of(r) == key_of(frame); });
+  return {begin, end};
+}
+
 ScoredTruth known(const TrueSource& truth, const ScoredFrame* frame) {
   ScoredTruth t{.truth = truth};
   if (!frame || !frame->searched) return t;
@@ -79,11 +91,7 @@ Score score(ScoreInput input, const ScoreSettings& settings) {
   for (const TrueSource& t : input.truths) out.truths.push_back(known(t, frame_of(t)));
   for (const ScoredFrame& frame : input.frames) {
     if (!frame.searched) continue;
-    const auto truths = std::ranges::equal_range(
-        out.truths, key_of(frame), {}, [](const ScoredTruth& t) { return key_of(t.truth); });
-    const auto found =
-        std::ranges::equal_range(input.detections, key_of(frame), {}, key_of<FoundSource>);
-    judge_frame(frame, truths, found, out);
+    judge_frame(frame, of_frame(out.truths, frame), of_frame(input.detections, frame), out);
   }
   SensorTally total("", settings);
   std::map<std::string, SensorTally> sensors;
