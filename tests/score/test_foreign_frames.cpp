@@ -104,20 +104,24 @@ TEST_F(ForeignFrames, DetectsInThemAndScores) {
                        << "a.fits,point,100,80,,,,,2e4\n"
                        << "a.fits,streak,230,175," << 230 - dx << "," << 175 - dy << "," << 230 + dx
                        << "," << 175 + dy << ",4e4\n"
-                       << "a.fits,off,700,80,,,,,5e4\n";
+                       << "a.fits,off,700,80,,,,,5e4\n"
+                       << "a.fits,cut,595,300,590,300,610,300,500\n";
   Threads threads(1);
   int calls = 0;
   const Score s = score(
       read_frames(directory, table, threads, [&](double, const std::string&) { ++calls; }), {});
   EXPECT_EQ(calls, 1);
-  ASSERT_EQ(s.truths.size(), 3u);
-  EXPECT_EQ(s.truths[0].fate, Fate::outside);
-  EXPECT_EQ(s.truths[1].fate, Fate::found);
+  ASSERT_EQ(s.truths.size(), 4u);  // cut, off, point, streak
+  EXPECT_EQ(s.truths[0].fate, Fate::faint);
+  EXPECT_FALSE(s.truths[0].truth.whole);
+  EXPECT_EQ(s.truths[1].fate, Fate::outside);
   EXPECT_EQ(s.truths[2].fate, Fate::found);
+  EXPECT_EQ(s.truths[3].fate, Fate::found);
+  EXPECT_TRUE(s.truths[3].truth.whole);
   EXPECT_EQ(s.sensors.back().false_alarms, 0u);
-  EXPECT_NEAR(*s.truths[2].errors.across_px, 0.0, 0.1);
-  EXPECT_NEAR(*s.truths[2].errors.flux, 0.0, 0.1);
-  EXPECT_FALSE(s.truths[2].errors.start_time_s);  // a table does not say which end came first
+  EXPECT_NEAR(*s.truths[3].errors.across_px, 0.0, 0.1);
+  EXPECT_NEAR(*s.truths[3].errors.flux, 0.0, 0.1);
+  EXPECT_FALSE(s.truths[3].errors.start_time_s);  // a table does not say which end came first
 }
 
 TEST_F(ForeignFrames, DirectoryWithoutFramesIsRefused) {

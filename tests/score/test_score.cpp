@@ -261,6 +261,30 @@ TEST(Score, NothingAtAllIsScored) {
   }
 }
 
+// 200 px in 2 s at 3600 arcsec/px, half of them beyond the edge: an end that is outside has no
+// error.
+TEST(Score, TrailCutByTheEdgeKeepsItsRateAndHasNoEnds) {
+  ScoreInput in{.frames = {frame()}, .truths = {source("a", {-100.5, 100}, {99.5, 100})}};
+  in.truths[0].whole = false;
+  in.truths[0].light = PixelPosition{49.5, 100};
+  in.detections = {found(0, {-0.5, 100}, {99.5, 100})};
+  const ScoredTruth t = score(in, {}).truths[0];
+  EXPECT_EQ(t.fate, Fate::found);
+  EXPECT_NEAR(t.length_px, 100.0, 0.2);
+  EXPECT_NEAR(*t.rate_arcsec_per_s, 200 * 3600 / 2.0, 1e-6);
+  EXPECT_NEAR(*t.errors.along_px, 0.0, 1e-9);
+  EXPECT_FALSE(t.errors.start_along_px || t.errors.end_time_s);
+}
+
+TEST(Score, BinsHoldTheirLowerEdge) {
+  ScoreInput in{.frames = {frame()}, .truths = {source("a", {100, 100}, {200, 100})}};
+  in.truths[0].magnitude = 8.0;
+  const Score s = score(in, {});
+  ASSERT_EQ(s.sensors.back().by_magnitude.size(), 1u);
+  EXPECT_EQ(s.sensors.back().by_magnitude[0].from, 8.0);
+  EXPECT_EQ(s.sensors.back().by_magnitude[0].to, 9.0);
+}
+
 TEST(Score, FrameGivenTwiceIsRefused) {
   EXPECT_THROW(score({.frames = {frame(), frame()}}, {}), Error);
 }

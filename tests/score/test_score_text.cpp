@@ -17,6 +17,8 @@ using test::source;
 
 Score small_score() {
   ScoreInput in{.source = "hand-made", .status = "interrupted", .frames = {frame("1"), frame("2")}};
+  in.frames.push_back(frame("3"));
+  in.frames.back().searched = false;
   in.truths = {source("\"GOES\", 13", {100, 100}, {200, 100}),
                source("lost", {300, 300}, {400, 300})};
   in.detections = {found(0, {100, 100.5}, {200, 100.5}), found(1, {700, 700}, {700, 700})};
@@ -80,6 +82,13 @@ TEST(ScoreCharts, AreDrawnOfAnyScore) {
       EXPECT_EQ(svg.find("nan"), std::string::npos);
       EXPECT_EQ(svg.find("inf"), std::string::npos);
     }
+}
+
+// The detection of `small_score` is 60 bounds off.
+TEST(ScoreCharts, WhatIsBeyondTheAxisIsAtItsEnd) {
+  const Chart chart = position_chart(small_score());
+  ASSERT_EQ(chart.series[0].lines.size(), 2u);  // a cross
+  EXPECT_EQ(chart.series[0].lines[0][0].y, chart.y.most);
 }
 
 // The theory passes one half at the threshold.
