@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "bench/simulated_frame.h"
 #include "core/detection/detection_json.h"
 #include "core/wcs/wcs.h"
-#include "bench/simulated_frame.h"
 
 namespace dmise {
 namespace {

@@ -5,13 +5,13 @@
 
 #include <cmath>
 
+#include "bench/simulated_frame.h"
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
 #include "core/detection/detect_file.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
-#include "bench/simulated_frame.h"
 
 namespace dmise {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "bench/simulated_frame.h"
 #include "core/detection/beamlets.h"
 #include "core/detection/components.h"
 #include "core/detection/detect.h"
 #include "core/detection/line_search.h"
-#include "bench/simulated_frame.h"
 
 // Streaks of which no pixel stands out of the noise.
 namespace dmise {

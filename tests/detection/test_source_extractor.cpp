@@ -4,11 +4,11 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "bench/simulated_frame.h"
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
 #include "core/detection/detect.h"
 #include "core/image/fits_file.h"
-#include "bench/simulated_frame.h"
 #include "tests/support/data.h"
 
 namespace dmise {

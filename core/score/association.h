@@ -1,0 +1,27 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/score/score_input.h"
+
+namespace dmise {
+
+/// Which detections are of which truth, in one frame; indices into what was given.
+struct Association {
+  std::vector<std::optional<std::size_t>> detection_of_truth;
+  // Further detections of a truth that has one: it was found in pieces.
+  std::vector<std::vector<std::size_t>> pieces_of_truth;
+  std::vector<std::size_t> false_alarms;
+};
+
+/// A detection may be of a truth if its centroid and at least half of its line are within
+/// `gate_px` of the true trail. Of these pairs it takes, one to one, the most, and of equally many
+/// those with the least sum of squared normalised distances: across the trail over `gate_px`, along
+/// it from the centroid of its light over half its length plus `gate_px` (optimal, by shortest
+/// augmenting paths). Detections left over that may be of a truth which has one are its pieces.
+/// Truth without light takes part in none.
+Association associate(std::span<const TrueSource> truths, std::span<const FoundSource> detections,
+                      double gate_px);
+
+}  // namespace dmise

@@ -1,0 +1,185 @@
+#include "core/score/foreign_frames.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/base/printable.h"
+#include "core/base/text_file.h"
+#include "core/base/units.h"
+#include "core/detection/detect_file.h"
+#include "core/image/fits_file.h"
+#include "core/orbit/text_fields.h"
+#include "core/score/json_record.h"
+#include "core/score/run_files.h"
+#include "core/score/trail.h"
+
+namespace dmise {
+namespace {
+
+const std::string sensor_name = "frames";  // all files of a directory count as one sensor's
+
+const std::vector<std::string> columns_known = {"file",      "id",        "x_px",      "y_px",
+                                                "end1_x_px", "end1_y_px", "end2_x_px", "end2_y_px",
+                                                "magnitude", "signal_e",  "ra_deg",    "dec_deg"};
+
+/// One row by the names of its columns.
+class Row {
+ public:
+  Row(const std::vector<std::string>& header, std::vector<std::string> fields, std::string place)
+      : place_(std::move(place)) {
+    if (fields.size() != header.size())
+      throw ConfigError(place_ + ": must have " + std::to_string(header.size()) + " fields, got " +
+                        std::to_string(fields.size()));
+    for (std::size_t i = 0; i < header.size(); ++i) fields_[header[i]] = std::move(fields[i]);
+  }
+  [[noreturn]] void fail(const std::string& column, const std::string& reason) const {
+    const auto field = fields_.find(column);
+    throw ConfigError(place_ + ": " + column + ": " + reason +
+                      got(field == fields_.end() ? "" : field->second));
+  }
+  std::string text(const std::string& column) const {
+    const std::string& value = fields_.at(column);
+    if (value.empty()) fail(column, "must not be empty");
+    return value;
+  }
+  std::optional<double> number(const std::string& column, double least, double most) const {
+    const auto field = fields_.find(column);
+    if (field == fields_.end() || field->second.empty()) return {};
+    const auto value = parse_real(field->second);
+    if (!value || !(*value >= least && *value <= most)) {
+      char reason[80];
+      std::snprintf(reason, sizeof reason, "must be a number in %g..%g", least, most);
+      fail(column, reason);
+    }
+    return value;
+  }
+  /// Two numbers that are given together.
+  std::optional<PixelPosition> pair(const std::string& x, const std::string& y, double low_x,
+                                    double high_x, double low_y, double high_y) const {
+    const auto a = number(x, low_x, high_x), b = number(y, low_y, high_y);
+    if (a.has_value() != b.has_value()) fail(a ? y : x, "is missing beside " + (a ? x : y));
+    if (!a) return {};
+    return PixelPosition{*a, *b};
+  }
+
+ private:
+  std::map<std::string, std::string> fields_;
+  std::string place_;
+};
+
+std::vector<std::string> header_of(const std::string& line, const std::string& place) {
+  auto header = csv_fields(line);
+  for (const auto& name : header) {
+    if (std::ranges::count(header, name) > 1)
+      throw ConfigError(place + ": " + printable(name, 80) + ": column is there twice");
+    if (std::ranges::find(columns_known, name) != columns_known.end()) continue;
+    const std::string nearest = nearest_name(name, columns_known);
+    throw ConfigError(place + ": unknown column" + got(name) +
+                      (nearest.empty() ? "" : ", did you mean " + nearest + "?"));
+  }
+  for (const char* name : {"file", "id", "x_px", "y_px"})
+    if (std::ranges::find(header, name) == header.end())
+      throw ConfigError(place + ": " + name + ": column is missing");
+  return header;
+}
+
+std::vector<std::string> fits_files(const std::string& directory) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
+    std::filesystem::path name = entry.path().filename();
+    if (name.extension() == ".gz" || name.extension() == ".fz") name = name.stem();
+    if (name.extension() == ".fits" || name.extension() == ".fit" || name.extension() == ".fts")
+      names.push_back(entry.path().filename().string());
+  }
+  if (error) throw ConfigError(printable(directory) + ": " + error.message());
+  if (names.empty()) throw ConfigError(printable(directory) + ": has no FITS files");
+  std::ranges::sort(names);
+  return names;
+}
+
+}  // namespace
+
+std::vector<TrueSource> read_truth_csv(const std::string& path,
+                                       const std::vector<std::string>& files) {
+  const std::string text = read_text_file(path);
+  const std::string name = printable(path);
+  LineReader lines(without_byte_order_mark(text));
+  const auto first = lines.next();
+  if (!first) throw ConfigError(name + ": is empty");
+  const auto header = header_of(std::string(*first), name + ":1");
+  std::vector<TrueSource> truths;
+  std::set<std::pair<std::string, std::string>> seen;
+  int number = 1;
+  while (const auto line = lines.next()) {
+    ++number;
+    if (line->empty()) continue;
+    const Row row(header, csv_fields(*line), name + ":" + std::to_string(number));
+    constexpr double far = 1e7;
+    TrueSource t{.sensor = sensor_name, .frame = row.text("file"), .id = row.text("id")};
+    if (std::ranges::find(files, t.frame) == files.end())
+      row.fail("file", "is not in the directory");
+    if (!seen.emplace(t.frame, t.id).second) row.fail("id", "is there twice for this file");
+    row.text("x_px"), row.text("y_px");
+    const auto light = row.pair("x_px", "y_px", -far, far, -far, far);
+    const auto end1 = row.pair("end1_x_px", "end1_y_px", -far, far, -far, far);
+    const auto end2 = row.pair("end2_x_px", "end2_y_px", -far, far, -far, far);
+    if (end1.has_value() != end2.has_value())
+      row.fail(end1 ? "end2_x_px" : "end1_x_px", "is missing beside the other end");
+    t.start = end1.value_or(*light);
+    t.middle = *light;
+    t.end = end2.value_or(*light);
+    t.light = light;
+    t.magnitude = row.number("magnitude", -50.0, 50.0);
+    t.signal_e = row.number("signal_e", 1e-9, 1e15);
+    if (const auto place = row.pair("ra_deg", "dec_deg", 0.0, 360.0, -90.0, 90.0)) {
+      t.ra_rad = place->x_px * deg;
+      t.dec_rad = place->y_px * deg;
+    }
+    truths.push_back(std::move(t));
+  }
+  return truths;
+}
+
+ScoreInput read_frames(const std::string& directory, const std::string& truth_csv, Threads& threads,
+                       const ReadProgress& progress) {
+  const auto files = fits_files(directory);
+  ScoreInput in{.source = directory, .status = "complete"};
+  in.truths = read_truth_csv(truth_csv, files);
+  std::map<std::string, const ScoredFrame*> frame_of_file;
+  in.frames.reserve(files.size());
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    progress(double(i) / double(files.size()), files[i]);
+    const std::string path = directory + "/" + files[i];
+    const auto found = detect_file(path, {}, threads);
+    ScoredFrame frame = frame_of(JsonRecord(found.report, path));
+    const Frame pixels = read_frame(path);
+    frame.sensor = sensor_name;
+    frame.frame = files[i];
+    frame.columns = pixels.counts.columns;
+    frame.rows = pixels.counts.rows;
+    if (!frame.sigma_px && pixels.header.psf_fwhm_px > 0.0)
+      frame.sigma_px = pixels.header.psf_fwhm_px / std::sqrt(8.0 * std::log(2.0));
+    in.frames.push_back(std::move(frame));
+    frame_of_file[files[i]] = &in.frames.back();
+    for (const std::string& line : found.lines) {
+      FoundSource source{sensor_name, files[i], detection_of(JsonRecord(line, path))};
+      source.detection.id = files[i] + "/" + std::to_string(source.detection.index);
+      in.detections.push_back(std::move(source));
+    }
+  }
+  for (TrueSource& t : in.truths) {
+    const ScoredFrame& frame = *frame_of_file.at(t.frame);
+    const auto inside = [&](PixelPosition p) { return is_inside(p, frame.columns, frame.rows); };
+    t.whole = inside(t.start) && inside(t.end);
+    if (!inside(*t.light)) t.light.reset();
+  }
+  return in;
+}
+
+}  // namespace dmise

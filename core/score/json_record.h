@@ -1,0 +1,60 @@
+#pragma once
+#include <array>
+#include <concepts>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/products/detection.h"
+
+namespace dmise {
+
+/// A JSON object of a file; its errors are `ConfigError` "FILE:LINE: KEY: reason".
+class JsonRecord {
+ public:
+  /// `place`: "FILE:LINE".
+  JsonRecord(const std::string& text, std::string place);
+
+  bool has(const char* key) const;  // and it is not null
+  /// A number, flag or text; whole numbers must be in the range of T.
+  template <class T>
+  T get(const char* key) const {
+    const nlohmann::json& value = at(key);
+    if constexpr (std::same_as<T, bool>) {
+      require(value.is_boolean(), key, "true or false");
+    } else if constexpr (std::integral<T>) {
+      require(value.is_number_integer() && value == nlohmann::json(value.get<T>()), key,
+              "a whole number in range");
+    } else if constexpr (std::floating_point<T>) {
+      require(value.is_number(), key, "a number");
+    } else {
+      require(value.is_string(), key, "a text");
+    }
+    return value.get<T>();
+  }
+  double number(const char* key) const { return get<double>(key); }
+  SimTime time(const char* key) const { return {get<std::int64_t>(key)}; }
+  template <std::size_t N>
+  std::array<double, N> numbers(const char* key) const {
+    const nlohmann::json& list = at(key);
+    bool good = list.is_array() && list.size() == N;
+    for (std::size_t i = 0; good && i < N; ++i) good = list[i].is_number();
+    require(good, key, std::to_string(N) + " numbers");
+    return list.get<std::array<double, N>>();
+  }
+  JsonRecord object(const char* key) const;
+  std::vector<JsonRecord> objects(const char* key) const;
+  [[noreturn]] void fail(const std::string& key, const std::string& reason) const;
+
+ private:
+  JsonRecord(nlohmann::json object, std::string place);
+  const nlohmann::json& at(const char* key) const;
+  void require(bool good, const char* key, const std::string& what) const;
+  nlohmann::json object_;
+  std::string place_;
+};
+
+/// A line of detections.jsonl.
+Detection detection_of(const JsonRecord& record);
+
+}  // namespace dmise

@@ -1,0 +1,18 @@
+#pragma once
+#include <string>
+
+#include "core/score/score_input.h"
+
+namespace dmise {
+
+/// Reads run.json, frames.jsonl, truth.jsonl and detections.jsonl of a run's directory. Throws
+/// `ConfigError` "FILE:LINE: KEY: reason" for a file that is missing or invalid, and for two lines
+/// of one thing. A last line without its end was interrupted and is left out.
+ScoreInput read_run(const std::string& directory, const ReadProgress& progress);
+
+class JsonRecord;
+/// The frame of a report (`FileDetections::report`, a line of frames.jsonl), without its size and,
+/// unless the report states it, its PSF.
+ScoredFrame frame_of(const JsonRecord& report);
+
+}  // namespace dmise

@@ -1,0 +1,52 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/pixel.h"
+#include "core/base/sim_time.h"
+#include "core/products/detection.h"
+
+namespace dmise {
+
+/// What is known of a source that a frame may show.
+struct TrueSource {
+  std::string sensor, frame, id;          // frame: its number, or the name of its file
+  PixelPosition start, middle, end;       // of the source, perhaps outside the frame
+  std::optional<PixelPosition> light;     // centroid of its light in the frame; empty: it has none
+  std::optional<double> signal_e;         // of that light
+  std::optional<double> magnitude;        // as lit
+  std::optional<double> ra_rad, dec_rad;  // ICRS, astrometric, at mid exposure
+  std::optional<SimTime> start_time, end_time;
+  bool whole = true;      // all of the trail is in the frame, and lit
+  bool resolved = false;  // not a point moved along the trail
+};
+
+struct FoundSource {
+  std::string sensor, frame;
+  Detection detection;
+};
+
+struct ScoredFrame {
+  std::string sensor, frame;
+  int columns = 0, rows = 0;
+  std::optional<double> noise_e;   // median of the noise per pixel
+  std::optional<double> sigma_px;  // of the Gaussian nearest to the PSF, before pixel integration
+  double exposure_s = 0.0;
+  double scale_rad_per_px = 0.0;  // at the reference pixel; 0: unknown
+  bool searched = true;           // detection was on
+};
+
+/// Is called with the share done and the file that is being read.
+using ReadProgress = std::function<void(double, const std::string&)>;
+
+struct ScoreInput {
+  std::string source;  // directory, for messages
+  std::string status;  // of the run
+  std::vector<ScoredFrame> frames;
+  std::vector<TrueSource> truths;
+  std::vector<FoundSource> detections;
+};
+
+}  // namespace dmise

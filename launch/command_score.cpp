@@ -1,0 +1,92 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "core/base/error.h"
+#include "core/base/printable.h"
+#include "core/base/whole_file.h"
+#include "core/score/foreign_frames.h"
+#include "core/score/run_files.h"
+#include "core/score/score_charts.h"
+#include "core/score/score_text.h"
+#include "launch/commands.h"
+#include "launch/progress.h"
+
+namespace dmise {
+namespace {
+
+struct ScoreOptions {
+  std::string run, frames, truth, csv, plots;
+  bool json = false;
+  int threads = 1;
+  ScoreSettings settings;
+};
+
+ScoreInput input_of(const ScoreOptions& options) {
+  if (options.run.empty() == options.frames.empty())
+    throw ConfigError("score: give the directory of a run, or --frames and --truth");
+  Progress progress;
+  const auto show = [&](double share, const std::string& file) {
+    progress.show_share(share, "score: " + printable(file));
+  };
+  Threads threads(options.threads);
+  auto input = options.run.empty() ? read_frames(options.frames, options.truth, threads, show)
+                                   : read_run(options.run, show);
+  progress.clear_line();
+  return input;
+}
+
+void run_score(const ScoreOptions& options) {
+  const Score result = score(input_of(options), options.settings);
+  if (!options.csv.empty()) write_file_whole(options.csv, score_csv(result));
+  if (!options.plots.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(options.plots, error);
+    if (error) throw ConfigError("--plots: " + options.plots + ": " + error.message());
+    write_file_whole(options.plots + "/detection.svg", chart_svg(detection_chart(result)));
+    write_file_whole(options.plots + "/position.svg", chart_svg(position_chart(result)));
+    write_file_whole(options.plots + "/magnitude.svg", chart_svg(magnitude_chart(result)));
+  }
+  const std::string text = options.json ? score_json(result) : score_table(result);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+}  // namespace
+
+void add_score_command(CLI::App& app) {
+  auto options = std::make_shared<ScoreOptions>();
+  auto* command = app.add_subcommand(
+      "score",
+      "Compares detections with truth: probability of detection, false alarms, errors of position, "
+      "magnitude and ends, and whether their covariances are honest. Of a run, or of any FITS "
+      "frames "
+      "in which it detects itself");
+  auto* run = command->add_option("run", options->run, "directory of a run that has ended");
+  auto* frames = command->add_option("--frames", options->frames,
+                                     "directory of FITS frames, instead of a run");
+  auto* truth = command->add_option("--truth", options->truth, truth_csv_help);
+  frames->needs(truth)->excludes(run);
+  truth->needs(frames);
+  command->add_option("--threads", options->threads, "number of threads that detect in --frames")
+      ->default_val(1)
+      ->check(CLI::Range(1, 256));
+  command
+      ->add_option("--gate-px", options->settings.gate_px,
+                   "greatest distance of a detection from its truth's trail")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 1000.0));
+  command
+      ->add_option("--threshold", options->settings.threshold_snr,
+                   "SNR at which the detector finds half; sources of a lower expected SNR that are "
+                   "not found count as faint, not as missed")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1000.0));
+  command->add_flag("--json", options->json, "print JSON");
+  command->add_option("--csv", options->csv, "file: a row per truth and per false alarm");
+  command->add_option("--plots", options->plots,
+                      "directory: detection.svg, position.svg, magnitude.svg");
+  command->callback([options] { run_score(*options); });
+}
+
+}  // namespace dmise
