@@ -8,7 +8,9 @@
 namespace dmise {
 namespace {
 
-constexpr int most_steps = 12, most_passes = 8;
+constexpr int most_steps = 12, most_passes = 12;
+constexpr int soft_passes = 4;  // with Huber's weights, if there are outliers
+constexpr double huber = 1.5;
 
 /// Derivatives of a residual along x and y by the free parameters, each in units that move an image
 /// by about a pixel, and the residual.
@@ -97,6 +99,7 @@ double spread2(std::span<const double> all, std::span<const PlateMatch> matches)
   std::vector<double> squares;
   for (std::size_t k = 0; k < all.size(); ++k)
     if (!matches[k].ignored) squares.push_back(all[k]);
+  if (squares.empty()) return 0.0;
   const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
   std::nth_element(squares.begin(), middle, squares.end());
   return *middle / (2 * std::log(2.0));
@@ -118,7 +121,7 @@ std::optional<PlateFit> fit_plate(const PlateModel& model, std::span<const Plate
     weight.push_back(weight_of(matches[k], settings.least_sigma_px));
     fit.used[k] = !matches[k].ignored;
   }
-  std::vector<double> squares(matches.size());
+  std::vector<double> squares(matches.size()), soft(matches.size(), 1.0);
   Row row;
   for (int pass = 0; pass < most_passes; ++pass) {
     for (int step = 0; step < most_steps; ++step) {
@@ -133,9 +136,10 @@ std::optional<PlateFit> fit_plate(const PlateModel& model, std::span<const Plate
           squares[k] = 1e300;
           continue;
         }
-        const auto& w = weight[k];
+        auto w = weight[k];
         squares[k] = square(w, row.residual);
         if (!fit.used[k]) continue;
+        for (double& part : w) part *= soft[k];
         ++fit.count;
         fit.chi2 += squares[k];
         sum2 += row.residual.x_px * row.residual.x_px + row.residual.y_px * row.residual.y_px;
@@ -173,6 +177,16 @@ std::optional<PlateFit> fit_plate(const PlateModel& model, std::span<const Plate
     fit.error_scale = std::sqrt(scale2);
     const double limit = settings.outlier_sigmas * settings.outlier_sigmas * scale2;
     bool changed = false;
+    if (pass < soft_passes) {
+      const double core = huber * huber * std::max(1e-12, spread2(squares, matches));
+      const bool outliers = *std::max_element(squares.begin(), squares.end()) >
+                            settings.outlier_sigmas * settings.outlier_sigmas;
+      const bool again = outliers && pass + 1 < soft_passes && degrees > 0;
+      for (std::size_t k = 0; k < matches.size(); ++k)
+        soft[k] = again ? std::min(1.0, std::sqrt(core / std::max(squares[k], 1e-300))) : 1.0;
+      if (again) continue;
+      pass = soft_passes;
+    }
     for (std::size_t k = 0; k < matches.size(); ++k) {
       const char use = !matches[k].ignored && squares[k] <= limit;
       changed = changed || use != fit.used[k];

@@ -40,15 +40,21 @@ float PlateSky::magnitude_of_rank(double rank) const {
   return sorted_v_mag_[std::size_t(std::clamp(rank, 0.0, last))];
 }
 
+std::vector<std::uint32_t> PlateSky::catalogued(const Vec<Gcrs>& axis, double radius_rad,
+                                                double rank) const {
+  std::vector<std::uint32_t> found;
+  query_cone({map_.stars.v_mag.data(), map_.stars.size()}, map_.index, axis, radius_rad,
+             magnitude_of_rank(rank), found);
+  return found;
+}
+
 std::vector<SeenStar> PlateSky::brightest(const Vec<Gcrs>& axis, double radius_rad,
                                           std::size_t most) const {
   const double share = 0.5 * (1 - std::cos(std::min(radius_rad, pi)));
   std::vector<std::uint32_t> found;
   // Twice as many as on average, because stars crowd in the Milky Way; all of them if too few.
   for (double rank = 2.0 * double(most) / share;; rank *= 4) {
-    found.clear();
-    query_cone({map_.stars.v_mag.data(), map_.stars.size()}, map_.index, axis,
-               radius_rad + most_displaced_rad, magnitude_of_rank(rank), found);
+    found = catalogued(axis, radius_rad + most_displaced_rad, rank);
     if (found.size() >= most || rank >= double(sorted_v_mag_.size())) break;
   }
   const auto brighter = [&](std::uint32_t a, std::uint32_t b) {

@@ -27,6 +27,10 @@ class PlateSky {
   /// Number of stars not fainter than a magnitude; the magnitude that as many stars reach.
   std::size_t brighter_than(float v_mag) const;
   float magnitude_of_rank(double rank) const;
+  /// Numbers of the stars within `radius_rad` of an axis in the catalogue, of the brightest `rank`
+  /// of the whole sky.
+  std::vector<std::uint32_t> catalogued(const Vec<Gcrs>& axis, double radius_rad,
+                                        double rank) const;
   /// The brightest `most` stars within `radius_rad` of an apparent axis and above the horizon, by
   /// rising magnitude.
   std::vector<SeenStar> brightest(const Vec<Gcrs>& axis, double radius_rad, std::size_t most) const;

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <unordered_map>
 
-#include "core/astrometry/star_patterns.h"
 #include "core/base/error.h"
 #include "core/frames/quaternion.h"
 
@@ -16,7 +15,7 @@ constexpr double flat_rad = 20 * deg;
 constexpr double width_step = 1.2;
 constexpr double code_tolerance = 0.012;
 constexpr std::size_t pattern_sources = 150, growing_sources = 300;
-constexpr int image_neighbours = 6;
+constexpr std::size_t quad_neighbours = 6, triangle_neighbours = 12;
 /// Saturated stars take part in a fit only if there are fewer others.
 constexpr std::size_t least_exact = 10;
 /// A neighbour in the image may be measured fainter by this than its star.
@@ -36,13 +35,14 @@ using Stars = std::array<std::uint32_t, 4>;
 class PlateSearcher {
  public:
   PlateSearcher(std::span<const PlateSource> sources, const PlateBelief& belief,
-                const PlateSky& sky, const PlateSearch& search);
+                const PlateSky& sky, const PlateSearch& search, PatternCache& cache);
   PlateSolution solve();
 
  private:
   Trial trial(double narrow_rad, double middle_rad, double wide_rad) const;
   std::vector<Trial> trials(double narrowest_rad, double widest_rad) const;
-  std::vector<std::uint32_t> catalogue_stars(double width_rad) const;
+  double rank_in_frame(double width_rad) const;
+  std::vector<std::uint32_t> stars_near_belief(double width_rad) const;
   void try_all(const PatternIndex& index, const std::vector<Trial>& trials);
   void try_round(const PatternIndex& index, const Trial& trial, std::size_t from, std::size_t to);
   void consider(const Trial& trial, const Stars& images, const Stars& stars);
@@ -61,13 +61,20 @@ class PlateSearcher {
     return search_.star_sigma_rad * model.focal_length_px;
   }
   PixelPosition centre() const { return {(belief_.columns - 1) / 2.0, (belief_.rows - 1) / 2.0}; }
-  /// Stars of a cone about a frame that holds as many as it has sources.
-  static std::size_t stars_around(std::size_t sources) { return 3 * sources + 20; }
+  /// Stars about a frame of which it shows somewhat more than it has sources.
+  std::vector<SeenStar> stars_around(const PlateModel& model, std::size_t sources) const {
+    constexpr double wider = 1.15;
+    const double r = wider * half_diagonal_px();
+    const double share = double(belief_.columns) * belief_.rows / (pi * r * r);
+    return sky_.brightest(model.axis(), std::min(wider * reach_rad(model), pi),
+                          std::size_t(1.3 * double(sources) / share) + 20);
+  }
   double half_diagonal_px() const { return 0.5 * std::hypot(belief_.columns, belief_.rows); }
 
   const PlateBelief& belief_;
   const PlateSky& sky_;
   const PlateSearch& search_;
+  PatternCache& cache_;
   std::vector<PlateSource> sources_;     // by falling flux
   std::vector<std::uint32_t> original_;  // their places in the caller's list
   std::optional<SourceGrid> bright_grid_;
@@ -78,8 +85,9 @@ class PlateSearcher {
 };
 
 PlateSearcher::PlateSearcher(std::span<const PlateSource> sources, const PlateBelief& belief,
-                             const PlateSky& sky, const PlateSearch& search)
-    : belief_(belief), sky_(sky), search_(search) {
+                             const PlateSky& sky, const PlateSearch& search,
+                             PatternCache& cache)
+    : belief_(belief), sky_(sky), search_(search), cache_(cache) {
   const auto usable = [&](const PlateSource& s) {
     const auto& c = s.covariance_px2;
     return std::isfinite(s.x_px) && std::isfinite(s.y_px) && s.x_px >= -0.5 && s.y_px >= -0.5 &&
@@ -91,19 +99,27 @@ PlateSearcher::PlateSearcher(std::span<const PlateSource> sources, const PlateBe
   std::stable_sort(original_.begin(), original_.end(), [&](std::uint32_t a, std::uint32_t b) {
     return sources[a].flux > sources[b].flux;
   });
-  // One source a place: of those within half a pixel the brightest.
-  std::vector<PlateSource> all;
-  for (const std::uint32_t i : original_) all.push_back(sources[i]);
+  // One source a place: the brightest of those within half a pixel.
   std::vector<std::uint32_t> kept;
-  const SourceGrid grid(all, belief.columns, belief.rows);
-  std::vector<char> taken(all.size(), 0);
-  for (std::size_t i = 0; i < all.size() && sources_.size() < 4 * search.most_stars; ++i) {
-    const int first = grid.nearest({all[i].x_px, all[i].y_px}, 0.5);
-    if (first >= 0 && std::size_t(first) != i && taken[std::size_t(first)]) continue;
-    taken[std::size_t(first)] = 1;
-    taken[i] = 1;
-    sources_.push_back(all[i]);
-    kept.push_back(original_[i]);
+  std::unordered_multimap<std::int64_t, PixelPosition> taken;  // by pixel
+  const auto key = [](double x, double y) {
+    return std::int64_t(std::lround(y)) * (std::int64_t(1) << 32) + std::lround(x);
+  };
+  for (const std::uint32_t i : original_) {
+    if (sources_.size() >= 4 * search.most_stars) break;
+    const PlateSource& s = sources[i];
+    bool twice = false;
+    for (int j = -1; j <= 1 && !twice; ++j)
+      for (int k = -1; k <= 1 && !twice; ++k) {
+        const auto [from, to] = taken.equal_range(key(s.x_px + k, s.y_px + j));
+        for (auto at = from; at != to; ++at)
+          twice = twice ||
+                  std::hypot(at->second.x_px - s.x_px, at->second.y_px - s.y_px) < 0.5;
+      }
+    if (twice) continue;
+    taken.emplace(key(s.x_px, s.y_px), PixelPosition{s.x_px, s.y_px});
+    sources_.push_back(s);
+    kept.push_back(i);
   }
   original_ = std::move(kept);
   bright_ = std::min(sources_.size(), growing_sources);
@@ -145,27 +161,19 @@ std::vector<Trial> PlateSearcher::trials(double narrowest_rad, double widest_rad
   return list;
 }
 
-/// The stars with which patterns begin: enough that a frame of that width shows some 150.
-std::vector<std::uint32_t> PlateSearcher::catalogue_stars(double width_rad) const {
-  constexpr double in_frame = 150.0, most = 400'000.0;
+/// Rank of the stars of the whole sky of which a frame of that width shows some 300.
+double PlateSearcher::rank_in_frame(double width_rad) const {
   const double w = std::min(width_rad, 120 * deg);
-  const double frame_sr = std::max(w * w * belief_.rows / belief_.columns, 1e-12);
-  std::vector<std::uint32_t> stars;
-  const auto stars_to = [&](const Vec<Gcrs>& axis, double radius_rad, double rank) {
-    query_cone({sky_.map().stars.v_mag.data(), sky_.map().stars.size()}, sky_.map().index, axis,
-               radius_rad, sky_.magnitude_of_rank(rank), stars);
-  };
-  const double rank = 2 * in_frame * 4 * pi / frame_sr;
-  if (!belief_.camera_from_gcrs) {
-    stars_to({0, 0, 1}, pi, std::min(rank, most));
-    return stars;
-  }
-  PlateModel model{.projection = belief_.projection,
-                   .camera_from_gcrs = *belief_.camera_from_gcrs,
-                   .focal_length_px = trials(width_rad, width_rad)[0].focal_low_px,
-                   .centre = centre()};
-  stars_to(model.axis(), reach_rad(model) + search_.pointing_error_rad, 2 * rank);
-  return stars;
+  return 300 * 4 * pi / std::max(w * w * belief_.rows / belief_.columns, 1e-12);
+}
+
+std::vector<std::uint32_t> PlateSearcher::stars_near_belief(double width_rad) const {
+  const PlateModel model{.projection = belief_.projection,
+                         .camera_from_gcrs = *belief_.camera_from_gcrs,
+                         .focal_length_px = trials(width_rad, width_rad)[0].focal_low_px,
+                         .centre = centre()};
+  return sky_.catalogued(model.axis(), reach_rad(model) + search_.pointing_error_rad,
+                         2 * rank_in_frame(width_rad));
 }
 
 /// Angle from the axis to the farthest corner.
@@ -206,7 +214,8 @@ void PlateSearcher::try_round(const PatternIndex& index, const Trial& trial, std
     for (std::size_t j = 0; j < count; ++j)
       if (j != i && direction[j] && sources_[j].flux >= fainter * sources_[i].flux)
         near.push_back(std::uint32_t(j));
-    const auto kept = std::min<std::size_t>(near.size(), image_neighbours);
+    const auto kept =
+        std::min(near.size(), index.others() == 3 ? quad_neighbours : triangle_neighbours);
     std::partial_sort(near.begin(), near.begin() + std::ptrdiff_t(kept), near.end(),
                       [&](std::uint32_t a, std::uint32_t b) {
                         const double da = dot(*direction[i], *direction[a]),
@@ -311,8 +320,7 @@ bool PlateSearcher::stars_beside(const PlateModel& model, const Stars& images,
 bool PlateSearcher::grow(const PlateModel& start, PixelPosition from, double size_px) {
   PlateModel model = start;
   const auto sources = std::span(sources_).first(bright_);
-  const auto stars = sky_.brightest(model.axis(), std::min(1.2 * reach_rad(model) + 0.02, pi),
-                                    stars_around(bright_));
+  const auto stars = stars_around(model, bright_);
   double known_px = size_px, rms_px = 1.0;
   for (double radius_px = 1.5 * size_px;; radius_px *= 1.6) {
     const auto pairs = match(model, stars, sources, *bright_grid_, belief_.columns, belief_.rows,
@@ -347,8 +355,7 @@ void PlateSearcher::finish(PlateModel model) {
     exact += !sources_[count++].saturated;
   const auto sources = std::span(sources_).first(count);
   const SourceGrid grid(sources, belief_.columns, belief_.rows);
-  solution.stars = sky_.brightest(model.axis(), std::min(1.1 * reach_rad(model) + 0.02, pi),
-                                  stars_around(count));
+  solution.stars = stars_around(model, count);
   const PlateFitSettings settings{.least_sigma_px = star_sigma_px(model)};
   const auto pairs_within = [&](double near_px) {
     auto pairs = match(model, solution.stars, sources, grid, belief_.columns, belief_.rows,
@@ -429,11 +436,13 @@ PlateSolution PlateSearcher::solve() {
                  to = flat ? std::min(wide, flat_rad) : wide;
     if (found_ || from > to || (flat && from >= flat_rad)) continue;
     const auto list = trials(from, to);
-    const auto stars = catalogue_stars(from);
-    for (const int others : {3, 2}) {
-      if (found_ || (others == 2 && !belief_.camera_from_gcrs)) continue;
-      try_all(PatternIndex(sky_, stars, others == 3 ? 5 : 8, others), list);
+    if (!belief_.camera_from_gcrs) {
+      try_all(cache_.whole_sky(sky_, rank_in_frame(from)), list);
+      continue;
     }
+    const auto stars = stars_near_belief(from);
+    try_all(PatternIndex(sky_, stars, 5, 3), list);
+    if (!found_) try_all(PatternIndex(sky_, stars, triangle_neighbours, 2), list);
   }
   if (!found_)
     fail("no stars of the catalogue are where " + std::to_string(sources_.size()) +
@@ -444,8 +453,9 @@ PlateSolution PlateSearcher::solve() {
 }  // namespace
 
 PlateSolution solve_plate(std::span<const PlateSource> sources, const PlateBelief& belief,
-                          const PlateSky& sky, const PlateSearch& search) {
-  return PlateSearcher(sources, belief, sky, search).solve();
+                          const PlateSky& sky, const PlateSearch& search, PatternCache* cache) {
+  PatternCache own;
+  return PlateSearcher(sources, belief, sky, search, cache ? *cache : own).solve();
 }
 
 }  // namespace dmise

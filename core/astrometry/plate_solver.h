@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/astrometry/plate_match.h"
+#include "core/astrometry/star_patterns.h"
 #include "core/base/units.h"
 
 namespace dmise {
@@ -39,8 +40,10 @@ struct PlateSolution {
 
 /// Finds the plate of a frame from its sources (in any order; those with numbers that are not
 /// finite or out of the frame are passed over). With a believed pointing the sky around it is
-/// searched, else all of it. Deterministic. Throws `Error` with the reason if there is none.
+/// searched, else all of it. A `cache` of the sky's catalogue saves the next blind solution time.
+/// Deterministic. Throws `Error` with the reason if there is none.
 PlateSolution solve_plate(std::span<const PlateSource> sources, const PlateBelief& belief,
-                          const PlateSky& sky, const PlateSearch& search = {});
+                          const PlateSky& sky, const PlateSearch& search = {},
+                          PatternCache* cache = nullptr);
 
 }  // namespace dmise

@@ -6,6 +6,7 @@ namespace dmise {
 namespace {
 
 constexpr std::uint32_t none = ~0U;
+constexpr double most_stars = 400'000.0;
 
 /// The nearest stars that are not fainter, by rising distance.
 void nearest_brighter(const PlateSky& sky, std::uint32_t star, std::size_t most,
@@ -77,6 +78,16 @@ std::array<std::uint32_t, 4> PatternIndex::stars_of(const Entry& e) const {
   for (std::size_t i = 0; i < std::size_t(others_); ++i)
     stars[i + 1] = near_[e.star * neighbours_ + e.pattern.others[i]];
   return stars;
+}
+
+const PatternIndex& PatternCache::whole_sky(const PlateSky& sky, double rank) {
+  // Powers of 4, so that frames of about the same width share one.
+  const double count = double(sky.map().stars.size());
+  const double shared = std::min({std::exp2(2 * std::ceil(0.5 * std::log2(rank))), most_stars, count});
+  const auto kept = by_rank_.find(shared);
+  if (kept != by_rank_.end()) return kept->second;
+  const auto stars = sky.catalogued({0, 0, 1}, pi, shared);
+  return by_rank_.try_emplace(shared, sky, stars, 5, 3).first->second;
 }
 
 }  // namespace dmise

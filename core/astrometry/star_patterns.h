@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -51,12 +52,16 @@ void visit_patterns(std::span<const std::complex<double>> places, int others, Vi
       sort_two(1, 2);
       sort_two(0, 1);
     }
+    // z / first by hand: the library's division minds infinities.
     const std::complex<double> first = places[p.others[0]];
-    if (!(std::norm(first) > 0)) return;
+    const double unit = 1 / (StarPattern::code_unit * std::norm(first));
+    if (!std::isfinite(unit)) return;
     for (std::size_t i = 1; i < std::size_t(others); ++i) {
-      const std::complex<double> z = places[p.others[i]] / first;
-      p.code[2 * i - 2] = std::int16_t(std::lrint(z.real() / StarPattern::code_unit));
-      p.code[2 * i - 1] = std::int16_t(std::lrint(z.imag() / StarPattern::code_unit));
+      const std::complex<double> z = places[p.others[i]];
+      const double along = z.real() * first.real() + z.imag() * first.imag();
+      const double across = z.imag() * first.real() - z.real() * first.imag();
+      p.code[2 * i - 2] = std::int16_t(std::lrint(along * unit));
+      p.code[2 * i - 1] = std::int16_t(std::lrint(across * unit));
     }
     visit(p);
   };
@@ -72,7 +77,7 @@ void visit_patterns(std::span<const std::complex<double>> places, int others, Vi
 /// Patterns of the catalogue, found by their codes.
 class PatternIndex {
  public:
-  /// Of `stars` of the catalogue and `neighbours` of each (at most 8), 2 or 3 `others` at a time.
+  /// Of `stars` of the catalogue and `neighbours` of each, 2 or 3 `others` at a time.
   PatternIndex(const PlateSky& sky, std::vector<std::uint32_t> stars, std::size_t neighbours,
                int others);
 
@@ -118,6 +123,17 @@ class PatternIndex {
   std::vector<std::uint32_t> stars_, near_;  // `neighbours_` of each star
   std::vector<Entry> entries_;               // by cell
   std::vector<std::uint32_t> first_;         // of each cell
+};
+
+/// Quads of a catalogue's whole sky, kept for further frames.
+class PatternCache {
+ public:
+  /// Of at least the stars up to a rank in brightness, and at most 400,000. `sky` must be of the
+  /// same catalogue each time.
+  const PatternIndex& whole_sky(const PlateSky& sky, double rank);
+
+ private:
+  std::map<double, PatternIndex> by_rank_;
 };
 
 }  // namespace dmise

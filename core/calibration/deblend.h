@@ -6,10 +6,16 @@
 
 namespace dmise {
 
-/// Splits a component into those parts that stay apart when the threshold rises by steps of
-/// `factor`, each of at least 3 pixels: `value(x, y)` of its pixels are above 0. What does not
-/// split is returned as it is.
-std::vector<Component> deblend(const Component& component, double factor,
+/// What makes a peak within a component a source of its own.
+struct DeblendSettings {
+  double factor = 1.5;      // of the saddle's value that both peaks must reach
+  double least_rise = 0.0;  // over the saddle
+};
+
+/// Splits a component at the saddles between its peaks, by the values (x, y) of its pixels. Each
+/// part holds what is above the highest saddle around it, at least 3 pixels. What does not split is
+/// returned as it is.
+std::vector<Component> deblend(const Component& component, const DeblendSettings& settings,
                                const std::function<double(int, int)>& value);
 
 }  // namespace dmise

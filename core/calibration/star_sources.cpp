@@ -16,7 +16,7 @@ namespace {
 constexpr double sigma_of_fwhm = 0.42466090014400953;
 constexpr int most_component_px = 4000;  // more are no star
 constexpr double longest_trail_px = 200.0;
-constexpr double blend_factor = 1.5;  // between thresholds
+constexpr double rise_of_a_star = 5.0;  // over a saddle, in noise of a pixel
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
@@ -52,6 +52,9 @@ class SourceMeasure {
     return (counts_.at(x, y) - background_.level_dn(x, y)) * settings_.gain_e_per_dn;
   }
 
+  double noise_e(int x, int y) const {
+    return background_.sigma_dn(x, y) * settings_.gain_e_per_dn;
+  }
   bool is_saturated(const Component& c) const {
     for (const Run& run : c.runs)
       for (int x = run.first_x; x <= run.last_x; ++x)
@@ -194,8 +197,8 @@ std::optional<PlateSource> SourceMeasure::source(const Moments& m, double sigma_
       if (!contains(x, y) || std::abs(dx * c + dy * s) > along ||
           std::abs(dy * c - dx * s) > across)
         continue;
-      const double noise_e = background_.sigma_dn(x, y) * settings_.gain_e_per_dn;
-      pixels.push_back({x, y, float(signal_e(x, y)), float(noise_e * noise_e)});
+      const double noise = noise_e(x, y);
+      pixels.push_back({x, y, float(signal_e(x, y)), float(noise * noise)});
     }
   if (pixels.size() < 12) return std::nullopt;
   // The background's error, as far as a mesh cell can hide it.
@@ -231,7 +234,8 @@ std::vector<PlateSource> find_star_sources(const CountImage& counts,
   for (const Component& c : components) {
     if (c.pixels > most_component_px) continue;
     const auto signal = [&](int x, int y) { return measure.signal_e(x, y); };
-    for (Component& part : deblend(c, blend_factor, signal)) {
+    const double noise_e = measure.noise_e(c.peak_x, c.peak_y);
+    for (Component& part : deblend(c, {.least_rise = rise_of_a_star * noise_e}, signal)) {
       const double light_e = measure.light_e(part);
       bright.emplace_back(light_e, std::move(part));
     }

@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <ostream>
 #include <random>
 #include <string>
 #include <vector>
@@ -12,6 +13,26 @@ namespace dmise::test {
 
 inline const StarMap& kstars() {
   static const StarMap map = load_star_map(catalogue_path("stars.dat"));
+  return map;
+}
+
+/// Stars at random places, of which there are 4 times as many in 1.25 mag: as many a square degree
+/// as Tycho-2 has to V = 11.
+inline const StarMap& crowded_sky() {
+  static const StarMap map = [] {
+    std::mt19937_64 random(1);
+    const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
+    StarCatalogue c;
+    for (std::uint32_t i = 0; i < 400'000; ++i)
+      append_star(c, {.id = i,
+                      .ra_rad = 2 * pi * uniform(),
+                      .dec_rad = std::asin(2 * uniform() - 1),
+                      .v_mag = 12.0 + 1.25 / std::log(4.0) * std::log(1 - uniform())});
+    StarMap m;
+    m.index = build_star_index(c);
+    m.stars = table_of(std::move(c));
+    return m;
+  }();
   return map;
 }
 
@@ -45,6 +66,10 @@ struct PlateCase {
   double ra_deg = 100, dec_deg = 20, roll_deg = 30;
   int columns = 2000, rows = 1500;
 };
+
+inline void PrintTo(const PlateCase& c, std::ostream* out) {
+  *out << c.projection << ' ' << c.width_deg << " deg at " << c.ra_deg << ' ' << c.dec_deg;
+}
 
 /// Images of the brightest stars in a frame, with normal errors; then wrong ones at random.
 inline SeenPlate seen_plate(const PlateSky& sky, const PlateCase& c, std::size_t stars,
