@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "core/base/units.h"
 #include "core/calibration/deblend.h"
@@ -18,11 +19,12 @@ constexpr int most_component_px = 4000;  // more are no star
 constexpr double longest_trail_px = 200.0;
 constexpr double rise_of_a_star = 5.0;  // over a saddle, in noise of a pixel
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double quantile_of(std::vector<double> values, double q) {
+  const auto at = values.begin() + std::ptrdiff_t(q * double(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
 }
+double median_of(std::vector<double> values) { return quantile_of(std::move(values), 0.5); }
 
 /// An image's place, second moments and light, weighted by a Gaussian of these moments.
 struct Moments {
@@ -82,6 +84,8 @@ class SourceMeasure {
     return m;
   }
 
+  /// Fits a Gaussian of a width, or a line of it; empty if it does not converge.
+  std::optional<TrailFit> fit(const Moments& m, double sigma_px) const;
   std::optional<PlateSource> source(const Moments& m, double sigma_px) const;
   PlateSource saturated_source(const Component& c, double sigma_px, double length_px) const;
 
@@ -177,10 +181,9 @@ PlateSource SourceMeasure::saturated_source(const Component& c, double sigma_px,
   return {m.x, m.y, flux, {0.25 * m.xx, 0.25 * m.xy, 0.25 * m.yy}, flux, true};
 }
 
-std::optional<PlateSource> SourceMeasure::source(const Moments& m, double sigma_px) const {
-  const double major = m.major_sigma();
+std::optional<TrailFit> SourceMeasure::fit(const Moments& m, double sigma_px) const {
   const double length = trail_length_px(m, sigma_px);
-  const bool trail = length > 1.5 * sigma_px;
+  const bool trail = length > 2 * sigma_px;
   Trail start{.x_px = m.x, .y_px = m.y, .flux_e = std::max(m.flux, 1.0)};
   if (trail) {
     start.length_px = length;
@@ -203,10 +206,19 @@ std::optional<PlateSource> SourceMeasure::source(const Moments& m, double sigma_
   if (pixels.size() < 12) return std::nullopt;
   // The background's error, as far as a mesh cell can hide it.
   const double prior_e = 0.3 * std::sqrt(double(pixels[0].variance_e2));
-  const TrailFit fit = fit_trails(pixels, {start}, {trail ? trail_line : trail_place},
-                                  {.sigma_px = sigma_px, .background_sigma_e = prior_e});
+  const FitSettings fit_settings{.sigma_px = sigma_px, .background_sigma_e = prior_e};
+  TrailFit fit = fit_trails(pixels, {start}, {trail ? trail_line : trail_place}, fit_settings);
+  if (!fit.converged) fit = fit_trails(pixels, {start}, {trail_place}, fit_settings);
+  if (!fit.converged) return std::nullopt;
+  return fit;
+}
+
+std::optional<PlateSource> SourceMeasure::source(const Moments& m, double sigma_px) const {
+  const auto fitted = fit(m, sigma_px);
+  if (!fitted) return std::nullopt;
+  const TrailFit& fit = *fitted;
   const Trail& t = fit.trails[0];
-  if (!fit.converged || !(t.flux_e > 0) || std::hypot(t.x_px - m.x, t.y_px - m.y) > 2 * major ||
+  if (!(t.flux_e > 0) || std::hypot(t.x_px - m.x, t.y_px - m.y) > 2 * m.major_sigma() ||
       !std::isfinite(fit.cov(0, 0) + fit.cov(1, 1)))
     return std::nullopt;
   const double scale = std::max(1.0, fit.reduced_chi2());
@@ -218,6 +230,47 @@ std::optional<PlateSource> SourceMeasure::source(const Moments& m, double sigma_
                      {scale * fit.cov(0, 0), scale * fit.cov(0, 1), scale * fit.cov(1, 1)},
                      flux_sigma,
                      false};
+}
+
+/// Width of the Gaussian that fits images best, by golden section; the worse half may be blends.
+double best_sigma_px(const SourceMeasure& measure,
+                     std::span<const std::optional<Moments>> moments, double start_px) {
+  constexpr std::size_t brightest = 400, most_images = 50;
+  constexpr double golden = 0.6180339887498949;
+  std::vector<Moments> images;
+  for (const auto& m : moments)
+    if (m && images.size() < brightest) images.push_back(*m);
+  if (images.size() < 3) return start_px;
+  const std::size_t every = (images.size() + most_images - 1) / most_images;
+  for (std::size_t i = 0; i * every < images.size(); ++i) images[i] = images[i * every];
+  images.resize((images.size() + every - 1) / every);
+  const auto misfit = [&](double sigma_px) {
+    std::vector<double> chi2;
+    for (const Moments& m : images) {
+      const auto fit = measure.fit(m, sigma_px);
+      chi2.push_back(fit ? fit->reduced_chi2() : 1e9);
+    }
+    return quantile_of(std::move(chi2), 0.3);
+  };
+  double low = 0.75 * start_px, high = 1.5 * start_px;
+  double a = high - golden * (high - low), b = low + golden * (high - low);
+  double at_a = misfit(a), at_b = misfit(b);
+  while (high - low > 0.004 * start_px) {
+    if (at_a < at_b) {
+      high = b;
+      b = a;
+      at_b = at_a;
+      a = high - golden * (high - low);
+      at_a = misfit(a);
+    } else {
+      low = a;
+      a = b;
+      at_a = at_b;
+      b = low + golden * (high - low);
+      at_b = misfit(b);
+    }
+  }
+  return 0.5 * (low + high);
 }
 
 }  // namespace
@@ -265,8 +318,9 @@ std::vector<PlateSource> find_star_sources(const CountImage& counts,
   });
   std::vector<double> widths, lengths;
   for (const auto& m : moments)
-    if (m && widths.size() < 500) widths.push_back(m->minor_sigma());
-  const double sigma_px = widths.empty() ? filter_px : median_of(widths);
+    if (m && widths.size() < 100) widths.push_back(m->minor_sigma());
+  const double sigma_px =
+      best_sigma_px(measure, moments, widths.empty() ? filter_px : median_of(widths));
   for (const auto& m : moments)
     if (m && lengths.size() < 500) lengths.push_back(trail_length_px(*m, sigma_px));
   const double length_px = lengths.empty() ? 0.0 : median_of(lengths);
