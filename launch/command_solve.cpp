@@ -59,9 +59,7 @@ void print_text(const FrameSolution& s) {
               s.sources, fit.rms_px, s.plate.log_odds);
   std::printf("plate        focal length %.3f +- %.2g px%s, distortion of order %d\n",
               fit.model.focal_length_px,
-              fit.free.focal_length
-                  ? std::sqrt(fit.variance(3)) * fit.model.focal_length_px
-                  : 0.0,
+              fit.free.focal_length ? std::sqrt(fit.variance(3)) * fit.model.focal_length_px : 0.0,
               fit.free.centre ? ", centre" : "", fit.model.order);
   std::printf("WCS          %.3f px rms, %.3f px at most\n", s.wcs.rms_px, s.wcs.max_px);
   if (!s.zero_point) return;
@@ -70,8 +68,8 @@ void print_text(const FrameSolution& s) {
               z.zero_point_mag, z.sigma(0), ZeroPoint::sunlike_bv, z.rms_mag, z.stars);
   std::printf("colour term  %.4f +- %.2g%s\n", z.colour_term, z.sigma(1),
               z.colour_fitted ? "" : " (not fitted)");
-  std::printf("extinction   %.4f +- %.2g mag/airmass%s\n", z.extinction_mag_per_airmass,
-              z.sigma(2), z.extinction_fitted ? "" : " (not fitted)");
+  std::printf("extinction   %.4f +- %.2g mag/airmass%s\n", z.extinction_mag_per_airmass, z.sigma(2),
+              z.extinction_fitted ? "" : " (not fitted)");
 }
 
 void solve(const SolveOptions& o) {
@@ -86,8 +84,7 @@ void solve(const SolveOptions& o) {
   } catch (const Error& e) {
     throw Error(o.frame + ": " + e.what());
   }
-  if (!o.out.empty())
-    write_frame(o.out, frame.counts, solved_header(frame.header, solution));
+  if (!o.out.empty()) write_frame(o.out, frame.counts, solved_header(frame.header, solution));
   if (o.json)
     std::printf("%s\n", to_json(solution, frame.header).c_str());
   else
@@ -102,8 +99,9 @@ void add_solve_command(CLI::App& app) {
       "solve", "Finds where a frame points, its plate and its zero point from its stars");
   command->add_option("frame", o->frame, "FITS file of a run")->required();
   command->add_flag("--blind", o->blind, "use neither the pointing nor the focal length");
-  auto* field = command->add_option("--field", o->field_deg, "width of the frame [deg], within 10 %")
-                    ->check(CLI::Range(0.1, 180.0));
+  auto* field =
+      command->add_option("--field", o->field_deg, "width of the frame [deg], within 10 %")
+          ->check(CLI::Range(0.1, 180.0));
   command->add_option("--scale-low", o->scale_low_arcsec, "least scale [arcsec/px]")
       ->check(CLI::Range(1e-3, 1e5))
       ->excludes(field);

@@ -173,7 +173,8 @@ std::optional<PlateFit> fit_plate(const PlateModel& model, std::span<const Plate
     }
     const int degrees = 2 * fit.count - n;
     const double scale2 =
-        degrees > 0 ? std::max(1.0, std::min(fit.chi2 / degrees, 1.5 * spread2(squares, matches))) : 1.0;
+        degrees > 0 ? std::max(1.0, std::min(fit.chi2 / degrees, 1.5 * spread2(squares, matches)))
+                    : 1.0;
     fit.error_scale = std::sqrt(scale2);
     const double limit = settings.outlier_sigmas * settings.outlier_sigmas * scale2;
     bool changed = false;

@@ -9,11 +9,11 @@ namespace dmise {
 
 /// An image of a star: measured pixel with its covariance, and the apparent direction.
 struct PlateMatch {
-  std::uint32_t source = 0, star = 0;       // places in the lists that were matched
+  std::uint32_t source = 0, star = 0;  // places in the lists that were matched
   PixelPosition pixel;
-  std::array<double, 3> covariance_px2{};   // var x, cov xy, var y
-  Vec<Gcrs> direction;                      // unit
-  bool ignored = false;                     // by the fit: its place is not to be relied on
+  std::array<double, 3> covariance_px2{};  // var x, cov xy, var y
+  Vec<Gcrs> direction;                     // unit
+  bool ignored = false;                    // by the fit: its place is not to be relied on
 };
 
 /// What a fit of a plate leaves free besides the attitude.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 #include "core/base/error.h"
 #include "core/frames/quaternion.h"
@@ -14,10 +13,8 @@ namespace {
 constexpr double flat_rad = 20 * deg;
 constexpr double width_step = 1.2;
 constexpr double code_tolerance = 0.012;
-constexpr std::size_t pattern_sources = 150, growing_sources = 300;
+constexpr std::size_t pattern_sources = 150;
 constexpr std::size_t quad_neighbours = 6, triangle_neighbours = 12;
-/// Saturated stars take part in a fit only if there are fewer others.
-constexpr std::size_t least_exact = 10;
 /// A neighbour in the image may be measured fainter by this than its star.
 constexpr double fainter = 0.75;
 /// Sources, by falling flux, with which patterns begin: few first.
@@ -47,84 +44,28 @@ class PlateSearcher {
   void try_round(const PatternIndex& index, const Trial& trial, std::size_t from, std::size_t to);
   void consider(const Trial& trial, const Stars& images, const Stars& stars);
   bool near_belief(const Trial& trial, const Rotation<CameraFrame, Gcrs>& upright) const;
-  bool stars_beside(const PlateModel& model, const Stars& images, const Stars& stars);
-  bool grow(const PlateModel& model, PixelPosition from, double size_px);
-  void finish(PlateModel model);
+  void judge(const PlateModel& model);
 
   std::optional<Vec<CameraFrame>> upright(const Trial& trial, double focal_length_px,
                                           std::size_t source) const;
-  PixelPosition place(std::size_t source) const {
-    return {sources_[source].x_px, sources_[source].y_px};
-  }
-  double reach_rad(const PlateModel& model) const;
-  double star_sigma_px(const PlateModel& model) const {
-    return search_.star_sigma_rad * model.focal_length_px;
-  }
-  PixelPosition centre() const { return {(belief_.columns - 1) / 2.0, (belief_.rows - 1) / 2.0}; }
-  /// Stars about a frame of which it shows somewhat more than it has sources.
-  std::vector<SeenStar> stars_around(const PlateModel& model, std::size_t sources) const {
-    constexpr double wider = 1.15;
-    const double r = wider * half_diagonal_px();
-    const double share = double(belief_.columns) * belief_.rows / (pi * r * r);
-    return sky_.brightest(model.axis(), std::min(wider * reach_rad(model), pi),
-                          std::size_t(1.3 * double(sources) / share) + 20);
-  }
-  double half_diagonal_px() const { return 0.5 * std::hypot(belief_.columns, belief_.rows); }
 
   const PlateBelief& belief_;
   const PlateSky& sky_;
   const PlateSearch& search_;
   PatternCache& cache_;
-  std::vector<PlateSource> sources_;     // by falling flux
-  std::vector<std::uint32_t> original_;  // their places in the caller's list
-  std::optional<SourceGrid> bright_grid_;
-  std::size_t bright_ = 0;
+  PlateFrame frame_;
   double looked_up_ = 0.0, patterns_ = 0.0;
   std::size_t tried_ = 0;
   std::optional<PlateSolution> found_;
 };
 
 PlateSearcher::PlateSearcher(std::span<const PlateSource> sources, const PlateBelief& belief,
-                             const PlateSky& sky, const PlateSearch& search,
-                             PatternCache& cache)
-    : belief_(belief), sky_(sky), search_(search), cache_(cache) {
-  const auto usable = [&](const PlateSource& s) {
-    const auto& c = s.covariance_px2;
-    return std::isfinite(s.x_px) && std::isfinite(s.y_px) && s.x_px >= -0.5 && s.y_px >= -0.5 &&
-           s.x_px <= belief.columns - 0.5 && s.y_px <= belief.rows - 0.5 && std::isfinite(s.flux) &&
-           s.flux > 0 && c[0] >= 0 && c[2] >= 0 && std::isfinite(c[0] + c[1] + c[2]);
-  };
-  for (std::size_t i = 0; i < sources.size(); ++i)
-    if (usable(sources[i])) original_.push_back(std::uint32_t(i));
-  std::stable_sort(original_.begin(), original_.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return sources[a].flux > sources[b].flux;
-  });
-  // One source a place: the brightest of those within half a pixel.
-  std::vector<std::uint32_t> kept;
-  std::unordered_multimap<std::int64_t, PixelPosition> taken;  // by pixel
-  const auto key = [](double x, double y) {
-    return std::int64_t(std::lround(y)) * (std::int64_t(1) << 32) + std::lround(x);
-  };
-  for (const std::uint32_t i : original_) {
-    if (sources_.size() >= 4 * search.most_stars) break;
-    const PlateSource& s = sources[i];
-    bool twice = false;
-    for (int j = -1; j <= 1 && !twice; ++j)
-      for (int k = -1; k <= 1 && !twice; ++k) {
-        const auto [from, to] = taken.equal_range(key(s.x_px + k, s.y_px + j));
-        for (auto at = from; at != to; ++at)
-          twice = twice ||
-                  std::hypot(at->second.x_px - s.x_px, at->second.y_px - s.y_px) < 0.5;
-      }
-    if (twice) continue;
-    taken.emplace(key(s.x_px, s.y_px), PixelPosition{s.x_px, s.y_px});
-    sources_.push_back(s);
-    kept.push_back(i);
-  }
-  original_ = std::move(kept);
-  bright_ = std::min(sources_.size(), growing_sources);
-  bright_grid_.emplace(std::span(sources_).first(bright_), belief.columns, belief.rows);
-}
+                             const PlateSky& sky, const PlateSearch& search, PatternCache& cache)
+    : belief_(belief),
+      sky_(sky),
+      search_(search),
+      cache_(cache),
+      frame_(sources, belief, sky, search) {}
 
 Trial PlateSearcher::trial(double narrow_rad, double middle_rad, double wide_rad) const {
   const auto focal_px = [&](double width_rad) {
@@ -139,8 +80,8 @@ std::vector<Trial> PlateSearcher::trials(double narrowest_rad, double widest_rad
   std::vector<Trial> list;
   if (belief_.focal_length_px > 0) {
     const double f = belief_.focal_length_px;
-    list.push_back({belief_.projection, f, f * (1 - search_.focal_error),
-                    f * (1 + search_.focal_error)});
+    list.push_back(
+        {belief_.projection, f, f * (1 - search_.focal_error), f * (1 + search_.focal_error)});
   } else if (widest_rad <= flat_rad) {
     list.push_back(trial(narrowest_rad, narrowest_rad, 1.1 * widest_rad));
   } else {
@@ -171,21 +112,14 @@ std::vector<std::uint32_t> PlateSearcher::stars_near_belief(double width_rad) co
   const PlateModel model{.projection = belief_.projection,
                          .camera_from_gcrs = *belief_.camera_from_gcrs,
                          .focal_length_px = trials(width_rad, width_rad)[0].focal_low_px,
-                         .centre = centre()};
-  return sky_.catalogued(model.axis(), reach_rad(model) + search_.pointing_error_rad,
+                         .centre = frame_.centre()};
+  return sky_.catalogued(model.axis(), frame_.reach_rad(model) + search_.pointing_error_rad,
                          2 * rank_in_frame(width_rad));
-}
-
-/// Angle from the axis to the farthest corner.
-double PlateSearcher::reach_rad(const PlateModel& model) const {
-  const double r = half_diagonal_px() / model.focal_length_px;
-  const auto corner = model.projection.axis_angle_rad(r, 0);
-  return corner ? *corner : model.projection.fold_rad().value_or(pi);
 }
 
 std::optional<Vec<CameraFrame>> PlateSearcher::upright(const Trial& trial, double focal_length_px,
                                                        std::size_t source) const {
-  const PixelPosition at = (place(source) - centre()) * (1 / focal_length_px);
+  const PixelPosition at = (frame_.place(source) - frame_.centre()) * (1 / focal_length_px);
   const auto c = trial.projection.direction_of(at.x_px, at.y_px);
   if (!c) return std::nullopt;
   return Vec<CameraFrame>{(*c)[0], trial.mirrored ? -(*c)[1] : (*c)[1], (*c)[2]};
@@ -202,7 +136,7 @@ void PlateSearcher::try_all(const PatternIndex& index, const std::vector<Trial>&
 
 void PlateSearcher::try_round(const PatternIndex& index, const Trial& trial, std::size_t from,
                               std::size_t to) {
-  const std::size_t count = std::min(sources_.size(), pattern_sources);
+  const std::size_t count = std::min(frame_.sources().size(), pattern_sources);
   std::vector<std::optional<Vec<CameraFrame>>> direction;
   for (std::size_t i = 0; i < count; ++i)
     direction.push_back(upright(trial, trial.focal_length_px, i));
@@ -212,7 +146,7 @@ void PlateSearcher::try_round(const PatternIndex& index, const Trial& trial, std
     if (!direction[i]) continue;
     near.clear();
     for (std::size_t j = 0; j < count; ++j)
-      if (j != i && direction[j] && sources_[j].flux >= fainter * sources_[i].flux)
+      if (j != i && direction[j] && frame_.sources()[j].flux >= fainter * frame_.sources()[i].flux)
         near.push_back(std::uint32_t(j));
     const auto kept =
         std::min(near.size(), index.others() == 3 ? quad_neighbours : triangle_neighbours);
@@ -267,167 +201,46 @@ void PlateSearcher::consider(const Trial& trial, const Stars& images, const Star
   PlateModel model{.projection = trial.projection,
                    .camera_from_gcrs = trial.mirrored ? flipped(rotation) : rotation,
                    .focal_length_px = focal,
-                   .centre = centre(),
-                   .unit_px = half_diagonal_px()};
+                   .centre = frame_.centre(),
+                   .unit_px = frame_.half_diagonal_px()};
   std::vector<PlateMatch> pairs;
   const int points = images[3] == images[0] ? 3 : 4;
   for (std::size_t i = 0; i < std::size_t(points); ++i)
     pairs.push_back({.source = images[i],
-                     .pixel = place(images[i]),
+                     .pixel = frame_.place(images[i]),
                      .covariance_px2 = {1, 0, 1},
                      .direction = sky_.direction(stars[i])});
-  const PixelPosition span = place(images[1]) - place(images[0]);
+  const PixelPosition span = frame_.place(images[1]) - frame_.place(images[0]);
   const double size_px = std::hypot(span.x_px, span.y_px);
   const auto fit = fit_plate(model, pairs, {.focal_length = true}, {.outlier_sigmas = 1e9});
   if (!fit || !(fit->rms_px < 1.0 + 0.02 * size_px)) return;
   if (!(fit->model.focal_length_px > 0.9 * trial.focal_low_px &&
         fit->model.focal_length_px < 1.1 * trial.focal_high_px))
     return;
-  if (stars_beside(fit->model, images, stars)) grow(fit->model, place(images[0]), size_px);
+  if (!frame_.stars_beside(fit->model, stars, frame_.place(images[0]), size_px)) return;
+  if (const auto grown = frame_.grow(fit->model, frame_.place(images[0]), size_px)) judge(*grown);
 }
 
-/// Whether stars beside a pattern are there, too, as far as there are any.
-bool PlateSearcher::stars_beside(const PlateModel& model, const Stars& images,
-                                 const Stars& stars) {
-  const Vec<Gcrs> here = sky_.direction(stars[0]);
-  const double size_rad = angle_rad(here, sky_.direction(stars[1]));
-  const PixelPosition from = place(images[0]), span = place(images[1]) - from;
-  const MatchReach reach{.from = from,
-                         .near_px = 1.5,
-                         .known_px = 0.0,
-                         .growth = 0.02,
-                         .most_px = 3 * std::hypot(span.x_px, span.y_px)};
-  double odds = 0.0;
-  int tested = 0;
-  for (const SeenStar& star : sky_.brightest(here, 2.2 * size_rad, 24)) {
-    if (std::find(stars.begin(), stars.end(), star.index) != stars.end()) continue;
-    const auto at = model.pixel(star.direction);
-    if (!at || at->x_px < 0 || at->y_px < 0 || at->x_px > belief_.columns - 1 ||
-        at->y_px > belief_.rows - 1)
-      continue;
-    const double within = reach.at(*at);
-    if (within < 0) continue;
-    const double chance = std::min(0.5, double(bright_) * pi * within * within /
-                                            (double(belief_.columns) * belief_.rows));
-    const bool hit = bright_grid_->nearest(*at, within) >= 0;
-    odds += hit ? std::log(0.6 / chance) : std::log(0.4 / (1 - chance));
-    ++tested;
-  }
-  return tested < 3 ? odds > -2 : odds > 1;
-}
-
-/// Extends a plate from a pattern over the frame; false if the stars do not follow.
-bool PlateSearcher::grow(const PlateModel& start, PixelPosition from, double size_px) {
-  PlateModel model = start;
-  const auto sources = std::span(sources_).first(bright_);
-  const auto stars = stars_around(model, bright_);
-  double known_px = size_px, rms_px = 1.0;
-  for (double radius_px = 1.5 * size_px;; radius_px *= 1.6) {
-    const auto pairs = match(model, stars, sources, *bright_grid_, belief_.columns, belief_.rows,
-                             {.from = from,
-                              .near_px = std::max(1.5, 3 * rms_px),
-                              .known_px = known_px,
-                              .growth = 0.02,
-                              .most_px = radius_px});
-    const PlateFitSettings settings{.least_sigma_px = std::max(0.3, star_sigma_px(model))};
-    auto fit = fit_plate(model, pairs, {.focal_length = pairs.size() > 2}, settings);
-    if (!fit || fit->count < 3) return false;
-    // The lens is not quite what is believed.
-    if (fit->count >= 30 && fit->rms_px > 0.7)
-      if (auto bent = fit_plate(model, pairs, {.focal_length = true, .order = 3}, settings);
-          bent && bent->rms_px < 0.7 * fit->rms_px)
-        fit = bent;
-    if (fit->rms_px > 4.0) return false;
-    model = fit->model;
-    rms_px = fit->rms_px;
-    known_px = radius_px;
-    if (radius_px > 2 * half_diagonal_px()) break;
-  }
-  finish(model);
-  return found_.has_value();
-}
-
-/// Fits the plate with all sources, as freely as the stars support, and judges it.
-void PlateSearcher::finish(PlateModel model) {
-  PlateSolution solution;
-  std::size_t count = 0, exact = 0;  // of sources, and of those that are not saturated
-  while (count < sources_.size() && exact < search_.most_stars)
-    exact += !sources_[count++].saturated;
-  const auto sources = std::span(sources_).first(count);
-  const SourceGrid grid(sources, belief_.columns, belief_.rows);
-  solution.stars = stars_around(model, count);
-  const PlateFitSettings settings{.least_sigma_px = star_sigma_px(model)};
-  const auto pairs_within = [&](double near_px) {
-    auto pairs = match(model, solution.stars, sources, grid, belief_.columns, belief_.rows,
-                       {.near_px = near_px});
-    std::size_t sharp = 0;
-    for (PlateMatch& m : pairs) {
-      m.ignored = sources[m.source].saturated;
-      sharp += !m.ignored;
-    }
-    if (sharp < least_exact)
-      for (PlateMatch& m : pairs) m.ignored = false;
-    return pairs;
-  };
-  std::optional<PlateFit> best;
-  double near_px = 2.0;
-  for (int pass = 0; pass < 3; ++pass) {
-    const auto pairs = pairs_within(near_px);
-    best.reset();
-    double least = 0.0;
-    const auto ignored = std::count_if(pairs.begin(), pairs.end(),
-                                       [](const PlateMatch& m) { return m.ignored; });
-    const double all = double(pairs.size()) - double(ignored), measured = 2 * all;
-    std::vector<PlateFreedom> freedoms{{.focal_length = true},
-                                       {.focal_length = true, .centre = true}};
-    for (int order = 1; order <= search_.most_order; ++order)
-      freedoms.push_back({.focal_length = true, .order = order});
-    for (const PlateFreedom& free : freedoms) {
-      if (free.size() > 4 && measured < 5.0 * free.size()) continue;
-      PlateModel from = model;
-      from.order = 0;
-      from.distortion.clear();
-      if (!free.centre) from.centre = centre();
-      const auto fit = fit_plate(from, pairs, free, settings);
-      const double degrees = fit ? 2.0 * fit->count - free.size() : 0.0;
-      if (!(degrees > 0)) continue;
-      // Bayes' information criterion; a residual of a hundredth of a sigma is as good as none.
-      const double score = measured * std::log(std::max(fit->chi2 / fit->count, 1e-4)) -
-                           2 * std::log(2.0) * (fit->count - all) * 2 +
-                           free.size() * std::log(measured);
-      if (best && score >= least) continue;
-      best = fit;
-      least = score;
-    }
-    if (!best) return;
-    model = best->model;
-    solution.matches = pairs;
-    near_px = std::clamp(5 * best->rms_px, 0.4, near_px);
-  }
-  solution.fit = *best;
-  const double priors = belief_.camera_from_gcrs
-                            ? 2 * search_.focal_error * search_.roll_error_rad / pi
-                            : 1.0;
-  solution.log_odds =
-      log_odds(best->model, solution.stars, *best, solution.matches, count, belief_.columns,
-               belief_.rows) -
-      std::log(std::max(100.0, patterns_ * looked_up_ * priors));
-  solution.tried = tried_;
-  if (solution.log_odds < search_.least_log_odds) return;
-  for (PlateMatch& m : solution.matches) m.source = original_[m.source];
-  found_ = std::move(solution);
+/// Keeps a plate that is no chance after all that was compared.
+void PlateSearcher::judge(const PlateModel& model) {
+  auto solution = frame_.fit(model);
+  if (!solution) return;
+  const double priors =
+      belief_.camera_from_gcrs ? 2 * search_.focal_error * search_.roll_error_rad / pi : 1.0;
+  solution->log_odds -= std::log(std::max(100.0, patterns_ * looked_up_ * priors));
+  solution->tried = tried_;
+  if (solution->log_odds >= search_.least_log_odds) found_ = std::move(solution);
 }
 
 PlateSolution PlateSearcher::solve() {
-  const auto fail = [&](const std::string& reason) {
-    throw Error("no plate solution: " + reason);
-  };
+  const auto fail = [&](const std::string& reason) { throw Error("no plate solution: " + reason); };
   if (sky_.map().stars.size() == 0) fail("the catalogue has no stars");
-  if (sources_.size() < 3) fail("3 sources are needed, got " + std::to_string(sources_.size()));
+  if (frame_.sources().size() < 3)
+    fail("3 sources are needed, got " + std::to_string(frame_.sources().size()));
   double narrow = search_.narrowest_rad, wide = search_.widest_rad;
   if (belief_.focal_length_px > 0) {
-    const auto half = belief_.projection.axis_angle_rad(
-        0.5 * belief_.columns / belief_.focal_length_px, 0.0);
+    const auto half =
+        belief_.projection.axis_angle_rad(0.5 * belief_.columns / belief_.focal_length_px, 0.0);
     narrow = wide = 2 * half.value_or(0.5 * pi);
   }
   // Wide frames first: they need few stars of the catalogue.
@@ -445,7 +258,7 @@ PlateSolution PlateSearcher::solve() {
     if (!found_) try_all(PatternIndex(sky_, stars, triangle_neighbours, 2), list);
   }
   if (!found_)
-    fail("no stars of the catalogue are where " + std::to_string(sources_.size()) +
+    fail("no stars of the catalogue are where " + std::to_string(frame_.sources().size()) +
          " sources are, in " + std::to_string(tried_) + " candidates");
   return std::move(*found_);
 }

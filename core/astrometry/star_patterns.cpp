@@ -83,7 +83,8 @@ std::array<std::uint32_t, 4> PatternIndex::stars_of(const Entry& e) const {
 const PatternIndex& PatternCache::whole_sky(const PlateSky& sky, double rank) {
   // Powers of 4, so that frames of about the same width share one.
   const double count = double(sky.map().stars.size());
-  const double shared = std::min({std::exp2(2 * std::ceil(0.5 * std::log2(rank))), most_stars, count});
+  const double shared =
+      std::min({std::exp2(2 * std::ceil(0.5 * std::log2(rank))), most_stars, count});
   const auto kept = by_rank_.find(shared);
   if (kept != by_rank_.end()) return kept->second;
   const auto stars = sky.catalogued({0, 0, 1}, pi, shared);

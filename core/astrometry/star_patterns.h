@@ -26,9 +26,10 @@ std::complex<double> plane_place(const Vec<F>& centre, const Vec<F>& d) {
 }
 
 /// A pattern of a star and others by falling distance from it. The code is where the second and the
-/// third lie if the star is at 0 and the first at 1, so it keeps under rotation and change of scale.
+/// third lie if the star is at 0 and the first at 1, so it keeps under rotation and change of
+/// scale.
 struct StarPattern {
-  using Code = std::array<std::int16_t, 4>;        // second and third, real and imaginary
+  using Code = std::array<std::int16_t, 4>;         // second and third, real and imaginary
   static constexpr double code_unit = 1.0 / 16384;  // their places are within the unit circle
 
   std::array<std::uint8_t, 3> others{};  // places among the neighbours; a triangle has two

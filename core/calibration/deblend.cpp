@@ -56,12 +56,11 @@ std::vector<Component> deblend(const Component& component, const DeblendSettings
     for (int x = run.first_x; x <= run.last_x; ++x)
       if (const double v = value(x, run.y); v > 0) pixels.push_back({x, run.y, v});
   if (pixels.size() < 2 * least_pixels) return {component};
-  std::stable_sort(pixels.begin(), pixels.end(), [](const BlendPixel& a, const BlendPixel& b) {
-    return a.value > b.value;
-  });
+  std::stable_sort(pixels.begin(), pixels.end(),
+                   [](const BlendPixel& a, const BlendPixel& b) { return a.value > b.value; });
   const int wide = component.max_x - component.min_x + 3;
-  std::vector<int> peak_at(
-      std::size_t(wide) * std::size_t(component.max_y - component.min_y + 3), -1);
+  std::vector<int> peak_at(std::size_t(wide) * std::size_t(component.max_y - component.min_y + 3),
+                           -1);
   std::vector<Peak> peaks;
   const auto root = [&](int i) {
     while (peaks[std::size_t(i)].joined_to >= 0) i = peaks[std::size_t(i)].joined_to;

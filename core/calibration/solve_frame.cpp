@@ -50,8 +50,7 @@ Wcs wcs_of(const PlateFit& fit, const PlateSky& sky, int columns, int rows) {
     return sky.places().star_seen_at(*direction);
   };
   std::optional<CameraAir> air;
-  if (sky.air())
-    air = CameraAir{model.camera_from_gcrs * sky.air()->zenith, sky.air()->refraction};
+  if (sky.air()) air = CameraAir{model.camera_from_gcrs * sky.air()->zenith, sky.air()->refraction};
   Wcs wcs = best_wcs(optics, seen, air);
   // The plate's own error comes on top.
   double sum = 0.0, most = 0.0;
@@ -72,8 +71,7 @@ Wcs wcs_of(const PlateFit& fit, const PlateSky& sky, int columns, int rows) {
 }
 
 std::optional<ZeroPoint> zero_point_of(const Frame& frame, const PlateSolution& plate,
-                                       std::span<const PlateSource> sources,
-                                       const PlateSky& sky) {
+                                       std::span<const PlateSource> sources, const PlateSky& sky) {
   std::vector<PhotometricStar> stars;
   for (std::size_t k = 0; k < plate.matches.size(); ++k) {
     const PlateSource& source = sources[plate.matches[k].source];
@@ -97,12 +95,12 @@ FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveS
                           Threads& threads) {
   const FrameHeader& h = frame.header;
   const PlateSky sky(stars, observer_of(h));
-  const auto sources = find_star_sources(frame.counts,
-                                         {.gain_e_per_dn = h.gain_e_per_dn,
-                                          .saturation_dn = h.saturation_dn - 5 * h.read_noise_e /
-                                                                                 h.gain_e_per_dn,
-                                          .psf_fwhm_px = h.psf_fwhm_px},
-                                         threads);
+  const auto sources =
+      find_star_sources(frame.counts,
+                        {.gain_e_per_dn = h.gain_e_per_dn,
+                         .saturation_dn = h.saturation_dn - 5 * h.read_noise_e / h.gain_e_per_dn,
+                         .psf_fwhm_px = h.psf_fwhm_px},
+                        threads);
   FrameSolution out;
   out.sources = sources.size();
   out.plate = solve_plate(sources, belief_of(frame, settings.blind), sky, settings.search);

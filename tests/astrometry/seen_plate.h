@@ -80,8 +80,7 @@ inline SeenPlate seen_plate(const PlateSky& sky, const PlateCase& c, std::size_t
       Projection::make(*Projection::index_of_name(c.projection), std::vector<double>{});
   p.truth.camera_from_gcrs = pointing(c.ra_deg, c.dec_deg, c.roll_deg);
   if (mirrored) p.truth.camera_from_gcrs = flipped(p.truth.camera_from_gcrs);
-  p.truth.focal_length_px =
-      0.5 * c.columns / p.truth.projection.height(0.5 * c.width_deg * deg);
+  p.truth.focal_length_px = 0.5 * c.columns / p.truth.projection.height(0.5 * c.width_deg * deg);
   p.truth.centre = {(c.columns - 1) / 2.0, (c.rows - 1) / 2.0};
   p.truth.unit_px = 0.5 * std::hypot(c.columns, c.rows);
   p.belief = {c.columns, c.rows, p.truth.projection, 0.0, std::nullopt};

@@ -69,8 +69,8 @@ TEST_P(PlateCovariance, IsTheErrorsOwn) {
     test::SeenPlate p = test::seen_plate(sky, {.width_deg = GetParam().width_deg}, 250, 0.1, seed);
     const SourceGrid grid(p.sources, p.belief.columns, p.belief.rows);
     const auto stars = sky.brightest(p.truth.axis(), 0.9 * GetParam().width_deg * deg, 2000);
-    const auto matches = match(p.truth, stars, p.sources, grid, p.belief.columns, p.belief.rows,
-                               {.near_px = 0.6});
+    const auto matches =
+        match(p.truth, stars, p.sources, grid, p.belief.columns, p.belief.rows, {.near_px = 0.6});
     PlateModel start = p.truth;
     start.camera_from_gcrs = turned(start.camera_from_gcrs, {1e-4, -2e-4, 3e-4});
     if (free.focal_length) start.focal_length_px *= 1.0003;

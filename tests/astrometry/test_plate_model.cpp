@@ -18,8 +18,7 @@ PlateModel bent_model() {
                .order = 3,
                .unit_px = 1250};
   m.distortion.assign(std::size_t(distortion_size(3)), 0.0);
-  for (std::size_t i = 0; i < m.distortion.size(); ++i)
-    m.distortion[i] = 6 * std::cos(double(i));
+  for (std::size_t i = 0; i < m.distortion.size(); ++i) m.distortion[i] = 6 * std::cos(double(i));
   return m;
 }
 
@@ -51,8 +50,8 @@ TEST(PlateModel, ImagesTheTangentOfTheAngle) {
   EXPECT_FALSE(m.mirrored());
   m.camera_from_gcrs = flipped(m.camera_from_gcrs);
   EXPECT_TRUE(m.mirrored());
-  EXPECT_NEAR(m.pixel(from_spherical<Gcrs>(30 * deg, -10 * deg))->y_px,
-              -1000 * std::tan(10 * deg), 1e-9);
+  EXPECT_NEAR(m.pixel(from_spherical<Gcrs>(30 * deg, -10 * deg))->y_px, -1000 * std::tan(10 * deg),
+              1e-9);
 }
 
 TEST(PlateModel, CountsTheTermsOfADistortion) {

@@ -30,7 +30,9 @@ PlateSolution solve(const SeenPlate& p, const PlateSky& sky, const PlateSearch& 
 }
 
 /// Five sigma of a plate of as many stars, in the corners.
-double expected_error_px(const PlateSolution& s) { return 5 * 2 * sigma_px / std::sqrt(s.fit.count); }
+double expected_error_px(const PlateSolution& s) {
+  return 5 * 2 * sigma_px / std::sqrt(s.fit.count);
+}
 
 class EveryField : public ::testing::TestWithParam<PlateCase> {
  protected:
@@ -42,8 +44,8 @@ class EveryField : public ::testing::TestWithParam<PlateCase> {
 
 TEST_P(EveryField, IsSolvedBlindAmongWrongSources) {
   const PlateSky sky = test::sky_of(map());
-  const SeenPlate p = test::seen_plate(sky, GetParam(), 400, sigma_px, 7,
-                                       GetParam().width_deg < 4 ? 2 : 40);
+  const SeenPlate p =
+      test::seen_plate(sky, GetParam(), 400, sigma_px, 7, GetParam().width_deg < 4 ? 2 : 40);
   const PlateSolution s = solve(p, sky);
   EXPECT_LT(error_px(p, s), expected_error_px(s)) << s.fit.count << " stars";
 }
@@ -61,13 +63,13 @@ TEST_P(EveryField, IsSolvedMirroredAndWithAScaleInBounds) {
 TEST_P(EveryField, IsSolvedWithAPointingWrongBy2DegAndARollBy5) {
   const PlateSky sky = test::sky_of(map());
   for (unsigned seed = 0; seed < 4; ++seed) {
-    SeenPlate p = test::seen_plate(sky, GetParam(), 400, sigma_px, seed,
-                                   GetParam().width_deg < 4 ? 2 : 40);
+    SeenPlate p =
+        test::seen_plate(sky, GetParam(), 400, sigma_px, seed, GetParam().width_deg < 4 ? 2 : 40);
     const double direction = 1.7 * seed;
     p.belief.focal_length_px = p.truth.focal_length_px * (seed % 2 ? 1.02 : 0.98);
-    p.belief.camera_from_gcrs =
-        turned(p.truth.camera_from_gcrs, {2 * deg * std::cos(direction),
-                                          2 * deg * std::sin(direction), seed % 2 ? 5 * deg : -5 * deg});
+    p.belief.camera_from_gcrs = turned(
+        p.truth.camera_from_gcrs, {2 * deg * std::cos(direction), 2 * deg * std::sin(direction),
+                                   seed % 2 ? 5 * deg : -5 * deg});
     const PlateSolution s = solve(p, sky);
     EXPECT_LT(error_px(p, s), expected_error_px(s)) << s.fit.count << " stars";
   }
@@ -75,15 +77,15 @@ TEST_P(EveryField, IsSolvedWithAPointingWrongBy2DegAndARollBy5) {
 
 INSTANTIATE_TEST_SUITE_P(
     Fields, EveryField,
-    ::testing::Values(
-        PlateCase{"gnomonic", 1, 83, 22}, PlateCase{"gnomonic", 1, 250, 89.7},
-        PlateCase{"gnomonic", 2, 83, 22}, PlateCase{"gnomonic", 5, 0.01, 30},
-        PlateCase{"gnomonic", 5, 266, -89.9}, PlateCase{"gnomonic", 10, 190, 28},
-        PlateCase{"gnomonic", 20, 359.9, 0.1}, PlateCase{"gnomonic", 60, 200, -70},
-        PlateCase{"gnomonic", 90, 20, 40}, PlateCase{"equidistant", 20, 100, 89},
-        PlateCase{"equidistant", 60, 0, -20}, PlateCase{"equidistant", 90, 12, 27},
-        PlateCase{"equisolid", 5, 45, 10}, PlateCase{"equisolid", 90, 120, 88},
-        PlateCase{"stereographic", 60, 270, -30}, PlateCase{"stereographic", 90, 359, 5}));
+    ::testing::Values(PlateCase{"gnomonic", 1, 83, 22}, PlateCase{"gnomonic", 1, 250, 89.7},
+                      PlateCase{"gnomonic", 2, 83, 22}, PlateCase{"gnomonic", 5, 0.01, 30},
+                      PlateCase{"gnomonic", 5, 266, -89.9}, PlateCase{"gnomonic", 10, 190, 28},
+                      PlateCase{"gnomonic", 20, 359.9, 0.1}, PlateCase{"gnomonic", 60, 200, -70},
+                      PlateCase{"gnomonic", 90, 20, 40}, PlateCase{"equidistant", 20, 100, 89},
+                      PlateCase{"equidistant", 60, 0, -20}, PlateCase{"equidistant", 90, 12, 27},
+                      PlateCase{"equisolid", 5, 45, 10}, PlateCase{"equisolid", 90, 120, 88},
+                      PlateCase{"stereographic", 60, 270, -30},
+                      PlateCase{"stereographic", 90, 359, 5}));
 
 // A fisheye that sees half the sky, and beyond the widest field that is looked for blind.
 TEST(PlateSolver, SolvesAnAllSkyFisheye) {
@@ -91,8 +93,7 @@ TEST(PlateSolver, SolvesAnAllSkyFisheye) {
   const PlateSky sky = test::sky_of(test::kstars());
   const PlateCase all_sky{"equidistant", 150, 40, 34, 10, 2000, 1500};
   SeenPlate p = test::seen_plate(sky, all_sky, 600, sigma_px, 4, 60);
-  const PlateSolution blind =
-      solve(p, sky, {.narrowest_rad = 100 * deg, .widest_rad = 180 * deg});
+  const PlateSolution blind = solve(p, sky, {.narrowest_rad = 100 * deg, .widest_rad = 180 * deg});
   EXPECT_LT(error_px(p, blind), expected_error_px(blind));
   p.belief.focal_length_px = p.truth.focal_length_px;
   p.belief.camera_from_gcrs = turned(p.truth.camera_from_gcrs, {1.4 * deg, 1.4 * deg, 5 * deg});
@@ -266,9 +267,9 @@ TEST(PlateSolver, FieldsOfFewStarsAreSolved) {
     const PlateSky sky = test::sky_of(width_deg < 2 ? test::crowded_sky() : test::kstars());
     int blind = 0, few = 0;
     for (unsigned seed = 0; seed < 60; ++seed) {
-      SeenPlate p = test::seen_plate(
-          sky, {"gnomonic", width_deg, 6.1 * seed, -88 + 2.95 * seed, 3.0 * seed}, 400, sigma_px,
-          seed, 1);
+      SeenPlate p =
+          test::seen_plate(sky, {"gnomonic", width_deg, 6.1 * seed, -88 + 2.95 * seed, 3.0 * seed},
+                           400, sigma_px, seed, 1);
       const std::size_t stars = p.sources.size() - 1;
       if (stars < 4) continue;
       if (stars >= 8) {
@@ -276,8 +277,7 @@ TEST(PlateSolver, FieldsOfFewStarsAreSolved) {
         ++blind;
       }
       p.belief.focal_length_px = 1.02 * p.truth.focal_length_px;
-      p.belief.camera_from_gcrs =
-          turned(p.truth.camera_from_gcrs, {1.5 * deg, 1.2 * deg, 5 * deg});
+      p.belief.camera_from_gcrs = turned(p.truth.camera_from_gcrs, {1.5 * deg, 1.2 * deg, 5 * deg});
       EXPECT_LT(error_px(p, solve(p, sky)), 1.0) << seed << ": " << stars << " stars";
       ++few;
     }

@@ -55,8 +55,7 @@ DrawnFrame draw(double width_deg, const Vec<Gcrs>& axis, unsigned seed) {
     if (!at || at->x_px < -3 || at->y_px < -3 || at->x_px > columns + 2 || at->y_px > rows + 2)
       continue;
     const double mag = s.v_mag - colour_term * (s.bv - ZeroPoint::sunlike_bv);
-    frame.add_point(at->x_px, at->y_px,
-                    h.exposure_s * std::pow(10, -0.4 * (mag - zero_point_mag)));
+    frame.add_point(at->x_px, at->y_px, h.exposure_s * std::pow(10, -0.4 * (mag - zero_point_mag)));
     d.catalogued.emplace_back(*at, sky.places().star_seen_at(s.direction));
   }
   d.frame = {frame.expose(), h};

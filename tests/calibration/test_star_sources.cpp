@@ -104,8 +104,9 @@ TEST(StarSources, HardFrames) {
     for (const int kind : {0, 1, 2, 3}) {
       CountImage counts(columns, rows, kind == 1 ? 65535 : 0);
       for (std::size_t i = 0; i < counts.pixels.size() && kind >= 2; ++i)
-        counts.pixels[i] = kind == 2 ? std::uint16_t(i * 40503u >> 3)  // wild
-                                     : std::uint16_t(i / std::size_t(columns) < rows / 2u ? 65535 : 100);
+        counts.pixels[i] = kind == 2
+                               ? std::uint16_t(i * 40503u >> 3)  // wild
+                               : std::uint16_t(i / std::size_t(columns) < rows / 2u ? 65535 : 100);
       for (const PlateSource& s : find_star_sources(counts, {}, one)) {
         EXPECT_TRUE(std::isfinite(s.x_px + s.y_px + s.flux + s.covariance_px2[0] +
                                   s.covariance_px2[1] + s.covariance_px2[2]));
