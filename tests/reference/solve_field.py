@@ -95,7 +95,7 @@ def motion_since_2000(frame, stars, x, y):
     return known * (star_x - then_x)[nearest], known * (star_y - then_y)[nearest]
 
 
-def solve(frame, stars, rows, columns, directory, tweak_order=1):
+def solve(frame, stars, rows, columns, directory):
     """(WCS by astrometry.net or None, number of sources), in the crop's tangent plane."""
     sources = referee.extract_sources(frame.counts[rows, columns], directory,
                                       aperture_px=6 + frame.trail_px)
@@ -115,7 +115,7 @@ def solve(frame, stars, rows, columns, directory, tweak_order=1):
         referee.need("solve-field"), "field.xyls", "--width", width, "--height", height,
         "--x-column", "X", "--y-column", "Y", "--sort-column", "FLUX", "--scale-units", "arcsecperpix",
         "--scale-low", f"{scale_arcsec * 0.8:.4f}", "--scale-high", f"{scale_arcsec * 1.25:.4f}",
-        "--no-plots", "--overwrite", "--crpix-center", "--tweak-order", str(tweak_order), "--cpulimit", str(DEADLINE_S),
+        "--no-plots", "--overwrite", "--crpix-center", "--tweak-order", "1", "--cpulimit", str(DEADLINE_S),
     ]
     done = subprocess.run(["timeout", "--kill-after=5", str(2 * DEADLINE_S), *command], cwd=directory,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
