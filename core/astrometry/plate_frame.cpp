@@ -1,0 +1,193 @@
+#include "core/astrometry/plate_frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace dmise {
+namespace {
+
+constexpr std::size_t growing_sources = 300;
+/// Saturated stars take part in a fit only if there are fewer others.
+constexpr std::size_t least_exact = 10;
+
+}  // namespace
+
+PlateFrame::PlateFrame(std::span<const PlateSource> sources, const PlateBelief& belief,
+                       const PlateSky& sky, const PlateSearch& search)
+    : belief_(belief), sky_(sky), search_(search) {
+  const auto usable = [&](const PlateSource& s) {
+    const auto& c = s.covariance_px2;
+    return std::isfinite(s.x_px) && std::isfinite(s.y_px) && s.x_px >= -0.5 && s.y_px >= -0.5 &&
+           s.x_px <= belief.columns - 0.5 && s.y_px <= belief.rows - 0.5 && std::isfinite(s.flux) &&
+           s.flux > 0 && c[0] >= 0 && c[2] >= 0 && std::isfinite(c[0] + c[1] + c[2]);
+  };
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    if (usable(sources[i])) original_.push_back(std::uint32_t(i));
+  std::stable_sort(original_.begin(), original_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return sources[a].flux > sources[b].flux;
+  });
+  // One source a place: the brightest of those within half a pixel.
+  std::vector<std::uint32_t> kept;
+  std::unordered_multimap<std::int64_t, PixelPosition> taken;  // by pixel
+  const auto key = [](double x, double y) {
+    return std::int64_t(std::lround(y)) * (std::int64_t(1) << 32) + std::lround(x);
+  };
+  for (const std::uint32_t i : original_) {
+    if (sources_.size() >= 4 * search.most_stars) break;
+    const PlateSource& s = sources[i];
+    bool twice = false;
+    for (int j = -1; j <= 1 && !twice; ++j)
+      for (int k = -1; k <= 1 && !twice; ++k) {
+        const auto [from, to] = taken.equal_range(key(s.x_px + k, s.y_px + j));
+        for (auto at = from; at != to; ++at)
+          twice = twice || std::hypot(at->second.x_px - s.x_px, at->second.y_px - s.y_px) < 0.5;
+      }
+    if (twice) continue;
+    taken.emplace(key(s.x_px, s.y_px), PixelPosition{s.x_px, s.y_px});
+    sources_.push_back(s);
+    kept.push_back(i);
+  }
+  original_ = std::move(kept);
+  bright_ = std::min(sources_.size(), growing_sources);
+  bright_grid_.emplace(std::span(sources_).first(bright_), belief.columns, belief.rows);
+}
+
+double PlateFrame::reach_rad(const PlateModel& model) const {
+  const double r = half_diagonal_px() / model.focal_length_px;
+  const auto corner = model.projection.axis_angle_rad(r, 0);
+  return corner ? *corner : model.projection.fold_rad().value_or(pi);
+}
+
+std::vector<SeenStar> PlateFrame::stars_around(const PlateModel& model, std::size_t sources) const {
+  constexpr double wider = 1.15;
+  const double r = wider * half_diagonal_px();
+  const double share = double(belief_.columns) * belief_.rows / (pi * r * r);
+  return sky_.brightest(model.axis(), std::min(wider * reach_rad(model), pi),
+                        std::size_t(1.3 * double(sources) / share) + 20);
+}
+
+bool PlateFrame::stars_beside(const PlateModel& model, std::span<const std::uint32_t> pattern,
+                              PixelPosition from, double size_px) const {
+  const Vec<Gcrs> here = sky_.direction(pattern[0]);
+  const double size_rad = angle_rad(here, sky_.direction(pattern[1]));
+  const MatchReach reach{
+      .from = from, .near_px = 1.5, .known_px = 0.0, .growth = 0.02, .most_px = 3 * size_px};
+  double odds = 0.0;
+  int tested = 0;
+  for (const SeenStar& star : sky_.brightest(here, 2.2 * size_rad, 24)) {
+    if (std::find(pattern.begin(), pattern.end(), star.index) != pattern.end()) continue;
+    const auto at = model.pixel(star.direction);
+    if (!at || at->x_px < 0 || at->y_px < 0 || at->x_px > belief_.columns - 1 ||
+        at->y_px > belief_.rows - 1)
+      continue;
+    const double within = reach.at(*at);
+    if (within < 0) continue;
+    const double chance = std::min(
+        0.5, double(bright_) * pi * within * within / (double(belief_.columns) * belief_.rows));
+    const bool hit = bright_grid_->nearest(*at, within) >= 0;
+    odds += hit ? std::log(0.6 / chance) : std::log(0.4 / (1 - chance));
+    ++tested;
+  }
+  return tested < 3 ? odds > -2 : odds > 1;
+}
+
+std::optional<PlateModel> PlateFrame::grow(const PlateModel& start, PixelPosition from,
+                                           double size_px) const {
+  PlateModel model = start;
+  const auto sources = std::span(sources_).first(bright_);
+  const auto stars = stars_around(model, bright_);
+  double known_px = size_px, rms_px = 1.0;
+  for (double radius_px = 1.5 * size_px;; radius_px *= 1.6) {
+    const auto pairs = match(model, stars, sources, *bright_grid_, belief_.columns, belief_.rows,
+                             {.from = from,
+                              .near_px = std::max(1.5, 3 * rms_px),
+                              .known_px = known_px,
+                              .growth = 0.02,
+                              .most_px = radius_px});
+    const PlateFitSettings settings{.least_sigma_px = std::max(0.3, star_sigma_px(model))};
+    auto fit = fit_plate(model, pairs, {.focal_length = pairs.size() > 2}, settings);
+    if (!fit || fit->count < 3) return std::nullopt;
+    // The lens is not quite what is believed.
+    if (fit->count >= 30 && fit->rms_px > 0.7)
+      if (auto bent = fit_plate(model, pairs, {.focal_length = true, .order = 3}, settings);
+          bent && bent->rms_px < 0.7 * fit->rms_px)
+        fit = bent;
+    if (fit->rms_px > 4.0) return std::nullopt;
+    model = fit->model;
+    rms_px = fit->rms_px;
+    known_px = radius_px;
+    if (radius_px > 2 * half_diagonal_px()) return model;
+  }
+}
+
+std::optional<PlateFit> PlateFrame::best_fit(const PlateModel& model,
+                                             std::span<const PlateMatch> pairs) const {
+  const PlateFitSettings settings{.least_sigma_px = star_sigma_px(model)};
+  std::optional<PlateFit> best;
+  double least = 0.0;
+  const auto ignored =
+      std::count_if(pairs.begin(), pairs.end(), [](const PlateMatch& m) { return m.ignored; });
+  const double all = double(pairs.size()) - double(ignored), measured = 2 * all;
+  std::vector<PlateFreedom> freedoms{{.focal_length = true},
+                                     {.focal_length = true, .centre = true}};
+  for (int order = 1; order <= search_.most_order; ++order)
+    freedoms.push_back({.focal_length = true, .order = order});
+  for (const PlateFreedom& free : freedoms) {
+    if (free.size() > 4 && measured < 5.0 * free.size()) continue;
+    PlateModel from = model;
+    from.order = 0;
+    from.distortion.clear();
+    if (!free.centre) from.centre = centre();
+    const auto fit = fit_plate(from, pairs, free, settings);
+    const double degrees = fit ? 2.0 * fit->count - free.size() : 0.0;
+    if (!(degrees > 0)) continue;
+    // Bayes' information criterion; a residual of a hundredth of a sigma is as good as none.
+    const double score = measured * std::log(std::max(fit->chi2 / fit->count, 1e-4)) -
+                         2 * std::log(2.0) * (fit->count - all) * 2 +
+                         free.size() * std::log(measured);
+    if (best && score >= least) continue;
+    best = fit;
+    least = score;
+  }
+  return best;
+}
+
+std::optional<PlateSolution> PlateFrame::fit(PlateModel model) const {
+  PlateSolution solution;
+  std::size_t count = 0, exact = 0;  // of sources, and of those that are not saturated
+  while (count < sources_.size() && exact < search_.most_stars)
+    exact += !sources_[count++].saturated;
+  const auto sources = std::span(sources_).first(count);
+  const SourceGrid grid(sources, belief_.columns, belief_.rows);
+  solution.stars = stars_around(model, count);
+  const auto pairs_within = [&](double near_px) {
+    auto pairs = match(model, solution.stars, sources, grid, belief_.columns, belief_.rows,
+                       {.near_px = near_px});
+    std::size_t sharp = 0;
+    for (PlateMatch& m : pairs) {
+      m.ignored = sources[m.source].saturated;
+      sharp += !m.ignored;
+    }
+    if (sharp < least_exact)
+      for (PlateMatch& m : pairs) m.ignored = false;
+    return pairs;
+  };
+  std::optional<PlateFit> best;
+  double near_px = 2.0;
+  for (int pass = 0; pass < 3; ++pass) {
+    const auto pairs = pairs_within(near_px);
+    best = best_fit(model, pairs);
+    if (!best) return std::nullopt;
+    model = best->model;
+    solution.matches = pairs;
+    near_px = std::clamp(5 * best->rms_px, 0.4, near_px);
+  }
+  solution.fit = *best;
+  solution.log_odds = log_odds(best->model, solution.stars, *best, solution.matches, count,
+                               belief_.columns, belief_.rows);
+  for (PlateMatch& m : solution.matches) m.source = original_[m.source];
+  return solution;
+}
+
+}  // namespace dmise

@@ -1,0 +1,89 @@
+#pragma once
+#include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/astrometry/plate_match.h"
+#include "core/base/units.h"
+
+namespace dmise {
+
+/// What is believed of a camera before its frame is solved.
+struct PlateBelief {
+  int columns = 0, rows = 0;
+  Projection projection;
+  /// 0: not known. The axis is taken at the image's centre.
+  double focal_length_px = 0.0;
+  /// Where it points, if that is believed (determinant -1: mirrored).
+  std::optional<Rotation<CameraFrame, Gcrs>> camera_from_gcrs;
+};
+
+/// How far beliefs may be wrong, and what to look for without any.
+struct PlateSearch {
+  double pointing_error_rad = 3 * deg, roll_error_rad = 8 * deg;
+  double focal_error = 0.05;  // relative
+  /// Range of the frame's width on the sky if the focal length is not known.
+  double narrowest_rad = 0.8 * deg, widest_rad = 100 * deg;
+  double least_log_odds = 13.8;           // one chance in a million to be wrong
+  double star_sigma_rad = 0.05 * arcsec;  // error of the catalogue's places
+  std::size_t most_stars = 2000;          // that take part in the final fit
+  int most_order = 5;                     // of the distortion
+};
+
+struct PlateSolution {
+  PlateFit fit;
+  std::vector<SeenStar> stars;
+  std::vector<PlateMatch> matches;  // of `stars` with sources, by the order given
+  double log_odds = 0.0;            // that it is no chance, of all that was tried
+  std::size_t tried = 0;            // candidates that were looked at
+};
+
+/// A frame's sources beside the sky: extends a guess of the plate over the frame and judges it.
+class PlateFrame {
+ public:
+  /// Sources in any order; those with numbers that are not finite or out of the frame are passed
+  /// over, as are those within half a pixel of a brighter one.
+  PlateFrame(std::span<const PlateSource> sources, const PlateBelief& belief, const PlateSky& sky,
+             const PlateSearch& search);
+
+  /// By falling flux.
+  std::span<const PlateSource> sources() const { return sources_; }
+  PixelPosition place(std::size_t source) const {
+    return {sources_[source].x_px, sources_[source].y_px};
+  }
+  PixelPosition centre() const { return {(belief_.columns - 1) / 2.0, (belief_.rows - 1) / 2.0}; }
+  double half_diagonal_px() const { return 0.5 * std::hypot(belief_.columns, belief_.rows); }
+  /// Angle from a plate's axis to the farthest corner.
+  double reach_rad(const PlateModel& model) const;
+
+  /// Whether stars beside a pattern of stars (by number in the catalogue) are there, too, as far as
+  /// there are any; `from` is the first star's image, `size_px` the distance of the second's.
+  bool stars_beside(const PlateModel& model, std::span<const std::uint32_t> pattern,
+                    PixelPosition from, double size_px) const;
+  /// Extends a plate that holds around a place over the frame; empty if the stars do not follow.
+  std::optional<PlateModel> grow(const PlateModel& start, PixelPosition from, double size_px) const;
+  /// Fits a plate with all sources, as freely as the stars support. `log_odds` is by the stars
+  /// alone, `tried` 0. Empty without enough stars.
+  std::optional<PlateSolution> fit(PlateModel model) const;
+
+ private:
+  /// The chosen fit to matches: of a list of freedoms the one that the stars call for.
+  std::optional<PlateFit> best_fit(const PlateModel& model,
+                                   std::span<const PlateMatch> pairs) const;
+  /// Stars about the frame, of which it shows somewhat more than it has sources.
+  std::vector<SeenStar> stars_around(const PlateModel& model, std::size_t sources) const;
+  double star_sigma_px(const PlateModel& model) const {
+    return search_.star_sigma_rad * model.focal_length_px;
+  }
+
+  const PlateBelief& belief_;
+  const PlateSky& sky_;
+  const PlateSearch& search_;
+  std::vector<PlateSource> sources_;     // by falling flux
+  std::vector<std::uint32_t> original_;  // their places in the caller's list
+  std::size_t bright_ = 0;               // of sources, with which a plate grows
+  std::optional<SourceGrid> bright_grid_;
+};
+
+}  // namespace dmise

@@ -1,0 +1,178 @@
+#include "core/calibration/solve_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/json.h"
+#include "core/calibration/star_sources.h"
+#include "core/detection/atmosphere.h"
+#include "core/frames/quaternion.h"
+#include "core/sky/airmass.h"
+#include "core/time/clock.h"
+#include "core/time/iso8601.h"
+#include "core/wcs/wcs_fit.h"
+
+namespace dmise {
+namespace {
+
+Observer observer_of(const FrameHeader& header) {
+  const Tt tt = Clock(parse_utc(header.middle_utc)).tt({});
+  Observer o = space_observer(header.sensor_position_m, header.sensor_velocity_m_per_s, tt,
+                              solar_system(tt));
+  if (header.site) {
+    o.air = Air{unit(zenith_of(header)), Refraction()};
+    if (const auto refraction = refraction_of(header)) o.air->refraction = *refraction;
+  }
+  return o;
+}
+
+PlateBelief belief_of(const Frame& frame, bool blind) {
+  const FrameHeader& h = frame.header;
+  PlateBelief b{frame.counts.columns, frame.counts.rows, h.projection, 0.0, std::nullopt};
+  if (blind) return b;
+  b.focal_length_px = h.focal_length_px;
+  b.camera_from_gcrs = rotation_of<CameraFrame, Gcrs>(h.camera_from_gcrs[1]);
+  return b;
+}
+
+/// The WCS of a plate: its sky is where the catalogue has the stars that it sees.
+Wcs wcs_of(const PlateFit& fit, const PlateSky& sky, int columns, int rows) {
+  const PlateModel& model = fit.model;
+  constexpr double pitch_m = 1e-5;  // any
+  const Optics optics{.projection = model.projection,
+                      .focal_length_m = model.focal_length_px * pitch_m,
+                      .pixel_pitch_m = pitch_m,
+                      .columns = columns,
+                      .rows = rows};
+  const SkyOfPixel seen = [&](PixelPosition pixel) -> std::optional<Vec<Gcrs>> {
+    const auto direction = model.direction(pixel);
+    if (!direction) return std::nullopt;
+    return sky.places().star_seen_at(*direction);
+  };
+  std::optional<CameraAir> air;
+  if (sky.air()) air = CameraAir{model.camera_from_gcrs * sky.air()->zenith, sky.air()->refraction};
+  Wcs wcs = best_wcs(optics, seen, air);
+  // The plate's own error comes on top.
+  double sum = 0.0, most = 0.0;
+  int count = 0;
+  for (int j = 0; j <= 8; ++j)
+    for (int i = 0; i <= 8; ++i) {
+      const PixelPosition at{i * (columns - 1) / 8.0, j * (rows - 1) / 8.0};
+      const auto direction = model.direction(at);
+      if (!direction || (sky.air() && dot(*direction, sky.air()->zenith) < 0)) continue;
+      const double sigma = fit.sigma_px(*direction, at);
+      sum += 2 * sigma * sigma;
+      most = std::max(most, sigma);
+      ++count;
+    }
+  if (count) wcs.rms_px = std::hypot(wcs.rms_px, std::sqrt(sum / count));
+  wcs.max_px = std::hypot(wcs.max_px, 3 * most);
+  return wcs;
+}
+
+std::optional<ZeroPoint> zero_point_of(const Frame& frame, const PlateSolution& plate,
+                                       std::span<const PlateSource> sources, const PlateSky& sky) {
+  std::vector<PhotometricStar> stars;
+  for (std::size_t k = 0; k < plate.matches.size(); ++k) {
+    const PlateSource& source = sources[plate.matches[k].source];
+    if (!plate.fit.used[k] || source.saturated) continue;
+    const SeenStar& star = plate.stars[plate.matches[k].star];
+    double x = 0.0;
+    if (sky.air()) {
+      const double sine = dot(star.direction, sky.air()->zenith);
+      x = airmass(std::asin(std::clamp(sine, -1.0, 1.0)));
+    }
+    stars.push_back({-2.5 * std::log10(source.flux / frame.header.exposure_s),
+                     2.5 / std::log(10.0) * source.flux_sigma / source.flux, star.v_mag, star.bv,
+                     x});
+  }
+  return fit_zero_point(stars, sky.air() ? frame.header.extinction_mag_per_airmass : 0.0);
+}
+
+}  // namespace
+
+FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveSettings& settings,
+                          Threads& threads) {
+  const FrameHeader& h = frame.header;
+  const PlateSky sky(stars, observer_of(h));
+  const auto sources =
+      find_star_sources(frame.counts,
+                        {.gain_e_per_dn = h.gain_e_per_dn,
+                         .saturation_dn = h.saturation_dn - 5 * h.read_noise_e / h.gain_e_per_dn,
+                         .psf_fwhm_px = h.psf_fwhm_px},
+                        threads);
+  FrameSolution out;
+  out.sources = sources.size();
+  out.plate = solve_plate(sources, belief_of(frame, settings.blind), sky, settings.search);
+  out.wcs = wcs_of(out.plate.fit, sky, frame.counts.columns, frame.counts.rows);
+  out.zero_point = zero_point_of(frame, out.plate, sources, sky);
+  return out;
+}
+
+FrameHeader solved_header(const FrameHeader& header, const FrameSolution& solution) {
+  FrameHeader h = header;
+  const PlateModel& model = solution.plate.fit.model;
+  h.wcs = solution.wcs;
+  h.focal_length_px = model.focal_length_px;
+  const auto [ra, dec] = to_spherical(wcs_direction(h.wcs, {h.wcs.crpix_x, h.wcs.crpix_y}));
+  h.observation.ra_rad = ra;
+  h.observation.dec_rad = dec;
+  if (!model.mirrored()) {
+    const auto middle = rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[1]);
+    for (std::size_t i = 0; i < 3; ++i)  // turns during the exposure as believed
+      h.camera_from_gcrs[i] =
+          quaternion_of(rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[i]) *
+                        middle.inverse() * model.camera_from_gcrs);
+  }
+  if (const auto& z = solution.zero_point) {
+    h.zero_point_mag = z->zero_point_mag;
+    h.extinction_mag_per_airmass = z->extinction_mag_per_airmass;
+  }
+  return h;
+}
+
+std::string to_json(const FrameSolution& solution, const FrameHeader& header) {
+  const PlateFit& fit = solution.plate.fit;
+  const PlateModel& model = fit.model;
+  JsonWriter json;
+  json.begin_object();
+  json.field("sensor", header.sensor).field("frame", header.frame);
+  json.field("sources", std::uint64_t(solution.sources)).field("matched", fit.count);
+  json.field("rms_px", fit.rms_px).field("error_scale", fit.error_scale);
+  json.field("log_odds", solution.plate.log_odds);
+  const auto [ra, dec] =
+      to_spherical(wcs_direction(solution.wcs, {solution.wcs.crpix_x, solution.wcs.crpix_y}));
+  json.field("ra_deg", ra / deg).field("dec_deg", dec / deg);
+  json.field("scale_arcsec_per_px", wcs_scale_rad_per_px(solution.wcs) / arcsec);
+  json.field("mirrored", model.mirrored());
+  json.field("projection", model.projection.name());
+  json.field("focal_length_px", model.focal_length_px);
+  json.field("centre_x_px", model.centre.x_px).field("centre_y_px", model.centre.y_px);
+  json.field("distortion_order", model.order).key("distortion_px").begin_array();
+  for (const double c : model.distortion) json.value(c);
+  json.end_array().key("free").begin_array().value("attitude");
+  if (fit.free.focal_length) json.value("focal_length");
+  if (fit.free.centre) json.value("centre");
+  if (fit.free.order > 0) json.value("distortion");
+  json.end_array().key("covariance").begin_array();
+  for (const double c : fit.covariance) json.value(c);
+  json.end_array();
+  json.field("wcs_rms_px", solution.wcs.rms_px).field("wcs_max_px", solution.wcs.max_px);
+  json.key("zero_point");
+  if (const auto& z = solution.zero_point) {
+    json.begin_object();
+    json.field("zero_point_mag", z->zero_point_mag).field("zero_point_sigma", z->sigma(0));
+    json.field("colour_term", z->colour_term).field("colour_term_sigma", z->sigma(1));
+    json.field("colour_fitted", z->colour_fitted);
+    json.field("extinction_mag_per_airmass", z->extinction_mag_per_airmass);
+    json.field("extinction_sigma", z->sigma(2)).field("extinction_fitted", z->extinction_fitted);
+    json.field("stars", z->stars).field("rms_mag", z->rms_mag);
+    json.end_object();
+  } else {
+    json.null();
+  }
+  json.end_object();
+  return json.take();
+}
+
+}  // namespace dmise

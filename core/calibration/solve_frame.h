@@ -1,0 +1,37 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "core/astrometry/plate_solver.h"
+#include "core/astrometry/zero_point.h"
+#include "core/base/parallel.h"
+#include "core/image/fits_file.h"
+#include "core/wcs/wcs.h"
+
+namespace dmise {
+
+struct SolveSettings {
+  bool blind = false;  // uses neither the believed pointing nor the focal length
+  PlateSearch search;
+};
+
+/// What the stars of a frame tell of it.
+struct FrameSolution {
+  PlateSolution plate;
+  Wcs wcs;  // astrometric, so annual aberration and refraction are in it
+  std::optional<ZeroPoint> zero_point;
+  std::size_t sources = 0;
+};
+
+/// Solves a frame by its counts and by what its header states of site, time, lens and detector; the
+/// header's pointing is a hint. Throws `Error` if there is no solution.
+FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveSettings& settings,
+                          Threads& threads);
+
+/// `header` with the solution: WCS, attitudes, focal length, zero point and extinction.
+FrameHeader solved_header(const FrameHeader& header, const FrameSolution& solution);
+
+/// The solution as one line of JSON.
+std::string to_json(const FrameSolution& solution, const FrameHeader& header);
+
+}  // namespace dmise

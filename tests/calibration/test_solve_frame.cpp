@@ -1,0 +1,145 @@
+#include "core/calibration/solve_frame.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "core/frames/quaternion.h"
+#include "core/sky/star_cache.h"
+#include "core/time/clock.h"
+#include "core/time/iso8601.h"
+#include "core/wcs/wcs.h"
+#include "tests/detection/simulated_frame.h"
+#include "tests/support/data.h"
+
+namespace dmise {
+namespace {
+
+constexpr int columns = 1400, rows = 1200;
+constexpr double zero_point_mag = 19.0, colour_term = 0.1;
+
+const StarMap& stars() {
+  static const StarMap map = load_star_map(test::catalogue_path("stars.dat"));
+  return map;
+}
+
+struct DrawnFrame {
+  Frame frame;
+  PlateModel truth;
+  std::vector<std::pair<PixelPosition, Vec<Gcrs>>> catalogued;  // pixel, direction in ICRS at J2000
+};
+
+/// The catalogue's stars in space, drawn one by one by brute force.
+DrawnFrame draw(double width_deg, const Vec<Gcrs>& axis, unsigned seed) {
+  DrawnFrame d;
+  FrameHeader h = test::camera_header(columns, rows, 0.5 * columns / std::tan(width_deg / 2 * deg),
+                                      0.4, 4, false);
+  h.zero_point_mag = 0.0;  // not known
+  h.sensor_position_m = {7e6, 0, 0};
+  h.sensor_velocity_m_per_s = {0, 7.5e3, 0};
+  const Vec<Gcrs> x = unit(cross(Vec<Gcrs>{0.1, 0.2, 1}, axis)), y = cross(axis, x);
+  d.truth = {.projection = Projection::gnomonic,
+             .camera_from_gcrs = {{{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {axis.x, axis.y, axis.z}}}},
+             .focal_length_px = h.focal_length_px,
+             .centre = {(columns - 1) / 2.0, (rows - 1) / 2.0},
+             .unit_px = 900};
+  const Tt tt = Clock(parse_utc(h.middle_utc)).tt({});
+  const PlateSky sky(stars(), space_observer(h.sensor_position_m, h.sensor_velocity_m_per_s, tt,
+                                             solar_system(tt)));
+  test::SimulatedFrame frame(h, columns, rows, 100, seed);
+  for (const SeenStar& s : sky.brightest(axis, width_deg * deg, 4000)) {
+    const auto at = d.truth.pixel(s.direction);
+    if (!at || at->x_px < -3 || at->y_px < -3 || at->x_px > columns + 2 || at->y_px > rows + 2)
+      continue;
+    const double mag = s.v_mag - colour_term * (s.bv - ZeroPoint::sunlike_bv);
+    frame.add_point(at->x_px, at->y_px, h.exposure_s * std::pow(10, -0.4 * (mag - zero_point_mag)));
+    d.catalogued.emplace_back(*at, sky.places().star_seen_at(s.direction));
+  }
+  d.frame = {frame.expose(), h};
+  return d;
+}
+
+void believe(DrawnFrame& d, const Vec<CameraFrame>& wrong_rad) {
+  for (Quaternion& q : d.frame.header.camera_from_gcrs)
+    q = quaternion_of(turned(d.truth.camera_from_gcrs, wrong_rad));
+}
+
+// Pointing wrong by 2 deg and roll by 5: at least 200 stars with a residual within 0.03 px, and the
+// WCS maps the catalogue's directions to the pixels where stars were drawn to 0.01 px.
+TEST(SolveFrame, MeasuresPlateWcsAndZeroPoint) {
+  DMISE_NEEDS_FILE(test::catalogue_path("stars.dat"));
+  DrawnFrame d = draw(14, unit(Vec<Gcrs>{0.2, 0.9, 0.3}), 1);
+  believe(d, {1.4 * deg, -1.4 * deg, 5 * deg});
+  Threads one(1);
+  for (const bool blind : {false, true}) {
+    const FrameSolution s = solve_frame(d.frame, stars(), {.blind = blind}, one);
+    EXPECT_GE(s.plate.fit.count, 200);
+    EXPECT_LE(s.plate.fit.rms_px, 0.03);
+    double sum = 0.0;
+    for (const auto& [pixel, direction] : d.catalogued) {
+      const auto at = wcs_pixel(s.wcs, direction);
+      ASSERT_TRUE(at);
+      sum += std::pow(at->x_px - pixel.x_px, 2) + std::pow(at->y_px - pixel.y_px, 2);
+    }
+    EXPECT_LT(std::sqrt(sum / double(d.catalogued.size())), 0.01);
+    ASSERT_TRUE(s.zero_point);
+    EXPECT_NEAR(s.zero_point->zero_point_mag, zero_point_mag, 0.01);
+    EXPECT_NEAR(s.zero_point->colour_term, colour_term, 0.01);
+    EXPECT_FALSE(s.zero_point->extinction_fitted);
+  }
+}
+
+TEST(SolveFrame, TheSolvedHeaderIsReadBackAndNeedsNoHint) {
+  DMISE_NEEDS_FILE(test::catalogue_path("stars.dat"));
+  DrawnFrame d = draw(20, unit(Vec<Gcrs>{-0.5, 0.1, 0.8}), 2);
+  believe(d, {-1 * deg, -1.5 * deg, -5 * deg});
+  Threads one(1);
+  const FrameSolution s = solve_frame(d.frame, stars(), {}, one);
+  const std::string bytes = encode_frame(d.frame.counts, solved_header(d.frame.header, s));
+  const Frame back = decode_frame(bytes, "solved.fits");
+  EXPECT_EQ(back.counts.pixels, d.frame.counts.pixels);
+  const auto by = rotation_of<CameraFrame, Gcrs>(back.header.camera_from_gcrs[1]) *
+                  d.truth.camera_from_gcrs.inverse();
+  EXPECT_LT(std::hypot(by.m[0][1], by.m[0][2], by.m[1][2]) * d.truth.focal_length_px, 0.1);
+  EXPECT_NEAR(back.header.zero_point_mag, zero_point_mag, 0.01);
+  EXPECT_TRUE(to_json(s, d.frame.header).find("\"matched\":") != std::string::npos);
+}
+
+TEST(SolveFrame, SolvesAMirroredFrame) {
+  DMISE_NEEDS_FILE(test::catalogue_path("stars.dat"));
+  DrawnFrame d = draw(14, unit(Vec<Gcrs>{0.2, 0.9, 0.3}), 3);
+  CountImage& counts = d.frame.counts;
+  for (int y = 0; y < rows / 2; ++y)
+    std::swap_ranges(counts.row(y), counts.row(y) + columns, counts.row(rows - 1 - y));
+  Threads one(1);
+  const FrameSolution s = solve_frame(d.frame, stars(), {.blind = true}, one);
+  EXPECT_TRUE(s.plate.fit.model.mirrored());
+  for (const auto& [pixel, direction] : d.catalogued) {
+    const auto at = wcs_pixel(s.wcs, direction);
+    ASSERT_TRUE(at);
+    EXPECT_NEAR(at->x_px, pixel.x_px, 0.05);
+    EXPECT_NEAR(at->y_px, rows - 1 - pixel.y_px, 0.05);
+  }
+}
+
+TEST(SolveFrame, SaysWhyThereIsNoSolution) {
+  DMISE_NEEDS_FILE(test::catalogue_path("stars.dat"));
+  DrawnFrame d = draw(14, unit(Vec<Gcrs>{0.2, 0.9, 0.3}), 1);
+  Threads one(1);
+  for (const std::uint16_t level : {0, 300, 65535}) {
+    std::fill(d.frame.counts.pixels.begin(), d.frame.counts.pixels.end(), level);
+    try {
+      solve_frame(d.frame, stars(), {}, one);
+      ADD_FAILURE() << level;
+    } catch (const Error& e) {
+      EXPECT_EQ(std::string(e.what()).rfind("no plate solution: 3 sources are needed, got ", 0), 0u)
+          << e.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dmise
