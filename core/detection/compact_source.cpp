@@ -120,8 +120,11 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
   fit_settings.model_error = model_error;
   fit_settings.settled_chi2 = 0.05;  // small compared to every margin
   fit_settings.most_steps = 8;
+  constexpr double surely_star_sigmas = 0.5;
+  fit_settings.good_enough_sigmas = surely_star_sigmas;
   const TrailFit as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings);
-  if (as_star.good(0.5)) return std::nullopt;
+  if (as_star.good(surely_star_sigmas)) return std::nullopt;
+  fit_settings.good_enough_sigmas = std::nullopt;
   const bool stars_trail = star.length_px >= settings.least_difference_px;
   TrailFit as_point;
   if (stars_trail) {

@@ -19,6 +19,7 @@ constexpr int window_px = 16;              // step of growth
 constexpr double growth_snr = 4.0;         // to continue into the next window
 constexpr double gap_snr = 6.0;            // to continue beyond a gap
 constexpr double chain_px = 30.0;          // longest blend of stars, without their trails
+constexpr double least_rise = 2.0;         // over the scatter of lines beside it, before a fit
 constexpr int most_rounds = 6;             // of fitting and growing
 
 Line line_through(const Point& a, const Point& b) {
@@ -188,6 +189,15 @@ Trail trail_along(const Line& line, const Extent& extent, double level) {
   return t;
 }
 
+/// Not worth a fit: faint, and hardly brighter than parallel lines beside it.
+bool is_among_others(const Scene& scene, const Line& line, const Extent& extent, double level,
+                     const DetectorSettings& settings) {
+  const Slice middle = slice_at(scene, line, (extent.from + extent.to) / 2, 0.0);
+  if (middle.variance > 0 && level > settings.even_snr_per_px * std::sqrt(middle.variance))
+    return false;
+  return rise_above_neighbours(scene, trail_along(line, extent, level)) < least_rise;
+}
+
 /// Alternates fitting and growing until the ends are stable.
 std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
                                 const DetectorSettings& settings) {
@@ -196,6 +206,7 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
     const double level = median_level(slices(scene, line, extent.from, extent.to, 0.0));
     if (!(level > 0)) return std::nullopt;
     if (is_hopeless(scene, trail_along(line, extent, level))) return std::nullopt;
+    if (round == 0 && is_among_others(scene, line, extent, level, settings)) return std::nullopt;
     const Extent before = extent;
     grow(scene, line, extent, +1, level);
     grow(scene, line, extent, -1, level);

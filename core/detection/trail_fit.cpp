@@ -256,7 +256,10 @@ TrailFit fit_trails(const std::vector<FitPixel>& pixels, std::vector<Trail> star
   TrailFit fit;
   double damping = 1e-3;
   Problem::Linear now = problem.linearise({std::move(start), 0.0}, nullptr);
+  fit.degrees = int(pixels.size()) - int(n) + (settings.background_sigma_e > 0 ? 1 : 0);
   for (int step = 0; step < settings.most_steps && !fit.converged; ++step) {
+    fit.chi2 = now.chi2;
+    if (settings.good_enough_sigmas && fit.good(*settings.good_enough_sigmas)) break;
     Matrix damped = now.matrix;
     for (std::size_t i = 0; i < n; ++i) damped[i][i] *= 1 + damping;
     if (!cholesky(damped, n)) break;
@@ -278,7 +281,6 @@ TrailFit fit_trails(const std::vector<FitPixel>& pixels, std::vector<Trail> star
   fit.trails = std::move(state.trails);
   fit.background_e = state.background_e;
   fit.parameters = int(n);
-  fit.degrees = int(pixels.size()) - int(n) + (settings.background_sigma_e > 0 ? 1 : 0);
   fit.covariance.assign(n * n, 0.0);
   if (cholesky(matrix, n)) {
     for (std::size_t i = 0; i < n; ++i) {

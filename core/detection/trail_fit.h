@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace dmise {
@@ -43,6 +44,8 @@ struct FitSettings {
   double background_sigma_e = 0.0;  // > 0: fits a constant background with this prior
   int most_steps = 12;
   double settled_chi2 = 1e-4;  // convergence: smallest gain of a step
+  // Ends as soon as the chi2 is within so many sigmas of its expectation; empty: goes on.
+  std::optional<double> good_enough_sigmas;
 };
 
 struct TrailFit {

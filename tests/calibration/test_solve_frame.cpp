@@ -6,13 +6,13 @@
 #include <cmath>
 #include <filesystem>
 
+#include "bench/simulated_frame.h"
 #include "core/base/error.h"
 #include "core/frames/quaternion.h"
 #include "core/sky/star_cache.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 #include "core/wcs/wcs.h"
-#include "tests/detection/simulated_frame.h"
 #include "tests/support/data.h"
 
 namespace dmise {
@@ -35,8 +35,8 @@ struct DrawnFrame {
 /// The catalogue's stars in space, drawn one by one by brute force.
 DrawnFrame draw(double width_deg, const Vec<Gcrs>& axis, unsigned seed) {
   DrawnFrame d;
-  FrameHeader h = test::camera_header(columns, rows, 0.5 * columns / std::tan(width_deg / 2 * deg),
-                                      0.4, 4, false);
+  FrameHeader h = simulated::camera_header(
+      columns, rows, 0.5 * columns / std::tan(width_deg / 2 * deg), 0.4, 4, false);
   h.zero_point_mag = 0.0;  // not known
   h.sensor_position_m = {7e6, 0, 0};
   h.sensor_velocity_m_per_s = {0, 7.5e3, 0};
@@ -49,7 +49,7 @@ DrawnFrame draw(double width_deg, const Vec<Gcrs>& axis, unsigned seed) {
   const Tt tt = Clock(parse_utc(h.middle_utc)).tt({});
   const PlateSky sky(stars(), space_observer(h.sensor_position_m, h.sensor_velocity_m_per_s, tt,
                                              solar_system(tt)));
-  test::SimulatedFrame frame(h, columns, rows, 100, seed);
+  simulated::SimulatedFrame frame(h, columns, rows, 100, seed);
   for (const SeenStar& s : sky.brightest(axis, width_deg * deg, 4000)) {
     const auto at = d.truth.pixel(s.direction);
     if (!at || at->x_px < -3 || at->y_px < -3 || at->x_px > columns + 2 || at->y_px > rows + 2)

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/detection/simulated_frame.h"
+#include "bench/simulated_frame.h"
 
 namespace dmise {
 namespace {
@@ -20,7 +20,7 @@ StarSourceSettings settings_of(const FrameHeader& h) {
 }
 
 /// Stars on a loose grid, at random places within their cells.
-std::vector<Truth> add_grid(test::SimulatedFrame& frame, int columns, int rows, double least_e,
+std::vector<Truth> add_grid(simulated::SimulatedFrame& frame, int columns, int rows, double least_e,
                             double most_e, bool trails) {
   std::vector<Truth> stars;
   for (int y = 30; y < rows - 30; y += 40)
@@ -41,8 +41,8 @@ class SourcePlaces : public ::testing::TestWithParam<bool> {};
 // Brute-force images of points and of trails of 6 px: all are found, their normalised errors have
 // the mean square 1, and those of 50,000 e- lie within 0.02 px.
 TEST_P(SourcePlaces, AreAsGoodAsStated) {
-  FrameHeader header = test::camera_header(800, 700, 5000, 0.3, 1, false);
-  test::SimulatedFrame frame(header, 800, 700, 200, 5);
+  FrameHeader header = simulated::camera_header(800, 700, 5000, 0.3, 1, false);
+  simulated::SimulatedFrame frame(header, 800, 700, 200, 5);
   const auto stars = add_grid(frame, 800, 700, 2000, 50'000, GetParam());
   const CountImage counts = frame.expose();
   Threads one(1), three(3);
@@ -81,8 +81,8 @@ TEST_P(SourcePlaces, AreAsGoodAsStated) {
 INSTANTIATE_TEST_SUITE_P(PointsAndTrails, SourcePlaces, ::testing::Bool());
 
 TEST(StarSources, SaturatedStarsAreRankedByBrightness) {
-  FrameHeader header = test::camera_header(600, 600, 5000, 0.3, 1, false);
-  test::SimulatedFrame frame(header, 600, 600, 200, 6);
+  FrameHeader header = simulated::camera_header(600, 600, 5000, 0.3, 1, false);
+  simulated::SimulatedFrame frame(header, 600, 600, 200, 6);
   for (int i = 0; i < 6; ++i) frame.add_point(60.2 + 90 * i, 300.4, 2e5 * std::pow(4, i));
   const auto counts = frame.expose();
   Threads one(1);

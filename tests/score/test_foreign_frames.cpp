@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "bench/simulated_frame.h"
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/image/fits_file.h"
 #include "core/score/score.h"
-#include "tests/detection/simulated_frame.h"
 
 namespace dmise {
 namespace {
@@ -94,8 +94,8 @@ TEST_F(ForeignFrames, BadTablesAreRefusedByLineAndColumn) {
 // A point and a streak drawn by the brute force of tests/detection on an empty sky, and a truth
 // outside: found where they were drawn.
 TEST_F(ForeignFrames, DetectsInThemAndScores) {
-  const FrameHeader header = test::camera_header(600, 400, 1663.0, 34 * deg, 20.0, true);
-  test::SimulatedFrame scene(header, 600, 400, 1500.0, 1);
+  const FrameHeader header = simulated::camera_header(600, 400, 1663.0, 34 * deg, 20.0, true);
+  simulated::SimulatedFrame scene(header, 600, 400, 1500.0, 1);
   scene.add_point(100, 80, 2e4);
   scene.add_streak(230, 175, 80, 2.0, 4e4);
   write_frame(directory + "/a.fits", scene.expose(), header);
