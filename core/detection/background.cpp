@@ -150,11 +150,19 @@ float Background::level_of_cell(int i, int j) const {
                 std::size_t(std::clamp(i, 0, mesh_columns_ - 1))];
 }
 
+float Background::slope_of_cell(int i, int j) const {
+  return std::hypot(0.5f * (level_of_cell(i + 1, j) - level_of_cell(i - 1, j)),
+                    0.5f * (level_of_cell(i, j + 1) - level_of_cell(i, j - 1)));
+}
+
 bool Background::is_sloped(std::size_t cell) const {
-  const int i = int(cell) % mesh_columns_, j = int(cell) / mesh_columns_;
-  const float across = 0.5f * (level_of_cell(i + 1, j) - level_of_cell(i - 1, j));
-  const float down = 0.5f * (level_of_cell(i, j + 1) - level_of_cell(i, j - 1));
-  return across * across + down * down > 0.5f * sigma_[cell] * sigma_[cell];
+  const float slope = slope_of_cell(int(cell) % mesh_columns_, int(cell) / mesh_columns_);
+  return slope * slope > 0.5f * sigma_[cell] * sigma_[cell];
+}
+
+float Background::unevenness_dn(int x, int y) const {
+  return 0.2f * slope_of_cell(int(std::int64_t(x) * mesh_columns_ / columns_),
+                              int(std::int64_t(y) * mesh_rows_ / rows_));
 }
 
 std::vector<Background::Area> Background::bent_cells(double share) const {

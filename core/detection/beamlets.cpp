@@ -42,24 +42,33 @@ class Block {
 
   void find(std::vector<Beamlet>& found) {
     sum(0, size_);
-    for (Level& level : levels_)
-      for (const Beamlet& best : level.best)
-        if (best.snr > 0) found.push_back(best);
+    std::stable_sort(kept_.begin(), kept_.end(),
+                     [](const Kept& a, const Kept& b) { return a.cell < b.cell; });
+    for (std::size_t i = 0; i < kept_.size();) {
+      Beamlet best = kept_[i].beamlet;
+      const std::uint64_t cell = kept_[i].cell;
+      for (; i < kept_.size() && kept_[i].cell == cell; ++i)
+        if (kept_[i].beamlet.snr > best.snr) best = kept_[i].beamlet;
+      found.push_back(best);
+    }
   }
 
  private:
+  /// A beamlet in its small range of level, strip, place and direction.
+  struct Kept {
+    std::uint64_t cell;
+    Beamlet beamlet;
+  };
   /// Beamlets of `length` rows.
   struct Level {
-    int length = 0, angles = 0, cells = 0;
+    int length = 0, angles = 0;
     std::vector<float> noise;         // by shift, of a sum
     std::vector<std::int16_t> least;  // by shift, of a sum that is kept
-    std::vector<Beamlet> best;        // by strip, cell of place, cell of angle
   };
 
   Level level_of(int n) const {
     Level level{.length = n, .angles = std::min(n, angle_cells)};
     if (n < shortest) return level;
-    level.cells = int(width_) / cell_px + 1;
     for (int a = 0; a < n; ++a) {
       const double slope = double(a) / (n - 1);
       const double noise =
@@ -67,8 +76,6 @@ class Block {
       level.noise.push_back(float(noise));
       level.least.push_back(std::int16_t(std::min(least_snr_ * noise, 32767.0)));
     }
-    level.best.resize(std::size_t(size_ / n) * std::size_t(level.cells) *
-                      std::size_t(level.angles));
     return level;
   }
 
@@ -104,13 +111,15 @@ class Block {
     const int half = length / 2;
     sum(first, half);
     sum(first + half, half);
+    // Further to the left no line of this length comes in from.
+    const auto skipped = std::size_t(size_ - length);
     const Level& level = levels_[std::size_t(std::bit_width(unsigned(length)) - 2)];
     std::vector<std::int16_t*> joined(std::size_t(length), nullptr);
     for (int a = 0; a < half; ++a) {
       std::int16_t* upper = rows_[std::size_t(first + a)];
       std::int16_t* lower = rows_[std::size_t(first + half + a)];
       std::int16_t most[2];
-      join_(upper, lower, std::size_t(a), width_, most);
+      join_(upper + skipped, lower + skipped, std::size_t(a), width_ - skipped, most);
       joined[std::size_t(2 * a)] = upper;
       joined[std::size_t(2 * a + 1)] = lower;
       if (length < shortest) continue;
@@ -123,18 +132,24 @@ class Block {
   }
 
   /// Keeps the largest sum of each cell of a row of sums with `shift`.
-  void keep(int first, int shift, const std::int16_t* sums, Level& level) {
+  void keep(int first, int shift, const std::int16_t* sums, const Level& level) {
     const std::int16_t least = level.least[std::size_t(shift)];
     const float noise = level.noise[std::size_t(shift)];
-    const std::size_t strip = std::size_t(first / level.length);
-    const std::size_t angle = std::size_t(shift * level.angles / level.length);
-    for (std::size_t x = 0; x < width_; ++x) {
+    const auto strip = std::uint64_t(first / level.length);
+    const auto angle = std::uint64_t(shift * level.angles / level.length);
+    const auto cells = std::uint64_t(width_ / cell_px + 1);
+    const std::uint64_t row =
+        ((std::uint64_t(level.length) * std::uint64_t(size_) + strip) * angle_cells + angle) *
+        cells;
+    for (auto x = std::size_t(size_ - level.length); x < width_; ++x) {
       if (sums[x] < least) continue;
-      Beamlet& best =
-          level.best[(strip * std::size_t(level.cells) + x / cell_px) * std::size_t(level.angles) +
-                     angle];
+      const std::uint64_t cell = row + x / cell_px;
       const float snr = float(sums[x]) / noise;
-      if (snr > best.snr) best = placed(snr, int(x) - size_, first, shift, level.length);
+      const Beamlet beamlet = placed(snr, int(x) - size_, first, shift, level.length);
+      if (kept_.empty() || kept_.back().cell != cell)
+        kept_.push_back({cell, beamlet});
+      else if (snr > kept_.back().beamlet.snr)
+        kept_.back().beamlet = beamlet;
     }
   }
 
@@ -157,6 +172,7 @@ class Block {
   std::vector<std::int16_t> sums_;
   std::vector<std::int16_t*> rows_;  // by strip, then shift
   std::vector<Level> levels_;        // of 2, 4, .. rows
+  std::vector<Kept> kept_;
 };
 
 }  // namespace

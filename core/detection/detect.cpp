@@ -208,7 +208,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   result.report.star_like = judged.star_like;
   for (Source& source : distinct(std::move(judged.sources), scene.sigma_px)) {
     if (!wcs_sees_sky(header.wcs, {source.trail().x_px, source.trail().y_px})) continue;
-    widen_ends(source, scene.sigma_px);
+    add_neglected_errors(source, scene.sigma_px);
     Detection d = describe(source, header);
     d.index = std::uint32_t(result.detections.size());
     d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);

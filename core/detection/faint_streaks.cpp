@@ -100,8 +100,8 @@ double least_streak_snr(double length_px) {
 void extend(const Scene& scene, const FilteredFrame& frame, Source& source) {
   if (!source.streak || source.saturated) return;
   const Trail& known = source.trail();
+  if (source.snr() > faint_per_px * std::sqrt(std::max(known.length_px, 1.0))) return;
   const double known_snr = snr_along(frame, known);
-  if (known_snr > faint_per_px * std::sqrt(std::max(known.length_px, 1.0))) return;
   Trail longer = climbed(frame, known);
   const double snr = snr_along(frame, longer);
   if (longer.length_px < known.length_px + 2 * scene.sigma_px ||

@@ -55,15 +55,18 @@ void FilteredFrame::flatten(Threads& threads) {
                                     1 / (a.scatter + below * (b.scatter - a.scatter))};
       }
       std::int16_t* pixels = row(y);
-      for (int x = 0; x < columns; ++x) {
-        if (pixels[x] == 0) continue;
-        const float u = (float(x) + 0.5f) / cell_px + 0.5f;
-        const auto i = std::size_t(u);
-        const float right = u - float(i);
+      // From the middle of one cell to that of the next, all is linear.
+      for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+        const int x0 = std::max(0, int(i) * cell_px - cell_px / 2);
+        const int x1 = std::min(columns, int(i) * cell_px + cell_px / 2);
         const Level a = line[i], b = line[i + 1];
-        const float value = (float(pixels[x]) - a.mean - right * (b.mean - a.mean)) *
-                            (a.scatter + right * (b.scatter - a.scatter));
-        pixels[x] = step_of(value / float(steps), (x + y) % 2 != 0);
+        for (int x = x0; x < x1; ++x) {
+          const float right = (float(x) + 0.5f) / cell_px + 0.5f - float(i);
+          const float value = (float(pixels[x]) - a.mean - right * (b.mean - a.mean)) *
+                              (a.scatter + right * (b.scatter - a.scatter));
+          const std::int16_t step = step_of(value / float(steps), (x + y) % 2 != 0);
+          pixels[x] = pixels[x] == 0 ? std::int16_t(0) : step;
+        }
       }
     }
   });

@@ -25,7 +25,9 @@ struct FilteredFrame {
 
   /// `odd`: whether the pixel's column plus row is; it tells the sign of what rounds to 0.
   static std::int16_t step_of(float value, bool odd) {
-    const float scaled = std::clamp(value * float(steps), -float(most), float(most));
+    float scaled = value * float(steps);
+    scaled = scaled > float(most) ? float(most) : scaled;
+    scaled = scaled < -float(most) ? -float(most) : scaled;
     const int step = int(scaled + (scaled < 0 ? -0.5f : 0.5f));
     return std::int16_t(step != 0 ? step : odd ? 1 : -1);
   }

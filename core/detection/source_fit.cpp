@@ -142,7 +142,10 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     FitSettings settings;
     settings.sigma_px = scene.sigma_px;
     settings.model_error = model_error;
-    settings.background_sigma_e = background_prior * std::sqrt(double(pixels.front().variance_e2));
+    const FitPixel& one = pixels.front();
+    settings.background_sigma_e =
+        std::hypot(background_prior * std::sqrt(double(one.variance_e2)),
+                   scene.background.unevenness_dn(one.x, one.y) * scene.gain_e_per_dn);
     settings.most_steps = 20;
     source.fit = fit_trails(pixels, {trail}, {source.free}, settings);
     moved_px = move_ends(trail, source.fit.trails[0], margin_px - 2 * scene.sigma_px);
@@ -161,22 +164,26 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
   return source;
 }
 
-void widen_ends(Source& source, double sigma_px) {
-  if (!source.streak) return;
+void add_neglected_errors(Source& source, double sigma_px) {
+  constexpr double blur_px = 0.002, uneven = 0.007;
   const Trail& t = source.trail();
-  const double snr2 = source.snr() * source.snr() / std::max(t.length_px, 1.0);
-  if (!(snr2 > 0)) return;
-  const double most_px2 = t.length_px * t.length_px / 12;
-  const double end_px2 = std::min(26 / (snr2 * snr2) * std::exp(-snr2 * sigma_px), most_px2);
   const auto n = std::size_t(source.fit.parameters);
   const auto add = [&](std::size_t i, std::size_t j, double value) {
     source.fit.covariance[i * n + j] += value;
     if (i != j) source.fit.covariance[j * n + i] += value;
   };
+  add(0, 0, blur_px * blur_px);
+  add(1, 1, blur_px * blur_px);
+  const double snr2 = source.snr() * source.snr() / std::max(t.length_px, 1.0);
+  if (!source.streak || !(snr2 > 0)) return;
+  const double most_px2 = t.length_px * t.length_px / 12;
+  const double end_px2 = std::min(26 / (snr2 * snr2) * std::exp(-snr2 * sigma_px), most_px2);
+  const double uneven_px = source.free & trail_slope ? 0.0 : uneven * t.length_px / 6;
+  const double along_px2 = end_px2 / 2 + uneven_px * uneven_px;
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
-  add(0, 0, end_px2 / 2 * c * c);
-  add(0, 1, end_px2 / 2 * c * s);
-  add(1, 1, end_px2 / 2 * s * s);
+  add(0, 0, along_px2 * c * c);
+  add(0, 1, along_px2 * c * s);
+  add(1, 1, along_px2 * s * s);
   if (!(source.free & trail_length)) return;
   const double e_per_px = t.flux_e / std::max(t.length_px, 1.0);
   add(2, 2, 2 * end_px2 * e_per_px * e_per_px);
