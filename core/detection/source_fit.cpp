@@ -165,7 +165,7 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
 }
 
 void add_neglected_errors(Source& source, double sigma_px) {
-  constexpr double blur_px = 0.002, uneven = 0.007;
+  constexpr double blur_px = 0.001, uneven = 0.007;
   const Trail& t = source.trail();
   const auto n = std::size_t(source.fit.parameters);
   const auto add = [&](std::size_t i, std::size_t j, double value) {
