@@ -67,19 +67,21 @@ struct Outcome {
   double probability() const { return placed ? double(found) / placed : 0.0; }
 };
 
-/// Cramer-Rao bound of the centroid's two coordinates together: of a point and of a long line with
-/// free ends in white noise.
+/// Cramer-Rao bound of the centroid's two coordinates together: of a point, and of a long line with
+/// free ends and a free slope of brightness in white noise.
 double bound_px2(const FrameHeader& h, const Placed& p) {
   const double s = sigma_px(h), variance = noise_variance_e2(h);
   if (p.length <= 0) {
     const double snr2 = p.flux_e * p.flux_e / (4 * pi * s * s * variance);
     return 2 * 2 * s * s / snr2;
   }
-  // By the derivatives across, and by the position of each end, which is half of the middle's.
+  // By the derivatives across, by the position of each end, which is half of the middle's, and by
+  // the slope, which moves the light along the line.
   const double density2 = std::pow(p.flux_e / p.length, 2) / variance;
   const double across = 4 * s * s * s * std::sqrt(pi) / (density2 * p.length);
   const double end = 4 * pi * s * s / density2;
-  return across + end / 2;
+  const double snr2 = density2 * p.length / (2 * s * std::sqrt(pi));
+  return across + end / 2 + p.length * p.length / (12 * snr2);
 }
 
 Outcome trial(double length, double snr, int frames, unsigned seed) {
