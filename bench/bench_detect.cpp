@@ -123,15 +123,17 @@ Outcome trial(double length, double snr, int frames, unsigned seed) {
   return out;
 }
 
-/// SNR at which half are found, between trials half an SNR apart.
+/// SNR at which half are found, between trials half an SNR apart, two from `from` + 6 on; infinite
+/// if it is more than 30.
 double half_found_snr(double length, double from, int frames) {
   double before = 0.0;
-  for (double snr = from; snr < from + 6; snr += 0.5) {
+  for (double snr = from, step = 0.5; snr < 30; snr += step) {
+    step = snr < from + 6 ? 0.5 : 2.0;
     const double now = trial(length, snr, frames, 1000).probability();
-    if (now >= 0.5) return snr - 0.5 * (now - 0.5) / std::max(now - before, 1e-9);
+    if (now >= 0.5) return snr - step * (now - 0.5) / std::max(now - before, 1e-9);
     before = now;
   }
-  return from + 6;
+  return HUGE_VAL;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "bench/network_run.h"
 #include "core/base/error.h"
 #include "core/config/search_path.h"
+#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 namespace {
@@ -103,7 +104,7 @@ void add_network_options(CLI::App& command) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command.add_option("--real-time", options.real_time, "simulated seconds per second")
-      ->check(CLI::Range(0.01, 1000.0))
+      ->check(number_between(0.01, 1000.0))
       ->capture_default_str();
   const auto without = command.add_flag("--without-detection-only", options.without_detection_only,
                                         "skip the runs with detection");

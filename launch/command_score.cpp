@@ -12,6 +12,7 @@
 #include "core/score/score_text.h"
 #include "launch/commands.h"
 #include "launch/progress.h"
+#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 namespace {
@@ -75,13 +76,13 @@ void add_score_command(CLI::App& app) {
       ->add_option("--gate-px", options->settings.gate_px,
                    "greatest distance of a detection from its truth's trail")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 1000.0));
+      ->check(number_between(0.1, 1000.0));
   command
       ->add_option("--threshold", options->settings.threshold_snr,
                    "SNR at which the detector finds half; sources of a lower expected SNR that are "
                    "not found count as faint, not as missed")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(number_between(0.0, 1000.0));
   command->add_flag("--json", options->json, "print JSON");
   command->add_option("--csv", options->csv, "file: a row per truth and per false alarm");
   command->add_option("--plots", options->plots,

@@ -10,6 +10,7 @@
 #include "core/config/search_path.h"
 #include "core/sky/star_cache.h"
 #include "launch/commands.h"
+#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 namespace {
@@ -47,7 +48,9 @@ void set_widths(const SolveOptions& o, const Frame& frame, PlateSearch& search) 
   if (o.scale_low_arcsec > 0) search.narrowest_rad = width_rad(frame, o.scale_low_arcsec);
   if (o.scale_high_arcsec > 0) search.widest_rad = width_rad(frame, o.scale_high_arcsec);
   if (search.narrowest_rad > search.widest_rad)
-    throw ConfigError("--scale-low: must not exceed --scale-high");
+    throw ConfigError("--scale-low: must not exceed --scale-high, got " +
+                      std::to_string(o.scale_low_arcsec) + " and " +
+                      std::to_string(o.scale_high_arcsec));
 }
 
 void print_text(const FrameSolution& s) {
@@ -101,12 +104,12 @@ void add_solve_command(CLI::App& app) {
   command->add_flag("--blind", o->blind, "use neither the pointing nor the focal length");
   auto* field =
       command->add_option("--field", o->field_deg, "width of the frame [deg], within 10 %")
-          ->check(CLI::Range(0.1, 180.0));
+          ->check(number_between(0.1, 180.0));
   command->add_option("--scale-low", o->scale_low_arcsec, "least scale [arcsec/px]")
-      ->check(CLI::Range(1e-3, 1e5))
+      ->check(number_between(1e-3, 1e5))
       ->excludes(field);
   command->add_option("--scale-high", o->scale_high_arcsec, "greatest scale [arcsec/px]")
-      ->check(CLI::Range(1e-3, 1e5))
+      ->check(number_between(1e-3, 1e5))
       ->excludes(field);
   command->add_option("--catalogue", o->catalogue, "star catalogue: kstars, or a file")
       ->default_val("kstars");

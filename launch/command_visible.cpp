@@ -18,6 +18,7 @@
 #include "launch/progress.h"
 #include "launch/range_figure.h"
 #include "launch/run_lock.h"
+#include "nodes/runtime/program/command_line.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/world.h"
 
@@ -191,14 +192,14 @@ void add_visible_command(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("--from", o->from, "UTC (ISO 8601); default: the scenario's start");
   command->add_option("--duration", o->duration_s, "seconds; default: the scenario's")
-      ->check(CLI::Range(1e-3, 3.2e8));
+      ->check(number_between(1e-3, 3.2e8));
   command
       ->add_option(
           "--step", o->step_s,
           "seconds between the instants of the figure, the last of them the span's end; passes do "
           "not depend on it")
       ->capture_default_str()
-      ->check(CLI::Range(1e-3, 3600.0));
+      ->check(number_between(1e-3, 3600.0));
   auto* sunlit = command->add_flag("--sunlit", o->sunlit, "only passes that are partly sunlit");
   command
       ->add_flag("--dark", o->dark,
@@ -210,7 +211,7 @@ void add_visible_command(CLI::App& app) {
           "only while the Sun is below this elevation at the site [deg]; -6 without a value")
       ->expected(0, 1)
       ->default_str("-6")
-      ->check(CLI::Range(-90.0, 90.0));
+      ->check(number_between(-90.0, 90.0));
   command->add_option("--rows", o->rows, "number of passes in the table; 0: all")
       ->capture_default_str();
   auto* csv = command->add_flag("--csv", o->csv, "print CSV instead of the table");

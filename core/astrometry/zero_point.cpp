@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/astrometry/normal_equations.h"
+#include "core/base/quantile.h"
 
 namespace dmise {
 namespace {
@@ -12,16 +13,10 @@ namespace {
 constexpr double tukey = 4.685;  // 95 % efficient for normal errors
 constexpr double least_scatter_mag = 0.002;
 
-double quantile(std::vector<double> values, double q) {
-  const auto at = values.begin() + std::ptrdiff_t(q * double(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 double spread(std::span<const PhotometricStar> stars, double PhotometricStar::*value) {
   std::vector<double> values;
   for (const PhotometricStar& s : stars) values.push_back(s.*value);
-  return quantile(values, 0.95) - quantile(values, 0.05);
+  return quantile_of(values, 0.95) - quantile_of(values, 0.05);
 }
 
 }  // namespace
@@ -47,7 +42,7 @@ std::optional<ZeroPoint> fit_zero_point(std::span<const PhotometricStar> stars,
   };
   std::vector<double> sizes, r(stars.size());
   for (std::size_t i = 0; i < stars.size(); ++i) r[i] = residual(stars[i]);
-  z.zero_point_mag = quantile(r, 0.5);
+  z.zero_point_mag = quantile_of(r, 0.5);
   const std::size_t n = free.size();
   for (int pass = 0; pass < 30; ++pass) {
     sizes.clear();
@@ -55,7 +50,7 @@ std::optional<ZeroPoint> fit_zero_point(std::span<const PhotometricStar> stars,
       r[i] = residual(stars[i]);
       sizes.push_back(std::abs(r[i]));
     }
-    const double scatter = std::max(least_scatter_mag, 1.4826 * quantile(sizes, 0.5));
+    const double scatter = std::max(least_scatter_mag, 1.4826 * quantile_of(sizes, 0.5));
     std::vector<double> normal(n * n, 0.0), right(n, 0.0);
     double sum2 = 0.0;
     z.stars = 0;

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/calibration/quantile.h"
+#include "core/base/quantile.h"
 
 namespace dmise {
 namespace {

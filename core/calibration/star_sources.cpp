@@ -5,9 +5,9 @@
 #include <optional>
 #include <span>
 
+#include "core/base/quantile.h"
 #include "core/base/units.h"
 #include "core/calibration/deblend.h"
-#include "core/calibration/quantile.h"
 #include "core/calibration/source_measure.h"
 #include "core/detection/background.h"
 #include "core/detection/components.h"

@@ -107,12 +107,12 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads)
   for (int x = 0; x < columns_; ++x) across_.push_back(between(x, columns_, mesh_columns_));
   const std::size_t cells = std::size_t(mesh_columns_) * std::size_t(mesh_rows_);
   std::vector<float> level(cells), sigma(cells);
-  const auto measure = [&](std::size_t cell, bool is_sloped, std::vector<std::uint16_t>& values) {
+  const auto measure = [&](std::size_t cell, bool flatten, std::vector<std::uint16_t>& values) {
     const Area area = area_of(cell);
     values.clear();
     for (int y = area.y0; y <= area.y1; ++y) {
       const std::uint16_t* from = counts.row(y);
-      if (!is_sloped) {
+      if (!flatten) {
         values.insert(values.end(), from + area.x0, from + area.x1 + 1);
         continue;
       }
@@ -126,11 +126,11 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads)
     level[cell] = sky.level;
     sigma[cell] = sky.sigma;
   };
-  const auto measure_all = [&](bool sloped) {
+  const auto measure_all = [&](bool only_sloped) {
     threads.for_ranges(cells, std::size_t(mesh_columns_), [&](std::size_t begin, std::size_t end) {
       std::vector<std::uint16_t> values;
       for (std::size_t cell = begin; cell < end; ++cell)
-        if (!sloped || is_sloped(cell)) measure(cell, sloped, values);
+        if (!only_sloped || is_sloped(cell)) measure(cell, only_sloped, values);
     });
     level_ = median_3x3(level, mesh_columns_, mesh_rows_);
     sigma_ = median_3x3(sigma, mesh_columns_, mesh_rows_);
@@ -150,19 +150,11 @@ float Background::level_of_cell(int i, int j) const {
                 std::size_t(std::clamp(i, 0, mesh_columns_ - 1))];
 }
 
-float Background::slope_of_cell(int i, int j) const {
-  return std::hypot(0.5f * (level_of_cell(i + 1, j) - level_of_cell(i - 1, j)),
-                    0.5f * (level_of_cell(i, j + 1) - level_of_cell(i, j - 1)));
-}
-
 bool Background::is_sloped(std::size_t cell) const {
-  const float slope = slope_of_cell(int(cell) % mesh_columns_, int(cell) / mesh_columns_);
+  const int i = int(cell) % mesh_columns_, j = int(cell) / mesh_columns_;
+  const float slope = std::hypot(0.5f * (level_of_cell(i + 1, j) - level_of_cell(i - 1, j)),
+                                 0.5f * (level_of_cell(i, j + 1) - level_of_cell(i, j - 1)));
   return slope * slope > 0.5f * sigma_[cell] * sigma_[cell];
-}
-
-float Background::unevenness_dn(int x, int y) const {
-  return 0.2f * slope_of_cell(int(std::int64_t(x) * mesh_columns_ / columns_),
-                              int(std::int64_t(y) * mesh_rows_ / rows_));
 }
 
 std::vector<Background::Area> Background::bent_cells(double share) const {

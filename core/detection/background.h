@@ -20,9 +20,6 @@ class Background {
   /// The same along row `y`: `columns` values.
   void level_row(int y, float* level_dn) const { row(level_, y, level_dn); }
   void sigma_row(int y, float* sigma_dn) const { row(sigma_, y, sigma_dn); }
-  /// By how much the sky around a pixel may differ from the level, where it has structure finer
-  /// than a cell: a fifth of what it changes over one, by experience [DN].
-  float unevenness_dn(int x, int y) const;
   /// A rectangle of pixels, the first and the last of both coordinates.
   struct Area {
     int x0, y0, x1, y1;
@@ -44,7 +41,6 @@ class Background {
   /// Whether the level changes over a cell by so much that its noise is measured too high by 2 %.
   bool is_sloped(std::size_t cell) const;
   Area area_of(std::size_t cell) const;
-  float slope_of_cell(int i, int j) const;  // over a cell
   float level_of_cell(int i, int j) const;
   float at(const std::vector<float>& mesh, int x, const Between& down) const;
   void row(const std::vector<float>& mesh, int y, float* out) const;

@@ -53,18 +53,4 @@ void join_beamlets(std::int16_t* a, std::int16_t* b, std::size_t shift, std::siz
   most[1] = whole1 > rest1 ? whole1 : rest1;
 }
 
-void largest_joined(const std::int16_t* a, const std::int16_t* b, std::size_t shift,
-                    std::size_t width, std::int16_t most[2]) {
-  I16 most0 = I16{} + std::int16_t(-32768), most1 = most0;
-  for (std::size_t x = 0; x + shift + 1 + step <= width; x += step) {
-    const I16 first = load<I16>(a + x);
-    const I16 sum0 = first + load<I16>(b + x + shift);
-    const I16 sum1 = first + load<I16>(b + x + shift + 1);
-    most0 = sum0 > most0 ? sum0 : most0;
-    most1 = sum1 > most1 ? sum1 : most1;
-  }
-  most[0] = largest(most0);
-  most[1] = largest(most1);
-}
-
 }  // namespace dmise::DMISE_SIMD

@@ -10,9 +10,6 @@ namespace dmise {
      zero beyond the end; `most` gets the largest of each. shift >= 0. */                      \
   void join_beamlets(std::int16_t* a, std::int16_t* b, std::size_t shift, std::size_t width,   \
                      std::int16_t most[2]);                                                    \
-  /* The largest of a[x] + b[x + shift] and of a[x] + b[x + shift + 1]. */                     \
-  void largest_joined(const std::int16_t* a, const std::int16_t* b, std::size_t shift,         \
-                      std::size_t width, std::int16_t most[2]);                                \
   }
 DMISE_BEAMLET_KERNELS(sse2)
 DMISE_BEAMLET_KERNELS(avx2)

@@ -125,8 +125,7 @@ class Block {
       if (length < shortest) continue;
       for (int side = 0; side < 2; ++side)
         if (most[side] >= level.least[std::size_t(2 * a + side)])
-          keep(first, 2 * a + side, side ? lower : upper,
-               levels_[std::size_t(std::bit_width(unsigned(length)) - 2)]);
+          keep(first, 2 * a + side, side ? lower : upper, level);
     }
     std::copy(joined.begin(), joined.end(), rows_.begin() + first);
   }

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double faint_per_px = 4.0;   // SNR over the root of the length; brighter ends are seen
 constexpr double least_share = 0.4;    // of a trail that is not hidden
+constexpr double chain_px = 40.0;      // longest row of stars, without their trails
 constexpr double candidate_snr = 4.7;  // of a beamlet, which may be a part of a streak
 
 Trail trail_of(const Beamlet& b) {
@@ -45,12 +46,13 @@ double crowding(const LineSum& line) {
 void hide(FilteredFrame& frame, const Trail& t, double margin_px) {
   const double c = std::abs(std::cos(t.angle_rad)), s = std::abs(std::sin(t.angle_rad));
   const double bend = std::abs(t.sagitta_px) + margin_px + 1;
-  const int x0 = int(t.x_px - t.length_px / 2 * c - bend),
-            x1 = int(t.x_px + t.length_px / 2 * c + bend);
-  const int y0 = int(t.y_px - t.length_px / 2 * s - bend),
-            y1 = int(t.y_px + t.length_px / 2 * s + bend);
-  for (int y = std::max(y0, 0); y <= std::min(y1, frame.rows - 1); ++y)
-    for (int x = std::max(x0, 0); x <= std::min(x1, frame.columns - 1); ++x)
+  const auto within = [](double place, int pixels) {
+    return int(std::clamp(place, 0.0, double(pixels - 1)));
+  };
+  const double reach_x = t.length_px / 2 * c + bend, reach_y = t.length_px / 2 * s + bend;
+  const int x1 = within(t.x_px + reach_x, frame.columns), y1 = within(t.y_px + reach_y, frame.rows);
+  for (int y = within(t.y_px - reach_y, frame.rows); y <= y1; ++y)
+    for (int x = within(t.x_px - reach_x, frame.columns); x <= x1; ++x)
       if (lies_on(t, x, y, margin_px)) frame.hide(y, x, x);
 }
 
@@ -86,9 +88,9 @@ bool is_streak(const Scene& scene, const Source& source, const DetectorSettings&
       source.snr() < settings.least_snr)
     return false;
   const Trail star = scene.star_trail(t.x_px, t.y_px);
-  if (t.length_px < 40 + 3 * star.length_px && !beats_stars(scene, source, settings)) return false;
-  return !moves_like_star(source, scene.star_trail(t.x_px, t.y_px),
-                          settings.least_difference_px + 1);
+  if (t.length_px < chain_px + 3 * star.length_px && !beats_stars(scene, source, settings))
+    return false;
+  return !moves_like_star(source, star, settings.least_difference_px + 1);
 }
 
 }  // namespace
@@ -124,12 +126,11 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
   for (const Beamlet& beamlet : beamlets) {
     Trail trail = trail_of(beamlet);
     if (snr_along(frame, trail) < 0.8 * candidate_snr) continue;  // hidden meanwhile
-    const Trail star = scene.star_trail(trail.x_px, trail.y_px);
-    const double as_star = star_snr_on(frame, trail, star);
-    if (trail.length_px < 40 && as_star > beamlet.snr * 1.2) continue;
     if (std::any_of(tried.begin(), tried.end(),
                     [&](const Trail& t) { return is_part_of(trail, t, margin_px); }))
       continue;
+    const Trail star = scene.star_trail(trail.x_px, trail.y_px);
+    if (trail.length_px < chain_px && star_snr_on(frame, trail, star) > 1.2 * beamlet.snr) continue;
     // Where the light along parallel lines scatters more than noise, so must a streak.
     const Beside around = beside(frame, trail);
     if (beamlet.snr < around.middle + candidate_snr * around.scatter) continue;

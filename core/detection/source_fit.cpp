@@ -142,10 +142,7 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     FitSettings settings;
     settings.sigma_px = scene.sigma_px;
     settings.model_error = model_error;
-    const FitPixel& one = pixels.front();
-    settings.background_sigma_e =
-        std::hypot(background_prior * std::sqrt(double(one.variance_e2)),
-                   scene.background.unevenness_dn(one.x, one.y) * scene.gain_e_per_dn);
+    settings.background_sigma_e = background_prior * std::sqrt(double(pixels.front().variance_e2));
     settings.most_steps = 20;
     source.fit = fit_trails(pixels, {trail}, {source.free}, settings);
     moved_px = move_ends(trail, source.fit.trails[0], margin_px - 2 * scene.sigma_px);
@@ -165,15 +162,15 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
 }
 
 void add_neglected_errors(Source& source, double sigma_px) {
-  constexpr double blur_px = 0.001, uneven = 0.007;
+  constexpr double model_px = 0.001, uneven = 0.007;
   const Trail& t = source.trail();
   const auto n = std::size_t(source.fit.parameters);
   const auto add = [&](std::size_t i, std::size_t j, double value) {
     source.fit.covariance[i * n + j] += value;
     if (i != j) source.fit.covariance[j * n + i] += value;
   };
-  add(0, 0, blur_px * blur_px);
-  add(1, 1, blur_px * blur_px);
+  add(0, 0, model_px * model_px);
+  add(1, 1, model_px * model_px);
   const double snr2 = source.snr() * source.snr() / std::max(t.length_px, 1.0);
   if (!source.streak || !(snr2 > 0)) return;
   const double most_px2 = t.length_px * t.length_px / 12;

@@ -11,6 +11,13 @@ namespace {
 using testing::EndsWith;
 using testing::HasSubstr;
 
+TEST(NumberBetween, TakesItsRangeAndNoNan) {
+  const CLI::Validator check = number_between(0.5, 2e3);
+  for (std::string good : {"0.5", "1", "2e3", "2000.0"}) EXPECT_EQ(check(good), "") << good;
+  for (std::string bad : {"nan", "NaN", "-nan", "inf", "-inf", "0.49", "2001", "x", ""})
+    EXPECT_NE(check(bad), "") << bad;
+}
+
 TEST(Addresses, OfSocketsAreTaken) {
   for (const char* good : {"tcp://127.0.0.1:7998", "tcp://127.0.0.1:0", "tcp://*:5",
                            "tcp://[::1]:5", "tcp://time-master:7660", "tcp://10.0.0.1:*",

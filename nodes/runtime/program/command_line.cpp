@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <vector>
 
@@ -72,6 +73,17 @@ std::string address_error(const std::string& address) {
 
 CLI::Validator transport_address() {
   return {[](std::string& address) { return address_error(address); }, "", "address"};
+}
+
+CLI::Validator number_between(double low, double high) {
+  const CLI::Range range(low, high);
+  return {[range](std::string& text) {
+            double value = 0.0;
+            if (CLI::detail::lexical_cast(text, value) && std::isnan(value))
+              return "Value " + text + " is no number";
+            return range(text);
+          },
+          range.get_description(), "number"};
 }
 
 std::string unknown_argument(const CLI::App& app) {

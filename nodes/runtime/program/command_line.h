@@ -11,6 +11,9 @@ std::string address_error(const std::string& address);
 /// Restricts an option to such addresses.
 CLI::Validator transport_address();
 
+/// Restricts an option to numbers from `low` to `high`; unlike CLI::Range it refuses NaN.
+CLI::Validator number_between(double low, double high);
+
 /// Describes the first unknown argument: "unknown option --thread, did you mean --threads?". Empty
 /// if there is none.
 std::string unknown_argument(const CLI::App& app);
