@@ -15,6 +15,7 @@ void print_figure(const Figure& f, bool json) {
                   f.value / f.anchor_value);
     if (f.target > 0) std::printf("  %s %g", met ? "reaches" : "misses", f.target);
     std::printf("\n");
+    std::fflush(stdout);
     return;
   }
   JsonWriter writer;

@@ -11,11 +11,11 @@
 
 namespace dmise::simulated {
 
-/// A header of a camera with gnomonic projection at declination `dec_rad`, columns to the north
-/// (long axis north-south), whose star field turns with the Earth for `exposure_s` (fixed mount),
-/// or not.
+/// A header of a camera with gnomonic projection at declination `dec_rad` and right ascension
+/// `ra_rad`, columns to the north (long axis north-south), whose star field turns with the Earth
+/// for `exposure_s` (fixed mount), or not.
 inline FrameHeader camera_header(int columns, int rows, double focal_length_px, double dec_rad,
-                                 double exposure_s, bool fixed_mount) {
+                                 double exposure_s, bool fixed_mount, double ra_rad = 0.0) {
   FrameHeader h;
   h.sensor = "test";
   h.frame = 1;
@@ -35,9 +35,10 @@ inline FrameHeader camera_header(int columns, int rows, double focal_length_px, 
   h.psf_fwhm_px = 1.7;
   h.zero_point_mag = 17.0;
   h.focal_length_px = focal_length_px;
-  // Boresight on the meridian at right ascension 0 in the middle of the exposure.
   const double c = std::cos(dec_rad), s = std::sin(dec_rad);
-  const Rotation<CameraFrame, Gcrs> middle{{{{-s, 0, c}, {0, -1, 0}, {c, 0, s}}}};
+  const double ca = std::cos(ra_rad), sa = std::sin(ra_rad);
+  const Rotation<CameraFrame, Gcrs> middle{
+      {{{-s * ca, -s * sa, c}, {sa, -ca, 0}, {c * ca, c * sa, s}}}};
   const auto at = [&](double seconds) {
     const double turn_rad = fixed_mount ? 7.292115e-5 * seconds : 0.0;
     Rotation<Gcrs, Gcrs> earth;
@@ -50,6 +51,7 @@ inline FrameHeader camera_header(int columns, int rows, double focal_length_px, 
   const double scale_deg = std::atan(1.0 / focal_length_px) / deg;
   h.wcs.crpix_x = (columns - 1) / 2.0;
   h.wcs.crpix_y = (rows - 1) / 2.0;
+  h.wcs.ra_rad = ra_rad;
   h.wcs.dec_rad = dec_rad;
   h.wcs.cd_deg = {0.0, -scale_deg, scale_deg, 0.0};
   return h;
@@ -63,6 +65,7 @@ class SimulatedFrame {
       : header_(header), electrons_(columns, rows, float(sky_e)), random_(seed) {}
 
   FrameHeader& header() { return header_; }
+  const ExpectedElectronImage& electrons() const { return electrons_; }
   std::mt19937_64& random() { return random_; }
   double uniform(double from, double to) {
     return from + (to - from) * double(random_() >> 11) * 0x1p-53;

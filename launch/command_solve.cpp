@@ -1,35 +1,23 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
-#include "core/base/cache_directory.h"
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/calibration/solve_frame.h"
-#include "core/config/search_path.h"
-#include "core/sky/star_cache.h"
 #include "launch/commands.h"
+#include "launch/star_catalogue_option.h"
 #include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 namespace {
 
 struct SolveOptions {
-  std::string frame, catalogue = "kstars", out;
+  std::string frame, catalogue, out;
   bool blind = false, json = false;
   double scale_low_arcsec = 0.0, scale_high_arcsec = 0.0, field_deg = 0.0;
   int threads = 1;
 };
-
-StarMap load_catalogue(const std::string& name) {
-  const std::string path = name == "kstars" ? find_catalogue("stars.dat") : name;
-  if (path.empty()) throw ConfigError("stars.dat is not installed; ./dmise setup fetches it");
-  const std::string cache = cache_directory();
-  std::error_code ignored;  // without the directory nothing is kept, that is all
-  if (!cache.empty()) std::filesystem::create_directories(cache, ignored);
-  return load_star_map(path, cache);
-}
 
 /// Width of a frame on the sky at a scale in its middle.
 double width_rad(const Frame& frame, double arcsec_per_px) {
@@ -79,11 +67,11 @@ void solve(const SolveOptions& o) {
   const Frame frame = read_frame(o.frame);
   SolveSettings settings{.blind = o.blind};
   set_widths(o, frame, settings.search);
-  const StarMap stars = load_catalogue(o.catalogue);
+  const auto stars = load_star_catalogue(o.catalogue);
   Threads threads(o.threads);
   FrameSolution solution;
   try {
-    solution = solve_frame(frame, stars, settings, threads);
+    solution = solve_frame(frame, *stars, settings, threads);
   } catch (const Error& e) {
     throw Error(o.frame + ": " + e.what());
   }
@@ -111,8 +99,7 @@ void add_solve_command(CLI::App& app) {
   command->add_option("--scale-high", o->scale_high_arcsec, "greatest scale [arcsec/px]")
       ->check(number_between(1e-3, 1e5))
       ->excludes(field);
-  command->add_option("--catalogue", o->catalogue, "star catalogue: kstars, or a file")
-      ->default_val("kstars");
+  add_star_catalogue_option(*command, o->catalogue, false);
   command->add_option("--out", o->out, "FITS file of the frame with the solved header");
   command->add_flag("--json", o->json, "print one line of JSON");
   command->add_option("--threads", o->threads, "number of threads")

@@ -72,7 +72,7 @@ class Block {
     for (int a = 0; a < n; ++a) {
       const double slope = double(a) / (n - 1);
       const double noise =
-          FilteredFrame::steps * std::sqrt(n * frame_.sum_variance(std::hypot(1.0, slope)));
+          FilteredFrame::steps * std::sqrt(n * frame_.sum_variance(std::hypot(1.0, slope), n));
       level.noise.push_back(float(noise));
       level.least.push_back(std::int16_t(std::min(least_snr_ * noise, 32767.0)));
     }

@@ -5,11 +5,15 @@
 #include <map>
 
 #include "core/base/units.h"
+#include "core/detection/faint_streaks.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_hypothesis.h"
+#include "core/detection/template_snr.h"
 
 namespace dmise {
 namespace {
+
+constexpr double fit_keeps = 0.8;  // of a faint source's SNR, when the sky is fitted too
 
 struct Light {
   std::vector<FitPixel> usable;   // pixels to fit
@@ -31,7 +35,8 @@ Light light_around(const Scene& scene, const Component& component) {
     for (const auto& [first, last] : spans)
       for (int x = std::max(first, done + 1); x <= last; ++x) {
         done = x;
-        (scene.is_usable(x, y) ? out.usable : out.clipped).push_back(scene.pixel(x, y));
+        if (!scene.is_hidden(x, y))
+          (scene.is_usable(x, y) ? out.usable : out.clipped).push_back(scene.pixel(x, y));
       }
   }
   return out;
@@ -99,73 +104,153 @@ bool explains_saturation(const Scene& scene, const Source& source,
   });
 }
 
-}  // namespace
+/// A component with the pixels around it, and the fits that compare what it may be.
+class Candidate {
+ public:
+  Candidate(const Scene& scene, const Component& component, const DetectorSettings& settings)
+      : scene_(scene), settings_(settings), around_(light_around(scene, component)) {
+    std::vector<FitPixel> all = around_.usable;
+    all.insert(all.end(), around_.clipped.begin(), around_.clipped.end());
+    light_ = moments(all, scene.sigma_px);
+    model_error_ = is_saturated() ? wings_error(around_.clipped.size(), scene.sigma_px, settings)
+                                  : settings.model_error;
+  }
 
-std::optional<Source> judge_compact(const Scene& scene, const Component& component,
-                                    const DetectorSettings& settings) {
-  const Light around = light_around(scene, component);
-  const std::vector<FitPixel>& pixels = around.usable;
-  const std::vector<FitPixel>& clipped = around.clipped;
-  if (pixels.size() < 8) return std::nullopt;
-  const bool saturated = !clipped.empty();
-  std::vector<FitPixel> all = pixels;
-  all.insert(all.end(), clipped.begin(), clipped.end());
-  const Trail light = moments(all, scene.sigma_px);
-  const double model_error =
-      saturated ? wings_error(clipped.size(), scene.sigma_px, settings) : settings.model_error;
+  /// Whether there are pixels enough to compare anything.
+  bool has_light() const { return around_.usable.size() >= 8; }
+  bool is_saturated() const { return !around_.clipped.empty(); }
+  /// Uniform trail of the same light and spread.
+  const Trail& light() const { return light_; }
+
+  TrailFit fit(Trail start, unsigned free, int most_steps,
+               std::optional<double> good_enough_sigmas = std::nullopt) const {
+    FitSettings fit_settings;
+    fit_settings.sigma_px = scene_.sigma_px;
+    fit_settings.model_error = model_error_;
+    fit_settings.settled_chi2 = 0.05;  // small compared to every margin
+    fit_settings.most_steps = most_steps;
+    fit_settings.good_enough_sigmas = good_enough_sigmas;
+    return fit_trails(around_.usable, {std::move(start)}, {free}, fit_settings);
+  }
+  TrailFit as_point() const {
+    Trail point = light_;  // not from a fitted star trail, which may lie anywhere along it
+    point.length_px = 0.0;
+    return fit(point, trail_place, 8);
+  }
+  TrailFit as_line() const { return fit(light_, trail_line, 15); }
+  double deviance_as_two(const Trail& star) const {
+    FitSettings fit_settings;
+    fit_settings.sigma_px = scene_.sigma_px;
+    fit_settings.model_error = model_error_;
+    fit_settings.settled_chi2 = 0.05;
+    fit_settings.most_steps = 15;
+    return deviance_of_stars(around_.usable, light_, star, 2, fit_settings);
+  }
+
+  /// The final fit; empty if it fails or does not explain what is saturated.
+  std::optional<Source> source(const Trail& start, bool streak) const {
+    auto source = is_saturated() ? from_wings(scene_, start, streak, around_.clipped, model_error_)
+                                 : fit_source(scene_, start, streak, 0.0);
+    if (!source || (is_saturated() && !explains_saturation(scene_, *source, around_.clipped)))
+      return std::nullopt;
+    return source;
+  }
+  /// The same, empty also if it is too faint.
+  std::optional<Source> bright_source(const Trail& start, bool streak) const {
+    auto bright = source(start, streak);
+    if (bright && bright->snr() < settings_.least_snr) bright.reset();
+    return bright;
+  }
+
+  /// The same, empty also if it does not stand out from the noise by `least_snr`.
+  std::optional<Source> significant_source(const Trail& start, double least_snr) const {
+    auto significant = source(start, start.length_px > 0.0);
+    if (!significant) return significant;
+    const Trail& t = significant->trail();
+    // A star that is brighter than expected, by scintillation or by nature.
+    const double within_px = 1.2 * scene_.sigma_px + 0.5 * t.length_px;
+    if (t.length_px < 6 * scene_.sigma_px &&
+        scene_.known->may_be_at({t.x_px, t.y_px}, within_px, t.flux_e))
+      significant.reset();
+    else if (!is_saturated() &&
+             (template_snr(scene_, t) < least_snr || significant->snr() < fit_keeps * least_snr))
+      significant.reset();
+    return significant;
+  }
+
+  bool is_line(const TrailFit& as_line) const {
+    return as_line.good(4.0) && plausible(scene_, as_line.trails[0]) &&
+           as_line.trails[0].length_px >= 1.0;
+  }
+
+ private:
+  const Scene& scene_;
+  const DetectorSettings& settings_;
+  Light around_;
+  Trail light_;
+  double model_error_ = 0.0;
+};
+
+/// The judgement where every star is known: a point or a line, whatever stars look like.
+std::optional<Source> judge_without_stars(const Candidate& candidate,
+                                          const DetectorSettings& settings) {
+  const TrailFit as_point = candidate.as_point(), as_line = candidate.as_line();
+  if (as_point.good(5.0) && as_point.deviance < as_line.deviance + settings.line_margin)
+    return candidate.significant_source(as_point.trails[0], settings.least_snr);
+  if (!candidate.is_line(as_line)) return std::nullopt;
+  const Trail& line = as_line.trails[0];
+  return candidate.significant_source(line, least_streak_snr(line.length_px));
+}
+
+/// The judgement by the shape of stars.
+std::optional<Source> judge_among_stars(const Scene& scene, const Candidate& candidate,
+                                        const DetectorSettings& settings) {
+  const Trail& light = candidate.light();
   Trail star = scene.star_trail(light.x_px, light.y_px);
   star.flux_e = light.flux_e;
-  FitSettings fit_settings;
-  fit_settings.sigma_px = scene.sigma_px;
-  fit_settings.model_error = model_error;
-  fit_settings.settled_chi2 = 0.05;  // small compared to every margin
-  fit_settings.most_steps = 8;
   constexpr double surely_star_sigmas = 0.5;
-  fit_settings.good_enough_sigmas = surely_star_sigmas;
-  const TrailFit as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings);
+  const TrailFit as_star = candidate.fit(star, trail_place, 8, surely_star_sigmas);
   if (as_star.good(surely_star_sigmas)) return std::nullopt;
-  fit_settings.good_enough_sigmas = std::nullopt;
   const bool stars_trail = star.length_px >= settings.least_difference_px;
   TrailFit as_point;
-  if (stars_trail) {
-    Trail point = light;  // not from the fitted star trail, which may lie anywhere along it
-    point.length_px = 0.0;
-    as_point = fit_trails(pixels, {point}, {trail_place}, fit_settings);
-  }
+  if (stars_trail) as_point = candidate.as_point();
   const bool may_be_point =
       stars_trail && as_point.deviance < as_star.deviance - settings.blend_margin;
   if (as_star.good(3.5) && !may_be_point) return std::nullopt;
 
-  const auto believable = [&](const std::optional<Source>& source) {
-    return source && source->snr() >= settings.least_snr &&
-           (!saturated || explains_saturation(scene, *source, clipped));
-  };
-  const auto fitted = [&](const Trail& start, bool streak) {
-    return saturated ? from_wings(scene, start, streak, clipped, model_error)
-                     : fit_source(scene, start, streak, 0.0);
-  };
-  fit_settings.most_steps = 15;
-  const TrailFit as_line = fit_trails(pixels, {light}, {trail_line}, fit_settings);
+  const TrailFit as_line = candidate.as_line();
   if (may_be_point && as_point.good(5.0) &&
       as_point.deviance < as_line.deviance + settings.blend_margin) {
-    auto source = fitted(as_point.trails[0], false);
+    auto source = candidate.bright_source(as_point.trails[0], false);
     // A star cut by the frame's edge looks like a point.
-    if (believable(source) && !source->at_edge && point_beats_star(scene, *source, settings))
-      return source;
+    if (source && !source->at_edge && point_beats_star(scene, *source, settings)) return source;
     return std::nullopt;
   }
-  if (!as_line.good(4.0) || as_line.deviance > as_star.deviance - 2 * settings.blend_margin ||
-      !plausible(scene, as_line.trails[0]) || as_line.trails[0].length_px < 1.0)
+  if (!candidate.is_line(as_line) ||
+      as_line.deviance > as_star.deviance - 2 * settings.blend_margin ||
+      as_line.deviance > candidate.deviance_as_two(star) - settings.blend_margin)
     return std::nullopt;
-  const double as_two = deviance_of_stars(pixels, light, star, 2, fit_settings);
-  if (as_line.deviance > as_two - settings.blend_margin) return std::nullopt;
-  auto source = fitted(as_line.trails[0], true);
-  if (!believable(source)) return std::nullopt;
+  auto source = candidate.bright_source(as_line.trails[0], true);
+  if (!source) return std::nullopt;
   const double sigma_length_px = std::sqrt(source->fit.cov(3, 3));
   const double tolerance_px = std::max(settings.least_difference_px, 4 * sigma_length_px);
-  if (moves_like_star(*source, star, tolerance_px) || !beats_stars(scene, *source, settings))
+  if (moves_like_star(scene, *source, star, tolerance_px) || !beats_stars(scene, *source, settings))
     return std::nullopt;
   return source;
+}
+
+}  // namespace
+
+CompactJudgement judge_compact(const Scene& scene, const Component& component,
+                               const DetectorSettings& settings) {
+  const Candidate candidate(scene, component, settings);
+  if (!candidate.has_light()) return {.star_like = true};
+  const Trail& light = candidate.light();
+  if (scene.would_be_known(light.x_px, light.y_px, light.flux_e))
+    return {.source = judge_without_stars(candidate, settings)};
+  auto source = judge_among_stars(scene, candidate, settings);
+  const bool star_like = !source;
+  return {std::move(source), star_like};
 }
 
 }  // namespace dmise

@@ -7,10 +7,16 @@
 
 namespace dmise {
 
-/// Classifies a component no longer than a few PSFs: a star of this frame, blended stars, a point
-/// among trailed stars, or a short streak. Empty for stars and for sources that cannot be
-/// distinguished from them.
-std::optional<Source> judge_compact(const Scene& scene, const Component& component,
-                                    const DetectorSettings& settings);
+/// What a component is: a source, or a star of this frame, or several, or what cannot be
+/// distinguished from them; or neither.
+struct CompactJudgement {
+  std::optional<Source> source;
+  bool star_like = false;
+};
+
+/// Judges a component no longer than a few PSFs: a star of this frame, blended stars, a point among
+/// trailed stars, or a short streak. Neither where stars are known and no source is fitted.
+CompactJudgement judge_compact(const Scene& scene, const Component& component,
+                               const DetectorSettings& settings);
 
 }  // namespace dmise

@@ -10,6 +10,7 @@
 #include "core/detection/components.h"
 #include "core/detection/describe.h"
 #include "core/detection/faint_streaks.h"
+#include "core/detection/hide_stars.h"
 #include "core/detection/line_profile.h"
 #include "core/detection/long_streak.h"
 #include "core/detection/scene.h"
@@ -72,34 +73,86 @@ void hide(FilteredFrame& frame, const Component& component, int reach_px) {
 struct Judged {
   std::vector<Source> sources;
   std::uint32_t star_like = 0;  // components classified as stars
+  // How far each component's light reaches that is not to be searched again [px]; empty where it
+  // is, because it is neither a star nor a source.
+  std::vector<std::optional<int>> reach_px;
 };
+
+/// Whether a component is no more than hidden stars and their wings: what rises above `seed_snr`
+/// beside them touches them.
+bool is_of_hidden_stars(const FilteredFrame& frame, const Component& c, double seed_snr) {
+  const auto touches_hidden = [&](int x, int y) {
+    for (int py = std::max(0, y - 1); py <= std::min(frame.rows - 1, y + 1); ++py)
+      for (int px = std::max(0, x - 1); px <= std::min(frame.columns - 1, x + 1); ++px)
+        if (frame.row(py)[px] == 0) return true;
+    return false;
+  };
+  const int seed = int(seed_snr * FilteredFrame::steps);
+  for (const Run& run : c.runs)
+    for (int x = run.first_x; x <= run.last_x; ++x)
+      if (frame.row(run.y)[x] >= seed && !touches_hidden(x, run.y)) return false;
+  return true;
+}
 
 /// Compact components are classified independently, in parallel; long ones by falling size, so that
 /// a streak's largest piece finds the whole of it and the others are recognised as pieces.
-Judged judge(const Scene& scene, const std::vector<Component>& components,
-             const DetectorSettings& settings, Threads& threads) {
+Judged judge(const Scene& scene, const FilteredFrame& filtered,
+             const std::vector<Component>& components, const DetectorSettings& settings,
+             Threads& threads) {
+  Judged out;
+  out.reach_px.resize(components.size(), int(std::ceil(2 * scene.sigma_px)));
+  // Where the sky is not calm, what is no source is likely no part of one.
+  const auto is_calm = [&](const Component& c) {
+    return scene.known && filtered.cell_at(c.peak_x, c.peak_y).scatter < 1.2f;
+  };
   std::vector<const Component*> longs, compacts;
-  for (const Component& c : components) (is_long(scene, c) ? longs : compacts).push_back(&c);
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    const Component& c = components[i];
+    const bool lengthy = is_long(scene, c);
+    if (!lengthy && scene.known && is_of_hidden_stars(filtered, c, settings.seed_snr)) {
+      ++out.star_like;
+      out.reach_px[i] = 0;  // their wings are hidden
+    } else {
+      (lengthy ? longs : compacts).push_back(&c);
+    }
+  }
   std::stable_sort(longs.begin(), longs.end(),
                    [](const Component* a, const Component* b) { return a->pixels > b->pixels; });
-  std::vector<std::optional<Source>> found(compacts.size());
+  std::vector<CompactJudgement> found(compacts.size());
   threads.for_ranges(compacts.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       found[i] = judge_compact(scene, *compacts[i], settings);
   });
-  Judged out;
   for (const Component* component : longs) {
     const std::size_t before = out.sources.size();
     find_long_streaks(scene, *component, settings, out.sources);
-    out.star_like += out.sources.size() == before;
+    if (out.sources.size() > before) continue;
+    ++out.star_like;
+    if (is_calm(*component)) out.reach_px[std::size_t(component - components.data())].reset();
   }
-  for (auto& source : found) {
-    if (source)
-      out.sources.push_back(std::move(*source));
-    else
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].source)
+      out.sources.push_back(std::move(*found[i].source));
+    else if (found[i].star_like)
       ++out.star_like;
+    else if (is_calm(*compacts[i]))
+      out.reach_px[std::size_t(compacts[i] - components.data())].reset();
   }
   return out;
+}
+
+/// Whether an end of a streak is so near the frame's edge that it may be beyond it.
+bool may_leave(const CountImage& counts, const Source& source) {
+  const Trail& t = source.trail();
+  if (!source.streak) return false;
+  const double snr2_per_px = source.snr() * source.snr() / std::max(t.length_px, 1.0);
+  const double error_px = std::min(2 * end_error_px(snr2_per_px), t.length_px / 4);
+  for (const double half : {-t.length_px / 2, t.length_px / 2}) {
+    const double x = t.x_px + half * std::cos(t.angle_rad);
+    const double y = t.y_px + half * std::sin(t.angle_rad);
+    if (std::min({x, y, counts.columns - 1 - x, counts.rows - 1 - y}) < error_px) return true;
+  }
+  return false;
 }
 
 bool before(const Source& a, const Source& b) {
@@ -127,6 +180,8 @@ std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
 /// noise, so it is weighted higher.
 bool is_row_of_stars(const Scene& scene, const Source& source, const DetectorSettings& settings) {
   if (!source.streak) return false;
+  const bool is_short = source.trail().length_px < 40;  // longer ones may be structures of the sky
+  if (is_short && scene.row_would_be_known(source.trail())) return false;
   const double snr_per_px = source.snr() / std::sqrt(std::max(source.trail().length_px, 1.0));
   if (source.snr() > settings.even_snr && snr_per_px > settings.even_snr_per_px) return false;
   const double rise = rise_above_neighbours(scene, source.trail());
@@ -178,29 +233,37 @@ FrameReport make_report(const CountImage& counts, const FrameHeader& header,
 }  // namespace
 
 DetectionResult detect(const CountImage& counts, const FrameHeader& header,
-                       const DetectorSettings& settings, Threads& threads) {
+                       const DetectorSettings& settings, Threads& threads,
+                       const CatalogueSky* sky) {
   const Background background(counts, settings.background_cell_px, threads);
   const StarMotion stars(header, counts.columns, counts.rows);
-  const Scene scene{counts,
-                    background,
-                    stars,
-                    header.gain_e_per_dn,
-                    lowest_clipped_dn(header),
-                    effective_sigma_px(header.psf_fwhm_px),
-                    header.detector && header.detector->blooming};
+  Scene scene{counts,
+              background,
+              stars,
+              header.gain_e_per_dn,
+              lowest_clipped_dn(header),
+              effective_sigma_px(header.psf_fwhm_px),
+              header.detector && header.detector->blooming};
   FilteredFrame filtered(counts.columns, counts.rows, scene.sigma_px);
   const auto components = find_components(counts, background, scene.sigma_px, settings.connect_snr,
                                           settings.seed_snr, threads, &filtered);
-  Judged judged = judge(scene, components, settings, threads);
+  std::optional<KnownStars> known;
+  if (sky) known = hide_stars(scene, filtered, *sky, header);
+  if (known) {
+    filtered.flatten(threads, &known->lit());
+    scene.flat = &filtered;
+    scene.known = &*known;
+  }
+  Judged judged = judge(scene, filtered, components, settings, threads);
   for (Source& source : judged.sources) extend(scene, filtered, source);
-  const int reach_px = int(std::ceil(2 * scene.sigma_px));
-  for (const Component& component : components) hide(filtered, component, reach_px);
-  for (const auto& area : background.bent_cells(settings.most_bend_in_noise))
-    for (int y = area.y0; y <= area.y1; ++y) filtered.hide(y, area.x0, area.x1);
-  filtered.flatten(threads);
   judged.star_like += std::uint32_t(std::erase_if(judged.sources, [&](const Source& source) {
     return is_row_of_stars(scene, source, settings);
   }));
+  for (std::size_t i = 0; i < components.size(); ++i)
+    if (judged.reach_px[i]) hide(filtered, components[i], *judged.reach_px[i]);
+  for (const auto& area : background.bent_cells(settings.most_bend_in_noise))
+    for (int y = area.y0; y <= area.y1; ++y) filtered.hide(y, area.x0, area.x1);
+  if (!known) filtered.flatten(threads);
   for (Source& source : find_faint_streaks(scene, filtered, settings, threads))
     judged.sources.push_back(std::move(source));
   DetectionResult result;
@@ -208,6 +271,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   result.report.star_like = judged.star_like;
   for (Source& source : distinct(std::move(judged.sources), scene.sigma_px)) {
     if (!wcs_sees_sky(header.wcs, {source.trail().x_px, source.trail().y_px})) continue;
+    source.at_edge |= may_leave(counts, source);
     add_neglected_errors(source, scene.sigma_px);
     Detection d = describe(source, header);
     d.index = std::uint32_t(result.detections.size());

@@ -3,6 +3,7 @@
 
 #include "core/base/image.h"
 #include "core/base/parallel.h"
+#include "core/detection/catalogue_sky.h"
 #include "core/products/detection.h"
 #include "core/products/frame_header.h"
 
@@ -19,6 +20,7 @@ struct DetectorSettings {
   // Minimum SNR at which a streak's evenness is measurable: in total, and per px.
   double even_snr = 25.0, even_snr_per_px = 5.0;
   double blend_margin = 16.0;  // deviance by which a short streak must beat two blended stars
+  double line_margin = 8.0;    // likewise for a short streak against a point that is no star
   double chain_margin = 6.0;   // likewise for a row of two to four stars, corrected for chance
   double model_error = 0.03;   // relative error of the PSF in comparisons of shape
   // The same for the wings of a saturated source: per square of the sigma at which they begin, with
@@ -34,10 +36,14 @@ struct DetectionResult {
   std::vector<Detection> detections;  // not star-like, by falling SNR
 };
 
-/// Detects sources that do not move like the stars, from the counts and the header alone. Equal for
-/// any number of threads. Needs memory for a few rows and the sources, besides the frame.
+/// Detects what is no star, from the counts and the header alone. With a catalogue of stars, what
+/// it knows is hidden, and what is bright enough for it and not in it is no star whatever it looks
+/// like; if the frame does not show the catalogue's stars where they should be, and without one,
+/// what does not move like the stars is detected. Equal for any number of threads. Needs memory for
+/// two images of 16 bits, a few rows and the sources, besides the frame.
 DetectionResult detect(const CountImage& counts, const FrameHeader& header,
-                       const DetectorSettings& settings, Threads& threads);
+                       const DetectorSettings& settings, Threads& threads,
+                       const CatalogueSky* sky = nullptr);
 
 /// The report of a frame without detection: header data, and `detection_off`.
 DetectionResult without_detection(const CountImage& counts, const FrameHeader& header);

@@ -16,9 +16,9 @@ std::string utc_in_frame(const FrameHeader& header, SimTime time) {
 }
 
 FileDetections detect_file(const std::string& path, const DetectorSettings& settings,
-                           Threads& threads) {
+                           Threads& threads, const CatalogueSky* sky) {
   const Frame frame = read_frame(path);
-  const auto result = detect(frame.counts, frame.header, settings, threads);
+  const auto result = detect(frame.counts, frame.header, settings, threads, sky);
   const UtcText utc = [&](SimTime time) { return utc_in_frame(frame.header, time); };
   FileDetections out;
   for (const Detection& d : result.detections) out.lines.push_back(to_json(d, utc));

@@ -17,7 +17,7 @@ struct FileDetections {
 
 /// Throws `ConfigError` "PATH: KEYWORD: reason" if the file is not such a frame.
 FileDetections detect_file(const std::string& path, const DetectorSettings& settings,
-                           Threads& threads);
+                           Threads& threads, const CatalogueSky* sky = nullptr);
 
 /// UTC text of a time in the frame: the header's own for start, middle and end of the exposure
 /// (with a Z, which FITS omits). Throws `Error` for other times.

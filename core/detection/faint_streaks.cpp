@@ -7,14 +7,17 @@
 #include "core/detection/line_search.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_hypothesis.h"
+#include "core/detection/template_snr.h"
 
 namespace dmise {
 namespace {
 
-constexpr double faint_per_px = 4.0;   // SNR over the root of the length; brighter ends are seen
-constexpr double least_share = 0.4;    // of a trail that is not hidden
-constexpr double chain_px = 40.0;      // longest row of stars, without their trails
-constexpr double candidate_snr = 4.7;  // of a beamlet, which may be a part of a streak
+constexpr double faint_per_px = 4.0;    // SNR over the root of the length; brighter ends are seen
+constexpr double least_share = 0.4;     // of a trail that is not hidden
+constexpr double chain_px = 40.0;       // longest row of stars, without their trails
+constexpr double candidate_snr = 4.7;   // of a beamlet, which may be a part of a streak
+constexpr double template_px = 64.0;    // longest streak whose ends count
+constexpr double sum_misses_snr = 1.6;  // of such a streak's SNR, at most
 
 Trail trail_of(const Beamlet& b) {
   Trail t;
@@ -36,11 +39,13 @@ bool is_part_of(const Trail& part, const Trail& whole, double margin_px) {
   return on >= 3;
 }
 
-/// Factor of the least SNR of a trail of which more than a tenth is hidden: between so many stars
-/// are others that were not, and their sums have a longer tail than noise.
-double crowding(const LineSum& line) {
-  const double hidden = 1.0 - double(line.samples) / line.slices;
-  return 1.0 + 0.5 * std::max(0.0, hidden - 0.1);
+/// Factor of the least SNR of a trail where more than a tenth of the frame is hidden, or the sky
+/// scatters more than noise: between so many stars are others that were not hidden, and their sums
+/// have a longer tail.
+double crowding(const FilteredFrame& frame, const Trail& trail) {
+  const FilteredFrame::Cell cell = frame.cell_at(trail.x_px, trail.y_px);
+  const double scatter = std::max(1.0, double(cell.scatter) - 0.05);
+  return scatter * (1.0 + 0.5 * std::max(0.0, double(cell.hidden) - 0.1));
 }
 
 void hide(FilteredFrame& frame, const Trail& t, double margin_px) {
@@ -84,19 +89,19 @@ double star_snr_on(const FilteredFrame& frame, const Trail& trail, Trail star) {
 
 bool is_streak(const Scene& scene, const Source& source, const DetectorSettings& settings) {
   const Trail& t = source.trail();
-  if (t.length_px < 3 * scene.sigma_px || source.fit.reduced_chi2() > 2.0 ||
-      source.snr() < settings.least_snr)
-    return false;
+  // The fit also fits the sky, which costs some of the SNR; of a faint patch of sky it costs more.
+  if (source.snr() < 0.85 * least_streak_snr(t.length_px)) return false;
+  if (t.length_px < 3 * scene.sigma_px || source.fit.reduced_chi2() > 2.0) return false;
   const Trail star = scene.star_trail(t.x_px, t.y_px);
   if (t.length_px < chain_px + 3 * star.length_px && !beats_stars(scene, source, settings))
     return false;
-  return !moves_like_star(source, star, settings.least_difference_px + 1);
+  return !moves_like_star(scene, source, star, settings.least_difference_px + 1);
 }
 
 }  // namespace
 
 double least_streak_snr(double length_px) {
-  return 6.5 + 0.35 * std::clamp(std::log2(length_px / 16), 0.0, 2.0);
+  return 6.5 + 0.5 * std::clamp(std::log2(length_px / 16), 0.0, 2.0);
 }
 
 void extend(const Scene& scene, const FilteredFrame& frame, Source& source) {
@@ -111,7 +116,8 @@ void extend(const Scene& scene, const FilteredFrame& frame, Source& source) {
     return;
   longer.flux_e = known.flux_e * longer.length_px / std::max(known.length_px, 1.0);
   if (auto fit = fitted(scene, longer, snr))
-    if (fit->trail().length_px > known.length_px) source = std::move(*fit);
+    if (fit->trail().length_px > known.length_px && fit->snr() > source.snr())
+      source = std::move(*fit);
 }
 
 std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
@@ -137,9 +143,17 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
     trail = climbed(frame, trail);
     tried.push_back(trail);
     const LineSum line = sum_along(frame, trail);
-    const double snr = line.sum / line.noise;
-    if (snr < least_streak_snr(trail.length_px) || line.samples < least_share * line.slices)
-      continue;
+    double snr = line.sum / line.noise;
+    if (line.samples < least_share * line.slices) continue;
+    if (snr < least_streak_snr(trail.length_px)) {
+      // The sum of a short line misses light beside its ends.
+      if (trail.length_px > template_px || snr < least_streak_snr(trail.length_px) - sum_misses_snr)
+        continue;
+      const TemplateMatch match = best_template(seen, trail);
+      if (match.snr < least_streak_snr(match.trail.length_px)) continue;
+      trail = match.trail;
+      snr = match.snr;
+    }
     const double per_px = line.sum / line.samples / FilteredFrame::steps;
     trail.flux_e = per_px *
                    std::sqrt(scene
@@ -148,7 +162,8 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
                                  .variance_e2) *
                    trail.length_px;
     const Beside near = beside(frame, trail);
-    if (snr < near.middle + least_streak_snr(trail.length_px) * near.scatter * crowding(line))
+    if (snr <
+        near.middle + least_streak_snr(trail.length_px) * near.scatter * crowding(frame, trail))
       continue;
     const double star_snr = star_snr_on(frame, trail, star);
     if (snr * snr - star_snr * star_snr < settings.blend_margin) continue;

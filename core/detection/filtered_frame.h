@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "core/detection/pixel_mask.h"
 
 namespace dmise {
 
@@ -16,6 +17,13 @@ struct FilteredFrame {
   int columns = 0, rows = 0;
   double sigma_px = 1.0;          // of the filter
   std::vector<std::int16_t> snr;  // rows x columns
+
+  /// A cell of a mesh over the frame, as `flatten` found it.
+  struct Cell {
+    float middle = 0.0f, scatter = 1.0f;  // of what is not hidden: its median, and what divides it
+    float hidden = 0.0f;                  // share of its pixels, those with light of stars included
+  };
+  std::vector<Cell> mesh;  // empty until the frame is flat
 
   FilteredFrame(int columns_, int rows_, double sigma)
       : columns(columns_),
@@ -42,18 +50,24 @@ struct FilteredFrame {
     last = std::min(last, columns - 1);
     if (first <= last) std::fill(row(y) + first, row(y) + last + 1, std::int16_t(0));
   }
-  /// Subtracts the local mean of what is not hidden and divides by its scatter, where that is more
-  /// than the noise: stars too faint to be hidden are light and scatter of the sky.
-  void flatten(Threads& threads);
+  /// Subtracts the local median of what is not hidden and divides by its scatter, where that is
+  /// more than the noise: stars too faint to be hidden, and what is left of others, are light and
+  /// scatter of the sky.
+  /// `lit`, if not null: pixels with light of stars that were subtracted.
+  void flatten(Threads& threads, const PixelMask* lit = nullptr);
+  /// The cell around a place; one of noise alone before `flatten`.
+  Cell cell_at(double x_px, double y_px) const;
 
   /// Correlation of noise at `distance_px`.
   double correlation(double distance_px) const {
     return std::exp(-distance_px * distance_px / (4 * sigma_px * sigma_px));
   }
-  /// Variance of a sum along a line over that of uncorrelated samples, `spacing_px` apart.
-  double sum_variance(double spacing_px) const {
+  /// Variance of a sum of `samples` along a line over that of uncorrelated ones, `spacing_px`
+  /// apart.
+  double sum_variance(double spacing_px, int samples) const {
     double sum = 1.0;
-    for (int k = 1; k * spacing_px < 8 * sigma_px; ++k) sum += 2 * correlation(k * spacing_px);
+    for (int k = 1; k < samples && k * spacing_px < 8 * sigma_px; ++k)
+      sum += 2 * correlation(k * spacing_px) * (1.0 - double(k) / samples);
     return sum;
   }
 };

@@ -18,6 +18,10 @@ LineSum sum_along(const FilteredFrame& frame, const Trail& trail);
 /// The sum in units of its noise: the SNR of a streak of that shape.
 double snr_along(const FilteredFrame& frame, const Trail& trail);
 
+/// A trail with one of its five parameters changed by `by_px`: its offset, its direction, either
+/// end along it, its curvature.
+Trail changed(Trail trail, int parameter, double by_px);
+
 /// The trail near `start` along which `snr_along` is largest, by steps of its offset, direction,
 /// ends and curvature; only the first two where they find too little for a streak.
 Trail climbed(const FilteredFrame& frame, const Trail& start);

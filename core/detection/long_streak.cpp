@@ -237,7 +237,7 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
     return std::nullopt;
   if (t.length_px < chain_px + 3 * star.length_px && !beats_stars(scene, *source, settings))
     return std::nullopt;
-  if (moves_like_star(*source, star, settings.least_difference_px + 1)) return std::nullopt;
+  if (moves_like_star(scene, *source, star, settings.least_difference_px + 1)) return std::nullopt;
   return source;
 }
 
@@ -252,7 +252,7 @@ std::vector<Point> free_points(const Scene& scene, const Component& component, d
       const bool taken = std::any_of(found.begin(), found.end(), [&](const Source& s) {
         return lies_on(s.trail(), x, run.y, skirt_px);
       });
-      if (taken) continue;
+      if (taken || scene.is_hidden(x, run.y)) continue;
       points.push_back({double(x), double(run.y), std::max(1.0f, scene.pixel(x, run.y).signal_e)});
       lights.push_back(points.back().weight);
     }

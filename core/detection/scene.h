@@ -4,6 +4,7 @@
 
 #include "core/detection/background.h"
 #include "core/detection/filtered_frame.h"
+#include "core/detection/known_stars.h"
 #include "core/detection/star_motion.h"
 #include "core/detection/trail_fit.h"
 
@@ -19,14 +20,30 @@ struct Scene {
   double sigma_px;                        // of a point source, including the pixel
   bool blooming;                          // charge above the full well flows along columns
   const FilteredFrame* hidden = nullptr;  // whose hidden pixels are not used; null: none are
+  const KnownStars* known = nullptr;      // whose pixels are not used; null: none are known
+  const FilteredFrame* flat =
+      nullptr;  // of which the scatter of the sky is known; null: noise alone
 
   bool contains(int x, int y) const {
     return x >= 0 && y >= 0 && x < counts.columns && y < counts.rows;
   }
+  bool is_hidden(int x, int y) const {
+    return (hidden && hidden->row(y)[x] == 0) || (known && known->lights(x, y));
+  }
+  /// Whether a star of this light at a place would be known.
+  bool would_be_known(double x_px, double y_px, double flux_e) const {
+    return known && known->would_know({x_px, y_px}, flux_e);
+  }
+  /// Whether that holds of each star in a row that has the light of a trail; a row as long as 45 px
+  /// may be of four.
+  bool row_would_be_known(const Trail& t) const {
+    return would_be_known(t.x_px, t.y_px,
+                          t.flux_e / std::fmin(std::fmax(1 + t.length_px / 15, 2.0), 4.0));
+  }
   bool saturated(int x, int y) const { return counts.at(x, y) >= saturation_dn; }
   /// Whether a pixel is neither hidden nor clipped nor next to a clipped pixel's overflow.
   bool is_usable(int x, int y) const {
-    if (saturated(x, y) || (hidden && hidden->row(y)[x] == 0)) return false;
+    if (saturated(x, y) || is_hidden(x, y)) return false;
     return !blooming ||
            !((y > 0 && saturated(x, y - 1)) || (y + 1 < counts.rows && saturated(x, y + 1)));
   }

@@ -161,6 +161,8 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
   return source;
 }
 
+double end_error_px(double snr2_per_px) { return std::sqrt(26.0) / snr2_per_px; }
+
 void add_neglected_errors(Source& source, double sigma_px) {
   constexpr double model_px = 0.001, uneven = 0.007;
   const Trail& t = source.trail();

@@ -22,6 +22,10 @@ bool plausible(const Scene& scene, const Trail& trail);
 std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool streak,
                                  double model_error, bool draft = false, unsigned free = 0);
 
+/// Error of a streak's end where it is a step lost in noise, by the square of the SNR of a pixel's
+/// worth of length (Yao 1987, Annals of Statistics 15, 1321).
+double end_error_px(double snr2_per_px);
+
 /// Adds to a covariance what the curvature of chi2 does not show. Ends: where a pixel's worth of
 /// length has an SNR below 1, an end is a step lost in noise, found with a variance of 26 / SNR^4
 /// px^2 (Yao 1987, Annals of Statistics 15, 1321) until the blur is wider than that. Brightness: a

@@ -55,8 +55,10 @@ double deviance_of_stars(const std::vector<FitPixel>& pixels, const Trail& line,
   return fit_trails(pixels, stars_along(line, star, count), free, settings).deviance;
 }
 
-bool moves_like_star(const Source& source, const Trail& star, double tolerance_px) {
+bool moves_like_star(const Scene& scene, const Source& source, const Trail& star,
+                     double tolerance_px) {
   const Trail& t = source.trail();
+  if (scene.would_be_known(t.x_px, t.y_px, t.flux_e)) return false;
   if (trail_difference_px(t, star) < tolerance_px) return true;
   return source.at_edge && across_px(t, star) < tolerance_px &&
          t.length_px < star.length_px + tolerance_px;
@@ -79,6 +81,7 @@ bool point_beats_star(const Scene& scene, const Source& source, const DetectorSe
 
 bool beats_stars(const Scene& scene, const Source& source, const DetectorSettings& settings) {
   const Trail& line = source.trail();
+  if (scene.row_would_be_known(line)) return true;
   const Trail star = scene.star_trail(line.x_px, line.y_px);
   const double margin_px = 2.5 * scene.sigma_px + 0.5;
   const auto pixels = pixels_near(scene, line, margin_px);

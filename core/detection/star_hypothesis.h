@@ -12,16 +12,17 @@ namespace dmise {
 double deviance_of_stars(const std::vector<FitPixel>& pixels, const Trail& line, const Trail& star,
                          int count, const FitSettings& settings);
 
-/// Whether a source has the length and direction of a star's trail; at the frame's edge, which may
-/// have cut it: at most the length, and the direction.
-bool moves_like_star(const Source& source, const Trail& star, double tolerance_px);
+/// Whether a source that a catalogue would not know has the length and direction of a star's trail;
+/// at the frame's edge, which may have cut it: at most the length, and the direction.
+bool moves_like_star(const Scene& scene, const Source& source, const Trail& star,
+                     double tolerance_px);
 
 /// Whether a point explains the light around the source better than a star's trail, also than one
 /// of which only an end is there.
 bool point_beats_star(const Scene& scene, const Source& source, const DetectorSettings& settings);
 
 /// Whether a line explains the light around the source better than two, three or four stars in a
-/// row, and than a piece of one star's trail.
+/// row, and than a piece of one star's trail; or these would be known from a catalogue.
 bool beats_stars(const Scene& scene, const Source& source, const DetectorSettings& settings);
 
 }  // namespace dmise

@@ -41,6 +41,7 @@ struct FramePipeline::Work {
   PipelineSettings settings;
   Threads& threads;
   std::optional<StarLayer> stars;
+  std::optional<CatalogueSky> sky;  // for detection
   std::optional<GlEvaluator> evaluator;
   SensorConfig planned;                    // the sensor with the effects of the exposure at hand
   std::optional<ExposurePlanner> planner;  // none: effects run as they are asked for
@@ -60,6 +61,7 @@ struct FramePipeline::Work {
     used_counts = room_for_image<CountImage>(grid);
     if (settings.sensor.effects.drawn_by_opengl()) evaluator.emplace();
     make_optics();
+    if (map && settings.sensor.detect) sky.emplace(map);
     if (map) stars.emplace(settings.sensor, std::move(map));
     if (!settings.sensor.accuracy.is_planned() && settings.sensor.recorded_plans.empty()) return;
     if (!planned.unplanned) planned.unplanned = settings.sensor.effects;
@@ -109,6 +111,12 @@ struct FramePipeline::Work {
             .faintest_star_mag = settings.faintest_star_mag,
             .shapes = shapes,
             .evaluator = evaluator ? &*evaluator : nullptr};
+  }
+
+  /// Until they are needed again the memory is for counts.
+  void release_stars() {
+    if (stars)
+      if (const auto& file = stars->map()->file) file->release();
   }
 
   FrameProducts make(const FrameTimes& times, const World& world);
@@ -204,9 +212,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
                                   {.sky = keeps_sky ? &frame.planes.background : nullptr,
                                    .stars = settings.star_truth ? &frame.stars : nullptr});
   frame.truths = std::move(truth.objects);
-  // Until the next frame the memory is for counts.
-  if (stars && has(StarBackground::facts))
-    if (const auto& file = stars->map()->file) file->release();
+  if (has(StarBackground::facts)) release_stars();
   if (settings.output.radiance_exr)
     for (const auto& part : settings.radiance_parts)
       frame.planes.radiance_parts.push_back({part.band, radiance_in(part, times, world)});
@@ -229,9 +235,11 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   DetectionResult result;
   {
     Stopwatch timing(frame.detection_s);
-    result = sensor.detect ? detect(frame.counts, as_in_file(frame.header), {}, threads)
-                           : without_detection(frame.counts, as_in_file(frame.header));
+    const FrameHeader header = as_in_file(frame.header);
+    result = sensor.detect ? detect(frame.counts, header, {}, threads, sky ? &*sky : nullptr)
+                           : without_detection(frame.counts, header);
   }
+  if (sky) release_stars();
   frame.detections = std::move(result.detections);
   frame.report = std::move(result.report);
   frame.report.stars_rendered = truth.stars;

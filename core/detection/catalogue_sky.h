@@ -1,0 +1,41 @@
+#pragma once
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "core/base/pixel.h"
+#include "core/products/frame_header.h"
+#include "core/sky/star_map.h"
+
+namespace dmise {
+
+/// A star of a catalogue where a frame should show it.
+struct ExpectedStar {
+  PixelPosition place;    // in mid exposure
+  double signal_e = 0.0;  // in the whole exposure
+};
+
+/// A catalogue of stars as a detector uses it: what has a place in it is no satellite, and what is
+/// brighter than its faintest stars and has none is no star.
+class CatalogueSky {
+ public:
+  explicit CatalogueSky(std::shared_ptr<const StarMap> map);
+
+  /// V to which the catalogue is taken as complete: a magnitude brighter than where its counts
+  /// begin to fall.
+  double complete_to_v_mag() const { return complete_to_v_mag_; }
+
+  /// The stars of at least `least_signal_e` in a frame and near its edges, by the header's WCS,
+  /// zero point, band and air; Gaussian noise or clouds have no say. In the catalogue's order.
+  std::vector<ExpectedStar> stars_in(const FrameHeader& header, int columns, int rows,
+                                     double least_signal_e) const;
+
+ private:
+  std::shared_ptr<const StarMap> map_;
+  double complete_to_v_mag_ = -std::numeric_limits<double>::infinity();
+};
+
+/// Light [e-] above which the catalogue knows every star, at a pixel of a frame.
+double complete_to_e(const CatalogueSky& sky, const FrameHeader& header, PixelPosition pixel);
+
+}  // namespace dmise

@@ -1,0 +1,81 @@
+#include "core/detection/hide_stars.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/detection/components.h"
+#include "core/detection/star_agreement.h"
+#include "core/detection/star_image.h"
+
+namespace dmise {
+namespace {
+
+constexpr double subtracted_snr = 0.4;  // of a star, or of a pixel with its light, and more
+constexpr double hidden_snr = 5.0;      // light of which too much may be left
+constexpr double lit_noise = 0.4;       // light in a pixel [its noise] that a fit must not take
+// By how many sigmas of its scatter a star may be brighter than expected: when its light is hidden,
+// and when it is compared with a source.
+constexpr double subtracted_sigmas = 3.0, most_sigmas = 7.0;
+constexpr double flickering =
+    0.35;  // scatter from which on any star may be as bright as any source
+
+/// Subtracts a star from the filtered frame, and hides where more than `hidden` of it is.
+void subtract(const StarImage& image, float hidden, FilteredFrame& frame) {
+  for (int y = image.y0; y <= image.y1; ++y) {
+    const float* drawn = image.row(y);
+    std::int16_t* row = frame.row(y) + image.x0;
+    for (int i = 0; i <= image.x1 - image.x0; ++i) {
+      if (row[i] == 0) continue;
+      const float left = float(row[i]) / FilteredFrame::steps - drawn[i];
+      row[i] = drawn[i] > hidden ? std::int16_t(0)
+                                 : FilteredFrame::step_of(left, (image.x0 + i + y) % 2 != 0);
+    }
+  }
+}
+
+void mark(const StarImage& image, float least, PixelMask& lit) {
+  for (int y = image.y0; y <= image.y1; ++y) {
+    const float* drawn = image.row(y);
+    for (int x = image.x0; x <= image.x1; ++x)
+      if (drawn[x - image.x0] > least) lit.set(x, y);
+  }
+}
+
+}  // namespace
+
+std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
+                                     const CatalogueSky& sky, const FrameHeader& header) {
+  const double unit = std::sqrt(kernel_square_sum(scene.sigma_px));
+  // The light of the faintest star that is subtracted, also where noise is half of the middle.
+  const double least_e =
+      0.5 * subtracted_snr * scene.background.median_sigma_dn() * scene.gain_e_per_dn / unit;
+  if (!(least_e > 0)) return std::nullopt;
+  const auto expected = sky.stars_in(header, frame.columns, frame.rows, least_e);
+  const StarAgreement agreement(scene, frame, expected);
+  if (!agreement.holds()) return std::nullopt;
+  PixelMask lit(frame.columns, frame.rows);
+  std::vector<KnownStars::Star> stars;
+  stars.reserve(expected.size());
+  StarImage image(frame.columns, frame.rows);
+  for (const ExpectedStar& star : expected) {
+    const PixelPosition at = star.place + agreement.shift();
+    const StarLightRatio& light = agreement.light_at(at);
+    const int x = std::clamp(int(std::lround(at.x_px)), 0, frame.columns - 1);
+    const int y = std::clamp(int(std::lround(at.y_px)), 0, frame.rows - 1);
+    const double noise_e = scene.background.sigma_dn(x, y) * scene.gain_e_per_dn;
+    const double in_noise = light.middle * star.signal_e / noise_e;
+    const double hidden = hidden_snr / std::exp(subtracted_sigmas * light.scatter);
+    const Trail trail = scene.star_trail(at.x_px, at.y_px);
+    image.draw(trail, std::sqrt(2.0) * scene.sigma_px, in_noise / unit,
+               std::min(subtracted_snr, hidden));
+    subtract(image, float(hidden), frame);
+    image.draw(trail, scene.sigma_px, in_noise, lit_noise);
+    mark(image, float(lit_noise), lit);
+    const double most =
+        light.scatter > flickering ? HUGE_VAL : std::exp(most_sigmas * light.scatter);
+    stars.push_back({at, light.middle * star.signal_e * most});
+  }
+  return KnownStars(sky, header, std::move(stars), std::move(lit));
+}
+
+}  // namespace dmise

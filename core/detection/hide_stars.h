@@ -1,0 +1,15 @@
+#pragma once
+#include <optional>
+
+#include "core/detection/known_stars.h"
+#include "core/detection/scene.h"
+
+namespace dmise {
+
+/// Subtracts the stars of a catalogue from the filtered frame and hides what is left of bright
+/// ones, if it shows them where the header says that they are; otherwise changes nothing and
+/// returns nothing.
+std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
+                                     const CatalogueSky& sky, const FrameHeader& header);
+
+}  // namespace dmise

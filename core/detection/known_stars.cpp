@@ -1,0 +1,31 @@
+#include "core/detection/known_stars.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dmise {
+
+KnownStars::KnownStars(const CatalogueSky& sky, const FrameHeader& header, std::vector<Star> stars,
+                       PixelMask lit)
+    : sky_(&sky), header_(&header), stars_(std::move(stars)), lit_(std::move(lit)) {
+  std::sort(stars_.begin(), stars_.end(),
+            [](const Star& a, const Star& b) { return a.place.y_px < b.place.y_px; });
+}
+
+bool KnownStars::would_know(PixelPosition place, double flux_e) const {
+  return flux_e >= complete_to_e(*sky_, *header_, place);
+}
+
+bool KnownStars::may_be_at(PixelPosition place, double within_px, double flux_e) const {
+  const auto first =
+      std::lower_bound(stars_.begin(), stars_.end(), place.y_px - within_px,
+                       [](const Star& star, double y_px) { return star.place.y_px < y_px; });
+  for (auto star = first; star != stars_.end() && star->place.y_px <= place.y_px + within_px;
+       ++star)
+    if (star->most_e >= flux_e &&
+        std::hypot(star->place.x_px - place.x_px, star->place.y_px - place.y_px) <= within_px)
+      return true;
+  return false;
+}
+
+}  // namespace dmise

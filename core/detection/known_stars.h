@@ -1,0 +1,37 @@
+#pragma once
+#include <vector>
+
+#include "core/detection/catalogue_sky.h"
+#include "core/detection/pixel_mask.h"
+#include "core/detection/trail_fit.h"
+
+namespace dmise {
+
+/// The stars of a catalogue that a frame shows, as what else is in it is compared with them.
+class KnownStars {
+ public:
+  /// A star where the frame has it, and the most light that may come from it.
+  struct Star {
+    PixelPosition place;
+    double most_e = 0.0;
+  };
+
+  /// `lit`: the pixels with the stars' light. `sky` and `header` must outlive it.
+  KnownStars(const CatalogueSky& sky, const FrameHeader& header, std::vector<Star> stars,
+             PixelMask lit);
+
+  bool lights(int x, int y) const { return lit_.at(x, y); }
+  const PixelMask& lit() const { return lit_; }
+  /// Whether a star of this light at a place would be in the catalogue.
+  bool would_know(PixelPosition place, double flux_e) const;
+  /// Whether a star is within a distance of a place that may be as bright as that.
+  bool may_be_at(PixelPosition place, double within_px, double flux_e) const;
+
+ private:
+  const CatalogueSky* sky_;
+  const FrameHeader* header_;
+  std::vector<Star> stars_;  // by rising row
+  PixelMask lit_;
+};
+
+}  // namespace dmise

@@ -1,0 +1,28 @@
+#pragma once
+#include <vector>
+
+#include "core/detection/trail_fit.h"
+
+namespace dmise {
+
+/// Light of a star around its place: a row of round Gaussians along its trail, in a box.
+class StarImage {
+ public:
+  StarImage(int columns, int rows) : columns_(columns), rows_(rows) {}
+
+  int x0 = 0, y0 = 0, x1 = -1, y1 = -1;  // the box in the frame, the last pixels included
+
+  /// Fills the box with a star of a total of `flux` down to `least` a pixel.
+  void draw(const Trail& trail, double sigma_px, double flux, double least);
+
+  /// The box's part of a row of the frame.
+  const float* row(int y) const {
+    return light_.data() + std::size_t(y - y0) * std::size_t(x1 - x0 + 1);
+  }
+
+ private:
+  int columns_, rows_;
+  std::vector<float> light_, across_;
+};
+
+}  // namespace dmise

@@ -1,0 +1,54 @@
+#include "core/detection/template_snr.h"
+
+#include <cmath>
+
+#include "core/detection/line_search.h"
+#include "core/detection/source_fit.h"
+
+namespace dmise {
+namespace {
+
+constexpr double margin_in_sigmas = 2.5;
+constexpr double spare_px = 3.0;  // by which a trail may move while it is matched
+
+double snr_of(const Scene& scene, const std::vector<FitPixel>& pixels, Trail trail) {
+  trail.flux_e = 1.0;
+  double sum = 0.0, squares = 0.0;
+  for (const FitPixel& p : pixels) {
+    const double g = trail_value(trail, scene.sigma_px, p.x, p.y);
+    sum += g * p.signal_e / p.variance_e2;
+    squares += g * g / p.variance_e2;
+  }
+  const double scatter = scene.flat ? scene.flat->cell_at(trail.x_px, trail.y_px).scatter : 1.0;
+  return squares > 0 ? sum / std::sqrt(squares) / scatter : 0.0;
+}
+
+}  // namespace
+
+double template_snr(const Scene& scene, const Trail& trail) {
+  return snr_of(scene, pixels_near(scene, trail, margin_in_sigmas * scene.sigma_px + 0.5), trail);
+}
+
+TemplateMatch best_template(const Scene& scene, const Trail& start) {
+  const auto pixels = pixels_near(scene, start, margin_in_sigmas * scene.sigma_px + 0.5 + spare_px);
+  TemplateMatch best{start, snr_of(scene, pixels, start)};
+  for (double step_px = 1.0; step_px > 0.2; step_px /= 2)
+    for (bool better = true; better;) {
+      better = false;
+      for (int parameter = 0; parameter < 4; ++parameter)
+        for (const double side : {1.0, -1.0}) {
+          const Trail trial = changed(best.trail, parameter, side * step_px);
+          if (std::hypot(trial.x_px - start.x_px, trial.y_px - start.y_px) > spare_px ||
+              std::abs(trial.length_px - start.length_px) > 2 * spare_px)
+            continue;
+          const double snr = snr_of(scene, pixels, trial);
+          if (!(snr > best.snr)) continue;
+          best = {trial, snr};
+          better = true;
+          break;
+        }
+    }
+  return best;
+}
+
+}  // namespace dmise

@@ -1,0 +1,16 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "core/sky/star_map.h"
+
+namespace dmise {
+
+/// Adds `--catalogue`: kstars, which is the default, or a file; `none`, if that may be said.
+CLI::Option* add_star_catalogue_option(CLI::App& command, std::string& name, bool may_be_none);
+
+/// The catalogue of that name, with its cache; null for "none". Throws `ConfigError`.
+std::shared_ptr<const StarMap> load_star_catalogue(const std::string& name);
+
+}  // namespace dmise
