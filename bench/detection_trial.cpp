@@ -93,13 +93,22 @@ double q_function(double x) { return 0.5 * std::erfc(x / std::sqrt(2.0)); }
 
 std::vector<PlacedSource> placed(SimulatedFrame& frame, const FrameHeader& header, int size,
                                  double length, double snr) {
-  const int side = length > 600 ? 1 : length > 250 ? 3 : 8;
+  const double flux_e = flux_of_snr(header, length, snr);
   std::vector<PlacedSource> out;
+  if (length > 600) {  // three beside each other
+    const double angle = frame.uniform(0, pi);
+    for (const double off : {-350.0, 0.0, 350.0})
+      out.push_back({0.5 * size - off * std::sin(angle) + frame.uniform(-5, 5),
+                     0.5 * size + off * std::cos(angle) + frame.uniform(-5, 5), length, angle,
+                     flux_e});
+    return out;
+  }
+  const int side = length > 250 ? 4 : 8;
   for (int i = 0; i < side * side; ++i) {
     const double cell = double(size) / side;
     out.push_back({(i % side + 0.5) * cell + frame.uniform(-5, 5),
                    (i / side + 0.5) * cell + frame.uniform(-5, 5), length, frame.uniform(0, pi),
-                   flux_of_snr(header, length, snr)});
+                   flux_e});
   }
   return out;
 }
@@ -118,12 +127,13 @@ void add_result(const FrameHeader& header, const PlacedSource& p, const Detectio
 
 }  // namespace
 
-FrameHeader trial_header(int columns, int rows, double exposure_s, const StarField& field) {
+FrameHeader trial_header(int columns, int rows, double exposure_s, const StarField& field,
+                         double deeper_mag) {
   FrameHeader header =
       camera_header(columns, rows, focal_px, field.dec_rad, exposure_s, true, field.ra_rad);
   if (field.sky)
-    header.zero_point_mag =
-        field.sky->complete_to_v_mag() + 2.5 * std::log10(flux_of_snr(header, 0, 5.0) / exposure_s);
+    header.zero_point_mag = field.sky->complete_to_v_mag() + deeper_mag +
+                            2.5 * std::log10(flux_of_snr(header, 0, 5.0) / exposure_s);
   return header;
 }
 

@@ -31,8 +31,9 @@ struct DetectionOutcome {
 
 /// Header of the trials' camera: 90 deg of sky on 3326 px, stars trail by 2 px if `exposure_s`
 /// is 20. Its zero point makes what is just found as bright as the faintest star of a complete
-/// `sky`.
-FrameHeader trial_header(int columns, int rows, double exposure_s, const StarField& field);
+/// `sky`, or fainter by `deeper_mag`.
+FrameHeader trial_header(int columns, int rows, double exposure_s, const StarField& field,
+                         double deeper_mag = 0.0);
 
 /// A frame of that header with the sky's light and the field's stars.
 simulated::SimulatedFrame trial_frame(const FrameHeader& header, int columns, int rows,

@@ -167,6 +167,7 @@ class Candidate {
     auto significant = source(start, start.length_px > 0.0);
     if (!significant) return significant;
     const Trail& t = significant->trail();
+    least_snr *= crowding(*scene_.flat, t);
     // A star that is brighter than expected, by scintillation or by nature.
     const double within_px = 1.2 * scene_.sigma_px + 0.5 * t.length_px;
     if (t.length_px < 6 * scene_.sigma_px &&

@@ -1,5 +1,8 @@
 #include "core/detection/components.h"
 
+#include "core/base/simd_level.h"
+#include "core/detection/filter_kernels.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -67,6 +70,8 @@ class Band {
           kernel_, [&](int i) { return middle + i; }, smoothed.data() + std::size_t(j) * width,
           columns);
     }
+    const auto steps_of =
+        kernel_of(best_simd_level(), sse2::steps_of, avx2::steps_of, avx512::steps_of);
     std::vector<PeakedRun> out;
     for (int y = first_row; y < last_row; ++y) {
       const int j = y - first_row + radius;
@@ -76,10 +81,7 @@ class Band {
       background_.sigma_row(y, sigma.data());
       append_runs(y, filtered, sigma, low, unit, out);
       if (!keep) continue;
-      std::int16_t* kept = keep->row(y);
-      for (int x = 0; x < columns; ++x)
-        kept[x] = FilteredFrame::step_of(filtered[std::size_t(x)] / (unit * sigma[std::size_t(x)]),
-                                         (x + y) % 2 != 0);
+      steps_of(filtered.data(), sigma.data(), unit, width, y % 2 != 0, keep->row(y));
     }
     return out;
   }

@@ -10,6 +10,7 @@
 #include "core/detection/components.h"
 #include "core/detection/describe.h"
 #include "core/detection/faint_streaks.h"
+#include "core/detection/hidden_ends.h"
 #include "core/detection/hide_stars.h"
 #include "core/detection/line_profile.h"
 #include "core/detection/long_streak.h"
@@ -273,6 +274,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
     if (!wcs_sees_sky(header.wcs, {source.trail().x_px, source.trail().y_px})) continue;
     source.at_edge |= may_leave(counts, source);
     add_neglected_errors(source, scene.sigma_px);
+    add_errors_of_hidden_ends(scene, source);
     Detection d = describe(source, header);
     d.index = std::uint32_t(result.detections.size());
     d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);

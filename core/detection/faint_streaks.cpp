@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/base/units.h"
 #include "core/detection/line_search.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_hypothesis.h"
@@ -16,7 +17,8 @@ constexpr double faint_per_px = 4.0;    // SNR over the root of the length; brig
 constexpr double least_share = 0.4;     // of a trail that is not hidden
 constexpr double chain_px = 40.0;       // longest row of stars, without their trails
 constexpr double candidate_snr = 4.7;   // of a beamlet, which may be a part of a streak
-constexpr double template_px = 64.0;    // longest streak whose ends count
+constexpr double least_gain = 10.0;     // of SNR^2, by which a streak must be longer than was seen
+constexpr double template_px = 130.0;   // longest streak whose ends count
 constexpr double sum_misses_snr = 1.6;  // of such a streak's SNR, at most
 
 Trail trail_of(const Beamlet& b) {
@@ -37,15 +39,6 @@ bool is_part_of(const Trail& part, const Trail& whole, double margin_px) {
     on += lies_on(whole, part.x_px + along * c, part.y_px + along * s, margin_px);
   }
   return on >= 3;
-}
-
-/// Factor of the least SNR of a trail where more than a tenth of the frame is hidden, or the sky
-/// scatters more than noise: between so many stars are others that were not hidden, and their sums
-/// have a longer tail.
-double crowding(const FilteredFrame& frame, const Trail& trail) {
-  const FilteredFrame::Cell cell = frame.cell_at(trail.x_px, trail.y_px);
-  const double scatter = std::max(1.0, double(cell.scatter) - 0.05);
-  return scatter * (1.0 + 0.5 * std::max(0.0, double(cell.hidden) - 0.1));
 }
 
 void hide(FilteredFrame& frame, const Trail& t, double margin_px) {
@@ -98,24 +91,49 @@ bool is_streak(const Scene& scene, const Source& source, const DetectorSettings&
   return !moves_like_star(scene, source, star, settings.least_difference_px + 1);
 }
 
+/// The line of three PSFs through a point with the largest SNR.
+Trail best_short_line(const Scene& scene, const FilteredFrame& frame, const Trail& point) {
+  Trail line = point, best;
+  line.length_px = 6 * scene.sigma_px;
+  double most = -1.0;
+  for (int k = 0; k < 8; ++k) {
+    line.angle_rad = pi * k / 8;
+    const double snr = snr_along(frame, line);
+    if (!(snr > most)) continue;
+    most = snr;
+    best = line;
+  }
+  return most > 0 ? best : point;
+}
+
 }  // namespace
+
+double crowding(const FilteredFrame& frame, const Trail& trail) {
+  const FilteredFrame::Cell cell = frame.cell_at(trail.x_px, trail.y_px);
+  const double scatter = std::max(1.0, double(cell.scatter) - 0.05);
+  return scatter * (1.0 + std::max(0.0, double(cell.hidden) - 0.1));
+}
 
 double least_streak_snr(double length_px) {
   return 6.5 + 0.5 * std::clamp(std::log2(length_px / 16), 0.0, 2.0);
 }
 
 void extend(const Scene& scene, const FilteredFrame& frame, Source& source) {
-  if (!source.streak || source.saturated) return;
   const Trail& known = source.trail();
-  if (source.snr() > faint_per_px * std::sqrt(std::max(known.length_px, 1.0))) return;
-  const double known_snr = snr_along(frame, known);
-  Trail longer = climbed(frame, known);
-  const double snr = snr_along(frame, longer);
-  if (longer.length_px < known.length_px + 2 * scene.sigma_px ||
-      snr * snr < known_snr * known_snr + 16)
+  if (source.saturated || (!source.streak && !scene.known) ||
+      source.snr() > faint_per_px * std::sqrt(std::max(known.length_px, 4.0)))
     return;
-  longer.flux_e = known.flux_e * longer.length_px / std::max(known.length_px, 1.0);
-  if (auto fit = fitted(scene, longer, snr))
+  const Trail longer =
+      climbed(frame, source.streak ? known : best_short_line(scene, frame, known), 3.0);
+  if (longer.length_px < known.length_px + 2 * scene.sigma_px) return;
+  const double snr = snr_along(frame, longer);
+  const double gain = source.streak ? snr * snr - std::pow(snr_along(frame, known), 2)
+                                    : std::pow(template_snr(scene, longer), 2) -
+                                          std::pow(template_snr(scene, known), 2);
+  if (gain < least_gain) return;
+  Trail start = longer;
+  start.flux_e = known.flux_e * longer.length_px / std::max(known.length_px, 2 * scene.sigma_px);
+  if (auto fit = fitted(scene, start, snr))
     if (fit->trail().length_px > known.length_px && fit->snr() > source.snr())
       source = std::move(*fit);
 }
@@ -147,7 +165,8 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
     if (line.samples < least_share * line.slices) continue;
     if (snr < least_streak_snr(trail.length_px)) {
       // The sum of a short line misses light beside its ends.
-      if (trail.length_px > template_px || snr < least_streak_snr(trail.length_px) - sum_misses_snr)
+      const double misses = sum_misses_snr * std::min(1.0, 32 / trail.length_px);
+      if (trail.length_px > template_px || snr < least_streak_snr(trail.length_px) - misses)
         continue;
       const TemplateMatch match = best_template(seen, trail);
       if (match.snr < least_streak_snr(match.trail.length_px)) continue;

@@ -16,6 +16,11 @@ void extend(const Scene& scene, const FilteredFrame& frame, Source& source);
 /// frame of 8.3 Mpx: longer lines can be laid through it in more ways, and from 40 px on be bent.
 double least_streak_snr(double length_px);
 
+/// Factor of the least SNR of a trail where more than a tenth of the frame is hidden, or the sky
+/// scatters more than noise: between so many stars are others that were not hidden, and their sums
+/// have a longer tail.
+double crowding(const FilteredFrame& frame, const Trail& trail);
+
 /// Finds streaks that no threshold of single pixels shows, strongest first, from the beamlets of a
 /// frame in which stars and known sources are hidden. What it finds is hidden too.
 std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,

@@ -1,5 +1,9 @@
 #include "core/detection/filtered_frame.h"
 
+#include "core/base/quantile.h"
+#include "core/base/simd_level.h"
+#include "core/detection/filter_kernels.h"
+
 #include <array>
 #include <cstddef>
 #include <numeric>
@@ -9,11 +13,16 @@ namespace {
 
 constexpr int cell_px = 48;
 constexpr int least_pixels = 200;  // of a cell, that are not hidden
+constexpr double least_scatter = 0.85;
 
-/// Median and scatter of the pixels that are not hidden, by quantiles: a streak does not count. The
-/// scatter is the larger of both sides: faint stars only add light. Those of too few pixels are
-/// taken as of no light.
-FilteredFrame::Cell level_of(const FilteredFrame& frame, int x0, int y0, const PixelMask* lit) {
+/// What is not hidden in a cell, by quantiles: a streak does not count. Both scatters are 1 and the
+/// middle 0 of cells with too few pixels.
+struct Level {
+  double middle = 0.0, below = 1.0, above = 1.0;
+  float hidden = 0.0f;
+};
+
+Level level_of(const FilteredFrame& frame, int x0, int y0, const PixelMask* lit) {
   constexpr int most = FilteredFrame::most;
   std::array<int, 2 * most + 1> histogram{};
   for (int y = y0; y < std::min(y0 + cell_px, frame.rows); ++y) {
@@ -46,37 +55,49 @@ FilteredFrame::Cell level_of(const FilteredFrame& frame, int x0, int y0, const P
     return double(most);
   };
   const double middle = quantile(0.5);
-  const double scatter = std::max(middle - quantile(0.1587), quantile(0.8413) - middle);
-  return {float(middle), float(scatter / FilteredFrame::steps), hidden};
+  return {middle, (middle - quantile(0.1587)) / FilteredFrame::steps,
+          (quantile(0.8413) - middle) / FilteredFrame::steps, hidden};
 }
 
-/// Averages the scatter over 3 x 3 cells, where it is more than noise.
-void smooth_scatter(std::vector<FilteredFrame::Cell>& mesh, int across, int down) {
-  const auto raw = mesh;
+/// Cells by what is in them and their neighbours: the median of the middles, so that a streak moves
+/// none, and the mean of the scatters. That above the middle counts if it is larger: faint stars
+/// only add light.
+std::vector<FilteredFrame::Cell> smoothed(const std::vector<Level>& levels, int across, int down) {
+  constexpr double sure = 0.02;  // difference that noise makes
+  std::vector<FilteredFrame::Cell> mesh;
   for (int j = 0; j < down; ++j)
     for (int i = 0; i < across; ++i) {
-      float sum = 0.0f;
-      int cells = 0;
+      std::vector<double> middles;
+      double below = 0.0, above = 0.0;
       for (int y = std::max(0, j - 1); y <= std::min(down - 1, j + 1); ++y)
-        for (int x = std::max(0, i - 1); x <= std::min(across - 1, i + 1); ++x, ++cells)
-          sum += raw[std::size_t(y) * std::size_t(across) + std::size_t(x)].scatter;
-      mesh[std::size_t(j) * std::size_t(across) + std::size_t(i)].scatter =
-          std::max(1.0f, sum / float(cells));
+        for (int x = std::max(0, i - 1); x <= std::min(across - 1, i + 1); ++x) {
+          const Level& l = levels[std::size_t(y) * std::size_t(across) + std::size_t(x)];
+          middles.push_back(l.middle);
+          below += l.below;
+          above += l.above;
+        }
+      const auto n = double(middles.size());
+      const double scatter = std::max(0.5 * (below + above) / n, above / n - sure);
+      mesh.push_back({float(median_of(std::move(middles))), float(std::max(least_scatter, scatter)),
+                      levels[std::size_t(j) * std::size_t(across) + std::size_t(i)].hidden});
     }
+  return mesh;
 }
 
 }  // namespace
 
 void FilteredFrame::flatten(Threads& threads, const PixelMask* lit) {
   const int across = (columns + cell_px - 1) / cell_px, down = (rows + cell_px - 1) / cell_px;
-  mesh.assign(std::size_t(across) * std::size_t(down), {});
+  std::vector<Level> levels(std::size_t(across) * std::size_t(down));
   threads.for_ranges(std::size_t(down), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j)
       for (int i = 0; i < across; ++i)
-        mesh[j * std::size_t(across) + std::size_t(i)] =
+        levels[j * std::size_t(across) + std::size_t(i)] =
             level_of(*this, i * cell_px, int(j) * cell_px, lit);
   });
-  smooth_scatter(mesh, across, down);
+  mesh = smoothed(levels, across, down);
+  const auto flatten_steps =
+      kernel_of(best_simd_level(), sse2::flatten_steps, avx2::flatten_steps, avx512::flatten_steps);
   const auto at = [&](int i, int j) {
     return mesh[std::size_t(std::clamp(j, 0, down - 1)) * std::size_t(across) +
                 std::size_t(std::clamp(i, 0, across - 1))];
@@ -98,13 +119,13 @@ void FilteredFrame::flatten(Threads& threads, const PixelMask* lit) {
         const int x0 = std::max(0, int(i) * cell_px - cell_px / 2);
         const int x1 = std::min(columns, int(i) * cell_px + cell_px / 2);
         const Cell a = line[i], b = line[i + 1];
-        for (int x = x0; x < x1; ++x) {
-          const float right = (float(x) + 0.5f) / cell_px + 0.5f - float(i);
-          const float value = (float(pixels[x]) - a.middle - right * (b.middle - a.middle)) *
-                              (a.scatter + right * (b.scatter - a.scatter));
-          const std::int16_t step = step_of(value / float(steps), (x + y) % 2 != 0);
-          pixels[x] = pixels[x] == 0 ? std::int16_t(0) : step;
-        }
+        if (x1 <= x0) continue;
+        const float right = (float(x0) + 0.5f) / cell_px + 0.5f - float(i);
+        const auto along = [&](float first, float second) {
+          return std::array{first + right * (second - first), (second - first) / cell_px};
+        };
+        flatten_steps(pixels + x0, std::size_t(x1 - x0), (x0 + y) % 2 != 0,
+                      along(a.middle, b.middle).data(), along(a.scatter, b.scatter).data());
       }
     }
   });

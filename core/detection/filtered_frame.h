@@ -50,10 +50,10 @@ struct FilteredFrame {
     last = std::min(last, columns - 1);
     if (first <= last) std::fill(row(y) + first, row(y) + last + 1, std::int16_t(0));
   }
-  /// Subtracts the local median of what is not hidden and divides by its scatter, where that is
-  /// more than the noise: stars too faint to be hidden, and what is left of others, are light and
-  /// scatter of the sky.
-  /// `lit`, if not null: pixels with light of stars that were subtracted.
+  /// Subtracts the local median of what is not hidden and divides by its scatter: stars too faint
+  /// to be hidden, and what is left of others, are light and scatter of the sky; and where stars
+  /// were taken for noise when that was measured, it is less. `lit`, if not null: pixels with light
+  /// of stars that were subtracted.
   void flatten(Threads& threads, const PixelMask* lit = nullptr);
   /// The cell around a place; one of noise alone before `flatten`.
   Cell cell_at(double x_px, double y_px) const;

@@ -7,9 +7,8 @@
 namespace dmise {
 namespace {
 
-constexpr double most_bend = 0.03;        // sagitta over length
-constexpr double climbed_from_snr = 5.2;  // of a beamlet with the best offset and direction
-constexpr int most_rounds = 8;            // of moving the ends
+constexpr double most_bend = 0.03;  // sagitta over length
+constexpr int most_rounds = 8;      // of moving the ends
 
 /// The samples of a frame along a trail: one in each row or column, between two pixels.
 class Walk {
@@ -208,9 +207,9 @@ double snr_along(const FilteredFrame& frame, const Trail& trail) {
   return line.samples > 0 ? line.sum / line.noise : 0.0;
 }
 
-Trail climbed(const FilteredFrame& frame, const Trail& start) {
+Trail climbed(const FilteredFrame& frame, const Trail& start, double least_snr) {
   Fit best = polished(frame, {start, snr_along(frame, start)});
-  if (best.snr < climbed_from_snr) return best.trail;
+  if (best.snr < least_snr) return best.trail;
   for (int round = 0; round < most_rounds; ++round) {
     Fit next = with_best_ends(frame, best);
     if (!(next.snr > best.snr)) break;

@@ -23,8 +23,8 @@ double snr_along(const FilteredFrame& frame, const Trail& trail);
 Trail changed(Trail trail, int parameter, double by_px);
 
 /// The trail near `start` along which `snr_along` is largest, by steps of its offset, direction,
-/// ends and curvature; only the first two where they find too little for a streak.
-Trail climbed(const FilteredFrame& frame, const Trail& start);
+/// ends and curvature; only by the first two where these find less than `least_snr`.
+Trail climbed(const FilteredFrame& frame, const Trail& start, double least_snr = 5.2);
 
 /// Lines parallel to a trail: the middle of their SNRs, at least 0, and its scatter, at least 1.
 /// Where faint stars are dense or the sky is uneven both exceed those of noise. The scatter is that

@@ -10,7 +10,7 @@ namespace dmise {
 /// clipped does not count.
 double template_snr(const Scene& scene, const Trail& trail);
 
-/// The trail of at most 64 px near `start` for which `template_snr` is largest, by steps of its
+/// The trail near `start` for which `template_snr` is largest, by steps of its
 /// offset, direction and ends, and that SNR.
 struct TemplateMatch {
   Trail trail;

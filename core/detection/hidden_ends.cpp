@@ -1,0 +1,50 @@
+#include "core/detection/hidden_ends.h"
+
+#include <cmath>
+
+namespace dmise {
+namespace {
+
+/// Length of the gap behind an end, side -1 or 1.
+double gap_px(const Scene& scene, const Trail& t, double side) {
+  constexpr double step_px = 0.5;
+  const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
+  const double most_px = t.length_px + 6 * scene.sigma_px;
+  double gap = 0.0;
+  // Light of the end itself reaches over a seen pixel or two.
+  for (double beyond = 0.0; beyond < most_px; beyond += step_px) {
+    const double along = side * (t.length_px / 2 + beyond);
+    const int x = int(std::lround(t.x_px + along * c)), y = int(std::lround(t.y_px + along * s));
+    if (!scene.contains(x, y)) break;
+    if (scene.is_hidden(x, y))
+      gap = beyond + step_px;
+    else if (beyond - gap >= 1.5 * scene.sigma_px)
+      break;
+  }
+  return gap;
+}
+
+}  // namespace
+
+void add_errors_of_hidden_ends(const Scene& scene, Source& source) {
+  if (!scene.known || !source.streak || !(source.free & trail_length)) return;
+  const Trail& t = source.trail();
+  const double first = gap_px(scene, t, -1), last = gap_px(scene, t, 1);
+  const double ends_px2 = (first * first + last * last) / 3;  // of the length
+  if (!(ends_px2 > 0)) return;
+  const auto n = std::size_t(source.fit.parameters);
+  const auto add = [&](std::size_t i, std::size_t j, double value) {
+    source.fit.covariance[i * n + j] += value;
+    if (i != j) source.fit.covariance[j * n + i] += value;
+  };
+  const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
+  const double e_per_px = t.flux_e / std::fmax(t.length_px, 1.0);
+  add(0, 0, ends_px2 / 4 * c * c);
+  add(0, 1, ends_px2 / 4 * c * s);
+  add(1, 1, ends_px2 / 4 * s * s);
+  add(2, 2, ends_px2 * e_per_px * e_per_px);
+  add(2, 3, ends_px2 * e_per_px);
+  add(3, 3, ends_px2);
+}
+
+}  // namespace dmise
