@@ -248,8 +248,9 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   FilteredFrame filtered(counts.columns, counts.rows, scene.sigma_px);
   const auto components = find_components(counts, background, scene.sigma_px, settings.connect_snr,
                                           settings.seed_snr, threads, &filtered);
+  DetectionResult result;
   std::optional<KnownStars> known;
-  if (sky) known = hide_stars(scene, filtered, *sky, header);
+  if (sky) known = hide_stars(scene, filtered, *sky, header, result.stars);
   if (known) {
     filtered.flatten(threads, &known->lit());
     scene.flat = &filtered;
@@ -267,7 +268,6 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   if (!known) filtered.flatten(threads);
   for (Source& source : find_faint_streaks(scene, filtered, settings, threads))
     judged.sources.push_back(std::move(source));
-  DetectionResult result;
   result.report = make_report(counts, header, background, scene.sigma_px, settings.seed_snr);
   result.report.star_like = judged.star_like;
   for (Source& source : distinct(std::move(judged.sources), scene.sigma_px)) {

@@ -31,9 +31,17 @@ struct DetectorSettings {
   double most_bend_in_noise = 0.15;
 };
 
+/// How a frame agrees with a catalogue of stars at the header's pointing.
+struct StarsSeen {
+  int expected = 0, found = 0;  // of those that are well above the noise
+  PixelPosition shift;          // of the frame's stars from where they are expected
+  bool known = false;           // there are enough, so that detection relied on the catalogue
+};
+
 struct DetectionResult {
   FrameReport report;                 // without what only a renderer knows (`*_rendered`, `plan`)
   std::vector<Detection> detections;  // not star-like, by falling SNR
+  StarsSeen stars;                    // nothing without a catalogue
 };
 
 /// Detects what is no star, from the counts and the header alone. With a catalogue of stars, what

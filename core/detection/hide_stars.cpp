@@ -44,7 +44,8 @@ void mark(const StarImage& image, float least, PixelMask& lit) {
 }  // namespace
 
 std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
-                                     const CatalogueSky& sky, const FrameHeader& header) {
+                                     const CatalogueSky& sky, const FrameHeader& header,
+                                     StarsSeen& seen) {
   const double unit = std::sqrt(kernel_square_sum(scene.sigma_px));
   // The light of the faintest star that is subtracted, also where noise is half of the middle.
   const double least_e =
@@ -52,6 +53,7 @@ std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
   if (!(least_e > 0)) return std::nullopt;
   const auto expected = sky.stars_in(header, frame.columns, frame.rows, least_e);
   const StarAgreement agreement(scene, frame, expected);
+  seen = {agreement.expected(), agreement.found(), agreement.shift(), agreement.holds()};
   if (!agreement.holds()) return std::nullopt;
   PixelMask lit(frame.columns, frame.rows);
   std::vector<KnownStars::Star> stars;

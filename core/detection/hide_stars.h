@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "core/detection/detect.h"
 #include "core/detection/known_stars.h"
 #include "core/detection/scene.h"
 
@@ -8,8 +9,9 @@ namespace dmise {
 
 /// Subtracts the stars of a catalogue from the filtered frame and hides what is left of bright
 /// ones, if it shows them where the header says that they are; otherwise changes nothing and
-/// returns nothing.
+/// returns nothing. `seen` gets how they agree.
 std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
-                                     const CatalogueSky& sky, const FrameHeader& header);
+                                     const CatalogueSky& sky, const FrameHeader& header,
+                                     StarsSeen& seen);
 
 }  // namespace dmise

@@ -19,6 +19,8 @@ class StarAgreement {
   StarAgreement(const Scene& scene, const FilteredFrame& frame,
                 const std::vector<ExpectedStar>& stars);
 
+  int expected() const { return expected_; }
+  int found() const { return found_; }
   /// Whether the frame shows the stars, so that the catalogue's places and gaps can be relied on.
   bool holds() const { return found_ >= 1 && 10 * found_ >= 3 * expected_; }
   /// Of the frame's stars from where they are expected, and the scatter about it along one axis.

@@ -1,0 +1,101 @@
+#include "core/calibration/calibrated_detection.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "bench/simulated_frame.h"
+#include "core/base/error.h"
+#include "core/sky/star_cache.h"
+#include "core/wcs/wcs.h"
+#include "tests/support/data.h"
+
+namespace dmise {
+namespace {
+
+using simulated::camera_header;
+using simulated::SimulatedFrame;
+
+constexpr int columns = 1400, rows = 1200;
+constexpr double focal_px = 3000.0, dec_rad = 0.5, ra_rad = 1.3, exposure_s = 2.0;
+
+/// A camera in space, 26 deg wide, at a right ascension.
+FrameHeader header_at(double ra) {
+  FrameHeader h = camera_header(columns, rows, focal_px, dec_rad, exposure_s, false, ra);
+  h.zero_point_mag = 17.5;
+  h.sensor_position_m = {7e6, 0, 0};
+  h.sensor_velocity_m_per_s = {0, 7.5e3, 0};
+  return h;
+}
+
+struct CalibratedDetection : testing::Test {
+  std::shared_ptr<const StarMap> map;
+  FrameHeader truth = header_at(ra_rad);
+  Threads threads{2};
+
+  void SetUp() override {
+    if (!std::filesystem::exists(test::catalogue_path("stars.dat")))
+      GTEST_SKIP() << "needs stars.dat";
+    map = std::make_shared<const StarMap>(load_star_map(test::catalogue_path("stars.dat")));
+  }
+  /// The catalogue's stars by `light`, and a satellite of SNR 60.
+  CountImage drawn(double light) {
+    SimulatedFrame frame(truth, columns, rows, 400, 3);
+    for (const ExpectedStar& star : CatalogueSky(map).stars_in(truth, columns, rows, 10.0))
+      frame.add_point(star.place.x_px, star.place.y_px, light * star.signal_e);
+    frame.add_streak(700, 500, 80, 0.4, 20000);
+    return frame.expose();
+  }
+  /// The same direction as by the true header, and at the satellite's pixel.
+  void expect_satellite(const DetectionResult& result) {
+    const auto right = detect(drawn(1.0), truth, {}, threads);
+    ASSERT_EQ(right.detections.size(), 1u);
+    ASSERT_EQ(result.detections.size(), 1u);
+    const Detection &d = result.detections[0], &expected = right.detections[0];
+    EXPECT_NEAR(d.x_px, 700, 0.3);
+    EXPECT_NEAR(d.y_px, 500, 0.3);
+    EXPECT_LT(angle_rad(from_spherical<Gcrs>(d.ra_rad, d.dec_rad),
+                        from_spherical<Gcrs>(expected.ra_rad, expected.dec_rad)),
+              0.05 / focal_px);
+  }
+};
+
+TEST_F(CalibratedDetection, BelievesAHeaderThatIsRight) {
+  const auto result = CalibratedDetector(map).detect({drawn(1.0), truth}, {}, threads);
+  EXPECT_TRUE(result.detection.stars.known);
+  EXPECT_FALSE(result.solution);
+  EXPECT_EQ(result.header, truth);
+  expect_satellite(result.detection);
+}
+
+// Two and a half degrees off: directions are those of the stars, not those of the header.
+TEST_F(CalibratedDetection, FindsWhereTheFramePoints) {
+  const FrameHeader believed = header_at(ra_rad + 0.05);
+  const auto result = CalibratedDetector(map).detect({drawn(1.0), believed}, {}, threads);
+  ASSERT_TRUE(result.solution);
+  EXPECT_TRUE(result.detection.stars.known);
+  expect_satellite(result.detection);
+}
+
+TEST_F(CalibratedDetection, FindsItWithoutAnyPointing) {
+  const FrameHeader believed = header_at(ra_rad + 2.0);
+  const auto result = CalibratedDetector(map).detect({drawn(1.0), believed}, {}, threads, true);
+  ASSERT_TRUE(result.solution);
+  expect_satellite(result.detection);
+}
+
+// In clouds, and with a header that is too wrong, the satellite is found by its shape.
+TEST_F(CalibratedDetection, GoesOnWithoutStars) {
+  const auto clouds = CalibratedDetector(map).detect({drawn(0.0), truth}, {}, threads);
+  EXPECT_FALSE(clouds.solution);
+  EXPECT_FALSE(clouds.detection.stars.known);
+  EXPECT_EQ(clouds.detection.detections.size(), 1u);
+  EXPECT_THROW(CalibratedDetector(map).detect({drawn(0.0), truth}, {}, threads, true), Error);
+  const auto without = CalibratedDetector(nullptr).detect({drawn(1.0), truth}, {}, threads);
+  EXPECT_EQ(without.detection.detections.size(), 1u);
+  EXPECT_THROW(CalibratedDetector(nullptr).detect({drawn(1.0), truth}, {}, threads, true), Error);
+}
+
+}  // namespace
+}  // namespace dmise
