@@ -116,14 +116,19 @@ std::optional<Source> judge_compact(const Scene& scene, const Component& compone
   Trail star = scene.star_trail(light.x_px, light.y_px);
   star.flux_e = light.flux_e;
   FitSettings fit_settings;
-  fit_settings.sigma_px = scene.sigma_px;
+  fit_settings.psf = scene.psf.sigma_at({light.x_px, light.y_px});
   fit_settings.model_error = model_error;
   fit_settings.settled_chi2 = 0.05;  // small compared to every margin
   fit_settings.most_steps = 8;
   constexpr double surely_star_sigmas = 0.5;
   fit_settings.good_enough_sigmas = surely_star_sigmas;
-  const TrailFit as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings);
+  TrailFit as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings);
   if (as_star.good(surely_star_sigmas)) return std::nullopt;
+  if (scene.psf.count > 1) {  // most stars are known by the nearest Gaussian
+    fit_settings.psf = scene.psf.at({light.x_px, light.y_px});
+    as_star = fit_trails(pixels, as_star.trails, {trail_place}, fit_settings);
+    if (as_star.good(surely_star_sigmas)) return std::nullopt;
+  }
   fit_settings.good_enough_sigmas = std::nullopt;
   const bool stars_trail = star.length_px >= settings.least_difference_px;
   TrailFit as_point;

@@ -4,6 +4,7 @@
 
 #include "core/detection/background.h"
 #include "core/detection/filtered_frame.h"
+#include "core/detection/psf.h"
 #include "core/detection/star_motion.h"
 #include "core/detection/trail_fit.h"
 
@@ -18,8 +19,14 @@ struct Scene {
   double saturation_dn;                   // lowest possibly clipped count, with read noise
   double sigma_px;                        // of a point source, including the pixel
   bool blooming;                          // charge above the full well flows along columns
+  PsfField psf;                           // with it: sigma_px is the width in the frame's middle
   const FilteredFrame* hidden = nullptr;  // whose hidden pixels are not used; null: none are
 
+  /// Takes a PSF that was measured.
+  void use(const PsfField& measured) {
+    psf = measured;
+    sigma_px = psf.sigma_at({(counts.columns - 1) / 2.0, (counts.rows - 1) / 2.0});
+  }
   bool contains(int x, int y) const {
     return x >= 0 && y >= 0 && x < counts.columns && y < counts.rows;
   }

@@ -148,6 +148,8 @@ FrameReport report(Numbers& n) {
   r.objects_rendered = 17;
   r.plan = "proper_motion refraction photon_noise";
   r.detection_off = true;
+  r.psf_fwhm_px = n.in(1, 4);
+  r.psf_stars = 99;
   return r;
 }
 
