@@ -151,7 +151,7 @@ std::optional<TrailFit> SourceMeasure::fit(const SourceMoments& m, double sigma_
   if (pixels.size() < 12) return std::nullopt;
   // The background's error, as far as a mesh cell can hide it.
   const double prior_e = 0.3 * std::sqrt(double(pixels[0].variance_e2));
-  const FitSettings fit_settings{.sigma_px = sigma_px, .background_sigma_e = prior_e};
+  const FitSettings fit_settings{.psf = sigma_px, .background_sigma_e = prior_e};
   TrailFit fit = fit_trails(pixels, {start}, {trail ? trail_line : trail_place}, fit_settings);
   if (!fit.converged) fit = fit_trails(pixels, {start}, {trail_place}, fit_settings);
   if (!fit.converged) return std::nullopt;

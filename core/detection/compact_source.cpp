@@ -122,10 +122,10 @@ class Candidate {
   /// Uniform trail of the same light and spread.
   const Trail& light() const { return light_; }
 
-  TrailFit fit(Trail start, unsigned free, int most_steps,
+  TrailFit fit(const Psf& psf, Trail start, unsigned free, int most_steps,
                std::optional<double> good_enough_sigmas = std::nullopt) const {
     FitSettings fit_settings;
-    fit_settings.sigma_px = scene_.sigma_px;
+    fit_settings.psf = psf;
     fit_settings.model_error = model_error_;
     fit_settings.settled_chi2 = 0.05;  // small compared to every margin
     fit_settings.most_steps = most_steps;
@@ -135,12 +135,12 @@ class Candidate {
   TrailFit as_point() const {
     Trail point = light_;  // not from a fitted star trail, which may lie anywhere along it
     point.length_px = 0.0;
-    return fit(point, trail_place, 8);
+    return fit(psf(), point, trail_place, 8);
   }
-  TrailFit as_line() const { return fit(light_, trail_line, 15); }
+  TrailFit as_line() const { return fit(psf(), light_, trail_line, 15); }
   double deviance_as_two(const Trail& star) const {
     FitSettings fit_settings;
-    fit_settings.sigma_px = scene_.sigma_px;
+    fit_settings.psf = psf();
     fit_settings.model_error = model_error_;
     fit_settings.settled_chi2 = 0.05;
     fit_settings.most_steps = 15;
@@ -184,6 +184,9 @@ class Candidate {
            as_line.trails[0].length_px >= 1.0;
   }
 
+  Psf psf() const { return scene_.psf.at({light_.x_px, light_.y_px}); }
+  Psf nearest_gaussian() const { return scene_.psf.sigma_at({light_.x_px, light_.y_px}); }
+
  private:
   const Scene& scene_;
   const DetectorSettings& settings_;
@@ -210,8 +213,13 @@ std::optional<Source> judge_among_stars(const Scene& scene, const Candidate& can
   Trail star = scene.star_trail(light.x_px, light.y_px);
   star.flux_e = light.flux_e;
   constexpr double surely_star_sigmas = 0.5;
-  const TrailFit as_star = candidate.fit(star, trail_place, 8, surely_star_sigmas);
+  TrailFit as_star =
+      candidate.fit(candidate.nearest_gaussian(), star, trail_place, 8, surely_star_sigmas);
   if (as_star.good(surely_star_sigmas)) return std::nullopt;
+  if (scene.psf.count > 1) {  // most stars are known by the nearest Gaussian
+    as_star = candidate.fit(candidate.psf(), as_star.trails[0], trail_place, 8, surely_star_sigmas);
+    if (as_star.good(surely_star_sigmas)) return std::nullopt;
+  }
   const bool stars_trail = star.length_px >= settings.least_difference_px;
   TrailFit as_point;
   if (stars_trail) as_point = candidate.as_point();

@@ -14,6 +14,7 @@
 #include "core/detection/hide_stars.h"
 #include "core/detection/line_profile.h"
 #include "core/detection/long_streak.h"
+#include "core/detection/psf_measure.h"
 #include "core/detection/scene.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_motion.h"
@@ -21,12 +22,6 @@
 
 namespace dmise {
 namespace {
-
-/// Gaussian width of the header's PSF including pixel integration.
-double effective_sigma_px(double fwhm_px) {
-  const double sigma = fwhm_px / std::sqrt(8 * std::log(2.0));
-  return std::sqrt(sigma * sigma + 1.0 / 12);
-}
 
 /// Lowest count of a clipped pixel: pixels at the full well have read noise.
 double lowest_clipped_dn(const FrameHeader& header) {
@@ -220,13 +215,16 @@ FrameReport unmeasured_report(const CountImage& counts, const FrameHeader& heade
 }
 
 FrameReport make_report(const CountImage& counts, const FrameHeader& header,
-                        const Background& background, double sigma_px, double threshold_snr) {
+                        const Background& background, const PsfField& psf, double threshold_snr) {
+  const double sigma_px = psf.at(centre_of(counts)).equivalent_sigma_px();
   FrameReport r = unmeasured_report(counts, header);
   r.background_e = (background.median_level_dn() - header.bias_dn) * header.gain_e_per_dn;
   r.noise_e = background.median_sigma_dn() * header.gain_e_per_dn;
   const double least_e = threshold_snr * r.noise_e / std::sqrt(kernel_square_sum(sigma_px));
   r.limiting_magnitude = header.zero_point_mag - 2.5 * std::log10(least_e / header.exposure_s) -
                          extinction_mag(header, centre_of(counts));
+  r.psf_fwhm_px = fwhm_before_pixel(sigma_px);
+  r.psf_stars = std::uint32_t(psf.stars);
   r.saturated_px = count_saturated(counts, lowest_clipped_dn(header));
   return r;
 }
@@ -243,11 +241,13 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
               stars,
               header.gain_e_per_dn,
               lowest_clipped_dn(header),
-              effective_sigma_px(header.psf_fwhm_px),
-              header.detector && header.detector->blooming};
+              sigma_with_pixel(header.psf_fwhm_px),
+              header.detector && header.detector->blooming,
+              PsfField::gaussian(header.psf_fwhm_px)};
   FilteredFrame filtered(counts.columns, counts.rows, scene.sigma_px);
   const auto components = find_components(counts, background, scene.sigma_px, settings.connect_snr,
                                           settings.seed_snr, threads, &filtered);
+  scene.use(measure_psf(scene, components));
   DetectionResult result;
   std::optional<KnownStars> known;
   if (sky) known = hide_stars(scene, filtered, *sky, header, result.stars);
@@ -268,8 +268,10 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   if (!known) filtered.flatten(threads);
   for (Source& source : find_faint_streaks(scene, filtered, settings, threads))
     judged.sources.push_back(std::move(source));
-  result.report = make_report(counts, header, background, scene.sigma_px, settings.seed_snr);
+  result.report = make_report(counts, header, background, scene.psf, settings.seed_snr);
   result.report.star_like = judged.star_like;
+  result.report.stars_expected = std::uint32_t(result.stars.expected);
+  result.report.stars_found = std::uint32_t(result.stars.found);
   for (Source& source : distinct(std::move(judged.sources), scene.sigma_px)) {
     if (!wcs_sees_sky(header.wcs, {source.trail().x_px, source.trail().y_px})) continue;
     source.at_edge |= may_leave(counts, source);

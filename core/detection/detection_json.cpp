@@ -148,6 +148,10 @@ std::string to_json(const FrameReport& r, const UtcText& utc) {
   line.measured("limiting_magnitude", r.limiting_magnitude, measured);
   line.measured("background_e", r.background_e, measured);
   line.measured("noise_e", r.noise_e, measured).field("zero_point_mag", r.zero_point_mag);
+  line.measured("psf_fwhm_px", r.psf_fwhm_px, measured);
+  line.measured("psf_stars", r.psf_stars, measured);
+  line.measured("stars_expected", r.stars_expected, measured);
+  line.measured("stars_found", r.stars_found, measured);
   line.field("detections", r.detections).measured("star_like", r.star_like, measured);
   line.measured("saturated_px", r.saturated_px, measured);
   line.field("stars_rendered", r.stars_rendered).field("objects_rendered", r.objects_rendered);

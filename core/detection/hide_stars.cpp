@@ -46,7 +46,7 @@ void mark(const StarImage& image, float least, PixelMask& lit) {
 std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
                                      const CatalogueSky& sky, const FrameHeader& header,
                                      StarsSeen& seen) {
-  const double unit = std::sqrt(kernel_square_sum(scene.sigma_px));
+  const double unit = std::sqrt(kernel_square_sum(frame.sigma_px));
   // The light of the faintest star that is subtracted, also where noise is half of the middle.
   const double least_e =
       0.5 * subtracted_snr * scene.background.median_sigma_dn() * scene.gain_e_per_dn / unit;
@@ -68,10 +68,11 @@ std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
     const double in_noise = light.middle * star.signal_e / noise_e;
     const double hidden = hidden_snr / std::exp(subtracted_sigmas * light.scatter);
     const Trail trail = scene.star_trail(at.x_px, at.y_px);
-    image.draw(trail, std::sqrt(2.0) * scene.sigma_px, in_noise / unit,
+    const double sigma_px = scene.psf.sigma_at(at);
+    image.draw(trail, std::hypot(sigma_px, frame.sigma_px), in_noise / unit,
                std::min(subtracted_snr, hidden));
     subtract(image, float(hidden), frame);
-    image.draw(trail, scene.sigma_px, in_noise, lit_noise);
+    image.draw(trail, sigma_px, in_noise, lit_noise);
     mark(image, float(lit_noise), lit);
     const double most =
         light.scatter > flickering ? HUGE_VAL : std::exp(most_sigmas * light.scatter);

@@ -5,6 +5,7 @@
 #include "core/detection/background.h"
 #include "core/detection/filtered_frame.h"
 #include "core/detection/known_stars.h"
+#include "core/detection/psf.h"
 #include "core/detection/star_motion.h"
 #include "core/detection/trail_fit.h"
 
@@ -19,11 +20,17 @@ struct Scene {
   double saturation_dn;                   // lowest possibly clipped count, with read noise
   double sigma_px;                        // of a point source, including the pixel
   bool blooming;                          // charge above the full well flows along columns
+  PsfField psf;                           // with it: sigma_px is the width in the frame's middle
   const FilteredFrame* hidden = nullptr;  // whose hidden pixels are not used; null: none are
   const KnownStars* known = nullptr;      // whose pixels are not used; null: none are known
   const FilteredFrame* flat =
       nullptr;  // of which the scatter of the sky is known; null: noise alone
 
+  /// Takes a PSF that was measured.
+  void use(const PsfField& measured) {
+    psf = measured;
+    sigma_px = psf.sigma_at({(counts.columns - 1) / 2.0, (counts.rows - 1) / 2.0});
+  }
   bool contains(int x, int y) const {
     return x >= 0 && y >= 0 && x < counts.columns && y < counts.rows;
   }

@@ -15,10 +15,12 @@ constexpr double background_prior = 0.1;  // error of the mesh, in units of a pi
 
 /// Rejects pixels far above or below the model, with their neighbours.
 std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels, const Trail& trail,
-                                       double background_e, double tolerance, double sigma_px) {
+                                       double background_e, double tolerance, const Psf& psf) {
+  const TrailLight light(trail, psf);
+  TrailDerivatives unused{};
   std::vector<const FitPixel*> outliers;
   for (const FitPixel& p : pixels) {
-    const double model = trail_value(trail, sigma_px, p.x, p.y);
+    const double model = light(p.x, p.y, unused);
     const double tolerated = tolerance * model;
     const double limit =
         4.0 * std::sqrt(p.variance_e2 + std::max(model, 0.0) + tolerated * tolerated);
@@ -123,7 +125,9 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
                                                     : unsigned(trail_line);
   Trail trail = start;
   if (!streak) trail.length_px = 0.0;
-  const double margin_px = 3 * scene.sigma_px + 2.5;
+  const PixelPosition middle{start.x_px, start.y_px};
+  const double sigma_px = scene.psf.sigma_at(middle);
+  const double margin_px = 3 * sigma_px + 2.5;
   const double tolerance = std::max(0.15, 3 * model_error);
   std::vector<FitPixel> pixels;
   double moved_px = 0.0;
@@ -131,26 +135,27 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
   for (int round = 0; round < least_rounds || (round < last_round && moved_px > settled_px);
        ++round) {
     if (!plausible(scene, trail)) return std::nullopt;
+    // The nearest Gaussian until the place is known.
+    const Psf psf = round + 1 < least_rounds || draft ? Psf(sigma_px) : scene.psf.at(middle);
     const auto all = pixels_near(scene, trail, margin_px);
     // A starting trail has a known brightness only for a streak.
-    pixels = round > 0
-                 ? without_outliers(all, trail, source.fit.background_e, tolerance, scene.sigma_px)
+    pixels = round > 0 ? without_outliers(all, trail, source.fit.background_e, tolerance, psf)
              : streak && start.length_px > sloped_from_px
-                 ? without_outliers(all, trail, 0.0, 1.0, scene.sigma_px)
+                 ? without_outliers(all, trail, 0.0, 1.0, psf)
                  : all;
     if (pixels.size() < 12 || pixels.size() < all.size() / 2) return std::nullopt;
     FitSettings settings;
-    settings.sigma_px = scene.sigma_px;
+    settings.psf = psf;
     settings.model_error = model_error;
     settings.background_sigma_e = background_prior * std::sqrt(double(pixels.front().variance_e2));
     settings.most_steps = 20;
     source.fit = fit_trails(pixels, {trail}, {source.free}, settings);
-    moved_px = move_ends(trail, source.fit.trails[0], margin_px - 2 * scene.sigma_px);
+    moved_px = move_ends(trail, source.fit.trails[0], margin_px - 2 * sigma_px);
   }
   if ((!draft && moved_px > settled_px) || !plausible(scene, trail) || !(source.fit.cov(2, 2) > 0))
     return std::nullopt;
   const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
-  const double edge = 2 * scene.sigma_px;
+  const double edge = 2 * sigma_px;
   for (const double half : {-trail.length_px / 2, trail.length_px / 2}) {
     const double x = trail.x_px + half * c, y = trail.y_px + half * s;
     if (x < edge || y < edge || x > scene.counts.columns - 1 - edge ||

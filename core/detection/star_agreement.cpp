@@ -44,22 +44,25 @@ StarLightRatio ratio_of(std::vector<double> logs) {
   return {std::exp(middle), std::max(scatter, 0.1)};
 }
 
+/// SNR of a star's middle in the frame through the filter.
+double peak_snr(const Scene& scene, const FilteredFrame& frame, const Trail& trail,
+                double signal_e) {
+  Trail lit = trail;
+  lit.flux_e = signal_e;
+  const int x = std::clamp(int(std::lround(trail.x_px)), 0, scene.counts.columns - 1);
+  const int y = std::clamp(int(std::lround(trail.y_px)), 0, scene.counts.rows - 1);
+  const double noise_e = scene.background.sigma_dn(x, y) * scene.gain_e_per_dn;
+  const double sigma_px = std::hypot(scene.sigma_px, frame.sigma_px);
+  return trail_value(lit, sigma_px, trail.x_px, trail.y_px) /
+         (std::sqrt(kernel_square_sum(frame.sigma_px)) * noise_e);
+}
+
 bool is_inside(const Scene& scene, PixelPosition place) {
   return place.x_px >= 0 && place.y_px >= 0 && place.x_px <= scene.counts.columns - 1 &&
          place.y_px <= scene.counts.rows - 1;
 }
 
 }  // namespace
-
-double peak_snr(const Scene& scene, const Trail& trail, double signal_e) {
-  Trail lit = trail;
-  lit.flux_e = signal_e;
-  const int x = std::clamp(int(std::lround(trail.x_px)), 0, scene.counts.columns - 1);
-  const int y = std::clamp(int(std::lround(trail.y_px)), 0, scene.counts.rows - 1);
-  const double noise_e = scene.background.sigma_dn(x, y) * scene.gain_e_per_dn;
-  return trail_value(lit, std::sqrt(2.0) * scene.sigma_px, trail.x_px, trail.y_px) /
-         (std::sqrt(kernel_square_sum(scene.sigma_px)) * noise_e);
-}
 
 StarAgreement::StarAgreement(const Scene& scene, const FilteredFrame& frame,
                              const std::vector<ExpectedStar>& stars)
@@ -68,7 +71,7 @@ StarAgreement::StarAgreement(const Scene& scene, const FilteredFrame& frame,
   for (const ExpectedStar& star : stars) {
     if (!is_inside(scene, star.place)) continue;
     const Trail trail = scene.star_trail(star.place.x_px, star.place.y_px);
-    const double peak = peak_snr(scene, trail, star.signal_e);
+    const double peak = peak_snr(scene, frame, trail, star.signal_e);
     if (peak < looked_for_snr) continue;
     ++expected_;
     const auto off =
@@ -87,10 +90,11 @@ StarAgreement::StarAgreement(const Scene& scene, const FilteredFrame& frame,
     // The median of a distance in the plane is 1.18 standard deviations of one axis.
     scatter_px_ = std::max(0.1, quantile_of(std::move(apart), 0.5) / 1.18);
   }
-  measure_light(scene, stars);
+  measure_light(scene, frame, stars);
 }
 
-void StarAgreement::measure_light(const Scene& scene, const std::vector<ExpectedStar>& stars) {
+void StarAgreement::measure_light(const Scene& scene, const FilteredFrame& frame,
+                                  const std::vector<ExpectedStar>& stars) {
   constexpr double least_ratio = 0.02;  // behind clouds
   std::vector<std::vector<double>> logs(light_.size());
   std::vector<double> all;
@@ -98,12 +102,13 @@ void StarAgreement::measure_light(const Scene& scene, const std::vector<Expected
     const PixelPosition at = star.place + shift_;
     if (!is_inside(scene, at)) continue;
     Trail trail = scene.star_trail(at.x_px, at.y_px);
-    const double peak = peak_snr(scene, trail, star.signal_e);
+    const double peak = peak_snr(scene, frame, trail, star.signal_e);
     if (peak < measured_snr || peak > crowded_snr) continue;
     trail.flux_e = 1.0;
+    const Psf psf = scene.psf.at(at);
     double sum = 0.0, squares = 0.0;
     for (const FitPixel& p : pixels_near(scene, trail, 2 * scene.sigma_px + 0.5)) {
-      const double g = trail_value(trail, scene.sigma_px, p.x, p.y);
+      const double g = trail_value(trail, psf, p.x, p.y);
       sum += g * p.signal_e;
       squares += g * g;
     }

@@ -29,7 +29,8 @@ class StarAgreement {
   const StarLightRatio& light_at(PixelPosition place) const;
 
  private:
-  void measure_light(const Scene& scene, const std::vector<ExpectedStar>& stars);
+  void measure_light(const Scene& scene, const FilteredFrame& frame,
+                     const std::vector<ExpectedStar>& stars);
   std::size_t cell_of(PixelPosition place) const;
 
   int columns_, rows_;            // of the frame
@@ -38,8 +39,5 @@ class StarAgreement {
   double scatter_px_ = 0.3;
   std::vector<StarLightRatio> light_;  // of a mesh of cells
 };
-
-/// SNR of a star's middle in a frame through the filter of a point.
-double peak_snr(const Scene& scene, const Trail& trail, double signal_e);
 
 }  // namespace dmise

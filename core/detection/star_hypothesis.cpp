@@ -70,7 +70,7 @@ bool point_beats_star(const Scene& scene, const Source& source, const DetectorSe
   star.flux_e = point.flux_e;
   const auto pixels = pixels_near(scene, star, 2.5 * scene.sigma_px + 0.5);
   FitSettings fit_settings;
-  fit_settings.sigma_px = scene.sigma_px;
+  fit_settings.psf = scene.psf.at({point.x_px, point.y_px});
   fit_settings.model_error = std::max(source.model_error, settings.model_error);
   fit_settings.settled_chi2 = 0.05;  // small against every margin
   fit_settings.most_steps = 15;
@@ -86,7 +86,7 @@ bool beats_stars(const Scene& scene, const Source& source, const DetectorSetting
   const double margin_px = 2.5 * scene.sigma_px + 0.5;
   const auto pixels = pixels_near(scene, line, margin_px);
   FitSettings fit_settings;
-  fit_settings.sigma_px = scene.sigma_px;
+  fit_settings.psf = scene.psf.at({line.x_px, line.y_px});
   fit_settings.model_error = std::max(source.model_error, settings.model_error);
   fit_settings.settled_chi2 = 0.05;  // small against every margin
   fit_settings.most_steps = 15;

@@ -13,9 +13,11 @@ constexpr double spare_px = 3.0;  // by which a trail may move while it is match
 
 double snr_of(const Scene& scene, const std::vector<FitPixel>& pixels, Trail trail) {
   trail.flux_e = 1.0;
+  const TrailLight light(trail, scene.psf.at({trail.x_px, trail.y_px}));
+  TrailDerivatives unused{};
   double sum = 0.0, squares = 0.0;
   for (const FitPixel& p : pixels) {
-    const double g = trail_value(trail, scene.sigma_px, p.x, p.y);
+    const double g = light(p.x, p.y, unused);
     sum += g * p.signal_e / p.variance_e2;
     squares += g * g / p.variance_e2;
   }

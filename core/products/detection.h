@@ -88,8 +88,14 @@ struct FrameReport {
   double background_e = 0.0;        // median [e-/px]
   double noise_e = 0.0;             // median of the per-pixel noise [e-]
   double zero_point_mag = 0.0;      // magnitude of a source of 1 e-/s
-  std::uint32_t detections = 0;     // published
-  std::uint32_t star_like = 0;      // sources that move like stars
+  // Of the Gaussian with the PSF's sum of squares in the frame's middle, before pixel integration.
+  double psf_fwhm_px = 0.0;
+  std::uint32_t psf_stars = 0;   // from which the PSF was measured; 0: it is the header's
+  // Stars of a catalogue that stand well out of the noise where the header points, and how many of
+  // them the frame shows there.
+  std::uint32_t stars_expected = 0, stars_found = 0;
+  std::uint32_t detections = 0;  // published
+  std::uint32_t star_like = 0;   // sources that move like stars
   std::uint32_t saturated_px = 0;
   std::uint32_t stars_rendered = 0, objects_rendered = 0;
   std::string plan;  // "effect effect ..." that ran, in order

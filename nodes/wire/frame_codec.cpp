@@ -7,7 +7,8 @@
 #define DMISE_REPORT_FIELDS(X) \
   X(sensor) X(frame) X(boresight_ra_rad) X(boresight_dec_rad) X(limiting_magnitude) \
   X(background_e) X(noise_e) X(zero_point_mag) X(detections) X(star_like) X(saturated_px) \
-  X(stars_rendered) X(objects_rendered) X(plan) X(detection_off)
+  X(stars_rendered) X(objects_rendered) X(plan) X(detection_off) \
+  X(psf_fwhm_px) X(psf_stars) X(stars_expected) X(stars_found)
 // clang-format on
 
 namespace dmise {

@@ -238,6 +238,7 @@ void check(const FrameReport& report) {
   not_negative(report.noise_e, "noise_e");
   finite(report.zero_point_mag, "zero_point_mag");
   utf8(report.plan, text_limit_bytes, "plan");
+  not_negative(report.psf_fwhm_px, "psf_fwhm_px");
 }
 
 void check(const Detection& d) {

@@ -33,7 +33,7 @@ std::vector<FitPixel> field(const std::vector<Trail>& trails, int size, std::mt1
 
 FitSettings settings() {
   FitSettings s;
-  s.sigma_px = sigma_px;
+  s.psf = sigma_px;
   s.most_steps = 40;
   return s;
 }

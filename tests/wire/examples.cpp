@@ -148,6 +148,10 @@ FrameReport report(Numbers& n) {
   r.objects_rendered = 17;
   r.plan = "proper_motion refraction photon_noise";
   r.detection_off = true;
+  r.psf_fwhm_px = n.in(1, 4);
+  r.psf_stars = 99;
+  r.stars_expected = 120;
+  r.stars_found = 118;
   return r;
 }
 

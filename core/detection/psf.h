@@ -1,0 +1,68 @@
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "core/base/pixel.h"
+
+namespace dmise {
+
+/// Light of a point source over pixels: concentric round Gaussians whose weights sum to 1. Each
+/// includes the pixel: 1/12 px^2 of its variance. Weights of a mixture may be negative, as the dark
+/// rings of diffraction are.
+struct Psf {
+  struct Part {
+    double weight = 1.0, sigma_px = 1.0;
+  };
+  static constexpr std::size_t most = 6;
+
+  std::array<Part, most> parts{};
+  std::size_t count = 1;
+
+  Psf(double sigma_px = 1.0) { parts[0].sigma_px = sigma_px; }  // one Gaussian
+
+  /// Width of the Gaussian with the same sum of squares, and so with the same matched-filter SNR.
+  double equivalent_sigma_px() const;
+};
+
+/// Variance that pixels add to a Gaussian [px^2].
+inline constexpr double pixel_variance_px2 = 1.0 / 12;
+
+/// Standard deviation of a Gaussian of `fwhm_px` and pixels together.
+double sigma_with_pixel(double fwhm_px);
+/// FWHM [px] of a Gaussian before pixels widened it to `sigma_px`; 0 if it is no wider than they.
+double fwhm_before_pixel(double sigma_px);
+
+/// PSF of a frame: one shape, whose width changes over the frame by a polynomial of second order.
+/// `psf_measure.h` measures it.
+struct PsfField {
+  static constexpr std::size_t terms = 6;  // 1, u, v, u^2, u v, v^2
+  using Polynomial = std::array<double, terms>;
+
+  /// The same Gaussian everywhere, of a FWHM before pixel integration.
+  static PsfField gaussian(double fwhm_px);
+
+  /// Gaussian nearest to the PSF at a pixel, with the pixel.
+  double sigma_at(PixelPosition at) const;
+  Psf at(PixelPosition at) const;
+
+  double width_px = 1.0;   // sigma of the nearest Gaussian, without pixel, where the scale is 1
+  Polynomial log_scale{};  // of the width, over u and v
+  bool varies = false;     // whether log_scale is used
+  double least_log_scale = 0.0, most_log_scale = 0.0;  // what stars were seen to have
+  PixelPosition centre, half;                          // u = (x - centre.x) / half.x, v likewise
+  // Parts of the shape: widths in units of that Gaussian's, without pixel.
+  std::array<double, Psf::most> weights{1.0}, ratios{1.0};
+  std::size_t count = 1;
+  int stars = 0;  // it was measured from; 0: it was not
+
+  static Polynomial powers(double u, double v) { return {1, u, v, u * u, u * v, v * v}; }
+  PixelPosition unit(PixelPosition at) const {
+    return {(at.x_px - centre.x_px) / half.x_px, (at.y_px - centre.y_px) / half.y_px};
+  }
+
+ private:
+  double scale(PixelPosition at) const;
+};
+
+}  // namespace dmise

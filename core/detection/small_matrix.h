@@ -1,0 +1,40 @@
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+// Symmetric matrices of a few parameters, of which the first `n` rows and columns are used.
+namespace dmise {
+
+inline constexpr std::size_t most_parameters = 12;
+using SmallVector = std::array<double, most_parameters>;
+using SmallMatrix = std::array<SmallVector, most_parameters>;
+
+/// Replaces the lower triangle by its Cholesky factor; false if not positive definite.
+inline bool cholesky(SmallMatrix& m, std::size_t n) {
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t k = 0; k < j; ++k) m[j][j] -= m[j][k] * m[j][k];
+    if (!(m[j][j] > 0) || !std::isfinite(m[j][j])) return false;
+    m[j][j] = std::sqrt(m[j][j]);
+    for (std::size_t i = j + 1; i < n; ++i) {
+      for (std::size_t k = 0; k < j; ++k) m[i][j] -= m[i][k] * m[j][k];
+      m[i][j] /= m[j][j];
+    }
+  }
+  return true;
+}
+
+/// Solution of the system whose matrix has this Cholesky factor.
+inline SmallVector solve(const SmallMatrix& factor, SmallVector v, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < i; ++k) v[i] -= factor[i][k] * v[k];
+    v[i] /= factor[i][i];
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    for (std::size_t k = i + 1; k < n; ++k) v[i] -= factor[k][i] * v[k];
+    v[i] /= factor[i][i];
+  }
+  return v;
+}
+
+}  // namespace dmise
