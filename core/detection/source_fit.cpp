@@ -54,6 +54,28 @@ bool is_saturated(const Scene& scene, const Trail& trail) {
   return false;
 }
 
+/// Cuts a trail's ends at `margin_px` beyond the frame: how far out they are no pixel tells.
+void cut_to_frame(const Scene& scene, double margin_px, Trail& trail) {
+  const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
+  double from = -trail.length_px / 2, to = trail.length_px / 2;
+  const auto cut = [&](double middle, double way, double last) {
+    if (std::abs(way) < 1e-6) return;
+    const double a = (-margin_px - middle) / way, b = (last + margin_px - middle) / way;
+    from = std::max(from, std::min(a, b));
+    to = std::min(to, std::max(a, b));
+  };
+  cut(trail.x_px, c, scene.counts.columns - 1);
+  cut(trail.y_px, s, scene.counts.rows - 1);
+  const double share = (to - from) / trail.length_px;
+  if (!(share > 0 && share < 1)) return;
+  trail.x_px += 0.5 * (from + to) * c;
+  trail.y_px += 0.5 * (from + to) * s;
+  trail.length_px *= share;
+  trail.flux_e *= share;
+  trail.sagitta_px *= share * share;
+  trail.slope *= share;
+}
+
 /// Moves `trail` to `target`, but neither end by more than `limit_px`: light beyond was not
 /// examined. Returns the requested distance of the farther end.
 double move_ends(Trail& trail, const Trail& target, double limit_px) {
@@ -150,6 +172,7 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     settings.background_sigma_e = background_prior * std::sqrt(double(pixels.front().variance_e2));
     settings.most_steps = 20;
     source.fit = fit_trails(pixels, {trail}, {source.free}, settings);
+    if (streak) cut_to_frame(scene, sigma_px, source.fit.trails[0]);
     moved_px = move_ends(trail, source.fit.trails[0], margin_px - 2 * sigma_px);
   }
   if ((!draft && moved_px > settled_px) || !plausible(scene, trail) || !(source.fit.cov(2, 2) > 0))
