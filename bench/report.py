@@ -1,6 +1,6 @@
 """Measures, and writes docs/benchmarks.md from what it measured in this run.
 
-    report.py [--only NAME ..] [--also NAME ..] [--output FILE]
+    report.py [--only NAME ..] [--also NAME ..] [--output FILE] [--json FILE]
 
 Runs every `dmise bench NAME --json`, the demonstration, and the referees on its products. A figure is
 never kept from an earlier run. What fails is reported as failed.
@@ -9,6 +9,7 @@ never kept from an earlier run. What fails is reported as failed.
 import argparse
 import collections
 import datetime
+import fnmatch
 import json
 import os
 import pathlib
@@ -23,9 +24,28 @@ BINARY = ROOT / "build/release/bin/dmise"
 REGISTRATION = ROOT / "build/release/bin/test_pipeline"
 DEMO = ROOT / "launch/scenarios/demo.yaml"
 RUN = ROOT / "build/benchmark-run"
-ELSEWHERE = ("scaling", "all-sky")  # a document of its own, by bench/scaling.py; a part of frame
+# A document of its own, by bench/scaling.py; a part of frame; a section of its own.
+ELSEWHERE = ("scaling", "all-sky", "detect")
 LONG = ("network",)  # real time, a quarter of an hour
 SHORTER = {"effects": ("--scenes", "30")}  # as in the tests
+DETECTION = {  # figures of the detector and what they are; * stands for anything
+    "frame_s": "an all-sky frame, one thread, s",
+    "frame_*_s": "the same, another sky",
+    "frame*_peak_mb": "memory of the search beyond the frame, MB",
+    "frame*_stars": "stars in it",
+    "false_alarms_per_frame*": "in such frames",
+    "pd_shift_points_snr": "SNR at which half of all points are found, beyond the threshold",
+    "pd_shift_streaks_snr": "the same, the worst length of streaks",
+    "pd_shift_streak_*_snr": "the same, streaks of that many px",
+    "position_over_crlb_*": "rms error of place over the Cramer-Rao bound",
+    "nees_*": "squared error of place over its covariance; 1 if honest",
+    "magnitude_bias_sigma_*": "bias of electrons over their standard error",
+    "sensors_real_time_detecting": "all-sky sensors with a frame every 10 s that keep up",
+    "network_frame_cpu_detecting_s": "processors' time of one of their frames, s",
+    "network_cpu_share_detecting": "share of the processors that they took",
+    "network_overruns_detecting": "frames of theirs that were late",
+    "network_start_detecting_s": "until all of them were ready, s",
+}
 REFEREES = ("solve_field", "source_extractor_magnitudes", "skyfield_directions", "erfa_directions",
             "fitsverify_frames")
 
@@ -71,20 +91,42 @@ def bench_names():
             if name not in ELSEWHERE + LONG]
 
 
-def benches(names):
+def measure(name, *arguments):
+    """The figures of a benchmark, as its --json prints them, and why there are none."""
+    print(f"measuring {name}", file=sys.stderr)
+    done = output_of(BINARY, "bench", name, "--json", *SHORTER.get(name, ()), *arguments)
+    figures = [json.loads(line) for line in done.stdout.splitlines() if line.startswith('{"name":')]
+    reason = (done.stderr.strip() or "no reason given").splitlines()[-1][-100:]
+    return figures, "" if done.returncode == 0 or figures else reason
+
+
+def benches(names, measured, *arguments_of_network):
+    """The table of benchmarks; adds their figures to `measured`."""
     rows = []
     for name in names:
-        print(f"measuring {name}", file=sys.stderr)
-        done = output_of(BINARY, "bench", name, "--json", *SHORTER.get(name, ()))
-        figures = [line for line in done.stdout.splitlines() if line.startswith('{"name":')]
-        for line in figures:
-            m = json.loads(line)
+        figures, reason = measure(name, *(arguments_of_network if name == "network" else ()))
+        measured += figures
+        for m in figures:
             rows.append([m["name"], number(m["value"]), m.get("unit") or "", m.get("anchor") or "",
                          number(m.get("anchor_value")), number(m.get("ratio")),
                          number(m.get("target")), number(m.get("met"))])
-        if done.returncode != 0 and not figures:
-            rows.append([name, "failed", "", done.stderr.strip()[-100:], "", "", "", "no"])
+        if reason:
+            rows.append([name, "failed", "", reason, "", "", "", "no"])
     return table(("figure", "value", "unit", "anchor", "anchor's", "ratio", "target", "met"), rows)
+
+
+def detection(measured):
+    """The table of the detector: `dmise bench detect`, and how many sensors keep up with it."""
+    rows = []
+    for name, *arguments in (("detect",), ("network", "--detection-only")):
+        figures, reason = measure(name, *arguments)
+        measured += figures
+        for m in figures:
+            what = next((what for name_of, what in DETECTION.items() if fnmatch.fnmatch(m["name"], name_of)), "")
+            rows.append([f"`{m['name']}`", what, number(m["value"]), number(m.get("target")), number(m.get("met"))])
+        if reason:
+            rows.append([name, f"failed: {reason}", "", "", "no"])
+    return table(("figure", "of", "measured", "asked", "reached"), rows)
 
 
 def demonstration():
@@ -171,13 +213,20 @@ def main():
                         help="benchmarks to run; default all but " + ", ".join(LONG))
     parser.add_argument("--also", nargs="+", metavar="NAME", default=[], help="and these")
     parser.add_argument("--output", type=pathlib.Path, default=ROOT / "docs/benchmarks.md")
+    parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="write the figures of all benchmarks, too")
     options = parser.parse_args()
     for needed in (BINARY, REGISTRATION):
         if not needed.exists():
             sys.exit(f"{needed} is not built; run ./dmise bench report")
+    measured = []
+    names = (options.only or bench_names()) + options.also
+    detecting = not options.only or "detect" in names
+    others = [name for name in names if name != "detect"]
     sections = [("Machine", table(("", ""), machine())),
-                ("Against anchors", benches((options.only or bench_names()) + options.also)),
-                ("The demonstration", demonstration()), ("Referees", referees()),
+                ("Against anchors", benches(others, measured, *["--without-detection-only"] * detecting))]
+    if detecting:
+        sections.append(("Detection", detection(measured)))
+    sections += [("The demonstration", demonstration()), ("Referees", referees()),
                 ("Light against its label", registration()), ("Whole runs", whole_runs()),
                 ("Continuous integration", continuous_integration())]
     text = ("# Benchmarks\n\nWritten by `./dmise bench report`; every figure was measured in that run. An anchor is "
@@ -186,6 +235,8 @@ def main():
     options.output.parent.mkdir(exist_ok=True)
     options.output.write_text(text)
     print(options.output)
+    if options.json:
+        options.json.write_text("".join(json.dumps(m) + "\n" for m in measured))
 
 
 if __name__ == "__main__":

@@ -92,6 +92,8 @@ class SimulatedFrame {
     }
   }
 
+  /// The expected electrons, to be changed.
+  ExpectedElectronImage& expected() { return electrons_; }
   /// Photon noise (normal where it is large), read noise, gain, full well, ADC.
   CountImage expose() {
     CountImage counts(electrons_.columns, electrons_.rows);
