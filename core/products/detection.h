@@ -90,7 +90,7 @@ struct FrameReport {
   double zero_point_mag = 0.0;      // magnitude of a source of 1 e-/s
   // Of the Gaussian with the PSF's sum of squares in the frame's middle, before pixel integration.
   double psf_fwhm_px = 0.0;
-  std::uint32_t psf_stars = 0;   // from which the PSF was measured; 0: it is the header's
+  std::uint32_t psf_stars = 0;  // from which the PSF was measured; 0: it is the header's
   // Stars of a catalogue that stand well out of the noise where the header points, and how many of
   // them the frame shows there.
   std::uint32_t stars_expected = 0, stars_found = 0;
