@@ -75,17 +75,25 @@ std::string evaluator_of(const EffectSet& effects) {
   return effects.drawn_by_opengl() ? count + ", drawn by " + GlEvaluator().description() : count;
 }
 
+/// "1.5", or "[1.5, 2, 0]".
+std::string text_of(const std::vector<double>& numbers) {
+  std::string text;
+  for (const double number : numbers) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%s%g", text.empty() ? "" : ", ", number);
+    text += digits;
+  }
+  return numbers.size() == 1 ? text : "[" + text + "]";
+}
+
 /// The effects of a sensor's frames, with their parameters.
 std::string effects_text(const SensorConfig& sensor, const SceneFacts& scene) {
   std::string text;
   for (const EffectFacts* effect : effects_in(sensor, scene)) {
     std::string parameters;
-    for (const auto& [key, number] : parameters_in(sensor, *effect)) {
-      char pair[96];
-      std::snprintf(pair, sizeof pair, "%s%.*s = %g", parameters.empty() ? " (" : ", ",
-                    int(key.size()), key.data(), number);
-      parameters += pair;
-    }
+    for (const auto& [key, numbers] : parameters_in(sensor, *effect))
+      parameters +=
+          (parameters.empty() ? " (" : ", ") + std::string(key) + " = " + text_of(numbers);
     text += "  " + std::string(effect->name) + ": " + std::string(effect->what) + parameters +
             (parameters.empty() ? "\n" : ")\n");
   }
@@ -117,6 +125,17 @@ void print_effects(const Scenario& scenario, bool has_stars) {
     std::printf("effects of %s:\n%s", names.c_str(), text.c_str());
 }
 
+/// A number, or a list of them.
+void write_numbers(JsonWriter& json, const std::vector<double>& numbers) {
+  if (numbers.size() == 1) {
+    json.value(numbers[0]);
+    return;
+  }
+  json.begin_array();
+  for (const double number : numbers) json.value(number);
+  json.end_array();
+}
+
 void write_effects(JsonWriter& json, const Scenario& scenario, bool has_stars) {
   json.key("effects").begin_object();
   for (const auto& sensor : scenario.sensors) {
@@ -124,7 +143,8 @@ void write_effects(JsonWriter& json, const Scenario& scenario, bool has_stars) {
     for (const EffectFacts* effect : effects_in(sensor, facts_of(scenario, sensor, has_stars))) {
       json.begin_object().field("name", effect->name).field("what", effect->what);
       json.key("parameters").begin_object();
-      for (const auto& [key, number] : parameters_in(sensor, *effect)) json.field(key, number);
+      for (const auto& [key, numbers] : parameters_in(sensor, *effect))
+        write_numbers(json.key(key), numbers);
       json.end_object().end_object();
     }
     json.end_array();

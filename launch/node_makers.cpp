@@ -46,7 +46,7 @@ std::optional<Tick> unfinished_frame(const std::string& node, const Scenario& sc
   const SensorConfig& sensor = sensor_named(scenario, node);
   const std::uint32_t frames = frames_finished(node, directory);
   if (frames >= frames_within(sensor, scenario.duration)) return std::nullopt;
-  const SimTime end = frame_times(sensor, frames + 1).end;
+  const SimTime end = exposure_span(sensor, frames + 1).end;
   return tick_needed(scenario.interpolation, end, scenario.tick, scenario.last_tick());
 }
 

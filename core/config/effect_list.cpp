@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
+#include "core/config/instrument_config.h"
 #include "core/detector/detector.h"
 #include "core/effects/frame_effects.h"
 #include "core/facets/earthshine.h"
@@ -67,6 +68,7 @@ using LightEffects =
 std::vector<const EffectFacts*> list() {
   std::vector<const EffectFacts*> all;
   const auto add = [&]<class Effect>() { all.push_back(&Effect::facts); };
+  InstrumentEffects::for_each(add);
   PlaceEffects::for_each(add);
   LightEffects::for_each(add);
   ImageEffects::for_each(add);
@@ -90,6 +92,10 @@ void for_each_in(const SensorConfig& sensor, const SceneFacts& scene, const Imag
       if (!(sensor.sky.parts.*sky_part<Effect>)) return;
     visit.template operator()<Effect>(sensor);
   };
+  InstrumentEffects::for_each([&]<class Effect>() {
+    const Effect& effect = sensor.instrument;
+    if (effect.applies()) visit.template operator()<Effect>(effect);
+  });
   PlaceEffects::for_each(visit_in_scene);
   LightEffects::for_each(visit_in_scene);
   ImageEffects::for_each([&]<class Effect>() {
@@ -184,24 +190,28 @@ EffectSet recorded_effects(std::span<const PlannableEffect> effects, const Senso
   return set;
 }
 
-std::vector<std::pair<std::string_view, double>> parameters_in(const SensorConfig& sensor,
-                                                               const EffectFacts& effect) {
+std::vector<ParameterValue> parameters_in(const SensorConfig& sensor, const EffectFacts& effect) {
   const Camera& camera = sensor.camera;
   const Vignetting& v = camera.optics.vignetting;
   if (effect.name == Vignetting::facts.name)
-    return {{"natural", v.natural}, {"corner", v.corner}, {"power", v.power}};
+    return {{"natural", {double(v.natural)}}, {"corner", {v.corner}}, {"power", {v.power}}};
   if (effect.name == Streak::facts.name && sensor.effects.snapshots() > 0)
-    return {{"snapshots", sensor.effects.snapshots()}};
-  std::vector<std::pair<std::string_view, double>> numbers;
+    return {{"snapshots", {double(sensor.effects.snapshots())}}};
+  std::vector<ParameterValue> numbers;
+  InstrumentEffects::for_each([&]<class Effect>() {
+    if (Effect::facts.name == effect.name)
+      for (const InstrumentParameter& p : Effect::parameters())
+        numbers.push_back({p.key, numbers_of(p, sensor.instrument)});
+  });
   ImageEffects::for_each([&]<class Effect>() {
     if (Effect::facts.name == effect.name)
       for (const ImageParameter& p : Effect::parameters())
-        numbers.emplace_back(p.key, camera.optics.image.*p.value);
+        numbers.push_back({p.key, {camera.optics.image.*p.value}});
   });
   DetectorEffects::for_each([&]<class Effect>() {
     if (Effect::facts.name == effect.name)
       for (const DetectorParameter& p : Effect::parameters())
-        numbers.emplace_back(p.key, p.number_of(camera.detector));
+        numbers.push_back({p.key, {p.number_of(camera.detector)}});
   });
   return numbers;
 }
@@ -221,8 +231,8 @@ std::string effects_markdown() {
       "|---|---|---|---|---|---|\n";
   for (const EffectFacts* effect : all_effects()) {
     std::string keys;
-    for (const auto& [key, number] : parameters_in({}, *effect))
-      keys += (keys.empty() ? "`" : ", `") + std::string(key) + "`";
+    for (const auto& parameter : parameters_in({}, *effect))
+      keys += (keys.empty() ? "`" : ", `") + std::string(parameter.key) + "`";
     for (const auto cell : {effect->name, effect->what, effect->error_if_off, effect->source})
       text +=
           (cell == effect->name ? "| `" + std::string(cell) + "`" : "| " + std::string(cell)) + " ";

@@ -2,7 +2,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "core/config/scenario.h"
@@ -29,9 +28,14 @@ std::vector<PlannableEffect> plannable_effects(const SensorConfig& sensor, const
 EffectSet recorded_effects(std::span<const PlannableEffect> effects, const SensorConfig& sensor,
                            std::uint32_t frame);
 
-/// The parameters of an effect in a sensor: key and number.
-std::vector<std::pair<std::string_view, double>> parameters_in(const SensorConfig& sensor,
-                                                               const EffectFacts& effect);
+/// A parameter of an effect: its key in YAML, and its number or numbers.
+struct ParameterValue {
+  std::string_view key;
+  std::vector<double> numbers;
+};
+
+/// The parameters of an effect in a sensor.
+std::vector<ParameterValue> parameters_in(const SensorConfig& sensor, const EffectFacts& effect);
 
 /// docs/models/effects.md.
 std::string effects_markdown();

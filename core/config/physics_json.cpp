@@ -1,5 +1,6 @@
 #include "core/base/json.h"
 #include "core/config/effect_list.h"
+#include "core/config/instrument_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/pointing_config.h"
 #include "core/config/scenario.h"
@@ -51,6 +52,7 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   json.field("tracking", static_cast<int>(s.tracking)).field("roll_deg", s.roll_deg);
   json.field("exposure_s", s.exposure_s).field("cadence_s", s.cadence_s);
   json.field("first_exposure_s", s.first_exposure_s);
+  write_instrument_json(json, s.instrument);
   write_surroundings(json, s);
   json.key("effects").begin_array();
   for (const auto& name : effects_in_digest(s.effects)) json.value(name);

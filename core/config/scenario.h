@@ -13,6 +13,7 @@
 #include "core/detector/detector.h"
 #include "core/effects/accuracy.h"
 #include "core/effects/effects.h"
+#include "core/instrument/instrument.h"
 #include "core/optics/camera.h"
 #include "core/optics/seeing.h"
 #include "core/orbit/interpolation.h"
@@ -102,6 +103,7 @@ struct SensorConfig {
   AtmosphereConfig atmosphere;         // on the ground
   WeatherConfig weather;               // on the ground
   std::optional<SensorSeeing> seeing;  // none: no turbulence
+  Instrument instrument{};             // what it does not know of itself
   double mask_deg = 0.0;  // minimum elevation for `dmise visible`, on the ground, [0, 89]
   EffectSet effects;      // by the user; what a plan leaves to choose is as it is without a plan
   Accuracy accuracy{};    // what frames are planned for; none: effects run as above

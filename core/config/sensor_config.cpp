@@ -9,6 +9,7 @@
 #include "core/config/camera_config.h"
 #include "core/config/detector_config.h"
 #include "core/config/effect_list.h"
+#include "core/config/instrument_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/pointing_config.h"
 #include "core/config/search_path.h"
@@ -200,12 +201,15 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   }
   sensor.camera = read_camera(map.require("camera"));
   read_pointing(map.require("pointing"), bool(site), sensor);
+  read_instrument(map, sensor.instrument);
   const auto exposure = map.require("exposure_s");
   sensor.exposure_s = exposure.number({.least = 1e-6, .most = 3600.0});
   sensor.cadence_s = map.number("cadence_s", {.least = 1e-3, .most = 86400.0});
   if (sensor.cadence_s < sensor.exposure_s) exposure.fail("must be <= cadence_s");
   check_exposure(sensor.camera, exposure);
-  if (turn_rate_deg_per_s(sensor.pointing) * sensor.exposure_s > most_turn_deg)
+  const double rate_deg_per_s =
+      turn_rate_deg_per_s(sensor.pointing) + sensor.instrument.drift_size_rad_per_s() / deg;
+  if (rate_deg_per_s * sensor.exposure_s > most_turn_deg)
     exposure.fail("the camera must turn by no more than 10 deg within an exposure");
   const auto first = map.find("first_exposure_s");
   if (first) sensor.first_exposure_s = first->number(Bounds::not_negative());
@@ -227,6 +231,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
     sensor.mask_deg = mask->number(Bounds::between(0.0, 89.0));
   }
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
+  check_clock(map, sensor, duration);
   if (sensor.effects.has(SkyBackground::facts))
     check_sky_in_band(value, sensor.sky, sensor.camera.band, bool(site));
   check_point_spread(value, sensor);

@@ -178,6 +178,8 @@ std::string to_json(const Truth& t, const UtcText& utc) {
   line.array("middle_px", std::array<double, 2>{t.middle_x_px, t.middle_y_px});
   line.array("end_px", std::array<double, 2>{t.end_x_px, t.end_y_px});
   line.field("in_frame", t.in_frame).field("whole", t.whole).field("resolved", t.resolved);
+  if (const auto& q = t.camera_from_gcrs)
+    line.array("camera_from_gcrs", std::array<double, 4>{q->w, q->x, q->y, q->z});
   return line.end();
 }
 

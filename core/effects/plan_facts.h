@@ -73,6 +73,11 @@ struct PlanFacts {
   double annual_aberration_rad = 0.0, diurnal_aberration_rad = 0.0;  // largest in the field
   bool sees_horizon = false;                                         // the Earth is in the field
   double least_illumination = 1.0;                                   // by vignetting
+  // What the sensor does not know of itself.
+  double pointing_error_rad = 0.0;  // largest displacement in the field
+  double clock_error_s = 0.0;       // size, in the exposure
+  /// Largest speeds past a camera that moves by its clock.
+  double star_rate_rad_per_s = 0.0, object_rate_rad_per_s = 0.0;
   // Stars.
   double stars = 0.0;                                  // whose places are computed, to the limit
   std::array<double, star_limits> stars_brighter{};    // the same to each whole V magnitude

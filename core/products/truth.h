@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/base/sim_time.h"
+#include "core/frames/quaternion.h"
 
 namespace dmise {
 
@@ -13,7 +15,7 @@ struct Truth {
   std::uint32_t frame = 0;
   std::uint32_t catalogue_number = 0;
   std::string name;
-  SimTime start, middle, end;                    // of the exposure
+  SimTime start, middle, end;                    // of the exposure, as it was
   double true_range_m = 0.0;                     // at mid exposure, geometric
   double true_ra_rad = 0.0, true_dec_rad = 0.0;  // astrometric (geometric minus light time), mid
   double apparent_ra_rad = 0.0, apparent_dec_rad = 0.0;  // with the observer's aberration, mid
@@ -29,6 +31,9 @@ struct Truth {
   bool in_frame = false;  // some of its light is in the frame
   bool whole = false;     // start, middle and end are inside
   bool resolved = false;  // drawn with its shape, not as a point
+  /// Of the camera's axes from GCRS at mid exposure, where a sensor does not know them; none: they
+  /// are as in the frame's header.
+  std::optional<Quaternion> camera_from_gcrs;
 
   bool operator==(const Truth&) const = default;
 };

@@ -77,6 +77,8 @@ Encoded encode_body(const TruthSet& set) {
     t->set_start_ns(truth.start.ns);
     t->set_middle_ns(truth.middle.ns);
     t->set_end_ns(truth.end.ns);
+    if (const auto& q = truth.camera_from_gcrs)
+      put(t->mutable_camera_from_gcrs(), std::array<double, 4>{q->w, q->x, q->y, q->z});
   }
   return {MessageKind::truth_set, message.SerializeAsString(), {}};
 }
@@ -93,6 +95,10 @@ TruthSet decode_truths(std::string_view payload) {
     truth.start = {t.start_ns()};
     truth.middle = {t.middle_ns()};
     truth.end = {t.end_ns()};
+    if (t.camera_from_gcrs_size() > 0) {
+      const auto q = take<4>(t.camera_from_gcrs(), "camera_from_gcrs");
+      truth.camera_from_gcrs = Quaternion{q[0], q[1], q[2], q[3]};
+    }
     set.truths.push_back(std::move(truth));
   }
   return set;

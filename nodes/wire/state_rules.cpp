@@ -297,6 +297,9 @@ void check(const TruthSet& set) {
     for (const double value : {t.true_magnitude, t.rendered_x_px, t.rendered_y_px, t.start_x_px,
                                t.start_y_px, t.middle_x_px, t.middle_y_px, t.end_x_px, t.end_y_px})
       finite(value, "truths");
+    if (const auto& q = t.camera_from_gcrs)
+      in_range(q->w * q->w + q->x * q->x + q->y * q->y + q->z * q->z, 1 - 1e-6, 1 + 1e-6,
+               "camera_from_gcrs");
   }
 }
 

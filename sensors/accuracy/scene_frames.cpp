@@ -37,14 +37,15 @@ World world_around(const Scenario& scenario, const SensorConfig& sensor, const F
         },
         *message.state);
   };
+  const ExposureSpan span = exposure_span(sensor, times);
   const bool traps = sensor.camera.detector.persistence_fraction > 0.0;
   constexpr Tick knots = 3;  // that the highest order of interpolation takes beyond
-  const Tick last = std::min(scenario.last_tick(), times.end.ns / scenario.tick.ns + 1 + knots);
+  const Tick last = std::min(scenario.last_tick(), span.end.ns / scenario.tick.ns + 1 + knots);
   for (Tick tick = 0; tick <= last; ++tick) {
     for (const auto& message : environment.step(tick, {})) add(message);
     for (const auto& message : orbit.step(tick, {})) add(message);
     if (!traps)
-      world.forget_before(std::min(times.start, scenario.time_of(std::max<Tick>(0, tick - knots))));
+      world.forget_before(std::min(span.start, scenario.time_of(std::max<Tick>(0, tick - knots))));
   }
   return world;
 }

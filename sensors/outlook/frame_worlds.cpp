@@ -32,24 +32,26 @@ ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::siz
 }
 
 FrameWorlds::FrameWorlds(const Scenario& scenario, const SensorConfig& sensor, const Clock& clock)
-    : scenario_(scenario), environment_(alone(scenario, sensor), clock) {}
+    : scenario_(scenario), sensor_(sensor), environment_(alone(scenario, sensor), clock) {}
 
-FrameWorlds::Ticks FrameWorlds::ticks_of(const FrameTimes& exposure) const {
+FrameWorlds::Ticks FrameWorlds::ticks_of(const FrameTimes& commanded) const {
+  const ExposureSpan exposure = exposure_span(sensor_, commanded);
   const Tick last_tick = scenario_.last_tick();
   const Tick before = std::max<Tick>(0, exposure.start.ns / scenario_.tick.ns - 1);
   return {knot_ticks(scenario_.interpolation, before, last_tick).first,
           tick_needed(scenario_.interpolation, exposure.end, scenario_.tick, last_tick)};
 }
 
-World FrameWorlds::around(const FrameTimes& exposure, const ObjectPopulation& population,
+World FrameWorlds::around(const FrameTimes& commanded, const ObjectPopulation& population,
                           const StateSource& source) {
   World world(scenario_.interpolation, scenario_.last_tick());
   world.add(std::make_shared<const ObjectRoster>(population.roster));
-  const Ticks ticks = ticks_of(exposure);
+  const Ticks ticks = ticks_of(commanded);
+  const SimTime end = exposure_span(sensor_, commanded).end;
   for (Tick tick = ticks.first; tick <= ticks.last; ++tick) {
     if (!population.roster.objects.empty())
       world.add(std::make_shared<const ObjectStates>(source.at(tick, scenario_.time_of(tick))));
-    if (scenario_.time_of(tick) > exposure.end) continue;
+    if (scenario_.time_of(tick) > end) continue;
     for (const auto& message : environment_.step(tick, {})) {
       if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
         world.add(std::shared_ptr<const EnvironmentState>(message.state, state));

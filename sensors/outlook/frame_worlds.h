@@ -19,19 +19,21 @@ ObjectPopulation only_these(const ObjectPopulation& all, const std::set<std::siz
 /// Worlds around frames of one sensor, as published by the run's actors.
 class FrameWorlds {
  public:
+  /// `scenario` and `sensor` must outlive it.
   FrameWorlds(const Scenario& scenario, const SensorConfig& sensor, const Clock& clock);
 
   struct Ticks {
     Tick first = 0, last = 0;
   };
   /// Ticks that the states of a frame are interpolated from.
-  Ticks ticks_of(const FrameTimes& exposure) const;
+  Ticks ticks_of(const FrameTimes& commanded) const;
 
-  World around(const FrameTimes& exposure, const ObjectPopulation& population,
+  World around(const FrameTimes& commanded, const ObjectPopulation& population,
                const StateSource& source);
 
  private:
   const Scenario& scenario_;
+  const SensorConfig& sensor_;
   EnvironmentActor environment_;
 };
 

@@ -38,7 +38,7 @@ std::optional<Loss> first_loss(const Scenario& scenario, const SensorConfig& sen
                                std::uint32_t frames) {
   if (needed.roster.objects.empty()) return std::nullopt;
   for (const std::uint32_t frame : evenly(frames, most_frames_with_states)) {
-    const FrameTimes exposure = frame_times(sensor, frame);
+    const ExposureSpan exposure = exposure_span(sensor, frame);
     for (const Tick tick : {exposure.start.ns / scenario.tick.ns,
                             (exposure.end.ns + scenario.tick.ns - 1) / scenario.tick.ns}) {
       const Tick within = std::min<Tick>(tick, scenario.last_tick());

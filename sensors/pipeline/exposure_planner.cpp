@@ -11,6 +11,7 @@
 #include "core/optics/psf_table.h"
 #include "core/photometry/magnitude.h"
 #include "core/sky/shadow.h"
+#include "sensors/pipeline/error_facts.h"
 #include "sensors/pipeline/object_sampler.h"
 #include "sensors/pipeline/sky_facts.h"
 #include "sensors/pipeline/throughput.h"
@@ -127,6 +128,11 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
       f.light_time_rad =
           std::max(f.light_time_rad, 1.01 * norm(cross(motion.slope_m_per_s, line_m)) / range_m /
                                          speed_of_light_m_per_s);
+    const Vec<Gcrs> passing_m_per_s = motion.slope_m_per_s - middle.observer.velocity_m_per_s;
+    f.object_rate_rad_per_s =
+        std::max(f.object_rate_rad_per_s,
+                 f.star_rate_rad_per_s + 1.25 * norm(cross(passing_m_per_s, line_m)) /
+                                             std::max(range_m * range_m, 1.0));
     const auto sees = [&](const Vec<Gcrs>& position_m) {
       f.near_shadow = f.near_shadow || shadow.sunlit_fraction(position_m) < 1.0;
     };
@@ -168,6 +174,7 @@ PlanFacts ExposurePlanner::facts(const View& view, const std::vector<std::size_t
   PlanFacts f = of_sensor_;
   add_sky_facts(view, stars_.drawn_to_v_mag(), f);
   stars_.add(view, f);
+  add_error_facts(view, f);
   look_at_objects(view, objects, f);
   return f;
 }

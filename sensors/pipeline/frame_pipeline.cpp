@@ -145,7 +145,7 @@ RadianceMap FramePipeline::Work::radiance_in(const PipelineSettings::Part& part,
   EffectTimes elsewhere;
   expected_electrons(view, sources(part_stars ? &*part_stars : nullptr, part.shapes.get()),
                      part_optics, image, threads, elsewhere);
-  return radiance_of(view, times.seconds(), image, threads);
+  return radiance_of(view, view.times().seconds(), image, threads);
 }
 
 FramePipeline::FramePipeline(PipelineSettings settings, std::shared_ptr<const StarMap> stars,
@@ -173,7 +173,8 @@ FrameProducts FramePipeline::run(const FrameTimes& times, const World& world,
                                  StatesInField* states) {
   const auto make = [&](const FrameTimes& exposure) {
     if (!states) return work_->make(exposure, world);
-    return work_->make(exposure, states->around(world, work_->settings.sensor, exposure));
+    const PipelineSettings& settings = work_->settings;
+    return work_->make(exposure, states->around(world, settings.sensor, exposure, settings.seed));
   };
   FrameProducts frame;
   double total_s = 0.0;
@@ -204,6 +205,8 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   }
   const SensorConfig& sensor = planned;
   const View view(sensor, times, world, settings.seed);
+  std::optional<View> believed;  // where that is not the truth
+  if (view.errors().any()) believed.emplace(sensor, times, world, settings.seed, Belief::believed);
   LightSources light_sources = sources(stars ? &*stars : nullptr, settings.shapes.get());
   if (objects) light_sources.objects = &*objects;
   frame.counts = std::exchange(used_counts, {});
@@ -216,7 +219,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   if (settings.output.radiance_exr)
     for (const auto& part : settings.radiance_parts)
       frame.planes.radiance_parts.push_back({part.band, radiance_in(part, times, world)});
-  frame.header = header_of(view, settings, optics->fwhm_px());
+  frame.header = header_of(believed ? *believed : view, settings, optics->fwhm_px());
   if (planner) {
     frame.header.accuracy = sensor.accuracy.name;
     frame.header.error = frame.plan.error;
@@ -224,7 +227,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   const Exposure exposure{.seed = settings.seed,
                           .sensor = sensor.name,
                           .frame = times.frame,
-                          .exposure_s = times.seconds(),
+                          .exposure_s = view.times().seconds(),
                           .idle_s = sensor.cadence_s - sensor.exposure_s};
   make_planes(settings.output, view, exposure, light, threads, frame.planes);
   expose(

@@ -63,9 +63,10 @@ class FramePipeline {
   FramePipeline(PipelineSettings settings, std::shared_ptr<const StarMap> stars, Threads& threads);
   ~FramePipeline();
 
-  /// Makes one frame. `world` holds the states from the exposure of `first_frame_for` it on: with
-  /// persistence a frame depends on the ones before it, which are made first where they were not.
-  /// With `states` it holds ticks without states, which `states` propagates.
+  /// Makes one frame of an exposure as it is commanded (`frame_times`). `world` holds the states
+  /// from the exposure of `first_frame_for` it on: with persistence a frame depends on the ones
+  /// before it, which are made first where they were not. With `states` it holds ticks without
+  /// states, which `states` propagates.
   FrameProducts run(const FrameTimes& exposure, const World& world,
                     StatesInField* states = nullptr);
 

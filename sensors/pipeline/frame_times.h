@@ -17,6 +17,7 @@ struct FrameTimes {
   double seconds() const { return (end - start).seconds(); }
 };
 
+/// Returns an exposure as it is commanded, by the sensor's clock.
 inline FrameTimes frame_times(const SensorConfig& sensor, std::uint32_t frame) {
   const SimTime length = sim_seconds(sensor.exposure_s);
   const SimTime start{sim_seconds(sensor.first_exposure_s).ns +
@@ -24,12 +25,15 @@ inline FrameTimes frame_times(const SensorConfig& sensor, std::uint32_t frame) {
   return {frame, start, {start.ns + length.ns / 2}, start + length};
 }
 
-/// Exposures that end within the run.
-inline std::uint32_t frames_within(const SensorConfig& sensor, SimTime duration) {
-  std::uint32_t frame = 0;
-  const std::int64_t room = duration.ns - frame_times(sensor, 1).end.ns;
-  if (room >= 0) frame = static_cast<std::uint32_t>(room / sim_seconds(sensor.cadence_s).ns + 1);
-  return frame;
-}
+/// The times that a frame is made from: those of its exposure as it is commanded, and as the
+/// sensor's clock may have it.
+struct ExposureSpan {
+  SimTime start, end;
+};
+ExposureSpan exposure_span(const SensorConfig& sensor, const FrameTimes& commanded);
+ExposureSpan exposure_span(const SensorConfig& sensor, std::uint32_t frame);
+
+/// Returns the number of exposures that end within the run, whatever the sensor's clock.
+std::uint32_t frames_within(const SensorConfig& sensor, SimTime duration);
 
 }  // namespace dmise

@@ -170,6 +170,7 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
     put(start, truth.start_x_px, truth.start_y_px);
     put(middle, truth.middle_x_px, truth.middle_y_px);
     put(end, truth.end_x_px, truth.end_y_px);
+    if (view.errors().any()) truth.camera_from_gcrs = quaternion_of(mid.camera);
     truth_of.emplace(object, std::move(truth));
   }
   std::vector<Truth> truths;  // as listed

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/base/units.h"
+#include "core/frames/rotation_angle.h"
 #include "core/optics/projection.h"
 #include "core/visibility/crossing.h"
 #include "core/visibility/field_of_view.h"
@@ -55,10 +56,7 @@ class FieldCone {
     // A quarter more than attitudes show: those at start, middle and end, and more in a long
     // exposure, in which the camera may turn there and back.
     const auto turned = [&](SimTime a, SimTime b) {
-      const auto turn = moment(a).camera * moment(b).camera.inverse();
-      const auto& m = turn.m;
-      return std::atan2(std::hypot(m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]),
-                        m[0][0] + m[1][1] + m[2][2] - 1.0);
+      return rotation_angle_rad(moment(a).camera * moment(b).camera.inverse());
     };
     const int halves = std::max(1, int(std::ceil(half_s_ / longest_look_s)));
     for (int k = 0; k < 2 * halves; ++k) {

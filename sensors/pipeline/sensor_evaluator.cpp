@@ -24,7 +24,7 @@ SensorEvaluator::SensorEvaluator(PipelineSettings settings, const RunGrid& grid,
       clock_(settings.clock) {}
 
 Tick SensorEvaluator::ready_at(std::uint32_t frame) const {
-  return tick_needed(grid_.interpolation, frame_times(sensor_, frame).end, grid_.tick_length,
+  return tick_needed(grid_.interpolation, exposure_span(sensor_, frame).end, grid_.tick_length,
                      grid_.last_tick());
 }
 
@@ -73,7 +73,11 @@ void SensorEvaluator::add_tick(Tick tick) {
 }
 
 Tick SensorEvaluator::look_back() const {
-  const SimTime exposure = frame_times(sensor_, 1).end - frame_times(sensor_, 1).start;
+  SimTime exposure;  // the longest: a clock's error grows evenly
+  for (const std::uint32_t frame : {1u, std::max(1u, last_frame_)}) {
+    const ExposureSpan span = exposure_span(sensor_, frame);
+    exposure = std::max(exposure, span.end - span.start);
+  }
   const auto frames = std::min(pipeline_.most_frames_made_again(), last_frame_);
   const SimTime earlier{frames * sim_seconds(sensor_.cadence_s).ns};
   const std::int64_t ns = exposure.ns + earlier.ns + grid_.environment_every.ns;
@@ -101,7 +105,7 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
   while (next_frame_ <= last_frame_ && !stop_asked_()) {
     const FrameTimes exposure = frame_times(sensor_, next_frame_);
     if (ready_at(next_frame_) > tick) {
-      world_.forget_before(frame_times(sensor_, pipeline_.first_frame_for(next_frame_)).start);
+      world_.forget_before(exposure_span(sensor_, pipeline_.first_frame_for(next_frame_)).start);
       break;
     }
     FrameProducts frame = pipeline_.run(exposure, world_, states_ ? &*states_ : nullptr);

@@ -85,9 +85,10 @@ RoughPlaces& StatesInField::rough_places(SimTime t) {
 }
 
 World StatesInField::around(const World& world, const SensorConfig& sensor,
-                            const FrameTimes& times) {
+                            const FrameTimes& commanded, std::uint64_t seed) {
   World seen = world;
-  const KnotTicks ticks = world.ticks_for(times.start, times.end);
+  const ExposureSpan span = exposure_span(sensor, commanded);
+  const KnotTicks ticks = world.ticks_for(span.start, span.end);
   std::erase_if(instants_, [&](const auto& known) { return known.first < ticks.first; });
   const auto know = [&](std::vector<std::uint32_t> objects) {
     std::sort(objects.begin(), objects.end());
@@ -102,8 +103,8 @@ World StatesInField::around(const World& world, const SensorConfig& sensor,
   know(objects);
   if (!sensor.effects.has(SpaceObjects::facts)) return seen;
   {
-    const View view(sensor, times, seen);
-    const auto candidates = may_be_in_field(view, rough_places(times.middle));
+    const View view(sensor, commanded, seen, seed);
+    const auto candidates = may_be_in_field(view, rough_places(view.times().middle));
     objects.insert(objects.end(), candidates.begin(), candidates.end());
   }
   const auto count = std::uint32_t(world.object_count());

@@ -33,7 +33,8 @@ class StatesInField {
 
   /// Returns `world`, which has ticks without states, with those that the exposure needs: of
   /// platform, target and all objects that may be in the field.
-  World around(const World& world, const SensorConfig& sensor, const FrameTimes& times);
+  World around(const World& world, const SensorConfig& sensor, const FrameTimes& commanded,
+               std::uint64_t seed = 1);
 
  private:
   const StateInstants& instants(const World& world, Tick tick);

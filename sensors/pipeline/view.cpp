@@ -9,14 +9,16 @@
 
 namespace dmise {
 
-View::View(const SensorConfig& sensor, const FrameTimes& times, const World& world,
-           std::uint64_t seed)
+View::View(const SensorConfig& sensor, const FrameTimes& commanded, const World& world,
+           std::uint64_t seed, Belief belief)
     : sensor_(sensor),
-      times_(times),
+      errors_(belief == Belief::truth ? ExposureErrors(sensor, commanded, seed)
+                                      : ExposureErrors(commanded)),
+      times_(errors_.exposed()),
       world_(world),
       seed_(seed),
-      environment_(world.environment(times.middle)),
-      air_(world.site(sensor.name, times.middle)) {
+      environment_(world.environment(times_.middle)),
+      air_(world.site(sensor.name, times_.middle)) {
   if (const auto* site = std::get_if<SiteConfig>(&sensor.place)) {
     site_ = Site{site->latitude_deg, site->longitude_deg, site->height_m};
     site_m_ = itrs_from_geodetic(*site_);
@@ -30,14 +32,15 @@ View::View(const SensorConfig& sensor, const FrameTimes& times, const World& wor
   if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
     target_ = object_index(world.roster(), target->object, sensor.name + ": pointing.target");
   for (const auto& needed : {platform_, target_})
-    if (needed && !(world.has_state(*needed, times.start) && world.has_state(*needed, times.end)))
-      throw Error(sensor.name + ": " + world.roster().objects[*needed].name +
-                  " has no state at frame " + std::to_string(times.frame));
-  if (target_ && norm(world.motion(*target_, times.middle).position_m -
-                      observer(times.middle).position_m) < Sight::nearest_m)
+    for (const SimTime t : {commanded.start, commanded.end, times_.start, times_.end})
+      if (needed && !world.has_state(*needed, t))
+        throw Error(sensor.name + ": " + world.roster().objects[*needed].name +
+                    " has no state at frame " + std::to_string(commanded.frame));
+  if (target_ && norm(world.motion(*target_, commanded.middle).position_m -
+                      observer(commanded.middle).position_m) < Sight::nearest_m)
     throw Error(sensor.name + ": pointing.target: " + world.roster().objects[*target_].name +
-                " is where the sensor is, at frame " + std::to_string(times.frame));
-  aimed_ = pointing_scene(times.middle);
+                " is where the sensor is, at frame " + std::to_string(commanded.frame));
+  aimed_ = pointing_scene(commanded.middle);
   vignettes_ = acts<Vignetting>(sensor.effects, scene());
 }
 
@@ -68,7 +71,7 @@ PointingScene View::pointing_scene(SimTime t) const {
                       .observer = observer(t),
                       .itrs_from_gcrs = earth().itrs_from_gcrs(t),
                       .site = site_ ? &*site_ : nullptr};
-  if (target_ && (sensor_.tracking == Tracking::target || t == times_.middle)) {
+  if (target_ && (sensor_.tracking == Tracking::target || t == errors_.commanded().middle)) {
     const Motion target = world_.motion(*target_, t);
     scene.towards_target =
         target_direction(sensor_, scene, refraction_, target.position_m, target.slope_m_per_s);
@@ -78,8 +81,19 @@ PointingScene View::pointing_scene(SimTime t) const {
   return scene;
 }
 
+Rotation<CameraFrame, Gcrs> View::commanded_camera(SimTime reading) const {
+  return dmise::camera_from_gcrs(sensor_, aimed_, pointing_scene(reading));
+}
+
 Rotation<CameraFrame, Gcrs> View::camera_from_gcrs(SimTime t) const {
-  return dmise::camera_from_gcrs(sensor_, aimed_, pointing_scene(t));
+  // A body turns by itself, without the sensor's clock.
+  const bool by_clock = errors_.of_clock() && !std::holds_alternative<PointBody>(sensor_.pointing);
+  const SimTime reading = by_clock ? errors_.reading(t) : t;
+  auto camera = commanded_camera(reading);
+  // A mount on the ground is told axes of the Earth, as they are by its clock.
+  if (by_clock && site_)
+    camera = camera * earth().itrs_from_gcrs(reading).inverse() * earth().itrs_from_gcrs(t);
+  return errors_.of_pointing() ? errors_.true_from_commanded(t) * camera : camera;
 }
 
 ApparentPlaces View::places(SimTime t, const EffectSet& effects) const {

@@ -8,23 +8,33 @@
 #include "core/sky/apparent.h"
 #include "core/sky/occultation.h"
 #include "core/visibility/pointing.h"
-#include "sensors/pipeline/frame_times.h"
+#include "sensors/pipeline/exposure_errors.h"
 #include "sensors/pipeline/world.h"
 
 namespace dmise {
+
+/// Whether a view has the errors of the sensor's clock and pointing.
+enum class Belief {
+  truth,     // it has: so the frame is made
+  believed,  // none: so the sensor describes it
+};
 
 /// How one sensor sees the world during one exposure: where it is, where it points, and which pixel
 /// a direction falls on, at any time of the exposure.
 class View {
  public:
-  /// `world` must cover the exposure and outlive the view.
-  View(const SensorConfig& sensor, const FrameTimes& times, const World& world,
-       std::uint64_t seed = 1);
+  /// `commanded`: by the sensor's clock. `world` must cover its `exposure_span` and outlive the
+  /// view.
+  View(const SensorConfig& sensor, const FrameTimes& commanded, const World& world,
+       std::uint64_t seed = 1, Belief belief = Belief::truth);
   View(const View&) = delete;
   View& operator=(const View&) = delete;
 
   const SensorConfig& sensor() const { return sensor_; }
+  /// When the shutter is open.
   const FrameTimes& times() const { return times_; }
+  /// What the sensor does not know of this; none in a view of what it believes.
+  const ExposureErrors& errors() const { return errors_; }
   const World& world() const { return world_; }
   std::uint64_t seed() const { return seed_; }
   bool on_ground() const { return site_.has_value(); }
@@ -71,8 +81,11 @@ class View {
 
  private:
   PointingScene pointing_scene(SimTime t) const;
+  /// The attitude that the mount is told when its clock reads `reading`.
+  Rotation<CameraFrame, Gcrs> commanded_camera(SimTime reading) const;
 
   const SensorConfig& sensor_;
+  const ExposureErrors errors_;
   const FrameTimes times_;
   const World& world_;
   std::uint64_t seed_;

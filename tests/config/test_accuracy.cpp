@@ -96,6 +96,8 @@ TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeas
   sensor.camera.optics.spread.model = PointSpread::Model::diffraction;
   sensor.camera.optics.vignetting.natural = true;
   sensor.camera.optics.image.ghost_fraction = 1e-3;
+  sensor.instrument.offset_s = 1e-3;
+  sensor.instrument.bias_rad = {1e-6, 0, 0};
   Detector& d = sensor.camera.detector;
   d.dark_e_per_s = d.read_noise_e = d.column_noise_e = 1.0;
   d.prnu_rms = d.interpixel_coupling = d.nonlinearity = d.persistence_fraction = 0.01;

@@ -27,5 +27,21 @@ TEST(FrameTimes, CountOnlyExposuresThatEndWithinTheRun) {
   EXPECT_EQ(frames_within(every(20, 30), sim_seconds(19)), 0u);
 }
 
+TEST(FrameTimes, OfAWrongClockCountExposuresWhoseLatestEndIsWithinTheRun) {
+  SensorConfig sensor = every(2, 5);
+  EXPECT_EQ(frames_within(sensor, sim_seconds(22)), 5u);
+  sensor.instrument.offset_s = -0.5;
+  EXPECT_EQ(frames_within(sensor, sim_seconds(22)), 4u);
+  EXPECT_EQ(frames_within(sensor, sim_seconds(22.6)), 5u);
+  const ExposureSpan span = exposure_span(sensor, 2);
+  EXPECT_EQ(span.start, sim_seconds(5));
+  EXPECT_EQ(span.end, sim_seconds(7.5));
+  sensor.instrument.offset_s = 0.5;
+  EXPECT_EQ(frames_within(sensor, sim_seconds(22)), 5u);
+  EXPECT_EQ(exposure_span(sensor, 2).start, sim_seconds(4.5));
+  sensor.effects.set(ClockError::facts, false);
+  EXPECT_EQ(exposure_span(sensor, 2).start, sim_seconds(5));
+}
+
 }  // namespace
 }  // namespace dmise

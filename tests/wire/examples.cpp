@@ -218,6 +218,7 @@ Truth truth(Numbers& n) {
   t.in_frame = true;
   t.whole = n.in(0, 1) > 0.5;
   t.resolved = n.in(0, 1) > 0.5;
+  t.camera_from_gcrs = Quaternion{0.5, -0.5, 0.5, 0.5};
   return t;
 }
 

@@ -1,0 +1,95 @@
+#include "core/config/instrument_config.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/base/json.h"
+
+namespace dmise {
+namespace {
+
+using Kind = InstrumentParameter::Kind;
+
+void read_number(const YamlValue& value, const InstrumentParameter& p, Instrument& instrument) {
+  const bool is_rms = p.kind == Kind::rms || p.kind == Kind::rms_of_axes;
+  const Bounds bounds = Bounds::between(is_rms ? 0.0 : -p.most, p.most);
+  if (const auto* number = std::get_if<double Instrument::*>(&p.value)) {
+    instrument.** number = value.number(bounds) * p.unit;
+    return;
+  }
+  ImageAxes& axes = instrument.*std::get<ImageAxes Instrument::*>(p.value);
+  if (p.kind == Kind::rms_of_axes && value.is_scalar()) {
+    axes[0] = axes[1] = value.number(bounds) * p.unit;
+    return;
+  }
+  const auto numbers = value.numbers(axes.size(), bounds);
+  for (std::size_t k = 0; k < axes.size(); ++k) axes[k] = numbers[k] * p.unit;
+}
+
+template <class Effect>
+void read_effect(const YamlValue& value, Instrument& instrument) {
+  YamlMap map(value);
+  std::vector<const InstrumentParameter*> given;
+  std::string keys;
+  for (const auto& p : Effect::parameters()) {
+    keys += (keys.empty() ? "" : ", ") + std::string(p.key);
+    const auto number = map.find(p.key);
+    if (!number) continue;
+    for (const auto* other : given)
+      if (other->value == p.value)
+        number->fail("give one of " + std::string(other->key) + " and " + std::string(p.key),
+                     false);
+    read_number(*number, p, instrument);
+    given.push_back(&p);
+  }
+  map.done();
+  if (given.empty()) value.fail("needs one of " + keys, false);
+}
+
+}  // namespace
+
+void read_instrument(YamlMap& sensor, Instrument& instrument) {
+  InstrumentEffects::for_each([&]<class Effect>() {
+    if (const auto value = sensor.find(Effect::facts.name)) read_effect<Effect>(*value, instrument);
+  });
+}
+
+void check_clock(YamlMap& map, const SensorConfig& sensor, SimTime duration) {
+  const ClockError clock = acting_instrument(sensor.instrument, sensor.effects);
+  if (!clock.applies()) return;
+  const SimTime first = sim_seconds(sensor.first_exposure_s);
+  const YamlValue value = map.require(ClockError::facts.name);
+  char text[160];
+  if (const SimTime begins = clock.earliest(first); begins < SimTime{}) {
+    std::snprintf(text, sizeof text,
+                  "the first exposure may begin before the run; first_exposure_s must be >= %.6g",
+                  sensor.first_exposure_s - begins.seconds());
+    value.fail(text, false);
+  }
+  if (first + sim_seconds(sensor.exposure_s) > clock.surely_read_by(duration))
+    value.fail("the first exposure may end after the run does", false);
+}
+
+std::vector<double> numbers_of(const InstrumentParameter& p, const Instrument& instrument) {
+  if (const auto* number = std::get_if<double Instrument::*>(&p.value))
+    return {instrument.**number / p.unit};
+  std::vector<double> numbers;
+  for (const double number : instrument.*std::get<ImageAxes Instrument::*>(p.value))
+    numbers.push_back(number / p.unit);
+  return numbers;
+}
+
+void write_instrument_json(JsonWriter& json, const Instrument& instrument) {
+  InstrumentEffects::for_each([&]<class Effect>() {
+    if (!static_cast<const Effect&>(instrument).applies()) return;
+    json.key(Effect::facts.name).begin_object();
+    for (const auto& p : Effect::parameters()) {
+      json.key(p.key).begin_array();
+      for (const double number : numbers_of(p, instrument)) json.value(number);
+      json.end_array();
+    }
+    json.end_object();
+  });
+}
+
+}  // namespace dmise

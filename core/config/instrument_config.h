@@ -1,0 +1,22 @@
+#pragma once
+#include "core/config/scenario.h"
+#include "core/config/yaml_reader.h"
+
+namespace dmise {
+
+class JsonWriter;
+
+/// Reads `clock_error` and `pointing_error` of a sensor.
+void read_instrument(YamlMap& sensor, Instrument& instrument);
+
+/// Refuses a clock by which the first exposure may begin before the run or end after it. `map`: of
+/// the sensor, which is read.
+void check_clock(YamlMap& map, const SensorConfig& sensor, SimTime duration);
+
+/// What is not 0 of it, for digests; nothing where all is.
+void write_instrument_json(JsonWriter& json, const Instrument& instrument);
+
+/// Returns the numbers of a parameter in the unit of its key: one, or x, y and roll.
+std::vector<double> numbers_of(const InstrumentParameter& parameter, const Instrument& instrument);
+
+}  // namespace dmise

@@ -1,0 +1,25 @@
+#include "sensors/pipeline/frame_times.h"
+
+#include <algorithm>
+
+namespace dmise {
+
+ExposureSpan exposure_span(const SensorConfig& sensor, const FrameTimes& commanded) {
+  const ClockError clock = acting_instrument(sensor.instrument, sensor.effects);
+  if (!clock.applies()) return {commanded.start, commanded.end};
+  return {std::min(commanded.start, clock.earliest(commanded.start)),
+          std::max(commanded.end, clock.latest(commanded.end))};
+}
+
+ExposureSpan exposure_span(const SensorConfig& sensor, std::uint32_t frame) {
+  return exposure_span(sensor, frame_times(sensor, frame));
+}
+
+std::uint32_t frames_within(const SensorConfig& sensor, SimTime duration) {
+  const ClockError clock = acting_instrument(sensor.instrument, sensor.effects);
+  if (clock.applies()) duration = std::min(duration, clock.surely_read_by(duration));
+  const std::int64_t room = duration.ns - frame_times(sensor, 1).end.ns;
+  return room >= 0 ? static_cast<std::uint32_t>(room / sim_seconds(sensor.cadence_s).ns + 1) : 0;
+}
+
+}  // namespace dmise
