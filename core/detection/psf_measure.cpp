@@ -19,7 +19,8 @@ constexpr double background_prior = 0.1;  // error of the mesh, in units of a pi
 constexpr double shape_widths = 10.0;     // reach of the shape, in units of the width
 constexpr double width_floor = 0.01;      // scatter of widths that is no change over the frame
 constexpr double trails_from_px = 1.5;    // a shorter trail can't be told from a point
-constexpr double most_reduced_chi2 = 4.0, most_of_median_chi2 = 3.0;
+// Rings of an obscured aperture are no Gaussian, by ten times the noise of a bright star.
+constexpr double most_reduced_chi2 = 40.0, most_of_median_chi2 = 3.0;
 constexpr double outlier_scatters = 4.0;
 
 struct Star {
