@@ -31,6 +31,7 @@ Light light_around(const Scene& scene, const Component& component) {
     for (const auto& [first, last] : spans)
       for (int x = std::max(first, done + 1); x <= last; ++x) {
         done = x;
+        if (!scene.has_value(x, y)) continue;
         (scene.is_usable(x, y) ? out.usable : out.clipped).push_back(scene.pixel(x, y));
       }
   }

@@ -69,6 +69,12 @@ void hide(FilteredFrame& frame, const Component& component, int reach_px) {
       frame.hide(y, run.first_x - reach_px, run.last_x + reach_px);
 }
 
+void hide(FilteredFrame& frame, const PixelMask& unusable) {
+  for (int y = 0; y < frame.rows; ++y)
+    for (int x = 0; x < frame.columns; ++x)
+      if (unusable.at(x, y)) frame.hide(y, x, x);
+}
+
 struct Judged {
   std::vector<Source> sources;
   std::uint32_t star_like = 0;  // components classified as stars
@@ -187,7 +193,8 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
                     header.gain_e_per_dn,
                     lowest_clipped_dn(header),
                     effective_sigma_px(header.psf_fwhm_px),
-                    header.detector && header.detector->blooming};
+                    header.detector && header.detector->blooming,
+                    settings.unusable};
   FilteredFrame filtered(counts.columns, counts.rows, scene.sigma_px);
   const auto components = find_components(counts, background, scene.sigma_px, settings.connect_snr,
                                           settings.seed_snr, threads, &filtered);
@@ -197,6 +204,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   for (const Component& component : components) hide(filtered, component, reach_px);
   for (const auto& area : background.bent_cells(settings.most_bend_in_noise))
     for (int y = area.y0; y <= area.y1; ++y) filtered.hide(y, area.x0, area.x1);
+  if (scene.unusable) hide(filtered, *scene.unusable);
   filtered.flatten(threads);
   judged.star_like += std::uint32_t(std::erase_if(judged.sources, [&](const Source& source) {
     return is_row_of_stars(scene, source, settings);

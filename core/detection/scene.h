@@ -6,6 +6,7 @@
 #include "core/detection/filtered_frame.h"
 #include "core/detection/star_motion.h"
 #include "core/detection/trail_fit.h"
+#include "core/products/pixel_mask.h"
 
 namespace dmise {
 
@@ -18,14 +19,18 @@ struct Scene {
   double saturation_dn;                   // lowest possibly clipped count, with read noise
   double sigma_px;                        // of a point source, including the pixel
   bool blooming;                          // charge above the full well flows along columns
+  const PixelMask* unusable = nullptr;    // pixels without a value; null: all have one
   const FilteredFrame* hidden = nullptr;  // whose hidden pixels are not used; null: none are
 
   bool contains(int x, int y) const {
     return x >= 0 && y >= 0 && x < counts.columns && y < counts.rows;
   }
+  bool has_value(int x, int y) const { return !unusable || unusable->at(x, y) == 0; }
   bool saturated(int x, int y) const { return counts.at(x, y) >= saturation_dn; }
-  /// Whether a pixel is neither hidden nor clipped nor next to a clipped pixel's overflow.
+  /// Whether a pixel has a value and is neither hidden nor clipped nor next to a clipped pixel's
+  /// overflow.
   bool is_usable(int x, int y) const {
+    if (!has_value(x, y)) return false;
     if (saturated(x, y) || (hidden && hidden->row(y)[x] == 0)) return false;
     return !blooming ||
            !((y > 0 && saturated(x, y - 1)) || (y + 1 < counts.rows && saturated(x, y + 1)));
