@@ -1,10 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
-#include <optional>
 
+#include "core/base/error.h"
+#include "core/calibration/calibrated_detection.h"
 #include "core/detection/detect_file.h"
+#include "core/ingest/star_trails.h"
 #include "launch/commands.h"
+#include "launch/frame_options.h"
 #include "launch/star_catalogue_option.h"
 
 namespace dmise {
@@ -12,15 +15,41 @@ namespace {
 
 struct DetectOptions {
   std::string frame, catalogue;
+  bool report = false, blind = false;
   int threads = 1;
+  std::shared_ptr<FrameChoice> choice = std::make_shared<FrameChoice>();
 };
 
+CalibratedDetector::Result detected(const CalibratedDetector& detector, const DetectOptions& o,
+                                    const Frame& frame, Threads& threads) {
+  try {
+    return detector.detect(frame, {}, threads, o.blind);
+  } catch (const ConfigError&) {
+    throw;
+  } catch (const Error& e) {
+    throw Error(o.frame + ": " + e.what());
+  }
+}
+
 void print_detections(const DetectOptions& o) {
-  std::optional<CatalogueSky> sky;
-  if (auto stars = load_star_catalogue(o.catalogue)) sky.emplace(std::move(stars));
+  if (o.blind && o.catalogue == "none") throw ConfigError("--blind: takes a --catalogue");
   Threads threads(o.threads);
-  for (const auto& line : detect_file(o.frame, {}, threads, sky ? &*sky : nullptr).lines)
-    std::printf("%s\n", line.c_str());
+  CalibratedDetector detector(load_star_catalogue(o.catalogue));
+  detector.after_solution = [&](const CountImage& counts, FrameHeader& solved) {
+    set_trails_of_solved(counts, threads, solved);
+  };
+  FrameNotes last;
+  read_frames_of(o.frame, *o.choice, threads, [&](const Frame& frame) {
+    if (frame.notes != last) print_notes(o.frame, frame.notes);
+    last = frame.notes;
+    auto found = detected(detector, o, frame, threads);
+    if (found.solution)
+      std::fprintf(stderr, "note: %s: solved: %d stars, %.3f px rms\n", o.frame.c_str(),
+                   found.solution->plate.fit.count, found.solution->plate.fit.rms_px);
+    const auto lines = as_lines(std::move(found.detection), found.header, frame.notes);
+    if (o.report) std::printf("%s\n", lines.report.c_str());
+    for (const auto& line : lines.lines) std::printf("%s\n", line.c_str());
+  });
 }
 
 }  // namespace
@@ -31,8 +60,13 @@ void add_detect_command(CLI::App& app) {
       "detect",
       "Detects what is no star in a frame, from its counts and header and a catalogue of stars; "
       "JSON lines, the same as a run's detections.jsonl with the run's catalogue");
-  command->add_option("frame", o->frame, "FITS file of a run")->required();
+  command->add_option("frame", o->frame, "FITS file of a run, or of any camera")->required();
+  command->add_flag("--report", o->report,
+                    "print the frame's report, as in frames.jsonl, before its detections");
+  add_frame_options(*command, o->choice);
   add_star_catalogue_option(*command, o->catalogue, true);
+  command->add_flag("--blind", o->blind,
+                    "find where the frame points by its stars alone, before detection");
   command->add_option("--threads", o->threads, "number of threads")
       ->default_val(1)
       ->check(CLI::Range(1, 256));

@@ -5,7 +5,9 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/calibration/solve_frame.h"
+#include "core/ingest/star_trails.h"
 #include "launch/commands.h"
+#include "launch/frame_options.h"
 #include "launch/star_catalogue_option.h"
 #include "nodes/runtime/program/command_line.h"
 
@@ -17,6 +19,7 @@ struct SolveOptions {
   bool blind = false, json = false;
   double scale_low_arcsec = 0.0, scale_high_arcsec = 0.0, field_deg = 0.0;
   int threads = 1;
+  std::shared_ptr<FrameChoice> choice = std::make_shared<FrameChoice>();
 };
 
 /// Width of a frame on the sky at a scale in its middle.
@@ -64,20 +67,26 @@ void print_text(const FrameSolution& s) {
 }
 
 void solve(const SolveOptions& o) {
-  const Frame frame = read_frame(o.frame);
+  Threads threads(o.threads);
+  const Frame frame = read_any_frame(o.frame, *o.choice, threads);
+  print_notes(o.frame, frame.notes);
   SolveSettings settings{.blind = o.blind};
   set_widths(o, frame, settings.search);
   const auto stars = load_star_catalogue(o.catalogue);
-  Threads threads(o.threads);
   FrameSolution solution;
   try {
     solution = solve_frame(frame, *stars, settings, threads);
   } catch (const Error& e) {
     throw Error(o.frame + ": " + e.what());
   }
-  if (!o.out.empty()) write_frame(o.out, frame.counts, solved_header(frame.header, solution));
+  if (!o.out.empty()) {
+    FrameHeader header = solved_header(frame.header, solution);
+    if (frame.header.unknown.has(FrameFact::pointing))
+      set_trails_of_solved(frame.counts, threads, header);
+    write_frame(o.out, frame.counts, header);
+  }
   if (o.json)
-    std::printf("%s\n", to_json(solution, frame.header).c_str());
+    std::printf("%s\n", to_json(solution, frame.header, frame.notes).c_str());
   else
     print_text(solution);
 }
@@ -88,7 +97,8 @@ void add_solve_command(CLI::App& app) {
   auto o = std::make_shared<SolveOptions>();
   auto* command = app.add_subcommand(
       "solve", "Finds where a frame points, its plate and its zero point from its stars");
-  command->add_option("frame", o->frame, "FITS file of a run")->required();
+  command->add_option("frame", o->frame, "FITS file of a run, or of any camera")->required();
+  add_frame_options(*command, o->choice);
   command->add_flag("--blind", o->blind, "use neither the pointing nor the focal length");
   auto* field =
       command->add_option("--field", o->field_deg, "width of the frame [deg], within 10 %")

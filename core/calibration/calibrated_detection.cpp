@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/detection/detect_file.h"
 
 namespace dmise {
 namespace {
@@ -15,6 +16,14 @@ bool is_wrong(const StarsSeen& stars) {
   return !stars.known || std::hypot(stars.shift.x_px, stars.shift.y_px) > most_shift_px;
 }
 
+/// Whether enough is known of a frame to expect stars at their places with their light.
+bool expects_stars(const UnknownFacts& unknown) {
+  for (const FrameFact fact : {FrameFact::time, FrameFact::exposure, FrameFact::pointing,
+                               FrameFact::focal_length, FrameFact::zero_point})
+    if (unknown.has(fact)) return false;
+  return true;
+}
+
 }  // namespace
 
 CalibratedDetector::CalibratedDetector(std::shared_ptr<const StarMap> map) : map_(std::move(map)) {
@@ -24,11 +33,20 @@ CalibratedDetector::CalibratedDetector(std::shared_ptr<const StarMap> map) : map
 CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame,
                                                       const DetectorSettings& settings,
                                                       Threads& threads, bool blind) const {
-  const CatalogueSky* sky = sky_ ? &*sky_ : nullptr;
+  const DetectorSettings with_mask = settings_for(frame, settings);
+  const UnknownFacts& unknown = frame.header.unknown;
+  const auto detected_by = [&](const FrameHeader& header) {
+    const CatalogueSky* sky = sky_ && expects_stars(header.unknown) ? &*sky_ : nullptr;
+    return dmise::detect(frame.counts, header, with_mask, threads, sky);
+  };
   Result result{.detection = {}, .header = frame.header, .solution = std::nullopt};
   if (!blind) {
-    result.detection = dmise::detect(frame.counts, frame.header, settings, threads, sky);
-    if (!is_wrong(result.detection.stars)) return result;
+    result.detection = detected_by(frame.header);
+    const bool may_be_solved = map_ && !unknown.has(FrameFact::pointing) &&
+                               !unknown.has(FrameFact::focal_length) &&
+                               !unknown.has(FrameFact::time);
+    if (!may_be_solved || (expects_stars(unknown) && !is_wrong(result.detection.stars)))
+      return result;
   }
   if (!map_) throw Error("blind detection takes a catalogue of stars");
   try {
@@ -38,7 +56,9 @@ CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame,
     return result;  // clouds, or what is there are no stars of the catalogue
   }
   result.header = solved_header(frame.header, *result.solution);
-  result.detection = dmise::detect(frame.counts, result.header, settings, threads, sky);
+  if (after_solution && unknown.has(FrameFact::pointing))
+    after_solution(frame.counts, result.header);
+  result.detection = detected_by(result.header);
   return result;
 }
 

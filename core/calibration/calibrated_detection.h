@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -19,9 +20,14 @@ class CalibratedDetector {
     std::optional<FrameSolution> solution;  // if the header's pointing was wrong
   };
 
+  /// Told of the header of a solved frame whose pointing was not known, before detection by it: who
+  /// knows more may complete it.
+  std::function<void(const CountImage&, FrameHeader&)> after_solution;
+
   /// Detects by the header if the frame's stars are where it says, and by the plate that its stars
-  /// show if they are elsewhere and have a solution near the header's pointing. A `blind` one
-  /// believes no pointing, and throws `Error` if there is no solution.
+  /// show if they are elsewhere, or the header does not know their light, and there is a solution
+  /// near the header's pointing. A `blind` one believes no pointing, and throws `Error` if there is
+  /// no solution.
   Result detect(const Frame& frame, const DetectorSettings& settings, Threads& threads,
                 bool blind = false) const;
 

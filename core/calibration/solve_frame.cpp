@@ -16,6 +16,8 @@ namespace dmise {
 namespace {
 
 Observer observer_of(const FrameHeader& header) {
+  if (header.unknown.has(FrameFact::time))
+    throw Error("places of stars need a time, which the header does not say");
   const Tt tt = Clock(parse_utc(header.middle_utc)).tt({});
   Observer o = space_observer(header.sensor_position_m, header.sensor_velocity_m_per_s, tt,
                               solar_system(tt));
@@ -30,8 +32,10 @@ PlateBelief belief_of(const Frame& frame, bool blind) {
   const FrameHeader& h = frame.header;
   PlateBelief b{frame.counts.columns, frame.counts.rows, h.projection, 0.0, std::nullopt};
   if (blind) return b;
-  b.focal_length_px = h.focal_length_px;
-  b.camera_from_gcrs = rotation_of<CameraFrame, Gcrs>(h.camera_from_gcrs[1]);
+  if (!h.unknown.has(FrameFact::focal_length)) b.focal_length_px = h.focal_length_px;
+  if (h.unknown.has(FrameFact::pointing)) return b;
+  const auto camera = rotation_of<CameraFrame, Gcrs>(h.camera_from_gcrs[1]);
+  b.camera_from_gcrs = h.mirrored ? flipped(camera) : camera;
   return b;
 }
 
@@ -72,6 +76,7 @@ Wcs wcs_of(const PlateFit& fit, const PlateSky& sky, int columns, int rows) {
 
 std::optional<ZeroPoint> zero_point_of(const Frame& frame, const PlateSolution& plate,
                                        std::span<const PlateSource> sources, const PlateSky& sky) {
+  if (frame.header.unknown.has(FrameFact::exposure)) return std::nullopt;
   std::vector<PhotometricStar> stars;
   for (std::size_t k = 0; k < plate.matches.size(); ++k) {
     const PlateSource& source = sources[plate.matches[k].source];
@@ -117,21 +122,25 @@ FrameHeader solved_header(const FrameHeader& header, const FrameSolution& soluti
   const auto [ra, dec] = to_spherical(wcs_direction(h.wcs, {h.wcs.crpix_x, h.wcs.crpix_y}));
   h.observation.ra_rad = ra;
   h.observation.dec_rad = dec;
-  if (!model.mirrored()) {
-    const auto middle = rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[1]);
-    for (std::size_t i = 0; i < 3; ++i)  // turns during the exposure as believed
-      h.camera_from_gcrs[i] =
-          quaternion_of(rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[i]) *
-                        middle.inverse() * model.camera_from_gcrs);
-  }
+  h.mirrored = model.mirrored();
+  const auto upright = h.mirrored ? flipped(model.camera_from_gcrs) : model.camera_from_gcrs;
+  const auto middle = rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[1]);
+  for (std::size_t i = 0; i < 3; ++i)  // turns during the exposure as believed
+    h.camera_from_gcrs[i] = quaternion_of(
+        rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[i]) * middle.inverse() * upright);
+  h.unknown.remove(FrameFact::pointing);
+  h.unknown.remove(FrameFact::focal_length);
   if (const auto& z = solution.zero_point) {
     h.zero_point_mag = z->zero_point_mag;
     h.extinction_mag_per_airmass = z->extinction_mag_per_airmass;
+    h.unknown.remove(FrameFact::zero_point);
+    h.unknown.remove(FrameFact::extinction);
   }
   return h;
 }
 
-std::string to_json(const FrameSolution& solution, const FrameHeader& header) {
+std::string to_json(const FrameSolution& solution, const FrameHeader& header,
+                    const FrameNotes& notes) {
   const PlateFit& fit = solution.plate.fit;
   const PlateModel& model = fit.model;
   JsonWriter json;
@@ -170,6 +179,13 @@ std::string to_json(const FrameSolution& solution, const FrameHeader& header) {
     json.end_object();
   } else {
     json.null();
+  }
+  for (const auto& [key, texts] :
+       {std::pair{"missing", &notes.missing}, {"assumed", &notes.assumed}}) {
+    if (texts->empty()) continue;
+    json.key(key).begin_array();
+    for (const std::string& text : *texts) json.value(text);
+    json.end_array();
   }
   json.end_object();
   return json.take();

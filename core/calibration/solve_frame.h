@@ -24,14 +24,16 @@ struct FrameSolution {
 };
 
 /// Solves a frame by its counts and by what its header states of site, time, lens and detector; the
-/// header's pointing is a hint. Throws `Error` if there is no solution.
+/// header's pointing is a hint, and without one the sky is searched. Throws `Error` if there is no
+/// solution, or no time.
 FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveSettings& settings,
                           Threads& threads);
 
 /// `header` with the solution: WCS, attitudes, focal length, zero point and extinction.
 FrameHeader solved_header(const FrameHeader& header, const FrameSolution& solution);
 
-/// The solution as one line of JSON.
-std::string to_json(const FrameSolution& solution, const FrameHeader& header);
+/// The solution as one line of JSON, with the frame's notes, if it has any.
+std::string to_json(const FrameSolution& solution, const FrameHeader& header,
+                    const FrameNotes& notes = {});
 
 }  // namespace dmise

@@ -60,62 +60,100 @@ double best_sigma_px(const SourceMeasure& measure,
   return 0.5 * (low + high);
 }
 
+/// Images that may be stars, the brightest first, and the width of most of them.
+class StarImages {
+ public:
+  StarImages(const CountImage& counts, const StarSourceSettings& settings, Threads& threads);
+
+  const SourceMeasure& measure() const { return measure_; }
+  std::size_t size() const { return bright_.size(); }
+  const Component& component(std::size_t i) const { return bright_[i].second; }
+  bool clipped(std::size_t i) const { return measure_.is_saturated(bright_[i].second); }
+  /// Empty for clipped images, and where there are none.
+  const std::vector<std::optional<SourceMoments>>& moments() const { return moments_; }
+  double sigma_px() const { return sigma_px_; }
+  template <class Work>
+  void for_all(const Work& work) const {
+    threads_.for_ranges(bright_.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) work(i);
+    });
+  }
+
+ private:
+  void find(const CountImage& counts, double filter_px, const StarSourceSettings& settings);
+  void keep(std::size_t most);
+
+  Background background_;
+  SourceMeasure measure_;
+  Threads& threads_;
+  std::vector<std::pair<double, Component>> bright_;  // with its light [e-]
+  std::vector<std::optional<SourceMoments>> moments_;
+  double sigma_px_;
+};
+
+void StarImages::find(const CountImage& counts, double filter_px,
+                      const StarSourceSettings& settings) {
+  for (const Component& c :
+       find_components(counts, background_, filter_px, 3.0, settings.least_snr, threads_)) {
+    if (c.pixels > most_component_px) continue;
+    const auto signal = [&](int x, int y) { return measure_.signal_e(x, y); };
+    const double noise_e = measure_.noise_e(c.peak_x, c.peak_y);
+    for (Component& part : deblend(c, {.least_rise = rise_of_a_star * noise_e}, signal)) {
+      const double light_e = measure_.light_e(part);
+      bright_.emplace_back(light_e, std::move(part));
+    }
+  }
+  std::stable_sort(bright_.begin(), bright_.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+}
+
+/// The brightest, and as many of the next that are not saturated.
+void StarImages::keep(std::size_t most) {
+  std::size_t kept = 0, exact = 0;
+  for (auto& part : bright_) {
+    const bool is_exact = !measure_.is_saturated(part.second);
+    if (kept >= most && !is_exact) continue;
+    if (exact >= most) break;
+    exact += is_exact;
+    std::swap(bright_[kept++], part);
+  }
+  bright_.resize(kept);
+}
+
+StarImages::StarImages(const CountImage& counts, const StarSourceSettings& settings,
+                       Threads& threads)
+    : background_(counts, 64, threads), measure_(counts, background_, settings), threads_(threads) {
+  const double fwhm_px = settings.psf_fwhm_px > 0 ? settings.psf_fwhm_px : 2.0;
+  const double filter_px = std::hypot(sigma_of_fwhm * fwhm_px, std::sqrt(1.0 / 12));
+  find(counts, filter_px, settings);
+  keep(settings.most);
+  moments_.resize(bright_.size());
+  for_all([&](std::size_t i) {
+    if (!clipped(i)) moments_[i] = measure_.moments(bright_[i].second, filter_px);
+  });
+  std::vector<double> widths;
+  for (const auto& m : moments_)
+    if (m && widths.size() < 100) widths.push_back(m->minor_sigma());
+  sigma_px_ = best_sigma_px(measure_, moments_, widths.empty() ? filter_px : median_of(widths));
+}
+
 }  // namespace
 
 std::vector<PlateSource> find_star_sources(const CountImage& counts,
                                            const StarSourceSettings& settings, Threads& threads) {
-  const Background background(counts, 64, threads);
-  const SourceMeasure measure(counts, background, settings);
-  const double fwhm_px = settings.psf_fwhm_px > 0 ? settings.psf_fwhm_px : 2.0;
-  const double filter_px = std::hypot(sigma_of_fwhm * fwhm_px, std::sqrt(1.0 / 12));
-  const auto components =
-      find_components(counts, background, filter_px, 3.0, settings.least_snr, threads);
-  std::vector<std::pair<double, Component>> bright;
-  for (const Component& c : components) {
-    if (c.pixels > most_component_px) continue;
-    const auto signal = [&](int x, int y) { return measure.signal_e(x, y); };
-    const double noise_e = measure.noise_e(c.peak_x, c.peak_y);
-    for (Component& part : deblend(c, {.least_rise = rise_of_a_star * noise_e}, signal)) {
-      const double light_e = measure.light_e(part);
-      bright.emplace_back(light_e, std::move(part));
-    }
-  }
-  std::stable_sort(bright.begin(), bright.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  // The brightest, and as many of the next that are not saturated.
-  std::size_t kept = 0, exact = 0;
-  for (auto& part : bright) {
-    const bool is_exact = !measure.is_saturated(part.second);
-    if (kept >= settings.most && !is_exact) continue;
-    if (exact >= settings.most) break;
-    exact += is_exact;
-    std::swap(bright[kept++], part);
-  }
-  bright.resize(kept);
-  std::vector<std::optional<SourceMoments>> moments(bright.size());
-  std::vector<std::optional<PlateSource>> found(bright.size());
-  const auto for_all = [&](const auto& work) {
-    threads.for_ranges(bright.size(), 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) work(i);
-    });
-  };
-  const auto clipped = [&](std::size_t i) { return measure.is_saturated(bright[i].second); };
-  for_all([&](std::size_t i) {
-    if (!clipped(i)) moments[i] = measure.moments(bright[i].second, filter_px);
-  });
-  std::vector<double> widths, lengths;
-  for (const auto& m : moments)
-    if (m && widths.size() < 100) widths.push_back(m->minor_sigma());
-  const double sigma_px =
-      best_sigma_px(measure, moments, widths.empty() ? filter_px : median_of(widths));
-  for (const auto& m : moments)
+  const StarImages images(counts, settings, threads);
+  const SourceMeasure& measure = images.measure();
+  const double sigma_px = images.sigma_px();
+  std::vector<double> lengths;
+  for (const auto& m : images.moments())
     if (m && lengths.size() < 500) lengths.push_back(trail_length_px(*m, sigma_px));
   const double length_px = lengths.empty() ? 0.0 : median_of(lengths);
-  for_all([&](std::size_t i) {
-    if (moments[i])
-      found[i] = measure.source(*moments[i], sigma_px);
-    else if (clipped(i))
-      found[i] = measure.saturated_source(bright[i].second, sigma_px, length_px);
+  std::vector<std::optional<PlateSource>> found(images.size());
+  images.for_all([&](std::size_t i) {
+    if (images.moments()[i])
+      found[i] = measure.source(*images.moments()[i], sigma_px);
+    else if (images.clipped(i))
+      found[i] = measure.saturated_source(images.component(i), sigma_px, length_px);
   });
   std::vector<PlateSource> sources;
   for (const auto& source : found)
@@ -123,6 +161,37 @@ std::vector<PlateSource> find_star_sources(const CountImage& counts,
   std::stable_sort(sources.begin(), sources.end(),
                    [](const PlateSource& a, const PlateSource& b) { return a.flux > b.flux; });
   return sources;
+}
+
+std::optional<StarShape> measure_star_shape(const CountImage& counts,
+                                            const StarSourceSettings& settings, Threads& threads) {
+  constexpr std::size_t least = 5, most = 200;
+  constexpr double least_agreement = 0.8;  // of angles: the mean of unit vectors of twice the angle
+  const StarImages images(counts, settings, threads);
+  StarShape shape{.sigma_px = images.sigma_px()};
+  std::vector<double> lengths;
+  double c = 0.0, s = 0.0;
+  for (const auto& m : images.moments()) {
+    if (!m || lengths.size() >= most) continue;
+    const auto fit = images.measure().fit(*m, images.sigma_px());
+    if (!fit) continue;
+    const Trail& trail = fit->trails[0];
+    lengths.push_back(trail.length_px);
+    shape.ellipses.push_back({m->x, m->y, m->xx - m->yy, 2 * m->xy});
+    if (trail.length_px > 0) {
+      c += std::cos(2 * trail.angle_rad);
+      s += std::sin(2 * trail.angle_rad);
+    }
+  }
+  if (lengths.size() < least) return std::nullopt;
+  shape.stars = int(lengths.size());
+  const double length_px = median_of(lengths);
+  if (length_px > 2 * shape.sigma_px &&
+      std::hypot(c, s) > least_agreement * double(lengths.size())) {
+    shape.length_px = length_px;
+    shape.angle_rad = 0.5 * std::atan2(s, c);
+  }
+  return shape;
 }
 
 }  // namespace dmise

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "core/astrometry/plate_match.h"
@@ -21,5 +22,25 @@ struct StarSourceSettings {
 /// ones by their moments. Equal for any number of threads.
 std::vector<PlateSource> find_star_sources(const CountImage& counts,
                                            const StarSourceSettings& settings, Threads& threads);
+
+/// How much longer than wide an image is, by its second moments: xx - yy and 2 xy [px2]. A trail of
+/// (u, v) px adds a twelfth of u u - v v and 2 u v.
+struct StarEllipse {
+  double x_px = 0.0, y_px = 0.0;
+  double plus = 0.0, cross = 0.0;
+};
+
+/// What most images of stars look like.
+struct StarShape {
+  double sigma_px = 0.0;              // of the Gaussian that fits best, including the pixel
+  double length_px = 0.0;             // of trails that are longer than wide; 0 if there are none
+  double angle_rad = 0.0;             // of the trails, against x towards y
+  int stars = 0;                      // that were fitted
+  std::vector<StarEllipse> ellipses;  // of each
+};
+
+/// Measures it in the brightest images that are not saturated; empty if there are less than five.
+std::optional<StarShape> measure_star_shape(const CountImage& counts,
+                                            const StarSourceSettings& settings, Threads& threads);
 
 }  // namespace dmise

@@ -35,7 +35,7 @@ Light light_around(const Scene& scene, const Component& component) {
     for (const auto& [first, last] : spans)
       for (int x = std::max(first, done + 1); x <= last; ++x) {
         done = x;
-        if (!scene.is_hidden(x, y))
+        if (scene.has_value(x, y) && !scene.is_hidden(x, y))
           (scene.is_usable(x, y) ? out.usable : out.clipped).push_back(scene.pixel(x, y));
       }
   }

@@ -66,6 +66,12 @@ void hide(FilteredFrame& frame, const Component& component, int reach_px) {
       frame.hide(y, run.first_x - reach_px, run.last_x + reach_px);
 }
 
+void hide(FilteredFrame& frame, const PixelMask& unusable) {
+  for (int y = 0; y < frame.rows; ++y)
+    for (int x = 0; x < frame.columns; ++x)
+      if (unusable.at(x, y)) frame.hide(y, x, x);
+}
+
 struct Judged {
   std::vector<Source> sources;
   std::uint32_t star_like = 0;  // components classified as stars
@@ -243,11 +249,13 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
               lowest_clipped_dn(header),
               sigma_with_pixel(header.psf_fwhm_px),
               header.detector && header.detector->blooming,
-              PsfField::gaussian(header.psf_fwhm_px)};
+              PsfField::gaussian(header.psf_fwhm_px),
+              settings.unusable};
   FilteredFrame filtered(counts.columns, counts.rows, scene.sigma_px);
   const auto components = find_components(counts, background, scene.sigma_px, settings.connect_snr,
                                           settings.seed_snr, threads, &filtered);
   scene.use(measure_psf(scene, components));
+  if (scene.unusable) hide(filtered, *scene.unusable);
   DetectionResult result;
   std::optional<KnownStars> known;
   if (sky) known = hide_stars(scene, filtered, *sky, header, result.stars);

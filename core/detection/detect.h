@@ -6,6 +6,7 @@
 #include "core/detection/catalogue_sky.h"
 #include "core/products/detection.h"
 #include "core/products/frame_header.h"
+#include "core/products/pixel_mask.h"
 
 namespace dmise {
 
@@ -29,6 +30,8 @@ struct DetectorSettings {
   // Where the background's level is missed by more than this in units of a pixel's noise, streaks
   // without a single bright pixel are not searched for.
   double most_bend_in_noise = 0.15;
+  // Pixels without a value, which are not used; null: all have one.
+  const PixelMask* unusable = nullptr;
 };
 
 /// How a frame agrees with a catalogue of stars at the header's pointing.

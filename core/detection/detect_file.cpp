@@ -2,7 +2,6 @@
 
 #include "core/base/error.h"
 #include "core/detection/detection_json.h"
-#include "core/image/fits_file.h"
 
 namespace dmise {
 
@@ -12,18 +11,35 @@ std::string utc_in_frame(const FrameHeader& header, SimTime time) {
                                                    : header.end_utc;
   if (time != header.start && time != header.middle && time != header.end)
     throw Error("not a time of this exposure: " + std::to_string(time.ns) + " ns");
-  return text.ends_with('Z') ? text : text + "Z";
+  return text.ends_with('Z') || text.empty() ? text : text + "Z";
+}
+
+FileDetections as_lines(DetectionResult result, const FrameHeader& header,
+                        const FrameNotes& notes) {
+  FileDetections out{.result = std::move(result)};
+  out.result.report.notes = notes;
+  const UtcText utc = [&](SimTime time) { return utc_in_frame(header, time); };
+  for (const Detection& d : out.result.detections)
+    out.lines.push_back(to_json(d, utc, header.unknown));
+  out.report = to_json(out.result.report, utc, header.unknown);
+  return out;
+}
+
+DetectorSettings settings_for(const Frame& frame, const DetectorSettings& settings) {
+  DetectorSettings with_mask = settings;
+  if (!frame.unusable.pixels.empty()) with_mask.unusable = &frame.unusable;
+  return with_mask;
+}
+
+FileDetections detect_frame(const Frame& frame, const DetectorSettings& settings, Threads& threads,
+                            const CatalogueSky* sky) {
+  return as_lines(detect(frame.counts, frame.header, settings_for(frame, settings), threads, sky),
+                  frame.header, frame.notes);
 }
 
 FileDetections detect_file(const std::string& path, const DetectorSettings& settings,
                            Threads& threads, const CatalogueSky* sky) {
-  const Frame frame = read_frame(path);
-  const auto result = detect(frame.counts, frame.header, settings, threads, sky);
-  const UtcText utc = [&](SimTime time) { return utc_in_frame(frame.header, time); };
-  FileDetections out;
-  for (const Detection& d : result.detections) out.lines.push_back(to_json(d, utc));
-  out.report = to_json(result.report, utc);
-  return out;
+  return detect_frame(read_frame(path), settings, threads, sky);
 }
 
 }  // namespace dmise

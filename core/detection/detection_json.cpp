@@ -4,6 +4,7 @@
 
 #include "core/base/json.h"
 #include "core/base/units.h"
+#include "core/detection/unknown_fields.h"
 #include "core/products/detection_fields.h"
 #include "core/wcs/wcs.h"
 
@@ -22,28 +23,30 @@ const char* name_of(ExposureEpoch epoch) { return exposure_epoch_name(epoch); }
 /// Writes keys of common forms.
 class Line {
  public:
-  explicit Line(const UtcText& utc) : utc_(utc) { json_.begin_object(); }
+  explicit Line(const UtcText& utc, const UnknownFacts& unknown = {})
+      : utc_(utc), unknown_(unknown) {
+    json_.begin_object();
+  }
 
   template <class T>
   Line& field(std::string_view name, const T& value) {
-    json_.field(name, value);
-    return *this;
+    return is_unknown(name, unknown_) ? null(name) : known_field(name, value);
   }
   /// null if it was not measured.
   template <class T>
   Line& measured(std::string_view name, const T& value, bool was) {
-    if (was) return field(name, value);
-    json_.key(name).null();
-    return *this;
+    return was ? field(name, value) : null(name);
   }
   Line& angle(std::string_view name, double value_rad) { return field(name, value_rad / deg); }
   /// "NAME_ns" and "NAME_utc".
   Line& time(const std::string& name, SimTime value) {
     field(name + "_ns", value.ns);
-    return field(name + "_utc", utc_(value));
+    return is_unknown(name + "_utc", unknown_) ? null(name + "_utc")
+                                               : known_field(name + "_utc", utc_(value));
   }
   template <class Values>
   Line& array(std::string_view name, const Values& values, double unit = 1.0) {
+    if (is_unknown(name, unknown_)) return null(name);
     json_.key(name).begin_array();
     for (const double v : values) json_.value(v / unit);
     json_.end_array();
@@ -52,7 +55,13 @@ class Line {
   Line& vector(std::string_view name, const Vec<Gcrs>& v) {
     return array(name, std::array<double, 3>{v.x, v.y, v.z});
   }
+  Line& notes(const FrameNotes& n) {
+    texts("missing", n.missing);
+    texts("assumed", n.assumed);
+    return *this;
+  }
   Line& wcs(const Wcs& w) {
+    if (is_unknown("wcs", unknown_)) return null("wcs");
     json_.key("wcs").begin_object();
     json_.field("projection",
                 w.projection.row().fits_code + std::string(w.order > 0 ? "-SIP" : ""));
@@ -92,6 +101,22 @@ class Line {
   std::string end() { return json_.end_object().take(); }
 
  private:
+  template <class T>
+  Line& known_field(std::string_view name, const T& value) {
+    json_.field(name, value);
+    return *this;
+  }
+  Line& null(std::string_view name) {
+    json_.key(name).null();
+    return *this;
+  }
+  /// An array of texts, if there are any.
+  void texts(std::string_view name, const std::vector<std::string>& values) {
+    if (values.empty()) return;
+    json_.key(name).begin_array();
+    for (const std::string& text : values) json_.value(text);
+    json_.end_array();
+  }
   void coefficients(const Projection& projection) {
     const auto names = projection.row().coefficients;
     for (std::size_t i = 0; i < names.size(); ++i)
@@ -100,6 +125,7 @@ class Line {
 
   JsonWriter json_;
   const UtcText& utc_;
+  const UnknownFacts unknown_;
 };
 
 }  // namespace
@@ -120,8 +146,8 @@ const char* exposure_epoch_name(ExposureEpoch epoch) {
   return "middle";
 }
 
-std::string to_json(const Detection& d, const UtcText& utc) {
-  Line line(utc);
+std::string to_json(const Detection& d, const UtcText& utc, const UnknownFacts& unknown) {
+  Line line(utc, unknown);
 #define DMISE_VALUE(field_, key, unit) line.field(key, in_unit(d.field_, unit));
 #define DMISE_TIME(field_, key) line.time(key, d.field_);
 #define DMISE_NAME(field_, key, Enum) line.field(key, name_of(d.field_));
@@ -134,8 +160,8 @@ std::string to_json(const Detection& d, const UtcText& utc) {
   return line.end();
 }
 
-std::string to_json(const FrameReport& r, const UtcText& utc) {
-  Line line(utc);
+std::string to_json(const FrameReport& r, const UtcText& utc, const UnknownFacts& unknown) {
+  Line line(utc, unknown);
   line.field("sensor", r.sensor).field("frame", r.frame);
   line.time("start", r.start).time("middle", r.middle).time("end", r.end);
   line.angle("boresight_ra_deg", r.boresight_ra_rad)
@@ -155,7 +181,7 @@ std::string to_json(const FrameReport& r, const UtcText& utc) {
   line.field("detections", r.detections).measured("star_like", r.star_like, measured);
   line.measured("saturated_px", r.saturated_px, measured);
   line.field("stars_rendered", r.stars_rendered).field("objects_rendered", r.objects_rendered);
-  line.field("plan", r.plan);
+  line.field("plan", r.plan).notes(r.notes);
   return line.end();
 }
 

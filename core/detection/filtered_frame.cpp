@@ -22,7 +22,7 @@ struct Level {
   float hidden = 0.0f;
 };
 
-Level level_of(const FilteredFrame& frame, int x0, int y0, const PixelMask* lit) {
+Level level_of(const FilteredFrame& frame, int x0, int y0, const BitMask* lit) {
   constexpr int most = FilteredFrame::most;
   std::array<int, 2 * most + 1> histogram{};
   for (int y = y0; y < std::min(y0 + cell_px, frame.rows); ++y) {
@@ -86,7 +86,7 @@ std::vector<FilteredFrame::Cell> smoothed(const std::vector<Level>& levels, int 
 
 }  // namespace
 
-void FilteredFrame::flatten(Threads& threads, const PixelMask* lit) {
+void FilteredFrame::flatten(Threads& threads, const BitMask* lit) {
   const int across = (columns + cell_px - 1) / cell_px, down = (rows + cell_px - 1) / cell_px;
   std::vector<Level> levels(std::size_t(across) * std::size_t(down));
   threads.for_ranges(std::size_t(down), 1, [&](std::size_t begin, std::size_t end) {

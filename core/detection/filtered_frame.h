@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/parallel.h"
-#include "core/detection/pixel_mask.h"
+#include "core/detection/bit_mask.h"
 
 namespace dmise {
 
@@ -54,7 +54,7 @@ struct FilteredFrame {
   /// to be hidden, and what is left of others, are light and scatter of the sky; and where stars
   /// were taken for noise when that was measured, it is less. `lit`, if not null: pixels with light
   /// of stars that were subtracted.
-  void flatten(Threads& threads, const PixelMask* lit = nullptr);
+  void flatten(Threads& threads, const BitMask* lit = nullptr);
   /// The cell around a place; one of noise alone before `flatten`.
   Cell cell_at(double x_px, double y_px) const;
 

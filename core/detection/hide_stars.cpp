@@ -33,7 +33,7 @@ void subtract(const StarImage& image, float hidden, FilteredFrame& frame) {
   }
 }
 
-void mark(const StarImage& image, float least, PixelMask& lit) {
+void mark(const StarImage& image, float least, BitMask& lit) {
   for (int y = image.y0; y <= image.y1; ++y) {
     const float* drawn = image.row(y);
     for (int x = image.x0; x <= image.x1; ++x)
@@ -55,7 +55,7 @@ std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
   const StarAgreement agreement(scene, frame, expected);
   seen = {agreement.expected(), agreement.found(), agreement.shift(), agreement.holds()};
   if (!agreement.holds()) return std::nullopt;
-  PixelMask lit(frame.columns, frame.rows);
+  BitMask lit(frame.columns, frame.rows);
   std::vector<KnownStars::Star> stars;
   stars.reserve(expected.size());
   StarImage image(frame.columns, frame.rows);

@@ -6,7 +6,7 @@
 namespace dmise {
 
 KnownStars::KnownStars(const CatalogueSky& sky, const FrameHeader& header, std::vector<Star> stars,
-                       PixelMask lit)
+                       BitMask lit)
     : sky_(&sky), header_(&header), stars_(std::move(stars)), lit_(std::move(lit)) {
   std::sort(stars_.begin(), stars_.end(),
             [](const Star& a, const Star& b) { return a.place.y_px < b.place.y_px; });

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "core/detection/bit_mask.h"
 #include "core/detection/catalogue_sky.h"
-#include "core/detection/pixel_mask.h"
 #include "core/detection/trail_fit.h"
 
 namespace dmise {
@@ -18,10 +18,10 @@ class KnownStars {
 
   /// `lit`: the pixels with the stars' light. `sky` and `header` must outlive it.
   KnownStars(const CatalogueSky& sky, const FrameHeader& header, std::vector<Star> stars,
-             PixelMask lit);
+             BitMask lit);
 
   bool lights(int x, int y) const { return lit_.at(x, y); }
-  const PixelMask& lit() const { return lit_; }
+  const BitMask& lit() const { return lit_; }
   /// Whether a star of this light at a place would be in the catalogue.
   bool would_know(PixelPosition place, double flux_e) const;
   /// Whether a star is within a distance of a place that may be as bright as that.
@@ -31,7 +31,7 @@ class KnownStars {
   const CatalogueSky* sky_;
   const FrameHeader* header_;
   std::vector<Star> stars_;  // by rising row
-  PixelMask lit_;
+  BitMask lit_;
 };
 
 }  // namespace dmise

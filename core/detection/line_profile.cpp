@@ -28,7 +28,7 @@ Slice slice_at(const Scene& scene, const Line& line, int major, double offset_px
   const int nearest = int(std::lround(middle));
   for (int m = nearest - reach; m <= nearest + reach; ++m) {
     const int px = line.by_columns() ? major : m, py = line.by_columns() ? m : major;
-    if (!scene.contains(px, py) || scene.is_hidden(px, py)) continue;
+    if (!scene.contains(px, py) || !scene.has_value(px, py) || scene.is_hidden(px, py)) continue;
     const double n = (m - middle) * cosine / sigma;
     const double g = std::exp(-0.5 * n * n) / (sigma * std::sqrt(2 * pi));
     const FitPixel pixel = scene.pixel(px, py);

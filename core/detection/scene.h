@@ -8,6 +8,7 @@
 #include "core/detection/psf.h"
 #include "core/detection/star_motion.h"
 #include "core/detection/trail_fit.h"
+#include "core/products/pixel_mask.h"
 
 namespace dmise {
 
@@ -21,6 +22,7 @@ struct Scene {
   double sigma_px;                        // of a point source, including the pixel
   bool blooming;                          // charge above the full well flows along columns
   PsfField psf;                           // with it: sigma_px is the width in the frame's middle
+  const PixelMask* unusable = nullptr;    // pixels without a value; null: all have one
   const FilteredFrame* hidden = nullptr;  // whose hidden pixels are not used; null: none are
   const KnownStars* known = nullptr;      // whose pixels are not used; null: none are known
   const FilteredFrame* flat =
@@ -47,10 +49,12 @@ struct Scene {
     return would_be_known(t.x_px, t.y_px,
                           t.flux_e / std::fmin(std::fmax(1 + t.length_px / 15, 2.0), 4.0));
   }
+  bool has_value(int x, int y) const { return !unusable || unusable->at(x, y) == 0; }
   bool saturated(int x, int y) const { return counts.at(x, y) >= saturation_dn; }
-  /// Whether a pixel is neither hidden nor clipped nor next to a clipped pixel's overflow.
+  /// Whether a pixel has a value and is neither hidden nor clipped nor next to a clipped pixel's
+  /// overflow.
   bool is_usable(int x, int y) const {
-    if (saturated(x, y) || is_hidden(x, y)) return false;
+    if (!has_value(x, y) || saturated(x, y) || is_hidden(x, y)) return false;
     return !blooming ||
            !((y > 0 && saturated(x, y - 1)) || (y + 1 < counts.rows && saturated(x, y + 1)));
   }

@@ -5,7 +5,8 @@ namespace dmise {
 StarMotion::StarMotion(const FrameHeader& header, int columns, int rows)
     : projection_(header.projection),
       focal_length_px_(header.focal_length_px),
-      centre_{(columns - 1) / 2.0, (rows - 1) / 2.0} {
+      centre_{(columns - 1) / 2.0, (rows - 1) / 2.0},
+      down_(header.mirrored ? -1.0 : 1.0) {
   const auto gcrs_from_middle =
       rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[1]).inverse();
   start_from_middle_ =
@@ -15,7 +16,7 @@ StarMotion::StarMotion(const FrameHeader& header, int columns, int rows)
 
 std::optional<Vec<CameraFrame>> StarMotion::direction(PixelPosition pixel) const {
   const PixelPosition d = (pixel - centre_) * (1.0 / focal_length_px_);
-  const auto v = projection_.direction_of(d.x_px, d.y_px);
+  const auto v = projection_.direction_of(d.x_px, down_ * d.y_px);
   if (!v) return std::nullopt;
   return Vec<CameraFrame>{(*v)[0], (*v)[1], (*v)[2]};
 }
@@ -23,7 +24,7 @@ std::optional<Vec<CameraFrame>> StarMotion::direction(PixelPosition pixel) const
 std::optional<PixelPosition> StarMotion::pixel(const Vec<CameraFrame>& direction) const {
   const auto image = projection_.image_of(direction.x, direction.y, direction.z);
   if (!image) return std::nullopt;
-  return centre_ + PixelPosition{(*image)[0], (*image)[1]} * focal_length_px_;
+  return centre_ + PixelPosition{(*image)[0], down_ * (*image)[1]} * focal_length_px_;
 }
 
 PixelPosition StarMotion::trail_at(PixelPosition at) const {

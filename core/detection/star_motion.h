@@ -24,6 +24,7 @@ class StarMotion {
   Projection projection_;
   double focal_length_px_;
   PixelPosition centre_;
+  double down_;  // 1 if rows run along the camera's y axis, else -1
   Rotation<CameraFrame, CameraFrame> start_from_middle_, end_from_middle_;
 };
 

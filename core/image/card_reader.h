@@ -41,6 +41,11 @@ class CardReader {
     value = text == "T";
   }
   void text(const std::string& key, std::string& value, const char*) { value = find(key); }
+  void facts(const char* key, UnknownFacts& value, const char*) {
+    const auto named = UnknownFacts::of_text(find(key));
+    if (!named) fail(key, "holds a word that names no fact, got " + find(key));
+    value = *named;
+  }
   void utc(const std::string& key, std::string& value, const char*) { value = find(key); }
   void constant(const char* key, const char* value, const char*) {
     if (find(key) != value) fail(key, std::string("must be ") + value + ", got " + find(key));

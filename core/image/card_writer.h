@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/image/card_text.h"
+#include "core/products/unknown_facts.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -45,6 +46,9 @@ class CardWriter {
     if (quoted.size() > 68) throw Error("FITS header: " + key + ": too many quotes");
     quoted.resize(std::max<std::size_t>(quoted.size(), 8), ' ');
     add(key, "'" + quoted + "'", comment);
+  }
+  void facts(const char* key, const UnknownFacts& value, const char* comment) {
+    text(key, value.text(), comment);
   }
   void utc(const std::string& key, std::string& value, const char* comment) {
     std::string without_z = value.ends_with('Z') ? value.substr(0, value.size() - 1) : value;

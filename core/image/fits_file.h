@@ -5,12 +5,16 @@
 #include "core/base/image.h"
 #include "core/detector/pixel_flags.h"
 #include "core/products/frame_header.h"
+#include "core/products/frame_notes.h"
+#include "core/products/pixel_mask.h"
 
 namespace dmise {
 
 struct Frame {
   CountImage counts;
   FrameHeader header;
+  PixelMask unusable{};  // pixels without a value
+  FrameNotes notes{};    // of another camera's frame (core/ingest)
 };
 
 /// Storage of pixels: uncompressed, or losslessly Rice-compressed.

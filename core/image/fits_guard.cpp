@@ -17,8 +17,9 @@ std::string keyword_of(std::string_view card) {
   return std::string(card.substr(0, std::min<std::size_t>(8, card.find_first_of(" ="))));
 }
 
-/// Returns the value of a card as a number, 0 if it is none; throws for a harmful card.
-double checked_value(std::string_view card, const std::string& name) {
+/// Returns the value of a card as a number, 0 if it is none; throws for a harmful card. `divides`:
+/// whether CFITSIO divides by parameters of the compression.
+double checked_value(std::string_view card, bool divides, const std::string& name) {
   const auto fail = [&](const std::string& reason) {
     throw ConfigError(name + ": " + keyword_of(card) + ": " + reason);
   };
@@ -32,7 +33,8 @@ double checked_value(std::string_view card, const std::string& name) {
   while (value.ends_with(' ')) value.remove_suffix(1);
   if (value.size() > longest_number) fail("is too long for a number");
   const double number = std::strtod(std::string(value).c_str(), nullptr);
-  if ((card.starts_with("ZVAL") || card.starts_with("ZTILE")) && !(number > 0)) fail("must be > 0");
+  const bool divisor = card.starts_with("ZTILE") || (divides && card.starts_with("ZVAL"));
+  if (divisor && !(number > 0)) fail("must be > 0");
   return number;
 }
 
@@ -42,12 +44,17 @@ void require_harmless_headers(std::string_view bytes, const std::string& name) {
   std::size_t at = 0;
   while (at + card_size <= bytes.size()) {
     double bits = 8, elements = 0, extra = 0, groups = 1;
-    bool ended = false;
+    bool ended = false, has_form = false, divides = true;
     for (; !ended && at + card_size <= bytes.size(); at += card_size) {
       const std::string_view card = bytes.substr(at, card_size);
-      const double value = checked_value(card, name);
+      const double value = checked_value(card, divides, name);
       const std::string key = keyword_of(card);
       ended = key == "END";
+      if (key == "ZCMPTYPE") {
+        if (has_form) throw ConfigError(name + ": ZCMPTYPE: is there twice");
+        has_form = true;
+        divides = card.find("'RICE_") != card.npos;
+      }
       if (key == "BITPIX") bits = std::abs(value);
       if (key == "PCOUNT") extra = value;
       if (key == "GCOUNT") groups = value;

@@ -146,6 +146,9 @@ void visit(Visitor& v, FrameHeader& h) {
     v.number(key + "2", q.y, "");
     v.number(key + "3", q.z, "");
   }
+  if (v.present("MIRRORED", h.mirrored))
+    v.flag("MIRRORED", h.mirrored, "rows run against the camera's y axis");
+  if (v.present("UNKNOWN", h.unknown.any())) v.facts("UNKNOWN", h.unknown, "stand-ins");
   visit_vector(v, "SENPOS", h.sensor_position_m, "[m] sensor, GCRS, mid exposure");
   visit_vector(v, "SENVEL", h.sensor_velocity_m_per_s, "[m/s] sensor, GCRS, mid exposure");
   visit_vector(v, "EARVEL", h.earth_velocity_m_per_s, "[m/s] Earth, barycentric, GCRS axes");

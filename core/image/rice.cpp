@@ -5,9 +5,13 @@
 namespace dmise {
 namespace {
 
-constexpr unsigned split_bits = 4;      // of a block's code
-constexpr unsigned largest_split = 14;  // code of uncompressed differences
-constexpr unsigned pixel_bits = 16;
+/// Sizes in bits that depend on the size of a pixel.
+struct Form {
+  unsigned pixel_bits;
+  unsigned split_bits;     // of a block's code
+  unsigned largest_split;  // code of uncompressed differences, less 1
+};
+constexpr Form byte_form{8, 3, 6}, short_form{16, 4, 14}, int_form{32, 5, 25};
 
 /// Reads bits, most significant first.
 class Bits {
@@ -16,7 +20,7 @@ class Bits {
 
   bool failed() const { return failed_; }
 
-  /// The next `count` <= 24 bits as a number.
+  /// The next `count` <= 32 bits as a number.
   unsigned take(unsigned count) {
     while (held_ < count) {
       if (at_ == bytes_.size()) {
@@ -27,7 +31,7 @@ class Bits {
       held_ += 8;
     }
     held_ -= count;
-    return unsigned(store_ >> held_) & ((1u << count) - 1);
+    return unsigned(store_ >> held_ & ((std::uint64_t(1) << count) - 1));
   }
 
   /// Number of zeros before the next one, which is consumed too; at most `limit`.
@@ -46,28 +50,46 @@ class Bits {
   bool failed_ = false;
 };
 
+/// Calls `take(index, value)` for each pixel; returns false if the bytes end too early.
+template <class Take>
+bool decode(std::span<const std::uint8_t> bytes, std::size_t block, const Form& form,
+            std::size_t pixels, const Take& take) {
+  Bits bits(bytes);
+  const unsigned longest_run = 1u << std::min(form.pixel_bits, 31u);
+  unsigned last = bits.take(form.pixel_bits);
+  for (std::size_t begin = 0; begin < pixels && !bits.failed(); begin += block) {
+    const std::size_t end = std::min(begin + block, pixels);
+    const unsigned code = bits.take(form.split_bits);
+    for (std::size_t i = begin; i < end && !bits.failed(); ++i) {
+      unsigned folded = 0;  // 0, -1, 1, -2, 2, ... as 0, 1, 2, 3, 4, ...
+      if (code == form.largest_split + 1) {
+        folded = bits.take(form.pixel_bits);
+      } else if (code > 0) {
+        const unsigned high = bits.zeros(longest_run);
+        folded = high << (code - 1) | bits.take(code - 1);
+      }
+      last += folded & 1 ? ~(folded >> 1) : folded >> 1;
+      take(i, last);
+    }
+  }
+  return !bits.failed();
+}
+
 }  // namespace
 
 bool rice_decode(std::span<const std::uint8_t> bytes, std::size_t block,
                  std::span<std::int16_t> pixels) {
-  Bits bits(bytes);
-  unsigned last = bits.take(pixel_bits);
-  for (std::size_t begin = 0; begin < pixels.size() && !bits.failed(); begin += block) {
-    const std::size_t end = std::min(begin + block, pixels.size());
-    const unsigned code = bits.take(split_bits);
-    for (std::size_t i = begin; i < end && !bits.failed(); ++i) {
-      unsigned folded = 0;  // 0, -1, 1, -2, 2, ... as 0, 1, 2, 3, 4, ...
-      if (code == largest_split + 1) {
-        folded = bits.take(pixel_bits);
-      } else if (code > 0) {
-        const unsigned high = bits.zeros(1u << pixel_bits);
-        folded = high << (code - 1) | bits.take(code - 1);
-      }
-      last += folded & 1 ? ~(folded >> 1) : folded >> 1;
-      pixels[i] = std::int16_t(std::uint16_t(last));
-    }
-  }
-  return !bits.failed();
+  return decode(bytes, block, short_form, pixels.size(), [&](std::size_t i, unsigned value) {
+    pixels[i] = std::int16_t(std::uint16_t(value));
+  });
+}
+
+bool rice_is_whole(std::span<const std::uint8_t> bytes, std::size_t block, int bytes_per_pixel,
+                   std::size_t pixels) {
+  const Form& form = bytes_per_pixel == 1   ? byte_form
+                     : bytes_per_pixel == 2 ? short_form
+                                            : int_form;
+  return decode(bytes, block, form, pixels, [](std::size_t, unsigned) {});
 }
 
 }  // namespace dmise

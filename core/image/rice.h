@@ -14,4 +14,8 @@ namespace dmise {
 bool rice_decode(std::span<const std::uint8_t> bytes, std::size_t block,
                  std::span<std::int16_t> pixels);
 
+/// Whether the bytes hold a whole tile of `pixels` integers of 1, 2 or 4 bytes each.
+bool rice_is_whole(std::span<const std::uint8_t> bytes, std::size_t block, int bytes_per_pixel,
+                   std::size_t pixels);
+
 }  // namespace dmise

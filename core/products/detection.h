@@ -5,6 +5,7 @@
 
 #include "core/base/sim_time.h"
 #include "core/frames/vec.h"
+#include "core/products/frame_notes.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -102,6 +103,7 @@ struct FrameReport {
   // Detection was off: limiting magnitude, background, noise, saturated_px and the numbers of
   // detections are 0.
   bool detection_off = false;
+  FrameNotes notes;  // of another camera's frame; not sent
 
   bool operator==(const FrameReport&) const = default;
 };

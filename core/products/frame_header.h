@@ -13,6 +13,7 @@
 #include "core/photometry/band.h"
 #include "core/products/detection.h"
 #include "core/products/observation.h"
+#include "core/products/unknown_facts.h"
 #include "core/sky/refraction.h"
 
 namespace dmise {
@@ -64,6 +65,9 @@ struct FrameHeader {
   double focal_length_px = 0.0;
   // Start, middle and end of the exposure: how the star field moves over the detector.
   std::array<Quaternion, 3> camera_from_gcrs;
+  bool mirrored = false;  // rows run against the camera's y axis
+
+  UnknownFacts unknown;  // none in a run's frames
 
   Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // geocentric, mid exposure
   Vec<Gcrs> earth_velocity_m_per_s;                      // of the geocentre, barycentric, GCRS axes

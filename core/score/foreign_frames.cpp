@@ -12,11 +12,11 @@
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/detection/detect_file.h"
-#include "core/image/fits_file.h"
+#include "core/ingest/any_frame.h"
 #include "core/orbit/text_fields.h"
-#include "core/score/json_record.h"
 #include "core/score/run_files.h"
 #include "core/score/trail.h"
+#include "core/wcs/wcs.h"
 
 namespace dmise {
 namespace {
@@ -146,6 +146,31 @@ std::vector<TrueSource> read_truth_csv(const std::string& path,
   return truths;
 }
 
+namespace {
+
+ScoredFrame frame_of_report(const FrameReport& report, const UnknownFacts& unknown) {
+  ScoredFrame frame;
+  if (report.noise_e > 0.0) frame.noise_e = report.noise_e;
+  frame.exposure_s = (report.end - report.start).seconds();
+  if (!unknown.has(FrameFact::pointing) && !unknown.has(FrameFact::exposure))
+    frame.scale_rad_per_px = wcs_scale_rad_per_px(report.wcs);
+  return frame;
+}
+
+/// Truth that a frame's detections cannot be compared with is not scored.
+void leave_unknown(const std::string& file, const UnknownFacts& unknown,
+                   std::vector<TrueSource>& truths) {
+  const bool no_light = unknown.has(FrameFact::zero_point) || unknown.has(FrameFact::extinction);
+  const bool no_place = unknown.has(FrameFact::pointing) || unknown.has(FrameFact::site);
+  for (TrueSource& t : truths) {
+    if (t.frame != file) continue;
+    if (no_light || unknown.has(FrameFact::exposure)) t.magnitude.reset();
+    if (no_place || unknown.has(FrameFact::time)) t.ra_rad.reset(), t.dec_rad.reset();
+  }
+}
+
+}  // namespace
+
 ScoreInput read_frames(const std::string& directory, const std::string& truth_csv, Threads& threads,
                        const ReadProgress& progress) {
   const auto files = fits_files(directory);
@@ -156,19 +181,20 @@ ScoreInput read_frames(const std::string& directory, const std::string& truth_cs
   for (std::size_t i = 0; i < files.size(); ++i) {
     progress(double(i) / double(files.size()), files[i]);
     const std::string path = directory + "/" + files[i];
-    const auto found = detect_file(path, {}, threads);
-    ScoredFrame frame = frame_of(JsonRecord(found.report, path));
-    const Frame pixels = read_frame(path);
+    const Frame pixels = read_any_frame(path, {}, threads);
+    const auto found = detect_frame(pixels, {}, threads).result;
+    ScoredFrame frame = frame_of_report(found.report, pixels.header.unknown);
     frame.sensor = sensor_name;
     frame.frame = files[i];
     frame.columns = pixels.counts.columns;
     frame.rows = pixels.counts.rows;
-    if (!frame.sigma_px && pixels.header.psf_fwhm_px > 0.0)
+    if (pixels.header.psf_fwhm_px > 0.0)
       frame.sigma_px = pixels.header.psf_fwhm_px / std::sqrt(8.0 * std::log(2.0));
     in.frames.push_back(std::move(frame));
+    leave_unknown(files[i], pixels.header.unknown, in.truths);
     frame_of_file[files[i]] = &in.frames.back();
-    for (const std::string& line : found.lines) {
-      FoundSource source{sensor_name, files[i], detection_of(JsonRecord(line, path))};
+    for (const Detection& d : found.detections) {
+      FoundSource source{sensor_name, files[i], d, pixels.header.unknown};
       source.detection.id = files[i] + "/" + std::to_string(source.detection.index);
       in.detections.push_back(std::move(source));
     }

@@ -7,6 +7,7 @@
 #include "core/base/pixel.h"
 #include "core/base/sim_time.h"
 #include "core/products/detection.h"
+#include "core/products/unknown_facts.h"
 
 namespace dmise {
 
@@ -26,6 +27,7 @@ struct TrueSource {
 struct FoundSource {
   std::string sensor, frame;
   Detection detection;
+  UnknownFacts unknown{};  // of the frame
 };
 
 struct ScoredFrame {

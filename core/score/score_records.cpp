@@ -3,6 +3,7 @@
 #include "core/base/json.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
+#include "core/detection/unknown_fields.h"
 #include "core/score/score_text.h"
 
 namespace dmise {
@@ -153,9 +154,13 @@ std::string score_csv(const Score& score) {
     text += quoted(found.sensor) + "," + quoted(found.frame) + ",false,," + quoted(d.id) + ",1,0,";
     cell(text, d.snr);
     cell(text, d.length_px);
-    cell(text,
-         d.kind == DetectionKind::streak ? std::optional(d.rate_rad_per_s / arcsec) : std::nullopt);
-    cell(text, d.magnitude);
+    const auto known = [&](const char* key, double value) {
+      return is_unknown(key, found.unknown) ? std::nullopt : std::optional(value);
+    };
+    cell(text, d.kind == DetectionKind::streak
+                   ? known("rate_arcsec_per_s", d.rate_rad_per_s / arcsec)
+                   : std::nullopt);
+    cell(text, known("magnitude", d.magnitude));
     cell(text, d.x_px);
     cell(text, d.y_px);
     text += std::string(error_keys.size(), ',') + "\n";

@@ -205,6 +205,17 @@ TEST(FitsFile, AstropysWcsIsOursToAThousandthOfAPixel) {
   }
 }
 
+TEST(FitsFile, ReadsBackWhatIsUnknownAndAMirrorImage) {
+  FrameHeader header = sample_header();
+  header.mirrored = true;
+  for (const FrameFactName& named : frame_fact_names) header.unknown.add(named.fact);
+  const std::string bytes = encoded(sample_counts(), header);
+  EXPECT_EQ(decode_frame(bytes, "frame.fits").header, as_in_file(header));
+  EXPECT_TRUE(decode_frame(bytes, "frame.fits").header.unknown.has(FrameFact::gain));
+  EXPECT_EQ(error_of(with_card(bytes, "UNKNOWN", "UNKNOWN = 'time colour'")),
+            "frame.fits: UNKNOWN: holds a word that names no fact, got time colour");
+}
+
 TEST(FitsFile, NamesTheMissingOrWrongKeyword) {
   const std::string good = encoded(sample_counts(), sample_header());
   EXPECT_EQ(error_of(with_card(good, "EXPTIME", "COMMENT")), "frame.fits: EXPTIME: is missing");

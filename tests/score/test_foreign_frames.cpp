@@ -11,6 +11,7 @@
 #include "core/base/units.h"
 #include "core/image/fits_file.h"
 #include "core/score/score.h"
+#include "tests/ingest/foreign_file.h"
 
 namespace dmise {
 namespace {
@@ -134,6 +135,31 @@ TEST_F(ForeignFrames, DirectoryWithoutFramesIsRefused) {
   EXPECT_THROW(call(directory + "/none"), ConfigError);
   std::ofstream(directory + "/broken.fits") << "SIMPLE  = nonsense";
   EXPECT_THROW(call(directory), ConfigError);
+}
+
+// A header without any keyword: places are scored, magnitudes and directions are not known.
+TEST_F(ForeignFrames, FramesOfAnotherCameraAreScoredByWhatIsKnown) {
+  const FrameHeader header = simulated::camera_header(400, 300, 1663.0, 34 * deg, 20.0, false);
+  simulated::SimulatedFrame scene(header, 400, 300, 1500.0, 1);
+  scene.add_stars(60, 5000, 50000);
+  scene.add_streak(230, 175, 60, 2.0, 4e4);
+  const CountImage counts = scene.expose();
+  std::ofstream(directory + "/a.fits", std::ios::binary)
+      << test::encoded({.bitpix = USHORT_IMG,
+                        .shape = {400, 300},
+                        .values = {counts.pixels.begin(), counts.pixels.end()}});
+  const double dx = 30 * std::cos(2.0), dy = 30 * std::sin(2.0);
+  std::ofstream(table)
+      << "file,id,x_px,y_px,end1_x_px,end1_y_px,end2_x_px,end2_y_px,magnitude,ra_deg,dec_deg\n"
+      << "a.fits,1,230,175," << 230 - dx << "," << 175 - dy << "," << 230 + dx << "," << 175 + dy
+      << ",9,0,34\n";
+  Threads threads(1);
+  const ScoreInput in = read_frames(directory, table, threads, [](double, const std::string&) {});
+  ASSERT_EQ(in.truths.size(), 1u);
+  EXPECT_FALSE(in.truths[0].magnitude || in.truths[0].ra_rad);
+  EXPECT_EQ(in.frames[0].scale_rad_per_px, 0.0);
+  EXPECT_TRUE(in.detections.at(0).unknown.has(FrameFact::zero_point));
+  EXPECT_EQ(score(in, {}).truths.at(0).fate, Fate::found);
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 namespace dmise {
 
 /// A bit for each pixel of a frame.
-class PixelMask {
+class BitMask {
  public:
-  PixelMask(int columns, int rows)
+  BitMask(int columns, int rows)
       : words_(std::size_t(columns + 63) / 64), bits_(words_ * std::size_t(rows)) {}
 
   bool at(int x, int y) const {

@@ -1,0 +1,11 @@
+#pragma once
+#include <string_view>
+
+#include "core/products/unknown_facts.h"
+
+namespace dmise {
+
+/// Whether a field of a detection's or a report's JSON line follows from a fact that is unknown.
+bool is_unknown(std::string_view key, const UnknownFacts& unknown);
+
+}  // namespace dmise

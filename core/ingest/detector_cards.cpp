@@ -1,0 +1,160 @@
+#include "core/ingest/detector_cards.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/quantile.h"
+
+namespace dmise {
+namespace {
+
+constexpr double most_gain = 20.0;     // of GAIN [e-/count]; more is a camera's setting
+constexpr double least_noise_e = 0.1;  // of a camera
+constexpr int mesh_px = 64;
+
+std::string figures(const char* format, double a, double b = 0.0) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+/// A gain by which the sky's noise is one that a camera can have.
+std::optional<double> stated_gain(const StandardCards& cards, double noise) {
+  for (const auto& [key, most] : {std::pair{"EGAIN", 1e9}, {"GAIN", most_gain}}) {
+    const auto gain = cards.number(key);
+    if (!gain) continue;
+    if (!(*gain > 0 && *gain <= most))
+      cards.reject(key, "gain: is none in electrons per count");
+    else if (*gain * noise < least_noise_e)
+      cards.reject(key, "gain: by it the sky's noise is less than 0.1 electrons");
+    else
+      return gain;
+  }
+  return std::nullopt;
+}
+
+void set_gain(const StandardCards& cards, const CountMap& map, const CountImage& counts,
+              const Background& background, FrameHeader& header) {
+  if (const auto gain = stated_gain(cards, background.median_sigma_dn() * map.step)) {
+    header.gain_e_per_dn = *gain * map.step;
+    return;
+  }
+  if (const auto gain = measure_gain(counts, background)) {
+    header.gain_e_per_dn = gain->e_per_dn;
+    cards.assumed(figures("gain: %.4g +- %.2g electrons per count, measured from the sky's noise",
+                          gain->e_per_dn / map.step, gain->sigma / map.step));
+    return;
+  }
+  header.gain_e_per_dn = 1.0;
+  header.unknown.add(FrameFact::gain);
+  cards.missing(map.step == 1.0
+                    ? "gain: no EGAIN or GAIN: electrons are counts"
+                    : figures("gain: no EGAIN or GAIN: electrons are steps of %.4g", map.step));
+}
+
+/// `planes` were added.
+void set_bias(const StandardCards& cards, const CountMap& map, int planes, FrameHeader& header) {
+  std::optional<double> bias = cards.number("BIASLVL");
+  if (const auto pedestal = cards.number("PEDESTAL"); !bias && pedestal) {
+    bias = std::abs(*pedestal);  // its sign is told in both ways
+    cards.assumed("bias: the size of PEDESTAL");
+  }
+  header.bias_dn = map.count(planes * bias.value_or(0.0));
+  if (bias) return;
+  header.unknown.add(FrameFact::bias);
+  cards.missing("bias: no BIASLVL or PEDESTAL");
+}
+
+void set_read_noise(const StandardCards& cards, double noise_dn, int planes, FrameHeader& header) {
+  const auto stated = cards.first_number({"RDNOISE", "READNOIS", "ENOISE"});
+  if (stated && stated->value >= 0 && stated->value < 1e5 && !header.unknown.has(FrameFact::gain)) {
+    header.read_noise_e = stated->value * std::sqrt(double(planes));
+    return;
+  }
+  header.read_noise_e = noise_dn * header.gain_e_per_dn;
+  cards.assumed("read noise: that of the sky, which is more");
+}
+
+/// Of added planes one alone may be clipped: the sum is then at least its limit and the others'
+/// bias.
+void set_saturation(const StandardCards& cards, const CountSource& source, double sky_dn,
+                    FrameHeader& header) {
+  constexpr double highest = 65535.0;
+  const CountMap& map = source.map;
+  header.saturation_dn = highest;
+  if (const auto stated = cards.first_number({"SATURATE", "SATLEVEL"})) {
+    const double bias = header.bias_dn - map.count(0.0), planes = source.planes;
+    const double limit = map.count(stated->value) + bias * (planes - 1) / planes;
+    if (limit > sky_dn) {
+      header.saturation_dn = std::min(highest, limit);
+      return;
+    }
+    cards.reject(stated->key, "saturation: is less than the sky");
+  }
+  const Ceiling top = find_ceiling(source.values);
+  if (top.pixels == 0) {
+    cards.missing("saturation: no SATURATE, and no greatest value that pixels share");
+    return;
+  }
+  header.saturation_dn = std::min(highest, std::max(1.0, map.count(top.value)));
+  cards.assumed(figures("saturation: %.10g, the greatest value, which %.0f pixels have", top.value,
+                        double(top.pixels)));
+}
+
+}  // namespace
+
+std::optional<MeasuredGain> measure_gain(const CountImage& counts, const Background& background) {
+  struct Cell {
+    double level, variance;
+  };
+  std::vector<Cell> cells;
+  for (int y = mesh_px / 2; y < counts.rows; y += mesh_px)
+    for (int x = mesh_px / 2; x < counts.columns; x += mesh_px) {
+      const double sigma = background.sigma_dn(x, y), level = background.level_dn(x, y);
+      if (sigma > 0.5) cells.push_back({level, sigma * sigma - 1.0 / 12});
+    }
+  if (cells.size() < 50) return std::nullopt;
+  // A cell's variance scatters with its square; a cell with stars is an outlier above.
+  double slope = 0.0, offset = 0.0, slope_sigma = 0.0;
+  std::vector<char> used(cells.size(), 1);
+  for (int pass = 0; pass < 6; ++pass) {
+    double n = 0, l = 0, v = 0, ll = 0, lv = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (!used[i]) continue;
+      const double w = 1 / (cells[i].variance * cells[i].variance);
+      n += w, l += w * cells[i].level, v += w * cells[i].variance;
+      ll += w * cells[i].level * cells[i].level, lv += w * cells[i].level * cells[i].variance;
+    }
+    const double det = n * ll - l * l;
+    if (!(det > 1e-9 * n * ll)) return std::nullopt;
+    slope = (n * lv - l * v) / det;
+    offset = (ll * v - l * lv) / det;
+    std::vector<double> off;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      off.push_back(std::abs(cells[i].variance - offset - slope * cells[i].level) /
+                    cells[i].variance);
+    const double scatter = std::max(1.4826 * median_of(off), 1e-6);
+    slope_sigma = scatter * std::sqrt(n / det);
+    for (std::size_t i = 0; i < cells.size(); ++i) used[i] = off[i] < 3 * scatter;
+  }
+  if (!(slope > 10 * slope_sigma) || !(slope_sigma > 0)) return std::nullopt;
+  const double gain = 1 / slope;
+  return MeasuredGain{gain, gain * slope_sigma / slope,
+                      int(std::count(used.begin(), used.end(), 1))};
+}
+
+void set_detector(const StandardCards& cards, const CountSource& source, const CountImage& counts,
+                  Threads& threads, FrameHeader& header) {
+  const CountMap& map = source.map;
+  const Background background(counts, mesh_px, threads);
+  set_gain(cards, map, counts, background, header);
+  set_bias(cards, map, source.planes, header);
+  set_read_noise(cards, background.median_sigma_dn(), source.planes, header);
+  set_saturation(cards, source, background.median_level_dn(), header);
+  if (!map.is_identity())
+    cards.assumed(
+        figures("pixels: brought onto 16 bits in steps of %.4g from %.6g on", map.step, map.zero));
+}
+
+}  // namespace dmise

@@ -1,0 +1,24 @@
+#pragma once
+#include <optional>
+
+#include "core/frames/vec.h"
+#include "core/ingest/standard_cards.h"
+#include "core/wcs/wcs.h"
+
+namespace dmise {
+
+/// The celestial WCS of a header (Calabretta & Greisen 2002, A&A 395, 1077): TAN, ARC, ZEA, STG or
+/// ZPN by a CD matrix, PC and CDELT, or CDELT and CROTA2, with right ascension on either axis, any
+/// LONPOLE, and SIP. RADESYS must be ICRS, FK5 of 2000 or not said. Empty, with a note of the
+/// keyword and the reason, if there is none or it says what this program does not know.
+std::optional<Wcs> wcs_of(const StandardCards& cards);
+
+/// A camera that images as a WCS does around the image's middle.
+struct CameraView {
+  Rotation<CameraFrame, Gcrs> camera_from_gcrs;
+  bool mirrored = false;  // rows run against the camera's y axis
+  double focal_length_px = 0.0;
+};
+CameraView view_of(const Wcs& wcs, int columns, int rows);
+
+}  // namespace dmise

@@ -1,0 +1,198 @@
+#include "core/ingest/star_trails.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/base/quantile.h"
+#include "core/base/units.h"
+#include "core/calibration/star_sources.h"
+#include "core/detection/star_motion.h"
+#include "core/frames/earth_orientation.h"
+#include "core/time/iso8601.h"
+
+namespace dmise {
+namespace {
+
+constexpr double fwhm_of_sigma = 2.3548200450309493;
+constexpr double least_fwhm_px = 0.5, most_fwhm_px = 50.0;
+constexpr double otherwise_fwhm_px = 2.0;
+
+/// Turns a camera by a rotation vector on its axes.
+Quaternion turned(const Quaternion& camera, double x_rad, double y_rad) {
+  const double half = 0.5 * std::hypot(x_rad, y_rad);
+  if (!(half > 0)) return camera;
+  const double share = std::sin(half) / (2 * half);
+  const Quaternion by{std::cos(half), share * x_rad, share * y_rad, 0.0};
+  return quaternion_of(rotation_of<CameraFrame, CameraFrame>(by) *
+                       rotation_of<CameraFrame, Gcrs>(camera));
+}
+
+void set_drift(FrameHeader& header, double dx_px, double dy_px) {
+  const double f = header.focal_length_px, down = header.mirrored ? -1.0 : 1.0;
+  const double x_rad = -down * dy_px / (2 * f), y_rad = dx_px / (2 * f);
+  const Quaternion middle = header.camera_from_gcrs[1];
+  header.camera_from_gcrs[0] = turned(middle, -x_rad, -y_rad);
+  header.camera_from_gcrs[2] = turned(middle, x_rad, y_rad);
+}
+
+/// A mount at rest: the camera turns with the Earth.
+void set_at_rest(FrameHeader& header) {
+  const Clock clock(parse_utc(header.middle_utc));
+  const EarthOrientation earth = earth_orientation(clock, {});
+  const auto camera_from_itrs = rotation_of<CameraFrame, Gcrs>(header.camera_from_gcrs[1]) *
+                                earth.itrs_from_gcrs({}).inverse();
+  const auto at = [&](double seconds) {
+    return quaternion_of(camera_from_itrs * earth.itrs_from_gcrs(sim_seconds(seconds)));
+  };
+  header.camera_from_gcrs[0] = at(-header.exposure_s / 2);
+  header.camera_from_gcrs[2] = at(header.exposure_s / 2);
+}
+
+bool may_be_at_rest(const FrameHeader& header) {
+  return !header.unknown.has(FrameFact::pointing) && !header.unknown.has(FrameFact::exposure) &&
+         !header.unknown.has(FrameFact::time);
+}
+
+PixelPosition trail_in_the_middle(const FrameHeader& header, int columns, int rows) {
+  return StarMotion(header, columns, rows).trail_at({(columns - 1) / 2.0, (rows - 1) / 2.0});
+}
+
+void set_width(const StandardCards& cards, const std::optional<StarShape>& shape,
+               FrameHeader& header) {
+  char text[120];
+  if (const auto stated = cards.number("PSFFWHM");
+      stated && *stated >= least_fwhm_px && *stated <= most_fwhm_px) {
+    header.psf_fwhm_px = *stated;
+  } else if (shape) {
+    const double sigma_px = std::sqrt(std::max(shape->sigma_px * shape->sigma_px - 1.0 / 12, 0.0));
+    header.psf_fwhm_px = std::clamp(fwhm_of_sigma * sigma_px, least_fwhm_px, most_fwhm_px);
+    std::snprintf(text, sizeof text, "PSF: %.3g px wide (FWHM), measured in %d stars",
+                  header.psf_fwhm_px, shape->stars);
+    cards.assumed(text);
+  } else {
+    header.psf_fwhm_px = otherwise_fwhm_px;
+    cards.assumed("PSF: taken for 2 px wide (FWHM): too few stars to measure it");
+  }
+}
+
+/// A median and its standard error.
+struct MedianOf {
+  double value, error;
+};
+
+MedianOf median_and_error(const std::vector<double>& values) {
+  const double middle = median_of(values);
+  std::vector<double> off;
+  for (const double v : values) off.push_back(std::abs(v - middle));
+  return {middle, 1.25 * 1.4826 * median_of(off) / std::sqrt(double(values.size()))};
+}
+
+/// Measured elongation over that of a mount at rest: 1 for it, up to 1.6 for long trails, and 0 for
+/// stars that do not trail. The error is large where trails are too short to tell.
+MedianOf elongation_at_rest(const FrameHeader& at_rest, const CountImage& counts,
+                            const StarShape& shape) {
+  const StarMotion motion(at_rest, counts.columns, counts.rows);
+  std::vector<double> ratios;
+  for (const StarEllipse& e : shape.ellipses) {
+    const PixelPosition d = motion.trail_at({e.x_px, e.y_px});
+    const double plus = (d.x_px * d.x_px - d.y_px * d.y_px) / 12, cross = d.x_px * d.y_px / 6;
+    const double square = plus * plus + cross * cross;
+    if (square > 1e-6) ratios.push_back((e.plus * plus + e.cross * cross) / square);
+  }
+  if (ratios.size() < 5) return {0.0, 1e9};
+  return median_and_error(ratios);
+}
+
+/// The trail of most stars, if it is significant.
+std::optional<PixelPosition> measured_trail(const StarShape& shape) {
+  double length_px = shape.length_px, angle_rad = shape.angle_rad;
+  if (length_px == 0) {
+    std::vector<double> pluses, crosses;
+    for (const StarEllipse& e : shape.ellipses) {
+      pluses.push_back(e.plus);
+      crosses.push_back(e.cross);
+    }
+    const MedianOf plus = median_and_error(pluses), cross = median_and_error(crosses);
+    const double size = std::hypot(plus.value, cross.value);
+    const double error = std::hypot(plus.error, cross.error);
+    const double scatter = error * std::sqrt(double(pluses.size()));
+    length_px = std::sqrt(12 * size);
+    angle_rad = 0.5 * std::atan2(cross.value, plus.value);
+    // In wide fields trails differ.
+    if (length_px < 0.5 || size < 5 * error || scatter > 0.5 * size) return std::nullopt;
+  }
+  return PixelPosition{length_px * std::cos(angle_rad), length_px * std::sin(angle_rad)};
+}
+
+std::string trail_text(const PixelPosition& trail) {
+  char text[120];
+  std::snprintf(text, sizeof text, "stars trail by %.3g px at %.1f deg to the rows",
+                std::hypot(trail.x_px, trail.y_px), std::atan2(trail.y_px, trail.x_px) / deg);
+  return text;
+}
+
+/// By the stars: the mount at rest, an even drift, or none.
+void measure_attitudes(const StandardCards& cards, const CountImage& counts, const StarShape& shape,
+                       FrameHeader& header) {
+  if (may_be_at_rest(header)) {
+    FrameHeader at_rest = header;
+    set_at_rest(at_rest);
+    const MedianOf ratio = elongation_at_rest(at_rest, counts, shape);
+    if (ratio.error < 0.15 && ratio.value > 0.6 && ratio.value < 1.8) {
+      header = at_rest;
+      const auto trail = trail_in_the_middle(header, counts.columns, counts.rows);
+      cards.assumed("mount: at rest: " + trail_text(trail) + ", as the Earth turns");
+      return;
+    }
+  }
+  const auto trail = measured_trail(shape);
+  if (!trail) {
+    cards.assumed("mount: turns with the stars, which do not trail");
+    return;
+  }
+  set_drift(header, trail->x_px, trail->y_px);
+  cards.assumed("mount: drifts evenly: " + trail_text(*trail));
+}
+
+void set_attitudes(const StandardCards& cards, const CountImage& counts,
+                   const std::optional<StarShape>& shape, FrameHeader& header) {
+  const std::string stated = cards.text("MOUNT");
+  header.mount = "unknown";
+  if (stated == "sidereal" || (stated == "fixed" && may_be_at_rest(header))) {
+    header.mount = stated;
+    if (stated == "fixed") set_at_rest(header);
+  } else if (shape) {
+    measure_attitudes(cards, counts, *shape, header);
+  } else {
+    cards.assumed("mount: taken to turn with the stars: too few to measure it");
+  }
+}
+
+std::optional<StarShape> shape_of(const CountImage& counts, const FrameHeader& header,
+                                  Threads& threads) {
+  return measure_star_shape(
+      counts,
+      {.gain_e_per_dn = header.gain_e_per_dn,
+       .saturation_dn = header.saturation_dn - 5 * header.read_noise_e / header.gain_e_per_dn},
+      threads);
+}
+
+}  // namespace
+
+void set_star_images(const StandardCards& cards, const CountImage& counts, Threads& threads,
+                     FrameHeader& header) {
+  const auto shape = shape_of(counts, header, threads);
+  set_width(cards, shape, header);
+  set_attitudes(cards, counts, shape, header);
+}
+
+void set_trails_of_solved(const CountImage& counts, Threads& threads, FrameHeader& solved) {
+  solved.camera_from_gcrs.fill(solved.camera_from_gcrs[1]);
+  FrameNotes unused;
+  const FitsValues stated = {{"MOUNT", solved.mount}};
+  set_attitudes(StandardCards(stated, unused), counts, shape_of(counts, solved, threads), solved);
+}
+
+}  // namespace dmise
