@@ -14,6 +14,7 @@ import datetime
 import itertools
 import pathlib
 import platform
+import re
 import subprocess
 import sys
 import tempfile
@@ -119,7 +120,7 @@ def found_tables(kinds, settings, dmise):
             within = [(snr >= low) & (snr < high) for low, high in zip(SNR_BINS, SNR_BINS[1:])]
             within[-1] |= snr >= SNR_BINS[-1]
             snr_rows.append([KINDS[kind], name] + [f"{hit[w].sum()} of {w.sum()}" for w in within])
-        found_rows[-3][1] += f" ({ours} false alarms in {len(scenes)} frames)"
+        found_rows[-3][1] += f" (false alarms: {ours} in {len(scenes)} frames)"
     bins = [f"SNR {low} to {high}" for low, high in zip(SNR_BINS, SNR_BINS[1:-1])] + [f"{SNR_BINS[-2]} and more"]
     return (table(["frames", "detector", "streaks found at dmise's false alarms", "at 1 a frame", "at 10 a frame"], found_rows),
             table(["frames", "detector, at 1 a frame"] + bins, snr_rows))
@@ -130,9 +131,10 @@ def machine():
                platform.machine())
     import galsim
     import sep
-    version = subprocess.run(["source-extractor", "--version"], capture_output=True, text=True).stdout.split()
+    version = subprocess.run(["source-extractor", "--version"], capture_output=True, text=True).stdout
+    number = re.search(r"[0-9][0-9.]*", version) or ["of an unknown version"]
     day = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d")
-    return (f"{cpu}, {day}; sep {sep.__version__}, source-extractor {version[2] if len(version) > 2 else ''}, "
+    return (f"{cpu}, {day}; sep {sep.__version__}, source-extractor {number[0]}, "
             f"galsim {galsim.__version__}")
 
 
