@@ -176,12 +176,12 @@ DetectionOutcome detection_trial(double length, double snr, double threshold, in
 }
 
 double late_by_snr(double length, double threshold, int frames, const StarField& field) {
-  constexpr double step = 0.5;
+  constexpr double step = 0.5, most = 8.0;
   const auto crossing = [](double snr, double now, double before) {
     return snr - step * (now - 0.5) / std::max(now - before, 1e-9);
   };
   double measured = HUGE_VAL, in_theory = HUGE_VAL, now = 0.0, theory = 0.0;
-  for (double snr = threshold - 1; snr < threshold + 8; snr += step) {
+  for (double snr = threshold - 1; snr < threshold + most; snr += step) {
     const DetectionOutcome o = detection_trial(length, snr, threshold, frames, field, 1000);
     const double p = o.probability(), q = o.probability_in_theory();
     if (p >= 0.5 && measured == HUGE_VAL) measured = crossing(snr, p, now);
@@ -190,7 +190,7 @@ double late_by_snr(double length, double threshold, int frames, const StarField&
     now = p;
     theory = q;
   }
-  return HUGE_VAL;
+  return most;
 }
 
 }  // namespace dmise

@@ -45,7 +45,7 @@ simulated::SimulatedFrame trial_frame(const FrameHeader& header, int columns, in
 DetectionOutcome detection_trial(double length, double snr, double threshold, int frames,
                                  const StarField& field, unsigned seed);
 
-/// SNR by which half are found later than in theory; infinite if that is by more than 8.
+/// SNR by which half are found later than in theory, at most 8.
 double late_by_snr(double length, double threshold, int frames, const StarField& field);
 
 }  // namespace dmise

@@ -1,5 +1,6 @@
 #include "core/calibration/calibrated_detection.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -9,11 +10,18 @@ namespace dmise {
 namespace {
 
 constexpr double most_shift_px = 0.2;  // of the stars from where the header has them
-constexpr int least_stars = 8;         // that must be expected before the header is doubted
+constexpr double most_shift_sigmas = 5.0;
+constexpr int least_stars = 8;  // expected, and seen, before the header is doubted
 
-bool is_wrong(const StarsSeen& stars) {
+/// Whether a frame's stars are elsewhere than by its header. Without anything like stars, as in
+/// clouds, that cannot be told.
+bool is_wrong(const DetectionResult& result) {
+  const StarsSeen& stars = result.stars;
   if (stars.expected < least_stars) return false;
-  return !stars.known || std::hypot(stars.shift.x_px, stars.shift.y_px) > most_shift_px;
+  if (!stars.known) return result.report.star_like >= std::uint32_t(least_stars);
+  const double sigma_px = stars.scatter_px / std::sqrt(double(stars.found));
+  return std::hypot(stars.shift.x_px, stars.shift.y_px) >
+         std::max(most_shift_px, most_shift_sigmas * sigma_px);
 }
 
 /// Whether enough is known of a frame to expect stars at their places with their light.
@@ -45,8 +53,7 @@ CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame,
     const bool may_be_solved = map_ && !unknown.has(FrameFact::pointing) &&
                                !unknown.has(FrameFact::focal_length) &&
                                !unknown.has(FrameFact::time);
-    if (!may_be_solved || (expects_stars(unknown) && !is_wrong(result.detection.stars)))
-      return result;
+    if (!may_be_solved || (expects_stars(unknown) && !is_wrong(result.detection))) return result;
   }
   if (!map_) throw Error("blind detection takes a catalogue of stars");
   try {

@@ -6,14 +6,13 @@
 
 #include "core/detection/atmosphere.h"
 #include "core/detection/background.h"
-#include "core/detection/compact_source.h"
 #include "core/detection/components.h"
 #include "core/detection/describe.h"
 #include "core/detection/faint_streaks.h"
 #include "core/detection/hidden_ends.h"
 #include "core/detection/hide_stars.h"
+#include "core/detection/judge_components.h"
 #include "core/detection/line_profile.h"
-#include "core/detection/long_streak.h"
 #include "core/detection/psf_measure.h"
 #include "core/detection/scene.h"
 #include "core/detection/source_fit.h"
@@ -30,35 +29,6 @@ double lowest_clipped_dn(const FrameHeader& header) {
          5 * std::hypot(header.read_noise_e, column_e) / header.gain_e_per_dn;
 }
 
-/// Axis ratio of the component's pixels, unweighted.
-double elongation(const Component& c) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-  for (const Run& run : c.runs)
-    for (int px = run.first_x; px <= run.last_x; ++px) {
-      const double dx = px - c.peak_x, dy = run.y - c.peak_y;
-      n += 1;
-      x += dx;
-      y += dy;
-      xx += dx * dx;
-      xy += dx * dy;
-      yy += dy * dy;
-    }
-  xx = xx / n - x / n * x / n;
-  xy = xy / n - x / n * y / n;
-  yy = yy / n - y / n * y / n;
-  const double mean = 0.5 * (xx + yy), half = std::hypot(0.5 * (xx - yy), xy);
-  return std::sqrt((mean + half) / std::max(mean - half, 1.0 / 12));
-}
-
-/// Whether a component is longer than a star can be; if only slightly longer, it must also be
-/// elongated, because the brightest stars are round.
-bool is_long(const Scene& scene, const Component& c) {
-  const double star_px = scene.star_trail(c.peak_x, c.peak_y).length_px;
-  const double extent_px = std::hypot(c.max_x - c.min_x + 1, c.max_y - c.min_y + 1);
-  const double limit_px = star_px + 12 * scene.sigma_px + 6;
-  return extent_px > limit_px && (extent_px > limit_px + 20 || elongation(c) > 2);
-}
-
 /// Hides a component and what its light reaches.
 void hide(FilteredFrame& frame, const Component& component, int reach_px) {
   for (const Run& run : component.runs)
@@ -70,77 +40,6 @@ void hide(FilteredFrame& frame, const PixelMask& unusable) {
   for (int y = 0; y < frame.rows; ++y)
     for (int x = 0; x < frame.columns; ++x)
       if (unusable.at(x, y)) frame.hide(y, x, x);
-}
-
-struct Judged {
-  std::vector<Source> sources;
-  std::uint32_t star_like = 0;  // components classified as stars
-  // How far each component's light reaches that is not to be searched again [px]; empty where it
-  // is, because it is neither a star nor a source.
-  std::vector<std::optional<int>> reach_px;
-};
-
-/// Whether a component is no more than hidden stars and their wings: what rises above `seed_snr`
-/// beside them touches them.
-bool is_of_hidden_stars(const FilteredFrame& frame, const Component& c, double seed_snr) {
-  const auto touches_hidden = [&](int x, int y) {
-    for (int py = std::max(0, y - 1); py <= std::min(frame.rows - 1, y + 1); ++py)
-      for (int px = std::max(0, x - 1); px <= std::min(frame.columns - 1, x + 1); ++px)
-        if (frame.row(py)[px] == 0) return true;
-    return false;
-  };
-  const int seed = int(seed_snr * FilteredFrame::steps);
-  for (const Run& run : c.runs)
-    for (int x = run.first_x; x <= run.last_x; ++x)
-      if (frame.row(run.y)[x] >= seed && !touches_hidden(x, run.y)) return false;
-  return true;
-}
-
-/// Compact components are classified independently, in parallel; long ones by falling size, so that
-/// a streak's largest piece finds the whole of it and the others are recognised as pieces.
-Judged judge(const Scene& scene, const FilteredFrame& filtered,
-             const std::vector<Component>& components, const DetectorSettings& settings,
-             Threads& threads) {
-  Judged out;
-  out.reach_px.resize(components.size(), int(std::ceil(2 * scene.sigma_px)));
-  // Where the sky is not calm, what is no source is likely no part of one.
-  const auto is_calm = [&](const Component& c) {
-    return scene.known && filtered.cell_at(c.peak_x, c.peak_y).scatter < 1.2f;
-  };
-  std::vector<const Component*> longs, compacts;
-  for (std::size_t i = 0; i < components.size(); ++i) {
-    const Component& c = components[i];
-    const bool lengthy = is_long(scene, c);
-    if (!lengthy && scene.known && is_of_hidden_stars(filtered, c, settings.seed_snr)) {
-      ++out.star_like;
-      out.reach_px[i] = 0;  // their wings are hidden
-    } else {
-      (lengthy ? longs : compacts).push_back(&c);
-    }
-  }
-  std::stable_sort(longs.begin(), longs.end(),
-                   [](const Component* a, const Component* b) { return a->pixels > b->pixels; });
-  std::vector<CompactJudgement> found(compacts.size());
-  threads.for_ranges(compacts.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      found[i] = judge_compact(scene, *compacts[i], settings);
-  });
-  for (const Component* component : longs) {
-    const std::size_t before = out.sources.size();
-    find_long_streaks(scene, *component, settings, out.sources);
-    if (out.sources.size() > before) continue;
-    ++out.star_like;
-    if (is_calm(*component)) out.reach_px[std::size_t(component - components.data())].reset();
-  }
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].source)
-      out.sources.push_back(std::move(*found[i].source));
-    else if (found[i].star_like)
-      ++out.star_like;
-    else if (is_calm(*compacts[i]))
-      out.reach_px[std::size_t(compacts[i] - components.data())].reset();
-  }
-  return out;
 }
 
 /// Whether an end of a streak is so near the frame's edge that it may be beyond it.
@@ -168,9 +67,15 @@ std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
   std::vector<Source> out;
   std::sort(all.begin(), all.end(), before);
   for (Source& source : all) {
+    const Trail& t = source.trail();
+    const double ex = t.length_px / 2 * std::cos(t.angle_rad);
+    const double ey = t.length_px / 2 * std::sin(t.angle_rad);
+    const double margin_px = 3 * sigma_px + 1.5;
     const bool piece = std::any_of(out.begin(), out.end(), [&](const Source& stronger) {
-      return lies_on(stronger.trail(), source.trail().x_px, source.trail().y_px,
-                     3 * sigma_px + 1.5);
+      const Trail& of = stronger.trail();
+      if (!lies_on(of, t.x_px, t.y_px, margin_px)) return false;
+      return !source.streak || (lies_on(of, t.x_px - ex / 2, t.y_px - ey / 2, margin_px) &&
+                                lies_on(of, t.x_px + ex / 2, t.y_px + ey / 2, margin_px));
     });
     if (!piece) out.push_back(std::move(source));
   }
@@ -264,7 +169,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
     scene.flat = &filtered;
     scene.known = &*known;
   }
-  Judged judged = judge(scene, filtered, components, settings, threads);
+  Judged judged = judge_components(scene, filtered, components, settings, threads);
   for (Source& source : judged.sources) extend(scene, filtered, source);
   judged.star_like += std::uint32_t(std::erase_if(judged.sources, [&](const Source& source) {
     return is_row_of_stars(scene, source, settings);

@@ -38,6 +38,7 @@ struct DetectorSettings {
 struct StarsSeen {
   int expected = 0, found = 0;  // of those that are well above the noise
   PixelPosition shift;          // of the frame's stars from where they are expected
+  double scatter_px = 0.0;      // about it, along one axis
   bool known = false;           // there are enough, so that detection relied on the catalogue
 };
 

@@ -53,7 +53,8 @@ std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
   if (!(least_e > 0)) return std::nullopt;
   const auto expected = sky.stars_in(header, frame.columns, frame.rows, least_e);
   const StarAgreement agreement(scene, frame, expected);
-  seen = {agreement.expected(), agreement.found(), agreement.shift(), agreement.holds()};
+  seen = {agreement.expected(), agreement.found(), agreement.shift(), agreement.scatter_px(),
+          agreement.holds()};
   if (!agreement.holds()) return std::nullopt;
   BitMask lit(frame.columns, frame.rows);
   std::vector<KnownStars::Star> stars;

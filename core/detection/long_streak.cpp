@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/base/units.h"
+#include "core/detection/evenness.h"
 #include "core/detection/line_profile.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_hypothesis.h"
@@ -13,7 +14,7 @@
 namespace dmise {
 namespace {
 
-constexpr int most_lines = 4;              // in one component
+constexpr int most_lines = 12;             // in one component
 constexpr double worth_another_px = 50.0;  // a shorter component is given up after one failed line
 constexpr int window_px = 16;              // step of growth
 constexpr double growth_snr = 4.0;         // to continue into the next window
@@ -72,8 +73,9 @@ Line refined(const std::vector<Point>& points, const Line& line, double width_px
 }
 
 /// Extends the line beyond one end while light of about the same level continues, one window at a
-/// time, also across one dark window.
-void grow(const Scene& scene, const Line& line, Extent& extent, int way, double level) {
+/// time, if asked for also across one dark window.
+void grow(const Scene& scene, const Line& line, Extent& extent, int way, double level,
+          bool across_gaps) {
   const int limit = line.by_columns() ? scene.counts.columns : scene.counts.rows;
   int gap = 0;
   while (true) {
@@ -94,7 +96,7 @@ void grow(const Scene& scene, const Line& line, Extent& extent, int way, double 
       else
         extent.from = std::max(first, 0);
       gap = 0;
-    } else if (gap == 0) {
+    } else if (gap == 0 && across_gaps) {
       gap = window_px;
     } else {
       return;
@@ -124,58 +126,6 @@ Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, doubl
   return {end(middle, extent.from - window_px), end(middle, extent.to + window_px)};
 }
 
-/// Evenness of a trail, divided into pieces long enough to be significant: fractions of pieces with
-/// its light, and with more than twice its light. Empty if there are too few pieces.
-struct Evenness {
-  double lit = 0.0, over = 1.0;
-};
-
-Evenness evenness_of(const Scene& scene, const Trail& t) {
-  const Line line = line_of(t);
-  const double level = t.flux_e / t.length_px;
-  const Extent extent = extent_of(line, t.length_px / 2 - scene.sigma_px);
-  std::vector<Slice> all;
-  std::vector<double> expected;
-  double noise = 0.0;
-  for (int k = extent.from; k <= extent.to; ++k) {
-    const Slice s = slice_at(scene, line, k, 0.0);
-    if (!(s.variance > 0)) continue;
-    const double along = line.by_columns() ? (k - line.x) / line.ux : (k - line.y) / line.uy;
-    all.push_back(s);
-    expected.push_back(level * (1 + t.slope * 2 * along / t.length_px));
-    noise += s.variance;
-  }
-  if (all.size() < 6) return {};
-  noise = std::sqrt(noise / double(all.size()));
-  // Pieces long enough for 4 sigma each, at least 2 px.
-  const auto length = std::size_t(std::clamp(std::ceil(std::pow(4 * noise / level, 2)), 2.0, 1e6));
-  int pieces = 0, lit = 0, over = 0;
-  for (std::size_t i = 0; i + length <= all.size(); i += length) {
-    double sum = 0.0, want = 0.0;
-    for (std::size_t k = i; k < i + length; ++k) {
-      sum += all[k].e_per_px;
-      want += expected[k];
-    }
-    ++pieces;
-    lit += sum > 0.4 * want;
-    over += sum > 2.0 * want;
-  }
-  if (pieces < 3) return {};
-  return {double(lit) / pieces, double(over) / pieces};
-}
-
-/// Even and complete enough to be one object's path.
-bool is_continuous(const Scene& scene, const Trail& t) {
-  const Evenness e = evenness_of(scene, t);
-  return e.lit >= 0.8 && e.over <= 0.3;
-}
-
-/// Not worth a fit: even an inaccurate first guess is not this uneven.
-bool is_hopeless(const Scene& scene, const Trail& t) {
-  const Evenness e = evenness_of(scene, t);
-  return e.lit < 0.5 || e.over > 0.4;
-}
-
 /// A trail along the line over the extent.
 Trail trail_along(const Line& line, const Extent& extent, double level) {
   const Point a = line.at(extent.from - 0.5), b = line.at(extent.to + 0.5);
@@ -186,6 +136,9 @@ Trail trail_along(const Line& line, const Extent& extent, double level) {
   t.angle_rad = std::atan2(b.y - a.y, b.x - a.x);
   t.flux_e = level * t.length_px;
   t.sagitta_px = line.sagitta_px * std::pow(t.length_px / (2 * line.half_length_px), 2);
+  // The ends lie beside the centroid of the light by two thirds of the bend.
+  t.x_px -= 2.0 / 3 * t.sagitta_px * std::sin(t.angle_rad);
+  t.y_px += 2.0 / 3 * t.sagitta_px * std::cos(t.angle_rad);
   return t;
 }
 
@@ -199,7 +152,7 @@ bool is_among_others(const Scene& scene, const Line& line, const Extent& extent,
 }
 
 /// Alternates fitting and growing until the ends are stable.
-std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
+std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bool across_gaps,
                                 const DetectorSettings& settings) {
   std::optional<Source> source;
   for (int round = 0; round < most_rounds; ++round) {
@@ -208,8 +161,8 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent,
     if (is_hopeless(scene, trail_along(line, extent, level))) return std::nullopt;
     if (round == 0 && is_among_others(scene, line, extent, level, settings)) return std::nullopt;
     const Extent before = extent;
-    grow(scene, line, extent, +1, level);
-    grow(scene, line, extent, -1, level);
+    grow(scene, line, extent, +1, level, across_gaps);
+    grow(scene, line, extent, -1, level, across_gaps);
     extent = trimmed(scene, line, extent, level);
     if (source && std::abs(extent.from - before.from) <= 2 && std::abs(extent.to - before.to) <= 2)
       break;
@@ -285,7 +238,9 @@ void find_long_streaks(const Scene& scene, const Component& component,
     if (on.size() < 8) break;
     const auto [low, high] = std::minmax_element(on.begin(), on.end());
     if ((*high - *low) * line.slice_px() < least_px) break;
-    auto source = streak_on(scene, line, {int(*low), int(*high)}, settings);
+    auto source = streak_on(scene, line, {int(*low), int(*high)}, true, settings);
+    // What is uneven with others behind it may be one of a row.
+    if (!source) source = streak_on(scene, line, {int(*low), int(*high)}, false, settings);
     std::erase_if(points, [&](const Point& p) {
       return std::abs(line.off(p)) < width_px ||
              (source && lies_on(source->trail(), p.x, p.y, skirt_px));

@@ -54,28 +54,6 @@ bool is_saturated(const Scene& scene, const Trail& trail) {
   return false;
 }
 
-/// Cuts a trail's ends at `margin_px` beyond the frame: how far out they are no pixel tells.
-void cut_to_frame(const Scene& scene, double margin_px, Trail& trail) {
-  const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
-  double from = -trail.length_px / 2, to = trail.length_px / 2;
-  const auto cut = [&](double middle, double way, double last) {
-    if (std::abs(way) < 1e-6) return;
-    const double a = (-margin_px - middle) / way, b = (last + margin_px - middle) / way;
-    from = std::max(from, std::min(a, b));
-    to = std::min(to, std::max(a, b));
-  };
-  cut(trail.x_px, c, scene.counts.columns - 1);
-  cut(trail.y_px, s, scene.counts.rows - 1);
-  const double share = (to - from) / trail.length_px;
-  if (!(share > 0 && share < 1)) return;
-  trail.x_px += 0.5 * (from + to) * c;
-  trail.y_px += 0.5 * (from + to) * s;
-  trail.length_px *= share;
-  trail.flux_e *= share;
-  trail.sagitta_px *= share * share;
-  trail.slope *= share;
-}
-
 /// Moves `trail` to `target`, but neither end by more than `limit_px`: light beyond was not
 /// examined. Returns the requested distance of the farther end.
 double move_ends(Trail& trail, const Trail& target, double limit_px) {
@@ -101,6 +79,45 @@ double move_ends(Trail& trail, const Trail& target, double limit_px) {
   trail.angle_rad = std::atan2(chord.y_px, chord.x_px);
   trail.flux_e *= trail.length_px / std::max(target.length_px, 1.0);
   return farthest;
+}
+
+/// Where a trail, followed from its centre to one side, leaves the frame [px]; infinite: nowhere.
+double way_to_edge_px(const Trail& t, const Scene& scene, double side) {
+  const double c = side * std::cos(t.angle_rad), s = side * std::sin(t.angle_rad);
+  const auto way = [](double at, double slope, double size) {
+    if (std::abs(slope) < 1e-9) return HUGE_VAL;
+    return ((slope > 0 ? size - 0.5 : -0.5) - at) / slope;
+  };
+  return std::min(way(t.x_px, c, scene.counts.columns), way(t.y_px, s, scene.counts.rows));
+}
+
+/// Puts an end outside the frame on its edge: of what is beyond, no pixel tells, so that length and
+/// light would have no bound. A measurement of that end, by the gain of a Kalman filter.
+void end_at_edge(TrailFit& fit, unsigned free, const Scene& scene, double side) {
+  Trail& t = fit.trails[0];
+  const double way_px = way_to_edge_px(t, scene, side) - t.length_px / 2;
+  if (!(way_px < 0)) return;
+  constexpr double edge_px2 = 0.3 * 0.3;
+  const auto n = std::size_t(fit.parameters);
+  std::vector<double> h(n, 0.0), gain(n, 0.0);
+  h[0] = side * std::cos(t.angle_rad);
+  h[1] = side * std::sin(t.angle_rad);
+  h[3] = 0.5;
+  double variance = edge_px2;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < n; ++k) gain[i] += fit.covariance[i * n + k] * h[k];
+  for (std::size_t i = 0; i < n; ++i) variance += h[i] * gain[i];
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < n; ++k) fit.covariance[i * n + k] -= gain[i] * gain[k] / variance;
+  const double step = way_px / variance;
+  t.x_px += gain[0] * step;
+  t.y_px += gain[1] * step;
+  t.flux_e += gain[2] * step;
+  t.length_px += gain[3] * step;
+  t.angle_rad += gain[4] * step;
+  std::size_t next = 5;
+  if (free & trail_slope) t.slope += gain[next++] * step;
+  if (free & trail_sagitta) t.sagitta_px += gain[next] * step;
 }
 
 }  // namespace
@@ -172,7 +189,8 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     settings.background_sigma_e = background_prior * std::sqrt(double(pixels.front().variance_e2));
     settings.most_steps = 20;
     source.fit = fit_trails(pixels, {trail}, {source.free}, settings);
-    if (streak) cut_to_frame(scene, sigma_px, source.fit.trails[0]);
+    if ((source.free & trail_line) == trail_line && source.fit.cov(2, 2) > 0)
+      for (const double side : {-1.0, 1.0}) end_at_edge(source.fit, source.free, scene, side);
     moved_px = move_ends(trail, source.fit.trails[0], margin_px - 2 * sigma_px);
   }
   if ((!draft && moved_px > settled_px) || !plausible(scene, trail) || !(source.fit.cov(2, 2) > 0))

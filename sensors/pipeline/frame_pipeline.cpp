@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/memory.h"
+#include "core/calibration/calibrated_detection.h"
 #include "core/config/effect_list.h"
 #include "core/detection/detect.h"
 #include "core/detector/expose.h"
@@ -41,7 +42,7 @@ struct FramePipeline::Work {
   PipelineSettings settings;
   Threads& threads;
   std::optional<StarLayer> stars;
-  std::optional<CatalogueSky> sky;  // for detection
+  CalibratedDetector detector;
   std::optional<GlEvaluator> evaluator;
   SensorConfig planned;                    // the sensor with the effects of the exposure at hand
   std::optional<ExposurePlanner> planner;  // none: effects run as they are asked for
@@ -52,7 +53,10 @@ struct FramePipeline::Work {
   DetectorMemory detector_memory;
 
   Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)
-      : settings(std::move(s)), threads(t), planned(settings.sensor) {
+      : settings(std::move(s)),
+        threads(t),
+        detector(settings.sensor.detect ? map : nullptr),
+        planned(settings.sensor) {
     const auto& grid = settings.sensor.camera.optics;
     light = room_for_image<ExpectedElectronImage>(grid);
     light.columns = grid.columns;
@@ -61,7 +65,6 @@ struct FramePipeline::Work {
     used_counts = room_for_image<CountImage>(grid);
     if (settings.sensor.effects.drawn_by_opengl()) evaluator.emplace();
     make_optics();
-    if (map && settings.sensor.detect) sky.emplace(map);
     if (map) stars.emplace(settings.sensor, std::move(map));
     if (!settings.sensor.accuracy.is_planned() && settings.sensor.recorded_plans.empty()) return;
     if (!planned.unplanned) planned.unplanned = settings.sensor.effects;
@@ -238,11 +241,12 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   DetectionResult result;
   {
     Stopwatch timing(frame.detection_s);
-    const FrameHeader header = as_in_file(frame.header);
-    result = sensor.detect ? detect(frame.counts, header, {}, threads, sky ? &*sky : nullptr)
-                           : without_detection(frame.counts, header);
+    Frame exposed{std::move(frame.counts), as_in_file(frame.header)};
+    result = sensor.detect ? detector.detect(exposed, {}, threads).detection
+                           : without_detection(exposed.counts, exposed.header);
+    frame.counts = std::move(exposed.counts);
   }
-  if (sky) release_stars();
+  release_stars();
   frame.detections = std::move(result.detections);
   frame.report = std::move(result.report);
   frame.report.stars_rendered = truth.stars;
