@@ -17,10 +17,9 @@ namespace {
 
 constexpr double missing_from_mag = 1.0;  // before the counts' fall shows that stars are missing
 constexpr double sunlike_bv = 0.65;       // of what the zero point is for
-constexpr double edge_px = 20.0;          // from where light of stars comes in
 
 /// Angle from an axis to the farthest place on the frame's edge that images sky.
-double reach_rad(const Wcs& wcs, const Vec<Gcrs>& axis, int columns, int rows) {
+double reach_rad(const Wcs& wcs, const Vec<Gcrs>& axis, int columns, int rows, double beyond_px) {
   constexpr int steps = 16;
   double least = 1.0;
   for (int i = 0; i <= steps; ++i) {
@@ -29,7 +28,7 @@ double reach_rad(const Wcs& wcs, const Vec<Gcrs>& axis, int columns, int rows) {
                                    PixelPosition{0.0, y}, PixelPosition{double(columns - 1), y}})
       least = std::min(least, dot(wcs_direction(wcs, at), axis));
   }
-  const double margin = edge_px * wcs_scale_rad_per_px(wcs) + 0.02;
+  const double margin = beyond_px * wcs_scale_rad_per_px(wcs) + 0.02;
   return std::min(pi, std::acos(std::clamp(least, -1.0, 1.0)) * 1.02 + margin);
 }
 
@@ -49,7 +48,7 @@ CatalogueSky::CatalogueSky(std::shared_ptr<const StarMap> map) : map_(std::move(
 }
 
 std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int columns, int rows,
-                                                 double least_signal_e) const {
+                                                 double least_signal_e, double beyond_px) const {
   const StarTable& stars = map_->stars;
   const StarLight light(header.band);
   const double sunlike = light.photons_per_s_m2(0.0, sunlike_bv);
@@ -64,7 +63,7 @@ std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int 
   const double years = 2000.0 + julian_years_since_j2000(tt) - stars.epoch_jyear;
   std::vector<std::uint32_t> candidates;
   query_cone(stars.v_mag, map_->index, axis,
-             reach_rad(header.wcs, axis, columns, rows) +
+             reach_rad(header.wcs, axis, columns, rows, beyond_px) +
                  std::abs(years) * map_->index.fastest_motion_rad_per_yr,
              faintest_v_mag, candidates);
   const Vec<Gcrs> zenith = zenith_of(header);
@@ -85,8 +84,8 @@ std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int 
         std::pow(10.0, 0.4 * (header.zero_point_mag - extinction_mag - stars.v_mag[i]));
     if (!(signal_e >= least_signal_e)) continue;
     const auto place = wcs_pixel(header.wcs, direction);
-    if (!place || !(place->x_px > -edge_px && place->y_px > -edge_px &&
-                    place->x_px < columns - 1 + edge_px && place->y_px < rows - 1 + edge_px))
+    if (!place || !(place->x_px > -beyond_px && place->y_px > -beyond_px &&
+                    place->x_px < columns - 1 + beyond_px && place->y_px < rows - 1 + beyond_px))
       continue;
     out.push_back({*place, signal_e});
   }

@@ -25,10 +25,11 @@ class CatalogueSky {
   /// begin to fall.
   double complete_to_v_mag() const { return complete_to_v_mag_; }
 
-  /// The stars of at least `least_signal_e` in a frame and near its edges, by the header's WCS,
-  /// zero point, band and air; Gaussian noise or clouds have no say. In the catalogue's order.
+  /// The stars of at least `least_signal_e` in a frame and up to `beyond_px` beside it, by the
+  /// header's WCS, zero point, band and air; noise and clouds have no say. In the catalogue's
+  /// order.
   std::vector<ExpectedStar> stars_in(const FrameHeader& header, int columns, int rows,
-                                     double least_signal_e) const;
+                                     double least_signal_e, double beyond_px = 20.0) const;
 
  private:
   std::shared_ptr<const StarMap> map_;

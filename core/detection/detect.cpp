@@ -87,7 +87,7 @@ std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
 /// noise, so it is weighted higher.
 bool is_row_of_stars(const Scene& scene, const Source& source, const DetectorSettings& settings) {
   if (!source.streak) return false;
-  const bool is_short = source.trail().length_px < 40;  // longer ones may be structures of the sky
+  const bool is_short = source.trail().length_px < 25;  // longer ones may be structures of the sky
   if (is_short && scene.row_would_be_known(source.trail())) return false;
   const double snr_per_px = source.snr() / std::sqrt(std::max(source.trail().length_px, 1.0));
   if (source.snr() > settings.even_snr && snr_per_px > settings.even_snr_per_px) return false;
@@ -190,6 +190,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
     source.at_edge |= may_leave(counts, source);
     add_neglected_errors(source, scene.sigma_px);
     add_errors_of_hidden_ends(scene, source);
+    if (source.snr() < settings.least_light_snr) continue;
     Detection d = describe(source, header);
     d.index = std::uint32_t(result.detections.size());
     d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);

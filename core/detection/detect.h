@@ -16,6 +16,7 @@ struct DetectorSettings {
   double seed_snr = 5.0;             // minimum peak of a source in the filtered frame
   double connect_snr = 3.0;          // threshold of its pixels
   double least_snr = 6.0;            // minimum SNR of the fitted flux
+  double least_light_snr = 3.0;      // likewise with the errors of its ends: less is hardly seen
   double least_difference_px = 1.5;  // minimum difference between a source's and a star's trail
   double least_snr_in_stars = 10.0;  // of a streak against the scatter of stars beside it
   // Minimum SNR at which a streak's evenness is measurable: in total, and per px.

@@ -10,9 +10,11 @@
 namespace dmise {
 namespace {
 
-constexpr double subtracted_snr = 0.4;  // of a star, or of a pixel with its light, and more
-constexpr double hidden_snr = 5.0;      // light of which too much may be left
-constexpr double lit_noise = 0.4;       // light in a pixel [its noise] that a fit must not take
+constexpr double subtracted_snr = 0.4;   // of a star, or of a pixel with its light, and more
+constexpr double most_trail_px = 500.0;  // of stars: longer ones are streaks of their own
+constexpr double spare_px = 20.0;        // beside the frame, from where light of stars comes in
+constexpr double hidden_snr = 5.0;       // light of which too much may be left
+constexpr double lit_noise = 0.4;        // light in a pixel [its noise] that a fit must not take
 // By how many sigmas of its scatter a star may be brighter than expected: when its light is hidden,
 // and when it is compared with a source.
 constexpr double subtracted_sigmas = 3.0, most_sigmas = 7.0;
@@ -41,6 +43,17 @@ void mark(const StarImage& image, float least, BitMask& lit) {
   }
 }
 
+/// Of stars anywhere in the frame.
+double longest_trail_px(const Scene& scene) {
+  double longest = 0.0;
+  for (const double x : {0.0, 0.5, 1.0})
+    for (const double y : {0.0, 0.5, 1.0})
+      longest = std::max(
+          longest,
+          scene.star_trail(x * (scene.counts.columns - 1), y * (scene.counts.rows - 1)).length_px);
+  return longest;
+}
+
 }  // namespace
 
 std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
@@ -51,7 +64,10 @@ std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
   const double least_e =
       0.5 * subtracted_snr * scene.background.median_sigma_dn() * scene.gain_e_per_dn / unit;
   if (!(least_e > 0)) return std::nullopt;
-  const auto expected = sky.stars_in(header, frame.columns, frame.rows, least_e);
+  const double longest_px = longest_trail_px(scene);
+  if (longest_px > most_trail_px) return std::nullopt;
+  const auto expected =
+      sky.stars_in(header, frame.columns, frame.rows, least_e, spare_px + 0.5 * longest_px);
   const StarAgreement agreement(scene, frame, expected);
   seen = {agreement.expected(), agreement.found(), agreement.shift(), agreement.scatter_px(),
           agreement.holds()};

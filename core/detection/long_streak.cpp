@@ -15,6 +15,7 @@ namespace dmise {
 namespace {
 
 constexpr int most_lines = 12;             // in one component
+constexpr int most_failures = 3;           // of lines in a row, before it is given up
 constexpr double worth_another_px = 50.0;  // a shorter component is given up after one failed line
 constexpr int window_px = 16;              // step of growth
 constexpr double growth_snr = 4.0;         // to continue into the next window
@@ -227,6 +228,7 @@ void find_long_streaks(const Scene& scene, const Component& component,
   std::vector<Point> points = free_points(scene, component, skirt_px, found);
   const double extent_px =
       std::hypot(component.max_x - component.min_x + 1, component.max_y - component.min_y + 1);
+  int failures = 0;
   for (int n = 0; n < most_lines && points.size() >= 2 * std::size_t(least_px); ++n) {
     const auto rough = main_line(points, width_px, least_px);
     if (!rough) break;
@@ -245,10 +247,12 @@ void find_long_streaks(const Scene& scene, const Component& component,
       return std::abs(line.off(p)) < width_px ||
              (source && lies_on(source->trail(), p.x, p.y, skirt_px));
     });
-    if (source)
+    if (source) {
       found.push_back(std::move(*source));
-    else if (extent_px < worth_another_px)
+      failures = 0;
+    } else if (extent_px < worth_another_px || ++failures == most_failures) {
       break;
+    }
   }
 }
 

@@ -28,12 +28,16 @@ void StarImage::draw(const Trail& t, double sigma_px, double flux, double least)
     // The middles of equal parts have the trail's spread but for a part's own.
     const double along = ((i + 0.5) / points - 0.5) * t.length_px;
     const double cx = t.x_px + along * ux, cy = t.y_px + along * uy;
-    for (int x = x0; x <= x1; ++x)
+    const int left = std::max(x0, within(std::ceil(cx - reach), columns_));
+    const int right = std::min(x1, within(std::floor(cx + reach), columns_));
+    const int top = std::max(y0, within(std::ceil(cy - reach), rows_));
+    const int bottom = std::min(y1, within(std::floor(cy + reach), rows_));
+    for (int x = left; x <= right; ++x)
       across_[std::size_t(x - x0)] = float(each * std::exp(k * (x - cx) * (x - cx)));
-    for (int y = y0; y <= y1; ++y) {
+    for (int y = top; y <= bottom; ++y) {
       const auto down = float(std::exp(k * (y - cy) * (y - cy)));
       float* row = light_.data() + std::size_t(y - y0) * width;
-      for (std::size_t x = 0; x < width; ++x) row[x] += across_[x] * down;
+      for (int x = left; x <= right; ++x) row[x - x0] += across_[std::size_t(x - x0)] * down;
     }
   }
 }

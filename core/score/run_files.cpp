@@ -90,7 +90,7 @@ ScoredFrame frame_of(const JsonRecord& report) {
   ScoredFrame f{.sensor = report.get<std::string>("sensor"),
                 .frame = std::to_string(report.get<std::uint32_t>("frame"))};
   if (report.has("noise_e") && report.number("noise_e") > 0.0) f.noise_e = report.number("noise_e");
-  if (report.has("psf_fwhm_px"))
+  if (report.has("psf_fwhm_px") && report.number("psf_fwhm_px") > 0.0)
     f.sigma_px = report.number("psf_fwhm_px") / std::sqrt(8.0 * std::log(2.0));
   f.exposure_s = (report.time("end_ns") - report.time("start_ns")).seconds();
   f.searched = !report.has("detection_off") || !report.get<bool>("detection_off");

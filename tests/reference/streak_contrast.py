@@ -40,6 +40,7 @@ SCENARIO = """
 simulation: {{start: 2019-12-15T05:20:20Z, duration_s: 20, tick_s: 2, seed: 1}}
 objects: [{{catalogue: cosmos-2519.tle, radius_m: {radius_m!r}}}]
 effects: {{shadow: off, scintillation: off, photon_noise: off, dark_current: off, read_noise: off, full_well: off}}
+detection: off
 output: {{png: false}}
 sensors:
 """
