@@ -13,11 +13,12 @@
 namespace dmise {
 namespace {
 
-constexpr double faint_per_px = 4.0;    // SNR over the root of the length; brighter ends are seen
-constexpr double least_share = 0.4;     // of a trail that is not hidden
-constexpr double chain_px = 40.0;       // longest row of stars, without their trails
-constexpr double candidate_snr = 4.7;   // of a beamlet, which may be a part of a streak
-constexpr double least_gain = 10.0;     // of SNR^2, by which a streak must be longer than was seen
+constexpr double faint_per_px = 4.0;   // SNR over the root of the length; brighter ends are seen
+constexpr double least_share = 0.4;    // of a trail that is not hidden
+constexpr double chain_px = 40.0;      // longest row of stars, without their trails
+constexpr double candidate_snr = 4.7;  // of a beamlet, which may be a part of a streak
+constexpr double least_gain = 10.0;    // of SNR^2, by which a streak must be longer than was seen
+constexpr int most_failures = 30;  // of fits: a frame of so many structures has no faint streaks
 constexpr double template_px = 130.0;   // longest streak whose ends count
 constexpr double sum_misses_snr = 1.6;  // of such a streak's SNR, at most
 
@@ -147,6 +148,7 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
   const double margin_px = 2 * scene.sigma_px + 1;
   std::vector<Source> found;
   std::vector<Trail> tried;
+  int failures = 0;
   for (const Beamlet& beamlet : beamlets) {
     Trail trail = trail_of(beamlet);
     if (snr_along(frame, trail) < 0.8 * candidate_snr) continue;  // hidden meanwhile
@@ -187,9 +189,11 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
     const double star_snr = star_snr_on(frame, trail, star);
     if (snr * snr - star_snr * star_snr < settings.blend_margin) continue;
     auto source = fitted(seen, trail, snr);
-    if (!source) continue;
-    hide(frame, source->trail(), 4 * scene.sigma_px);
-    if (is_streak(scene, *source, settings)) found.push_back(std::move(*source));
+    if (source) hide(frame, source->trail(), 4 * scene.sigma_px);
+    if (source && is_streak(scene, *source, settings))
+      found.push_back(std::move(*source));
+    else if (++failures == most_failures)
+      break;
   }
   return found;
 }
