@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
@@ -12,13 +13,14 @@
 #include "core/score/score_text.h"
 #include "launch/commands.h"
 #include "launch/progress.h"
+#include "launch/star_catalogue_option.h"
 #include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 namespace {
 
 struct ScoreOptions {
-  std::string run, frames, truth, csv, plots;
+  std::string run, frames, truth, csv, plots, catalogue;
   bool json = false;
   int threads = 1;
   ScoreSettings settings;
@@ -32,7 +34,11 @@ ScoreInput input_of(const ScoreOptions& options) {
     progress.show_share(share, "score: " + printable(file));
   };
   Threads threads(options.threads);
-  auto input = options.run.empty() ? read_frames(options.frames, options.truth, threads, show)
+  std::optional<CatalogueSky> sky;
+  if (options.run.empty())
+    if (auto stars = load_star_catalogue(options.catalogue)) sky.emplace(std::move(stars));
+  auto input = options.run.empty() ? read_frames(options.frames, options.truth, threads, show,
+                                                 sky ? &*sky : nullptr)
                                    : read_run(options.run, show);
   progress.clear_line();
   return input;
@@ -69,6 +75,7 @@ void add_score_command(CLI::App& app) {
   auto* truth = command->add_option("--truth", options->truth, truth_csv_help);
   frames->needs(truth)->excludes(run);
   truth->needs(frames);
+  add_star_catalogue_option(*command, options->catalogue, true);
   command->add_option("--threads", options->threads, "number of threads that detect in --frames")
       ->default_val(1)
       ->check(CLI::Range(1, 256));

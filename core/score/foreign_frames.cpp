@@ -172,7 +172,7 @@ void leave_unknown(const std::string& file, const UnknownFacts& unknown,
 }  // namespace
 
 ScoreInput read_frames(const std::string& directory, const std::string& truth_csv, Threads& threads,
-                       const ReadProgress& progress) {
+                       const ReadProgress& progress, const CatalogueSky* sky) {
   const auto files = fits_files(directory);
   ScoreInput in{.source = directory, .status = "complete"};
   in.truths = read_truth_csv(truth_csv, files);
@@ -182,7 +182,7 @@ ScoreInput read_frames(const std::string& directory, const std::string& truth_cs
     progress(double(i) / double(files.size()), files[i]);
     const std::string path = directory + "/" + files[i];
     const Frame pixels = read_any_frame(path, {}, threads);
-    const auto found = detect_frame(pixels, {}, threads).result;
+    const auto found = detect_frame(pixels, {}, threads, sky).result;
     ScoredFrame frame = frame_of_report(found.report, pixels.header.unknown);
     frame.sensor = sensor_name;
     frame.frame = files[i];

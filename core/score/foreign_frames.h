@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 #include <vector>
+#include "core/detection/catalogue_sky.h"
 
 #include "core/base/parallel.h"
 #include "core/score/score_input.h"
@@ -24,6 +25,6 @@ std::vector<TrueSource> read_truth_csv(const std::string& path,
 /// Detects in every FITS file of a directory (.fits .fit .fts, also with .gz or .fz), with truth
 /// from a CSV.
 ScoreInput read_frames(const std::string& directory, const std::string& truth_csv, Threads& threads,
-                       const ReadProgress& progress);
+                       const ReadProgress& progress, const CatalogueSky* sky = nullptr);
 
 }  // namespace dmise
