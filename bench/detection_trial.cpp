@@ -15,6 +15,7 @@ using simulated::SimulatedFrame;
 
 constexpr double sky_e = 1500.0, focal_px = 1663.0;
 constexpr double faintest_star_snr = 1.0;
+constexpr double place_error_px = 0.1, light_error = 0.1;  // of the catalogue's stars in a frame
 constexpr double star_free_noise = 0.3;  // stars' light in a pixel's noise up to which it is theirs
 
 double noise_variance_e2(const FrameHeader& h) {
@@ -140,10 +141,13 @@ FrameHeader trial_header(int columns, int rows, double exposure_s, const StarFie
 SimulatedFrame trial_frame(const FrameHeader& header, int columns, int rows, const StarField& field,
                            unsigned seed) {
   SimulatedFrame frame(header, columns, rows, sky_e, seed);
+  std::normal_distribution<double> normal;
   if (field.sky)
     for (const ExpectedStar& star :
          field.sky->stars_in(header, columns, rows, flux_of_snr(header, 0, faintest_star_snr)))
-      frame.add_star(star.place.x_px, star.place.y_px, star.signal_e);
+      frame.add_star(star.place.x_px + place_error_px * normal(frame.random()),
+                     star.place.y_px + place_error_px * normal(frame.random()),
+                     star.signal_e * std::exp(light_error * normal(frame.random())));
   return frame;
 }
 

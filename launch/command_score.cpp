@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
@@ -34,12 +33,10 @@ ScoreInput input_of(const ScoreOptions& options) {
     progress.show_share(share, "score: " + printable(file));
   };
   Threads threads(options.threads);
-  std::optional<CatalogueSky> sky;
-  if (options.run.empty())
-    if (auto stars = load_star_catalogue(options.catalogue)) sky.emplace(std::move(stars));
-  auto input = options.run.empty() ? read_frames(options.frames, options.truth, threads, show,
-                                                 sky ? &*sky : nullptr)
-                                   : read_run(options.run, show);
+  auto input = options.run.empty()
+                   ? read_frames(options.frames, options.truth, threads, show,
+                                 CalibratedDetector(load_star_catalogue(options.catalogue)))
+                   : read_run(options.run, show);
   progress.clear_line();
   return input;
 }

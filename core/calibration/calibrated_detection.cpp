@@ -18,18 +18,10 @@ constexpr int least_stars = 8;  // expected, and seen, before the header is doub
 bool is_wrong(const DetectionResult& result) {
   const StarsSeen& stars = result.stars;
   if (stars.expected < least_stars) return false;
-  if (!stars.known) return result.report.star_like >= std::uint32_t(least_stars);
+  if (!stars.agree()) return result.report.star_like >= std::uint32_t(least_stars);
   const double sigma_px = stars.scatter_px / std::sqrt(double(stars.found));
   return std::hypot(stars.shift.x_px, stars.shift.y_px) >
          std::max(most_shift_px, most_shift_sigmas * sigma_px);
-}
-
-/// Whether enough is known of a frame to expect stars at their places with their light.
-bool expects_stars(const UnknownFacts& unknown) {
-  for (const FrameFact fact : {FrameFact::time, FrameFact::exposure, FrameFact::pointing,
-                               FrameFact::focal_length, FrameFact::zero_point})
-    if (unknown.has(fact)) return false;
-  return true;
 }
 
 }  // namespace
@@ -44,8 +36,7 @@ CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame,
   const DetectorSettings with_mask = settings_for(frame, settings);
   const UnknownFacts& unknown = frame.header.unknown;
   const auto detected_by = [&](const FrameHeader& header) {
-    const CatalogueSky* sky = sky_ && expects_stars(header.unknown) ? &*sky_ : nullptr;
-    return dmise::detect(frame.counts, header, with_mask, threads, sky);
+    return dmise::detect(frame.counts, header, with_mask, threads, sky_ ? &*sky_ : nullptr);
   };
   Result result{.detection = {}, .header = frame.header, .solution = std::nullopt};
   if (!blind) {
@@ -53,7 +44,8 @@ CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame,
     const bool may_be_solved = map_ && !unknown.has(FrameFact::pointing) &&
                                !unknown.has(FrameFact::focal_length) &&
                                !unknown.has(FrameFact::time);
-    if (!may_be_solved || (expects_stars(unknown) && !is_wrong(result.detection))) return result;
+    if (!may_be_solved || (CatalogueSky::can_expect(unknown) && !is_wrong(result.detection)))
+      return result;
   }
   if (!map_) throw Error("blind detection takes a catalogue of stars");
   try {

@@ -47,8 +47,16 @@ CatalogueSky::CatalogueSky(std::shared_ptr<const StarMap> map) : map_(std::move(
   complete_to_v_mag_ = faintest_filled_v_mag(map_->stars.v_mag) - missing_from_mag;
 }
 
+bool CatalogueSky::can_expect(const UnknownFacts& unknown) {
+  for (const FrameFact fact : {FrameFact::time, FrameFact::exposure, FrameFact::pointing,
+                               FrameFact::focal_length, FrameFact::zero_point})
+    if (unknown.has(fact)) return false;
+  return true;
+}
+
 std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int columns, int rows,
                                                  double least_signal_e, double beyond_px) const {
+  if (!can_expect(header.unknown)) return {};
   const StarTable& stars = map_->stars;
   const StarLight light(header.band);
   const double sunlike = light.photons_per_s_m2(0.0, sunlike_bv);

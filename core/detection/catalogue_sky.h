@@ -25,9 +25,12 @@ class CatalogueSky {
   /// begin to fall.
   double complete_to_v_mag() const { return complete_to_v_mag_; }
 
+  /// Whether enough is known of a frame to expect stars at their places with their light.
+  static bool can_expect(const UnknownFacts& unknown);
+
   /// The stars of at least `least_signal_e` in a frame and up to `beyond_px` beside it, by the
   /// header's WCS, zero point, band and air; noise and clouds have no say. In the catalogue's
-  /// order.
+  /// order. None unless `can_expect`.
   std::vector<ExpectedStar> stars_in(const FrameHeader& header, int columns, int rows,
                                      double least_signal_e, double beyond_px = 20.0) const;
 

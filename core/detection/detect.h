@@ -4,6 +4,7 @@
 #include "core/base/image.h"
 #include "core/base/parallel.h"
 #include "core/detection/catalogue_sky.h"
+#include "core/detection/stars_seen.h"
 #include "core/products/detection.h"
 #include "core/products/frame_header.h"
 #include "core/products/pixel_mask.h"
@@ -33,14 +34,6 @@ struct DetectorSettings {
   double most_bend_in_noise = 0.15;
   // Pixels without a value, which are not used; null: all have one.
   const PixelMask* unusable = nullptr;
-};
-
-/// How a frame agrees with a catalogue of stars at the header's pointing.
-struct StarsSeen {
-  int expected = 0, found = 0;  // of those that are well above the noise
-  PixelPosition shift;          // of the frame's stars from where they are expected
-  double scatter_px = 0.0;      // about it, along one axis
-  bool known = false;           // there are enough, so that detection relied on the catalogue
 };
 
 struct DetectionResult {

@@ -69,15 +69,14 @@ std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
   const auto expected =
       sky.stars_in(header, frame.columns, frame.rows, least_e, spare_px + 0.5 * longest_px);
   const StarAgreement agreement(scene, frame, expected);
-  seen = {agreement.expected(), agreement.found(), agreement.shift(), agreement.scatter_px(),
-          agreement.holds()};
-  if (!agreement.holds()) return std::nullopt;
+  seen = agreement.seen();
+  if (!seen.agree()) return std::nullopt;
   BitMask lit(frame.columns, frame.rows);
   std::vector<KnownStars::Star> stars;
   stars.reserve(expected.size());
   StarImage image(frame.columns, frame.rows);
   for (const ExpectedStar& star : expected) {
-    const PixelPosition at = star.place + agreement.shift();
+    const PixelPosition at = star.place + seen.shift;
     const StarLightRatio& light = agreement.light_at(at);
     const int x = std::clamp(int(std::lround(at.x_px)), 0, frame.columns - 1);
     const int y = std::clamp(int(std::lround(at.y_px)), 0, frame.rows - 1);

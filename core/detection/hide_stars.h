@@ -1,9 +1,9 @@
 #pragma once
 #include <optional>
 
-#include "core/detection/detect.h"
 #include "core/detection/known_stars.h"
 #include "core/detection/scene.h"
+#include "core/detection/stars_seen.h"
 
 namespace dmise {
 

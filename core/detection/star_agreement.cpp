@@ -73,22 +73,22 @@ StarAgreement::StarAgreement(const Scene& scene, const FilteredFrame& frame,
     const Trail trail = scene.star_trail(star.place.x_px, star.place.y_px);
     const double peak = peak_snr(scene, frame, trail, star.signal_e);
     if (peak < looked_for_snr) continue;
-    ++expected_;
+    ++seen_.expected;
     const auto off =
         centroid_near(frame, star.place, trail.length_px / 2 + 2 * scene.sigma_px + most_shift_px);
     if (!off || std::hypot(off->x_px, off->y_px) > most_shift_px) continue;
-    ++found_;
+    ++seen_.found;
     if (peak > crowded_snr) continue;
     dx.push_back(off->x_px);
     dy.push_back(off->y_px);
   }
   if (dx.size() >= enough_stars) {
-    shift_ = {quantile_of(dx, 0.5), quantile_of(dy, 0.5)};
+    seen_.shift = {quantile_of(dx, 0.5), quantile_of(dy, 0.5)};
     std::vector<double> apart;
     for (std::size_t i = 0; i < dx.size(); ++i)
-      apart.push_back(std::hypot(dx[i] - shift_.x_px, dy[i] - shift_.y_px));
+      apart.push_back(std::hypot(dx[i] - seen_.shift.x_px, dy[i] - seen_.shift.y_px));
     // The median of a distance in the plane is 1.18 standard deviations of one axis.
-    scatter_px_ = std::max(0.1, quantile_of(std::move(apart), 0.5) / 1.18);
+    seen_.scatter_px = std::max(0.1, quantile_of(std::move(apart), 0.5) / 1.18);
   }
   measure_light(scene, frame, stars);
 }
@@ -99,7 +99,7 @@ void StarAgreement::measure_light(const Scene& scene, const FilteredFrame& frame
   std::vector<std::vector<double>> logs(light_.size());
   std::vector<double> all;
   for (const ExpectedStar& star : stars) {
-    const PixelPosition at = star.place + shift_;
+    const PixelPosition at = star.place + seen_.shift;
     if (!is_inside(scene, at)) continue;
     Trail trail = scene.star_trail(at.x_px, at.y_px);
     const double peak = peak_snr(scene, frame, trail, star.signal_e);

@@ -3,6 +3,7 @@
 
 #include "core/detection/catalogue_sky.h"
 #include "core/detection/scene.h"
+#include "core/detection/stars_seen.h"
 
 namespace dmise {
 
@@ -19,13 +20,7 @@ class StarAgreement {
   StarAgreement(const Scene& scene, const FilteredFrame& frame,
                 const std::vector<ExpectedStar>& stars);
 
-  int expected() const { return expected_; }
-  int found() const { return found_; }
-  /// Whether the frame shows the stars, so that the catalogue's places and gaps can be relied on.
-  bool holds() const { return found_ >= 1 && 10 * found_ >= 3 * expected_; }
-  /// Of the frame's stars from where they are expected, and the scatter about it along one axis.
-  PixelPosition shift() const { return shift_; }
-  double scatter_px() const { return scatter_px_; }
+  const StarsSeen& seen() const { return seen_; }
   const StarLightRatio& light_at(PixelPosition place) const;
 
  private:
@@ -33,10 +28,8 @@ class StarAgreement {
                      const std::vector<ExpectedStar>& stars);
   std::size_t cell_of(PixelPosition place) const;
 
-  int columns_, rows_;            // of the frame
-  int expected_ = 0, found_ = 0;  // of stars that are well above the noise
-  PixelPosition shift_;
-  double scatter_px_ = 0.3;
+  int columns_, rows_;  // of the frame
+  StarsSeen seen_;
   std::vector<StarLightRatio> light_;  // of a mesh of cells
 };
 

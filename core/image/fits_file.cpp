@@ -52,13 +52,7 @@ std::array<long, 2> image_shape(Fits& fits, std::size_t file_bytes, const std::s
 
 FitsValues read_cards(Fits& fits, const std::string& name) {
   FitsValues values;
-  int count = 0;
-  fits_get_hdrspace(fits.file, &count, nullptr, &fits.status);
-  for (int i = 1; i <= count && fits.status == 0; ++i) {
-    char card[FLEN_CARD] = "";
-    fits_read_record(fits.file, i, card, &fits.status);
-    if (fits.status == 0) add_card(values, card);
-  }
+  add_cards(fits, values);
   if (fits.status != 0) throw ConfigError(name + ": header can't be read: " + fits.reason());
   return values;
 }

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "core/image/fits_cards.h"
+
 namespace dmise {
 
 /// An open FITS file, closed by its destructor.
@@ -16,5 +18,9 @@ struct Fits {
   ~Fits();
   std::string reason() const;
 };
+
+/// Adds the cards of the present header to `values`, which keep what they have; `status` says
+/// whether all could be read.
+void add_cards(Fits& fits, FitsValues& values);
 
 }  // namespace dmise

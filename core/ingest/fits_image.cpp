@@ -17,16 +17,6 @@ constexpr LONGLONG longest_side = 1 << 16, most_planes = 1 << 20;
 // gzip compresses at best 1032 to 1: a file that claims more is malicious.
 constexpr double most_bytes_per_byte = 1040;
 
-void add_cards(Fits& fits, FitsValues& values) {
-  int count = 0;
-  fits_get_hdrspace(fits.file, &count, nullptr, &fits.status);
-  for (int i = 1; i <= count && fits.status == 0; ++i) {
-    char card[FLEN_CARD] = "";
-    fits_read_record(fits.file, i, card, &fits.status);
-    if (fits.status == 0) add_card(values, card);
-  }
-}
-
 }  // namespace
 
 FitsImage::FitsImage(std::string_view bytes, std::string name)

@@ -11,7 +11,6 @@
 #include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
-#include "core/detection/detect_file.h"
 #include "core/ingest/any_frame.h"
 #include "core/orbit/text_fields.h"
 #include "core/score/run_files.h"
@@ -172,7 +171,7 @@ void leave_unknown(const std::string& file, const UnknownFacts& unknown,
 }  // namespace
 
 ScoreInput read_frames(const std::string& directory, const std::string& truth_csv, Threads& threads,
-                       const ReadProgress& progress, const CatalogueSky* sky) {
+                       const ReadProgress& progress, const CalibratedDetector& detector) {
   const auto files = fits_files(directory);
   ScoreInput in{.source = directory, .status = "complete"};
   in.truths = read_truth_csv(truth_csv, files);
@@ -182,8 +181,10 @@ ScoreInput read_frames(const std::string& directory, const std::string& truth_cs
     progress(double(i) / double(files.size()), files[i]);
     const std::string path = directory + "/" + files[i];
     const Frame pixels = read_any_frame(path, {}, threads);
-    const auto found = detect_frame(pixels, {}, threads, sky).result;
-    ScoredFrame frame = frame_of_report(found.report, pixels.header.unknown);
+    const auto result = detector.detect(pixels, {}, threads);
+    const DetectionResult& found = result.detection;
+    const UnknownFacts& unknown = result.header.unknown;
+    ScoredFrame frame = frame_of_report(found.report, unknown);
     frame.sensor = sensor_name;
     frame.frame = files[i];
     frame.columns = pixels.counts.columns;
@@ -191,10 +192,10 @@ ScoreInput read_frames(const std::string& directory, const std::string& truth_cs
     if (pixels.header.psf_fwhm_px > 0.0)
       frame.sigma_px = pixels.header.psf_fwhm_px / std::sqrt(8.0 * std::log(2.0));
     in.frames.push_back(std::move(frame));
-    leave_unknown(files[i], pixels.header.unknown, in.truths);
+    leave_unknown(files[i], unknown, in.truths);
     frame_of_file[files[i]] = &in.frames.back();
     for (const Detection& d : found.detections) {
-      FoundSource source{sensor_name, files[i], d, pixels.header.unknown};
+      FoundSource source{sensor_name, files[i], d, unknown};
       source.detection.id = files[i] + "/" + std::to_string(source.detection.index);
       in.detections.push_back(std::move(source));
     }

@@ -1,9 +1,9 @@
 #pragma once
 #include <string>
 #include <vector>
-#include "core/detection/catalogue_sky.h"
 
 #include "core/base/parallel.h"
+#include "core/calibration/calibrated_detection.h"
 #include "core/score/score_input.h"
 
 namespace dmise {
@@ -23,8 +23,8 @@ std::vector<TrueSource> read_truth_csv(const std::string& path,
                                        const std::vector<std::string>& files);
 
 /// Detects in every FITS file of a directory (.fits .fit .fts, also with .gz or .fz), with truth
-/// from a CSV.
+/// from a CSV, as `dmise detect` does.
 ScoreInput read_frames(const std::string& directory, const std::string& truth_csv, Threads& threads,
-                       const ReadProgress& progress, const CatalogueSky* sky = nullptr);
+                       const ReadProgress& progress, const CalibratedDetector& detector);
 
 }  // namespace dmise

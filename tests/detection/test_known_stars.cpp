@@ -155,6 +155,44 @@ TEST_F(KnownStars, ShowAStreakThatCrossesThem) {
       400, 4);
 }
 
+// An end behind a star is anywhere behind it: the covariance says so.
+TEST_F(KnownStars, HideEndsWhoseErrorsAreStated) {
+  const auto stars = sky_.stars_in(header_, columns, rows, 5.0);
+  double squares = 0.0, wider = 0.0;
+  int measured = 0;
+  for (const ExpectedStar& star : stars) {
+    const double angle = 0.3, length = 60.0;
+    const PixelPosition middle{star.place.x_px - 0.5 * length * std::cos(angle),
+                               star.place.y_px - 0.5 * length * std::sin(angle)};
+    if (star.signal_e < 20000 || star.signal_e > 60000 || middle.x_px < 80 || middle.y_px < 80 ||
+        middle.x_px > columns - 80 || middle.y_px > rows - 80)
+      continue;
+    const auto along_sigma_px = [&](bool with_stars, PixelPosition& error) {
+      SimulatedFrame image =
+          with_stars ? frame(70) : SimulatedFrame(header_, columns, rows, sky_e, 70);
+      image.add_streak(middle.x_px, middle.y_px, length, angle, 12000);
+      for (const Detection& d : detections(image.expose())) {
+        error = {d.x_px - middle.x_px, d.y_px - middle.y_px};
+        if (std::hypot(error.x_px, error.y_px) > 8) continue;
+        const double c = std::cos(angle), s = std::sin(angle);
+        const auto [xx, xy, yy] = d.covariance_px2;
+        return std::sqrt(xx * c * c + 2 * xy * c * s + yy * s * s);
+      }
+      return 0.0;
+    };
+    PixelPosition error, alone;
+    const double sigma = along_sigma_px(true, error), free = along_sigma_px(false, alone);
+    if (!(sigma > 0 && free > 0)) continue;
+    const double along = error.x_px * std::cos(0.3) + error.y_px * std::sin(0.3);
+    squares += along * along / (sigma * sigma);
+    wider += sigma / free;
+    if (++measured == 6) break;
+  }
+  ASSERT_GE(measured, 3);
+  EXPECT_GT(wider / measured, 1.5);
+  EXPECT_LT(squares / measured, 4.0);
+}
+
 TEST_F(KnownStars, GiveTheSameWithAnyNumberOfThreads) {
   SimulatedFrame image = frame(60);
   image.add_streak(450, 350, 60, 0.3, 9000);

@@ -109,8 +109,10 @@ TEST_F(ForeignFrames, DetectsInThemAndScores) {
                        << "a.fits,cut,595,300,590,300,610,300,500\n";
   Threads threads(1);
   int calls = 0;
-  const Score s = score(
-      read_frames(directory, table, threads, [&](double, const std::string&) { ++calls; }), {});
+  const Score s = score(read_frames(
+                            directory, table, threads, [&](double, const std::string&) { ++calls; },
+                            CalibratedDetector(nullptr)),
+                        {});
   EXPECT_EQ(calls, 1);
   ASSERT_EQ(s.truths.size(), 4u);  // cut, off, point, streak
   EXPECT_EQ(s.truths[0].fate, Fate::faint);
@@ -129,7 +131,8 @@ TEST_F(ForeignFrames, DirectoryWithoutFramesIsRefused) {
   Threads threads(1);
   std::ofstream(table) << "file,id,x_px,y_px\n";
   const auto call = [&](const std::string& where) {
-    read_frames(where, table, threads, [](double, const std::string&) {});
+    read_frames(
+        where, table, threads, [](double, const std::string&) {}, CalibratedDetector(nullptr));
   };
   EXPECT_THROW(call(directory), ConfigError);
   EXPECT_THROW(call(directory + "/none"), ConfigError);
@@ -154,7 +157,8 @@ TEST_F(ForeignFrames, FramesOfAnotherCameraAreScoredByWhatIsKnown) {
       << "a.fits,1,230,175," << 230 - dx << "," << 175 - dy << "," << 230 + dx << "," << 175 + dy
       << ",9,0,34\n";
   Threads threads(1);
-  const ScoreInput in = read_frames(directory, table, threads, [](double, const std::string&) {});
+  const ScoreInput in = read_frames(
+      directory, table, threads, [](double, const std::string&) {}, CalibratedDetector(nullptr));
   ASSERT_EQ(in.truths.size(), 1u);
   EXPECT_FALSE(in.truths[0].magnitude || in.truths[0].ra_rad);
   EXPECT_EQ(in.frames[0].scale_rad_per_px, 0.0);

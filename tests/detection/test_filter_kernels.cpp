@@ -1,0 +1,74 @@
+#include "core/detection/filter_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "core/base/simd_level.h"
+#include "core/detection/filtered_frame.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::size_t count = 1003;  // no whole number of lanes
+
+struct Level {
+  decltype(&sse2::steps_of) steps_of;
+  decltype(&sse2::flatten_steps) flatten_steps;
+};
+
+std::vector<Level> levels() {
+  std::vector<Level> out{{sse2::steps_of, sse2::flatten_steps}};
+  if (best_simd_level() >= SimdLevel::avx2) out.push_back({avx2::steps_of, avx2::flatten_steps});
+  if (best_simd_level() >= SimdLevel::avx512)
+    out.push_back({avx512::steps_of, avx512::flatten_steps});
+  return out;
+}
+
+TEST(FilterKernels, GiveTheStepsOfTheFrameOnEveryInstructionSet) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<float> normal;
+  std::vector<float> value, noise;
+  for (std::size_t i = 0; i < count; ++i) {
+    value.push_back(i % 7 == 0 ? 0.0f : 4 * normal(random));
+    noise.push_back(0.5f + std::abs(normal(random)));
+  }
+  for (const bool odd : {false, true})
+    for (const Level& level : levels()) {
+      std::vector<std::int16_t> steps(count);
+      level.steps_of(value.data(), noise.data(), 0.7f, count, odd, steps.data());
+      for (std::size_t i = 0; i < count; ++i)
+        ASSERT_EQ(steps[i], FilteredFrame::step_of(value[i] / (0.7f * noise[i]),
+                                                   (i + (odd ? 1 : 0)) % 2 != 0))
+            << i;
+    }
+}
+
+TEST(FilterKernels, FlattenWhatIsNotHiddenAlikeOnEveryInstructionSet) {
+  std::mt19937_64 random(2);
+  std::vector<std::int16_t> steps;
+  for (std::size_t i = 0; i < count; ++i) steps.push_back(std::int16_t(int(random() % 63) - 31));
+  const float middle[2] = {2.0f, 0.003f}, scale[2] = {0.8f, 0.0002f};
+  std::vector<std::int16_t> first;
+  for (const Level& level : levels()) {
+    std::vector<std::int16_t> flat = steps;
+    level.flatten_steps(flat.data(), count, true, middle, scale);
+    if (first.empty()) first = flat;
+    EXPECT_EQ(flat, first);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const double at = double(i);
+    const double exact = (steps[i] - (2.0 + 0.003 * at)) * (0.8 + 0.0002 * at);
+    if (steps[i] == 0)
+      EXPECT_EQ(first[i], 0) << i;
+    else
+      EXPECT_NEAR(first[i], std::clamp(exact, -31.0, 31.0), std::abs(exact) < 0.5 ? 1.5 : 0.501)
+          << i;
+  }
+}
+
+}  // namespace
+}  // namespace dmise
