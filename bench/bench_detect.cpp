@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -102,10 +103,21 @@ int bench_detect(bool json) {
   }
   print_figure({"pd_shift_streaks_snr", streaks, "SNR", "", 0, 0.3, true}, json);
 
-  const StarField dark{nullptr, 0.0, 34 * deg};
-  const DetectionOutcome point = detection_trial(0, 20, 6, 8, dark, 3000),
-                         streak = detection_trial(100, 40, 7, 8, dark, 4000);
-  for (const auto& [name, o] : {std::pair{"points", &point}, std::pair{"streaks", &streak}}) {
+  // More than 2,000 of each, of all lengths and of SNR 10 to 40.
+  const StarField& field = fields[1];
+  const DetectionOutcome point = detection_trial(0, 20, 6, 36, field, 3000);
+  using Trial = std::tuple<double, double, int>;  // length, SNR, frames
+  DetectionOutcome streak, faint;
+  for (const auto& [length, snr, frames] :
+       {Trial{20, 20, 8}, Trial{20, 40, 8}, Trial{40, 20, 8}, Trial{100, 20, 8}, Trial{100, 40, 8},
+        Trial{300, 40, 16}})
+    streak.add(detection_trial(length, snr, 7, frames, field, 4000));
+  for (const auto& [length, snr, frames] :
+       {Trial{8, 10, 8}, Trial{20, 10, 8}, Trial{40, 10, 8}, Trial{100, 12, 8}, Trial{300, 15, 16}})
+    faint.add(detection_trial(length, snr, 7, frames, field, 5000));
+  using Named = std::pair<const char*, const DetectionOutcome*>;
+  for (const auto& [name, o] :
+       {Named{"points", &point}, Named{"streaks", &streak}, Named{"faint_streaks", &faint}}) {
     const std::string of = name;
     const double n = std::max(o->found, 1);
     print_figure({"position_over_crlb_" + of, std::sqrt(o->squares_px2 / o->bound_px2), "1", "", 0,

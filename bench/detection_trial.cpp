@@ -128,6 +128,12 @@ void add_result(const FrameHeader& header, const PlacedSource& p, const Detectio
 
 }  // namespace
 
+void DetectionOutcome::add(const DetectionOutcome& other) {
+  placed += other.placed, found += other.found, in_theory += other.in_theory;
+  squares_px2 += other.squares_px2, bound_px2 += other.bound_px2;
+  nees += other.nees, bias_sigma += other.bias_sigma;
+}
+
 FrameHeader trial_header(int columns, int rows, double exposure_s, const StarField& field,
                          double deeper_mag) {
   FrameHeader header =

@@ -25,6 +25,7 @@ struct DetectionOutcome {
   double squares_px2 = 0.0, bound_px2 = 0.0;  // of errors, and of the Cramer-Rao bound
   double nees = 0.0, bias_sigma = 0.0;        // sums over those found
 
+  void add(const DetectionOutcome& other);
   double probability() const { return placed ? found / double(placed) : 0.0; }
   double probability_in_theory() const { return placed ? in_theory / placed : 0.0; }
 };

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/detection/beamlet_kernels.h"
+#include "core/detection/transpose_tile.h"
 
 namespace dmise {
 namespace {
@@ -97,12 +98,27 @@ class Block {
       }
       return;
     }
-    constexpr int tile = 32;
-    for (int y0 = 0; y0 < minor; y0 += tile)
-      for (int k0 = begin; k0 < used; k0 += tile)
-        for (int y = y0; y < std::min(y0 + tile, minor); ++y)
-          for (int k = k0; k < std::min(k0 + tile, used); ++k)
-            rows_[std::size_t(k)][place(y)] = frame_.row(y)[first_ + k];
+    for (int y = 0; y < minor; y += transpose_side) {
+      const int across = std::min(transpose_side, minor - y);
+      for (int k = begin; k < used; k += transpose_side) {
+        const int down = std::min(transpose_side, used - k);
+        if (across == transpose_side && down == transpose_side) {
+          const std::int16_t* from[transpose_side];
+          std::int16_t* to[transpose_side];
+          for (int i = 0; i < transpose_side; ++i) {
+            const int m = orientation_.mirrored ? transpose_side - 1 - i : i;
+            from[i] = frame_.row(y + m) + first_ + k;
+            to[i] = rows_[std::size_t(k + i)] +
+                    place(orientation_.mirrored ? y + transpose_side - 1 : y);
+          }
+          transpose_tile(from, to);
+          continue;
+        }
+        for (int j = y; j < y + across; ++j)
+          for (int i = k; i < k + down; ++i)
+            rows_[std::size_t(i)][place(j)] = frame_.row(j)[first_ + i];
+      }
+    }
   }
 
   /// Sums the lines over `length` rows from `first` on, and all shorter ones in them.

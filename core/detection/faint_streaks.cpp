@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/units.h"
+#include "core/detection/hidden_ends.h"
 #include "core/detection/line_search.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_hypothesis.h"
@@ -17,7 +18,8 @@ constexpr double faint_per_px = 4.0;   // SNR over the root of the length; brigh
 constexpr double least_share = 0.4;    // of a trail that is not hidden
 constexpr double chain_px = 40.0;      // longest row of stars, without their trails
 constexpr double candidate_snr = 4.7;  // of a beamlet, which may be a part of a streak
-constexpr double least_gain = 10.0;    // of SNR^2, by which a streak must be longer than was seen
+// Of SNR^2, by which a point, and a streak, must be longer than was seen.
+constexpr double least_gain = 10.0, least_gain_of_streak = 1.0;
 constexpr int most_failures = 30;  // of fits: a frame of so many structures has no faint streaks
 constexpr double template_px = 130.0;   // longest streak whose ends count
 constexpr double sum_misses_snr = 1.6;  // of such a streak's SNR, at most
@@ -92,6 +94,27 @@ bool is_streak(const Scene& scene, const Source& source, const DetectorSettings&
   return !moves_like_star(scene, source, star, settings.least_difference_px + 1);
 }
 
+/// The streak with the light that was hidden with components beside its ends: pieces of it, which
+/// had the shape of stars. Where it does not fit, the ends may be anywhere there.
+Source with_hidden_light(const Scene& scene, const Scene& seen, Source source) {
+  if (scene.known) return source;  // what is hidden is stars
+  const Trail& t = source.trail();
+  const HiddenEnds gaps = hidden_ends(seen, t);
+  if (!(gaps.first_px + gaps.last_px > 0)) return source;
+  Trail longer = t;
+  const double middle_px = 0.5 * (gaps.last_px - gaps.first_px);
+  longer.x_px += middle_px * std::cos(t.angle_rad);
+  longer.y_px += middle_px * std::sin(t.angle_rad);
+  longer.length_px += gaps.first_px + gaps.last_px;
+  longer.flux_e *= longer.length_px / t.length_px;
+  auto whole = fitted(scene, longer, source.snr());
+  if (whole && whole->snr() > source.snr() && whole->fit.reduced_chi2() < 2.0 &&
+      whole->trail().length_px < longer.length_px + 4 * scene.sigma_px)
+    return std::move(*whole);
+  add_errors_of_hidden_ends(seen, source);
+  return source;
+}
+
 /// The line of three PSFs through a point with the largest SNR.
 Trail best_short_line(const Scene& scene, const FilteredFrame& frame, const Trail& point) {
   Trail line = point, best;
@@ -119,24 +142,37 @@ double least_streak_snr(double length_px) {
   return 6.5 + 0.5 * std::clamp(std::log2(length_px / 16), 0.0, 2.0);
 }
 
-void extend(const Scene& scene, const FilteredFrame& frame, Source& source) {
+namespace {
+
+/// A source with more of its light along its line, if there is.
+std::optional<Source> longer(const Scene& scene, const FilteredFrame& frame, const Source& source) {
   const Trail& known = source.trail();
   if (source.saturated || (!source.streak && !scene.known) ||
       source.snr() > faint_per_px * std::sqrt(std::max(known.length_px, 4.0)))
-    return;
-  const Trail longer =
-      climbed(frame, source.streak ? known : best_short_line(scene, frame, known), 3.0);
-  if (longer.length_px < known.length_px + 2 * scene.sigma_px) return;
-  const double snr = snr_along(frame, longer);
+    return std::nullopt;
+  Trail start = climbed(frame, source.streak ? known : best_short_line(scene, frame, known), 3.0);
+  const double least_px = (source.streak ? 0.5 : 2.0) * scene.sigma_px;
+  if (start.length_px < known.length_px + least_px) return std::nullopt;
+  const double snr = snr_along(frame, start);
   const double gain = source.streak ? snr * snr - std::pow(snr_along(frame, known), 2)
-                                    : std::pow(template_snr(scene, longer), 2) -
+                                    : std::pow(template_snr(scene, start), 2) -
                                           std::pow(template_snr(scene, known), 2);
-  if (gain < least_gain) return;
-  Trail start = longer;
-  start.flux_e = known.flux_e * longer.length_px / std::max(known.length_px, 2 * scene.sigma_px);
-  if (auto fit = fitted(scene, start, snr))
-    if (fit->trail().length_px > known.length_px && fit->snr() > source.snr())
-      source = std::move(*fit);
+  if (gain < (source.streak ? least_gain_of_streak : least_gain)) return std::nullopt;
+  start.flux_e = known.flux_e * start.length_px / std::max(known.length_px, 2 * scene.sigma_px);
+  auto fit = fitted(scene, start, snr);
+  if (fit && (fit->trail().length_px <= known.length_px || fit->snr() <= source.snr())) fit.reset();
+  return fit;
+}
+
+}  // namespace
+
+void extend(const Scene& scene, const FilteredFrame& frame, Source& source) {
+  constexpr int most_rounds = 4;
+  for (int round = 0; round < most_rounds; ++round) {
+    auto more = longer(scene, frame, source);
+    if (!more) return;
+    source = std::move(*more);
+  }
 }
 
 std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
@@ -191,7 +227,7 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
     auto source = fitted(seen, trail, snr);
     if (source) hide(frame, source->trail(), 4 * scene.sigma_px);
     if (source && is_streak(scene, *source, settings))
-      found.push_back(std::move(*source));
+      found.push_back(with_hidden_light(scene, seen, std::move(*source)));
     else if (++failures == most_failures)
       break;
   }

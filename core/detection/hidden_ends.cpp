@@ -5,6 +5,11 @@
 namespace dmise {
 namespace {
 
+/// Of the sum of squares of two uniform errors.
+double square_of_two(const HiddenEnds& gaps) {
+  return (gaps.first_px * gaps.first_px + gaps.last_px * gaps.last_px) / 3;
+}
+
 /// Length of the gap behind an end, side -1 or 1.
 double gap_px(const Scene& scene, const Trail& t, double side) {
   constexpr double step_px = 0.5;
@@ -26,11 +31,14 @@ double gap_px(const Scene& scene, const Trail& t, double side) {
 
 }  // namespace
 
+HiddenEnds hidden_ends(const Scene& scene, const Trail& trail) {
+  return {gap_px(scene, trail, -1), gap_px(scene, trail, 1)};
+}
+
 void add_errors_of_hidden_ends(const Scene& scene, Source& source) {
-  if (!scene.known || !source.streak || !(source.free & trail_length)) return;
+  if (!source.streak || !(source.free & trail_length)) return;
   const Trail& t = source.trail();
-  const double first = gap_px(scene, t, -1), last = gap_px(scene, t, 1);
-  const double ends_px2 = (first * first + last * last) / 3;  // of the length
+  const double ends_px2 = square_of_two(hidden_ends(scene, t));  // of the length
   if (!(ends_px2 > 0)) return;
   const auto n = std::size_t(source.fit.parameters);
   const auto add = [&](std::size_t i, std::size_t j, double value) {

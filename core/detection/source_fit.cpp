@@ -211,6 +211,7 @@ double end_error_px(double snr2_per_px) { return std::sqrt(26.0) / snr2_per_px; 
 
 void add_neglected_errors(Source& source, double sigma_px) {
   constexpr double model_px = 0.001, uneven = 0.007;
+  const double faint = 1 + 20 / (source.snr() * source.snr());
   const Trail& t = source.trail();
   const auto n = std::size_t(source.fit.parameters);
   const auto add = [&](std::size_t i, std::size_t j, double value) {
@@ -219,10 +220,15 @@ void add_neglected_errors(Source& source, double sigma_px) {
   };
   add(0, 0, model_px * model_px);
   add(1, 1, model_px * model_px);
+  if (source.streak)
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        source.fit.covariance[i * n + j] *=
+            std::sqrt((i == 2 ? 1.0 : faint) * (j == 2 ? 1.0 : faint));
   const double snr2 = source.snr() * source.snr() / std::max(t.length_px, 1.0);
   if (!source.streak || !(snr2 > 0)) return;
   const double most_px2 = t.length_px * t.length_px / 12;
-  const double end_px2 = std::min(26 / (snr2 * snr2) * std::exp(-snr2 * sigma_px), most_px2);
+  const double end_px2 = std::min(26 / (snr2 * snr2) * std::exp(-0.5 * snr2 * sigma_px), most_px2);
   const double uneven_px = source.free & trail_slope ? 0.0 : uneven * t.length_px / 6;
   const double along_px2 = end_px2 / 2 + uneven_px * uneven_px;
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);

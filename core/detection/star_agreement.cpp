@@ -16,8 +16,9 @@ constexpr double crowded_snr = 200.0;   // brighter ones are saturated, or wide
 constexpr double measured_snr = 12.0;   // of a star whose light is measured
 constexpr double seen_snr = 3.0;
 constexpr double most_shift_px = 2.5;
-constexpr std::size_t enough_stars = 5;  // to measure a shift, or light
-constexpr int cells = 12;                // of the mesh of light, both ways
+constexpr std::size_t enough_stars = 5;   // to measure a shift, or light
+constexpr int cells = 12;                 // of the mesh of light, both ways
+constexpr std::size_t most_in_cell = 16;  // of stars whose light is measured there
 
 /// Middle of the light above the noise around a place; empty if there is none near.
 std::optional<PixelPosition> centroid_near(const FilteredFrame& frame, PixelPosition at,
@@ -101,6 +102,8 @@ void StarAgreement::measure_light(const Scene& scene, const FilteredFrame& frame
   for (const ExpectedStar& star : stars) {
     const PixelPosition at = star.place + seen_.shift;
     if (!is_inside(scene, at)) continue;
+    auto& measured = logs[cell_of(at)];
+    if (measured.size() == most_in_cell) continue;
     Trail trail = scene.star_trail(at.x_px, at.y_px);
     const double peak = peak_snr(scene, frame, trail, star.signal_e);
     if (peak < measured_snr || peak > crowded_snr) continue;
@@ -114,7 +117,7 @@ void StarAgreement::measure_light(const Scene& scene, const FilteredFrame& frame
     }
     if (!(squares > 0)) continue;
     const double ratio = std::max(sum / squares / star.signal_e, least_ratio);
-    logs[cell_of(at)].push_back(std::log(ratio));
+    measured.push_back(std::log(ratio));
     all.push_back(std::log(ratio));
   }
   if (all.size() < enough_stars) return;
