@@ -154,6 +154,8 @@ class Truth(_Exposure):
     whole: bool = False
     resolved: bool = False
     camera_from_gcrs: Floats = field(default_factory=no_numbers)
+    true_position_m: Floats = field(default_factory=no_numbers)
+    true_velocity_m_per_s: Floats = field(default_factory=no_numbers)
 
 
 @dataclass(eq=False)
