@@ -22,6 +22,7 @@ void add_launch_command(CLI::App& app);
 void add_join_command(CLI::App& app);
 void add_detect_command(CLI::App& app);
 void add_score_command(CLI::App& app);
+void add_export_command(CLI::App& app);
 void add_solve_command(CLI::App& app);
 void add_visible_command(CLI::App& app);
 void add_catalogue_command(CLI::App& app);

@@ -190,6 +190,8 @@ std::string to_json(const Truth& t, const UtcText& utc) {
   line.field("sensor", t.sensor).field("frame", t.frame);
   line.field("catalogue_number", t.catalogue_number).field("name", t.name);
   line.time("start", t.start).time("middle", t.middle).time("end", t.end);
+  line.vector("true_position_gcrs_m", t.true_position_m);
+  line.vector("true_velocity_gcrs_m_per_s", t.true_velocity_m_per_s);
   line.field("true_range_m", t.true_range_m);
   line.angle("true_ra_deg", t.true_ra_rad).angle("true_dec_deg", t.true_dec_rad);
   line.angle("apparent_ra_deg", t.apparent_ra_rad).angle("apparent_dec_deg", t.apparent_dec_rad);

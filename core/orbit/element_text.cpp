@@ -77,14 +77,13 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
-/// "98067A" as an OMM writes it.
+}  // namespace
+
 std::string omm_designator(const std::string& id) {
   const auto digit = [&](std::size_t i) { return id[i] >= '0' && id[i] <= '9'; };
   if (id.size() < 6 || !digit(0) || !digit(1) || !digit(2)) return id;
   return std::to_string(full_year((id[0] - '0') * 10 + id[1] - '0')) + "-" + id.substr(2);
 }
-
-}  // namespace
 
 std::string format_tle(const MeanElements& e) {
   const double dot = e.mean_motion_dot_rad_per_min2 * (rev_per_day * 1440.0);

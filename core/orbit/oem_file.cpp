@@ -14,14 +14,14 @@ namespace {
 
 constexpr const char* stop_key = "STOP_TIME = ";
 
-std::string state_line(const std::string& utc, const Vec<Gcrs>& r, const Vec<Gcrs>& v) {
+}  // namespace
+
+std::string oem_state_line(const std::string& utc, const Vec<Gcrs>& r, const Vec<Gcrs>& v) {
   char numbers[256];
   std::snprintf(numbers, sizeof numbers, " %.9f %.9f %.9f %.12f %.12f %.12f\n", r.x / km, r.y / km,
                 r.z / km, v.x / km, v.y / km, v.z / km);
   return utc + numbers;
 }
-
-}  // namespace
 
 OemFile::OemFile(std::string path, OemSubject subject)
     : path_(std::move(path)), subject_(std::move(subject)) {}
@@ -75,7 +75,7 @@ void OemFile::keep_before(const std::string& utc) {
 
 void OemFile::add(const std::string& utc, const std::string& previous_utc, const Vec<Gcrs>& r,
                   const Vec<Gcrs>& v) {
-  const std::string line = state_line(utc, r, v);
+  const std::string line = oem_state_line(utc, r, v);
   if (!last_utc_.empty() && last_utc_ == previous_utc) {
     write(line);
     overwrite_stop_time(utc);

@@ -13,6 +13,10 @@ struct OemSubject {
   std::string creation_date;  // of a simulation: its start, so that the bytes repeat
 };
 
+/// A line of an ephemeris: time, position [km] to 1e-9, velocity [km/s] to 1e-12.
+std::string oem_state_line(const std::string& utc, const Vec<Gcrs>& position_m,
+                           const Vec<Gcrs>& velocity_m_per_s);
+
 /// Writes a CCSDS Orbit Ephemeris Message (502.0-B) in KVN, one state at a time, in GCRF and UTC;
 /// the file is complete, with a correct STOP_TIME, after each. A segment starts with its second
 /// state: a single state is no ephemeris and is omitted.

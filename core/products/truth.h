@@ -5,6 +5,7 @@
 
 #include "core/base/sim_time.h"
 #include "core/frames/quaternion.h"
+#include "core/frames/vec.h"
 
 namespace dmise {
 
@@ -15,8 +16,9 @@ struct Truth {
   std::uint32_t frame = 0;
   std::uint32_t catalogue_number = 0;
   std::string name;
-  SimTime start, middle, end;                    // of the exposure, as it was
-  double true_range_m = 0.0;                     // at mid exposure, geometric
+  SimTime start, middle, end;                        // of the exposure, as it was
+  Vec<Gcrs> true_position_m, true_velocity_m_per_s;  // geocentric, at mid exposure
+  double true_range_m = 0.0;                         // at mid exposure, geometric
   double true_ra_rad = 0.0, true_dec_rad = 0.0;  // astrometric (geometric minus light time), mid
   double apparent_ra_rad = 0.0, apparent_dec_rad = 0.0;  // with the observer's aberration, mid
   double true_elevation_rad = 0.0;                       // 0 for a space sensor

@@ -2,6 +2,8 @@
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
+#include "core/base/text_file.h"
+#include "core/base/units.h"
 #include "core/detection/detection_json.h"
 #include "core/products/detection_fields.h"
 
@@ -59,6 +61,16 @@ std::vector<JsonRecord> JsonRecord::objects(const char* key) const {
   return out;
 }
 
+std::vector<std::string> JsonRecord::texts(const char* key) const {
+  require(at(key).is_array(), key, "a list of texts");
+  std::vector<std::string> out;
+  for (const auto& value : at(key)) {
+    require(value.is_string(), key, "a list of texts");
+    out.push_back(value);
+  }
+  return out;
+}
+
 Detection detection_of(const JsonRecord& record) {
   Detection d;
 #define DMISE_VALUE(field, key, unit) read(record, key, unit, d.field);
@@ -89,6 +101,60 @@ Detection detection_of(const JsonRecord& record) {
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_PAIR,
                          DMISE_TEXT)
   return d;
+}
+
+Truth truth_of(const JsonRecord& record) {
+  Truth t;
+  t.sensor = record.get<std::string>("sensor");
+  t.frame = record.get<std::uint32_t>("frame");
+  t.catalogue_number = record.get<std::uint32_t>("catalogue_number");
+  t.name = record.get<std::string>("name");
+  t.start = record.time("start_ns");
+  t.middle = record.time("middle_ns");
+  t.end = record.time("end_ns");
+  const auto vector = [&](const char* key) {
+    const auto v = record.has(key) ? record.numbers<3>(key) : std::array<double, 3>{};
+    return Vec<Gcrs>{v[0], v[1], v[2]};
+  };
+  t.true_position_m = vector("true_position_gcrs_m");
+  t.true_velocity_m_per_s = vector("true_velocity_gcrs_m_per_s");
+  t.true_range_m = record.number("true_range_m");
+  t.true_ra_rad = record.number("true_ra_deg") * deg;
+  t.true_dec_rad = record.number("true_dec_deg") * deg;
+  t.apparent_ra_rad = record.number("apparent_ra_deg") * deg;
+  t.apparent_dec_rad = record.number("apparent_dec_deg") * deg;
+  t.true_elevation_rad = record.number("true_elevation_deg") * deg;
+  t.phase_angle_rad = record.number("phase_angle_deg") * deg;
+  t.sunlit = record.number("sunlit");
+  t.true_magnitude = record.number("true_magnitude");
+  t.rendered_signal_e = record.number("rendered_signal_e");
+  const auto place = [&](const char* key, double& x, double& y) {
+    const auto v = record.numbers<2>(key);
+    x = v[0];
+    y = v[1];
+  };
+  if (record.has("rendered_px")) place("rendered_px", t.rendered_x_px, t.rendered_y_px);
+  place("start_px", t.start_x_px, t.start_y_px);
+  place("middle_px", t.middle_x_px, t.middle_y_px);
+  place("end_px", t.end_x_px, t.end_y_px);
+  t.in_frame = record.get<bool>("in_frame");
+  t.whole = record.get<bool>("whole");
+  t.resolved = record.get<bool>("resolved");
+  if (record.has("camera_from_gcrs")) {
+    const auto q = record.numbers<4>("camera_from_gcrs");
+    t.camera_from_gcrs = Quaternion{q[0], q[1], q[2], q[3]};
+  }
+  return t;
+}
+
+void for_lines(const std::string& path, const ReadProgress& progress,
+               const std::function<void(const JsonRecord&)>& take) {
+  const std::string text = read_text_file(path, std::size_t(1) << 36);
+  std::size_t begin = 0, line = 1;
+  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    if (line % 4096 == 0) progress(double(begin) / double(text.size()), path);
+    take(JsonRecord(text.substr(begin, end - begin), path + ":" + std::to_string(line++)));
+  }
 }
 
 }  // namespace dmise

@@ -1,11 +1,14 @@
 #pragma once
 #include <array>
 #include <concepts>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "core/products/detection.h"
+#include "core/products/truth.h"
+#include "core/score/read_progress.h"
 
 namespace dmise {
 
@@ -44,6 +47,7 @@ class JsonRecord {
   }
   JsonRecord object(const char* key) const;
   std::vector<JsonRecord> objects(const char* key) const;
+  std::vector<std::string> texts(const char* key) const;
   [[noreturn]] void fail(const std::string& key, const std::string& reason) const;
 
  private:
@@ -56,5 +60,13 @@ class JsonRecord {
 
 /// A line of detections.jsonl.
 Detection detection_of(const JsonRecord& record);
+/// A line of truth.jsonl. Its position and velocity are 0 in runs of versions that did not write
+/// them.
+Truth truth_of(const JsonRecord& record);
+
+/// Calls `take` with each whole line of a file of JSON lines. Throws `ConfigError`
+/// "FILE:LINE: KEY: reason"; a last line without its end was interrupted and is left out.
+void for_lines(const std::string& path, const ReadProgress& progress,
+               const std::function<void(const JsonRecord&)>& take);
 
 }  // namespace dmise

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <set>
 
@@ -11,20 +10,10 @@
 #include "core/base/units.h"
 #include "core/optics/psf_table.h"
 #include "core/score/json_record.h"
+#include "core/score/trail.h"
 
 namespace dmise {
 namespace {
-
-/// Calls `take` with each whole line.
-void for_lines(const std::string& path, const ReadProgress& progress,
-               const std::function<void(const JsonRecord&)>& take) {
-  const std::string text = read_text_file(path, std::size_t(1) << 36);
-  std::size_t begin = 0, line = 1;
-  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
-    if (line % 4096 == 0) progress(double(begin) / double(text.size()), path);
-    take(JsonRecord(text.substr(begin, end - begin), path + ":" + std::to_string(line++)));
-  }
-}
 
 /// Refuses the second of two equal names.
 class Unique {
@@ -49,37 +38,25 @@ ScoredFrame camera_of(const JsonRecord& sensor) {
           .sigma_px = psf_sigma_px(optics, camera.number("band_centre_m"))};
 }
 
-TrueSource truth_of(const JsonRecord& record) {
-  const auto place = [&](const char* key) {
-    const auto v = record.numbers<2>(key);
-    return PixelPosition{v[0], v[1]};
-  };
-  const double sunlit = record.number("sunlit"), signal_e = record.number("rendered_signal_e");
-  const std::uint32_t number = record.get<std::uint32_t>("catalogue_number");
-  TrueSource t{
-      .sensor = record.get<std::string>("sensor"),
-      .frame = std::to_string(record.get<std::uint32_t>("frame")),
-      .id = (number > 0 ? std::to_string(number) + " " : "") + record.get<std::string>("name"),
-      .start = place("start_px"),
-      .middle = place("middle_px"),
-      .end = place("end_px"),
-      .ra_rad = record.number("true_ra_deg") * deg,
-      .dec_rad = record.number("true_dec_deg") * deg,
-      .start_time = record.time("start_ns"),
-      .end_time = record.time("end_ns"),
-      .whole = record.get<bool>("whole") && sunlit >= 1.0,
-      .resolved = record.get<bool>("resolved")};
-  if (record.has("rendered_px") && signal_e > 0.0) {
-    t.light = place("rendered_px");
-    t.signal_e = signal_e;
-    if (sunlit > 0.0) t.magnitude = record.number("true_magnitude") - 2.5 * std::log10(sunlit);
-  }
-  // An instant at which the camera does not image the object is (0, 0): the trail goes on evenly.
-  const PixelPosition none;
-  if (!record.get<bool>("whole") && t.light) {
-    if (t.middle == none) t.middle = *t.light;
-    if (t.start == none) t.start = t.end == none ? t.middle : t.middle * 2.0 - t.end;
-    if (t.end == none) t.end = t.middle * 2.0 - t.start;
+TrueSource source_of(const Truth& truth) {
+  const auto [start, middle, end] = places_of(truth);
+  const std::uint32_t number = truth.catalogue_number;
+  TrueSource t{.sensor = truth.sensor,
+               .frame = std::to_string(truth.frame),
+               .id = (number > 0 ? std::to_string(number) + " " : "") + truth.name,
+               .start = start,
+               .middle = middle,
+               .end = end,
+               .ra_rad = truth.true_ra_rad,
+               .dec_rad = truth.true_dec_rad,
+               .start_time = truth.start,
+               .end_time = truth.end,
+               .whole = truth.whole && truth.sunlit >= 1.0,
+               .resolved = truth.resolved};
+  if (truth.rendered_signal_e > 0.0) {
+    t.light = PixelPosition{truth.rendered_x_px, truth.rendered_y_px};
+    t.signal_e = truth.rendered_signal_e;
+    if (truth.sunlit > 0.0) t.magnitude = truth.true_magnitude - 2.5 * std::log10(truth.sunlit);
   }
   return t;
 }
@@ -127,7 +104,7 @@ ScoreInput read_run(const std::string& directory, const ReadProgress& progress) 
     throw ConfigError(file("truth.jsonl") +
                       ": is missing: the scenario says output: {truth: false}");
   for_lines(file("truth.jsonl"), progress, [&](const JsonRecord& record) {
-    in.truths.push_back(truth_of(record));
+    in.truths.push_back(source_of(truth_of(record)));
     const TrueSource& t = in.truths.back();
     truths.add(record, "name", t.sensor + "/" + t.frame + "/" + t.id);
   });

@@ -1,5 +1,4 @@
 #pragma once
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +7,7 @@
 #include "core/base/sim_time.h"
 #include "core/products/detection.h"
 #include "core/products/unknown_facts.h"
+#include "core/score/read_progress.h"
 
 namespace dmise {
 
@@ -39,9 +39,6 @@ struct ScoredFrame {
   double scale_rad_per_px = 0.0;  // at the reference pixel; 0: unknown
   bool searched = true;           // detection was on
 };
-
-/// Is called with the share done and the file that is being read.
-using ReadProgress = std::function<void(double, const std::string&)>;
 
 struct ScoreInput {
   std::string source;  // directory, for messages

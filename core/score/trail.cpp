@@ -96,4 +96,16 @@ double Trail::length_inside_px(int columns, int rows) const {
   return sum;
 }
 
+std::array<PixelPosition, 3> places_of(const Truth& truth) {
+  PixelPosition start{truth.start_x_px, truth.start_y_px},
+      middle{truth.middle_x_px, truth.middle_y_px}, end{truth.end_x_px, truth.end_y_px};
+  const PixelPosition none;  // an instant at which the camera does not image the object
+  if (!truth.whole && truth.rendered_signal_e > 0.0) {
+    if (middle == none) middle = {truth.rendered_x_px, truth.rendered_y_px};
+    if (start == none) start = end == none ? middle : middle * 2.0 - end;
+    if (end == none) end = middle * 2.0 - start;
+  }
+  return {start, middle, end};
+}
+
 }  // namespace dmise

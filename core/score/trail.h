@@ -2,6 +2,7 @@
 #include <array>
 
 #include "core/base/pixel.h"
+#include "core/products/truth.h"
 
 namespace dmise {
 
@@ -39,6 +40,10 @@ class Trail {
   std::array<double, pieces + 1> arc_px_{};
   PixelPosition least_, most_;  // corners of a box around it
 };
+
+/// Where an object was at the start, the middle and the end of the exposure. The trail goes on
+/// evenly to instants at which the camera does not image the object.
+std::array<PixelPosition, 3> places_of(const Truth& truth);
 
 /// Whether a place is on a pixel of the frame.
 bool is_inside(PixelPosition place, int columns, int rows);

@@ -77,6 +77,8 @@ Encoded encode_body(const TruthSet& set) {
     t->set_start_ns(truth.start.ns);
     t->set_middle_ns(truth.middle.ns);
     t->set_end_ns(truth.end.ns);
+    put(t->mutable_true_position_m(), truth.true_position_m);
+    put(t->mutable_true_velocity_m_per_s(), truth.true_velocity_m_per_s);
     if (const auto& q = truth.camera_from_gcrs)
       put(t->mutable_camera_from_gcrs(), std::array<double, 4>{q->w, q->x, q->y, q->z});
   }
@@ -95,6 +97,9 @@ TruthSet decode_truths(std::string_view payload) {
     truth.start = {t.start_ns()};
     truth.middle = {t.middle_ns()};
     truth.end = {t.end_ns()};
+    truth.true_position_m = take_vec<Gcrs>(t.true_position_m(), "true_position_m");
+    truth.true_velocity_m_per_s =
+        take_vec<Gcrs>(t.true_velocity_m_per_s(), "true_velocity_m_per_s");
     if (t.camera_from_gcrs_size() > 0) {
       const auto q = take<4>(t.camera_from_gcrs(), "camera_from_gcrs");
       truth.camera_from_gcrs = Quaternion{q[0], q[1], q[2], q[3]};

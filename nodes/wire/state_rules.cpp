@@ -287,6 +287,8 @@ void check(const TruthSet& set) {
       refuse("truths", "of another sensor or frame");
     name_text(t.name, "name");
     exposure(t.start, t.middle, t.end);
+    vector_within(t.true_position_m, distance_limit_m, "true_position_m");
+    vector_within(t.true_velocity_m_per_s, speed_limit_m_per_s, "true_velocity_m_per_s");
     in_range(t.true_range_m, 0, distance_limit_m, "true_range_m");
     direction(t.true_ra_rad, t.true_dec_rad, "true_ra_rad, true_dec_rad");
     direction(t.apparent_ra_rad, t.apparent_dec_rad, "apparent_ra_rad, apparent_dec_rad");

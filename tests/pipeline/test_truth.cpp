@@ -38,6 +38,16 @@ TEST(Truth, HasTheElevationPhaseAndMagnitudeThatSkyfieldSees) {
   EXPECT_NEAR(truth.true_magnitude, -0.94260, 1e-3);
 }
 
+// Reference: skyfield's iss.at(t), by tests/reference/wiring.py. SGP4's own velocity, which
+// skyfield gives, is not quite the slope of its positions.
+TEST(Truth, HasTheStateThatSkyfieldHas) {
+  const auto truth = pass().truths.at(0);
+  const Vec<Gcrs> position_m{6158911.52, 1962665.58, -2058129.46};
+  const Vec<Gcrs> velocity_m_per_s{163.8299, 5285.1399, 5552.368};
+  EXPECT_LT(norm(truth.true_position_m - position_m), 3.0);
+  EXPECT_LT(norm(truth.true_velocity_m_per_s - velocity_m_per_s), 0.03);
+}
+
 // Reference: skyfield's places, one light time earlier for the apparent one, then ERFA's eraAb by
 // the site's motion, by tests/reference/wiring.py: 4.0 arcsec apart.
 TEST(Truth, HasThePlacesThatSkyfieldSees) {

@@ -227,6 +227,7 @@ def truth():
     ra, dec, _ = topocentric.radec()
     print(f"truth: site {lat}, {lon}: elevation {elevation.degrees:.6f}, azimuth {azimuth.degrees:.6f}, range "
           f"{distance.m:.1f} m, phase {phi / DEG:.6f}, magnitude {magnitude:.5f}, ra {ra._degrees:.6f}, dec {dec.degrees:.6f}")
+    print("  position", iss.at(time).position.m.round(2), "m, velocity", (iss.at(time).velocity.km_per_s * 1e3).round(4), "m/s")
     tau = d / erfa.CMPS
     velocity = (np.array(station.at(time).velocity.km_per_s) * 1e3)
     seen = p - tau * np.array(iss.at(time).velocity.km_per_s) * 1e3 - observer

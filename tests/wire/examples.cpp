@@ -206,6 +206,8 @@ Truth truth(Numbers& n) {
   t.catalogue_number = 44720;
   t.name = "STARLINK-1008";
   t.start = {-1}, t.middle = {1}, t.end = {2};
+  t.true_position_m = {n.in(-4e7, 4e7), n.in(-4e7, 4e7), n.in(-4e7, 4e7)};
+  t.true_velocity_m_per_s = {n.in(-8e3, 8e3), n.in(-8e3, 8e3), n.in(-8e3, 8e3)};
   for (double* range : {&t.true_range_m, &t.rendered_signal_e}) *range = n.in(0, 4e7);
   for (double* angle : {&t.true_ra_rad, &t.apparent_ra_rad}) *angle = n.in(0, 2 * half_turn);
   for (double* latitude : {&t.true_dec_rad, &t.apparent_dec_rad, &t.true_elevation_rad})

@@ -1,0 +1,44 @@
+"""Observing a run in asyncio: `async for detection in dmise.aio.subscribe(address, "detection/")`."""
+from __future__ import annotations
+
+import asyncio
+import concurrent.futures
+import functools
+from collections.abc import AsyncIterator
+from typing import Any
+
+from . import subscription
+from .message import Message
+
+
+def subscribe(address: str, *topics: str, **options: Any) -> "AsyncSubscription":
+    """As `dmise.subscribe`, whose options and errors it has; it connects when the iteration begins."""
+    return AsyncSubscription(functools.partial(subscription.subscribe, address, *topics, **options))
+
+
+class AsyncSubscription:
+    """A `Subscription` in a thread of its own (`.subscription`, once it has begun)."""
+
+    def __init__(self, begin: Any) -> None:
+        self._begin = begin
+        self.subscription: subscription.Subscription | None = None
+
+    async def __aiter__(self) -> AsyncIterator[Any]:
+        async for message in self.messages():
+            for record in self.subscription.records_of(message):  # type: ignore[union-attr]
+                yield record
+
+    async def messages(self) -> AsyncIterator[Message]:
+        """Messages with content, until the run is over."""
+        loop = asyncio.get_running_loop()
+        with concurrent.futures.ThreadPoolExecutor(1, "dmise") as thread:  # sockets belong to one thread
+            source = self.subscription = await loop.run_in_executor(thread, self._begin)
+            try:
+                while not source.over:
+                    message = await loop.run_in_executor(thread, source.receive, 1.0)
+                    if message is not None and message.has_content:
+                        yield message
+                source.raise_failure()
+            finally:
+                source.close()
+                thread.submit(source.receive, 0.0)

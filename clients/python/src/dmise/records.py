@@ -1,0 +1,230 @@
+"""What sensors publish, as objects (`world` has the rest): fields, names and units are those of proto/dmise/v1, which says what they mean.
+
+Lists of numbers are numpy arrays, matrices have two dimensions, enumerations are their names in small letters.
+Times `X_ns` are nanoseconds since the start of the scenario at the rate of TAI; `X_utc` is the same as UTC.
+"""
+from __future__ import annotations
+
+import dataclasses
+import datetime
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+ArrayLike = npt.NDArray[Any]
+Floats = npt.NDArray[np.float64]
+Instant = Literal["start", "middle", "end"]
+
+
+def no_numbers() -> Floats:
+    """What a list of numbers is until it is given."""
+    return np.zeros(0)
+
+
+class Record:
+    """Fields are equal if all numbers are. `start_utc_of_run`: what times are counted from."""
+
+    start_utc_of_run: datetime.datetime | None = None
+
+    def utc(self, time_ns: int) -> datetime.datetime:
+        """A time of this record as UTC, to the microsecond before; wrong by a leap second within the run."""
+        if self.start_utc_of_run is None:
+            raise ValueError("the run does not tell when it starts")
+        return self.start_utc_of_run + datetime.timedelta(microseconds=time_ns // 1000)
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and all(
+            np.array_equal(getattr(self, f.name), getattr(other, f.name))
+            for f in dataclasses.fields(self))  # type: ignore[arg-type]
+
+
+@dataclass(eq=False)
+class Detection(Record):
+    """One source found in one frame, from its pixels and header alone."""
+    id: str = ""
+    sensor: str = ""
+    frame: int = 0
+    index: int = 0
+    kind: Literal["point", "streak"] = "point"
+    epoch: Instant = "start"
+    time_ns: int = 0
+    ra_rad: float = 0.0
+    dec_rad: float = 0.0
+    corrected_ra_rad: float = 0.0
+    corrected_dec_rad: float = 0.0
+    covariance_rad2: Floats = field(default_factory=no_numbers)
+    sensor_position_m: Floats = field(default_factory=no_numbers)
+    sensor_velocity_m_per_s: Floats = field(default_factory=no_numbers)
+    light_time_removed: bool = False
+    aberration_removed: bool = False
+    refraction_removed: bool = False
+    magnitude: float = 0.0
+    magnitude_sigma: float = 0.0
+    band: str = ""
+    snr: float = 0.0
+    x_px: float = 0.0
+    y_px: float = 0.0
+    covariance_px2: Floats = field(default_factory=no_numbers)
+    signal_e: float = 0.0
+    end1_x_px: float = 0.0
+    end1_y_px: float = 0.0
+    end2_x_px: float = 0.0
+    end2_y_px: float = 0.0
+    end1_ra_rad: float = 0.0
+    end1_dec_rad: float = 0.0
+    end2_ra_rad: float = 0.0
+    end2_dec_rad: float = 0.0
+    end1_time_ns: int = 0
+    end2_time_ns: int = 0
+    direction_known: bool = False
+    length_px: float = 0.0
+    rate_rad_per_s: float = 0.0
+    saturated: bool = False
+    at_edge: bool = False
+    star_like: bool = False
+    end1_covariance_rad2: Floats = field(default_factory=no_numbers)
+    end2_covariance_rad2: Floats = field(default_factory=no_numbers)
+    refraction_offset_m: Floats = field(default_factory=no_numbers)
+    refraction_parallax_rad: float = 0.0
+    refraction_parallax_sigma_rad: float = 0.0
+    position_angle_rad: float = 0.0
+
+    @property
+    def time_utc(self) -> datetime.datetime:
+        return self.utc(self.time_ns)
+
+    @property
+    def end1_time_utc(self) -> datetime.datetime:
+        return self.utc(self.end1_time_ns)
+
+    @property
+    def end2_time_utc(self) -> datetime.datetime:
+        return self.utc(self.end2_time_ns)
+
+
+class _Exposure(Record):
+    start_ns: int
+    middle_ns: int
+    end_ns: int
+
+    @property
+    def start_utc(self) -> datetime.datetime:
+        return self.utc(self.start_ns)
+
+    @property
+    def middle_utc(self) -> datetime.datetime:
+        return self.utc(self.middle_ns)
+
+    @property
+    def end_utc(self) -> datetime.datetime:
+        return self.utc(self.end_ns)
+
+
+@dataclass(eq=False)
+class Truth(_Exposure):
+    """One object near one frame as it was."""
+    sensor: str = ""
+    frame: int = 0
+    catalogue_number: int = 0
+    name: str = ""
+    start_ns: int = 0
+    middle_ns: int = 0
+    end_ns: int = 0
+    true_range_m: float = 0.0
+    true_ra_rad: float = 0.0
+    true_dec_rad: float = 0.0
+    apparent_ra_rad: float = 0.0
+    apparent_dec_rad: float = 0.0
+    true_elevation_rad: float = 0.0
+    phase_angle_rad: float = 0.0
+    sunlit: float = 0.0
+    true_magnitude: float = 0.0
+    rendered_signal_e: float = 0.0
+    rendered_x_px: float = 0.0
+    rendered_y_px: float = 0.0
+    start_x_px: float = 0.0
+    start_y_px: float = 0.0
+    middle_x_px: float = 0.0
+    middle_y_px: float = 0.0
+    end_x_px: float = 0.0
+    end_y_px: float = 0.0
+    in_frame: bool = False
+    whole: bool = False
+    resolved: bool = False
+    camera_from_gcrs: Floats = field(default_factory=no_numbers)
+    true_position_m: Floats = field(default_factory=no_numbers)
+    true_velocity_m_per_s: Floats = field(default_factory=no_numbers)
+
+
+@dataclass(eq=False)
+class WcsRefraction(Record):
+    """The air's own part of a frame's world coordinates."""
+    zenith: Floats = field(default_factory=no_numbers)
+    focal_length_px: float = 0.0
+    pressure_hpa: float = 0.0
+    temperature_c: float = 0.0
+    humidity: float = 0.0
+    wavelength_um: float = 0.0
+    offset_x_px: float = 0.0
+    offset_y_px: float = 0.0
+    cell_px: float = 0.0
+    lens: int | None = None
+    lens_coefficients: Floats = field(default_factory=no_numbers)
+
+
+@dataclass(eq=False)
+class Wcs(Record):
+    """A frame's world coordinates: `cd_deg` is 2 x 2, polynomials are (order + 1) x (order + 1)."""
+    crpix_x_px: float = 0.0
+    crpix_y_px: float = 0.0
+    ra_rad: float = 0.0
+    dec_rad: float = 0.0
+    cd_deg: Floats = field(default_factory=no_numbers)
+    order: int = 0
+    a: Floats = field(default_factory=no_numbers)
+    b: Floats = field(default_factory=no_numbers)
+    ap: Floats = field(default_factory=no_numbers)
+    bp: Floats = field(default_factory=no_numbers)
+    rms_px: float = 0.0
+    max_px: float = 0.0
+    projection: int = 0
+    coefficients: Floats = field(default_factory=no_numbers)
+    refraction: WcsRefraction | None = None
+
+    def __post_init__(self) -> None:
+        self.cd_deg = self.cd_deg.reshape(-1, 2)
+        for name in ("a", "b", "ap", "bp"):
+            polynomial = getattr(self, name)
+            setattr(self, name, polynomial.reshape(-1, self.order + 1) if polynomial.size else polynomial)
+
+
+@dataclass(eq=False)
+class FrameReport(_Exposure):
+    """One exposure, also if nothing was found in it."""
+    sensor: str = ""
+    frame: int = 0
+    start_ns: int = 0
+    middle_ns: int = 0
+    end_ns: int = 0
+    boresight_ra_rad: float = 0.0
+    boresight_dec_rad: float = 0.0
+    wcs: Wcs | None = None
+    sensor_position_m: Floats = field(default_factory=no_numbers)
+    sensor_velocity_m_per_s: Floats = field(default_factory=no_numbers)
+    limiting_magnitude: float = 0.0
+    background_e: float = 0.0
+    noise_e: float = 0.0
+    zero_point_mag: float = 0.0
+    detections: int = 0
+    star_like: int = 0
+    saturated_px: int = 0
+    stars_rendered: int = 0
+    objects_rendered: int = 0
+    plan: str = ""
+    detection_off: bool = False
+    psf_fwhm_px: float = 0.0
+    psf_stars: int = 0
+    stars_expected: int = 0
+    stars_found: int = 0

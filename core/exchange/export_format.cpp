@@ -1,0 +1,68 @@
+#include "core/exchange/export_format.h"
+
+#include "core/exchange/coco.h"
+#include "core/exchange/csv.h"
+#include "core/exchange/oem.h"
+#include "core/exchange/omm.h"
+#include "core/exchange/satnet.h"
+#include "core/exchange/tdm.h"
+#include "core/exchange/udl.h"
+
+namespace dmise {
+namespace {
+
+template <std::string (*text)(const ExportRequest&)>
+std::vector<ExportedFile> one_file(const ExportRequest& request) {
+  return {{.path = "", .content = text(request), .copy_of = ""}};
+}
+
+}  // namespace
+
+const std::vector<ExportFormat>& export_formats() {
+  using enum ProductKind;
+  static const std::vector<ExportFormat> formats{
+      {.name = "tdm",
+       .what = "CCSDS Tracking Data Message 2.0 (KVN): right ascension, declination, magnitude",
+       .file = "KIND.tdm",
+       .kinds = {detections, truth},
+       .files = one_file<tdm_text>},
+      {.name = "oem",
+       .what = "CCSDS Orbit Ephemeris Message 2.0 (KVN): true states at mid exposure",
+       .file = "KIND.oem",
+       .kinds = {truth},
+       .files = one_file<truth_oem_text>},
+      {.name = "omm",
+       .what = "CCSDS Orbit Mean-elements Messages 2.0 (XML): element sets of the catalogues",
+       .file = "objects.omm.xml",
+       .kinds = {truth},
+       .takes_elements = true,
+       .files = one_file<omm_text>},
+      {.name = "satnet",
+       .what = "directories of SatNet, with annotations as SatSim writes them",
+       .file = "satnet",
+       .kinds = {truth},
+       .files = satnet_files},
+      {.name = "coco",
+       .what = "COCO annotations of truth, or COCO results of detections",
+       .file = "coco-KIND.json",
+       .kinds = {truth, detections},
+       .files = one_file<coco_json>},
+      {.name = "csv",
+       .what = "tables of all fields",
+       .file = "csv",
+       .kinds = {detections, truth},
+       .files = csv_files},
+      {.name = "udl",
+       .what = "EOObservation records of the Unified Data Library (JSON)",
+       .file = "udl-KIND.json",
+       .kinds = {detections, truth},
+       .files = one_file<udl_json>},
+  };
+  return formats;
+}
+
+const char* name_of(ProductKind kind) {
+  return kind == ProductKind::truth ? "truth" : "detections";
+}
+
+}  // namespace dmise

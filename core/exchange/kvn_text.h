@@ -1,0 +1,33 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace dmise {
+
+/// Text in the keyword = value notation of CCSDS navigation messages. Characters of values that are
+/// not printable ASCII become ?.
+class KvnText {
+ public:
+  KvnText& key(std::string_view key, std::string_view value) {
+    return line(std::string(key) + " = " + ascii(value));
+  }
+  KvnText& comment(std::string_view text) { return line("COMMENT " + ascii(text)); }
+  KvnText& line(std::string_view text) {
+    text_ += text;
+    text_ += '\n';
+    return *this;
+  }
+  std::string take() { return std::move(text_); }
+
+ private:
+  static std::string ascii(std::string_view text) {
+    std::string out(text);
+    for (char& c : out)
+      if (c < ' ' || c > '~') c = '?';
+    return out;
+  }
+  std::string text_;
+};
+
+}  // namespace dmise

@@ -1,0 +1,33 @@
+#include "core/exchange/number_text.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+
+namespace dmise {
+namespace {
+
+void require_finite(double value) {
+  if (!std::isfinite(value)) throw Error("export: a number is not finite");
+}
+
+}  // namespace
+
+std::string fixed_text(double value, int decimals) {
+  require_finite(value);
+  char text[400];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  const std::string digits = text;
+  return digits[0] == '-' && digits.find_first_not_of("-0.") == std::string::npos ? digits.substr(1)
+                                                                                  : digits;
+}
+
+std::string exact_text(double value) {
+  require_finite(value);
+  char text[40];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+}  // namespace dmise

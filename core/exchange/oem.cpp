@@ -1,0 +1,82 @@
+#include "core/exchange/oem.h"
+
+#include <map>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+#include "core/exchange/export_format.h"
+#include "core/exchange/kvn_text.h"
+#include "core/orbit/oem_file.h"
+
+namespace dmise {
+namespace {
+
+void write_covariances(const RunProducts& run, const Ephemeris& object, KvnText& kvn) {
+  bool any = false;
+  for (const EphemerisState& state : object.states) {
+    if (!state.covariance) continue;
+    if (!any) kvn.line("COVARIANCE_START");
+    any = true;
+    kvn.key("EPOCH", run.utc(state.time)).key("COV_REF_FRAME", "GCRF");
+    std::size_t next = 0;
+    for (int row = 0; row < 6; ++row) {
+      std::string line;
+      for (int column = 0; column <= row; ++column) {
+        char text[40];
+        std::snprintf(text, sizeof text, "%s%.15e", column > 0 ? " " : "",
+                      (*state.covariance)[next++] / (km * km));
+        line += text;
+      }
+      kvn.line(line);
+    }
+  }
+  if (any) kvn.line("COVARIANCE_STOP");
+}
+
+void write(const RunProducts& run, const Ephemeris& object, KvnText& kvn) {
+  kvn.line("META_START").key("OBJECT_NAME", object.name).key("OBJECT_ID", object.id);
+  kvn.key("CENTER_NAME", "EARTH").key("REF_FRAME", "GCRF").key("TIME_SYSTEM", "UTC");
+  kvn.key("START_TIME", run.utc(object.states.front().time));
+  kvn.key("STOP_TIME", run.utc(object.states.back().time)).line("META_STOP");
+  for (const EphemerisState& s : object.states) {
+    std::string line = oem_state_line(run.utc(s.time), s.position_m, s.velocity_m_per_s);
+    line.pop_back();
+    kvn.line(line);
+  }
+  write_covariances(run, object, kvn);
+}
+
+}  // namespace
+
+std::string oem_text(const RunProducts& run, const std::vector<Ephemeris>& ephemerides) {
+  KvnText kvn;
+  kvn.key("CCSDS_OEM_VERS", "2.0");
+  kvn.comment(run.software + ", scenario " + run.digest + ", seed " + std::to_string(run.seed));
+  kvn.comment("CREATION_DATE is the start of the simulation");
+  kvn.key("CREATION_DATE", run.utc({0})).key("ORIGINATOR", "DMISE");
+  for (const Ephemeris& object : ephemerides)
+    if (!object.states.empty()) write(run, object, kvn);
+  return kvn.take();
+}
+
+std::string truth_oem_text(const ExportRequest& request) {
+  const RunProducts& run = request.run;
+  std::map<std::pair<std::uint32_t, std::string>, std::map<SimTime, EphemerisState>> objects;
+  for (const Truth& t : run.truths) {
+    if (t.true_position_m == Vec<Gcrs>{})
+      throw ConfigError(run.directory +
+                        "/truth.jsonl: true_position_gcrs_m: is missing: the run was made by an "
+                        "earlier version");
+    objects[{t.catalogue_number, t.name}].try_emplace(
+        t.middle, EphemerisState{t.middle, t.true_position_m, t.true_velocity_m_per_s, {}});
+  }
+  std::vector<Ephemeris> ephemerides;
+  for (const auto& [key, states] : objects) {
+    const auto& [number, name] = key;
+    ephemerides.push_back({name, number > 0 ? std::to_string(number) : name, {}});
+    for (const auto& [time, state] : states) ephemerides.back().states.push_back(state);
+  }
+  return oem_text(run, ephemerides);
+}
+
+}  // namespace dmise

@@ -1,0 +1,140 @@
+#include "core/exchange/run_products.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "core/base/nearest_name.h"
+#include "core/base/printable.h"
+#include "core/base/text_file.h"
+#include "core/base/units.h"
+#include "core/optics/psf_table.h"
+#include "core/score/json_record.h"
+#include "core/time/iso8601.h"
+
+namespace dmise {
+namespace {
+
+RunSensor sensor_of(const JsonRecord& record) {
+  RunSensor sensor{.name = record.get<std::string>("name")};
+  if (record.has("site")) {
+    const JsonRecord site = record.object("site");
+    sensor.site = {site.number("latitude_deg"), site.number("longitude_deg"),
+                   site.number("height_m")};
+  } else {
+    sensor.platform = record.get<std::string>("platform");
+  }
+  const JsonRecord camera = record.object("camera");
+  sensor.columns = camera.get<int>("columns");
+  sensor.rows = camera.get<int>("rows");
+  const Optics optics{.focal_length_m = camera.number("focal_length_m"),
+                      .aperture_m = camera.number("aperture_m"),
+                      .pixel_pitch_m = camera.number("pixel_pitch_m"),
+                      .psf_fwhm_px = camera.number("psf_fwhm_px")};
+  sensor.psf_fwhm_px =
+      psf_sigma_px(optics, camera.number("band_centre_m")) * std::sqrt(8.0 * std::log(2.0));
+  return sensor;
+}
+
+RunFrame frame_of(const JsonRecord& report, const RunSensor& sensor) {
+  const auto vector = [&](const char* key) {
+    const auto v = report.numbers<3>(key);
+    return Vec<Gcrs>{v[0], v[1], v[2]};
+  };
+  RunFrame f{.sensor = sensor.name,
+             .frame = report.get<std::uint32_t>("frame"),
+             .start = report.time("start_ns"),
+             .middle = report.time("middle_ns"),
+             .end = report.time("end_ns"),
+             .sensor_position_m = vector("sensor_position_gcrs_m"),
+             .sensor_velocity_m_per_s = vector("sensor_velocity_gcrs_m_per_s"),
+             .psf_fwhm_px = sensor.psf_fwhm_px,
+             .zero_point_mag = report.number("zero_point_mag")};
+  const auto cd = report.object("wcs").numbers<4>("cd_deg_per_px");
+  f.column_step_deg = std::hypot(cd[0], cd[2]);
+  f.row_step_deg = std::hypot(cd[1], cd[3]);
+  if (report.has("psf_fwhm_px") && report.number("psf_fwhm_px") > 0.0)
+    f.psf_fwhm_px = report.number("psf_fwhm_px");
+  return f;
+}
+
+void read_catalogues(const JsonRecord& scenario, RunProducts& run) {
+  for (const JsonRecord& object : scenario.objects("objects")) {
+    if (!object.has("catalogue")) continue;
+    run.catalogues.push_back(object.get<std::string>("catalogue"));
+    run.only.push_back(object.texts("only"));
+  }
+}
+
+std::string existing(const std::string& directory, const char* name, const char* without) {
+  const std::string path = directory + "/" + name;
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) throw ConfigError(path + ": is missing: " + without);
+  return path;
+}
+
+}  // namespace
+
+std::string RunProducts::utc(SimTime t) const { return format_utc(clock.utc(t), 9); }
+
+const RunSensor& RunProducts::sensor(const std::string& wanted) const {
+  std::vector<std::string> names;
+  for (const RunSensor& s : sensors) {
+    if (s.name == wanted) return s;
+    names.push_back(s.name);
+  }
+  const std::string hint = nearest_name(wanted, names);
+  throw ConfigError(directory + "/run.json: no sensor is named " + printable(wanted) +
+                    (hint.empty() ? "" : ", did you mean " + hint + "?"));
+}
+
+const RunFrame& RunProducts::frame(const std::string& of, std::uint32_t number) const {
+  const auto found = frame_index.find({of, number});
+  if (found == frame_index.end())
+    throw ConfigError(directory + "/frames.jsonl: has no frame " + std::to_string(number) + " of " +
+                      printable(of));
+  return frames[found->second];
+}
+
+RunProducts read_products(const std::string& directory, const WantedProducts& wanted,
+                          const ReadProgress& progress) {
+  const std::string path = existing(directory, "run.json", "no run, or one that has not ended");
+  const JsonRecord record(read_text_file(path), path);
+  const JsonRecord scenario = record.object("scenario");
+  const std::string start = scenario.object("simulation").get<std::string>("start");
+  RunProducts run{.directory = directory,
+                  .start_utc = start,
+                  .software = record.get<std::string>("software"),
+                  .digest = record.get<std::string>("digest"),
+                  .seed = record.get<std::uint64_t>("seed"),
+                  .clock = Clock(parse_utc(start))};
+  for (const JsonRecord& sensor : scenario.objects("sensors"))
+    run.sensors.push_back(sensor_of(sensor));
+  read_catalogues(scenario, run);
+  if (!wanted.sensor.empty()) run.sensor(wanted.sensor);
+  const auto is_wanted = [&](const JsonRecord& line) {
+    return wanted.sensor.empty() || line.get<std::string>("sensor") == wanted.sensor;
+  };
+  for_lines(existing(directory, "frames.jsonl", "the run has no frames"), progress,
+            [&](const JsonRecord& line) {
+              if (!is_wanted(line)) return;
+              const RunFrame frame = frame_of(line, run.sensor(line.get<std::string>("sensor")));
+              if (!run.frame_index.emplace(std::pair(frame.sensor, frame.frame), run.frames.size())
+                       .second)
+                line.fail("frame", "is there twice: " + std::to_string(frame.frame));
+              run.frames.push_back(frame);
+            });
+  if (wanted.truth)
+    for_lines(existing(directory, "truth.jsonl", "the scenario says output: {truth: false}"),
+              progress, [&](const JsonRecord& line) {
+                if (is_wanted(line)) run.truths.push_back(truth_of(line));
+              });
+  if (wanted.detections)
+    for_lines(existing(directory, "detections.jsonl", "the run has no detections"), progress,
+              [&](const JsonRecord& line) {
+                if (is_wanted(line)) run.detections.push_back(detection_of(line));
+              });
+  return run;
+}
+
+}  // namespace dmise

@@ -1,0 +1,75 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/products/detection.h"
+#include "core/products/truth.h"
+#include "core/score/read_progress.h"
+#include "core/time/clock.h"
+
+namespace dmise {
+
+/// A sensor of a run, as run.json describes it.
+struct RunSensor {
+  /// Geodetic place on the scenario's ellipsoid.
+  struct Site {
+    double latitude_deg = 0.0, longitude_deg = 0.0, height_m = 0.0;
+  };
+  std::string name;
+  std::optional<Site> site;  // of a sensor on the ground
+  std::string platform;      // of one in orbit: the object that carries it
+  int columns = 0, rows = 0;
+  double psf_fwhm_px = 0.0;  // of the camera; a frame may have measured another
+};
+
+/// A frame, as its line in frames.jsonl reports it.
+struct RunFrame {
+  std::string sensor;
+  std::uint32_t frame = 0;
+  SimTime start, middle, end;                            // of the exposure, as the sensor believes
+  Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // at mid exposure
+  double column_step_deg = 0.0, row_step_deg = 0.0;      // angle of a pixel at the reference
+  double psf_fwhm_px = 0.0;
+  double zero_point_mag = 0.0;
+
+  double exposure_s() const { return (end - start).seconds(); }
+};
+
+/// The products of a run that has ended, to be exported.
+struct RunProducts {
+  std::string directory;
+  std::string start_utc, software, digest;
+  std::uint64_t seed = 0;
+  Clock clock;
+  std::vector<RunSensor> sensors;
+  std::vector<RunFrame> frames;                // by time, sensor and index, as are
+  std::vector<Truth> truths;                   // if they were asked for
+  std::vector<Detection> detections;           // if they were asked for
+  std::vector<std::string> catalogues;         // of element sets, as the scenario names them
+  std::vector<std::vector<std::string>> only;  // of each: numbers or names; empty: all
+
+  /// "2018-01-21T00:15:10.000000000Z"
+  std::string utc(SimTime t) const;
+  /// Throw `ConfigError` for what the run does not have.
+  const RunSensor& sensor(const std::string& name) const;
+  const RunFrame& frame(const std::string& sensor, std::uint32_t number) const;
+
+  std::map<std::pair<std::string, std::uint32_t>, std::size_t> frame_index;
+};
+
+/// What is read of a run.
+struct WantedProducts {
+  bool truth = false, detections = false;
+  std::string sensor;  // only of this one; empty: of all
+};
+
+/// Reads run.json, frames.jsonl and what is wanted. Throws `ConfigError` "FILE:LINE: KEY: reason"
+/// for a file that is missing or invalid, and for a sensor that the run does not have.
+RunProducts read_products(const std::string& directory, const WantedProducts& wanted,
+                          const ReadProgress& progress);
+
+}  // namespace dmise

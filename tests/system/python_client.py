@@ -1,0 +1,99 @@
+"""The Python package hears all of a launched run, with the values of the run's files, also in asyncio; it says when a run fails.
+
+    python_client.py DMISE
+"""
+
+import asyncio
+import collections
+import dataclasses
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "build/python"))
+import dmise  # noqa: E402
+import numpy  # noqa: E402
+from dmise.convert import RECORDS  # noqa: E402
+from dmise.protocol import modules  # noqa: E402
+
+from harness import Run, check, first_frame, main, wait_until, write_scenario  # noqa: E402
+
+
+def address_of(out):
+    announced = out / "logs/master.address"
+    return wait_until(lambda: announced.exists() and announced.read_text().strip(), "the time-master's address")
+
+
+def every_field():
+    messages = {name: d for module in modules for name, d in module.DESCRIPTOR.message_types_by_name.items()}
+    for name, record in RECORDS.items():
+        if name in messages:
+            theirs = {field.name for field in messages[name].fields} - {"arrays"}
+            missing = theirs - {field.name for field in dataclasses.fields(record)}
+            check(not missing, f"{name} has the {len(theirs)} fields of its message {missing or ''}")
+
+
+def same(ours, theirs):
+    """Equal but for the last bits, which a number loses on its way through degrees."""
+    return all(numpy.allclose(a, b, rtol=1e-12, atol=0) if isinstance(a, float | numpy.ndarray) else a == b
+               for field in dataclasses.fields(ours)
+               for a, b in [(getattr(ours, field.name), getattr(theirs, field.name))])
+
+
+def hears_a_run(binary, directory):
+    out = directory / "out"
+    heard = collections.defaultdict(list)
+    with Run(binary, "launch", write_scenario(directory, duration_s=300), "--out", out) as run:
+        subscription = dmise.subscribe(address_of(out), "detection/", "frame/", "truth/", "env/", "state/")
+        for record in subscription:
+            heard[type(record).__name__].append(record)
+        check(run.finish()[0] == 0, "the run is complete")
+    check(not subscription.gaps and not subscription.refused, "nothing is lost or refused")
+    check(heard["EnvironmentState"] and heard["SiteState"], "environment and sites are heard")
+    left = dmise.open_run(out)
+    check(left.status == "complete", "the run's directory says so")
+    for name, keys, lines in (("Detection", ("sensor", "frame", "index"), left.detections),
+                              ("Truth", ("sensor", "frame", "name"), left.truth)):
+        of_file = {tuple(getattr(r, k) for k in keys): r for r in lines}
+        check(heard[name] and all(same(r, of_file[tuple(getattr(r, k) for k in keys)]) for r in heard[name]),
+              f"{len(heard[name])} of {len(of_file)} {name} records are those of the file")
+    check(heard["FrameReport"], f"{len(heard['FrameReport'])} of {len(left.frames)} frames are heard")
+    states = heard["ObjectStates"][-1]
+    check(states.position_m.shape == (3, len(states.roster.objects)), f"states of {states.count} objects with roster")
+
+
+async def count(address):
+    return [d.id async for d in dmise.aio.subscribe(address, "detection/")]
+
+
+def hears_in_asyncio(binary, directory):
+    out = directory / "asyncio"
+    with Run(binary, "launch", write_scenario(directory, duration_s=300), "--out", out) as run:
+        ids = asyncio.run(count(address_of(out)))
+        run.finish()
+    check(ids and set(ids) <= {d.id for d in dmise.open_run(out).detections}, f"asyncio hears {len(ids)} detections")
+
+
+def says_failure(binary, directory):
+    out = directory / "failing"
+    with Run(binary, "launch", write_scenario(directory), "--out", out) as run:
+        subscription = dmise.subscribe(address_of(out), "frame/")
+        first_frame(out)
+        run.interrupt()
+        try:
+            collections.deque(subscription, maxlen=0)
+            cause = None
+        except dmise.RunFailed as error:
+            cause = str(error)
+        run.finish()
+    check(cause, f"a run that is interrupted raises RunFailed: {cause}")
+
+
+def test(binary, directory):
+    every_field()
+    hears_a_run(binary, directory)
+    hears_in_asyncio(binary, directory)
+    says_failure(binary, directory)
+
+
+if __name__ == "__main__":
+    main(test)
