@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
@@ -64,15 +65,13 @@ bool is_wanted(const MeanElements& e, const std::vector<std::string>& only) {
 
 std::vector<MeanElements> elements_of(const RunProducts& run, const ExportOptions& options) {
   std::vector<MeanElements> all;
+  std::set<std::pair<std::uint32_t, std::string>> seen;
   const auto& given = options.catalogues;
   for (std::size_t i = 0; i < (given.empty() ? run.catalogues : given).size(); ++i) {
     const auto file = read_catalogue(given.empty() ? path_of(run.catalogues[i]) : given[i]);
     for (const MeanElements& e : file.elements) {
-      const bool is_new = std::none_of(all.begin(), all.end(), [&](const MeanElements& other) {
-        return other.catalogue_number == e.catalogue_number && other.name == e.name;
-      });
-      if (is_new && is_wanted(e, given.empty() ? run.only[i] : std::vector<std::string>{}))
-        all.push_back(e);
+      if (!is_wanted(e, given.empty() ? run.only[i] : std::vector<std::string>{})) continue;
+      if (seen.emplace(e.catalogue_number, e.name).second) all.push_back(e);
     }
   }
   return all;

@@ -1,6 +1,5 @@
 #include "launch/run_record.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
@@ -8,17 +7,12 @@
 #include "core/base/version.h"
 #include "core/base/whole_file.h"
 #include "core/orbit/interpolation_error.h"
+#include "core/products/frame_file.h"
 
 namespace dmise {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string frame_file(std::uint32_t frame, const char* ending) {
-  char name[64];
-  std::snprintf(name, sizeof name, "frame-%06u%s", frame, ending);
-  return name;
-}
 
 bool exists(const std::string& path) {
   std::error_code ignored;
@@ -94,11 +88,11 @@ void write_index_page(const RunDirectory& directory, const Scenario& scenario) {
     html += "<h2 id='" + s.name + "'>" + s.name + "</h2>";
     for (std::uint32_t frame = 1; frame <= std::uint32_t(s.frames); ++frame) {
       const std::string base = s.name + "/";
-      const std::string marked = base + frame_file(frame, "-marked.png");
+      const std::string marked = base + frame_file_name(frame, "-marked.png");
       if (!exists(directory.path() + "/" + marked)) continue;
       html += "<p>frame " + std::to_string(frame) + ": <a href='" + base +
-              frame_file(frame, ".fits") + "'>FITS</a> <a href='" + base +
-              frame_file(frame, ".png") + "'>PNG</a><br><a href='" + marked +
+              frame_file_name(frame, ".fits") + "'>FITS</a> <a href='" + base +
+              frame_file_name(frame, ".png") + "'>PNG</a><br><a href='" + marked +
               "'><img loading=lazy src='" + marked + "'></a></p>";
     }
   }
@@ -113,7 +107,7 @@ std::string what_to_open(const RunDirectory& directory, const Scenario& scenario
   std::string text;
   for (const auto& sensor : scenario.sensors) {
     const std::string marked =
-        directory.path() + "/" + sensor.name + "/" + frame_file(1, "-marked.png");
+        directory.path() + "/" + sensor.name + "/" + frame_file_name(1, "-marked.png");
     if (text.empty() && exists(marked)) text = "open " + marked + "\n";
   }
   if (has_index_page(directory))

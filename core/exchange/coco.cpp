@@ -1,10 +1,9 @@
 #include "core/exchange/coco.h"
 
-#include <cstdio>
-
 #include "core/base/json.h"
 #include "core/exchange/export_format.h"
 #include "core/exchange/image_label.h"
+#include "core/products/frame_file.h"
 
 namespace dmise {
 namespace {
@@ -31,11 +30,10 @@ void write_keypoint(JsonWriter& json, PixelPosition p, const RunSensor& camera) 
 void write_images(const RunProducts& run, JsonWriter& json) {
   json.key("images").begin_array();
   for (const RunFrame& f : run.frames) {
-    char name[40];
-    std::snprintf(name, sizeof name, "/frame-%06u.fits", f.frame);
     const RunSensor& camera = run.sensor(f.sensor);
     json.begin_object().field("id", image_id(run, f.sensor, f.frame));
-    json.field("file_name", f.sensor + name).field("width", camera.columns);
+    json.field("file_name", f.sensor + "/" + frame_file_name(f.frame))
+        .field("width", camera.columns);
     json.field("height", camera.rows).field("date_captured", run.utc(f.middle)).end_object();
   }
   json.end_array();

@@ -5,8 +5,8 @@
 
 #include "core/base/error.h"
 #include "core/base/json.h"
-#include "core/base/text_file.h"
 #include "core/exchange/export_format.h"
+#include "core/score/json_record.h"
 
 namespace dmise {
 namespace {
@@ -25,6 +25,7 @@ class Table {
     row[place.first->second] = std::move(cell);
   }
   std::string text() const {
+    if (columns_.empty()) return "";
     std::string out;
     const auto line = [&](const std::vector<std::string>& cells) {
       for (std::size_t i = 0; i < columns_.size(); ++i)
@@ -73,23 +74,20 @@ void put(const std::string& key, const Json& value, Table& table) {
 }
 
 std::string csv_of(const std::string& path, const RunProducts& run) {
-  const std::string text = read_text_file(path, std::size_t(1) << 36);
   Table table;
-  std::size_t begin = 0, line = 1;
-  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
-    const auto row = Json::parse(text.begin() + std::ptrdiff_t(begin),
-                                 text.begin() + std::ptrdiff_t(end), nullptr, false);
-    if (!row.is_object())
-      throw ConfigError(path + ":" + std::to_string(line) + ": must be a JSON object");
-    ++line;
+  const auto add = [&](const std::string& line, const std::string& place) {
+    const auto row = Json::parse(line, nullptr, false);
+    if (!row.is_object()) throw ConfigError(place + ": must be a JSON object");
     const auto sensor = row.find("sensor"), frame = row.find("frame");
     if (sensor == row.end() || !sensor->is_string() || frame == row.end() ||
         !frame->is_number_unsigned() ||
         !run.frame_index.contains({sensor->get<std::string>(), frame->get<std::uint32_t>()}))
-      continue;  // of a sensor that is not wanted
+      return;  // of a sensor that is not wanted
     table.begin_row();
     put("", row, table);
-  }
+  };
+  for_line_texts(
+      path, [](double, const std::string&) {}, add);
   return table.text();
 }
 

@@ -1,5 +1,6 @@
 #include "core/exchange/export_format.h"
 
+#include "core/base/error.h"
 #include "core/exchange/coco.h"
 #include "core/exchange/csv.h"
 #include "core/exchange/oem.h"
@@ -63,6 +64,11 @@ const std::vector<ExportFormat>& export_formats() {
 
 const char* name_of(ProductKind kind) {
   return kind == ProductKind::truth ? "truth" : "detections";
+}
+
+void fail_empty(const RunProducts& run, const char* message, ProductKind kind) {
+  throw ConfigError(run.directory + "/" + name_of(kind) +
+                    ".jsonl: has nothing to export: " + message + " needs a segment");
 }
 
 }  // namespace dmise

@@ -40,4 +40,8 @@ const std::vector<ExportFormat>& export_formats();
 /// "detections" or "truth".
 const char* name_of(ProductKind kind);
 
+/// Throws `ConfigError` that `kind` of the run has nothing for `message`, "a TDM", which must not
+/// be empty.
+[[noreturn]] void fail_empty(const RunProducts& run, const char* message, ProductKind kind);
+
 }  // namespace dmise

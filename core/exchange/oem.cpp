@@ -76,6 +76,7 @@ std::string truth_oem_text(const ExportRequest& request) {
     ephemerides.push_back({name, number > 0 ? std::to_string(number) : name, {}});
     for (const auto& [time, state] : states) ephemerides.back().states.push_back(state);
   }
+  if (ephemerides.empty()) fail_empty(run, "an OEM", ProductKind::truth);
   return oem_text(run, ephemerides);
 }
 

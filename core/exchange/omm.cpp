@@ -69,6 +69,9 @@ std::string message(const RunProducts& run, const MeanElements& e) {
 }  // namespace
 
 std::string omm_text(const ExportRequest& request) {
+  if (request.elements.empty())
+    throw ConfigError(request.run.directory +
+                      "/run.json: the scenario has no element sets to export: an OMM needs one");
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<ndm>\n";
   for (const MeanElements& e : request.elements) text += message(request.run, e);
   return text + "</ndm>\n";

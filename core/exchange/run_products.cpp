@@ -78,11 +78,10 @@ std::string existing(const std::string& directory, const char* name, const char*
 std::string RunProducts::utc(SimTime t) const { return format_utc(clock.utc(t), 9); }
 
 const RunSensor& RunProducts::sensor(const std::string& wanted) const {
-  std::vector<std::string> names;
-  for (const RunSensor& s : sensors) {
+  for (const RunSensor& s : sensors)
     if (s.name == wanted) return s;
-    names.push_back(s.name);
-  }
+  std::vector<std::string> names;
+  for (const RunSensor& s : sensors) names.push_back(s.name);
   const std::string hint = nearest_name(wanted, names);
   throw ConfigError(directory + "/run.json: no sensor is named " + printable(wanted) +
                     (hint.empty() ? "" : ", did you mean " + hint + "?"));

@@ -8,6 +8,7 @@
 #include "core/base/units.h"
 #include "core/exchange/export_format.h"
 #include "core/exchange/image_label.h"
+#include "core/products/frame_file.h"
 
 namespace dmise {
 namespace {
@@ -76,10 +77,10 @@ std::vector<ExportedFile> satnet_files(const ExportRequest& request) {
   std::vector<ExportedFile> files;
   for (std::size_t i = 0; i < run.frames.size(); ++i) {
     const RunFrame& f = run.frames[i];
-    char number[20], name[40];
+    char number[20];
     std::snprintf(number, sizeof number, ".%04u", f.frame);
-    std::snprintf(name, sizeof name, "/frame-%06u.fits", f.frame);
-    const std::string stem = f.sensor + number, source = run.directory + "/" + f.sensor + name;
+    const std::string stem = f.sensor + number;
+    const std::string source = run.directory + "/" + f.sensor + "/" + frame_file_name(f.frame);
     files.push_back({f.sensor + "/Annotations/" + stem + ".json",
                      annotation(run, f, stem + ".fits", truths[i]), ""});
     std::error_code ignored;

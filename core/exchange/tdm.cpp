@@ -24,6 +24,7 @@ struct Sighting {
 struct Segment {
   std::string sensor, object, track;
   double exposure_s = 0.0;
+  const char* quality = nullptr;  // nobody has looked at what a sensor found: RAW
   std::vector<std::string> comments;
   std::vector<std::pair<const char*, std::string>> corrections;
   std::vector<Sighting> sightings;
@@ -51,7 +52,7 @@ void write(const RunProducts& run, const Segment& s, KvnText& kvn) {
   kvn.key("PARTICIPANT_1", s.sensor).key("PARTICIPANT_2", s.object);
   kvn.key("MODE", "SEQUENTIAL").key("PATH", "2,1").key("TIMETAG_REF", "RECEIVE");
   kvn.key("INTEGRATION_INTERVAL", exact_text(s.exposure_s)).key("INTEGRATION_REF", "MIDDLE");
-  kvn.key("ANGLE_TYPE", "RADEC").key("REFERENCE_FRAME", "ICRF").key("DATA_QUALITY", "VALIDATED");
+  kvn.key("ANGLE_TYPE", "RADEC").key("REFERENCE_FRAME", "ICRF").key("DATA_QUALITY", s.quality);
   for (const auto& [key, value] : s.corrections) kvn.key(key, value);
   kvn.key("CORRECTIONS_APPLIED", "YES").line("META_STOP").line("DATA_START");
   for (const Sighting& sighting : s.sightings) {
@@ -74,7 +75,8 @@ Segment segment_of(const RunProducts& run, const Detection& d) {
   Segment s{.sensor = d.sensor,
             .object = "UNKNOWN",
             .track = d.id,
-            .exposure_s = run.frame(d.sensor, d.frame).exposure_s()};
+            .exposure_s = run.frame(d.sensor, d.frame).exposure_s(),
+            .quality = "RAW"};
   s.comments = {place_comment(run.sensor(d.sensor)),
                 vector_comment("position of the sensor", d.sensor_position_m, "km"),
                 vector_comment("velocity of the sensor", d.sensor_velocity_m_per_s, "km/s"),
@@ -119,7 +121,8 @@ void write_truth(const RunProducts& run, KvnText& kvn) {
       Segment s{.sensor = t.sensor,
                 .object = object,
                 .track = t.sensor + "/" + object,
-                .exposure_s = (t.end - t.start).seconds()};
+                .exposure_s = (t.end - t.start).seconds(),
+                .quality = "VALIDATED"};
       s.comments = {"truth of " + t.name, place_comment(run.sensor(t.sensor)),
                     "angles are geometric at the time when the light left the object: free of "
                     "aberration and refraction",
@@ -129,7 +132,13 @@ void write_truth(const RunProducts& run, KvnText& kvn) {
     segments[found->second].sightings.push_back(
         {t.middle, t.true_ra_rad, t.true_dec_rad, t.true_magnitude - 2.5 * std::log10(t.sunlit)});
   }
+  if (segments.empty()) fail_empty(run, "a TDM", ProductKind::truth);
   for (const Segment& s : segments) write(run, s, kvn);
+}
+
+void write_detections(const RunProducts& run, KvnText& kvn) {
+  if (run.detections.empty()) fail_empty(run, "a TDM", ProductKind::detections);
+  for (const Detection& d : run.detections) write(run, segment_of(run, d), kvn);
 }
 
 }  // namespace
@@ -144,7 +153,7 @@ std::string tdm_text(const ExportRequest& request) {
   if (request.kind == ProductKind::truth)
     write_truth(run, kvn);
   else
-    for (const Detection& d : run.detections) write(run, segment_of(run, d), kvn);
+    write_detections(run, kvn);
   return kvn.take();
 }
 

@@ -147,14 +147,21 @@ Truth truth_of(const JsonRecord& record) {
   return t;
 }
 
-void for_lines(const std::string& path, const ReadProgress& progress,
-               const std::function<void(const JsonRecord&)>& take) {
+void for_line_texts(const std::string& path, const ReadProgress& progress,
+                    const std::function<void(const std::string&, const std::string&)>& take) {
   const std::string text = read_text_file(path, std::size_t(1) << 36);
   std::size_t begin = 0, line = 1;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
     if (line % 4096 == 0) progress(double(begin) / double(text.size()), path);
-    take(JsonRecord(text.substr(begin, end - begin), path + ":" + std::to_string(line++)));
+    take(text.substr(begin, end - begin), path + ":" + std::to_string(line++));
   }
+}
+
+void for_lines(const std::string& path, const ReadProgress& progress,
+               const std::function<void(const JsonRecord&)>& take) {
+  for_line_texts(path, progress, [&](const std::string& line, const std::string& place) {
+    take(JsonRecord(line, place));
+  });
 }
 
 }  // namespace dmise

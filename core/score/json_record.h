@@ -64,6 +64,11 @@ Detection detection_of(const JsonRecord& record);
 /// them.
 Truth truth_of(const JsonRecord& record);
 
+/// Calls `take(line, "FILE:LINE")` with each whole line of a file; a last line without its end was
+/// interrupted and is left out. Throws `Error` for a file that can't be read.
+void for_line_texts(const std::string& path, const ReadProgress& progress,
+                    const std::function<void(const std::string&, const std::string&)>& take);
+
 /// Calls `take` with each whole line of a file of JSON lines. Throws `ConfigError`
 /// "FILE:LINE: KEY: reason"; a last line without its end was interrupted and is left out.
 void for_lines(const std::string& path, const ReadProgress& progress,

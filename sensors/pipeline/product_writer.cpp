@@ -18,6 +18,7 @@
 #include "core/image/plane_file.h"
 #include "core/pictures/picture_file.h"
 #include "core/plan/plan_json.h"
+#include "core/products/frame_file.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
@@ -85,9 +86,7 @@ ProductWriter::ProductWriter(std::string directory, const OutputConfig& output, 
 }
 
 std::string ProductWriter::frame_path(std::uint32_t frame, const char* ending) const {
-  char name[64];
-  std::snprintf(name, sizeof name, "/frame-%06u%s", frame, ending);
-  return directory_ + name;
+  return directory_ + "/" + frame_file_name(frame, ending);
 }
 
 void ProductWriter::write_planes(const FrameProducts& f) const {

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
-#include "core/exchange/number_text.h"
 #include "core/orbit/oem.h"
 #include "core/time/iso8601.h"
 
@@ -29,12 +27,6 @@ TEST(OemText, KeepsCommentsInPrintableAscii) {
   const RunProducts run{.clock = Clock(parse_utc("2018-01-21T00:15:00Z"))};
   const std::string text = oem_text(run, {{"a\nb\xc3\xa9", "1", {EphemerisState{}}}});
   EXPECT_NE(text.find("OBJECT_NAME = a?b??\n"), std::string::npos) << text;
-}
-
-TEST(FixedText, HasNoNegativeZeroAndRefusesWhatIsNotFinite) {
-  EXPECT_EQ(fixed_text(-1e-12, 3), "0.000");
-  EXPECT_EQ(fixed_text(-1.25, 2), "-1.25");
-  EXPECT_THROW(fixed_text(0.0 / 0.0, 3), Error);
 }
 
 }  // namespace

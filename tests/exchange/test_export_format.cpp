@@ -1,0 +1,99 @@
+#include "core/exchange/export_format.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "tests/exchange/small_run.h"
+
+namespace dmise {
+namespace {
+
+using Json = nlohmann::json;
+
+std::vector<ExportedFile> exported(const std::string& format, const ExportRequest& request) {
+  for (const ExportFormat& f : export_formats())
+    if (f.name == format) return f.files(request);
+  ADD_FAILURE() << format;
+  return {};
+}
+
+// The pixel centre of COCO is at + 0.5.
+TEST(ExportFormat, CocoHasBoxesFromCornersOfPixels) {
+  const RunProducts run = run_with_truth();
+  const Json coco = Json::parse(exported("coco", {run, ProductKind::truth, {}})[0].content);
+  EXPECT_EQ(coco["images"][0]["file_name"], "eye/frame-000007.fits");
+  const auto& annotation = coco["annotations"][0];
+  const double margin_px = (annotation["bbox"][2].get<double>() - 40.0) / 2.0;
+  EXPECT_GT(margin_px, 1.0);
+  EXPECT_NEAR(annotation["bbox"][0].get<double>(), 20.5 - margin_px, 1e-9);
+  EXPECT_NEAR(annotation["bbox"][1].get<double>(), 30.5 - margin_px, 1e-9);
+  EXPECT_EQ(annotation["image_id"], coco["images"][0]["id"]);
+  EXPECT_EQ(annotation["keypoints"], Json::parse("[20.5,30.5,2,60.5,50.5,2]"));
+}
+
+TEST(ExportFormat, SatnetHasFractionsOfTheImage) {
+  const RunProducts run = run_with_truth();
+  const auto files = exported("satnet", {run, ProductKind::truth, {}});
+  ASSERT_EQ(files.size(), 1u);  // there is no image
+  EXPECT_EQ(files[0].path, "eye/Annotations/eye.0007.json");
+  const Json data = Json::parse(files[0].content)["data"];
+  EXPECT_EQ(data["objects"].size(), 1u);
+  EXPECT_NEAR(data["objects"][0]["x_center"].get<double>(), 40.5 / 200, 1e-12);
+  EXPECT_NEAR(data["objects"][0]["y_center"].get<double>(), 40.5 / 100, 1e-12);
+  EXPECT_NEAR(data["objects"][0]["pe_per_sec"].get<double>(), 5e3, 1e-9);
+}
+
+TEST(ExportFormat, UdlHasDegreesAndKilometres) {
+  const RunProducts found = run_with_detection(), known = run_with_truth();
+  const Json d = Json::parse(exported("udl", {found, ProductKind::detections, {}})[0].content)[0];
+  EXPECT_NEAR(d["ra"].get<double>(), 350.0, 1e-12);
+  EXPECT_NEAR(d["declinationUnc"].get<double>(), 2.0 / 3600.0, 1e-12);
+  EXPECT_EQ(d["obTime"], "2018-01-21T00:15:01.000000Z");
+  EXPECT_NEAR(d["senalt"].get<double>(), 0.3, 1e-12);
+  const Json t = Json::parse(exported("udl", {known, ProductKind::truth, {}})[0].content)[0];
+  EXPECT_NEAR(t["range"].get<double>(), 500.0, 1e-12);
+  EXPECT_EQ(t["penumbra"], true);
+  EXPECT_EQ(t["satNo"], 25544);
+}
+
+TEST(ExportFormat, OmmIsInDegreesAndRevolutions) {
+  const RunProducts run = small_run();
+  MeanElements e{.catalogue_number = 5, .name = "a<b", .epoch_jd1 = 2458139.5};
+  e.mean_motion_rad_per_min = 2.0 * pi / 96.0;
+  e.inclination_rad = 0.5 * pi;
+  const auto files = exported("omm", {run, ProductKind::truth, {e}});
+  EXPECT_TRUE(has(files[0].content, "<MEAN_MOTION>15</MEAN_MOTION>"));
+  EXPECT_TRUE(has(files[0].content, "<INCLINATION>90</INCLINATION>"));
+  EXPECT_TRUE(has(files[0].content, "<OBJECT_NAME>a&lt;b</OBJECT_NAME>"));
+}
+
+TEST(ExportFormat, MessagesThatNeedASegmentRefuseAnEmptyRun) {
+  const RunProducts run = small_run();
+  EXPECT_THROW(exported("oem", {run, ProductKind::truth, {}}), ConfigError);
+  EXPECT_THROW(exported("omm", {run, ProductKind::truth, {}}), ConfigError);
+}
+
+// Reference: RFC 4180 2.5 to 2.7.
+TEST(ExportFormat, CsvQuotesAndLeavesOutOtherSensors) {
+  RunProducts run = small_run();
+  run.directory = testing::TempDir() + "/csv-" + std::to_string(getpid());
+  std::filesystem::create_directories(run.directory);
+  std::ofstream(run.directory + "/detections.jsonl")
+      << "{\"id\":\"a,\\\"b\",\"sensor\":\"eye\",\"frame\":7,\"covariance_px2\":[1,0.5,2]}\n"
+      << "{\"id\":\"other\",\"sensor\":\"ear\",\"frame\":7}\n";
+  std::ofstream(run.directory + "/frames.jsonl") << "";
+  const auto files = exported("csv", {run, ProductKind::detections, {}});
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(files[0].content,
+            "id,sensor,frame,covariance_px2_xx,covariance_px2_xy,covariance_px2_yy\r\n"
+            "\"a,\"\"b\",eye,7,1,0.5,2\r\n");
+  EXPECT_EQ(files[1].content, "");
+  std::filesystem::remove_all(run.directory);
+}
+
+}  // namespace
+}  // namespace dmise
