@@ -114,14 +114,15 @@ std::vector<PlacedSource> placed(SimulatedFrame& frame, const FrameHeader& heade
   return out;
 }
 
-void add_result(const FrameHeader& header, const PlacedSource& p, const Detection* d,
+/// `share`: of the source's SNR^2 that stars do not hide; no more can place it.
+void add_result(const FrameHeader& header, const PlacedSource& p, double share, const Detection* d,
                 DetectionOutcome& out) {
   if (!d) return;
   ++out.found;
   const double dx = d->x_px - p.x, dy = d->y_px - p.y;
   const auto [xx, xy, yy] = d->covariance_px2;
   out.squares_px2 += dx * dx + dy * dy;
-  out.bound_px2 += bound_px2(header, p);
+  out.bound_px2 += bound_px2(header, p) / std::max(share, 0.1);
   out.nees += (dx * dx * yy - 2 * dx * dy * xy + dy * dy * xx) / (xx * yy - xy * xy) / 2;
   out.bias_sigma += (d->signal_e - p.flux_e) / (d->signal_e / d->snr);
 }
@@ -168,9 +169,11 @@ DetectionOutcome detection_trial(double length, double snr, double threshold, in
   for (int f = 0; f < frames; ++f) {
     SimulatedFrame frame = trial_frame(header, size, size, field, seed + unsigned(f));
     const auto sources = placed(frame, header, size, length, snr);
+    std::vector<double> shares;
     for (const PlacedSource& p : sources) {
       ++out.placed;
-      const double seen = snr * std::sqrt(free_share(header, frame.electrons(), p));
+      shares.push_back(free_share(header, frame.electrons(), p));
+      const double seen = snr * std::sqrt(shares.back());
       out.in_theory += q_function(threshold - seen);
     }
     for (const PlacedSource& p : sources) {
@@ -180,7 +183,8 @@ DetectionOutcome detection_trial(double length, double snr, double threshold, in
         frame.add_point(p.x, p.y, p.flux_e);
     }
     const auto result = detect(frame.expose(), header, {}, threads, field.sky);
-    for (const PlacedSource& p : sources) add_result(header, p, found(result.detections, p), out);
+    for (std::size_t i = 0; i < sources.size(); ++i)
+      add_result(header, sources[i], shares[i], found(result.detections, sources[i]), out);
   }
   return out;
 }

@@ -10,7 +10,7 @@ constexpr std::int64_t look_every_ns = 60'000'000'000;  // for absent objects
 
 }  // namespace
 
-OrbitActor::OrbitActor(const Scenario& scenario, Clock clock, Threads& threads)
+OrbitActor::OrbitActor(const Scenario& scenario, const Clock& clock, Threads& threads)
     : OrbitActor(scenario, clock, load_objects(scenario, clock), threads) {}
 
 OrbitActor::OrbitActor(const Scenario& scenario, Clock clock, ObjectPopulation population,

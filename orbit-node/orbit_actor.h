@@ -16,7 +16,7 @@ namespace dmise {
 /// at every tick, in GCRS.
 class OrbitActor : public Actor {
  public:
-  OrbitActor(const Scenario& scenario, Clock clock, Threads& threads);
+  OrbitActor(const Scenario& scenario, const Clock& clock, Threads& threads);
   /// For objects that are already loaded.
   OrbitActor(const Scenario& scenario, Clock clock, ObjectPopulation population, Threads& threads);
 

@@ -214,7 +214,7 @@ std::int64_t YamlMap::integer_or(std::string_view key, std::int64_t otherwise, s
 
 std::string YamlMap::text_or(std::string_view key, std::string otherwise) {
   const auto value = find(key);
-  return value ? value->text() : otherwise;
+  return value ? value->text() : std::move(otherwise);
 }
 
 bool YamlMap::flag_or(std::string_view key, bool otherwise) {

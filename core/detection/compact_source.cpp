@@ -170,11 +170,10 @@ class Candidate {
     least_snr *= crowding(*scene_.flat, t);
     // A star that is brighter than expected, by scintillation or by nature.
     const double within_px = 1.2 * scene_.sigma_px + 0.5 * t.length_px;
-    if (t.length_px < 6 * scene_.sigma_px &&
-        scene_.known->may_be_at({t.x_px, t.y_px}, within_px, t.flux_e))
-      significant.reset();
-    else if (!is_saturated() &&
-             (template_snr(scene_, t) < least_snr || significant->snr() < fit_keeps * least_snr))
+    const bool may_be_star = t.length_px < 6 * scene_.sigma_px &&
+                             scene_.known->may_be_at({t.x_px, t.y_px}, within_px, t.flux_e);
+    if (may_be_star || (!is_saturated() && (template_snr(scene_, t) < least_snr ||
+                                            significant->snr() < fit_keeps * least_snr)))
       significant.reset();
     return significant;
   }

@@ -25,13 +25,16 @@ void steps_of(const float* value, const float* noise, float unit, std::size_t co
                                   (std::int32_t(x) + std::int32_t(odd)) & 1));
 }
 
-void flatten_steps(std::int16_t* steps, std::size_t count, bool odd, const float middle[2],
-                   const float scale[2]) {
+void flatten_steps(std::int16_t* steps, std::size_t count, bool odd, std::uint32_t dither,
+                   const float middle[2], const float scale[2]) {
+  constexpr float per_turn = 1.0f / 4294967296.0f;
   const float m0 = middle[0], m1 = middle[1], s0 = scale[0], s1 = scale[1];
   for (std::size_t x = 0; x < count; ++x) {
     const auto at = float(std::int32_t(x));
+    const auto turn = std::int32_t(dither + std::uint32_t(x) * dither_per_pixel);
     const float flat = (float(steps[x]) - (m0 + at * m1)) * (s0 + at * s1);
-    const std::int32_t step = rounded(flat, (std::int32_t(x) + std::int32_t(odd)) & 1);
+    const float dithered = flat + float(turn) * per_turn;
+    const std::int32_t step = rounded(dithered, (std::int32_t(x) + std::int32_t(odd)) & 1);
     steps[x] = std::int16_t(steps[x] == 0 ? 0 : step);
   }
 }

@@ -84,6 +84,13 @@ std::vector<FilteredFrame::Cell> smoothed(const std::vector<Level>& levels, int 
   return mesh;
 }
 
+/// Different in rows beside each other, so that no line meets the same again and again.
+std::uint32_t dither_of_row(int y) {
+  std::uint32_t h = std::uint32_t(y) * 0x85EBCA6Bu;
+  h = (h ^ (h >> 15)) * 0xC2B2AE35u;
+  return h ^ (h >> 13);
+}
+
 }  // namespace
 
 void FilteredFrame::flatten(Threads& threads, const BitMask* lit) {
@@ -125,6 +132,7 @@ void FilteredFrame::flatten(Threads& threads, const BitMask* lit) {
           return std::array{first + right * (second - first), (second - first) / cell_px};
         };
         flatten_steps(pixels + x0, std::size_t(x1 - x0), (x0 + y) % 2 != 0,
+                      dither_of_row(y) + std::uint32_t(x0) * dither_per_pixel,
                       along(a.middle, b.middle).data(), along(a.scatter, b.scatter).data());
       }
     }

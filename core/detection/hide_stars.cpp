@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/detection/components.h"
+#include "core/detection/shown_stars.h"
 #include "core/detection/star_agreement.h"
 #include "core/detection/star_image.h"
 
@@ -75,24 +76,23 @@ std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
   std::vector<KnownStars::Star> stars;
   stars.reserve(expected.size());
   StarImage image(frame.columns, frame.rows);
-  for (const ExpectedStar& star : expected) {
-    const PixelPosition at = star.place + seen.shift;
-    const StarLightRatio& light = agreement.light_at(at);
-    const int x = std::clamp(int(std::lround(at.x_px)), 0, frame.columns - 1);
-    const int y = std::clamp(int(std::lround(at.y_px)), 0, frame.rows - 1);
-    const double noise_e = scene.background.sigma_dn(x, y) * scene.gain_e_per_dn;
-    const double in_noise = light.middle * star.signal_e / noise_e;
-    const double hidden = hidden_snr / std::exp(subtracted_sigmas * light.scatter);
-    const Trail trail = scene.star_trail(at.x_px, at.y_px);
+  const auto shown = shown_stars(scene, agreement, expected);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const ShownStar& star = shown[i];
+    const PixelPosition at{star.trail.x_px, star.trail.y_px};
+    const double in_noise = star.flux_e / star.noise_e;
+    const double hidden = hidden_snr / std::exp(subtracted_sigmas * star.light_error);
     const double sigma_px = scene.psf.sigma_at(at);
-    image.draw(trail, std::hypot(sigma_px, frame.sigma_px), in_noise / unit,
+    image.draw(star.trail, std::hypot(sigma_px, frame.sigma_px), in_noise / unit,
                std::min(subtracted_snr, hidden));
     subtract(image, float(hidden), frame);
-    image.draw(trail, sigma_px, in_noise, lit_noise);
+    image.draw(star.trail, sigma_px, in_noise, lit_noise);
     mark(image, float(lit_noise), lit);
+    const PixelPosition expected_at = expected[i].place + seen.shift;
+    const StarLightRatio& light = agreement.light_at(expected_at);
     const double most =
         light.scatter > flickering ? HUGE_VAL : std::exp(most_sigmas * light.scatter);
-    stars.push_back({at, light.middle * star.signal_e * most});
+    stars.push_back({expected_at, light.middle * expected[i].signal_e * most});
   }
   return KnownStars(sky, header, std::move(stars), std::move(lit));
 }

@@ -219,7 +219,9 @@ Trail climbed(const FilteredFrame& frame, const Trail& start, double least_snr) 
 }
 
 Beside beside(const FilteredFrame& frame, const Trail& trail) {
-  constexpr int lines = 24, least_lines = 12;  // on each side; in all
+  constexpr int least_lines = 12;
+  // On each side; what is beside a short line changes sooner.
+  const int lines = trail.length_px > 100 ? 48 : 24;
   const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
   std::vector<double> snr;
   for (int k = -lines; k <= lines; ++k) {

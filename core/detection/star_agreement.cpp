@@ -39,7 +39,7 @@ std::optional<PixelPosition> centroid_near(const FilteredFrame& frame, PixelPosi
 }
 
 /// The ratio and scatter of logarithms.
-StarLightRatio ratio_of(std::vector<double> logs) {
+StarLightRatio ratio_of(const std::vector<double>& logs) {
   const double middle = quantile_of(logs, 0.5);
   const double scatter = (quantile_of(logs, 0.75) - quantile_of(logs, 0.25)) / 1.349;
   return {std::exp(middle), std::max(scatter, 0.1)};
@@ -121,7 +121,7 @@ void StarAgreement::measure_light(const Scene& scene, const FilteredFrame& frame
     all.push_back(std::log(ratio));
   }
   if (all.size() < enough_stars) return;
-  const StarLightRatio mean = ratio_of(std::move(all));
+  const StarLightRatio mean = ratio_of(all);
   for (int j = 0; j < cells; ++j)
     for (int i = 0; i < cells; ++i) {
       std::vector<double> around;
@@ -130,8 +130,7 @@ void StarAgreement::measure_light(const Scene& scene, const FilteredFrame& frame
           const auto& some = logs[std::size_t(y * cells + x)];
           around.insert(around.end(), some.begin(), some.end());
         }
-      light_[std::size_t(j * cells + i)] =
-          around.size() < enough_stars ? mean : ratio_of(std::move(around));
+      light_[std::size_t(j * cells + i)] = around.size() < enough_stars ? mean : ratio_of(around);
     }
 }
 

@@ -14,15 +14,21 @@ class StarImage {
 
   /// Fills the box with a star of a total of `flux` down to `least` a pixel.
   void draw(const Trail& trail, double sigma_px, double flux, double least);
+  /// Also its derivatives by the star's place.
+  void draw_with_slopes(const Trail& trail, double sigma_px, double flux, double least);
 
   /// The box's part of a row of the frame.
-  const float* row(int y) const {
-    return light_.data() + std::size_t(y - y0) * std::size_t(x1 - x0 + 1);
-  }
+  const float* row(int y) const { return light_.data() + offset(y); }
+  const float* row_by_x(int y) const { return by_x_.data() + offset(y); }
+  const float* row_by_y(int y) const { return by_y_.data() + offset(y); }
 
  private:
+  template <bool with_slopes>
+  void draw_points(const Trail& trail, double sigma_px, double flux, double least);
+  std::size_t offset(int y) const { return std::size_t(y - y0) * std::size_t(x1 - x0 + 1); }
+
   int columns_, rows_;
-  std::vector<float> light_, across_;
+  std::vector<float> light_, by_x_, by_y_, across_;
 };
 
 }  // namespace dmise

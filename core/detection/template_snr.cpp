@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/detection/components.h"
 #include "core/detection/line_search.h"
 #include "core/detection/source_fit.h"
 
@@ -11,18 +12,32 @@ namespace {
 constexpr double margin_in_sigmas = 2.5;
 constexpr double spare_px = 3.0;  // by which a trail may move while it is matched
 
+/// The sky around a place.
+struct Sky {
+  double level = 0.0, scatter = 1.0;  // in a pixel's noise
+
+  Sky(const Scene& scene, const Trail& trail) {
+    if (!scene.flat) return;
+    const FilteredFrame::Cell cell = scene.flat->cell_at(trail.x_px, trail.y_px);
+    level = double(cell.middle) / FilteredFrame::steps *
+            std::sqrt(kernel_square_sum(scene.flat->sigma_px));
+    scatter = double(cell.scatter);
+  }
+};
+
 double snr_of(const Scene& scene, const std::vector<FitPixel>& pixels, Trail trail) {
   trail.flux_e = 1.0;
   const TrailLight light(trail, scene.psf.at({trail.x_px, trail.y_px}));
+  const Sky sky(scene, trail);
   TrailDerivatives unused{};
   double sum = 0.0, squares = 0.0;
   for (const FitPixel& p : pixels) {
     const double g = light(p.x, p.y, unused);
-    sum += g * p.signal_e / p.variance_e2;
+    const double sky_e = sky.level * std::sqrt(double(p.variance_e2));
+    sum += g * (p.signal_e - sky_e) / p.variance_e2;
     squares += g * g / p.variance_e2;
   }
-  const double scatter = scene.flat ? scene.flat->cell_at(trail.x_px, trail.y_px).scatter : 1.0;
-  return squares > 0 ? sum / std::sqrt(squares) / scatter : 0.0;
+  return squares > 0 ? sum / std::sqrt(squares) / sky.scatter : 0.0;
 }
 
 }  // namespace

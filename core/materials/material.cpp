@@ -39,7 +39,7 @@ Material sandford_robertson_of(std::string name, Curve reflectance, double diffu
              .model = Material::Model::sandford_robertson,
              .reflectance = {},
              .emissivity = reflectance,
-             .diffuse = std::move(reflectance),
+             .diffuse = reflectance,
              .grazing = grazing,
              .lobe_width = lobe_width};
   for (double& value : m.emissivity.value) value = (1.0 - value) * mean;

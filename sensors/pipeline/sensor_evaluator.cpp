@@ -10,7 +10,7 @@
 
 namespace dmise {
 
-SensorEvaluator::SensorEvaluator(PipelineSettings settings, const RunGrid& grid,
+SensorEvaluator::SensorEvaluator(const PipelineSettings& settings, const RunGrid& grid,
                                  const OutputConfig& output, std::shared_ptr<const StarMap> stars,
                                  std::string directory, Threads& threads)
     : sensor_(settings.sensor),

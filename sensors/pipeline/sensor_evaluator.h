@@ -24,7 +24,7 @@ struct RunGrid {
 /// exposure, makes its frame, writes its products and publishes report, detections and truth.
 class SensorEvaluator : public Evaluator {
  public:
-  SensorEvaluator(PipelineSettings settings, const RunGrid& grid, const OutputConfig& output,
+  SensorEvaluator(const PipelineSettings& settings, const RunGrid& grid, const OutputConfig& output,
                   std::shared_ptr<const StarMap> stars, std::string directory, Threads& threads);
 
   std::string name() const override { return sensor_.name; }

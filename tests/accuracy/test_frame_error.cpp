@@ -16,6 +16,9 @@ namespace {
 
 /// A star of 1e5 e- in the middle of 64 x 64 pixels, on a sky without structure.
 class FrameErrors : public testing::Test {
+ public:
+  ~FrameErrors() override { std::filesystem::remove_all(directory_); }
+
  protected:
   FrameErrors() {
     setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
@@ -47,7 +50,6 @@ sensors:
     reference_ = frames_->make(frames_->sensor());
     comparison_.emplace(*frames_, reference_, frames_->sensor().effects);
   }
-  ~FrameErrors() override { std::filesystem::remove_all(directory_); }
 
   FrameError error_of(const FrameProducts& frame) const {
     return comparison_->error_of(frame, frames_->sensor().effects);

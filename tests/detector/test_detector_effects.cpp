@@ -23,7 +23,8 @@ EffectSet without_photon_noise() {
 }
 
 CountImage read_out(const ExpectedElectronImage& light, const Detector& d, std::uint32_t frame = 1,
-                    EffectSet effects = without_photon_noise(), DetectorMemory* memory = nullptr) {
+                    const EffectSet& effects = without_photon_noise(),
+                    DetectorMemory* memory = nullptr) {
   Threads two(2);
   CountImage counts;
   expose(light, d, {.seed = 1, .sensor = "s", .frame = frame, .exposure_s = 10, .idle_s = 5},

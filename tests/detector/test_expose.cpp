@@ -195,7 +195,8 @@ TEST(Expose, AnotherFrameSensorOrSeedIsOtherNoise) {
   const ExpectedElectronImage light(50, 50, 100.0f);
   const auto base = read_out(light, kaf8300).pixels;
   Threads one(1);
-  for (Exposure e : {Exposure{2, "atlanta", 3, 20}, {1, "boston", 3, 20}, {1, "atlanta", 4, 20}}) {
+  for (const Exposure& e :
+       {Exposure{2, "atlanta", 3, 20}, {1, "boston", 3, 20}, {1, "atlanta", 4, 20}}) {
     CountImage counts;
     expose(light, kaf8300, e, {}, one, counts);
     EXPECT_NE(counts.pixels, base);

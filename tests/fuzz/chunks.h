@@ -1,7 +1,6 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,7 +34,7 @@ inline std::string_view view(const std::uint8_t* data, std::size_t size) {
 inline bool place(const std::string& input, std::uint8_t* data, std::size_t* size,
                   std::size_t max_size) {
   if (input.size() > max_size) return false;
-  std::memcpy(data, input.data(), input.size());
+  std::copy(input.begin(), input.end(), data);
   *size = input.size();
   return true;
 }

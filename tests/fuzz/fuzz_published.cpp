@@ -53,7 +53,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   if (size < 4 || seed % 32 == 0) {
     static const auto inputs = [] {
       std::vector<std::string> all;
-      for (test::Example example : examples()) {
+      for (const test::Example& example : examples()) {
         const Encoded body = encode(example.state);
         fuzz::append(all.emplace_back(), body.payload);
         if (!body.arrays.empty()) fuzz::append(all.back(), body.arrays);

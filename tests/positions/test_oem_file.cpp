@@ -28,9 +28,11 @@ struct Circle {
 };
 
 class OemFileTest : public testing::Test {
+ public:
+  ~OemFileTest() override { std::filesystem::remove(path_); }
+
  protected:
   OemFileTest() { std::filesystem::remove(path_); }
-  ~OemFileTest() override { std::filesystem::remove(path_); }
   std::string path_ = testing::TempDir() + "/oem-" + std::to_string(getpid()) + "-" +
                       testing::UnitTest::GetInstance()->current_test_info()->name();
   OemSubject subject_{"ISS (ZARYA)", "98067A", "2018-01-21T00:00:00.000000000Z"};

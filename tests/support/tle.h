@@ -13,8 +13,8 @@
 namespace dmise::test {
 
 inline double tle_exponent(const std::string& field) {  // " 12345-3" is 0.12345e-3
-  const double mantissa = std::atof((field.substr(0, 1) + "." + field.substr(1, 5)).c_str());
-  return mantissa * std::pow(10.0, std::atoi(field.substr(6, 2).c_str()));
+  const double mantissa = std::stod(field.substr(0, 1) + "." + field.substr(1, 5));
+  return mantissa * std::pow(10.0, std::stoi(field.substr(6, 2)));
 }
 
 inline double julian_date_of_year(int year) {  // of January 0, 0h
@@ -30,21 +30,21 @@ inline MeanElements elements_from_tle(const std::string& line1, const std::strin
   const char first = line1[2];
   const std::string digits = line1.substr(3, 4);
   int lead = first >= 'A' ? first - 'A' + 10 - (first > 'I') - (first > 'O')
-                          : std::atoi(line1.substr(2, 1).c_str());
-  e.catalogue_number = std::uint32_t(lead * 10000 + std::atoi(digits.c_str()));
-  const int year = std::atoi(line1.substr(18, 2).c_str());
-  e.epoch_jd1 = julian_date_of_year(year < 57 ? 2000 + year : 1900 + year) +
-                std::atoi(line1.substr(20, 3).c_str());
-  e.epoch_jd2 = std::atof(("0" + line1.substr(23, 9)).c_str());
-  e.mean_motion_rad_per_min = std::atof(line2.substr(52, 11).c_str()) / (1440.0 / (2.0 * pi));
+                          : std::stoi(line1.substr(2, 1));
+  e.catalogue_number = std::uint32_t(lead * 10000 + std::stoi(digits));
+  const int year = std::stoi(line1.substr(18, 2));
+  e.epoch_jd1 =
+      julian_date_of_year(year < 57 ? 2000 + year : 1900 + year) + std::stoi(line1.substr(20, 3));
+  e.epoch_jd2 = std::stod("0" + line1.substr(23, 9));
+  e.mean_motion_rad_per_min = std::stod(line2.substr(52, 11)) / (1440.0 / (2.0 * pi));
   std::string eccentricity = line2.substr(26, 7);
   for (char& c : eccentricity)
     if (c == ' ') c = '0';
-  e.eccentricity = std::atof(("0." + eccentricity).c_str());
-  e.inclination_rad = std::atof(line2.substr(8, 8).c_str()) * deg;
-  e.raan_rad = std::atof(line2.substr(17, 8).c_str()) * deg;
-  e.argument_of_perigee_rad = std::atof(line2.substr(34, 8).c_str()) * deg;
-  e.mean_anomaly_rad = std::atof(line2.substr(43, 8).c_str()) * deg;
+  e.eccentricity = std::stod("0." + eccentricity);
+  e.inclination_rad = std::stod(line2.substr(8, 8)) * deg;
+  e.raan_rad = std::stod(line2.substr(17, 8)) * deg;
+  e.argument_of_perigee_rad = std::stod(line2.substr(34, 8)) * deg;
+  e.mean_anomaly_rad = std::stod(line2.substr(43, 8)) * deg;
   e.bstar_per_earth_radius = tle_exponent(line1.substr(53, 8));
   return e;
 }

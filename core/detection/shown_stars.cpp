@@ -1,0 +1,176 @@
+#include "core/detection/shown_stars.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <compare>
+#include <cstdint>
+
+#include "core/detection/components.h"
+#include "core/detection/small_matrix.h"
+#include "core/detection/star_image.h"
+
+namespace dmise {
+namespace {
+
+constexpr double fitted_snr = 10.0;  // of a star's light: of a fainter one no more is learnt
+constexpr float fitted_noise = 0.5;  // light in a pixel [its noise] from which on it is fitted
+constexpr float neighbour_noise = 0.1;
+constexpr float model_error = 0.03F;  // of the Gaussian, in units of the light
+constexpr double most_step_px = 0.7;
+constexpr double most_trail_px = 60.0;  // light of longer ones is faint in a pixel
+constexpr std::size_t parameters = 3;   // light relative to what is expected, x, y
+constexpr std::size_t least_pixels = 5;
+
+/// Where a star is expected; by y.
+struct Expected {
+  float y_px, x_px;
+  std::uint32_t star;
+
+  auto operator<=>(const Expected&) const = default;
+};
+using Rows = std::vector<Expected>;
+
+/// Those with light in the rows of an image, but for the star itself.
+template <class Visit>
+void for_neighbours(const std::vector<ShownStar>& stars, const Rows& rows, const StarImage& image,
+                    float reach_px, std::size_t own, const Visit& visit) {
+  const float left = float(image.x0) - reach_px, right = float(image.x1) + reach_px;
+  auto row = std::lower_bound(rows.begin(), rows.end(), float(image.y0) - reach_px,
+                              [](const Expected& star, float y_px) { return star.y_px < y_px; });
+  for (; row != rows.end() && row->y_px <= float(image.y1) + reach_px; ++row)
+    if (row->x_px >= left && row->x_px <= right && row->star != own) visit(stars[row->star]);
+}
+
+/// Fits stars one after the other.
+class StarFitter {
+ public:
+  StarFitter(const Scene& scene, double place_sigma_px)
+      : scene_(scene),
+        place_weight_(1 / (place_sigma_px * place_sigma_px)),
+        image_(scene.counts.columns, scene.counts.rows),
+        beside_(scene.counts.columns, scene.counts.rows) {}
+
+  void fit(std::vector<ShownStar>& stars, const Rows& rows, std::size_t i) {
+    ShownStar& star = stars[i];
+    const double sigma_px = scene_.psf.sigma_at({star.trail.x_px, star.trail.y_px});
+    image_.draw_with_slopes(star.trail, sigma_px, star.flux_e / star.noise_e, fitted_noise);
+    if (image_.x1 < image_.x0 || image_.y1 < image_.y0) return;
+    read_pixels(star.noise_e);
+    const auto reach_px = float(4 * sigma_px + star.trail.length_px / 2 + most_step_px);
+    for_neighbours(stars, rows, image_, reach_px, i, [&](const ShownStar& other) {
+      beside_.draw(other.trail, sigma_px, other.flux_e / star.noise_e, neighbour_noise);
+      subtract_beside();
+    });
+    solve_for(star);
+  }
+
+ private:
+  std::size_t width() const { return std::size_t(image_.x1 - image_.x0 + 1); }
+
+  /// Signal in units of noise; pixels that are not used become NaN.
+  void read_pixels(double noise_e) {
+    pixels_.assign(width() * std::size_t(image_.y1 - image_.y0 + 1), NAN);
+    const auto unit = float(scene_.gain_e_per_dn / noise_e);
+    const int middle = (image_.x0 + image_.x1) / 2;
+    float* pixel = pixels_.data();
+    for (int y = image_.y0; y <= image_.y1; ++y, pixel += width()) {
+      const float* light = image_.row(y);
+      const float level_dn = scene_.background.level_dn(middle, y);
+      for (std::size_t k = 0; k < width(); ++k) {
+        const int x = image_.x0 + int(k);
+        if (light[k] >= fitted_noise && scene_.is_usable(x, y))
+          pixel[k] = (float(scene_.counts.at(x, y)) - level_dn) * unit;
+      }
+    }
+  }
+
+  void subtract_beside() {
+    const int x0 = std::max(image_.x0, beside_.x0), x1 = std::min(image_.x1, beside_.x1);
+    for (int y = std::max(image_.y0, beside_.y0); y <= std::min(image_.y1, beside_.y1); ++y) {
+      float* row = pixels_.data() + std::size_t(y - image_.y0) * width();
+      for (int x = x0; x <= x1; ++x) row[x - image_.x0] -= beside_.row(y)[x - beside_.x0];
+    }
+  }
+
+  void solve_for(ShownStar& star) const {
+    std::array<std::array<float, parameters>, parameters> products{};
+    std::array<float, parameters> sums{};
+    const auto photons = float(1 / star.noise_e);
+    std::size_t used = 0;
+    for (int y = image_.y0; y <= image_.y1; ++y) {
+      const float *light = image_.row(y), *by_x = image_.row_by_x(y), *by_y = image_.row_by_y(y);
+      const float* pixel = pixels_.data() + std::size_t(y - image_.y0) * width();
+      for (std::size_t k = 0; k < width(); ++k) {
+        if (std::isnan(pixel[k])) continue;
+        ++used;
+        const float error = model_error * light[k];
+        const float weight = 1 / (1 + light[k] * photons + error * error);
+        const std::array<float, parameters> by{light[k], by_x[k], by_y[k]};
+        for (std::size_t a = 0; a < parameters; ++a) {
+          const float weighted = weight * by[a];
+          sums[a] += weighted * (pixel[k] - light[k]);
+          for (std::size_t b = 0; b <= a; ++b) products[a][b] += weighted * by[b];
+        }
+      }
+    }
+    if (used < least_pixels) return;
+    SmallMatrix matrix{};
+    SmallVector right{};
+    for (std::size_t a = 0; a < parameters; ++a) {
+      right[a] = sums[a];
+      for (std::size_t b = 0; b <= a; ++b) matrix[a][b] = products[a][b];
+    }
+    matrix[0][0] += 1 / (star.light_error * star.light_error);
+    matrix[1][1] += place_weight_;
+    matrix[2][2] += place_weight_;
+    if (!cholesky(matrix, parameters)) return;
+    const SmallVector step = solve(matrix, right, parameters);
+    if (std::hypot(step[1], step[2]) > most_step_px || !(step[0] > -0.9)) return;
+    SmallVector one{};
+    one[0] = 1.0;
+    star.light_error =
+        std::hypot(std::sqrt(solve(matrix, one, parameters)[0]), double(model_error));
+    star.flux_e *= 1 + step[0];
+    star.trail.x_px += step[1];
+    star.trail.y_px += step[2];
+  }
+
+  const Scene& scene_;
+  double place_weight_;
+  StarImage image_, beside_;
+  std::vector<float> pixels_;
+};
+
+}  // namespace
+
+std::vector<ShownStar> shown_stars(const Scene& scene, const StarAgreement& agreement,
+                                   const std::vector<ExpectedStar>& expected) {
+  std::vector<ShownStar> stars;
+  stars.reserve(expected.size());
+  const CountImage& counts = scene.counts;
+  for (const ExpectedStar& star : expected) {
+    const PixelPosition at = star.place + agreement.seen().shift;
+    const StarLightRatio& light = agreement.light_at(at);
+    const int x = std::clamp(int(std::lround(at.x_px)), 0, counts.columns - 1);
+    const int y = std::clamp(int(std::lround(at.y_px)), 0, counts.rows - 1);
+    stars.push_back({scene.star_trail(at.x_px, at.y_px),
+                     scene.background.sigma_dn(x, y) * scene.gain_e_per_dn,
+                     light.middle * star.signal_e, light.scatter});
+  }
+  Rows rows;
+  rows.reserve(stars.size());
+  for (std::size_t i = 0; i < stars.size(); ++i)
+    rows.push_back({float(stars[i].trail.y_px), float(stars[i].trail.x_px), std::uint32_t(i)});
+  std::sort(rows.begin(), rows.end());
+  StarFitter fitter(scene, agreement.seen().scatter_px);
+  const double unit = std::sqrt(kernel_square_sum(scene.sigma_px));
+  for (std::size_t i = 0; i < stars.size(); ++i) {
+    const ShownStar& star = stars[i];
+    const double snr = unit * star.flux_e / star.noise_e;
+    if (snr > fitted_snr && star.trail.length_px < most_trail_px) fitter.fit(stars, rows, i);
+  }
+  return stars;
+}
+
+}  // namespace dmise

@@ -1,0 +1,23 @@
+#pragma once
+#include <vector>
+
+#include "core/detection/scene.h"
+#include "core/detection/star_agreement.h"
+
+namespace dmise {
+
+/// A catalogue's star as a frame shows it.
+struct ShownStar {
+  Trail trail;           // without flux
+  double noise_e = 1.0;  // of a pixel there
+  double flux_e = 0.0;
+  double light_error = 0.0;  // relative, 1 sigma, of flux_e
+};
+
+/// The stars with the light that they have on average where they are. Those that are well above the
+/// noise get their own place and light by least squares of their pixels, of which the agreement's
+/// scatters are the prior; the light of their neighbours is subtracted.
+std::vector<ShownStar> shown_stars(const Scene& scene, const StarAgreement& agreement,
+                                   const std::vector<ExpectedStar>& expected);
+
+}  // namespace dmise
