@@ -43,6 +43,14 @@ std::string flow(const Section& section) {
   return "{" + text + "}";
 }
 
+/// Gives a preset of a Gaussian point the diffraction of its pupil; one whose pixels are too wide
+/// for it also the jitter of its mount.
+void take_pupil(Section& optics, bool wide_pixels, SceneDice& dice) {
+  optics.erase("psf_fwhm_px");
+  optics["psf"] = "diffraction";
+  if (wide_pixels) optics["jitter_px"] = number(dice.uniform(0.3, 0.8));
+}
+
 }  // namespace
 
 CroppedCamera cropped_camera(const std::string& name, int side_px, SceneDice& dice) {
@@ -63,6 +71,8 @@ CroppedCamera cropped_camera(const std::string& name, int side_px, SceneDice& di
     optics["focal_length_m"] = number(focal_m);
   }
   optics["columns"] = optics["rows"] = std::to_string(side_px);
+  const bool with_pupil = (name == "raven" || name == "gt-sort") && dice.chance(0.5);
+  if (with_pupil) take_pupil(optics, name == "raven", dice);
   CroppedCamera camera{.name = name, .diffraction = optics.contains("psf")};
   const double aperture_m = value(optics, "aperture_m", 0.1);
   camera.pixel_rad = pitch_m / focal_m;
@@ -83,7 +93,8 @@ CroppedCamera cropped_camera(const std::string& name, int side_px, SceneDice& di
     optics["ghost_fraction"] = number(dice.log_uniform(1e-5, 1e-3));
     optics["ghost_radius_px"] = number(dice.uniform(2.0, 20.0));
   }
-  if (camera.diffraction) optics["most_screens"] = "2";  // more of them only take longer
+  // With many pixels a point more screens only take longer.
+  if (camera.diffraction && !with_pupil) optics["most_screens"] = "2";
   if (camera.diffraction && dice.chance(0.5))
     optics["wavelengths"] = std::to_string(2 + dice.below(7));
   if (name.starts_with("hawaii") && dice.chance(0.15)) {

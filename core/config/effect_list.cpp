@@ -1,6 +1,7 @@
 #include "core/config/effect_list.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/base/error.h"
@@ -9,6 +10,7 @@
 #include "core/detector/detector.h"
 #include "core/effects/frame_effects.h"
 #include "core/facets/earthshine.h"
+#include "core/optics/air_turbulence.h"
 #include "core/optics/image_optics.h"
 #include "core/sky/air_effects.h"
 #include "core/sky/occultation.h"
@@ -63,7 +65,8 @@ using LightEffects =
     EffectList<SkyBackground, SkyGrid, Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight,
                Twilight, LightPollution, SpaceObjects, ResolvedShapes, EarthShadow, Earthshine,
                ThermalEmission, StarBackground, EarthOccultation, AirExtinction, CloudCover,
-               Scintillation, Vignetting, Streak, Occlusion, Drawing, PointSpread, PsfWavelengths>;
+               Scintillation, Vignetting, Streak, Occlusion, Drawing, PointSpread, AirTurbulence,
+               PsfWavelengths>;
 
 std::vector<const EffectFacts*> list() {
   std::vector<const EffectFacts*> all;
@@ -115,10 +118,13 @@ std::span<const EffectFacts* const> all_effects() {
 }
 
 SceneFacts scene_facts(const SensorConfig& sensor) {
+  const bool diffracts = sensor.camera.optics.spread.model == PointSpread::Model::diffraction;
   return {.on_ground = std::holds_alternative<SiteConfig>(sensor.place),
           .clouds = sensor.weather.clouds.has_value(),
           .vignettes = sensor.camera.optics.vignetting.any(),
-          .diffracts = sensor.camera.optics.spread.model == PointSpread::Model::diffraction};
+          .diffracts = diffracts,
+          .turbulent = diffracts && sensor.seeing && std::isfinite(sensor.seeing->r0_m) &&
+                       sensor.effects.has(PointSpread::facts)};
 }
 
 std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const SceneFacts& scene) {

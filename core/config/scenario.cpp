@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/base/error.h"
+#include "core/config/interpolation_choice.h"
 #include "core/config/node_names.h"
 #include "core/config/output_config.h"
 #include "core/config/search_path.h"
@@ -57,9 +58,7 @@ void read_simulation(const YamlValue& value, Scenario& scenario) {
   check_whole_ticks(scenario, map.require("duration_s"));
   scenario.seed = static_cast<std::uint64_t>(
       map.integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
-  if (const auto order = map.find("interpolation"))
-    scenario.interpolation = order_within(
-        static_cast<HermiteOrder>(std::stoi(order->choice({"3", "5", "7"}))), scenario.last_tick());
+  if (const auto order = map.find("interpolation")) order->choice({"3", "5", "7"});
   if (const auto eop = map.find("earth_orientation")) {
     scenario.earth_orientation_path = find_beside(eop->text(), value.file());
     if (scenario.earth_orientation_path.empty()) eop->fail("there is no such file");
@@ -73,9 +72,17 @@ void read_simulation(const YamlValue& value, Scenario& scenario) {
   map.done();
 }
 
-/// Checks that interpolation between ticks is accurate to about a metre.
-void check_tick(const Scenario& scenario, const YamlValue& tick) {
+/// Sets the order of interpolation between ticks: what `simulation` says, else by the sensors'
+/// budgets. Checks that it is accurate to about a metre.
+void set_interpolation(Scenario& scenario, YamlMap simulation) {
+  if (const auto order = simulation.find("interpolation")) {
+    scenario.interpolation = static_cast<HermiteOrder>(std::stoi(order->text()));
+  } else if (!scenario.objects.empty() || !scenario.own_objects.empty()) {
+    scenario.interpolation = choose_interpolation(scenario.sensors, scenario.tick.seconds());
+  }
+  scenario.interpolation = order_within(scenario.interpolation, scenario.last_tick());
   if (scenario.objects.empty() && scenario.own_objects.empty()) return;
+  const auto tick = simulation.require("tick_s");
   const double longest_s = longest_tick_s(scenario.interpolation);
   if (scenario.tick <= sim_seconds(longest_s)) return;
   const auto limit = [](HermiteOrder order) {
@@ -144,7 +151,6 @@ Scenario load_scenario(const std::string& path) {
     scenario.own_objects = std::move(read.own);
     for (const auto& object : scenario.own_objects)
       for (const auto& line : object.motion.warnings) scenario.warnings.push_back(line);
-    check_tick(scenario, YamlMap(map.require("simulation")).require("tick_s"));
   }
   if (const auto stars = map.find("stars")) read_stars(*stars, scenario);
   EffectSet effects;
@@ -166,6 +172,7 @@ Scenario load_scenario(const std::string& path) {
           scenario.warnings.end())
         scenario.warnings.push_back(line);
   if (scenario.sensors.empty()) sensors.fail("needs at least one sensor", false);
+  set_interpolation(scenario, YamlMap(map.require("simulation")));
   if (const auto environment = map.find("environment"))
     read_environment(*environment, scenario.environment);
   if (const auto network = map.find("network")) read_network(*network, scenario.network);

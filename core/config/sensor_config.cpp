@@ -72,8 +72,15 @@ void read_sensor_surroundings(YamlMap& map, SensorConfig& sensor) {
 void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
   const Camera& camera = sensor.camera;
   try {
-    const PsfPlan plan =
-        plan_psf(camera.optics, camera.band.centre_m, sensor.seeing, sensor.exposure_s);
+    const PsfPlan plan = plan_psf(camera.optics, camera.band.centre_m, sensor.seeing,
+                                  sensor.exposure_s, AirTurbulence::level(sensor.effects));
+    if (sensor.effects.is_forced(AirTurbulence::facts) &&
+        AirTurbulence::level(sensor.effects) == AirTurbulence::short_exposure &&
+        plan.exposure == ExposureKind::lasting)
+      throw ConfigError(
+          "effects.turbulence: short takes one screen for each r0 / wind of the exposure, and "
+          "there are more than optics.most_screens, " +
+          std::to_string(camera.optics.spread.most_screens) + ": raise it or take long");
     if (plan.method == PointSpread::Method::direct && sensor.effects.drawn_by_opengl())
       throw ConfigError(
           "effects.evaluator: opengl can't draw the point sources of this camera, whose "

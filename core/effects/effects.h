@@ -36,6 +36,7 @@ struct SceneFacts {
   bool shapes = true;      // there are objects with a shape
   bool vignettes = false;  // the optics lose light off the axis
   bool diffracts = false;  // their blur depends on the wavelength
+  bool turbulent = false;  // and on the air
 };
 
 /// A closed family of effects, in the order in which they run.

@@ -135,9 +135,11 @@ struct PsfWavelengths {
       0};
   static bool applies(const SceneFacts& scene) { return scene.diffracts; }
   static ErrorBound error(int level, const PlanFacts& f);
-  /// Of kernels that are kept a hundredth, since they are computed once for many frames.
+  /// Of kernels that are kept a hundredth, since they are computed once for many frames. Of those
+  /// that the air changes the first wavelength is charged to turbulence.
   static double cost_s(int level, const PlanFacts& f) {
-    return count[std::size_t(level)] * f.kernel_s * (f.kernels_change ? 1.0 : 0.01);
+    const int wavelengths = count[std::size_t(level)];
+    return f.kernel_s * (f.kernels_change ? wavelengths - 1.0 : 0.01 * wavelengths);
   }
 };
 

@@ -99,7 +99,20 @@ struct PlanFacts {
   bool faint_objects = false;             // one may be no source that counts
   double longest_trail_px = 0.0;          // of any source, within the frame
   static constexpr double glint_e = 1e9;  // of a shape, in a pixel
+  /// Turbulence before the sensor, at the centre of its band.
+  struct Air {
+    double airy_px = 1.0;             // wavelength / aperture
+    double apertures_per_r0 = 1.0;    // aperture / r0
+    double apertures_blown = 0.0;     // by the wind in the exposure
+    int screens = 0;                  // that short exposures take; 0: they are long ones
+    double still_peak_share = 1.0;    // as `peak_share`, without turbulence
+    bool still_is_deposited = false;  // without turbulence the blur takes no transform
+    bool can_be_off = true;           // the blur can be computed without it
+    double bleeds_at_e = unbounded;   // charge of a pixel, of a detector that blooms
+  };
+  Air air;
   // The blur.
+  static constexpr double transform_pixel_s = 2e-9;
   bool kernels_change = false;  // with every exposure
   double kernel_s = 0.0;        // of all kernels of one wavelength
 
@@ -136,6 +149,12 @@ struct PlanFacts {
     return speckle * snr * std::min(share, peak_share) / pattern_share(trail_px);
   }
 
+  /// Returns the relative noise of light that is so much of a pixel's noise, which is measured as
+  /// no less than one electron.
+  double noise_of(double background_sigma) const {
+    const double noise_e = least_noise_e();
+    return std::min(1.0, 0.5 * background_sigma * std::max(1.0, noise_e) / (noise_e * noise_e));
+  }
   /// Error of sources that are misplaced by an angle, with what their faint edges leave beside
   /// them.
   ErrorBound shifted_stars(double angle_rad) const {
@@ -201,12 +220,6 @@ struct PlanFacts {
   static constexpr double neighbour_share = 0.002;
 
  private:
-  /// Returns the relative noise of light that is so much of a pixel's noise, which is measured as
-  /// no less than one electron.
-  double noise_of(double background_sigma) const {
-    const double noise_e = least_noise_e();
-    return std::min(1.0, 0.5 * background_sigma * std::max(1.0, noise_e) / (noise_e * noise_e));
-  }
   ErrorBound shifted(double angle_rad, bool faint, double trail_px) const {
     constexpr double off_axis = 1.08, steepest = 0.607;  // of a Gaussian
     const double of_light =

@@ -30,9 +30,11 @@ struct PointSpread {
                                      "Gaussian, or Fourier optics of the pupil"};
 
   static ErrorBound error(int, const PlanFacts&) { return not_bounded; }
-  /// Of the plane, once; sources have that of their deposit.
+  /// Of the plane, once, unless it is the air that makes it necessary; sources have that of their
+  /// deposit.
   static double cost_s(int level, const PlanFacts& f) {
-    return f.scene.diffracts ? level * 2e-9 * f.pixels() : 0.0;
+    const bool transforms = f.scene.diffracts && !f.air.still_is_deposited;
+    return transforms ? level * PlanFacts::transform_pixel_s * f.pixels() : 0.0;
   }
 
   enum class Model {

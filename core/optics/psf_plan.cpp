@@ -57,6 +57,18 @@ Measures measure(const Optics& o, double wavelength_m, const SensorSeeing* seein
   return m;
 }
 
+double width_px(const Measures& m) {
+  return std::hypot(std::hypot(m.airy_px, m.seeing_px), std::hypot(m.jitter_px, m.defocus_px));
+}
+
+/// Screens of a short exposure; 0: there are too many of them, or no air.
+int screens_of(const PointSpread& s, double wavelength_m, const SensorSeeing* air,
+               double exposure_s) {
+  if (!air) return 0;
+  const double screens = std::ceil(exposure_s / air->tau0_s(wavelength_m));
+  return screens <= s.most_screens ? std::max(1, int(screens)) : 0;
+}
+
 [[noreturn]] void refuse(const char* key, const std::string& reason) {
   throw ConfigError(std::string("optics.") + key + ": " + reason);
 }
@@ -78,22 +90,21 @@ const char* name(Method method) {
 }
 
 PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<SensorSeeing>& seeing,
-                 double exposure_s) {
+                 double exposure_s, AirTurbulence::Level turbulence) {
   const PointSpread& s = o.spread;
-  const SensorSeeing* air = seeing && std::isfinite(seeing->r0_m) ? &*seeing : nullptr;
+  const bool in_air = seeing && std::isfinite(seeing->r0_m) && s.model == Model::diffraction;
+  const SensorSeeing* all_air = in_air ? &*seeing : nullptr;
+  const SensorSeeing* air = turbulence == AirTurbulence::off ? nullptr : all_air;
+  const int short_screens = screens_of(s, wavelength_m, all_air, exposure_s);
   PsfPlan plan{.wavelength_m = wavelength_m};
-  if (s.model == Model::gaussian) air = nullptr;
-  if (air) {
-    const double screens = std::ceil(exposure_s / air->tau0_s(wavelength_m));
-    plan.exposure = screens <= 1.0              ? ExposureKind::brief
-                    : screens <= s.most_screens ? ExposureKind::between
-                                                : ExposureKind::lasting;
-    plan.screens = plan.exposure == ExposureKind::lasting ? 0 : std::max(1, int(screens));
-  }
+  if (turbulence == AirTurbulence::short_exposure) plan.screens = short_screens;
+  if (air)
+    plan.exposure = plan.screens == 0   ? ExposureKind::lasting
+                    : plan.screens == 1 ? ExposureKind::brief
+                                        : ExposureKind::between;
   const Measures m = measure(o, wavelength_m, air, plan.exposure == ExposureKind::lasting);
   plan.cutoff_per_px = m.cutoff_per_px;
-  plan.fwhm_px =
-      std::hypot(std::hypot(m.airy_px, m.seeing_px), std::hypot(m.jitter_px, m.defocus_px));
+  plan.fwhm_px = width_px(m);
 
   const bool plain = s.model == Model::gaussian;
   const bool narrow = !plain && plan.fwhm_px < narrow_px && !is_aberrated(s);
@@ -121,13 +132,14 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
                 : cells <= largest_grid_cells ? Method::transform
                                               : Method::direct;
   // Wide kernels are cheap for a transform, expensive for sums and screens.
-  const bool cheap = plan.method == Method::transform && plan.screens == 0;
+  const bool cheap = plan.method == Method::transform && short_screens == 0;
   const double airy_widths = cheap ? 64.0 : 24.0;
+  const double full_width_px = width_px(measure(o, wavelength_m, all_air, false));
   const double widest_px = std::max({8.0, 1.0 * o.columns, 1.0 * o.rows});
   const double support_px =
       s.support_px > 0 ? s.support_px
       : plain          ? 5.0 * plan.fwhm_px
-                       : std::max(std::min(airy_widths * m.airy_px, widest_px), 5.0 * plan.fwhm_px);
+              : std::max(std::min(airy_widths * m.airy_px, widest_px), 5.0 * full_width_px);
   // The defocus disc must be within the inner half, which does not taper.
   const double disc_cells = s.support_px > 0 ? 0.0 : 1.05 * m.defocus_px * plan.oversampling;
   if (disc_cells > widest_half_cells)

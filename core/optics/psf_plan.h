@@ -2,6 +2,7 @@
 #include <optional>
 #include <string>
 
+#include "core/optics/air_turbulence.h"
 #include "core/optics/camera.h"
 #include "core/optics/seeing.h"
 
@@ -35,10 +36,12 @@ struct PsfPlan {
 ///   aberrations: analytic deposit;
 /// - otherwise the least oversampling that leaves no frequency above 0.4 cycles per cell; up to
 ///   `largest_grid_cells` by transform, beyond by direct summation.
-/// Settings of the camera take precedence. Throws `ConfigError` "optics.KEY: reason" for settings
-/// that cannot be combined.
+/// With less turbulence than short exposures have, kernels still reach as far as theirs: what is
+/// cut off is no error of a level. Settings of the camera take precedence. Throws `ConfigError`
+/// "optics.KEY: reason" for settings that cannot be combined.
 PsfPlan plan_psf(const Optics& optics, double wavelength_m,
-                 const std::optional<SensorSeeing>& seeing, double exposure_s);
+                 const std::optional<SensorSeeing>& seeing, double exposure_s,
+                 AirTurbulence::Level turbulence = AirTurbulence::short_exposure);
 
 inline constexpr double largest_grid_cells = 40e6;
 inline constexpr int largest_oversampling = 16;

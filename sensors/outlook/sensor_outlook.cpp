@@ -21,9 +21,9 @@ constexpr std::uint32_t most_frames_with_states = 2000;  // for a platform or a 
 
 /// Gaussian width including the pixel.
 double psf_sigma_px(const SensorConfig& sensor) {
-  const double fwhm_px =
-      plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing, sensor.exposure_s)
-          .fwhm_px;
+  const double fwhm_px = plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing,
+                                  sensor.exposure_s, AirTurbulence::level(sensor.effects))
+                             .fwhm_px;
   const double sigma_px = sensor.effects.has(PointSpread::facts) ? fwhm_px / fwhm_per_sigma : 0.0;
   return std::sqrt(sigma_px * sigma_px + 1.0 / 12);
 }

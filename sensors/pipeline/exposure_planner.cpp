@@ -43,6 +43,33 @@ double ring_contrast(const Optics& optics, double wavelength_m, const PsfPlan& b
   return std::exp(-2.0 * phase * phase) * std::min(1.0, ring_px / pi);
 }
 
+/// Turbulence before a sensor, whatever level of it the scenario asks for.
+PlanFacts::Air air_facts(const SensorConfig& sensor) {
+  const Optics& optics = sensor.camera.optics;
+  const double wavelength_m = sensor.camera.band.centre_m;
+  const SensorSeeing& seeing = *sensor.seeing;
+  const auto plan = [&](AirTurbulence::Level level) {
+    return plan_psf(optics, wavelength_m, seeing, sensor.exposure_s, level);
+  };
+  PlanFacts::Air air{
+      .airy_px = wavelength_m / optics.aperture_m / optics.pixel_angle_rad(),
+      .apertures_per_r0 = optics.aperture_m / seeing.r0_at_m(wavelength_m),
+      .apertures_blown = seeing.wind_m_per_s * sensor.exposure_s / optics.aperture_m};
+  const Detector& detector = sensor.camera.detector;
+  if (detector.blooming) air.bleeds_at_e = detector.full_well_e;
+  try {
+    const PsfPlan whole = plan(AirTurbulence::short_exposure);
+    if (whole.method != PointSpread::Method::deposit) air.screens = whole.screens;
+    const PsfPlan still = plan(AirTurbulence::off);
+    air.still_peak_share = peak_share(still.fwhm_px);
+    air.still_is_deposited = still.method == PointSpread::Method::deposit &&
+                             whole.method != PointSpread::Method::deposit;
+  } catch (const ConfigError&) {  // a blur so narrow takes more cells than there may be
+    air.can_be_off = false;
+  }
+  return air;
+}
+
 }  // namespace
 
 ExposurePlanner::ExposurePlanner(const SensorConfig& sensor, const StarMap* stars,
@@ -64,7 +91,9 @@ void ExposurePlanner::look_at_sensor() {
   f.columns = optics.columns;
   f.rows = optics.rows;
   f.relative_bandwidth = band.width_m / band.centre_m;
-  const PsfPlan blur = plan_psf(optics, band.centre_m, sensor_.seeing, sensor_.exposure_s);
+  const PsfPlan blur = plan_psf(optics, band.centre_m, sensor_.seeing, sensor_.exposure_s,
+                                AirTurbulence::level(sensor_.effects));
+  if (f.scene.turbulent) f.air = air_facts(sensor_);
   f.fwhm_px = blur.fwhm_px;
   f.peak_share = peak_share(blur.fwhm_px);
   if (f.scene.diffracts) f.ring_contrast = ring_contrast(optics, band.centre_m, blur);
@@ -72,12 +101,12 @@ void ExposurePlanner::look_at_sensor() {
   if (ghost.ghost_fraction > 0.0)
     f.ghost_pixel_share =
         ghost.ghost_fraction / std::max(1.0, pi * ghost.ghost_radius_px * ghost.ghost_radius_px);
-  f.screens = blur.screens;
   f.speckle_px = std::hypot(1.0, band.centre_m / optics.aperture_m / optics.pixel_angle_rad());
   f.read_noise_e = detector.read_noise_e;
   f.read_later = reads_after_others(detector);
   f.dark_e = dark_rate_e_per_s(detector) * sensor_.exposure_s;
   if (blur.method != PointSpread::Method::deposit) {
+    f.screens = blur.screens;
     constexpr double cell_s = 200e-9;
     const double cells = 4.0 * blur.half_cells * blur.half_cells;
     f.kernels_change = blur.screens > 0;

@@ -82,7 +82,8 @@ struct FramePipeline::Work {
     const auto same_level = [&](const EffectFacts& effect) {
       return planned.effects.level(effect) == effects.level(effect);
     };
-    const bool same_blur = same_level(PointSpread::facts) && same_level(PsfWavelengths::facts);
+    const bool same_blur = same_level(PointSpread::facts) && same_level(AirTurbulence::facts) &&
+                           same_level(PsfWavelengths::facts);
     planned.effects = effects;
     if (!same_blur) make_optics();
   }

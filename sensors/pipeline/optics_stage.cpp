@@ -16,7 +16,8 @@ using Method = PointSpread::Method;
 PsfPlan plan_of(const SensorConfig& sensor) {
   const Camera& camera = sensor.camera;
   if (sensor.effects.has(PointSpread::facts))
-    return plan_psf(camera.optics, camera.band.centre_m, sensor.seeing, sensor.exposure_s);
+    return plan_psf(camera.optics, camera.band.centre_m, sensor.seeing, sensor.exposure_s,
+                    AirTurbulence::level(sensor.effects));
   return {.why = "off"};
 }
 

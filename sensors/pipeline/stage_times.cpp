@@ -2,6 +2,7 @@
 
 #include "core/detector/detector.h"
 #include "core/effects/frame_effects.h"
+#include "core/optics/air_turbulence.h"
 #include "core/optics/point_spread.h"
 #include "core/sky/place_effects.h"
 #include "core/sky/sky_model.h"
@@ -17,6 +18,7 @@ std::string_view stage_of(std::string_view effect) {
   PlaceEffects::for_each([&]<class Place>() { within(Place::facts, StarBackground::facts); });
   within(ResolvedShapes::facts, SpaceObjects::facts);
   within(SkyGrid::facts, SkyBackground::facts);
+  within(AirTurbulence::facts, PointSpread::facts);
   within(PsfWavelengths::facts, PointSpread::facts);
   within(DarkCurrent::facts, PhotonNoise::facts);
   within(ReadNoise::facts, PhotonNoise::facts);

@@ -161,7 +161,7 @@ void StarFacts::add(const View& view, PlanFacts& f) const {
   f.diurnal_aberration_rad =
       1.01 * norm(velocity) / speed_of_light_m_per_s * largest_sine(velocity, axis, half_rad);
   add_trails(view, f);
-  if (!stars_) return;
+  if (!stars_ || drawn_to_v_mag_ == -unbounded) return;  // there are none in the frame
   const double years = 2000.0 +
                        julian_years_since_j2000(Tt{environment.tt_jd1, environment.tt_jd2}) -
                        stars_->stars.epoch_jyear;

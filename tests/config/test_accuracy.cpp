@@ -105,9 +105,12 @@ TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeas
   d.reference_px = 4;
   d.persistence_s = 10.0;
   d.blooming = true;
-  const auto list = plannable_effects(
-      sensor,
-      {.clouds = true, .stars = true, .shapes = true, .vignettes = true, .diffracts = true});
+  const auto list = plannable_effects(sensor, {.clouds = true,
+                                               .stars = true,
+                                               .shapes = true,
+                                               .vignettes = true,
+                                               .diffracts = true,
+                                               .turbulent = true});
   for (const EffectFacts* effect : all_effects())
     EXPECT_TRUE(
         std::any_of(list.begin(), list.end(),

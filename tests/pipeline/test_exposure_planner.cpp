@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/config/effect_list.h"
 #include "core/effects/frame_effects.h"
+#include "core/optics/air_turbulence.h"
 #include "core/sky/air_effects.h"
 #include "core/sky/place_effects.h"
 #include "tests/pipeline/harness.h"
@@ -139,6 +140,35 @@ TEST(ExposurePlanner, WhatIsForcedStays) {
   EXPECT_TRUE(runs(frame, Scintillation::facts));
   EXPECT_FALSE(runs(frame, AirExtinction::facts));
   EXPECT_NE(frame.report.plan.find("sky_grid:0.02%"), std::string::npos) << frame.report.plan;
+}
+
+std::string turbulence_level(const std::string& accuracy, const std::string& effects,
+                             const std::string& star_v_mag, double exposure_s) {
+  const FrameProducts frame = Scene{.accuracy = accuracy,
+                                    .camera = "telescope-3m",
+                                    .effects = effects,
+                                    .more = ", seeing: {r0_m: 0.15, wind_m_per_s: 15}",
+                                    .exposure_s = exposure_s,
+                                    .star_v_mag = star_v_mag}
+                                  .frame();
+  return std::string(
+      AirTurbulence::levels.at(std::size_t(frame.plan.effects.level(AirTurbulence::facts))));
+}
+
+// A 3 m telescope sees an image that moves by pixels in 20 ms, and in 5 s, of more screens than are
+// drawn, by what is no error of its reference. With pixels so fine the mean costs no more than
+// none.
+TEST(ExposurePlanner, TurbulenceIsAsShortAsTheBudgetAsks) {
+  EXPECT_EQ(turbulence_level("standard", "{}", "6", 0.02), "short");
+  EXPECT_EQ(turbulence_level("draft", "{}", "6", 0.02), "short");
+  EXPECT_EQ(turbulence_level("standard", "{}", "6", 5.0), "long");
+  EXPECT_EQ(turbulence_level("reference", "{}", "6", 0.02), "short");
+  EXPECT_EQ(turbulence_level("{position_px: 1e6, photometry_mag: 1e6, background_sigma: 1e6, "
+                             "noise: 1e6}",
+                             "{}", "6", 0.02),
+            "long");
+  EXPECT_EQ(turbulence_level("draft", "{stars: off, objects: off}", "6", 0.02), "off");
+  EXPECT_EQ(turbulence_level("standard", "{turbulence: long}", "6", 0.02), "long");
 }
 
 TEST(ExposurePlanner, TruthIsOfAllPhysicsWhateverThePlanLeavesOut) {

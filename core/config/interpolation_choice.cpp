@@ -1,0 +1,50 @@
+#include "core/config/interpolation_choice.h"
+
+#include <algorithm>
+
+#include "core/orbit/interpolation_error.h"
+
+namespace dmise {
+namespace {
+
+constexpr double share_of_budget = 0.25;
+constexpr double least_range_on_ground_m = 200e3, least_range_in_orbit_m = 10e3;
+/// Of the standard budget, for sensors whose budget is no error.
+constexpr double least_share = 0.1;
+
+/// Greatest error between ticks that a sensor does not mind [m].
+double most_error_m(const SensorConfig& sensor) {
+  if (!sensor.accuracy.is_planned()) return unbounded;
+  const bool timed = sensor.accuracy.name == "seconds";
+  const double budget_px = timed ? standard_budget.position_px
+                                 : std::max(sensor.accuracy.budget.position_px,
+                                            least_share * standard_budget.position_px);
+  const double range_m = std::holds_alternative<SiteConfig>(sensor.place) ? least_range_on_ground_m
+                                                                          : least_range_in_orbit_m;
+  return share_of_budget * budget_px * sensor.camera.optics.pixel_angle_rad() * range_m;
+}
+
+}  // namespace
+
+HermiteOrder choose_interpolation(const std::vector<SensorConfig>& sensors, double tick_s) {
+  const auto strictest = std::min_element(sensors.begin(), sensors.end(),
+                                          [](const SensorConfig& a, const SensorConfig& b) {
+                                            return most_error_m(a) < most_error_m(b);
+                                          });
+  const double most_m = strictest == sensors.end() ? unbounded : most_error_m(*strictest);
+  HermiteOrder choice = HermiteOrder::cubic;
+  double least_m = unbounded;
+  for (const HermiteOrder order :
+       {HermiteOrder::cubic, HermiteOrder::quintic, HermiteOrder::septic}) {
+    const auto error = stated_interpolation_error(order, tick_s);
+    if (!error || tick_s > longest_tick_s(order) * (1.0 + 1e-9)) continue;
+    if (error->worst_m < least_m) {
+      least_m = error->worst_m;
+      choice = order;
+    }
+    if (least_m <= most_m) break;
+  }
+  return choice;
+}
+
+}  // namespace dmise
