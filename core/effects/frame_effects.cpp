@@ -2,37 +2,74 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace dmise {
 namespace {
 
-/// What is off beyond three widths of a source, in noise: there are rings or speckles of 0.003 of
-/// a point's peak, smeared by the band; and by definition there is no background where a source
-/// leaves more than half of the noise: twice that is left where rings are not smeared. An object
-/// of many speckles evens them out. Two wavelengths leave rings that stand still as uneven as one.
-double rings_in_noise(int level, const PlanFacts& f, double source_e, double size_px) {
-  constexpr double of_rings[] = {2.0, 2.0, 1.1, 0.85, 0.0},
-                   of_speckles[] = {2.0, 1.4, 1.0, 0.65, 0.0};
+/// What `count` wavelengths miss of a fringe that the whole band smears, of its amplitude: they
+/// leave sin(phase) / (n sin(phase / n)) of it, the band sin(phase) / phase. `phase_rad`: by how
+/// much the ends of the band are apart there.
+double of_fringe(int count, double phase_rad) {
+  if (phase_rad < 1e-3) return 0.0;
+  const double step_rad = phase_rad / count;
+  if (step_rad >= std::numbers::pi) return 1.0;
+  const double left = 1.0 / (count * std::sin(step_rad)), smeared = 1.0 / phase_rad;
+  const double missed = step_rad < std::numbers::pi / 2 ? left - smeared : left + smeared;
+  return std::min(1.0, std::min(1.0, phase_rad) * missed);
+}
+
+/// What is off beyond three widths of a source among its rings, in noise, where by definition there
+/// is no background where a source leaves more than half of the noise. r / airy rings from the
+/// source, the ends of a band are r / airy x bandwidth of a ring apart.
+double rings_in_noise(int count, const PlanFacts& f, double source_e) {
+  constexpr int radii = 12;
+  constexpr double half_noise = 0.5, brighter = 4.0;  // rings than their mean, with spikes
+  const double left = count < 3 ? 2.6 : count < 5 ? 1.2 : 1.0;  // two are as uneven as one
+  if (!std::isfinite(f.kernel_end_px) || !(source_e > 0.0)) return 0.0;
+  const double source = f.in_noise(brighter * f.ring_contrast * source_e * f.kernel_end_share);
+  const double nearest_px = std::min(f.kernel_end_px, 3.0 * std::hypot(1.0, f.fwhm_px));
+  const double step = std::pow(f.kernel_end_px / nearest_px, 1.0 / (radii - 1));
+  double largest = 0.0, r_px = nearest_px;
+  for (int i = 0; i < radii; ++i, r_px *= step) {
+    const double ends = f.kernel_end_px / r_px,
+                 light = std::min(half_noise, source * ends * ends * ends);
+    const double phase_rad = std::numbers::pi * f.relative_bandwidth * r_px / f.airy_px;
+    largest = std::max(largest, 2.0 * light *
+                                    (of_fringe(count, phase_rad) +
+                                     of_fringe(PsfWavelengths::count.back(), phase_rad)));
+  }
+  return std::min(largest, half_noise * left);
+}
+
+/// The same among the speckles of an object's `size_px`: many of them are even.
+double speckles_in_noise(int level, const PlanFacts& f, double source_e, double size_px) {
+  constexpr double of_speckles[] = {2.6, 1.5, 1.1, 0.75, 0.0};
   constexpr double peak = 4.0, narrow = 0.5, half_noise = 0.5;
-  const double width = f.relative_bandwidth / PsfWavelengths::count[std::size_t(level)];
-  const double rings_e =
+  const double width = f.relative_bandwidth / PsfWavelengths::wavelengths(level, f);
+  const double light_e =
       0.003 * std::min(1.0, 10.0 * width) * f.ring_contrast * source_e * f.peak_share;
   const double across = narrow * size_px / f.speckle_px;
   const double speckles = f.screens * (1.0 + across * across);
-  const double left = f.screens > 0 ? of_speckles[level] * std::min(1.0, peak / std::sqrt(speckles))
-                                    : of_rings[level];
-  return std::min(f.in_noise(rings_e), half_noise * left);
+  const double left = of_speckles[level] * std::min(1.0, peak / std::sqrt(speckles));
+  return std::min(f.in_noise(light_e), half_noise * left);
 }
 
 }  // namespace
 
 ErrorBound PsfWavelengths::error(int level, const PlanFacts& f) {
-  const double width = f.relative_bandwidth / count[std::size_t(level)];
+  const int n = wavelengths(level, f);
+  if (n >= count.back()) return {};
+  const double width = f.relative_bandwidth / n;
   ErrorBound error = f.dimmed_by(0.02 * width);
-  error.position_px = 0.0055 * width * f.fwhm_px;
-  const double star = rings_in_noise(level, f, f.brightest_star_e, 0.0),
-               object = rings_in_noise(level, f, f.brightest_object_e, f.narrowest_object_px);
-  const double light_e = std::max(star, object) * f.least_noise_e();
+  // Without speckles the rings of a neighbour may be in a source's aperture.
+  error.position_px = (f.screens > 0 ? 0.0055 : 0.02) * width * f.fwhm_px;
+  const double beside_sources =
+      f.screens > 0
+          ? std::max(speckles_in_noise(level, f, f.brightest_star_e, 0.0),
+                     speckles_in_noise(level, f, f.brightest_object_e, f.narrowest_object_px))
+          : rings_in_noise(n, f, f.brightest_e());
+  const double light_e = beside_sources * f.least_noise_e();
   const ErrorBound beside = f.without_light([&](const SkySample&) { return light_e; });
   error.background_sigma = beside.background_sigma;
   error.noise = beside.noise;

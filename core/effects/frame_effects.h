@@ -93,18 +93,26 @@ struct SkyGrid {
                                      levels,
                                      1};
   /// Of the light, on uncut patches of 32 px: the zodiacal table, which bends at its nodes, is
-  /// missed by 0.7 a radian of a patch, the other parts by 1.5 a square radian; clouds have edges.
+  /// missed by 0.7 a radian of a patch, the other parts by 1.5 a square radian; moonlight has a
+  /// kink 9 deg from the Moon and rises to it; clouds have edges.
   static double of_patches(const SkySample& s, const PlanFacts& f) {
     if (std::isfinite(f.cloud_detail_px)) return s.sky_e;
+    constexpr double beyond_kink_rad = 0.2;
     const double patch_rad = 32.0 * f.pixel_rad, zodiacal_e = s.of(SkyPart::zodiacal_light);
-    return 0.7 * patch_rad * zodiacal_e + 1.5 * patch_rad * patch_rad * (s.sky_e - zodiacal_e);
+    double missed_e =
+        0.7 * patch_rad * zodiacal_e + 1.5 * patch_rad * patch_rad * (s.sky_e - zodiacal_e);
+    if (f.nearest_moon_rad < beyond_kink_rad) {
+      const double rises = patch_rad / f.nearest_moon_rad;
+      missed_e += std::min(1.0, 1.3 * patch_rad + rises * rises) * f.moonlight_e(s);
+    }
+    return missed_e;
   }
   /// What cutting leaves, at most. It does not find pieces of cloud that are smaller than a patch.
   static double of_cut(int level, const SkySample& s, const PlanFacts& f) {
     constexpr double smallest_px = 64.0;
     const double share =
         f.cloud_detail_px < smallest_px ? 1.0 : 0.9 * tolerance[std::size_t(level)];
-    return share * s.sky_e;
+    return share * (s.sky_e - s.of(SkyPart::scattered_moonlight) + f.moonlight_e(s));
   }
   static ErrorBound error(int level, const PlanFacts& f) {
     return f.without_light(
@@ -135,10 +143,14 @@ struct PsfWavelengths {
       0};
   static bool applies(const SceneFacts& scene) { return scene.diffracts; }
   static ErrorBound error(int level, const PlanFacts& f);
+  /// Returns how many wavelengths a level has: no fewer than the camera asks for.
+  static int wavelengths(int level, const PlanFacts& f) {
+    return std::max(count[std::size_t(level)], f.least_wavelengths);
+  }
   /// Of kernels that are kept a hundredth, since they are computed once for many frames. Of those
   /// that the air changes the first wavelength is charged to turbulence.
   static double cost_s(int level, const PlanFacts& f) {
-    const int wavelengths = count[std::size_t(level)];
+    const int wavelengths = PsfWavelengths::wavelengths(level, f);
     return f.kernel_s * (f.kernels_change ? wavelengths - 1.0 : 0.01 * wavelengths);
   }
 };

@@ -50,16 +50,22 @@ struct PlanFacts {
   int screens = 0;          // of turbulence, in short exposures: a point is a cloud of speckles
   double speckle_px = 1.0;  // width of the finest structure of a point
   double ghost_pixel_share = 0.0;  // of a point's light, in a pixel of the lens's ghost of it
+  /// Where kernels of the blur end, and a pixel's share of a point's light there if they did not:
+  /// they taper to 0 over their outer half.
+  double kernel_end_px = unbounded, kernel_end_share = 0.0;
+  double airy_px = 1.0;  // wavelength / aperture
   /// How much of the rings of diffraction pixels, seeing and jitter leave, 0..1.
   double ring_contrast = 1.0;
   // Light between sources.
   std::vector<SkySample> sky;  // over the field, where it sees the sky; at least one
+  static constexpr double usual_between = 1.25;
   /// How much brighter a part of the sky may be between the samples.
   std::array<double, sky_part_count> between_samples = [] {
     std::array<double, sky_part_count> usual{};
-    usual.fill(1.25);
+    usual.fill(usual_between);
     return usual;
   }();
+  double nearest_moon_rad = 3.0;       // to the nearest of the field
   double cloud_detail_px = unbounded;  // size of the smallest pieces of cloud in the field
   double sky_look_s = 0.32e-6;         // what one look at all parts costs
   double dark_e = 0.0, read_noise_e = 0.0;
@@ -68,6 +74,8 @@ struct PlanFacts {
   double most_airmass = 1.0, zenith_extinction_mag = 0.0;
   double scintillation = 0.0;   // deviation of a source's light at the largest airmass
   double refraction_rad = 0.0;  // largest in the field
+  double moon_refraction_rad = 0.0;
+  bool moon_is_down = false;  // below the horizon without refraction
   // Directions.
   double nearest_sun_rad = 3.0;                                      // of the field's edge
   double annual_aberration_rad = 0.0, diurnal_aberration_rad = 0.0;  // largest in the field
@@ -113,6 +121,7 @@ struct PlanFacts {
   Air air;
   // The blur.
   static constexpr double transform_pixel_s = 2e-9;
+  int least_wavelengths = 1;    // of the band, by the camera
   bool kernels_change = false;  // with every exposure
   double kernel_s = 0.0;        // of all kernels of one wavelength
 
@@ -205,6 +214,11 @@ struct PlanFacts {
     const double most = between_samples[static_cast<std::size_t>(part)];
     return without_light([&](const SkySample& s) { return most * s.of(part); });
   }
+  /// Returns the moonlight where the field is nearest to the Moon, which may be between samples.
+  double moonlight_e(const SkySample& s) const {
+    constexpr auto part = SkyPart::scattered_moonlight;
+    return s.of(part) * between_samples[static_cast<std::size_t>(part)] / usual_between;
+  }
   /// Returns the light of the brightest pixel, at most.
   double brightest_pixel_e() const {
     double sky_e = 0.0;
@@ -220,12 +234,34 @@ struct PlanFacts {
   static constexpr double neighbour_share = 0.002;
 
  private:
+  /// What a shift changes where kernels of the brightest source end, in noise: their light is there
+  /// `end` x sin^2(pi x distance from the end / radius), and where it is more than half of the
+  /// noise is no background.
+  double kernel_end_in_noise(double px) const {
+    const double end = in_noise(kernel_end_share * brightest_e());
+    if (!(end > 0.0) || !std::isfinite(kernel_end_px)) return 0.0;
+    constexpr double half = 0.5, pixel_px = 0.7;
+    const double per_px = std::numbers::pi / kernel_end_px;
+    const double from_end_px =
+        std::min(0.5 * kernel_end_px, std::sqrt(half / end) / per_px + pixel_px);
+    return std::min(end, end * per_px * per_px * px * (2.0 * from_end_px + px));
+  }
+  /// How far the centroid of pixels moves, at most, while a Gaussian of that deviation moves by 1:
+  /// pixels that are too wide for it draw it to their middles, 1 + 2 sum_k exp(-2 (pi k sigma)^2).
+  static double centroid_slope(double sigma_px) {
+    constexpr double pi = std::numbers::pi;
+    if (sigma_px >= 0.4) return 1.0 + 2.0 * std::exp(-2.0 * pi * pi * sigma_px * sigma_px);
+    const double sigma = std::max(sigma_px, 1e-3);
+    return (1.0 + 2.0 * std::exp(-0.5 / (sigma * sigma))) / (sigma * std::sqrt(2.0 * pi));
+  }
   ErrorBound shifted(double angle_rad, bool faint, double trail_px) const {
     constexpr double off_axis = 1.08, steepest = 0.607;  // of a Gaussian
     const double of_light =
         (screens > 0 ? 0.15 : 0.02) + 8.0 / cloud_detail_px;  // clouds: magnitudes a piece
     const double width_px = screens > 0 ? std::min(sigma_px(), speckle_px / 2.355) : sigma_px();
     const double px = off_axis * angle_rad / pixel_rad;
+    const double blur_px = 0.95 * fwhm_px / 2.355;  // Airy patterns are narrower in frequency
+    const double centroid_px = std::min(px + 1.0, px * centroid_slope(blur_px));
     // Beside sources that count there is light of their rings alone, which go from dark to bright
     // in half of their distance.
     const double peak =
@@ -233,10 +269,10 @@ struct PlanFacts {
     const double rings = scene.diffracts ? std::min(1.0, 2.0 * ring_contrast) : 0.0;
     const double background_sigma =
         peak * std::min(1.0, steepest * px / width_px) +
-        in_noise(ghost_pixel_share * brightest_e() * std::min(1.0, px)) +
+        in_noise(ghost_pixel_share * brightest_e() * std::min(1.0, px)) + kernel_end_in_noise(px) +
         rings * 0.5 * std::min(1.0, std::numbers::pi * px / speckle_px);
     return {.photometry_mag = of_light * px,
-            .position_px = px,
+            .position_px = centroid_px,
             .background_sigma = background_sigma,
             .noise = noise_of(background_sigma)};
   }

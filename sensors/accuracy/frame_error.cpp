@@ -5,6 +5,8 @@
 
 #include "core/detector/expected_noise.h"
 #include "core/detector/expected_signal.h"
+#include "core/optics/psf_plan.h"
+#include "sensors/accuracy/source_capsule.h"
 
 namespace dmise {
 namespace {
@@ -60,59 +62,7 @@ std::vector<bool> spread(const std::vector<bool>& pixels, int columns, int rows,
   return along(along(pixels, rows, columns, 1, columns), columns, rows, columns, 1);
 }
 
-double distance_px(PixelPosition p, PixelPosition from, PixelPosition to) {
-  const PixelPosition way = to - from, past = p - from;
-  const double length2 = way.x_px * way.x_px + way.y_px * way.y_px;
-  const double at =
-      length2 > 0.0 ? std::clamp((past.x_px * way.x_px + past.y_px * way.y_px) / length2, 0.0, 1.0)
-                    : 0.0;
-  return std::hypot(past.x_px - at * way.x_px, past.y_px - at * way.y_px);
-}
-
-double distance_px(PixelPosition p, const ReferenceSource& s) {
-  double least = distance_px(p, s.trail[0], s.trail[1]);
-  for (std::size_t i = 2; i < s.trail.size(); ++i)
-    least = std::min(least, distance_px(p, s.trail[i - 1], s.trail[i]));
-  return least;
-}
-
-/// Calls `visit(pixel index, x, y)` for the pixels of a capsule; false: it reaches out of the
-/// frame.
-template <class Visit>
-bool for_capsule(const ReferenceSource& s, int columns, int rows, Visit&& visit) {
-  double x0 = s.trail[0].x_px, x1 = x0, y0 = s.trail[0].y_px, y1 = y0;
-  for (const PixelPosition p : s.trail) {
-    x0 = std::min(x0, p.x_px);
-    x1 = std::max(x1, p.x_px);
-    y0 = std::min(y0, p.y_px);
-    y1 = std::max(y1, p.y_px);
-  }
-  x0 -= s.margin_px, x1 += s.margin_px, y0 -= s.margin_px, y1 += s.margin_px;
-  const int last_x = int(std::ceil(std::min(x1, columns - 1.0)));
-  const int last_y = int(std::ceil(std::min(y1, rows - 1.0)));
-  for (int y = int(std::max(0.0, y0)); y <= last_y; ++y)
-    for (int x = int(std::max(0.0, x0)); x <= last_x; ++x)
-      if (distance_px({double(x), double(y)}, s) <= s.margin_px)
-        visit(std::size_t(y) * std::size_t(columns) + std::size_t(x), x, y);
-  return x0 >= 0.0 && y0 >= 0.0 && x1 <= columns - 1.0 && y1 <= rows - 1.0;
-}
-
 }  // namespace
-
-std::vector<PixelPosition> line_along(PixelPosition from, PixelPosition via, PixelPosition to) {
-  constexpr double off_px = 0.05;
-  constexpr int most_chords = 64;
-  // At -1, 0 and 1: via + half * t + bend * t * t.
-  const PixelPosition half = (to - from) * 0.5, bend = (to + from) * 0.5 - via;
-  const double chords = std::ceil(std::sqrt(std::hypot(bend.x_px, bend.y_px) / off_px));
-  const int count = int(std::clamp(chords, 1.0, double(most_chords)));
-  std::vector<PixelPosition> line;
-  for (int i = 0; i <= count; ++i) {
-    const double t = 2.0 * i / count - 1.0;
-    line.push_back(via + half * t + bend * (t * t));
-  }
-  return line;
-}
 
 FrameComparison::Expected FrameComparison::expected(const FrameProducts& frame,
                                                     const EffectSet& effects) const {
@@ -149,7 +99,28 @@ FrameComparison::FrameComparison(const SceneFrames& scene, const FrameProducts& 
   const auto near_full = spread(full, light_.columns, light_.rows, by);
   for (std::size_t i = 0; i < pixels; ++i)
     if (near_full[i]) background_[i] = false;
+  find_rounding();
   find_sources(reference);
+}
+
+// A transform in single precision rounds by the brightest pixel of a row, and the whole frame by
+// the brightest of all: both the reference and what is compared with it.
+void FrameComparison::find_rounding() {
+  constexpr double of_row = 0x1p-21, of_frame = 0x1p-23;
+  const SensorConfig& sensor = scene_.sensor();
+  const Camera& camera = sensor.camera;
+  const PsfPlan blur = plan_psf(camera.optics, camera.band.centre_m, sensor.seeing,
+                                scene_.times().seconds());
+  rounding_e_.assign(std::size_t(light_.rows), 0.0f);
+  if (blur.method != PointSpread::Method::transform) return;
+  const auto columns = std::size_t(light_.columns);
+  double brightest_e = 0.0;
+  for (const float e : light_.pixels) brightest_e = std::max(brightest_e, double(e));
+  for (int y = 0; y < light_.rows; ++y) {
+    const auto row = light_.pixels.begin() + std::ptrdiff_t(std::size_t(y) * columns);
+    const double row_e = *std::max_element(row, row + std::ptrdiff_t(columns));
+    rounding_e_[std::size_t(y)] = float(of_row * row_e + of_frame * brightest_e);
+  }
 }
 
 void FrameComparison::measure(ReferenceSource source) {
@@ -246,19 +217,26 @@ FrameError FrameComparison::error_of(const FrameProducts& frame, const EffectSet
   FrameError error;
   ErrorBound& largest = error.largest;
   double sum2 = 0.0;
+  const auto beyond = [](double value, double allowance) {
+    return std::max(0.0, std::abs(value) - allowance);
+  };
   for (std::size_t i = 0; i < sigma_e_.size(); ++i) {
-    const double difference =
-        (double(made.signal.pixels[i]) - reference_.signal.pixels[i]) / sigma_e_[i];
-    sum2 += difference * difference;
+    const double difference_e = double(made.signal.pixels[i]) - reference_.signal.pixels[i];
+    const double rounding_e = rounding_e_[i / std::size_t(light_.columns)];
+    const double difference = beyond(difference_e, rounding_e) / sigma_e_[i];
+    sum2 += difference_e * difference_e / (double(sigma_e_[i]) * sigma_e_[i]);
     if (!background_[i]) continue;
-    largest.background_sigma = std::max(largest.background_sigma, std::abs(difference));
+    largest.background_sigma = std::max(largest.background_sigma, difference);
+    // Of light and what it changes of the noise: sqrt(s^2 + e) - s = e / 2s.
     const double noise = reference_.noise.pixels[i];
-    largest.noise = std::max(largest.noise, std::abs(made.noise.pixels[i] - noise) / noise);
+    const double in_noise_e = beyond(made.noise.pixels[i] - noise, 0.5 * rounding_e / noise);
+    largest.noise = std::max(largest.noise, in_noise_e / noise);
   }
   error.residual_sigma = std::sqrt(sum2 / double(sigma_e_.size()));
   for (const auto& source : sources_) {
-    double e = 0.0, x_e = 0.0, y_e = 0.0;
+    double e = 0.0, x_e = 0.0, y_e = 0.0, rounding_e2 = 0.0;
     for_capsule(source, light_.columns, light_.rows, [&](std::size_t i, int x, int y) {
+      rounding_e2 += double(rounding_e_[std::size_t(y)]) * rounding_e_[std::size_t(y)];
       const double difference = (double(made.signal.pixels[i]) - made.sky.pixels[i]) -
                                 (double(reference_.signal.pixels[i]) - reference_.sky.pixels[i]);
       e += difference;
@@ -272,12 +250,15 @@ FrameError FrameComparison::error_of(const FrameProducts& frame, const EffectSet
             std::max(largest.background_sigma, std::abs(e) / source.light_e * source.peak_sigma);
       continue;
     }
-    const double ratio = std::max(1e-10, 1.0 + e / source.light_e);
+    const double rounding_e = std::sqrt(rounding_e2);
+    const double lost_e = std::copysign(beyond(e, rounding_e), e);
+    const double moved_e = beyond(std::hypot(x_e, y_e), rounding_e * source.margin_px);
+    const double ratio = std::max(1e-10, 1.0 + lost_e / source.light_e);
     const SourceError one{.name = source.name,
                           .light_e = source.light_e,
                           .snr = source.snr,
                           .photometry_mag = std::abs(2.5 * std::log10(ratio)),
-                          .position_px = std::hypot(x_e, y_e) / source.light_e};
+                          .position_px = moved_e / source.light_e};
     largest.photometry_mag = std::max(largest.photometry_mag, one.photometry_mag);
     largest.position_px = std::max(largest.position_px, one.position_px);
     error.sources.push_back(one);

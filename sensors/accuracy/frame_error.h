@@ -36,10 +36,6 @@ struct FrameError {
   double residual_sigma = 0.0;       // rms of the difference of all pixels, in their noise
 };
 
-/// A line along a trail that is `from`, `via` and `to` at its start, middle and end: chords of the
-/// parabola through them, 0.05 px off it at most. At least two points.
-std::vector<PixelPosition> line_along(PixelPosition from, PixelPosition via, PixelPosition to);
-
 /// Compares frames of one exposure with its reference, by what they expect of every pixel:
 /// docs/accuracy.md gives the definitions.
 class FrameComparison {
@@ -58,6 +54,7 @@ class FrameComparison {
     ElectronImage signal, sky, noise;
   };
   Expected expected(const FrameProducts& frame, const EffectSet& effects) const;
+  void find_rounding();
   void find_sources(const FrameProducts& reference);
   void measure(ReferenceSource source);
   void see_who_counts();
@@ -68,7 +65,8 @@ class FrameComparison {
   double full_e_ = 0.0;  // in brighter pixels errors do not count
   ExpectedElectronImage light_;
   Expected reference_;
-  std::vector<float> sigma_e_;  // sqrt(light + dark + read^2) of each pixel
+  std::vector<float> sigma_e_;     // sqrt(light + dark + read^2) of each pixel
+  std::vector<float> rounding_e_;  // of a transform's single precision, of each row's pixels
   std::vector<bool> background_;
   std::vector<ReferenceSource> sources_, faint_;  // faint: their capsules are background
 };

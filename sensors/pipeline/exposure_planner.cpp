@@ -31,16 +31,33 @@ double peak_share(double fwhm_px) {
   return along * along;
 }
 
+/// Wavelength / aperture.
+double airy_px(const Optics& optics, double wavelength_m) {
+  return wavelength_m / optics.aperture_m / optics.pixel_angle_rad();
+}
+
 /// What pixels, jitter and seeing leave of the rings of diffraction, which are as far from each
 /// other as wavelength / aperture. Speckles of short exposures stay.
 double ring_contrast(const Optics& optics, double wavelength_m, const PsfPlan& blur) {
   if (blur.screens > 0) return 1.0;
-  const double ring_px = wavelength_m / optics.aperture_m / optics.pixel_angle_rad();
+  const double ring_px = airy_px(optics, wavelength_m);
   const double of_optics_px = 1.03 * ring_px;
   const double wider_px =
       std::sqrt(std::max(0.0, blur.fwhm_px * blur.fwhm_px - of_optics_px * of_optics_px));
   const double phase = pi * wider_px / ring_px / fwhm_per_sigma;
   return std::exp(-2.0 * phase * phase) * std::min(1.0, ring_px / pi);
+}
+
+/// A pixel's share of a point's light `r_px` from it, but for the taper of kernels: beyond r an
+/// Airy pattern has 0.2 (lambda / D) / r of the light, more with an obscuration; seeing falls off
+/// as r^(-11/3), to 1e-4 of its peak at five widths.
+double kernel_end_share(const Optics& optics, double wavelength_m, const PsfPlan& blur,
+                        double r_px) {
+  const double of_rings = 0.2 * airy_px(optics, wavelength_m) / (1.0 - optics.obscuration) /
+                          (2.0 * pi * r_px * r_px * r_px);
+  if (blur.exposure == ExposureKind::none) return of_rings;
+  const double widths = r_px / (5.0 * blur.fwhm_px);
+  return of_rings + 1e-4 * peak_share(blur.fwhm_px) * std::pow(widths, -11.0 / 3.0);
 }
 
 /// Turbulence before a sensor, whatever level of it the scenario asks for.
@@ -52,7 +69,7 @@ PlanFacts::Air air_facts(const SensorConfig& sensor) {
     return plan_psf(optics, wavelength_m, seeing, sensor.exposure_s, level);
   };
   PlanFacts::Air air{
-      .airy_px = wavelength_m / optics.aperture_m / optics.pixel_angle_rad(),
+      .airy_px = airy_px(optics, wavelength_m),
       .apertures_per_r0 = optics.aperture_m / seeing.r0_at_m(wavelength_m),
       .apertures_blown = seeing.wind_m_per_s * sensor.exposure_s / optics.aperture_m};
   const Detector& detector = sensor.camera.detector;
@@ -101,7 +118,8 @@ void ExposurePlanner::look_at_sensor() {
   if (ghost.ghost_fraction > 0.0)
     f.ghost_pixel_share =
         ghost.ghost_fraction / std::max(1.0, pi * ghost.ghost_radius_px * ghost.ghost_radius_px);
-  f.speckle_px = std::hypot(1.0, band.centre_m / optics.aperture_m / optics.pixel_angle_rad());
+  f.airy_px = airy_px(optics, band.centre_m);
+  f.speckle_px = std::hypot(1.0, f.airy_px);
   f.read_noise_e = detector.read_noise_e;
   f.read_later = reads_after_others(detector);
   f.dark_e = dark_rate_e_per_s(detector) * sensor_.exposure_s;
@@ -110,6 +128,9 @@ void ExposurePlanner::look_at_sensor() {
     constexpr double cell_s = 200e-9;
     const double cells = 4.0 * blur.half_cells * blur.half_cells;
     f.kernels_change = blur.screens > 0;
+    f.least_wavelengths = optics.spread.wavelengths;
+    f.kernel_end_px = double(blur.half_cells) / blur.oversampling;
+    f.kernel_end_share = kernel_end_share(optics, band.centre_m, blur, f.kernel_end_px);
     f.kernel_s = cell_s * cells * std::max(1, blur.screens) * optics.spread.grid_columns *
                  optics.spread.grid_rows;
   }

@@ -7,6 +7,7 @@
 #include "core/effects/frame_effects.h"
 #include "core/sky/airmass.h"
 #include "core/sky/cloud_cover.h"
+#include "core/sky/scattered_moonlight.h"
 #include "core/sky/scintillation.h"
 #include "core/sky/sky_frames.h"
 #include "sensors/pipeline/sky_layer.h"
@@ -95,6 +96,20 @@ double moves_rad(const View& view) {
                   angle_rad(middle, seen(view.times().end)));
 }
 
+/// Moonlight is held nearer to the Moon's centre.
+constexpr double held_rad = 0.25 * deg;
+
+/// How far the field is from the Moon at mid exposure; 0 where the Moon is in it.
+double from_moon_rad(const View& view, const Vec<Gcrs>& moon) {
+  const Optics& optics = view.sensor().camera.optics;
+  const Vec<CameraFrame> direction = view.camera_from_gcrs(view.times().middle) * moon;
+  const auto at = project(optics, direction);
+  if (!at) return angle_rad(direction, Vec<CameraFrame>{0, 0, 1}) - half_diagonal_rad(optics);
+  const auto nearest = unproject(optics, {std::clamp(at->x_px, 0.0, optics.columns - 1.0),
+                                          std::clamp(at->y_px, 0.0, optics.rows - 1.0)});
+  return nearest ? angle_rad(direction, *nearest) : 0.0;
+}
+
 }  // namespace
 
 Vec<Gcrs> boresight(const View& view, SimTime t) {
@@ -115,7 +130,8 @@ void add_sky_facts(const View& view, double drawn_to_v_mag, PlanFacts& f) {
   const double read_e2 =
       f.read_noise_e * f.read_noise_e + std::pow(sensor.camera.detector.gain_e_per_dn, 2) / 12.0;
   StarlightByLimit starlight(view, drawn_to_v_mag);
-  double lowest_rad = pi / 2;
+  const Vec<Gcrs> moon = unit(view.environment().moon_m - view.observer(middle).position_m);
+  double lowest_rad = pi / 2, sampled_moon_rad = pi;
   look_over(optics, 0.0, [&](PixelPosition at, const Vec<CameraFrame>& direction) {
     const Vec<Gcrs> gcrs = gcrs_from_camera * direction;
     if (earth.hides_direction(gcrs)) {
@@ -123,6 +139,7 @@ void add_sky_facts(const View& view, double drawn_to_v_mag, PlanFacts& f) {
       return;
     }
     const Vec<Enu> enu = enu_from_gcrs * gcrs;
+    sampled_moon_rad = std::min(sampled_moon_rad, angle_rad(gcrs, moon));
     if (view.on_ground()) lowest_rad = std::min(lowest_rad, std::asin(std::clamp(enu.z, 0.0, 1.0)));
     SkySample s;
     if (with_sky) {
@@ -152,6 +169,14 @@ void add_sky_facts(const View& view, double drawn_to_v_mag, PlanFacts& f) {
   f.scintillation = scintillation_sigma(optics.aperture_m, view.times().seconds(), f.most_airmass,
                                         view.site()->height_m);
   f.refraction_rad = view.refraction().at_apparent_rad(lowest_rad);
+  const double moon_up_rad = std::asin(std::clamp(dot(view.up(middle), moon), -1.0, 1.0));
+  f.moon_refraction_rad = view.refraction().apparent_from_true_rad(moon_up_rad) - moon_up_rad;
+  f.moon_is_down = moon_up_rad < 0.0;
+  f.nearest_moon_rad = from_moon_rad(view, moon) - f.moon_refraction_rad;
+  f.nearest_moon_rad = std::max(held_rad, f.nearest_moon_rad);
+  f.between_samples[static_cast<std::size_t>(SkyPart::scattered_moonlight)] *=
+      std::max(1.0, moonlight_scattering(f.nearest_moon_rad) /
+                        moonlight_scattering(std::max(held_rad, sampled_moon_rad)));
 }
 
 }  // namespace dmise

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "sensors/accuracy/source_capsule.h"
 
 namespace dmise {
 namespace {

@@ -51,6 +51,7 @@ TEST(ClockError, SurelyReadIsWhatTheLatestClockHasRead) {
 TEST(ClockError, StatesWhatLeavingItOutWouldCost) {
   PlanFacts facts;
   facts.pixel_rad = 1e-5;
+  facts.fwhm_px = 2.0;  // pixels follow it
   facts.stars = 10;
   facts.star_rate_rad_per_s = 7.3e-5;
   facts.clock_error_s = 0.01;

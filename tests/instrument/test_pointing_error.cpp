@@ -55,6 +55,7 @@ TEST(PointingError, SumsBiasDriftAndJitter) {
 TEST(PointingError, StatesWhatLeavingItOutWouldCost) {
   PlanFacts facts;
   facts.pixel_rad = 1e-5;
+  facts.fwhm_px = 2.0;  // pixels follow it
   facts.stars = 10;
   facts.pointing_error_rad = 2e-6;
   EXPECT_NEAR(PointingError::error(0, facts).position_px, 0.2, 0.03);

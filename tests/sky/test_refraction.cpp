@@ -7,6 +7,8 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/sky/atmospheric_refraction.h"
+#include "core/sky/scattered_moonlight.h"
 
 namespace dmise {
 namespace {
@@ -109,6 +111,25 @@ TEST(Refraction, NoAirBendsNothing) {
       EXPECT_EQ(none.apparent_from_true_rad(e), e);
       EXPECT_EQ(none.apparent_from_true_rad(e, 1e6), e);
       EXPECT_EQ(none.true_from_apparent_rad(e), e);
+    }
+}
+
+TEST(AtmosphericRefraction, ALowerMoonGivesNoLessLightThanTheBoundSays) {
+  for (const double k_v : {0.1, 0.25, 0.4})
+    for (double true_rad = -5.0 * deg; true_rad < 80.0 * deg; true_rad += 0.05 * deg) {
+      const double lifted_rad = sea_level.apparent_from_true_rad(true_rad);
+      const auto moonlight = [&](double moon_rad) {
+        return scattered_moonlight_s10(60.0 * deg, 0.8, std::sin(moon_rad), -12.0, k_v);
+      };
+      PlanFacts f;
+      f.moon_refraction_rad = lifted_rad - true_rad;
+      f.moon_is_down = true_rad < 0.0;
+      SkySample sample{.sky_e = 100.0, .noise_e = 10.0};
+      sample.part_e[static_cast<std::size_t>(SkyPart::scattered_moonlight)] = 100.0;
+      f.sky.push_back(sample);
+      const double lacks = 1.0 - moonlight(true_rad) / moonlight(lifted_rad);
+      EXPECT_GE(AtmosphericRefraction::error(0, f).background_sigma, 10.0 * lacks - 1e-12)
+          << true_rad / deg << " deg, k " << k_v;
     }
 }
 
