@@ -49,14 +49,28 @@ const Detection* found(const std::vector<Detection>& all, const PlacedSource& p)
   return best;
 }
 
+/// Cramer-Rao bound of a point's coordinates together, with the noise of its own light: of each
+/// 1 / integral of (dS / dx)^2 / (variance + S), where the derivative's square is half of the
+/// radial one's in the mean over directions.
+double bound_of_point_px2(double flux_e, double sigma_px, double variance_e2) {
+  constexpr int steps = 200;
+  constexpr double reach = 6.0;  // deviations
+  const double step_px = reach * sigma_px / steps;
+  double information = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const double r_px = (i + 0.5) * step_px, r2 = r_px * r_px / (sigma_px * sigma_px);
+    const double signal_e = flux_e * std::exp(-0.5 * r2) / (2 * pi * sigma_px * sigma_px);
+    const double slope = signal_e * r_px / (sigma_px * sigma_px);
+    information += pi * r_px * step_px * slope * slope / (variance_e2 + signal_e);
+  }
+  return 2.0 / information;
+}
+
 /// Cramer-Rao bound of the centroid's two coordinates together: of a point, and of a long line with
 /// free ends and a free slope of brightness in white noise.
 double bound_px2(const FrameHeader& h, const PlacedSource& p) {
   const double s = sigma_px(h), variance = noise_variance_e2(h);
-  if (p.length <= 0) {
-    const double snr2 = p.flux_e * p.flux_e / (4 * pi * s * s * variance);
-    return 2 * 2 * s * s / snr2;
-  }
+  if (p.length <= 0) return bound_of_point_px2(p.flux_e, s, variance);
   // By the derivatives across, by the position of each end, which is half of the middle's, and by
   // the slope, which moves the light along the line.
   const double density2 = std::pow(p.flux_e / p.length, 2) / variance;

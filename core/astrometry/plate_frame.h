@@ -17,6 +17,8 @@ struct PlateBelief {
   double focal_length_px = 0.0;
   /// Where it points, if that is believed (determinant -1: mirrored).
   std::optional<Rotation<CameraFrame, Gcrs>> camera_from_gcrs;
+  /// Or only the direction of the image's centre, if that is believed; roll and parity are not.
+  std::optional<Vec<Gcrs>> axis;
 };
 
 /// How far beliefs may be wrong, and what to look for without any.

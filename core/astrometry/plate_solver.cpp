@@ -109,11 +109,13 @@ double PlateSearcher::rank_in_frame(double width_rad) const {
 }
 
 std::vector<std::uint32_t> PlateSearcher::stars_near_belief(double width_rad) const {
-  const PlateModel model{.projection = belief_.projection,
-                         .camera_from_gcrs = *belief_.camera_from_gcrs,
-                         .focal_length_px = trials(width_rad, width_rad)[0].focal_low_px,
-                         .centre = frame_.centre()};
-  return sky_.catalogued(model.axis(), frame_.reach_rad(model) + search_.pointing_error_rad,
+  PlateModel model{.projection = belief_.projection,
+                   .camera_from_gcrs = {},
+                   .focal_length_px = trials(width_rad, width_rad)[0].focal_low_px,
+                   .centre = frame_.centre()};
+  if (belief_.camera_from_gcrs) model.camera_from_gcrs = *belief_.camera_from_gcrs;
+  return sky_.catalogued(belief_.camera_from_gcrs ? model.axis() : *belief_.axis,
+                         frame_.reach_rad(model) + search_.pointing_error_rad,
                          2 * rank_in_frame(width_rad));
 }
 
@@ -175,7 +177,9 @@ void PlateSearcher::try_round(const PatternIndex& index, const Trial& trial, std
 
 bool PlateSearcher::near_belief(const Trial& trial,
                                 const Rotation<CameraFrame, Gcrs>& upright) const {
-  if (!belief_.camera_from_gcrs) return true;
+  if (!belief_.camera_from_gcrs)
+    return !belief_.axis || angle_rad(upright.inverse() * Vec<CameraFrame>{0, 0, 1},
+                                      *belief_.axis) <= search_.pointing_error_rad;
   const auto believed =
       trial.mirrored ? flipped(*belief_.camera_from_gcrs) : *belief_.camera_from_gcrs;
   const Rotation<CameraFrame, CameraFrame> by = upright * believed.inverse();
@@ -249,7 +253,9 @@ PlateSolution PlateSearcher::solve() {
                  to = flat ? std::min(wide, flat_rad) : wide;
     if (found_ || from > to || (flat && from >= flat_rad)) continue;
     const auto list = trials(from, to);
-    if (!belief_.camera_from_gcrs) {
+    // Without a focal length patterns of all sizes are needed; those of the whole sky are kept.
+    const bool is_near = belief_.camera_from_gcrs || (belief_.axis && belief_.focal_length_px > 0);
+    if (!is_near) {
       try_all(cache_.whole_sky(sky_, rank_in_frame(from)), list);
       continue;
     }

@@ -41,15 +41,17 @@ CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame,
   Result result{.detection = {}, .header = frame.header, .solution = std::nullopt};
   if (!blind) {
     result.detection = detected_by(frame.header);
-    const bool may_be_solved = map_ && !unknown.has(FrameFact::pointing) &&
-                               !unknown.has(FrameFact::focal_length) &&
-                               !unknown.has(FrameFact::time);
+    const Observation& o = frame.header.observation;
+    const bool has_hint = !unknown.has(FrameFact::pointing) || (o.ra_rad && o.dec_rad);
+    const bool may_be_solved =
+        map_ && has_hint && !unknown.has(FrameFact::focal_length) && !unknown.has(FrameFact::time);
     if (!may_be_solved || (CatalogueSky::can_expect(unknown) && !is_wrong(result.detection)))
       return result;
   }
   if (!map_) throw Error("blind detection takes a catalogue of stars");
   try {
-    result.solution = solve_frame(frame, *map_, {.blind = blind, .search = {}}, threads);
+    result.solution =
+        solve_frame(frame, *map_, {.blind = blind, .elsewhere = blind, .search = {}}, threads);
   } catch (const Error&) {
     if (blind) throw;
     return result;  // clouds, or what is there are no stars of the catalogue

@@ -30,10 +30,19 @@ Observer observer_of(const FrameHeader& header) {
 
 PlateBelief belief_of(const Frame& frame, bool blind) {
   const FrameHeader& h = frame.header;
-  PlateBelief b{frame.counts.columns, frame.counts.rows, h.projection, 0.0, std::nullopt};
+  PlateBelief b{.columns = frame.counts.columns,
+                .rows = frame.counts.rows,
+                .projection = h.projection,
+                .focal_length_px = 0.0,
+                .camera_from_gcrs = std::nullopt,
+                .axis = std::nullopt};
   if (blind) return b;
   if (!h.unknown.has(FrameFact::focal_length)) b.focal_length_px = h.focal_length_px;
-  if (h.unknown.has(FrameFact::pointing)) return b;
+  if (h.unknown.has(FrameFact::pointing)) {
+    const Observation& o = h.observation;
+    if (o.ra_rad && o.dec_rad) b.axis = from_spherical<Gcrs>(*o.ra_rad, *o.dec_rad);
+    return b;
+  }
   const auto camera = rotation_of<CameraFrame, Gcrs>(h.camera_from_gcrs[1]);
   b.camera_from_gcrs = h.mirrored ? flipped(camera) : camera;
   return b;
@@ -94,6 +103,20 @@ std::optional<ZeroPoint> zero_point_of(const Frame& frame, const PlateSolution& 
   return fit_zero_point(stars, sky.air() ? frame.header.extinction_mag_per_airmass : 0.0);
 }
 
+/// The plate near the believed axis; elsewhere, if there is none: headers may name a target that
+/// is beside the frame.
+PlateSolution solved_plate(std::span<const PlateSource> sources, PlateBelief belief,
+                           const PlateSky& sky, const SolveSettings& settings) {
+  if (belief.axis && settings.elsewhere) {
+    try {
+      return solve_plate(sources, belief, sky, settings.search);
+    } catch (const Error&) {
+      belief.axis.reset();
+    }
+  }
+  return solve_plate(sources, belief, sky, settings.search);
+}
+
 }  // namespace
 
 FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveSettings& settings,
@@ -108,7 +131,7 @@ FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveS
                         threads);
   FrameSolution out;
   out.sources = sources.size();
-  out.plate = solve_plate(sources, belief_of(frame, settings.blind), sky, settings.search);
+  out.plate = solved_plate(sources, belief_of(frame, settings.blind), sky, settings);
   out.wcs = wcs_of(out.plate.fit, sky, frame.counts.columns, frame.counts.rows);
   out.zero_point = zero_point_of(frame, out.plate, sources, sky);
   return out;

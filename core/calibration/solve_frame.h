@@ -12,6 +12,8 @@ namespace dmise {
 
 struct SolveSettings {
   bool blind = false;  // uses neither the believed pointing nor the focal length
+  // Whether the whole sky is searched if the frame is not where RA and DEC without a WCS say.
+  bool elsewhere = true;
   PlateSearch search;
 };
 
@@ -24,8 +26,8 @@ struct FrameSolution {
 };
 
 /// Solves a frame by its counts and by what its header states of site, time, lens and detector; the
-/// header's pointing is a hint, and without one the sky is searched. Throws `Error` if there is no
-/// solution, or no time.
+/// header's pointing, or RA and DEC alone, are a hint, and without one the sky is searched. Throws
+/// `Error` if there is no solution, or no time.
 FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveSettings& settings,
                           Threads& threads);
 

@@ -1,8 +1,12 @@
 #include "core/detection/background.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
+
+#include "core/detection/bent_sky.h"
 
 namespace dmise {
 namespace {
@@ -23,6 +27,32 @@ double spread_median(const std::vector<std::uint32_t>& histogram, std::size_t lo
   return double(low);
 }
 
+/// Values by their rank, without sorting them: by counts of their upper bytes, then of the lower.
+class Selection {
+ public:
+  explicit Selection(const std::vector<std::uint16_t>& values) : values_(values) {
+    for (const auto v : values) ++upper_[v >> 8];
+  }
+  std::uint16_t at(std::size_t rank) const {
+    const auto [upper, within] = bin_of(upper_, rank);
+    std::array<std::uint32_t, 256> lower{};
+    for (const auto v : values_) lower[v & 255] += v >> 8 == upper;
+    return std::uint16_t(upper << 8 | bin_of(lower, within).first);
+  }
+
+ private:
+  /// The bin of a rank, and the rank within it.
+  static std::pair<std::size_t, std::size_t> bin_of(const std::array<std::uint32_t, 256>& counts,
+                                                    std::size_t rank) {
+    std::size_t bin = 0;
+    for (; counts[bin] <= rank; ++bin) rank -= counts[bin];
+    return {bin, rank};
+  }
+
+  const std::vector<std::uint16_t>& values_;
+  std::array<std::uint32_t, 256> upper_{};
+};
+
 /// `values` is not empty.
 Sky clipped_sky(const std::vector<std::uint16_t>& values) {
   // A quarter of them is enough to start from.
@@ -30,10 +60,9 @@ Sky clipped_sky(const std::vector<std::uint16_t>& values) {
   std::vector<std::uint16_t> some;
   const std::size_t every = values.size() < 4 * least ? 1 : 4;
   for (std::size_t i = 0; i < values.size(); i += every) some.push_back(values[i]);
+  const Selection sorted(some);
   const auto quantile = [&](double q) {
-    const auto at = some.begin() + std::ptrdiff_t(q * double(some.size() - 1));
-    std::nth_element(some.begin(), at, some.end());
-    return double(*at);
+    return double(sorted.at(std::size_t(q * double(some.size() - 1))));
   };
   const double first_median = quantile(0.5);
   const double low = quantile(0.1587);
@@ -72,24 +101,6 @@ Sky clipped_sky(const std::vector<std::uint16_t>& values) {
   return {float(level), float(sigma)};
 }
 
-/// Median of each cell and its neighbours; at the frame's edges only neighbours with an opposite
-/// count, so that gradients are preserved.
-std::vector<float> median_3x3(const std::vector<float>& mesh, int columns, int rows) {
-  std::vector<float> out(mesh.size()), near;
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) {
-      near.clear();
-      const int wide = std::min({1, i, columns - 1 - i}), high = std::min({1, j, rows - 1 - j});
-      for (int v = j - high; v <= j + high; ++v)
-        for (int u = i - wide; u <= i + wide; ++u)
-          near.push_back(mesh[std::size_t(v * columns + u)]);
-      const auto middle = near.begin() + std::ptrdiff_t(near.size() / 2);  // an odd number
-      std::nth_element(near.begin(), middle, near.end());
-      out[std::size_t(j * columns + i)] = *middle;
-    }
-  return out;
-}
-
 float median_of(std::vector<float> values) {
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -98,22 +109,18 @@ float median_of(std::vector<float> values) {
 
 }  // namespace
 
-Background::Between Background::between(int pixel, int pixels, int cells) {
-  const float place = (float(pixel) + 0.5f) * float(cells) / float(pixels) - 0.5f;
-  const int cell = std::clamp(int(std::floor(place)), 0, std::max(0, cells - 2));
-  return {cell, cells > 1 ? place - float(cell) : 0.0f};  // extrapolates beyond the outer centres
-}
-
 Background::Background(const CountImage& counts, int cell_px, Threads& threads)
     : columns_(counts.columns),
       rows_(counts.rows),
-      mesh_columns_(std::max(1, (counts.columns + cell_px / 2) / cell_px)),
-      mesh_rows_(std::max(1, (counts.rows + cell_px / 2) / cell_px)) {
-  for (int x = 0; x < columns_; ++x) across_.push_back(between(x, columns_, mesh_columns_));
-  const std::size_t cells = std::size_t(mesh_columns_) * std::size_t(mesh_rows_);
-  std::vector<float> level(cells), sigma(cells);
+      cells_(columns_, rows_, std::max(1, (columns_ + cell_px / 2) / cell_px),
+             std::max(1, (rows_ + cell_px / 2) / cell_px)),
+      level_(cells_),
+      sigma_(cells_) {
+  CellMesh level = cells_, sigma = cells_;
+  const std::size_t cells = cells_.values.size();
   const auto measure = [&](std::size_t cell, bool flatten, std::vector<std::uint16_t>& values) {
     const Area area = area_of(cell);
+    const float mean = flatten ? mean_level(area) : 0.0f;
     values.clear();
     for (int y = area.y0; y <= area.y1; ++y) {
       const std::uint16_t* from = counts.row(y);
@@ -121,88 +128,71 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads)
         values.insert(values.end(), from + area.x0, from + area.x1 + 1);
         continue;
       }
-      const Between v = between(y, rows_, mesh_rows_);
       for (int x = area.x0; x <= area.x1; ++x) {
-        const float flat = float(from[x]) - at(level_, x, v) + level_[cell];
+        const float flat = float(from[x]) - level_.at(x, y) + mean;
         values.push_back(std::uint16_t(std::clamp(flat + 0.5f, 0.0f, 65535.0f)));
       }
     }
     const Sky sky = clipped_sky(values);
-    level[cell] = sky.level;
-    sigma[cell] = sky.sigma;
+    level.values[cell] = sky.level;
+    sigma.values[cell] = sky.sigma;
   };
   const auto measure_all = [&](bool only_sloped) {
-    threads.for_ranges(cells, std::size_t(mesh_columns_), [&](std::size_t begin, std::size_t end) {
+    threads.for_ranges(cells, std::size_t(cells_.across), [&](std::size_t begin, std::size_t end) {
       std::vector<std::uint16_t> values;
       for (std::size_t cell = begin; cell < end; ++cell)
         if (!only_sloped || is_sloped(cell)) measure(cell, only_sloped, values);
     });
-    level_ = median_3x3(level, mesh_columns_, mesh_rows_);
-    sigma_ = median_3x3(sigma, mesh_columns_, mesh_rows_);
+    level_ = cells_ = median_of_cells(level);
+    sigma_ = median_of_cells(sigma);
+    const auto bends = sky_bends(cells_, sigma_);
+    if (!is_bent(bends)) return;
+    cells_ = without_sources(level, cells_, sigma_, bends);
+    level_ = refined(cells_, sky_bends(cells_, sigma_), columns_, rows_);
   };
   measure_all(false);
   measure_all(true);
 }
 
 Background::Area Background::area_of(std::size_t cell) const {
-  const auto i = std::int64_t(cell) % mesh_columns_, j = std::int64_t(cell) / mesh_columns_;
-  return {int(i * columns_ / mesh_columns_), int(j * rows_ / mesh_rows_),
-          int((i + 1) * columns_ / mesh_columns_) - 1, int((j + 1) * rows_ / mesh_rows_) - 1};
+  const int i = int(cell) % cells_.across, j = int(cell) / cells_.across;
+  const auto place = [](int k, int pixels, int cells) {
+    return int(std::int64_t(k) * pixels / cells);
+  };
+  return {place(i, columns_, cells_.across), place(j, rows_, cells_.down),
+          place(i + 1, columns_, cells_.across) - 1, place(j + 1, rows_, cells_.down) - 1};
 }
 
-float Background::level_of_cell(int i, int j) const {
-  return level_[std::size_t(std::clamp(j, 0, mesh_rows_ - 1)) * std::size_t(mesh_columns_) +
-                std::size_t(std::clamp(i, 0, mesh_columns_ - 1))];
+float Background::mean_level(const Area& area) const {
+  double sum = 0.0;
+  for (int y = area.y0; y <= area.y1; ++y)
+    for (int x = area.x0; x <= area.x1; ++x) sum += double(level_.at(x, y));
+  return float(sum / ((area.x1 - area.x0 + 1.0) * (area.y1 - area.y0 + 1.0)));
 }
 
 bool Background::is_sloped(std::size_t cell) const {
-  const int i = int(cell) % mesh_columns_, j = int(cell) / mesh_columns_;
-  const float slope = std::hypot(0.5f * (level_of_cell(i + 1, j) - level_of_cell(i - 1, j)),
-                                 0.5f * (level_of_cell(i, j + 1) - level_of_cell(i, j - 1)));
-  return slope * slope > 0.5f * sigma_[cell] * sigma_[cell];
+  const int i = int(cell) % cells_.across, j = int(cell) / cells_.across;
+  const float slope = std::hypot(0.5f * (cells_.cell(i + 1, j) - cells_.cell(i - 1, j)),
+                                 0.5f * (cells_.cell(i, j + 1) - cells_.cell(i, j - 1)));
+  return slope * slope > 0.5f * sigma_.values[cell] * sigma_.values[cell];
 }
 
 std::vector<Background::Area> Background::bent_cells(double share) const {
   std::vector<Area> out;
-  for (std::size_t cell = 0; cell < level_.size(); ++cell) {
+  for (std::size_t cell = 0; cell < cells_.values.size(); ++cell) {
     // At the border, where levels are extrapolated, the bend is the next cell's.
-    const int i = std::clamp(int(cell) % mesh_columns_, 1, std::max(mesh_columns_ - 2, 1));
-    const int j = std::clamp(int(cell) / mesh_columns_, 1, std::max(mesh_rows_ - 2, 1));
-    const float middle = 2 * level_of_cell(i, j);
-    const float across = level_of_cell(i - 1, j) + level_of_cell(i + 1, j) - middle;
-    const float down = level_of_cell(i, j - 1) + level_of_cell(i, j + 1) - middle;
-    if (std::max(std::abs(across), std::abs(down)) > 8 * share * sigma_[cell])
+    const int i = std::clamp(int(cell) % cells_.across, 1, std::max(cells_.across - 2, 1));
+    const int j = std::clamp(int(cell) / cells_.across, 1, std::max(cells_.down - 2, 1));
+    const float middle = 2 * cells_.cell(i, j);
+    const float across = cells_.cell(i - 1, j) + cells_.cell(i + 1, j) - middle;
+    const float down = cells_.cell(i, j - 1) + cells_.cell(i, j + 1) - middle;
+    if (std::max(std::abs(across), std::abs(down)) > 8 * share * sigma_.values[cell])
       out.push_back(area_of(cell));
   }
   return out;
 }
 
-float Background::at(const std::vector<float>& mesh, int x, const Between& v) const {
-  const Between u = across_[std::size_t(x)];
-  const float* above = mesh.data() + std::size_t(v.cell) * std::size_t(mesh_columns_) + u.cell;
-  const float* below = mesh_rows_ > 1 ? above + mesh_columns_ : above;
-  const int right = mesh_columns_ > 1 ? 1 : 0;
-  const float one = above[0] + v.next * (below[0] - above[0]);
-  const float next = above[right] + v.next * (below[right] - above[right]);
-  return one + u.next * (next - one);
-}
-
-void Background::row(const std::vector<float>& mesh, int y, float* out) const {
-  const Between v = between(y, rows_, mesh_rows_);
-  const float* above = mesh.data() + std::size_t(v.cell) * std::size_t(mesh_columns_);
-  const float* below = mesh_rows_ > 1 ? above + mesh_columns_ : above;
-  std::vector<float> line(std::size_t(mesh_columns_) + 1);
-  for (int i = 0; i < mesh_columns_; ++i)
-    line[std::size_t(i)] = above[i] + v.next * (below[i] - above[i]);
-  line.back() = line[std::size_t(mesh_columns_) - 1];
-  for (int x = 0; x < columns_; ++x) {
-    const Between u = across_[std::size_t(x)];
-    const float one = line[std::size_t(u.cell)];
-    out[x] = one + u.next * (line[std::size_t(u.cell) + 1] - one);
-  }
-}
-
-float Background::median_level_dn() const { return median_of(level_); }
-float Background::median_sigma_dn() const { return median_of(sigma_); }
+float Background::median_level_dn() const { return median_of(cells_.values); }
+float Background::median_sigma_dn() const { return median_of(sigma_.values); }
 
 }  // namespace dmise

@@ -3,6 +3,7 @@
 
 #include "core/base/image.h"
 #include "core/base/parallel.h"
+#include "core/detection/cell_mesh.h"
 
 namespace dmise {
 
@@ -10,16 +11,17 @@ namespace dmise {
 /// at 3 sigma until convergence; the level is 2.5 median - 1.5 mean (Bertin & Arnouts 1996, A&AS
 /// 117, 393), or the median if the two differ by more than 0.3 sigma. A median over 3 x 3 cells
 /// removes bright sources; values are bilinear between the cells' centres and extrapolated to the
-/// frame's edges. Cells with a gradient are measured again without it: it is no noise.
+/// frame's edges. Cells with a gradient are measured again without it: it is no noise. Where the
+/// level bends, as in the Moon's glow, so does the median's and what is between centres.
 class Background {
  public:
   Background(const CountImage& counts, int cell_px, Threads& threads);
 
-  float level_dn(int x, int y) const { return at(level_, x, between(y, rows_, mesh_rows_)); }
-  float sigma_dn(int x, int y) const { return at(sigma_, x, between(y, rows_, mesh_rows_)); }
+  float level_dn(int x, int y) const { return level_.at(x, y); }
+  float sigma_dn(int x, int y) const { return sigma_.at(x, y); }
   /// The same along row `y`: `columns` values.
-  void level_row(int y, float* level_dn) const { row(level_, y, level_dn); }
-  void sigma_row(int y, float* sigma_dn) const { row(sigma_, y, sigma_dn); }
+  void level_row(int y, float* level_dn) const { level_.row(y, level_dn); }
+  void sigma_row(int y, float* sigma_dn) const { sigma_.row(y, sigma_dn); }
   /// A rectangle of pixels, the first and the last of both coordinates.
   struct Area {
     int x0, y0, x1, y1;
@@ -32,23 +34,15 @@ class Background {
   float median_sigma_dn() const;
 
  private:
-  /// Position of a pixel between cell centres: `cell`, and the weight of the next.
-  struct Between {
-    int cell;
-    float next;
-  };
-  static Between between(int pixel, int pixels, int cells);
   /// Whether the level changes over a cell by so much that its noise is measured too high by 2 %.
   bool is_sloped(std::size_t cell) const;
   Area area_of(std::size_t cell) const;
-  float level_of_cell(int i, int j) const;
-  float at(const std::vector<float>& mesh, int x, const Between& down) const;
-  void row(const std::vector<float>& mesh, int y, float* out) const;
+  float mean_level(const Area& area) const;
 
   int columns_, rows_;  // of the frame
-  int mesh_columns_, mesh_rows_;
-  std::vector<float> level_, sigma_;
-  std::vector<Between> across_;  // of every column
+  CellMesh cells_;      // levels of the cells
+  CellMesh level_;      // the same, or finer where they bend
+  CellMesh sigma_;
 };
 
 }  // namespace dmise

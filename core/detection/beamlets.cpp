@@ -13,6 +13,7 @@ namespace {
 
 constexpr int shortest = 8, longest = 1024;    // rows of a beamlet
 constexpr int cell_px = 32, angle_cells = 64;  // one beamlet is kept of each
+constexpr double least_used = 0.7;  // root of a half: half of a strip has more SNR than less of it
 
 /// One of the four ranges of direction: lines that pass more rows than columns or the other way
 /// round, and move to one side or the other.
@@ -23,26 +24,45 @@ struct Orientation {
   int major(const FilteredFrame& f) const { return transposed ? f.columns : f.rows; }
 };
 
+/// Beamlets of `length` rows.
+struct Level {
+  int length = 0, angles = 0;
+  std::vector<float> noise;         // by shift, of a sum
+  std::vector<std::int16_t> least;  // by shift, of a sum that is kept
+};
+
+Level level_of(const FilteredFrame& frame, int n, double least_snr) {
+  Level level{.length = n, .angles = std::min(n, angle_cells), .noise = {}, .least = {}};
+  if (n < shortest) return level;
+  for (int a = 0; a < n; ++a) {
+    const double slope = double(a) / (n - 1);
+    const double noise =
+        FilteredFrame::steps * std::sqrt(n * frame.sum_variance(std::hypot(1.0, slope), n));
+    level.noise.push_back(float(noise));
+    level.least.push_back(std::int16_t(std::min(least_snr * noise, 32767.0)));
+  }
+  return level;
+}
+
 /// Sums of one orientation over a block of rows, in place.
 class Block {
  public:
-  Block(const FilteredFrame& frame, Orientation orientation, int first, int size, double least_snr,
-        SimdLevel level)
+  Block(const FilteredFrame& frame, Orientation orientation, int first, int size,
+        const std::vector<Level>& levels, SimdLevel level)
       : frame_(frame),
         orientation_(orientation),
         first_(first),
         size_(size),
         width_(std::size_t(orientation.minor(frame) + size)),
-        least_snr_(least_snr),
+        levels_(levels),
         join_(kernel_of(level, sse2::join_beamlets, avx2::join_beamlets, avx512::join_beamlets)) {
     sums_.resize(std::size_t(size) * width_);
     for (int k = 0; k < size; ++k) rows_.push_back(sums_.data() + std::size_t(k) * width_);
     fill();
-    for (int n = 2; n <= size; n *= 2) levels_.push_back(level_of(n));
   }
 
   void find(std::vector<Beamlet>& found) {
-    sum(0, size_);
+    sum(0, size_, false);
     std::stable_sort(kept_.begin(), kept_.end(),
                      [](const Kept& a, const Kept& b) { return a.cell < b.cell; });
     for (std::size_t i = 0; i < kept_.size();) {
@@ -60,25 +80,6 @@ class Block {
     std::uint64_t cell;
     Beamlet beamlet;
   };
-  /// Beamlets of `length` rows.
-  struct Level {
-    int length = 0, angles = 0;
-    std::vector<float> noise;         // by shift, of a sum
-    std::vector<std::int16_t> least;  // by shift, of a sum that is kept
-  };
-
-  Level level_of(int n) const {
-    Level level{.length = n, .angles = std::min(n, angle_cells)};
-    if (n < shortest) return level;
-    for (int a = 0; a < n; ++a) {
-      const double slope = double(a) / (n - 1);
-      const double noise =
-          FilteredFrame::steps * std::sqrt(n * frame_.sum_variance(std::hypot(1.0, slope), n));
-      level.noise.push_back(float(noise));
-      level.least.push_back(std::int16_t(std::min(least_snr_ * noise, 32767.0)));
-    }
-    return level;
-  }
 
   /// The block's pixels, to the right of as many columns of zeros as a line can cross.
   void fill() {
@@ -92,7 +93,7 @@ class Block {
       for (int k = begin; k < used; ++k) {
         const std::int16_t* from = frame_.row(first_ + k);
         if (orientation_.mirrored)
-          std::reverse_copy(from, from + minor, rows_[std::size_t(k)] + size_);
+          copy_reversed(from, std::size_t(minor), rows_[std::size_t(k)] + size_);
         else
           std::copy(from, from + minor, rows_[std::size_t(k)] + size_);
       }
@@ -121,12 +122,22 @@ class Block {
     }
   }
 
-  /// Sums the lines over `length` rows from `first` on, and all shorter ones in them.
-  void sum(int first, int length) {
-    if (length == 1) return;
+  /// Rows of a strip that are in the frame.
+  int used(int first, int length) const {
+    return std::max(0, std::min(first_ + first + length, orientation_.major(frame_)) -
+                           std::max(first_ + first, 0));
+  }
+
+  /// Sums the lines over `length` rows from `first` on, and all shorter ones in them. A strip
+  /// of which so much is beside the frame that a half of it is always better is only summed if it
+  /// is a part of a longer one that is.
+  void sum(int first, int length, bool needed) {
+    if (length == 1 || used(first, length) == 0) return;
     const int half = length / 2;
-    sum(first, half);
-    sum(first + half, half);
+    needed = needed || used(first, length) >= least_used * length;
+    sum(first, half, needed);
+    sum(first + half, half, needed);
+    if (!needed) return;
     // Further to the left no line of this length comes in from.
     const auto skipped = std::size_t(size_ - length);
     const Level& level = levels_[std::size_t(std::bit_width(unsigned(length)) - 2)];
@@ -182,11 +193,10 @@ class Block {
   Orientation orientation_;
   int first_, size_;  // rows
   std::size_t width_;
-  double least_snr_;
+  const std::vector<Level>& levels_;  // of 2, 4, .. rows
   decltype(&sse2::join_beamlets) join_;
   std::vector<std::int16_t> sums_;
   std::vector<std::int16_t*> rows_;  // by strip, then shift
-  std::vector<Level> levels_;        // of 2, 4, .. rows
   std::vector<Kept> kept_;
 };
 
@@ -209,10 +219,12 @@ std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, double least_snr,
     for (const int earlier : {0, size / 3})
       for (int first = -earlier; first < major; first += size) tasks.push_back({o, first, size});
   }
+  std::vector<Level> levels;
+  for (int n = 2; n <= longest; n *= 2) levels.push_back(level_of(frame, n, least_snr));
   std::vector<std::vector<Beamlet>> found(tasks.size());
   threads.for_ranges(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      Block(frame, tasks[i].orientation, tasks[i].first, tasks[i].size, least_snr, level)
+      Block(frame, tasks[i].orientation, tasks[i].first, tasks[i].size, levels, level)
           .find(found[i]);
   });
   std::vector<Beamlet> all;

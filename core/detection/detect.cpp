@@ -70,7 +70,7 @@ std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
     const Trail& t = source.trail();
     const double ex = t.length_px / 2 * std::cos(t.angle_rad);
     const double ey = t.length_px / 2 * std::sin(t.angle_rad);
-    const double margin_px = 3 * sigma_px + 1.5;
+    const double margin_px = source.beside ? 1.5 * sigma_px : 3 * sigma_px + 1.5;
     const bool piece = std::any_of(out.begin(), out.end(), [&](const Source& stronger) {
       const Trail& of = stronger.trail();
       if (!lies_on(of, t.x_px, t.y_px, margin_px)) return false;

@@ -6,6 +6,7 @@
 
 #include "core/base/units.h"
 #include "core/detection/hidden_ends.h"
+#include "core/detection/line_profile.h"
 #include "core/detection/line_search.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_hypothesis.h"
@@ -94,6 +95,34 @@ bool is_streak(const Scene& scene, const Source& source, const DetectorSettings&
   return !moves_like_star(scene, source, star, settings.least_difference_px + 1);
 }
 
+/// The slices of a trail's line between which a light of `e_per_px` is not there.
+std::optional<Extent> gap_in(const Scene& scene, const Trail& t, double e_per_px) {
+  const Line line = line_of(t);
+  return dark_gap(scene, line, extent_of(line, t.length_px / 2), e_per_px);
+}
+
+/// A streak, or each of several behind each other that were found as one.
+std::vector<Source> pieces(const Scene& scene, Source source, const DetectorSettings& settings) {
+  const Trail& t = source.trail();
+  const double e_per_px = t.flux_e / std::max(t.length_px, 1.0);
+  std::vector<Source> out;
+  if (const auto gap = gap_in(scene, t, e_per_px)) {
+    const Line line = line_of(t);
+    const Extent all = extent_of(line, t.length_px / 2);
+    for (const Extent& side : {Extent{all.from, gap->from - 1}, Extent{gap->to + 1, all.to}}) {
+      if (side.to - side.from < 2) continue;
+      auto piece = fitted(scene, trail_along(line, side, e_per_px), 0.0);
+      if (!piece || piece->trail().length_px > 0.9 * t.length_px ||
+          !is_streak(scene, *piece, settings))
+        continue;
+      for (Source& part : pieces(scene, std::move(*piece), settings))
+        out.push_back(std::move(part));
+    }
+  }
+  if (out.empty()) out.push_back(std::move(source));
+  return out;
+}
+
 /// The streak with the light that was hidden with components beside its ends: pieces of it, which
 /// had the shape of stars. Where it does not fit, the ends may be anywhere there.
 Source with_hidden_light(const Scene& scene, const Scene& seen, Source source) {
@@ -153,6 +182,8 @@ std::optional<Source> longer(const Scene& scene, const FilteredFrame& frame, con
   Trail start = climbed(frame, source.streak ? known : best_short_line(scene, frame, known), 3.0);
   const double least_px = (source.streak ? 0.5 : 2.0) * scene.sigma_px;
   if (start.length_px < known.length_px + least_px) return std::nullopt;
+  if (source.streak && gap_in(scene, start, known.flux_e / std::max(known.length_px, 1.0)))
+    return std::nullopt;
   const double snr = snr_along(frame, start);
   const double gain = source.streak ? snr * snr - std::pow(snr_along(frame, known), 2)
                                     : std::pow(template_snr(scene, start), 2) -
@@ -227,7 +258,8 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
     auto source = fitted(seen, trail, snr);
     if (source) hide(frame, source->trail(), 4 * scene.sigma_px);
     if (source && is_streak(scene, *source, settings))
-      found.push_back(with_hidden_light(scene, seen, std::move(*source)));
+      for (Source& piece : pieces(scene, std::move(*source), settings))
+        found.push_back(with_hidden_light(scene, seen, std::move(piece)));
     else if (++failures == most_failures)
       break;
   }

@@ -10,6 +10,9 @@ namespace {
 
 constexpr int neighbours = 20;  // on each side
 constexpr int least_neighbours = 12;
+constexpr double dark_odds = 25.0;   // logarithm, of a gap without light against light
+constexpr double dark_share = 0.25;  // of a streak's light that a gap may have
+constexpr double dark_sigmas = 5.0;  // of the PSF: length of a gap that is none of the detector's
 
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
@@ -68,6 +71,48 @@ std::array<double, 2> clipped_mean(const std::vector<Slice>& s, double level) {
   }
   if (s.empty() || !(variance > 0)) return {0.0, 0.0};
   return {sum / double(s.size()), sum / std::sqrt(variance)};
+}
+
+std::optional<Extent> dark_gap(const Scene& scene, const Line& line, const Extent& extent,
+                               double level, double offset_px) {
+  struct Run {
+    double odds = 0.0, light = 0.0;
+    int slices = 0, from = 0, to = 0;
+  };
+  Run run, best;
+  for (int k = extent.from; k <= extent.to; ++k) {
+    const Slice s = slice_at(scene, line, k, offset_px);
+    if (!(s.variance > 0)) continue;
+    if (run.slices == 0) run.from = k;
+    const double e = std::clamp(s.e_per_px, -level, 2 * level);
+    run.odds += level * (level / 2 - e) / s.variance;
+    run.light += e;
+    ++run.slices;
+    run.to = k;
+    if (run.odds <= 0)
+      run = {};
+    else if (run.odds > best.odds)
+      best = run;
+  }
+  if (best.odds < dark_odds || best.light > dark_share * level * best.slices ||
+      best.slices * line.slice_px() < dark_sigmas * scene.sigma_px)
+    return std::nullopt;
+  return Extent{best.from, best.to};
+}
+
+Trail trail_along(const Line& line, const Extent& extent, double level) {
+  const Point a = line.at(extent.from - 0.5), b = line.at(extent.to + 0.5);
+  Trail t;
+  t.x_px = (a.x + b.x) / 2;
+  t.y_px = (a.y + b.y) / 2;
+  t.length_px = std::hypot(b.x - a.x, b.y - a.y);
+  t.angle_rad = std::atan2(b.y - a.y, b.x - a.x);
+  t.flux_e = level * t.length_px;
+  t.sagitta_px = line.sagitta_px * std::pow(t.length_px / (2 * line.half_length_px), 2);
+  // The ends lie beside the centroid of the light by two thirds of the bend.
+  t.x_px -= 2.0 / 3 * t.sagitta_px * std::sin(t.angle_rad);
+  t.y_px += 2.0 / 3 * t.sagitta_px * std::cos(t.angle_rad);
+  return t;
 }
 
 double rise_above_neighbours(const Scene& scene, const Trail& trail) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "core/detection/scene.h"
@@ -71,6 +72,14 @@ double median_level(const std::vector<Slice>& s);
 
 /// Mean with values clipped at twice `level` (a star on the line), and its SNR.
 std::array<double, 2> clipped_mean(const std::vector<Slice>& s, double level);
+
+/// The slices within an extent between which a line of `level` is dark, and not by noise: none of
+/// its light is there. The most significant such gap, if it is longer than the PSF.
+std::optional<Extent> dark_gap(const Scene& scene, const Line& line, const Extent& extent,
+                               double level, double offset_px = 0.0);
+
+/// A trail along the line over the extent.
+Trail trail_along(const Line& line, const Extent& extent, double level);
 
 /// Excess of a trail's light over parallel lines beside it, in units of their scatter: where faint
 /// stars are dense, that exceeds the pixel noise. Infinite if there are too few lines.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "core/base/units.h"
@@ -10,6 +11,7 @@
 #include "core/detection/line_profile.h"
 #include "core/detection/source_fit.h"
 #include "core/detection/star_hypothesis.h"
+#include "core/detection/streaks_beside.h"
 
 namespace dmise {
 namespace {
@@ -74,7 +76,7 @@ Line refined(const std::vector<Point>& points, const Line& line, double width_px
 }
 
 /// Extends the line beyond one end while light of about the same level continues, one window at a
-/// time, if asked for also across one dark window.
+/// time, if asked for also across one window that may be dark by noise alone.
 void grow(const Scene& scene, const Line& line, Extent& extent, int way, double level,
           bool across_gaps) {
   const int limit = line.by_columns() ? scene.counts.columns : scene.counts.rows;
@@ -83,15 +85,19 @@ void grow(const Scene& scene, const Line& line, Extent& extent, int way, double 
     const int first = way > 0 ? extent.to + 1 + gap : extent.from - window_px - gap;
     const int last = first + window_px - 1;
     if (last < 0 || first >= limit) return;
-    double best_snr = 0.0, best_mean = 0.0;
+    double best_snr = 0.0, best_mean = 0.0, best_offset_px = 0.0;
     for (const double offset : {0.0, -0.7, 0.7}) {
       const auto [mean, snr] = clipped_mean(slices(scene, line, first, last, offset), level);
       if (snr > best_snr) {
         best_snr = snr;
         best_mean = mean;
+        best_offset_px = offset;
       }
     }
     if (best_snr > (gap ? gap_snr : growth_snr) && best_mean > 0.5 * level) {
+      const Extent added = way > 0 ? Extent{extent.to - window_px / 2, last}
+                                   : Extent{first, extent.from + window_px / 2};
+      if (dark_gap(scene, line, added, level, best_offset_px)) return;
       if (way > 0)
         extent.to = std::min(last, limit - 1);
       else
@@ -124,23 +130,10 @@ Extent trimmed(const Scene& scene, const Line& line, const Extent& extent, doubl
     return best;
   };
   const int middle = (extent.from + extent.to) / 2;
-  return {end(middle, extent.from - window_px), end(middle, extent.to + window_px)};
-}
-
-/// A trail along the line over the extent.
-Trail trail_along(const Line& line, const Extent& extent, double level) {
-  const Point a = line.at(extent.from - 0.5), b = line.at(extent.to + 0.5);
-  Trail t;
-  t.x_px = (a.x + b.x) / 2;
-  t.y_px = (a.y + b.y) / 2;
-  t.length_px = std::hypot(b.x - a.x, b.y - a.y);
-  t.angle_rad = std::atan2(b.y - a.y, b.x - a.x);
-  t.flux_e = level * t.length_px;
-  t.sagitta_px = line.sagitta_px * std::pow(t.length_px / (2 * line.half_length_px), 2);
-  // The ends lie beside the centroid of the light by two thirds of the bend.
-  t.x_px -= 2.0 / 3 * t.sagitta_px * std::sin(t.angle_rad);
-  t.y_px += 2.0 / 3 * t.sagitta_px * std::cos(t.angle_rad);
-  return t;
+  Extent lit{extent.from - window_px, extent.to + window_px};
+  if (const auto gap = dark_gap(scene, line, {lit.from, middle}, level)) lit.from = gap->to + 1;
+  if (const auto gap = dark_gap(scene, line, {middle, lit.to}, level)) lit.to = gap->from - 1;
+  return {end(middle, lit.from), end(middle, lit.to)};
 }
 
 /// Not worth a fit: faint, and hardly brighter than parallel lines beside it.
@@ -195,6 +188,11 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bo
   return source;
 }
 
+/// The trail along the line with the light that is on it.
+Trail trail_on(const Scene& scene, const Line& line, const Extent& extent) {
+  return trail_along(line, extent, median_level(slices(scene, line, extent.from, extent.to, 0.0)));
+}
+
 /// Points of the component off known streaks. Weights are the light, limited to the level of the
 /// brightest fifth: a star on a streak must not outweigh the streak.
 std::vector<Point> free_points(const Scene& scene, const Component& component, double skirt_px,
@@ -243,12 +241,16 @@ void find_long_streaks(const Scene& scene, const Component& component,
     auto source = streak_on(scene, line, {int(*low), int(*high)}, true, settings);
     // What is uneven with others behind it may be one of a row.
     if (!source) source = streak_on(scene, line, {int(*low), int(*high)}, false, settings);
+    std::vector<Source> sources = streaks_beside(
+        scene, source ? source->trail() : trail_on(scene, line, {int(*low), int(*high)}), settings);
+    if (sources.empty() && source) sources.push_back(std::move(*source));
     std::erase_if(points, [&](const Point& p) {
       return std::abs(line.off(p)) < width_px ||
-             (source && lies_on(source->trail(), p.x, p.y, skirt_px));
+             std::any_of(sources.begin(), sources.end(),
+                         [&](const Source& s) { return lies_on(s.trail(), p.x, p.y, skirt_px); });
     });
-    if (source) {
-      found.push_back(std::move(*source));
+    if (!sources.empty()) {
+      std::move(sources.begin(), sources.end(), std::back_inserter(found));
       failures = 0;
     } else if (extent_px < worth_another_px || ++failures == most_failures) {
       break;

@@ -82,6 +82,7 @@ struct Source {
   bool streak = false;
   bool saturated = false;
   bool at_edge = false;
+  bool beside = false;       // fitted together with another one beside it
   double model_error = 0.0;  // relative error of the PSF in comparisons
 
   const Trail& trail() const { return fit.trails[0]; }

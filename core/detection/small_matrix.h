@@ -6,7 +6,7 @@
 // Symmetric matrices of a few parameters, of which the first `n` rows and columns are used.
 namespace dmise {
 
-inline constexpr std::size_t most_parameters = 12;
+inline constexpr std::size_t most_parameters = 16;
 using SmallVector = std::array<double, most_parameters>;
 using SmallMatrix = std::array<SmallVector, most_parameters>;
 

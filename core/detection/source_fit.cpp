@@ -13,31 +13,6 @@ constexpr int most_rounds = 8;            // of fitting and rejecting
 constexpr double settled_px = 0.5;        // convergence of the ends
 constexpr double background_prior = 0.1;  // error of the mesh, in units of a pixel's noise
 
-/// Rejects pixels far above or below the model, with their neighbours.
-std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels, const Trail& trail,
-                                       double background_e, double tolerance, const Psf& psf) {
-  const TrailLight light(trail, psf);
-  TrailDerivatives unused{};
-  std::vector<const FitPixel*> outliers;
-  for (const FitPixel& p : pixels) {
-    const double model = light(p.x, p.y, unused);
-    const double tolerated = tolerance * model;
-    const double limit =
-        4.0 * std::sqrt(p.variance_e2 + std::max(model, 0.0) + tolerated * tolerated);
-    const double residual = p.signal_e - model - background_e;
-    if (residual > limit || residual < -1.5 * limit) outliers.push_back(&p);
-  }
-  if (outliers.empty()) return pixels;
-  std::vector<FitPixel> out;
-  for (const FitPixel& p : pixels) {
-    const bool near = std::any_of(outliers.begin(), outliers.end(), [&](const FitPixel* o) {
-      return std::abs(o->x - p.x) <= 1 && std::abs(o->y - p.y) <= 1;
-    });
-    if (!near) out.push_back(p);
-  }
-  return out;
-}
-
 /// Whether a pixel within one pixel of the line is clipped.
 bool is_saturated(const Scene& scene, const Trail& trail) {
   const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
@@ -122,6 +97,38 @@ void end_at_edge(TrailFit& fit, unsigned free, const Scene& scene, double side) 
 
 }  // namespace
 
+std::vector<TrailLight> lights_of(std::span<const Trail> trails, const Psf& psf) {
+  std::vector<TrailLight> out;
+  for (const Trail& trail : trails) out.emplace_back(trail, psf);
+  return out;
+}
+
+std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels,
+                                       std::span<const Trail> trails, double background_e,
+                                       double tolerance, const Psf& psf) {
+  const std::vector<TrailLight> lights = lights_of(trails, psf);
+  TrailDerivatives unused{};
+  std::vector<const FitPixel*> outliers;
+  for (const FitPixel& p : pixels) {
+    double model = 0.0;
+    for (const TrailLight& light : lights) model += light(p.x, p.y, unused);
+    const double tolerated = tolerance * model;
+    const double limit =
+        4.0 * std::sqrt(p.variance_e2 + std::max(model, 0.0) + tolerated * tolerated);
+    const double residual = p.signal_e - model - background_e;
+    if (residual > limit || residual < -1.5 * limit) outliers.push_back(&p);
+  }
+  if (outliers.empty()) return pixels;
+  std::vector<FitPixel> out;
+  for (const FitPixel& p : pixels) {
+    const bool near = std::any_of(outliers.begin(), outliers.end(), [&](const FitPixel* o) {
+      return std::abs(o->x - p.x) <= 1 && std::abs(o->y - p.y) <= 1;
+    });
+    if (!near) out.push_back(p);
+  }
+  return out;
+}
+
 std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double margin_px) {
   const double c = std::abs(std::cos(trail.angle_rad)), s = std::abs(std::sin(trail.angle_rad));
   const double reach_x = trail.length_px / 2 * c + margin_px + std::abs(trail.sagitta_px);
@@ -178,9 +185,9 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     const Psf psf = round + 1 < least_rounds || draft ? Psf(sigma_px) : scene.psf.at(middle);
     const auto all = pixels_near(scene, trail, margin_px);
     // A starting trail has a known brightness only for a streak.
-    pixels = round > 0 ? without_outliers(all, trail, source.fit.background_e, tolerance, psf)
+    pixels = round > 0 ? without_outliers(all, {&trail, 1}, source.fit.background_e, tolerance, psf)
              : streak && start.length_px > sloped_from_px
-                 ? without_outliers(all, trail, 0.0, 1.0, psf)
+                 ? without_outliers(all, {&trail, 1}, 0.0, 1.0, psf)
                  : all;
     if (pixels.size() < 12 || pixels.size() < all.size() / 2) return std::nullopt;
     FitSettings settings;
@@ -189,14 +196,23 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     settings.background_sigma_e = background_prior * std::sqrt(double(pixels.front().variance_e2));
     settings.most_steps = 20;
     source.fit = fit_trails(pixels, {trail}, {source.free}, settings);
-    if ((source.free & trail_line) == trail_line && source.fit.cov(2, 2) > 0)
-      for (const double side : {-1.0, 1.0}) end_at_edge(source.fit, source.free, scene, side);
+    hold_ends_at_edge(scene, source);
     moved_px = move_ends(trail, source.fit.trails[0], margin_px - 2 * sigma_px);
   }
   if ((!draft && moved_px > settled_px) || !plausible(scene, trail) || !(source.fit.cov(2, 2) > 0))
     return std::nullopt;
+  set_flags(scene, trail, source);
+  return source;
+}
+
+void hold_ends_at_edge(const Scene& scene, Source& source) {
+  if ((source.free & trail_line) != trail_line || !(source.fit.cov(2, 2) > 0)) return;
+  for (const double side : {-1.0, 1.0}) end_at_edge(source.fit, source.free, scene, side);
+}
+
+void set_flags(const Scene& scene, const Trail& trail, Source& source) {
   const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
-  const double edge = 2 * sigma_px;
+  const double edge = 2 * scene.psf.sigma_at({trail.x_px, trail.y_px});
   for (const double half : {-trail.length_px / 2, trail.length_px / 2}) {
     const double x = trail.x_px + half * c, y = trail.y_px + half * s;
     if (x < edge || y < edge || x > scene.counts.columns - 1 - edge ||
@@ -204,7 +220,6 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
       source.at_edge = true;
   }
   source.saturated = is_saturated(scene, trail);
-  return source;
 }
 
 double end_error_px(double snr2_per_px) { return std::sqrt(26.0) / snr2_per_px; }

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/detection/scene.h"
@@ -12,6 +13,15 @@ bool lies_on(const Trail& trail, double x_px, double y_px, double margin_px);
 /// Unsaturated pixels on the trail.
 std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double margin_px);
 
+/// Trails prepared for evaluation.
+std::vector<TrailLight> lights_of(std::span<const Trail> trails, const Psf& psf);
+
+/// Pixels without those far above or below the trails' light, and their neighbours. `tolerance`:
+/// relative error of the model.
+std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels,
+                                       std::span<const Trail> trails, double background_e,
+                                       double tolerance, const Psf& psf);
+
 /// Whether a trail is finite, of positive flux and centred in the frame.
 bool plausible(const Scene& scene, const Trail& trail);
 
@@ -21,6 +31,12 @@ bool plausible(const Scene& scene, const Trail& trail);
 /// the trail that are fitted; 0: those that its length can show.
 std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool streak,
                                  double model_error, bool draft = false, unsigned free = 0);
+
+/// Puts ends of a fitted streak that are beyond the frame on its edge.
+void hold_ends_at_edge(const Scene& scene, Source& source);
+
+/// Flags a source by where its trail is: at the frame's edge, saturated.
+void set_flags(const Scene& scene, const Trail& trail, Source& source);
 
 /// Error of a streak's end where it is a step lost in noise, by the square of the SNR of a pixel's
 /// worth of length (Yao 1987, Annals of Statistics 15, 1321).

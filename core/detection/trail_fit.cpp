@@ -29,7 +29,7 @@ class Problem {
     for (const unsigned mask : free)
       for (unsigned bit = 0; bit < trail_parameters; ++bit) size_ += mask >> bit & 1u;
     size_ += fits_background_ ? 1u : 0u;
-    if (size_ > most_parameters) throw Error("trail fit: more than 12 free parameters");
+    if (size_ > most_parameters) throw Error("trail fit: more than 16 free parameters");
   }
 
   std::size_t size() const { return size_; }

@@ -41,7 +41,7 @@ struct TrailFit {
 };
 
 /// Least-squares fit (Levenberg-Marquardt) with the noise of background and photons. `free` has one
-/// mask of `TrailParameter` per trail; at most 12 parameters in total.
+/// mask of `TrailParameter` per trail; at most 16 parameters in total.
 TrailFit fit_trails(const std::vector<FitPixel>& pixels, std::vector<Trail> start,
                     const std::vector<unsigned>& free, const FitSettings& settings);
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -23,6 +24,19 @@ inline void transpose_tile(const std::int16_t* const* from, std::int16_t* const*
   interleave(s, r);
   interleave(r, s);
   for (int i = 0; i < transpose_side; ++i) std::memcpy(to[i], &s[i], sizeof(Row));
+}
+
+/// Copies `count` numbers in the opposite order.
+inline void copy_reversed(const std::int16_t* from, std::size_t count, std::int16_t* to) {
+  using Row = std::int16_t __attribute__((vector_size(2 * transpose_side)));
+  std::size_t done = 0;
+  for (; done + transpose_side <= count; done += transpose_side) {
+    Row r;
+    std::memcpy(&r, from + count - done - transpose_side, sizeof(Row));
+    r = __builtin_shufflevector(r, r, 7, 6, 5, 4, 3, 2, 1, 0);
+    std::memcpy(to + done, &r, sizeof(Row));
+  }
+  for (; done < count; ++done) to[done] = from[count - 1 - done];
 }
 
 }  // namespace dmise

@@ -76,6 +76,18 @@ TEST_F(CalibratedDetection, FindsWhereTheFramePoints) {
   expect_satellite(result.detection);
 }
 
+// RA and DEC a degree off, and no WCS.
+TEST_F(CalibratedDetection, FindsItByADirectionAlone) {
+  FrameHeader believed = header_at(0.0);
+  believed.unknown.add(FrameFact::pointing);
+  believed.observation.ra_rad = ra_rad;
+  believed.observation.dec_rad = dec_rad + 0.017;
+  const auto result = CalibratedDetector(map).detect({drawn(1.0), believed}, {}, threads);
+  ASSERT_TRUE(result.solution);
+  EXPECT_FALSE(result.header.unknown.has(FrameFact::pointing));
+  expect_satellite(result.detection);
+}
+
 TEST_F(CalibratedDetection, FindsItWithoutAnyPointing) {
   const FrameHeader believed = header_at(ra_rad + 2.0);
   const auto result = CalibratedDetector(map).detect({drawn(1.0), believed}, {}, threads, true);

@@ -108,6 +108,35 @@ TEST(SolveFrame, TheSolvedHeaderIsReadBackAndNeedsNoHint) {
   EXPECT_TRUE(to_json(s, d.frame.header).find("\"matched\":") != std::string::npos);
 }
 
+// RA and DEC 1.5 deg beside the frame's centre, of any roll: fewer candidates than in the whole
+// sky. A target elsewhere costs time, not the solution.
+TEST(SolveFrame, StartsFromADirectionWithoutARoll) {
+  DMISE_NEEDS_FILE(test::catalogue_path("stars.dat"));
+  const Vec<Gcrs> axis = unit(Vec<Gcrs>{0.2, 0.9, 0.3});
+  DrawnFrame d = draw(14, axis, 1);
+  FrameHeader& h = d.frame.header;
+  h.unknown.add(FrameFact::pointing);
+  h.camera_from_gcrs.fill({});
+  Threads one(1);
+  const FrameSolution whole = solve_frame(d.frame, stars(), {}, one);
+  const auto [ra_rad, dec_rad] = to_spherical(axis);
+  for (const double off_rad : {1.5 * deg, 40 * deg})
+    for (const bool elsewhere : {false, true}) {
+      h.observation.ra_rad = ra_rad;
+      h.observation.dec_rad = dec_rad + off_rad;
+      if (off_rad > 5 * deg && !elsewhere) {
+        EXPECT_THROW(solve_frame(d.frame, stars(), {.elsewhere = elsewhere}, one), Error);
+        continue;
+      }
+      const FrameSolution s = solve_frame(d.frame, stars(), {.elsewhere = elsewhere}, one);
+      EXPECT_LE(s.plate.fit.rms_px, 0.03);
+      EXPECT_LT(angle_rad(s.plate.fit.model.axis(), axis), arcsec);
+      if (off_rad < 5 * deg) {
+        EXPECT_LE(s.plate.tried, whole.plate.tried);
+      }
+    }
+}
+
 TEST(SolveFrame, SolvesAMirroredFrame) {
   DMISE_NEEDS_FILE(test::catalogue_path("stars.dat"));
   DrawnFrame d = draw(14, unit(Vec<Gcrs>{0.2, 0.9, 0.3}), 3);

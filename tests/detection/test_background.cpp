@@ -45,6 +45,42 @@ TEST(Background, AGradientIsNoNoise) {
   }
 }
 
+// Of 4000 DN that fall to a half over 120 px, in a noise of 30.
+TEST(Background, FollowsAGlow) {
+  CountImage counts = noise(900, 900, 2000, 1, 30, 5);
+  const auto glow = [](int x, int y) {
+    const double r = std::hypot(x - 450.0, y - 450.0) / 120;
+    return 4000 / (1 + r * r);
+  };
+  for (int y = 0; y < counts.rows; ++y)
+    for (int x = 0; x < counts.columns; ++x)
+      counts.at(x, y) = std::uint16_t(std::lround(counts.at(x, y) + glow(x, y)));
+  Threads threads;
+  const Background b(counts, 64, threads);
+  double squares = 0.0;
+  int count = 0;
+  for (int y = 20; y < 880; y += 7)
+    for (int x = 20; x < 880; x += 7) {
+      if (std::hypot(x - 450.0, y - 450.0) < 250) continue;
+      const double off = b.level_dn(x, y) - (2000 + x + glow(x, y));
+      EXPECT_LT(std::abs(off), 0.4 * 30) << x << " " << y;
+      squares += off * off;
+      ++count;
+    }
+  EXPECT_LT(std::sqrt(squares / count), 0.1 * 30);
+}
+
+// Cells on a slope are measured twice: a source that lifted the first measurement is in neither.
+TEST(Background, OneSourceInTwentyPixelsHardlyLiftsASlope) {
+  auto counts = noise(512, 512, 1000, 3, 10, 6);
+  for (int y = 3; y < 512; y += 20)
+    for (int x = 3; x < 500; x += 20)
+      for (int i = 0; i < 20; ++i) counts.at(x + i % 5, y + i / 5) += 300;
+  Threads threads;
+  const Background b(counts, 64, threads);
+  for (int x = 40; x < 480; x += 40) EXPECT_NEAR(b.level_dn(x, 250), 1000 + 3 * x, 3.0);
+}
+
 TEST(Background, OneSourceInTwentyPixelsHardlyLiftsIt) {
   auto counts = noise(512, 512, 1000, 0, 10, 3);
   for (int y = 3; y < 512; y += 20)

@@ -1,0 +1,39 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+namespace dmise {
+
+/// Values at the centres of the cells of a mesh that divides a frame evenly. Bilinear between them,
+/// extrapolated to the frame's edges.
+class CellMesh {
+ public:
+  CellMesh() = default;
+  /// `columns` and `rows` of the frame, `across` and `down` of the mesh; at least 1.
+  CellMesh(int columns, int rows, int across, int down);
+
+  float at(int x, int y) const { return at(x, between(y, rows_, down)); }
+  /// The values along row `y` of the frame: all its columns.
+  void row(int y, float* out) const;
+  /// A cell's value; that of the nearest cell beside the mesh.
+  float cell(int i, int j) const;
+
+  int across = 0, down = 0;
+  std::vector<float> values;  // down x across
+
+ private:
+  /// Position of a pixel between cell centres: `cell`, and the weight of the next.
+  struct Between {
+    int cell;
+    float next;
+  };
+  static Between between(int pixel, int pixels, int cells);
+  float at(int x, const Between& v) const;
+
+  int columns_ = 0, rows_ = 0;
+  std::vector<Between> across_;  // of every column
+  std::vector<float> next_;      // the weights of across_
+  std::vector<int> ends_;        // of each cell, the column after its last
+};
+
+}  // namespace dmise
