@@ -129,19 +129,36 @@ fetch_promtool() {
   rm -rf "$work"
 }
 
-# What python-packages.txt names, into build/venv. Without PyPI the tests that need it say so.
+# fetch_python_packages LIST VENV [OPTION OF venv..]: what a list names, into build/VENV. Without PyPI the tests that need it say so.
 fetch_python_packages() {
-  local stamp=$build/venv/packages.sha256 wanted
-  wanted=$(digest_of "$lists/python-packages.txt")
-  [[ ! -x $build/venv/bin/python || $(cat "$stamp" || true) != "$wanted" ]] 2>/dev/null || return 0
-  say "fetching Python packages into build/venv: $(names_in "$lists/python-packages.txt" | tr '\n' ' ')"
-  rm -rf "$build/venv"
-  /usr/bin/python3 -m venv --system-site-packages "$build/venv" >>"$log" 2>&1 ||
-    die "cannot make build/venv (log: $log)"
-  if "$build/venv/bin/python" -m pip install -q --retries 2 --timeout 30 --only-binary :all: --no-deps \
-    --ignore-installed -r "$lists/python-packages.txt" >>"$log" 2>&1; then
+  local list=$lists/$1 venv=$build/$2 wanted
+  wanted=$(digest_of "$list")
+  [[ ! -x $venv/bin/python || $(cat "$venv/packages.sha256" || true) != "$wanted" ]] 2>/dev/null || return 0
+  say "fetching Python packages into build/$2: $(names_in "$list" | tr '\n' ' ')"
+  rm -rf "$venv"
+  /usr/bin/python3 -m venv "${@:3}" "$venv" >>"$log" 2>&1 || die "cannot make build/$2 (log: $log)"
+  if "$venv/bin/python" -m pip install -q --retries 2 --timeout 30 --only-binary :all: --no-deps \
+    --ignore-installed -r "$list" >>"$log" 2>&1; then
+    echo "$wanted" >"$venv/packages.sha256"
+  else
+    say "note: cannot fetch them; tests that need them will say so (log: $log)"
+  fi
+}
+
+# What node-packages.txt names, into build/node. Debian's npm is no part of the set-up: it pulls in 400 packages.
+fetch_node_packages() {
+  local stamp=$build/node/packages.sha256 wanted
+  wanted=$(digest_of "$lists/node-packages.txt")
+  [[ $(cat "$stamp" 2>/dev/null || true) != "$wanted" ]] || return 0
+  command -v npm >/dev/null || { say "note: there is no npm; the test of recordings in Node will say so"; return 0; }
+  say "fetching Node packages into build/node: $(names_in "$lists/node-packages.txt" | tr '\n' ' ')"
+  rm -rf "$build/node"
+  mkdir -p "$build/node"
+  # shellcheck disable=SC2046
+  if npm install --prefix "$build/node" --no-save --no-audit --no-fund --loglevel error \
+    $(names_in "$lists/node-packages.txt") >>"$log" 2>&1; then
     echo "$wanted" >"$stamp"
   else
-    say "note: cannot fetch them; tests against the compiled SGP4 reference will say so (log: $log)"
+    say "note: cannot fetch them; the test of recordings in Node will say so (log: $log)"
   fi
 }

@@ -4,7 +4,9 @@
         print(detection.id, detection.time_utc, detection.ra_rad, detection.dec_rad)
 
 `subscribe` observes a run, `aio.subscribe` does so in asyncio, `Node` takes part in its clock, `open_run` reads the
-directory of a run that is over. Units are in the names of fields; directions are ICRS, positions GCRS.
+directory of a run that is over, `datasets` labelled frames for training; `record` writes all that is on the wire into a
+file, `open_recording` reads it and `Replay` plays it to observers. Units are in the names of fields; directions are ICRS,
+positions GCRS.
 """
 
 try:
@@ -16,11 +18,17 @@ except ImportError as missing:
                       "apt install python3-zmq python3-protobuf python3-numpy, or pip install pyzmq protobuf numpy",
                       name=missing.name) from None
 
-from . import aio
+from . import aio, datasets
+from .dynamics import apparent_direction, pole_of, propagate
 from .errors import NoAnswer, Refused, RunFailed
+from .frame_images import Frame, frames, read_frame
 from .message import Message
 from .node import Node, Tick
-from .records import ArrayLike, Detection, FrameReport, Record, Truth, Wcs, WcsRefraction
+from .orbit_fit import Orbit, Triangulated, fit_orbit, triangulate
+from .recorder import Recorded, record
+from .recording import Recording, open_recording
+from .records import ArrayLike, Detection, FrameReport, Record, Track, Truth, Wcs, WcsRefraction
+from .replayer import Replay
 from .runs import Run, open_run
 from .sight import LineOfSight, line_of_sight
 from .subscription import Gap, Subscription, subscribe
@@ -28,8 +36,10 @@ from .tables import to_pandas
 from .world import (EarthOrientation, EnvironmentState, ObjectInfo, ObjectRoster, ObjectStates, SiteState,
                     SunTrackingPanel)
 
-__all__ = ["ArrayLike", "Detection", "EarthOrientation", "EnvironmentState", "FrameReport", "Gap", "LineOfSight",
-           "Message", "NoAnswer", "Node", "ObjectInfo", "ObjectRoster", "ObjectStates", "Record", "Refused", "Run",
-           "RunFailed", "SiteState", "Subscription", "SunTrackingPanel", "Tick", "Truth", "Wcs", "WcsRefraction",
-           "aio", "line_of_sight", "open_run", "subscribe", "to_pandas"]
+__all__ = ["ArrayLike", "Detection", "EarthOrientation", "EnvironmentState", "Frame", "FrameReport", "Gap",
+           "LineOfSight", "Message", "NoAnswer", "Node", "ObjectInfo", "ObjectRoster", "ObjectStates", "Orbit",
+           "Record", "Recorded", "Recording", "Refused", "Replay", "Run", "RunFailed", "SiteState", "Subscription",
+           "SunTrackingPanel", "Tick", "Track", "Triangulated", "Truth", "Wcs", "WcsRefraction", "aio", "apparent_direction",
+           "datasets", "fit_orbit", "frames", "line_of_sight", "open_recording", "open_run",
+           "pole_of", "propagate", "read_frame", "record", "subscribe", "to_pandas", "triangulate"]
 __version__ = "0.1.0"

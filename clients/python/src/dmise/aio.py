@@ -32,7 +32,8 @@ class AsyncSubscription:
         """Messages with content, until the run is over."""
         loop = asyncio.get_running_loop()
         with concurrent.futures.ThreadPoolExecutor(1, "dmise") as thread:  # sockets belong to one thread
-            source = self.subscription = await loop.run_in_executor(thread, self._begin)
+            source: subscription.Subscription = await loop.run_in_executor(thread, self._begin)
+            self.subscription = source
             try:
                 while not source.over:
                     message = await loop.run_in_executor(thread, source.receive, 1.0)

@@ -33,6 +33,8 @@ def _converter(field: Any) -> Callable[[Any, datetime.datetime | None], Any] | N
         if repeated:
             return lambda values, start: [record_of(value, start) for value in values]
         return record_of
+    if repeated and field.cpp_type == field.CPPTYPE_STRING:
+        return lambda values, start: list(values)
     if repeated:
         return lambda values, start: numbers_of(values)
     if field.enum_type is not None:

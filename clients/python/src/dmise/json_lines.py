@@ -1,4 +1,4 @@
-"""The lines of detections.jsonl, frames.jsonl and truth.jsonl as the records of the same messages.
+"""The lines of detections.jsonl, frames.jsonl, truth.jsonl and tracks.jsonl as the records of the same messages.
 
 Their names say degrees and arcseconds, for people; records have the names and units of the messages.
 """
@@ -20,7 +20,7 @@ _ARCSEC = math.pi / 648000.0
 # What the end of a name becomes, and the factor of the value.
 _UNITS = (("_arcsec_per_s", "_rad_per_s", _ARCSEC), ("_arcsec2", "_rad2", _ARCSEC ** 2),
           ("_arcsec", "_rad", _ARCSEC), ("_deg", "_rad", math.pi / 180.0),
-          ("_gcrs_m_per_s", "_m_per_s", 1.0), ("_gcrs_m", "_m", 1.0))
+          ("_gcrs_m_per_s", "_m_per_s", 1.0), ("_gcrs_m", "_m", 1.0), ("_gcrs", "", 1.0))
 _PLANES = ("TAN", "ARC", "ZEA", "STG", "ZPN")
 _LENSES = ("gnomonic", "equidistant", "equisolid", "stereographic", "kannala_brandt", "brown_conrady")
 
@@ -53,7 +53,8 @@ def record_of_line(values: dict[str, Any], cls: type[Record], start: datetime.da
 def _named(key: str, value: Any, fields: dict[str, Any]) -> Iterator[tuple[str, Any]]:
     """The fields of a record that a key of a line stands for, none for what only people read."""
     if key in fields:
-        yield key, numbers_of(value) if isinstance(value, list) else value
+        texts = fields[key].default_factory is list
+        yield key, numbers_of(value) if isinstance(value, list) and not texts else value
     elif key.endswith("_px") and isinstance(value, list):
         yield from zip((key[:-2] + "x_px", key[:-2] + "y_px"), value)
     for ending, name, factor in _UNITS:

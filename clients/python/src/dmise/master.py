@@ -32,11 +32,17 @@ class Master:
         except zmq.ZMQError as error:
             raise ValueError(f"{address}: {error}; an address is tcp://HOST:PORT") from None
         self.asked_at = -1e9  # monotonic
-        self.answered_at = time.monotonic()
+        self._unanswered_since: float | None = None
+
+    def silent_s(self) -> float:
+        """For how long a question has been unanswered [s]. Who does not ask, being busy with messages, hears no silence."""
+        return time.monotonic() - self._unanswered_since if self._unanswered_since is not None else 0.0
 
     def ask(self) -> None:
         """Asks without waiting; `answer` has what comes."""
         self.asked_at = time.monotonic()
+        if self._unanswered_since is None:
+            self._unanswered_since = self.asked_at
         self.socket.send(protocol.NodeMessage(hello=protocol.Hello()).SerializeToString(), zmq.DONTWAIT)
 
     def answer(self) -> Any:
@@ -47,7 +53,7 @@ class Master:
             except Exception:  # whatever a library makes of wrong bytes
                 continue
             if reply.HasField("endpoints"):
-                self.answered_at = time.monotonic()
+                self._unanswered_since = None
                 return reply.endpoints
         return None
 

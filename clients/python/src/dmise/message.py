@@ -66,7 +66,7 @@ class Message:
 
     @functools.cached_property
     def records(self) -> list[Any]:
-        """The records of the message: each detection of a DetectionSet, each truth of a TruthSet, else one or none."""
+        """The records of the message: each detection, truth or track of a set, else one or none."""
         body = self.body
         if body is None:
             return []

@@ -104,6 +104,44 @@ class Detection(Record):
         return self.utc(self.end2_time_ns)
 
 
+@dataclass(eq=False)
+class Track(Record):
+    """What is known of one object at a tick. `associated`: ids of the detections that it took at this tick."""
+    id: int = 0
+    status: Literal["tentative", "confirmed", "lost"] = "tentative"
+    time_ns: int = 0
+    position_m: Floats = field(default_factory=no_numbers)
+    velocity_m_per_s: Floats = field(default_factory=no_numbers)
+    covariance: Floats = field(default_factory=no_numbers)
+    drag_m2_per_kg: float = 0.0
+    drag_sigma_m2_per_kg: float = 0.0
+    srp_m2_per_kg: float = 0.0
+    srp_sigma_m2_per_kg: float = 0.0
+    catalogue_number: int = 0
+    name: str = ""
+    existence: float = 0.0
+    detections: int = 0
+    associated: list[str] = field(default_factory=list)
+    innovation_d2: float = 0.0
+    last_seen_ns: int = 0
+    magnitude: float = 0.0
+
+    @property
+    def time_utc(self) -> datetime.datetime:
+        return self.utc(self.time_ns)
+
+    @property
+    def last_seen_utc(self) -> datetime.datetime:
+        return self.utc(self.last_seen_ns)
+
+    @property
+    def covariance_matrix(self) -> Floats:
+        """6 x 6, of position and velocity."""
+        matrix = np.zeros((6, 6))
+        matrix[np.tril_indices(6)] = self.covariance
+        return matrix + np.tril(matrix, -1).T
+
+
 class _Exposure(Record):
     start_ns: int
     middle_ns: int

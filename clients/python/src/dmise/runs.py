@@ -9,7 +9,7 @@ from typing import Any
 
 from .convert import start_of
 from .json_lines import read_lines
-from .records import Detection, FrameReport, Truth
+from .records import Detection, FrameReport, Track, Truth
 from .tables import to_pandas
 
 
@@ -59,6 +59,11 @@ class Run:
     def truth(self) -> Records:
         """All truths, none if the scenario says `truth: false`."""
         return self._read("truth.jsonl", Truth)
+
+    @functools.cached_property
+    def tracks(self) -> Records:
+        """A Track for each tick at which one changed, none if the scenario has no `fusion`."""
+        return self._read("tracks.jsonl", Track)
 
     def images(self, sensor: str) -> Iterator[tuple[int, pathlib.Path]]:
         """(frame, its FITS file) of a sensor, in order."""

@@ -23,6 +23,11 @@ class Sequences:
     def __init__(self) -> None:
         self._next: dict[str, tuple[int, int]] = {}  # incarnation, sequence
 
+    def following(self, topic: str, incarnation: int) -> int:
+        """The number after the last that came of a publisher's process; 0: none came."""
+        known, following = self._next.get(topic, (0, 0))
+        return following if known == incarnation else 0
+
     def gap_before(self, message: Message) -> Gap | None:
         """What is missing before a message; nothing before the first of a topic, nor of another incarnation."""
         incarnation, following = self._next.get(message.topic, (0, 0))

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import collections
+import functools
 import logging
 import pathlib
 import threading
@@ -19,10 +20,12 @@ from .errors import NoAnswer, RunFailed
 from .master import OVER, Master, make_socket
 from .message import Message
 from .sequences import Gap, Sequences
+from .topics import is_wanted
 from .world import ObjectRoster
 
 log = logging.getLogger("dmise")
 ASK_EVERY_S, ASK_AT_START_EVERY_S = 1.0, 0.1
+SETTLED = (protocol.PHASE_RUNNING, *OVER)  # all publishers are known
 LAST_WORDS_S = 1.0  # messages may arrive later than the news of the end
 QUEUE = 100_000     # messages that wait for a slow reader, of each connection
 
@@ -52,6 +55,7 @@ class Subscription:
     def __init__(self, address: str, topics: tuple[str, ...], keys: keys_.Keys | None = None,
                  raise_on_failure: bool = True, answer_within_s: float = 3.0) -> None:
         self.topics = topics or ("",)
+        self._wanted = functools.partial(is_wanted, self.topics)
         self.gaps: list[Gap] = []
         self.refused = 0
         self.over = False
@@ -76,6 +80,10 @@ class Subscription:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+    def __del__(self) -> None:
+        if hasattr(self, "_clock") and not self.over:  # an iteration was ended early
+            self._release()
 
     def __iter__(self) -> Iterator[Any]:
         for message in self.messages():
@@ -102,8 +110,7 @@ class Subscription:
             if message.has_content:
                 waiting.setdefault(message.tick, []).append(message)
             through = self._complete.through()
-            for tick in sorted(t for t in waiting if t <= through):
-                yield tick, waiting.pop(tick)
+            yield from ((tick, waiting.pop(tick)) for tick in sorted(t for t in waiting if t <= through))
         yield from ((tick, waiting[tick]) for tick in sorted(waiting))
 
     def receive(self, within_s: float) -> Message | None:
@@ -114,7 +121,10 @@ class Subscription:
                 self._release()
             else:
                 self._pump(min(0.2, within_s))
-        return self._ready.popleft() if self._ready else None
+        message = self._ready.popleft() if self._ready else None
+        if message is not None:  # a topic is complete when whoever iterates has its messages
+            self._complete.heard(message)
+        return message
 
     def raise_failure(self) -> None:
         """Raises RunFailed if the run has failed and the subscription says so."""
@@ -138,23 +148,21 @@ class Subscription:
                 record.roster = self.roster
         return records
 
-    def _wanted(self, topic: str) -> bool:
-        return any(topic == wanted or topic.startswith(wanted) and wanted[-1:] in ("", "/") for wanted in self.topics)
-
     def _subscriber(self, peer: str, endpoint: str, topics: list[str]) -> zmq.Socket:
         socket = make_socket(self._context, zmq.SUB, resend.LONGEST_DATA_BYTES)
         socket.rcvhwm = QUEUE
         keys_.call(socket, self._keys, peer, endpoint)
         for topic in topics:
             socket.subscribe(topic)
-        self._sockets[endpoint] = socket
-        return socket
+        return self._sockets.setdefault(endpoint, socket)
 
     def _adopt(self, endpoints: Any) -> None:
         """Follows what the time-master says: where the data is, who publishes what, whether the run is over."""
         if endpoints.run_id != self.run.run_id:
             endpoints = type(endpoints)(phase=protocol.PHASE_FAILED, run_id=self.run.run_id,
                                         cause=f"another run is at {self._master.address}")
+        if self._over_at and endpoints.phase not in OVER:  # asked before the end
+            endpoints.phase, endpoints.cause = self.run.phase, self.run.cause
         self.run = endpoints
         if endpoints.observe_endpoint and endpoints.observe_endpoint != self._observed:
             if self._observed:
@@ -164,15 +172,12 @@ class Subscription:
             self._subscriber(keys_.BROKER, self._observed, list(self.topics))
         self._complete.expect(endpoints.publishers)
         for publisher in endpoints.publishers:
-            direct = [topic for topic in publisher.direct_topics if self._wanted_direct(topic)]
+            direct = [topic for topic in publisher.direct_topics if self._wanted(topic)]
             if direct and publisher.direct_endpoint not in self._sockets:
                 self._subscriber(publisher.name, publisher.direct_endpoint, direct)
             self._fetch_retained(publisher)
         if endpoints.phase in OVER and not self._over_at:
             self._over_at = time.monotonic()
-
-    def _wanted_direct(self, topic: str) -> bool:
-        return self._wanted(topic) and any(self.topics)
 
     def _fetch_retained(self, publisher: Any) -> None:
         if self.run.phase != protocol.PHASE_RUNNING:
@@ -197,11 +202,11 @@ class Subscription:
             else:
                 self._hear_data(socket)
         now = time.monotonic()
-        if now - self._master.asked_at > (ASK_EVERY_S if self._observed else ASK_AT_START_EVERY_S):
+        if now - self._master.asked_at > (ASK_EVERY_S if self.run.phase in SETTLED else ASK_AT_START_EVERY_S):
             self._master.ask()
         if self._over_at and (self._all_complete() or now - self._over_at > LAST_WORDS_S) and not self._ready:
             self._release()
-        elif now - self._master.answered_at > 10 * ASK_EVERY_S and not self._over_at:
+        elif self._master.silent_s() > 10 * ASK_EVERY_S and not self._over_at:
             self._release()
             raise NoAnswer(f"{self._master.address}: the time-master has been silent for {10 * ASK_EVERY_S:g} s")
 
@@ -222,6 +227,8 @@ class Subscription:
         for closed in grant.closed:
             self._complete.close(closed.topic, closed.from_tick)
         self.run.granted_tick = max(self.run.granted_tick, grant.tick)
+        if grant.phase != self.run.phase:
+            self._master.asked_at = -1e9  # there may be more publishers than were told
         if grant.phase in OVER and not self._over_at:
             self.run.phase, self.run.cause = grant.phase, grant.cause
             self._over_at = time.monotonic()
@@ -268,7 +275,7 @@ class Subscription:
     def _note(self, topic: str, first: int, last: int) -> None:
         if last >= first:
             self.gaps.append(Gap(topic, first, last))
-            log.warning("%s: %d messages are lost, from number %d on", topic, last - first + 1, first)
+            log.warning("%s: %d messages are lost, from number %d to %d", topic, last - first + 1, first, last)
 
     def _deliver(self, message: Message) -> None:
         if message.envelope.kind == protocol.KIND_OBJECT_ROSTER:
@@ -277,7 +284,6 @@ class Subscription:
                 return
             self._retained.add(key)
         message.start_utc_of_run = start_of(self.run.start_utc)
-        self._complete.heard(message)
         self._ready.append(message)
 
     def _refuse(self, reason: str) -> None:

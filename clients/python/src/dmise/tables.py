@@ -12,7 +12,8 @@ from .records import Record
 if TYPE_CHECKING:
     import pandas
 
-_AXES = {"sensor_position_m", "sensor_velocity_m_per_s", "refraction_offset_m"}
+_AXES = {"sensor_position_m", "sensor_velocity_m_per_s", "refraction_offset_m", "position_m",
+         "velocity_m_per_s"}
 
 
 def to_pandas(records: Iterable[Record]) -> "pandas.DataFrame":

@@ -1,0 +1,146 @@
+"""Labelled frames that `dmise dataset` made, for training.
+
+    for sample in dmise.datasets.open_dataset("out/dataset"):
+        print(sample.key, sample.image.shape, len(sample.objects))
+
+`FrameDataset` is a map-style Dataset of PyTorch; torch is not needed to import it.
+"""
+from __future__ import annotations
+
+import bisect
+import dataclasses
+import hashlib
+import io
+import itertools
+import json
+import pathlib
+import tarfile
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy
+
+from .records import ArrayLike
+
+
+def mask_of(segmentation: dict[str, Any]) -> ArrayLike:
+    """A mask, rows x columns bool, of COCO's compressed run lengths: {"size": [rows, columns], "counts": text}."""
+    runs: list[int] = []
+    value = shift = 0
+    for code in segmentation["counts"].encode():
+        bits = code - 48
+        value |= (bits & 0x1f) << shift
+        shift += 5
+        if not bits & 0x20:
+            if bits & 0x10:
+                value -= 1 << shift
+            runs.append(value + (runs[-2] if len(runs) > 2 else 0))
+            value = shift = 0
+    rows, columns = segmentation["size"]
+    flat = numpy.repeat(numpy.arange(len(runs)) % 2 == 1, runs)
+    return flat.reshape(columns, rows).T
+
+
+@dataclasses.dataclass(frozen=True)
+class Sample:
+    """One frame: counts and object numbers, rows x columns uint16, and its labels as docs/datasets.md has them."""
+
+    key: str
+    image: ArrayLike
+    mask: ArrayLike
+    labels: dict[str, Any]
+
+    @property
+    def objects(self) -> list[dict[str, Any]]:
+        """The objects with light in the frame; the k-th has the number k + 1 in `mask`."""
+        return list(self.labels["objects"])
+
+    def masks(self) -> list[ArrayLike]:
+        """Of each object its own mask, rows x columns bool; they may overlap."""
+        return [mask_of(found["segmentation"]) for found in self.objects]
+
+
+class Dataset:
+    """The frames of a data set, by number; may be passed to other processes."""
+
+    def __init__(self, directory: str | pathlib.Path) -> None:
+        self.directory = pathlib.Path(directory)
+        path = self.directory / "dataset.json"
+        try:
+            self.info: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+            self._ends = list(itertools.accumulate(shard["frames"] for shard in self.info["shards"]))
+        except OSError as error:
+            raise FileNotFoundError(f"{path}: {error.strerror}; is this the directory of a complete data set?") from None
+        except (ValueError, TypeError, KeyError) as error:
+            raise ValueError(f"{path}: not the manifest of a data set: {error}") from None
+        self._members: dict[int, list[dict[str, tuple[int, int]]]] = {}
+
+    def __len__(self) -> int:
+        return self._ends[-1] if self._ends else 0
+
+    def __iter__(self) -> Iterator[Sample]:
+        return (self[index] for index in range(len(self)))
+
+    def __getitem__(self, index: int) -> Sample:
+        if not -len(self) <= index < len(self):
+            raise IndexError(index)
+        index %= len(self)
+        shard = bisect.bisect_right(self._ends, index)
+        members = self._members_of(shard)[index - (self._ends[shard - 1] if shard else 0)]
+        with open(self._path(shard), "rb") as file:
+            def content(ending: str) -> bytes:
+                offset, size = members[ending]
+                file.seek(offset)
+                return file.read(size)
+
+            labels = json.loads(content("labels.json"))
+            return Sample(labels["key"], numpy.load(io.BytesIO(content("image.npy"))),
+                          numpy.load(io.BytesIO(content("mask.npy"))), labels)
+
+    def verify(self) -> None:
+        """Raises ValueError for a file that is not what the manifest says."""
+        for entry in [*self.info["shards"], self.info["coco"]]:
+            sha = hashlib.sha256()
+            with open(self.directory / entry["name"], "rb") as file:
+                while piece := file.read(1 << 20):
+                    sha.update(piece)
+            if sha.hexdigest() != entry["sha256"]:
+                raise ValueError(f"{self.directory / entry['name']}: its SHA-256 is not that of dataset.json")
+
+    def _path(self, shard: int) -> pathlib.Path:
+        return self.directory / self.info["shards"][shard]["name"]
+
+    def _members_of(self, shard: int) -> list[dict[str, tuple[int, int]]]:
+        """Places in the archive of each frame's files, by ending."""
+        if shard not in self._members:
+            frames: dict[str, dict[str, tuple[int, int]]] = {}
+            with tarfile.open(self._path(shard), "r:") as archive:
+                for member in archive:
+                    key, _, ending = member.name.partition(".")
+                    frames.setdefault(key, {})[ending] = (member.offset_data, member.size)
+            self._members[shard] = list(frames.values())
+        return self._members[shard]
+
+
+def open_dataset(directory: str | pathlib.Path) -> Dataset:
+    """The data set in a directory. Raises FileNotFoundError for one that is not complete."""
+    return Dataset(directory)
+
+
+def image_and_mask(sample: Sample) -> tuple[ArrayLike, ArrayLike]:
+    """Types that PyTorch has: 1 x rows x columns float32, rows x columns int64."""
+    return sample.image[None].astype("float32"), sample.mask.astype("int64")
+
+
+class FrameDataset:
+    """A map-style Dataset of PyTorch; `transform(sample)` makes of a `Sample` what a model takes."""
+
+    def __init__(self, directory: str | pathlib.Path, transform: Callable[[Sample], Any] | None = None) -> None:
+        self.samples = open_dataset(directory)
+        self.transform = transform or image_and_mask
+
+    def __len__(self) -> int:
+        return len(self.samples)
+
+    def __getitem__(self, index: int) -> Any:
+        return self.transform(self.samples[index])
