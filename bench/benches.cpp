@@ -6,6 +6,8 @@
 #include "bench/bench_effects.h"
 #include "bench/bench_figure5.h"
 #include "bench/bench_frame.h"
+#include "bench/bench_fusion.h"
+#include "bench/bench_fusion_tick.h"
 #include "bench/bench_interpolation.h"
 #include "bench/bench_network.h"
 #include "bench/bench_render.h"
@@ -29,6 +31,8 @@ std::vector<Bench> benches() {
       {"effects", "errors and times of planned frames over scenes drawn at random", bench_effects,
        add_effects_options},
       {"frame", "stages of a frame on one thread", bench_frame},
+      {"fusion", "orbits from directions: triangulation, filter, least squares; many sensors",
+       [](bool json) { return bench_fusion(json) | bench_fusion_tick(json); }},
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
       {"network", "number of sensor processes that keep up with real time, and their memory",
        bench_network, add_network_options},

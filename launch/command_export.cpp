@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 struct ExportOptions {
   std::string run, to, out, sensor;
   std::vector<std::string> catalogues;
-  bool truth = false, detections = false;
+  bool truth = false, detections = false, tracks = false;
 };
 
 const ExportFormat& format_named(const std::string& name) {
@@ -38,8 +38,10 @@ const ExportFormat& format_named(const std::string& name) {
 }
 
 ProductKind kind_of(const ExportOptions& options, const ExportFormat& format) {
-  if (!options.truth && !options.detections) return format.kinds.front();
-  const auto kind = options.truth ? ProductKind::truth : ProductKind::detections;
+  if (!options.truth && !options.detections && !options.tracks) return format.kinds.front();
+  const auto kind = options.truth    ? ProductKind::truth
+                    : options.tracks ? ProductKind::tracks
+                                     : ProductKind::detections;
   if (std::find(format.kinds.begin(), format.kinds.end(), kind) == format.kinds.end())
     throw ConfigError(std::string("--") + name_of(kind) + ": " + format.name + " holds only " +
                       name_of(format.kinds.front()));
@@ -96,6 +98,7 @@ void run_export(const ExportOptions& options) {
       read_products(options.run,
                     {.truth = kind == ProductKind::truth && !format.takes_elements,
                      .detections = kind == ProductKind::detections,
+                     .tracks = kind == ProductKind::tracks,
                      .sensor = options.sensor},
                     [&](double share, const std::string& file) {
                       progress.show_share(share, "export: " + printable(file));
@@ -136,6 +139,11 @@ void add_export_command(CLI::App& app) {
       ->add_flag("--detections", options->detections,
                  "what the sensors found, from detections.jsonl")
       ->excludes(truth);
+  command
+      ->add_flag("--tracks", options->tracks,
+                 "what the fusion node made of them, from tracks.jsonl")
+      ->excludes(truth)
+      ->excludes("--detections");
   command->add_option("--catalogue", options->catalogues,
                       "omm: files of element sets instead of those that the scenario names");
   command->callback([options] { run_export(*options); });

@@ -20,6 +20,7 @@ void add_explain_command(CLI::App& app);
 void add_run_command(CLI::App& app);
 void add_launch_command(CLI::App& app);
 void add_join_command(CLI::App& app);
+void add_dataset_command(CLI::App& app);
 void add_detect_command(CLI::App& app);
 void add_score_command(CLI::App& app);
 void add_export_command(CLI::App& app);

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   dmise::add_run_command(app);
   dmise::add_launch_command(app);
   dmise::add_join_command(app);
+  dmise::add_dataset_command(app);
   dmise::add_detect_command(app);
   dmise::add_score_command(app);
   dmise::add_export_command(app);

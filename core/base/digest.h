@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -6,5 +7,19 @@ namespace dmise {
 
 /// SHA-256 (FIPS 180-4) of `data`, 64 lower-case hexadecimal digits.
 std::string sha256_hex(std::string_view data);
+
+/// The same of data that come in pieces.
+class Sha256 {
+ public:
+  Sha256();
+  ~Sha256();
+  void update(std::string_view piece);
+  /// Call once, at the end.
+  std::string hex();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace dmise

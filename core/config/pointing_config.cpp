@@ -11,7 +11,8 @@ namespace {
 const Bounds any_angle = Bounds::between(-360.0, 360.0);
 const Bounds latitude = Bounds::between(-90.0, 90.0);
 const Bounds any_rate = Bounds::between(-60.0, 60.0);
-constexpr double least_sine = 1e-6;  // between boresight and up
+constexpr double least_sine = 1e-6;       // between boresight and up
+constexpr double most_offset_deg = 80.0;  // of a target's image from the boresight
 
 Vec<Body> read_axis(const YamlValue& value) {
   const auto v = value.numbers(3, Bounds::between(-1e9, 1e9));
@@ -128,6 +129,11 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
     PointTarget at{.object = printable(target->text()), .where = target->place()};
     if (const auto place = map.find("place"))
       at.geometric = place->choice({"apparent", "geometric"}) == "geometric";
+    if (const auto offset = map.find("offset_deg")) {
+      const auto xy = offset->numbers(2, Bounds::between(-most_offset_deg, most_offset_deg));
+      at.offset_x_deg = xy[0];
+      at.offset_y_deg = xy[1];
+    }
     sensor.pointing = at;
     natural = Tracking::target;
   } else if (body) {
@@ -138,8 +144,8 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
   } else {
     sensor.pointing = PointUp{};
   }
-  if (const auto place = map.find("place"); place && !target)
-    place->fail("goes with target", false);
+  for (const auto& of_target : {map.find("place"), map.find("offset_deg")})
+    if (of_target && !target) of_target->fail("goes with target", false);
   const bool moves = turn_rate_deg_per_s(sensor.pointing) > 0.0;
   sensor.tracking = moves || scan ? Tracking::moving : natural;
   if (const auto tracking = map.find("tracking")) {
@@ -183,7 +189,12 @@ struct PointingWriter {
   }
   void operator()(const PointTarget& p) const {
     json.begin_object().field("target", p.object);
-    json.field("place", p.geometric ? "geometric" : "apparent").end_object();
+    json.field("place", p.geometric ? "geometric" : "apparent");
+    if (p.offset_x_deg != 0.0 || p.offset_y_deg != 0.0) {
+      json.key("offset_deg").begin_array().value(p.offset_x_deg).value(p.offset_y_deg);
+      json.end_array();
+    }
+    json.end_object();
   }
   void operator()(const PointBody& p) const {
     json.begin_object().key("body_from_camera").begin_array();

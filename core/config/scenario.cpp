@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/base/error.h"
+#include "core/config/distribution.h"
 #include "core/config/interpolation_choice.h"
 #include "core/config/node_names.h"
 #include "core/config/output_config.h"
@@ -141,9 +142,15 @@ void read_network(const YamlValue& value, NetworkConfig& network) {
 }  // namespace
 
 Scenario load_scenario(const std::string& path) {
-  YamlMap map(YamlValue::load(path));
+  const YamlValue root = YamlValue::load(path);
+  refuse_distributions(root);
+  return read_scenario(root);
+}
+
+Scenario read_scenario(const YamlValue& root) {
+  YamlMap map(root);
   Scenario scenario;
-  scenario.path = path;
+  scenario.path = root.file();
   read_simulation(map.require("simulation"), scenario);
   if (const auto objects = map.find("objects")) {
     auto read = read_objects(*objects, parse_utc(scenario.start_utc));

@@ -59,6 +59,8 @@ struct PointSky {
 struct PointTarget {
   std::string object;      // catalogue number or name
   bool geometric = false;  // along the straight line, not the apparent direction
+  double offset_x_deg = 0.0, offset_y_deg = 0.0;  // of its image from the boresight, along columns
+                                                  // and rows
   std::string where = {};  // `file:line:column: sensors[0].pointing.target`, for messages
 };
 /// Fixed to the body of the platform.
@@ -181,8 +183,11 @@ struct Scenario {
 };
 
 /// Reads and checks a scenario. Throws `ConfigError` with `file:line:column: key: reason, got
-/// value`.
+/// value`, also for a value that is a distribution: see `ScenarioDraws`.
 Scenario load_scenario(const std::string& path);
+/// The same for one that is parsed.
+class YamlValue;
+Scenario read_scenario(const YamlValue& root);
 
 /// Canonical JSON of everything that determines the products: the same text gives the same bytes.
 std::string physics_json(const Scenario& scenario);

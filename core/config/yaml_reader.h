@@ -27,7 +27,7 @@ struct Bounds {
 };
 
 /// A value of a YAML file with its position: every error reads `file:line:column: key.path: reason,
-/// got value`.
+/// got value`. Copies are the same value.
 class YamlValue {
  public:
   /// Reads a whole file. Throws `ConfigError`, also for a duplicate key.
@@ -54,6 +54,12 @@ class YamlValue {
   std::vector<YamlValue> list() const;
   /// A list of `count` numbers.
   std::vector<double> numbers(std::size_t count, Bounds bounds = {}) const;
+
+  /// Replaces the value wherever it stands, also by aliases. Its place in the file stays.
+  void become(const std::string& scalar) { node_ = scalar; }
+  /// Replaces the value by another of the same file, with the place of that.
+  void become(const YamlValue& other) { node_ = other.node_; }
+  const YAML::Node& node() const { return node_; }
 
   [[noreturn]] void fail(const std::string& reason, bool show_value = true) const;
   /// Text of the error that `fail` throws: `file:line:column: key.path: reason, got value`.

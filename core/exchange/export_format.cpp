@@ -28,10 +28,11 @@ const std::vector<ExportFormat>& export_formats() {
        .kinds = {detections, truth},
        .files = one_file<tdm_text>},
       {.name = "oem",
-       .what = "CCSDS Orbit Ephemeris Message 2.0 (KVN): true states at mid exposure",
+       .what = "CCSDS Orbit Ephemeris Message 2.0 (KVN): true states at mid exposure, or confirmed "
+               "tracks with covariances",
        .file = "KIND.oem",
-       .kinds = {truth},
-       .files = one_file<truth_oem_text>},
+       .kinds = {truth, tracks},
+       .files = one_file<run_oem_text>},
       {.name = "omm",
        .what = "CCSDS Orbit Mean-elements Messages 2.0 (XML): element sets of the catalogues",
        .file = "objects.omm.xml",
@@ -63,7 +64,15 @@ const std::vector<ExportFormat>& export_formats() {
 }
 
 const char* name_of(ProductKind kind) {
-  return kind == ProductKind::truth ? "truth" : "detections";
+  switch (kind) {
+    case ProductKind::truth:
+      return "truth";
+    case ProductKind::tracks:
+      return "tracks";
+    case ProductKind::detections:
+      break;
+  }
+  return "detections";
 }
 
 void fail_empty(const RunProducts& run, const char* message, ProductKind kind) {

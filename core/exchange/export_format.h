@@ -11,7 +11,7 @@
 // this directory and a row of `export_formats`; docs/exchange.md states its conventions.
 namespace dmise {
 
-enum class ProductKind { detections, truth };
+enum class ProductKind { detections, truth, tracks };
 
 /// A file to be written.
 struct ExportedFile {
@@ -37,7 +37,7 @@ struct ExportFormat {
 
 const std::vector<ExportFormat>& export_formats();
 
-/// "detections" or "truth".
+/// "detections", "truth" or "tracks".
 const char* name_of(ProductKind kind);
 
 /// Throws `ConfigError` that `kind` of the run has nothing for `message`, "a TDM", which must not

@@ -80,4 +80,25 @@ std::string truth_oem_text(const ExportRequest& request) {
   return oem_text(run, ephemerides);
 }
 
+std::string track_oem_text(const ExportRequest& request) {
+  const RunProducts& run = request.run;
+  std::map<std::uint32_t, Ephemeris> objects;
+  for (const Track& t : run.tracks) {
+    if (t.status != TrackStatus::confirmed) continue;
+    const std::string track = "TRACK " + std::to_string(t.id);
+    Ephemeris& object = objects[t.id];
+    object.name = t.name.empty() ? track : t.name;
+    object.id = t.catalogue_number > 0 ? std::to_string(t.catalogue_number) : track;
+    object.states.push_back({t.time, t.position_m, t.velocity_m_per_s, t.covariance});
+  }
+  std::vector<Ephemeris> ephemerides;
+  for (auto& [id, object] : objects) ephemerides.push_back(std::move(object));
+  if (ephemerides.empty()) fail_empty(run, "an OEM", ProductKind::tracks);
+  return oem_text(run, ephemerides);
+}
+
+std::string run_oem_text(const ExportRequest& request) {
+  return request.kind == ProductKind::tracks ? track_oem_text(request) : truth_oem_text(request);
+}
+
 }  // namespace dmise

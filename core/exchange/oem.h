@@ -31,4 +31,10 @@ std::string oem_text(const RunProducts& run, const std::vector<Ephemeris>& ephem
 /// run of a version that did not write them.
 std::string truth_oem_text(const ExportRequest& request);
 
+/// States of confirmed tracks, with covariances, at the ticks at which they took detections.
+std::string track_oem_text(const ExportRequest& request);
+
+/// The one of these that is asked for.
+std::string run_oem_text(const ExportRequest& request);
+
 }  // namespace dmise

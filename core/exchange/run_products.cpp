@@ -133,6 +133,9 @@ RunProducts read_products(const std::string& directory, const WantedProducts& wa
               [&](const JsonRecord& line) {
                 if (is_wanted(line)) run.detections.push_back(detection_of(line));
               });
+  if (wanted.tracks)
+    for_lines(existing(directory, "tracks.jsonl", "the scenario has no fusion"), progress,
+              [&](const JsonRecord& line) { run.tracks.push_back(track_of(line)); });
   return run;
 }
 

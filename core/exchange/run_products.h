@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/products/detection.h"
+#include "core/products/track.h"
 #include "core/products/truth.h"
 #include "core/score/read_progress.h"
 #include "core/time/clock.h"
@@ -49,6 +50,7 @@ struct RunProducts {
   std::vector<RunFrame> frames;                // by time, sensor and index, as are
   std::vector<Truth> truths;                   // if they were asked for
   std::vector<Detection> detections;           // if they were asked for
+  std::vector<Track> tracks;                   // likewise; by time and id
   std::vector<std::string> catalogues;         // of element sets, as the scenario names them
   std::vector<std::vector<std::string>> only;  // of each: numbers or names; empty: all
 
@@ -63,7 +65,7 @@ struct RunProducts {
 
 /// What is read of a run.
 struct WantedProducts {
-  bool truth = false, detections = false;
+  bool truth = false, detections = false, tracks = false;
   std::string sensor;  // only of this one; empty: of all
 };
 

@@ -147,6 +147,29 @@ Truth truth_of(const JsonRecord& record) {
   return t;
 }
 
+Track track_of(const JsonRecord& record) {
+  Track t;
+  t.id = record.get<std::uint32_t>("id");
+  const auto status = record.get<std::string>("status");
+  bool known = false;
+  for (const TrackStatus s : {TrackStatus::tentative, TrackStatus::confirmed, TrackStatus::lost})
+    if (status == track_status_name(s)) t.status = s, known = true;
+  if (!known) record.fail("status", "must be tentative, confirmed or lost, got " + status);
+  t.time = record.time("time_ns");
+  const auto vector = [&](const char* key) {
+    const auto v = record.numbers<3>(key);
+    return Vec<Gcrs>{v[0], v[1], v[2]};
+  };
+  t.position_m = vector("position_gcrs_m");
+  t.velocity_m_per_s = vector("velocity_gcrs_m_per_s");
+  t.covariance = record.numbers<21>("covariance_gcrs");
+  t.catalogue_number = record.get<std::uint32_t>("catalogue_number");
+  t.name = record.get<std::string>("name");
+  t.detections = record.get<std::uint32_t>("detections");
+  t.existence = record.number("existence");
+  return t;
+}
+
 void for_line_texts(const std::string& path, const ReadProgress& progress,
                     const std::function<void(const std::string&, const std::string&)>& take) {
   const std::string text = read_text_file(path, std::size_t(1) << 36);

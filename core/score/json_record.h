@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/products/detection.h"
+#include "core/products/track.h"
 #include "core/products/truth.h"
 #include "core/score/read_progress.h"
 
@@ -63,6 +64,10 @@ Detection detection_of(const JsonRecord& record);
 /// A line of truth.jsonl. Its position and velocity are 0 in runs of versions that did not write
 /// them.
 Truth truth_of(const JsonRecord& record);
+
+/// What an export takes of a line of tracks.jsonl: id, status, state, covariance, and what of the
+/// catalogue it is.
+Track track_of(const JsonRecord& record);
 
 /// Calls `take(line, "FILE:LINE")` with each whole line of a file; a last line without its end was
 /// interrupted and is left out. Throws `Error` for a file that can't be read.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/products/detection.h"
+#include "core/products/track.h"
 #include "core/products/truth.h"
 #include "core/sim/state.h"
 
@@ -27,10 +28,22 @@ struct TruthSet {
   bool operator==(const TruthSet&) const = default;
 };
 
+/// Tracks that changed at one tick, by id: what began, took a detection or ended.
+struct TrackSet {
+  Tick tick = 0;
+  SimTime time;
+  std::string node;
+  std::uint32_t live = 0;          // tracks that have not ended
+  std::uint32_t unassociated = 0;  // detections of the tick that no track took
+  std::vector<Track> tracks;
+
+  bool operator==(const TrackSet&) const = default;
+};
+
 /// Everything that actors and evaluators exchange. To add a state: list it here, give it a message
 /// in proto/ and a pair of functions in nodes/wire.
 using State = std::variant<ObjectRoster, ObjectStates, EnvironmentState, FrameReport, DetectionSet,
-                           TruthSet, SiteState>;
+                           TruthSet, SiteState, TrackSet>;
 
 /// One state, published on a topic for a tick. A topic may carry none, one or several per tick.
 struct Message {
@@ -46,6 +59,7 @@ inline constexpr const char* environment_topic = "env/common";
 inline constexpr const char* site_prefix = "env/site/";  // the atmosphere above a ground sensor
 inline constexpr const char* frame_prefix = "frame/";
 inline constexpr const char* detection_prefix = "detection/";
+inline constexpr const char* track_prefix = "track/";  // and the name of the node
 inline constexpr const char* truth_prefix = "truth/";  // own endpoint, own security domain
 
 }  // namespace dmise

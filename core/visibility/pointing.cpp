@@ -58,8 +58,13 @@ struct Aim {
     return (*this)(std::get<PointHorizon>(p.start)) * enu_from_gcrs.inverse() *
            turned<Enu>(p.axis, -angle_rad) * enu_from_gcrs;
   }
-  Rotation<CameraFrame, Gcrs> operator()(const PointTarget&) const {
-    return at_direction(scene.towards_target, roll_rad());
+  Rotation<CameraFrame, Gcrs> operator()(const PointTarget& p) const {
+    const auto centred = at_direction(scene.towards_target, roll_rad());
+    const double x = std::tan(p.offset_x_deg * deg), y = std::tan(p.offset_y_deg * deg);
+    const double across = std::hypot(x, y);
+    if (!(across > 0.0)) return centred;
+    // The shortest turn of the axis z to (x, y, 1).
+    return turned<CameraFrame>({-y / across, x / across, 0.0}, std::atan(across)) * centred;
   }
 };
 

@@ -26,6 +26,7 @@ enum class MessageKind : std::uint8_t {
   detection_set = 7,
   truth_set = 8,
   site_state = 9,
+  track_set = 10,
   position = 100,  // sequence position of a topic, in an answer to a resend request
 };
 

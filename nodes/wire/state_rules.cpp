@@ -305,6 +305,35 @@ void check(const TruthSet& set) {
   }
 }
 
+void check(const Track& t) {
+  if (t.id == 0) refuse("id", "counts from 1");
+  if (t.catalogue_number > 999999999) refuse("catalogue_number", "has up to 9 digits");
+  name_text(t.name, "name");
+  for (const std::string& id : t.associated) name_text(id, "associated");
+  vector_within(t.position_m, distance_limit_m, "position_m");
+  vector_within(t.velocity_m_per_s, speed_limit_m_per_s, "velocity_m_per_s");
+  for (std::size_t row = 0, k = 0; row < 6; ++row)
+    for (std::size_t column = 0; column <= row; ++column, ++k) {
+      finite(t.covariance[k], "covariance");
+      if (row == column) not_negative(t.covariance[k], "covariance");
+    }
+  for (const double scale : {t.drag_m2_per_kg, t.srp_m2_per_kg}) finite(scale, "scales");
+  not_negative(t.drag_sigma_m2_per_kg, "drag_sigma_m2_per_kg");
+  not_negative(t.srp_sigma_m2_per_kg, "srp_sigma_m2_per_kg");
+  in_range(t.existence, 0, 1, "existence");
+  not_negative(t.innovation_d2, "innovation_d2");
+  finite(t.magnitude, "magnitude");
+}
+
+void check(const TrackSet& set) {
+  name_text(set.node, "node");
+  for (std::size_t i = 0; i < set.tracks.size(); ++i) {
+    check(set.tracks[i]);
+    if (set.tracks[i].time != set.time) refuse("time", "of another tick");
+    if (i > 0 && set.tracks[i].id <= set.tracks[i - 1].id) refuse("tracks", "must be by id");
+  }
+}
+
 // Topic, tick and time of a state.
 struct Place {
   std::string topic;
@@ -319,6 +348,7 @@ Place place(const SiteState& s) { return {site_prefix + s.sensor, &s.tick, &s.ti
 Place place(const FrameReport& report) { return {frame_prefix + report.sensor}; }
 Place place(const DetectionSet& set) { return {detection_prefix + set.sensor}; }
 Place place(const TruthSet& set) { return {truth_prefix + set.sensor}; }
+Place place(const TrackSet& set) { return {track_prefix + set.node, &set.tick, &set.time}; }
 
 }  // namespace
 

@@ -234,6 +234,9 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
                           .exposure_s = view.times().seconds(),
                           .idle_s = sensor.cadence_s - sensor.exposure_s};
   make_planes(settings.output, view, exposure, light, threads, frame.planes);
+  if (settings.object_light)
+    take_object_lights(view, times, light_sources, *optics, frame.truths, frame.planes.noise,
+                       threads, settings.object_light);
   expose(
       light, sensor.camera.detector, exposure, sensor.effects, threads, frame.counts, &frame.times,
       {.memory = &detector_memory, .flags = settings.output.saturation ? &frame.flags : nullptr});

@@ -13,6 +13,7 @@
 #include "core/time/clock.h"
 #include "sensors/pipeline/frame_planes.h"
 #include "sensors/pipeline/frame_times.h"
+#include "sensors/pipeline/object_light.h"
 #include "sensors/pipeline/object_shapes.h"
 #include "sensors/pipeline/star_layer.h"
 #include "sensors/pipeline/states_in_field.h"
@@ -53,6 +54,8 @@ struct PipelineSettings {
     std::shared_ptr<const ObjectShapes> shapes;
   };
   std::vector<Part> radiance_parts;
+  /// Takes the light of each object alone; needs the noise among the planes of `output`.
+  ObjectLightTaker object_light;
 };
 
 /// The chain of one sensor: states around an exposure -> stars, objects and sky at the focal plane

@@ -28,35 +28,43 @@ std::shared_ptr<const std::vector<OwnObject>> propagated_by_sensors(const Scenar
   return std::make_shared<const std::vector<OwnObject>>(scenario.own_objects);
 }
 
-std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,
-                                             const std::string& digest,
-                                             const std::string& directory,
-                                             std::shared_ptr<const StarMap> stars,
-                                             Threads& threads) {
+PipelineSettings sensor_settings(const Scenario& scenario, const std::string& name,
+                                 const std::string& digest) {
   const SensorConfig& sensor = sensor_named(scenario, name);
   std::vector<PipelineSettings::Part> parts;
   if (scenario.output.radiance_bands > 1)
     for (const Band& part : parts_of(sensor.camera.band, scenario.output.radiance_bands))
       parts.push_back(
           {part, std::make_shared<const ObjectShapes>(scenario.own_objects, part, sensor.effects)});
-  return std::make_unique<SensorEvaluator>(
-      PipelineSettings{.sensor = sensor,
-                       .clock = make_clock(scenario),
-                       .seed = scenario.seed,
-                       .digest = digest,
-                       .faintest_star_mag = scenario.faintest_star_mag,
-                       .star_truth = scenario.output.star_truth,
-                       .output = scenario.output,
-                       .shapes = std::make_shared<const ObjectShapes>(
-                           scenario.own_objects, sensor.camera.band, sensor.effects),
-                       .propagated = propagated_by_sensors(scenario),
-                       .radiance_parts = std::move(parts)},
-      RunGrid{.tick_length = scenario.tick,
-              .duration = scenario.duration,
-              .environment_every = sim_seconds(
-                  std::max(scenario.environment.common_every_s, scenario.environment.site_every_s)),
-              .interpolation = scenario.interpolation},
-      scenario.output, std::move(stars), directory + "/" + name, threads);
+  return {.sensor = sensor,
+          .clock = make_clock(scenario),
+          .seed = scenario.seed,
+          .digest = digest,
+          .faintest_star_mag = scenario.faintest_star_mag,
+          .star_truth = scenario.output.star_truth,
+          .output = scenario.output,
+          .shapes = std::make_shared<const ObjectShapes>(scenario.own_objects, sensor.camera.band,
+                                                         sensor.effects),
+          .propagated = propagated_by_sensors(scenario),
+          .radiance_parts = std::move(parts)};
+}
+
+RunGrid run_grid(const Scenario& scenario) {
+  return {.tick_length = scenario.tick,
+          .duration = scenario.duration,
+          .environment_every = sim_seconds(
+              std::max(scenario.environment.common_every_s, scenario.environment.site_every_s)),
+          .interpolation = scenario.interpolation};
+}
+
+std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,
+                                             const std::string& digest,
+                                             const std::string& directory,
+                                             std::shared_ptr<const StarMap> stars,
+                                             Threads& threads) {
+  return std::make_unique<SensorEvaluator>(sensor_settings(scenario, name, digest),
+                                           run_grid(scenario), scenario.output, std::move(stars),
+                                           directory + "/" + name, threads);
 }
 
 }  // namespace dmise

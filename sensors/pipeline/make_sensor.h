@@ -13,6 +13,11 @@ std::shared_ptr<const StarMap> load_stars(const Scenario& scenario);
 /// The scenario's own objects if its sensors propagate states; null if they take published ones.
 std::shared_ptr<const std::vector<OwnObject>> propagated_by_sensors(const Scenario& scenario);
 
+/// What all frames of the sensor `name` share. `digest` goes into its frames.
+PipelineSettings sensor_settings(const Scenario& scenario, const std::string& name,
+                                 const std::string& digest);
+RunGrid run_grid(const Scenario& scenario);
+
 /// The sensor `name` of the scenario. `digest` goes into its frames; `directory` is the run's, the
 /// sensor writes into its own below it.
 std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,

@@ -13,12 +13,17 @@ namespace dmise {
 SensorEvaluator::SensorEvaluator(const PipelineSettings& settings, const RunGrid& grid,
                                  const OutputConfig& output, std::shared_ptr<const StarMap> stars,
                                  std::string directory, Threads& threads)
+    : SensorEvaluator(settings, grid, std::move(stars), threads) {
+  writer_.emplace(std::move(directory), output, settings.clock);
+}
+
+SensorEvaluator::SensorEvaluator(const PipelineSettings& settings, const RunGrid& grid,
+                                 std::shared_ptr<const StarMap> stars, Threads& threads)
     : sensor_(settings.sensor),
       grid_(grid),
       last_frame_(frames_within(settings.sensor, grid.duration)),
       shapes_(settings.shapes),
       pipeline_(settings, std::move(stars), threads),
-      writer_(std::move(directory), output, settings.clock),
       world_(grid.interpolation, grid.last_tick()),
       propagated_(settings.propagated),
       clock_(settings.clock) {}
@@ -94,7 +99,7 @@ std::vector<Message> SensorEvaluator::resume(Tick tick, std::span<const Message>
   next_frame_ = tick == 0 ? 1 : frames_within(sensor_, {(tick - 1) * grid_.tick_length.ns}) + 1;
   next_frame_ = std::min(next_frame_, last_frame_ + 1);
   while (next_frame_ > 1 && ready_at(next_frame_ - 1) >= tick) --next_frame_;
-  detections_ = writer_.keep_frames(next_frame_ - 1);
+  if (writer_) detections_ = writer_->keep_frames(next_frame_ - 1);
   return {};
 }
 
@@ -109,7 +114,7 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
       break;
     }
     FrameProducts frame = pipeline_.run(exposure, world_, states_ ? &*states_ : nullptr);
-    writer_.write(frame);
+    if (writer_) writer_->write(frame);
     made_(frame);
     pipeline_.give_back(std::move(frame.counts));
     detections_ += static_cast<long>(frame.detections.size());

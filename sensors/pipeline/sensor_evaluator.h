@@ -26,6 +26,9 @@ class SensorEvaluator : public Evaluator {
  public:
   SensorEvaluator(const PipelineSettings& settings, const RunGrid& grid, const OutputConfig& output,
                   std::shared_ptr<const StarMap> stars, std::string directory, Threads& threads);
+  /// One that writes no files: `when_made` hears of its frames.
+  SensorEvaluator(const PipelineSettings& settings, const RunGrid& grid,
+                  std::shared_ptr<const StarMap> stars, Threads& threads);
 
   std::string name() const override { return sensor_.name; }
   std::vector<std::string> produces() const override;
@@ -64,7 +67,7 @@ class SensorEvaluator : public Evaluator {
   std::uint32_t last_frame_;
   std::shared_ptr<const ObjectShapes> shapes_;
   FramePipeline pipeline_;
-  ProductWriter writer_;
+  std::optional<ProductWriter> writer_;
   World world_;
   std::shared_ptr<const std::vector<OwnObject>> propagated_;  // null: takes published states
   Clock clock_;

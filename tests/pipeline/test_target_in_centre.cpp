@@ -223,6 +223,21 @@ TEST(TargetInCentre, Goes13At46DegThroughThePipelineWithEveryCamera) {
   }
 }
 
+// A plane camera images an angle t off its axis at f tan t from the principal point.
+TEST(TargetInCentre, AnOffsetMovesItAlongColumnsAndRows) {
+  test::Stage stage(
+      goes_scenario("geo-watch", "{target: GOES 13, offset_deg: [0.4, -0.25], roll_deg: 33}"), "",
+      goes_13);
+  const Optics& optics = stage.scenario.sensors[0].camera.optics;
+  const auto frame = stage.frame();
+  ASSERT_EQ(frame.truths.size(), 1u);
+  const double focal_px = optics.focal_length_m / optics.pixel_pitch_m;
+  EXPECT_NEAR(frame.truths[0].middle_x_px,
+              (optics.columns - 1) / 2.0 + focal_px * std::tan(0.4 * deg), tolerance_px);
+  EXPECT_NEAR(frame.truths[0].middle_y_px,
+              (optics.rows - 1) / 2.0 - focal_px * std::tan(0.25 * deg), tolerance_px);
+}
+
 // Light of a bright one, in counts.
 TEST(TargetInCentre, TheCentroidOfLightIsInTheMiddle) {
   std::vector<std::string> targets;

@@ -224,6 +224,26 @@ Truth truth(Numbers& n) {
   return t;
 }
 
+Track track(Numbers& n, std::uint32_t id, SimTime time) {
+  Track t;
+  t.id = id;
+  t.status = TrackStatus(id % 3);
+  t.time = time;
+  t.position_m = n.vec<Gcrs>(4e7), t.velocity_m_per_s = n.vec<Gcrs>(8e3);
+  for (double& c : t.covariance) c = n.in(0, 1e6);
+  t.drag_m2_per_kg = n.in(0, 1), t.drag_sigma_m2_per_kg = n.in(0, 1);
+  t.srp_m2_per_kg = n.in(0, 1), t.srp_sigma_m2_per_kg = n.in(0, 1);
+  t.catalogue_number = 44720;
+  t.name = "STARLINK-1008";
+  t.existence = n.in(0, 1);
+  t.detections = 12;
+  t.associated = {std::string(sensor) + "/3/0", "boston/3/7"};
+  t.innovation_d2 = n.in(0, 10);
+  t.last_seen = {std::int64_t(n.in(0, 1e11))};
+  t.magnitude = n.in(-1, 20);
+  return t;
+}
+
 }  // namespace
 
 std::vector<Example> examples(unsigned seed) {
@@ -232,6 +252,9 @@ std::vector<Example> examples(unsigned seed) {
   DetectionSet detections{.sensor = sensor, .frame = 3, .detections = {}};
   for (std::uint32_t i = 0; i < 4; ++i) detections.detections.push_back(detection(n, i));
   TruthSet truths{.sensor = sensor, .frame = 3, .truths = {truth(n), truth(n)}};
+  const SimTime time = example_run().time_of(tick);
+  TrackSet tracks{.tick = tick, .time = time, .node = "fusion-node", .live = 30, .unassociated = 4};
+  for (std::uint32_t id = 1; id < 5; ++id) tracks.tracks.push_back(track(n, id, time));
   const ObjectRoster objects = roster(n);
   return {{objects_topic, tick, objects},
           {objects_topic, tick, states(n, tick)},
@@ -241,6 +264,7 @@ std::vector<Example> examples(unsigned seed) {
           {std::string(detection_prefix) + sensor, tick, detections},
           {std::string(detection_prefix) + sensor, tick, DetectionSet{sensor, 4, {}}},
           {std::string(truth_prefix) + sensor, tick, truths},
+          {std::string(track_prefix) + "fusion-node", tick, tracks},
           {objects_topic, tick,
            ObjectStates{.tick = tick, .time = example_run().time_of(tick), .count = 0}},
           {roster_topic, tick, objects}};
@@ -267,7 +291,8 @@ Receiver receiver_of_examples() {
   for (const std::string& topic :
        {std::string(roster_topic), std::string(objects_topic), std::string(environment_topic),
         std::string(site_prefix) + sensor, std::string(frame_prefix) + sensor,
-        std::string(detection_prefix) + sensor, std::string(truth_prefix) + sensor})
+        std::string(detection_prefix) + sensor, std::string(truth_prefix) + sensor,
+        std::string(track_prefix) + "fusion-node"})
     receiver.allow(topic, "source", 1);
   return receiver;
 }

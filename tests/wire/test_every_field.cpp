@@ -7,10 +7,12 @@
 #include <memory>
 
 #include "core/detection/detection_json.h"
+#include "core/products/track_json.h"
 #include "dmise/v1/detection.pb.h"
 #include "dmise/v1/environment.pb.h"
 #include "dmise/v1/frame.pb.h"
 #include "dmise/v1/state.pb.h"
+#include "dmise/v1/track.pb.h"
 #include "nodes/wire/codecs.h"
 #include "tests/wire/examples.h"
 
@@ -128,6 +130,7 @@ TEST(EveryField, OfAMessageIsDecoded) {
   every_field_is_decoded<v1::FrameReport, FrameReport>(alone(decode_report));
   every_field_is_decoded<v1::DetectionSet, DetectionSet>(alone(decode_detections));
   every_field_is_decoded<v1::TruthSet, TruthSet>(alone(decode_truths));
+  every_field_is_decoded<v1::TrackSet, TrackSet>(alone(decode_tracks));
 }
 
 /// Fails for each field of `M` that makes no difference to the JSON line of what is decoded. The
@@ -189,6 +192,17 @@ TEST(EveryField, OfWhatIsPublishedIsInItsJsonLine) {
         return s.sensor + std::to_string(s.frame) + to_json(s.truths.at(0), utc);
       },
       truths);
+
+  auto tracks = parse<v1::TrackSet>(payload(TrackSet{}));
+  tracks.mutable_tracks()->DeleteSubrange(1, tracks.tracks_size() - 1);
+  every_field_is_in_json<v1::TrackSet, TrackSet>(
+      decode_tracks,
+      [&](const TrackSet& s) {
+        return s.node + std::to_string(s.tick) + std::to_string(s.time.ns) +
+               std::to_string(s.live) + std::to_string(s.unassociated) +
+               to_json(s.tracks.at(0), utc);
+      },
+      tracks);
 }
 
 /// Fails for each field that no example sets to something else than its default: the codec may
@@ -231,6 +245,9 @@ TEST(EveryField, IsEncoded) {
           break;
         case MessageKind::truth_set:
           m = std::make_unique<v1::TruthSet>();
+          break;
+        case MessageKind::track_set:
+          m = std::make_unique<v1::TrackSet>();
           break;
         default:
           FAIL() << "a kind that this test does not know";

@@ -1,0 +1,116 @@
+#include "core/config/scenario_draws.h"
+
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/config/yaml_limits.h"
+
+namespace dmise {
+namespace {
+
+/// Calls `change(value, key)` for each distribution within `value`, in the order of the file, until
+/// it is none. `key` is the path, and for a distribution that another chose "path/1".
+template <class Change>
+void for_distributions(YamlValue value, const Change& change) {
+  for (int level = 0; Distribution::is(value.node()); ++level)
+    change(value, value.path() + (level > 0 ? "/" + std::to_string(level) : ""));
+  if (value.is_map()) {
+    YamlMap map(value);
+    for (const auto& key : map.keys()) for_distributions(map.require(key), change);
+  } else if (value.is_list()) {
+    for (const auto& item : value.list()) for_distributions(item, change);
+  }
+}
+
+bool is_number(const YamlValue& value) {
+  try {
+    value.number();
+    return true;
+  } catch (const ConfigError&) {
+    return false;
+  }
+}
+
+/// Checks the form of every distribution, also of those in choices that are not taken.
+void check_forms(const YamlValue& value) {
+  if (Distribution::is(value.node())) {
+    for (const auto& choice : Distribution(value).choices()) check_forms(choice);
+  } else if (value.is_map()) {
+    YamlMap map(value);
+    for (const auto& key : map.keys()) check_forms(map.require(key));
+  } else if (value.is_list()) {
+    for (const auto& item : value.list()) check_forms(item);
+  }
+}
+
+}  // namespace
+
+ScenarioDraws::ScenarioDraws(const std::string& path)
+    : path_(path), text_(read_text_file(path, YamlLimits{}.bytes)) {
+  check_forms(root());
+}
+
+YamlValue ScenarioDraws::root() const { return YamlValue::parse(text_, path_); }
+
+YamlValue ScenarioDraws::resolved(const Choose& choose, std::vector<DrawnValue>* drawn) const {
+  const YamlValue tree = root();
+  for_distributions(tree, [&](YamlValue& value, const std::string& key) {
+    const Distribution distribution(value);
+    const Distribution::Value taken = choose(distribution, key);
+    if (taken.choice < 0) {
+      value.become(taken.scalar);
+    } else {
+      value.become(distribution.choices()[std::size_t(taken.choice)]);
+    }
+    if (!drawn) return;
+    if (value.is_scalar())
+      drawn->push_back({value.path(), value.node().Scalar(), is_number(value)});
+    else
+      drawn->push_back({value.path() + ".one_of", std::to_string(taken.choice), true});
+  });
+  return tree;
+}
+
+DrawnScenario ScenarioDraws::draw(std::uint64_t seed) const {
+  DrawnScenario result;
+  try {
+    const YamlValue tree = resolved(
+        [seed](const Distribution& from, const std::string& key) {
+          return from.draw(rng_key(seed, "dataset", 0, key));
+        },
+        &result.drawn);
+    result.scenario = read_scenario(tree);
+  } catch (const ConfigError& e) {
+    throw ConfigError(std::string(e.what()) + " (as drawn for seed " + std::to_string(seed) + ")");
+  }
+  result.scenario.seed = seed;
+  return result;
+}
+
+void ScenarioDraws::check_ends() const { check_with({}, {}); }
+
+void ScenarioDraws::check_with(const std::vector<Fixed>& fixed, std::set<std::string> known) const {
+  std::vector<std::pair<std::string, Distribution>> met;  // for the first time
+  const YamlValue tree = resolved([&](const Distribution& from, const std::string& key) {
+    if (known.insert(from.value().where() + " " + key).second) met.emplace_back(key, from);
+    for (const Fixed& f : fixed)
+      if (f.key == key) return f.value;
+    return from.middle();
+  });
+  try {
+    read_scenario(tree);
+  } catch (const ConfigError& e) {
+    throw ConfigError(std::string(e.what()) + (fixed.empty()
+                                                   ? " (each distribution in its middle)"
+                                                   : " (" + fixed.back().value.what + ")"));
+  }
+  for (const auto& [key, distribution] : met)
+    for (const auto& end : distribution.ends()) {
+      auto next = fixed;
+      next.push_back({key, end});
+      check_with(next, known);
+    }
+}
+
+}  // namespace dmise

@@ -1,0 +1,56 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/config/distribution.h"
+#include "core/config/scenario.h"
+
+namespace dmise {
+
+/// A value that was drawn for one seed.
+struct DrawnValue {
+  std::string path;  // "sensors[0].exposure_s"; with ".one_of" for the number of a choice, from 0
+  std::string text;
+  bool is_number = false;
+};
+
+/// A scenario for one seed.
+struct DrawnScenario {
+  Scenario scenario;
+  std::vector<DrawnValue> drawn;  // as they stand in the file
+};
+
+/// A scenario with distributions in it. What is drawn depends on the seed and on the path of the
+/// key alone; a value that an alias repeats is drawn once.
+class ScenarioDraws {
+ public:
+  /// Reads a file. Throws `ConfigError` with the place of a distribution that is not well-formed.
+  explicit ScenarioDraws(const std::string& path);
+
+  const std::string& text() const { return text_; }
+  /// Draws all values and reads the scenario. Throws `ConfigError` "...: seed N".
+  DrawnScenario draw(std::uint64_t seed) const;
+  /// Reads the scenario with each distribution at its ends and the others in the middle. Throws
+  /// `ConfigError` with the value that does not do, and the end that it is.
+  void check_ends() const;
+
+ private:
+  using Choose = std::function<Distribution::Value(const Distribution&, const std::string& key)>;
+
+  struct Fixed {
+    std::string key;
+    Distribution::Value value;
+  };
+
+  YamlValue root() const;
+  /// Distributions that are not `known` are new: in a choice that is taken now.
+  void check_with(const std::vector<Fixed>& fixed, std::set<std::string> known) const;
+  YamlValue resolved(const Choose& choose, std::vector<DrawnValue>* drawn = nullptr) const;
+
+  std::string path_, text_;
+};
+
+}  // namespace dmise

@@ -1,0 +1,155 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core/base/units.h"
+#include "core/fusion/assignment.h"
+#include "core/fusion/fusion_scene.h"
+#include "core/fusion/sky_cells.h"
+
+namespace dmise {
+namespace {
+
+constexpr double sigmas = 5.0;              // of the coarse search
+constexpr double largest_radius_rad = 0.2;  // tracks that are known worse are not looked for
+constexpr double least_radius_rad = 1e-4;
+constexpr double earth_m = 6.35e6;
+constexpr double edge_px = 4.0;             // within which a source may be missed
+constexpr double least_looked = 0.05;       // probability of detection that makes a look
+constexpr double certain_sigma_rad = 0.01;  // of a place that can be missed
+
+bool behind_earth(const Vec<Gcrs>& sensor_m, const Vec<Gcrs>& direction, double range_m) {
+  const double along = -dot(sensor_m, direction);
+  if (along <= 0 || along >= range_m) return false;
+  return norm(sensor_m + direction * along) < earth_m;
+}
+
+/// Where light left that arrives `dt_s` after a state.
+Vec<Gcrs> moved(const Vec<Gcrs>& r, const Vec<Gcrs>& v, double dt_s) {
+  const double r2 = dot(r, r);
+  return r + v * dt_s - r * (earth_gm_m3_per_s2 / (r2 * std::sqrt(r2)) * dt_s * dt_s / 2);
+}
+
+}  // namespace
+
+std::vector<FusionBody::Candidate> FusionBody::candidates(
+    Scene& scene, const SensorFrame& frame, std::span<const std::uint64_t> inside) const {
+  std::vector<Candidate> out;
+  const double dt_s = (frame.time - scene.time).seconds();
+  double seen_sigma = 0;
+  for (const SeenSource& s : frame.sources)
+    seen_sigma =
+        std::max({seen_sigma, s.observation.covariance_rad2[0], s.observation.covariance_rad2[2]});
+  seen_sigma = std::sqrt(seen_sigma);
+  const double cos_field = std::cos(std::min(pi, frame.half_angle_rad + largest_radius_rad));
+  const auto add = [&](Candidate candidate, const Vec<Gcrs>& r, const Vec<Gcrs>& v,
+                       double sigma_m) {
+    Vec<Gcrs> line = moved(r, v, dt_s) - frame.sensor_m;
+    line = moved(r, v, dt_s - norm(line) / speed_of_light_m_per_s) - frame.sensor_m;
+    candidate.range_m = norm(line);
+    if (candidate.range_m < 1.0) return;
+    candidate.direction = line / candidate.range_m;
+    if (dot(candidate.direction, frame.axis) < cos_field) return;
+    candidate.sigma_rad = sigma_m / candidate.range_m;
+    candidate.radius_rad = sigmas * (candidate.sigma_rad + seen_sigma) + least_radius_rad;
+    if (candidate.radius_rad > largest_radius_rad ||
+        behind_earth(frame.sensor_m, candidate.direction, candidate.range_m))
+      return;
+    out.push_back(candidate);
+  };
+  for (LiveTrack* track : scene.placed)
+    add({.track = track}, track->rough.position_m, track->rough.velocity_m_per_s,
+        track->rough_sigma_m(settings_.acceleration_noise_m2_per_s3));
+  for (std::size_t word = 0; word < inside.size(); ++word)
+    for (std::uint64_t bits = inside[word]; bits != 0; bits &= bits - 1) {
+      const std::size_t i = word * 64 + std::size_t(std::countr_zero(bits));
+      if (track_of_[i]) continue;
+      add({.object = i}, catalogue_.position_m(i), catalogue_.velocity_m_per_s(i),
+          catalogue_.sigma_m(i));
+    }
+  return out;
+}
+
+PredictedDirection FusionBody::predicted(const Candidate& candidate, const SensorFrame& frame,
+                                         const AngleObservation& observation) const {
+  if (!candidate.track)
+    return predict_direction(catalogue_.estimate(candidate.object), frame.sensor_m,
+                             observation.time);
+  const auto out = candidate.track->filter.predict(observation.time, frame.sensor_m);
+  if (out) return *out;
+  return {};  // of no range: nothing is there
+}
+
+void FusionBody::associate(Scene& scene, const SensorFrame& frame,
+                           std::span<const std::uint64_t> inside) {
+  std::vector<Candidate> all = candidates(scene, frame, inside);
+  SkyCells cells(frame.axis, std::min(pi, frame.half_angle_rad + largest_radius_rad));
+  for (std::size_t k = 0; k < all.size(); ++k)
+    cells.add(std::uint32_t(k), all[k].direction, all[k].radius_rad);
+  cells.close();
+
+  const double false_per_sr = settings_.false_alarms_per_frame / frame.solid_angle_sr();
+  const double p = settings_.detection_probability;
+  const double alone = 2 * std::log(false_per_sr * (1 - p) / p);
+  std::vector<Pairing> pairs;
+  std::vector<std::pair<SimTime, PredictedDirection>> known(all.size());
+  std::vector<signed char> lit(all.size(), -1);
+  const auto is_lit = [&](std::size_t k) {
+    if (lit[k] < 0) lit[k] = scene.sunlit(frame.sensor_m + all[k].direction * all[k].range_m) > 0;
+    return lit[k] > 0;
+  };
+  for (std::size_t row = 0; row < frame.sources.size(); ++row) {
+    const AngleObservation& seen = frame.sources[row].observation;
+    for (const std::uint32_t k : cells.near(seen.direction)) {
+      if (angle_rad(seen.direction, all[k].direction) > all[k].radius_rad || !is_lit(k)) continue;
+      auto& [time, direction] = known[k];
+      if (direction.range_m == 0 || time != seen.time) {
+        direction = predicted(all[k], frame, seen);
+        time = seen.time;
+      }
+      if (direction.range_m == 0) continue;
+      // The line of sight begins beside the sensor.
+      PredictedDirection from_line = direction;
+      from_line.direction =
+          unit(direction.direction * direction.range_m - (seen.sensor_m - frame.sensor_m));
+      const Innovation found = innovation_of(from_line, seen);
+      if (!(found.d2 < settings_.gate_d2)) continue;
+      const double spread = std::log((2 * pi) * (2 * pi) * found.covariance_rad2.determinant());
+      pairs.push_back({row, k, found.d2 + spread + alone});
+    }
+  }
+  const std::vector<std::size_t> columns = assign(frame.sources.size(), all.size(), pairs);
+
+  std::vector<bool> found(all.size(), false);
+  for (std::size_t row = 0; row < columns.size(); ++row) {
+    const SeenSource& source = frame.sources[row];
+    LiveTrack* track = nullptr;
+    if (columns[row] != unassigned) {
+      Candidate& candidate = all[columns[row]];
+      const bool fresh = !candidate.track;
+      track = fresh ? begin_catalogued(candidate.object, source.observation.time) : candidate.track;
+      if (track && track->take(source.observation, source.magnitude, p, false_per_sr)) {
+        found[columns[row]] = true;
+        if (track->place_roughly(forces_, scene.time) && fresh) scene.placed.push_back(track);
+      } else {
+        if (track && fresh) {  // the filter does not take what it began with
+          track_of_[candidate.object] = nullptr;
+          tracks_.pop_back();
+          --next_id_;
+        }
+        track = nullptr;
+      }
+    }
+    if (!track) scene.loose.push_back({source, false_per_sr});
+  }
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Candidate& c = all[k];
+    if (found[k] || !c.track || c.sigma_rad > certain_sigma_rad || !is_lit(k)) continue;
+    if (!frame.shows(c.direction, edge_px)) continue;
+    const double looked = frame.detection_probability(c.track->magnitude(c.range_m), p);
+    if (looked > least_looked) c.track->miss(looked);
+  }
+}
+
+}  // namespace dmise

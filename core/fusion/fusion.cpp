@@ -1,0 +1,186 @@
+#include "core/fusion/fusion.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/fusion/fusion_scene.h"
+
+namespace dmise {
+namespace {
+
+constexpr double together_s = 2.0;       // exposures that share a prediction of the catalogue
+constexpr double prior_before_s = 60.0;  // that late detections may precede the first
+constexpr double same_gate_d2 = 30.0;    // of two states of one object, 3 degrees of freedom
+constexpr double gone = 0.02;            // probability of existence at which a track ends
+constexpr double certain = 0.99;         // and with which it may be confirmed
+
+FilterSettings filter_settings(const FusionSettings& s) {
+  FilterSettings out;
+  out.acceleration_noise_m2_per_s3 = s.acceleration_noise_m2_per_s3;
+  out.kept = 24;
+  return out;
+}
+
+}  // namespace
+
+FusionBody::FusionBody(std::vector<MeanElements> catalogue, const Clock& clock, SimTime reference,
+                       const FusionSettings& settings)
+    : clock_(clock),
+      settings_(settings),
+      forces_(clock, reference),
+      filter_(filter_settings(settings)),
+      catalogue_(std::move(catalogue), clock, settings),
+      start_(forces_, settings),
+      track_of_(catalogue_.size(), nullptr) {}
+
+FusionTick FusionBody::step(SimTime time, std::vector<SensorFrame> frames) {
+  std::ranges::sort(frames, [](const SensorFrame& a, const SensorFrame& b) {
+    return std::tie(a.time, a.sensor, a.frame) < std::tie(b.time, b.sensor, b.frame);
+  });
+  std::vector<LooseSource> loose;
+  for (std::size_t begin = 0, end = 0; begin < frames.size(); begin = end) {
+    while (end < frames.size() && (frames[end].time - frames[begin].time).seconds() <= together_s)
+      ++end;
+    const std::span<const SensorFrame> group{frames.data() + begin, end - begin};
+    catalogue_.move(group[group.size() / 2].time);
+    Scene scene(clock_, catalogue_);
+    for (const auto& track : tracks_)
+      if (track->place_roughly(forces_, scene.time)) scene.placed.push_back(track.get());
+    const std::size_t words = cone_words(catalogue_.size());
+    const auto inside = scene.objects_in(group, catalogue_, settings_);
+    for (std::size_t k = 0; k < group.size(); ++k)
+      associate(scene, group[k], {inside.data() + k * words, words});
+    loose.insert(loose.end(), scene.loose.begin(), scene.loose.end());
+  }
+  begin_unknown(loose);
+  age(time);
+
+  FusionTick out;
+  std::uint32_t taken = 0, sources = 0;
+  for (const SensorFrame& frame : frames) sources += std::uint32_t(frame.sources.size());
+  for (const auto& track : tracks_) {
+    if (track->status != TrackStatus::lost) ++out.live;
+    if (!track->changed) continue;
+    Track& told = out.tracks.emplace_back(published(*track, time));
+    if (track->object) {
+      told.catalogue_number = catalogue_.elements(*track->object).catalogue_number;
+      told.name = catalogue_.elements(*track->object).name;
+    }
+    track->associated.clear();
+    track->changed = false;
+  }
+  for (const LooseSource& s : loose)
+    taken += std::uint32_t(std::ranges::any_of(out.tracks, [&](const Track& t) {
+      return std::ranges::find(t.associated, s.source.observation.detection_id) !=
+             t.associated.end();
+    }));
+  out.unassociated = std::uint32_t(loose.size()) - taken;
+  std::erase_if(tracks_, [](const auto& t) { return t->status == TrackStatus::lost; });
+  return out;
+}
+
+LiveTrack* FusionBody::begin_catalogued(std::size_t object, SimTime seen) {
+  auto prior = propagate(forces_, catalogue_.estimate(object), seen - sim_seconds(prior_before_s),
+                         0.0, {.position_tolerance_m = 1e-2});
+  if (!prior || !is_sane(*prior)) return nullptr;
+  tracks_.push_back(
+      std::make_unique<LiveTrack>(next_id_++, OrbitFilter(forces_, *prior, filter_), object));
+  track_of_[object] = tracks_.back().get();
+  return tracks_.back().get();
+}
+
+bool FusionBody::is_known(const OrbitEstimate& estimate) const {
+  for (const auto& track : tracks_) {
+    const auto other =
+        track->filter.estimate_at(std::max(estimate.state.time, track->filter.time()));
+    if (!other) continue;
+    const auto here =
+        propagate(forces_, estimate, other->state.time, 0.0, {.position_tolerance_m = 1e-2});
+    if (!here) continue;
+    const Eigen::Vector3d apart = eigen_of(here->state.position_m - other->state.position_m);
+    const Eigen::Matrix3d both =
+        here->covariance.topLeftCorner<3, 3>() + other->covariance.topLeftCorner<3, 3>();
+    if (apart.dot(both.ldlt().solve(apart)) < same_gate_d2) return true;
+  }
+  return false;
+}
+
+void FusionBody::take_rest(LiveTrack& track, const std::vector<LooseSource>& loose,
+                           std::vector<std::string>& taken) {
+  for (const LooseSource& s : loose) {
+    const AngleObservation& seen = s.source.observation;
+    if (seen.time < track.filter.time() - sim_seconds(settings_.start_window_s) ||
+        std::ranges::find(taken, seen.detection_id) != taken.end())
+      continue;
+    const auto found = track.filter.innovation(seen);
+    if (!found || found->d2 > settings_.gate_d2) continue;
+    if (track.take(seen, s.source.magnitude, settings_.detection_probability, s.false_per_sr))
+      taken.push_back(seen.detection_id);
+  }
+}
+
+void FusionBody::begin_unknown(const std::vector<LooseSource>& loose) {
+  for (const StartedOrbit& orbit : start_.add(loose)) {
+    const auto is_loose = [&](const LooseSource& s) {
+      return std::ranges::any_of(start_.loose(), [&](const LooseSource& other) {
+        return other.source.observation.detection_id == s.source.observation.detection_id;
+      });
+    };
+    if (!std::ranges::all_of(orbit.sources, is_loose)) continue;  // another took it
+    if (is_known(orbit.fit.estimate)) continue;
+    auto track = std::make_unique<LiveTrack>(
+        next_id_, OrbitFilter(forces_, orbit.fit.estimate, filter_), std::nullopt);
+    std::vector<std::string> taken;
+    for (const LooseSource& s : orbit.sources) {
+      const AngleObservation& seen = s.source.observation;
+      taken.push_back(seen.detection_id);
+      track->associated.push_back(seen.detection_id);
+      track->last_seen = std::max(track->last_seen, seen.time);
+      track->brightness_sum +=
+          s.source.magnitude -
+          5 * std::log10(norm(orbit.fit.estimate.state.position_m - seen.sensor_m) / 1e6);
+      ++track->detections;
+    }
+    take_rest(*track, start_.loose(), taken);
+    start_.forget(taken);
+    tracks_.push_back(std::move(track));
+    ++next_id_;
+  }
+}
+
+void FusionBody::age(SimTime time) {
+  for (const auto& track : tracks_) {
+    const double unseen_s = (time - track->last_seen).seconds();
+    const bool tentative = track->status == TrackStatus::tentative;
+    const int wanted = track->object ? settings_.confirm_catalogued : settings_.confirm_unknown;
+    if (track->existence() < gone ||
+        unseen_s > (tentative ? settings_.tentative_s : settings_.lost_after_s)) {
+      track->status = TrackStatus::lost;
+      track->changed = true;
+      if (track->object) track_of_[*track->object] = nullptr;
+    } else if (tentative && track->detections >= wanted && track->existence() > certain) {
+      track->status = TrackStatus::confirmed;
+      track->changed = true;
+    }
+  }
+}
+
+Fusion::Fusion(std::vector<MeanElements> catalogue, const Clock& clock, SimTime reference,
+               const FusionSettings& settings)
+    : body_(std::make_unique<FusionBody>(std::move(catalogue), clock, reference, settings)) {}
+
+Fusion::~Fusion() = default;
+
+FusionTick Fusion::step(SimTime time, std::vector<SensorFrame> frames) {
+  return body_->step(time, std::move(frames));
+}
+
+std::vector<double> Fusion::existences() const {
+  std::vector<double> out;
+  for (const auto& track : body_->tracks()) out.push_back(track->existence());
+  return out;
+}
+
+}  // namespace dmise

@@ -1,0 +1,38 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "core/fusion/fusion_body.h"
+#include "core/orbit/cone_test.h"
+#include "core/sky/shadow.h"
+
+namespace dmise {
+
+/// What may be seen by a frame: a track, or a catalogued object without one.
+struct FusionBody::Candidate {
+  LiveTrack* track = nullptr;
+  std::size_t object = 0;  // without a track
+  Vec<Gcrs> direction;     // about, unit
+  double range_m = 0.0;    // about
+  double radius_rad = 0.0;
+  double sigma_rad = 0.0;
+};
+
+/// What frames of about one time share.
+struct FusionBody::Scene {
+  Scene(const Clock& clock, const CataloguePrediction& catalogue);
+
+  /// For each frame a row of bits: catalogued objects that may be in its field.
+  std::vector<std::uint64_t> objects_in(std::span<const SensorFrame> frames,
+                                        const CataloguePrediction& catalogue,
+                                        const FusionSettings& settings) const;
+  /// Fraction of the Sun's disc that shines on a place.
+  double sunlit(const Vec<Gcrs>& position_m) const;
+
+  SimTime time;
+  EarthShadow shadow;
+  std::vector<LiveTrack*> placed;  // tracks with a rough place
+  std::vector<LooseSource> loose;  // what no track took
+};
+
+}  // namespace dmise

@@ -1,0 +1,24 @@
+#pragma once
+#include <array>
+
+namespace dmise {
+
+/// What a fusion takes as known. Defaults are those of the scenario's key `fusion`.
+struct FusionSettings {
+  // Standard deviations of catalogued objects about their element sets, radial, along the motion
+  // and across the orbit: at the epoch [m], and by which they grow with the age [m/day].
+  std::array<double, 3> catalogue_sigma_m{300, 1000, 300};
+  std::array<double, 3> catalogue_sigma_m_per_day{100, 1000, 100};
+  double gate_d2 = 18.4;               // of a pair, chi-square of 2 degrees of freedom; 18.4: 1e-4
+  double detection_probability = 0.9;  // of an object well above the limit, (0, 1)
+  double false_alarms_per_frame = 1.0;
+  double lost_after_s = 900.0;   // without a detection, of a confirmed track
+  double tentative_s = 120.0;    // likewise of a tentative one
+  double start_window_s = 60.0;  // between the first and the last detection that start a track
+  double simultaneous_s = 0.5;   // between detections of two sites that give a position
+  double acceleration_noise_m2_per_s3 = 1e-6;
+  int confirm_catalogued = 3;  // detections that confirm a track of a catalogued object
+  int confirm_unknown = 6;     // and one of another, which begins with four
+};
+
+}  // namespace dmise

@@ -1,0 +1,50 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/fusion/fusion_settings.h"
+#include "core/products/track.h"
+#include "core/tracking/filter.h"
+
+namespace dmise {
+
+/// A track while it lives.
+struct LiveTrack {
+  LiveTrack(std::uint32_t number, OrbitFilter&& start, std::optional<std::size_t> of_catalogue);
+
+  std::uint32_t id;
+  OrbitFilter filter;
+  std::optional<std::size_t> object;  // index in the catalogue
+  TrackStatus status = TrackStatus::tentative;
+  double log_odds = 0.0;  // of its existence
+  int detections = 0;
+  SimTime last_seen;
+  double brightness_sum = 0.0;  // magnitudes at 1000 km of its detections
+  double innovation_d2 = 0.0;
+  std::vector<std::string> associated;  // since the last tick
+  bool changed = true;
+
+  // For a coarse search: the state at a common time, and what is not known of it.
+  OrbitState rough;
+  double sigma_m = 0.0, sigma_m_per_s = 0.0, age_s = 0.0;
+
+  double existence() const;
+  double magnitude(double range_m) const;
+  /// Moves `rough` to a time. False if it can't be moved.
+  bool place_roughly(const ForceModel& forces, SimTime time);
+  /// Bound of the error of `rough` [m], one sigma.
+  double rough_sigma_m(double acceleration_noise_m2_per_s3) const;
+
+  /// Takes a detection into the orbit. `false_per_sr` is the density of false ones. False, and
+  /// nothing changed, if the filter refuses it.
+  bool take(const AngleObservation& observation, double magnitude, double detection_probability,
+            double false_per_sr);
+  /// A look with this probability of detection found nothing.
+  void miss(double detection_probability);
+};
+
+/// The state of a track at a tick as it is published.
+Track published(const LiveTrack& track, SimTime time);
+
+}  // namespace dmise

@@ -1,0 +1,50 @@
+#include "core/fusion/sensor_frame.h"
+
+#include <cmath>
+
+#include "core/base/units.h"
+
+namespace dmise {
+namespace {
+
+constexpr double limit_width_mag = 0.5;  // standard deviation of the fall at the limit
+
+}  // namespace
+
+bool SensorFrame::shows(const Vec<Gcrs>& direction, double margin_px) const {
+  if (dot(direction, axis) < std::cos(half_angle_rad)) return false;
+  if (!wcs) return true;
+  const auto pixel = wcs_pixel(*wcs, direction);
+  return pixel && pixel->x_px > margin_px - 0.5 && pixel->y_px > margin_px - 0.5 &&
+         pixel->x_px < columns - 0.5 - margin_px && pixel->y_px < rows - 0.5 - margin_px &&
+         wcs_sees_sky(*wcs, *pixel);
+}
+
+double SensorFrame::detection_probability(double magnitude, double best) const {
+  if (!searched) return 0.0;
+  return best * 0.5 *
+         std::erfc((magnitude - limiting_magnitude) / (limit_width_mag * std::sqrt(2.0)));
+}
+
+double SensorFrame::solid_angle_sr() const { return 2 * pi * (1 - std::cos(half_angle_rad)); }
+
+SensorFrame sensor_frame(const FrameReport& report, const std::vector<Detection>& detections,
+                         int columns, int rows, double half_angle_rad) {
+  SensorFrame out{.sensor = report.sensor,
+                  .frame = report.frame,
+                  .time = report.middle,
+                  .sensor_m = report.sensor_position_m,
+                  .axis = from_spherical<Gcrs>(report.boresight_ra_rad, report.boresight_dec_rad),
+                  .half_angle_rad = half_angle_rad,
+                  .wcs = report.wcs,
+                  .columns = columns,
+                  .rows = rows,
+                  .limiting_magnitude = report.limiting_magnitude,
+                  .searched = !report.detection_off};
+  for (const Detection& d : detections)
+    if (auto observation = angle_observation(d))
+      out.sources.push_back({std::move(*observation), d.magnitude, d.star_like});
+  return out;
+}
+
+}  // namespace dmise

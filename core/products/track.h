@@ -1,0 +1,44 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/sim_time.h"
+#include "core/frames/vec.h"
+
+namespace dmise {
+
+enum class TrackStatus : std::uint8_t {
+  tentative,  // may be of noise
+  confirmed,
+  lost,  // ends here
+};
+/// "tentative", ...
+const char* track_status_name(TrackStatus status);
+
+/// What is known of one object at a tick, from the detections of all sensors up to it.
+struct Track {
+  std::uint32_t id = 0;  // in the run, from 1 in the order in which tracks begin
+  TrackStatus status = TrackStatus::tentative;
+  SimTime time;  // of the state: that of the tick
+  Vec<Gcrs> position_m, velocity_m_per_s;
+  // Lower triangle by rows of position and velocity [m^2, m^2/s, m^2/s^2], as in an OEM.
+  std::array<double, 21> covariance{};
+  // Cd A / m and Cr A / m with their standard deviations; 0 of a scale that is not estimated.
+  double drag_m2_per_kg = 0.0, drag_sigma_m2_per_kg = 0.0;
+  double srp_m2_per_kg = 0.0, srp_sigma_m2_per_kg = 0.0;
+  std::uint32_t catalogue_number = 0;   // of what it is correlated with; 0: in no catalogue
+  std::string name;                     // likewise; may be empty
+  double existence = 0.0;               // probability that the object exists, [0, 1]
+  std::uint32_t detections = 0;         // taken since it began
+  std::vector<std::string> associated;  // ids of the detections that it took at this tick
+  // Of the latest detection, which the start of a track has not.
+  double innovation_d2 = 0.0;  // residual' S^-1 residual, 2 degrees of freedom
+  SimTime last_seen;           // time of the latest detection
+  double magnitude = 0.0;      // mean of its detections, each as if 1000 km away
+
+  bool operator==(const Track&) const = default;
+};
+
+}  // namespace dmise

@@ -1,0 +1,58 @@
+#pragma once
+#include <array>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "core/base/sim_time.h"
+#include "core/frames/vec.h"
+#include "core/products/detection.h"
+#include "core/tracking/outcome.h"
+
+namespace dmise {
+
+/// A direction in which a sensor saw an object. The light that arrived at `time` left the object
+/// range / c earlier: with r(t) the object's path, `direction` is that of r(time - range / c) -
+/// sensor_m. Aberration is not in it.
+struct AngleObservation {
+  SimTime time;                             // of reception
+  Vec<Gcrs> sensor_m;                       // where the line of sight begins, at `time`
+  Vec<Gcrs> direction;                      // unit
+  std::array<double, 3> covariance_rad2{};  // var east, cov, var north on the sky: ra cos dec, dec
+  std::string sensor;                       // name of the sensor
+  std::string detection_id;                 // of the detection, "<sensor>/<frame>/<index>"
+
+  double ra_rad() const { return to_spherical(direction)[0]; }
+  double dec_rad() const { return to_spherical(direction)[1]; }
+
+  bool operator==(const AngleObservation&) const = default;
+};
+
+/// Unit vectors east and north on the sky at a direction; at a pole of GCRS east is +y.
+struct SkyTangents {
+  Vec<Gcrs> east, north;
+};
+SkyTangents sky_tangents(const Vec<Gcrs>& direction);
+
+Eigen::Matrix2d covariance_of(const AngleObservation& observation);
+
+/// Angles from `from` to `to` along east and north at `from` [rad]: the length is the angle
+/// between both, also if it is large.
+Eigen::Vector2d angles_between(const Vec<Gcrs>& from, const Vec<Gcrs>& to);
+
+/// An observation by its angles [rad] and an equal error in all directions.
+AngleObservation observation_of(SimTime time, const Vec<Gcrs>& sensor_m, double ra_rad,
+                                double dec_rad, double sigma_rad);
+
+/// The line of sight of a detection. On the ground it begins `refraction_offset_m` beside the
+/// sensor, where the line outside the air begins, and neither the mean refraction parallax nor its
+/// variance are in it (docs/wire.md, Directions of detections). Of a streak it is the middle of
+/// the exposure. Refuses a detection whose numbers are not finite or whose covariance is not
+/// positive definite.
+Outcome<AngleObservation> angle_observation(const Detection& detection);
+
+/// Empty if the time is within 73 years, all numbers are finite, the direction is a unit vector to
+/// 1e-6, the sensor is within 1e12 m and the covariance is positive definite; else the reason.
+std::string_view fault_of(const AngleObservation& observation);
+
+}  // namespace dmise

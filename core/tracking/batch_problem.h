@@ -1,0 +1,62 @@
+#pragma once
+#include <Eigen/Core>
+#include <string_view>
+#include <vector>
+
+#include "core/tracking/batch.h"
+
+namespace dmise {
+
+/// Observations about one starting state, whitened: residuals, and derivatives of the computed
+/// angles by the unknowns over their errors, unused columns 0.
+struct LinearisedArc {
+  std::vector<Eigen::Vector2d> residuals_rad;
+  std::vector<Eigen::Vector2d> white;
+  std::vector<double> sigmas;  // lengths of the whitened residuals
+  std::vector<Eigen::Matrix<double, 2, orbit_size>> derivatives;
+};
+
+/// [R z] with R x = z in the sense of least squares: the triangle of all weighted rows.
+using BatchTriangle = Eigen::Matrix<double, orbit_size, orbit_size + 1>;
+
+/// Adds a row to the triangle.
+void fold(BatchTriangle& triangle, const Eigen::Matrix<double, 1, orbit_size>& row, double white);
+
+/// What stays the same while an orbit is fitted: observations in order, their weights, unknowns and
+/// prior. All but the forces is copied or must live as long.
+class BatchProblem {
+ public:
+  BatchProblem(const ForceModel& forces, std::span<const AngleObservation> observations,
+               const OrbitState& start, const BatchSettings& settings);
+
+  int unknowns() const { return int(unknowns_.size()); }
+  const std::vector<int>& rows() const { return unknowns_; }
+  bool has_prior() const { return has_prior_; }
+
+  /// Returns the reason if there is no path from `start` through all times, else an empty text.
+  std::string_view linearise(const OrbitState& start, bool with_derivatives,
+                             LinearisedArc& out) const;
+
+  void fold_prior(const OrbitState& start, BatchTriangle& triangle) const;
+  double prior_chi2(const OrbitState& start) const;
+
+  OrbitState moved(const OrbitState& start, const OrbitVector& change) const;
+
+ private:
+  void observe(std::size_t i, const StateTransition& at, bool with_derivatives,
+               LinearisedArc& out) const;
+  void weigh_prior();
+  OrbitVector prior_difference(const OrbitState& start) const;
+
+  const ForceModel& forces_;
+  std::span<const AngleObservation> observations_;
+  const BatchSettings& settings_;
+  SimTime epoch_;
+  std::vector<int> unknowns_;
+  std::vector<std::size_t> later_, earlier_;  // indices, by growing distance from the epoch
+  std::vector<Eigen::Matrix2d> whitening_;
+  bool has_prior_ = false;
+  OrbitMatrix prior_weight_ = OrbitMatrix::Zero();
+};
+
+}  // namespace dmise

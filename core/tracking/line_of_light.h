@@ -1,0 +1,56 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "core/base/units.h"
+#include "core/orbit/two_body.h"
+#include "core/tracking/angle_observation.h"
+#include "core/tracking/orbit_state.h"
+
+namespace dmise {
+
+/// From a sensor to where an object was when its light left.
+struct LineOfLight {
+  Eigen::Vector3d line_m;            // from the sensor
+  Eigen::Vector3d velocity_m_per_s;  // of the object then
+  double range_m = 0.0;
+  double light_time_s = 0.0;
+};
+
+/// For an object at `position_m` at the time of reception. Within a light time it moves with its
+/// velocity and the attraction of the Earth's centre: exact to 1e-6 m within the Moon's distance.
+inline LineOfLight line_of_light(const Eigen::Vector3d& position_m,
+                                 const Eigen::Vector3d& velocity_m_per_s,
+                                 const Eigen::Vector3d& sensor_m) {
+  const double r2 = position_m.squaredNorm();
+  const Eigen::Vector3d pull = -earth_gm_m3_per_s2 / (r2 * std::sqrt(r2)) * position_m;
+  const Eigen::Vector3d now_m = position_m - sensor_m;
+  LineOfLight out{now_m, velocity_m_per_s};
+  // Each turn gains a factor v/c.
+  for (int i = 0; i < 3; ++i) {
+    const double t = out.line_m.norm() / speed_of_light_m_per_s;
+    out.light_time_s = t;
+    out.line_m = now_m - t * velocity_m_per_s + (0.5 * t * t) * pull;
+  }
+  out.velocity_m_per_s = velocity_m_per_s - out.light_time_s * pull;
+  out.range_m = out.line_m.norm();
+  return out;
+}
+
+/// Derivatives of the direction's angles, along `east` and `north` at it, with respect to position
+/// and velocity at the time of reception.
+inline Eigen::Matrix<double, 2, 6> angle_derivatives(const LineOfLight& line,
+                                                     const SkyTangents& tangents) {
+  Eigen::Matrix<double, 2, 3> sky;
+  sky << eigen_of(tangents.east).transpose(), eigen_of(tangents.north).transpose();
+  const Eigen::Vector3d towards = line.line_m / line.range_m;
+  // A longer line is older: d line = d r - t d v - v (towards . d line) / c.
+  const Eigen::Matrix3d delay = Eigen::Matrix3d::Identity() -
+                                line.velocity_m_per_s * towards.transpose() /
+                                    (speed_of_light_m_per_s + towards.dot(line.velocity_m_per_s));
+  const Eigen::Matrix<double, 2, 3> place = sky * delay / line.range_m;
+  Eigen::Matrix<double, 2, 6> out;
+  out << place, -line.light_time_s * place;
+  return out;
+}
+
+}  // namespace dmise

@@ -1,0 +1,53 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "core/base/sim_time.h"
+#include "core/frames/vec.h"
+
+namespace dmise {
+
+/// Position, velocity, drag and radiation pressure: the order of rows in vectors and covariances.
+inline constexpr int orbit_size = 8;
+inline constexpr int drag_row = 6, srp_row = 7;
+using OrbitVector = Eigen::Matrix<double, orbit_size, 1>;
+using OrbitMatrix = Eigen::Matrix<double, orbit_size, orbit_size>;
+
+/// State of one object.
+struct OrbitState {
+  SimTime time;
+  Vec<Gcrs> position_m;
+  Vec<Gcrs> velocity_m_per_s;
+  double drag_m2_per_kg = 0.0;  // drag coefficient times area over mass, Cd A / m, >= 0
+  double srp_m2_per_kg = 0.0;   // radiation pressure coefficient times area over mass, Cr A / m
+
+  bool operator==(const OrbitState&) const = default;
+};
+
+/// A state with its covariance, in GCRS and SI units of the state's rows. A scale (drag, radiation
+/// pressure) whose row and column are zero is taken as known.
+struct OrbitEstimate {
+  OrbitState state;
+  OrbitMatrix covariance = OrbitMatrix::Zero();
+};
+
+OrbitVector vector_of(const OrbitState& state);
+OrbitState state_of(const OrbitVector& vector, SimTime time);
+
+inline Eigen::Vector3d eigen_of(const Vec<Gcrs>& v) { return {v.x, v.y, v.z}; }
+inline Vec<Gcrs> gcrs_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+/// All numbers finite, positions outside the Earth's centre, variances not negative.
+bool is_sane(const OrbitState& state);
+bool is_sane(const OrbitEstimate& estimate);
+
+/// Largest and smallest distance from the Earth's centre on the osculating conic [m]; the apogee
+/// of an orbit that does not return is infinite.
+double perigee_m(const OrbitState& state);
+double apogee_m(const OrbitState& state);
+
+/// Normalised estimation error squared of the first `rows` rows: (truth - state)' P^-1 (truth -
+/// state), of mean `rows`. `truth` must be at the same time. Infinite if P is not positive
+/// definite.
+double nees(const OrbitEstimate& estimate, const OrbitState& truth, int rows = 6);
+
+}  // namespace dmise

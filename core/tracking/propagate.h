@@ -1,0 +1,40 @@
+#pragma once
+#include <span>
+
+#include "core/tracking/forces.h"
+#include "core/tracking/orbit_state.h"
+#include "core/tracking/outcome.h"
+
+namespace dmise {
+
+/// Dormand-Prince 5(4) with steps by the estimated error of each.
+struct PropagationSettings {
+  double position_tolerance_m = 1e-5;  // of one step, > 0
+  int most_steps = 200000;
+};
+
+/// The state at `to`, earlier or later. Error against the forces' exact solution: below 0.1 m
+/// after a day near the Earth with the default tolerance. Refuses a state that is not sane, a path
+/// that enters the Earth (below 6,358 km from the centre) and more than `most_steps` steps.
+Outcome<OrbitState> propagate(const ForceModel& forces, const OrbitState& state, SimTime to,
+                              const PropagationSettings& settings = {});
+
+/// A state with its derivatives with respect to the starting state.
+struct StateTransition {
+  OrbitState state;
+  OrbitMatrix transition = OrbitMatrix::Identity();  // d state(to) / d state(from)
+};
+
+/// The same with the state transition matrix: derivatives of the integrated path itself, exact to
+/// rounding.
+Outcome<StateTransition> propagate_with_transition(const ForceModel& forces,
+                                                   const OrbitState& state, SimTime to,
+                                                   const PropagationSettings& settings = {});
+
+/// State and covariance at `to`, to first order: P <- F P F' + Q with the noise of an acceleration
+/// that is white, of spectral density `acceleration_noise_m2_per_s3` on each axis.
+Outcome<OrbitEstimate> propagate(const ForceModel& forces, const OrbitEstimate& estimate,
+                                 SimTime to, double acceleration_noise_m2_per_s3 = 0.0,
+                                 const PropagationSettings& settings = {});
+
+}  // namespace dmise

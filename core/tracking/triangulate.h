@@ -1,0 +1,37 @@
+#pragma once
+#include <span>
+
+#include <Eigen/Core>
+
+#include "core/tracking/angle_observation.h"
+#include "core/tracking/outcome.h"
+
+namespace dmise {
+
+struct TriangulationSettings {
+  double longest_s = 0.5;         // between the first and the last exposure; the object moves
+  double least_angle_rad = 1e-3;  // between two lines of sight, at their widest
+  double least_distance_m = 6.4e6, largest_distance_m = 1e9;  // of the position from the centre
+  double least_probability = 1e-6;  // of lines that miss each other so far
+};
+
+/// A position where lines of sight of two or more sites meet.
+struct TriangulatedPosition {
+  SimTime time;  // when the light left
+  Vec<Gcrs> position_m;
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
+  double chi2 = 0.0;           // of the residuals
+  int degrees_of_freedom = 0;  // 2 n - 3
+  double angle_rad = 0.0;      // widest between two lines
+};
+
+/// Weighted least squares over lines of sight at about one time. `velocity_m_per_s`: the object's,
+/// if known; it carries each line's place to the common time, also by light time. Unknown (0), a
+/// velocity of 0 +- 8 km/s in each axis goes into the covariance. Refuses fewer than two lines,
+/// lines that are nearly parallel, meet behind a sensor or miss each other, and a position out of
+/// range.
+Outcome<TriangulatedPosition> triangulate(std::span<const AngleObservation> observations,
+                                          const Vec<Gcrs>& velocity_m_per_s = {},
+                                          const TriangulationSettings& settings = {});
+
+}  // namespace dmise

@@ -1,0 +1,138 @@
+#include "sensors/dataset/sample_maker.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/config/make_clock.h"
+#include "core/dataset/npy.h"
+#include "core/dataset/tar.h"
+#include "core/image/fits_file.h"
+#include "core/sim/controller.h"
+#include "nodes/environment/environment_actor.h"
+#include "orbit-node/orbit_actor.h"
+#include "sensors/dataset/frame_labels.h"
+#include "sensors/pipeline/make_sensor.h"
+
+namespace dmise {
+namespace {
+
+/// Collects the frames of one sensor.
+class SensorFrames {
+ public:
+  SensorFrames(const DrawnScenario& sample, const SensorConfig& sensor, const Clock& clock,
+               std::string digest)
+      : sample_(sample),
+        clock_(clock),
+        digest_(std::move(digest)),
+        plane_(sensor.camera.optics.columns, sensor.camera.optics.rows) {}
+
+  void take(const Truth& truth, const ExpectedElectronImage& light, const ElectronImage& noise) {
+    if (!objects_.empty() && objects_.front().truth.frame != truth.frame) clear();
+    ObjectLabel label{truth, mask_of(light), optimal_snr(light, noise)};
+    if (label.mask.empty()) return;
+    plane_.add(objects_.size() + 1, label.mask, light);
+    objects_.push_back(std::move(label));
+  }
+
+  void finish(const FrameProducts& frame) {
+    if (!objects_.empty() && objects_.front().truth.frame != frame.report.frame) clear();
+    char key[128];
+    std::snprintf(key, sizeof key, "%09llu-%s-%06u",
+                  static_cast<unsigned long long>(sample_.scenario.seed),
+                  frame.report.sensor.c_str(), frame.report.frame);
+    const LabelledFrame labelled{frame, objects_, sample_, clock_, digest_, key};
+    SampleFrame made{.key = key};
+    const std::string image_name = made.key + ".image.npy";
+    made.members = tar_member(
+        image_name, npy_bytes(frame.counts.pixels, frame.counts.columns, frame.counts.rows));
+    made.members +=
+        tar_member(made.key + ".mask.npy",
+                   npy_bytes(plane_.image().pixels, frame.counts.columns, frame.counts.rows));
+    made.members += tar_member(made.key + ".labels.json", labels_json(labelled));
+    if (sample_.scenario.output.fits)
+      made.members += tar_member(made.key + ".fits", encode_frame(frame.counts, frame.header));
+    made.coco_image = coco_image(labelled, image_name);
+    made.coco_annotations = coco_annotations(labelled);
+    frames_.push_back(std::move(made));
+    clear();
+  }
+
+  std::vector<SampleFrame>& frames() { return frames_; }
+
+ private:
+  void clear() {
+    objects_.clear();
+    plane_ = LabelPlane(plane_.image().columns, plane_.image().rows);
+  }
+
+  const DrawnScenario& sample_;
+  const Clock& clock_;
+  std::string digest_;
+  std::vector<ObjectLabel> objects_;  // of the frame at hand
+  LabelPlane plane_;
+  std::vector<SampleFrame> frames_;
+};
+
+/// Names of a scenario's objects, platforms and targets.
+std::string names_in(const Scenario& scenario) {
+  std::string names;
+  const auto add = [&](const std::string& name) { names += name + "\n"; };
+  for (const ObjectSource& source : scenario.objects) {
+    add(source.path);
+    for (const auto& name : source.only) add(name);
+  }
+  for (const OwnObject& object : scenario.own_objects)
+    add(object.name + (object.attitude ? " turns " : " ") +
+        std::to_string(object.catalogue_number));
+  for (const SensorConfig& sensor : scenario.sensors) {
+    if (const auto* platform = std::get_if<PlatformConfig>(&sensor.place)) add(platform->object);
+    if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) add(target->object);
+  }
+  return names;
+}
+
+}  // namespace
+
+void SampleMaker::prepare(const Scenario& scenario) {
+  if (!stars_.contains(scenario.star_catalogue_path))
+    stars_[scenario.star_catalogue_path] = load_stars(scenario);
+  if (!checked_.insert(names_in(scenario)).second) return;
+  check_sensors(scenario, load_objects(scenario, make_clock(scenario)).roster);
+}
+
+std::vector<SampleFrame> SampleMaker::make(const DrawnScenario& sample) {
+  prepare(sample.scenario);
+  Scenario scenario = sample.scenario;
+  scenario.network.publish_states = false;  // nobody outside this process can take them
+  const Clock clock = make_clock(scenario);
+  Threads one(1);
+  ObjectPopulation population = load_objects(scenario, clock);
+  std::vector<std::unique_ptr<Participant>> participants;
+  participants.push_back(std::make_unique<OrbitActor>(scenario, clock, std::move(population), one));
+  participants.push_back(std::make_unique<EnvironmentActor>(scenario, clock));
+  std::vector<std::unique_ptr<SensorFrames>> collected;
+  for (const SensorConfig& sensor : scenario.sensors) {
+    collected.push_back(std::make_unique<SensorFrames>(sample, sensor, clock, digest_));
+    SensorFrames* frames = collected.back().get();
+    PipelineSettings settings = sensor_settings(scenario, sensor.name, digest_);
+    settings.output = {};
+    settings.output.noise = true;
+    settings.object_light = [frames](const Truth& truth, const ExpectedElectronImage& light,
+                                     const ElectronImage& noise) {
+      frames->take(truth, light, noise);
+    };
+    auto evaluator = std::make_unique<SensorEvaluator>(
+        settings, run_grid(scenario), stars_.at(scenario.star_catalogue_path), one);
+    evaluator->when_made([frames](const FrameProducts& frame) { frames->finish(frame); });
+    participants.push_back(std::move(evaluator));
+  }
+  SimulationController(std::move(participants)).run(scenario.last_tick(), [](Tick) {
+    return true;
+  });
+  std::vector<SampleFrame> frames;
+  for (const auto& sensor : collected)
+    for (SampleFrame& frame : sensor->frames()) frames.push_back(std::move(frame));
+  return frames;
+}
+
+}  // namespace dmise

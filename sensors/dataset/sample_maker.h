@@ -1,0 +1,40 @@
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/config/scenario_draws.h"
+#include "core/sky/star_map.h"
+
+namespace dmise {
+
+/// One frame of a sample, as it goes into an archive.
+struct SampleFrame {
+  std::string key;      // "000000012-atlanta-000001": seed, sensor, frame
+  std::string members;  // of a tar archive: KEY.image.npy, KEY.mask.npy, KEY.labels.json, KEY.fits
+  std::string coco_image;
+  std::vector<std::string> coco_annotations;
+};
+
+/// Makes the frames of scenarios in this process and labels them. Keeps star catalogues.
+class SampleMaker {
+ public:
+  /// `digest`: of the data set, written into labels and frames.
+  explicit SampleMaker(std::string digest) : digest_(std::move(digest)) {}
+
+  /// Loads the star catalogue of a scenario, so that processes forked later share it, and checks
+  /// that its sensors have the platforms and targets that they name. Quick for what is like before.
+  void prepare(const Scenario& scenario);
+  /// Returns the frames of all sensors, by sensor and frame. Throws what a run throws.
+  std::vector<SampleFrame> make(const DrawnScenario& sample);
+
+ private:
+  std::string digest_;
+  std::map<std::string, std::shared_ptr<const StarMap>> stars_;  // by path
+  std::set<std::string> checked_;                                // names of objects
+};
+
+}  // namespace dmise

@@ -1,0 +1,141 @@
+#include "core/config/scenario_draws.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "core/base/error.h"
+
+namespace dmise {
+namespace {
+
+const std::string good =
+    R"(simulation:
+  start: {uniform: [2018-01-21T00:00:00Z, 2018-01-21T10:00:00Z]}
+  duration_s: 60
+  tick_s: 5
+sensors:
+  - name: atlanta
+    site: {latitude_deg: {uniform: [30, 34]}, longitude_deg: -84.398, height_m: 300}
+    camera: {one_of: [omnissa, raven]}
+    pointing: {azimuth_deg: {uniform: [0, 360]}, elevation_deg: 60}
+    exposure_s: &exposure {log_uniform: [1, 20]}
+    cadence_s: 30
+    first_exposure_s: *exposure
+)";
+
+class ScenarioDrawsTest : public testing::Test {
+ protected:
+  std::string path =
+      (std::filesystem::path(testing::TempDir()) / ("draws-" + std::to_string(getpid()) + ".yaml"))
+          .string();
+  void SetUp() override { setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1); }
+  void TearDown() override { std::remove(path.c_str()); }
+
+  ScenarioDraws draws(std::string text = good, const std::string& what = "",
+                      const std::string& with = "") {
+    if (!what.empty()) text.replace(text.find(what), what.size(), with);
+    std::ofstream(path) << text;
+    return ScenarioDraws(path);
+  }
+  template <class Work>
+  std::string complaint(const Work& work) {
+    try {
+      work();
+    } catch (const ConfigError& e) {
+      std::string message = e.what();
+      return message.starts_with(path) ? message.substr(path.size() + 1) : message;
+    }
+    return "";
+  }
+};
+
+TEST_F(ScenarioDrawsTest, TheScenarioHasWhatWasDrawn) {
+  const DrawnScenario sample = draws().draw(12);
+  EXPECT_EQ(sample.scenario.seed, 12u);
+  std::map<std::string, std::string> drawn;
+  for (const auto& value : sample.drawn) drawn[value.path] = value.text;
+  ASSERT_EQ(drawn.size(), 5u);
+  const SensorConfig& sensor = sample.scenario.sensors[0];
+  EXPECT_EQ(sample.scenario.start_utc, drawn["simulation.start"]);
+  EXPECT_EQ(sensor.camera.name, drawn["sensors[0].camera"]);
+  EXPECT_EQ(sensor.exposure_s, std::stod(drawn["sensors[0].exposure_s"]));
+  EXPECT_EQ(std::get<SiteConfig>(sensor.place).latitude_deg,
+            std::stod(drawn["sensors[0].site.latitude_deg"]));
+}
+
+TEST_F(ScenarioDrawsTest, AnAliasIsTheSameDraw) {
+  for (std::uint64_t seed = 1; seed < 9; ++seed) {
+    const SensorConfig sensor = draws().draw(seed).scenario.sensors[0];
+    EXPECT_EQ(sensor.exposure_s, sensor.first_exposure_s);
+  }
+}
+
+TEST_F(ScenarioDrawsTest, ADrawDoesNotDependOnOtherDraws) {
+  const SensorConfig one = draws().draw(3).scenario.sensors[0];
+  const SensorConfig other =
+      draws(good, "{latitude_deg: {uniform: [30, 34]},", "{latitude_deg: 31,")
+          .draw(3)
+          .scenario.sensors[0];
+  EXPECT_EQ(one.exposure_s, other.exposure_s);
+  EXPECT_EQ(one.camera.name, other.camera.name);
+}
+
+TEST_F(ScenarioDrawsTest, AChoiceMayBeAMappingWithDrawsOfItsOwn) {
+  const auto choices = draws(good, "{azimuth_deg: {uniform: [0, 360]}, elevation_deg: 60}",
+                             "{one_of: [{ra_deg: {uniform: [0, 9]}, dec_deg: 5}, zenith]}");
+  int sky = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const DrawnScenario sample = choices.draw(seed);
+    const auto* at = std::get_if<PointSky>(&sample.scenario.sensors[0].pointing);
+    sky += at != nullptr;
+    if (at) {
+      EXPECT_LE(at->ra_deg, 9.0);
+    }
+  }
+  EXPECT_GT(sky, 5);
+  EXPECT_LT(sky, 35);
+}
+
+TEST_F(ScenarioDrawsTest, ARunRefusesDistributions) {
+  draws();
+  EXPECT_EQ(complaint([&] { load_scenario(path); }),
+            "2:10: simulation.start: is a distribution (uniform): dmise dataset draws a value for "
+            "each seed");
+}
+
+TEST_F(ScenarioDrawsTest, EndsThatNoSensorTakesAreNamed) {
+  EXPECT_EQ(complaint([&] { draws().check_ends(); }), "");
+  const auto of = [&](const char* what, const char* with) {
+    return complaint([&] { draws(good, what, with).check_ends(); });
+  };
+  EXPECT_EQ(of("{uniform: [30, 34]}", "{uniform: [30, 91]}"),
+            "7:26: sensors[0].site.latitude_deg: must be <= 90, got 91 (the most of its uniform)");
+  EXPECT_NE(
+      of("[omnissa, raven]", "[omnissa, ravn]").find("camera: no such camera, did you mean raven?"),
+      std::string::npos);
+  EXPECT_NE(of("[omnissa, raven]", "[omnissa, ravn]").find("(choice 2 of its one_of)"),
+            std::string::npos);
+  EXPECT_NE(of("{log_uniform: [1, 20]}", "{normal: {mean: 5, sigma: 1}}")
+                .find("(5 sigma from the mean of its normal, which has no min)"),
+            std::string::npos);
+  EXPECT_NE(of("elevation_deg: 60", "elevation_deg: {one_of: [60, {uniform: [0, 95]}]}")
+                .find("must be <= 90, got 95 (the most of its uniform)"),
+            std::string::npos);
+}
+
+TEST_F(ScenarioDrawsTest, AFaultOfTogetherDrawnValuesNamesTheSeed) {
+  const auto both = draws(good, "cadence_s: 30", "cadence_s: {uniform: [5, 30]}");
+  const std::string message = complaint([&] {
+    for (std::uint64_t seed = 1; seed < 1000; ++seed) both.draw(seed);
+  });
+  EXPECT_NE(message.find("must be <= cadence_s"), std::string::npos) << message;
+  EXPECT_NE(message.find("(as drawn for seed "), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace dmise

@@ -1,0 +1,224 @@
+#include "core/fusion/fusion.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+#include <functional>
+#include <map>
+
+#include "bench/fusion_trial.h"
+#include "core/base/units.h"
+#include "core/orbit/synthetic_catalogue.h"
+
+namespace dmise {
+namespace {
+
+const Clock evening(Utc{2458138.5, 0.0});  // an hour after sunset over the sites
+constexpr double cadence_s = 10.0;
+
+/// Sites 440 km apart that find all that the Sun lights and that is brighter than the limit.
+FusionTrialSettings good_sites(std::size_t count) {
+  FusionTrialSettings s;
+  for (std::size_t k = 0; k < count; ++k)
+    s.sites.push_back({32 + 4.0 * double(k / 4), -88 + 4.7 * double(k % 4), 200.0});
+  s.half_angle_rad = 60 * deg;
+  s.sigma_rad = 2 * arcsec;
+  s.detection_probability = 1.0;
+  s.limiting_magnitude = 8.0;
+  return s;
+}
+
+std::vector<MeanElements> objects(std::size_t count) {
+  return synthetic_catalogue({.objects = count});
+}
+
+/// Ends of tracks: the last that was published of each.
+struct Story {
+  std::map<std::uint32_t, Track> last;
+  std::vector<FusionTick> ticks;
+
+  void add(FusionTick tick) {
+    for (const Track& t : tick.tracks) last.insert_or_assign(t.id, t);
+    ticks.push_back(std::move(tick));
+  }
+};
+
+Story story_of(Fusion& fusion, FusionTrial& trial, int ticks) {
+  Story story;
+  for (int k = 0; k < ticks; ++k) {
+    const SimTime time = sim_seconds(k * cadence_s);
+    story.add(fusion.step(time, trial.frames(time, std::uint32_t(k + 1))));
+  }
+  return story;
+}
+
+// An object is its catalogue's by its predicted place, and confirmed by three detections.
+TEST(Fusion, CorrelatesDetectionsWithTheCatalogue) {
+  FusionTrial trial(objects(3000), evening, good_sites(3));
+  Fusion fusion(objects(3000), evening, {});
+  const Story story = story_of(fusion, trial, 6);
+  std::size_t confirmed = 0, detections = 0;
+  for (const FusionTick& tick : story.ticks) {
+    EXPECT_EQ(tick.unassociated, 0u);
+    for (const Track& track : tick.tracks)
+      for (const std::string& id : track.associated) {
+        ++detections;
+        EXPECT_EQ(trial.truth(id), track.catalogue_number) << id;
+      }
+  }
+  EXPECT_EQ(detections, trial.truths().size());
+  for (const auto& [id, track] : story.last) {
+    confirmed += track.status == TrackStatus::confirmed;
+    EXPECT_TRUE(track.status != TrackStatus::confirmed || track.detections >= 3);
+  }
+  EXPECT_GT(confirmed, 15u);
+}
+
+// Elements that are wrong by 500 km along the orbit predict nothing that is seen.
+TEST(Fusion, LeavesAloneWhatIsFarFromThePrediction) {
+  FusionTrialSettings settings = good_sites(1);
+  FusionTrial trial(objects(3000), evening, settings);
+  auto wrong = objects(3000);
+  for (MeanElements& e : wrong) e.mean_anomaly_rad += 4 * deg;
+  Fusion fusion(wrong, evening, {});
+  for (int k = 0; k < 3; ++k) {
+    const SimTime time = sim_seconds(k * cadence_s);
+    for (const Track& t : fusion.step(time, trial.frames(time, std::uint32_t(k + 1))).tracks)
+      for (const std::string& id : t.associated) EXPECT_NE(trial.truth(id), t.catalogue_number);
+  }
+}
+
+// Reference: the path that made the detections.
+TEST(Fusion, StartsOrbitsOfWhatIsInNoCatalogueFromTwoSites) {
+  FusionTrial trial(objects(2000), evening, good_sites(4));
+  Fusion fusion({}, evening, {});
+  constexpr int ticks = 15;
+  const Story story = story_of(fusion, trial, ticks);
+  TrackLedger ledger;
+  for (const FusionTick& tick : story.ticks) ledger.add(tick.tracks);
+  const TrackingScore score = ledger.score(trial, 16);
+  EXPECT_GT(score.objects, 10u);
+  EXPECT_GE(score.completeness(), 0.9);
+  EXPECT_GE(score.purity(), 0.99);
+
+  CataloguePrediction paths(objects(2000), evening, {});
+  paths.move(sim_seconds((ticks - 1) * cadence_s));
+  double normalised = 0;
+  int compared = 0;
+  for (const Track& track : story.ticks.back().tracks) {
+    if (track.status != TrackStatus::confirmed || track.detections < 30) continue;
+    const std::uint32_t object = trial.truth(track.associated.front());
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      if (paths.elements(i).catalogue_number != object) continue;
+      const Vec<Gcrs> error = paths.position_m(i) - track.position_m;
+      const double variance = track.covariance[0] + track.covariance[2] + track.covariance[5];
+      EXPECT_LT(norm(error), 5 * std::sqrt(variance));
+      normalised += dot(error, error) / variance;
+      ++compared;
+    }
+  }
+  ASSERT_GT(compared, 5);
+  EXPECT_LT(normalised / compared, 2.0);
+}
+
+TEST(Fusion, StartsNothingFromOneSite) {
+  FusionTrial trial(objects(2000), evening, good_sites(1));
+  Fusion fusion({}, evening, {});
+  const Story story = story_of(fusion, trial, 10);
+  EXPECT_TRUE(story.last.empty());
+  EXPECT_GT(story.ticks.back().unassociated, 0u);
+}
+
+TEST(Fusion, MakesNoTrackOfNoise) {
+  FusionTrialSettings settings = good_sites(8);
+  settings.false_alarms_per_frame = 10;
+  FusionTrial trial({}, evening, settings);
+  Fusion fusion(objects(3000), evening, {});
+  const Story story = story_of(fusion, trial, 60);
+  EXPECT_GT(trial.truths().size(), 4000u);
+  for (const FusionTick& tick : story.ticks)
+    for (const Track& track : tick.tracks) EXPECT_NE(track.status, TrackStatus::confirmed);
+}
+
+// A look that shows nothing where a bright object should be lowers its probability to exist; a sky
+// that nobody looks at does not.
+TEST(Fusion, LooksThatSeeNothingEndATrack) {
+  for (const bool look : {true, false}) {
+    FusionTrial trial(objects(3000), evening, good_sites(4));
+    Fusion fusion(objects(3000), evening, {});
+    Story story = story_of(fusion, trial, 5);
+    const auto live = story.ticks.back().live;
+    ASSERT_GT(live, 20u);
+    double most = 0;
+    std::size_t lost = 0;
+    for (int k = 5; k < 9; ++k) {
+      const SimTime time = sim_seconds(k * cadence_s);
+      auto frames = trial.frames(time, std::uint32_t(k + 1));
+      for (SensorFrame& frame : frames) frame.sources.clear();
+      if (!look) frames.clear();
+      for (const Track& t : fusion.step(time, std::move(frames)).tracks)
+        lost += t.status == TrackStatus::lost;
+    }
+    for (const double existence : fusion.existences()) most = std::max(most, existence);
+    if (look) {
+      EXPECT_GT(lost, live / 2);
+    } else {
+      EXPECT_EQ(lost, 0u);
+      EXPECT_GT(most, 0.99);
+    }
+  }
+}
+
+std::vector<FusionTick> with_frames(FusionTrial& trial, int ticks,
+                                    const std::function<void(std::vector<SensorFrame>&)>& change) {
+  Fusion fusion(objects(3000), evening, {});
+  std::vector<FusionTick> out;
+  for (int k = 0; k < ticks; ++k) {
+    const SimTime time = sim_seconds(k * cadence_s);
+    auto frames = trial.frames(time, std::uint32_t(k + 1));
+    change(frames);
+    out.push_back(fusion.step(time, std::move(frames)));
+  }
+  return out;
+}
+
+TEST(Fusion, DoesNotDependOnTheOrderOfArrival) {
+  FusionTrialSettings settings = good_sites(4);
+  settings.false_alarms_per_frame = 3;
+  FusionTrial trial(objects(3200), evening, settings);
+  const auto forward = with_frames(trial, 8, [](auto&) {});
+  const auto backward = with_frames(trial, 8, [](auto& f) { std::ranges::reverse(f); });
+  ASSERT_EQ(forward.size(), backward.size());
+  std::size_t tracks = 0;
+  for (std::size_t k = 0; k < forward.size(); ++k) {
+    EXPECT_EQ(forward[k].tracks, backward[k].tracks);
+    tracks += forward[k].tracks.size();
+  }
+  EXPECT_GT(tracks, 100u);
+}
+
+// Two of four sites are heard three ticks late: their detections find their tracks all the same.
+TEST(Fusion, TakesDetectionsThatComeLate) {
+  FusionTrial trial(objects(3000), evening, good_sites(4));
+  std::deque<std::vector<SensorFrame>> waiting;
+  TrackLedger ledger;
+  std::size_t unassociated = 0;
+  for (const FusionTick& tick : with_frames(trial, 12, [&](std::vector<SensorFrame>& frames) {
+         waiting.push_back({frames.begin() + 2, frames.end()});
+         frames.resize(2);
+         if (waiting.size() <= 3) return;
+         frames.insert(frames.end(), waiting.front().begin(), waiting.front().end());
+         waiting.pop_front();
+       })) {
+    ledger.add(tick.tracks);
+    unassociated += tick.unassociated;
+  }
+  const TrackingScore score = ledger.score(trial, 16);
+  EXPECT_GE(score.completeness(), 0.95);
+  EXPECT_EQ(score.purity(), 1.0);
+  EXPECT_LT(unassociated, trial.truths().size() / 50);
+}
+
+}  // namespace
+}  // namespace dmise
