@@ -7,6 +7,7 @@
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
 #include "nodes/environment/environment_actor.h"
+#include "nodes/fusion/fusion_evaluator.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/frame_times.h"
 #include "sensors/pipeline/make_sensor.h"
@@ -37,6 +38,11 @@ std::unique_ptr<Participant> make_positions(const std::string&, NodeParts& parts
                                               parts.directory);
 }
 
+std::unique_ptr<Participant> make_fusion(const std::string&, NodeParts& parts) {
+  return std::make_unique<FusionEvaluator>(parts.scenario, make_clock(parts.scenario),
+                                           parts.directory);
+}
+
 std::optional<Tick> no_products(const std::string&, const Scenario&, const std::string&) {
   return std::nullopt;
 }
@@ -56,11 +62,18 @@ std::optional<Tick> unfinished_positions(const std::string&, const Scenario&,
   return std::max<Tick>(0, last_tick_written(directory));
 }
 
+std::optional<Tick> unfinished_tracks(const std::string&, const Scenario& scenario,
+                                      const std::string& directory) {
+  const Tick next = FusionJournal::ticks_written(fusion_journal_path(directory));
+  return next > scenario.last_tick() ? std::nullopt : std::optional(next);
+}
+
 constexpr NodeMaker makers[] = {
     {orbit_node, make_orbit, no_products},
     {environment_node, make_environment, no_products},
     {any_sensor, make_one_sensor, unfinished_frame},
     {positions_node, make_positions, unfinished_positions},
+    {fusion_node, make_fusion, unfinished_tracks},
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
+#include "core/config/node_kinds.h"
 
 namespace dmise {
 namespace {
@@ -77,8 +78,9 @@ void RunDirectory::clear() {
       fs::remove_all(entry.path(), ignored);
   for (const auto& sensor : scenario_.sensors) fs::remove_all(file(sensor.name), ignored);
   for (const char* name : {"run.json", "detections.jsonl", "truth.jsonl", "frames.jsonl",
-                           "positions.csv", "positions.jsonl", "index.html"})
+                           "positions.csv", "positions.jsonl", "tracks.jsonl", "index.html"})
     fs::remove(file(name), ignored);
+  fs::remove_all(file(fusion_node), ignored);
   for (const auto& entry : fs::directory_iterator(file("positions"), ignored))
     if (entry.path().extension() == ".oem") fs::remove(entry.path(), ignored);
   fs::remove(file("positions"), ignored);  // if it is empty

@@ -73,7 +73,9 @@ void write_index_page(const RunDirectory& directory, const Scenario& scenario) {
       " s, seed " + std::to_string(scenario.seed) +
       ". Truth is green, streaks found are cyan, points yellow. <a "
       "href=detections.jsonl>detections.jsonl</a> "
-      "<a href=truth.jsonl>truth.jsonl</a> <a href=run.json>run.json</a></p>"
+      "<a href=truth.jsonl>truth.jsonl</a> " +
+      (scenario.fusion ? "<a href=tracks.jsonl>tracks.jsonl</a> " : "") +
+      "<a href=run.json>run.json</a></p>"
       "<table><tr><th>sensor<th>frames<th>objects in frame<th>detections<th>s per frame<th>memory, "
       "MB";
   const auto summaries = summarise(scenario, directory.path());

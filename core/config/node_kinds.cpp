@@ -27,6 +27,11 @@ const std::vector<NodeKind> table{
      .topics = {},
      .wanted = [](const Scenario& s) { return s.output.positions(); },
      .writes_products = true},
+    {.name = fusion_node,
+     .program = "dmise-fusion-node",
+     .topics = {"track/fusion-node"},
+     .wanted = [](const Scenario& s) { return s.fusion.has_value(); },
+     .writes_products = true},
 };
 
 bool is_sensor(const std::string& name, const Scenario& scenario) {

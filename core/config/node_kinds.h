@@ -8,7 +8,8 @@
 namespace dmise {
 
 inline constexpr const char *orbit_node = "orbit-node", *environment_node = "environment-node",
-                            *positions_node = "positions-node", *any_sensor = "sensor";
+                            *positions_node = "positions-node", *fusion_node = "fusion-node",
+                            *any_sensor = "sensor";
 
 /// A kind of node of a run. To add one: write its participant and its program, give it a row here
 /// and a maker in launch/node_makers.cpp, and a service in launch/stack/compose.yaml.

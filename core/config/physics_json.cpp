@@ -80,6 +80,26 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   json.end_object();
 }
 
+void write_fusion(JsonWriter& json, const FusionConfig& fusion) {
+  const FusionSettings& s = fusion.settings;
+  json.key("fusion").begin_object();
+  for (const auto& [key, sigmas] :
+       {std::pair("catalogue_sigma_m", s.catalogue_sigma_m),
+        std::pair("catalogue_sigma_m_per_day", s.catalogue_sigma_m_per_day)}) {
+    json.key(key).begin_array();
+    for (const double sigma : sigmas) json.value(sigma);
+    json.end_array();
+  }
+  json.field("gate_d2", s.gate_d2).field("detection_probability", s.detection_probability);
+  json.field("false_alarms_per_frame", s.false_alarms_per_frame);
+  json.field("lost_after_s", s.lost_after_s).field("tentative_s", s.tentative_s);
+  json.field("start_window_s", s.start_window_s).field("simultaneous_s", s.simultaneous_s);
+  json.field("acceleration_noise_m2_per_s3", s.acceleration_noise_m2_per_s3);
+  json.key("not_in_catalogue").begin_array();
+  for (const std::string& name : fusion.not_in_catalogue) json.value(name);
+  json.end_array().end_object();
+}
+
 }  // namespace
 
 std::string physics_json(const Scenario& scenario) {
@@ -96,7 +116,9 @@ std::string physics_json(const Scenario& scenario) {
   json.field("faintest_mag", scenario.faintest_star_mag).end_object();
   json.key("sensors").begin_array();
   for (const auto& sensor : scenario.sensors) write_sensor(json, sensor);
-  json.end_array().end_object();
+  json.end_array();
+  if (scenario.fusion) write_fusion(json, *scenario.fusion);
+  json.end_object();
   return json.take();
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/config/distribution.h"
+#include "core/config/fusion_config.h"
 #include "core/config/interpolation_choice.h"
 #include "core/config/node_names.h"
 #include "core/config/output_config.h"
@@ -184,6 +185,11 @@ Scenario read_scenario(const YamlValue& root) {
     read_environment(*environment, scenario.environment);
   if (const auto network = map.find("network")) read_network(*network, scenario.network);
   if (const auto output = map.find("output")) scenario.output = read_output(*output);
+  if (const auto fusion = map.find("fusion"); fusion && !(fusion->is_scalar() && !fusion->flag())) {
+    scenario.fusion = read_fusion(*fusion);
+    if (std::ranges::none_of(scenario.sensors, &SensorConfig::detect))
+      fusion->fail("needs a sensor that detects", false);
+  }
   map.done();
   return scenario;
 }

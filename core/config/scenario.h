@@ -13,6 +13,7 @@
 #include "core/detector/detector.h"
 #include "core/effects/accuracy.h"
 #include "core/effects/effects.h"
+#include "core/fusion/fusion_settings.h"
 #include "core/instrument/instrument.h"
 #include "core/optics/camera.h"
 #include "core/optics/seeing.h"
@@ -154,6 +155,14 @@ struct OutputConfig {
   bool positions() const { return positions_csv || positions_jsonl || positions_oem; }
 };
 
+/// Tracks from the detections of all sensors, by a node of its own.
+struct FusionConfig {
+  FusionSettings settings;
+  std::vector<std::string> not_in_catalogue;  // names or numbers of objects that it does not know
+  std::vector<std::string> not_in_catalogue_where = {};  // of each, for messages
+  std::string where = {};                                // `file:line:column: fusion`
+};
+
 /// A complete scenario: presets read, paths resolved, defaults filled in, everything checked.
 struct Scenario {
   std::string path;
@@ -173,7 +182,8 @@ struct Scenario {
   EnvironmentConfig environment;
   NetworkConfig network;
   OutputConfig output;
-  std::vector<std::string> warnings;  // unusual values; each names its key
+  std::optional<FusionConfig> fusion;  // none: no fusion node
+  std::vector<std::string> warnings;   // unusual values; each names its key
 
   /// The last tick: the first at or after the end of the run.
   Tick last_tick() const { return (duration.ns + tick.ns - 1) / tick.ns; }

@@ -34,7 +34,7 @@ struct SmallRun {
         << "simulation: {start: 2020-01-01T00:00:00Z, duration_s: 20, tick_s: 10}\n"
            "objects: [{name: ball, radius_m: 1, motion: {two_body: {semi_major_axis_m: 7e6, "
            "eccentricity: 0, inclination_deg: 90, raan_deg: 90}}}]\n"
-           "stars: {catalogue: stars.csv}\noutput: {positions: [csv]}\n"
+           "stars: {catalogue: stars.csv}\noutput: {positions: [csv]}\nfusion: on\n"
            "sensors:\n  - {name: eye, site: {latitude_deg: 30, longitude_deg: 0, height_m: 0},\n"
            "     camera: {optics: {columns: 64, rows: 64, pixel_pitch_m: 1.0e-5, focal_length_m: "
            "0.1, aperture_m: 0.05}, detector: {full_well_e: 20000, gain_e_per_dn: 1}, band: "
@@ -77,11 +77,14 @@ TEST(NodeKinds, ASensorCannotBeCalledAsAKindIs) {
 TEST(NodeKinds, WhatIsNotWantedIsNoNodeOfTheRun) {
   SmallRun run;
   EXPECT_EQ(nodes_of(run.scenario),
-            (std::vector<std::string>{"orbit-node", "environment-node", "eye", "positions-node"}));
+            (std::vector<std::string>{"orbit-node", "environment-node", "eye", "positions-node",
+                                      "fusion-node"}));
   run.scenario.output = {};
+  run.scenario.fusion.reset();
   EXPECT_EQ(nodes_of(run.scenario),
             (std::vector<std::string>{"orbit-node", "environment-node", "eye"}));
-  EXPECT_TRUE(kind_of_node("positions-node", run.scenario));  // may stand by
+  EXPECT_TRUE(kind_of_node("positions-node", run.scenario));
+  EXPECT_TRUE(kind_of_node("fusion-node", run.scenario));  // may stand by
   EXPECT_FALSE(kind_of_node("other", run.scenario));
 }
 

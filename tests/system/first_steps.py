@@ -14,7 +14,7 @@ import subprocess
 from harness import check, main, write_scenario
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAMS = ("broker", "environment-node", "host-agent", "orbit-node", "positions-node", "sensor-node", "time-master")
+PROGRAMS = ("broker", "environment-node", "fusion-node", "host-agent", "orbit-node", "positions-node", "sensor-node", "time-master")
 OUR_WORDS = ("s a frame", "points by", "drawn analytically", "PSS")  # say something to us alone
 
 

@@ -98,7 +98,7 @@ submit() {
 }
 
 check_run() {
-  submit run.sbatch "$scenario" "$work/run" --nodes 2 --ntasks 8 || die "the job failed: $(log_of)"
+  submit run.sbatch "$scenario" "$work/run" --nodes 2 --ntasks 9 || die "the job failed: $(log_of)"
   same_products "$work/reference" "$work/run" 17 "a job of two hosts"
   no_keys || die "the keys of a job are left behind"
 }
@@ -107,7 +107,7 @@ check_failure() {
   local code=0
   sed 's/seed: 1/seed: 7/' "$scenario" >"$work/other.yaml"
   cp "$tests/stack/small.yaml" "$work/"
-  submit run.sbatch "$work/other.yaml" "$work/run" --nodes 2 --ntasks 8 || code=$?
+  submit run.sbatch "$work/other.yaml" "$work/run" --nodes 2 --ntasks 9 || code=$?
   ((code == 2)) || die "exit code $code of a job into another run's directory, not 2: $(log_of)"
   wait_until 60 "the end of all nodes" no_node
   say "ok: the exit code of the job is that of the run"
@@ -124,7 +124,7 @@ check_cancel() {
   local job
   sed 's/duration_s: 15/duration_s: 36000/' "$scenario" >"$work/long.yaml"
   job=$(cd "$work/jobs" &&
-    sbatch --parsable --nodes 2 --ntasks 8 "$jobs/run.sbatch" "$work/long.yaml" "$work/cancelled")
+    sbatch --parsable --nodes 2 --ntasks 9 "$jobs/run.sbatch" "$work/long.yaml" "$work/cancelled")
   wait_until 240 "a first frame of a long job" test -e "$work/cancelled/alpha/frame-000001.fits"
   scancel "$job"
   wait_until 60 "the end of a cancelled job" no_node

@@ -1,0 +1,60 @@
+#pragma once
+#include <atomic>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/node_kinds.h"
+#include "core/fusion/fusion.h"
+#include "core/sim/participant.h"
+#include "core/time/clock.h"
+#include "nodes/fusion/fusion_journal.h"
+
+namespace dmise {
+
+/// Makes tracks of the detections of all sensors: publishes those that changed at a tick and writes
+/// them to tracks.jsonl in the directory of the run.
+class FusionEvaluator : public Evaluator {
+ public:
+  /// The scenario must have `fusion`. Throws `Error` if `directory` cannot be written.
+  FusionEvaluator(const Scenario& scenario, Clock clock, const std::string& directory);
+  ~FusionEvaluator() override;
+
+  std::string name() const override { return fusion_node; }
+  std::vector<std::string> produces() const override;
+  /// The roster, and frames and detections of each sensor that detects.
+  std::vector<std::string> consumes() const override;
+  /// A sensor that is lost is one that sees nothing.
+  bool needs(const std::string& topic) const override { return topic == roster_topic; }
+  std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
+  /// Does the ticks before again, by the journal.
+  std::vector<Message> resume(Tick tick, std::span<const Message> past) override;
+  std::uint64_t progress() const override { return progress_; }
+
+ private:
+  struct Camera {
+    int columns = 0, rows = 0;
+    double half_angle_rad = 0.0;
+  };
+  /// Throws `ConfigError` for an object of `not_in_catalogue` that the roster does not have.
+  void meet(const ObjectRoster& roster);
+  TrackSet fuse(Tick tick, std::span<const Message> inputs);
+  void open_tracks(Tick tick);
+  void write(const TrackSet& set);
+
+  Scenario scenario_;
+  Clock clock_;
+  std::string tracks_path_;
+  std::map<std::string, Camera> cameras_;
+  std::optional<Fusion> fusion_;  // once the roster is known
+  FusionJournal journal_;
+  std::FILE* tracks_ = nullptr;
+  bool begun_ = false;
+  std::atomic<std::uint64_t> progress_{0};
+};
+
+/// In the directory of a run.
+std::string fusion_journal_path(const std::string& directory);
+
+}  // namespace dmise

@@ -1,0 +1,140 @@
+#include "nodes/fusion/fusion_journal.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "core/base/crc32c.h"
+#include "core/base/error.h"
+#include "nodes/wire/state_codec.h"
+
+namespace dmise {
+namespace {
+
+/// Before each record; its texts follow. Of one host: integers have its byte order.
+struct Head {
+  std::int64_t tick = 0;
+  std::uint32_t kind = 0;                            // of the message; 0: the tick ends
+  std::uint32_t topic = 0, payload = 0, arrays = 0;  // bytes
+  std::uint32_t crc = 0;                             // of the texts and of this with crc 0
+  std::uint32_t spare = 0;
+};
+
+struct Record {
+  Head head;
+  std::string texts;
+
+  std::uint32_t crc() const {
+    Head plain = head;
+    plain.crc = 0;
+    return crc32c(texts.data(), texts.size(), crc32c(&plain, sizeof plain));
+  }
+};
+
+/// The next record; false at the end or at one that is not whole.
+bool read(std::ifstream& file, Record& record) {
+  if (!file.read(reinterpret_cast<char*>(&record.head), sizeof record.head)) return false;
+  const Head& h = record.head;
+  if (h.topic > max_topic_bytes || h.payload > max_payload_bytes || h.arrays > max_array_bytes)
+    return false;
+  record.texts.resize(std::size_t(h.topic) + h.payload + h.arrays);
+  if (!file.read(record.texts.data(), std::streamsize(record.texts.size()))) return false;
+  return record.crc() == h.crc;
+}
+
+Message message_of(const Record& record) {
+  const Head& h = record.head;
+  const std::string_view texts = record.texts;
+  return {std::string(texts.substr(0, h.topic)), h.tick,
+          std::make_shared<State>(decode(MessageKind(h.kind), texts.substr(h.topic, h.payload),
+                                         texts.substr(h.topic + h.payload)))};
+}
+
+}  // namespace
+
+FusionJournal::~FusionJournal() {
+  if (file_) std::fclose(file_);
+}
+
+void FusionJournal::fail(const std::string& reason) const { throw Error(path_ + ": " + reason); }
+
+void FusionJournal::open(const char* mode) {
+  if (file_) std::fclose(file_);
+  std::error_code code;
+  std::filesystem::create_directories(std::filesystem::path(path_).parent_path(), code);
+  if (code) fail("can't be created: " + code.message());
+  file_ = std::fopen(path_.c_str(), mode);
+  if (!file_) fail(std::string("can't be written: ") + std::strerror(errno));
+}
+
+void FusionJournal::clear() { open("wb"); }
+
+void FusionJournal::resume(Tick tick,
+                           const std::function<void(Tick, std::span<const Message>)>& again) {
+  std::uintmax_t whole = 0;
+  Tick next = 0;
+  {
+    std::ifstream file(path_, std::ios::binary);
+    std::vector<Message> inputs;
+    Record record;
+    while (next < tick && read(file, record)) {
+      if (record.head.kind != 0) {
+        inputs.push_back(message_of(record));
+        continue;
+      }
+      if (record.head.tick != next) fail("tick " + std::to_string(next) + " is missing");
+      again(next++, inputs);
+      inputs.clear();
+      whole = std::uintmax_t(file.tellg());
+    }
+  }
+  if (next < tick)
+    fail("has the inputs before tick " + std::to_string(next) + " alone, and the run goes on at " +
+         std::to_string(tick) + ": start it anew");
+  open("ab");
+  if (::truncate(path_.c_str(), off_t(whole)) != 0)
+    fail(std::string("can't be cut: ") + std::strerror(errno));
+}
+
+void FusionJournal::add(std::span<const Message> inputs) {
+  for (const Message& message : inputs) {
+    const Encoded encoded = encode(*message.state);
+    Record record;
+    record.head = {.tick = message.tick,
+                   .kind = std::uint32_t(encoded.kind),
+                   .topic = std::uint32_t(message.topic.size()),
+                   .payload = std::uint32_t(encoded.payload.size()),
+                   .arrays = std::uint32_t(encoded.arrays.size())};
+    record.texts = message.topic + encoded.payload + encoded.arrays;
+    record.head.crc = record.crc();
+    if (std::fwrite(&record.head, sizeof record.head, 1, file_) != 1 ||
+        std::fwrite(record.texts.data(), 1, record.texts.size(), file_) != record.texts.size())
+      fail(std::string("can't be written: ") + std::strerror(errno));
+  }
+}
+
+void FusionJournal::end(Tick tick) {
+  Record record;
+  record.head.tick = tick;
+  record.head.crc = record.crc();
+  if (std::fwrite(&record.head, sizeof record.head, 1, file_) != 1 || std::fflush(file_) != 0)
+    fail(std::string("can't be written: ") + std::strerror(errno));
+}
+
+Tick FusionJournal::ticks_written(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  Record record;
+  Tick next = 0;
+  while (read(file, record))
+    if (record.head.kind == 0) {
+      if (record.head.tick != next) break;
+      ++next;
+    }
+  return next;
+}
+
+}  // namespace dmise

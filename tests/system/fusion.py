@@ -1,0 +1,78 @@
+"""Two sensors see one object that is in no catalogue: the fusion node finds it, the same for `run` and `launch`.
+
+    fusion.py DMISE
+"""
+
+import json
+import math
+import subprocess
+
+from harness import check, main
+
+SCENARIO = """\
+simulation: {start: 2018-01-21T00:15:00Z, duration_s: 100, tick_s: 5, seed: 1}
+objects: [{catalogue: newcomer.tle, radius_m: 4}]
+stars: {catalogue: kstars}
+fusion: {not_in_catalogue: [NEWCOMER]}
+sensors:
+"""
+# 900 km above the two sites after a minute.
+ELEMENTS = ("1 99999U 18001A   18021.01041667  .00000000  00000-0  00000-0 0  999",
+            "2 99999  66.0000  22.9510 0000001   0.0000  33.5590 13.9820000000001")
+SENSOR = """\
+  - name: {name}
+    site: {name}
+    camera: omnissa
+    pointing: zenith
+    exposure_s: 1
+    cadence_s: 10
+    sky: dark
+"""
+
+
+def lines_of(file):
+    return [json.loads(line) for line in file.read_text().splitlines()]
+
+
+def with_checksum(line):
+    return line + str(sum(int(c) if c.isdigit() else c == "-" for c in line) % 10)
+
+
+def truth_at(time_ns, truth):
+    """From the nearest exposure, in the field of a point mass: to 1 m in 5 s."""
+    near = min(truth, key=lambda t: abs(t["middle_ns"] - time_ns))
+    place, velocity = near["true_position_gcrs_m"], near["true_velocity_gcrs_m_per_s"]
+    s, r = 1e-9 * (time_ns - near["middle_ns"]), math.hypot(*place)
+    return [x + v * s - 0.5 * 3.986004418e14 * x / r**3 * s * s for x, v in zip(place, velocity)]
+
+
+def test(binary, work):
+    def dmise(*arguments):
+        done = subprocess.run([binary, *arguments], capture_output=True, text=True)
+        check(done.returncode == 0, f"{arguments[0]} exits with 0: {done.stderr[-300:]}")
+
+    scenario = work / "two.yaml"
+    (work / "newcomer.tle").write_text("\n".join(["NEWCOMER", *map(with_checksum, ELEMENTS)]) + "\n")
+    scenario.write_text(SCENARIO + "".join(SENSOR.format(name=name) for name in ("atlanta", "huntsville")))
+    dmise("run", scenario, "--out", work / "run")
+    dmise("launch", scenario, "--out", work / "launch")
+    for name in ("tracks.jsonl", "detections.jsonl"):
+        check((work / "run" / name).read_bytes() == (work / "launch" / name).read_bytes(), f"{name}: the same of run and launch")
+
+    tracks = lines_of(work / "run" / "tracks.jsonl")
+    confirmed = [t for t in tracks if t["status"] == "confirmed"]
+    check(len({t["id"] for t in confirmed}) == 1, "one track is confirmed")
+    last = confirmed[-1]
+    check(last["catalogue_number"] == 0 and last["detections"] >= 8, "it is in no catalogue and has detections of both")
+    check({i.split("/")[0] for t in confirmed for i in t["associated"]} == {"atlanta", "huntsville"}, "of both sites")
+
+    truth = truth_at(last["time_ns"], lines_of(work / "run" / "truth.jsonl"))
+    error = math.dist(truth, last["position_gcrs_m"])
+    sigma = math.sqrt(sum(last["covariance_gcrs"][k] for k in (0, 2, 5)))
+    check(error < 5 * sigma and error < 5000, f"its place: {error:.0f} m of {sigma:.0f} m")
+
+    dmise("export", work / "run", "--to", "oem", "--tracks")
+    check("COVARIANCE_START" in (work / "run" / "export" / "tracks.oem").read_text(), "an OEM with covariances")
+
+
+main(test)
