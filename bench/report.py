@@ -1,9 +1,10 @@
-"""Measures, and writes docs/benchmarks.md from what it measured in this run.
+"""Measures, and writes docs/benchmarks.md, a section for each measurement.
 
     report.py [--only NAME ..] [--also NAME ..] [--output FILE] [--json FILE]
 
-Runs every `dmise bench NAME --json`, the demonstration, and the referees on its products. A figure is
-never kept from an earlier run. What fails is reported as failed.
+Runs every `dmise bench NAME --json`, the demonstration, and the referees on its products. A section
+says when, at which commit and under which load it was measured; --only writes the sections that it
+names anew and leaves the others as they are. What fails is reported as failed.
 """
 
 import argparse
@@ -70,18 +71,23 @@ def number(x):
 
 
 def machine():
-    """What the figures depend on."""
+    """What all figures depend on."""
     cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo")
                 if line.startswith("model name")), platform.machine())
     memory_kb = int(re.search(r"MemTotal: *(\d+)", open("/proc/meminfo").read()).group(1))
     system = re.search(r'PRETTY_NAME="(.*)"', open("/etc/os-release").read()).group(1)
+    return (f"{cpu}, {os.cpu_count()} cores, {memory_kb / 2**20:.0f} GiB; {system}, "
+            f"{output_of('g++', '--version').stdout.splitlines()[0]}")
+
+
+def occasion():
+    """When and of what a section is."""
     commit = output_of("git", "rev-parse", "--short", "HEAD").stdout.strip() or "unknown"
-    if output_of("git", "status", "--porcelain", "--untracked-files=no").stdout.strip():
+    ours = ("git", "status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/benchmarks.md")
+    if output_of(*ours).stdout.strip():
         commit += " and changes"
-    return [("processor", f"{cpu}, {os.cpu_count()} cores"), ("memory", f"{memory_kb / 2**20:.0f} GiB"),
-            ("system", f"{system}, {output_of('g++', '--version').stdout.splitlines()[0]}"),
-            ("date", datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")),
-            ("commit", commit), ("load before", f"{os.getloadavg()[0]:.2f}")]
+    date = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
+    return f"{date}, commit {commit}, load before {os.getloadavg()[0]:.2f}"
 
 
 def bench_names():
@@ -100,18 +106,14 @@ def measure(name, *arguments):
     return figures, "" if done.returncode == 0 or figures else reason
 
 
-def benches(names, measured, *arguments_of_network):
-    """The table of benchmarks; adds their figures to `measured`."""
-    rows = []
-    for name in names:
-        figures, reason = measure(name, *(arguments_of_network if name == "network" else ()))
-        measured += figures
-        for m in figures:
-            rows.append([m["name"], number(m["value"]), m.get("unit") or "", m.get("anchor") or "",
-                         number(m.get("anchor_value")), number(m.get("ratio")),
-                         number(m.get("target")), number(m.get("met"))])
-        if reason:
-            rows.append([name, "failed", "", reason, "", "", "", "no"])
+def benchmark(name, measured):
+    """The table of a benchmark; adds its figures to `measured`."""
+    figures, reason = measure(name, *(["--without-detection-only"] if name == "network" else []))
+    measured += figures
+    rows = [[m["name"], number(m["value"]), m.get("unit") or "", m.get("anchor") or "", number(m.get("anchor_value")),
+             number(m.get("ratio")), number(m.get("target")), number(m.get("met"))] for m in figures]
+    if reason:
+        rows.append([name, "failed", "", reason, "", "", "", "no"])
     return table(("figure", "value", "unit", "anchor", "anchor's", "ratio", "target", "met"), rows)
 
 
@@ -170,6 +172,8 @@ def claims(commands):
 
 def referees():
     """What other people's programs say of the demonstration's products."""
+    if not (RUN / "run.json").exists():
+        demonstration()
     judges = {name: ("/usr/bin/python3", ROOT / f"tests/reference/{name}.py", RUN)
               for name in REFEREES}
     judges["erfa_directions"] += ("--platform", "metop=29499")
@@ -207,10 +211,39 @@ def continuous_integration():
     return table(("what", "result"), rows) if rows else "Not run here.\n"
 
 
+OTHERS = {  # sections that are no `dmise bench NAME`
+    "demonstration": ("The demonstration", demonstration),
+    "referees": ("Referees", referees),
+    "registration": ("Light against its label", registration),
+    "whole-runs": ("Whole runs", whole_runs),
+    "ci": ("Continuous integration", continuous_integration),
+}
+
+
+def kept_sections(path, on):
+    """{title: text} of a report that was measured on the same machine, else {}."""
+    if not path.exists():
+        return {}
+    head, *sections = path.read_text().split("\n## ")
+    if on not in head:
+        print(f"{path}: of another machine, so all its sections go", file=sys.stderr)
+        return {}
+    return dict(section.split("\n", 1) for section in sections)
+
+
+def write(path, on, sections):
+    """After each measurement, so that one that is cut short loses no other."""
+    text = ("# Benchmarks\n\nWritten by `./dmise bench report`. An anchor is somebody else's program, or a floor of "
+            f"the machine,\nmeasured beside ours. Machine of all sections: {on}.\n")
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(text + "".join(f"\n## {title}\n{body.rstrip()}\n" for title, body in sections.items() if body))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    every = sorted({*OTHERS, "detect", *LONG})
     parser.add_argument("--only", nargs="+", metavar="NAME",
-                        help="benchmarks to run; default all but " + ", ".join(LONG))
+                        help="benchmarks to run, or " + ", ".join(every) + "; default all but " + ", ".join(LONG))
     parser.add_argument("--also", nargs="+", metavar="NAME", default=[], help="and these")
     parser.add_argument("--output", type=pathlib.Path, default=ROOT / "docs/benchmarks.md")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="write the figures of all benchmarks, too")
@@ -218,22 +251,20 @@ def main():
     for needed in (BINARY, REGISTRATION):
         if not needed.exists():
             sys.exit(f"{needed} is not built; run ./dmise bench report")
-    measured = []
-    names = (options.only or bench_names()) + options.also
-    detecting = not options.only or "detect" in names
-    others = [name for name in names if name != "detect"]
-    sections = [("Machine", table(("", ""), machine())),
-                ("Against anchors", benches(others, measured, *["--without-detection-only"] * detecting))]
-    if detecting:
-        sections.append(("Detection", detection(measured)))
-    sections += [("The demonstration", demonstration()), ("Referees", referees()),
-                ("Light against its label", registration()), ("Whole runs", whole_runs()),
-                ("Continuous integration", continuous_integration())]
-    text = ("# Benchmarks\n\nWritten by `./dmise bench report`; every figure was measured in that run. An anchor is "
-            "somebody\nelse's program, or a floor of the machine, measured beside ours.\n")
-    text += "".join(f"\n## {title}\n\n{body}" for title, body in sections)
-    options.output.parent.mkdir(exist_ok=True)
-    options.output.write_text(text)
+    order = [*bench_names(), *LONG, "detect", *OTHERS]
+    names = (options.only or [name for name in order if name not in LONG]) + options.also
+    if unknown := [name for name in names if name not in order]:
+        sys.exit(f"--only, --also: no measurement called {', '.join(unknown)}; there are {', '.join(order)}")
+    titles = {name: OTHERS[name][0] if name in OTHERS else "Detection" if name == "detect" else f"bench {name}"
+              for name in order}
+    measured, on = [], machine()
+    sections = kept_sections(options.output, on)
+    for name in (name for name in order if name in names):
+        when = occasion()
+        body = (OTHERS[name][1]() if name in OTHERS else
+                detection(measured) if name == "detect" else benchmark(name, measured))
+        sections[titles[name]] = f"\n{when}.\n\n{body}"
+        write(options.output, on, {titles[name]: sections.get(titles[name]) for name in order})
     print(options.output)
     if options.json:
         options.json.write_text("".join(json.dumps(m) + "\n" for m in measured))

@@ -24,6 +24,13 @@ struct KeygenOptions {
   bool rings = false;
 };
 
+/// Nodes of a kind that may ask the time-master: also one that the scenario does not need, for its
+/// container or task stands by until the end of the run.
+std::vector<std::string> askers_of(const NodeKind& kind, const Scenario& scenario) {
+  if (kind.each_sensor || kind.wanted(scenario)) return nodes_of(kind, scenario);
+  return {kind.name};
+}
+
 void keygen(const KeygenOptions& options) {
   std::vector<std::string> names = options.names, several;
   std::map<std::string, std::vector<std::string>>
@@ -40,7 +47,7 @@ void keygen(const KeygenOptions& options) {
     names.insert(names.end(), {"time-master", broker_name});
     const Scenario scenario = load_scenario(options.scenario);
     for (const NodeKind& kind : node_kinds())
-      for (const auto& name : nodes_of(kind, scenario))
+      for (const auto& name : askers_of(kind, scenario))
         (kind.writes_products ? several : names).push_back(name);
     names.push_back(operator_name);
     names.insert(names.end(), several.begin(), several.end());

@@ -109,8 +109,8 @@ void FrameComparison::find_rounding() {
   constexpr double of_row = 0x1p-21, of_frame = 0x1p-23;
   const SensorConfig& sensor = scene_.sensor();
   const Camera& camera = sensor.camera;
-  const PsfPlan blur = plan_psf(camera.optics, camera.band.centre_m, sensor.seeing,
-                                scene_.times().seconds());
+  const PsfPlan blur =
+      plan_psf(camera.optics, camera.band.centre_m, sensor.seeing, scene_.times().seconds());
   rounding_e_.assign(std::size_t(light_.rows), 0.0f);
   if (blur.method != PointSpread::Method::transform) return;
   const auto columns = std::size_t(light_.columns);

@@ -13,6 +13,7 @@ import time
 from harness import Run, check, check_same, first_frame, main, wait_until, write_scenario
 
 NODES = ("broker", "orbit-node", "environment-node")
+NOT_NEEDED = ("positions-node", "fusion-node")  # by the scenario; a stack starts them all the same
 
 
 def free_address():
@@ -86,10 +87,12 @@ def test(binary, directory):
         for slot in (2, 1):  # before there is anybody to join
             stack.join("sensor", "--slot", str(slot), called=f"slot {slot}")
         stack.launch()
-        for node in NODES:
+        for node in (*NODES, *NOT_NEEDED):
             stack.join(node)
         codes = stack.finish()
         check(set(codes.values()) == {0}, f"all end with 0: {codes} {stack.runs['launch'].stderr[-300:]}")
+        idle = [node for node in NOT_NEEDED if "standing by" in stack.runs[node].stderr]
+        check(idle == [*NOT_NEEDED], f"nodes that the scenario does not need stand by: {idle}")
     check_same(out, reference, "by slot, with rings of keys")
 
     out = directory / "free"

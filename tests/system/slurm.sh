@@ -65,8 +65,8 @@ SwitchType=switch/none
 ReturnToService=2
 SlurmdTimeout=300
 KillWait=5
-NodeName=first NodeHostname=control NodeAddr=10.77.0.1 Port=6821 CPUs=4
-NodeName=second NodeHostname=control NodeAddr=10.77.0.2 Port=6822 CPUs=4
+NodeName=first NodeHostname=control NodeAddr=10.77.0.1 Port=6821 CPUs=8
+NodeName=second NodeHostname=control NodeAddr=10.77.0.2 Port=6822 CPUs=8
 PartitionName=all Nodes=first,second Default=YES State=UP
 CONF
   hostname control
