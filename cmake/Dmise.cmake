@@ -13,10 +13,11 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)  # for clang-tidy
 set(DMISE_SANITIZE "" CACHE STRING "sanitizers to build with, as for -fsanitize=")
 option(DMISE_FUZZ "build the libFuzzer targets (clang)" OFF)
 option(DMISE_WERROR "treat warnings as errors" ON)
-option(DMISE_PRECOMPILE "with sanitizers, read the standard library and GoogleTest once where there is no compiler cache" ON)
+option(DMISE_PRECOMPILE "with sanitizers, read the standard library and GoogleTest once" ON)
 
+# Trees with sanitizers are compiled once and for all; a cache keeps less with precompiled headers than without.
 find_program(CCACHE_PROGRAM ccache)
-if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND NOT DMISE_SANITIZE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
 endif()
 
@@ -34,7 +35,6 @@ if(DMISE_FUZZ)
 endif()
 include_directories(${CMAKE_SOURCE_DIR})
 
-# A compiler cache keeps less with precompiled headers than without.
 if(DMISE_PRECOMPILE AND DMISE_SANITIZE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp CONTENT "int main() {}\n")
   set(often <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory> <numeric>

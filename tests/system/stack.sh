@@ -15,7 +15,7 @@ checkout=$(readlink -f "$1") dmise=$(readlink -f "$2")
 tests=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 data_root=${XDG_CACHE_HOME:-$HOME/.cache}/dmise/docker
 file=$checkout/launch/stack/compose.yaml
-base=dmise-base:bookworm builder=dmise-builder project=dmise-test
+base=dmise-base:bookworm warm=dmise-warm builder=dmise-builder project=dmise-test
 export PATH=/usr/sbin:/usr/bin:/sbin:/bin
 source "$tests/setup_proof.sh"
 source "$tests/stack/products.sh"
@@ -44,11 +44,31 @@ make_base() {
   say "the base is $base"
 }
 
+# The base with what the compiler cache of this machine has kept, so that nothing is compiled twice:
+# the set-up, CMake and the linker do all their work. Without a cache, the base.
+warm_base() {
+  warm=$base
+  command -v ccache >/dev/null || return 0
+  mkdir "$work/warm"
+  cp -r "$(ccache --get-config cache_dir)" "$work/warm/ccache" 2>/dev/null || return 0
+  cat >"$work/warm/Dockerfile" <<DOCKERFILE
+FROM $base
+RUN apt-get -q update && apt-get -q -y install --no-install-recommends ccache && rm -rf /var/lib/apt/lists/*
+COPY ccache /var/cache/ccache
+ENV CCACHE_DIR=/var/cache/ccache
+DOCKERFILE
+  warm=dmise-warm
+  in_docker -f "$work/warm/Dockerfile" -t "$warm" "$work/warm"
+}
+
+in_docker() {  # ARG..: of docker build
+  docker build --network host ${http_proxy:+--build-arg http_proxy} ${https_proxy:+--build-arg https_proxy} \
+    "$@" >"$work/build.log" 2>&1 || die "docker build failed: $(tail -n 20 "$work/build.log")"
+}
+
 build() {  # TARGET NAME: a stage of the Dockerfile
-  docker build --network host -f "$work/tree/launch/stack/Dockerfile" --build-arg BASE="$base" \
-    ${http_proxy:+--build-arg http_proxy} ${https_proxy:+--build-arg https_proxy} \
-    ${1:+--target "$1"} -t "$2" "$work/tree" >"$work/build.log" 2>&1 ||
-    die "docker build failed: $(tail -n 20 "$work/build.log")"
+  in_docker -f "$work/tree/launch/stack/Dockerfile" --build-arg BASE="$base" --build-arg BUILDER="$warm" \
+    ${1:+--target "$1"} -t "$2" "$work/tree"
 }
 
 # What bare_root.sh proves, on the way to the image.
@@ -163,6 +183,7 @@ if [[ -z $given ]]; then
   committed archive HEAD | tar -x -C "$work/tree"
   start_daemon outside
   make_base
+  warm_base
   check_setup
   build '' "$DMISE_IMAGE"
   stop_daemon
@@ -179,6 +200,6 @@ check_failure
 check_swarm
 [[ -z $given ]] || exit 0
 remove_containers || true  # those of a stack go in their own time
-docker image rm -f "$DMISE_IMAGE" "$builder" >/dev/null || true
+docker image rm -f "$DMISE_IMAGE" "$builder" dmise-warm >/dev/null || true
 docker system prune -f --volumes >/dev/null || true
 write_proof "$proof" "$SECONDS"
