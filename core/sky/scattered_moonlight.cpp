@@ -21,7 +21,7 @@ double moonlight_scattering(double angle_from_moon_rad) {
   const double rayleigh = 229086.76527677724 * (1.06 + c * c);        // 10^5.36
   double mie = light_of_magnitude(-2.5 * (6.15 - angle_deg / 40.0));  // 10^(6.15 - angle/40)
   if (angle_deg < 10.0) {
-    const double held_deg = std::max(angle_deg, 0.25);
+    const double held_deg = std::max(angle_deg, moonlight_held_within_deg);
     mie = std::max(mie, 6.2e7 / (held_deg * held_deg));
   }
   return rayleigh + mie;

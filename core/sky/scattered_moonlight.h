@@ -21,9 +21,12 @@ struct ScatteredMoonlight {
 /// full Moon]. Source: Krisciunas & Schaefer 1991, PASP 103, 1033, equation 9.
 double moon_v_mag(double phase_rad);
 
+/// Radius of the Moon [deg]: nearer to its centre moonlight is that of its limb.
+inline constexpr double moonlight_held_within_deg = 0.25;
+
 /// Scattering function f at an angle [rad] from the Moon, equations 16, 18 and 19 there. Where 18
-/// and 19 would jump (10 deg) the larger of both is taken, and the pole at 0 is held inside 0.25
-/// deg.
+/// and 19 would jump (10 deg) the larger of both is taken, and the pole at 0 is held inside
+/// `moonlight_held_within_deg`.
 double moonlight_scattering(double angle_from_moon_rad);
 
 /// Brightness [S10 in V] at the ground, equation 15 there. Below the horizon the Moon's light falls

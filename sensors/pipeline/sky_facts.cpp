@@ -96,8 +96,7 @@ double moves_rad(const View& view) {
                   angle_rad(middle, seen(view.times().end)));
 }
 
-/// Moonlight is held nearer to the Moon's centre.
-constexpr double held_rad = 0.25 * deg;
+constexpr double held_rad = moonlight_held_within_deg * deg;
 
 /// How far the field is from the Moon at mid exposure; 0 where the Moon is in it.
 double from_moon_rad(const View& view, const Vec<Gcrs>& moon) {

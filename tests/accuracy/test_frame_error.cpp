@@ -15,13 +15,13 @@
 namespace dmise {
 namespace {
 
-/// A star of 1e5 e- in the middle of 64 x 64 pixels, on a sky without structure.
+/// A star of 9 mag in the middle of 64 x 64 pixels, on a sky without structure.
 class FrameErrors : public testing::Test {
  public:
   ~FrameErrors() override { std::filesystem::remove_all(directory_); }
 
  protected:
-  FrameErrors() {
+  explicit FrameErrors(const std::string& blur = "") {
     setenv("DMISE_HOME", DMISE_SOURCE_DIR, 1);
     directory_ = std::filesystem::path(testing::TempDir()) /
                  ("accuracy-" + std::to_string(getpid()) + "-" +
@@ -39,7 +39,8 @@ sensors:
   - name: eye
     platform: carrier
     camera:
-      optics: {columns: 64, rows: 64, pixel_pitch_m: 1.0e-5, focal_length_m: 0.1, aperture_m: 0.05}
+      optics: {columns: 64, rows: 64, pixel_pitch_m: 1.0e-5, focal_length_m: 0.1, aperture_m: 0.05)"
+                                             << blur << R"(}
       detector: {full_well_e: 1000000, gain_e_per_dn: 2, read_noise_e: 5}
       band: {centre_m: 0.55e-6, width_m: 0.1e-6}
     pointing: {ra_deg: 85.2, dec_deg: 0.7}
@@ -109,6 +110,38 @@ TEST_F(FrameErrors, BackgroundIsMeasuredInItsNoise) {
   const double variance = sky_e + 25.0 + 4.0 / 12.0;
   EXPECT_NEAR(error.largest.noise, std::sqrt(1.0 + 0.3 * noise_e / variance) - 1.0, 1e-4);
 }
+
+/// The same star, blurred by diffraction.
+class FrameErrorsOfABlur : public FrameErrors, public testing::WithParamInterface<const char*> {
+ protected:
+  FrameErrorsOfABlur()
+      : FrameErrors(std::string(", psf: diffraction, jitter_px: 0.5, method: ") + GetParam()) {}
+
+  FrameError with_more_at_star_row(double more_e) const {
+    FrameProducts frame = with_sources(reference_.planes.sources);
+    frame.planes.background.at(8, 32) += float(more_e);
+    return error_of(frame);
+  }
+};
+
+// A transform in single precision rounds by what is brightest in a row and in the frame. What is
+// less than that says nothing of a level; what is more is an error all the same, and where nothing
+// is transformed all of it is.
+TEST_P(FrameErrorsOfABlur, RoundingOfATransformIsNoError) {
+  const auto& sources = reference_.planes.sources;
+  const double brightest_e = *std::max_element(sources.pixels.begin(), sources.pixels.end());
+  ASSERT_GT(brightest_e, 1e3);
+  const double least_e = 0x1p-22 * brightest_e,
+               noise_e = std::sqrt(double(reference_.planes.background.at(8, 32)) + 25.0);
+  const bool transformed = std::string(GetParam()) == "transform";
+  EXPECT_NEAR(with_more_at_star_row(least_e).largest.background_sigma,
+              transformed ? 0.0 : least_e / noise_e, 0.2 * least_e / noise_e);
+  EXPECT_NEAR(with_more_at_star_row(1.0).largest.background_sigma, 1.0 / noise_e,
+              (transformed ? 4.0 : 0.2) * least_e / noise_e);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, FrameErrorsOfABlur, testing::Values("transform", "direct"),
+                         [](const auto& each) { return std::string(each.param); });
 
 // A trail of 300 px that bends by an eighth of a circle is followed to a third of a pixel; two
 // chords would be 6 px off.
