@@ -1,0 +1,33 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/base/parallel.h"
+#include "core/config/scenario.h"
+#include "core/sim/participant.h"
+
+namespace dmise {
+
+/// The program of a node that is one participant of a scenario.
+struct ScenarioNode {
+  struct Inputs {
+    const Scenario& scenario;
+    Threads& threads;
+    std::string directory;  // of the run, if the node writes products
+  };
+
+  const char* name;             // its row in node_kinds(); the program is dmise-NAME
+  const char* what;             // it does, for --help
+  const char* needs = nullptr;  // key without which a scenario has no such node
+  bool uses_threads = false;
+  /// Throws ConfigError for a scenario that the node cannot run. With --check it is called only if
+  /// the node writes no products.
+  std::function<std::unique_ptr<Participant>(const Inputs&)> make = {};
+};
+
+/// Reads the flags and the scenario, makes the participant and runs it until the end of the run.
+/// Returns the exit code of the process.
+int run_scenario_node(const ScenarioNode& node, int argc, char** argv);
+
+}  // namespace dmise
