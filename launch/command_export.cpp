@@ -97,7 +97,7 @@ void run_export(const ExportOptions& options) {
   const RunProducts run =
       read_products(options.run,
                     {.truth = kind == ProductKind::truth && !format.takes_elements,
-                     .detections = kind == ProductKind::detections,
+                     .detections = kind != ProductKind::truth,
                      .tracks = kind == ProductKind::tracks,
                      .sensor = options.sensor},
                     [&](double share, const std::string& file) {
@@ -105,10 +105,12 @@ void run_export(const ExportOptions& options) {
                     });
   progress.clear_line();
   ExportRequest request{.run = run, .kind = kind, .elements = {}};
-  if (format.takes_elements) request.elements = elements_of(run, options);
+  if (format.takes_elements && kind == ProductKind::truth)
+    request.elements = elements_of(run, options);
   std::string name = format.file;
   if (const auto at = name.find("KIND"); at != std::string::npos)
-    name.replace(at, 4, name_of(kind));
+    name.replace(at, 4,
+                 format.takes_elements && kind == ProductKind::truth ? "objects" : name_of(kind));
   const fs::path out =
       options.out.empty() ? fs::path(options.run) / "export" / name : fs::path(options.out);
   for (const ExportedFile& file : format.files(request))

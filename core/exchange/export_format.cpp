@@ -25,7 +25,7 @@ const std::vector<ExportFormat>& export_formats() {
       {.name = "tdm",
        .what = "CCSDS Tracking Data Message 2.0 (KVN): right ascension, declination, magnitude",
        .file = "KIND.tdm",
-       .kinds = {detections, truth},
+       .kinds = {detections, truth, tracks},
        .files = one_file<tdm_text>},
       {.name = "oem",
        .what = "CCSDS Orbit Ephemeris Message 2.0 (KVN): true states at mid exposure, or confirmed "
@@ -34,9 +34,10 @@ const std::vector<ExportFormat>& export_formats() {
        .kinds = {truth, tracks},
        .files = one_file<run_oem_text>},
       {.name = "omm",
-       .what = "CCSDS Orbit Mean-elements Messages 2.0 (XML): element sets of the catalogues",
-       .file = "objects.omm.xml",
-       .kinds = {truth},
+       .what = "CCSDS Orbit Mean-elements Messages 2.0 (XML): element sets of the catalogues, or "
+               "fitted to confirmed tracks",
+       .file = "KIND.omm.xml",
+       .kinds = {truth, tracks},
        .takes_elements = true,
        .files = one_file<omm_text>},
       {.name = "satnet",

@@ -6,6 +6,7 @@
 #include "core/base/units.h"
 #include "core/exchange/export_format.h"
 #include "core/exchange/kvn_text.h"
+#include "core/exchange/track_name.h"
 #include "core/orbit/oem_file.h"
 
 namespace dmise {
@@ -85,7 +86,7 @@ std::string track_oem_text(const ExportRequest& request) {
   std::map<std::uint32_t, Ephemeris> objects;
   for (const Track& t : run.tracks) {
     if (t.status != TrackStatus::confirmed) continue;
-    const std::string track = "TRACK " + std::to_string(t.id);
+    const std::string track = track_name(t);
     Ephemeris& object = objects[t.id];
     object.name = t.name.empty() ? track : t.name;
     object.id = t.catalogue_number > 0 ? std::to_string(t.catalogue_number) : track;

@@ -2,12 +2,16 @@
 
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/exchange/export_format.h"
+#include "core/exchange/number_text.h"
+#include "core/exchange/track_name.h"
 #include "core/orbit/element_text.h"
 #include "core/orbit/epoch.h"
+#include "core/tracking/mean_elements_fit.h"
 
 namespace dmise {
 namespace {
@@ -37,11 +41,13 @@ std::string element(const char* tag, double value) {
   return element(tag, std::string(text));
 }
 
-std::string message(const RunProducts& run, const MeanElements& e) {
+std::string message(const RunProducts& run, const MeanElements& e,
+                    const std::string& comment = "") {
   std::string id = omm_designator(e.designator);
   if (id.empty()) id = "UNKNOWN";
   const std::string name = e.name.empty() ? std::to_string(e.catalogue_number) : e.name;
   return "<omm id=\"CCSDS_OMM_VERS\" version=\"2.0\">\n<header>\n" +
+         (comment.empty() ? comment : element("COMMENT", comment)) +
          element("CREATION_DATE", run.utc({0})) + element("ORIGINATOR", std::string("DMISE")) +
          "</header>\n<body>\n<segment>\n<metadata>\n" + element("OBJECT_NAME", name) +
          element("OBJECT_ID", id) + element("CENTER_NAME", std::string("EARTH")) +
@@ -66,13 +72,48 @@ std::string message(const RunProducts& run, const MeanElements& e) {
          "</tleParameters>\n</data>\n</segment>\n</body>\n</omm>\n";
 }
 
+/// The latest state of each confirmed track.
+std::string messages_of_tracks(const RunProducts& run) {
+  std::map<std::uint32_t, const Track*> latest;
+  for (const Track& t : run.tracks)
+    if (t.status == TrackStatus::confirmed) latest[t.id] = &t;
+  std::string text, why;
+  for (const auto& [id, track] : latest) {
+    const OrbitState state{track->time, track->position_m, track->velocity_m_per_s,
+                           track->drag_m2_per_kg, track->srp_m2_per_kg};
+    auto fit = fit_mean_elements(run.clock, ForceModel(run.clock, track->time), state);
+    if (!fit) {
+      why = track_name(*track) + ": " + std::string(fit.reason);
+      text += "<!-- " + why + " -->\n";
+      continue;
+    }
+    MeanElements& e = fit->elements;
+    e.catalogue_number = track->catalogue_number;
+    e.name = track->name.empty() ? track_name(*track) : track->name;
+    text += message(run, e,
+                    track_name(*track) +
+                        ": elements fitted to its orbit over one revolution; their path is " +
+                        fixed_text(fit->rms_m, 0) + " m rms from it, at worst " +
+                        fixed_text(fit->worst_m, 0) + " m");
+  }
+  if (text.find("<omm") == text.npos)
+    throw ConfigError(run.directory +
+                      "/tracks.jsonl: has nothing to export: an OMM needs a confirmed track" +
+                      (why.empty() ? why : " with elements; " + why));
+  return text;
+}
+
+constexpr const char* head = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<ndm>\n";
+
 }  // namespace
 
 std::string omm_text(const ExportRequest& request) {
+  if (request.kind == ProductKind::tracks)
+    return head + messages_of_tracks(request.run) + "</ndm>\n";
   if (request.elements.empty())
     throw ConfigError(request.run.directory +
                       "/run.json: the scenario has no element sets to export: an OMM needs one");
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<ndm>\n";
+  std::string text = head;
   for (const MeanElements& e : request.elements) text += message(request.run, e);
   return text + "</ndm>\n";
 }

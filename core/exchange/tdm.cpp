@@ -1,5 +1,6 @@
 #include "core/exchange/tdm.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "core/exchange/export_format.h"
 #include "core/exchange/kvn_text.h"
 #include "core/exchange/number_text.h"
+#include "core/exchange/track_name.h"
 
 namespace dmise {
 namespace {
@@ -141,6 +143,34 @@ void write_detections(const RunProducts& run, KvnText& kvn) {
   for (const Detection& d : run.detections) write(run, segment_of(run, d), kvn);
 }
 
+/// What confirmed tracks took, of each in the order of time. A detection that two tracks took at
+/// different ticks stands in both.
+void write_tracks(const RunProducts& run, KvnText& kvn) {
+  std::map<std::string, const Detection*> by_id;
+  for (const Detection& d : run.detections) by_id.emplace(d.id, &d);
+  std::map<std::uint32_t, const Track*> confirmed;  // the latest state
+  for (const Track& t : run.tracks)
+    if (t.status == TrackStatus::confirmed) confirmed[t.id] = &t;
+  std::map<std::uint32_t, std::vector<const Detection*>> taken;
+  for (const Track& t : run.tracks)
+    for (const std::string& id : t.associated)
+      if (const auto found = by_id.find(id); confirmed.contains(t.id) && found != by_id.end())
+        taken[t.id].push_back(found->second);
+  if (taken.empty()) fail_empty(run, "a TDM", ProductKind::tracks);
+  for (auto& [id, detections] : taken) {
+    const Track& track = *confirmed.at(id);
+    std::ranges::stable_sort(detections, {}, &Detection::time);
+    for (const Detection* d : detections) {
+      Segment s = segment_of(run, *d);
+      s.comments.insert(s.comments.begin(),
+                        "detection " + d->id + (track.name.empty() ? "" : " of " + track.name));
+      s.track = track_name(track);
+      s.object = track.catalogue_number > 0 ? std::to_string(track.catalogue_number) : s.track;
+      write(run, s, kvn);
+    }
+  }
+}
+
 }  // namespace
 
 std::string tdm_text(const ExportRequest& request) {
@@ -152,6 +182,8 @@ std::string tdm_text(const ExportRequest& request) {
   kvn.key("CREATION_DATE", run.utc({0})).key("ORIGINATOR", "DMISE");
   if (request.kind == ProductKind::truth)
     write_truth(run, kvn);
+  else if (request.kind == ProductKind::tracks)
+    write_tracks(run, kvn);
   else
     write_detections(run, kvn);
   return kvn.take();

@@ -6,6 +6,7 @@
 #include "core/base/units.h"
 #include "core/detection/detection_json.h"
 #include "core/products/detection_fields.h"
+#include "core/products/track_fields.h"
 
 namespace dmise {
 namespace {
@@ -20,6 +21,22 @@ void read(const JsonRecord& record, const char* key, int, T& value) {
 
 const char* name_of(DetectionKind kind) { return detection_kind_name(kind); }
 const char* name_of(ExposureEpoch epoch) { return exposure_epoch_name(epoch); }
+const char* name_of(TrackStatus status) { return track_status_name(status); }
+
+/// One of the three values of an enumeration, by its name.
+template <class Enum>
+Enum named(const JsonRecord& record, const char* key) {
+  const std::string name = record.get<std::string>(key);
+  int value = 0;
+  while (value < 3 && name != name_of(Enum(value))) ++value;
+  if (value == 3) record.fail(key, "is unknown, got " + printable(name));
+  return Enum(value);
+}
+
+Vec<Gcrs> vector_of(const JsonRecord& record, const char* key) {
+  const auto v = record.numbers<3>(key);
+  return {v[0], v[1], v[2]};
+}
 
 }  // namespace
 
@@ -75,22 +92,11 @@ Detection detection_of(const JsonRecord& record) {
   Detection d;
 #define DMISE_VALUE(field, key, unit) read(record, key, unit, d.field);
 #define DMISE_TIME(field, key) d.field = record.time(key "_ns");
-#define DMISE_NAME(field, key, Enum)                                        \
-  {                                                                         \
-    const std::string name = record.get<std::string>(key);                  \
-    int value = 0;                                                          \
-    while (value < 3 && name != name_of(Enum(value))) ++value;              \
-    if (value == 3) record.fail(key, "is unknown, got " + printable(name)); \
-    d.field = Enum(value);                                                  \
-  }
+#define DMISE_NAME(field, key, Enum) d.field = named<Enum>(record, key);
 #define DMISE_LIST(field_, key, unit)                                    \
   d.field_ = record.numbers<std::tuple_size_v<decltype(d.field_)>>(key); \
   for (double& value : d.field_) value *= (unit);
-#define DMISE_VECTOR(field, key)           \
-  {                                        \
-    const auto v = record.numbers<3>(key); \
-    d.field = {v[0], v[1], v[2]};          \
-  }
+#define DMISE_VECTOR(field, key) d.field = vector_of(record, key);
 #define DMISE_PAIR(first, second, key)     \
   {                                        \
     const auto v = record.numbers<2>(key); \
@@ -100,6 +106,11 @@ Detection detection_of(const JsonRecord& record) {
 #define DMISE_TEXT(key, value)
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_PAIR,
                          DMISE_TEXT)
+#undef DMISE_VALUE
+#undef DMISE_TIME
+#undef DMISE_NAME
+#undef DMISE_LIST
+#undef DMISE_VECTOR
   return d;
 }
 
@@ -149,24 +160,13 @@ Truth truth_of(const JsonRecord& record) {
 
 Track track_of(const JsonRecord& record) {
   Track t;
-  t.id = record.get<std::uint32_t>("id");
-  const auto status = record.get<std::string>("status");
-  bool known = false;
-  for (const TrackStatus s : {TrackStatus::tentative, TrackStatus::confirmed, TrackStatus::lost})
-    if (status == track_status_name(s)) t.status = s, known = true;
-  if (!known) record.fail("status", "must be tentative, confirmed or lost, got " + status);
-  t.time = record.time("time_ns");
-  const auto vector = [&](const char* key) {
-    const auto v = record.numbers<3>(key);
-    return Vec<Gcrs>{v[0], v[1], v[2]};
-  };
-  t.position_m = vector("position_gcrs_m");
-  t.velocity_m_per_s = vector("velocity_gcrs_m_per_s");
-  t.covariance = record.numbers<21>("covariance_gcrs");
-  t.catalogue_number = record.get<std::uint32_t>("catalogue_number");
-  t.name = record.get<std::string>("name");
-  t.detections = record.get<std::uint32_t>("detections");
-  t.existence = record.number("existence");
+#define DMISE_VALUE(field, key) t.field = record.get<decltype(t.field)>(key);
+#define DMISE_TIME(field, key) t.field = record.time(key "_ns");
+#define DMISE_NAME(field, key, Enum) t.field = named<Enum>(record, key);
+#define DMISE_LIST(field, key, size) t.field = record.numbers<size>(key);
+#define DMISE_VECTOR(field, key) t.field = vector_of(record, key);
+#define DMISE_TEXTS(field, key) t.field = record.texts(key);
+  DMISE_TRACK_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_TEXTS)
   return t;
 }
 

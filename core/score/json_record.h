@@ -65,8 +65,7 @@ Detection detection_of(const JsonRecord& record);
 /// them.
 Truth truth_of(const JsonRecord& record);
 
-/// What an export takes of a line of tracks.jsonl: id, status, state, covariance, and what of the
-/// catalogue it is.
+/// A line of tracks.jsonl.
 Track track_of(const JsonRecord& record);
 
 /// Calls `take(line, "FILE:LINE")` with each whole line of a file; a last line without its end was

@@ -5,7 +5,15 @@
 
 import json
 import math
+import re
 import subprocess
+
+import sgp4.omm
+from astropy import units
+from astropy.coordinates import GCRS, TEME, CartesianRepresentation
+from astropy.time import Time
+from astropy.utils import iers
+from sgp4.api import Satrec
 
 from harness import check, main
 
@@ -46,6 +54,22 @@ def truth_at(time_ns, truth):
     return [x + v * s - 0.5 * 3.986004418e14 * x / r**3 * s * s for x, v in zip(place, velocity)]
 
 
+def judge_elements(file, track):
+    """Python's SGP4 and astropy's TEME put the elements where the track is, as near as the message says."""
+    with open(file, encoding="utf-8") as text:
+        fields = list(sgp4.omm.parse_xml(text))
+    check(len(fields) == 1, "an OMM for each track")
+    worst_m = float(re.search(r"at worst (\d+) m", file.read_text())[1])
+    satellite = Satrec()
+    sgp4.omm.initialize(satellite, fields[0])
+    code, place_km, _ = satellite.sgp4(satellite.jdsatepoch, satellite.jdsatepochF)
+    with iers.conf.set_temp("auto_download", False):
+        time = Time(satellite.jdsatepoch, satellite.jdsatepochF, format="jd", scale="utc")
+        gcrs = TEME(CartesianRepresentation(place_km * units.km), obstime=time).transform_to(GCRS(obstime=time))
+    off_m = math.dist(gcrs.cartesian.xyz.to_value(units.m), track["position_gcrs_m"])
+    check(code == 0 and off_m < 1.5 * worst_m + 50 and worst_m < 2000, f"SGP4 has the track {off_m:.0f} m off, {worst_m:.0f} m said")
+
+
 def test(binary, work):
     def dmise(*arguments):
         done = subprocess.run([binary, *arguments], capture_output=True, text=True)
@@ -73,6 +97,13 @@ def test(binary, work):
 
     dmise("export", work / "run", "--to", "oem", "--tracks")
     check("COVARIANCE_START" in (work / "run" / "export" / "tracks.oem").read_text(), "an OEM with covariances")
+    dmise("export", work / "run", "--to", "tdm", "--tracks")
+    tdm = (work / "run" / "export" / "tracks.tdm").read_text()
+    taken = [d for t in tracks if t["id"] == last["id"] for d in t["associated"]]
+    check(tdm.count(f"TRACK_ID = TRACK {last['id']}\n") == tdm.count("META_START") == len(taken)
+          and all(f"COMMENT detection {d}\n" in tdm for d in taken), f"a TDM of the {len(taken)} detections that it took")
+    dmise("export", work / "run", "--to", "omm", "--tracks")
+    judge_elements(work / "run" / "export" / "tracks.omm.xml", last)
 
 
 main(test)
