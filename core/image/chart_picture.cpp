@@ -167,10 +167,15 @@ class PicturePen : public ChartPen {
 
 }  // namespace
 
-Picture chart_picture(const Chart& chart) {
-  PicturePen pen(chart.width_px, chart.height_px);
-  draw_chart(chart, pen);
+Picture drawn_picture(int width_px, int height_px, const std::function<void(ChartPen&)>& draw) {
+  PicturePen pen(width_px, height_px);
+  draw(pen);
   return pen.finish();
+}
+
+Picture chart_picture(const Chart& chart) {
+  return drawn_picture(chart.width_px, chart.height_px,
+                       [&](ChartPen& pen) { draw_chart(chart, pen); });
 }
 
 }  // namespace dmise

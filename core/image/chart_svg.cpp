@@ -110,10 +110,14 @@ class SvgPen : public ChartPen {
 
 }  // namespace
 
-std::string chart_svg(const Chart& chart) {
-  SvgPen pen(chart.width_px, chart.height_px);
-  draw_chart(chart, pen);
+std::string drawn_svg(int width_px, int height_px, const std::function<void(ChartPen&)>& draw) {
+  SvgPen pen(width_px, height_px);
+  draw(pen);
   return pen.finish();
+}
+
+std::string chart_svg(const Chart& chart) {
+  return drawn_svg(chart.width_px, chart.height_px, [&](ChartPen& pen) { draw_chart(chart, pen); });
 }
 
 }  // namespace dmise

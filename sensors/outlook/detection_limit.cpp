@@ -10,6 +10,8 @@
 #include "core/detector/expected_noise.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
+#include "core/optics/psf_plan.h"
+#include "core/optics/psf_table.h"
 #include "sensors/pipeline/sky_layer.h"
 #include "sensors/pipeline/throughput.h"
 
@@ -89,21 +91,39 @@ PixelBackground background_at_centre(const View& view, double drawn_to_v_mag) {
         Throughput(view).electrons_per_photon_m2() * view.times().seconds() *
         pixel_solid_angle_sr(optics, centre) * view.illumination(centre);
   const Detector detector = acting_detector(sensor.camera.detector, sensor.effects);
-  constexpr int side = 8;  // the median of a few pixels, because some are hot
+  return {sky_e + detector.dark_e_per_s * view.times().seconds(),
+          noise_over_sky_e(sensor, view.times(), view.seed(), sky_e)};
+}
+
+double noise_over_sky_e(const SensorConfig& sensor, const FrameTimes& times, std::uint64_t seed,
+                        double sky_e) {
+  constexpr int side = 8;
   ExpectedElectronImage light(side, side);
   std::fill(light.pixels.begin(), light.pixels.end(), float(sky_e));
   Threads threads(1);
   auto noise = expected_noise(light, sensor.camera.detector,
-                              {.seed = view.seed(),
+                              {.seed = seed,
                                .sensor = sensor.name,
-                               .frame = view.times().frame,
-                               .exposure_s = view.times().seconds(),
+                               .frame = times.frame,
+                               .exposure_s = times.seconds(),
                                .idle_s = sensor.cadence_s - sensor.exposure_s},
                               sensor.effects, threads);
   std::nth_element(noise.pixels.begin(), noise.pixels.begin() + side * side / 2,
                    noise.pixels.end());
-  return {sky_e + detector.dark_e_per_s * view.times().seconds(),
-          double(noise.pixels[std::size_t(side * side / 2)])};
+  return double(noise.pixels[std::size_t(side * side / 2)]);
+}
+
+double saturation_e(const Detector& acting) {
+  const double most_e = (std::exp2(acting.adc_bits) - 1 - acting.bias_dn) * acting.gain_e_per_dn;
+  return acting.well_is_limited ? std::min(most_e, acting.full_well_e) : most_e;
+}
+
+double blur_sigma_px(const SensorConfig& sensor) {
+  const double fwhm_px = plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing,
+                                  sensor.exposure_s, AirTurbulence::level(sensor.effects))
+                             .fwhm_px;
+  const double sigma_px = sensor.effects.has(PointSpread::facts) ? fwhm_px / fwhm_per_sigma : 0.0;
+  return std::sqrt(sigma_px * sigma_px + 1.0 / 12);
 }
 
 }  // namespace dmise

@@ -42,4 +42,15 @@ struct PixelBackground {
 };
 PixelBackground background_at_centre(const View& view, double drawn_to_v_mag);
 
+/// Noise [e-] of a pixel with `sky_e` expected electrons of sky: the median of a few pixels,
+/// because some are hot.
+double noise_over_sky_e(const SensorConfig& sensor, const FrameTimes& times, std::uint64_t seed,
+                        double sky_e);
+
+/// Electrons at which a pixel is full: of its well or its converter, whichever is less.
+double saturation_e(const Detector& acting);
+
+/// Gaussian width of a point in a sensor's frames, including the pixel.
+double blur_sigma_px(const SensorConfig& sensor);
+
 }  // namespace dmise

@@ -89,10 +89,7 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
     out.objects = objects_with_light(view, scene.shapes, reach_px);
 
   out.background = background_at_centre(view, drawn_to_v_mag);
-  const Detector detector = acting_detector(sensor.camera.detector, sensor.effects);
-  const double most_e =
-      (std::exp2(detector.adc_bits) - 1 - detector.bias_dn) * detector.gain_e_per_dn;
-  out.full_e = detector.well_is_limited ? std::min(most_e, detector.full_well_e) : most_e;
+  out.full_e = saturation_e(acting_detector(sensor.camera.detector, sensor.effects));
   const double pixels_per_deg = deg / optics.pixel_angle_rad();
   out.streak_deg_per_s = usual_rate_deg_per_s;
   out.streak_px = usual_rate_deg_per_s * pixels_per_deg * view.times().seconds();

@@ -9,8 +9,6 @@
 #include "core/base/units.h"
 #include "core/detection/components.h"
 #include "core/effects/frame_effects.h"
-#include "core/optics/psf_plan.h"
-#include "core/optics/psf_table.h"
 #include "sensors/outlook/frame_worlds.h"
 #include "sensors/outlook/outlook_text.h"
 
@@ -18,15 +16,6 @@ namespace dmise {
 namespace {
 
 constexpr std::uint32_t most_frames_with_states = 2000;  // for a platform or a target
-
-/// Gaussian width including the pixel.
-double psf_sigma_px(const SensorConfig& sensor) {
-  const double fwhm_px = plan_psf(sensor.camera.optics, sensor.camera.band.centre_m, sensor.seeing,
-                                  sensor.exposure_s, AirTurbulence::level(sensor.effects))
-                             .fwhm_px;
-  const double sigma_px = sensor.effects.has(PointSpread::facts) ? fwhm_px / fwhm_per_sigma : 0.0;
-  return std::sqrt(sigma_px * sigma_px + 1.0 / 12);
-}
 
 /// The first examined frame at which an object needed by the sensor has no state.
 struct Loss {
@@ -84,7 +73,7 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
   const OutlookScene scene{.stars = std::move(stars),
                            .faintest_star_mag = scenario.faintest_star_mag,
                            .shapes = &shapes,
-                           .psf_sigma_px = psf_sigma_px(sensor),
+                           .psf_sigma_px = blur_sigma_px(sensor),
                            .count_objects = out.objects_counted};
   for (const std::uint32_t frame : evenly(frames, looks)) {
     const FrameTimes exposure = frame_times(sensor, frame);
