@@ -1,0 +1,172 @@
+#include "sensors/survey/exposure_looks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/units.h"
+#include "core/effects/frame_effects.h"
+#include "core/optics/projection.h"
+#include "core/score/matched_filter.h"
+#include "sensors/outlook/detection_limit.h"
+#include "sensors/pipeline/object_sampler.h"
+#include "sensors/pipeline/objects_in_field.h"
+#include "sensors/pipeline/sky_layer.h"
+#include "sensors/pipeline/star_layer.h"
+#include "sensors/survey/trail_in_frame.h"
+
+namespace dmise {
+namespace {
+
+/// Knots of an exposure's states are no farther apart: cubic interpolation is good to 4 m.
+constexpr std::int64_t longest_between_ns = 60'000'000'000;
+
+/// Samples of a trail, and of one whose light changes by more than a half.
+constexpr std::size_t few_samples = 3, many_samples = 33;
+constexpr double abrupt_ratio = 0.5;
+
+double drawn_to(const SurveyScene& scene, const SensorConfig& sensor) {
+  if (!scene.stars() || !sensor.effects.has(StarBackground::facts))
+    return -std::numeric_limits<double>::infinity();
+  return std::min(scene.scenario().faintest_star_mag,
+                  StarLayer(sensor, scene.stars()).faintest_filled_v_mag());
+}
+
+bool inside(const std::optional<PixelPosition>& p, const Optics& optics) {
+  return p && p->x_px > -0.5 && p->y_px > -0.5 && p->x_px < optics.columns - 0.5 &&
+         p->y_px < optics.rows - 0.5;
+}
+
+}  // namespace
+
+SensorLooks::SensorLooks(const SurveyScene& scene, const SensorConfig& sensor)
+    : scene_(scene),
+      sensor_(sensor),
+      shapes_(scene.scenario().own_objects, sensor.camera.band, sensor.effects),
+      noise_(sensor, scene.scenario().seed),
+      least_snr_(least_telling_snr(scene.model())),
+      drawn_to_v_mag_(drawn_to(scene, sensor)) {
+  for (const std::size_t i : needed_objects(sensor, *scene.roster()))
+    needed_.push_back(std::uint32_t(i));
+  const double blur = blur_sigma_px(sensor);
+  sigma_px_ = std::sqrt(std::max(0.0, blur * blur - 1.0 / 12));
+  if (std::holds_alternative<SiteConfig>(sensor.place))
+    mask_sine_ = std::sin(sensor.mask_deg * deg);
+}
+
+World SensorLooks::world_around(const FrameTimes& commanded,
+                                std::vector<std::uint32_t> objects) const {
+  World world;
+  world.add(scene_.roster());
+  const ExposureSpan span = exposure_span(sensor_, commanded);
+  world.add(scene_.environment(span.start));
+  const auto earth = scene_.environment(commanded.middle)->earth;
+  const Clock& clock = scene_.clock();
+  const auto instant = [&](SimTime t) {
+    return StateInstant{t, clock.tai(t), clock.utc(t), earth, earth.gcrs_from_teme(t)};
+  };
+  const std::int64_t length_ns = std::max<std::int64_t>(1, (span.end - span.start).ns);
+  const std::int64_t parts = (length_ns + longest_between_ns - 1) / longest_between_ns;
+  std::vector<ObjectStates> states;
+  for (Tick k = 0; k <= parts; ++k) {
+    const SimTime t{span.start.ns + length_ns * k / parts};
+    const StateInstants around{instant({t.ns - slope_half_step_ns}), instant(t),
+                               instant({t.ns + slope_half_step_ns})};
+    world.add_tick(k, t);
+    states.push_back(scene_.source().of_some(objects, k, around));
+  }
+  world.set_states(std::move(objects), std::move(states));
+  return world;
+}
+
+std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
+                                             std::span<const std::uint32_t> objects) const {
+  ExposureLooks out;
+  std::vector<std::uint32_t> all(objects.begin(), objects.end());
+  all.insert(all.end(), needed_.begin(), needed_.end());
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  const World world = world_around(commanded, std::move(all));
+  const ExposureSpan span = exposure_span(sensor_, commanded);
+  for (const std::uint32_t i : needed_)
+    for (const SimTime t : {span.start, commanded.start, commanded.end, span.end})
+      if (!world.has_state(i, t)) return std::nullopt;
+  const View view(sensor_, commanded, world, scene_.scenario().seed);
+  const FrameTimes& times = view.times();
+  const Optics& optics = sensor_.camera.optics;
+  const ObjectSampler sampler(view, &shapes_);
+  const ExposureInstant start(view, times.start), middle(view, times.middle), end(view, times.end);
+  const Vec<Gcrs> up = view.up(times.middle);
+  const EarthShadow shadow(view.environment().sun_m, oblate_earth(view.earth()));
+  const bool draws = sensor_.effects.has(SpaceObjects::facts);
+  const bool has_sky = sensor_.effects.has(SkyBackground::facts);
+  std::optional<SkyModel> sky;  // made for the first object with light
+  const auto gcrs_from_camera = middle.camera.inverse();
+  const auto enu_from_gcrs = view.enu_from_gcrs(times.middle);
+  const auto itrs_from_gcrs = view.earth().itrs_from_gcrs(times.middle);
+  const double electrons_per_photon = Throughput(view).electrons_per_photon_m2() * times.seconds();
+  const auto sky_at = [&](const PixelPosition& pixel) {
+    const auto direction = unproject(optics, pixel);
+    if (!direction || !has_sky) return 0.0;
+    if (!sky) sky.emplace(sky_over(view, drawn_to_v_mag_));
+    return sky->photons_per_s_m2_sr(enu_from_gcrs * (gcrs_from_camera * *direction)) *
+           electrons_per_photon * pixel_solid_angle_sr(optics, pixel) * view.illumination(pixel);
+  };
+  // No pixel has less noise.
+  const double least_noise_e = noise_.noise_e(0.0);
+
+  std::vector<ObjectSample> samples;
+  for (const std::uint32_t object : objects) {
+    if (view.platform() == object || !world.has_state(object, times.start) ||
+        !world.has_state(object, times.middle) || !world.has_state(object, times.end))
+      continue;
+    const Motion motion = world.motion(object, times.middle);
+    const Vec<Gcrs> line = motion.position_m - middle.observer.position_m;
+    if (!(dot(line, line) > 1.0) || dot(up, line) < mask_sine_ * norm(line)) continue;
+    samples.assign({sampler.sample(object, start), sampler.sample(object, middle),
+                    sampler.sample(object, end)});
+    if (inside(samples[1].pixel, optics) &&
+        !(middle.earth && middle.earth->hides_object(motion.position_m, unit(line)))) {
+      ++out.in_field;
+      out.sunlit += shadow.sunlit_fraction(motion.position_m) >= lit_fraction;
+    }
+    double least = samples[0].electrons_per_s, most = least;
+    for (const auto& s : samples) {
+      least = std::min(least, s.electrons_per_s);
+      most = std::max(most, s.electrons_per_s);
+    }
+    if (!draws || !(most > 0.0)) continue;
+    // Not even as a point on the darkest sky.
+    const bool faint =
+        matched_filter_snr({most * times.seconds(), 0.0, least_noise_e, sigma_px_}) < least_snr_;
+    if (least < abrupt_ratio * most && !faint) {
+      samples.clear();
+      for (std::size_t k = 0; k < many_samples; ++k)
+        samples.push_back(sampler.sample(
+            object, ExposureInstant(view, times.at(double(k) / double(many_samples - 1)))));
+    }
+    const TrailInFrame trail = trail_in_frame(samples, times.seconds(), optics);
+    if (!(trail.signal_e > 0.0)) continue;
+    Look look{.object = object,
+              .signal_e = trail.signal_e,
+              .length_px = trail.length_px,
+              .centroid = trail.centroid};
+    const auto under = to_spherical(itrs_from_gcrs * motion.position_m);
+    look.longitude_rad = under[0];
+    look.latitude_rad = under[1];
+    if (!faint) {
+      const double sky_e = sky_at(trail.centroid);
+      look.noise_e = noise_.noise_e(sky_e);
+      look.snr = matched_filter_snr({look.signal_e, look.length_px, look.noise_e, sigma_px_});
+      if (sky_e < noise_.full_sky_e())
+        look.probability = detection_probability(scene_.model(), look.snr, look.length_px);
+    } else {
+      look.noise_e = least_noise_e;
+      look.snr = matched_filter_snr({look.signal_e, look.length_px, look.noise_e, sigma_px_});
+    }
+    out.looks.push_back(look);
+  }
+  return out;
+}
+
+}  // namespace dmise

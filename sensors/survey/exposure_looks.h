@@ -1,0 +1,63 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sensors/pipeline/frame_times.h"
+#include "sensors/pipeline/object_shapes.h"
+#include "sensors/survey/noise_table.h"
+#include "sensors/survey/survey_scene.h"
+
+namespace dmise {
+
+/// An object with light in one exposure, as it is expected without rendering.
+struct Look {
+  std::uint32_t object = 0;                        // index in the population
+  double signal_e = 0.0;                           // of its light in the frame
+  double length_px = 0.0;                          // of its lit trail in the frame
+  PixelPosition centroid;                          // of that light
+  double noise_e = 0.0;                            // of a pixel there, without the object's own
+  double snr = 0.0;                                // of the ideal matched filter
+  double probability = 0.0;                        // of detection
+  double latitude_rad = 0.0, longitude_rad = 0.0;  // geocentric, under it in mid exposure
+};
+
+/// One exposure without rendering it.
+struct ExposureLooks {
+  std::vector<Look> looks;     // by ascending object
+  std::uint32_t in_field = 0;  // objects in the frame and above the mask in mid exposure
+  std::uint32_t sunlit = 0;    // those of them that see half of the Sun's disc or more
+};
+
+/// What is expected in the exposures of one sensor: by the same states, directions, light, sky and
+/// noise as its frames have (`ObjectSampler`, `SkyModel`, `expected_noise`), at three instants of
+/// an exposure. Calls are const and may run concurrently.
+class SensorLooks {
+ public:
+  /// Both must outlive it. Throws `ConfigError` for a platform or target that is not in the
+  /// population.
+  SensorLooks(const SurveyScene& scene, const SensorConfig& sensor);
+
+  /// Looks at `objects`, ascending indices. Nothing if the platform or the target has no state.
+  std::optional<ExposureLooks> of(const FrameTimes& commanded,
+                                  std::span<const std::uint32_t> objects) const;
+
+  const SensorConfig& sensor() const { return sensor_; }
+  const SurveyScene& scene() const { return scene_; }
+
+ private:
+  World world_around(const FrameTimes& commanded, std::vector<std::uint32_t> objects) const;
+
+  const SurveyScene& scene_;
+  const SensorConfig& sensor_;
+  std::vector<std::uint32_t> needed_;  // platform and target, ascending
+  ObjectShapes shapes_;
+  NoiseTable noise_;
+  double sigma_px_ = 0.0;  // of the Gaussian without pixel
+  double least_snr_ = 0.0;
+  double drawn_to_v_mag_;
+  double mask_sine_ = -1.0;
+};
+
+}  // namespace dmise

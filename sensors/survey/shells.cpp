@@ -1,0 +1,70 @@
+#include "sensors/survey/shells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/orbit/catalogue_report.h"
+
+namespace dmise {
+namespace {
+
+constexpr double mu_km3_per_s2 = 398600.8, earth_radius_km = 6378.135;  // WGS72, as SGP4's
+
+std::string km(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
+}  // namespace
+
+double mean_altitude_km(const MeanElements& elements) {
+  const double n = elements.mean_motion_rad_per_min / 60.0;
+  return std::cbrt(mu_km3_per_s2 / (n * n)) - earth_radius_km;
+}
+
+Shells shells_of(const ObjectPopulation& population, const std::vector<double>& limits_km) {
+  Shells out;
+  const auto add = [&](std::string name) { out.shells.push_back({std::move(name), 0}); };
+  if (limits_km.empty()) {
+    add("LEO");
+  } else {
+    add("below " + km(limits_km.front()) + " km");
+    for (std::size_t k = 1; k < limits_km.size(); ++k)
+      add(km(limits_km[k - 1]) + "-" + km(limits_km[k]) + " km");
+    add("LEO above " + km(limits_km.back()) + " km");
+  }
+  const std::size_t low = out.shells.size();
+  for (const char* name : {"MEO", "GEO", "HEO", "beyond GEO", "own motion"}) add(name);
+  for (std::size_t i = 0; i < population.roster.objects.size(); ++i) {
+    std::size_t shell = low + 4;
+    if (i < population.elements.size()) {
+      const MeanElements& e = population.elements[i];
+      switch (regime_of(e)) {
+        case OrbitRegime::low:
+          shell = std::size_t(
+              std::upper_bound(limits_km.begin(), limits_km.end(), mean_altitude_km(e)) -
+              limits_km.begin());
+          break;
+        case OrbitRegime::medium:
+          shell = low;
+          break;
+        case OrbitRegime::geosynchronous:
+          shell = low + 1;
+          break;
+        case OrbitRegime::highly_elliptic:
+          shell = low + 2;
+          break;
+        case OrbitRegime::beyond:
+          shell = low + 3;
+          break;
+      }
+    }
+    out.of_object.push_back(std::uint8_t(shell));
+    ++out.shells[shell].objects;
+  }
+  return out;
+}
+
+}  // namespace dmise

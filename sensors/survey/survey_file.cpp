@@ -1,0 +1,168 @@
+#include "sensors/survey/survey_file.h"
+
+#include <charconv>
+#include <filesystem>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/base/units.h"
+#include "core/base/whole_file.h"
+#include "core/time/iso8601.h"
+
+namespace dmise {
+namespace {
+
+constexpr const char* exposure_columns =
+    "frame,middle_ns,middle_utc,sun_elevation_rad,in_field,sunlit,expected_detections";
+constexpr const char* map_columns_line =
+    "shell,row,column,south_deg,west_deg,looks,expected_detections_2e20,shell_name";
+constexpr const char* pass_columns =
+    "object,catalogue_number,first_ns,last_ns,first_utc,exposures,expected_detections,log_miss,"
+    "best_snr";
+
+/// The shortest text that reads back to the same bits.
+std::string exact(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+/// A file of fields, line by line; turns bad at the first that does not fit.
+class Reader {
+ public:
+  Reader(const std::string& path, const std::string& head, const char* columns) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) return;
+    std::istringstream lines(read_text_file(path));
+    std::string line;
+    if (!std::getline(lines, line) || line != "# " + head || !std::getline(lines, totals_) ||
+        !std::getline(lines, line) || line != columns)
+      return;
+    while (std::getline(lines, line)) lines_.push_back(std::move(line));
+    good_ = true;
+  }
+  bool good() const { return good_; }
+  void spoil() { good_ = false; }
+  const std::string& totals() const { return totals_; }
+
+  template <class Take>
+  void each(const Take& take) {
+    for (const std::string& line : lines_) {
+      rest_ = line;
+      take();
+      if (!good_) return;
+    }
+  }
+  std::string_view text() {
+    const std::size_t comma = rest_.find(',');
+    const std::string_view field = rest_.substr(0, comma);
+    rest_ = comma == std::string_view::npos ? std::string_view() : rest_.substr(comma + 1);
+    return field;
+  }
+  template <class T>
+  T number() {
+    const std::string_view field = text();
+    T value{};
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+    if (error != std::errc() || end != field.data() + field.size()) good_ = false;
+    return value;
+  }
+
+ private:
+  bool good_ = false;
+  std::string totals_;
+  std::vector<std::string> lines_;
+  std::string_view rest_;
+};
+
+}  // namespace
+
+void write_survey(const std::string& directory, const std::string& head, const SensorSurvey& survey,
+                  const SurveyScene& scene, const Shells& shells) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw Error(directory + ": " + error.message());
+  const auto utc = [&](SimTime t) { return format_utc(scene.clock().utc(t), 3); };
+  const std::string totals = "# frames " + std::to_string(survey.frames) + ", without state " +
+                             std::to_string(survey.without_state) + "\n";
+  std::string text = "# " + head + "\n" + totals + exposure_columns + "\n";
+  for (const auto& e : survey.exposures)
+    text += std::to_string(e.frame) + "," + std::to_string(e.middle.ns) + "," + utc(e.middle) +
+            "," + (e.sun_elevation_rad ? exact(*e.sun_elevation_rad) : "") + "," +
+            std::to_string(e.in_field) + "," + std::to_string(e.sunlit) + "," + exact(e.expected) +
+            "\n";
+  write_file_whole(directory + "/exposures.csv", text);
+
+  text = "# " + head + "\n" + totals + map_columns_line + "\n";
+  for (const auto& [key, cell] : survey.map)
+    text += std::to_string(key[0]) + "," + std::to_string(key[1]) + "," + std::to_string(key[2]) +
+            "," + std::to_string(180 / map_rows * key[1] - 90) + "," +
+            std::to_string(360 / map_columns * key[2] - 180) + "," + std::to_string(cell.looks) +
+            "," + std::to_string(cell.expected) + "," + shells.shells[key[0]].name + "\n";
+  write_file_whole(directory + "/map.csv", text);
+
+  text = "# " + head + "\n" + totals + pass_columns + "\n";
+  for (const auto& p : survey.passes)
+    text += std::to_string(p.object) + "," +
+            std::to_string(scene.roster()->objects[p.object].catalogue_number) + "," +
+            std::to_string(p.first.ns) + "," + std::to_string(p.last.ns) + "," + utc(p.first) +
+            "," + std::to_string(p.exposures) + "," + exact(p.expected) + "," + exact(p.log_miss) +
+            "," + exact(p.best_snr) + "\n";
+  write_file_whole(directory + "/passes.csv", text);
+}
+
+std::optional<SensorSurvey> read_survey(const std::string& directory, const std::string& head,
+                                        const std::string& sensor, std::size_t objects) {
+  SensorSurvey survey{.sensor = sensor};
+  Reader passes(directory + "/passes.csv", head, pass_columns);
+  if (!passes.good()) return std::nullopt;
+  if (std::sscanf(passes.totals().c_str(), "# frames %u, without state %u", &survey.frames,
+                  &survey.without_state) != 2)
+    return std::nullopt;
+  passes.each([&] {
+    SurveyPass p;
+    p.object = passes.number<std::uint32_t>();
+    passes.text();
+    p.first.ns = passes.number<std::int64_t>();
+    p.last.ns = passes.number<std::int64_t>();
+    passes.text();
+    p.exposures = passes.number<std::uint32_t>();
+    p.expected = passes.number<double>();
+    p.log_miss = passes.number<double>();
+    p.best_snr = passes.number<double>();
+    if (p.object >= objects) passes.spoil();
+    survey.passes.push_back(p);
+  });
+  Reader exposures(directory + "/exposures.csv", head, exposure_columns);
+  exposures.each([&] {
+    SurveyExposure e;
+    e.frame = exposures.number<std::uint32_t>();
+    e.middle.ns = exposures.number<std::int64_t>();
+    exposures.text();
+    if (const std::string_view sun = exposures.text(); !sun.empty()) {
+      double value = 0.0;
+      std::from_chars(sun.data(), sun.data() + sun.size(), value);
+      e.sun_elevation_rad = value;
+    }
+    e.in_field = exposures.number<std::uint32_t>();
+    e.sunlit = exposures.number<std::uint32_t>();
+    e.expected = exposures.number<double>();
+    survey.exposures.push_back(e);
+  });
+  Reader map(directory + "/map.csv", head, map_columns_line);
+  map.each([&] {
+    std::array<std::uint16_t, 3> key;
+    for (auto& k : key) k = map.number<std::uint16_t>();
+    map.text();
+    map.text();
+    MapCell& cell = survey.map[key];
+    cell.looks = map.number<std::uint64_t>();
+    cell.expected = map.number<std::uint64_t>();
+  });
+  if (!passes.good() || !exposures.good() || !map.good()) return std::nullopt;
+  return survey;
+}
+
+}  // namespace dmise
