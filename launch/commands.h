@@ -32,6 +32,7 @@ void add_keygen_command(CLI::App& app);
 void add_status_command(CLI::App& app);
 void add_health_command(CLI::App& app);
 void add_clock_command(CLI::App& app);
+void add_survey_command(CLI::App& app);
 void add_tradeoff_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 

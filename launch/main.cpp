@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   dmise::add_status_command(app);
   dmise::add_health_command(app);
   dmise::add_clock_command(app);
+  dmise::add_survey_command(app);
   dmise::add_tradeoff_command(app);
   dmise::add_bench_command(app);
   constexpr std::size_t longest = 4000;  // of an error message [bytes]

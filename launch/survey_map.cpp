@@ -1,0 +1,152 @@
+#include "launch/survey_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "core/image/chart_layout.h"
+
+namespace dmise {
+namespace {
+
+constexpr double cell_px = 8.0, margin_px = 40.0, head_px = 86.0, title_px = 30.0, gap_px = 34.0;
+constexpr double panel_wide_px = map_columns * cell_px, panel_high_px = map_rows * cell_px;
+constexpr int panels_across = 2;
+constexpr Colour ink{40, 40, 40}, pale{120, 120, 120}, frame{190, 190, 190}, mark{213, 94, 0};
+constexpr Colour looked_at{235, 235, 235};
+
+/// Detections in a cell from which on it has a colour: dark is many.
+struct Class {
+  double least;
+  Colour colour;
+  const char* label;
+};
+constexpr std::array<Class, 6> classes{{{0.5, {222, 235, 247}, "0.5"},
+                                        {3, {189, 215, 231}, "3"},
+                                        {10, {128, 177, 211}, "10"},
+                                        {100, {66, 130, 190}, "100"},
+                                        {1000, {20, 82, 150}, "1,000"},
+                                        {10000, {8, 30, 80}, "10,000"}}};
+
+const Colour& colour_of(double detections) {
+  const Colour* colour = &looked_at;
+  for (const Class& c : classes)
+    if (detections >= c.least) colour = &c.colour;
+  return *colour;
+}
+
+bool same(const Colour& a, const Colour& b) {
+  return a.red == b.red && a.green == b.green && a.blue == b.blue;
+}
+
+/// Shells with light in some frame, in their order.
+std::vector<std::size_t> shown_shells(const SurveyMap& map) {
+  std::vector<std::size_t> shown;
+  for (std::size_t k = 0; k < map.shells.size(); ++k)
+    if (map.summaries[k].covered > 0) shown.push_back(k);
+  return shown;
+}
+
+int height_of(std::size_t panels) {
+  const std::size_t rows = (panels + panels_across - 1) / panels_across;
+  return int(head_px + double(rows) * (panel_high_px + title_px + gap_px) + margin_px);
+}
+constexpr int width_px = int(2 * margin_px + panels_across * panel_wide_px + gap_px);
+
+void draw_cells(const SurveyMap& map, std::size_t shell, PagePoint corner, ChartPen& pen) {
+  for (int row = 0; row < map_rows; ++row) {
+    const auto cell = [&](int column) -> const MapCell* {
+      const auto found =
+          map.cells.find({std::uint16_t(shell), std::uint16_t(row), std::uint16_t(column)});
+      return found == map.cells.end() ? nullptr : &found->second;
+    };
+    for (int column = 0; column < map_columns;) {
+      const MapCell* first = cell(column);
+      if (!first) {
+        ++column;
+        continue;
+      }
+      const Colour colour = colour_of(double(first->expected) * map_unit);
+      int end = column + 1;  // neighbours of one colour are one rectangle
+      for (; end < map_columns; ++end) {
+        const MapCell* next = cell(end);
+        if (!next || !same(colour_of(double(next->expected) * map_unit), colour)) break;
+      }
+      pen.rectangle({corner.x_px + column * cell_px, corner.y_px + (map_rows - 1 - row) * cell_px},
+                    (end - column) * cell_px, cell_px, colour);
+      column = end;
+    }
+  }
+}
+
+void draw_panel(const SurveyMap& map, std::size_t shell, PagePoint corner, ChartPen& pen) {
+  const ShellSummary& s = map.summaries[shell];
+  char text[160];
+  std::snprintf(text, sizeof text, "%s: %.0f of %zu objects detected, %zu covered",
+                map.shells[shell].name.c_str(), s.detected, s.objects, s.covered);
+  pen.text({corner.x_px, corner.y_px - 9}, text, {.size_px = 15, .colour = ink});
+  draw_cells(map, shell, corner, pen);
+  std::vector<std::vector<PagePoint>> grid;
+  for (int deg = -180; deg <= 180; deg += 60) {
+    const double x = corner.x_px + (deg + 180) / 360.0 * panel_wide_px;
+    grid.push_back({{x, corner.y_px}, {x, corner.y_px + panel_high_px}});
+  }
+  for (int deg = -90; deg <= 90; deg += 30) {
+    const double y = corner.y_px + (90 - deg) / 180.0 * panel_high_px;
+    grid.push_back({{corner.x_px, y}, {corner.x_px + panel_wide_px, y}});
+    if (corner.x_px < 2 * margin_px)
+      pen.text({corner.x_px - 6, y + 4}, std::to_string(deg),
+               {.size_px = 11, .colour = pale, .anchor = Anchor::end});
+  }
+  pen.lines(grid, {.colour = frame, .width_px = 0.7}, {0, 0}, width_px, 1e5);
+  for (int deg = -180; deg <= 180; deg += 60)
+    pen.text({corner.x_px + (deg + 180) / 360.0 * panel_wide_px, corner.y_px + panel_high_px + 14},
+             std::to_string(deg), {.size_px = 11, .colour = pale, .anchor = Anchor::middle});
+  for (const MapMark& site : map.sites) {
+    const double east = std::fmod(site.longitude_deg + 540.0, 360.0);
+    const double x = corner.x_px + east / 360.0 * panel_wide_px;
+    const double y = corner.y_px + (90.0 - site.latitude_deg) / 180.0 * panel_high_px;
+    pen.lines({{{x - 5, y}, {x + 5, y}}, {{x, y - 5}, {x, y + 5}}},
+              {.colour = mark, .width_px = 2.0}, {0, 0}, width_px, 1e5);
+  }
+}
+
+void draw_map(const SurveyMap& map, ChartPen& pen) {
+  pen.text({margin_px, 30}, map.title, {.size_px = 20, .colour = ink});
+  pen.text({margin_px, 50}, map.subtitle, {.size_px = 13, .colour = pale});
+  double x = margin_px;
+  const auto key = [&](Colour colour, const std::string& label) {
+    pen.rectangle({x, 60}, 14, 12, colour);
+    pen.text({x + 18, 71}, label, {.size_px = 12, .colour = pale});
+    x += 30 + pen.text_width_px(label, 12);
+  };
+  key(looked_at, "sunlit in a field");
+  for (const Class& c : classes) key(c.colour, std::string(c.label) + "+");
+  pen.text({x, 71}, "detections in a cell of 5 deg under the objects; crosses: sites",
+           {.size_px = 12, .colour = pale});
+  const auto shown = shown_shells(map);
+  if (shown.empty())
+    pen.text({margin_px, head_px + 30}, "No sunlit object was in a field.",
+             {.size_px = 15, .colour = ink});
+  for (std::size_t k = 0; k < shown.size(); ++k)
+    draw_panel(
+        map, shown[k],
+        {margin_px + double(k % panels_across) * (panel_wide_px + gap_px),
+         head_px + title_px + double(k / panels_across) * (panel_high_px + title_px + gap_px)},
+        pen);
+}
+
+}  // namespace
+
+std::string map_svg(const SurveyMap& map) {
+  return drawn_svg(width_px, height_of(shown_shells(map).size()),
+                   [&](ChartPen& pen) { draw_map(map, pen); });
+}
+
+Picture map_picture(const SurveyMap& map) {
+  return drawn_picture(width_px, height_of(shown_shells(map).size()),
+                       [&](ChartPen& pen) { draw_map(map, pen); });
+}
+
+}  // namespace dmise

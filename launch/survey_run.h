@@ -1,0 +1,27 @@
+#pragma once
+#include <cstddef>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "sensors/survey/shells.h"
+
+namespace dmise {
+
+/// What `dmise survey` is asked for.
+struct SurveyCommand {
+  std::string scenario, out = "out/survey";
+  std::string optimise;  // "sites=K"; empty: no choice of sites
+  double night_deg = -6.0;
+  std::vector<double> shells_km{std::begin(usual_shell_limits_km), std::end(usual_shell_limits_km)};
+  std::size_t check = 0, fit = 0;  // frames that are rendered
+  bool json = false;
+  int threads = 2;
+};
+
+/// Surveys the scenario, or what is missing of its survey in `out`; writes the products and prints
+/// the tables or JSON. Throws `ConfigError` for what the scenario or the options have wrong, before
+/// a directory is made.
+void run_survey(const SurveyCommand& command);
+
+}  // namespace dmise
