@@ -151,7 +151,7 @@ void visit(Visitor& v, FrameHeader& h) {
   if (v.present("UNKNOWN", h.unknown.any())) v.facts("UNKNOWN", h.unknown, "stand-ins");
   visit_vector(v, "SENPOS", h.sensor_position_m, "[m] sensor, GCRS, mid exposure");
   visit_vector(v, "SENVEL", h.sensor_velocity_m_per_s, "[m/s] sensor, GCRS, mid exposure");
-  visit_vector(v, "EARVEL", h.earth_velocity_m_per_s, "[m/s] Earth, barycentric, GCRS axes");
+  visit_vector(v, "EARVEL", h.earth_velocity_m_per_s, "[m/s] Earth, that aberrates the WCS, GCRS");
   if (v.present("OBSGEO-X", h.site.has_value())) {
     if (!h.site) h.site.emplace();
     visit_vector(v, "OBSGEO-", h.site->position_m, "[m] site, ITRS");

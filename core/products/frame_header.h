@@ -70,8 +70,10 @@ struct FrameHeader {
   UnknownFacts unknown;  // none in a run's frames
 
   Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // geocentric, mid exposure
-  Vec<Gcrs> earth_velocity_m_per_s;                      // of the geocentre, barycentric, GCRS axes
-  std::optional<SitePlace> site;                         // of a ground sensor
+  // Of the geocentre, barycentric, GCRS axes: displaces the stars by which the WCS is. Zero if
+  // annual aberration is off.
+  Vec<Gcrs> earth_velocity_m_per_s;
+  std::optional<SitePlace> site;  // of a ground sensor
   // Air that refracts in a ground sensor's frame, pressure 0 if refraction is off. Empty in space
   // and in files without it.
   std::optional<Weather> air;

@@ -37,6 +37,7 @@ Wcs wcs_of(const View& view) {
 
 FrameHeader header_of(const View& view, const PipelineSettings& settings, double psf_fwhm_px) {
   const auto& sensor = settings.sensor;
+  const EffectSet& ran = view.sensor().effects;  // in this exposure
   const auto& optics = sensor.camera.optics;
   const Detector detector = acting_detector(sensor.camera.detector, sensor.effects);
   const auto& times = view.times();
@@ -69,8 +70,10 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
                 .projection = optics.projection,
                 .focal_length_px = optics.focal_length_px(),
                 .sensor_position_m = observer.position_m,
-                .sensor_velocity_m_per_s = observer.velocity_m_per_s,
-                .earth_velocity_m_per_s = environment.earth_velocity_m_per_s};
+                .sensor_velocity_m_per_s = observer.velocity_m_per_s};
+  // Of a frame whose stars have no annual aberration none is put back.
+  if (ran.has(AnnualAberration::facts))
+    h.earth_velocity_m_per_s = environment.earth_velocity_m_per_s;
   h.band.name = header_text(h.band.name);
   h.image_optics = acting_optics(optics.image, sensor.effects);
   if (const SiteState* air = view.air()) {
@@ -82,7 +85,7 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
     h.site = SitePlace{site->latitude_deg * deg, site->longitude_deg * deg, site->height_m,
                        itrs_from_geodetic(*site)};
     h.air = view.weather();
-    if (!sensor.effects.has(AtmosphericRefraction::facts)) h.air->pressure_hpa = 0.0;
+    if (!ran.has(AtmosphericRefraction::facts)) h.air->pressure_hpa = 0.0;
   }
   const double most_dn = std::exp2(detector.adc_bits) - 1;
   const double well_e = h.full_well_e * (1.0 - detector.nonlinearity) *
