@@ -215,7 +215,7 @@ std::optional<Source> judge_among_stars(const Scene& scene, const Candidate& can
   TrailFit as_star =
       candidate.fit(candidate.nearest_gaussian(), star, trail_place, 8, surely_star_sigmas);
   if (as_star.good(surely_star_sigmas)) return std::nullopt;
-  if (scene.psf.count > 1) {  // most stars are known by the nearest Gaussian
+  if (!scene.psf.is_round_gaussian()) {  // most stars are known by the nearest Gaussian
     as_star = candidate.fit(candidate.psf(), as_star.trails[0], trail_place, 8, surely_star_sigmas);
     if (as_star.good(surely_star_sigmas)) return std::nullopt;
   }

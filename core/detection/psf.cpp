@@ -20,12 +20,15 @@ double fwhm_before_pixel(double sigma_px) {
 }
 
 double Psf::equivalent_sigma_px() const {
-  if (count == 1) return parts[0].sigma_px;
+  const double e2 = along_x * along_x + along_diagonal * along_diagonal;
+  if (count == 1 && e2 == 0.0) return parts[0].sigma_px;
   double squares = 0.0;  // times 4 pi
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < count; ++j) {
       const Part &a = parts[i], &b = parts[j];
-      squares += 2 * a.weight * b.weight / (a.sigma_px * a.sigma_px + b.sigma_px * b.sigma_px);
+      const double sum = a.sigma_px * a.sigma_px + b.sigma_px * b.sigma_px;
+      const double optical = sum - 2 * pixel_variance_px2;
+      squares += 2 * a.weight * b.weight / std::sqrt(sum * sum - e2 * optical * optical);
     }
   return 1 / std::sqrt(squares);
 }
@@ -51,6 +54,8 @@ Psf PsfField::at(PixelPosition at) const {
   const double width = width_px * scale(at);
   Psf psf;
   psf.count = count;
+  psf.along_x = along_x;
+  psf.along_diagonal = along_diagonal;
   for (std::size_t i = 0; i < count; ++i)
     psf.parts[i] = {weights[i], with_pixel(ratios[i] * width)};
   return psf;

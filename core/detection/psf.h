@@ -7,17 +7,18 @@
 
 namespace dmise {
 
-/// Light of a point source over pixels: concentric round Gaussians whose weights sum to 1. Each
-/// includes the pixel: 1/12 px^2 of its variance. Weights of a mixture may be negative, as the dark
-/// rings of diffraction are.
+/// Light of a point source over pixels: concentric round Gaussians whose weights sum to the share
+/// of its light that they follow: 1, but for what is far out. Each includes the pixel: 1/12 px^2 of
+/// its variance. Weights of a mixture may be negative, as the dark rings of diffraction are.
 struct Psf {
   struct Part {
     double weight = 1.0, sigma_px = 1.0;
   };
-  static constexpr std::size_t most = 6;
+  static constexpr std::size_t most = 8;
 
   std::array<Part, most> parts{};
   std::size_t count = 1;
+  double along_x = 0.0, along_diagonal = 0.0;
 
   Psf(double sigma_px = 1.0) { parts[0].sigma_px = sigma_px; }  // one Gaussian
 
@@ -45,6 +46,7 @@ struct PsfField {
   /// Gaussian nearest to the PSF at a pixel, with the pixel.
   double sigma_at(PixelPosition at) const;
   Psf at(PixelPosition at) const;
+  bool is_round_gaussian() const { return count == 1 && along_x == 0.0 && along_diagonal == 0.0; }
 
   double width_px = 1.0;   // sigma of the nearest Gaussian, without pixel, where the scale is 1
   Polynomial log_scale{};  // of the width, over u and v
@@ -54,7 +56,8 @@ struct PsfField {
   // Parts of the shape: widths in units of that Gaussian's, without pixel.
   std::array<double, Psf::most> weights{1.0}, ratios{1.0};
   std::size_t count = 1;
-  int stars = 0;  // it was measured from; 0: it was not
+  double along_x = 0.0, along_diagonal = 0.0;  // as of Psf, the same over the frame
+  int stars = 0;                               // it was measured from; 0: it was not
 
   static Polynomial powers(double u, double v) { return {1, u, v, u * u, u * v, v * v}; }
   PixelPosition unit(PixelPosition at) const {

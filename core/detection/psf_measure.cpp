@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/quantile.h"
+#include "core/detection/psf_ellipse.h"
 #include "core/detection/psf_shape.h"
 #include "core/detection/psf_star_fit.h"
 #include "core/detection/psf_stars.h"
@@ -213,7 +214,9 @@ PsfField measure_psf(const Scene& scene, const std::vector<Component>& component
   fit_field(stars, field);
   if (stars.size() < least_stars) return scene.psf;
   field.stars = int(stars.size());
-  fit_psf_shape(shape_stars(scene, map, stars, field), field);
+  const auto shapes = shape_stars(scene, map, stars, field);
+  fit_psf_ellipse(shapes, field);
+  fit_psf_shape(shapes, field);
   return field;
 }
 

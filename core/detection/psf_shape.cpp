@@ -7,15 +7,16 @@
 #include <numeric>
 #include <optional>
 
+#include "core/detection/psf_growth.h"
 #include "core/detection/small_matrix.h"
 
 namespace dmise {
 namespace {
 
 // Widths of the parts in units of that of the nearest Gaussian: with free weights they follow
-// Gaussians and Kolmogorov's and Moffat's profiles to 1 % of the peak. The widest extends the wings
-// beyond what is measured, about as diffraction's do, whose light falls with the third power.
-constexpr std::array<double, Psf::most> ratios = {0.7, 1.0, 1.4, 2.0, 3.5, 10.0};
+// Gaussians and Kolmogorov's and Moffat's profiles to 0.1 % of the peak, diffraction's to 0.9 %.
+constexpr std::array<double, Psf::most> ratios = {0.55, 0.75, 1.0, 1.35, 1.8, 2.5, 3.5, 8.0};
+constexpr std::size_t nearest = 2;  // the Gaussian itself
 constexpr std::size_t parts = ratios.size();
 constexpr std::size_t own = 4;             // parameters of a star: flux, x, y, background
 constexpr std::size_t all = own + parts;   // with the weights
@@ -29,7 +30,8 @@ constexpr int rounds = 3;                  // of linear least squares
 static_assert(all <= most_parameters);
 
 using Weights = std::array<double, parts>;
-constexpr Weights gaussian = {0.0, 1.0};
+constexpr Weights gaussian = {0.0, 0.0, 1.0};
+static_assert(ratios[nearest] == 1.0);
 
 struct Equations {
   SmallMatrix matrix{};  // lower triangle
@@ -42,7 +44,12 @@ Equations equations_of(const ShapeStar& star, const PsfField& field, const Weigh
   Psf psf = field.at({star.trail.x_px, star.trail.y_px});
   std::vector<TrailLight> lights;
   lights.reserve(parts);
-  for (std::size_t k = 0; k < parts; ++k) lights.emplace_back(star.trail, psf.parts[k].sigma_px);
+  for (std::size_t k = 0; k < parts; ++k) {
+    Psf part = psf.parts[k].sigma_px;
+    part.along_x = psf.along_x;
+    part.along_diagonal = psf.along_diagonal;
+    lights.emplace_back(star.trail, part);
+  }
   Equations out;
   TrailDerivatives by{};
   SmallVector gradient{};
@@ -199,7 +206,7 @@ bool fit_psf_shape(std::vector<ShapeStar> stars, PsfField& field) {
     auto next = solved(total, used);
     if (!next) return false;
     if (round == 0) {
-      const auto single = solved(total, {1});
+      const auto single = solved(total, {nearest});
       if (!single || next->gain < single->gain + significant_chi2) return false;
     }
     if (round == rounds - 1) simplify(total, used, *next);
@@ -216,6 +223,8 @@ bool fit_psf_shape(std::vector<ShapeStar> stars, PsfField& field) {
     mixture.weights[i] = now.weights[used[i]] / sum;
     mixture.ratios[i] = ratios[used[i]];
   }
+  const double light = light_by_growth(stars, mixture);
+  for (std::size_t i = 0; i < used.size(); ++i) mixture.weights[i] /= light;
   field = mixture;
   return true;
 }

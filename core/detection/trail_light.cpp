@@ -68,7 +68,18 @@ TrailLight::TrailLight(const Trail& trail, const Psf& psf)
   odd_ = square * 4 * cos_ * sin_ * (s2 - c2);
   for (std::size_t i = 0; i < parts_; ++i) {
     weight_[i] = psf.parts[i].weight;
-    inverse_[i] = 1 / psf.parts[i].sigma_px;
+    const double sigma_px = psf.parts[i].sigma_px;
+    along_[i] = across_[i] = 1 / sigma_px;
+    if (psf.along_x == 0.0 && psf.along_diagonal == 0.0) continue;
+    // The Gaussian along the line and across it; along it at a place across.
+    const double optical = sigma_px * sigma_px - pixel_variance_px2, cc = c2 - s2,
+                 cs = 2 * cos_ * sin_;
+    const double stretch = optical * (psf.along_x * cc + psf.along_diagonal * cs);
+    const double both = optical * (psf.along_diagonal * cc - psf.along_x * cs);
+    const double across = sigma_px * sigma_px - stretch;
+    lean_[i] = both / across;
+    along_[i] = 1 / std::sqrt(sigma_px * sigma_px + stretch - both * lean_[i]);
+    across_[i] = 1 / std::sqrt(across);
   }
 }
 
@@ -98,28 +109,29 @@ double TrailLight::operator()(double px, double py, TrailDerivatives& d) const {
   // Light along the line, per px, times the profile across it, and derivatives of that product.
   double ag = 0.0, along_g = 0.0, length_g = 0.0, ag_off = 0.0;
   for (std::size_t i = 0; i < parts_; ++i) {
-    const double s = inverse_[i], v = off * s, density = normal(v).pdf;
+    const double s = along_[i], sc = across_[i], v = off * sc, density = normal(v).pdf;
+    const double at = along - lean_[i] * off;
     double a, a_along, a_length = 0.0, square = 0.0;
     Normal up, down;
     if (is_point) {
-      up = normal(along * s);
+      up = normal(at * s);
       a = up.pdf * s;
-      a_along = -along * s * s * a;
+      a_along = -at * s * s * a;
     } else {
-      up = normal((along + length / 2) * s);
-      down = normal((along - length / 2) * s);
+      up = normal((at + length / 2) * s);
+      down = normal((at - length / 2) * s);
       a = (up.cdf - down.cdf) / length;
       a_along = (up.pdf - down.pdf) * s / length;
       a_length = ((up.pdf + down.pdf) * s / 2 - a) / length;
     }
     if (s > 1 / square_below_px) {
-      const Derivatives across_line = of_gaussian(v, density, s);
+      const Derivatives across_line = of_gaussian(v, density, sc);
       Derivatives line;
       if (is_point) {
-        line = of_gaussian(along * s, up.pdf, s);
+        line = of_gaussian(at * s, up.pdf, s);
       } else {
-        const Derivatives end = of_gaussian((along + length / 2) * s, up.pdf, s);
-        const Derivatives start = of_gaussian((along - length / 2) * s, down.pdf, s);
+        const Derivatives end = of_gaussian((at + length / 2) * s, up.pdf, s);
+        const Derivatives start = of_gaussian((at - length / 2) * s, down.pdf, s);
         line = {a, a_along, (end.f1 - start.f1) / length, (end.f2 - start.f2) / length,
                 (end.f3 - start.f3) / length};
       }
@@ -127,11 +139,11 @@ double TrailLight::operator()(double px, double py, TrailDerivatives& d) const {
                mixed_ * line.f2 * across_line.f2 +
                odd_ * (line.f3 * across_line.f1 - line.f1 * across_line.f3);
     }
-    const double g = weight_[i] * density * s;
+    const double g = weight_[i] * density * sc;
     ag += a * g + weight_[i] * square;
     along_g += a_along * g;
     length_g += a_length * g;
-    ag_off -= a * off * s * s * g;
+    ag_off -= (a * off * sc * sc + lean_[i] * a_along) * g;
   }
   const double f = t_.flux_e;
   const double by_along = f * (along_g * w + ag * w_along - w * ag_off * bend_along);

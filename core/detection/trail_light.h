@@ -38,7 +38,8 @@ using TrailDerivatives = std::array<double, trail_parameters>;
 /// A trail prepared for evaluation. The pixel's integral is approximated by Gaussians wider by
 /// 1/12 px^2, and for those narrower than `square_below_px` by the next term of its series, too: a
 /// pixel is a square, whose fourth cumulants are -1/120 px^4. At the peak 0.7 % is left at
-/// that width and 0.3 % for a FWHM of 1.2 px. Derivatives lack that term.
+/// that width and 0.3 % for a FWHM of 1.2 px. Derivatives lack that term, and that by the angle how
+/// an ellipse turns against the line.
 class TrailLight {
  public:
   TrailLight(const Trail& trail, const Psf& psf);
@@ -55,7 +56,9 @@ class TrailLight {
   double fourth_, mixed_,
       odd_;  // factors of derivatives along and across in the term of the square
   std::size_t parts_;
-  std::array<double, Psf::most> weight_{}, inverse_{};  // inverse of each part's sigma
+  // Of each part: inverse of sigma along the line at a place across it, and across; how far the
+  // middle of its light along the line moves with the place across.
+  std::array<double, Psf::most> weight_{}, along_{}, across_{}, lean_{};
 };
 
 /// Electrons of the trail in pixel (x, y).

@@ -147,17 +147,79 @@ TEST(TrailLight, DerivativesAreThoseOfDifferences) {
   }
 }
 
+/// Axes of 0.8 to 1, turned by 0.45 rad.
+Psf ellipse() {
+  Psf psf = mixture();
+  psf.along_x = 0.13;
+  psf.along_diagonal = 0.17;
+  return psf;
+}
+
+/// The normal distribution of two variables, of each part.
+double normal_density(const Psf& psf, double x, double y) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < psf.count; ++k) {
+    const double all = psf.parts[k].sigma_px * psf.parts[k].sigma_px;
+    const double optical = all - pixel_variance_px2;
+    const double xx = all + optical * psf.along_x, yy = all - optical * psf.along_x;
+    const double xy = optical * psf.along_diagonal, determinant = xx * yy - xy * xy;
+    sum += psf.parts[k].weight *
+           std::exp(-0.5 * (x * x * yy - 2 * x * y * xy + y * y * xx) / determinant) /
+           (2 * pi * std::sqrt(determinant));
+  }
+  return sum;
+}
+
+TEST(TrailLight, OfAnEllipseIsTheNormalDistributionAlongTheLine) {
+  Psf psf = ellipse();
+  for (auto& part : psf.parts) part.sigma_px += 0.3;  // no term for the pixel's square
+  constexpr int steps = 2000;
+  for (const double length : {0.0, 7.0})
+    for (const double angle : {0.0, 0.7, 2.0}) {
+      const Trail trail{10.2, 9.7, 1000.0, length, angle};
+      for (const PixelPosition at : {PixelPosition{10, 10}, {12, 9}, {7, 12}}) {
+        double sum = 0.0;
+        for (int i = 0; i < steps; ++i) {
+          const double along = ((i + 0.5) / steps - 0.5) * length;
+          sum += normal_density(psf, at.x_px - trail.x_px - along * std::cos(angle),
+                                at.y_px - trail.y_px - along * std::sin(angle));
+        }
+        EXPECT_NEAR(trail_value(trail, psf, at.x_px, at.y_px), 1000 * sum / steps, 1e-3)
+            << length << " px at " << angle;
+      }
+    }
+}
+
+TEST(TrailLight, DerivativesOfAnEllipseAreThoseOfDifferences) {
+  const Trail trail{10.2, 9.7, 1000.0, 12.0, 0.4, 0.2, 0.3};
+  double Trail::*const members[] = {&Trail::x_px, &Trail::y_px, &Trail::flux_e, &Trail::length_px};
+  for (const PixelPosition at : {PixelPosition{10, 10}, {14, 11}, {5, 9}}) {
+    TrailDerivatives by{};
+    TrailLight(trail, ellipse())(at.x_px, at.y_px, by);
+    for (std::size_t i = 0; i < std::size(members); ++i) {
+      const double step = 1e-4;
+      Trail up = trail, down = trail;
+      up.*members[i] += step;
+      down.*members[i] -= step;
+      const double difference = trail_value(up, ellipse(), at.x_px, at.y_px) -
+                                trail_value(down, ellipse(), at.x_px, at.y_px);
+      EXPECT_NEAR(by[i], difference / (2 * step), 1e-3 + 1e-4 * std::abs(by[i])) << i;
+    }
+  }
+}
+
 // The sum of squares of a Gaussian is 1 / (4 pi sigma^2).
 TEST(Psf, EquivalentWidthHasTheSumOfSquares) {
-  const Psf psf = mixture();
-  const Trail point{60, 60, 1.0};
-  double squares = 0.0;
-  for (int y = 0; y < 480; ++y)
-    for (int x = 0; x < 480; ++x) {
-      const double v = trail_value(point, psf, 0.25 * x, 0.25 * y);
-      squares += v * v / 16;
-    }
-  EXPECT_NEAR(psf.equivalent_sigma_px(), 1 / std::sqrt(4 * pi * squares), 1e-4);
+  for (const Psf& psf : {mixture(), ellipse()}) {
+    const Trail point{60, 60, 1.0};
+    double squares = 0.0;
+    for (int y = 0; y < 480; ++y)
+      for (int x = 0; x < 480; ++x) {
+        const double v = trail_value(point, psf, 0.25 * x, 0.25 * y);
+        squares += v * v / 16;
+      }
+    EXPECT_NEAR(psf.equivalent_sigma_px(), 1 / std::sqrt(4 * pi * squares), 1e-4);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,101 @@
+#include "core/detection/psf_ellipse.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/detection/small_matrix.h"
+#include "core/detection/source_fit.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::size_t own = 5;             // of a star: flux, x, y, background, log of the width
+constexpr std::size_t all = own + 2;       // with the ellipticity
+constexpr double reach_widths = 3.0;       // of pixels from a star
+constexpr double model_error = 0.05;       // of a Gaussian
+constexpr double step = 0.02;              // of derivatives by differences
+constexpr double significant_chi2 = 60.0;  // gain over a round PSF
+constexpr double least = 0.02, most = 0.6;
+constexpr int rounds = 3;
+
+struct Sum {
+  double xx = 0.0, xd = 0.0, dd = 0.0, x = 0.0, d = 0.0;  // normal equations of the ellipticity
+};
+
+/// Adds what one star says, without its own parameters.
+void add(const ShapeStar& star, const PsfField& field, Sum& sum) {
+  const PixelPosition at{star.trail.x_px, star.trail.y_px};
+  Psf gaussian = field.sigma_at(at);
+  gaussian.along_x = field.along_x;
+  gaussian.along_diagonal = field.along_diagonal;
+  Psf wider = gaussian, along_x = gaussian, along_diagonal = gaussian;
+  wider.parts[0].sigma_px *= 1 + step;
+  along_x.along_x += step;
+  along_diagonal.along_diagonal += step;
+  const std::array<TrailLight, 4> light{
+      TrailLight(star.trail, gaussian), TrailLight(star.trail, wider),
+      TrailLight(star.trail, along_x), TrailLight(star.trail, along_diagonal)};
+  const double reach_px = reach_widths * gaussian.parts[0].sigma_px;
+  SmallMatrix matrix{};
+  SmallVector right{};
+  TrailDerivatives by{}, unused{};
+  for (const FitPixel& p : star.pixels) {
+    if (!lies_on(star.trail, p.x, p.y, reach_px)) continue;
+    const double model = light[0](p.x, p.y, by);
+    const auto change = [&](std::size_t k) { return (light[k](p.x, p.y, unused) - model) / step; };
+    const std::array<double, all> gradient = {by[2],     by[0],     by[1],    1.0,
+                                              change(1), change(2), change(3)};
+    const double error = model_error * model;
+    const double weight = 1 / (p.variance_e2 + std::max(model, 0.0) + error * error);
+    const double residual = p.signal_e - model - star.background_e;
+    for (std::size_t i = 0; i < all; ++i) {
+      right[i] += weight * gradient[i] * residual;
+      for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += weight * gradient[i] * gradient[j];
+    }
+  }
+  matrix[3][3] += 1 / (star.background_sigma_e * star.background_sigma_e);
+  SmallMatrix factor = matrix;
+  if (!cholesky(factor, own)) return;
+  const SmallVector at_rest = solve(factor, right, own);
+  std::array<SmallVector, 2> by_e;
+  for (std::size_t k = 0; k < 2; ++k) {
+    SmallVector column{};
+    for (std::size_t i = 0; i < own; ++i) column[i] = matrix[own + k][i];
+    by_e[k] = solve(factor, column, own);
+  }
+  const auto without_own = [&](std::size_t k, const SmallVector& solution) {
+    double product = 0.0;
+    for (std::size_t i = 0; i < own; ++i) product += matrix[own + k][i] * solution[i];
+    return product;
+  };
+  sum.x += right[own] - without_own(0, at_rest);
+  sum.d += right[own + 1] - without_own(1, at_rest);
+  sum.xx += matrix[own][own] - without_own(0, by_e[0]);
+  sum.xd += matrix[own + 1][own] - without_own(1, by_e[0]);
+  sum.dd += matrix[own + 1][own + 1] - without_own(1, by_e[1]);
+}
+
+}  // namespace
+
+void fit_psf_ellipse(const std::vector<ShapeStar>& stars, PsfField& field) {
+  for (int round = 0; round < rounds; ++round) {
+    Sum sum;
+    for (const ShapeStar& star : stars) add(star, field, sum);
+    const double determinant = sum.xx * sum.dd - sum.xd * sum.xd;
+    if (!(sum.xx > 0 && determinant > 1e-6 * sum.xx * sum.dd)) return;
+    const double x = (sum.dd * sum.x - sum.xd * sum.d) / determinant;
+    const double d = (sum.xx * sum.d - sum.xd * sum.x) / determinant;
+    if (round == 0 && (x * sum.x + d * sum.d < significant_chi2 || std::hypot(x, d) < least))
+      return;
+    field.along_x += x;
+    field.along_diagonal += d;
+    const double size = std::hypot(field.along_x, field.along_diagonal);
+    if (!(size < most)) {
+      field.along_x *= most / size;
+      field.along_diagonal *= most / size;
+    }
+  }
+}
+
+}  // namespace dmise
