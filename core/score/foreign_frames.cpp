@@ -106,8 +106,11 @@ std::vector<std::string> fits_files(const std::string& directory) {
 
 std::vector<TrueSource> read_truth_csv(const std::string& path,
                                        const std::vector<std::string>& files) {
-  const std::string text = read_text_file(path);
-  const std::string name = printable(path);
+  return parse_truth_csv(read_text_file(path), printable(path), files);
+}
+
+std::vector<TrueSource> parse_truth_csv(const std::string& text, const std::string& name,
+                                        const std::vector<std::string>& files) {
   LineReader lines(without_byte_order_mark(text));
   const auto first = lines.next();
   if (!first) throw ConfigError(name + ": is empty");

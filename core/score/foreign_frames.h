@@ -21,6 +21,9 @@ inline constexpr const char* truth_csv_help =
 /// Reads it; `files`: the names of frames. Throws `ConfigError` "FILE:LINE: COLUMN: reason".
 std::vector<TrueSource> read_truth_csv(const std::string& path,
                                        const std::vector<std::string>& files);
+/// The same of its text; `name`: of the file, for messages.
+std::vector<TrueSource> parse_truth_csv(const std::string& text, const std::string& name,
+                                        const std::vector<std::string>& files);
 
 /// Detects in every FITS file of a directory (.fits .fit .fts, also with .gz or .fz), with truth
 /// from a CSV, as `dmise detect` does.

@@ -1,5 +1,7 @@
 #include "core/score/json_record.h"
 
+#include <cmath>
+
 #include "core/base/error.h"
 #include "core/base/printable.h"
 #include "core/base/text_file.h"
@@ -67,6 +69,10 @@ void JsonRecord::require(bool good, const char* key, const std::string& what) co
   constexpr auto as_bytes = nlohmann::json::error_handler_t::replace;
   if (!good)
     fail(key, "must be " + what + ", got " + printable(at(key).dump(-1, ' ', false, as_bytes), 80));
+}
+
+bool JsonRecord::is_finite(const nlohmann::json& value) {
+  return std::abs(value.get<double>()) <= 1e30;
 }
 
 JsonRecord JsonRecord::object(const char* key) const { return {at(key), place_ + ": " + key}; }

@@ -31,6 +31,7 @@ class JsonRecord {
               "a whole number in range");
     } else if constexpr (std::floating_point<T>) {
       require(value.is_number(), key, "a number");
+      require(is_finite(value), key, "at most 1e30");
     } else {
       require(value.is_string(), key, "a text");
     }
@@ -41,9 +42,13 @@ class JsonRecord {
   template <std::size_t N>
   std::array<double, N> numbers(const char* key) const {
     const nlohmann::json& list = at(key);
-    bool good = list.is_array() && list.size() == N;
-    for (std::size_t i = 0; good && i < N; ++i) good = list[i].is_number();
+    bool good = list.is_array() && list.size() == N, finite = true;
+    for (std::size_t i = 0; good && i < N; ++i) {
+      good = list[i].is_number();
+      finite = finite && good && is_finite(list[i]);
+    }
     require(good, key, std::to_string(N) + " numbers");
+    require(finite, key, "at most 1e30");
     return list.get<std::array<double, N>>();
   }
   JsonRecord object(const char* key) const;
@@ -54,6 +59,8 @@ class JsonRecord {
  private:
   JsonRecord(nlohmann::json object, std::string place);
   const nlohmann::json& at(const char* key) const;
+  /// Whether powers of a number are finite.
+  static bool is_finite(const nlohmann::json& value);
   void require(bool good, const char* key, const std::string& what) const;
   nlohmann::json object_;
   std::string place_;

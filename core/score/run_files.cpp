@@ -38,6 +38,8 @@ ScoredFrame camera_of(const JsonRecord& sensor) {
           .sigma_px = psf_sigma_px(optics, camera.number("band_centre_m"))};
 }
 
+}  // namespace
+
 TrueSource source_of(const Truth& truth) {
   const auto [start, middle, end] = places_of(truth);
   const std::uint32_t number = truth.catalogue_number;
@@ -60,8 +62,6 @@ TrueSource source_of(const Truth& truth) {
   }
   return t;
 }
-
-}  // namespace
 
 ScoredFrame frame_of(const JsonRecord& report) {
   ScoredFrame f{.sensor = report.get<std::string>("sensor"),

@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 
+#include "core/products/truth.h"
 #include "core/score/score_input.h"
 
 namespace dmise {
@@ -9,6 +10,9 @@ namespace dmise {
 /// `ConfigError` "FILE:LINE: KEY: reason" for a file that is missing or invalid, and for two lines
 /// of one thing. A last line without its end was interrupted and is left out.
 ScoreInput read_run(const std::string& directory, const ReadProgress& progress);
+
+/// The source of a line of truth.jsonl.
+TrueSource source_of(const Truth& truth);
 
 class JsonRecord;
 /// The frame of a report (`FileDetections::report`, a line of frames.jsonl), without its size and,

@@ -1,6 +1,7 @@
 #include "core/score/score.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -34,6 +35,10 @@ std::span<Record> of_frame(std::vector<Record>& list, const ScoredFrame& frame) 
   return {begin, end};
 }
 
+std::optional<double> if_finite(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
 ScoredTruth known(const TrueSource& truth, const ScoredFrame* frame) {
   ScoredTruth t{.truth = truth};
   if (!frame || !frame->searched) return t;
@@ -44,7 +49,8 @@ ScoredTruth known(const TrueSource& truth, const ScoredFrame* frame) {
   if (frame->exposure_s > 0.0 && frame->scale_rad_per_px > 0.0)
     t.rate_arcsec_per_s = trail.length_px() * frame->scale_rad_per_px / arcsec / frame->exposure_s;
   if (truth.light && truth.signal_e && frame->noise_e && frame->sigma_px)
-    t.snr = matched_filter_snr({*truth.signal_e, t.length_px, *frame->noise_e, *frame->sigma_px});
+    t.snr = if_finite(
+        matched_filter_snr({*truth.signal_e, t.length_px, *frame->noise_e, *frame->sigma_px}));
   return t;
 }
 
@@ -62,6 +68,8 @@ void judge_frame(const ScoredFrame& frame, std::span<ScoredTruth> truths,
       t.pieces = 1 + pairs.pieces_of_truth[k].size();
       t.clean = t.truth.whole && !t.truth.resolved && t.pieces == 1 && !d.saturated && !d.at_edge;
       t.errors = errors_of(t, d, frame);
+      for (const ErrorKey& error : error_keys)
+        t.errors.*error.value = if_finite(t.errors.*error.value);
     } else if (t.fate == Fate::missed && !t.is_above(score.settings.threshold_snr)) {
       t.fate = Fate::faint;
     }

@@ -289,5 +289,21 @@ TEST(Score, FrameGivenTwiceIsRefused) {
   EXPECT_THROW(score({.frames = {frame(), frame()}}, {}), Error);
 }
 
+// A noise of 1e-320 e- makes an SNR of 1e324, a covariance of 1e-320 px^2 a NEES of 1e320.
+TEST(Score, FiguresThatOverflowAreUnknown) {
+  ScoreInput input{.frames = {test::frame()},
+                   .truths = {test::source("t", {100, 100}, {160, 100})},
+                   .detections = {test::found(0, {101, 100}, {161, 100})}};
+  input.frames[0].noise_e = 1e-320;
+  input.detections[0].detection.covariance_px2 = {1e-160, 0.0, 1e-160};
+  input.detections[0].detection.y_px += 1.0;
+  const ScoredTruth t = score(input, {}).truths.at(0);
+  EXPECT_EQ(t.fate, Fate::found);
+  EXPECT_FALSE(t.snr);
+  EXPECT_FALSE(t.errors.nees_px && !std::isfinite(*t.errors.nees_px));
+  EXPECT_FALSE(t.errors.over_bound && !std::isfinite(*t.errors.over_bound));
+  EXPECT_NEAR(*t.errors.along_px, 1.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace dmise
