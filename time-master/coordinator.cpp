@@ -178,7 +178,7 @@ std::vector<std::string> Coordinator::holding() const {
     const auto& needs = member.node.consumes;
     const bool waits = std::any_of(needs.begin(), needs.end(), [&](const std::string& topic) {
       const auto owner = late_topics.find(topic);
-      return owner != late_topics.end() && owner->second != name;
+      return owner != late_topics.end() && owner->second != name && member.node.delay(topic) == 0;
     });
     if (!late(member) || waits) continue;
     if (member.waits_for.empty())

@@ -76,7 +76,7 @@ std::optional<std::string> Coordinator::rejoin(Member& member, const Request& re
   const NodeTopics& before = member.node;
   if (before.produces != request.node.produces || before.consumes != request.node.consumes ||
       before.look_back != request.node.look_back || !(before.schedule == request.node.schedule) ||
-      member.keeps_time != request.keeps_time)
+      before.delays != request.node.delays || member.keeps_time != request.keeps_time)
     return name + " rejoins with other topics than before";
   if (auto refusal = take_place(member, now)) return refusal;
   ++topology_version_;

@@ -32,6 +32,7 @@ Coordinator::Request request_of(const v1::Join& join) {
                                .offset = Tick(join.offset_ticks())}};
   request.node.produces.insert(request.node.produces.end(), join.produces_direct().begin(),
                                join.produces_direct().end());
+  for (const auto& of : join.delays()) request.node.delays[of.topic()] = Tick(of.delay_ticks());
   request.keeps_time = !join.has_broker() && !join.observer();
   request.observer = join.observer();
   request.agent = join.agent();

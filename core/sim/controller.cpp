@@ -28,8 +28,9 @@ std::vector<std::unique_ptr<Participant>> in_running_order(
   while (!waiting.empty()) {
     const auto next = std::find_if(waiting.begin(), waiting.end(), [&](const auto& p) {
       const auto topics = p->consumes();
-      return std::all_of(topics.begin(), topics.end(),
-                         [&](const auto& topic) { return available.contains(topic); });
+      return std::all_of(topics.begin(), topics.end(), [&](const auto& topic) {
+        return available.contains(topic) || (*p).delay(topic) > 0;
+      });
     });
     if (next == waiting.end())
       throw Error(waiting.front()->name() + " is part of a dependency cycle between topics");
@@ -47,8 +48,11 @@ SimulationController::SimulationController(std::vector<std::unique_ptr<Participa
 
 void SimulationController::run(Tick last, const std::function<bool(Tick)>& after_tick, Tick first) {
   std::vector<NodeTopics> nodes;
-  for (const auto& p : participants_)
+  for (const auto& p : participants_) {
     nodes.push_back({p->name(), p->produces(), p->consumes(), p->look_back(), p->schedule()});
+    for (const auto& topic : nodes.back().consumes)
+      if (const Tick delay = p->delay(topic); delay > 0) nodes.back().delays[topic] = delay;
+  }
   const auto history = history_ticks(nodes);
   const auto starts_at = [&](const NodeTopics& node) {
     return std::max<Tick>(0, first - history.at(node.name));
@@ -61,35 +65,30 @@ void SimulationController::run(Tick last, const std::function<bool(Tick)>& after
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const NodeTopics& node = nodes[i];
       const Tick start = starts_at(node);
-      const auto take = [&] {
+      /// What was published up to a tick, of each topic as late as the node hears it.
+      const auto take = [&](Tick to) {
         std::vector<Message> inputs;
         for (const auto& topic : node.consumes) {
           auto& messages = waiting[i][topic];
+          const Tick delay = node.delay(topic);
           // Drop ticks that no look-back needs.
-          const Tick needed = start - node.look_back - (node.schedule.period - 1);
+          const Tick needed = delay > 0 ? 0 : start - node.look_back - (node.schedule.period - 1);
           std::erase_if(messages, [&](const Message& m) {
             return m.tick < needed && !is_retained(*m.state);
           });
-          std::move(messages.begin(), messages.end(), std::back_inserter(inputs));
-          messages.clear();
+          const auto later =
+              std::stable_partition(messages.begin(), messages.end(),
+                                    [&](const Message& m) { return m.tick <= to - delay; });
+          std::move(messages.begin(), later, std::back_inserter(inputs));
+          messages.erase(messages.begin(), later);
         }
         return inputs;
       };
       if (tick < start) continue;
       std::vector<Message> outputs;
-      if (tick == start && first > 0) {
-        std::map<std::string, std::vector<Message>> now;  // without this tick's
-        for (auto& [topic, messages] : waiting[i]) {
-          const auto at = std::stable_partition(messages.begin(), messages.end(),
-                                                [&](const Message& m) { return m.tick < tick; });
-          now[topic].assign(at, messages.end());
-          messages.erase(at, messages.end());
-        }
-        outputs = participants_[i]->resume(tick, take());
-        waiting[i] = std::move(now);
-      }
+      if (tick == start && first > 0) outputs = participants_[i]->resume(tick, take(tick - 1));
       if (node.schedule.due(tick))
-        for (auto& message : participants_[i]->step(tick, take()))
+        for (auto& message : participants_[i]->step(tick, take(tick)))
           outputs.push_back(std::move(message));
       for (const auto& message : outputs)
         for (std::size_t other = 0; other < nodes.size(); ++other)

@@ -26,6 +26,14 @@ class Participant {
     return true;
   }
 
+  /// Ticks by which it hears a consumed topic late: at tick k it is given what was published up to
+  /// k - delay. A loop of topics needs one with a delay. Who goes on with a run is given again what
+  /// was published in the last `delay` ticks before; what is older it must have kept.
+  virtual Tick delay(const std::string& topic) const {
+    static_cast<void>(topic);
+    return 0;
+  }
+
   /// The ticks at which it works; `step` is called for no other tick.
   virtual Schedule schedule() const { return {}; }
   /// The ticks, of `schedule`, at which it may publish on one of its topics. Nobody waits for it at

@@ -29,7 +29,8 @@ struct LoopSearch {
     visits[node] = Visit::open;
     path.push_back(node);
     for (const std::string& topic : nodes[node].consumes)
-      if (auto fault = from(producer_of.at(topic))) return fault;
+      if (nodes[node].delay(topic) == 0)
+        if (auto fault = from(producer_of.at(topic))) return fault;
     path.pop_back();
     visits[node] = Visit::closed;
     return std::nullopt;
@@ -57,19 +58,20 @@ std::optional<std::string> topic_fault(const std::vector<NodeTopics>& nodes) {
 }
 
 std::map<std::string, Tick> history_ticks(const std::vector<NodeTopics>& nodes) {
+  std::map<std::string, std::vector<const NodeTopics*>> consumers;
+  for (const NodeTopics& node : nodes)
+    for (const std::string& topic : node.consumes) consumers[topic].push_back(&node);
   std::map<std::string, Tick> history;
   const std::function<Tick(const NodeTopics&)> of = [&](const NodeTopics& node) {
     if (const auto known = history.find(node.name); known != history.end()) return known->second;
     Tick ticks = 0;
-    for (const NodeTopics& other : nodes) {
-      const bool depends =
-          std::any_of(node.produces.begin(), node.produces.end(), [&](const std::string& topic) {
-            return std::find(other.consumes.begin(), other.consumes.end(), topic) !=
-                   other.consumes.end();
-          });
-      // A node with period n consumes the inputs of the n - 1 ticks before as well.
-      if (depends) ticks = std::max(ticks, other.look_back + other.schedule.period - 1 + of(other));
-    }
+    for (const std::string& topic : node.produces)
+      for (const NodeTopics* other : consumers[topic]) {
+        const Tick delay = other->delay(topic);
+        const Tick needed = delay > 0 ? delay : other->look_back + of(*other);
+        // A node with period n consumes the inputs of the n - 1 ticks before as well.
+        ticks = std::max(ticks, needed + other->schedule.period - 1);
+      }
     return history[node.name] = ticks;
   };
   for (const NodeTopics& node : nodes) of(node);

@@ -15,15 +15,22 @@ struct NodeTopics {
   std::vector<std::string> consumes;
   Tick look_back = 0;  // ticks before the one it resumes at whose inputs it needs
   Schedule schedule;
+  std::map<std::string, Tick> delays = {};  // of consumed topics that it hears late, >= 1
+
+  Tick delay(const std::string& topic) const {
+    const auto found = delays.find(topic);
+    return found == delays.end() ? 0 : found->second;
+  }
 };
 
 /// Returns why these nodes cannot run together: a topic without a producer or with two, or a
-/// dependency cycle within a tick. Empty if they can.
+/// dependency cycle within a tick, in which a topic with a delay does not count. Empty if they can.
 std::optional<std::string> topic_fault(const std::vector<NodeTopics>& nodes);
 
 /// For nodes that can run together, by name: how many ticks before tick k a node must have
 /// published so that all its dependants can resume at k. A consumer needs its look-back, and what
-/// it must have published for its own consumers: the longest sum along the graph.
+/// it must have published for its own consumers: the longest sum along the graph. Of a topic with a
+/// delay that is the delay.
 std::map<std::string, Tick> history_ticks(const std::vector<NodeTopics>& nodes);
 
 }  // namespace dmise

@@ -114,6 +114,36 @@ TEST(Inbox, HandsOverInTheOrderOfConsumption) {
   EXPECT_EQ(taken.at(1).topic, "a");
 }
 
+TEST(Inbox, ATopicWithADelayIsNeededAndTakenLater) {
+  Pair p;
+  p.inbox.set_delay(environment_topic, 2, 2);
+  p.inbox.begin_at(0, false);
+  EXPECT_TRUE(p.inbox.complete(1));
+  EXPECT_FALSE(p.inbox.complete(2));
+  EXPECT_TRUE(p.inbox.wanted(1).empty());
+  for (Tick tick = 0; tick < 2; ++tick)
+    for (const Received& m : packed(p.outbox, tick, {environment(tick, double(tick))}))
+      p.inbox.accept(m);
+  EXPECT_TRUE(p.inbox.take(1).empty());
+  EXPECT_TRUE(p.inbox.complete(3));
+  EXPECT_FALSE(p.inbox.complete(4));
+  const auto taken = p.inbox.take(2);
+  ASSERT_EQ(taken.size(), 1u);
+  EXPECT_EQ(taken[0].tick, 0);
+  EXPECT_EQ(p.inbox.take(3).size(), 1u);
+}
+
+TEST(Inbox, OfATopicWithADelayTheLastTicksBeforeAreNeededAgain) {
+  Inbox inbox({environment_topic, "detection/a"});
+  inbox.set_delay(environment_topic, 3, 3);
+  inbox.begin_at(5, 8, false);
+  EXPECT_EQ(inbox.begins_at(environment_topic), 5);
+  EXPECT_EQ(inbox.begins_at("detection/a"), 5);
+  inbox.begin_at(6, 6, false);
+  EXPECT_EQ(inbox.begins_at(environment_topic), 3);
+  EXPECT_EQ(inbox.begins_at("detection/a"), 6);
+}
+
 TEST(Inbox, AProbeMeansHeardAndNothingElse) {
   Pair p;
   EXPECT_FALSE(p.inbox.probed());

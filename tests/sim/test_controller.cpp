@@ -15,6 +15,14 @@ class Echo : public Participant {
   std::string name() const override { return name_; }
   std::vector<std::string> produces() const override { return {"topic/" + name_}; }
   std::vector<std::string> consumes() const override { return consumes_; }
+  Tick delay(const std::string& topic) const override { return topic == late_ ? 2 : 0; }
+  void hear_late(std::string topic) { late_ = std::move(topic); }
+  std::vector<Message> resume(Tick tick, std::span<const Message> past) override {
+    std::string line = name_ + " resumes at " + std::to_string(tick) + ":";
+    for (const auto& m : past) line += " " + m.topic + "@" + std::to_string(m.tick);
+    log_.push_back(line);
+    return {};
+  }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override {
     std::string line = name_ + std::to_string(tick) + ":";
     for (const auto& m : inputs) line += " " + m.topic + "@" + std::to_string(m.tick);
@@ -25,6 +33,7 @@ class Echo : public Participant {
  private:
   std::string name_;
   std::vector<std::string> consumes_;
+  std::string late_;
   std::vector<std::string>& log_;
 };
 
@@ -48,6 +57,35 @@ TEST(SimulationController, StopsWhenAskedAfterATick) {
   std::vector<std::string> log;
   SimulationController(pair(log, {})).run(9, [](Tick tick) { return tick < 1; });
   EXPECT_EQ(log.size(), 4u);
+}
+
+std::vector<std::unique_ptr<Participant>> loop(std::vector<std::string>& log) {
+  auto camera = std::make_unique<Echo>("camera", std::vector<std::string>{"topic/tasks"}, log);
+  camera->hear_late("topic/tasks");
+  std::vector<std::unique_ptr<Participant>> list;
+  list.push_back(std::make_unique<Echo>("tasks", std::vector<std::string>{"topic/camera"}, log));
+  list.push_back(std::move(camera));
+  return list;
+}
+
+TEST(SimulationController, ATopicWithADelayClosesALoop) {
+  std::vector<std::string> log;
+  SimulationController(loop(log)).run(3, [](Tick) { return true; });
+  EXPECT_EQ(log, (std::vector<std::string>{"camera0:", "tasks0: topic/camera@0",  //
+                                           "camera1:", "tasks1: topic/camera@1",
+                                           "camera2: topic/tasks@0", "tasks2: topic/camera@2",
+                                           "camera3: topic/tasks@1", "tasks3: topic/camera@3"}));
+}
+
+TEST(SimulationController, ALoopThatGoesOnDoesTheTicksOfItsDelayAgain) {
+  std::vector<std::string> log;
+  SimulationController(loop(log)).run(
+      7, [](Tick) { return true; }, 6);
+  EXPECT_EQ(log,
+            (std::vector<std::string>{
+                "camera resumes at 4:", "camera4:", "tasks resumes at 4:", "tasks4: topic/camera@4",
+                "camera5:", "tasks5: topic/camera@5", "camera6: topic/tasks@4",
+                "tasks6: topic/camera@6", "camera7: topic/tasks@5", "tasks7: topic/camera@7"}));
 }
 
 TEST(SimulationController, RefusesWhatCanNeverRun) {

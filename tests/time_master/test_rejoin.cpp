@@ -234,6 +234,21 @@ TEST(History, AddsUpAlongTheGraph) {
   EXPECT_EQ(history.at("orbit"), 10);
 }
 
+TEST(History, OfALoopIsItsDelay) {
+  std::vector<NodeTopics> nodes{
+      {.name = "orbit", .produces = {"state"}, .consumes = {}},
+      {.name = "camera", .produces = {"detection"}, .consumes = {"state", "task"}, .look_back = 2},
+      {.name = "fusion", .produces = {"task"}, .consumes = {"detection"}}};
+  EXPECT_EQ(topic_fault(nodes),
+            "nodes wait for each other within a tick: camera -> fusion -> camera");
+  nodes[1].delays["task"] = 3;
+  EXPECT_EQ(topic_fault(nodes), std::nullopt);
+  const auto history = history_ticks(nodes);
+  EXPECT_EQ(history.at("fusion"), 3);
+  EXPECT_EQ(history.at("camera"), 3);  // what the fusion does again
+  EXPECT_EQ(history.at("orbit"), 5);
+}
+
 TEST(Observer, JoinsAndLeavesAtAnyTimeAndHoldsNobody) {
   Scene run;
   auto watcher = node("watcher", {}, {"detection"});

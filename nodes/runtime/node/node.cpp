@@ -80,7 +80,15 @@ class Node {
     request.set_name(name_);
     for (const std::string& topic : produces_)
       *(is_direct(topic) ? request.add_produces_direct() : request.add_produces()) = topic;
-    for (const std::string& topic : consumes_) request.add_consumes(topic);
+    for (const std::string& topic : consumes_) {
+      request.add_consumes(topic);
+      const Tick delay = participant_.delay(topic);
+      if (delay == 0) continue;
+      inputs_.set_delay(topic, delay, delay + schedule_.period - 1);
+      auto* late = request.add_delays();
+      late->set_topic(topic);
+      late->set_delay_ticks(std::uint64_t(delay));
+    }
     request.set_observer(options_.observer);
     request.set_look_back_ticks(std::uint64_t(participant_.look_back()));
     request.set_period_ticks(std::uint64_t(schedule_.period));
@@ -137,7 +145,7 @@ class Node {
       if (publisher.incarnation() == incarnation_ && publisher.name() == link_.name())
         outbox_->keep(Tick(publisher.keep_ticks()));
     connect_data();
-    inputs_.begin_at(first_input(), first.running());
+    inputs_.begin_at(first_input(), resume_tick_, first.running());
     const auto probes = outbox_->probes();
     bool said_ready = false;
     nanoseconds next_probe = now(), interval = probe_interval;

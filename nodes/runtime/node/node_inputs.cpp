@@ -86,10 +86,10 @@ void NodeInputs::list_sockets() {
       if (*socket) sockets_.push_back(&**socket);
 }
 
-void NodeInputs::begin_at(Tick tick, bool catch_up) {
-  inbox_.begin_at(tick, catch_up);
+void NodeInputs::begin_at(Tick tick, Tick resumes_at, bool catch_up) {
+  inbox_.begin_at(tick, resumes_at, catch_up);
   if (catch_up)
-    for (const std::string& topic : topics_) ask(topic, 1, tick);
+    for (const std::string& topic : topics_) ask(topic, 1, inbox_.begins_at(topic));
   asked_ = now();
 }
 

@@ -21,8 +21,12 @@ class NodeInputs {
   void start(const RunFacts& run) { run_ = run, receiver_.emplace(run); }
   /// Connects to all publishers; again after a process was replaced.
   void connect(const v1::Topology& topology);
+  /// See Inbox. Call before `begin_at`.
+  void set_delay(const std::string& topic, Tick delay, Tick reaches_back) {
+    inbox_.set_delay(topic, delay, reaches_back);
+  }
   /// See Inbox; to catch up, all kept messages are requested from every publisher.
-  void begin_at(Tick tick, bool catch_up);
+  void begin_at(Tick tick, Tick resumes_at, bool catch_up);
   /// Updates the state of topics from the clock's messages.
   void update_topics(const std::vector<v1::ClosedTopic>& closed,
                      const std::vector<v1::TopicTally>& published);

@@ -55,6 +55,14 @@ bool good_schedules(const Schedules& schedules) {
          });
 }
 
+template <class Delays>
+bool good_delays(const Delays& delays) {
+  return delays.size() <= most_topics &&
+         std::all_of(delays.begin(), delays.end(), [](const v1::TopicDelay& of) {
+           return is_name(of.topic()) && of.delay_ticks() >= 1 && is_count(of.delay_ticks());
+         });
+}
+
 template <class Beats>
 bool good_beats(const Beats& beats) {
   return std::all_of(beats.begin(), beats.end(), [](const v1::NodeBeat& node) {
@@ -78,8 +86,9 @@ Fault fault_in(const v1::Join& join) {
   if (!is_text(join.direct_endpoint()) || !is_text(join.resend_endpoint()) || !good(join.broker()))
     return "join: invalid address";
   return unless(is_count(join.look_back_ticks()) && is_count(join.period_ticks()) &&
-                    is_count(join.offset_ticks()) && good_schedules(join.schedules()),
-                "join: period, offset and look-back must be ticks of a run");
+                    is_count(join.offset_ticks()) && good_schedules(join.schedules()) &&
+                    good_delays(join.delays()),
+                "join: period, offset, look-back and delays must be ticks of a run");
 }
 
 bool good(const v1::Publisher& publisher) {

@@ -25,11 +25,24 @@ Inbox::Topic* Inbox::find(std::string_view name) {
   return found == place_.end() ? nullptr : &topics_[found->second];
 }
 
-void Inbox::begin_at(Tick tick, bool catch_up) {
+void Inbox::set_delay(const std::string& name, Tick delay, Tick reaches_back) {
+  Topic* topic = find(name);
+  if (!topic) return;
+  topic->delay = delay;
+  topic->reaches_back = reaches_back;
+}
+
+void Inbox::begin_at(Tick tick, Tick resumes_at, bool catch_up) {
   for (Topic& topic : topics_) {
-    topic.complete_to = tick - 1;
+    topic.begins_at = topic.delay > 0 ? std::max<Tick>(0, resumes_at - topic.reaches_back) : tick;
+    topic.complete_to = topic.begins_at - 1;
     topic.positioned = !catch_up;
   }
+}
+
+Tick Inbox::begins_at(const std::string& name) const {
+  const auto found = place_.find(name);
+  return found == place_.end() ? 0 : topics_[found->second].begins_at;
 }
 
 void Inbox::set_schedule(const std::string& name, Schedule schedule) {
@@ -232,12 +245,13 @@ std::vector<Message> Inbox::take(Tick tick) {
   for (Topic& topic : topics_) {
     std::move(topic.lasting.begin(), topic.lasting.end(), std::back_inserter(messages));
     topic.lasting.clear();
-    const auto last = topic.ready.upper_bound(tick);
+    const Tick to = tick - topic.delay;
+    const auto last = topic.ready.upper_bound(to);
     for (auto of_tick = topic.ready.begin(); of_tick != last; ++of_tick)
       std::move(of_tick->second.begin(), of_tick->second.end(), std::back_inserter(messages));
     topic.ready.erase(topic.ready.begin(), last);
-    topic.heard.erase(topic.heard.begin(), topic.heard.upper_bound(tick));
-    topic.manifests.erase(topic.manifests.begin(), topic.manifests.upper_bound(tick));
+    topic.heard.erase(topic.heard.begin(), topic.heard.upper_bound(to));
+    topic.manifests.erase(topic.manifests.begin(), topic.manifests.upper_bound(to));
   }
   return messages;
 }

@@ -35,9 +35,17 @@ class Inbox {
 
   explicit Inbox(std::vector<std::string> topics);
 
+  /// What is published on `topic` at tick k is needed, and taken, at k + `delay`, >= 1. Call before
+  /// `begin_at`; `reaches_back`: ticks of it that are needed before the one at which the run goes
+  /// on.
+  void set_delay(const std::string& topic, Tick delay, Tick reaches_back);
   /// Call first: ticks before `tick` are not needed, but retained messages are. With `catch_up`
-  /// nothing counts before a POSITION has given each topic's sequence number.
-  void begin_at(Tick tick, bool catch_up);
+  /// nothing counts before a POSITION has given each topic's sequence number. `resumes_at`: where
+  /// the run goes on, at or after `tick`.
+  void begin_at(Tick tick, Tick resumes_at, bool catch_up);
+  void begin_at(Tick tick, bool catch_up) { begin_at(tick, tick, catch_up); }
+  /// First tick of a topic that is needed.
+  Tick begins_at(const std::string& topic) const;
   void set_schedule(const std::string& topic, Schedule schedule);
   /// Another process publishes on `topic` from now on: its sequence numbers restart, so its
   /// position must be requested, and its messages of complete ticks are known.
@@ -57,8 +65,8 @@ class Inbox {
   bool positioned() const;
   /// Whether every topic is complete for `tick`.
   bool complete(Tick tick) const;
-  /// Removes and returns the messages of all ticks up to a complete one, ordered by (index of the
-  /// topic, sequence).
+  /// Removes and returns the messages of all ticks up to a complete one, of topics with a delay up
+  /// to that much before, ordered by (index of the topic, sequence).
   std::vector<Message> take(Tick tick);
   /// Missing messages that keep `tick` from being complete.
   std::vector<Want> wanted(Tick tick) const;
@@ -79,6 +87,8 @@ class Inbox {
   struct Topic {
     std::string name;
     Schedule schedule;
+    Tick delay = 0, reaches_back = 0;
+    Tick begins_at = 0;
     bool probed = false;
     bool positioned = true;
     bool has_lasting = false;  // has the retained messages
@@ -95,7 +105,9 @@ class Inbox {
     std::map<Tick, TopicTally> heard;            // what counts, of ticks not yet taken
     std::map<Tick, TopicTally> manifests;        // the publisher's manifests of them
 
+    /// Whether everything is here that tick `tick` of this node needs.
     bool covers(Tick tick) const {
+      tick -= delay;
       return schedule.next_after(complete_to) > tick || tick >= closed_from;
     }
   };
