@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/products/detection.h"
+#include "core/products/task.h"
 #include "core/products/track.h"
 #include "core/products/truth.h"
 #include "core/sim/state.h"
@@ -40,10 +41,21 @@ struct TrackSet {
   bool operator==(const TrackSet&) const = default;
 };
 
+/// Tasks that a node gives a sensor at one tick, by id.
+struct TaskSet {
+  Tick tick = 0;
+  SimTime time;
+  std::string node;
+  std::string sensor;
+  std::vector<Task> tasks;
+
+  bool operator==(const TaskSet&) const = default;
+};
+
 /// Everything that actors and evaluators exchange. To add a state: list it here, give it a message
 /// in proto/ and a pair of functions in nodes/wire.
 using State = std::variant<ObjectRoster, ObjectStates, EnvironmentState, FrameReport, DetectionSet,
-                           TruthSet, SiteState, TrackSet>;
+                           TruthSet, SiteState, TrackSet, TaskSet>;
 
 /// One state, published on a topic for a tick. A topic may carry none, one or several per tick.
 struct Message {
@@ -60,6 +72,7 @@ inline constexpr const char* site_prefix = "env/site/";  // the atmosphere above
 inline constexpr const char* frame_prefix = "frame/";
 inline constexpr const char* detection_prefix = "detection/";
 inline constexpr const char* track_prefix = "track/";  // and the name of the node
+inline constexpr const char* task_prefix = "task/";    // and the sensor that is to observe
 inline constexpr const char* truth_prefix = "truth/";  // own endpoint, own security domain
 
 }  // namespace dmise

@@ -16,6 +16,7 @@ Encoded encode_body(const FrameReport&);
 Encoded encode_body(const DetectionSet&);
 Encoded encode_body(const TruthSet&);
 Encoded encode_body(const TrackSet&);
+Encoded encode_body(const TaskSet&);
 
 ObjectRoster decode_roster(std::string_view payload, std::string_view arrays);
 ObjectStates decode_states(std::string_view payload, std::string_view arrays);
@@ -25,6 +26,7 @@ FrameReport decode_report(std::string_view payload);
 DetectionSet decode_detections(std::string_view payload);
 TruthSet decode_truths(std::string_view payload);
 TrackSet decode_tracks(std::string_view payload);
+TaskSet decode_tasks(std::string_view payload);
 
 /// Parses `payload` as a message of type `M`; throws `Refused`.
 template <class M>

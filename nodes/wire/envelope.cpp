@@ -98,7 +98,7 @@ Envelope open(std::span<const std::string_view> frames) {
     throw Refused(Refusal::schema_version, "schema version " +
                                                std::to_string(wire.schema_version()) + ", here " +
                                                std::to_string(wire_schema_version));
-  if ((wire.kind() < v1::KIND_PROBE || wire.kind() > v1::KIND_TRACK_SET) &&
+  if ((wire.kind() < v1::KIND_PROBE || wire.kind() > v1::KIND_TASK_SET) &&
       wire.kind() != v1::KIND_POSITION)
     throw Refused(Refusal::envelope, "unknown kind " + std::to_string(wire.kind()));
   return {.run_id = wire.run_id(),

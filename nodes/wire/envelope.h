@@ -27,6 +27,7 @@ enum class MessageKind : std::uint8_t {
   truth_set = 8,
   site_state = 9,
   track_set = 10,
+  task_set = 11,
   position = 100,  // sequence position of a topic, in an answer to a resend request
 };
 

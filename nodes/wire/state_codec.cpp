@@ -31,6 +31,8 @@ State decode(MessageKind kind, std::string_view payload, std::string_view arrays
         return decode_truths(payload);
       case MessageKind::track_set:
         return decode_tracks(payload);
+      case MessageKind::task_set:
+        return decode_tasks(payload);
       case MessageKind::probe:
       case MessageKind::watermark:
       case MessageKind::position:

@@ -17,6 +17,7 @@ constexpr double speed_limit_m_per_s = speed_of_light_m_per_s;
 constexpr double rate_limit_rad_per_s = 1e6;
 constexpr std::size_t name_limit_bytes = 256;
 constexpr std::size_t text_limit_bytes = 16384;
+constexpr std::size_t most_path_numbers = 30000;
 
 [[noreturn]] void refuse(const std::string& field, const std::string& reason) {
   throw Refused(Refusal::value, field + ": " + reason);
@@ -334,6 +335,47 @@ void check(const TrackSet& set) {
   }
 }
 
+void check(const Task& t) {
+  if (t.id == 0) refuse("id", "counts from 1");
+  if (t.track == 0) refuse("track", "counts from 1");
+  if (t.catalogue_number > 999999999) refuse("catalogue_number", "has up to 9 digits");
+  name_text(t.sensor, "sensor");
+  name_text(t.name, "name");
+  if (!(t.given <= t.start && t.start <= t.on_target && t.on_target < t.end))
+    refuse("times", "must be given <= start <= on_target < end");
+  if (t.path_m.size() < 6 || t.path_m.size() % 3 != 0 || t.path_m_per_s.size() != t.path_m.size())
+    refuse("path_m", "must have 3 numbers of each of 2 points or more, as path_m_per_s");
+  if (t.path_m.size() > most_path_numbers) refuse("path_m", "is too long");
+  in_range(t.path_step_s, 1e-3, 1e6, "path_step_s");
+  for (const double x : t.path_m) in_range(x, -distance_limit_m, distance_limit_m, "path_m");
+  for (const double v : t.path_m_per_s)
+    in_range(v, -speed_limit_m_per_s, speed_limit_m_per_s, "path_m_per_s");
+  for (std::size_t row = 0, k = 0; row < 6; ++row)
+    for (std::size_t column = 0; column <= row; ++column, ++k) {
+      finite(t.covariance[k], "covariance");
+      if (row == column) not_negative(t.covariance[k], "covariance");
+    }
+  in_range(t.in_field, 0, 1, "in_field");
+  in_range(t.detection_probability, 0, 1, "detection_probability");
+  not_negative(t.sigma_rad, "sigma_rad");
+  in_range(t.slew_rad, 0, 2 * pi, "slew_rad");
+  not_negative(t.slew_s, "slew_s");
+  not_negative(t.gain_nats, "gain_nats");
+  not_negative(t.gain_nats_per_s, "gain_nats_per_s");
+  not_negative(t.runner_up_nats_per_s, "runner_up_nats_per_s");
+}
+
+void check(const TaskSet& set) {
+  name_text(set.node, "node");
+  name_text(set.sensor, "sensor");
+  for (std::size_t i = 0; i < set.tasks.size(); ++i) {
+    check(set.tasks[i]);
+    if (set.tasks[i].sensor != set.sensor) refuse("sensor", "of another sensor");
+    if (set.tasks[i].given != set.time) refuse("given", "of another tick");
+    if (i > 0 && set.tasks[i].id <= set.tasks[i - 1].id) refuse("tasks", "must be by id");
+  }
+}
+
 // Topic, tick and time of a state.
 struct Place {
   std::string topic;
@@ -349,6 +391,7 @@ Place place(const FrameReport& report) { return {frame_prefix + report.sensor}; 
 Place place(const DetectionSet& set) { return {detection_prefix + set.sensor}; }
 Place place(const TruthSet& set) { return {truth_prefix + set.sensor}; }
 Place place(const TrackSet& set) { return {track_prefix + set.node, &set.tick, &set.time}; }
+Place place(const TaskSet& set) { return {task_prefix + set.sensor, &set.tick, &set.time}; }
 
 }  // namespace
 

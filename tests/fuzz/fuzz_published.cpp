@@ -21,6 +21,7 @@ const std::vector<test::Example>& examples() {
           set->detections.resize(1);
         if (auto* set = std::get_if<TruthSet>(&example.state)) set->truths.resize(1);
         if (auto* set = std::get_if<TrackSet>(&example.state)) set->tracks.resize(1);
+        if (auto* set = std::get_if<TaskSet>(&example.state)) set->tasks.resize(1);
         if (encode(example.state).kind == kind) of_kind.push_back(std::move(example));
       }
     return of_kind;

@@ -244,6 +244,33 @@ Track track(Numbers& n, std::uint32_t id, SimTime time) {
   return t;
 }
 
+Task task(Numbers& n, std::uint32_t id, SimTime time) {
+  Task t;
+  t.id = id;
+  t.sensor = sensor;
+  t.track = 7;
+  t.catalogue_number = 44720;
+  t.name = "STARLINK-1008";
+  t.given = time;
+  t.start = {time.ns + std::int64_t(n.in(1e9, 1e10))};
+  t.on_target = {t.start.ns + std::int64_t(n.in(1e9, 1e10))};
+  t.end = {t.on_target.ns + std::int64_t(n.in(1e9, 1e10))};
+  t.first_frame = 12, t.exposures = 3;
+  t.path_start = {t.start.ns - 1};
+  t.path_step_s = n.in(1, 20);
+  for (int i = 0; i < 9; ++i) {
+    t.path_m.push_back(n.in(-4e7, 4e7));
+    t.path_m_per_s.push_back(n.in(-8e3, 8e3));
+  }
+  for (double& c : t.covariance) c = n.in(0, 1e6);
+  t.sigma_rad = n.in(0, 1e-3);
+  t.slew_rad = n.in(0, 3), t.slew_s = n.in(1, 20);
+  t.in_field = n.in(0, 1), t.detection_probability = n.in(0, 1);
+  t.gain_nats = n.in(0, 20), t.gain_nats_per_s = n.in(0, 2);
+  t.candidates = 31, t.runner_up = 9, t.runner_up_nats_per_s = n.in(0, 1);
+  return t;
+}
+
 }  // namespace
 
 std::vector<Example> examples(unsigned seed) {
@@ -255,6 +282,8 @@ std::vector<Example> examples(unsigned seed) {
   const SimTime time = example_run().time_of(tick);
   TrackSet tracks{.tick = tick, .time = time, .node = "fusion-node", .live = 30, .unassociated = 4};
   for (std::uint32_t id = 1; id < 5; ++id) tracks.tracks.push_back(track(n, id, time));
+  TaskSet tasks{.tick = tick, .time = time, .node = "fusion-node", .sensor = sensor, .tasks = {}};
+  for (std::uint32_t id = 3; id < 5; ++id) tasks.tasks.push_back(task(n, id, time));
   const ObjectRoster objects = roster(n);
   return {{objects_topic, tick, objects},
           {objects_topic, tick, states(n, tick)},
@@ -265,6 +294,7 @@ std::vector<Example> examples(unsigned seed) {
           {std::string(detection_prefix) + sensor, tick, DetectionSet{sensor, 4, {}}},
           {std::string(truth_prefix) + sensor, tick, truths},
           {std::string(track_prefix) + "fusion-node", tick, tracks},
+          {std::string(task_prefix) + sensor, tick, tasks},
           {objects_topic, tick,
            ObjectStates{.tick = tick, .time = example_run().time_of(tick), .count = 0}},
           {roster_topic, tick, objects}};
@@ -292,7 +322,7 @@ Receiver receiver_of_examples() {
        {std::string(roster_topic), std::string(objects_topic), std::string(environment_topic),
         std::string(site_prefix) + sensor, std::string(frame_prefix) + sensor,
         std::string(detection_prefix) + sensor, std::string(truth_prefix) + sensor,
-        std::string(track_prefix) + "fusion-node"})
+        std::string(track_prefix) + "fusion-node", std::string(task_prefix) + sensor})
     receiver.allow(topic, "source", 1);
   return receiver;
 }

@@ -7,11 +7,13 @@
 #include <memory>
 
 #include "core/detection/detection_json.h"
+#include "core/products/task_json.h"
 #include "core/products/track_json.h"
 #include "dmise/v1/detection.pb.h"
 #include "dmise/v1/environment.pb.h"
 #include "dmise/v1/frame.pb.h"
 #include "dmise/v1/state.pb.h"
+#include "dmise/v1/task.pb.h"
 #include "dmise/v1/track.pb.h"
 #include "nodes/wire/codecs.h"
 #include "tests/wire/examples.h"
@@ -131,6 +133,7 @@ TEST(EveryField, OfAMessageIsDecoded) {
   every_field_is_decoded<v1::DetectionSet, DetectionSet>(alone(decode_detections));
   every_field_is_decoded<v1::TruthSet, TruthSet>(alone(decode_truths));
   every_field_is_decoded<v1::TrackSet, TrackSet>(alone(decode_tracks));
+  every_field_is_decoded<v1::TaskSet, TaskSet>(alone(decode_tasks));
 }
 
 /// Fails for each field of `M` that makes no difference to the JSON line of what is decoded. The
@@ -203,6 +206,16 @@ TEST(EveryField, OfWhatIsPublishedIsInItsJsonLine) {
                to_json(s.tracks.at(0), utc);
       },
       tracks);
+
+  auto tasks = parse<v1::TaskSet>(payload(TaskSet{}));
+  tasks.mutable_tasks()->DeleteSubrange(1, tasks.tasks_size() - 1);
+  every_field_is_in_json<v1::TaskSet, TaskSet>(
+      decode_tasks,
+      [&](const TaskSet& s) {
+        return s.node + s.sensor + std::to_string(s.tick) + std::to_string(s.time.ns) +
+               to_json(s.tasks.at(0), utc);
+      },
+      tasks);
 }
 
 /// Fails for each field that no example sets to something else than its default: the codec may
@@ -248,6 +261,9 @@ TEST(EveryField, IsEncoded) {
           break;
         case MessageKind::track_set:
           m = std::make_unique<v1::TrackSet>();
+          break;
+        case MessageKind::task_set:
+          m = std::make_unique<v1::TaskSet>();
           break;
         default:
           FAIL() << "a kind that this test does not know";

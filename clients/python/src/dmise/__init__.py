@@ -27,7 +27,7 @@ from .node import Node, Tick
 from .orbit_fit import Orbit, Triangulated, fit_orbit, triangulate
 from .recorder import Recorded, record
 from .recording import Recording, open_recording
-from .records import ArrayLike, Detection, FrameReport, Record, Track, Truth, Wcs, WcsRefraction
+from .records import ArrayLike, Detection, FrameReport, Record, Task, Track, Truth, Wcs, WcsRefraction
 from .replayer import Replay
 from .runs import Run, open_run
 from .sight import LineOfSight, line_of_sight
@@ -39,7 +39,7 @@ from .world import (EarthOrientation, EnvironmentState, ObjectInfo, ObjectRoster
 __all__ = ["ArrayLike", "Detection", "EarthOrientation", "EnvironmentState", "Frame", "FrameReport", "Gap",
            "LineOfSight", "Message", "NoAnswer", "Node", "ObjectInfo", "ObjectRoster", "ObjectStates", "Orbit",
            "Record", "Recorded", "Recording", "Refused", "Replay", "Run", "RunFailed", "SiteState", "Subscription",
-           "SunTrackingPanel", "Tick", "Track", "Triangulated", "Truth", "Wcs", "WcsRefraction", "aio", "apparent_direction",
+           "SunTrackingPanel", "Task", "Tick", "Track", "Triangulated", "Truth", "Wcs", "WcsRefraction", "aio", "apparent_direction",
            "datasets", "fit_orbit", "frames", "line_of_sight", "open_recording", "open_run",
            "pole_of", "propagate", "read_frame", "record", "subscribe", "to_pandas", "triangulate"]
 __version__ = "0.1.0"

@@ -1,4 +1,4 @@
-"""The lines of detections.jsonl, frames.jsonl, truth.jsonl and tracks.jsonl as the records of the same messages.
+"""The lines of detections.jsonl, frames.jsonl, truth.jsonl, tracks.jsonl and tasks.jsonl as the records of the same messages.
 
 Their names say degrees and arcseconds, for people; records have the names and units of the messages.
 """

@@ -142,6 +142,52 @@ class Track(Record):
         return matrix + np.tril(matrix, -1).T
 
 
+@dataclass(eq=False)
+class Task(Record):
+    """What a fusion node tells a sensor to observe, and why: from `on_target_ns` to `end_ns` it follows the predicted path.
+
+    `path_m`, `path_m_per_s`: 3 x n, all of the first point first, every `path_step_s` from `path_start_ns`.
+    """
+    id: int = 0
+    sensor: str = ""
+    track: int = 0
+    catalogue_number: int = 0
+    name: str = ""
+    given_ns: int = 0
+    start_ns: int = 0
+    on_target_ns: int = 0
+    end_ns: int = 0
+    first_frame: int = 0
+    exposures: int = 0
+    gain_nats: float = 0.0
+    gain_nats_per_s: float = 0.0
+    candidates: int = 0
+    runner_up: int = 0
+    runner_up_nats_per_s: float = 0.0
+    in_field: float = 0.0
+    detection_probability: float = 0.0
+    sigma_rad: float = 0.0
+    slew_rad: float = 0.0
+    slew_s: float = 0.0
+    covariance: Floats = field(default_factory=no_numbers)
+    path_start_ns: int = 0
+    path_step_s: float = 0.0
+    path_m: Floats = field(default_factory=no_numbers)
+    path_m_per_s: Floats = field(default_factory=no_numbers)
+
+    @property
+    def given_utc(self) -> datetime.datetime:
+        return self.utc(self.given_ns)
+
+    @property
+    def on_target_utc(self) -> datetime.datetime:
+        return self.utc(self.on_target_ns)
+
+    @property
+    def end_utc(self) -> datetime.datetime:
+        return self.utc(self.end_ns)
+
+
 class _Exposure(Record):
     start_ns: int
     middle_ns: int

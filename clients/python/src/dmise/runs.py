@@ -9,7 +9,7 @@ from typing import Any
 
 from .convert import start_of
 from .json_lines import read_lines
-from .records import Detection, FrameReport, Track, Truth
+from .records import Detection, FrameReport, Task, Track, Truth
 from .tables import to_pandas
 
 
@@ -64,6 +64,11 @@ class Run:
     def tracks(self) -> Records:
         """A Track for each tick at which one changed, none if the scenario has no `fusion`."""
         return self._read("tracks.jsonl", Track)
+
+    @functools.cached_property
+    def tasks(self) -> Records:
+        """A Task for each cue, none if the scenario cues no sensor."""
+        return self._read("tasks.jsonl", Task)
 
     def images(self, sensor: str) -> Iterator[tuple[int, pathlib.Path]]:
         """(frame, its FITS file) of a sensor, in order."""

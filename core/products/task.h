@@ -1,0 +1,43 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/sim_time.h"
+#include "core/frames/vec.h"
+
+namespace dmise {
+
+/// What a sensor that is cued is told to observe, and why: it slews from `start`, has settled on
+/// the target by `on_target`, and follows the predicted path to `end`. It ends what is left of
+/// earlier tasks at `start`.
+struct Task {
+  std::uint32_t id = 0;  // in the run, from 1
+  std::string sensor;
+  std::uint32_t track = 0;             // id of the target
+  std::uint32_t catalogue_number = 0;  // of the target; 0: in no catalogue
+  std::string name;                    // likewise; may be empty
+  SimTime given, start, on_target, end;
+  std::uint32_t first_frame = 0, exposures = 0;  // that fit between `on_target` and `end`
+  // The predicted path, at `path_start` and every `path_step_s` after, at least 2 points: all
+  // x, y, z of the first, of the second, ... in GCRS.
+  SimTime path_start;
+  double path_step_s = 0.0;
+  std::vector<double> path_m, path_m_per_s;
+  // Lower triangle by rows of the predicted position and velocity at `on_target`, as of a track.
+  std::array<double, 21> covariance{};
+  double sigma_rad = 0.0;  // of the predicted direction at `on_target`, the larger axis
+  double slew_rad = 0.0, slew_s = 0.0;  // angle and time with settling, from `start`
+  double in_field = 0.0;                // probability that the target is in the field, [0, 1]
+  double detection_probability = 0.0;   // of one exposure, the one above in it, [0, 1]
+  double gain_nats = 0.0;               // expected information of all exposures
+  double gain_nats_per_s = 0.0;         // over the time from `start` to `end`: what was compared
+  std::uint32_t candidates = 0;         // tracks that the sensor could have observed
+  std::uint32_t runner_up = 0;          // track of the next best; 0: none
+  double runner_up_nats_per_s = 0.0;
+
+  bool operator==(const Task&) const = default;
+};
+
+}  // namespace dmise
