@@ -2,6 +2,7 @@
 
 #include "bench/bench_all_sky.h"
 #include "bench/bench_calibrate.h"
+#include "bench/bench_cue.h"
 #include "bench/bench_detect.h"
 #include "bench/bench_effects.h"
 #include "bench/bench_figure5.h"
@@ -33,7 +34,7 @@ std::vector<Bench> benches() {
        add_effects_options},
       {"frame", "stages of a frame on one thread", bench_frame},
       {"fusion", "orbits from directions: triangulation, filter, least squares; many sensors",
-       [](bool json) { return bench_fusion(json) | bench_fusion_tick(json); }},
+       [](bool json) { return bench_fusion(json) | bench_cue(json) | bench_fusion_tick(json); }},
       {"interpolation", "error and cost of interpolating between ticks", bench_interpolation},
       {"network", "number of sensor processes that keep up with real time, and their memory",
        bench_network, add_network_options},

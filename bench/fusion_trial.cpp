@@ -7,7 +7,6 @@
 #include "core/base/units.h"
 #include "core/frames/earth_orientation.h"
 #include "core/photometry/diffuse_sphere.h"
-#include "core/sky/shadow.h"
 #include "core/sky/sun_moon.h"
 
 namespace dmise {
@@ -25,82 +24,102 @@ FusionTrial::FusionTrial(std::vector<MeanElements> objects, const Clock& clock,
       settings_(settings),
       paths_(objects_, clock, {}) {}
 
-std::vector<SensorFrame> FusionTrial::frames(SimTime time, std::uint32_t number) {
+void FusionTrial::move(SimTime time) {
+  if (moved_ && paths_.time() == time) return;
+  moved_ = true;
   paths_.move(time);
   const EarthOrientation earth = earth_orientation(clock_, time);
-  const auto gcrs_from_itrs = earth.itrs_from_gcrs(time).inverse();
-  const Vec<Gcrs> sun_m = solar_system(clock_.tt(time)).sun_m;
-  const EarthShadow shadow(sun_m, oblate_earth(earth));
-  std::vector<double> lit(objects_.size(), -1.0);
+  gcrs_from_itrs_ = earth.itrs_from_gcrs(time).inverse();
+  sun_m_ = solar_system(clock_.tt(time)).sun_m;
+  shadow_.emplace(sun_m_, oblate_earth(earth));
+  lit_.assign(objects_.size(), -1.0);
+}
+
+std::vector<SensorFrame> FusionTrial::frames(SimTime time, std::uint32_t number) {
+  move(time);
   std::vector<SensorFrame> out;
   for (std::size_t k = 0; k < settings_.sites.size(); ++k) {
-    const std::string name = "site" + std::to_string(100 + k);
-    const RngKey key = rng_key(settings_.seed, name, number, "trial");
-    const Vec<Itrs> place = itrs_from_geodetic(settings_.sites[k]);
-    SensorFrame frame{.sensor = name,
-                      .frame = number,
-                      .time = time,
-                      .sensor_m = gcrs_from_itrs * place,
-                      .half_angle_rad = settings_.half_angle_rad,
-                      .limiting_magnitude = settings_.limiting_magnitude};
-    frame.axis = unit(frame.sensor_m);
-    const auto add = [&](const Vec<Gcrs>& direction, double magnitude, std::uint32_t object,
-                         std::uint32_t draw) {
-      const SkyTangents tangents = sky_tangents(direction);
-      SeenSource source;
-      AngleObservation& seen = source.observation;
-      seen.time = time;
-      seen.sensor_m = frame.sensor_m;
-      seen.direction =
-          unit(direction + settings_.sigma_rad * normal_of(rng_word(key, draw, 1)) * tangents.east +
-               settings_.sigma_rad * normal_of(rng_word(key, draw, 2)) * tangents.north);
-      const double variance = settings_.sigma_rad * settings_.sigma_rad;
-      seen.covariance_rad2 = {variance, 0, variance};
-      seen.sensor = name;
-      seen.detection_id =
-          name + "/" + std::to_string(number) + "/" + std::to_string(frame.sources.size());
-      source.magnitude = magnitude;
-      truth_[seen.detection_id] = object;
-      frame.sources.push_back(std::move(source));
-    };
-    const double cos_field = std::cos(settings_.half_angle_rad);
-    for (std::size_t n = 0; n < objects_.size(); ++n) {
-      // Sites that see more than they may tell do not all tell of the same.
-      const std::size_t i = (n + k * 1009) % objects_.size();
-      if (!paths_.known(i) || frame.sources.size() >= settings_.most_per_frame) continue;
-      const Vec<Gcrs> r = paths_.position_m(i);
-      Vec<Gcrs> line = r - frame.sensor_m;
-      const double sine = dot(line, frame.axis) / norm(line);
-      if (sine < least_elevation_sine || sine < cos_field) continue;
-      if (lit[i] < 0) lit[i] = shadow.sunlit_fraction(r);
-      if (lit[i] < 0.5) continue;
-      line = line - paths_.velocity_m_per_s(i) * (norm(line) / speed_of_light_m_per_s);
-      const double range_m = norm(line);
-      const double standard =
-          3 + 6 * uniform_of(rng_word(rng_key(7, "brightness", 0, "trial"), std::uint32_t(i), 0));
-      const double magnitude = magnitude_from_standard(
-          {.v_mag = standard}, {.range_m = range_m, .phase_rad = angle_rad(sun_m - r, -line)});
-      if (magnitude > settings_.limiting_magnitude ||
-          uniform_of(rng_word(key, std::uint32_t(i), 0)) > settings_.detection_probability)
-        continue;
-      add(line / range_m, magnitude, objects_[i].catalogue_number, std::uint32_t(i));
-    }
-    double chance = std::exp(-settings_.false_alarms_per_frame), sum = chance;
-    const double drawn = uniform_of(rng_word(key, 0xffffffff, 0));
-    for (std::uint32_t n = 0; drawn > sum && n < 1000; ++n) {
-      const std::uint32_t draw = 0xf0000000 + n;
-      const double c = 1 - uniform_of(rng_word(key, draw, 3)) * (1 - cos_field);
-      const double turn = 2 * pi * uniform_of(rng_word(key, draw, 4));
-      const SkyTangents t = sky_tangents(frame.axis);
-      const Vec<Gcrs> across = std::cos(turn) * t.east + std::sin(turn) * t.north;
-      add(frame.axis * c + across * std::sqrt(1 - c * c),
-          settings_.limiting_magnitude - uniform_of(rng_word(key, draw, 5)), 0, draw);
-      chance *= settings_.false_alarms_per_frame / (n + 1);
-      sum += chance;
-    }
-    out.push_back(std::move(frame));
+    const TrialSensor sensor{.name = "site" + std::to_string(100 + k),
+                             .site = settings_.sites[k],
+                             .half_angle_rad = settings_.half_angle_rad,
+                             .sigma_rad = settings_.sigma_rad,
+                             .limiting_magnitude = settings_.limiting_magnitude,
+                             .first_object = k * 1009};
+    out.push_back(
+        frame_of(sensor, unit(gcrs_from_itrs_ * itrs_from_geodetic(sensor.site)), time, number));
   }
   return out;
+}
+
+SensorFrame FusionTrial::frame_of(const TrialSensor& sensor, const Vec<Gcrs>& axis, SimTime time,
+                                  std::uint32_t number) {
+  move(time);
+  const std::string& name = sensor.name;
+  const RngKey key = rng_key(settings_.seed, name, number, "trial");
+  SensorFrame frame{.sensor = name,
+                    .frame = number,
+                    .time = time,
+                    .sensor_m = gcrs_from_itrs_ * itrs_from_geodetic(sensor.site),
+                    .axis = axis,
+                    .half_angle_rad = sensor.half_angle_rad,
+                    .limiting_magnitude = sensor.limiting_magnitude};
+  const Vec<Gcrs> up = unit(frame.sensor_m);
+  const auto add = [&](const Vec<Gcrs>& direction, double magnitude, std::uint32_t object,
+                       std::uint32_t draw) {
+    const SkyTangents tangents = sky_tangents(direction);
+    SeenSource source;
+    AngleObservation& seen = source.observation;
+    seen.time = time;
+    seen.sensor_m = frame.sensor_m;
+    seen.direction =
+        unit(direction + sensor.sigma_rad * normal_of(rng_word(key, draw, 1)) * tangents.east +
+             sensor.sigma_rad * normal_of(rng_word(key, draw, 2)) * tangents.north);
+    const double variance = sensor.sigma_rad * sensor.sigma_rad;
+    seen.covariance_rad2 = {variance, 0, variance};
+    seen.sensor = name;
+    seen.detection_id =
+        name + "/" + std::to_string(number) + "/" + std::to_string(frame.sources.size());
+    source.magnitude = magnitude;
+    truth_[seen.detection_id] = object;
+    frame.sources.push_back(std::move(source));
+  };
+  const double cos_field = std::cos(sensor.half_angle_rad);
+  for (std::size_t n = 0; n < objects_.size(); ++n) {
+    // Sites that see more than they may tell do not all tell of the same.
+    const std::size_t i = (n + sensor.first_object) % objects_.size();
+    if (!paths_.known(i) || frame.sources.size() >= settings_.most_per_frame) continue;
+    const Vec<Gcrs> r = paths_.position_m(i);
+    Vec<Gcrs> line = r - frame.sensor_m;
+    const double range = norm(line);
+    if (dot(line, up) < least_elevation_sine * range || dot(line, axis) < cos_field * range)
+      continue;
+    if (lit_[i] < 0) lit_[i] = shadow_->sunlit_fraction(r);
+    if (lit_[i] < 0.5) continue;
+    line = line - paths_.velocity_m_per_s(i) * (norm(line) / speed_of_light_m_per_s);
+    const double range_m = norm(line);
+    const double standard =
+        3 + 6 * uniform_of(rng_word(rng_key(7, "brightness", 0, "trial"), std::uint32_t(i), 0));
+    const double magnitude = magnitude_from_standard(
+        {.v_mag = standard}, {.range_m = range_m, .phase_rad = angle_rad(sun_m_ - r, -line)});
+    if (magnitude > sensor.limiting_magnitude ||
+        uniform_of(rng_word(key, std::uint32_t(i), 0)) > settings_.detection_probability)
+      continue;
+    add(line / range_m, magnitude, objects_[i].catalogue_number, std::uint32_t(i));
+  }
+  double chance = std::exp(-settings_.false_alarms_per_frame), sum = chance;
+  const double drawn = uniform_of(rng_word(key, 0xffffffff, 0));
+  for (std::uint32_t n = 0; drawn > sum && n < 1000; ++n) {
+    const std::uint32_t draw = 0xf0000000 + n;
+    const double c = 1 - uniform_of(rng_word(key, draw, 3)) * (1 - cos_field);
+    const double turn = 2 * pi * uniform_of(rng_word(key, draw, 4));
+    const SkyTangents t = sky_tangents(axis);
+    const Vec<Gcrs> across = std::cos(turn) * t.east + std::sin(turn) * t.north;
+    add(axis * c + across * std::sqrt(1 - c * c),
+        sensor.limiting_magnitude - uniform_of(rng_word(key, draw, 5)), 0, draw);
+    chance *= settings_.false_alarms_per_frame / (n + 1);
+    sum += chance;
+  }
+  return frame;
 }
 
 std::uint32_t FusionTrial::truth(const std::string& id) const {

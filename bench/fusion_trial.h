@@ -9,6 +9,7 @@
 #include "core/fusion/catalogue_prediction.h"
 #include "core/fusion/sensor_frame.h"
 #include "core/products/track.h"
+#include "core/sky/shadow.h"
 
 namespace dmise {
 
@@ -23,6 +24,16 @@ struct FusionTrialSettings {
   std::uint64_t seed = 1;
 };
 
+/// A sensor of a trial that may look elsewhere than at the zenith.
+struct TrialSensor {
+  std::string name;
+  Site site;
+  double half_angle_rad = 0.0;
+  double sigma_rad = 0.0;
+  double limiting_magnitude = 0.0;
+  std::size_t first_object = 0;  // with which it begins to tell
+};
+
 /// What a network of sensors on the ground detects, without pixels: directions with errors of
 /// objects on SGP4's paths that the Sun lights, and false alarms.
 class FusionTrial {
@@ -34,15 +45,26 @@ class FusionTrial {
   /// Frames of all sites with this mid exposure; `number` counts from 1.
   std::vector<SensorFrame> frames(SimTime time, std::uint32_t number);
 
+  /// The frame of one more sensor with a field about `axis` (unit).
+  SensorFrame frame_of(const TrialSensor& sensor, const Vec<Gcrs>& axis, SimTime time,
+                       std::uint32_t number);
+
   /// Catalogue number of the object of a detection; 0: of none.
   std::uint32_t truth(const std::string& detection_id) const;
   const std::map<std::string, std::uint32_t>& truths() const { return truth_; }
 
  private:
+  void move(SimTime time);
+
   std::vector<MeanElements> objects_;
   Clock clock_;
   FusionTrialSettings settings_;
   CataloguePrediction paths_;
+  bool moved_ = false;
+  Rotation<Gcrs, Itrs> gcrs_from_itrs_;
+  Vec<Gcrs> sun_m_;
+  std::optional<EarthShadow> shadow_;
+  std::vector<double> lit_;  // of each object now; -1: not known
   std::map<std::string, std::uint32_t> truth_;
 };
 

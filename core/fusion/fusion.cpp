@@ -167,6 +167,26 @@ void FusionBody::age(SimTime time) {
   }
 }
 
+std::vector<CueTarget> FusionBody::targets(SimTime time) const {
+  std::vector<CueTarget> out;
+  for (const auto& track : tracks_) {
+    auto estimate = track->filter.estimate_at(time);
+    if (!estimate || track->detections == 0) continue;
+    CueTarget target{.track = track->id,
+                     .catalogue_number = 0,
+                     .name = {},
+                     .existence = track->existence(),
+                     .magnitude = track->magnitude(1e6),
+                     .estimate = std::move(*estimate)};
+    if (track->object) {
+      target.catalogue_number = catalogue_.elements(*track->object).catalogue_number;
+      target.name = catalogue_.elements(*track->object).name;
+    }
+    out.push_back(std::move(target));
+  }
+  return out;
+}
+
 Fusion::Fusion(std::vector<MeanElements> catalogue, const Clock& clock, SimTime reference,
                const FusionSettings& settings)
     : body_(std::make_unique<FusionBody>(std::move(catalogue), clock, reference, settings)) {}
@@ -176,6 +196,8 @@ Fusion::~Fusion() = default;
 FusionTick Fusion::step(SimTime time, std::vector<SensorFrame> frames) {
   return body_->step(time, std::move(frames));
 }
+
+std::vector<CueTarget> Fusion::targets(SimTime time) const { return body_->targets(time); }
 
 std::vector<double> Fusion::existences() const {
   std::vector<double> out;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/fusion/fusion_settings.h"
+#include "core/fusion/observation_plan.h"
 #include "core/fusion/sensor_frame.h"
 #include "core/orbit/elements.h"
 #include "core/products/track.h"
@@ -33,6 +34,10 @@ class Fusion {
 
   /// The work of one tick. Frames may be of earlier exposures than those of the tick before.
   FusionTick step(SimTime time, std::vector<SensorFrame> frames);
+
+  /// The tracks that have not ended, by id, with their states at `time`: what a scheduler chooses
+  /// among.
+  std::vector<CueTarget> targets(SimTime time) const;
 
   /// Probabilities of existence of the tracks that have not ended, by id.
   std::vector<double> existences() const;

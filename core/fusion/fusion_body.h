@@ -22,6 +22,7 @@ class FusionBody {
 
   FusionTick step(SimTime time, std::vector<SensorFrame> frames);
 
+  std::vector<CueTarget> targets(SimTime time) const;
   const std::vector<std::unique_ptr<LiveTrack>>& tracks() const { return tracks_; }
 
  private:

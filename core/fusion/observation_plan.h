@@ -1,0 +1,80 @@
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/frames/earth_orientation.h"
+#include "core/fusion/cued_sensor.h"
+#include "core/products/task.h"
+#include "core/sky/shadow.h"
+#include "core/sky/sun_moon.h"
+#include "core/time/clock.h"
+#include "core/tracking/forces.h"
+#include "core/tracking/orbit_state.h"
+
+namespace dmise {
+
+/// A track as a scheduler takes it.
+struct CueTarget {
+  std::uint32_t track = 0;             // its id
+  std::uint32_t catalogue_number = 0;  // 0: in no catalogue
+  std::string name;
+  double existence = 1.0;  // probability
+  double magnitude = 0.0;  // as if 1000 km away
+  OrbitEstimate estimate;
+};
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// The sky over the next minutes.
+struct CueSky {
+  CueSky(const Clock& clock, SimTime time);
+
+  EarthOrientation earth;
+  SolarSystem bodies;
+  EarthShadow shadow;
+};
+
+/// Exposures of a target by a sensor. Information is about the position and velocity of the
+/// target at a common epoch.
+struct ObservationPlan {
+  SimTime start, on_target, end;
+  std::uint32_t first_frame = 0, exposures = 0;
+  double slew_rad = 0.0, slew_s = 0.0;
+  double in_field = 0.0, detection_probability = 0.0, sigma_rad = 0.0;
+  Matrix6 information = Matrix6::Zero();  // if all exposures detect it
+  OrbitEstimate at;                       // on_target
+  Vec<Enu> direction_at_end;
+
+  double seconds() const { return (end - start).seconds(); }
+};
+
+/// What a target at the epoch of `target.estimate` would be seen like by a sensor that stands at
+/// `from` until `start`. Nothing if it can't be observed: below the elevation, in the shadow,
+/// near the Sun or the Moon, faster than the mount, or after `last`.
+std::optional<ObservationPlan> plan_observation(const ForceModel& forces, const CueSky& sky,
+                                                const CuedSensor& sensor, const CueTarget& target,
+                                                const Vec<Enu>& from, SimTime start, SimTime last,
+                                                double best_detection_probability);
+
+/// About the rate at which a plan would tell [nats/s], for most targets need no plan: the target
+/// by two-body motion, one exposure. 0 below the horizon.
+double rough_rate(const CueSky& sky, const CuedSensor& sensor, const CueTarget& target,
+                  const Vec<Enu>& from, SimTime start);
+
+/// The information of exposures that a task has, about the target at the epoch of `estimate`,
+/// times their probability of detection. Zero if the path can't be integrated.
+Matrix6 information_of(const ForceModel& forces, const CueSky& sky, const CuedSensor& sensor,
+                       const Task& task, const OrbitEstimate& estimate);
+
+/// Half the logarithm of the determinant by which `added` shrinks the covariance of a target of
+/// which `known` will be known [nats].
+double gain_nats(const OrbitEstimate& estimate, const Matrix6& known, const Matrix6& added);
+
+/// The path of a task: the state at `from`, and so on, to `to` or after.
+void put_path(const ForceModel& forces, const OrbitState& state, SimTime from, SimTime to,
+              Task& task);
+
+}  // namespace dmise
