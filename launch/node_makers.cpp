@@ -50,6 +50,10 @@ std::optional<Tick> no_products(const std::string&, const Scenario&, const std::
 std::optional<Tick> unfinished_frame(const std::string& node, const Scenario& scenario,
                                      const std::string& directory) {
   const SensorConfig& sensor = sensor_named(scenario, node);
+  if (std::holds_alternative<PointCued>(sensor.pointing)) {  // makes no frame of most exposures
+    const Tick next = CueJournal::ticks_done(directory + "/" + node);
+    return next > scenario.last_tick() ? std::nullopt : std::optional(next);
+  }
   const std::uint32_t frames = frames_finished(node, directory);
   if (frames >= frames_within(sensor, scenario.duration)) return std::nullopt;
   const SimTime end = exposure_span(sensor, frames + 1).end;

@@ -77,8 +77,9 @@ void RunDirectory::clear() {
     if (entry.is_directory(ignored) && fs::exists(entry.path() / "frames.jsonl", ignored))
       fs::remove_all(entry.path(), ignored);
   for (const auto& sensor : scenario_.sensors) fs::remove_all(file(sensor.name), ignored);
-  for (const char* name : {"run.json", "detections.jsonl", "truth.jsonl", "frames.jsonl",
-                           "positions.csv", "positions.jsonl", "tracks.jsonl", "index.html"})
+  for (const char* name :
+       {"run.json", "detections.jsonl", "truth.jsonl", "frames.jsonl", "positions.csv",
+        "positions.jsonl", "tracks.jsonl", "tasks.jsonl", "tracks.svg", "index.html"})
     fs::remove(file(name), ignored);
   fs::remove_all(file(fusion_node), ignored);
   for (const auto& entry : fs::directory_iterator(file("positions"), ignored))

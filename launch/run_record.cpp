@@ -1,5 +1,6 @@
 #include "launch/run_record.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -8,6 +9,8 @@
 #include "core/base/whole_file.h"
 #include "core/orbit/interpolation_error.h"
 #include "core/products/frame_file.h"
+#include "launch/tracks_figure.h"
+#include "sensors/pipeline/frame_times.h"
 
 namespace dmise {
 namespace {
@@ -27,6 +30,12 @@ void write_interpolation(JsonWriter& json, const Scenario& scenario) {
   json.field("order", static_cast<int>(scenario.interpolation)).field("tick_s", tick_s);
   if (error) json.field("median_m", error->median_m).field("worst_m", error->worst_m);
   json.end_object();
+}
+
+bool is_cueing(const Scenario& scenario) {
+  return std::ranges::any_of(scenario.sensors, [](const SensorConfig& s) {
+    return std::holds_alternative<PointCued>(s.pointing);
+  });
 }
 
 }  // namespace
@@ -75,6 +84,7 @@ void write_index_page(const RunDirectory& directory, const Scenario& scenario) {
       "href=detections.jsonl>detections.jsonl</a> "
       "<a href=truth.jsonl>truth.jsonl</a> " +
       (scenario.fusion ? "<a href=tracks.jsonl>tracks.jsonl</a> " : "") +
+      (is_cueing(scenario) ? "<a href=tasks.jsonl>tasks.jsonl</a> " : "") +
       "<a href=run.json>run.json</a></p>"
       "<table><tr><th>sensor<th>frames<th>objects in frame<th>detections<th>s per frame<th>memory, "
       "MB";
@@ -86,9 +96,12 @@ void write_index_page(const RunDirectory& directory, const Scenario& scenario) {
     html += "<tr><td><a href='#" + s.name + "'>" + s.name + "</a>" + cells;
   }
   html += "</table>";
+  if (write_tracks_figure(scenario, directory.path()))
+    html += "<h2>Tracks</h2><p><img src=tracks.svg></p>";
   for (const auto& s : summaries) {
     html += "<h2 id='" + s.name + "'>" + s.name + "</h2>";
-    for (std::uint32_t frame = 1; frame <= std::uint32_t(s.frames); ++frame) {
+    const std::uint32_t last = frames_within(sensor_named(scenario, s.name), scenario.duration);
+    for (std::uint32_t frame = 1; frame <= last; ++frame) {
       const std::string base = s.name + "/";
       const std::string marked = base + frame_file_name(frame, "-marked.png");
       if (!exists(directory.path() + "/" + marked)) continue;

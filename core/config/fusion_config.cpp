@@ -33,6 +33,8 @@ FusionConfig read_fusion(const YamlValue& value) {
   s.simultaneous_s = map.number_or("simultaneous_s", s.simultaneous_s, Bounds::between(1e-3, 10.0));
   s.acceleration_noise_m2_per_s3 = map.number_or(
       "acceleration_noise_m2_per_s3", s.acceleration_noise_m2_per_s3, Bounds::between(0.0, 1.0));
+  if (const auto delay = map.find("cue_delay_ticks"))
+    config.cue_delay_ticks = delay->integer(1, 100000);
   if (const auto names = map.find("not_in_catalogue"))
     for (const auto& name : names->list()) {
       config.not_in_catalogue.push_back(name.text());

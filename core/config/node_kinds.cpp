@@ -29,7 +29,7 @@ const std::vector<NodeKind> table{
      .writes_products = true},
     {.name = fusion_node,
      .program = "dmise-fusion-node",
-     .topics = {"track/fusion-node"},
+     .topics = {"track/fusion-node", "task/"},
      .wanted = [](const Scenario& s) { return s.fusion.has_value(); },
      .writes_products = true},
 };

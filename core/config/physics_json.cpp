@@ -95,6 +95,7 @@ void write_fusion(JsonWriter& json, const FusionConfig& fusion) {
   json.field("lost_after_s", s.lost_after_s).field("tentative_s", s.tentative_s);
   json.field("start_window_s", s.start_window_s).field("simultaneous_s", s.simultaneous_s);
   json.field("acceleration_noise_m2_per_s3", s.acceleration_noise_m2_per_s3);
+  json.field("cue_delay_ticks", std::int64_t(fusion.cue_delay_ticks));
   json.key("not_in_catalogue").begin_array();
   for (const std::string& name : fusion.not_in_catalogue) json.value(name);
   json.end_array().end_object();

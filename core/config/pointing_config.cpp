@@ -80,6 +80,38 @@ PointScan read_scan(const YamlValue& value, bool on_ground) {
   return scan;
 }
 
+PointCued read_cued(const YamlValue& value) {
+  PointCued cued{.where = value.place()};
+  if (value.is_scalar() && value.flag()) return cued;
+  YamlMap map(value);
+  if (const auto park = map.find("park")) {
+    YamlMap place(*park);
+    cued.park = {.azimuth_deg = place.number("azimuth_deg", any_angle),
+                 .elevation_deg = place.number("elevation_deg", Bounds::between(0.0, 90.0))};
+    place.done();
+  }
+  CueSettings& c = cued.cue;
+  const Bounds rate{.least = 0.0, .most = 360.0, .least_open = true};
+  c.slew_deg_per_s = map.number_or("slew_deg_per_s", c.slew_deg_per_s, rate);
+  c.slew_deg_per_s2 =
+      map.number_or("slew_deg_per_s2", c.slew_deg_per_s2, Bounds::between(0.0, 1000.0));
+  c.settle_s = map.number_or("settle_s", c.settle_s, Bounds::between(0.0, 3600.0));
+  c.least_elevation_deg =
+      map.number_or("least_elevation_deg", c.least_elevation_deg, Bounds::between(0.0, 89.0));
+  c.sun_exclusion_deg =
+      map.number_or("sun_exclusion_deg", c.sun_exclusion_deg, Bounds::between(0.0, 180.0));
+  c.moon_exclusion_deg =
+      map.number_or("moon_exclusion_deg", c.moon_exclusion_deg, Bounds::between(0.0, 180.0));
+  if (const auto exposures = map.find("exposures")) c.exposures = int(exposures->integer(1, 1000));
+  c.sigma_arcsec = map.number_or("sigma_arcsec", c.sigma_arcsec, Bounds::between(1e-3, 3600.0));
+  c.limiting_magnitude =
+      map.number_or("limiting_magnitude", c.limiting_magnitude, Bounds::between(-30.0, 40.0));
+  c.least_gain_nats =
+      map.number_or("least_gain_nats", c.least_gain_nats, Bounds::between(0.0, 1000.0));
+  map.done();
+  return cued;
+}
+
 }  // namespace
 
 const char* tracking_name(Tracking tracking) {
@@ -114,10 +146,14 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
   YamlMap map(value);
   const bool horizon = map.find("azimuth_deg") || map.find("elevation_deg");
   const bool sky = map.find("ra_deg") || map.find("dec_deg");
-  const auto target = map.find("target"), body = map.find("body"), scan = map.find("scan");
-  if (int(horizon) + int(sky) + int(bool(target)) + int(bool(body)) + int(bool(scan)) > 1)
-    value.fail("give one of azimuth_deg and elevation_deg, ra_deg and dec_deg, target, body, scan",
-               false);
+  const auto target = map.find("target"), body = map.find("body"), scan = map.find("scan"),
+             cued = map.find("cued");
+  const int kinds = int(horizon) + int(sky) + int(bool(target)) + int(bool(body)) +
+                    int(bool(scan)) + int(bool(cued));
+  if (kinds > 1)
+    value.fail(
+        "give one of azimuth_deg and elevation_deg, ra_deg and dec_deg, target, body, scan, cued",
+        false);
   Tracking natural = Tracking::fixed;
   if (horizon) {
     if (!on_ground) value.fail("azimuth and elevation are for a sensor on the ground", false);
@@ -141,6 +177,10 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
     sensor.pointing = read_body(*body);
   } else if (scan) {
     sensor.pointing = read_scan(*scan, on_ground);
+  } else if (cued) {
+    if (!on_ground) cued->fail("is for a sensor on the ground", false);
+    sensor.pointing = read_cued(*cued);
+    natural = Tracking::target;
   } else {
     sensor.pointing = PointUp{};
   }
@@ -154,7 +194,7 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
                       : name == "sidereal" ? Tracking::sidereal
                       : name == "target"   ? Tracking::target
                                            : Tracking::moving;
-    if (sensor.tracking == Tracking::target && !target)
+    if (sensor.tracking == Tracking::target && !target && !cued)
       tracking->fail("there is no target to track", false);
     if (sensor.tracking == Tracking::moving && !moves && !scan)
       tracking->fail("needs a moving pointing: rates or scan", false);
@@ -162,6 +202,8 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
       tracking->fail("in orbit, fixed needs a zenith or body pointing; use sidereal or target");
   }
   sensor.roll_deg = map.number_or("roll_deg", 0.0, any_angle);
+  if (cued && sensor.tracking == Tracking::fixed)
+    map.require("tracking").fail("a cued sensor follows its target or the stars");
   if (body && sensor.roll_deg != 0.0)
     map.require("roll_deg").fail("a camera fixed to a body is rolled by up", false);
   map.done();
@@ -207,6 +249,17 @@ struct PointingWriter {
     std::visit(*this, p.start);
     json.key("axis").begin_array().value(p.axis[0]).value(p.axis[1]).value(p.axis[2]).end_array();
     json.field("rate_deg_per_s", p.rate_deg_per_s).end_object();
+  }
+  void operator()(const PointCued& p) const {
+    const CueSettings& c = p.cue;
+    json.begin_object().key("cued").begin_object().key("park");
+    (*this)(p.park);
+    json.field("slew_deg_per_s", c.slew_deg_per_s).field("slew_deg_per_s2", c.slew_deg_per_s2);
+    json.field("settle_s", c.settle_s).field("least_elevation_deg", c.least_elevation_deg);
+    json.field("sun_exclusion_deg", c.sun_exclusion_deg);
+    json.field("moon_exclusion_deg", c.moon_exclusion_deg).field("exposures", c.exposures);
+    json.field("sigma_arcsec", c.sigma_arcsec).field("limiting_magnitude", c.limiting_magnitude);
+    json.field("least_gain_nats", c.least_gain_nats).end_object().end_object();
   }
 };
 

@@ -140,6 +140,18 @@ void read_network(const YamlValue& value, NetworkConfig& network) {
   map.done();
 }
 
+/// A sensor that is cued needs a fusion, and what it is cued for: detections. It makes no exposure
+/// while it slews, so that nothing may depend on all exposures before.
+void check_cued(const Scenario& scenario, const SensorConfig& sensor) {
+  const auto* cued = std::get_if<PointCued>(&sensor.pointing);
+  if (!cued) return;
+  const auto fail = [&](const char* why) { throw ConfigError(cued->where + ": " + why); };
+  if (!scenario.fusion) fail("needs fusion: who cues is the fusion node");
+  if (!sensor.detect) fail("needs detection: on");
+  if (sensor.effects.has(Persistence::facts) && sensor.camera.detector.persistence_fraction > 0.0)
+    fail("persistence needs all exposures; set effects: {persistence: off}");
+}
+
 }  // namespace
 
 Scenario load_scenario(const std::string& path) {
@@ -190,6 +202,7 @@ Scenario read_scenario(const YamlValue& root) {
     if (std::ranges::none_of(scenario.sensors, &SensorConfig::detect))
       fusion->fail("needs a sensor that detects", false);
   }
+  for (const SensorConfig& sensor : scenario.sensors) check_cued(scenario, sensor);
   map.done();
   return scenario;
 }

@@ -13,6 +13,7 @@
 #include "core/detector/detector.h"
 #include "core/effects/accuracy.h"
 #include "core/effects/effects.h"
+#include "core/fusion/cue_settings.h"
 #include "core/fusion/fusion_settings.h"
 #include "core/instrument/instrument.h"
 #include "core/optics/camera.h"
@@ -75,7 +76,15 @@ struct PointScan {
   std::array<double, 3> axis{0, 0, 1};  // unit; GCRS axes, or east, north, up
   double rate_deg_per_s = 0.0;          // right-handed about it
 };
-using Pointing = std::variant<PointUp, PointHorizon, PointSky, PointTarget, PointBody, PointScan>;
+/// Towards what the fusion node tells it to observe; before its first task, and where there is no
+/// fusion, at `park`.
+struct PointCued {
+  PointHorizon park{.azimuth_deg = 180.0, .elevation_deg = 60.0};
+  CueSettings cue;
+  std::string where = {};  // `file:line:column: sensors[0].pointing.cued`, for messages
+};
+using Pointing =
+    std::variant<PointUp, PointHorizon, PointSky, PointTarget, PointBody, PointScan, PointCued>;
 
 /// Motion of the camera during an exposure.
 enum class Tracking {
@@ -158,6 +167,7 @@ struct OutputConfig {
 /// Tracks from the detections of all sensors, by a node of its own.
 struct FusionConfig {
   FusionSettings settings;
+  Tick cue_delay_ticks = 2;                   // between the tick of a task and its beginning, >= 1
   std::vector<std::string> not_in_catalogue;  // names or numbers of objects that it does not know
   std::vector<std::string> not_in_catalogue_where = {};  // of each, for messages
   std::string where = {};                                // `file:line:column: fusion`

@@ -66,6 +66,10 @@ struct Aim {
     // The shortest turn of the axis z to (x, y, 1).
     return turned<CameraFrame>({-y / across, x / across, 0.0}, std::atan(across)) * centred;
   }
+  Rotation<CameraFrame, Gcrs> operator()(const PointCued& p) const {
+    if (norm(scene.towards_target) > 0.0) return at_direction(scene.towards_target, roll_rad());
+    return (*this)(p.park);
+  }
 };
 
 }  // namespace

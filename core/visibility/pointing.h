@@ -38,7 +38,7 @@ struct ObserverState {
 struct PointingScene {
   SimTime time;
   ObserverState observer;
-  Vec<Gcrs> towards_target;  // from the observer, any length; used by PointTarget only
+  Vec<Gcrs> towards_target;  // from the observer, any length; of PointTarget and PointCued
   Rotation<Itrs, Gcrs> itrs_from_gcrs;
   const Site* site = nullptr;                          // null aboard a platform
   std::optional<Rotation<Gcrs, Body>> gcrs_from_body;  // of the platform; for PointBody only

@@ -23,6 +23,7 @@ SensorTrack::SensorTrack(const SensorConfig& sensor, const SkyHours& sky, const 
   site_m_ = itrs_from_geodetic(*site_);
   up_ = enu_from_itrs(*site_).inverse() * Vec<Enu>{0, 0, 1};
   if (std::holds_alternative<PointUp>(sensor.pointing) ||
+      std::holds_alternative<PointCued>(sensor.pointing) ||  // parked
       (std::holds_alternative<PointHorizon>(sensor.pointing) &&
        turn_rate_deg_per_s(sensor.pointing) == 0.0)) {
     // With ITRS instead of GCRS: such a pointing depends on the Earth's axes alone.

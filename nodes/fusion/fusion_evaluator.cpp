@@ -1,14 +1,11 @@
 #include "nodes/fusion/fusion_evaluator.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include "core/base/error.h"
 #include "core/base/whole_file.h"
 #include "core/optics/projection.h"
+#include "core/products/task_json.h"
 #include "core/products/track_json.h"
 #include "core/time/iso8601.h"
 
@@ -17,11 +14,22 @@ namespace {
 
 constexpr double axis_slack_rad = 0.01;  // the boresight of a report is that of the stars
 
-/// Time of a line of tracks.jsonl [ns].
-std::int64_t time_of(const std::string& line) {
-  constexpr std::string_view key = "\"time_ns\":";
-  const auto at = line.find(key);
-  return at == std::string::npos ? 0 : std::strtoll(line.c_str() + at + key.size(), nullptr, 10);
+/// A sensor as the scheduler knows it; nothing of one that is not cued.
+std::optional<CuedSensor> cued_sensor(const SensorConfig& sensor) {
+  const auto* cued = std::get_if<PointCued>(&sensor.pointing);
+  if (!cued) return std::nullopt;
+  const auto& site = std::get<SiteConfig>(sensor.place);
+  const Optics& optics = sensor.camera.optics;
+  return CuedSensor{
+      .name = sensor.name,
+      .site = {site.latitude_deg, site.longitude_deg, site.height_m},
+      .cue = cued->cue,
+      .park_azimuth_deg = cued->park.azimuth_deg,
+      .park_elevation_deg = cued->park.elevation_deg,
+      .half_angle_rad = optics.pixel_angle_rad() * std::min(optics.columns, optics.rows) / 2,
+      .exposure_s = sensor.exposure_s,
+      .cadence_s = sensor.cadence_s,
+      .first_exposure_s = sensor.first_exposure_s};
 }
 
 }  // namespace
@@ -34,7 +42,7 @@ FusionEvaluator::FusionEvaluator(const Scenario& scenario, Clock clock,
                                  const std::string& directory)
     : scenario_(scenario),
       clock_(std::move(clock)),
-      tracks_path_(directory + "/tracks.jsonl"),
+      directory_(directory),
       journal_(fusion_journal_path(directory)) {
   for (const SensorConfig& sensor : scenario.sensors) {
     if (!sensor.detect) continue;
@@ -42,14 +50,21 @@ FusionEvaluator::FusionEvaluator(const Scenario& scenario, Clock clock,
     cameras_[sensor.name] = {optics.columns, optics.rows,
                              std::min(half_diagonal_rad(optics) + axis_slack_rad, pi)};
   }
-}
-
-FusionEvaluator::~FusionEvaluator() {
-  if (tracks_) std::fclose(tracks_);
+  std::vector<CuedSensor> cued;
+  for (const SensorConfig& sensor : scenario.sensors)
+    if (auto one = cued_sensor(sensor)) {
+      cued_.push_back(one->name);
+      cued.push_back(std::move(*one));
+    }
+  if (!cued.empty())
+    scheduler_.emplace(clock_, SimTime{scenario.duration.ns / 2}, std::move(cued),
+                       scenario.duration, scenario.fusion->settings.detection_probability);
 }
 
 std::vector<std::string> FusionEvaluator::produces() const {
-  return {std::string(track_prefix) + fusion_node};
+  std::vector<std::string> topics{std::string(track_prefix) + fusion_node};
+  for (const std::string& sensor : cued_) topics.push_back(task_prefix + sensor);
+  return topics;
 }
 
 std::vector<std::string> FusionEvaluator::consumes() const {
@@ -86,7 +101,7 @@ void FusionEvaluator::meet(const ObjectRoster& roster) {
                   config.settings);
 }
 
-TrackSet FusionEvaluator::fuse(Tick tick, std::span<const Message> inputs) {
+FusionEvaluator::Found FusionEvaluator::fuse(Tick tick, std::span<const Message> inputs) {
   std::map<std::pair<std::string, std::uint32_t>,
            std::pair<const FrameReport*, const DetectionSet*>>
       exposures;
@@ -113,52 +128,64 @@ TrackSet FusionEvaluator::fuse(Tick tick, std::span<const Message> inputs) {
   out.unassociated = found.unassociated;
   out.tracks = std::move(found.tracks);
   ++progress_;
-  return out;
+  return {std::move(out), schedule(tick)};
 }
 
-void FusionEvaluator::open_tracks(Tick tick) {
-  std::string kept;
-  {
-    std::ifstream file(tracks_path_);
-    std::string line;
-    while (tick > 0 && std::getline(file, line) && !file.eof())
-      if (time_of(line) < scenario_.time_of(tick).ns) kept += line + "\n";
-  }
-  write_file_whole(tracks_path_, kept);
-  tracks_ = std::fopen(tracks_path_.c_str(), "ab");
-  if (!tracks_) throw Error(tracks_path_ + ": can't be written: " + std::strerror(errno));
+std::vector<Task> FusionEvaluator::schedule(Tick tick) {
+  const Tick delay = scenario_.fusion->cue_delay_ticks;
+  const SimTime begin = scenario_.time_of(tick + delay), next = scenario_.time_of(tick + delay + 1);
+  if (!scheduler_ || !scheduler_->is_asked(begin, next)) return {};
+  const SimTime now = scenario_.time_of(tick);
+  return scheduler_->step(now, begin, next, fusion_->targets(now));
+}
+
+void FusionEvaluator::open_files(Tick tick) {
+  const SimTime from = scenario_.time_of(tick);
+  tracks_.emplace(directory_ + "/tracks.jsonl", "time_ns", from);
+  if (scheduler_) tasks_.emplace(directory_ + "/tasks.jsonl", "given_ns", from);
   begun_ = true;
 }
 
-void FusionEvaluator::write(const TrackSet& set) {
+void FusionEvaluator::write(const Found& found) {
   std::string lines;
   const auto utc = [&](SimTime t) { return format_utc(clock_.utc(t), 9); };
-  for (const Track& track : set.tracks) lines += to_json(track, utc) + "\n";
-  if (std::fwrite(lines.data(), 1, lines.size(), tracks_) != lines.size() ||
-      std::fflush(tracks_) != 0)
-    throw Error(tracks_path_ + ": can't be written: " + std::strerror(errno));
+  for (const Track& track : found.tracks.tracks) lines += to_json(track, utc) + "\n";
+  tracks_->add(lines);
+  lines.clear();
+  for (const Task& task : found.tasks) lines += to_json(task, utc) + "\n";
+  if (tasks_) tasks_->add(lines);
 }
 
 std::vector<Message> FusionEvaluator::resume(Tick tick, std::span<const Message>) {
   journal_.resume(tick, [&](Tick k, std::span<const Message> inputs) { fuse(k, inputs); });
-  open_tracks(tick);
+  open_files(tick);
   return {};
 }
 
 std::vector<Message> FusionEvaluator::step(Tick tick, std::span<const Message> inputs) {
   if (!begun_) {
     journal_.clear();
-    open_tracks(0);
+    open_files(0);
   }
   // A process that goes on hears the roster again; the journal has it.
   std::vector<Message> fresh;
   for (const Message& message : inputs)
     if (!fusion_ || !std::holds_alternative<ObjectRoster>(*message.state)) fresh.push_back(message);
   journal_.add(fresh);
-  TrackSet set = fuse(tick, fresh);
-  write(set);
+  Found found = fuse(tick, fresh);
+  write(found);
   journal_.end(tick);
-  return {{std::string(track_prefix) + fusion_node, tick, std::make_shared<State>(std::move(set))}};
+  const SimTime time = found.tracks.time;
+  std::vector<Message> messages{{std::string(track_prefix) + fusion_node, tick,
+                                 std::make_shared<State>(std::move(found.tracks))}};
+  for (const std::string& sensor : cued_) {
+    TaskSet set{.tick = tick, .time = time, .node = fusion_node, .sensor = sensor, .tasks = {}};
+    for (const Task& task : found.tasks)
+      if (task.sensor == sensor) set.tasks.push_back(task);
+    if (!set.tasks.empty())
+      messages.push_back({task_prefix + sensor, tick, std::make_shared<State>(std::move(set))});
+  }
+  return messages;
 }
 
 }  // namespace dmise

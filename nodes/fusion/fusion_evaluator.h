@@ -7,19 +7,21 @@
 
 #include "core/config/node_kinds.h"
 #include "core/fusion/fusion.h"
+#include "core/fusion/scheduler.h"
 #include "core/sim/participant.h"
 #include "core/time/clock.h"
 #include "nodes/fusion/fusion_journal.h"
+#include "nodes/fusion/line_file.h"
 
 namespace dmise {
 
 /// Makes tracks of the detections of all sensors: publishes those that changed at a tick and writes
-/// them to tracks.jsonl in the directory of the run.
+/// them to tracks.jsonl in the directory of the run. Gives sensors that are cued their tasks, which
+/// are in tasks.jsonl, too.
 class FusionEvaluator : public Evaluator {
  public:
   /// The scenario must have `fusion`. Throws `Error` if `directory` cannot be written.
   FusionEvaluator(const Scenario& scenario, Clock clock, const std::string& directory);
-  ~FusionEvaluator() override;
 
   std::string name() const override { return fusion_node; }
   std::vector<std::string> produces() const override;
@@ -39,17 +41,24 @@ class FusionEvaluator : public Evaluator {
   };
   /// Throws `ConfigError` for an object of `not_in_catalogue` that the roster does not have.
   void meet(const ObjectRoster& roster);
-  TrackSet fuse(Tick tick, std::span<const Message> inputs);
-  void open_tracks(Tick tick);
-  void write(const TrackSet& set);
+  struct Found {
+    TrackSet tracks;
+    std::vector<Task> tasks;
+  };
+  Found fuse(Tick tick, std::span<const Message> inputs);
+  std::vector<Task> schedule(Tick tick);
+  void open_files(Tick tick);
+  void write(const Found& found);
 
   Scenario scenario_;
   Clock clock_;
-  std::string tracks_path_;
+  std::string directory_;
   std::map<std::string, Camera> cameras_;
   std::optional<Fusion> fusion_;  // once the roster is known
   FusionJournal journal_;
-  std::FILE* tracks_ = nullptr;
+  std::vector<std::string> cued_;       // names of sensors, sorted
+  std::optional<Scheduler> scheduler_;  // if any is cued
+  std::optional<LineFile> tracks_, tasks_;
   bool begun_ = false;
   std::atomic<std::uint64_t> progress_{0};
 };

@@ -132,7 +132,7 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
          of_frames(n));
   }
   const Range objects = range_of(o.frames, &FrameOutlook::objects);
-  if (objects.any && objects.most == 0.0)
+  if (objects.any && objects.most == 0.0 && !o.cued)
     warn("no lit object is in the field in any of the " + looked_at(o) + " looked at");
   return warnings;
 }
@@ -147,6 +147,7 @@ std::string short_text(const SensorOutlook& o) {
   if (o.frames.front().target_elevation_rad)
     text += "; " + printable(o.target) + " at " +
             course_of(o.frames, &FrameOutlook::target_elevation_rad);
+  if (o.cued) text += "; cued: what is told is of its park";
   return text;
 }
 
@@ -154,6 +155,8 @@ std::vector<std::string> lines_of(const SensorOutlook& o) {
   std::vector<std::string> lines;
   const auto say = [&](const std::string& text) { lines.push_back(o.sensor + ": " + text); };
   say(field_text(o));
+  if (o.cued)
+    say("is cued: it exposes on what the fusion node tells it; what follows is of its park");
   if (o.frames.empty()) return lines;
   if (const std::string limit = limit_text(o); !limit.empty()) say(limit + " in mid run");
   if (o.on_ground) {
@@ -188,6 +191,7 @@ void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
   json.field("frames_in_run", std::int64_t(o.frames_in_run));
   json.field("point_limit_snr", point_limit_snr).field("streak_limit_snr", streak_limit_snr);
   if (!o.target.empty()) json.field("target", o.target);
+  if (o.cued) json.field("cued", true);
   json.key("frames").begin_array();
   for (const auto& f : o.frames) {
     const auto angle = [&](const char* key, const std::optional<double>& rad) {

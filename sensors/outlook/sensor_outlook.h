@@ -16,6 +16,7 @@ struct SensorOutlook {
   CameraFigures camera;
   bool on_ground = true;
   std::string target;  // of the pointing; empty: none
+  bool cued = false;   // examined as it is parked
   std::uint32_t frames_in_run = 0;
   bool objects_counted = true;        // false: too many objects
   std::vector<FrameOutlook> frames;   // examined: the first, the last, and evenly spaced ones

@@ -54,7 +54,8 @@ RunGrid run_grid(const Scenario& scenario) {
           .duration = scenario.duration,
           .environment_every = sim_seconds(
               std::max(scenario.environment.common_every_s, scenario.environment.site_every_s)),
-          .interpolation = scenario.interpolation};
+          .interpolation = scenario.interpolation,
+          .cue_delay_ticks = scenario.fusion ? scenario.fusion->cue_delay_ticks : 1};
 }
 
 std::unique_ptr<SensorEvaluator> make_sensor(const Scenario& scenario, const std::string& name,

@@ -7,6 +7,7 @@
 #include "core/effects/frame_effects.h"
 #include "core/sky/air_effects.h"
 #include "core/sky/place_effects.h"
+#include "sensors/pipeline/cue_path.h"
 
 namespace dmise {
 
@@ -14,6 +15,7 @@ SensorEvaluator::SensorEvaluator(const PipelineSettings& settings, const RunGrid
                                  const OutputConfig& output, std::shared_ptr<const StarMap> stars,
                                  std::string directory, Threads& threads)
     : SensorEvaluator(settings, grid, std::move(stars), threads) {
+  if (is_cued()) cues_.emplace(directory);
   writer_.emplace(std::move(directory), output, settings.clock);
 }
 
@@ -50,7 +52,22 @@ std::vector<std::string> SensorEvaluator::consumes() const {
       (effects.has(AtmosphericRefraction::facts) || effects.has(AirExtinction::facts) ||
        effects.has(SkyBackground::facts) || sensor_.atmosphere.turbulence))
     topics.push_back(site_prefix + sensor_.name);
+  if (is_cued()) topics.push_back(task_prefix + sensor_.name);
   return topics;
+}
+
+Tick SensorEvaluator::delay(const std::string& topic) const {
+  return topic.starts_with(task_prefix) ? grid_.cue_delay_ticks : 0;
+}
+
+/// A task does not begin before the tick at which it is heard of: to know it earlier, from the
+/// journal, changes nothing.
+void SensorEvaluator::take_tasks(const TaskSet& set) {
+  for (const Task& task : set.tasks) {
+    if (!tasks_.empty() && task.id <= tasks_.back()->id) continue;
+    tasks_.push_back(std::make_shared<const Task>(task));
+    if (cues_) cues_->add(task);
+  }
 }
 
 void SensorEvaluator::take_in(std::span<const Message> inputs) {
@@ -70,6 +87,7 @@ void SensorEvaluator::take_in(std::span<const Message> inputs) {
       world_.add(std::shared_ptr<const EnvironmentState>(message.state, state));
     if (const auto* state = std::get_if<SiteState>(message.state.get()))
       world_.add(std::shared_ptr<const SiteState>(message.state, state));
+    if (const auto* set = std::get_if<TaskSet>(message.state.get())) take_tasks(*set);
   }
 }
 
@@ -91,6 +109,8 @@ Tick SensorEvaluator::look_back() const {
 }
 
 std::vector<Message> SensorEvaluator::resume(Tick tick, std::span<const Message> past) {
+  if (cues_) tasks_ = cues_->resume();
+  begun_ = true;
   take_in(past);
   for (Tick before = std::max<Tick>(0, tick - look_back()); before < tick; ++before)
     add_tick(before);
@@ -104,6 +124,7 @@ std::vector<Message> SensorEvaluator::resume(Tick tick, std::span<const Message>
 }
 
 std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> inputs) {
+  if (!std::exchange(begun_, true) && cues_) cues_->clear();
   take_in(inputs);
   add_tick(tick);
   std::vector<Message> messages;
@@ -112,6 +133,14 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
     if (ready_at(next_frame_) > tick) {
       world_.forget_before(exposure_span(sensor_, pipeline_.first_frame_for(next_frame_)).start);
       break;
+    }
+    if (is_cued()) {
+      const Task* task = task_during(tasks_, exposure.start, exposure.end);
+      if (!task) {
+        ++next_frame_;
+        continue;
+      }
+      world_.follow(*std::ranges::find(tasks_, task, &std::shared_ptr<const Task>::get));
     }
     FrameProducts frame = pipeline_.run(exposure, world_, states_ ? &*states_ : nullptr);
     if (writer_) writer_->write(frame);
@@ -129,6 +158,7 @@ std::vector<Message> SensorEvaluator::step(Tick tick, std::span<const Message> i
     ++next_frame_;
     ++progress_;
   }
+  if (cues_ && !stop_asked_()) cues_->end(tick);
   ++progress_;
   return messages;
 }

@@ -6,6 +6,7 @@
 
 #include "core/config/scenario.h"
 #include "core/sim/participant.h"
+#include "sensors/pipeline/cue_journal.h"
 #include "sensors/pipeline/frame_pipeline.h"
 #include "sensors/pipeline/product_writer.h"
 
@@ -16,6 +17,7 @@ struct RunGrid {
   SimTime tick_length, duration;
   SimTime environment_every;  // the longest time between two states of the environment
   HermiteOrder interpolation = HermiteOrder::cubic;
+  Tick cue_delay_ticks = 1;  // after which a sensor hears of a task
 
   Tick last_tick() const { return (duration.ns + tick_length.ns - 1) / tick_length.ns; }
 };
@@ -35,6 +37,9 @@ class SensorEvaluator : public Evaluator {
   /// The topics that its frames need: the roster, or states, where objects are drawn, carry the
   /// sensor or are its target; the air where an effect of it acts.
   std::vector<std::string> consumes() const override;
+  Tick delay(const std::string& topic) const override;
+  /// Without who cues it a sensor stands still.
+  bool needs(const std::string& topic) const override { return !topic.starts_with(task_prefix); }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   /// The ticks around the exposure that is open when it resumes, those around the frames that must
   /// be made again before it, those beyond them that interpolation takes, and back to when the
@@ -59,6 +64,8 @@ class SensorEvaluator : public Evaluator {
   /// Returns the tick at which all states that a frame needs are known.
   Tick ready_at(std::uint32_t frame) const;
   void take_in(std::span<const Message> inputs);
+  bool is_cued() const { return std::holds_alternative<PointCued>(sensor_.pointing); }
+  void take_tasks(const TaskSet& set);
   bool propagates() const { return propagated_ != nullptr; }
   void add_tick(Tick tick);
 
@@ -71,7 +78,10 @@ class SensorEvaluator : public Evaluator {
   World world_;
   std::shared_ptr<const std::vector<OwnObject>> propagated_;  // null: takes published states
   Clock clock_;
-  std::optional<StatesInField> states_;  // once the roster is known
+  std::optional<StatesInField> states_;             // once the roster is known
+  std::vector<std::shared_ptr<const Task>> tasks_;  // that may govern an exposure, by id
+  std::optional<CueJournal> cues_;
+  bool begun_ = false;
   std::function<bool()> stop_asked_ = [] { return false; };
   std::function<void(const FrameProducts&)> made_ = [](const FrameProducts&) {};
   std::uint32_t next_frame_ = 1;

@@ -6,6 +6,7 @@
 #include "core/optics/projection.h"
 #include "core/visibility/sight.h"
 #include "core/visibility/target_direction.h"
+#include "sensors/pipeline/cue_path.h"
 
 namespace dmise {
 
@@ -71,8 +72,10 @@ PointingScene View::pointing_scene(SimTime t) const {
                       .observer = observer(t),
                       .itrs_from_gcrs = earth().itrs_from_gcrs(t),
                       .site = site_ ? &*site_ : nullptr};
-  if (target_ && (sensor_.tracking == Tracking::target || t == errors_.commanded().middle)) {
-    const Motion target = world_.motion(*target_, t);
+  const Task* task = std::holds_alternative<PointCued>(sensor_.pointing) ? world_.task() : nullptr;
+  if ((target_ || task) &&
+      (sensor_.tracking == Tracking::target || t == errors_.commanded().middle)) {
+    const Motion target = task ? predicted_motion(*task, t) : world_.motion(*target_, t);
     scene.towards_target =
         target_direction(sensor_, scene, refraction_, target.position_m, target.slope_m_per_s);
   }

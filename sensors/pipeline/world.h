@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/orbit/interpolation.h"
+#include "core/products/task.h"
 #include "core/sim/state.h"
 
 namespace dmise {
@@ -36,6 +37,9 @@ class World {
     environment_.push_back(std::move(state));
   }
   void add(std::shared_ptr<const SiteState> state) { sites_.push_back(std::move(state)); }
+  /// The task that a sensor that is cued does from now on; null: none, it is parked.
+  void follow(std::shared_ptr<const Task> task) { task_ = std::move(task); }
+  const Task* task() const { return task_.get(); }
   /// Forgets what is not needed for times >= `t`.
   void forget_before(SimTime t);
 
@@ -87,6 +91,7 @@ class World {
   std::optional<std::vector<std::uint32_t>> known_;  // ascending; none: all
   std::deque<std::shared_ptr<const EnvironmentState>> environment_;
   std::deque<std::shared_ptr<const SiteState>> sites_;
+  std::shared_ptr<const Task> task_;
 };
 
 /// Index of the object with this catalogue number or name. Throws `ConfigError` with `what` first
