@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
+#include "core/config/scenario.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {
@@ -45,6 +48,83 @@ TEST(FusionConfig, NamesTheKeyOfWhatIsWrong) {
             std::string::npos);
   EXPECT_NE(complaint("{gate_d: 20}").find("did you mean gate_d2"), std::string::npos)
       << complaint("{gate_d: 20}");
+}
+
+std::string scenario_text(const std::string& cued, const std::string& more = "fusion: on\n",
+                          const std::string& place = "site: {latitude_deg: 32, longitude_deg: 0}",
+                          const std::string& of_sensor = "", const std::string& detector = "") {
+  return "simulation: {start: 2018-01-20T00:00:00Z, duration_s: 100, tick_s: 10}\n" + more +
+         "sensors:\n  - {name: eye, " + place +
+         ", camera: {optics: {columns: 100, rows: 100, pixel_pitch_m: 1.0e-5, focal_length_m: 1, "
+         "aperture_m: 0.4}, detector: {full_well_e: 20000, gain_e_per_dn: 1" +
+         detector + "}, band: {centre_m: 0.55e-6, width_m: 0.1e-6}}, pointing: " + cued +
+         ", exposure_s: 1, cadence_s: 10" + of_sensor + "}\n";
+}
+
+Scenario scenario_of(const std::string& text) {
+  return read_scenario(YamlValue::parse(text, "scenario.yaml"));
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    scenario_of(text);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CuedPointing, ReadsItsKeys) {
+  const Scenario scenario = scenario_of(
+      scenario_text("{cued: {park: {azimuth_deg: 90, elevation_deg: 45}, slew_deg_per_s: 3, "
+                    "slew_deg_per_s2: 1.5, settle_s: 4, least_elevation_deg: 25, "
+                    "sun_exclusion_deg: 40, moon_exclusion_deg: 10, exposures: 5, sigma_arcsec: 2, "
+                    "limiting_magnitude: 12.5, least_gain_nats: 0.5}, tracking: sidereal}",
+                    "fusion: {cue_delay_ticks: 3}\n"));
+  const auto& cued = std::get<PointCued>(scenario.sensors[0].pointing);
+  EXPECT_EQ(cued.park.azimuth_deg, 90);
+  EXPECT_EQ(cued.park.elevation_deg, 45);
+  EXPECT_EQ(cued.cue.slew_deg_per_s, 3);
+  EXPECT_EQ(cued.cue.slew_deg_per_s2, 1.5);
+  EXPECT_EQ(cued.cue.settle_s, 4);
+  EXPECT_EQ(cued.cue.least_elevation_deg, 25);
+  EXPECT_EQ(cued.cue.sun_exclusion_deg, 40);
+  EXPECT_EQ(cued.cue.moon_exclusion_deg, 10);
+  EXPECT_EQ(cued.cue.exposures, 5);
+  EXPECT_EQ(cued.cue.sigma_arcsec, 2);
+  EXPECT_EQ(cued.cue.limiting_magnitude, 12.5);
+  EXPECT_EQ(cued.cue.least_gain_nats, 0.5);
+  EXPECT_EQ(scenario.fusion->cue_delay_ticks, 3);
+  EXPECT_EQ(scenario.sensors[0].tracking, Tracking::sidereal);
+  EXPECT_EQ(scenario_of(scenario_text("{cued: on}")).sensors[0].tracking, Tracking::target);
+  // Whatever changes the products is in the text that they are told by.
+  const std::string usual = physics_json(scenario_of(scenario_text("{cued: on}")));
+  for (const char* key :
+       {"slew_deg_per_s", "slew_deg_per_s2", "settle_s", "least_elevation_deg", "sun_exclusion_deg",
+        "moon_exclusion_deg", "sigma_arcsec", "limiting_magnitude", "least_gain_nats"})
+    EXPECT_NE(physics_json(scenario_of(scenario_text("{cued: {" + std::string(key) + ": 7.5}}"))),
+              usual)
+        << key;
+}
+
+TEST(CuedPointing, NamesWhatIsWrong) {
+  const auto refused = [](const std::string& text, const std::string& why) {
+    const std::string line = refusal(text);
+    EXPECT_NE(line.find(why), std::string::npos) << why << " in: " << line;
+  };
+  refused(scenario_text("{cued: {slew_deg_per_s: 0}}"),
+          "pointing.cued.slew_deg_per_s: must be > 0");
+  refused(scenario_text("{cued: {exposures: 0}}"), "pointing.cued.exposures: ");
+  refused(scenario_text("{cued: {park: {elevation_deg: 5}}}"), "pointing.cued.park.azimuth_deg: ");
+  refused(scenario_text("{cued: {slew_deg_per_ss: 5}}"), "did you mean slew_deg_per_s");
+  refused(scenario_text("{cued: on, target: X}"), "give one of azimuth_deg");
+  refused(scenario_text("{cued: on, tracking: fixed}"), "follows its target or the stars");
+  refused(scenario_text("{cued: on}", ""), "sensors[0].pointing.cued: needs fusion");
+  refused(scenario_text("{cued: on}", "fusion: {cue_delay_ticks: 0}\n"), "fusion.cue_delay_ticks");
+  refused(scenario_text("{cued: on}", "fusion: on\n", "platform: X"), "for a sensor on the ground");
+  refused(scenario_text("{cued: on}", "fusion: on\n", "site: {latitude_deg: 32, longitude_deg: 0}",
+                        "", ", persistence_fraction: 0.01, persistence_s: 100"),
+          "persistence needs all exposures");
 }
 
 }  // namespace
