@@ -186,8 +186,10 @@ void describe_direction(const Source& source, const FrameHeader& header, Detecti
 
   d.covariance_rad2 = on_the_sky(mid.point.covariance_px2, header.wcs, mid.point.place);
   const Tangent tangent = tangent_at(here);
-  add_along(d.covariance_rad2, dot(parallax.upwards, tangent.east),
-            dot(parallax.upwards, tangent.north), parallax.sigma_rad * parallax.sigma_rad);
+  // Who knows the range takes it away where `corrected` is: near a pole east turns in between.
+  const Tangent there = tangent_at(unit(corrected));
+  add_along(d.covariance_rad2, dot(parallax.upwards, there.east),
+            dot(parallax.upwards, there.north), parallax.sigma_rad * parallax.sigma_rad);
   const double e = dot(mid.track, tangent.east), n = dot(mid.track, tangent.north);
   const double chord = std::hypot(e, n);
   if (!(chord > 0)) return;

@@ -51,6 +51,7 @@ NEWCOMER
 1 99999U 18001A   18021.01041667  .00000000  00000-0  00000-0 0  9992
 2 99999  66.0000  22.9510 0000001   0.0000  33.5590 13.98200000000018
 """}
+PIXEL_ARCSEC = math.degrees(13.5e-6 / 1.2) * 3600
 CUE_DELAY_NS = 10_000_000_000
 
 
@@ -72,6 +73,28 @@ def check_times(tasks, frames):
     check(len(frames) == sum(t["exposures"] for t in tasks), "and those are all exposures of its tasks")
 
 
+def left_of_refraction(d):
+    """The covariance [arcsec^2] of a detection without the scatter of the refraction parallax, as who knows the range takes it."""
+    ra, dec = math.radians(d["corrected_ra_deg"]), math.radians(d["corrected_dec_deg"])
+    east = (-math.sin(ra), math.cos(ra), 0)
+    north = (-math.sin(dec) * math.cos(ra), -math.sin(dec) * math.sin(ra), math.cos(dec))
+    offset = d["refraction_offset_gcrs_m"]
+    up = [x / math.hypot(*offset) for x in offset]
+    e, n = (d["refraction_parallax_sigma_arcsec"] * sum(a * b for a, b in zip(up, axis)) for axis in (east, north))
+    c = d["covariance_arcsec2"]
+    return c[0] - e * e, c[1] - e * n, c[2] - n * n
+
+
+def check_directions(detections):
+    """Without refraction the error is that in the image: a bright source is known to hundredths of an arcsecond."""
+    for d in detections:
+        a, b, c = left_of_refraction(d)
+        px = d["covariance_px2"]
+        of_image = PIXEL_ARCSEC ** 4 * (px[0] * px[2] - px[1] ** 2)
+        if d["kind"] == "point":
+            check(a > 0 and abs(a * c - b * b - of_image) < 0.1 * of_image, f"{d['id']}: {math.sqrt(a):.4f} arcsec east")
+
+
 def check_cues(run):
     """The telescope is cued to what the sites found, sees it at once, and its orbit improves."""
     tasks, frames = lines_of(run / "tasks.jsonl"), lines_of(run / "telescope" / "frames.jsonl")
@@ -80,6 +103,7 @@ def check_cues(run):
     first = {f["frame"] for f in frames[:2]}
     seen = {d["frame"] for d in lines_of(run / "telescope" / "detections.jsonl")}
     check(seen & first, f"it is detected in one of the first two exposures: in {sorted(seen)}")
+    check_directions(lines_of(run / "telescope" / "detections.jsonl"))
     truth = {t["frame"]: t for t in lines_of(run / "telescope" / "truth.jsonl")}
     off = max(math.dist(truth[f["frame"]]["middle_px"], (511.5, 511.5)) for f in frames)
     check(off < 400, f"it is within {off:.0f} px of the middle")
