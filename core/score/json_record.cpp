@@ -84,6 +84,21 @@ std::vector<JsonRecord> JsonRecord::objects(const char* key) const {
   return out;
 }
 
+std::vector<double> JsonRecord::number_list(const char* key) const {
+  std::vector<double> numbers;
+  require(at(key).is_array(), key, "a list of numbers");
+  for (const nlohmann::json& value : at(key)) {
+    require(value.is_number(), key, "a list of numbers");
+    numbers.push_back(value.get<double>());
+  }
+  return numbers;
+}
+
+std::size_t JsonRecord::length(const char* key) const {
+  require(at(key).is_array(), key, "a list");
+  return at(key).size();
+}
+
 std::vector<std::string> JsonRecord::texts(const char* key) const {
   require(at(key).is_array(), key, "a list of texts");
   std::vector<std::string> out;

@@ -54,6 +54,9 @@ class JsonRecord {
   JsonRecord object(const char* key) const;
   std::vector<JsonRecord> objects(const char* key) const;
   std::vector<std::string> texts(const char* key) const;
+  std::vector<double> number_list(const char* key) const;
+  /// Number of items of a list.
+  std::size_t length(const char* key) const;
   [[noreturn]] void fail(const std::string& key, const std::string& reason) const;
 
  private:

@@ -1,0 +1,50 @@
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/discrimination/discrimination_design.h"
+#include "core/discrimination/material_likelihood.h"
+#include "core/discrimination/run_signatures.h"
+#include "core/image/chart.h"
+
+namespace dmise {
+
+/// What a run says of one object: ratios of every band to the first.
+struct ObjectSignature {
+  std::string object;
+  std::size_t samples = 0;
+  std::vector<Measured> summed;      // light in each band
+  std::vector<Measured> ratios;      // of all samples together, by band from the second on
+  std::vector<double> scatter;       // standard deviation of the samples' ratios, likewise
+  std::vector<double> sample_sigma;  // root mean square of what each sample states for it
+  std::vector<MaterialFit> fits;     // of `summed`, most probable first
+};
+
+/// Signatures of all objects; what a material is found to be in each sample goes into `confusion`
+/// where `known` (object to material) says what it is. Samples without light in the first band have
+/// no ratio.
+struct RunDiscrimination {
+  std::vector<SpectralSensor> sensors;
+  std::vector<MaterialSignature> materials;
+  std::vector<ObjectSignature> objects;
+  std::vector<std::string> left_out;
+  ConfusionMatrix confusion;
+};
+
+/// Throws `Error` for a known material that is not among `materials`.
+RunDiscrimination discriminate(const RunSpectra& spectra,
+                               const std::vector<MaterialSignature>& materials,
+                               const std::map<std::string, std::string>& known);
+
+std::string discrimination_table(const RunDiscrimination& run);
+std::string discrimination_json(const RunDiscrimination& run);
+
+std::string design_table(const DiscriminationDesign& design);
+std::string design_json(const DiscriminationDesign& design);
+/// Exposure against distance.
+Chart range_chart(const DiscriminationDesign& design);
+/// Probability of the right material against exposure.
+Chart exposure_chart(const DiscriminationDesign& design);
+
+}  // namespace dmise

@@ -1,0 +1,246 @@
+#include "core/discrimination/run_signatures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/discrimination/aperture_fraction.h"
+#include "core/image/fits_file.h"
+#include "core/products/frame_file.h"
+#include "core/score/json_record.h"
+
+namespace dmise {
+namespace {
+
+Optics optics_of(const JsonRecord& camera) {
+  Optics optics{.focal_length_m = camera.number("focal_length_m"),
+                .aperture_m = camera.number("aperture_m"),
+                .obscuration = camera.number("obscuration"),
+                .pixel_pitch_m = camera.number("pixel_pitch_m"),
+                .columns = camera.get<int>("columns"),
+                .rows = camera.get<int>("rows"),
+                .psf_fwhm_px = camera.number("psf_fwhm_px")};
+  if (!camera.has("spread")) return optics;
+  const JsonRecord spread = camera.object("spread");
+  PointSpread& s = optics.spread;
+  s.model = PointSpread::Model(spread.get<int>("model"));
+  s.spiders = spread.get<int>("spiders");
+  s.support_px = spread.get<int>("support_px");
+  s.oversampling = spread.get<int>("oversampling");
+  s.defocus_m = spread.number("defocus_m");
+  s.jitter_rad = spread.number("jitter_rad");
+  s.field = {spread.number("coma_m"), spread.number("astigmatism_m"), spread.number("curvature_m")};
+  if (spread.length("wavefront") > 0) s.wavefront.emplace_back();
+  return optics;
+}
+
+Band band_of(const JsonRecord& camera) {
+  Band band{.name = camera.get<std::string>("band"),
+            .centre_m = camera.number("band_centre_m"),
+            .width_m = camera.number("band_width_m")};
+  if (camera.has("band_response")) {
+    const JsonRecord curve = camera.object("band_response");
+    band.response = {curve.number_list("wavelength_m"), curve.number_list("value")};
+  }
+  return band;
+}
+
+/// The places of one sensor's objects, by frame.
+struct Places {
+  std::map<std::uint32_t, std::map<std::string, PixelPosition>> of_frame;
+};
+
+/// Why an object of a frame can't be measured; empty: it can.
+std::string fault_of(const Truth& truth, const Aperture& aperture) {
+  const double trail =
+      std::hypot(truth.end_x_px - truth.start_x_px, truth.end_y_px - truth.start_y_px);
+  if (!truth.whole) return "is not wholly in the frame";
+  if (!(truth.rendered_signal_e > 0.0)) return "has no light";
+  if (truth.resolved) return "is not a point";
+  if (trail > aperture.radius_px) return "trails by more than the aperture's radius";
+  return "";
+}
+
+class RunReader {
+ public:
+  RunReader(const std::string& directory, const Aperture& aperture)
+      : directory_(directory), aperture_(aperture) {}
+
+  void read_sensors(std::vector<std::string> wanted);
+  void read_truth(const ReadProgress& progress);
+  void measure(Threads& threads, const ReadProgress& progress);
+  RunSpectra take();
+
+ private:
+  std::string file(const std::string& name) const { return directory_ + "/" + name; }
+  std::size_t sensor_index(const std::string& name) const;
+  void measure_frame(std::size_t sensor, std::uint32_t frame, std::size_t slot);
+
+  std::string directory_;
+  Aperture aperture_;
+  RunSpectra spectra_;
+  std::vector<Places> places_;  // by sensor
+  struct FrameOf {
+    std::size_t sensor = 0;
+    std::uint32_t frame = 0;
+    std::map<std::string, BandMeasurement> measured;
+    std::vector<std::string> left_out;
+  };
+  std::vector<FrameOf> frames_;
+};
+
+void RunReader::read_sensors(std::vector<std::string> wanted) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file("run.json"), ignored))
+    throw ConfigError(file("run.json") + ": is missing: no run, or one that has not ended");
+  const JsonRecord run(read_text_file(file("run.json")), file("run.json"));
+  for (const JsonRecord& sensor : run.object("scenario").objects("sensors")) {
+    const auto name = sensor.get<std::string>("name");
+    const auto at = std::find(wanted.begin(), wanted.end(), name);
+    if (at == wanted.end() && !wanted.empty()) continue;
+    if (at != wanted.end()) {
+      wanted.erase(at);
+      if (wanted.empty()) wanted.emplace_back();  // no further sensor
+    }
+    if (sensor.has("site"))
+      throw ConfigError(file("run.json") + ": sensor " + name +
+                        ": is on the ground: its air dims each band by an unknown amount");
+    const JsonRecord camera = sensor.object("camera");
+    SpectralSensor s{.name = name, .band = band_of(camera)};
+    try {
+      s.aperture_fraction =
+          aperture_fraction(optics_of(camera), s.band.centre_m, aperture_.radius_px);
+    } catch (const Error& e) {
+      throw ConfigError(file("run.json") + ": sensor " + name + ": " + e.what());
+    }
+    spectra_.sensors.push_back(std::move(s));
+  }
+  std::erase(wanted, "");
+  if (!wanted.empty()) throw ConfigError(file("run.json") + ": has no sensor " + wanted.front());
+  if (spectra_.sensors.size() < 2)
+    throw ConfigError(file("run.json") + ": a signature needs two bands or more, got " +
+                      std::to_string(spectra_.sensors.size()));
+  std::stable_sort(spectra_.sensors.begin(), spectra_.sensors.end(),
+                   [](const auto& a, const auto& b) { return a.band.centre_m < b.band.centre_m; });
+}
+
+std::size_t RunReader::sensor_index(const std::string& name) const {
+  std::size_t i = 0;
+  while (i < spectra_.sensors.size() && spectra_.sensors[i].name != name) ++i;
+  return i;
+}
+
+void RunReader::read_truth(const ReadProgress& progress) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file("truth.jsonl"), ignored))
+    throw ConfigError(file("truth.jsonl") +
+                      ": is missing: the scenario says output: {truth: false}");
+  places_.resize(spectra_.sensors.size());
+  for_lines(file("truth.jsonl"), progress, [&](const JsonRecord& record) {
+    const Truth truth = truth_of(record);
+    const std::size_t sensor = sensor_index(truth.sensor);
+    if (sensor == places_.size() || !truth.in_frame) return;
+    if (const std::string fault = fault_of(truth, aperture_); !fault.empty()) {
+      spectra_.left_out.push_back(truth.sensor + "/" + std::to_string(truth.frame) + " " +
+                                  truth.name + ": " + fault);
+      return;
+    }
+    places_[sensor].of_frame[truth.frame][truth.name] = {truth.rendered_x_px, truth.rendered_y_px};
+  });
+  for (std::size_t sensor = 0; sensor < places_.size(); ++sensor)
+    for (const auto& [frame, objects] : places_[sensor].of_frame)
+      frames_.push_back({.sensor = sensor, .frame = frame, .measured = {}, .left_out = {}});
+}
+
+void RunReader::measure_frame(std::size_t sensor, std::uint32_t number, std::size_t slot) {
+  const SpectralSensor& s = spectra_.sensors[sensor];
+  const Frame frame = read_frame(file(s.name + "/" + frame_file_name(number)));
+  const FrameHeader& h = frame.header;
+  const CountScale scale{h.gain_e_per_dn, h.bias_dn, h.saturation_dn};
+  const double sunlight_e = full_sunlight_e(h.zero_point_mag, h.exposure_s);
+  for (const auto& [object, at] : places_[sensor].of_frame[number]) {
+    const auto leave_out = [&](const std::string& why) {
+      frames_[slot].left_out.push_back(s.name + "/" + std::to_string(number) + " " + object + ": " +
+                                       why);
+    };
+    const double reach = aperture_.outer_px;
+    if (at.x_px < reach || at.y_px < reach || at.x_px > frame.counts.columns - 1 - reach ||
+        at.y_px > frame.counts.rows - 1 - reach) {
+      leave_out("is too near to the frame's edge");
+      continue;
+    }
+    BandMeasurement m{.flux = aperture_flux(frame.counts, scale, at, aperture_), .light = {}};
+    if (m.flux.saturated) {
+      leave_out("is saturated");
+      continue;
+    }
+    m.light = reflected({m.flux.flux_e, m.flux.sigma_e}, sunlight_e, s.aperture_fraction);
+    frames_[slot].measured[object] = m;
+  }
+}
+
+void RunReader::measure(Threads& threads, const ReadProgress& progress) {
+  constexpr std::size_t at_once = 16;  // between two steps of progress
+  for (std::size_t first = 0; first < frames_.size(); first += at_once) {
+    const std::size_t count = std::min(at_once, frames_.size() - first);
+    threads.for_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = first + begin; i < first + end; ++i)
+        measure_frame(frames_[i].sensor, frames_[i].frame, i);
+    });
+    progress(double(first + count) / double(frames_.size()), "frames");
+  }
+}
+
+RunSpectra RunReader::take() {
+  std::map<std::pair<std::string, std::uint32_t>, std::vector<std::optional<BandMeasurement>>> all;
+  for (const FrameOf& frame : frames_) {
+    for (const auto& [object, measured] : frame.measured) {
+      auto& bands = all[{object, frame.frame}];
+      bands.resize(spectra_.sensors.size());
+      bands[frame.sensor] = measured;
+    }
+    spectra_.left_out.insert(spectra_.left_out.end(), frame.left_out.begin(), frame.left_out.end());
+  }
+  for (const auto& [key, bands] : all) {
+    SpectralSample sample{.object = key.first, .frame = key.second, .bands = {}};
+    for (const auto& band : bands)
+      if (band) sample.bands.push_back(*band);
+    if (sample.bands.size() == bands.size()) spectra_.samples.push_back(std::move(sample));
+  }
+  return std::move(spectra_);
+}
+
+}  // namespace
+
+RunSpectra measure_run(const std::string& directory, std::vector<std::string> sensors,
+                       const Aperture& aperture, Threads& threads, const ReadProgress& progress) {
+  check(aperture);
+  RunReader reader(directory, aperture);
+  reader.read_sensors(std::move(sensors));
+  reader.read_truth(progress);
+  reader.measure(threads, progress);
+  return reader.take();
+}
+
+std::vector<Measured> summed_light(const RunSpectra& spectra, const std::string& object) {
+  std::vector<Measured> sums(spectra.sensors.size());
+  for (const SpectralSample& sample : spectra.samples)
+    if (sample.object == object)
+      for (std::size_t i = 0; i < sums.size(); ++i) {
+        sums[i].value += sample.bands[i].light.value;
+        sums[i].sigma = std::hypot(sums[i].sigma, sample.bands[i].light.sigma);
+      }
+  return sums;
+}
+
+std::vector<std::string> objects_of(const RunSpectra& spectra) {
+  std::vector<std::string> names;
+  for (const SpectralSample& sample : spectra.samples)
+    if (names.empty() || names.back() != sample.object) names.push_back(sample.object);
+  return names;
+}
+
+}  // namespace dmise

@@ -1,0 +1,38 @@
+#include "core/discrimination/spectral_signature.h"
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/photometry/magnitude.h"
+
+namespace dmise {
+
+double full_sunlight_e(double zero_point_mag, double exposure_s) {
+  return light_of_magnitude(sun_v_mag - zero_point_mag) * exposure_s;
+}
+
+Measured reflected(const Measured& flux_e, double full_sunlight_e, double aperture_fraction) {
+  const double scale = 1.0 / (full_sunlight_e * aperture_fraction);
+  return {flux_e.value * scale, flux_e.sigma * scale};
+}
+
+Measured flux_ratio(const Measured& numerator, const Measured& denominator) {
+  if (!(denominator.value > 0.0)) throw Error("flux ratio: no light in the denominator");
+  const double ratio = numerator.value / denominator.value;
+  const double spread = denominator.sigma / denominator.value;
+  return {ratio * (1.0 - spread * spread),
+          std::hypot(numerator.sigma / denominator.value, ratio * spread)};
+}
+
+Measured weighted_mean(std::span<const Measured> values) {
+  double sum = 0.0, weights = 0.0;
+  for (const Measured& v : values) {
+    const double weight = 1.0 / (v.sigma * v.sigma);
+    sum += weight * v.value;
+    weights += weight;
+  }
+  if (!(weights > 0.0)) throw Error("weighted mean: of no values");
+  return {sum / weights, 1.0 / std::sqrt(weights)};
+}
+
+}  // namespace dmise

@@ -1,0 +1,31 @@
+#pragma once
+#include <span>
+#include <vector>
+
+namespace dmise {
+
+/// A value with its standard deviation.
+struct Measured {
+  double value = 0.0, sigma = 0.0;
+
+  double snr() const { return sigma > 0.0 ? value / sigma : 0.0; }
+};
+
+/// Electrons that the Sun itself at 1 au would give in an exposure: the factor between a flux and
+/// the share of the sunlight that an object throws to the sensor, R A F / d^2. `zero_point_mag`: V
+/// of sunlight that gives 1 e-/s in the band, as in the headers of frames; the Sun's spectrum (ASTM
+/// E490) is in it.
+double full_sunlight_e(double zero_point_mag, double exposure_s);
+
+/// Light of an object in one band with the Sun's spectrum taken out: proportional to reflectance.
+Measured reflected(const Measured& flux_e, double full_sunlight_e, double aperture_fraction);
+
+/// Ratio of two independent measurements. The mean of a ratio is larger than the ratio of the means
+/// by (sigma / value)^2 of the denominator; that is taken off, which leaves 3 (sigma / value)^4.
+/// The standard deviation is that of the first order. Throws `Error` for a denominator <= 0.
+Measured flux_ratio(const Measured& numerator, const Measured& denominator);
+
+/// Weighted by 1 / sigma^2; of none: throws `Error`.
+Measured weighted_mean(std::span<const Measured> values);
+
+}  // namespace dmise
