@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/printable.h"
+#include "core/base/units.h"
 #include "core/config/effect_list.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
@@ -18,6 +19,7 @@
 #include "launch/commands.h"
 #include "launch/host_names.h"
 #include "launch/scenario_outlook.h"
+#include "nodes/runtime/program/command_line.h"
 #include "nodes/runtime/security/security.h"
 #include "sensors/outlook/outlook_text.h"
 #include "sensors/pipeline/make_sensor.h"
@@ -28,6 +30,7 @@ namespace {
 struct CheckOptions {
   std::string scenario, out, keys;
   int hosts = 0;
+  double limb_deg = 0.0;
   bool json = false;
 };
 
@@ -205,7 +208,8 @@ void check(const CheckOptions& options) {
   const Clock clock = make_clock(scenario);
   const Scene scene = load_scene(scenario, clock);
   make_sensors(scenario, scene.stars);
-  const auto outlook = scenario_outlook(scenario, scene, clock, {});
+  const auto outlook =
+      scenario_outlook(scenario, scene, clock, {.least_limb_angle_rad = options.limb_deg * deg});
   if (options.json)
     print_json(scenario, outlook, clock, scene.stars != nullptr);
   else
@@ -228,6 +232,11 @@ void add_check_command(CLI::App& app) {
                    "with --keys: also of this number of agents, as in a launch")
       ->default_val(0)
       ->check(CLI::Range(0, 10000));
+  command
+      ->add_option("--limb-deg", options->limb_deg,
+                   "warn of cameras in orbit that point nearer to the Earth's limb")
+      ->default_val(0)
+      ->check(number_between(0.0, 180.0));
   command->callback([options] { check(*options); });
 }
 

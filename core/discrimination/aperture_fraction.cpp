@@ -67,4 +67,14 @@ double aperture_fraction(const Optics& optics, double wavelength_m, double radiu
   return deposited || gaussian ? whole : whole / (1.0 - plan.beyond);
 }
 
+double aperture_fraction(const Optics& optics, double wavelength_m, const Aperture& aperture) {
+  const auto within = [&](double radius_px) {
+    return aperture_fraction(optics, wavelength_m, radius_px);
+  };
+  const auto square = [](double x) { return x * x; };
+  return within(aperture.radius_px) - (within(aperture.outer_px) - within(aperture.inner_px)) *
+                                          square(aperture.radius_px) /
+                                          (square(aperture.outer_px) - square(aperture.inner_px));
+}
+
 }  // namespace dmise

@@ -1,4 +1,5 @@
 #pragma once
+#include "core/discrimination/aperture_photometry.h"
 #include "core/optics/camera.h"
 
 namespace dmise {
@@ -9,5 +10,9 @@ namespace dmise {
 /// of the blur says. Known to 1e-3 for radii of 3 px and more. Throws `Error` for optics with
 /// aberrations, whose point spread is not round, and for a radius <= 0.
 double aperture_fraction(const Optics& optics, double wavelength_m, double radius_px);
+
+/// The same of what is above the background of the ring, which has some of the point's own light:
+/// for an Airy pattern and the usual aperture 0.2 to 0.3 % of it.
+double aperture_fraction(const Optics& optics, double wavelength_m, const Aperture& aperture);
 
 }  // namespace dmise

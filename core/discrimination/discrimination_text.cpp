@@ -70,6 +70,7 @@ RunDiscrimination discriminate(const RunSpectra& spectra,
   RunDiscrimination run{.sensors = spectra.sensors,
                         .materials = materials,
                         .objects = {},
+                        .samples = spectra.samples,
                         .left_out = spectra.left_out,
                         .confusion = ConfusionMatrix(names)};
   const std::size_t bands = spectra.sensors.size();
@@ -188,6 +189,20 @@ std::string discrimination_json(const RunDiscrimination& run) {
           .field("probability", f.probability)
           .field("chi2", f.chi2)
           .end_object();
+    json.end_array().end_object();
+  }
+  json.end_array().key("samples").begin_array();
+  for (const SpectralSample& s : run.samples) {
+    json.begin_object()
+        .field("object", s.object)
+        .field("frame", s.frame)
+        .key("bands")
+        .begin_array();
+    for (const BandMeasurement& b : s.bands) {
+      json.begin_object().field("x_px", b.centre.x_px).field("y_px", b.centre.y_px);
+      json.field("flux_e", b.flux.flux_e).field("sigma_e", b.flux.sigma_e);
+      json.field("background_e", b.flux.background_e).end_object();
+    }
     json.end_array().end_object();
   }
   json.end_array().key("confusion").begin_object();

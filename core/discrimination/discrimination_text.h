@@ -28,6 +28,7 @@ struct RunDiscrimination {
   std::vector<SpectralSensor> sensors;
   std::vector<MaterialSignature> materials;
   std::vector<ObjectSignature> objects;
+  std::vector<SpectralSample> samples;
   std::vector<std::string> left_out;
   ConfusionMatrix confusion;
 };

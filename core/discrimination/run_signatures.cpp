@@ -111,8 +111,7 @@ void RunReader::read_sensors(std::vector<std::string> wanted) {
     const JsonRecord camera = sensor.object("camera");
     SpectralSensor s{.name = name, .band = band_of(camera)};
     try {
-      s.aperture_fraction =
-          aperture_fraction(optics_of(camera), s.band.centre_m, aperture_.radius_px);
+      s.aperture_fraction = aperture_fraction(optics_of(camera), s.band.centre_m, aperture_);
     } catch (const Error& e) {
       throw ConfigError(file("run.json") + ": sensor " + name + ": " + e.what());
     }
@@ -172,7 +171,8 @@ void RunReader::measure_frame(std::size_t sensor, std::uint32_t number, std::siz
       leave_out("is too near to the frame's edge");
       continue;
     }
-    BandMeasurement m{.flux = aperture_flux(frame.counts, scale, at, aperture_), .light = {}};
+    BandMeasurement m{
+        .centre = at, .flux = aperture_flux(frame.counts, scale, at, aperture_), .light = {}};
     if (m.flux.saturated) {
       leave_out("is saturated");
       continue;

@@ -19,6 +19,7 @@ struct SpectralSensor {
 
 /// What a sensor measured of an object in one frame.
 struct BandMeasurement {
+  PixelPosition centre;  // of the aperture
   ApertureFlux flux;
   Measured light;  // `reflected`
 };

@@ -8,6 +8,7 @@
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
+#include "core/sky/earth_limb.h"
 #include "core/visibility/field_of_view.h"
 #include "sensors/pipeline/object_sampler.h"
 #include "sensors/pipeline/objects_in_field.h"
@@ -65,6 +66,8 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
     out.sun_elevation_rad = elevation_rad(up, to_sun_m);
     out.moon_elevation_rad = elevation_rad(up, view.environment().moon_m - here_m);
   }
+  if (!view.on_ground())
+    out.limb_angle_rad = above_limb_rad(here_m, boresight, oblate_earth(view.earth()));
   out.boresight_hidden =
       hides(boresight) || (out.boresight_elevation_rad && *out.boresight_elevation_rad < 0.0);
   if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) {

@@ -17,7 +17,8 @@ struct FrameOutlook {
   SimTime middle;
   std::optional<double> boresight_elevation_rad, sun_elevation_rad, moon_elevation_rad,
       target_elevation_rad;
-  bool boresight_hidden = false;  // by the Earth
+  std::optional<double> limb_angle_rad;  // of the boresight above the Earth's limb; in orbit
+  bool boresight_hidden = false;         // by the Earth
   bool target_hidden = false;
   bool sun_in_field = false;
   PixelBackground background;   // at the frame's centre

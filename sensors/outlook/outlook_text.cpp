@@ -113,6 +113,16 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
   else if (const auto m = count_if(o.frames, [](auto& f) { return f.boresight_hidden; }))
     warn(std::string("the camera points ") +
          (o.on_ground ? "below the horizon " : "at the Earth ") + of_frames(m));
+  const auto low = [&](const FrameOutlook& f) {
+    return f.limb_angle_rad && *f.limb_angle_rad < o.least_limb_angle_rad;
+  };
+  if (const auto n = count_if(o.frames, low)) {
+    const Range limb = range_of(o.frames, &FrameOutlook::limb_angle_rad, deg);
+    warn(printed("the camera points to within %.1f deg of the Earth's limb, nearer than "
+                 "--limb-deg %g, ",
+                 limb.least, o.least_limb_angle_rad / deg) +
+         of_frames(n));
+  }
   if (const auto n = count_if(o.frames, [](auto& f) { return f.sun_in_field; }))
     warn("the Sun is in the field " + of_frames(n));
   // Civil twilight ends at -6 deg: above it no star is visible by eye.
@@ -169,6 +179,9 @@ std::vector<std::string> lines_of(const SensorOutlook& o) {
               course_of(o.frames, &FrameOutlook::target_elevation_rad);
     say(text);
   }
+  if (o.frames.front().limb_angle_rad)
+    say("boresight " + course_of(o.frames, &FrameOutlook::limb_angle_rad) +
+        " above the Earth's limb");
   const Range stars = range_of(o.frames, &FrameOutlook::stars);
   const Range objects = range_of(o.frames, &FrameOutlook::objects);
   std::string text;
@@ -203,6 +216,7 @@ void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
     angle("sun_elevation_deg", f.sun_elevation_rad);
     angle("moon_elevation_deg", f.moon_elevation_rad);
     angle("target_elevation_deg", f.target_elevation_rad);
+    angle("limb_angle_deg", f.limb_angle_rad);
     json.field("boresight_hidden", f.boresight_hidden).field("target_hidden", f.target_hidden);
     json.field("sun_in_field", f.sun_in_field);
     json.field("background_e", f.background.electrons).field("noise_e", f.background.noise_e);

@@ -51,6 +51,7 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
                     .frames_in_run = frames_within(sensor, scenario.duration)};
   if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) out.target = target->object;
   out.cued = std::holds_alternative<PointCued>(sensor.pointing);
+  out.least_limb_angle_rad = options.least_limb_angle_rad;
   const auto needed = only_these(population, needed_objects(sensor, population.roster));
   const StateSource source_of_needed(needed, clock, threads);
   const auto loss = first_loss(scenario, sensor, needed, source_of_needed, out.frames_in_run);

@@ -17,6 +17,7 @@ struct SensorOutlook {
   bool on_ground = true;
   std::string target;  // of the pointing; empty: none
   bool cued = false;   // examined as it is parked
+  double least_limb_angle_rad = 0.0;
   std::uint32_t frames_in_run = 0;
   bool objects_counted = true;        // false: too many objects
   std::vector<FrameOutlook> frames;   // examined: the first, the last, and evenly spaced ones
@@ -28,6 +29,8 @@ struct OutlookOptions {
   /// Number of object states computed for counting: beyond, fewer frames are examined, and if two
   /// are too many, objects are not counted.
   std::size_t most_states = 4'000'000;
+  /// Frames of sensors in orbit whose boresight is nearer to the Earth's limb are warned of.
+  double least_limb_angle_rad = 0.0;
 };
 
 /// Examines frames of `sensor`, one of the scenario's. `stars` may be null. Throws `ConfigError`

@@ -47,6 +47,16 @@ TEST(ApertureFraction, OfAGaussianIsThatOfItsWidth) {
                 1.0 - std::exp(-radius * radius / 2 / variance), 3e-4);
 }
 
+// Of an Airy pattern 2 / (pi v) is beyond v = pi D r / lambda (Born & Wolf, section 8.5.2, from the
+// asymptotes of J0 and J1): what the ring takes for background.
+TEST(ApertureFraction, LeavesOutTheWingsInTheRing) {
+  const Aperture aperture;
+  const double v_per_px = pi * 0.15 * imager().pixel_angle_rad() / 0.925e-6;
+  const double ring = 2.0 / pi / v_per_px * (1.0 / aperture.inner_px - 1.0 / aperture.outer_px);
+  const double whole = aperture_fraction(imager(), 0.925e-6, aperture.radius_px);
+  EXPECT_NEAR((whole - aperture_fraction(imager(), 0.925e-6, aperture)) / (ring / 12.0), 1.0, 0.1);
+}
+
 TEST(ApertureFraction, RefusesABlurThatIsNotRound) {
   Optics optics = imager();
   optics.spread.field.coma_m = 1e-7;
