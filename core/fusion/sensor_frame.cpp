@@ -1,5 +1,6 @@
 #include "core/fusion/sensor_frame.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/units.h"
@@ -8,6 +9,24 @@ namespace dmise {
 namespace {
 
 constexpr double limit_width_mag = 0.5;  // standard deviation of the fall at the limit
+/// Least standard deviation of a direction: bright sources in images are known better than star
+/// catalogues, clocks and refraction, and than a filter is linear that knew a kilometre before.
+constexpr double least_sigma_rad = 0.2 * arcsec;
+
+/// Raises both axes of an ellipse to the least; leaves what is wider as it is, to the bit.
+void widen(std::array<double, 3>& covariance) {
+  auto& [e, c, n] = covariance;
+  const double least = least_sigma_rad * least_sigma_rad;
+  const double mean = (e + n) / 2, half = std::hypot((e - n) / 2, c);
+  if (mean - half >= least) return;
+  const double large = std::max(mean + half, least);
+  // least I + (large - least) times the projection on the longer axis.
+  const double share = half > 0 ? (large - least) / (2 * half) : 0.0;
+  const double along = (e - n) / 2;
+  e = least + share * (half + along);
+  n = least + share * (half - along);
+  c *= share;
+}
 
 }  // namespace
 
@@ -42,8 +61,10 @@ SensorFrame sensor_frame(const FrameReport& report, const std::vector<Detection>
                   .limiting_magnitude = report.limiting_magnitude,
                   .searched = !report.detection_off};
   for (const Detection& d : detections)
-    if (auto observation = angle_observation(d))
+    if (auto observation = angle_observation(d)) {
+      widen(observation->covariance_rad2);
       out.sources.push_back({std::move(*observation), d.magnitude, d.star_like});
+    }
   return out;
 }
 

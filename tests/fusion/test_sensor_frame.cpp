@@ -31,6 +31,33 @@ TEST(SensorFrame, ShowsWhatIsAwayFromItsEdges) {
   EXPECT_FALSE(frame.shows(at(180, 0)));
 }
 
+// A direction is known to 0.2 arcsec at best, in each direction on the sky.
+TEST(SensorFrame, NoDirectionIsBetterThanWhatDetectionsDoNotKnow) {
+  const auto taken = [](double large_arcsec, double small_arcsec, double turn_rad) {
+    const double l = large_arcsec * large_arcsec, s = small_arcsec * small_arcsec;
+    const double c = std::cos(turn_rad), t = std::sin(turn_rad), unit = arcsec * arcsec;
+    Detection d;
+    d.id = "eye/3/1";
+    d.covariance_rad2 = {(l * c * c + s * t * t) * unit, (l - s) * c * t * unit,
+                         (l * t * t + s * c * c) * unit};
+    d.sensor_position_m = {6.4e6, 0, 0};
+    const SensorFrame frame = sensor_frame(towards_aries(), {d}, 1000, 1000, 7.1 * deg);
+    return std::pair(d.covariance_rad2, frame.sources.at(0).observation.covariance_rad2);
+  };
+  const auto [wide, same] = taken(2, 0.3, 0.7);
+  EXPECT_EQ(wide, same);
+  for (const double turn_rad : {0.0, 0.7, 2.5}) {
+    const auto [narrow, widened] = taken(2, 0.006, turn_rad);
+    const auto expected = taken(2, 0.2000001, turn_rad).second;
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(widened[k], expected[k], 1e-5 * arcsec * arcsec);
+  }
+  const auto [point, disc] = taken(0.006, 0.006, 0);
+  EXPECT_NEAR(disc[0], 0.04 * arcsec * arcsec, 1e-9 * arcsec * arcsec);
+  EXPECT_NEAR(disc[1], 0, 1e-9 * arcsec * arcsec);
+  EXPECT_NEAR(disc[2], 0.04 * arcsec * arcsec, 1e-9 * arcsec * arcsec);
+}
+
 // Half of the best at the limit; one standard deviation of the normal distribution beside it.
 TEST(SensorFrame, FindsLessBeyondItsLimit) {
   SensorFrame frame = sensor_frame(towards_aries(), {}, 1000, 1000, 7.1 * deg);

@@ -39,7 +39,7 @@ struct SmallRun {
            "     camera: {optics: {columns: 64, rows: 64, pixel_pitch_m: 1.0e-5, focal_length_m: "
            "0.1, aperture_m: 0.05}, detector: {full_well_e: 20000, gain_e_per_dn: 1}, band: "
            "{centre_m: 0.55e-6, width_m: 0.1e-6}},\n"
-           "     pointing: zenith, exposure_s: 5, cadence_s: 10}\n";
+           "     pointing: {cued: on}, exposure_s: 5, cadence_s: 10}\n";
     scenario = load_scenario(directory / "small.yaml");
   }
   ~SmallRun() { fs::remove_all(directory); }
