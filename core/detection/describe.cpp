@@ -14,6 +14,10 @@
 namespace dmise {
 namespace {
 
+constexpr double bend_error = 0.3;       // relative, of a bend that is not fitted
+constexpr double slope_error = 0.3;      // likewise of a change of brightness
+constexpr double most_off_middle = 0.5;  // of mid exposure, in half lengths, where it is corrected
+
 struct Tangent {
   Vec<Gcrs> east, north;
 };
@@ -147,6 +151,14 @@ void describe_ends(const Source& source, const FrameHeader& header, Detection& d
   d.rate_rad_per_s = source.streak ? angle_rad(end1, end2) / header.exposure_s : 0.0;
 }
 
+/// Change of light from the middle to the second end, relative, by distance and air.
+double slope_of(const FrameHeader& header, PixelPosition end1, PixelPosition end2,
+                double end1_range_over_end2) {
+  const double magnitudes = extinction_mag(header, end1) - extinction_mag(header, end2);
+  const double ratio = end1_range_over_end2 * end1_range_over_end2 * std::pow(10, 0.4 * magnitudes);
+  return (ratio - 1) / (ratio + 1);
+}
+
 /// The object's position on the line at mid exposure, and its error along the line.
 struct MidPoint {
   LinePoint point;
@@ -161,13 +173,28 @@ MidPoint mid_point(const Source& source, const FrameHeader& header) {
   const Vec<Gcrs> end2 = wcs_direction(header.wcs, line_point(source, 1).place);
   const MidExposure mid = mid_exposure(header, end1, end2, source.at_edge);
   const auto pixel = wcs_pixel(header.wcs, mid.direction);
-  double r = 0.0;
-  if (pixel && t.length_px > 0) {
-    const PixelPosition way = *pixel - PixelPosition{t.x_px, t.y_px};
-    const double along = way.x_px * std::cos(t.angle_rad) + way.y_px * std::sin(t.angle_rad);
-    r = std::clamp(2 * along / t.length_px, -1.0, 1.0);
+  if (!pixel || !(t.length_px > 0)) return {line_point(source, 0.0), end2 - end1, mid.sigma_rad};
+  const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
+  const PixelPosition way = *pixel - PixelPosition{t.x_px, t.y_px};
+  double along_px = way.x_px * c + way.y_px * s, uneven_px = 0.0;
+  if (!(source.free & trail_slope)) {
+    // Fitted as even: its centroid is nearer to the end that is brighter, being nearer and higher.
+    const double slope = slope_of(header, line_point(source, -1).place, line_point(source, 1).place,
+                                  mid.end1_range_over_end2);
+    uneven_px = slope * t.length_px / 6;
+    along_px -= uneven_px;
   }
-  return {line_point(source, r), end2 - end1, mid.sigma_rad};
+  const double r = std::clamp(2 * along_px / t.length_px, -1.0, 1.0);
+  LinePoint point = line_point(source, r);
+  add_along(point.covariance_px2, c, s, std::pow(slope_error * uneven_px, 2));
+  if (!(source.free & trail_sagitta) && std::abs(r) < most_off_middle) {
+    // Fitted as straight: it bends as the orbit through its ends does in this projection.
+    const double sagitta_px = (way.y_px * c - way.x_px * s) / (1 - r * r);
+    const double across_px = sagitta_px * (1.0 / 3 - r * r);
+    point.place = point.place + PixelPosition{-s, c} * across_px;
+    add_along(point.covariance_px2, -s, c, std::pow(bend_error * across_px, 2));
+  }
+  return {point, end2 - end1, mid.sigma_rad};
 }
 
 void describe_direction(const Source& source, const FrameHeader& header, Detection& d) {

@@ -11,6 +11,7 @@ namespace dmise {
 /// x_px, y_px and covariance_px2 are of the fitted centroid of light. Directions are those of the
 /// fitted line's point where the object was at mid exposure (core/detection/mid_exposure.h):
 /// curvature moves it off the centroid, a change of brightness moves the centroid along the line.
+/// What was not fitted of both is taken from the circular orbit through the ends, and the air.
 /// covariance_rad2 includes the uncertainty of mid exposure and the error of the WCS.
 Detection describe(const Source& source, const FrameHeader& header);
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 namespace dmise {
 namespace {
@@ -35,9 +36,16 @@ Places places_at(const Sight& start, const Sight& end, double radius_m, double e
   return p;
 }
 
-/// Direction at mid exposure on the orbit through both lines of sight; empty if there is none.
-std::optional<Vec<Gcrs>> on_an_orbit(const FrameHeader& header, const Sight& start,
-                                     const Sight& end, double radial_share) {
+/// On the orbit through both lines of sight: direction at mid exposure, and the ratio of distances
+/// at start and end.
+struct OnOrbit {
+  Vec<Gcrs> direction;
+  double start_range_over_end;
+};
+
+/// Empty if there is no such orbit.
+std::optional<OnOrbit> on_an_orbit(const FrameHeader& header, const Sight& start, const Sight& end,
+                                   double radial_share) {
   const auto at = [&](double radius_m) {
     return places_at(start, end, radius_m, header.exposure_s, radial_share);
   };
@@ -49,7 +57,8 @@ std::optional<Vec<Gcrs>> on_an_orbit(const FrameHeader& header, const Sight& sta
     (at(middle_m).excess_rad < 0 ? low_m : high_m) = middle_m;
   }
   const Places p = at(low_m);
-  return unit(unit(p.start_m + p.end_m) * low_m - header.sensor_position_m);
+  return OnOrbit{unit(unit(p.start_m + p.end_m) * low_m - header.sensor_position_m),
+                 norm(p.start_m - start.sensor_m) / norm(p.end_m - end.sensor_m)};
 }
 
 }  // namespace
@@ -72,7 +81,9 @@ MidExposure mid_exposure(const FrameHeader& header, const Vec<Gcrs>& end1, const
   const auto onwards = mid(end1, end2, 0.0), back = mid(end2, end1, 0.0);
   const auto rising = mid(end1, end2, radial_speed_share);
   if (!onwards || !back || !rising) return even;
-  return {unit(*onwards + *back), std::hypot(norm(*onwards - *back) / 2, norm(*rising - *onwards))};
+  const auto [a, b, c] = std::tuple(onwards->direction, back->direction, rising->direction);
+  return {unit(a + b), std::hypot(norm(a - b) / 2, norm(c - a)),
+          std::sqrt(onwards->start_range_over_end / back->start_range_over_end)};
 }
 
 }  // namespace dmise

@@ -13,6 +13,8 @@ inline constexpr double radial_speed_share = 0.02;
 struct MidExposure {
   Vec<Gcrs> direction;     // unit; only its component along the streak matters
   double sigma_rad = 0.0;  // along the streak
+  // Distance at end1 over that at end2, of that orbit; 1 where there is none.
+  double end1_range_over_end2 = 1.0;
 };
 
 /// `end1`, `end2`: directions from the WCS. From the ground tan(a) is that of the circular orbit
