@@ -53,6 +53,7 @@ NEWCOMER
 """}
 PIXEL_ARCSEC = math.degrees(13.5e-6 / 1.2) * 3600
 CUE_DELAY_NS = 10_000_000_000
+PATIENCE_S = 400.0  # a run is 15 s of work, on a loaded machine
 
 
 def lines_of(file):
@@ -114,13 +115,13 @@ def check_cues(run):
     check("telescope" in {i.split("/")[0] for t in confirmed for i in t["associated"]}, "with detections of the telescope")
     sigma = {t["time_ns"]: math.sqrt(sum(t["covariance_gcrs"][k] for k in (0, 2, 5))) for t in tracks}
     before = sigma[max(t for t in sigma if t <= tasks[0]["given_ns"])]
-    after = sigma[min(t for t in sigma if t >= tasks[0]["end_ns"])]
-    check(after < before / 2, f"the orbit improves: {before:.0f} m before, {after:.0f} m after the first task")
+    first, last = sigma[min(t for t in sigma if t >= tasks[0]["end_ns"])], sigma[max(sigma)]
+    check(first < before / 1.5 and last < before / 3, f"the orbit improves: {before:.0f} m before, {first:.0f} m after the first task, {last:.0f} m at the end")
     check("telescope" in (run / "tracks.svg").read_text(), "the page draws it")
 
 
 def is_complete(run, what):
-    code, _ = run.finish()
+    code, _ = run.finish(PATIENCE_S)
     check(code == 0, f"{what}: code {code} {run.stderr[-400:] if code else ''}")
 
 
