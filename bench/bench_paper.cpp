@@ -63,7 +63,7 @@ int bench_paper(bool json) {
   }
   if (options.no_sequence) return good ? 0 : 1;
   const double before_s = process_seconds();
-  const double wall_s = sequence_seconds(threads);
+  const double wall_s = sequence_seconds();
   print_figure({.name = "sequence_s",
                 .value = wall_s,
                 .unit = "s",

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <future>
 #include <map>
 
 #include "core/base/error.h"
@@ -168,23 +169,29 @@ std::vector<SeedStudy> study_seeds(std::size_t seeds, const Aperture& aperture, 
   return studies;
 }
 
-double sequence_seconds(Threads& threads) {
+double sequence_seconds() {
   const auto directory =
       std::filesystem::temp_directory_path() / ("bench-paper-" + std::to_string(getpid()));
   std::filesystem::create_directories(directory);
   const auto begun = std::chrono::steady_clock::now();
   const Scenario scenario = load_scenario(paper_file("space-imager.yaml"));
-  for (const SensorConfig& sensor : scenario.sensors) {
+  const auto expose_all = [&](const std::string& name) {
+    Threads one(1);
+    const SensorConfig& sensor = sensor_named(scenario, name);
     const std::uint32_t frames = frames_within(sensor, scenario.duration);
-    const SceneFrames scene(scenario, sensor.name, frames, threads);
+    const SceneFrames scene(scenario, name, frames, one);
     const auto pipeline = scene.pipeline(scene.sensor(), false);
     for (std::uint32_t k = 1; k <= frames; ++k) {
       FrameProducts frame = pipeline->run(frame_times(scene.sensor(), k), scene.world());
-      write_frame((directory / (sensor.name + "-" + std::to_string(k) + ".fits")).string(),
-                  frame.counts, frame.header);
+      write_frame((directory / (name + "-" + std::to_string(k) + ".fits")).string(), frame.counts,
+                  frame.header);
       pipeline->give_back(std::move(frame.counts));
     }
-  }
+  };
+  std::vector<std::future<void>> sensors;
+  for (const SensorConfig& sensor : scenario.sensors)
+    sensors.push_back(std::async(std::launch::async, expose_all, sensor.name));
+  for (auto& sensor : sensors) sensor.get();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
   std::filesystem::remove_all(directory);
   return took.count();

@@ -26,7 +26,7 @@ struct SeedStudy {
 std::vector<SeedStudy> study_seeds(std::size_t seeds, const Aperture& aperture, Threads& threads);
 
 /// Wall-clock seconds of the whole sequence of that scenario, 2 x 20 frames of 4096 x 4096, from
-/// the scenario to FITS files.
-double sequence_seconds(Threads& threads);
+/// the scenario to FITS files: each camera in a thread of its own.
+double sequence_seconds();
 
 }  // namespace dmise
