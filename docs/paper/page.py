@@ -3,7 +3,7 @@
 TABLE_1 = [
     ("Simulation", "`simulation: {start, duration_s, tick_s, seed, earth_orientation}`; positions over WGS 84",
      "ellipsoid and origin are not yet the scenario's choice; positions in GCRS"),
-    ("Star Background", "`stars: {catalogue: kstars | HYG | BSC5, faintest_mag}`; effects `proper_motion`, `parallax`, `annual_aberration`",
+    ("Star Background", "`stars: {catalogue: kstars \\| HYG \\| BSC5, faintest_mag}`; effects `proper_motion`, `parallax`, `annual_aberration`",
      "places equal astropy's to 0.2 mas"),
     ("Sky", "`sky: {preset, zenith_mag_per_arcsec2, lamps, cities, parts}`; effects `twilight`, `scattered_moonlight`, ...",
      "each part is switched by itself"),
