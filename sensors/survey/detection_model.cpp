@@ -9,8 +9,6 @@ namespace dmise {
 namespace {
 
 constexpr double most_probability = 1.0 - 1e-9;
-/// Q(x) is `least_probability` here.
-constexpr double telling_sigma = 4.7534;
 
 struct Curve {
   double log_half = 0.0, spread = 1.0;
@@ -80,13 +78,6 @@ double detection_probability(const DetectionModel& model, double snr, double len
   const Curve curve = curve_at(model, length_px);
   const double sigmas = (std::log(snr) - curve.log_half) / curve.spread;
   return std::min(most_probability, model.share * theory_of_detection(sigmas, 0.0));
-}
-
-double least_telling_snr(const DetectionModel& model) {
-  double least = 1e300;
-  for (const auto& l : model.lengths)
-    least = std::min(least, l.half_snr * std::exp(-telling_sigma * l.spread));
-  return least;
 }
 
 DetectionModel fitted_detection_model(const DetectionModel& start,

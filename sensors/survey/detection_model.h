@@ -28,8 +28,7 @@ const DetectionModel& measured_detection_model();
 /// Returns a probability in [0, 1) for any SNR >= 0 and length >= 0.
 double detection_probability(const DetectionModel& model, double snr, double length_px);
 
-/// The SNR below which the probability is less than `least_probability`, whatever the length.
-double least_telling_snr(const DetectionModel& model);
+/// Less is taken for 0.
 inline constexpr double least_probability = 1e-6;
 
 /// A source of a rendered frame.

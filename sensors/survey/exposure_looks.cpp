@@ -21,8 +21,8 @@ namespace {
 /// Knots of an exposure's states are no farther apart: cubic interpolation is good to 4 m.
 constexpr std::int64_t longest_between_ns = 60'000'000'000;
 
-/// Samples of a trail, and of one whose light changes by more than a half.
-constexpr std::size_t few_samples = 3, many_samples = 33;
+/// Samples of a trail whose light changes by more than a half; others have three.
+constexpr std::size_t many_samples = 33;
 constexpr double abrupt_ratio = 0.5;
 
 double drawn_to(const SurveyScene& scene, const SensorConfig& sensor) {
@@ -44,7 +44,6 @@ SensorLooks::SensorLooks(const SurveyScene& scene, const SensorConfig& sensor)
       sensor_(sensor),
       shapes_(scene.scenario().own_objects, sensor.camera.band, sensor.effects),
       noise_(sensor, scene.scenario().seed),
-      least_snr_(least_telling_snr(scene.model())),
       drawn_to_v_mag_(drawn_to(scene, sensor)) {
   for (const std::size_t i : needed_objects(sensor, *scene.roster()))
     needed_.push_back(std::uint32_t(i));
@@ -112,7 +111,7 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
     return sky->photons_per_s_m2_sr(enu_from_gcrs * (gcrs_from_camera * *direction)) *
            electrons_per_photon * pixel_solid_angle_sr(optics, pixel) * view.illumination(pixel);
   };
-  // No pixel has less noise.
+  // No pixel has less noise: what is not detected with it needs no sky.
   const double least_noise_e = noise_.noise_e(0.0);
 
   std::vector<ObjectSample> samples;
@@ -136,17 +135,20 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
       most = std::max(most, s.electrons_per_s);
     }
     if (!draws || !(most > 0.0)) continue;
-    // Not even as a point on the darkest sky.
-    const bool faint =
-        matched_filter_snr({most * times.seconds(), 0.0, least_noise_e, sigma_px_}) < least_snr_;
-    if (least < abrupt_ratio * most && !faint) {
+    TrailInFrame trail = trail_in_frame(samples, times.seconds(), optics);
+    if (!(trail.signal_e > 0.0)) continue;
+    const double most_snr =
+        matched_filter_snr({trail.signal_e, trail.length_px, least_noise_e, sigma_px_});
+    const bool telling =
+        detection_probability(scene_.model(), most_snr, trail.length_px) >= least_probability;
+    if (least < abrupt_ratio * most && telling) {
       samples.clear();
       for (std::size_t k = 0; k < many_samples; ++k)
         samples.push_back(sampler.sample(
             object, ExposureInstant(view, times.at(double(k) / double(many_samples - 1)))));
+      trail = trail_in_frame(samples, times.seconds(), optics);
+      if (!(trail.signal_e > 0.0)) continue;
     }
-    const TrailInFrame trail = trail_in_frame(samples, times.seconds(), optics);
-    if (!(trail.signal_e > 0.0)) continue;
     Look look{.object = object,
               .signal_e = trail.signal_e,
               .length_px = trail.length_px,
@@ -154,16 +156,11 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
     const auto under = to_spherical(itrs_from_gcrs * motion.position_m);
     look.longitude_rad = under[0];
     look.latitude_rad = under[1];
-    if (!faint) {
-      const double sky_e = sky_at(trail.centroid);
-      look.noise_e = noise_.noise_e(sky_e);
-      look.snr = matched_filter_snr({look.signal_e, look.length_px, look.noise_e, sigma_px_});
-      if (sky_e < noise_.full_sky_e())
-        look.probability = detection_probability(scene_.model(), look.snr, look.length_px);
-    } else {
-      look.noise_e = least_noise_e;
-      look.snr = matched_filter_snr({look.signal_e, look.length_px, look.noise_e, sigma_px_});
-    }
+    const double sky_e = telling ? sky_at(trail.centroid) : 0.0;
+    look.noise_e = noise_.noise_e(sky_e);
+    look.snr = matched_filter_snr({look.signal_e, look.length_px, look.noise_e, sigma_px_});
+    if (telling && sky_e < noise_.full_sky_e())
+      look.probability = detection_probability(scene_.model(), look.snr, look.length_px);
     out.looks.push_back(look);
   }
   return out;

@@ -13,11 +13,12 @@ namespace dmise {
 
 /// An object with light in one exposure, as it is expected without rendering.
 struct Look {
-  std::uint32_t object = 0;                        // index in the population
-  double signal_e = 0.0;                           // of its light in the frame
-  double length_px = 0.0;                          // of its lit trail in the frame
-  PixelPosition centroid;                          // of that light
-  double noise_e = 0.0;                            // of a pixel there, without the object's own
+  std::uint32_t object = 0;  // index in the population
+  double signal_e = 0.0;     // of its light in the frame
+  double length_px = 0.0;    // of its lit trail in the frame
+  PixelPosition centroid;    // of that light
+  // Of a pixel there, without the object's own; of the darkest sky for what no sky shows.
+  double noise_e = 0.0;
   double snr = 0.0;                                // of the ideal matched filter
   double probability = 0.0;                        // of detection
   double latitude_rad = 0.0, longitude_rad = 0.0;  // geocentric, under it in mid exposure
@@ -55,7 +56,6 @@ class SensorLooks {
   ObjectShapes shapes_;
   NoiseTable noise_;
   double sigma_px_ = 0.0;  // of the Gaussian without pixel
-  double least_snr_ = 0.0;
   double drawn_to_v_mag_;
   double mask_sine_ = -1.0;
 };

@@ -85,7 +85,7 @@ void write_survey(const std::string& directory, const std::string& head, const S
   std::filesystem::create_directories(directory, error);
   if (error) throw Error(directory + ": " + error.message());
   const auto utc = [&](SimTime t) { return format_utc(scene.clock().utc(t), 3); };
-  const std::string totals = "# frames " + std::to_string(survey.frames) + ", without state " +
+  const std::string totals = "# frames " + std::to_string(survey.frames) + " without state " +
                              std::to_string(survey.without_state) + "\n";
   std::string text = "# " + head + "\n" + totals + exposure_columns + "\n";
   for (const auto& e : survey.exposures)
@@ -118,9 +118,10 @@ std::optional<SensorSurvey> read_survey(const std::string& directory, const std:
   SensorSurvey survey{.sensor = sensor};
   Reader passes(directory + "/passes.csv", head, pass_columns);
   if (!passes.good()) return std::nullopt;
-  if (std::sscanf(passes.totals().c_str(), "# frames %u, without state %u", &survey.frames,
-                  &survey.without_state) != 2)
-    return std::nullopt;
+  std::istringstream totals(passes.totals());
+  std::string hash, frames, without, state;
+  totals >> hash >> frames >> survey.frames >> without >> state >> survey.without_state;
+  if (!totals) return std::nullopt;
   passes.each([&] {
     SurveyPass p;
     p.object = passes.number<std::uint32_t>();
