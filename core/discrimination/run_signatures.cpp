@@ -160,7 +160,9 @@ void RunReader::measure_frame(std::size_t sensor, std::uint32_t number, std::siz
   const FrameHeader& h = frame.header;
   const CountScale scale{h.gain_e_per_dn, h.bias_dn, h.saturation_dn};
   const double sunlight_e = full_sunlight_e(h.zero_point_mag, h.exposure_s);
-  for (const auto& [object, at] : places_[sensor].of_frame[number]) {
+  for (const auto& place : places_[sensor].of_frame[number]) {
+    const auto& object = place.first;  // clang 14 captures no structured binding
+    const auto& at = place.second;
     const auto leave_out = [&](const std::string& why) {
       frames_[slot].left_out.push_back(s.name + "/" + std::to_string(number) + " " + object + ": " +
                                        why);
