@@ -85,20 +85,22 @@ void set_photometry(const StandardCards& cards, FrameHeader& header) {
 }
 
 void set_pointing(const StandardCards& cards, int columns, int rows, FrameHeader& header) {
-  const auto wcs = wcs_of(cards);
-  if (wcs) {
-    const CameraView view = view_of(*wcs, columns, rows);
-    header.wcs = *wcs;
-    header.projection = wcs->projection;
-    header.focal_length_px = view.focal_length_px;
-    header.mirrored = view.mirrored;
-    header.camera_from_gcrs.fill(quaternion_of(view.camera_from_gcrs));
-    return;
+  if (const auto wcs = wcs_of(cards)) {
+    if (const auto view = view_of(*wcs, columns, rows)) {
+      cards.assumed("pointing: the WCS is taken as exact");
+      header.wcs = *wcs;
+      header.projection = wcs->projection;
+      header.focal_length_px = view->focal_length_px;
+      header.mirrored = view->mirrored;
+      header.camera_from_gcrs.fill(quaternion_of(view->camera_from_gcrs));
+      return;
+    }
+    cards.reject("CTYPE1", "pointing: the WCS images no sky in the middle of the frame");
   }
   header.unknown.add(FrameFact::pointing);
   const auto focal_mm = cards.number("FOCALLEN"), pixel_um = cards.number("XPIXSZ");
   const double focal_px = focal_mm && pixel_um && *pixel_um > 0 ? 1e3 * *focal_mm / *pixel_um : 0.0;
-  if (focal_px > 1 && focal_px < 1e8) {
+  if (focal_px > 1 && focal_px < longest_focal_px) {
     header.focal_length_px = focal_px;
     cards.assumed("focal length: FOCALLEN / XPIXSZ");
   } else {

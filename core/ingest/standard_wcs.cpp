@@ -168,9 +168,7 @@ std::optional<Wcs> wcs_of(const StandardCards& cards) {
     return std::nullopt;
   }
   try {
-    Wcs wcs = read_wcs(cards);
-    cards.assumed("pointing: the WCS is taken as exact");
-    return wcs;
+    return read_wcs(cards);
   } catch (const Unknown& u) {
     cards.reject(u.key, u.reason);
   } catch (const Error& e) {  // of a projection's coefficients
@@ -179,7 +177,7 @@ std::optional<Wcs> wcs_of(const StandardCards& cards) {
   return std::nullopt;
 }
 
-CameraView view_of(const Wcs& wcs, int columns, int rows) {
+std::optional<CameraView> view_of(const Wcs& wcs, int columns, int rows) {
   const PixelPosition middle{(columns - 1) / 2.0, (rows - 1) / 2.0};
   const Vec<Gcrs> z = wcs_direction(wcs, middle);
   const auto slope = [&](const PixelPosition& half) {
@@ -188,7 +186,7 @@ CameraView view_of(const Wcs& wcs, int columns, int rows) {
   };
   const Vec<Gcrs> right = slope({0.5, 0}), down = slope({0, 0.5});
   const double area = dot(cross(right, down), z);
-  if (!(std::abs(area) > 0)) throw Error("the WCS images no sky in the middle of the frame");
+  if (!(std::abs(area) > 1 / (longest_focal_px * longest_focal_px))) return std::nullopt;
   CameraView view{.mirrored = area < 0, .focal_length_px = 1 / std::sqrt(std::abs(area))};
   const Vec<Gcrs> by_down = cross(unit(down), z) * (view.mirrored ? -1.0 : 1.0);
   const Vec<Gcrs> x = unit(unit(right) + by_down), y = cross(z, x);

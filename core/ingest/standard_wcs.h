@@ -13,12 +13,16 @@ namespace dmise {
 /// keyword and the reason, if there is none or it says what this program does not know.
 std::optional<Wcs> wcs_of(const StandardCards& cards);
 
+constexpr double longest_focal_px = 1e8;  // 2 mas a pixel
+
 /// A camera that images as a WCS does around the image's middle.
 struct CameraView {
   Rotation<CameraFrame, Gcrs> camera_from_gcrs;
   bool mirrored = false;  // rows run against the camera's y axis
   double focal_length_px = 0.0;
 };
-CameraView view_of(const Wcs& wcs, int columns, int rows);
+
+/// Empty if the WCS images no sky there, or less than a pixel of `longest_focal_px` does.
+std::optional<CameraView> view_of(const Wcs& wcs, int columns, int rows);
 
 }  // namespace dmise

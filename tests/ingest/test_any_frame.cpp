@@ -165,6 +165,21 @@ TEST(AnyFrame, AGainThatCannotBeIsRejected) {
   EXPECT_EQ(detections_in(frame).size(), 2u);
 }
 
+// A distortion that leaves no number of a direction.
+TEST(AnyFrame, AWcsThatImagesNoSkyIsRejected) {
+  const Scene scene = draw(false, 4);
+  auto cards = all_cards(scene.header);
+  for (std::string& c : cards)
+    if (c.starts_with("CTYPE"))
+      c = card(c.substr(0, 6), c[5] == '1' ? "'RA---TAN-SIP'" : "'DEC--TAN-SIP'");
+  cards.push_back(card("A_ORDER", "2"));
+  cards.push_back(card("A_2_0", "1E94"));
+  const Frame frame = read_one(image_of(scene.counts, cards));
+  EXPECT_TRUE(frame.header.unknown.has(FrameFact::pointing));
+  EXPECT_THAT(frame.notes.missing, Contains(HasSubstr("images no sky")));
+  EXPECT_EQ(detections_in(frame).size(), 2u);
+}
+
 TEST(AnyFrame, FactsCanBeStated) {
   const Scene scene = draw(false, 4);
   const Frame frame = read_one(image_of(scene.counts, {card("GAIN", "139")}),

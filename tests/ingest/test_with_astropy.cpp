@@ -73,7 +73,7 @@ TEST(WithAstropy, DirectionsOfEachFormOfAWcsAreTheSame) {
     const auto expected = from_spherical<Gcrs>(ra_deg * deg, dec_deg * deg);
     EXPECT_LT(angle_rad(wcs_direction(*wcs, {x, y}), expected), 1e-6 * arcsec + 1e-11) << name;
     // The camera that images so: its pixels agree in the middle of the frame.
-    const CameraView view = view_of(*wcs, image.columns(), image.rows());
+    const CameraView view = view_of(*wcs, image.columns(), image.rows()).value();
     const PixelPosition middle{(image.columns() - 1) / 2.0, (image.rows() - 1) / 2.0};
     const auto v = view.camera_from_gcrs * wcs_direction(*wcs, middle + PixelPosition{2, 3});
     if (name == "crota") continue;  // pixels are not square
