@@ -31,6 +31,12 @@ FusionConfig read_fusion(const YamlValue& value) {
   s.tentative_s = map.number_or("tentative_s", s.tentative_s, Bounds::between(1.0, 1e6));
   s.start_window_s = map.number_or("start_window_s", s.start_window_s, Bounds::between(1.0, 600.0));
   s.simultaneous_s = map.number_or("simultaneous_s", s.simultaneous_s, Bounds::between(1e-3, 10.0));
+  s.arc_window_s = map.number_or("arc_window_s", s.arc_window_s, Bounds::between(10.0, 3600.0));
+  if (const auto least = map.find("arc_exposures")) {
+    s.arc_exposures = int(least->integer(0, 1000));
+    if (s.arc_exposures > 0 && s.arc_exposures < 4)
+      least->fail("must be 0 (one site begins no track) or >= 4");
+  }
   s.acceleration_noise_m2_per_s3 = map.number_or(
       "acceleration_noise_m2_per_s3", s.acceleration_noise_m2_per_s3, Bounds::between(0.0, 1.0));
   if (const auto delay = map.find("cue_delay_ticks"))

@@ -94,6 +94,9 @@ void write_fusion(JsonWriter& json, const FusionConfig& fusion) {
   json.field("false_alarms_per_frame", s.false_alarms_per_frame);
   json.field("lost_after_s", s.lost_after_s).field("tentative_s", s.tentative_s);
   json.field("start_window_s", s.start_window_s).field("simultaneous_s", s.simultaneous_s);
+  if (s.arc_window_s != FusionSettings{}.arc_window_s) json.field("arc_window_s", s.arc_window_s);
+  if (s.arc_exposures != FusionSettings{}.arc_exposures)
+    json.field("arc_exposures", std::int64_t(s.arc_exposures));
   json.field("acceleration_noise_m2_per_s3", s.acceleration_noise_m2_per_s3);
   json.field("cue_delay_ticks", std::int64_t(fusion.cue_delay_ticks));
   json.key("not_in_catalogue").begin_array();

@@ -95,9 +95,26 @@ PointCued read_cued(const YamlValue& value) {
   c.slew_deg_per_s = map.number_or("slew_deg_per_s", c.slew_deg_per_s, rate);
   c.slew_deg_per_s2 =
       map.number_or("slew_deg_per_s2", c.slew_deg_per_s2, Bounds::between(0.0, 1000.0));
+  if (const auto mount = map.find("mount"))
+    c.mount = mount->choice({"great_circle", "altazimuth"}) == "altazimuth"
+                  ? MountKind::altazimuth
+                  : MountKind::great_circle;
+  for (const char* key : {"azimuth_deg_per_s", "azimuth_deg_per_s2", "azimuth_range_deg"})
+    if (const auto axis = map.find(key); axis && c.mount != MountKind::altazimuth)
+      axis->fail("is of an altazimuth mount; set mount: altazimuth", false);
+  c.azimuth_deg_per_s = map.number_or("azimuth_deg_per_s", c.azimuth_deg_per_s, rate);
+  c.azimuth_deg_per_s2 =
+      map.number_or("azimuth_deg_per_s2", c.azimuth_deg_per_s2, Bounds::between(0.0, 1000.0));
+  if (const auto range = map.find("azimuth_range_deg")) {
+    const auto limits = range->numbers(2, Bounds::between(-3600.0, 3600.0));
+    if (!(limits[0] < limits[1])) range->fail("must rise");
+    c.azimuth_range_deg = {limits[0], limits[1]};
+  }
   c.settle_s = map.number_or("settle_s", c.settle_s, Bounds::between(0.0, 3600.0));
   c.least_elevation_deg =
       map.number_or("least_elevation_deg", c.least_elevation_deg, Bounds::between(0.0, 89.0));
+  c.greatest_elevation_deg = map.number_or("greatest_elevation_deg", c.greatest_elevation_deg,
+                                           Bounds::between(c.least_elevation_deg, 90.0));
   c.sun_exclusion_deg =
       map.number_or("sun_exclusion_deg", c.sun_exclusion_deg, Bounds::between(0.0, 180.0));
   c.moon_exclusion_deg =
@@ -255,6 +272,13 @@ struct PointingWriter {
     json.begin_object().key("cued").begin_object().key("park");
     (*this)(p.park);
     json.field("slew_deg_per_s", c.slew_deg_per_s).field("slew_deg_per_s2", c.slew_deg_per_s2);
+    if (c.mount == MountKind::altazimuth) {
+      json.field("mount", "altazimuth").field("azimuth_deg_per_s", c.azimuth_deg_per_s);
+      json.field("azimuth_deg_per_s2", c.azimuth_deg_per_s2).key("azimuth_range_deg");
+      json.begin_array().value(c.azimuth_range_deg[0]).value(c.azimuth_range_deg[1]).end_array();
+    }
+    if (c.greatest_elevation_deg < 90)
+      json.field("greatest_elevation_deg", c.greatest_elevation_deg);
     json.field("settle_s", c.settle_s).field("least_elevation_deg", c.least_elevation_deg);
     json.field("sun_exclusion_deg", c.sun_exclusion_deg);
     json.field("moon_exclusion_deg", c.moon_exclusion_deg).field("exposures", c.exposures);

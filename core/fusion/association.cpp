@@ -93,6 +93,7 @@ void FusionBody::associate(Scene& scene, const SensorFrame& frame,
   const double p = settings_.detection_probability;
   const double alone = 2 * std::log(false_per_sr * (1 - p) / p);
   std::vector<Pairing> pairs;
+  std::vector<double> likelihoods;  // of each pair: the density with which it shows a source [1/sr]
   std::vector<std::pair<SimTime, PredictedDirection>> known(all.size());
   std::vector<signed char> lit(all.size(), -1);
   const auto is_lit = [&](std::size_t k) {
@@ -117,9 +118,16 @@ void FusionBody::associate(Scene& scene, const SensorFrame& frame,
       if (!(found.d2 < settings_.gate_d2)) continue;
       const double spread = std::log((2 * pi) * (2 * pi) * found.covariance_rad2.determinant());
       pairs.push_back({row, k, found.d2 + spread + alone});
+      const double exists = all[k].track ? all[k].track->existence() : 1.0;
+      likelihoods.push_back(p * exists * std::exp(-(found.d2 + spread) / 2));
     }
   }
   const std::vector<std::size_t> columns = assign(frame.sources.size(), all.size(), pairs);
+  // What else may have made a source: a false alarm, or another object (Musicki & La Scala 2008,
+  // linear multitarget). Where objects are close, a pair is no proof.
+  std::vector<double> others(frame.sources.size(), false_per_sr);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (columns[pairs[i].row] != pairs[i].column) others[pairs[i].row] += likelihoods[i];
 
   std::vector<bool> found(all.size(), false);
   for (std::size_t row = 0; row < columns.size(); ++row) {
@@ -129,7 +137,7 @@ void FusionBody::associate(Scene& scene, const SensorFrame& frame,
       Candidate& candidate = all[columns[row]];
       const bool fresh = !candidate.track;
       track = fresh ? begin_catalogued(candidate.object, source.observation.time) : candidate.track;
-      if (track && track->take(source.observation, source.magnitude, p, false_per_sr)) {
+      if (track && track->take(source.observation, source.magnitude, p, others[row])) {
         found[columns[row]] = true;
         if (track->place_roughly(forces_, scene.time) && fresh) scene.placed.push_back(track);
       } else {

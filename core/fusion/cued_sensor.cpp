@@ -18,12 +18,6 @@ std::uint32_t CuedSensor::first_frame_from(SimTime t) const {
   return after <= 0 ? 1 : std::uint32_t((after + every - 1) / every + 1);
 }
 
-double slew_s(double angle_rad, const CueSettings& mount) {
-  const double angle = angle_rad / deg, v = mount.slew_deg_per_s, a = mount.slew_deg_per_s2;
-  if (!(a > 0)) return angle / v;
-  return angle < v * v / a ? 2 * std::sqrt(angle / a) : angle / v + v / a;
-}
-
 double probability_in_circle(const Eigen::Matrix2d& covariance, double radius) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance, Eigen::EigenvaluesOnly);
   const double shorter = std::sqrt(std::max(0.0, axes.eigenvalues()[0]));

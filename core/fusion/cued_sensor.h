@@ -24,10 +24,6 @@ struct CuedSensor {
   std::uint32_t first_frame_from(SimTime t) const;
 };
 
-/// Time of a turn along the great circle from rest to rest [s], without settling: at the mount's
-/// acceleration up to its speed, and down.
-double slew_s(double angle_rad, const CueSettings& mount);
-
 /// Probability that a normal deviate of two dimensions about 0 falls within `radius`, in its units.
 /// Integrated along the longer axis; error below 1e-6.
 double probability_in_circle(const Eigen::Matrix2d& covariance, double radius);

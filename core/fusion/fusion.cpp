@@ -33,6 +33,7 @@ FusionBody::FusionBody(std::vector<MeanElements> catalogue, const Clock& clock, 
       filter_(filter_settings(settings)),
       catalogue_(std::move(catalogue), clock, settings),
       start_(forces_, settings),
+      arcs_(forces_, settings),
       track_of_(catalogue_.size(), nullptr) {}
 
 FusionTick FusionBody::step(SimTime time, std::vector<SensorFrame> frames) {
@@ -55,6 +56,7 @@ FusionTick FusionBody::step(SimTime time, std::vector<SensorFrame> frames) {
     loose.insert(loose.end(), scene.loose.begin(), scene.loose.end());
   }
   begin_unknown(loose);
+  if (settings_.arc_exposures > 0) begin_from_arcs(loose);
   age(time);
 
   FusionTick out;
@@ -129,32 +131,50 @@ void FusionBody::begin_unknown(const std::vector<LooseSource>& loose) {
       });
     };
     if (!std::ranges::all_of(orbit.sources, is_loose)) continue;  // another took it
-    if (is_known(orbit.fit.estimate)) continue;
-    auto track = std::make_unique<LiveTrack>(
-        next_id_, OrbitFilter(forces_, orbit.fit.estimate, filter_), std::nullopt);
-    std::vector<std::string> taken;
-    for (const LooseSource& s : orbit.sources) {
-      const AngleObservation& seen = s.source.observation;
-      taken.push_back(seen.detection_id);
-      track->associated.push_back(seen.detection_id);
-      track->last_seen = std::max(track->last_seen, seen.time);
-      track->brightness_sum +=
-          s.source.magnitude -
-          5 * std::log10(norm(orbit.fit.estimate.state.position_m - seen.sensor_m) / 1e6);
-      ++track->detections;
-    }
-    take_rest(*track, start_.loose(), taken);
-    start_.forget(taken);
-    tracks_.push_back(std::move(track));
-    ++next_id_;
+    if (!is_known(orbit.fit.estimate)) begin(orbit, settings_.confirm_unknown);
   }
+}
+
+void FusionBody::begin_from_arcs(const std::vector<LooseSource>& loose) {
+  std::vector<LooseSource> left;
+  for (const LooseSource& s : loose)
+    if (std::ranges::none_of(tracks_, [&](const auto& track) {
+          return std::ranges::find(track->associated, s.source.observation.detection_id) !=
+                 track->associated.end();
+        }))
+      left.push_back(s);
+  for (const StartedOrbit& orbit : arcs_.add(left))
+    if (!is_known(orbit.fit.estimate))
+      begin(orbit, int(orbit.sources.size()) + settings_.confirm_arc);
+}
+
+void FusionBody::begin(const StartedOrbit& orbit, int least_detections) {
+  auto track = std::make_unique<LiveTrack>(
+      next_id_, OrbitFilter(forces_, orbit.fit.estimate, filter_), std::nullopt);
+  track->least_detections = least_detections;
+  std::vector<std::string> taken;
+  for (const LooseSource& s : orbit.sources) {
+    const AngleObservation& seen = s.source.observation;
+    taken.push_back(seen.detection_id);
+    track->associated.push_back(seen.detection_id);
+    track->last_seen = std::max(track->last_seen, seen.time);
+    track->brightness_sum +=
+        s.source.magnitude -
+        5 * std::log10(norm(orbit.fit.estimate.state.position_m - seen.sensor_m) / 1e6);
+    ++track->detections;
+  }
+  take_rest(*track, start_.loose(), taken);
+  start_.forget(taken);
+  arcs_.forget(taken);
+  tracks_.push_back(std::move(track));
+  ++next_id_;
 }
 
 void FusionBody::age(SimTime time) {
   for (const auto& track : tracks_) {
     const double unseen_s = (time - track->last_seen).seconds();
     const bool tentative = track->status == TrackStatus::tentative;
-    const int wanted = track->object ? settings_.confirm_catalogued : settings_.confirm_unknown;
+    const int wanted = track->object ? settings_.confirm_catalogued : track->least_detections;
     if (track->existence() < gone ||
         unseen_s > (tentative ? settings_.tentative_s : settings_.lost_after_s)) {
       track->status = TrackStatus::lost;

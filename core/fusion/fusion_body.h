@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/fusion/arc_start.h"
 #include "core/fusion/catalogue_prediction.h"
 #include "core/fusion/fusion.h"
 #include "core/fusion/live_track.h"
@@ -35,6 +36,8 @@ class FusionBody {
                                const AngleObservation& observation) const;
   LiveTrack* begin_catalogued(std::size_t object, SimTime seen);
   void begin_unknown(const std::vector<LooseSource>& loose);
+  void begin_from_arcs(const std::vector<LooseSource>& loose);
+  void begin(const StartedOrbit& orbit, int least_detections);
   bool is_known(const OrbitEstimate& estimate) const;
   void take_rest(LiveTrack& track, const std::vector<LooseSource>& loose,
                  std::vector<std::string>& taken);
@@ -46,6 +49,7 @@ class FusionBody {
   FilterSettings filter_;
   CataloguePrediction catalogue_;
   TrackStart start_;
+  ArcStart arcs_;
   std::vector<std::unique_ptr<LiveTrack>> tracks_;  // by id
   std::vector<LiveTrack*> track_of_;                // of each catalogued object, null: none
   std::uint32_t next_id_ = 1;

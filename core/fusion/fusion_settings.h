@@ -16,9 +16,12 @@ struct FusionSettings {
   double tentative_s = 120.0;    // likewise of a tentative one
   double start_window_s = 60.0;  // between the first and the last detection that start a track
   double simultaneous_s = 0.5;   // between detections of two sites that give a position
+  double arc_window_s = 240.0;   // likewise of an arc that one site alone sees
+  int arc_exposures = 4;         // least of such an arc, >= 4; 0: one site begins nothing
   double acceleration_noise_m2_per_s3 = 1e-6;
   int confirm_catalogued = 3;  // detections that confirm a track of a catalogued object
   int confirm_unknown = 6;     // and one of another, which begins with four
+  int confirm_arc = 4;         // more than it began with, of one that one site began
 };
 
 }  // namespace dmise

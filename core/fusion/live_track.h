@@ -16,6 +16,7 @@ struct LiveTrack {
   std::uint32_t id;
   OrbitFilter filter;
   std::optional<std::size_t> object;  // index in the catalogue
+  int least_detections = 0;           // that confirm it
   TrackStatus status = TrackStatus::tentative;
   double log_odds = 0.0;  // of its existence
   int detections = 0;
@@ -36,8 +37,8 @@ struct LiveTrack {
   /// Bound of the error of `rough` [m], one sigma.
   double rough_sigma_m(double acceleration_noise_m2_per_s3) const;
 
-  /// Takes a detection into the orbit. `false_per_sr` is the density of false ones. False, and
-  /// nothing changed, if the filter refuses it.
+  /// Takes a detection into the orbit. `false_per_sr` is the density of what else may have made it.
+  /// False, and nothing changed, if the filter refuses it.
   bool take(const AngleObservation& observation, double magnitude, double detection_probability,
             double false_per_sr);
   /// A look with this probability of detection found nothing.

@@ -40,13 +40,17 @@ Vec<Gcrs> line_to(const OrbitState& state, const Vec<Gcrs>& sensor_m) {
 bool may_look(const CueSky& sky, const CueSettings& cue, const Place& place,
               const OrbitState& state) {
   const Vec<Gcrs> line = line_to(state, place.sensor_m), direction = unit(line);
-  if ((place.enu_from_gcrs * direction).z < std::sin(cue.least_elevation_deg * deg)) return false;
+  const double height = (place.enu_from_gcrs * direction).z;
+  if (height < std::sin(cue.least_elevation_deg * deg) ||
+      (cue.greatest_elevation_deg < 90 && height > std::sin(cue.greatest_elevation_deg * deg)))
+    return false;
   if (angle_rad(direction, sky.bodies.sun_m - place.sensor_m) < cue.sun_exclusion_deg * deg ||
       angle_rad(direction, sky.bodies.moon_m - place.sensor_m) < cue.moon_exclusion_deg * deg)
     return false;
   const Vec<Gcrs> across =
       state.velocity_m_per_s - direction * dot(state.velocity_m_per_s, direction);
-  if (norm(across) / norm(line) > cue.slew_deg_per_s * deg) return false;
+  if (cue.mount == MountKind::great_circle && norm(across) / norm(line) > cue.slew_deg_per_s * deg)
+    return false;
   return sky.shadow.sunlit_fraction(state.position_m) >= least_lit;
 }
 
@@ -79,7 +83,7 @@ CueSky::CueSky(const Clock& clock, SimTime time)
       shadow(bodies.sun_m, oblate_earth(earth)) {}
 
 double rough_rate(const CueSky& sky, const CuedSensor& sensor, const CueTarget& target,
-                  const Vec<Enu>& from, SimTime start) {
+                  const MountPosition& from, SimTime start) {
   const SimTime t = start + sim_seconds(sensor.cue.settle_s);
   const OrbitState& known = target.estimate.state;
   const double dt_s = (t - known.time).seconds(), r2 = dot(known.position_m, known.position_m);
@@ -94,29 +98,40 @@ double rough_rate(const CueSky& sky, const CuedSensor& sensor, const CueTarget& 
   const Eigen::Matrix3d spread = p.topLeftCorner<3, 3>() + dt_s * dt_s * p.block<3, 3>(3, 3);
   const Eigen::Matrix<double, 2, 3> rows = angle_rows(line) / (sensor.cue.sigma_arcsec * arcsec);
   const Eigen::Matrix2d seen = Eigen::Matrix2d::Identity() + rows * spread * rows.transpose();
-  const double seconds =
-      slew_s(angle_rad(from, direction), sensor.cue) + sensor.cue.settle_s + sensor.cadence_s;
+  const auto ways = slews_to(sensor.cue, from, direction);
+  if (ways.empty()) return 0.0;
+  const double seconds = ways.front().seconds + sensor.cue.settle_s + sensor.cadence_s;
   return target.existence *
          chance(target.magnitude, norm(line), sensor.cue.limiting_magnitude, 1.0) * 0.5 *
          std::log(seen.determinant()) / seconds;
 }
 
-std::optional<ObservationPlan> plan_observation(const ForceModel& forces, const CueSky& sky,
-                                                const CuedSensor& sensor, const CueTarget& target,
-                                                const Vec<Enu>& from, SimTime start, SimTime last,
-                                                double best_detection_probability) {
+namespace {
+
+/// A plan by one of the ways to the target, by their order; empty also if there are not so many.
+std::optional<ObservationPlan> plan_by(std::size_t way, const ForceModel& forces, const CueSky& sky,
+                                       const CuedSensor& sensor, const CueTarget& target,
+                                       const MountPosition& from, SimTime start, SimTime last,
+                                       double best_detection_probability) {
   const CueSettings& cue = sensor.cue;
   ObservationPlan plan{.start = start, .on_target = start + sim_seconds(cue.settle_s)};
+  const auto direction_of = [](const Place& place, const OrbitState& state) {
+    return place.enu_from_gcrs * unit(line_to(state, place.sensor_m));
+  };
   // Where the target is when the sensor has turned to it.
   OrbitState state = target.estimate.state;
+  MountPosition mount;
   bool settled = false;
   for (int turn = 0; turn < most_turns && !settled; ++turn) {
     const auto moved = propagate(forces, state, plan.on_target, propagation);
     if (!moved) return std::nullopt;
     state = *moved;
-    const Place place = place_of(sky, sensor, plan.on_target);
-    plan.slew_rad = angle_rad(from, place.enu_from_gcrs * unit(line_to(state, place.sensor_m)));
-    plan.slew_s = slew_s(plan.slew_rad, cue) + cue.settle_s;
+    const auto ways =
+        slews_to(cue, from, direction_of(place_of(sky, sensor, plan.on_target), state));
+    if (ways.size() <= way) return std::nullopt;
+    mount = ways[way].to;
+    plan.slew_rad = ways[way].angle_rad;
+    plan.slew_s = ways[way].seconds + cue.settle_s;
     const SimTime ready = start + sim_seconds(plan.slew_s);
     settled = (ready - plan.on_target).seconds() < settled_within_s;
     plan.on_target = std::max(plan.on_target, ready);
@@ -130,6 +145,7 @@ std::optional<ObservationPlan> plan_observation(const ForceModel& forces, const 
   plan.at = *at;
   Matrix6 transition = Matrix6::Identity();
   OrbitState seen = target.estimate.state;
+  SimTime followed_to = plan.on_target;
   for (int n = 0; n < cue.exposures; ++n) {
     const SimTime begins = sensor.exposure_start(plan.first_frame + std::uint32_t(n));
     if (begins + exposure > last) break;
@@ -137,10 +153,24 @@ std::optional<ObservationPlan> plan_observation(const ForceModel& forces, const 
     if (!step) break;
     const Place place = place_of(sky, sensor, begins + half);
     if (!may_look(sky, cue, place, step->state)) break;
+    const Vec<Enu> direction = direction_of(place, step->state);
+    // Begin and end of the exposure tell how fast the axes turn in it.
+    std::optional<MountPosition> follows = mount;
+    for (const SimTime t : {begins, begins + half, begins + exposure}) {
+      if (cue.mount == MountKind::great_circle) break;
+      OrbitState there = step->state;
+      there.position_m = there.position_m + there.velocity_m_per_s * (t - begins - half).seconds();
+      const double seconds = std::max(0.0, (t - followed_to).seconds());
+      follows = followed(cue, *follows, direction_of(place_of(sky, sensor, t), there), seconds);
+      if (!follows) break;
+      followed_to = t;
+    }
+    if (!follows) break;
+    mount = *follows;
     seen = step->state;
     transition = step->transition.topLeftCorner<6, 6>() * transition;
     plan.information += information_at(seen, transition, place.sensor_m, cue.sigma_arcsec * arcsec);
-    plan.direction_at_end = place.enu_from_gcrs * unit(line_to(seen, place.sensor_m));
+    plan.at_end = {direction, mount.azimuth_rad};
     plan.end = begins + exposure;
     ++plan.exposures;
     if (n > 0) continue;
@@ -158,6 +188,22 @@ std::optional<ObservationPlan> plan_observation(const ForceModel& forces, const 
   }
   if (plan.exposures == 0) return std::nullopt;
   return plan;
+}
+
+constexpr std::size_t most_ways = 2;  // if the faster leads to a limit of the axes
+
+}  // namespace
+
+std::optional<ObservationPlan> plan_observation(const ForceModel& forces, const CueSky& sky,
+                                                const CuedSensor& sensor, const CueTarget& target,
+                                                const MountPosition& from, SimTime start,
+                                                SimTime last, double best_detection_probability) {
+  const std::size_t ways = sensor.cue.mount == MountKind::great_circle ? 1 : most_ways;
+  for (std::size_t way = 0; way < ways; ++way)
+    if (auto plan = plan_by(way, forces, sky, sensor, target, from, start, last,
+                            best_detection_probability))
+      return plan;
+  return std::nullopt;
 }
 
 Matrix6 information_of(const ForceModel& forces, const CueSky& sky, const CuedSensor& sensor,

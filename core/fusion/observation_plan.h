@@ -7,6 +7,7 @@
 
 #include "core/frames/earth_orientation.h"
 #include "core/fusion/cued_sensor.h"
+#include "core/fusion/mount.h"
 #include "core/products/task.h"
 #include "core/sky/shadow.h"
 #include "core/sky/sun_moon.h"
@@ -46,23 +47,23 @@ struct ObservationPlan {
   double in_field = 0.0, detection_probability = 0.0, sigma_rad = 0.0;
   Matrix6 information = Matrix6::Zero();  // if all exposures detect it
   OrbitEstimate at;                       // on_target
-  Vec<Enu> direction_at_end;
+  MountPosition at_end;
 
   double seconds() const { return (end - start).seconds(); }
 };
 
 /// What a target at the epoch of `target.estimate` would be seen like by a sensor that stands at
-/// `from` until `start`. Nothing if it can't be observed: below the elevation, in the shadow,
+/// `from` until `start`. Nothing if it can't be observed: out of reach of the mount, in the shadow,
 /// near the Sun or the Moon, faster than the mount, or after `last`.
 std::optional<ObservationPlan> plan_observation(const ForceModel& forces, const CueSky& sky,
                                                 const CuedSensor& sensor, const CueTarget& target,
-                                                const Vec<Enu>& from, SimTime start, SimTime last,
-                                                double best_detection_probability);
+                                                const MountPosition& from, SimTime start,
+                                                SimTime last, double best_detection_probability);
 
 /// About the rate at which a plan would tell [nats/s], for most targets need no plan: the target
 /// by two-body motion, one exposure. 0 below the horizon.
 double rough_rate(const CueSky& sky, const CuedSensor& sensor, const CueTarget& target,
-                  const Vec<Enu>& from, SimTime start);
+                  const MountPosition& from, SimTime start);
 
 /// The information of exposures that a task has, about the target at the epoch of `estimate`,
 /// times their probability of detection. Zero if the path can't be integrated.

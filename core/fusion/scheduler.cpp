@@ -3,19 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/units.h"
-
 namespace dmise {
 namespace {
 
 constexpr std::size_t most_plans = 24;  // of a sensor at once: the best by `rough_rate`
 constexpr int heard_after_ticks = 2;
 constexpr double path_margin_s = 10.0;  // before and after exposures, for clocks that are wrong
-
-Vec<Enu> direction_of(double azimuth_deg, double elevation_deg) {
-  const double a = azimuth_deg * deg, e = elevation_deg * deg;
-  return {std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e)};
-}
 
 }  // namespace
 
@@ -27,7 +20,7 @@ Scheduler::Scheduler(const Clock& clock, SimTime reference, std::vector<CuedSens
       best_detection_probability_(best_detection_probability) {
   std::ranges::sort(sensors, {}, &CuedSensor::name);
   for (CuedSensor& sensor : sensors) {
-    const Vec<Enu> park = direction_of(sensor.park_azimuth_deg, sensor.park_elevation_deg);
+    const MountPosition park = mount_position(sensor.park_azimuth_deg, sensor.park_elevation_deg);
     mounts_.push_back({std::move(sensor), park, {}});
   }
 }
@@ -42,7 +35,7 @@ std::vector<Scheduler::Option> Scheduler::options(const CueSky& sky, const Mount
                                                   std::span<const CueTarget> targets) const {
   std::vector<std::pair<double, const CueTarget*>> rough;
   for (const CueTarget& target : targets)
-    if (const double rate = rough_rate(sky, mount.sensor, target, mount.direction, start); rate > 0)
+    if (const double rate = rough_rate(sky, mount.sensor, target, mount.position, start); rate > 0)
       rough.push_back({rate, &target});
   std::ranges::sort(rough, [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first > b.first : a.second->track < b.second->track;
@@ -50,7 +43,7 @@ std::vector<Scheduler::Option> Scheduler::options(const CueSky& sky, const Mount
   if (rough.size() > most_plans) rough.resize(most_plans);
   std::vector<Option> out;
   for (const auto& [rate, target] : rough)
-    if (auto plan = plan_observation(forces_, sky, mount.sensor, *target, mount.direction, start,
+    if (auto plan = plan_observation(forces_, sky, mount.sensor, *target, mount.position, start,
                                      last_, best_detection_probability_))
       out.push_back({target, std::move(*plan), 0.0});
   return out;
@@ -142,7 +135,7 @@ std::vector<Task> Scheduler::step(SimTime now, SimTime begin, SimTime next,
     const auto first =
         std::ranges::max_element(free, {}, [](const Free& f) { return f.options.front().rate(); });
     Task task = task_of(*first->mount, first->options, now);
-    first->mount->direction = first->options.front().plan.direction_at_end;
+    first->mount->position = first->options.front().plan.at_end;
     first->mount->free = task.end;
     free.erase(first);
     pending_.push_back(task);

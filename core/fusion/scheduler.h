@@ -31,8 +31,8 @@ class Scheduler {
  private:
   struct Mount {
     CuedSensor sensor;
-    Vec<Enu> direction;  // where it stands
-    SimTime free;        // from then on
+    MountPosition position;  // where it stands
+    SimTime free;            // from then on
   };
   struct Option {
     const CueTarget* target = nullptr;

@@ -47,4 +47,11 @@ Outcome<BatchFit> one_arc_orbit(const ForceModel& forces,
                                 std::span<const AngleObservation> observations,
                                 const BatchSettings& batch = {}, const OrbitLimits& limits = {});
 
+/// The same, all orbits within the limits that candidates lead to, by growing chi-square; one may
+/// be there several times. Residuals are in order of time.
+Outcome<std::vector<BatchFit>> one_arc_orbits(const ForceModel& forces,
+                                              std::span<const AngleObservation> observations,
+                                              const BatchSettings& batch = {},
+                                              const OrbitLimits& limits = {});
+
 }  // namespace dmise

@@ -9,8 +9,6 @@ namespace dmise {
 
 namespace {
 
-using Result = Outcome<BatchFit>;
-
 /// Candidates that are fitted, out of all that were found.
 constexpr std::size_t most_fits = 8;
 
@@ -72,11 +70,11 @@ void add_region(const std::vector<AngleObservation>& sorted, const OrbitLimits& 
   for (const AdmissiblePoint& point : *region) out.push_back(point.state);
 }
 
-}  // namespace
-
-Outcome<BatchFit> one_arc_orbit(const ForceModel& forces,
-                                std::span<const AngleObservation> observations,
-                                const BatchSettings& batch, const OrbitLimits& limits) {
+/// Fits of the candidates, within the limits; none: the reason. Residuals are in order of time.
+Outcome<std::vector<BatchFit>> fits_of(const ForceModel& forces,
+                                       std::span<const AngleObservation> observations,
+                                       const BatchSettings& settings, const OrbitLimits& limits) {
+  using Result = Outcome<std::vector<BatchFit>>;
   if (observations.size() < 3) return Result::refused("fewer than three observations");
   std::vector<AngleObservation> sorted(observations.begin(), observations.end());
   for (const AngleObservation& o : sorted)
@@ -105,22 +103,47 @@ Outcome<BatchFit> one_arc_orbit(const ForceModel& forces,
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.cost < b.cost; });
   if (candidates.size() > most_fits) candidates.resize(most_fits);
+  std::vector<BatchFit> fits;
+  for (const Candidate& candidate : candidates) {
+    auto fit = fit_orbit(forces, sorted, candidate.state, settings);
+    if (!fit)
+      reason = fit.reason;
+    else if (within(limits, fit->estimate.state))
+      fits.push_back(std::move(*fit));
+  }
+  if (fits.empty())
+    return Result::refused(reason.empty() ? "no candidate fits the observations" : reason);
+  return fits;
+}
+
+}  // namespace
+
+Outcome<std::vector<BatchFit>> one_arc_orbits(const ForceModel& forces,
+                                              std::span<const AngleObservation> observations,
+                                              const BatchSettings& batch,
+                                              const OrbitLimits& limits) {
   BatchSettings settings = batch;
   settings.prior.reset();
-  std::optional<BatchFit> best;
-  for (const Candidate& candidate : candidates) {
-    const auto fit = fit_orbit(forces, sorted, candidate.state, settings);
-    if (!fit) {
-      reason = fit.reason;
-      continue;
-    }
-    if (!within(limits, fit->estimate.state)) continue;
-    const auto taken = std::count(fit->taken.begin(), fit->taken.end(), true);
+  auto fits = fits_of(forces, observations, settings, limits);
+  if (fits) std::ranges::stable_sort(*fits, {}, &BatchFit::chi2);
+  return fits;
+}
+
+Outcome<BatchFit> one_arc_orbit(const ForceModel& forces,
+                                std::span<const AngleObservation> observations,
+                                const BatchSettings& batch, const OrbitLimits& limits) {
+  using Result = Outcome<BatchFit>;
+  BatchSettings settings = batch;
+  settings.prior.reset();
+  const auto fits = fits_of(forces, observations, settings, limits);
+  if (!fits) return Result::refused(fits.reason);
+  const BatchFit* best = nullptr;
+  for (const BatchFit& fit : *fits) {
+    const auto taken = std::count(fit.taken.begin(), fit.taken.end(), true);
     if (!best || taken > std::count(best->taken.begin(), best->taken.end(), true) ||
-        fit->chi2 < best->chi2)
-      best = *fit;
+        fit.chi2 < best->chi2)
+      best = &fit;
   }
-  if (!best) return Result::refused(reason.empty() ? "no candidate fits the observations" : reason);
   // Six sigma of the chi-square: what no orbit explains is refused.
   const double degrees = std::max(best->degrees_of_freedom, 1);
   if (!(batch.huber_sigma > 0) && best->chi2 > degrees + 6 * std::sqrt(2 * degrees) + 12)

@@ -7,6 +7,7 @@
 #include "nodes/runtime/node/node.h"
 #include "nodes/runtime/observability/metrics.h"
 #include "nodes/runtime/program/program.h"
+#include "sensors/node/kept_files.h"
 #include "sensors/pipeline/make_sensor.h"
 #include "sensors/pipeline/recorded_plans.h"
 #include "sensors/pipeline/stage_times.h"
@@ -14,18 +15,18 @@
 namespace {
 
 /// Adds up the stages of frames for the metrics of this process, if it serves any.
-void serve_times_of(dmise::SensorEvaluator& sensor) {
+std::function<void(const dmise::FrameProducts&)> serve_times() {
   dmise::Metrics* metrics = dmise::Metrics::of_process();
-  if (!metrics) return;
-  sensor.when_made([metrics, figures = dmise::FrameFigures(),
-                    factors = dmise::load_cost_factors(dmise::cost_factors_path())](
-                       const dmise::FrameProducts& frame) mutable {
+  if (!metrics) return [](const dmise::FrameProducts&) {};
+  return [metrics, figures = dmise::FrameFigures(),
+          factors = dmise::load_cost_factors(dmise::cost_factors_path())](
+             const dmise::FrameProducts& frame) mutable {
     for (const auto& [stage, time] : dmise::stage_times(frame.plan, frame.times, factors)) {
       figures.stages[stage].predicted_s += time.predicted_s;
       figures.stages[stage].measured_s += time.measured_s;
     }
     metrics->set(figures);
-  });
+  };
 }
 
 }  // namespace
@@ -57,13 +58,18 @@ int main(int argc, char** argv) {
     if (flags.check) return 0;
     if (flags.master.empty()) throw dmise::ConfigError("--master: is required");
     sensor->stop_when([] { return dmise::stop_signal().is_set(); });
-    serve_times_of(*sensor);
+    dmise::KeptFrames kept(flags.name);
+    sensor->when_made([&, times = serve_times()](const dmise::FrameProducts& frame) {
+      times(frame);
+      dmise::keep_frame(frame, scenario.output, out + "/" + flags.name, kept);
+    });
     const auto end = dmise::run_node(*sensor, {.master = flags.master,
                                                .host = flags.host,
                                                .join_within_s = scenario.network.join_within_s,
                                                .stop_within_s = 1.0,
                                                .keys = flags.keys,
                                                .via = flags.via,
+                                               .frames = &kept,
                                                .stop = &dmise::stop_signal()});
     if (!sensor->evaluator().empty()) spdlog::info("drawn by {}", sensor->evaluator());
     if (!sensor->renderer().empty()) spdlog::info("shapes drawn by {}", sensor->renderer());

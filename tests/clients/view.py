@@ -47,21 +47,44 @@ def are_frames(heard, out):
         check(numpy.allclose(at, boresight, atol=0.015), f"astropy's coordinates of the centre {at} are the boresight's")  # half a pixel
 
 
+def last_frames(frames, out):
+    """Numbers of the frames that come to a reader who is slow: five more are made before it asks again."""
+    numbers = []
+    for frame in frames:
+        numbers.append(frame.report.frame)
+        made = out / frame.report.sensor / f"frame-{min(FRAMES, numbers[-1] + 5):06d}.fits"
+        wait_until(made.exists, f"{made.name} of {frame.report.sensor}")
+    return numbers
+
+
 def test(binary, directory):
     out, path, shown = directory / "out", directory / "run.mcap", directory / "shown.rrd"
     with Run(binary, "launch", write_scenario(directory, duration_s=5 * FRAMES), "--out", out) as run:
         announced = out / "logs/master.address"
         address = wait_until(lambda: announced.exists() and announced.read_text().strip(), "the time-master's address")
-        with concurrent.futures.ThreadPoolExecutor(1) as thread:
+        with concurrent.futures.ThreadPoolExecutor(2) as thread:
             recorded = thread.submit(dmise.record, address, path)
-            are_frames(list(dmise.frames(address, "alpha", directory=out)), out)
+            last = thread.submit(lambda: last_frames(dmise.frames(address, "beta", mode="latest"), out))
+            served = dmise.frames(address, "alpha")
+            are_frames(list(served), out)
+            check(not served.lost, "no frame is lost")
             check(run.finish()[0] == 0, f"the run is complete; {recorded.result()}")
+            numbers = last.result()
+            check(numbers[-1] == FRAMES and all(b - a >= 5 for a, b in zip(numbers, numbers[1:-1])),
+                  f"a slow reader gets the last frames of a sensor: {len(numbers)} of {FRAMES}, up to the last")
+    are_frames(list(dmise.frames(address, "alpha", directory=out)), out)  # nobody answers any more
+    check([frame.report.frame for frame in dmise.frames(None, mode="latest", directory=out)] == [FRAMES, FRAMES],
+          "the last of each sensor, of the directory")
+    left = dmise.open_run(out)
+    table = left.detections.to_pandas()
+    check(len(table) == len(left.detections) > 0 and list(table.id) == [d.id for d in left.detections],
+          f"{len(table)} detections as a table of pandas")
     wanted = list(dmise.open_recording(path))
     frames = sum(isinstance(record, dmise.FrameReport) for record in wanted)
     seen = {(record.sensor, record.frame) for record in wanted if isinstance(record, dmise.Detection)}
 
     # A replay waits for the view, which is slow to begin: so all is shown.
-    replay = dmise.Replay(path, speed=float("inf"))
+    replay = dmise.Replay(path, speed=float("inf"), observers=2)  # frames and detections
     playing = threading.Thread(target=replay.run)
     playing.start()
     with Run(sys.executable, ROOT / "clients/python/examples/rerun_view.py", replay.address, "1", out, shown) as view:

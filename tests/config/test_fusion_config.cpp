@@ -107,6 +107,32 @@ TEST(CuedPointing, ReadsItsKeys) {
         << key;
 }
 
+TEST(CuedPointing, ReadsTheAxesOfItsMount) {
+  const auto cue_of = [](const std::string& keys) {
+    const Scenario scenario = scenario_of(scenario_text("{cued: {" + keys + "}}"));
+    return std::get<PointCued>(scenario.sensors[0].pointing).cue;
+  };
+  const CueSettings cue = cue_of(
+      "mount: altazimuth, azimuth_deg_per_s: 8, azimuth_deg_per_s2: 4, azimuth_range_deg: "
+      "[-200, 300], greatest_elevation_deg: 85");
+  EXPECT_EQ(cue.mount, MountKind::altazimuth);
+  EXPECT_EQ(cue.azimuth_deg_per_s, 8);
+  EXPECT_EQ(cue.azimuth_deg_per_s2, 4);
+  EXPECT_EQ(cue.azimuth_range_deg[0], -200);
+  EXPECT_EQ(cue.azimuth_range_deg[1], 300);
+  EXPECT_EQ(cue.greatest_elevation_deg, 85);
+  EXPECT_EQ(cue_of("settle_s: 1").mount, MountKind::great_circle);
+  const auto physics = [](const std::string& keys) {
+    return physics_json(scenario_of(scenario_text("{cued: {" + keys + "}}")));
+  };
+  const std::string usual = physics("mount: altazimuth");
+  EXPECT_EQ(physics("mount: great_circle"), physics("settle_s: 2"));
+  EXPECT_NE(physics("settle_s: 2"), usual);
+  for (const char* key : {"azimuth_deg_per_s: 7", "azimuth_deg_per_s2: 7",
+                          "azimuth_range_deg: [-7, 7]", "greatest_elevation_deg: 77"})
+    EXPECT_NE(physics("mount: altazimuth, " + std::string(key)), usual) << key;
+}
+
 TEST(CuedPointing, NamesWhatIsWrong) {
   const auto refused = [](const std::string& text, const std::string& why) {
     const std::string line = refusal(text);
@@ -117,6 +143,13 @@ TEST(CuedPointing, NamesWhatIsWrong) {
   refused(scenario_text("{cued: {exposures: 0}}"), "pointing.cued.exposures: ");
   refused(scenario_text("{cued: {park: {elevation_deg: 5}}}"), "pointing.cued.park.azimuth_deg: ");
   refused(scenario_text("{cued: {slew_deg_per_ss: 5}}"), "did you mean slew_deg_per_s");
+  refused(scenario_text("{cued: {mount: altazimut}}"), "did you mean altazimuth");
+  refused(scenario_text("{cued: {azimuth_deg_per_s: 5}}"), "set mount: altazimuth");
+  refused(scenario_text("{cued: {mount: altazimuth, azimuth_range_deg: [5, 5]}}"), "must rise");
+  refused(scenario_text("{cued: {least_elevation_deg: 50, greatest_elevation_deg: 40}}"),
+          "greatest_elevation_deg: must be >= 50");
+  refused(scenario_text("{cued: on}", "fusion: {arc_exposures: 3}\n"),
+          "fusion.arc_exposures: must be 0 (one site begins no track) or >= 4, got 3");
   refused(scenario_text("{cued: on, target: X}"), "give one of azimuth_deg");
   refused(scenario_text("{cued: on, tracking: fixed}"), "follows its target or the stars");
   refused(scenario_text("{cued: on}", ""), "sensors[0].pointing.cued: needs fusion");

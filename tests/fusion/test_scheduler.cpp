@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "bench/cue_trial.h"
 #include "core/base/units.h"
@@ -65,18 +66,6 @@ Scheduler scheduler_of(std::vector<CuedSensor> sensors) {
 
 Vec<Gcrs> path_point(const Task& task, std::size_t i) {
   return {task.path_m[3 * i], task.path_m[3 * i + 1], task.path_m[3 * i + 2]};
-}
-
-// Reference: uniform acceleration and speed. 10 deg at 5 deg/s: 2 s; with 2.5 deg/s^2 two seconds
-// more. 1 deg at 4 deg/s^2 does not reach 5 deg/s: 2 sqrt(1 / 4).
-TEST(Scheduler, AMountSlewsWithItsAccelerationAndSpeed) {
-  CueSettings mount{.slew_deg_per_s = 5};
-  EXPECT_NEAR(slew_s(10 * deg, mount), 2.0, 1e-12);
-  mount.slew_deg_per_s2 = 2.5;
-  EXPECT_NEAR(slew_s(10 * deg, mount), 4.0, 1e-12);
-  mount.slew_deg_per_s2 = 4;
-  EXPECT_NEAR(slew_s(1 * deg, mount), 1.0, 1e-12);
-  EXPECT_EQ(slew_s(0.0, mount), 0.0);
 }
 
 // Reference: of a round deviate 1 - exp(-r^2 / 2 s^2); of one without width erf(r / s sqrt 2); for
@@ -141,7 +130,10 @@ TEST(Scheduler, ATaskBeginsAfterTheDelayAndFollowsThePath) {
   EXPECT_EQ(task.given, sim_seconds(60));
   EXPECT_EQ(task.start, sim_seconds(70));
   EXPECT_NEAR((task.on_target - task.start).seconds(), task.slew_s, 2e-3);
-  EXPECT_NEAR(task.slew_s, slew_s(task.slew_rad, telescope().cue) + 2.0, 1e-9);
+  EXPECT_NEAR(
+      task.slew_s,
+      turn_s(task.slew_rad, telescope().cue.slew_deg_per_s, telescope().cue.slew_deg_per_s2) + 2.0,
+      1e-9);
   const CuedSensor sensor = telescope();
   EXPECT_GE(sensor.exposure_start(task.first_frame), task.on_target);
   EXPECT_LT(sensor.exposure_start(task.first_frame - 1), task.on_target);
@@ -212,6 +204,49 @@ TEST(Scheduler, LeavesAloneWhatTheSensorMayNotLookAt) {
   CueTarget doubtful = target(1, 90, 50);
   doubtful.existence = 1e-3;
   EXPECT_TRUE(none(telescope(), doubtful));
+}
+
+// An altazimuth mount: a path that leads over its zenith, or to the end of its azimuth's range, or
+// above its highest elevation, is left to others.
+TEST(Scheduler, KnowsTheLimitsOfTheAxes) {
+  const auto task_of = [](CueSettings cue, const CueTarget& t) -> std::optional<Task> {
+    CuedSensor sensor = telescope();
+    sensor.cue = cue;
+    sensor.cue.exposures = 8;
+    Scheduler scheduler = scheduler_of({sensor});
+    const CueTarget targets[] = {t};
+    auto tasks = tasks_of(scheduler, targets);
+    if (tasks.empty()) return std::nullopt;
+    return tasks[0];
+  };
+  const CueSettings free = telescope().cue;
+  CueSettings altazimuth = free;
+  altazimuth.mount = MountKind::altazimuth;
+  // Northwards, from 25 deg above the southern horizon: within half a minute far from the zenith.
+  const CueTarget south = target(1, 180, 25), east = target(1, 90, 50), over = target(1, 180, 75);
+  const auto easy = task_of(altazimuth, south);
+  ASSERT_TRUE(easy);
+  EXPECT_EQ(easy->exposures, 8u);
+  ASSERT_TRUE(task_of(altazimuth, east));
+  ASSERT_TRUE(task_of(free, over));
+  EXPECT_EQ(task_of(free, over)->exposures, 8u);
+  altazimuth.azimuth_deg_per_s = 1;  // near the zenith the azimuth turns by 180 deg
+  const auto through = task_of(altazimuth, over);
+  EXPECT_TRUE(!through || through->exposures < 8u);
+  ASSERT_TRUE(task_of(altazimuth, south));
+  EXPECT_GE(task_of(altazimuth, east)->slew_s, 90.0 - 30.0);  // from the south at 1 deg/s
+
+  CueSettings low = free;
+  low.greatest_elevation_deg = 45;
+  EXPECT_TRUE(task_of(low, south));
+  EXPECT_FALSE(task_of(low, over));
+
+  altazimuth = free;
+  altazimuth.mount = MountKind::altazimuth;
+  altazimuth.azimuth_range_deg = {100, 270};
+  EXPECT_TRUE(task_of(altazimuth, south));
+  const auto to_the_end = task_of(altazimuth, east);  // it goes north
+  EXPECT_TRUE(!to_the_end || to_the_end->exposures < 8u);
 }
 
 // A prediction that is wider than the field tells less than its information would.

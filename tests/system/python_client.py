@@ -6,7 +6,9 @@
 import asyncio
 import collections
 import dataclasses
+import os
 import pathlib
+import signal
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "build/python"))
@@ -88,11 +90,44 @@ def says_failure(binary, directory):
     check(cause, f"a run that is interrupted raises RunFailed: {cause}")
 
 
+class Lossy(dmise.Subscription):
+    """Loses every fifth message of alpha's frames on its way, and forty of beta's in a row: more than beta keeps."""
+
+    def _accept(self, message):
+        alpha, number = message.topic == "frame/alpha", message.sequence
+        if number and (alpha and number % 5 == 0 and number < 90 or not alpha and 15 <= number < 55):
+            return
+        super()._accept(message)
+
+
+def fetches_what_it_missed(binary, directory):
+    out = directory / "restart"
+    scenario = write_scenario(directory, duration_s=500, on_silent_node="restart", silent_after_s=1.0, network=", real_time: 60")
+    heard = collections.defaultdict(list)
+    with Run(binary, "launch", scenario, "--out", out) as run:
+        subscription, killed = Lossy(address_of(out), ("frame/",)), False
+        for report in subscription:
+            heard[report.sensor].append(report.frame)
+            if not killed and min(len(heard["alpha"]), len(heard["beta"])) > 5:
+                killed = run.node("broker")
+                os.kill(killed, signal.SIGKILL)
+        code, _ = run.finish()
+        check(code == 0 and killed, f"the run goes on with another broker {run.stderr[-300:] if code else ''}")
+    alpha, beta = heard["alpha"], heard["beta"]
+    check(alpha == list(range(alpha[0], alpha[-1] + 1)) and len(alpha) > 80,
+          f"frames {alpha[0]} to {alpha[-1]} come in order, over the death of the broker: lost ones are fetched")
+    missing = beta[-1] + 1 - beta[0] - len(beta)
+    counted = sum(len(gap) for gap in subscription.gaps)
+    check(beta == sorted(set(beta)) and {gap.topic for gap in subscription.gaps} == {"frame/beta"} and missing == counted > 20,
+          f"what is no longer kept is counted: {missing} frames are missing, {counted} messages in gaps")
+
+
 def test(binary, directory):
     every_field()
     hears_a_run(binary, directory)
     hears_in_asyncio(binary, directory)
     says_failure(binary, directory)
+    fetches_what_it_missed(binary, directory)
 
 
 if __name__ == "__main__":

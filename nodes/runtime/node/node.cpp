@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "nodes/runtime/master_link/master_link.h"
 #include "nodes/runtime/master_link/run_result.h"
+#include "nodes/runtime/node/frame_server.h"
 #include "nodes/runtime/node/node_inputs.h"
 #include "nodes/runtime/observability/metrics.h"
 #include "nodes/runtime/process/json_log.h"
@@ -26,6 +27,7 @@ constexpr milliseconds probe_interval{10};  // at first; twice as long each time
 constexpr milliseconds longest_probe_interval{
     320};  // so that probes of hundreds leave time to start
 constexpr milliseconds idle{1000};
+constexpr milliseconds last_answers{1000};  // that readers of frames may wait before they ask
 constexpr milliseconds look_interval{100};  // between checks of connection limits
 
 bool is_direct(const std::string& topic) { return topic.starts_with(truth_prefix); }
@@ -111,6 +113,11 @@ class Node {
       resend->set(zmq::sockopt::sndhwm, max_unread_answers);
       request.set_resend_endpoint(bind_to(*resend, options_.host, security_, Domain::data));
     }
+    std::optional<zmq::socket_t> frames;
+    if (options_.frames) {
+      frames = FrameServer::make_socket_of(control_context_);
+      request.set_frames_endpoint(bind_to(*frames, options_.host, security_, Domain::data));
+    }
 
     const auto within = from_seconds(options_.join_within_s);
     const v1::Welcome welcome = link_.join(request, within);
@@ -130,6 +137,8 @@ class Node {
                                 : outbox_->since(request.topic(), request.from_sequence());
     };
     link_.keep(std::move(heartbeat), std::move(resend));
+    if (frames)
+      frames_.emplace(control_context_, std::move(*frames), *options_.frames, run_.run_id);
     spdlog::debug("joined {}", options_.master);
   }
 
@@ -315,6 +324,7 @@ class Node {
     data_door_.reset();
     data_context_.close();  // flushes everything published before the node leaves
     link_.leave(interrupted, result_->times);
+    if (frames_) frames_->finish(interrupted ? nanoseconds(0) : last_answers);
     if (link_.phase() == v1::PHASE_FAILED) throw Error(link_.cause());
     if (interrupted) throw Error("interrupted");
   }
@@ -334,6 +344,7 @@ class Node {
   zmq::socket_t publish_, direct_;
   std::optional<PeerMonitor> listeners_;  // of `direct_`
   nanoseconds next_look_{0};
+  std::optional<FrameServer> frames_;
   BrokerPlace broker_{publish_};
   NodeInputs inputs_;
   RunFacts run_;

@@ -3,6 +3,7 @@
 
 #include "core/sim/participant.h"
 #include "nodes/runtime/process/event.h"
+#include "nodes/runtime/protocol/kept_frames.h"
 #include "nodes/runtime/protocol/time_split.h"
 
 namespace dmise {
@@ -14,11 +15,12 @@ struct NodeOptions {
   double stop_within_s = 0.0;              // > 0: ends the process if a step lasts longer than this
                                            // after the end of the run or `stop`
   std::string keys;                        // directory of keys; empty: plain, loopback alone
-  std::string via;        // with keys: name of the agent, if `master` is an agent's address
-  std::string name;       // in the run; default: the participant's
-  bool observer = false;  // joins and leaves at any time; the clock does not wait for it
-  int lose_every = 0;     // > 0, for tests: drops every n-th message for this node
-  Event* stop = nullptr;  // makes the node leave; see stop_signal()
+  std::string via;               // with keys: name of the agent, if `master` is an agent's address
+  std::string name;              // in the run; default: the participant's
+  bool observer = false;         // joins and leaves at any time; the clock does not wait for it
+  int lose_every = 0;            // > 0, for tests: drops every n-th message for this node
+  KeptFrames* frames = nullptr;  // served to whoever asks, if there are any
+  Event* stop = nullptr;         // makes the node leave; see stop_signal()
 };
 
 struct NodeResult {

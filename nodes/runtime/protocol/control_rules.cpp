@@ -83,7 +83,8 @@ Fault fault_in(const v1::Join& join) {
       !are_names(join.consumes()))
     return "join: topics must be names, at most 4096";
   if (!is_text(join.host())) return "join: invalid host name";
-  if (!is_text(join.direct_endpoint()) || !is_text(join.resend_endpoint()) || !good(join.broker()))
+  if (!is_text(join.direct_endpoint()) || !is_text(join.resend_endpoint()) ||
+      !is_text(join.frames_endpoint()) || !good(join.broker()))
     return "join: invalid address";
   return unless(is_count(join.look_back_ticks()) && is_count(join.period_ticks()) &&
                     is_count(join.offset_ticks()) && good_schedules(join.schedules()) &&
@@ -94,9 +95,9 @@ Fault fault_in(const v1::Join& join) {
 bool good(const v1::Publisher& publisher) {
   return is_name(publisher.name()) && are_names(publisher.topics()) &&
          are_names(publisher.direct_topics()) && is_text(publisher.direct_endpoint()) &&
-         is_text(publisher.resend_endpoint()) && is_count(publisher.keep_ticks()) &&
-         is_count(publisher.period_ticks()) && is_count(publisher.offset_ticks()) &&
-         good_schedules(publisher.schedules());
+         is_text(publisher.resend_endpoint()) && is_text(publisher.frames_endpoint()) &&
+         is_count(publisher.keep_ticks()) && is_count(publisher.period_ticks()) &&
+         is_count(publisher.offset_ticks()) && good_schedules(publisher.schedules());
 }
 
 Fault fault_in(const v1::Welcome& welcome) {
@@ -194,6 +195,17 @@ std::optional<std::string> fault_of(const v1::MasterMessage& message) {
 std::optional<std::string> fault_of(const v1::ResendRequest& request) {
   return unless(is_name(request.topic()) && is_tick(request.from_tick()),
                 "resend request: invalid topic or tick");
+}
+
+std::optional<std::string> fault_of(const v1::FrameRequest& request) {
+  switch (request.which_case()) {
+    case v1::FrameRequest::kFrame:
+      return unless(request.frame() >= 1, "frame request: frames count from 1");
+    case v1::FrameRequest::WHICH_NOT_SET:
+      return "frame request: asks for nothing";
+    default:
+      return std::nullopt;
+  }
 }
 
 std::string one_line(std::string text) {

@@ -2,6 +2,7 @@
 #include <optional>
 #include <string>
 
+#include "dmise/v1/frame.pb.h"
 #include "dmise/v1/node.pb.h"
 #include "dmise/v1/time.pb.h"
 
@@ -14,6 +15,7 @@ std::optional<std::string> fault_of(const v1::NodeMessage& message);
 std::optional<std::string> fault_of(const v1::MasterMessage& message);
 std::optional<std::string> fault_of(const v1::Grant& grant);
 std::optional<std::string> fault_of(const v1::ResendRequest& request);
+std::optional<std::string> fault_of(const v1::FrameRequest& request);
 
 /// Makes a reason given by another process fit for a line of a log.
 std::string one_line(std::string text);

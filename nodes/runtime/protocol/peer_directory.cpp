@@ -12,6 +12,7 @@ void fill(v1::Publisher* publisher, const Peer& peer) {
   *publisher->mutable_direct_topics() = peer.join.produces_direct();
   publisher->set_direct_endpoint(peer.join.direct_endpoint());
   publisher->set_resend_endpoint(peer.join.resend_endpoint());
+  publisher->set_frames_endpoint(peer.join.frames_endpoint());
   publisher->set_period_ticks(std::max<std::uint64_t>(1, peer.join.period_ticks()));
   publisher->set_offset_ticks(peer.join.offset_ticks());
   *publisher->mutable_schedules() = peer.join.schedules();

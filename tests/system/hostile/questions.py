@@ -6,7 +6,7 @@ import zmq
 
 from hostile.case import case
 from hostile.raw import connect, pour
-from hostile.wire import node_pb2
+from hostile.wire import frame_pb2, node_pb2
 
 ATTACK_S = 3.0
 
@@ -67,3 +67,42 @@ def long_question(target):
             socket.send(question(target, "x" * size, from_sequence=1))
             socket.send_multipart([b"x" * min(size, 4000)] * 20)
     time.sleep(1.0)
+
+
+def frame_readers(target, **options):
+    return [target.socket(zmq.DEALER, p.frames_endpoint, p.name, **options)
+            for p in target.endpoints.publishers if p.frames_endpoint]
+
+
+def frame_request(target, **which):
+    return frame_pb2.FrameRequest(run_id=target.endpoints.run_id, **which).SerializeToString()
+
+
+@case("questions", keys=True, growth_mib=100)
+def unread_frames(target):
+    """Asks sensors for frames, over many connections time and again, and reads nothing."""
+    sockets = [socket for _ in range(20) for socket in frame_readers(target, rcvhwm=1, rcvbuf=4096, sndhwm=1000)]
+    began, i = time.monotonic(), 0
+    while time.monotonic() - began < ATTACK_S and not target.ended():
+        for socket in sockets:
+            i += 1
+            try:
+                socket.send(frame_request(target, frame=1 + i % 20), zmq.NOBLOCK)
+                socket.send(frame_request(target, latest_after=0), zmq.NOBLOCK)
+            except zmq.Again:
+                pass
+        time.sleep(0.001)
+
+
+@case("questions", growth_mib=100)
+def rubbish_for_frames(target):
+    """What is no request for a frame: bytes, long ones, many frames, and one without an end."""
+    sockets = frame_readers(target)
+    for size in (1_000_000, 4_000, 3):
+        for socket in sockets:
+            socket.send(b"\xff" * size)
+            socket.send(frame_request(target, frame=0) + b"\xff" * size)
+            socket.send_multipart([b"x" * min(size, 4000)] * 20)
+    ports = [int(p.frames_endpoint.rsplit(":", 1)[1]) for p in target.endpoints.publishers if p.frames_endpoint]
+    sent, cut = pour([connect(port, b"DEALER") for port in ports], ATTACK_S)
+    print(f"{sent >> 20} MiB sent, {cut} connections cut")

@@ -21,7 +21,7 @@ except ImportError as missing:
 from . import aio, datasets
 from .dynamics import apparent_direction, pole_of, propagate
 from .errors import NoAnswer, Refused, RunFailed
-from .frame_images import Frame, frames, read_frame
+from .frame_images import Frame, Frames, frames, read_frame
 from .message import Message
 from .node import Node, Tick
 from .orbit_fit import Orbit, Triangulated, fit_orbit, triangulate
@@ -36,7 +36,7 @@ from .tables import to_pandas
 from .world import (EarthOrientation, EnvironmentState, ObjectInfo, ObjectRoster, ObjectStates, SiteState,
                     SunTrackingPanel)
 
-__all__ = ["ArrayLike", "Detection", "EarthOrientation", "EnvironmentState", "Frame", "FrameReport", "Gap",
+__all__ = ["ArrayLike", "Detection", "EarthOrientation", "EnvironmentState", "Frame", "FrameReport", "Frames", "Gap",
            "LineOfSight", "Message", "NoAnswer", "Node", "ObjectInfo", "ObjectRoster", "ObjectStates", "Orbit",
            "Record", "Recorded", "Recording", "Refused", "Replay", "Run", "RunFailed", "SiteState", "Subscription",
            "SunTrackingPanel", "Task", "Tick", "Track", "Triangulated", "Truth", "Wcs", "WcsRefraction", "aio", "apparent_direction",

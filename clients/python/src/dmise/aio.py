@@ -7,13 +7,27 @@ import functools
 from collections.abc import AsyncIterator
 from typing import Any
 
-from . import subscription
+from . import frame_images, subscription
 from .message import Message
 
 
 def subscribe(address: str, *topics: str, **options: Any) -> "AsyncSubscription":
     """As `dmise.subscribe`, whose options and errors it has; it connects when the iteration begins."""
     return AsyncSubscription(functools.partial(subscription.subscribe, address, *topics, **options))
+
+
+async def frames(address: str | None, *sensors: str, **options: Any) -> AsyncIterator[frame_images.Frame]:
+    """As `dmise.frames`, whose options and errors it has: `async for frame in dmise.aio.frames(address)`."""
+    loop = asyncio.get_running_loop()
+    with concurrent.futures.ThreadPoolExecutor(1, "dmise") as thread:  # sockets belong to one thread
+        source = await loop.run_in_executor(thread, functools.partial(frame_images.frames, address, *sensors, **options))
+        iterator = iter(source)
+        try:
+            while (frame := await loop.run_in_executor(thread, next, iterator, None)) is not None:
+                yield frame
+        finally:
+            source.close()
+            thread.submit(lambda: next(iterator, None))
 
 
 class AsyncSubscription:

@@ -131,6 +131,7 @@ class Replay:
             own.CopyFrom(publisher)
             own.resend_endpoint = self._endpoint(self._resend)
             own.ClearField("direct_endpoint")
+            own.ClearField("frames_endpoint")  # pixels are not recorded
             for field in (own.topics, own.direct_topics):
                 here = [topic for topic in field if topic in topics]
                 del field[:]

@@ -1,0 +1,70 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/sim/message.h"
+#include "dmise/v1/frame.pb.h"
+
+namespace dmise {
+
+/// The bytes of a FITS file, in memory or mapped.
+struct FrameBytes {
+  std::shared_ptr<const void> owner;
+  std::string_view bytes;
+};
+
+/// The last frames that a sensor made, for those who ask for their pixels. The sensor's thread
+/// adds, another one answers: who asks never keeps the sensor waiting.
+class KeptFrames {
+ public:
+  static constexpr std::size_t most_frames = 256;
+  static constexpr std::size_t most_bytes = std::size_t(64) << 20;  // in memory; one frame at least
+
+  /// `changed` is called when a frame is added or the frames are over, from the thread that does
+  /// it.
+  explicit KeptFrames(std::string sensor) : sensor_(std::move(sensor)) {}
+  void when_changed(std::function<void()> changed);
+
+  /// Adds a frame, later than all before. `load` gives its file when it is asked for, and throws
+  /// `Error` if it can't; empty: the frame is counted alone. `held_bytes`: in memory for it.
+  void add(const FrameReport& report, std::function<FrameBytes()> load, std::size_t held_bytes = 0);
+  /// No more frames are added.
+  void end();
+
+  /// Whether somebody is there to ask. What is kept in memory alone needs to be kept only then.
+  bool wanted() const;
+  void set_wanted(bool wanted);
+
+  struct Answer {
+    v1::FrameAnswer head;
+    FrameBytes fits;  // empty unless STATUS_SENT
+  };
+  /// Empty: what is asked for is yet to come. `run_id` goes into the answer.
+  std::optional<Answer> answer(const v1::FrameRequest& request, std::uint64_t run_id) const;
+
+ private:
+  struct Kept {
+    std::uint32_t number = 0;
+    std::uint64_t sequence = 0;
+    std::string report;  // serialised
+    std::function<FrameBytes()> load;
+    std::size_t held_bytes = 0;
+  };
+  const Kept* wanted_by(const v1::FrameRequest& request) const;
+
+  std::string sensor_;
+  mutable std::mutex mutex_;  // guards what follows
+  std::deque<Kept> kept_;
+  std::size_t held_bytes_ = 0;
+  std::uint64_t made_ = 0;
+  bool wanted_ = false, over_ = false;
+  std::function<void()> changed_ = [] {};
+};
+
+}  // namespace dmise
