@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
 
+#include "core/frames/geodesy.h"
+
 namespace dmise {
 
 /// What a fusion takes as known. Defaults are those of the scenario's key `fusion`.
@@ -17,6 +19,7 @@ struct FusionSettings {
   double start_window_s = 60.0;  // between the first and the last detection that start a track
   double simultaneous_s = 0.5;   // between detections of two sites that give a position
   double acceleration_noise_m2_per_s3 = 1e-6;
+  Ellipsoid ellipsoid{};       // the Earth, which casts the shadow
   int confirm_catalogued = 3;  // detections that confirm a track of a catalogued object
   int confirm_unknown = 6;     // and one of another, which begins with four
 };
