@@ -49,7 +49,7 @@ class FieldWatcher : public Evaluator {
     const auto& state = message.state;
     if (const auto* roster = std::get_if<ObjectRoster>(state.get())) {
       if (takes_states_) return world_.add(std::shared_ptr<const ObjectRoster>(state, roster));
-      const auto objects = propagated_objects(state, own_, clock_);
+      const auto objects = propagated_objects(state, own_, clock_, wgs84);
       world_.add(std::shared_ptr<const ObjectRoster>(objects, &objects->population.roster));
       states_.emplace(objects, tick_);
     }

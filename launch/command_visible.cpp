@@ -93,12 +93,28 @@ std::size_t followed(const ObjectPopulation& population, const std::string& name
   return i;
 }
 
-void write_products(const std::string& directory, const PassList& list, const Chart& chart) {
+/// A row for each instant of the grid: how many objects are in sight, and how many of them sunlit.
+std::string counts_csv(const Sightings& found, const TimeGrid& grid, const Clock& clock) {
+  std::vector<std::size_t> in_sight(grid.steps + 1), sunlit(grid.steps + 1);
+  for (const Sighting& seen : found.seen) {
+    ++in_sight[seen.step];
+    sunlit[seen.step] += seen.sunlit >= lit_fraction;
+  }
+  std::string text = "time_utc,in_sight,sunlit\n";
+  for (std::size_t k = 0; k <= grid.steps; ++k)
+    text += format_utc(clock.utc(grid.at(k)), 3) + "," + std::to_string(in_sight[k]) + "," +
+            std::to_string(sunlit[k]) + "\n";
+  return text;
+}
+
+void write_products(const std::string& directory, const PassList& list, const std::string& counts,
+                    const Chart& chart) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw Error(directory + ": " + error.message());
   write_file_whole(directory + "/passes.csv", pass_csv(list));
   write_file_whole(directory + "/passes.jsonl", pass_jsonl(list));
+  write_file_whole(directory + "/counts.csv", counts);
   write_file_whole(directory + "/figure.svg", chart_svg(chart));
   write_picture(directory + "/figure.png", chart_picture(chart));
 }
@@ -150,9 +166,11 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
   RangeFigureOptions figure{.dark = options.dark};
   if (options.night_deg) figure.night_below_rad = *options.night_deg * deg;
   const std::string directory = options.out + "/" + sensor.name;
-  write_products(directory, list, range_figure(track, grid, population.elements, found, figure));
+  write_products(directory, list, counts_csv(found, grid, clock),
+                 range_figure(track, grid, population.elements, found, figure));
   if (!options.csv && !options.jsonl)
-    std::printf("-> %s/passes.csv, passes.jsonl, figure.svg, figure.png\n", directory.c_str());
+    std::printf("-> %s/passes.csv, passes.jsonl, counts.csv, figure.svg, figure.png\n",
+                directory.c_str());
 }
 
 void visible(const VisibleOptions& options) {
@@ -170,7 +188,7 @@ void visible(const VisibleOptions& options) {
                  population.roster.objects.size());
   Threads threads(options.threads);
   const Sgp4Batch batch(population.elements, &threads);
-  const SkyHours sky(clock, grid.from, grid.last());
+  const SkyHours sky(clock, grid.from, grid.last(), scenario.earth.ellipsoid);
   std::unique_ptr<RunLock> lock;
   if (!options.print_only) lock = lock_directory(options.out);
   bool first = true;
@@ -217,7 +235,9 @@ void add_visible_command(CLI::App& app) {
   auto* csv = command->add_flag("--csv", o->csv, "print CSV instead of the table");
   command->add_flag("--jsonl", o->jsonl, "print one JSON object per line instead of the table")
       ->excludes(csv);
-  command->add_option("--out", o->out, "directory of passes.csv, passes.jsonl, figure.svg and .png")
+  command
+      ->add_option("--out", o->out,
+                   "directory of passes.csv, passes.jsonl, counts.csv, figure.svg and .png")
       ->capture_default_str();
   command->add_flag("--print-only", o->print_only, "write no files");
   command

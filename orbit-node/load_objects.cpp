@@ -58,6 +58,7 @@ class Loader {
  public:
   Loader(const Scenario& scenario, const Clock& clock)
       : scenario_(scenario), clock_(clock), start_(clock.utc({0})) {
+    population_.ellipsoid = scenario.earth.ellipsoid;
     for (const auto& object : scenario.own_objects) taken_.insert(object.catalogue_number);
   }
 

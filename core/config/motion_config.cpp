@@ -29,9 +29,11 @@ Vec<F> read_vector(const YamlValue& value, Bounds bounds = {}) {
 }
 
 template <class F>
-void require_outside_earth(const YamlValue& value, const Vec<F>& position_m) {
-  if (norm(OblateEarth{}.stretched(Vec<Gcrs>{position_m.x, position_m.y, position_m.z})) <
-      wgs84.equatorial_radius_m)
+void require_outside_earth(const YamlValue& value, const Vec<F>& position_m,
+                           const Ellipsoid& ellipsoid) {
+  const OblateEarth body{.ellipsoid = ellipsoid};
+  if (norm(body.stretched(Vec<Gcrs>{position_m.x, position_m.y, position_m.z})) <
+      ellipsoid.equatorial_radius_m)
     value.fail("is inside the Earth");
 }
 
@@ -69,7 +71,7 @@ KeplerElements read_elements(YamlMap& map) {
   return k;
 }
 
-TwoBodyMotion read_two_body(const YamlValue& value, const Utc& start,
+TwoBodyMotion read_two_body(const YamlValue& value, const Utc& start, const Ellipsoid& ellipsoid,
                             std::vector<std::string>& warnings) {
   YamlMap map(value);
   TwoBodyMotion motion;
@@ -88,20 +90,20 @@ TwoBodyMotion read_two_body(const YamlValue& value, const Utc& start,
     motion.state.position_m = read_vector<Gcrs>(map.require("position_m"), within_reach);
     motion.state.velocity_m_per_s =
         read_vector<Gcrs>(map.require("velocity_m_per_s"), Bounds::between(-1e6, 1e6));
-    require_outside_earth(*position, motion.state.position_m);
+    require_outside_earth(*position, motion.state.position_m, ellipsoid);
   } else {
     const KeplerElements k = read_elements(map);
     motion.state = state_of(k, motion.gm_m3_per_s2);
     const double apoapsis_m = k.eccentricity < 1
                                   ? k.periapsis_m * (1 + k.eccentricity) / (1 - k.eccentricity)
                                   : std::numeric_limits<double>::infinity();
-    warnings = disproportions_of_orbit(value, k.periapsis_m, apoapsis_m);
+    warnings = disproportions_of_orbit(value, k.periapsis_m, apoapsis_m, ellipsoid);
   }
   map.done();
   return motion;
 }
 
-MotionModel read_fixed(const YamlValue& value) {
+MotionModel read_fixed(const YamlValue& value, const Ellipsoid& ellipsoid) {
   YamlMap map(value);
   const auto itrs = map.find("itrs_m"), gcrs = map.find("gcrs_m");
   const auto latitude = map.find("latitude_deg");
@@ -110,17 +112,18 @@ MotionModel read_fixed(const YamlValue& value) {
   MotionModel model;
   if (itrs) {
     const auto place = read_vector<Itrs>(*itrs, within_reach);
-    require_outside_earth(*itrs, place);
+    require_outside_earth(*itrs, place, ellipsoid);
     model = ConstantPosition<Itrs>{place};
   } else if (gcrs) {
     const auto place = read_vector<Gcrs>(*gcrs, within_reach);
-    require_outside_earth(*gcrs, place);
+    require_outside_earth(*gcrs, place, ellipsoid);
     model = ConstantPosition<Gcrs>{place};
   } else {
     model = ConstantPosition<Itrs>{itrs_from_geodetic(
         {.latitude_deg = latitude->number(Bounds::between(-90, 90)),
          .longitude_deg = map.number("longitude_deg", Bounds::between(-180, 360)),
-         .height_m = map.number("height_m", Bounds::between(least_height_m, farthest_m))})};
+         .height_m = map.number("height_m", Bounds::between(least_height_m, farthest_m)),
+         .ellipsoid = ellipsoid})};
   }
   map.done();
   return model;
@@ -143,22 +146,56 @@ std::string file_of(const YamlValue& value) {
   return path;
 }
 
+/// A straight line from the start of the run, or a track; in east, north and up of the origin.
+MotionConfig read_enu(const YamlValue& value, const Utc& start, const std::string& name,
+                      const EarthConfig& earth) {
+  if (!earth.origin) value.fail("needs simulation.origin, the place of east, north and up", false);
+  MotionConfig motion;
+  YamlMap map(value);
+  const auto track = map.find("track"), position = map.find("position_m"),
+             velocity = map.find("velocity_m_per_s");
+  map.done();
+  if (bool(track) == bool(position))
+    value.fail("give either position_m (and velocity_m_per_s) or track", false);
+  const Tai begin = Clock(start).tai({0});
+  if (track) {
+    if (velocity) velocity->fail("goes with position_m", false);
+    motion.trajectory_path = file_of(*track);
+    motion.model = MotionModel(read_enu_track(motion.trajectory_path, begin, name, *earth.origin));
+    return motion;
+  }
+  const auto itrs_from_enu = enu_from_itrs(*earth.origin).inverse();
+  const Vec<Itrs> place =
+      itrs_from_geodetic(*earth.origin) + itrs_from_enu * read_vector<Enu>(*position, within_reach);
+  require_outside_earth(*position, place, earth.ellipsoid);
+  if (velocity)
+    motion.model = MotionModel(StraightMotion<Itrs>{
+        begin, {place, itrs_from_enu * read_vector<Enu>(*velocity, Bounds::between(-1e6, 1e6))}});
+  else
+    motion.model = MotionModel(ConstantPosition<Itrs>{place});
+  return motion;
+}
+
 }  // namespace
 
-MotionConfig read_motion(const YamlValue& value, const Utc& start, const std::string& name) {
+MotionConfig read_motion(const YamlValue& value, const Utc& start, const std::string& name,
+                         const EarthConfig& earth) {
   YamlMap map(value);
   MotionConfig motion;
   const auto two_body = map.find("two_body"), oem = map.find("oem"), fixed = map.find("fixed"),
-             track = map.find("track"), sgp4 = map.find("sgp4");
+             track = map.find("track"), enu = map.find("enu"), sgp4 = map.find("sgp4");
   map.done();
-  if (map.keys().size() != 1) value.fail("give one of two_body, oem, fixed, track, sgp4", false);
-  if (two_body) motion.model = MotionModel(read_two_body(*two_body, start, motion.warnings));
+  if (map.keys().size() != 1)
+    value.fail("give one of two_body, oem, fixed, track, enu, sgp4", false);
+  if (enu) return read_enu(*enu, start, name, earth);
+  if (two_body)
+    motion.model = MotionModel(read_two_body(*two_body, start, earth.ellipsoid, motion.warnings));
   if (oem || track) motion.trajectory_path = file_of(oem ? *oem : *track);
   if (oem) motion.model = MotionModel(read_oem(motion.trajectory_path));
   if (track)
-    motion.model =
-        MotionModel(read_geodetic_track(motion.trajectory_path, Clock(start).tai({0}), name));
-  if (fixed) motion.model = read_fixed(*fixed);
+    motion.model = MotionModel(
+        read_geodetic_track(motion.trajectory_path, Clock(start).tai({0}), name, earth.ellipsoid));
+  if (fixed) motion.model = read_fixed(*fixed, earth.ellipsoid);
   if (sgp4) motion.model = read_sgp4(*sgp4);
   return motion;
 }

@@ -3,6 +3,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/config/earth_config.h"
 #include "core/config/yaml_reader.h"
 #include "core/orbit/elements.h"
 #include "core/orbit/motion.h"
@@ -16,9 +17,10 @@ struct MotionConfig {
   std::vector<std::string> warnings = {};  // see `disproportions_of_orbit`
 };
 
-/// Reads one of `two_body`, `oem`, `fixed`, `track`, `sgp4` of the object `name`; `start` is the
-/// default epoch of two_body and time 0 of a track. Throws `ConfigError` `file:line:column: key:
-/// reason`, for a file with its own line.
-MotionConfig read_motion(const YamlValue& value, const Utc& start, const std::string& name);
+/// Reads one of `two_body`, `oem`, `fixed`, `track`, `enu`, `sgp4` of the object `name`; `start` is
+/// the default epoch of two_body and time 0 of a track and of `enu`. Throws `ConfigError`
+/// `file:line:column: key: reason`, for a file with its own line.
+MotionConfig read_motion(const YamlValue& value, const Utc& start, const std::string& name,
+                         const EarthConfig& earth = {});
 
 }  // namespace dmise

@@ -48,7 +48,7 @@ ObjectSource read_object_source(const YamlValue& value) {
   return source;
 }
 
-OwnObject read_own_object(const YamlValue& value, const Utc& start) {
+OwnObject read_own_object(const YamlValue& value, const Utc& start, const EarthConfig& earth) {
   YamlMap map(value);
   OwnObject object;
   const auto name = map.require("name");
@@ -58,7 +58,7 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start) {
     name.fail("must have 1 to 64 characters");
   object.catalogue_number =
       static_cast<std::uint32_t>(map.integer_or("catalogue_number", 0, 1, 999'999'999));
-  object.motion = read_motion(map.require("motion"), start, object.name);
+  object.motion = read_motion(map.require("motion"), start, object.name, earth);
   if (const auto attitude = map.find("attitude")) object.attitude = read_attitude(*attitude);
   if (const auto panel = map.find("panel")) {
     if (!object.attitude) panel->fail("needs an attitude", false);
@@ -77,7 +77,7 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start) {
 
 }  // namespace
 
-ObjectsConfig read_objects(const YamlValue& value, const Utc& start) {
+ObjectsConfig read_objects(const YamlValue& value, const Utc& start, const EarthConfig& earth) {
   ObjectsConfig objects;
   std::set<std::string> names;
   std::set<std::uint32_t> numbers;
@@ -89,7 +89,7 @@ ObjectsConfig read_objects(const YamlValue& value, const Utc& start) {
     }
     if (!map.find("name") && !map.find("motion"))
       entry.fail("needs a catalogue, or a name and a motion", false);
-    objects.own.push_back(read_own_object(entry, start));
+    objects.own.push_back(read_own_object(entry, start, earth));
     const OwnObject& object = objects.own.back();
     if (!names.insert(object.name).second) map.require("name").fail("another object has this name");
     if (object.catalogue_number != 0 && !numbers.insert(object.catalogue_number).second)

@@ -46,7 +46,7 @@ struct ObjectsConfig {
 };
 
 /// Reads `objects:`, a list of both kinds. Throws `ConfigError` `file:line:column: key: reason`.
-ObjectsConfig read_objects(const YamlValue& value, const Utc& start);
+ObjectsConfig read_objects(const YamlValue& value, const Utc& start, const EarthConfig& earth = {});
 
 class JsonWriter;
 /// Writes the part that determines the products, without the content of files.

@@ -28,6 +28,10 @@ struct MotionWriter {
     write(json, "velocity_m_per_s", m.state.velocity_m_per_s);
     json.field("gm_m3_per_s2", m.gm_m3_per_s2).end_object();
   }
+  void operator()(const StraightMotion<Itrs>& m) const {  // from the start of the run
+    write(json, "itrs_m", m.state.position_m);
+    write(json, "itrs_m_per_s", m.state.velocity_m_per_s);
+  }
   void operator()(const Trajectory&) const { json.field("oem", true); }  // the file has a digest
   void operator()(const MotionModel& m) const { std::visit(*this, m); }
   void operator()(const MeanElements& e) const {

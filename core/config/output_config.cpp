@@ -45,6 +45,12 @@ OutputConfig read_output(const YamlValue& value) {
        : name == "jsonl" ? output.positions_jsonl
                          : output.positions_oem) = true;
     }
+  if (const auto frame = map.find("positions_frame")) {
+    output.positions_enu = frame->choice({"gcrs", "enu"}) == "enu";
+    output.positions_where = frame->place();
+    if (!output.positions_csv && !output.positions_jsonl)
+      frame->fail("is of positions: [csv] or [jsonl]");
+  }
   map.done();
   return output;
 }

@@ -111,7 +111,9 @@ std::string physics_json(const Scenario& scenario) {
   json.begin_object().key("simulation").begin_object();
   json.field("start", scenario.start_utc).field("duration_ns", scenario.duration.ns);
   json.field("tick_ns", scenario.tick.ns).field("seed", scenario.seed);
-  json.field("interpolation", static_cast<int>(scenario.interpolation)).end_object();
+  json.field("interpolation", static_cast<int>(scenario.interpolation));
+  write_earth(json, scenario.earth);
+  json.end_object();
   write_objects(json, scenario.objects, scenario.own_objects);
   json.key("environment").begin_object();
   json.field("common_every_s", scenario.environment.common_every_s);

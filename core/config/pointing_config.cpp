@@ -14,9 +14,10 @@ const Bounds any_rate = Bounds::between(-60.0, 60.0);
 constexpr double least_sine = 1e-6;       // between boresight and up
 constexpr double most_offset_deg = 80.0;  // of a target's image from the boresight
 
-Vec<Body> read_axis(const YamlValue& value) {
+template <class F = Body>
+Vec<F> read_axis(const YamlValue& value) {
   const auto v = value.numbers(3, Bounds::between(-1e9, 1e9));
-  const Vec<Body> axis{v[0], v[1], v[2]};
+  const Vec<F> axis{v[0], v[1], v[2]};
   if (!(norm(axis) > 0)) value.fail("must not be zero", false);
   return unit(axis);
 }
@@ -58,6 +59,26 @@ PointBody read_body(const YamlValue& value) {
   PointBody body;
   body.body_from_camera.m = {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
   return body;
+}
+
+PointEnu read_enu(const YamlValue& value, const std::optional<Site>& origin) {
+  if (!origin) value.fail("needs simulation.origin, the place of east, north and up", false);
+  YamlMap map(value);
+  PointEnu enu{.origin = *origin, .where = value.place()};
+  const auto look = map.find("look"), at = map.find("look_at_m"), up = map.find("up");
+  map.done();
+  if (bool(look) == bool(at)) value.fail("give either look or look_at_m (and up)", false);
+  if (up) enu.up = read_axis<Enu>(*up);
+  if (at) {
+    const auto place = at->numbers(3, Bounds::between(-1e12, 1e12));
+    enu.at_m = Vec<Enu>{place[0], place[1], place[2]};
+    return enu;
+  }
+  enu.look = read_axis<Enu>(*look);
+  if (norm(cross(enu.look, enu.up)) >= least_sine) return enu;
+  if (up) up->fail("must not be along look", false);
+  enu.up = {0, 1, 0};  // along the vertical north is up
+  return enu;
 }
 
 PointScan read_scan(const YamlValue& value, bool on_ground) {
@@ -154,7 +175,8 @@ double turn_rate_deg_per_s(const Pointing& pointing) {
   return scan ? std::abs(scan->rate_deg_per_s) : 0.0;
 }
 
-void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor) {
+void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor,
+                   const std::optional<Site>& origin) {
   if (value.is_scalar()) {
     value.choice({"zenith"});
     sensor.pointing = PointUp{};
@@ -164,12 +186,13 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
   const bool horizon = map.find("azimuth_deg") || map.find("elevation_deg");
   const bool sky = map.find("ra_deg") || map.find("dec_deg");
   const auto target = map.find("target"), body = map.find("body"), scan = map.find("scan"),
-             cued = map.find("cued");
+             cued = map.find("cued"), enu = map.find("enu");
   const int kinds = int(horizon) + int(sky) + int(bool(target)) + int(bool(body)) +
-                    int(bool(scan)) + int(bool(cued));
+                    int(bool(scan)) + int(bool(cued)) + int(bool(enu));
   if (kinds > 1)
     value.fail(
-        "give one of azimuth_deg and elevation_deg, ra_deg and dec_deg, target, body, scan, cued",
+        "give one of azimuth_deg and elevation_deg, ra_deg and dec_deg, target, body, scan, cued, "
+        "enu",
         false);
   Tracking natural = Tracking::fixed;
   if (horizon) {
@@ -194,6 +217,8 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
     sensor.pointing = read_body(*body);
   } else if (scan) {
     sensor.pointing = read_scan(*scan, on_ground);
+  } else if (enu) {
+    sensor.pointing = read_enu(*enu, origin);
   } else if (cued) {
     if (!on_ground) cued->fail("is for a sensor on the ground", false);
     sensor.pointing = read_cued(*cued);
@@ -223,6 +248,8 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor)
     map.require("tracking").fail("a cued sensor follows its target or the stars");
   if (body && sensor.roll_deg != 0.0)
     map.require("roll_deg").fail("a camera fixed to a body is rolled by up", false);
+  if (enu && sensor.roll_deg != 0.0)
+    map.require("roll_deg").fail("a camera in east, north and up is rolled by up", false);
   map.done();
 }
 
@@ -260,6 +287,15 @@ struct PointingWriter {
     for (const auto& row : p.body_from_camera.m)
       for (const double x : row) json.value(x);
     json.end_array().end_object();
+  }
+  void operator()(const PointEnu& p) const {  // the origin is the scenario's
+    const auto vector = [&](const char* key, const Vec<Enu>& v) {
+      json.key(key).begin_array().value(v.x).value(v.y).value(v.z).end_array();
+    };
+    json.begin_object().key("enu").begin_object();
+    p.at_m ? vector("look_at_m", *p.at_m) : vector("look", p.look);
+    vector("up", p.up);
+    json.end_object().end_object();
   }
   void operator()(const PointScan& p) const {
     json.begin_object().key("scan");

@@ -4,8 +4,10 @@
 
 namespace dmise {
 
-/// Reads `pointing:` of a sensor, including `tracking` and `roll_deg`. Throws `ConfigError`.
-void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor);
+/// Reads `pointing:` of a sensor, including `tracking` and `roll_deg`; `origin` is the scenario's.
+/// Throws `ConfigError`.
+void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor,
+                   const std::optional<Site>& origin = std::nullopt);
 
 /// Angular rate of a pointing [deg/s]; 0 if it is fixed or follows a target.
 double turn_rate_deg_per_s(const Pointing& pointing);

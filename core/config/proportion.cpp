@@ -85,8 +85,8 @@ std::vector<std::string> disproportions_of_camera(const YamlValue& camera, const
 }
 
 std::vector<std::string> disproportions_of_orbit(const YamlValue& two_body, double periapsis_m,
-                                                 double apoapsis_m) {
-  const double radius_m = wgs84.equatorial_radius_m;
+                                                 double apoapsis_m, const Ellipsoid& ellipsoid) {
+  const double radius_m = ellipsoid.equatorial_radius_m;
   if (periapsis_m >= radius_m) return {};
   YamlMap map(two_body);
   const auto axis = map.find("semi_major_axis_m"), lowest = map.find("periapsis_m");

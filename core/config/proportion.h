@@ -16,6 +16,6 @@ std::vector<std::string> disproportions_of_camera(const YamlValue& camera, const
 /// Of the mapping `two_body`, whose orbit has these apsides from the Earth's centre (apoapsis
 /// infinite for open orbits).
 std::vector<std::string> disproportions_of_orbit(const YamlValue& two_body, double periapsis_m,
-                                                 double apoapsis_m);
+                                                 double apoapsis_m, const Ellipsoid& ellipsoid);
 
 }  // namespace dmise

@@ -70,6 +70,7 @@ void read_simulation(const YamlValue& value, Scenario& scenario) {
       eop->fail(e.what(), false);
     }
   }
+  scenario.earth = read_earth(map);
   check_span(scenario, start, map.require("duration_s"));
   map.done();
 }
@@ -166,7 +167,7 @@ Scenario read_scenario(const YamlValue& root) {
   scenario.path = root.file();
   read_simulation(map.require("simulation"), scenario);
   if (const auto objects = map.find("objects")) {
-    auto read = read_objects(*objects, parse_utc(scenario.start_utc));
+    auto read = read_objects(*objects, parse_utc(scenario.start_utc), scenario.earth);
     scenario.objects = std::move(read.catalogues);
     scenario.own_objects = std::move(read.own);
     for (const auto& object : scenario.own_objects)
@@ -184,7 +185,8 @@ Scenario read_scenario(const YamlValue& root) {
     if (value.is_map())
       if (const auto name = YamlMap(value).find("name"))
         if (const auto fault = names.fault_of(name->text())) name->fail(*fault);
-    scenario.sensors.push_back(read_sensor(value, effects, accuracy, detect, scenario.duration));
+    scenario.sensors.push_back(
+        read_sensor(value, effects, accuracy, detect, scenario.duration, scenario.earth));
   }
   for (const auto& sensor : scenario.sensors)
     for (const auto& line : sensor.camera.warnings)
@@ -199,12 +201,21 @@ Scenario read_scenario(const YamlValue& root) {
   if (const auto output = map.find("output")) scenario.output = read_output(*output);
   if (const auto fusion = map.find("fusion"); fusion && !(fusion->is_scalar() && !fusion->flag())) {
     scenario.fusion = read_fusion(*fusion);
+    scenario.fusion->settings.ellipsoid = scenario.earth.ellipsoid;
     if (std::ranges::none_of(scenario.sensors, &SensorConfig::detect))
       fusion->fail("needs a sensor that detects", false);
   }
   for (const SensorConfig& sensor : scenario.sensors) check_cued(scenario, sensor);
+  if (scenario.output.positions_enu && !scenario.earth.origin)
+    throw ConfigError(scenario.output.positions_where + ": enu needs simulation.origin");
   map.done();
   return scenario;
+}
+
+std::optional<Site> site_of(const SensorConfig& sensor) {
+  const auto* site = std::get_if<SiteConfig>(&sensor.place);
+  if (!site) return std::nullopt;
+  return Site{site->latitude_deg, site->longitude_deg, site->height_m, sensor.ellipsoid};
 }
 
 const SensorConfig& sensor_named(const Scenario& scenario, const std::string& name) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/sim_time.h"
+#include "core/config/earth_config.h"
 #include "core/config/object_config.h"
 #include "core/config/sky_config.h"
 #include "core/detector/detector.h"
@@ -69,6 +70,14 @@ struct PointTarget {
 struct PointBody {
   Rotation<Body, CameraFrame> body_from_camera;
 };
+/// In east, north and up of the scenario's origin, wherever the sensor is.
+struct PointEnu {
+  Site origin;
+  std::optional<Vec<Enu>> at_m;  // a place to look at; none: along `look`
+  Vec<Enu> look{0, 1, 0};        // unit
+  Vec<Enu> up{0, 0, 1};          // unit, towards the image's top
+  std::string where = {};        // `file:line:column: sensors[0].pointing.enu`, for messages
+};
 /// Rotates uniformly about an axis that is fixed relative to the stars or, for a start by azimuth
 /// and elevation, to the ground.
 struct PointScan {
@@ -83,8 +92,8 @@ struct PointCued {
   CueSettings cue;
   std::string where = {};  // `file:line:column: sensors[0].pointing.cued`, for messages
 };
-using Pointing =
-    std::variant<PointUp, PointHorizon, PointSky, PointTarget, PointBody, PointScan, PointCued>;
+using Pointing = std::variant<PointUp, PointHorizon, PointSky, PointTarget, PointBody, PointScan,
+                              PointCued, PointEnu>;
 
 /// Motion of the camera during an exposure.
 enum class Tracking {
@@ -103,6 +112,7 @@ struct SensorConfig {
   std::string name;
   std::string where = {};  // `file:line:column: sensors[0]`, for messages
   std::variant<SiteConfig, PlatformConfig> place;
+  Ellipsoid ellipsoid{};  // the scenario's Earth
   Camera camera;
   Pointing pointing;
   Tracking tracking = Tracking::fixed;
@@ -161,6 +171,8 @@ struct OutputConfig {
   bool sources = false, background = false, noise = false;
   // Positions of cameras, platforms, own objects, Sun and Moon at every tick.
   bool positions_csv = false, positions_jsonl = false, positions_oem = false;
+  bool positions_enu = false;        // tables in east, north and up of the scenario's origin
+  std::string positions_where = {};  // `file:line:column: output.positions_frame`, for messages
   bool positions() const { return positions_csv || positions_jsonl || positions_oem; }
 };
 
@@ -182,6 +194,7 @@ struct Scenario {
   HermiteOrder interpolation = HermiteOrder::cubic;  // of objects between ticks
   std::uint64_t seed = 1;
   std::string earth_orientation_path;  // IERS finals file, may be empty
+  EarthConfig earth;
   std::vector<ObjectSource> objects;   // catalogues
   std::vector<OwnObject> own_objects;  // defined by the scenario
   std::string star_catalogue_path;     // empty: no stars
@@ -211,6 +224,9 @@ Scenario read_scenario(const YamlValue& root);
 
 /// Canonical JSON of everything that determines the products: the same text gives the same bytes.
 std::string physics_json(const Scenario& scenario);
+
+/// Where a sensor on the ground is; nothing in orbit.
+std::optional<Site> site_of(const SensorConfig& sensor);
 
 const SensorConfig& sensor_named(const Scenario& scenario, const std::string& name);
 

@@ -188,12 +188,13 @@ Accuracy read_accuracy(const YamlValue& value) {
 }
 
 SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const Accuracy& accuracy,
-                         bool detect, SimTime duration) {
+                         bool detect, SimTime duration, const EarthConfig& earth) {
   YamlMap map(value);
   SensorConfig sensor;
   sensor.where = value.place();
   sensor.effects = effects;
   sensor.accuracy = accuracy;
+  sensor.ellipsoid = earth.ellipsoid;
   if (const auto own = map.find("accuracy")) sensor.accuracy = read_accuracy(*own);
   sensor.detect = map.flag_or("detection", detect);
   sensor.name = map.require("name").text();
@@ -207,7 +208,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
     sensor.place = PlatformConfig{printable(platform->text()), platform->place()};
   }
   sensor.camera = read_camera(map.require("camera"));
-  read_pointing(map.require("pointing"), bool(site), sensor);
+  read_pointing(map.require("pointing"), bool(site), sensor, earth.origin);
   read_instrument(map, sensor.instrument);
   const auto exposure = map.require("exposure_s");
   sensor.exposure_s = exposure.number({.least = 1e-6, .most = 3600.0});

@@ -13,6 +13,6 @@ Accuracy read_accuracy(const YamlValue& value);
 /// Reads one of `sensors:`; `effects`, `accuracy` and `detect` are the scenario's, `duration` the
 /// run's. Throws `ConfigError`.
 SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const Accuracy& accuracy,
-                         bool detect, SimTime duration);
+                         bool detect, SimTime duration, const EarthConfig& earth = {});
 
 }  // namespace dmise

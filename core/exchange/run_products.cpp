@@ -8,6 +8,7 @@
 #include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
+#include "core/frames/geodesy.h"
 #include "core/optics/psf_table.h"
 #include "core/score/json_record.h"
 #include "core/time/iso8601.h"
@@ -15,12 +16,26 @@
 namespace dmise {
 namespace {
 
-RunSensor sensor_of(const JsonRecord& record) {
+/// The Earth of the scenario.
+Ellipsoid ellipsoid_of(const JsonRecord& scenario) {
+  const JsonRecord simulation = scenario.object("simulation");
+  if (!simulation.has("ellipsoid")) return wgs84;
+  const JsonRecord own = simulation.object("ellipsoid");
+  return {own.number("a_m"), own.number("f")};
+}
+
+RunSensor sensor_of(const JsonRecord& record, const Ellipsoid& ellipsoid) {
   RunSensor sensor{.name = record.get<std::string>("name")};
   if (record.has("site")) {
     const JsonRecord site = record.object("site");
     sensor.site = {site.number("latitude_deg"), site.number("longitude_deg"),
                    site.number("height_m")};
+    if (ellipsoid != wgs84) {
+      const auto& [latitude_deg, longitude_deg, height_m] = *sensor.site;
+      const Site on_wgs84 = geodetic_from_itrs(
+          itrs_from_geodetic({latitude_deg, longitude_deg, height_m, ellipsoid}));
+      sensor.site = {on_wgs84.latitude_deg, on_wgs84.longitude_deg, on_wgs84.height_m};
+    }
   } else {
     sensor.platform = record.get<std::string>("platform");
   }
@@ -107,8 +122,9 @@ RunProducts read_products(const std::string& directory, const WantedProducts& wa
                   .digest = record.get<std::string>("digest"),
                   .seed = record.get<std::uint64_t>("seed"),
                   .clock = Clock(parse_utc(start))};
+  const Ellipsoid ellipsoid = ellipsoid_of(scenario);
   for (const JsonRecord& sensor : scenario.objects("sensors"))
-    run.sensors.push_back(sensor_of(sensor));
+    run.sensors.push_back(sensor_of(sensor, ellipsoid));
   read_catalogues(scenario, run);
   if (!wanted.sensor.empty()) run.sensor(wanted.sensor);
   const auto is_wanted = [&](const JsonRecord& line) {

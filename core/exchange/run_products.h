@@ -16,7 +16,7 @@ namespace dmise {
 
 /// A sensor of a run, as run.json describes it.
 struct RunSensor {
-  /// Geodetic place on the scenario's ellipsoid.
+  /// Geodetic place on WGS 84, whatever the scenario's ellipsoid.
   struct Site {
     double latitude_deg = 0.0, longitude_deg = 0.0, height_m = 0.0;
   };

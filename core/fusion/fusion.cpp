@@ -46,7 +46,7 @@ FusionTick FusionBody::step(SimTime time, std::vector<SensorFrame> frames) {
       ++end;
     const std::span<const SensorFrame> group{frames.data() + begin, end - begin};
     catalogue_.move(group[group.size() / 2].time);
-    Scene scene(clock_, catalogue_);
+    Scene scene(clock_, catalogue_, settings_.ellipsoid);
     for (const auto& track : tracks_)
       if (track->place_roughly(forces_, scene.time)) scene.placed.push_back(track.get());
     const std::size_t words = cone_words(catalogue_.size());

@@ -15,15 +15,17 @@ constexpr double cone_margin_rad = 0.02;
 constexpr double largest_cone_rad = 3.1;
 constexpr double surface_m = 6.35e6;
 
-OblateEarth earth_at(const Clock& clock, SimTime time) {
-  return oblate_earth(earth_orientation(clock, time));
+OblateEarth earth_at(const Clock& clock, SimTime time, const Ellipsoid& ellipsoid) {
+  return oblate_earth(earth_orientation(clock, time), ellipsoid);
 }
 
 }  // namespace
 
-FusionBody::Scene::Scene(const Clock& clock, const CataloguePrediction& catalogue)
+FusionBody::Scene::Scene(const Clock& clock, const CataloguePrediction& catalogue,
+                         const Ellipsoid& ellipsoid)
     : time(catalogue.time()),
-      shadow(solar_system(clock.tt(catalogue.time())).sun_m, earth_at(clock, catalogue.time())) {}
+      shadow(solar_system(clock.tt(catalogue.time())).sun_m,
+             earth_at(clock, catalogue.time(), ellipsoid)) {}
 
 std::vector<std::uint64_t> FusionBody::Scene::objects_in(std::span<const SensorFrame> frames,
                                                          const CataloguePrediction& catalogue,

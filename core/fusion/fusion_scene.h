@@ -20,7 +20,7 @@ struct FusionBody::Candidate {
 
 /// What frames of about one time share.
 struct FusionBody::Scene {
-  Scene(const Clock& clock, const CataloguePrediction& catalogue);
+  Scene(const Clock& clock, const CataloguePrediction& catalogue, const Ellipsoid& ellipsoid);
 
   /// For each frame a row of bits: catalogued objects that may be in its field.
   std::vector<std::uint64_t> objects_in(std::span<const SensorFrame> frames,

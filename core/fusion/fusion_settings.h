@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
 
+#include "core/frames/geodesy.h"
+
 namespace dmise {
 
 /// What a fusion takes as known. Defaults are those of the scenario's key `fusion`.
@@ -19,6 +21,7 @@ struct FusionSettings {
   double arc_window_s = 240.0;   // likewise of an arc that one site alone sees
   int arc_exposures = 4;         // least of such an arc, >= 4; 0: one site begins nothing
   double acceleration_noise_m2_per_s3 = 1e-6;
+  Ellipsoid ellipsoid{};       // the Earth, which casts the shadow
   int confirm_catalogued = 3;  // detections that confirm a track of a catalogued object
   int confirm_unknown = 6;     // and one of another, which begins with four
   int confirm_arc = 4;         // more than it began with, of one that one site began

@@ -77,10 +77,10 @@ Matrix6 information_at(const OrbitState& state, const Matrix6& transition,
 
 }  // namespace
 
-CueSky::CueSky(const Clock& clock, SimTime time)
+CueSky::CueSky(const Clock& clock, SimTime time, const Ellipsoid& ellipsoid)
     : earth(earth_orientation(clock, time)),
       bodies(solar_system(clock.tt(time))),
-      shadow(bodies.sun_m, oblate_earth(earth)) {}
+      shadow(bodies.sun_m, oblate_earth(earth, ellipsoid)) {}
 
 double rough_rate(const CueSky& sky, const CuedSensor& sensor, const CueTarget& target,
                   const MountPosition& from, SimTime start) {

@@ -31,7 +31,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// The sky over the next minutes.
 struct CueSky {
-  CueSky(const Clock& clock, SimTime time);
+  CueSky(const Clock& clock, SimTime time, const Ellipsoid& ellipsoid = wgs84);
 
   EarthOrientation earth;
   SolarSystem bodies;

@@ -114,7 +114,7 @@ std::vector<Task> Scheduler::step(SimTime now, SimTime begin, SimTime next,
   std::erase_if(pending_, [&](const Task& t) { return t.end <= known; });
   std::vector<Task> out;
   if (!is_asked(begin, next)) return out;
-  const CueSky sky(clock_, begin);
+  const CueSky sky(clock_, begin, mounts_.front().sensor.site.ellipsoid);
   struct Free {
     Mount* mount;
     std::vector<Option> options;

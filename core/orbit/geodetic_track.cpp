@@ -30,35 +30,70 @@ Vec<OemAxes> slope_at(const OemSegment& s, std::size_t i) {
   return before + bend * (2 * s.time_s[i] - s.time_s[middle - 1] - s.time_s[middle]);
 }
 
-}  // namespace
-
-Trajectory parse_geodetic_track(std::string_view text, const std::string& source, const Tai& start,
-                                const std::string& name) {
+/// A table of `columns`; `place` turns a row into a position in ITRS.
+template <class Place>
+Trajectory track_of(std::string_view text, const std::string& source, const Tai& start,
+                    const std::string& name, std::string_view columns, const Place& place) {
   OemSegment s{.object_name = name,
                .frame = OemFrame::itrs,
                .interpolation = OemInterpolation::hermite,
                .degree = 3};
-  parse_time_table(
-      text, source, "time_s,latitude_deg,longitude_deg,height_m", [&](const TimeTableRow& row) {
-        const Site site{row.values[1], row.values[2], row.values[3]};
-        if (std::abs(site.latitude_deg) > 90 || std::abs(site.longitude_deg) > 360 ||
-            !(site.height_m >= least_height_m && site.height_m <= most_height_m))
-          throw ConfigError(source + ":" + std::to_string(row.line) +
-                            ": latitude must be in -90..90, longitude in -360..360 and height in "
-                            "2..1e9 m" +
-                            got(row.text));
-        const Vec<Itrs> p = itrs_from_geodetic(site);
-        s.time_s.push_back(row.values[0]);
-        s.position_m.push_back({p.x, p.y, p.z});
-      });
+  parse_time_table(text, source, columns, [&](const TimeTableRow& row) {
+    const Vec<Itrs> p = place(row);
+    s.time_s.push_back(row.values[0]);
+    s.position_m.push_back({p.x, p.y, p.z});
+  });
   for (std::size_t i = 0; i < s.time_s.size(); ++i) s.velocity_m_per_s.push_back(slope_at(s, i));
   s.usable_start_s = s.time_s.front();
   s.usable_stop_s = s.time_s.back();
   return {source, start, {std::move(s)}};
 }
 
-Trajectory read_geodetic_track(const std::string& path, const Tai& start, const std::string& name) {
-  return parse_geodetic_track(read_text_file(path), path, start, name);
+[[noreturn]] void refuse(const TimeTableRow& row, const std::string& source,
+                         const std::string& reason) {
+  throw ConfigError(source + ":" + std::to_string(row.line) + ": " + reason + got(row.text));
+}
+
+}  // namespace
+
+Trajectory parse_geodetic_track(std::string_view text, const std::string& source, const Tai& start,
+                                const std::string& name, const Ellipsoid& ellipsoid) {
+  return track_of(text, source, start, name, "time_s,latitude_deg,longitude_deg,height_m",
+                  [&](const TimeTableRow& row) {
+                    const Site site{row.values[1], row.values[2], row.values[3], ellipsoid};
+                    if (std::abs(site.latitude_deg) > 90 || std::abs(site.longitude_deg) > 360 ||
+                        !(site.height_m >= least_height_m && site.height_m <= most_height_m))
+                      refuse(row, source,
+                             "latitude must be in -90..90, longitude in -360..360 and height in "
+                             "2..1e9 m");
+                    return itrs_from_geodetic(site);
+                  });
+}
+
+Trajectory parse_enu_track(std::string_view text, const std::string& source, const Tai& start,
+                           const std::string& name, const Site& origin) {
+  const Vec<Itrs> origin_m = itrs_from_geodetic(origin);
+  const auto itrs_from_enu = enu_from_itrs(origin).inverse();
+  return track_of(text, source, start, name, "time_s,east_m,north_m,up_m",
+                  [&](const TimeTableRow& row) {
+                    const Vec<Enu> place{row.values[1], row.values[2], row.values[3]};
+                    if (!(norm(place) <= most_height_m))
+                      refuse(row, source, "must be within 1e9 m");
+                    const Vec<Itrs> p = origin_m + itrs_from_enu * place;
+                    if (!(geodetic_from_itrs(p, origin.ellipsoid).height_m >= least_height_m))
+                      refuse(row, source, "must be 2 m above the ellipsoid or higher");
+                    return p;
+                  });
+}
+
+Trajectory read_geodetic_track(const std::string& path, const Tai& start, const std::string& name,
+                               const Ellipsoid& ellipsoid) {
+  return parse_geodetic_track(read_text_file(path), path, start, name, ellipsoid);
+}
+
+Trajectory read_enu_track(const std::string& path, const Tai& start, const std::string& name,
+                          const Site& origin) {
+  return parse_enu_track(read_text_file(path), path, start, name, origin);
 }
 
 }  // namespace dmise

@@ -22,11 +22,18 @@ struct TwoBodyMotion {
   double gm_m3_per_s2 = earth_gm_m3_per_s2;
 };
 
+/// Moves at a constant velocity, relative to the axes of `F`, through `state` at `epoch`.
+template <class F>
+struct StraightMotion {
+  Tai epoch;
+  MotionState<F> state;
+};
+
 /// Motion of one object of a scenario. Element sets are propagated in batches by
 /// core/orbit/sgp4_batch. To add a model: write its file pair, list it here, give it a `state_at`,
 /// read it in core/config/motion_config.cpp, test it in tests/orbit.
-using MotionModel =
-    std::variant<ConstantPosition<Itrs>, ConstantPosition<Gcrs>, TwoBodyMotion, Trajectory>;
+using MotionModel = std::variant<ConstantPosition<Itrs>, ConstantPosition<Gcrs>, TwoBodyMotion,
+                                 Trajectory, StraightMotion<Itrs>>;
 
 template <class F>
 FramedState state_at(const ConstantPosition<F>& motion, const Tai&) {
@@ -34,6 +41,13 @@ FramedState state_at(const ConstantPosition<F>& motion, const Tai&) {
 }
 inline FramedState state_at(const TwoBodyMotion& motion, const Tai& time) {
   return propagate_two_body(motion.state, seconds_between(motion.epoch, time), motion.gm_m3_per_s2);
+}
+
+template <class F>
+FramedState state_at(const StraightMotion<F>& motion, const Tai& time) {
+  const auto& [position_m, velocity_m_per_s] = motion.state;
+  return MotionState<F>{position_m + velocity_m_per_s * seconds_between(motion.epoch, time),
+                        velocity_m_per_s};
 }
 
 /// State at `time`. Throws `Error` if the model has none.

@@ -10,8 +10,10 @@ ObjectRoster published_roster(const ObjectPopulation& population) {
   return roster;
 }
 
-ObjectPopulation population_of(const ObjectRoster& roster, const std::vector<OwnObject>& own) {
-  ObjectPopulation population{.roster = {.objects = roster.objects}, .elements = roster.elements};
+ObjectPopulation population_of(const ObjectRoster& roster, const std::vector<OwnObject>& own,
+                               const Ellipsoid& ellipsoid) {
+  ObjectPopulation population{
+      .roster = {.objects = roster.objects}, .elements = roster.elements, .ellipsoid = ellipsoid};
   std::size_t own_by_elements = 0;
   for (const auto& object : own)
     own_by_elements += std::holds_alternative<MeanElements>(object.motion.model);

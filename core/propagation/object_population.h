@@ -23,6 +23,7 @@ struct ObjectPopulation {
   std::vector<MeanElements> elements;
   std::vector<MotionModel> models;
   std::vector<ObjectAttitude> attitudes;  // by ascending index
+  Ellipsoid ellipsoid{};                  // no object moves below it
   std::vector<std::string> notes;  // one line each: records refused, stale elements, short spans
 };
 
@@ -32,6 +33,7 @@ ObjectRoster published_roster(const ObjectPopulation& population);
 /// Returns the population of a published roster: element sets are the roster's, other motions and
 /// all attitudes those of the scenario's own objects. Throws `Error` if the roster is not one of a
 /// scenario with these objects.
-ObjectPopulation population_of(const ObjectRoster& roster, const std::vector<OwnObject>& own);
+ObjectPopulation population_of(const ObjectRoster& roster, const std::vector<OwnObject>& own,
+                               const Ellipsoid& ellipsoid = wgs84);
 
 }  // namespace dmise

@@ -37,12 +37,12 @@ bool is_fixed(const MotionModel& model) {
 }
 
 /// State from a model other than SGP4; its velocity is the slope of the position.
-Placed placed(const MotionModel& model, const StateInstant& at) {
+Placed placed(const MotionModel& model, const StateInstant& at, const Ellipsoid& ellipsoid) {
   if (const auto* path = std::get_if<Trajectory>(&model); path && !covers(*path, at.tai))
     return {{}, std::uint8_t(MotionCode::outside_span)};
   try {
     const auto state = in_gcrs(path_at(model, at.tai), at.earth, at.time);
-    const OblateEarth body = oblate_earth(at.earth);
+    const OblateEarth body = oblate_earth(at.earth, ellipsoid);
     if (is_fixed(model) || norm(body.stretched(state.position_m)) >
                                body.ellipsoid.equatorial_radius_m + least_height_m)
       return {state, 0};
@@ -161,7 +161,7 @@ void StateSource::add_models(const Scene& scene, ObjectStates& states) const {
   const StateInstant& now = scene.instants[1];
   for (std::size_t k = scene.with_elements; k < scene.count; ++k) {
     const MotionModel& model = population_.models[scene.object(k) - batch_.size()];
-    const Placed path = placed(model, now);
+    const Placed path = placed(model, now, population_.ellipsoid);
     states.code[k] = path.code;
     if (path.code) continue;
     set(states.position_m, states.count, k, path.state.position_m);
@@ -197,10 +197,10 @@ void StateSource::add_attitudes(const Scene& wanted, ObjectStates& states) const
     states.attitude_object.push_back(static_cast<std::uint32_t>(k));
     if (states.code[k]) continue;
     const auto scene = [&, k = k](std::size_t j) -> std::optional<AttitudeScene> {
-      const Placed there =
-          k < wanted.with_elements
-              ? wanted.sgp4[j].placed(k, instants[j])
-              : placed(population_.models[wanted.object(k) - batch_.size()], instants[j]);
+      const Placed there = k < wanted.with_elements
+                               ? wanted.sgp4[j].placed(k, instants[j])
+                               : placed(population_.models[wanted.object(k) - batch_.size()],
+                                        instants[j], population_.ellipsoid);
       if (there.code) return std::nullopt;
       return AttitudeScene{instants[j].time.seconds(), there.state.position_m,
                            there.state.velocity_m_per_s, sun_m[j]};

@@ -7,6 +7,9 @@
 namespace dmise {
 namespace {
 
+constexpr double nearest_m = 1e-3;   // of a place that a camera looks at
+constexpr double least_sine = 1e-6;  // between boresight and up
+
 Rotation<CameraFrame, Gcrs> at_direction(const Vec<Gcrs>& direction, double roll_rad) {
   const auto [ra, dec] = to_spherical(direction);
   return camera_at<Gcrs>(ra, dec, roll_rad);
@@ -65,6 +68,24 @@ struct Aim {
     if (!(across > 0.0)) return centred;
     // The shortest turn of the axis z to (x, y, 1).
     return turned<CameraFrame>({-y / across, x / across, 0.0}, std::atan(across)) * centred;
+  }
+  Rotation<CameraFrame, Gcrs> operator()(const PointEnu& p) const {
+    const auto enu_from_gcrs = enu_from_itrs(p.origin) * scene.itrs_from_gcrs;
+    Vec<Enu> line = p.look;
+    if (p.at_m) {
+      const Vec<Itrs> eye_m = scene.itrs_from_gcrs * scene.observer.position_m;
+      line = *p.at_m - enu_from_itrs(p.origin) * (eye_m - itrs_from_geodetic(p.origin));
+      if (!(norm(line) > nearest_m)) throw Error(p.where + ": the sensor is where it looks at");
+    }
+    const Vec<Enu> z = unit(line);
+    Vec<Enu> side = cross(z, p.up);
+    // Along `up` another axis takes its place, which can't be along both.
+    if (norm(side) < least_sine)
+      side = cross(z, std::abs(z.y) < 0.9 ? Vec<Enu>{0, 1, 0} : Vec<Enu>{0, 0, 1});
+    const Vec<Enu> x = unit(side), y = cross(z, x);
+    Rotation<CameraFrame, Enu> camera;
+    camera.m = {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
+    return camera * enu_from_gcrs;
   }
   Rotation<CameraFrame, Gcrs> operator()(const PointCued& p) const {
     if (norm(scene.towards_target) > 0.0) return at_direction(scene.towards_target, roll_rad());

@@ -17,9 +17,8 @@ SensorTrack::SensorTrack(const SensorConfig& sensor, const SkyHours& sky, const 
   const auto* towards = std::get_if<PointTarget>(&sensor.pointing);
   geometric_ = towards && towards->geometric;
   if (geometric_) refraction_ = configured_refraction(sensor);
-  const auto* site = std::get_if<SiteConfig>(&sensor.place);
-  if (!site) return;
-  site_ = Site{site->latitude_deg, site->longitude_deg, site->height_m};
+  site_ = site_of(sensor);
+  if (!site_) return;
   site_m_ = itrs_from_geodetic(*site_);
   up_ = enu_from_itrs(*site_).inverse() * Vec<Enu>{0, 0, 1};
   if (std::holds_alternative<PointUp>(sensor.pointing) ||
@@ -74,7 +73,7 @@ CameraMoment SensorTrack::at(SimTime t) const {
     if (!now.there) return now;
     scene.observer = *host;
     now.apex_m = gcrs_from_teme.inverse() * host->position_m;
-    now.sight.emplace(host->position_m, oblate_earth(earth));
+    now.sight.emplace(host->position_m, oblate_earth(earth, sensor_.ellipsoid));
   }
   if (target_) {
     const auto target = state_of(*target_, now, gcrs_from_teme);

@@ -13,7 +13,8 @@ std::int64_t hour_of(SimTime t) {
 
 }  // namespace
 
-SkyHours::SkyHours(const Clock& clock, SimTime from, SimTime to) : clock_(clock) {
+SkyHours::SkyHours(const Clock& clock, SimTime from, SimTime to, const Ellipsoid& ellipsoid)
+    : clock_(clock), ellipsoid_(ellipsoid) {
   const auto sun_at = [&](std::int64_t k) { return solar_system(clock.tt({k * hour_ns})).sun_m; };
   Vec<Gcrs> sun = sun_at(hour_of(from));
   for (std::int64_t k = hour_of(from); k <= hour_of(to); ++k) {
@@ -37,7 +38,7 @@ Vec<Gcrs> SkyHours::sun_m(SimTime t) const {
 Sunlight::Sunlight(const SkyHours& sky, SimTime t)
     : gcrs_from_teme_(sky.earth(t).gcrs_from_teme(t)),
       sun_m_(sky.sun_m(t)),
-      shadow_(sun_m_, oblate_earth(sky.earth(t))) {}
+      shadow_(sun_m_, sky.surface(t)) {}
 
 double Sunlight::fraction(const Vec<Teme>& position_m) const {
   const Vec<Gcrs> p = gcrs_from_teme_ * position_m;

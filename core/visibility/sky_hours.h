@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "core/frames/earth_orientation.h"
+#include "core/frames/oblate_earth.h"
 #include "core/sky/shadow.h"
 #include "core/sky/sun_moon.h"
 #include "core/time/clock.h"
@@ -13,11 +13,12 @@ namespace dmise {
 /// linearly (0.02 arcsec). Immutable.
 class SkyHours {
  public:
-  /// For instants in [from, to].
-  SkyHours(const Clock& clock, SimTime from, SimTime to);
+  /// For instants in [from, to]; `ellipsoid` casts the shadow.
+  SkyHours(const Clock& clock, SimTime from, SimTime to, const Ellipsoid& ellipsoid = wgs84);
 
   const Clock& clock() const { return clock_; }
   const EarthOrientation& earth(SimTime t) const { return hour(t).earth; }
+  OblateEarth surface(SimTime t) const { return oblate_earth(earth(t), ellipsoid_); }
   Vec<Gcrs> sun_m(SimTime t) const;
 
  private:
@@ -29,6 +30,7 @@ class SkyHours {
   const Hour& hour(SimTime t) const;
 
   Clock clock_;
+  Ellipsoid ellipsoid_;
   std::vector<Hour> hours_;
 };
 

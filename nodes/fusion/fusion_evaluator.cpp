@@ -18,11 +18,10 @@ constexpr double axis_slack_rad = 0.01;  // the boresight of a report is that of
 std::optional<CuedSensor> cued_sensor(const SensorConfig& sensor) {
   const auto* cued = std::get_if<PointCued>(&sensor.pointing);
   if (!cued) return std::nullopt;
-  const auto& site = std::get<SiteConfig>(sensor.place);
   const Optics& optics = sensor.camera.optics;
   return CuedSensor{
       .name = sensor.name,
-      .site = {site.latitude_deg, site.longitude_deg, site.height_m},
+      .site = *site_of(sensor),
       .cue = cued->cue,
       .park_azimuth_deg = cued->park.azimuth_deg,
       .park_elevation_deg = cued->park.elevation_deg,

@@ -66,8 +66,7 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
     out.sun_elevation_rad = elevation_rad(up, to_sun_m);
     out.moon_elevation_rad = elevation_rad(up, view.environment().moon_m - here_m);
   }
-  if (!view.on_ground())
-    out.limb_angle_rad = above_limb_rad(here_m, boresight, oblate_earth(view.earth()));
+  if (!view.on_ground()) out.limb_angle_rad = above_limb_rad(here_m, boresight, view.surface());
   out.boresight_hidden =
       hides(boresight) || (out.boresight_elevation_rad && *out.boresight_elevation_rad < 0.0);
   if (const auto* target = std::get_if<PointTarget>(&sensor.pointing)) {

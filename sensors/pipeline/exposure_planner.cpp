@@ -154,7 +154,7 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
   const Optics& optics = sensor_.camera.optics;
   const ExposureInstant middle(view, times.middle);
   const ObjectSampler sampler(view, shapes_);
-  const EarthShadow shadow(view.environment().sun_m, oblate_earth(view.earth()));
+  const EarthShadow shadow(view.environment().sun_m, view.surface());
   const Throughput throughput(view);
   const double electrons = object_photons_per_s_m2(0.0, sensor_.camera.band) *
                            throughput.electrons_per_photon_m2() * times.seconds();

@@ -17,7 +17,7 @@ ObjectSampler::ObjectSampler(const View& view, const ObjectShapes* shapes)
       with_earthshine_(acts<Earthshine>(view.sensor().effects, view.scene())),
       zero_mag_(object_photons_per_s_m2(0.0, view.sensor().camera.band)) {
   if (acts<EarthShadow>(view.sensor().effects, view.scene()))
-    shadow_.emplace(view.environment().sun_m, oblate_earth(view.earth()));
+    shadow_.emplace(view.environment().sun_m, view.surface());
 }
 
 ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at) const {

@@ -74,7 +74,8 @@ void SensorEvaluator::take_in(std::span<const Message> inputs) {
   for (const auto& message : inputs) {
     if (const auto* roster = std::get_if<ObjectRoster>(message.state.get())) {
       if (propagates()) {
-        const auto objects = propagated_objects(message.state, *propagated_, clock_);
+        const auto objects =
+            propagated_objects(message.state, *propagated_, clock_, sensor_.ellipsoid);
         world_.add(std::shared_ptr<const ObjectRoster>(objects, &objects->population.roster));
         states_.emplace(objects, grid_.tick_length);
       } else {

@@ -20,7 +20,7 @@ constexpr double near_horizon_rad = 2.0 * deg;
 
 EarthOccultation earth_seen(const View& view, SimTime t) {
   if (view.on_ground()) return {view.up(t), std::nullopt};
-  return {view.up(t), FreeSight(view.observer(t).position_m, oblate_earth(view.earth()))};
+  return {view.up(t), FreeSight(view.observer(t).position_m, view.surface())};
 }
 
 /// Starlight that is not drawn star by star, by the limit of those that are.
@@ -72,8 +72,8 @@ class StarlightByLimit {
 /// Whether the Earth's limb may be in the field of a sensor in space, also between the samples.
 bool sees_limb(const View& view, SimTime t) {
   const Vec<Gcrs> here_m = view.observer(t).position_m;
-  const double earth_rad =
-      std::asin(std::min(1.0, wgs84.equatorial_radius_m / std::max(norm(here_m), 1.0)));
+  const double earth_rad = std::asin(
+      std::min(1.0, view.sensor().ellipsoid.equatorial_radius_m / std::max(norm(here_m), 1.0)));
   return angle_rad(boresight(view, t), -here_m) <
          earth_rad + half_diagonal_rad(view.sensor().camera.optics) + near_horizon_rad;
 }

@@ -24,14 +24,14 @@ double interpolation_error_m(double tick_s) { return 1e-4 * std::pow(tick_s, 4) 
 }  // namespace
 
 PropagatedObjects::PropagatedObjects(const ObjectRoster& roster, const std::vector<OwnObject>& own,
-                                     Clock clock)
-    : population(population_of(roster, own)),
+                                     Clock clock, const Ellipsoid& ellipsoid)
+    : population(population_of(roster, own, ellipsoid)),
       from_catalogues(count_from_catalogues(population, own)),
       source(population, std::move(clock), threads) {}
 
 std::shared_ptr<const PropagatedObjects> propagated_objects(
     const std::shared_ptr<const State>& roster, const std::vector<OwnObject>& own,
-    const Clock& clock) {
+    const Clock& clock, const Ellipsoid& ellipsoid) {
   using Objects = std::weak_ptr<const PropagatedObjects>;
   static std::mutex mutex;
   static std::map<std::weak_ptr<const State>, Objects, std::owner_less<>> of_roster;
@@ -40,8 +40,8 @@ std::shared_ptr<const PropagatedObjects> propagated_objects(
   Objects& known = of_roster[roster];
   auto objects = known.lock();
   if (!objects) {
-    objects =
-        std::make_shared<const PropagatedObjects>(std::get<ObjectRoster>(*roster), own, clock);
+    objects = std::make_shared<const PropagatedObjects>(std::get<ObjectRoster>(*roster), own, clock,
+                                                        ellipsoid);
     known = objects;
   }
   return objects;

@@ -19,12 +19,12 @@ View::View(const SensorConfig& sensor, const FrameTimes& commanded, const World&
       world_(world),
       seed_(seed),
       environment_(world.environment(times_.middle)),
-      air_(world.site(sensor.name, times_.middle)) {
-  if (const auto* site = std::get_if<SiteConfig>(&sensor.place)) {
-    site_ = Site{site->latitude_deg, site->longitude_deg, site->height_m};
+      air_(world.site(sensor.name, times_.middle)),
+      site_(site_of(sensor)) {
+  if (site_) {
     site_m_ = itrs_from_geodetic(*site_);
     weather_ = air_ ? Weather{air_->pressure_hpa, air_->temperature_c, air_->humidity}
-                    : sensor.weather.air.value_or(standard_weather(site->height_m));
+                    : sensor.weather.air.value_or(standard_weather(site_->height_m));
     refraction_ = Refraction(weather_, sensor.camera.band.centre_m * 1e6);
   } else {
     platform_ = object_index(world.roster(), std::get<PlatformConfig>(sensor.place).object,
@@ -50,7 +50,7 @@ SceneFacts View::scene() const { return scene_facts(sensor_); }
 std::optional<EarthOccultation> View::earth_occultation(SimTime t) const {
   if (!acts<EarthOccultation>(sensor_.effects, scene())) return std::nullopt;
   std::optional<FreeSight> sight;
-  if (!on_ground()) sight.emplace(observer(t).position_m, oblate_earth(earth()));
+  if (!on_ground()) sight.emplace(observer(t).position_m, surface());
   return EarthOccultation(up(t), sight);
 }
 

@@ -47,6 +47,8 @@ class View {
 
   ObserverState observer(SimTime t) const;
   const EarthOrientation& earth() const { return environment_.earth; }
+  /// The Earth's surface, in mid exposure.
+  OblateEarth surface() const { return oblate_earth(earth(), sensor_.ellipsoid); }
   const EnvironmentState& environment() const { return environment_; }
   /// The air over a ground sensor; null where the sensor did not ask for it.
   const SiteState* air() const { return air_; }

@@ -29,7 +29,8 @@ PositionFiles::PositionFiles(std::string directory, const OutputConfig& output,
                              std::string creation_date)
     : directory_(std::move(directory)),
       creation_date_(std::move(creation_date)),
-      with_oem_(output.positions_oem) {
+      with_oem_(output.positions_oem),
+      in_enu_(output.positions_enu) {
   if (output.positions_csv) csv_.path = directory_ + "/positions.csv";
   if (output.positions_jsonl) json_.path = directory_ + "/positions.jsonl";
   const std::string made = with_oem_ ? directory_ + "/positions" : directory_;
@@ -55,7 +56,7 @@ void PositionFiles::open_ephemerides(const std::vector<ObjectInfo>& objects) {
 }
 
 void PositionFiles::keep_before(Tick tick, const std::string& utc) {
-  if (!csv_.path.empty()) keep_lines_before(csv_, tick, csv_header());
+  if (!csv_.path.empty()) keep_lines_before(csv_, tick, csv_header(in_enu_));
   if (!json_.path.empty()) keep_lines_before(json_, tick, "");
   for (const auto& [number, file] : ephemerides_) file->keep_before(utc);
 }

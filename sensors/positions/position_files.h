@@ -37,7 +37,7 @@ class PositionFiles {
   void append(Table& table, const std::string& lines);
 
   std::string directory_, creation_date_;
-  bool with_oem_;
+  bool with_oem_, in_enu_;
   Table csv_, json_;                                               // path empty: not written
   std::map<std::uint32_t, std::unique_ptr<OemFile>> ephemerides_;  // by catalogue number
 };

@@ -23,18 +23,32 @@ std::string field(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string csv_vector(const std::optional<Vec<Gcrs>>& v) {
+template <class F>
+std::string csv_vector(const std::optional<Vec<F>>& v) {
   if (!v) return ",,,";
   return "," + number(v->x / km) + "," + number(v->y / km) + "," + number(v->z / km);
 }
 
-void json_vector(JsonWriter& json, const char* key, const Vec<Gcrs>& v) {
+std::string csv_quaternion(const std::optional<Quaternion>& q) {
+  if (!q) return ",,,,";
+  return "," + number(q->w) + "," + number(q->x) + "," + number(q->y) + "," + number(q->z);
+}
+
+template <class F>
+void json_vector(JsonWriter& json, const char* key, const Vec<F>& v) {
   json.key(key).begin_array().value(v.x / km).value(v.y / km).value(v.z / km).end_array();
+}
+
+void json_quaternion(JsonWriter& json, const char* key, const Quaternion& q) {
+  json.key(key).begin_array().value(q.w).value(q.x).value(q.y).value(q.z).end_array();
 }
 
 }  // namespace
 
-std::string csv_header() {
+std::string csv_header(bool enu) {
+  if (enu)
+    return "tick,time_utc,kind,name,catalogue_number,east_km,north_km,up_km,veast_km_per_s,"
+           "vnorth_km_per_s,vup_km_per_s,qw,qx,qy,qz\n";
   return "tick,time_utc,kind,name,catalogue_number,x_km,y_km,z_km,vx_km_per_s,vy_km_per_s,"
          "vz_km_per_s,qw,qx,qy,qz\n";
 }
@@ -43,11 +57,12 @@ std::string csv_line(const PositionRow& row) {
   std::string line =
       std::to_string(row.tick) + "," + row.time_utc + "," + row.kind + "," + field(row.name) + ",";
   if (row.catalogue_number > 0) line += std::to_string(row.catalogue_number);
-  line += csv_vector(row.position_m) + csv_vector(row.slope_m_per_s);
-  if (const auto& q = row.gcrs_from_axes)
-    line += "," + number(q->w) + "," + number(q->x) + "," + number(q->y) + "," + number(q->z);
+  if (const auto& enu = row.enu)
+    line += csv_vector(std::optional(enu->position_m)) + csv_vector(enu->velocity_m_per_s) +
+            csv_quaternion(enu->enu_from_axes);
   else
-    line += ",,,,";
+    line += csv_vector(std::optional(row.position_m)) + csv_vector(row.slope_m_per_s) +
+            csv_quaternion(row.gcrs_from_axes);
   return line + "\n";
 }
 
@@ -56,16 +71,15 @@ std::string json_line(const PositionRow& row) {
   json.begin_object().field("tick", row.tick).field("time_utc", row.time_utc);
   json.field("kind", row.kind).field("name", row.name);
   if (row.catalogue_number > 0) json.field("catalogue_number", row.catalogue_number);
+  if (const auto& enu = row.enu) {
+    json_vector(json, "position_enu_km", enu->position_m);
+    if (enu->velocity_m_per_s) json_vector(json, "velocity_enu_km_per_s", *enu->velocity_m_per_s);
+    if (enu->enu_from_axes) json_quaternion(json, "quaternion_enu", *enu->enu_from_axes);
+    return json.end_object().take() + "\n";
+  }
   json_vector(json, "position_km", row.position_m);
   if (row.slope_m_per_s) json_vector(json, "velocity_km_per_s", *row.slope_m_per_s);
-  if (const auto& q = row.gcrs_from_axes)
-    json.key("quaternion")
-        .begin_array()
-        .value(q->w)
-        .value(q->x)
-        .value(q->y)
-        .value(q->z)
-        .end_array();
+  if (row.gcrs_from_axes) json_quaternion(json, "quaternion", *row.gcrs_from_axes);
   return json.end_object().take() + "\n";
 }
 

@@ -9,6 +9,13 @@
 
 namespace dmise {
 
+/// A place in east, north and up of the scenario's origin, relative to it.
+struct EnuPlace {
+  Vec<Enu> position_m;
+  std::optional<Vec<Enu>> velocity_m_per_s;  // relative to the turning axes
+  std::optional<Quaternion> enu_from_axes;   // w >= 0
+};
+
 /// Position of one thing at one tick.
 struct PositionRow {
   Tick tick = 0;
@@ -19,10 +26,11 @@ struct PositionRow {
   Vec<Gcrs> position_m;                      // geocentric
   std::optional<Vec<Gcrs>> slope_m_per_s;    // the derivative of the position
   std::optional<Quaternion> gcrs_from_axes;  // of a camera's or a body's axes; w >= 0
+  std::optional<EnuPlace> enu;               // what the tables have instead of GCRS
 };
 
 /// Header of the CSV table, with its newline.
-std::string csv_header();
+std::string csv_header(bool enu = false);
 
 /// One line each, with its newline; numbers are the shortest text that reads back to the same bits.
 std::string csv_line(const PositionRow& row);

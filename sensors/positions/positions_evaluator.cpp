@@ -78,11 +78,10 @@ std::optional<PositionRow> PositionsEvaluator::camera(std::size_t index, Tick ti
   const SimTime t = scenario_.time_of(tick);
   const EarthOrientation& earth = environment_->earth;
   PointingScene scene{.time = t, .itrs_from_gcrs = earth.itrs_from_gcrs(t)};
-  Site site;
-  if (const auto* place = std::get_if<SiteConfig>(&sensor.place)) {
-    site = {place->latitude_deg, place->longitude_deg, place->height_m};
-    scene.site = &site;
-    const Vec<Itrs> site_m = itrs_from_geodetic(site);
+  const auto site = site_of(sensor);
+  if (site) {
+    scene.site = &*site;
+    const Vec<Itrs> site_m = itrs_from_geodetic(*site);
     scene.observer = {scene.itrs_from_gcrs.inverse() * site_m,
                       earth.velocity_of_fixed_point(site_m, t)};
   } else {
@@ -136,7 +135,28 @@ std::vector<PositionRow> PositionsEvaluator::rows(Tick tick) const {
   }
   for (std::size_t k = 0; k < mounts_.size(); ++k)
     if (auto row = camera(k, tick)) rows.push_back(std::move(*row));
+  if (scenario_.output.positions_enu) turn_to_enu(rows, scenario_.time_of(tick));
   return rows;
+}
+
+void PositionsEvaluator::turn_to_enu(std::vector<PositionRow>& rows, SimTime t) const {
+  const Site& origin = *scenario_.earth.origin;
+  const Vec<Itrs> origin_m = itrs_from_geodetic(origin);
+  const auto enu_from_itrs = dmise::enu_from_itrs(origin);
+  const auto itrs_from_gcrs = environment_->earth.itrs_from_gcrs(t);
+  for (PositionRow& row : rows) {
+    const Vec<Itrs> place_m = itrs_from_gcrs * row.position_m;
+    EnuPlace enu{.position_m = enu_from_itrs * (place_m - origin_m)};
+    if (row.slope_m_per_s)
+      enu.velocity_m_per_s =
+          enu_from_itrs *
+          (itrs_from_gcrs *
+           (*row.slope_m_per_s - environment_->earth.velocity_of_fixed_point(place_m, t)));
+    if (row.gcrs_from_axes)
+      enu.enu_from_axes = upright(quaternion_of(enu_from_itrs * itrs_from_gcrs *
+                                                rotation_of<Gcrs, Body>(*row.gcrs_from_axes)));
+    row.enu = enu;
+  }
 }
 
 void PositionsEvaluator::write(Tick tick) { files_.add(rows(tick), tick > 0 ? utc(tick - 1) : ""); }

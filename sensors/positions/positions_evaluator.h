@@ -13,8 +13,8 @@
 namespace dmise {
 
 /// Writes at every tick the positions of cameras, their platforms and targets, the scenario's own
-/// objects, Sun and Moon, in GCRS. A camera's attitude is that of aiming at that instant, also
-/// between exposures.
+/// objects, Sun and Moon, in GCRS or in east, north and up. A camera's attitude is that of aiming
+/// at that instant, also between exposures.
 class PositionsEvaluator : public Evaluator {
  public:
   /// Throws `Error` if `directory` cannot be written.
@@ -38,6 +38,8 @@ class PositionsEvaluator : public Evaluator {
   void write(Tick tick);
   std::vector<PositionRow> rows(Tick tick) const;
   std::optional<PositionRow> camera(std::size_t sensor, Tick tick) const;
+  /// Adds what tables have in east, north and up.
+  void turn_to_enu(std::vector<PositionRow>& rows, SimTime t) const;
   std::string utc(Tick tick) const;
 
   Scenario scenario_;

@@ -21,12 +21,11 @@ constexpr double grid_step_s = 600.0;
 
 std::optional<double> sun_elevation_rad(const SurveyScene& scene, const SensorConfig& sensor,
                                         SimTime t) {
-  const auto* place = std::get_if<SiteConfig>(&sensor.place);
-  if (!place) return std::nullopt;
-  const Site site{place->latitude_deg, place->longitude_deg, place->height_m};
+  const auto site = site_of(sensor);
+  if (!site) return std::nullopt;
   const auto itrs_from_gcrs = scene.hours().earth(t).itrs_from_gcrs(t);
-  const Vec<Itrs> line = itrs_from_gcrs * scene.hours().sun_m(t) - itrs_from_geodetic(site);
-  const Vec<Enu> enu = enu_from_itrs(site) * unit(line);
+  const Vec<Itrs> line = itrs_from_gcrs * scene.hours().sun_m(t) - itrs_from_geodetic(*site);
+  const Vec<Enu> enu = enu_from_itrs(*site) * unit(line);
   return std::asin(std::clamp(enu.z, -1.0, 1.0));
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double mu_km3_per_s2 = 398600.8, earth_radius_km = 6378.135;  // WGS72, as SGP4's
 
-std::string km(double value) {
+std::string km_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", value);
   return text;
@@ -30,10 +30,10 @@ Shells shells_of(const ObjectPopulation& population, const std::vector<double>& 
   if (limits_km.empty()) {
     add("LEO");
   } else {
-    add("below " + km(limits_km.front()) + " km");
+    add("below " + km_text(limits_km.front()) + " km");
     for (std::size_t k = 1; k < limits_km.size(); ++k)
-      add(km(limits_km[k - 1]) + "-" + km(limits_km[k]) + " km");
-    add("LEO above " + km(limits_km.back()) + " km");
+      add(km_text(limits_km[k - 1]) + "-" + km_text(limits_km[k]) + " km");
+    add("LEO above " + km_text(limits_km.back()) + " km");
   }
   const std::size_t low = out.shells.size();
   for (const char* name : {"MEO", "GEO", "HEO", "beyond GEO", "own motion"}) add(name);

@@ -27,7 +27,7 @@ SurveyScene::SurveyScene(const Scenario& scenario, const ObjectPopulation& popul
                          const DetectionModel& model)
     : scenario_(scenario),
       source_(population, clock, threads),
-      hours_(clock, {0}, scenario.duration),
+      hours_(clock, {0}, scenario.duration, scenario.earth.ellipsoid),
       roster_(std::make_shared<const ObjectRoster>(population.roster)),
       stars_(std::move(stars)),
       model_(model) {

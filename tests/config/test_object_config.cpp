@@ -112,7 +112,7 @@ TEST(ObjectConfig, SaysWhereAndWhy) {
   EXPECT_EQ(complaint("- {name: x, motion: {flying: {}}}"),
             "s.yaml:2:22: objects[0].motion.flying: unknown key");
   EXPECT_EQ(complaint("- {name: x, motion: {}}"),
-            "s.yaml:2:21: objects[0].motion: give one of two_body, oem, fixed, track, sgp4");
+            "s.yaml:2:21: objects[0].motion: give one of two_body, oem, fixed, track, enu, sgp4");
   EXPECT_EQ(complaint("- {name: x, motion: {track: none.csv}}"),
             "s.yaml:2:29: objects[0].motion.track: there is no such file, got none.csv");
   EXPECT_EQ(complaint("- {name: x, motion: {oem: none.oem}}"),

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <GeographicLib/LocalCartesian.hpp>
 #include <fstream>
 
 #include "core/base/text_file.h"
@@ -116,6 +117,61 @@ TEST(Positions, OfAPlatformAreAnEphemerisThatBringsItBack) {
     const Motion there = stage.world.motion(0, sim_seconds(t_s));
     EXPECT_LT(norm(state.position_m - there.position_m), 0.01) << t_s;
   }
+}
+
+// Reference: GeographicLib's LocalCartesian, and the scenario's own line.
+TEST(Positions, InEastNorthAndUpOfTheScenariosOrigin) {
+  test::Stage stage(
+      "simulation: {start: 2018-01-21T00:15:00Z, duration_s: 40, tick_s: 5, ellipsoid: WGS72,"
+      " origin: {latitude_deg: 33.777, longitude_deg: -84.398, height_m: 300}}\n"
+      "objects:\n"
+      "  - name: kite\n"
+      "    motion: {enu: {position_m: [1000, -2000, 500], velocity_m_per_s: [20, 30, 5]}}\n"
+      "sensors:\n"
+      "  - {name: eye, platform: kite, camera: raven, pointing: {enu: {look: [0, 3, 4]}},"
+      " exposure_s: 1, cadence_s: 10}\n"
+      "  - {name: site, site: {latitude_deg: 34.5, longitude_deg: -83, height_m: 700}, camera: "
+      "raven, pointing: zenith, exposure_s: 1, cadence_s: 10}\n"
+      "output: {positions: [csv, jsonl, oem], positions_frame: enu}\n");
+  const std::string out = stage.directory.string(), csv = out + "/positions.csv";
+  run(stage, out, 0, stage.scenario.last_tick());
+  EXPECT_EQ(rows_of(csv, "tick,").at(0),
+            "tick,time_utc,kind,name,catalogue_number,east_km,north_km,up_km,veast_km_per_s,"
+            "vnorth_km_per_s,vup_km_per_s,qw,qx,qy,qz");
+  const GeographicLib::LocalCartesian local(33.777, -84.398, 300,
+                                            GeographicLib::Geocentric(6378135.0, 1 / 298.26));
+  double east_m, north_m, up_m;
+  local.Forward(34.5, -83, 700, east_m, north_m, up_m);
+  for (const auto& row : rows_of(csv, ",camera,site,")) {
+    const auto site = numbers(row);
+    EXPECT_NEAR(site[5] * 1e3, east_m, 1e-6);
+    EXPECT_NEAR(site[6] * 1e3, north_m, 1e-6);
+    EXPECT_NEAR(site[7] * 1e3, up_m, 1e-6);
+    EXPECT_LT(std::hypot(site[8], site[9], site[10]), 1e-12);
+  }
+  for (const char* what : {",object,kite,", ",camera,eye,"}) {
+    const auto rows = rows_of(csv, what);
+    ASSERT_EQ(rows.size(), 9u);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const auto kite = numbers(rows[k]);
+      const double t_s = 5.0 * double(k),
+                   expected[] = {1000 + 20 * t_s, -2000 + 30 * t_s, 500 + 5 * t_s, 20, 30, 5};
+      for (std::size_t i = 0; i < 6; ++i)
+        EXPECT_NEAR(kite[5 + i] * 1e3, expected[i], i < 3 ? 1e-6 : 1e-8) << what << k << " " << i;
+    }
+  }
+  // z of the camera's axes is along (0, 0.6, 0.8).
+  const auto q = numbers(rows_of(csv, ",camera,eye,").at(4));
+  EXPECT_NEAR(2 * (q[12] * q[14] + q[11] * q[13]), 0.0, 1e-12);
+  EXPECT_NEAR(2 * (q[13] * q[14] - q[11] * q[12]), 0.6, 1e-12);
+  EXPECT_NEAR(1 - 2 * (q[12] * q[12] + q[13] * q[13]), 0.8, 1e-12);
+  EXPECT_EQ(rows_of(out + "/positions.jsonl", "\"position_enu_km\"").size(),
+            rows_of(csv, ",").size() - 1);
+  // The ephemeris stays in GCRF.
+  const Trajectory path = read_oem(out + "/positions/kite-990000001.oem");
+  const Clock clock = make_clock(stage.scenario);
+  const auto state = std::get<MotionState<Gcrs>>(path_at(path, clock.tai(sim_seconds(20.0))));
+  EXPECT_LT(norm(state.position_m - stage.world.motion(0, sim_seconds(20.0)).position_m), 0.01);
 }
 
 // At a tick that is the middle of an exposure, the attitude is that of the frame.
