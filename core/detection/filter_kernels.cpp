@@ -19,13 +19,13 @@ DMISE_INLINE std::int32_t rounded(float scaled, std::int32_t odd) {
 }  // namespace
 
 void steps_of(const float* value, const float* noise, float unit, std::size_t count, bool odd,
-              std::int16_t* out) {
+              std::int8_t* out) {
   for (std::size_t x = 0; x < count; ++x)
-    out[x] = std::int16_t(rounded(value[x] / (unit * noise[x]) * per_sigma,
+    out[x] = std::int8_t(rounded(value[x] / (unit * noise[x]) * per_sigma,
                                   (std::int32_t(x) + std::int32_t(odd)) & 1));
 }
 
-void flatten_steps(std::int16_t* steps, std::size_t count, bool odd, std::uint32_t dither,
+void flatten_steps(std::int8_t* steps, std::size_t count, bool odd, std::uint32_t dither,
                    const float middle[2], const float scale[2]) {
   constexpr float per_turn = 1.0f / 4294967296.0f;
   const float m0 = middle[0], m1 = middle[1], s0 = scale[0], s1 = scale[1];
@@ -35,7 +35,7 @@ void flatten_steps(std::int16_t* steps, std::size_t count, bool odd, std::uint32
     const float flat = (float(steps[x]) - (m0 + at * m1)) * (s0 + at * s1);
     const float dithered = flat + float(turn) * per_turn;
     const std::int32_t step = rounded(dithered, (std::int32_t(x) + std::int32_t(odd)) & 1);
-    steps[x] = std::int16_t(steps[x] == 0 ? 0 : step);
+    steps[x] = std::int8_t(steps[x] == 0 ? 0 : step);
   }
 }
 

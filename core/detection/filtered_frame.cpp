@@ -26,7 +26,7 @@ Level level_of(const FilteredFrame& frame, int x0, int y0, const BitMask* lit) {
   constexpr int most = FilteredFrame::most;
   std::array<int, 2 * most + 1> histogram{};
   for (int y = y0; y < std::min(y0 + cell_px, frame.rows); ++y) {
-    const std::int16_t* row = frame.row(y);
+    const std::int8_t* row = frame.row(y);
     for (int x = x0; x < std::min(x0 + cell_px, frame.columns); ++x)
       ++histogram[std::size_t(row[x] + most)];
   }
@@ -120,7 +120,7 @@ void FilteredFrame::flatten(Threads& threads, const BitMask* lit) {
         line[std::size_t(i + 1)] = {a.middle + below * (b.middle - a.middle),
                                     1 / (a.scatter + below * (b.scatter - a.scatter))};
       }
-      std::int16_t* pixels = row(y);
+      std::int8_t* pixels = row(y);
       // From the middle of one cell to that of the next, all is linear.
       for (std::size_t i = 0; i + 1 < line.size(); ++i) {
         const int x0 = std::max(0, int(i) * cell_px - cell_px / 2);

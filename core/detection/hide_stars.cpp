@@ -26,11 +26,11 @@ constexpr double flickering =
 void subtract(const StarImage& image, float hidden, FilteredFrame& frame) {
   for (int y = image.y0; y <= image.y1; ++y) {
     const float* drawn = image.row(y);
-    std::int16_t* row = frame.row(y) + image.x0;
+    std::int8_t* row = frame.row(y) + image.x0;
     for (int i = 0; i <= image.x1 - image.x0; ++i) {
       if (row[i] == 0) continue;
       const float left = float(row[i]) / FilteredFrame::steps - drawn[i];
-      row[i] = drawn[i] > hidden ? std::int16_t(0)
+      row[i] = drawn[i] > hidden ? std::int8_t(0)
                                  : FilteredFrame::step_of(left, (image.x0 + i + y) % 2 != 0);
     }
   }

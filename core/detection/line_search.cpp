@@ -48,9 +48,9 @@ class Walk {
         continue;
       }
       const int m = int(place);
-      const std::int16_t* at =
+      const std::int8_t* at =
           frame_.snr.data() + std::size_t(k) * along_step_ + std::size_t(m) * across_step_;
-      const std::int16_t a = at[0], b = at[across_step_];
+      const std::int8_t a = at[0], b = at[across_step_];
       if (a == 0 || b == 0)
         visit(k, 0.0, false);
       else

@@ -107,10 +107,10 @@ TEST(Beamlets, FramesOfAnySizeAreSearched) {
   for (const auto& [columns, rows] : {std::array{1, 1}, std::array{1, 900}, std::array{900, 1},
                                       std::array{7, 7}, std::array{8, 9}, std::array{1025, 17}}) {
     FilteredFrame frame(columns, rows, 0.8);
-    std::fill(frame.snr.begin(), frame.snr.end(), std::int16_t(FilteredFrame::most));
+    std::fill(frame.snr.begin(), frame.snr.end(), std::int8_t(FilteredFrame::most));
     const auto beamlets = find_beamlets(frame, 4, best_simd_level(), threads);
     for (const Beamlet& b : beamlets) EXPECT_TRUE(std::isfinite(b.snr));
-    std::fill(frame.snr.begin(), frame.snr.end(), std::int16_t(0));
+    std::fill(frame.snr.begin(), frame.snr.end(), std::int8_t(0));
     EXPECT_TRUE(find_beamlets(frame, 4, best_simd_level(), threads).empty());
   }
 }
