@@ -28,7 +28,8 @@ DMISE_INLINE bool any_at_least(I16 v, I16 least) {
 
 /// Adds what is large enough of rows of sums that begin at `columns`.
 template <std::size_t rows>
-__attribute__((noinline)) void add_hits(const I16 (&sums)[rows], const std::uint32_t (&columns)[rows],
+__attribute__((noinline)) void add_hits(const I16 (&sums)[rows],
+                                        const std::uint32_t (&columns)[rows],
                                         const std::int16_t (&least)[rows], BeamletHit* to,
                                         std::size_t& count) {
   for (std::size_t i = 0; i < step; ++i)

@@ -165,8 +165,8 @@ class Block {
 
   /// Rows of a strip that are in the frame.
   int used(int first, int length) const {
-    return std::max(0, std::min(first_ + first + length, lines_.major) -
-                           std::max(first_ + first, 0));
+    return std::max(0,
+                    std::min(first_ + first + length, lines_.major) - std::max(first_ + first, 0));
   }
 
   const Level& level_of_length(int length) const {
