@@ -15,17 +15,45 @@ struct Sky {
   float level = 0.0f, sigma = 0.0f;
 };
 
-/// Median of integers as if each were spread evenly over its bin: finer than one count.
-double spread_median(const std::vector<std::uint32_t>& histogram, std::size_t low, std::size_t high,
-                     double count) {
-  double below = 0.0;
-  for (std::size_t i = low; i < high; ++i) {
-    if (below + histogram[i] >= 0.5 * count && histogram[i] > 0)
-      return double(i) - 0.5 + (0.5 * count - below) / histogram[i];
-    below += histogram[i];
+/// Counts of a histogram from bin `from` to before `to`: whole numbers, so they can be brought to
+/// other bins without losing digits.
+class Window {
+ public:
+  explicit Window(const std::vector<std::uint32_t>& histogram) : histogram_(histogram) {}
+
+  void move(std::size_t from, std::size_t to) {
+    for (; to_ < to; ++to_) add(to_, 1);
+    for (; from_ > from; --from_) add(from_ - 1, 1);
+    for (; to_ > to; --to_) add(to_ - 1, -1);
+    for (; from_ < from; ++from_) add(from_, -1);
   }
-  return double(low);
-}
+  double count() const { return double(count_); }
+  double sum() const { return double(sum_); }
+  double squares() const { return double(squares_); }
+  /// Median as if each number were spread evenly over its bin: finer than one count.
+  double spread_median() const {
+    std::int64_t below = 0;
+    for (std::size_t i = from_; i < to_; ++i) {
+      const std::int64_t here = histogram_[i];
+      if (2 * (below + here) >= count_ && here > 0)
+        return double(i) - 0.5 + (0.5 * double(count_) - double(below)) / double(here);
+      below += here;
+    }
+    return double(from_);
+  }
+
+ private:
+  void add(std::size_t bin, std::int64_t times) {
+    const std::int64_t n = times * std::int64_t(histogram_[bin]), at = std::int64_t(bin);
+    count_ += n;
+    sum_ += n * at;
+    squares_ += n * at * at;
+  }
+
+  const std::vector<std::uint32_t>& histogram_;
+  std::size_t from_ = 0, to_ = 0;
+  std::int64_t count_ = 0, sum_ = 0, squares_ = 0;
+};
 
 /// Values by their rank, without sorting them: by counts of their upper bytes, then of the lower.
 class Selection {
@@ -53,44 +81,67 @@ class Selection {
   std::array<std::uint32_t, 256> upper_{};
 };
 
-/// `values` is not empty.
-Sky clipped_sky(const std::vector<std::uint16_t>& values) {
+/// Two values by their rank, the lower one first. `near`: a value that is likely not far from them.
+std::array<std::uint16_t, 2> two_of(const std::vector<std::uint16_t>& values,
+                                    const std::array<std::size_t, 2>& ranks, int near) {
+  constexpr int bins = 2048;
+  const int base = std::max(near - bins / 2, 0);
+  std::array<std::uint16_t, bins + 2> counts{};  // the first and the last: of what is beside
+  for (const auto v : values) ++counts[std::size_t(std::clamp(int(v) - base, -1, bins) + 1)];
+  std::array<std::uint16_t, 2> out{};
+  std::size_t below = counts[0], bin = 1;
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (; bin <= bins && below + counts[bin] <= ranks[i]; ++bin) below += counts[bin];
+    if (ranks[i] < counts[0] || bin > bins || values.size() > 65535) {
+      const Selection sorted(values);
+      return {sorted.at(ranks[0]), sorted.at(ranks[1])};
+    }
+    out[i] = std::uint16_t(base + int(bin) - 1);
+  }
+  return out;
+}
+
+/// Memory for a cell's values, and where those of the cell before were.
+struct CellMemory {
+  std::vector<std::uint16_t> values, some;
+  std::vector<std::uint32_t> histogram;
+  int near = 0;
+};
+
+/// Of `values` of a cell, which are not empty.
+Sky clipped_sky(CellMemory& memory) {
+  const std::vector<std::uint16_t>& values = memory.values;
   // A quarter of them is enough to start from.
   constexpr std::size_t least = 256;
-  std::vector<std::uint16_t> some;
   const std::size_t every = values.size() < 4 * least ? 1 : 4;
-  for (std::size_t i = 0; i < values.size(); i += every) some.push_back(values[i]);
-  const Selection sorted(some);
-  const auto quantile = [&](double q) {
-    return double(sorted.at(std::size_t(q * double(some.size() - 1))));
-  };
-  const double first_median = quantile(0.5);
-  const double low = quantile(0.1587);
+  std::vector<std::uint16_t>& some = memory.some;
+  some.resize((values.size() + every - 1) / every);
+  for (std::size_t i = 0; i < some.size(); ++i) some[i] = values[i * every];
+  const auto rank = [&](double q) { return std::size_t(q * double(some.size() - 1)); };
+  const auto found = two_of(some, {rank(0.1587), rank(0.5)}, memory.near);
+  const double low = found[0], first_median = found[1];
+  memory.near = found[1];
   double sigma = std::max(first_median - low, 0.5), centre = first_median;
   // The rest works on a histogram of the values near the median.
   const double reach = 6 * sigma + 2;
   const auto base = std::int64_t(std::max(0.0, std::floor(centre - reach)));
   const std::size_t bins = std::size_t(2 * reach) + 2;
-  std::vector<std::uint32_t> histogram(bins, 0);
-  for (const auto v : values) {
-    const std::int64_t bin = std::int64_t(v) - base;
-    if (bin >= 0 && bin < std::int64_t(bins)) ++histogram[std::size_t(bin)];
-  }
+  std::vector<std::uint32_t>& histogram = memory.histogram;
+  histogram.assign(bins + 1, 0);  // the last: of what is beside
+  const auto first = std::uint32_t(base), last = std::uint32_t(bins);
+  for (const auto v : values) ++histogram[std::min(std::uint32_t(v) - first, last)];
+  Window window(histogram);
   double mean = centre, median = centre;
   for (int pass = 0; pass < 8; ++pass) {
     const auto edge = [&](double v) {
       return std::size_t(std::clamp(std::ceil(v - double(base)), 0.0, double(bins)));
     };
     const std::size_t from = edge(centre - 3 * sigma), to = edge(centre + 3 * sigma + 1e-9);
-    double n = 0, sum = 0, squares = 0;
-    for (std::size_t i = from; i < to; ++i) {
-      n += histogram[i];
-      sum += histogram[i] * double(i);
-      squares += histogram[i] * double(i) * double(i);
-    }
+    window.move(from, to);
+    const double n = window.count(), sum = window.sum(), squares = window.squares();
     if (n < 2) break;
     mean = sum / n + double(base);
-    median = spread_median(histogram, from, to, n) + double(base);
+    median = window.spread_median() + double(base);
     const double variance = std::max(squares / n - (sum / n) * (sum / n), 0.0);
     const double before = sigma;
     sigma = std::max(std::sqrt(variance) / 0.98658, 0.3);  // of a normal cut at 3 sigma
@@ -118,7 +169,8 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads)
       sigma_(cells_) {
   CellMesh level = cells_, sigma = cells_;
   const std::size_t cells = cells_.values.size();
-  const auto measure = [&](std::size_t cell, bool flatten, std::vector<std::uint16_t>& values) {
+  const auto measure = [&](std::size_t cell, bool flatten, CellMemory& memory) {
+    std::vector<std::uint16_t>& values = memory.values;
     const Area area = area_of(cell);
     const float mean = flatten ? mean_level(area) : 0.0f;
     values.clear();
@@ -133,15 +185,15 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads)
         values.push_back(std::uint16_t(std::clamp(flat + 0.5f, 0.0f, 65535.0f)));
       }
     }
-    const Sky sky = clipped_sky(values);
+    const Sky sky = clipped_sky(memory);
     level.values[cell] = sky.level;
     sigma.values[cell] = sky.sigma;
   };
   const auto measure_all = [&](bool only_sloped) {
     threads.for_ranges(cells, std::size_t(cells_.across), [&](std::size_t begin, std::size_t end) {
-      std::vector<std::uint16_t> values;
+      CellMemory memory;
       for (std::size_t cell = begin; cell < end; ++cell)
-        if (!only_sloped || is_sloped(cell)) measure(cell, only_sloped, values);
+        if (!only_sloped || is_sloped(cell)) measure(cell, only_sloped, memory);
     });
     level_ = cells_ = median_of_cells(level);
     sigma_ = median_of_cells(sigma);

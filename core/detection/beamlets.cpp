@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <memory>
+#include <mutex>
+#include <span>
 #include <utility>
 
 #include "core/detection/beamlet_kernels.h"
@@ -19,16 +22,17 @@ constexpr double least_used = 0.7;  // root of a half: half of a strip has more 
 /// round, and move to one side or the other.
 struct Orientation {
   bool transposed = false, mirrored = false;
-
-  int minor(const FilteredFrame& f) const { return transposed ? f.rows : f.columns; }
-  int major(const FilteredFrame& f) const { return transposed ? f.columns : f.rows; }
 };
 
 /// Beamlets of `length` rows.
 struct Level {
   int length = 0, angles = 0;
   std::vector<float> noise;         // by shift, of a sum
-  std::vector<std::int16_t> least;  // by shift, of a sum that is kept
+  std::vector<std::int16_t> least;  // by shift, of a sum that is kept; empty: none is
+
+  std::int16_t least_of(int shift) const {
+    return least.empty() ? std::int16_t(32767) : least[std::size_t(shift)];
+  }
 };
 
 Level level_of(const FilteredFrame& frame, int n, double least_snr) {
@@ -44,21 +48,84 @@ Level level_of(const FilteredFrame& frame, int n, double least_snr) {
   return level;
 }
 
+/// The frame with columns as rows.
+std::vector<std::int8_t> transposed_steps(const FilteredFrame& frame) {
+  std::vector<std::int8_t> out(frame.snr.size());
+  const auto to = [&](int x, int y) {
+    return out.data() + std::size_t(x) * std::size_t(frame.rows) + std::size_t(y);
+  };
+  // By bands of columns, so that what is written to stays in the cache.
+  constexpr int side = transpose_side, band = 4 * side;
+  for (int x0 = 0; x0 < frame.columns; x0 += band)
+    for (int y = 0; y < frame.rows; y += side)
+      for (int x = x0; x < std::min(x0 + band, frame.columns); x += side) {
+        const int across = std::min(side, frame.columns - x), down = std::min(side, frame.rows - y);
+        if (across < side || down < side) {
+          for (int j = 0; j < down; ++j)
+            for (int i = 0; i < across; ++i) *to(x + i, y + j) = frame.row(y + j)[x + i];
+          continue;
+        }
+        const std::int8_t* from[side];
+        std::int8_t* turned[side];
+        for (int i = 0; i < side; ++i) {
+          from[i] = frame.row(y + i) + x;
+          turned[i] = to(x + i, y);
+        }
+        transpose_tile(from, turned);
+      }
+  return out;
+}
+
+/// A frame of which lines are summed: its rows, or its columns as rows.
+struct Lines {
+  const std::int8_t* steps = nullptr;
+  int minor = 0, major = 0;  // steps in a row, rows
+
+  const std::int8_t* row(int k) const { return steps + std::size_t(k) * std::size_t(minor); }
+};
+
+struct Kernels {
+  decltype(&sse2::widen_steps) widen_steps;
+  decltype(&sse2::join_two) join_two;
+  decltype(&sse2::join_four) join_four;
+
+  explicit Kernels(SimdLevel level)
+      : widen_steps(kernel_of(level, sse2::widen_steps, avx2::widen_steps, avx512::widen_steps)),
+        join_two(kernel_of(level, sse2::join_two, avx2::join_two, avx512::join_two)),
+        join_four(kernel_of(level, sse2::join_four, avx2::join_four, avx512::join_four)) {}
+};
+
+/// Memory for the sums of a block, which is used again.
+struct Sums {
+  std::vector<std::int16_t> values;
+  std::vector<BeamletHit> whole, halves;
+};
+
 /// Sums of one orientation over a block of rows, in place.
 class Block {
  public:
-  Block(const FilteredFrame& frame, Orientation orientation, int first, int size,
-        const std::vector<Level>& levels, SimdLevel level)
-      : frame_(frame),
+  Block(const Lines& lines, Orientation orientation, int first, int size,
+        const std::vector<Level>& levels, const Kernels& kernels, Sums& memory)
+      : lines_(lines),
         orientation_(orientation),
         first_(first),
         size_(size),
-        width_(std::size_t(orientation.minor(frame) + size)),
+        width_(std::size_t(lines.minor + size)),
         levels_(levels),
-        join_(kernel_of(level, sse2::join_beamlets, avx2::join_beamlets, avx512::join_beamlets)) {
-    sums_.resize(std::size_t(size) * width_);
-    for (int k = 0; k < size; ++k) rows_.push_back(sums_.data() + std::size_t(k) * width_);
-    fill();
+        kernels_(kernels),
+        memory_(memory) {
+    // As far beyond its end as sums of four are taken from, a row is zero.
+    const std::size_t beyond = 3 * std::size_t(size) / 4 + 2 * beamlet_spare;
+    const std::size_t stride = (width_ + beyond + aligned - 1) / aligned * aligned;
+    const std::size_t values = std::size_t(size) * stride + aligned;
+    if (memory.values.size() < values) memory.values.resize(values);
+    const std::size_t hits = 4 * (width_ + beamlet_spare);
+    if (memory.whole.size() < hits) memory.whole.resize(hits), memory.halves.resize(hits);
+    void* place = memory.values.data();
+    std::size_t space = 2 * values;
+    auto* begin = static_cast<std::int16_t*>(std::align(2 * aligned, 2, place, space));
+    for (int k = 0; k < size; ++k) rows_.push_back(begin + std::size_t(k) * stride);
+    stride_ = stride;
   }
 
   void find(std::vector<Beamlet>& found) {
@@ -75,103 +142,96 @@ class Block {
   }
 
  private:
+  static constexpr std::size_t aligned = 32;  // values: a cache line, and the widest vector
+
   /// A beamlet in its small range of level, strip, place and direction.
   struct Kept {
     std::uint64_t cell;
     Beamlet beamlet;
   };
 
-  /// The block's pixels, to the right of as many columns of zeros as a line can cross.
-  void fill() {
-    const int minor = orientation_.minor(frame_);
-    const int begin = std::max(-first_, 0);
-    const int used = std::min(size_, orientation_.major(frame_) - first_);
-    const auto place = [&](int m) {
-      return std::size_t(size_ + (orientation_.mirrored ? minor - 1 - m : m));
-    };
-    if (!orientation_.transposed) {
-      for (int k = begin; k < used; ++k) {
-        const std::int16_t* from = frame_.row(first_ + k);
-        if (orientation_.mirrored)
-          copy_reversed(from, std::size_t(minor), rows_[std::size_t(k)] + size_);
-        else
-          std::copy(from, from + minor, rows_[std::size_t(k)] + size_);
-      }
-      return;
-    }
-    for (int y = 0; y < minor; y += transpose_side) {
-      const int across = std::min(transpose_side, minor - y);
-      for (int k = begin; k < used; k += transpose_side) {
-        const int down = std::min(transpose_side, used - k);
-        if (across == transpose_side && down == transpose_side) {
-          const std::int16_t* from[transpose_side];
-          std::int16_t* to[transpose_side];
-          for (int i = 0; i < transpose_side; ++i) {
-            const int m = orientation_.mirrored ? transpose_side - 1 - i : i;
-            from[i] = frame_.row(y + m) + first_ + k;
-            to[i] = rows_[std::size_t(k + i)] +
-                    place(orientation_.mirrored ? y + transpose_side - 1 : y);
-          }
-          transpose_tile(from, to);
-          continue;
-        }
-        for (int j = y; j < y + across; ++j)
-          for (int i = k; i < k + down; ++i)
-            rows_[std::size_t(i)][place(j)] = frame_.row(j)[first_ + i];
-      }
-    }
+  /// A row of pixels, to the right of as many columns of zeros as a line can cross.
+  void fill(int k) {
+    std::int16_t* row = rows_[std::size_t(k)];
+    const int line = first_ + k;
+    const bool inside = line >= 0 && line < lines_.major;
+    const auto begin = std::size_t(size_);
+    std::fill(row, row + (inside ? begin : width_), std::int16_t(0));
+    if (inside)
+      kernels_.widen_steps(lines_.row(line), std::size_t(lines_.minor), orientation_.mirrored,
+                           row + begin);
+    std::fill(row + width_, row + stride_, std::int16_t(0));
   }
 
   /// Rows of a strip that are in the frame.
   int used(int first, int length) const {
-    return std::max(0, std::min(first_ + first + length, orientation_.major(frame_)) -
-                           std::max(first_ + first, 0));
+    return std::max(0,
+                    std::min(first_ + first + length, lines_.major) - std::max(first_ + first, 0));
+  }
+
+  const Level& level_of_length(int length) const {
+    return levels_[std::size_t(std::bit_width(unsigned(length)) - 2)];
   }
 
   /// Sums the lines over `length` rows from `first` on, and all shorter ones in them. A strip
   /// of which so much is beside the frame that a half of it is always better is only summed if it
   /// is a part of a longer one that is.
   void sum(int first, int length, bool needed) {
-    if (length == 1 || used(first, length) == 0) return;
-    const int half = length / 2;
     needed = needed || used(first, length) >= least_used * length;
-    sum(first, half, needed);
-    sum(first + half, half, needed);
+    if (length == 1) {
+      if (needed) fill(first);
+      return;
+    }
+    if (used(first, length) == 0) {
+      for (int k = first; needed && k < first + length; ++k) fill(k);
+      return;
+    }
+    const int parts = needed && length >= 4 ? 4 : 2;
+    const int part = length / parts;
+    for (int k = 0; k < parts; ++k) sum(first + k * part, part, needed);
     if (!needed) return;
-    // Further to the left no line of this length comes in from.
-    const auto skipped = std::size_t(size_ - length);
-    const Level& level = levels_[std::size_t(std::bit_width(unsigned(length)) - 2)];
-    std::vector<std::int16_t*> joined(std::size_t(length), nullptr);
-    for (int a = 0; a < half; ++a) {
-      std::int16_t* upper = rows_[std::size_t(first + a)];
-      std::int16_t* lower = rows_[std::size_t(first + half + a)];
-      std::int16_t most[2];
-      join_(upper + skipped, lower + skipped, std::size_t(a), width_ - skipped, most);
-      joined[std::size_t(2 * a)] = upper;
-      joined[std::size_t(2 * a + 1)] = lower;
-      if (length < shortest) continue;
-      for (int side = 0; side < 2; ++side)
-        if (most[side] >= level.least[std::size_t(2 * a + side)])
-          keep(first, 2 * a + side, side ? lower : upper, level);
+    const Level& level = level_of_length(length);
+    std::vector<std::int16_t*> joined;
+    joined.reserve(std::size_t(length));
+    for (int a = 0; a < part; ++a) {
+      std::int16_t* rows[4] = {};
+      for (int k = 0; k < parts; ++k) rows[k] = rows_[std::size_t(first + k * part + a)];
+      BeamletLeast least;
+      for (int k = 0; k < parts; ++k) least.whole[k] = level.least_of(parts * a + k);
+      BeamletHits hits{memory_.whole.data(), memory_.halves.data()};
+      // Further to the left no line of so large a shift comes in from.
+      const auto begin = std::size_t(size_ - parts * (a + 1)) / aligned * aligned;
+      if (parts == 2) {
+        kernels_.join_two(rows, std::size_t(a), begin, width_, least, hits);
+      } else {
+        const Level& half = level_of_length(length / 2);
+        for (int k = 0; k < 2; ++k) least.halves[k] = half.least_of(2 * a + k);
+        kernels_.join_four(rows, std::size_t(a), begin, width_, least, hits);
+        for (int k = 0; hits.in_halves > 0 && k < 4; ++k)
+          keep(first + k / 2 * (length / 2), 2 * a + k % 2, k,
+               {memory_.halves.data(), hits.in_halves}, half);
+      }
+      for (int k = 0; hits.in_whole > 0 && k < parts; ++k)
+        keep(first, parts * a + k, k, {memory_.whole.data(), hits.in_whole}, level);
+      joined.insert(joined.end(), rows, rows + parts);
     }
     std::copy(joined.begin(), joined.end(), rows_.begin() + first);
   }
 
-  /// Keeps the largest sum of each cell of a row of sums with `shift`.
-  void keep(int first, int shift, const std::int16_t* sums, const Level& level) {
-    const std::int16_t least = level.least[std::size_t(shift)];
+  /// Keeps the largest sum of each cell of the row of hits with `shift`.
+  void keep(int first, int shift, int row, std::span<const BeamletHit> hits, const Level& level) {
     const float noise = level.noise[std::size_t(shift)];
     const auto strip = std::uint64_t(first / level.length);
     const auto angle = std::uint64_t(shift * level.angles / level.length);
     const auto cells = std::uint64_t(width_ / cell_px + 1);
-    const std::uint64_t row =
+    const std::uint64_t begin =
         ((std::uint64_t(level.length) * std::uint64_t(size_) + strip) * angle_cells + angle) *
         cells;
-    for (auto x = std::size_t(size_ - level.length); x < width_; ++x) {
-      if (sums[x] < least) continue;
-      const std::uint64_t cell = row + x / cell_px;
-      const float snr = float(sums[x]) / noise;
-      const Beamlet beamlet = placed(snr, int(x) - size_, first, shift, level.length);
+    for (const BeamletHit& hit : hits) {
+      if (hit.row != row) continue;
+      const std::uint64_t cell = begin + hit.column / cell_px;
+      const float snr = float(hit.sum) / noise;
+      const Beamlet beamlet = placed(snr, int(hit.column) - size_, first, shift, level.length);
       if (kept_.empty() || kept_.back().cell != cell)
         kept_.push_back({cell, beamlet});
       else if (snr > kept_.back().beamlet.snr)
@@ -182,22 +242,42 @@ class Block {
   Beamlet placed(float snr, int from, int first, int shift, int length) const {
     float m1 = float(from), m2 = float(from + shift);
     if (orientation_.mirrored) {
-      m1 = float(orientation_.minor(frame_) - 1) - m1;
-      m2 = float(orientation_.minor(frame_) - 1) - m2;
+      m1 = float(lines_.minor - 1) - m1;
+      m2 = float(lines_.minor - 1) - m2;
     }
     const float k1 = float(first_ + first), k2 = k1 + float(length - 1);
     return orientation_.transposed ? Beamlet{snr, k1, m1, k2, m2} : Beamlet{snr, m1, k1, m2, k2};
   }
 
-  const FilteredFrame& frame_;
+  const Lines& lines_;
   Orientation orientation_;
   int first_, size_;  // rows
-  std::size_t width_;
+  std::size_t width_, stride_ = 0;
   const std::vector<Level>& levels_;  // of 2, 4, .. rows
-  decltype(&sse2::join_beamlets) join_;
-  std::vector<std::int16_t> sums_;
+  const Kernels& kernels_;
+  Sums& memory_;
   std::vector<std::int16_t*> rows_;  // by strip, then shift
   std::vector<Kept> kept_;
+};
+
+/// Memory of blocks at work.
+class SumsPool {
+ public:
+  std::unique_ptr<Sums> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<Sums>();
+    auto sums = std::move(free_.back());
+    free_.pop_back();
+    return sums;
+  }
+  void give_back(std::unique_ptr<Sums> sums) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(sums));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Sums>> free_;
 };
 
 }  // namespace
@@ -211,7 +291,7 @@ std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, double least_snr,
   std::vector<Task> tasks;
   for (const Orientation o : {Orientation{false, false}, Orientation{false, true},
                               Orientation{true, false}, Orientation{true, true}}) {
-    const int major = o.major(frame);
+    const int major = o.transposed ? frame.columns : frame.rows;
     const int size = std::min(longest, int(std::bit_floor(unsigned(std::max(major, 1)))));
     if (size < shortest) continue;
     // A second set of strips begins a third of a block earlier, which is a third or two thirds of
@@ -221,11 +301,20 @@ std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, double least_snr,
   }
   std::vector<Level> levels;
   for (int n = 2; n <= longest; n *= 2) levels.push_back(level_of(frame, n, least_snr));
+  const std::vector<std::int8_t> transposed = transposed_steps(frame);
+  const Lines by_rows{frame.snr.data(), frame.columns, frame.rows};
+  const Lines by_columns{transposed.data(), frame.rows, frame.columns};
+  const Kernels kernels(level);
+  SumsPool pool;
   std::vector<std::vector<Beamlet>> found(tasks.size());
   threads.for_ranges(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      Block(frame, tasks[i].orientation, tasks[i].first, tasks[i].size, levels, level)
-          .find(found[i]);
+    auto sums = pool.take();
+    for (std::size_t i = begin; i < end; ++i) {
+      const Task& task = tasks[i];
+      const Lines& lines = task.orientation.transposed ? by_columns : by_rows;
+      Block(lines, task.orientation, task.first, task.size, levels, kernels, *sums).find(found[i]);
+    }
+    pool.give_back(std::move(sums));
   });
   std::vector<Beamlet> all;
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());

@@ -1,4 +1,5 @@
 #pragma once
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -16,6 +17,28 @@ class BitMask {
   }
   void set(int x, int y) {
     bits_[std::size_t(y) * words_ + std::size_t(x) / 64] |= std::uint64_t(1) << (unsigned(x) % 64);
+  }
+  /// Sets those of 64 pixels from a column on that are set in `bits`, all in the frame.
+  void set_bits(int x, int y, std::uint64_t bits) {
+    if (bits == 0) return;
+    std::uint64_t* word = bits_.data() + std::size_t(y) * words_ + std::size_t(x) / 64;
+    const unsigned shift = unsigned(x) % 64;
+    word[0] |= bits << shift;
+    if (shift != 0 && bits >> (64 - shift) != 0) word[1] |= bits >> (64 - shift);
+  }
+  /// Calls `visit` with the columns of a row that are set, from `begin` to before `end`.
+  template <class Visit>
+  void for_set(int y, int begin, int end, Visit&& visit) const {
+    const std::uint64_t* row = bits_.data() + std::size_t(y) * words_;
+    for (int first = begin / 64 * 64; first < end; first += 64) {
+      std::uint64_t word = row[first / 64];
+      if (first < begin) word &= ~std::uint64_t(0) << (begin - first);
+      for (; word != 0; word &= word - 1) {
+        const int x = first + std::countr_zero(word);
+        if (x >= end) return;
+        visit(x);
+      }
+    }
   }
 
  private:

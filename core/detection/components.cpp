@@ -10,7 +10,7 @@
 namespace dmise {
 namespace {
 
-constexpr int band_rows = 64;
+constexpr int band_rows = 128;
 
 struct PeakedRun {
   Run run;
@@ -32,71 +32,83 @@ std::vector<float> half_kernel(double sigma_px) {
   return out;
 }
 
-/// out = sum over i of k[|i|] in[+i rows], over `count` columns; `row(i)` returns the row at offset
-/// i.
-template <class Row>
-void weigh_rows(const std::vector<float>& k, Row row, float* out, int count) {
-  const float* centre = row(0);
-  for (int x = 0; x < count; ++x) out[x] = k[0] * centre[x];
-  for (int i = 1; i < int(k.size()); ++i) {
-    const float *before = row(-i), *after = row(i), weight = k[std::size_t(i)];
-    for (int x = 0; x < count; ++x) out[x] += weight * (before[x] + after[x]);
-  }
-}
-
+/// Filters bands of rows.
 class Band {
  public:
   Band(const CountImage& counts, const Background& background, const std::vector<float>& kernel)
-      : counts_(counts), background_(background), kernel_(kernel) {}
+      : counts_(counts),
+        background_(background),
+        kernel_(kernel),
+        radius_(int(kernel.size()) - 1),
+        width_(std::size_t(counts.columns)),
+        ring_(std::size_t(2 * radius_ + 1) * width_),
+        line_(width_ + 2 * std::size_t(radius_)),
+        level_(width_),
+        sigma_(width_),
+        filtered_(width_),
+        blocks_((width_ + filter_block - 1) / filter_block) {}
 
   std::vector<PeakedRun> runs(int first_row, int last_row, float low, float unit,
                               FilteredFrame* keep) {
-    const int columns = counts_.columns, radius = int(kernel_.size()) - 1;
-    const int padded = columns + 2 * radius;
-    // Rows of the band and its neighbours, smoothed along x; there is no light outside the frame.
-    const int held = last_row - first_row + 2 * radius;
-    const auto width = std::size_t(columns);
-    std::vector<float> smoothed(std::size_t(held) * width, 0.0f);
-    std::vector<float> line(std::size_t(padded), 0.0f);
-    std::vector<float> level(width), sigma(width), filtered(width);
-    for (int j = 0; j < held; ++j) {
-      const int y = first_row - radius + j;
-      if (y < 0 || y >= counts_.rows) continue;
-      background_.level_row(y, level.data());
-      const auto* in = counts_.row(y);
-      float* middle = line.data() + radius;
-      for (int x = 0; x < columns; ++x) middle[x] = float(in[x]) - level[std::size_t(x)];
-      weigh_rows(
-          kernel_, [&](int i) { return middle + i; }, smoothed.data() + std::size_t(j) * width,
-          columns);
-    }
-    const auto steps_of =
-        kernel_of(best_simd_level(), sse2::steps_of, avx2::steps_of, avx512::steps_of);
     std::vector<PeakedRun> out;
+    for (int y = first_row - radius_; y < first_row + radius_; ++y) smooth(y);
+    std::vector<const float*> before(kernel_.size()), after(kernel_.size());
     for (int y = first_row; y < last_row; ++y) {
-      const int j = y - first_row + radius;
-      weigh_rows(
-          kernel_, [&](int i) { return smoothed.data() + std::size_t(j + i) * width; },
-          filtered.data(), columns);
-      background_.sigma_row(y, sigma.data());
-      append_runs(y, filtered, sigma, low, unit, out);
-      if (!keep) continue;
-      steps_of(filtered.data(), sigma.data(), unit, width, y % 2 != 0, keep->row(y));
+      smooth(y + radius_);
+      for (int i = 0; i <= radius_; ++i) {
+        before[std::size_t(i)] = smoothed(y - i);
+        after[std::size_t(i)] = smoothed(y + i);
+      }
+      weigh_rows_(before.data(), after.data(), kernel_.data(), std::size_t(radius_), width_,
+                  filtered_.data());
+      background_.sigma_row(y, sigma_.data());
+      append_runs(y, low, unit, out);
+      if (keep) steps_of_(filtered_.data(), sigma_.data(), unit, width_, y % 2 != 0, keep->row(y));
     }
     return out;
   }
 
  private:
-  static void append_runs(int y, const std::vector<float>& filtered,
-                          const std::vector<float>& sigma, float low, float unit,
-                          std::vector<PeakedRun>& out) {
-    const int columns = int(filtered.size());
+  float* smoothed(int y) {
+    const int rows = 2 * radius_ + 1;
+    return ring_.data() + std::size_t((y + rows) % rows) * width_;
+  }
+
+  /// A row less its background, smoothed along x; there is no light outside the frame.
+  void smooth(int y) {
+    if (y < 0 || y >= counts_.rows) {
+      std::fill(smoothed(y), smoothed(y) + width_, 0.0f);
+      return;
+    }
+    background_.level_row(y, level_.data());
+    float* middle = line_.data() + radius_;
+    above_level_(counts_.row(y), level_.data(), width_, middle);
+    std::vector<const float*> before, after;
+    for (int i = 0; i <= radius_; ++i) {
+      before.push_back(middle - i);
+      after.push_back(middle + i);
+    }
+    weigh_rows_(before.data(), after.data(), kernel_.data(), std::size_t(radius_), width_,
+                smoothed(y));
+  }
+
+  void append_runs(int y, float low, float unit, std::vector<PeakedRun>& out) {
+    const int columns = int(width_);
     const float bar = low * unit;
+    const auto is_above = [&](int x) {
+      return filtered_[std::size_t(x)] > bar * sigma_[std::size_t(x)];
+    };
+    mark_above_(filtered_.data(), sigma_.data(), bar, width_, blocks_.data());
+    constexpr int block = int(filter_block);
     for (int x = 0; x < columns; ++x) {
-      if (filtered[std::size_t(x)] <= bar * sigma[std::size_t(x)]) continue;
+      if (x % block == 0 && !blocks_[std::size_t(x / block)]) {
+        x += block - 1;
+        continue;
+      }
+      if (!is_above(x)) continue;
       PeakedRun found{{y, x, x}, 0.0f, x};
-      for (; x < columns && filtered[std::size_t(x)] > bar * sigma[std::size_t(x)]; ++x) {
-        const float snr = filtered[std::size_t(x)] / (unit * sigma[std::size_t(x)]);
+      for (; x < columns && is_above(x); ++x) {
+        const float snr = filtered_[std::size_t(x)] / (unit * sigma_[std::size_t(x)]);
         if (snr > found.peak_snr) {
           found.peak_snr = snr;
           found.peak_x = x;
@@ -110,6 +122,19 @@ class Band {
   const CountImage& counts_;
   const Background& background_;
   const std::vector<float>& kernel_;
+  int radius_;
+  std::size_t width_;
+  std::vector<float> ring_;  // rows smoothed along x
+  std::vector<float> line_, level_, sigma_, filtered_;
+  std::vector<std::uint8_t> blocks_;
+  const decltype(&sse2::weigh_rows) weigh_rows_ =
+      kernel_of(best_simd_level(), sse2::weigh_rows, avx2::weigh_rows, avx512::weigh_rows);
+  const decltype(&sse2::above_level) above_level_ =
+      kernel_of(best_simd_level(), sse2::above_level, avx2::above_level, avx512::above_level);
+  const decltype(&sse2::mark_above) mark_above_ =
+      kernel_of(best_simd_level(), sse2::mark_above, avx2::mark_above, avx512::mark_above);
+  const decltype(&sse2::steps_of) steps_of_ =
+      kernel_of(best_simd_level(), sse2::steps_of, avx2::steps_of, avx512::steps_of);
 };
 
 /// Disjoint sets of runs.

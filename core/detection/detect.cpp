@@ -99,8 +99,10 @@ bool is_row_of_stars(const Scene& scene, const Source& source, const DetectorSet
 }
 
 std::uint32_t count_saturated(const CountImage& counts, double saturation_dn) {
+  if (!(saturation_dn <= 65535.0)) return 0;
+  const auto least = std::uint16_t(std::max(std::ceil(saturation_dn), 0.0));
   return std::uint32_t(std::count_if(counts.pixels.begin(), counts.pixels.end(),
-                                     [&](std::uint16_t v) { return v >= saturation_dn; }));
+                                     [&](std::uint16_t v) { return v >= least; }));
 }
 
 PixelPosition centre_of(const CountImage& counts) {

@@ -53,9 +53,10 @@ void hide(FilteredFrame& frame, const Trail& t, double margin_px) {
   };
   const double reach_x = t.length_px / 2 * c + bend, reach_y = t.length_px / 2 * s + bend;
   const int x1 = within(t.x_px + reach_x, frame.columns), y1 = within(t.y_px + reach_y, frame.rows);
+  const Around around(t, margin_px);
   for (int y = within(t.y_px - reach_y, frame.rows); y <= y1; ++y)
     for (int x = within(t.x_px - reach_x, frame.columns); x <= x1; ++x)
-      if (lies_on(t, x, y, margin_px)) frame.hide(y, x, x);
+      if (around.has(x, y)) frame.hide(y, x, x);
 }
 
 /// The fit of a streak of `snr`. What it is too faint to show is not fitted.

@@ -24,18 +24,25 @@ struct Level {
 
 Level level_of(const FilteredFrame& frame, int x0, int y0, const BitMask* lit) {
   constexpr int most = FilteredFrame::most;
-  std::array<int, 2 * most + 1> histogram{};
-  for (int y = y0; y < std::min(y0 + cell_px, frame.rows); ++y) {
-    const std::int16_t* row = frame.row(y);
-    for (int x = x0; x < std::min(x0 + cell_px, frame.columns); ++x)
-      ++histogram[std::size_t(row[x] + most)];
+  const int x1 = std::min(x0 + cell_px, frame.columns), y1 = std::min(y0 + cell_px, frame.rows);
+  // Pixels beside each other are often of one step: counts of each in turn don't wait for another.
+  constexpr int turns = 4, bins = 2 * most + 2;
+  std::array<std::array<int, bins>, turns> counts{};
+  for (int y = y0; y < y1; ++y) {
+    const std::int8_t* row = frame.row(y);
+    int x = x0;
+    for (; x + turns <= x1; x += turns)
+      for (int k = 0; k < turns; ++k) ++counts[std::size_t(k)][std::size_t(row[x + k] + most)];
+    for (; x < x1; ++x) ++counts[0][std::size_t(row[x] + most)];
   }
+  std::array<int, bins> histogram{};
+  for (const auto& some : counts)
+    for (std::size_t i = 0; i < bins; ++i) histogram[i] += some[i];
   const int all = std::accumulate(histogram.begin(), histogram.end(), 0);
   int without_light = all - histogram[std::size_t(most)];
   if (lit)
-    for (int y = y0; y < std::min(y0 + cell_px, frame.rows); ++y)
-      for (int x = x0; x < std::min(x0 + cell_px, frame.columns); ++x)
-        without_light -= frame.row(y)[x] != 0 && lit->at(x, y);
+    for (int y = y0; y < y1; ++y)
+      lit->for_set(y, x0, x1, [&](int x) { without_light -= frame.row(y)[x] != 0; });
   histogram[std::size_t(most)] = 0;  // hidden
   const int count = std::accumulate(histogram.begin(), histogram.end(), 0);
   const float hidden = 1.0f - float(without_light) / float(all);
@@ -120,7 +127,7 @@ void FilteredFrame::flatten(Threads& threads, const BitMask* lit) {
         line[std::size_t(i + 1)] = {a.middle + below * (b.middle - a.middle),
                                     1 / (a.scatter + below * (b.scatter - a.scatter))};
       }
-      std::int16_t* pixels = row(y);
+      std::int8_t* pixels = row(y);
       // From the middle of one cell to that of the next, all is linear.
       for (std::size_t i = 0; i + 1 < line.size(); ++i) {
         const int x0 = std::max(0, int(i) * cell_px - cell_px / 2);

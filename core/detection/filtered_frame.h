@@ -16,7 +16,7 @@ struct FilteredFrame {
 
   int columns = 0, rows = 0;
   double sigma_px = 1.0;          // of the filter
-  std::vector<std::int16_t> snr;  // rows x columns
+  std::vector<std::int8_t> snr;  // rows x columns
 
   /// A cell of a mesh over the frame, as `flatten` found it.
   struct Cell {
@@ -32,15 +32,15 @@ struct FilteredFrame {
         snr(std::size_t(columns_) * std::size_t(rows_)) {}
 
   /// `odd`: whether the pixel's column plus row is; it tells the sign of what rounds to 0.
-  static std::int16_t step_of(float value, bool odd) {
+  static std::int8_t step_of(float value, bool odd) {
     float scaled = value * float(steps);
     scaled = scaled > float(most) ? float(most) : scaled;
     scaled = scaled < -float(most) ? -float(most) : scaled;
     const int step = int(scaled + (scaled < 0 ? -0.5f : 0.5f));
-    return std::int16_t(step != 0 ? step : odd ? 1 : -1);
+    return std::int8_t(step != 0 ? step : odd ? 1 : -1);
   }
-  std::int16_t* row(int y) { return snr.data() + std::size_t(y) * std::size_t(columns); }
-  const std::int16_t* row(int y) const {
+  std::int8_t* row(int y) { return snr.data() + std::size_t(y) * std::size_t(columns); }
+  const std::int8_t* row(int y) const {
     return snr.data() + std::size_t(y) * std::size_t(columns);
   }
   /// Hides pixels [first, last] of a row, as far as they are in the frame.
@@ -48,7 +48,7 @@ struct FilteredFrame {
     if (y < 0 || y >= rows) return;
     first = std::max(first, 0);
     last = std::min(last, columns - 1);
-    if (first <= last) std::fill(row(y) + first, row(y) + last + 1, std::int16_t(0));
+    if (first <= last) std::fill(row(y) + first, row(y) + last + 1, std::int8_t(0));
   }
   /// Subtracts the local median of what is not hidden and divides by its scatter: stars too faint
   /// to be hidden, and what is left of others, are light and scatter of the sky; and where stars

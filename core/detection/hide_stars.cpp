@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/simd_level.h"
 #include "core/detection/components.h"
 #include "core/detection/shown_stars.h"
 #include "core/detection/star_agreement.h"
@@ -24,24 +25,22 @@ constexpr double flickering =
 
 /// Subtracts a star from the filtered frame, and hides where more than `hidden` of it is.
 void subtract(const StarImage& image, float hidden, FilteredFrame& frame) {
-  for (int y = image.y0; y <= image.y1; ++y) {
-    const float* drawn = image.row(y);
-    std::int16_t* row = frame.row(y) + image.x0;
-    for (int i = 0; i <= image.x1 - image.x0; ++i) {
-      if (row[i] == 0) continue;
-      const float left = float(row[i]) / FilteredFrame::steps - drawn[i];
-      row[i] = drawn[i] > hidden ? std::int16_t(0)
-                                 : FilteredFrame::step_of(left, (image.x0 + i + y) % 2 != 0);
-    }
-  }
+  static const auto subtract_light = kernel_of(best_simd_level(), sse2::subtract_light,
+                                               avx2::subtract_light, avx512::subtract_light);
+  for (int y = image.y0; y <= image.y1; ++y)
+    subtract_light(image.row(y), hidden, image.width(), (image.x0 + y) % 2 != 0,
+                   frame.row(y) + image.x0);
 }
 
 void mark(const StarImage& image, float least, BitMask& lit) {
-  for (int y = image.y0; y <= image.y1; ++y) {
-    const float* drawn = image.row(y);
-    for (int x = image.x0; x <= image.x1; ++x)
-      if (drawn[x - image.x0] > least) lit.set(x, y);
-  }
+  static const auto bits_above =
+      kernel_of(best_simd_level(), sse2::bits_above, avx2::bits_above, avx512::bits_above);
+  constexpr int word = 64;
+  for (int y = image.y0; y <= image.y1; ++y)
+    for (int x = image.x0; x <= image.x1; x += word)
+      lit.set_bits(x, y,
+                   bits_above(image.row(y) + (x - image.x0),
+                              std::size_t(std::min(word, image.x1 - x + 1)), least));
 }
 
 /// Of stars anywhere in the frame.

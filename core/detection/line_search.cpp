@@ -1,6 +1,7 @@
 #include "core/detection/line_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -48,9 +49,9 @@ class Walk {
         continue;
       }
       const int m = int(place);
-      const std::int16_t* at =
+      const std::int8_t* at =
           frame_.snr.data() + std::size_t(k) * along_step_ + std::size_t(m) * across_step_;
-      const std::int16_t a = at[0], b = at[across_step_];
+      const std::int8_t a = at[0], b = at[across_step_];
       if (a == 0 || b == 0)
         visit(k, 0.0, false);
       else
@@ -69,12 +70,29 @@ class Walk {
   bool rises_;
 };
 
-double noise_of_sum(const FilteredFrame& frame, double spacing_px, int samples) {
-  // Interpolation averages the noise of two pixels, with all weights.
-  const double averaged = (2 + frame.correlation(1.0)) / 3;
-  const int n = std::max(samples, 1);
-  return FilteredFrame::steps * std::sqrt(n * frame.sum_variance(spacing_px, n) * averaged);
-}
+/// Noise of sums of samples along a line.
+class SumNoise {
+ public:
+  SumNoise(const FilteredFrame& frame, double spacing_px)
+      : averaged_((2 + frame.correlation(1.0)) / 3) {
+    for (int k = 1; k < most && k * spacing_px < 8 * frame.sigma_px; ++k)
+      twice_[std::size_t(correlated_++)] = 2 * frame.correlation(k * spacing_px);
+  }
+  double of(int samples) const {
+    const int n = std::max(samples, 1);
+    double variance = 1.0;
+    for (int k = 1; k < n && k <= correlated_; ++k)
+      variance += twice_[std::size_t(k - 1)] * (1.0 - double(k) / n);
+    // Interpolation averages the noise of two pixels, with all weights.
+    return FilteredFrame::steps * std::sqrt(n * variance * averaged_);
+  }
+
+ private:
+  static constexpr int most = 257;  // of a PSF of 32 px
+  double averaged_;
+  std::array<double, most - 1> twice_;
+  int correlated_ = 0;
+};
 
 struct Fit {
   Trail trail;
@@ -145,8 +163,8 @@ Fit with_best_ends(const FilteredFrame& frame, const Fit& start) {
       at.push_back(k + 1);
     });
     std::vector<double> noise(std::size_t(samples) + 1);
-    for (int n = 1; n <= samples; ++n)
-      noise[std::size_t(n)] = noise_of_sum(frame, walk.spacing_px, n);
+    const SumNoise sum_noise(frame, walk.spacing_px);
+    for (int n = 1; n <= samples; ++n) noise[std::size_t(n)] = sum_noise.of(n);
     for (std::size_t i = 0; i + 1 < sum.size(); ++i)
       for (std::size_t j = i + 1; j < sum.size(); ++j) {
         const int n = count[j] - count[i];
@@ -198,7 +216,7 @@ LineSum sum_along(const FilteredFrame& frame, const Trail& t) {
   });
   out.sum = sum;
   out.slices = std::max(walk.to - walk.from + 1, 1);
-  out.noise = noise_of_sum(frame, walk.spacing_px, out.samples);
+  out.noise = SumNoise(frame, walk.spacing_px).of(out.samples);
   return out;
 }
 

@@ -107,9 +107,10 @@ std::vector<FitPixel> ComponentMap::pixels_around(const Scene& scene, const Trai
           others[std::size_t(y - box.y0) * std::size_t(width) + std::size_t(x - box.x0)] = true;
   });
   std::vector<FitPixel> out;
+  const Around around(trail, reach_px);
   for (int y = box.y0; y <= box.y1; y += every)
     for (int x = box.x0; x <= box.x1; x += every)
-      if (lies_on(trail, x, y, reach_px) && scene.is_usable(x, y) &&
+      if (around.has(x, y) && scene.is_usable(x, y) &&
           !others[std::size_t(y - box.y0) * std::size_t(width) + std::size_t(x - box.x0)])
         out.push_back(scene.pixel(x, y));
   return out;

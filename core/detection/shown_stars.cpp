@@ -6,6 +6,7 @@
 #include <compare>
 #include <cstdint>
 
+#include "core/base/simd_level.h"
 #include "core/detection/components.h"
 #include "core/detection/small_matrix.h"
 #include "core/detection/star_image.h"
@@ -20,7 +21,7 @@ constexpr float model_error = 0.03F;  // of the Gaussian, in units of the light
 constexpr double most_step_px = 0.7;
 constexpr double most_trail_px = 60.0;  // light of longer ones is faint in a pixel
 constexpr std::size_t parameters = 3;   // light relative to what is expected, x, y
-constexpr std::size_t least_pixels = 5;
+constexpr std::int32_t least_pixels = 5;
 
 /// Where a star is expected; by y.
 struct Expected {
@@ -66,60 +67,59 @@ class StarFitter {
   }
 
  private:
-  std::size_t width() const { return std::size_t(image_.x1 - image_.x0 + 1); }
-
   /// Signal in units of noise; pixels that are not used become NaN.
   void read_pixels(double noise_e) {
-    pixels_.assign(width() * std::size_t(image_.y1 - image_.y0 + 1), NAN);
+    const std::size_t stride = image_.stride(), width = image_.width();
+    pixels_.assign(stride * image_.height(), NAN);
     const auto unit = float(scene_.gain_e_per_dn / noise_e);
     const int middle = (image_.x0 + image_.x1) / 2;
+    const bool whole = is_whole();
     float* pixel = pixels_.data();
-    for (int y = image_.y0; y <= image_.y1; ++y, pixel += width()) {
+    for (int y = image_.y0; y <= image_.y1; ++y, pixel += stride) {
       const float* light = image_.row(y);
       const float level_dn = scene_.background.level_dn(middle, y);
-      for (std::size_t k = 0; k < width(); ++k) {
-        const int x = image_.x0 + int(k);
-        if (light[k] >= fitted_noise && scene_.is_usable(x, y))
-          pixel[k] = (float(scene_.counts.at(x, y)) - level_dn) * unit;
+      const std::uint16_t* counts = scene_.counts.row(y) + image_.x0;
+      for (std::size_t k = 0; k < width; ++k) {
+        const bool used =
+            light[k] >= fitted_noise && (whole || scene_.is_usable(image_.x0 + int(k), y));
+        pixel[k] = used ? (float(counts[k]) - level_dn) * unit : NAN;
       }
     }
+  }
+
+  /// Whether all pixels of the image are usable: none in it or beside it is clipped.
+  bool is_whole() const {
+    if (scene_.unusable || scene_.hidden || scene_.known) return false;
+    std::uint16_t most = 0;
+    const int last = std::min(image_.y1 + 1, scene_.counts.rows - 1);
+    for (int y = std::max(image_.y0 - 1, 0); y <= last; ++y) {
+      const std::uint16_t* counts = scene_.counts.row(y);
+      for (int x = image_.x0; x <= image_.x1; ++x) most = std::max(most, counts[x]);
+    }
+    return most < scene_.saturation_dn;
   }
 
   void subtract_beside() {
     const int x0 = std::max(image_.x0, beside_.x0), x1 = std::min(image_.x1, beside_.x1);
     for (int y = std::max(image_.y0, beside_.y0); y <= std::min(image_.y1, beside_.y1); ++y) {
-      float* row = pixels_.data() + std::size_t(y - image_.y0) * width();
+      float* row = pixels_.data() + std::size_t(y - image_.y0) * image_.stride();
       for (int x = x0; x <= x1; ++x) row[x - image_.x0] -= beside_.row(y)[x - beside_.x0];
     }
   }
 
   void solve_for(ShownStar& star) const {
-    std::array<std::array<float, parameters>, parameters> products{};
-    std::array<float, parameters> sums{};
-    const auto photons = float(1 / star.noise_e);
-    std::size_t used = 0;
-    for (int y = image_.y0; y <= image_.y1; ++y) {
-      const float *light = image_.row(y), *by_x = image_.row_by_x(y), *by_y = image_.row_by_y(y);
-      const float* pixel = pixels_.data() + std::size_t(y - image_.y0) * width();
-      for (std::size_t k = 0; k < width(); ++k) {
-        if (std::isnan(pixel[k])) continue;
-        ++used;
-        const float error = model_error * light[k];
-        const float weight = 1 / (1 + light[k] * photons + error * error);
-        const std::array<float, parameters> by{light[k], by_x[k], by_y[k]};
-        for (std::size_t a = 0; a < parameters; ++a) {
-          const float weighted = weight * by[a];
-          sums[a] += weighted * (pixel[k] - light[k]);
-          for (std::size_t b = 0; b <= a; ++b) products[a][b] += weighted * by[b];
-        }
-      }
-    }
-    if (used < least_pixels) return;
+    static const auto add_pixels =
+        kernel_of(best_simd_level(), sse2::add_pixels, avx2::add_pixels, avx512::add_pixels);
+    StarSums sums;
+    add_pixels(image_.row(image_.y0), image_.row_by_x(image_.y0), image_.row_by_y(image_.y0),
+               pixels_.data(), image_.stride(), image_.height(), float(1 / star.noise_e),
+               model_error, sums);
+    if (sums.used < least_pixels) return;
     SmallMatrix matrix{};
     SmallVector right{};
     for (std::size_t a = 0; a < parameters; ++a) {
-      right[a] = sums[a];
-      for (std::size_t b = 0; b <= a; ++b) matrix[a][b] = products[a][b];
+      right[a] = sums.right[a];
+      for (std::size_t b = 0; b <= a; ++b) matrix[a][b] = sums.matrix[a * (a + 1) / 2 + b];
     }
     matrix[0][0] += 1 / (star.light_error * star.light_error);
     matrix[1][1] += place_weight_;

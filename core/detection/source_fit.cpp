@@ -137,11 +137,11 @@ std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double
   const int x1 = std::min(scene.counts.columns - 1, int(std::ceil(trail.x_px + reach_x)));
   const int y0 = std::max(0, int(std::floor(trail.y_px - reach_y)));
   const int y1 = std::min(scene.counts.rows - 1, int(std::ceil(trail.y_px + reach_y)));
+  const Around around(trail, margin_px);
   std::vector<FitPixel> out;
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x)
-      if (lies_on(trail, x, y, margin_px) && scene.is_usable(x, y))
-        out.push_back(scene.pixel(x, y));
+      if (around.has(x, y) && scene.is_usable(x, y)) out.push_back(scene.pixel(x, y));
   return out;
 }
 
@@ -150,14 +150,14 @@ bool plausible(const Scene& scene, const Trail& t) {
          t.x_px > -1 && t.y_px > -1 && t.x_px < scene.counts.columns && t.y_px < scene.counts.rows;
 }
 
+Around::Around(const Trail& trail, double margin_px)
+    : trail_(trail),
+      margin_px_(margin_px),
+      cos_(std::cos(trail.angle_rad)),
+      sin_(std::sin(trail.angle_rad)) {}
+
 bool lies_on(const Trail& trail, double x_px, double y_px, double margin_px) {
-  const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
-  const double dx = x_px - trail.x_px, dy = y_px - trail.y_px;
-  const double along = dx * c + dy * s, across = dy * c - dx * s, half = trail.length_px / 2;
-  const double r = half > 0 ? std::clamp(along / half, -1.0, 1.0) : 0.0;
-  const double off = across - trail.sagitta_px * (1.0 / 3 - r * r);
-  const double beyond = std::max(std::abs(along) - half, 0.0);
-  return off * off + beyond * beyond <= margin_px * margin_px;
+  return Around(trail, margin_px).has(x_px, y_px);
 }
 
 std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool streak,

@@ -7,6 +7,26 @@
 
 namespace dmise {
 
+/// What lies within a distance of a trail.
+class Around {
+ public:
+  Around(const Trail& trail, double margin_px);
+
+  bool has(double x_px, double y_px) const {
+    const double dx = x_px - trail_.x_px, dy = y_px - trail_.y_px;
+    const double along = dx * cos_ + dy * sin_, across = dy * cos_ - dx * sin_;
+    const double half = trail_.length_px / 2;
+    const double r = half > 0 ? std::clamp(along / half, -1.0, 1.0) : 0.0;
+    const double off = across - trail_.sagitta_px * (1.0 / 3 - r * r);
+    const double beyond = std::max(std::abs(along) - half, 0.0);
+    return off * off + beyond * beyond <= margin_px_ * margin_px_;
+  }
+
+ private:
+  Trail trail_;
+  double margin_px_, cos_, sin_;
+};
+
 /// Whether a position is within `margin_px` of the line from end to end.
 bool lies_on(const Trail& trail, double x_px, double y_px, double margin_px);
 

@@ -45,8 +45,8 @@ StarLightRatio ratio_of(const std::vector<double>& logs) {
   return {std::exp(middle), std::max(scatter, 0.1)};
 }
 
-/// SNR of a star's middle in the frame through the filter.
-double peak_snr(const Scene& scene, const FilteredFrame& frame, const Trail& trail,
+/// SNR of a star's middle in the frame through the filter. `unit`: root of the kernel's square sum.
+double peak_snr(const Scene& scene, const FilteredFrame& frame, double unit, const Trail& trail,
                 double signal_e) {
   Trail lit = trail;
   lit.flux_e = signal_e;
@@ -54,8 +54,7 @@ double peak_snr(const Scene& scene, const FilteredFrame& frame, const Trail& tra
   const int y = std::clamp(int(std::lround(trail.y_px)), 0, scene.counts.rows - 1);
   const double noise_e = scene.background.sigma_dn(x, y) * scene.gain_e_per_dn;
   const double sigma_px = std::hypot(scene.sigma_px, frame.sigma_px);
-  return trail_value(lit, sigma_px, trail.x_px, trail.y_px) /
-         (std::sqrt(kernel_square_sum(frame.sigma_px)) * noise_e);
+  return trail_value(lit, sigma_px, trail.x_px, trail.y_px) / (unit * noise_e);
 }
 
 bool is_inside(const Scene& scene, PixelPosition place) {
@@ -69,10 +68,11 @@ StarAgreement::StarAgreement(const Scene& scene, const FilteredFrame& frame,
                              const std::vector<ExpectedStar>& stars)
     : columns_(frame.columns), rows_(frame.rows), light_(std::size_t(cells * cells)) {
   std::vector<double> dx, dy;
+  const double unit = std::sqrt(kernel_square_sum(frame.sigma_px));
   for (const ExpectedStar& star : stars) {
     if (!is_inside(scene, star.place)) continue;
     const Trail trail = scene.star_trail(star.place.x_px, star.place.y_px);
-    const double peak = peak_snr(scene, frame, trail, star.signal_e);
+    const double peak = peak_snr(scene, frame, unit, trail, star.signal_e);
     if (peak < looked_for_snr) continue;
     ++seen_.expected;
     const auto off =
@@ -99,19 +99,21 @@ void StarAgreement::measure_light(const Scene& scene, const FilteredFrame& frame
   constexpr double least_ratio = 0.02;  // behind clouds
   std::vector<std::vector<double>> logs(light_.size());
   std::vector<double> all;
+  const double unit = std::sqrt(kernel_square_sum(frame.sigma_px));
   for (const ExpectedStar& star : stars) {
     const PixelPosition at = star.place + seen_.shift;
     if (!is_inside(scene, at)) continue;
     auto& measured = logs[cell_of(at)];
     if (measured.size() == most_in_cell) continue;
     Trail trail = scene.star_trail(at.x_px, at.y_px);
-    const double peak = peak_snr(scene, frame, trail, star.signal_e);
+    const double peak = peak_snr(scene, frame, unit, trail, star.signal_e);
     if (peak < measured_snr || peak > crowded_snr) continue;
     trail.flux_e = 1.0;
-    const Psf psf = scene.psf.at(at);
+    const TrailLight light(trail, scene.psf.at(at));
+    TrailDerivatives unused{};
     double sum = 0.0, squares = 0.0;
     for (const FitPixel& p : pixels_near(scene, trail, 2 * scene.sigma_px + 0.5)) {
-      const double g = trail_value(trail, psf, p.x, p.y);
+      const double g = light(p.x, p.y, unused);
       sum += g * p.signal_e;
       squares += g * g;
     }

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "bench/simulated_frame.h"
+#include "core/detection/beamlet_kernels.h"
 #include "core/detection/components.h"
 #include "core/detection/line_search.h"
 
@@ -102,15 +103,63 @@ TEST(Beamlets, AreTheSameOnEveryInstructionSetAndNumberOfThreads) {
   }
 }
 
+// Sums of four strips at once are those of two and two, and of these two.
+TEST(Beamlets, FourStripsAreJoinedAsTwoAndTwo) {
+  constexpr std::size_t columns = 300, zeros = 400;
+  constexpr std::int16_t large = 45;
+  std::mt19937_64 random(11);
+  using Rows = std::array<std::vector<std::int16_t>, 4>;
+  for (const std::size_t shift : {0u, 1u, 3u, 100u}) {
+    Rows start;
+    for (auto& row : start) {
+      for (std::size_t x = 0; x < columns; ++x)
+        row.push_back(std::int16_t(int(random() % 61) - 30));
+      row.resize(columns + zeros);
+    }
+    const auto at = [](const std::vector<std::int16_t>& row, std::size_t x) { return int(row[x]); };
+    const auto half = [&](std::size_t upper, std::size_t odd, std::size_t x) {
+      return at(start[upper], x) + at(start[upper + 1], x + shift + odd);
+    };
+    for (const SimdLevel level : {SimdLevel::sse2, SimdLevel::avx2, SimdLevel::avx512}) {
+      if (level > best_simd_level()) continue;
+      Rows sums = start;
+      std::int16_t* rows[4] = {sums[0].data(), sums[1].data(), sums[2].data(), sums[3].data()};
+      std::vector<BeamletHit> whole(4 * (columns + beamlet_spare)), halves = whole;
+      BeamletLeast least;
+      std::fill_n(least.whole, 4, large);
+      std::fill_n(least.halves, 2, large);
+      BeamletHits hits{whole.data(), halves.data()};
+      kernel_of(level, sse2::join_four, avx2::join_four, avx512::join_four)(rows, shift, 0, columns,
+                                                                            least, hits);
+      std::size_t in_whole = 0, in_halves = 0;
+      for (std::size_t x = 0; x < columns; ++x)
+        for (std::size_t r = 0; r < 4; ++r) {
+          const int sum = half(0, r / 2, x) + half(2, r / 2, x + 2 * shift + (r + 1) / 2);
+          ASSERT_EQ(at(sums[r], x), sum) << shift << " " << r << " " << x;
+          in_whole += sum >= large;
+          in_halves += half(r / 2 * 2, r % 2, x) >= large;
+        }
+      EXPECT_EQ(hits.in_whole, in_whole);
+      // Of the lower half those that no line over four strips reaches are in no hit.
+      EXPECT_LE(hits.in_halves, in_halves);
+      for (std::size_t i = 0; i < hits.in_halves; ++i) {
+        const BeamletHit& hit = halves[i];
+        EXPECT_EQ(hit.sum,
+                  half(std::size_t(hit.row) / 2 * 2, std::size_t(hit.row) % 2, hit.column));
+      }
+    }
+  }
+}
+
 TEST(Beamlets, FramesOfAnySizeAreSearched) {
   Threads threads;
   for (const auto& [columns, rows] : {std::array{1, 1}, std::array{1, 900}, std::array{900, 1},
                                       std::array{7, 7}, std::array{8, 9}, std::array{1025, 17}}) {
     FilteredFrame frame(columns, rows, 0.8);
-    std::fill(frame.snr.begin(), frame.snr.end(), std::int16_t(FilteredFrame::most));
+    std::fill(frame.snr.begin(), frame.snr.end(), std::int8_t(FilteredFrame::most));
     const auto beamlets = find_beamlets(frame, 4, best_simd_level(), threads);
     for (const Beamlet& b : beamlets) EXPECT_TRUE(std::isfinite(b.snr));
-    std::fill(frame.snr.begin(), frame.snr.end(), std::int16_t(0));
+    std::fill(frame.snr.begin(), frame.snr.end(), std::int8_t(0));
     EXPECT_TRUE(find_beamlets(frame, 4, best_simd_level(), threads).empty());
   }
 }

@@ -38,7 +38,7 @@ TEST(FilterKernels, GiveTheStepsOfTheFrameOnEveryInstructionSet) {
   }
   for (const bool odd : {false, true})
     for (const Level& level : levels()) {
-      std::vector<std::int16_t> steps(count);
+      std::vector<std::int8_t> steps(count);
       level.steps_of(value.data(), noise.data(), 0.7f, count, odd, steps.data());
       for (std::size_t i = 0; i < count; ++i)
         ASSERT_EQ(steps[i], FilteredFrame::step_of(value[i] / (0.7f * noise[i]),
@@ -49,12 +49,12 @@ TEST(FilterKernels, GiveTheStepsOfTheFrameOnEveryInstructionSet) {
 
 TEST(FilterKernels, FlattenWhatIsNotHiddenAlikeOnEveryInstructionSet) {
   std::mt19937_64 random(2);
-  std::vector<std::int16_t> steps;
-  for (std::size_t i = 0; i < count; ++i) steps.push_back(std::int16_t(int(random() % 63) - 31));
+  std::vector<std::int8_t> steps;
+  for (std::size_t i = 0; i < count; ++i) steps.push_back(std::int8_t(int(random() % 63) - 31));
   const float middle[2] = {2.0f, 0.003f}, scale[2] = {0.8f, 0.0002f};
-  std::vector<std::int16_t> first;
+  std::vector<std::int8_t> first;
   for (const Level& level : levels()) {
-    std::vector<std::int16_t> flat = steps;
+    std::vector<std::int8_t> flat = steps;
     level.flatten_steps(flat.data(), count, true, 0, middle, scale);
     if (first.empty()) first = flat;
     EXPECT_EQ(flat, first);
@@ -73,14 +73,14 @@ TEST(FilterKernels, FlattenWhatIsNotHiddenAlikeOnEveryInstructionSet) {
 TEST(FilterKernels, FlattenByLessThanAStepOnAverage) {
   std::mt19937_64 random(3);
   std::normal_distribution<float> normal;
-  std::vector<std::int16_t> steps;
+  std::vector<std::int8_t> steps;
   for (int i = 0; i < 20000; ++i) {
     const int step = int(std::lround(5 * normal(random)));
-    steps.push_back(std::int16_t(step != 0 ? step : i % 2 == 0 ? 1 : -1));
+    steps.push_back(std::int8_t(step != 0 ? step : i % 2 == 0 ? 1 : -1));
   }
   const float middle[2] = {-0.3f, 0.0f}, scale[2] = {1.0f, 0.0f};
   for (const Level& level : levels()) {
-    std::vector<std::int16_t> flat = steps;
+    std::vector<std::int8_t> flat = steps;
     level.flatten_steps(flat.data(), flat.size(), false, 12345, middle, scale);
     double moved = 0.0;
     for (std::size_t i = 0; i < flat.size(); ++i) moved += double(flat[i] - steps[i]);
