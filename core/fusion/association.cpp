@@ -43,6 +43,14 @@ std::vector<FusionBody::Candidate> FusionBody::candidates(
         std::max({seen_sigma, s.observation.covariance_rad2[0], s.observation.covariance_rad2[2]});
   seen_sigma = std::sqrt(seen_sigma);
   const double cos_field = std::cos(std::min(pi, frame.half_angle_rad + largest_radius_rad));
+  const auto take = [&](Candidate& candidate, double sigma_rad) {
+    candidate.sigma_rad = sigma_rad;
+    candidate.radius_rad = sigmas * (sigma_rad + seen_sigma) + least_radius_rad;
+    if (candidate.radius_rad > largest_radius_rad) return false;
+    if (!behind_earth(frame.sensor_m, candidate.direction, candidate.range_m))
+      out.push_back(candidate);
+    return true;
+  };
   const auto add = [&](Candidate candidate, const Vec<Gcrs>& r, const Vec<Gcrs>& v,
                        double sigma_m) {
     Vec<Gcrs> line = moved(r, v, dt_s) - frame.sensor_m;
@@ -51,12 +59,14 @@ std::vector<FusionBody::Candidate> FusionBody::candidates(
     if (candidate.range_m < 1.0) return;
     candidate.direction = line / candidate.range_m;
     if (dot(candidate.direction, frame.axis) < cos_field) return;
-    candidate.sigma_rad = sigma_m / candidate.range_m;
-    candidate.radius_rad = sigmas * (candidate.sigma_rad + seen_sigma) + least_radius_rad;
-    if (candidate.radius_rad > largest_radius_rad ||
-        behind_earth(frame.sensor_m, candidate.direction, candidate.range_m))
-      return;
-    out.push_back(candidate);
+    if (take(candidate, sigma_m / candidate.range_m) || !candidate.track) return;
+    // An ellipse that is long along the line of sight may be narrow across.
+    const auto seen = candidate.track->filter.predict(frame.time, frame.sensor_m);
+    if (!seen) return;
+    candidate.direction = seen->direction;
+    candidate.range_m = seen->range_m;
+    if (dot(candidate.direction, frame.axis) >= cos_field)
+      take(candidate, std::sqrt(seen->covariance_rad2.trace()));
   };
   for (LiveTrack* track : scene.placed)
     add({.track = track}, track->rough.position_m, track->rough.velocity_m_per_s,

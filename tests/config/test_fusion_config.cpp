@@ -143,7 +143,7 @@ TEST(CuedPointing, NamesWhatIsWrong) {
   refused(scenario_text("{cued: {exposures: 0}}"), "pointing.cued.exposures: ");
   refused(scenario_text("{cued: {park: {elevation_deg: 5}}}"), "pointing.cued.park.azimuth_deg: ");
   refused(scenario_text("{cued: {slew_deg_per_ss: 5}}"), "did you mean slew_deg_per_s");
-  refused(scenario_text("{cued: {mount: altazimut}}"), "did you mean altazimuth");
+  refused(scenario_text("{cued: {mount: altazimut}}"), "must be one of great_circle, altazimuth");
   refused(scenario_text("{cued: {azimuth_deg_per_s: 5}}"), "set mount: altazimuth");
   refused(scenario_text("{cued: {mount: altazimuth, azimuth_range_deg: [5, 5]}}"), "must rise");
   refused(scenario_text("{cued: {least_elevation_deg: 50, greatest_elevation_deg: 40}}"),
