@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 #include <tuple>
 
 #include "core/base/units.h"
@@ -109,9 +110,14 @@ std::vector<ArcStart::Arc> ArcStart::arcs_to(const LooseSource& last,
     if ((seen(last).time - seen(*s).time).seconds() >= shortest_gap_s &&
         (exposures.empty() || exposures.back() != seen(*s).time))
       exposures.push_back(seen(*s).time);
-  const auto at = [&](SimTime time) {
-    return std::ranges::equal_range(earlier, time, {},
-                                    [](const LooseSource& s) { return seen(s).time; });
+  const auto at = [&](SimTime time) -> std::span<const LooseSource> {
+    const auto first =
+        std::lower_bound(earlier.begin(), earlier.end(), time,
+                         [](const LooseSource& s, SimTime of) { return seen(s).time < of; });
+    const auto end =
+        std::upper_bound(first, earlier.end(), time,
+                         [](SimTime of, const LooseSource& s) { return of < seen(s).time; });
+    return {first, end};
   };
   std::vector<Arc> arcs;
   for (std::size_t first = 0; first < std::min<std::size_t>(exposures.size(), most_skipped);
