@@ -5,6 +5,14 @@
 
 import pathlib
 import subprocess
+import sys
+
+import zmq
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "build/python"))
+from dmise.frame_endpoint import FrameEndpoint  # noqa: E402
+from dmise.keys import Keys  # noqa: E402
+from dmise.master import Master  # noqa: E402
 
 from harness import Run, check, check_same, main, wait_until, write_scenario
 
@@ -12,6 +20,19 @@ from harness import Run, check, check_same, main, wait_until, write_scenario
 def says(binary, *arguments):
     done = subprocess.run([str(binary), *map(str, arguments)], capture_output=True, text=True, timeout=20)
     return done.returncode, done.stdout, done.stderr.strip()
+
+
+def serves_frames(out, keys, name="operator"):
+    """A frame of alpha, from its own endpoint: the bytes of its file."""
+    context, own = zmq.Context(), Keys(keys, name)
+    run = Master(context, (out / "logs/master.address").read_text().strip(), own).ask_and_wait(60.0)
+    sensor = next(publisher for publisher in run.publishers if publisher.name == "alpha")
+    reader = FrameEndpoint(context, own, sensor, run.run_id, latest=False)
+    reader.ask()
+    report, content = wait_until(lambda: reader.take(None), "a frame of alpha")
+    file = out / f"alpha/frame-{report.frame:06d}.fits"
+    check(report.sensor == "alpha" and content == file.read_bytes(), f"alpha serves {file.name} to who has a key")
+    context.destroy(0)
 
 
 def test(binary, directory):
@@ -35,6 +56,7 @@ def test(binary, directory):
         check(says(binary, "status", master, "--healthy", "--keys", keys)[0] == 0, "the run is healthy")
         code, table, err = says(binary, "clock", "pause", master, "--keys", keys)
         check(code == 0 and "paused" in table, f"the operator pauses the run: {err or table.splitlines()[0]}")
+        serves_frames(out, keys)
         # Paused, so that it cannot end while strangers wait for an answer.
         code, _, err = says(binary, "status", master, "--once")
         check(code == 1 and "no answer from a time-master" in err, f"nobody else is: {err}")
@@ -48,6 +70,8 @@ def test(binary, directory):
 
     behind = directory / "behind"
     with Run(binary, "launch", scenario, "--out", behind, "--keys", keys, "--hosts", 2) as run:
+        wait_until(lambda: list(behind.glob("alpha/frames.jsonl")), "a first frame")
+        serves_frames(behind, keys)
         code, _ = run.finish()
         check(code == 0, f"sensors behind agents with keys end with code {code} {run.stderr[-300:] if code else ''}")
         run.nothing_left()
