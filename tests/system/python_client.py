@@ -14,7 +14,9 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "build/python"))
 import dmise  # noqa: E402
 import numpy  # noqa: E402
+import zmq  # noqa: E402
 from dmise.convert import RECORDS  # noqa: E402
+from dmise.frame_endpoint import FrameEndpoint  # noqa: E402
 from dmise.protocol import modules  # noqa: E402
 
 from harness import Run, check, first_frame, main, wait_until, write_scenario  # noqa: E402
@@ -103,19 +105,37 @@ class Lossy(dmise.Subscription):
 def fetches_what_it_missed(binary, directory):
     out = directory / "restart"
     scenario = write_scenario(directory, duration_s=500, on_silent_node="restart", silent_after_s=1.0, network=", real_time: 60")
-    heard = collections.defaultdict(list)
+    scenario.write_text(scenario.read_text().replace("png: false", "png: false, fits: false"))  # pixels come from memory
+    heard, served, reader, context = collections.defaultdict(list), {}, None, zmq.Context()
+
+    def read():
+        reader.ask()
+        if (came := reader.take(None)) is not None:
+            served[came[0].frame] = came[1]
+        return reader.over
+
     with Run(binary, "launch", scenario, "--out", out) as run:
         subscription, killed = Lossy(address_of(out), ("frame/",)), False
         for report in subscription:
             heard[report.sensor].append(report.frame)
+            if reader is None:
+                alpha = next(publisher for publisher in subscription.run.publishers if publisher.name == "alpha")
+                reader = FrameEndpoint(context, None, alpha, subscription.run.run_id, latest=False)
+            read()
             if not killed and min(len(heard["alpha"]), len(heard["beta"])) > 5:
                 killed = run.node("broker")
                 os.kill(killed, signal.SIGKILL)
+        wait_until(read, "the sensor's word that it makes no more frames")
         code, _ = run.finish()
         check(code == 0 and killed, f"the run goes on with another broker {run.stderr[-300:] if code else ''}")
     alpha, beta = heard["alpha"], heard["beta"]
     check(alpha == list(range(alpha[0], alpha[-1] + 1)) and len(alpha) > 80,
           f"frames {alpha[0]} to {alpha[-1]} come in order, over the death of the broker: lost ones are fetched")
+    numbers = list(served)
+    check(numbers == list(range(numbers[0], alpha[-1] + 1)) and len(numbers) > 80 and not reader.lost and
+          all(content[:9] == b"SIMPLE  =" and len(content) % 2880 == 0 and len(content) > 2 * 512 * 384 for content in served.values()),
+          f"{len(numbers)} frames that are not written come from the sensor's memory")
+    context.destroy(0)
     missing = beta[-1] + 1 - beta[0] - len(beta)
     counted = sum(len(gap) for gap in subscription.gaps)
     check(beta == sorted(set(beta)) and {gap.topic for gap in subscription.gaps} == {"frame/beta"} and missing == counted > 20,

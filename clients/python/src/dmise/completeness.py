@@ -46,6 +46,13 @@ class Completeness:
             is_closed = tick + 1 >= self._closed.get(topic, self._last_tick + 1)
             self._through[topic] = self._last_tick if is_closed else tick
 
+    def is_due(self, topic: str, after_tick: int, tick: int) -> bool:
+        """Whether something is said on the topic after a tick, at `tick` or before."""
+        if topic not in self._schedule or after_tick + 1 >= self._closed.get(topic, self._last_tick + 1):
+            return False
+        period, offset = self._schedule[topic]
+        return offset + (max(after_tick - offset, -1) // period + 1) * period <= tick
+
     def through(self) -> int:
         """The last tick for which every topic is complete; -1: none, or no topic is known."""
         return min(self._last_tick, min(self._through.values(), default=-1))

@@ -27,6 +27,8 @@ log = logging.getLogger("dmise")
 ASK_EVERY_S, ASK_AT_START_EVERY_S = 1.0, 0.1
 SETTLED = (protocol.PHASE_RUNNING, *OVER)  # all publishers are known
 LAST_WORDS_S = 1.0  # messages may arrive later than the news of the end
+LATE_EVERY_S = 5.0   # between two requests for what does not come on a topic
+LATE_AT_ONCE = 4     # topics; a publisher that does not answer costs a second
 QUEUE = 100_000     # messages that wait for a slow reader, of each connection
 
 
@@ -49,6 +51,7 @@ class Subscription:
 
     run     what the time-master said last, an `Endpoints` of proto/dmise/v1/time.proto
     gaps    messages that were lost: those that their publisher still kept are fetched, and are none
+    incomplete  when the run is over: topics of which the last messages did not come, and through which tick they did
     refused count of messages that are not of this run or not readable
     """
 
@@ -57,6 +60,7 @@ class Subscription:
         self.topics = topics or ("",)
         self._wanted = functools.partial(is_wanted, self.topics)
         self.gaps: list[Gap] = []
+        self.incomplete: dict[str, int] = {}
         self.refused = 0
         self.over = False
         self.roster: ObjectRoster | None = None
@@ -69,6 +73,8 @@ class Subscription:
         self._sockets: dict[str, zmq.Socket] = {}     # by endpoint
         self._observed = ""                           # endpoint of the broker
         self._over_at = 0.0
+        self._came: dict[str, tuple[int, int]] = {}  # of each topic: incarnation, last tick that came
+        self._late_at: dict[str, float] = {}         # when what is late was asked for
         self._master = Master(self._context, address, keys)
         self.run: Any = self._master.ask_and_wait(answer_within_s)
         self._complete = Completeness(self.run.last_tick, self._wanted)
@@ -163,6 +169,7 @@ class Subscription:
                                         cause=f"another run is at {self._master.address}")
         if self._over_at and endpoints.phase not in OVER:  # asked before the end
             endpoints.phase, endpoints.cause = self.run.phase, self.run.cause
+        settled_tick = self.run.settled_tick  # all have done it, since a while
         self.run = endpoints
         if endpoints.observe_endpoint and endpoints.observe_endpoint != self._observed:
             if self._observed:
@@ -176,8 +183,30 @@ class Subscription:
             if direct and publisher.direct_endpoint not in self._sockets:
                 self._subscriber(publisher.name, publisher.direct_endpoint, direct)
             self._fetch_retained(publisher)
+        if endpoints.phase == protocol.PHASE_RUNNING:
+            self._fetch_late(settled_tick)
         if endpoints.phase in OVER and not self._over_at:
             self._over_at = time.monotonic()
+
+    def _late(self, tick: int) -> list[str]:
+        """Topics that have come, and on which something that was said at a tick or before has not."""
+        return [topic for topic, (_, came) in self._came.items() if self._complete.is_due(topic, came, tick)]
+
+    def _fetch_late(self, tick: int) -> None:
+        """Asks publishers for what does not come: the broker may be gone, and nothing follows that would show a gap."""
+        if any(socket.poll(0) for socket in self._sockets.values() if socket is not self._clock):
+            return  # it has come, and is not read yet
+        now = time.monotonic()
+        late = [topic for topic in self._late(tick) if now - self._late_at.get(topic, -1e9) > LATE_EVERY_S]
+        for topic in late[:LATE_AT_ONCE]:
+            self._late_at[topic] = now
+            publisher = next((p for p in self.run.publishers if topic in [*p.topics, *p.direct_topics]), None)
+            if publisher is None or not publisher.resend_endpoint or publisher.incarnation != self._came[topic][0]:
+                continue
+            for message in resend.missing(self._context, self._keys, publisher, self.run.run_id, topic,
+                                          self._sequences.following(topic, publisher.incarnation), (1 << 63) - 1):
+                self._accept(message)
+                self._late_at.pop(topic, None)
 
     def _fetch_retained(self, publisher: Any) -> None:
         if self.run.phase != protocol.PHASE_RUNNING:
@@ -258,6 +287,8 @@ class Subscription:
             self._fetch(gap)
         if self._sequences.is_new(message):
             self._deliver(message)
+        if message.last_of_tick and message.envelope.incarnation >= self._came.get(message.topic, (0, 0))[0]:
+            self._came[message.topic] = message.envelope.incarnation, message.tick
 
     def _fetch(self, gap: Gap) -> None:
         """Delivers what its publisher still keeps of a gap, and counts the rest."""
@@ -293,6 +324,10 @@ class Subscription:
 
     def _release(self) -> None:
         self.over = True
+        if self._over_at:
+            self.incomplete = {topic: self._came[topic][1] for topic in self._late(self.run.settled_tick)}
+        for topic, tick in self.incomplete.items():
+            log.warning("%s: nothing has come after tick %d, though the run went on", topic, tick)
         for socket in [self._master.socket, *self._sockets.values()]:
             socket.close(0)
         self._sockets.clear()
