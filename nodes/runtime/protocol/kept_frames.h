@@ -23,7 +23,7 @@ struct FrameBytes {
 /// adds, another one answers: who asks never keeps the sensor waiting.
 class KeptFrames {
  public:
-  static constexpr std::size_t most_frames = 256;
+  static constexpr std::size_t most_frames = 128;
   static constexpr std::size_t most_bytes = std::size_t(64) << 20;  // in memory; one frame at least
 
   /// `changed` is called when a frame is added or the frames are over, from the thread that does
