@@ -8,6 +8,7 @@
 #include "core/detection/background.h"
 #include "core/detection/components.h"
 #include "core/detection/describe.h"
+#include "core/detection/faint_ends.h"
 #include "core/detection/faint_streaks.h"
 #include "core/detection/hidden_ends.h"
 #include "core/detection/hide_stars.h"
@@ -190,9 +191,15 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   for (Source& source : distinct(std::move(judged.sources), scene.sigma_px)) {
     if (!wcs_sees_sky(header.wcs, {source.trail().x_px, source.trail().y_px})) continue;
     source.at_edge |= may_leave(counts, source);
-    add_neglected_errors(source, scene.sigma_px);
-    add_errors_of_hidden_ends(scene, source);
-    if (source.snr() < settings.least_light_snr) continue;
+    const auto ends = errors_of_faint_ends(scene, source);
+    Source seen = source;  // by errors that don't depend on what noise lies beside its ends
+    add_neglected_errors(seen, scene.sigma_px, nullptr);
+    add_errors_of_hidden_ends(scene, seen);
+    if (seen.snr() < settings.least_light_snr) continue;
+    if (ends)
+      add_neglected_errors(source, scene.sigma_px, &*ends);
+    else
+      source = std::move(seen);
     Detection d = describe(source, header);
     d.index = std::uint32_t(result.detections.size());
     d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);

@@ -21,6 +21,7 @@ constexpr double chain_px = 40.0;      // longest row of stars, without their tr
 constexpr double candidate_snr = 4.7;  // of a beamlet, which may be a part of a streak
 // Of SNR^2, by which a point, and a streak, must be longer than was seen.
 constexpr double least_gain = 10.0, least_gain_of_streak = 1.0;
+constexpr double short_in_sigmas = 12.0;
 constexpr int most_failures = 30;  // of fits: a frame of so many structures has no faint streaks
 constexpr double template_px = 130.0;   // longest streak whose ends count
 constexpr double sum_misses_snr = 1.6;  // of such a streak's SNR, at most
@@ -145,19 +146,22 @@ Source with_hidden_light(const Scene& scene, const Scene& seen, Source source) {
   return source;
 }
 
-/// The line of three PSFs through a point with the largest SNR.
-Trail best_short_line(const Scene& scene, const FilteredFrame& frame, const Trail& point) {
-  Trail line = point, best;
-  line.length_px = 6 * scene.sigma_px;
-  double most = -1.0;
-  for (int k = 0; k < 8; ++k) {
-    line.angle_rad = pi * k / 8;
-    const double snr = snr_along(frame, line);
+/// The best of the lines climbed from short ones of any direction through a place.
+Trail best_line_through(const FilteredFrame& frame, const Trail& place, double sigma_px) {
+  constexpr int directions = 12;
+  Trail line = place, best = place;
+  line.length_px = 6 * sigma_px;
+  line.sagitta_px = line.slope = 0.0;
+  double most = 0.0;
+  for (int k = 0; k < directions; ++k) {
+    line.angle_rad = pi * k / directions;
+    const Trail trial = climbed(frame, line, 3.0);
+    const double snr = snr_along(frame, trial);
     if (!(snr > most)) continue;
     most = snr;
-    best = line;
+    best = trial;
   }
-  return most > 0 ? best : point;
+  return best;
 }
 
 }  // namespace
@@ -174,26 +178,44 @@ double least_streak_snr(double length_px) {
 
 namespace {
 
+/// The fit of a longer line, if it has more of a source's light.
+std::optional<Source> fitted_longer(const Scene& scene, const FilteredFrame& frame,
+                                    const Source& source, Trail start, bool turned,
+                                    double known_snr) {
+  const Trail& known = source.trail();
+  const double least_px = (source.streak ? 0.5 : 2.0) * scene.sigma_px;
+  if (start.length_px < known.length_px + least_px) return std::nullopt;
+  if (source.streak && !turned &&
+      gap_in(scene, start, known.flux_e / std::max(known.length_px, 1.0)))
+    return std::nullopt;
+  const double snr = snr_along(frame, start);
+  const double gain = turned ? std::pow(template_snr(scene, start), 2) - known_snr * known_snr
+                             : snr * snr - std::pow(snr_along(frame, known), 2);
+  if (gain < (turned ? least_gain : least_gain_of_streak)) return std::nullopt;
+  start.flux_e = known.flux_e * start.length_px / std::max(known.length_px, 2 * scene.sigma_px);
+  auto fit = fitted(scene, start, snr);
+  if (fit && (fit->trail().length_px <= known.length_px || fit->snr() <= source.snr())) fit.reset();
+  return fit;
+}
+
 /// A source with more of its light along its line, if there is.
 std::optional<Source> longer(const Scene& scene, const FilteredFrame& frame, const Source& source) {
   const Trail& known = source.trail();
   if (source.saturated || (!source.streak && !scene.known) ||
       source.snr() > faint_per_px * std::sqrt(std::max(known.length_px, 4.0)))
     return std::nullopt;
-  Trail start = climbed(frame, source.streak ? known : best_short_line(scene, frame, known), 3.0);
-  const double least_px = (source.streak ? 0.5 : 2.0) * scene.sigma_px;
-  if (start.length_px < known.length_px + least_px) return std::nullopt;
-  if (source.streak && gap_in(scene, start, known.flux_e / std::max(known.length_px, 1.0)))
-    return std::nullopt;
-  const double snr = snr_along(frame, start);
-  const double gain = source.streak ? snr * snr - std::pow(snr_along(frame, known), 2)
-                                    : std::pow(template_snr(scene, start), 2) -
-                                          std::pow(template_snr(scene, known), 2);
-  if (gain < (source.streak ? least_gain_of_streak : least_gain)) return std::nullopt;
-  start.flux_e = known.flux_e * start.length_px / std::max(known.length_px, 2 * scene.sigma_px);
-  auto fit = fitted(scene, start, snr);
-  if (fit && (fit->trail().length_px <= known.length_px || fit->snr() <= source.snr())) fit.reset();
-  return fit;
+  const double known_snr = template_snr(scene, known);
+  // Of a short one the direction may be that of noise.
+  const bool is_short = known.length_px < short_in_sigmas * scene.sigma_px;
+  std::vector<Trail> starts;
+  if (source.streak) starts.push_back(climbed(frame, known, 3.0));
+  if (is_short) starts.push_back(best_line_through(frame, known, scene.sigma_px));
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const bool turned = i > 0 || !source.streak;
+    auto fit = fitted_longer(scene, frame, source, starts[i], turned, known_snr);
+    if (fit) return fit;
+  }
+  return std::nullopt;
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ struct FilteredFrame {
   static constexpr int steps = 5, most = 31;
 
   int columns = 0, rows = 0;
-  double sigma_px = 1.0;          // of the filter
+  double sigma_px = 1.0;         // of the filter
   std::vector<std::int8_t> snr;  // rows x columns
 
   /// A cell of a mesh over the frame, as `flatten` found it.
@@ -40,9 +40,7 @@ struct FilteredFrame {
     return std::int8_t(step != 0 ? step : odd ? 1 : -1);
   }
   std::int8_t* row(int y) { return snr.data() + std::size_t(y) * std::size_t(columns); }
-  const std::int8_t* row(int y) const {
-    return snr.data() + std::size_t(y) * std::size_t(columns);
-  }
+  const std::int8_t* row(int y) const { return snr.data() + std::size_t(y) * std::size_t(columns); }
   /// Hides pixels [first, last] of a row, as far as they are in the frame.
   void hide(int y, int first, int last) {
     if (y < 0 || y >= rows) return;

@@ -7,6 +7,8 @@
 
 namespace dmise {
 
+struct EndErrors;
+
 /// What lies within a distance of a trail.
 class Around {
  public:
@@ -68,7 +70,8 @@ double end_error_px(double snr2_per_px);
 /// exp(-sigma_px SNR^2 / 2). Faint streaks: all but the flux times 1 + 20 / SNR^2, the next order
 /// of the expansion, measured at SNR 10 to 20. Brightness: a short streak is fitted as even, and a
 /// change of 0.7 % from its middle to an end displaces it. Model: 0.001 px. Both sizes are what the
-/// directions of 475 bright streaks in twilight lacked (`FisheyeDirections`).
-void add_neglected_errors(Source& source, double sigma_px);
+/// directions of 475 bright streaks in twilight lacked (`FisheyeDirections`). `ends`: of a faint
+/// streak, which take the place of that of its ends; null: not known.
+void add_neglected_errors(Source& source, double sigma_px, const EndErrors* ends);
 
 }  // namespace dmise
