@@ -179,9 +179,9 @@ class Bounds:
         return self.known[side]
 
     def image(self, transform, side):
-        """Values in pixels: frequencies that a pixel grid does not tell apart are added."""
+        """Values in pixels: frequencies that a pixel grid does not tell apart are added, from 0 on as there is an even number."""
         folded = transform.reshape(self.folds, side, self.folds, side).sum(axis=(0, 2))
-        return np.fft.fftshift(np.fft.ifft2(np.fft.ifftshift(folded))).real
+        return np.fft.fftshift(np.fft.ifft2(folded)).real
 
     def px2(self, source):
         side = 2 * source["reach"] + 2
