@@ -4,14 +4,14 @@
 
 #include "bench/benches.h"
 #include "core/base/memory.h"
-#include "core/base/version.h"
 #include "nodes/runtime/program/command_line.h"
+#include "nodes/runtime/program/version_text.h"
 
 // Started by `dmise bench`, with its arguments.
 int main(int argc, char** argv) {
   dmise::return_large_blocks();
   CLI::App app{"Runs benchmarks; with --json one object per line", "dmise bench"};
-  app.set_version_flag("--version", dmise::software_name());
+  app.set_version_flag("--version", dmise::version_text("dmise-bench"));
   app.require_subcommand(1);
   int code = 0;
   for (const auto& bench : dmise::benches()) {

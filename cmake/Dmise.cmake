@@ -1,4 +1,4 @@
-# The three verbs of the build: dmise_library, dmise_program, dmise_test.
+# The verbs of the build: dmise_library, dmise_program, dmise_module, dmise_test.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -79,6 +79,20 @@ function(dmise_library name)
     add_library(${name} INTERFACE)
     target_link_libraries(${name} INTERFACE ${ARG_DEPENDS})
   endif()
+  if(name MATCHES "^core_")
+    install_core_library(${name})
+  endif()
+endfunction()
+
+# install_core_library(NAME): for other projects, as dmise::NAME.
+function(install_core_library name)
+  get_target_property(type ${name} TYPE)
+  if(type STREQUAL "INTERFACE_LIBRARY")
+    target_include_directories(${name} INTERFACE $<INSTALL_INTERFACE:include/dmise>)
+  else()
+    target_include_directories(${name} PUBLIC $<INSTALL_INTERFACE:include/dmise>)
+  endif()
+  install(TARGETS ${name} EXPORT dmise ARCHIVE DESTINATION lib/dmise COMPONENT development)
 endfunction()
 
 # dmise_program(NAME SOURCES main.cpp ... [DEPENDS lib ...]): target `programs` builds them all.
@@ -88,6 +102,20 @@ function(dmise_program name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPENDS})
   add_dependencies(programs ${name})
+  if(name MATCHES "^dmise")
+    install(TARGETS ${name} RUNTIME DESTINATION bin COMPONENT runtime)
+    set_property(GLOBAL APPEND PROPERTY DMISE_PROGRAMS ${name})
+  endif()
+endfunction()
+
+# dmise_module(NAME SOURCES a.cpp ... [DEPENDS lib ...]): a shared object that programs load when they need it.
+function(dmise_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_library(${name} MODULE ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS})
+  target_link_options(${name} PRIVATE -Wl,--exclude-libs,ALL)
+  add_dependencies(programs ${name})
+  install(TARGETS ${name} LIBRARY DESTINATION lib/dmise COMPONENT runtime)
 endfunction()
 
 # dmise_test(NAME SOURCES test_a.cpp ... [DEPENDS lib ...]): a GoogleTest program, each TEST a ctest.

@@ -15,6 +15,7 @@ struct ExitWith {
   int code = 0;
 };
 
+void add_demo_command(CLI::App& app);
 void add_check_command(CLI::App& app);
 void add_explain_command(CLI::App& app);
 void add_run_command(CLI::App& app);
@@ -36,5 +37,7 @@ void add_clock_command(CLI::App& app);
 void add_survey_command(CLI::App& app);
 void add_tradeoff_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
+void add_schema_command(CLI::App& app);
+void add_manual_commands(CLI::App& app);  // man, completion
 
 }  // namespace dmise

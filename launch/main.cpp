@@ -4,15 +4,16 @@
 #include "core/base/error.h"
 #include "core/base/memory.h"
 #include "core/base/printable.h"
-#include "core/base/version.h"
 #include "launch/commands.h"
 #include "nodes/runtime/program/command_line.h"
+#include "nodes/runtime/program/version_text.h"
 
 int main(int argc, char** argv) {
   dmise::return_large_blocks();
   CLI::App app{"Simulates a network of optical sensors that watch near-Earth space.", "dmise"};
-  app.set_version_flag("--version", dmise::software_name());
+  app.set_version_flag("--version", dmise::version_text("dmise"));
   app.require_subcommand(1);
+  dmise::add_demo_command(app);
   dmise::add_check_command(app);
   dmise::add_explain_command(app);
   dmise::add_run_command(app);
@@ -27,6 +28,7 @@ int main(int argc, char** argv) {
   dmise::add_visible_command(app);
   dmise::add_catalogue_command(app);
   dmise::add_list_command(app);
+  dmise::add_schema_command(app);
   dmise::add_keygen_command(app);
   dmise::add_status_command(app);
   dmise::add_health_command(app);
@@ -34,6 +36,7 @@ int main(int argc, char** argv) {
   dmise::add_survey_command(app);
   dmise::add_tradeoff_command(app);
   dmise::add_bench_command(app);
+  dmise::add_manual_commands(app);
   constexpr std::size_t longest = 4000;  // of an error message [bytes]
   try {
     app.parse(argc, argv);

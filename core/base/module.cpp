@@ -16,7 +16,9 @@ std::string path_of(const Module& module) {
   std::error_code failed;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", failed);
   const std::string file = std::string("libdmise_") + module.name + ".so";
-  return (program.parent_path().parent_path() / "lib" / file).string();
+  const auto libraries = program.parent_path().parent_path() / "lib";
+  const auto installed = libraries / "dmise" / file;
+  return (std::filesystem::exists(installed, failed) ? installed : libraries / file).string();
 }
 
 /// Signals are blocked while loading, so that threads which libraries start at that time take none.

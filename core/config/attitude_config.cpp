@@ -12,15 +12,41 @@ namespace {
 constexpr double most_rpm = 6000.0;
 constexpr double least_sine = 1e-6;  // between a panel's hinge and its normal
 
+constexpr double any_length = 1e9;  // of a direction
+
+Forms direction() { return form::numbers(3, -any_length, any_length); }
+Forms quaternion() { return form::numbers(4, -2.0, 2.0); }
+
+const Section& inertial_section() {
+  static const Section section{
+      "inertial",
+      "An attitude fixed relative to the stars.",
+      {required("gcrs_from_body", quaternion(), "Unit quaternion [w, x, y, z].")}};
+  return section;
+}
+
+const Section& spinning_section() {
+  static const Section section{
+      "spinning",
+      "A body that turns about an axis of its own.",
+      {optional("axis", direction(), "Axis in body axes.", "[0, 0, 1]"),
+       required("rate_rpm", form::number(-most_rpm, most_rpm), "Rate [turns per minute]."),
+       optional("phase_deg", form::number(-360.0, 360.0),
+                "Rotation of the body at the start of the run [deg].", "0"),
+       optional("gcrs_from_body", quaternion(), "Unit quaternion [w, x, y, z] without the phase.",
+                "[1, 0, 0, 0]")}};
+  return section;
+}
+
 Vec<Body> read_direction(const YamlValue& value) {
-  const auto v = value.numbers(3, Bounds::between(-1e9, 1e9));
+  const auto v = value.numbers();
   const Vec<Body> direction{v[0], v[1], v[2]};
   if (!(norm(direction) > 0)) value.fail("must not be zero", false);
   return unit(direction);
 }
 
 Rotation<Gcrs, Body> read_quaternion(const YamlValue& value) {
-  const auto q = value.numbers(4, Bounds::between(-2, 2));
+  const auto q = value.numbers();
   const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
   if (!(length > 0.5 && length < 2.0))
     value.fail("must be a unit quaternion [w, x, y, z], its length is " + std::to_string(length),
@@ -29,21 +55,20 @@ Rotation<Gcrs, Body> read_quaternion(const YamlValue& value) {
 }
 
 InertialAttitude read_inertial(const YamlValue& value) {
-  YamlMap map(value);
+  YamlMap map(value, inertial_section());
   const InertialAttitude attitude{read_quaternion(map.require("gcrs_from_body"))};
   map.done();
   return attitude;
 }
 
 SpinningAttitude read_spinning(const YamlValue& value) {
-  YamlMap map(value);
+  YamlMap map(value, spinning_section());
   SpinningAttitude attitude;
   if (const auto axis = map.find("axis")) attitude.axis = read_direction(*axis);
-  attitude.rate_rad_per_s =
-      map.number("rate_rpm", Bounds::between(-most_rpm, most_rpm)) * 2 * pi / 60;
+  attitude.rate_rad_per_s = map.number("rate_rpm") * 2 * pi / 60;
   if (const auto start = map.find("gcrs_from_body"))
     attitude.gcrs_from_body = read_quaternion(*start);
-  const double phase_rad = map.number_or("phase_deg", 0.0, Bounds::between(-360, 360)) * deg;
+  const double phase_rad = map.number_or("phase_deg", 0.0) * deg;
   map.done();
   // The phase is the rotation of the body at the start.
   SpinningAttitude turn{.axis = attitude.axis, .rate_rad_per_s = phase_rad};
@@ -56,6 +81,30 @@ SpinningAttitude read_spinning(const YamlValue& value) {
 
 }  // namespace
 
+const Section& attitude_section() {
+  static const Section section{
+      "attitude",
+      "How an object is turned; one of these.",
+      {optional("inertial", form::map(inertial_section), "Fixed relative to the stars."),
+       optional("spinning", form::map(spinning_section), "Turns about an axis of its own."),
+       optional("table", form::text(), "A CSV file of time_s, w, x, y, z over the whole run.")}};
+  return section;
+}
+
+Forms attitude_forms() {
+  return form::choice({"nadir", "sun_tracking"}) | form::map(attitude_section);
+}
+
+const Section& panel_section() {
+  static const Section section{
+      "panel",
+      "A panel that turns about its hinge to face the Sun.",
+      {optional("hinge", direction(), "The hinge in body axes.", "[0, 1, 0]"),
+       optional("normal", direction(), "The normal of the panel at rest, in body axes.",
+                "[0, 0, 1]")}};
+  return section;
+}
+
 AttitudeConfig read_attitude(const YamlValue& value) {
   AttitudeConfig attitude;
   if (value.is_scalar()) {
@@ -65,7 +114,7 @@ AttitudeConfig read_attitude(const YamlValue& value) {
       attitude.model = SunYawAttitude{};
     return attitude;
   }
-  YamlMap map(value);
+  YamlMap map(value, attitude_section());
   const auto inertial = map.find("inertial"), spinning = map.find("spinning"),
              table = map.find("table");
   map.done();
@@ -82,7 +131,7 @@ AttitudeConfig read_attitude(const YamlValue& value) {
 }
 
 SunTrackingPanel read_panel(const YamlValue& value) {
-  YamlMap map(value);
+  YamlMap map(value, panel_section());
   SunTrackingPanel panel;
   if (const auto hinge = map.find("hinge")) panel.hinge = read_direction(*hinge);
   const auto normal = map.find("normal");

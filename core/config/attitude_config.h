@@ -18,4 +18,8 @@ AttitudeConfig read_attitude(const YamlValue& value);
 /// Reads `{hinge: [x, y, z], normal: [x, y, z]}` in body axes.
 SunTrackingPanel read_panel(const YamlValue& value);
 
+/// The forms of `attitude`, and the keys of `panel`.
+Forms attitude_forms();
+const Section& panel_section();
+
 }  // namespace dmise

@@ -42,20 +42,36 @@ Band read_filter(const YamlValue& value) {
 
 }  // namespace
 
+const Section& band_section() {
+  static const Section section{
+      "band",
+      "The band of the camera: a filter, or a box of given centre and width.",
+      {optional("filter", form::text(filter_names()),
+                "A filter (`dmise list filters`), or a CSV file of its transmission."),
+       optional("name", form::text(), "Name of the band in products. By default the filter's."),
+       optional("centre_m", form::number(0.1e-6, 30e-6),
+                "Middle of the box [m]; needed without a filter."),
+       optional("width_m", form::above(0.0, 60e-6),
+                "Width of the box [m], at most twice its centre; needed without a filter.")}};
+  return section;
+}
+
+Forms band_forms() { return form::text(filter_names()) | form::map(band_section); }
+
 Band read_band(const YamlValue& value) {
   if (value.is_scalar()) return read_filter(value);
-  YamlMap map(value);
+  YamlMap map(value, band_section());
   if (const auto filter = map.find("filter")) {
     Band band = read_filter(*filter);
-    band.name = map.text_or("name", band.name);
+    if (const auto name = map.find("name")) band.name = name->text();
     map.done();
     return band;
   }
   Band band;
-  band.name = map.text_or("name", "V");
-  band.centre_m = map.number("centre_m", Bounds::between(0.1e-6, 30e-6));
-  band.width_m =
-      map.number("width_m", {.least = 0.0, .most = 2 * band.centre_m, .least_open = true});
+  const auto name = map.find("name");
+  band.name = name ? name->text() : "V";
+  band.centre_m = map.number("centre_m");
+  band.width_m = map.number("width_m", Bounds::above(0.0, 2 * band.centre_m));
   map.done();
   return band;
 }
@@ -63,8 +79,7 @@ Band read_band(const YamlValue& value) {
 QuantumEfficiency read_quantum_efficiency(const YamlValue& value) {
   const std::string text = value.is_scalar() ? value.text() : "";
   const bool is_number = text.find_first_not_of("+-.0123456789eE") == std::string::npos;
-  if (is_number)
-    return {.peak = value.number({.least = 0.0, .most = 1.0, .least_open = true}), .relative = {}};
+  if (is_number) return {.peak = value.number(Bounds::above(0.0, 1.0)), .relative = {}};
   QuantumEfficiency efficiency{.relative = curve_beside(value)};
   auto& values = efficiency.relative.value;
   efficiency.peak = *std::max_element(values.begin(), values.end());

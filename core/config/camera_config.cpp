@@ -24,6 +24,20 @@ void apply_quantum_efficiency(const YamlValue& value, Camera& camera) {
 
 }  // namespace
 
+const Section& camera_section() {
+  static const Section section{
+      "camera",
+      "A camera: its optics, its detector and its band.",
+      {optional("name", form::text(), "Name of the camera in products.", "camera"),
+       optional("source", form::text(), "Where the numbers come from. It is not used."),
+       required("optics", form::map(optics_section), "The lens or telescope."),
+       required("detector", form::map(detector_section), "The detector."),
+       required("band", band_forms(),
+                "The band: the name of a filter (`dmise list filters`), a CSV file of its "
+                "transmission, or a box.")}};
+  return section;
+}
+
 Camera read_camera(const YamlValue& value) {
   if (value.is_scalar()) {
     const std::string path = find_preset("cameras", value.text(), value.file());
@@ -37,7 +51,7 @@ Camera read_camera(const YamlValue& value) {
     }
     return read_camera(YamlValue::load(path));
   }
-  YamlMap map(value);
+  YamlMap map(value, camera_section());
   Camera camera;
   camera.name = map.text_or("name", "camera");
   map.find("source");  // informative only

@@ -8,4 +8,7 @@ namespace dmise {
 /// launch/cameras/*.yaml.
 Camera read_camera(const YamlValue& value);
 
+/// The keys of a camera.
+const Section& camera_section();
+
 }  // namespace dmise

@@ -1,9 +1,45 @@
 #include "core/config/detector_config.h"
 
+#include <charconv>
+
 namespace dmise {
 
+namespace {
+
+Forms forms_of(const DetectorParameter& p) {
+  if (p.key == "quantum_efficiency")  // may be a curve
+    return form::above(0.0, 1.0) | form::text();
+  if (std::holds_alternative<bool Detector::*>(p.value)) return form::flag();
+  if (std::holds_alternative<int Detector::*>(p.value))
+    return form::integer(std::int64_t(p.least), std::int64_t(p.most));
+  return p.least_open ? form::above(p.least, p.most) : form::number(p.least, p.most);
+}
+
+/// The default of a parameter, as text.
+std::string default_of(const DetectorParameter& p) {
+  if (p.required) return "";
+  if (p.key == "temperature_c") return "dark_reference_c";
+  const double number = p.number_of(Detector());
+  if (std::holds_alternative<bool Detector::*>(p.value)) return number != 0.0 ? "on" : "off";
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+}  // namespace
+
+const Section& detector_section() {
+  static const Section section = [] {
+    Section made{"detector", "The detector, from electrons to counts.", {}};
+    for (const DetectorParameter& p : detector_parameters())
+      made.keys.push_back(
+          {std::string(p.key), forms_of(p), sentence_of(p.meaning), default_of(p), p.required});
+    return made;
+  }();
+  return section;
+}
+
 Detector read_detector(const YamlValue& value) {
-  YamlMap map(value);
+  YamlMap map(value, detector_section());
   Detector d;
   for (const DetectorParameter& p : detector_parameters()) {
     const auto given = p.required ? map.require(p.key) : map.find(p.key);
@@ -13,7 +49,7 @@ Detector read_detector(const YamlValue& value) {
     } else if (std::holds_alternative<bool Detector::*>(p.value)) {
       p.set(d, given->flag());
     } else if (std::holds_alternative<double Detector::*>(p.value)) {
-      p.set(d, given->number({p.least, p.most, p.least_open}));
+      p.set(d, given->number());
     } else {
       const auto most = std::int64_t(p.reason.empty() ? p.most : 4 * p.most);
       const auto number = given->integer(std::int64_t(p.least), most);

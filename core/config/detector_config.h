@@ -11,4 +11,7 @@ Detector read_detector(const YamlValue& value);
 /// Throws `ConfigError` for an exposure with more than `most_cosmic_hits` expected cosmic-ray hits.
 void check_exposure(const Camera& camera, const YamlValue& exposure_s);
 
+/// The keys of `detector`.
+const Section& detector_section();
+
 }  // namespace dmise

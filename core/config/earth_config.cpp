@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/base/json.h"
+#include "core/config/yaml_reader.h"
 
 namespace dmise {
 namespace {
@@ -14,20 +15,40 @@ struct NamedEllipsoid {
 constexpr std::array<NamedEllipsoid, 3> named{
     {{"WGS84", wgs84}, {"WGS72", wgs72}, {"GRS80", grs80}}};
 
-const Bounds radius_m = Bounds::between(6e6, 7e6);    // km and miles are refused
-const Bounds flattening = Bounds::between(0.0, 0.1);  // shadow and limb are tested up to it
-const Bounds origin_height_m = Bounds::between(-12e3, 1e9);
+const Section& ellipsoid_section() {
+  static const Section section{
+      "ellipsoid",
+      "An ellipsoid of revolution about the Earth's axis.",
+      {required("a_m", form::number(6e6, 7e6), "Equatorial radius [m]."),  // not in km or miles
+       required("f", form::number(0.0, 0.1),  // shadow and limb are tested up to it
+                "Flattening.")}};
+  return section;
+}
+
+const Section& origin_section() {
+  static const Section section{
+      "origin",
+      "The place of the scenario's east, north and up.",
+      {required("latitude_deg", form::number(-90.0, 90.0), "Geodetic latitude [deg]."),
+       required("longitude_deg", form::number(-180.0, 360.0), "Longitude, east [deg]."),
+       optional("height_m", form::number(-12e3, 1e9), "Height above the ellipsoid [m].", "0")}};
+  return section;
+}
+
+std::vector<std::string> ellipsoid_names() {
+  std::vector<std::string> names;
+  for (const auto& one : named) names.emplace_back(one.name);
+  return names;
+}
 
 Ellipsoid read_ellipsoid(const YamlValue& value) {
   if (value.is_map()) {
-    YamlMap map(value);
-    const Ellipsoid ellipsoid{map.number("a_m", radius_m), map.number("f", flattening)};
+    YamlMap map(value, ellipsoid_section());
+    const Ellipsoid ellipsoid{map.number("a_m"), map.number("f")};
     map.done();
     return ellipsoid;
   }
-  std::array<std::string_view, named.size()> names;
-  for (std::size_t k = 0; k < names.size(); ++k) names[k] = named[k].name;
-  const std::string name = value.choice(names);
+  const std::string name = value.choice();
   for (const auto& one : named)
     if (one.name == name) return one.ellipsoid;
   return {};
@@ -35,15 +56,22 @@ Ellipsoid read_ellipsoid(const YamlValue& value) {
 
 }  // namespace
 
+std::vector<Key> earth_keys() {
+  return {optional("ellipsoid", form::choice(ellipsoid_names()) | form::map(ellipsoid_section),
+                   "The figure of the Earth: of sites, heights, shadow and limb.", "WGS84"),
+          optional("origin", form::map(origin_section),
+                   "The place of east, north and up, for motions, cameras and positions.")};
+}
+
 EarthConfig read_earth(YamlMap& simulation) {
   EarthConfig earth;
   if (const auto ellipsoid = simulation.find("ellipsoid"))
     earth.ellipsoid = read_ellipsoid(*ellipsoid);
   if (const auto origin = simulation.find("origin")) {
-    YamlMap map(*origin);
-    earth.origin = Site{.latitude_deg = map.number("latitude_deg", Bounds::between(-90, 90)),
-                        .longitude_deg = map.number("longitude_deg", Bounds::between(-180, 360)),
-                        .height_m = map.number_or("height_m", 0.0, origin_height_m),
+    YamlMap map(*origin, origin_section());
+    earth.origin = Site{.latitude_deg = map.number("latitude_deg"),
+                        .longitude_deg = map.number("longitude_deg"),
+                        .height_m = map.number_or("height_m", 0.0),
                         .ellipsoid = earth.ellipsoid};
     map.done();
   }

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "core/config/yaml_reader.h"
+#include "core/config/section.h"
 #include "core/frames/geodesy.h"
 
 namespace dmise {
@@ -12,6 +12,10 @@ struct EarthConfig {
   std::optional<Site> origin;  // of the scenario's east, north and up; on the ellipsoid
 };
 
+/// These keys, for the section of `simulation`.
+std::vector<Key> earth_keys();
+
+class YamlMap;
 /// Reads both keys of `simulation`. Throws `ConfigError`.
 EarthConfig read_earth(YamlMap& simulation);
 

@@ -5,42 +5,79 @@
 namespace dmise {
 namespace {
 
-void read_sigmas(YamlMap& map, const char* key, double least, std::array<double, 3>& sigmas) {
+void read_sigmas(YamlMap& map, const char* key, std::array<double, 3>& sigmas) {
   const auto value = map.find(key);
   if (!value) return;
-  const auto numbers = value->numbers(3, Bounds::between(least, 1e8));
+  const auto numbers = value->numbers();
   std::copy(numbers.begin(), numbers.end(), sigmas.begin());
 }
 
 }  // namespace
 
+const Section& fusion_section() {
+  static const Section section{
+      "fusion",
+      "A node that makes tracks of the detections of all sensors.",
+      {optional("catalogue_sigma_m", form::numbers(3, 1.0, 1e8),
+                "Errors of the catalogue at its epoch [m]: radial, along the track, across it."),
+       optional("catalogue_sigma_m_per_day", form::numbers(3, 0.0, 1e8),
+                "Growth of these errors [m per day]."),
+       optional("gate_d2", form::number(1.0, 1000.0),
+                "Greatest squared distance of a detection from a track, as chi-square of 2 "
+                "degrees of freedom. 18.4 misses 1 in 10,000.",
+                "18.4"),
+       optional("detection_probability", form::number(0.01, 0.999),
+                "Probability that an object well above the limit is detected.", "0.9"),
+       optional("false_alarms_per_frame", form::number(1e-6, 1e5),
+                "Expected false alarms in a frame.", "1"),
+       optional("lost_after_s", form::number(1.0, 1e6),
+                "Time without a detection after which a confirmed track is lost [s].", "900"),
+       optional("tentative_s", form::number(1.0, 1e6), "The same for a tentative track [s].",
+                "120"),
+       optional("start_window_s", form::number(1.0, 600.0),
+                "Greatest time between the detections that start a track [s].", "60"),
+       optional("simultaneous_s", form::number(1e-3, 10.0),
+                "Greatest time between detections of two sites that give a position [s].", "0.5"),
+       optional("arc_window_s", form::number(10.0, 3600.0),
+                "Greatest time between the exposures of one site that begin a track [s].",
+                number_text(FusionSettings().arc_window_s)),
+       optional("arc_exposures", form::integer(0, 1000),
+                "Least exposures of one site that begin a track. 0: one site begins none; else 4 "
+                "or more.",
+                std::to_string(FusionSettings().arc_exposures)),
+       optional("acceleration_noise_m2_per_s3", form::number(0.0, 1.0),
+                "Process noise of the filter [m^2/s^3].", "1e-06"),
+       optional("cue_delay_ticks", form::integer(1, 100000),
+                "Ticks between the decision for a task and its beginning.", "2"),
+       optional("not_in_catalogue", form::list(form::text()),
+                "Names or numbers of objects that the fusion node does not know beforehand.")}};
+  return section;
+}
+
 FusionConfig read_fusion(const YamlValue& value) {
   FusionConfig config;
   config.where = value.place();
   if (value.is_scalar() && value.flag()) return config;
-  YamlMap map(value);
+  YamlMap map(value, fusion_section());
   FusionSettings& s = config.settings;
-  read_sigmas(map, "catalogue_sigma_m", 1.0, s.catalogue_sigma_m);
-  read_sigmas(map, "catalogue_sigma_m_per_day", 0.0, s.catalogue_sigma_m_per_day);
-  s.gate_d2 = map.number_or("gate_d2", s.gate_d2, Bounds::between(1.0, 1000.0));
-  s.detection_probability =
-      map.number_or("detection_probability", s.detection_probability, Bounds::between(0.01, 0.999));
-  s.false_alarms_per_frame =
-      map.number_or("false_alarms_per_frame", s.false_alarms_per_frame, Bounds::between(1e-6, 1e5));
-  s.lost_after_s = map.number_or("lost_after_s", s.lost_after_s, Bounds::between(1.0, 1e6));
-  s.tentative_s = map.number_or("tentative_s", s.tentative_s, Bounds::between(1.0, 1e6));
-  s.start_window_s = map.number_or("start_window_s", s.start_window_s, Bounds::between(1.0, 600.0));
-  s.simultaneous_s = map.number_or("simultaneous_s", s.simultaneous_s, Bounds::between(1e-3, 10.0));
-  s.arc_window_s = map.number_or("arc_window_s", s.arc_window_s, Bounds::between(10.0, 3600.0));
+  read_sigmas(map, "catalogue_sigma_m", s.catalogue_sigma_m);
+  read_sigmas(map, "catalogue_sigma_m_per_day", s.catalogue_sigma_m_per_day);
+  s.gate_d2 = map.number_or("gate_d2", s.gate_d2);
+  s.detection_probability = map.number_or("detection_probability", s.detection_probability);
+  s.false_alarms_per_frame = map.number_or("false_alarms_per_frame", s.false_alarms_per_frame);
+  s.lost_after_s = map.number_or("lost_after_s", s.lost_after_s);
+  s.tentative_s = map.number_or("tentative_s", s.tentative_s);
+  s.start_window_s = map.number_or("start_window_s", s.start_window_s);
+  s.simultaneous_s = map.number_or("simultaneous_s", s.simultaneous_s);
+  s.arc_window_s = map.number_or("arc_window_s", s.arc_window_s);
   if (const auto least = map.find("arc_exposures")) {
-    s.arc_exposures = int(least->integer(0, 1000));
+    s.arc_exposures = int(least->integer());
     if (s.arc_exposures > 0 && s.arc_exposures < 4)
       least->fail("must be 0 (one site begins no track) or >= 4");
   }
-  s.acceleration_noise_m2_per_s3 = map.number_or(
-      "acceleration_noise_m2_per_s3", s.acceleration_noise_m2_per_s3, Bounds::between(0.0, 1.0));
-  if (const auto delay = map.find("cue_delay_ticks"))
-    config.cue_delay_ticks = delay->integer(1, 100000);
+  s.acceleration_noise_m2_per_s3 =
+      map.number_or("acceleration_noise_m2_per_s3", s.acceleration_noise_m2_per_s3);
+  config.cue_delay_ticks = map.integer_or("cue_delay_ticks", config.cue_delay_ticks);
   if (const auto names = map.find("not_in_catalogue"))
     for (const auto& name : names->list()) {
       config.not_in_catalogue.push_back(name.text());

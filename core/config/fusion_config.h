@@ -7,4 +7,7 @@ namespace dmise {
 /// Reads `fusion:` of a scenario. Throws `ConfigError`.
 FusionConfig read_fusion(const YamlValue& value);
 
+/// The keys of `fusion`.
+const Section& fusion_section();
+
 }  // namespace dmise

@@ -13,14 +13,17 @@
 namespace dmise {
 namespace {
 
-constexpr Bounds size_bounds{.least = 0.0, .most = 1e5, .least_open = true};
+constexpr double largest_m = 1e5;
+
+Forms size() { return form::above(0.0, largest_m); }
+Forms sizes(std::size_t count) { return form::positive_numbers(count, largest_m); }
 
 std::vector<double> sizes(YamlMap& map, std::string_view key, std::size_t count,
                           std::vector<double> otherwise) {
   const auto value = map.find(key);
   if (!value) return otherwise;
   std::vector<double> all;
-  for (const auto& item : value->list()) all.push_back(item.number(size_bounds));
+  for (const auto& item : value->list()) all.push_back(item.number());
   if (all.size() != count)
     value->fail(
         "must have " + std::to_string(count) + " lengths, got " + std::to_string(all.size()),
@@ -34,12 +37,11 @@ class Reader {
 
   Mesh model(const std::string& name) {
     if (name == "sphere")
-      return sphere(map_.number_or("radius_m", 1.0, size_bounds),
-                    std::size_t(map_.integer_or("facets", 1280, 20, 200000)), material("material"));
+      return sphere(map_.number_or("radius_m", 1.0), std::size_t(map_.integer_or("facets", 1280)),
+                    material("material"));
     if (name == "cylinder")
-      return cylinder(map_.number_or("radius_m", 1.0, size_bounds),
-                      map_.number_or("length_m", 2.0, size_bounds),
-                      int(map_.integer_or("sides", 48, 3, 10000)), material("material"));
+      return cylinder(map_.number_or("radius_m", 1.0), map_.number_or("length_m", 2.0),
+                      int(map_.integer_or("sides", 48)), material("material"));
     if (name == "plate") {
       const auto size = sizes(map_, "size_m", 2, {1.0, 1.0});
       return plate(size[0], size[1], material("front"), material("back"));
@@ -57,9 +59,9 @@ class Reader {
     BoxWing size;
     const auto body = sizes(map_, "body_m", 3, {size.body_m.x, size.body_m.y, size.body_m.z});
     size.body_m = {body[0], body[1], body[2]};
-    size.wing_length_m = map_.number_or("wing_length_m", size.wing_length_m, size_bounds);
-    size.wing_width_m = map_.number_or("wing_width_m", size.wing_width_m, size_bounds);
-    size.gap_m = map_.number_or("gap_m", size.gap_m, Bounds::between(0.0, 1e5));
+    size.wing_length_m = map_.number_or("wing_length_m", size.wing_length_m);
+    size.wing_width_m = map_.number_or("wing_width_m", size.wing_width_m);
+    size.gap_m = map_.number_or("gap_m", size.gap_m);
     return box_wing(size, material("body", "kapton"), material("front", "silicon-cell"),
                     material("back", "white-paint"));
   }
@@ -110,8 +112,40 @@ std::string digest_of(const Mesh& mesh) {
 
 }  // namespace
 
+const Section& geometry_section() {
+  static const Section section{
+      "geometry",
+      "The shape of an object: an OBJ file, or a model with its sizes and materials "
+      "(`dmise list materials`).",
+      {optional("obj", form::text(), "An OBJ file beside the scenario."),
+       optional("model",
+                form::choice({"box", "plate", "sphere", "cylinder", "box-wing", "starlink-like"}),
+                "A model, in place of the file."),
+       optional("materials", form::text(), "A file of materials.", "the shipped library"),
+       optional("scale", form::above(0.0, 1e6), "Factor of all lengths.", "1"),
+       optional("size_m", sizes(3) | sizes(2),
+                "Lengths of a box along x, y, z [m], or of a plate along x, y.", "1 each"),
+       optional("radius_m", size(), "Radius of a sphere or cylinder [m].", "1"),
+       optional("length_m", size(), "Length of a cylinder [m].", "2"),
+       optional("facets", form::integer(20, 200000), "Facets of a sphere, about.", "1280"),
+       optional("sides", form::integer(3, 10000), "Sides of a cylinder.", "48"),
+       optional("body_m", sizes(3), "Lengths of the body of a box-wing [m].", "[1.8, 1.6, 2]"),
+       optional("wing_length_m", size(), "Length of each wing, along y [m].", "5"),
+       optional("wing_width_m", size(), "Width of the wings, along x [m].", "1.8"),
+       optional("gap_m", form::number(0.0, largest_m), "Between body and wing [m].", "0.5"),
+       optional("material", form::text(), "Material of a box, sphere or cylinder.", "grey"),
+       optional("front", form::text(),
+                "Material of the side towards z of a plate, of wings and of an array.",
+                "by the model"),
+       optional("back", form::text(), "Material of their other side.", "by the model"),
+       optional("body", form::text(), "Material of the body of a box-wing.", "kapton"),
+       optional("chassis", form::text(), "Material of the chassis of a starlink-like satellite.",
+                "starlink-chassis")}};
+  return section;
+}
+
 GeometryConfig read_geometry(const YamlValue& value) {
-  YamlMap map(value);
+  YamlMap map(value, geometry_section());
   GeometryConfig geometry;
   geometry.materials_path = find_preset("materials", "library", "");
   if (const auto materials = map.find("materials")) {
@@ -132,12 +166,9 @@ GeometryConfig read_geometry(const YamlValue& value) {
     mesh = std::move(read.mesh);
     geometry.notes = std::move(read.notes);
   } else {
-    mesh = Reader(map, library)
-               .model(model->choice(
-                   {"box", "plate", "sphere", "cylinder", "box-wing", "starlink-like"}));
+    mesh = Reader(map, library).model(model->choice());
   }
-  mesh = scaled(std::move(mesh),
-                map.number_or("scale", 1.0, {.least = 0.0, .most = 1e6, .least_open = true}));
+  mesh = scaled(std::move(mesh), map.number_or("scale", 1.0));
   map.done();
   geometry.digest = digest_of(mesh);
   geometry.mesh = std::make_shared<const Mesh>(std::move(mesh));

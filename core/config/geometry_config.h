@@ -21,4 +21,7 @@ struct GeometryConfig {
 /// with its own file and line.
 GeometryConfig read_geometry(const YamlValue& value);
 
+/// The keys of `geometry`.
+const Section& geometry_section();
+
 }  // namespace dmise

@@ -10,25 +10,58 @@ namespace {
 
 using Kind = InstrumentParameter::Kind;
 
-void read_number(const YamlValue& value, const InstrumentParameter& p, Instrument& instrument) {
+std::string_view meaning_of(std::string_view key) {
+  static constexpr std::pair<std::string_view, std::string_view> meanings[] = {
+      {"bias_deg", "Constant error of the pointing [deg]: right, down, roll."},
+      {"bias_arcsec", "The same [arcsec]; one of both may be given."},
+      {"drift_arcsec_per_s", "Growth of the error [arcsec/s]: right, down, roll."},
+      {"jitter_arcsec",
+       "Rms error of each exposure [arcsec]: right, down, roll, or one number for the first two."},
+      {"offset_ms", "Time by which the clock is fast at the start of the run [ms]."},
+      {"drift_ppm", "Rate by which it gains [1e-6]."},
+      {"jitter_ms", "Rms error of each reading [ms]."}};
+  for (const auto& [of, meaning] : meanings)
+    if (of == key) return meaning;
+  return "";
+}
+
+Forms forms_of(const InstrumentParameter& p) {
   const bool is_rms = p.kind == Kind::rms || p.kind == Kind::rms_of_axes;
-  const Bounds bounds = Bounds::between(is_rms ? 0.0 : -p.most, p.most);
+  const double least = is_rms ? 0.0 : -p.most;
+  if (std::holds_alternative<double Instrument::*>(p.value)) return form::number(least, p.most);
+  const Forms axes = form::numbers(ImageAxes().size(), least, p.most);
+  return p.kind == Kind::rms_of_axes ? form::number(least, p.most) | axes : axes;
+}
+
+template <class Effect>
+const Section& section_of() {
+  static const Section section = [] {
+    Section made{std::string(Effect::facts.name), sentence_of(Effect::facts.what), {}};
+    for (const auto& p : Effect::parameters())
+      made.keys.push_back(optional(std::string(p.key), forms_of(p), std::string(meaning_of(p.key)),
+                                   std::get_if<double Instrument::*>(&p.value) ? "0" : ""));
+    return made;
+  }();
+  return section;
+}
+
+void read_number(const YamlValue& value, const InstrumentParameter& p, Instrument& instrument) {
   if (const auto* number = std::get_if<double Instrument::*>(&p.value)) {
-    instrument.** number = value.number(bounds) * p.unit;
+    instrument.** number = value.number() * p.unit;
     return;
   }
   ImageAxes& axes = instrument.*std::get<ImageAxes Instrument::*>(p.value);
   if (p.kind == Kind::rms_of_axes && value.is_scalar()) {
-    axes[0] = axes[1] = value.number(bounds) * p.unit;
+    axes[0] = axes[1] = value.number() * p.unit;
     return;
   }
-  const auto numbers = value.numbers(axes.size(), bounds);
+  const auto numbers = value.numbers();
   for (std::size_t k = 0; k < axes.size(); ++k) axes[k] = numbers[k] * p.unit;
 }
 
 template <class Effect>
 void read_effect(const YamlValue& value, Instrument& instrument) {
-  YamlMap map(value);
+  YamlMap map(value, section_of<Effect>());
   std::vector<const InstrumentParameter*> given;
   std::string keys;
   for (const auto& p : Effect::parameters()) {
@@ -47,6 +80,15 @@ void read_effect(const YamlValue& value, Instrument& instrument) {
 }
 
 }  // namespace
+
+std::vector<Key> instrument_keys() {
+  std::vector<Key> keys;
+  InstrumentEffects::for_each([&]<class Effect>() {
+    keys.push_back(optional(std::string(Effect::facts.name), form::map(section_of<Effect>),
+                            sentence_of(Effect::facts.what)));
+  });
+  return keys;
+}
 
 void read_instrument(YamlMap& sensor, Instrument& instrument) {
   InstrumentEffects::for_each([&]<class Effect>() {

@@ -19,4 +19,7 @@ void write_instrument_json(JsonWriter& json, const Instrument& instrument);
 /// Returns the numbers of a parameter in the unit of its key: one, or x, y and roll.
 std::vector<double> numbers_of(const InstrumentParameter& parameter, const Instrument& instrument);
 
+/// The keys of these effects, for the section of a sensor.
+std::vector<Key> instrument_keys();
+
 }  // namespace dmise

@@ -9,17 +9,54 @@
 namespace dmise {
 namespace {
 
-std::vector<double> numbers(const YamlValue& value, Bounds bounds) {
+Forms share() { return form::number(0.0, 1.0); }
+Forms curve() { return share() | form::list(share()); }
+
+const Section& material_section() {
+  static const Section section{
+      "material",
+      "How a surface reflects and emits, with curves over `wavelength_um`.",
+      {required("model", form::choice({"lambert", "sandford-robertson", "phong"}),
+                "The model of reflection."),
+       optional("source", form::text(), "Where the numbers come from."),
+       optional("wavelength_um", form::list(form::number(0.01, 1000.0)),
+                "Wavelengths of the curves [um], ascending."),
+       optional("reflectance", curve(), "Share of light that is reflected in all directions."),
+       optional("diffuse", curve(), "Diffuse part, of phong and sandford-robertson."),
+       optional("specular", curve(), "Specular part, of phong."),
+       optional("exponent", form::number(0.0, 1e5), "Exponent of the lobe, of phong."),
+       optional("emissivity", curve(), "Emissivity, of sandford-robertson."),
+       optional("diffuse_share", share(), "Diffuse share of `reflectance`, of sandford-robertson."),
+       optional("grazing", form::number(0.0, 10.0),
+                "Growth towards grazing angles, of sandford-robertson."),
+       optional("lobe_width", form::number(0.001, 1.0),
+                "Width of the lobe, of "
+                "sandford-robertson."),
+       optional("temperature_k", form::number(0.0, 3000.0),
+                "Temperature of the surface [K]; 0 emits nothing.", "0"),
+       optional("thermal_emissivity", share(), "Emissivity at thermal wavelengths.", "0")}};
+  return section;
+}
+
+const Section& material_list_section() {
+  static const Section section{
+      "materials",
+      "Materials by name.",
+      {},
+      required("^.+$", form::map(material_section), "A material under the name that it is given.")};
+  return section;
+}
+
+std::vector<double> numbers(const YamlValue& value) {
   std::vector<double> all;
-  for (const auto& item : value.list()) all.push_back(item.number(bounds));
+  for (const auto& item : value.list()) all.push_back(item.number());
   return all;
 }
 
 /// Reads a table over `wavelength_um`, or one number for all wavelengths.
 Curve read_curve(const YamlValue& value, const std::vector<double>& wavelength_m) {
-  const Bounds share = Bounds::between(0.0, 1.0);
-  if (value.is_scalar()) return {{0.55e-6}, {value.number(share)}};
-  Curve curve{wavelength_m, numbers(value, share)};
+  if (value.is_scalar()) return {{0.55e-6}, {value.number()}};
+  Curve curve{wavelength_m, numbers(value)};
   if (curve.value.size() != wavelength_m.size())
     value.fail("must have as many numbers as wavelength_um (" +
                    std::to_string(wavelength_m.size()) + "), got " +
@@ -31,7 +68,7 @@ Curve read_curve(const YamlValue& value, const std::vector<double>& wavelength_m
 std::vector<double> read_wavelengths(YamlMap& map) {
   std::vector<double> wavelength_m;
   if (const auto value = map.find("wavelength_um")) {
-    for (const double w : numbers(*value, Bounds::between(0.01, 1000.0))) {
+    for (const double w : numbers(*value)) {
       if (!wavelength_m.empty() && w * um <= wavelength_m.back()) value->fail("must ascend", false);
       wavelength_m.push_back(w * um);
     }
@@ -40,12 +77,11 @@ std::vector<double> read_wavelengths(YamlMap& map) {
 }
 
 Material read_sandford_robertson(YamlMap& map, const std::vector<double>& wavelength_m) {
-  const double grazing = map.number("grazing", Bounds::between(0.0, 10.0));
-  const double lobe_width = map.number("lobe_width", Bounds::between(0.001, 1.0));
+  const double grazing = map.number("grazing");
+  const double lobe_width = map.number("lobe_width");
   if (const auto reflectance = map.find("reflectance"))
     return sandford_robertson_of({}, read_curve(*reflectance, wavelength_m),
-                                 map.number("diffuse_share", Bounds::between(0.0, 1.0)), grazing,
-                                 lobe_width);
+                                 map.number("diffuse_share"), grazing, lobe_width);
   return {.model = Material::Model::sandford_robertson,
           .reflectance = {},
           .emissivity = read_curve(map.require("emissivity"), wavelength_m),
@@ -56,9 +92,17 @@ Material read_sandford_robertson(YamlMap& map, const std::vector<double>& wavele
 
 }  // namespace
 
+const Section& material_library_section() {
+  static const Section section{
+      "material-library",
+      "A file of materials.",
+      {required("materials", form::map(material_list_section), "The materials, by name.")}};
+  return section;
+}
+
 Material read_material(const std::string& name, const YamlValue& value) {
-  YamlMap map(value);
-  const std::string model = map.require("model").choice({"lambert", "sandford-robertson", "phong"});
+  YamlMap map(value, material_section());
+  const std::string model = map.require("model").choice();
   const auto wavelength_m = read_wavelengths(map);
   Material m;
   if (model == "lambert") {
@@ -68,14 +112,14 @@ Material read_material(const std::string& name, const YamlValue& value) {
     m.reflectance = {};
     m.diffuse = read_curve(map.require("diffuse"), wavelength_m);
     m.specular = read_curve(map.require("specular"), wavelength_m);
-    m.exponent = map.number("exponent", Bounds::between(0.0, 1e5));
+    m.exponent = map.number("exponent");
   } else {
     m = read_sandford_robertson(map, wavelength_m);
   }
   m.name = name;
   m.source = map.text_or("source", "");
-  m.temperature_k = map.number_or("temperature_k", 0.0, Bounds::between(0.0, 3000.0));
-  m.thermal_emissivity = map.number_or("thermal_emissivity", 0.0, Bounds::between(0.0, 1.0));
+  m.temperature_k = map.number_or("temperature_k", 0.0);
+  m.thermal_emissivity = map.number_or("thermal_emissivity", 0.0);
   map.done();
   try {
     check_material(m);
@@ -86,8 +130,8 @@ Material read_material(const std::string& name, const YamlValue& value) {
 }
 
 MaterialLibrary::MaterialLibrary(const std::string& path) {
-  YamlMap file(YamlValue::load(path));
-  YamlMap entries(file.require("materials"));
+  YamlMap file(YamlValue::load(path), material_library_section());
+  YamlMap entries(file.require("materials"), material_list_section());
   for (const auto& name : entries.keys())
     materials_[name] = read_material(name, entries.require(name));
   file.done();

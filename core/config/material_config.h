@@ -33,4 +33,7 @@ class MaterialLibrary {
 /// Reads one material from its mapping.
 Material read_material(const std::string& name, const YamlValue& value);
 
+/// The keys of a file of materials.
+const Section& material_library_section();
+
 }  // namespace dmise

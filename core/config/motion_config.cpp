@@ -20,11 +20,68 @@ namespace {
 
 constexpr double farthest_m = 1e12;
 constexpr double least_height_m = 0.01;  // of a fixed object above the ellipsoid
-constexpr Bounds within_reach = {.least = -farthest_m, .most = farthest_m};
+
+Forms angle() { return form::number(-360.0, 360.0); }
+Forms position() { return form::numbers(3, -farthest_m, farthest_m); }
+
+const Section& two_body_section() {
+  static const Section section{
+      "two_body",
+      "A conic about the Earth's centre, in GCRS axes: by elements, or by position and velocity.",
+      {optional("epoch", form::time(), "UTC of the elements.", "start of the run"),
+       optional("gm_m3_per_s2", form::positive(), "Gravity of the centre [m^3/s^2].",
+                "3.986004415e14"),
+       optional("position_m", position(), "Position at the epoch [m]."),
+       optional("velocity_m_per_s", form::numbers(3, -1e6, 1e6), "Velocity at the epoch [m/s]."),
+       optional("semi_major_axis_m", form::above(0.0, farthest_m),
+                "Semi-major axis [m]; of a closed orbit."),
+       optional("periapsis_m", form::above(0.0, farthest_m),
+                "Least distance from the Earth's centre [m], in place of the axis."),
+       optional("eccentricity", form::number(0.0, 1000.0), "Eccentricity; needed with elements."),
+       optional("inclination_deg", form::number(0.0, 180.0),
+                "Inclination [deg]; needed with elements."),
+       optional("raan_deg", angle(), "Right ascension of the ascending node [deg].", "0"),
+       optional("argument_of_perigee_deg", angle(), "Argument of perigee [deg].", "0"),
+       optional("true_anomaly_deg", angle(), "True anomaly [deg].", "0"),
+       optional("mean_anomaly_deg", angle(), "Mean anomaly [deg], in place of the true one.")}};
+  return section;
+}
+
+const Section& fixed_section() {
+  static const Section section{
+      "fixed",
+      "A constant place: geodetic over WGS 84, or a vector.",
+      {optional("latitude_deg", form::number(-90.0, 90.0), "Geodetic latitude [deg]."),
+       optional("longitude_deg", form::number(-180.0, 360.0), "Longitude, east [deg]."),
+       optional("height_m", form::number(least_height_m, farthest_m),
+                "Height above the ellipsoid [m]."),
+       optional("itrs_m", position(), "Place in ITRS, which turns with the Earth [m]."),
+       optional("gcrs_m", position(), "Place in GCRS, which does not [m].")}};
+  return section;
+}
+
+const Section& enu_motion_section() {
+  static const Section section{
+      "enu_motion",
+      "A place, a straight line or a track in east, north and up of `simulation.origin`. Either "
+      "`position_m` or `track` is needed.",
+      {optional("position_m", position(), "Place at the start of the run [m]."),
+       optional("velocity_m_per_s", form::numbers(3, -1e6, 1e6), "Velocity [m/s].", "[0, 0, 0]"),
+       optional("track", form::text(), "A CSV file of time_s, east_m, north_m, up_m.")}};
+  return section;
+}
+
+const Section& sgp4_section() {
+  static const Section section{"sgp4",
+                               "One element set.",
+                               {required("line1", form::text(), "First line of a TLE."),
+                                required("line2", form::text(), "Second line of a TLE.")}};
+  return section;
+}
 
 template <class F>
-Vec<F> read_vector(const YamlValue& value, Bounds bounds = {}) {
-  const auto v = value.numbers(3, bounds);
+Vec<F> read_vector(const YamlValue& value) {
+  const auto v = value.numbers();
   return {v[0], v[1], v[2]};
 }
 
@@ -40,19 +97,16 @@ void require_outside_earth(const YamlValue& value, const Vec<F>& position_m,
 KeplerElements read_elements(YamlMap& map) {
   KeplerElements k;
   const auto eccentricity = map.require("eccentricity");
-  k.eccentricity = eccentricity.number({.least = 0.0, .most = 1000.0});
+  k.eccentricity = eccentricity.number();
   const auto axis = map.find("semi_major_axis_m"), periapsis = map.find("periapsis_m");
   if (bool(axis) == bool(periapsis))
     map.value().fail("needs either semi_major_axis_m or periapsis_m (from the Earth's centre)",
                      false);
   if (axis && k.eccentricity >= 1)
     eccentricity.fail("must be < 1 with semi_major_axis_m; open orbits need periapsis_m");
-  const Bounds size = {.least = 0.0, .most = farthest_m, .least_open = true};
-  k.periapsis_m = axis ? axis->number(size) * (1 - k.eccentricity) : periapsis->number(size);
-  k.inclination_rad = map.number("inclination_deg", Bounds::between(0, 180)) * deg;
-  const auto angle = [&](const char* key) {
-    return map.number_or(key, 0.0, Bounds::between(-360, 360)) * deg;
-  };
+  k.periapsis_m = axis ? axis->number() * (1 - k.eccentricity) : periapsis->number();
+  k.inclination_rad = map.number("inclination_deg") * deg;
+  const auto angle = [&](const char* key) { return map.number_or(key, 0.0) * deg; };
   k.raan_rad = angle("raan_deg");
   k.argument_of_perigee_rad = angle("argument_of_perigee_deg");
   k.true_anomaly_rad = angle("true_anomaly_deg");
@@ -62,8 +116,7 @@ KeplerElements read_elements(YamlMap& map) {
     if (map.find("true_anomaly_deg"))
       mean->fail("give either true_anomaly_deg or mean_anomaly_deg", false);
     if (k.eccentricity >= 1) mean->fail("open orbits need true_anomaly_deg", false);
-    const double e_rad =
-        eccentric_anomaly_rad(mean->number(Bounds::between(-360, 360)) * deg, k.eccentricity);
+    const double e_rad = eccentric_anomaly_rad(mean->number() * deg, k.eccentricity);
     k.true_anomaly_rad =
         std::atan2(std::sqrt((1 - k.eccentricity) * (1 + k.eccentricity)) * std::sin(e_rad),
                    std::cos(e_rad) - k.eccentricity);
@@ -73,7 +126,7 @@ KeplerElements read_elements(YamlMap& map) {
 
 TwoBodyMotion read_two_body(const YamlValue& value, const Utc& start, const Ellipsoid& ellipsoid,
                             std::vector<std::string>& warnings) {
-  YamlMap map(value);
+  YamlMap map(value, two_body_section());
   TwoBodyMotion motion;
   Utc epoch = start;
   if (const auto text = map.find("epoch")) {
@@ -84,12 +137,11 @@ TwoBodyMotion read_two_body(const YamlValue& value, const Utc& start, const Elli
     }
   }
   motion.epoch = Clock(epoch).tai({0});
-  motion.gm_m3_per_s2 = map.number_or("gm_m3_per_s2", earth_gm_m3_per_s2, Bounds::positive());
+  motion.gm_m3_per_s2 = map.number_or("gm_m3_per_s2", earth_gm_m3_per_s2);
   const auto position = map.find("position_m"), velocity = map.find("velocity_m_per_s");
   if (position || velocity) {
-    motion.state.position_m = read_vector<Gcrs>(map.require("position_m"), within_reach);
-    motion.state.velocity_m_per_s =
-        read_vector<Gcrs>(map.require("velocity_m_per_s"), Bounds::between(-1e6, 1e6));
+    motion.state.position_m = read_vector<Gcrs>(map.require("position_m"));
+    motion.state.velocity_m_per_s = read_vector<Gcrs>(map.require("velocity_m_per_s"));
     require_outside_earth(*position, motion.state.position_m, ellipsoid);
   } else {
     const KeplerElements k = read_elements(map);
@@ -104,33 +156,32 @@ TwoBodyMotion read_two_body(const YamlValue& value, const Utc& start, const Elli
 }
 
 MotionModel read_fixed(const YamlValue& value, const Ellipsoid& ellipsoid) {
-  YamlMap map(value);
+  YamlMap map(value, fixed_section());
   const auto itrs = map.find("itrs_m"), gcrs = map.find("gcrs_m");
   const auto latitude = map.find("latitude_deg");
   if (int(bool(itrs)) + int(bool(gcrs)) + int(bool(latitude)) != 1)
     value.fail("give one of latitude_deg with longitude_deg and height_m, itrs_m, gcrs_m", false);
   MotionModel model;
   if (itrs) {
-    const auto place = read_vector<Itrs>(*itrs, within_reach);
+    const auto place = read_vector<Itrs>(*itrs);
     require_outside_earth(*itrs, place, ellipsoid);
     model = ConstantPosition<Itrs>{place};
   } else if (gcrs) {
-    const auto place = read_vector<Gcrs>(*gcrs, within_reach);
+    const auto place = read_vector<Gcrs>(*gcrs);
     require_outside_earth(*gcrs, place, ellipsoid);
     model = ConstantPosition<Gcrs>{place};
   } else {
-    model = ConstantPosition<Itrs>{itrs_from_geodetic(
-        {.latitude_deg = latitude->number(Bounds::between(-90, 90)),
-         .longitude_deg = map.number("longitude_deg", Bounds::between(-180, 360)),
-         .height_m = map.number("height_m", Bounds::between(least_height_m, farthest_m)),
-         .ellipsoid = ellipsoid})};
+    model = ConstantPosition<Itrs>{itrs_from_geodetic({.latitude_deg = latitude->number(),
+                                                       .longitude_deg = map.number("longitude_deg"),
+                                                       .height_m = map.number("height_m"),
+                                                       .ellipsoid = ellipsoid})};
   }
   map.done();
   return model;
 }
 
 MeanElements read_sgp4(const YamlValue& value) {
-  YamlMap map(value);
+  YamlMap map(value, sgp4_section());
   const auto line1 = map.require("line1"), line2 = map.require("line2");
   map.done();
   try {
@@ -151,7 +202,7 @@ MotionConfig read_enu(const YamlValue& value, const Utc& start, const std::strin
                       const EarthConfig& earth) {
   if (!earth.origin) value.fail("needs simulation.origin, the place of east, north and up", false);
   MotionConfig motion;
-  YamlMap map(value);
+  YamlMap map(value, enu_motion_section());
   const auto track = map.find("track"), position = map.find("position_m"),
              velocity = map.find("velocity_m_per_s");
   map.done();
@@ -166,11 +217,11 @@ MotionConfig read_enu(const YamlValue& value, const Utc& start, const std::strin
   }
   const auto itrs_from_enu = enu_from_itrs(*earth.origin).inverse();
   const Vec<Itrs> place =
-      itrs_from_geodetic(*earth.origin) + itrs_from_enu * read_vector<Enu>(*position, within_reach);
+      itrs_from_geodetic(*earth.origin) + itrs_from_enu * read_vector<Enu>(*position);
   require_outside_earth(*position, place, earth.ellipsoid);
   if (velocity)
-    motion.model = MotionModel(StraightMotion<Itrs>{
-        begin, {place, itrs_from_enu * read_vector<Enu>(*velocity, Bounds::between(-1e6, 1e6))}});
+    motion.model = MotionModel(
+        StraightMotion<Itrs>{begin, {place, itrs_from_enu * read_vector<Enu>(*velocity)}});
   else
     motion.model = MotionModel(ConstantPosition<Itrs>{place});
   return motion;
@@ -178,9 +229,24 @@ MotionConfig read_enu(const YamlValue& value, const Utc& start, const std::strin
 
 }  // namespace
 
+const Section& motion_section() {
+  static const Section section{
+      "motion",
+      "How an object moves; one of these.",
+      {optional("two_body", form::map(two_body_section), "A conic about the Earth's centre."),
+       optional("oem", form::text(), "A CCSDS OEM beside the scenario."),
+       optional("fixed", form::map(fixed_section), "A constant place."),
+       optional("track", form::text(),
+                "A CSV file of time_s, latitude_deg, longitude_deg, height_m."),
+       optional("enu", form::map(enu_motion_section),
+                "In east, north and up of the scenario's origin."),
+       optional("sgp4", form::map(sgp4_section), "One element set.")}};
+  return section;
+}
+
 MotionConfig read_motion(const YamlValue& value, const Utc& start, const std::string& name,
                          const EarthConfig& earth) {
-  YamlMap map(value);
+  YamlMap map(value, motion_section());
   MotionConfig motion;
   const auto two_body = map.find("two_body"), oem = map.find("oem"), fixed = map.find("fixed"),
              track = map.find("track"), enu = map.find("enu"), sgp4 = map.find("sgp4");

@@ -23,4 +23,7 @@ struct MotionConfig {
 MotionConfig read_motion(const YamlValue& value, const Utc& start, const std::string& name,
                          const EarthConfig& earth = {});
 
+/// The keys of `motion`.
+const Section& motion_section();
+
 }  // namespace dmise

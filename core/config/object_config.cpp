@@ -12,13 +12,49 @@ namespace {
 
 constexpr std::size_t longest_name_bytes = 64;
 
+std::vector<Key> with_sphere(std::vector<Key> keys) {
+  keys.push_back(optional("radius_m", form::above(0.0, 1000.0),
+                          "Radius of the diffuse sphere that is seen without a shape [m].", "1"));
+  keys.push_back(optional("albedo", form::above(0.0, 1.0), "Its albedo.", "0.2"));
+  return keys;
+}
+
+const Section& source_section() {
+  static const Section section{
+      "catalogue", "Objects of a catalogue.",
+      with_sphere(
+          {required("catalogue", form::text({"gpredict"}),
+                    "`gpredict`, or a file of TLE, 3LE, OMM or gpredict element sets beside the "
+                    "scenario."),
+           optional("facts", form::text(), "A CSV file of sizes and albedos of known objects."),
+           optional("only", form::list(form::text()),
+                    "Numbers or names of the objects to take; without it all are taken.")})};
+  return section;
+}
+
+const Section& own_section() {
+  static const Section section{
+      "object", "An object of the scenario's own.",
+      with_sphere(
+          {required("name", form::text(), "A unique name of 1 to 64 characters."),
+           optional("catalogue_number", form::integer(1, 999'999'999),
+                    "Replaces the catalogue's object of this number. By default that of its "
+                    "element set, else 990000001 and onwards."),
+           required("motion", form::map(motion_section), "How it moves."),
+           optional("attitude", attitude_forms(),
+                    "How it is turned: towards the Earth, the Sun, or as given."),
+           optional("panel", form::map(panel_section), "A panel that faces the Sun."),
+           optional("geometry", form::map(geometry_section), "Its shape; needs an attitude.")})};
+  return section;
+}
+
 void read_sphere(YamlMap& map, double& radius_m, double& albedo) {
-  radius_m = map.number_or("radius_m", 1.0, {.least = 0.0, .most = 1000.0, .least_open = true});
-  albedo = map.number_or("albedo", 0.2, {.least = 0.0, .most = 1.0, .least_open = true});
+  radius_m = map.number_or("radius_m", 1.0);
+  albedo = map.number_or("albedo", 0.2);
 }
 
 ObjectSource read_object_source(const YamlValue& value) {
-  YamlMap map(value);
+  YamlMap map(value, source_section());
   ObjectSource source;
   const auto catalogue = map.require("catalogue");
   source.where = catalogue.place();
@@ -49,15 +85,15 @@ ObjectSource read_object_source(const YamlValue& value) {
 }
 
 OwnObject read_own_object(const YamlValue& value, const Utc& start, const EarthConfig& earth) {
-  YamlMap map(value);
+  YamlMap map(value, own_section());
   OwnObject object;
   const auto name = map.require("name");
   object.where = name.place();
   object.name = printable(name.text());  // in the form that is displayed, published and searched
   if (object.name.empty() || object.name.size() > longest_name_bytes)
     name.fail("must have 1 to 64 characters");
-  object.catalogue_number =
-      static_cast<std::uint32_t>(map.integer_or("catalogue_number", 0, 1, 999'999'999));
+  if (const auto number = map.find("catalogue_number"))
+    object.catalogue_number = static_cast<std::uint32_t>(number->integer());
   object.motion = read_motion(map.require("motion"), start, object.name, earth);
   if (const auto attitude = map.find("attitude")) object.attitude = read_attitude(*attitude);
   if (const auto panel = map.find("panel")) {
@@ -76,6 +112,8 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start, const EarthC
 }
 
 }  // namespace
+
+Forms objects_forms() { return form::list(form::map(source_section) | form::map(own_section)); }
 
 ObjectsConfig read_objects(const YamlValue& value, const Utc& start, const EarthConfig& earth) {
   ObjectsConfig objects;

@@ -57,4 +57,7 @@ void write_objects(JsonWriter& json, const std::vector<ObjectSource>& catalogues
 std::vector<std::string> files_of(const std::vector<ObjectSource>& catalogues,
                                   const std::vector<OwnObject>& own);
 
+/// The forms of `objects`.
+Forms objects_forms();
+
 }  // namespace dmise

@@ -16,4 +16,7 @@ SensorSeeing read_seeing(const YamlValue& value);
 void write_optics_json(JsonWriter& json, const Optics& optics);
 void write_seeing_json(JsonWriter& json, const SensorSeeing& seeing);
 
+/// The keys of `optics`.
+const Section& optics_section();
+
 }  // namespace dmise

@@ -7,4 +7,7 @@ namespace dmise {
 /// Reads `output:` of a scenario. Throws `ConfigError`.
 OutputConfig read_output(const YamlValue& value);
 
+/// The keys of `output`.
+const Section& output_section();
+
 }  // namespace dmise

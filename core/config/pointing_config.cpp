@@ -8,36 +8,132 @@
 namespace dmise {
 namespace {
 
-const Bounds any_angle = Bounds::between(-360.0, 360.0);
-const Bounds latitude = Bounds::between(-90.0, 90.0);
-const Bounds any_rate = Bounds::between(-60.0, 60.0);
 constexpr double least_sine = 1e-6;       // between boresight and up
 constexpr double most_offset_deg = 80.0;  // of a target's image from the boresight
+constexpr double any_length = 1e9;        // of a direction
+
+Forms any_angle() { return form::number(-360.0, 360.0); }
+Forms latitude() { return form::number(-90.0, 90.0); }
+Forms any_rate() { return form::number(-60.0, 60.0); }
+Forms axis() { return form::numbers(3, -any_length, any_length); }
+
+const Section& body_section() {
+  static const Section section{
+      "body",
+      "A camera fixed to the body of its platform. Either `boresight` or `body_from_camera` is "
+      "needed.",
+      {optional("boresight", axis(), "Direction in body axes."),
+       optional("up", axis(), "Direction in body axes that is up in the image.",
+                "z, or y if the boresight is near z"),
+       optional("body_from_camera", form::numbers(4, -2.0, 2.0),
+                "Unit quaternion [w, x, y, z] in place of both.")}};
+  return section;
+}
+
+const Section& scan_section() {
+  static const Section section{
+      "scan",
+      "A camera that turns uniformly about an axis. It begins at an azimuth and elevation, or at "
+      "a right ascension and declination.",
+      {optional("azimuth_deg", any_angle(), "From north through east [deg], on the ground."),
+       optional("elevation_deg", latitude(), "Above the horizon [deg], on the ground."),
+       optional("ra_deg", any_angle(), "Right ascension, ICRS [deg]."),
+       optional("dec_deg", latitude(), "Declination, ICRS [deg]."),
+       required("axis", axis(),
+                "Axis of the turn: in GCRS, or east, north, up for a start by azimuth."),
+       required("rate_deg_per_s", any_rate(), "Rate, right-handed about the axis [deg/s].")}};
+  return section;
+}
+
+const Section& enu_section() {
+  static const Section section{
+      "enu",
+      "A camera in east, north and up of `simulation.origin`, wherever the sensor is. Either "
+      "`look` or `look_at_m` is needed.",
+      {optional("look", axis(), "Direction to look along."),
+       optional("look_at_m", form::numbers(3, -1e12, 1e12), "Place to look at [m]."),
+       optional("up", axis(), "Direction that is up in the image.",
+                "[0, 0, 1], or north along the vertical")}};
+  return section;
+}
+
+const Section& park_section() {
+  static const Section section{
+      "park",
+      "Where a cued sensor looks without a task.",
+      {required("azimuth_deg", any_angle(), "From north through east [deg]."),
+       required("elevation_deg", form::number(0.0, 90.0), "Above the horizon [deg].")}};
+  return section;
+}
+
+const Section& cued_section() {
+  static const Section section{
+      "cued",
+      "A sensor that observes what the fusion node tells it to.",
+      {optional("park", form::map(park_section), "Where it looks without a task.",
+                "azimuth 180, elevation 60"),
+       optional("slew_deg_per_s", form::above(0.0, 360.0), "Fastest turn of the mount [deg/s].",
+                "5"),
+       optional("slew_deg_per_s2", form::number(0.0, 1000.0),
+                "Acceleration of the mount [deg/s^2]. 0: it has its speed at once.", "0"),
+       optional("mount", form::choice({"great_circle", "altazimuth"}),
+                "Whether the mount slews along a great circle, or about azimuth and elevation.",
+                "great_circle"),
+       optional(
+           "azimuth_deg_per_s", form::above(0.0, 360.0),
+           "Fastest turn in azimuth [deg/s], of an altazimuth mount; by default as in elevation.",
+           number_text(CueSettings().azimuth_deg_per_s)),
+       optional("azimuth_deg_per_s2", form::number(0.0, 1000.0),
+                "Acceleration in azimuth [deg/s^2], of an altazimuth mount. 0: it has its speed at "
+                "once.",
+                number_text(CueSettings().azimuth_deg_per_s2)),
+       optional("azimuth_range_deg", form::numbers(2, -3600.0, 3600.0),
+                "Least and greatest azimuth that cables allow [deg], of an altazimuth mount.",
+                "[-270, 270]"),
+       optional("settle_s", form::number(0.0, 3600.0), "Time to settle after a slew [s].", "2"),
+       optional("least_elevation_deg", form::number(0.0, 89.0),
+                "Lowest elevation that it observes at [deg].", "20"),
+       optional("greatest_elevation_deg", form::number(0.0, 90.0),
+                "Highest elevation that it observes at [deg], above the lowest.",
+                number_text(CueSettings().greatest_elevation_deg)),
+       optional("sun_exclusion_deg", form::number(0.0, 180.0), "Least angle from the Sun [deg].",
+                "30"),
+       optional("moon_exclusion_deg", form::number(0.0, 180.0), "Least angle from the Moon [deg].",
+                "5"),
+       optional("exposures", form::integer(1, 1000), "Most exposures of one task.", "3"),
+       optional("sigma_arcsec", form::number(1e-3, 3600.0),
+                "Expected error of a detection along each axis [arcsec].", "1"),
+       optional("limiting_magnitude", form::number(-30.0, 40.0),
+                "Faintest magnitude that it detects.", "14"),
+       optional("least_gain_nats", form::number(0.0, 1000.0),
+                "Least information that a task must promise [nats].", "0.1")}};
+  return section;
+}
 
 template <class F = Body>
 Vec<F> read_axis(const YamlValue& value) {
-  const auto v = value.numbers(3, Bounds::between(-1e9, 1e9));
+  const auto v = value.numbers(3, Bounds::between(-any_length, any_length));
   const Vec<F> axis{v[0], v[1], v[2]};
   if (!(norm(axis) > 0)) value.fail("must not be zero", false);
   return unit(axis);
 }
 
 PointHorizon read_horizon(YamlMap& map) {
-  return {.azimuth_deg = map.number("azimuth_deg", any_angle),
-          .elevation_deg = map.number("elevation_deg", latitude),
-          .azimuth_rate_deg_per_s = map.number_or("azimuth_rate_deg_per_s", 0.0, any_rate),
-          .elevation_rate_deg_per_s = map.number_or("elevation_rate_deg_per_s", 0.0, any_rate)};
+  return {.azimuth_deg = map.number("azimuth_deg"),
+          .elevation_deg = map.number("elevation_deg"),
+          .azimuth_rate_deg_per_s = map.number_or("azimuth_rate_deg_per_s", 0.0),
+          .elevation_rate_deg_per_s = map.number_or("elevation_rate_deg_per_s", 0.0)};
 }
 
 PointSky read_sky_place(YamlMap& map) {
-  return {.ra_deg = map.number("ra_deg", any_angle),
-          .dec_deg = map.number("dec_deg", latitude),
-          .ra_rate_deg_per_s = map.number_or("ra_rate_deg_per_s", 0.0, any_rate),
-          .dec_rate_deg_per_s = map.number_or("dec_rate_deg_per_s", 0.0, any_rate)};
+  return {.ra_deg = map.number("ra_deg"),
+          .dec_deg = map.number("dec_deg"),
+          .ra_rate_deg_per_s = map.number_or("ra_rate_deg_per_s", 0.0),
+          .dec_rate_deg_per_s = map.number_or("dec_rate_deg_per_s", 0.0)};
 }
 
 PointBody read_body(const YamlValue& value) {
-  YamlMap map(value);
+  YamlMap map(value, body_section());
   const auto quaternion = map.find("body_from_camera");
   const auto boresight = map.find("boresight"), up = map.find("up");
   map.done();
@@ -45,7 +141,7 @@ PointBody read_body(const YamlValue& value) {
     value.fail("give either boresight (and up) or body_from_camera", false);
   if (quaternion) {
     if (up) up->fail("goes with boresight", false);
-    const auto q = quaternion->numbers(4, Bounds::between(-2, 2));
+    const auto q = quaternion->numbers();
     const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
     if (!(length > 0.5 && length < 2.0))
       quaternion->fail("must be a unit quaternion [w, x, y, z]", false);
@@ -63,14 +159,14 @@ PointBody read_body(const YamlValue& value) {
 
 PointEnu read_enu(const YamlValue& value, const std::optional<Site>& origin) {
   if (!origin) value.fail("needs simulation.origin, the place of east, north and up", false);
-  YamlMap map(value);
+  YamlMap map(value, enu_section());
   PointEnu enu{.origin = *origin, .where = value.place()};
   const auto look = map.find("look"), at = map.find("look_at_m"), up = map.find("up");
   map.done();
   if (bool(look) == bool(at)) value.fail("give either look or look_at_m (and up)", false);
   if (up) enu.up = read_axis<Enu>(*up);
   if (at) {
-    const auto place = at->numbers(3, Bounds::between(-1e12, 1e12));
+    const auto place = at->numbers();
     enu.at_m = Vec<Enu>{place[0], place[1], place[2]};
     return enu;
   }
@@ -82,21 +178,20 @@ PointEnu read_enu(const YamlValue& value, const std::optional<Site>& origin) {
 }
 
 PointScan read_scan(const YamlValue& value, bool on_ground) {
-  YamlMap map(value);
+  YamlMap map(value, scan_section());
   const bool horizon = map.find("azimuth_deg") || map.find("elevation_deg");
   if (horizon && !on_ground)
     value.fail("azimuth and elevation are for a sensor on the ground", false);
   PointScan scan;
   if (horizon)
-    scan.start = PointHorizon{.azimuth_deg = map.number("azimuth_deg", any_angle),
-                              .elevation_deg = map.number("elevation_deg", latitude)};
+    scan.start = PointHorizon{.azimuth_deg = map.number("azimuth_deg"),
+                              .elevation_deg = map.number("elevation_deg")};
   else
-    scan.start = PointSky{.ra_deg = map.number("ra_deg", any_angle),
-                          .dec_deg = map.number("dec_deg", latitude)};
+    scan.start = PointSky{.ra_deg = map.number("ra_deg"), .dec_deg = map.number("dec_deg")};
   const auto axis = map.require("axis");
   const Vec<Body> direction = read_axis(axis);
   scan.axis = {direction.x, direction.y, direction.z};
-  scan.rate_deg_per_s = map.number("rate_deg_per_s", any_rate);
+  scan.rate_deg_per_s = map.number("rate_deg_per_s");
   map.done();
   return scan;
 }
@@ -104,48 +199,38 @@ PointScan read_scan(const YamlValue& value, bool on_ground) {
 PointCued read_cued(const YamlValue& value) {
   PointCued cued{.where = value.place()};
   if (value.is_scalar() && value.flag()) return cued;
-  YamlMap map(value);
+  YamlMap map(value, cued_section());
   if (const auto park = map.find("park")) {
-    YamlMap place(*park);
-    cued.park = {.azimuth_deg = place.number("azimuth_deg", any_angle),
-                 .elevation_deg = place.number("elevation_deg", Bounds::between(0.0, 90.0))};
+    YamlMap place(*park, park_section());
+    cued.park = {.azimuth_deg = place.number("azimuth_deg"),
+                 .elevation_deg = place.number("elevation_deg")};
     place.done();
   }
   CueSettings& c = cued.cue;
-  const Bounds rate{.least = 0.0, .most = 360.0, .least_open = true};
-  c.slew_deg_per_s = map.number_or("slew_deg_per_s", c.slew_deg_per_s, rate);
-  c.slew_deg_per_s2 =
-      map.number_or("slew_deg_per_s2", c.slew_deg_per_s2, Bounds::between(0.0, 1000.0));
+  c.slew_deg_per_s = map.number_or("slew_deg_per_s", c.slew_deg_per_s);
+  c.slew_deg_per_s2 = map.number_or("slew_deg_per_s2", c.slew_deg_per_s2);
   if (const auto mount = map.find("mount"))
-    c.mount = mount->choice({"great_circle", "altazimuth"}) == "altazimuth"
-                  ? MountKind::altazimuth
-                  : MountKind::great_circle;
+    c.mount = mount->choice() == "altazimuth" ? MountKind::altazimuth : MountKind::great_circle;
   for (const char* key : {"azimuth_deg_per_s", "azimuth_deg_per_s2", "azimuth_range_deg"})
     if (const auto axis = map.find(key); axis && c.mount != MountKind::altazimuth)
       axis->fail("is of an altazimuth mount; set mount: altazimuth", false);
-  c.azimuth_deg_per_s = map.number_or("azimuth_deg_per_s", c.azimuth_deg_per_s, rate);
-  c.azimuth_deg_per_s2 =
-      map.number_or("azimuth_deg_per_s2", c.azimuth_deg_per_s2, Bounds::between(0.0, 1000.0));
+  c.azimuth_deg_per_s = map.number_or("azimuth_deg_per_s", c.azimuth_deg_per_s);
+  c.azimuth_deg_per_s2 = map.number_or("azimuth_deg_per_s2", c.azimuth_deg_per_s2);
   if (const auto range = map.find("azimuth_range_deg")) {
-    const auto limits = range->numbers(2, Bounds::between(-3600.0, 3600.0));
+    const auto limits = range->numbers();
     if (!(limits[0] < limits[1])) range->fail("must rise");
     c.azimuth_range_deg = {limits[0], limits[1]};
   }
-  c.settle_s = map.number_or("settle_s", c.settle_s, Bounds::between(0.0, 3600.0));
-  c.least_elevation_deg =
-      map.number_or("least_elevation_deg", c.least_elevation_deg, Bounds::between(0.0, 89.0));
+  c.settle_s = map.number_or("settle_s", c.settle_s);
+  c.least_elevation_deg = map.number_or("least_elevation_deg", c.least_elevation_deg);
   c.greatest_elevation_deg = map.number_or("greatest_elevation_deg", c.greatest_elevation_deg,
                                            Bounds::between(c.least_elevation_deg, 90.0));
-  c.sun_exclusion_deg =
-      map.number_or("sun_exclusion_deg", c.sun_exclusion_deg, Bounds::between(0.0, 180.0));
-  c.moon_exclusion_deg =
-      map.number_or("moon_exclusion_deg", c.moon_exclusion_deg, Bounds::between(0.0, 180.0));
-  if (const auto exposures = map.find("exposures")) c.exposures = int(exposures->integer(1, 1000));
-  c.sigma_arcsec = map.number_or("sigma_arcsec", c.sigma_arcsec, Bounds::between(1e-3, 3600.0));
-  c.limiting_magnitude =
-      map.number_or("limiting_magnitude", c.limiting_magnitude, Bounds::between(-30.0, 40.0));
-  c.least_gain_nats =
-      map.number_or("least_gain_nats", c.least_gain_nats, Bounds::between(0.0, 1000.0));
+  c.sun_exclusion_deg = map.number_or("sun_exclusion_deg", c.sun_exclusion_deg);
+  c.moon_exclusion_deg = map.number_or("moon_exclusion_deg", c.moon_exclusion_deg);
+  c.exposures = int(map.integer_or("exposures", c.exposures));
+  c.sigma_arcsec = map.number_or("sigma_arcsec", c.sigma_arcsec);
+  c.limiting_magnitude = map.number_or("limiting_magnitude", c.limiting_magnitude);
+  c.least_gain_nats = map.number_or("least_gain_nats", c.least_gain_nats);
   map.done();
   return cued;
 }
@@ -175,6 +260,43 @@ double turn_rate_deg_per_s(const Pointing& pointing) {
   return scan ? std::abs(scan->rate_deg_per_s) : 0.0;
 }
 
+const Section& pointing_section() {
+  static const Section section{
+      "pointing",
+      "Where the camera points: by azimuth and elevation, by right ascension and declination, at a "
+      "target, fixed to the platform's body or to east, north and up, scanning, or cued. One of "
+      "these may be given; without "
+      "any it points up.",
+      {optional("azimuth_deg", any_angle(), "From north through east [deg], on the ground."),
+       optional("elevation_deg", latitude(), "Above the horizon [deg], on the ground."),
+       optional("azimuth_rate_deg_per_s", any_rate(), "Rate of the azimuth [deg/s].", "0"),
+       optional("elevation_rate_deg_per_s", any_rate(), "Rate of the elevation [deg/s].", "0"),
+       optional("ra_deg", any_angle(), "Right ascension, ICRS [deg]."),
+       optional("dec_deg", latitude(), "Declination, ICRS [deg]."),
+       optional("ra_rate_deg_per_s", any_rate(), "Rate of the right ascension [deg/s].", "0"),
+       optional("dec_rate_deg_per_s", any_rate(), "Rate of the declination [deg/s].", "0"),
+       optional("target", form::text(), "Catalogue number or name of the object to point at."),
+       optional("place", form::choice({"apparent", "geometric"}),
+                "Whether the target's apparent direction is pointed at, or the straight line.",
+                "apparent"),
+       optional("offset_deg", form::numbers(2, -most_offset_deg, most_offset_deg),
+                "Place of the target's image from the boresight [deg], along columns and rows.",
+                "[0, 0]"),
+       optional("body", form::map(body_section), "Fixed to the body of the platform."),
+       optional("enu", form::map(enu_section), "Fixed to east, north and up of the origin."),
+       optional("scan", form::map(scan_section), "Turns uniformly about an axis."),
+       optional("cued", form::flag() | form::map(cued_section),
+                "Observes what the fusion node tells it to."),
+       optional("tracking", form::choice({"fixed", "sidereal", "target", "moving"}),
+                "What the camera follows during an exposure. By default what its pointing "
+                "suggests."),
+       optional("roll_deg", any_angle(),
+                "Turns the image's up, which is north or the zenith, towards east [deg].", "0")}};
+  return section;
+}
+
+Forms pointing_forms() { return form::choice({"zenith"}) | form::map(pointing_section); }
+
 void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor,
                    const std::optional<Site>& origin) {
   if (value.is_scalar()) {
@@ -182,7 +304,7 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor,
     sensor.pointing = PointUp{};
     return;
   }
-  YamlMap map(value);
+  YamlMap map(value, pointing_section());
   const bool horizon = map.find("azimuth_deg") || map.find("elevation_deg");
   const bool sky = map.find("ra_deg") || map.find("dec_deg");
   const auto target = map.find("target"), body = map.find("body"), scan = map.find("scan"),
@@ -203,10 +325,9 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor,
     natural = Tracking::sidereal;
   } else if (target) {
     PointTarget at{.object = printable(target->text()), .where = target->place()};
-    if (const auto place = map.find("place"))
-      at.geometric = place->choice({"apparent", "geometric"}) == "geometric";
+    if (const auto place = map.find("place")) at.geometric = place->choice() == "geometric";
     if (const auto offset = map.find("offset_deg")) {
-      const auto xy = offset->numbers(2, Bounds::between(-most_offset_deg, most_offset_deg));
+      const auto xy = offset->numbers();
       at.offset_x_deg = xy[0];
       at.offset_y_deg = xy[1];
     }
@@ -231,7 +352,7 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor,
   const bool moves = turn_rate_deg_per_s(sensor.pointing) > 0.0;
   sensor.tracking = moves || scan ? Tracking::moving : natural;
   if (const auto tracking = map.find("tracking")) {
-    const std::string name = tracking->choice({"fixed", "sidereal", "target", "moving"});
+    const std::string name = tracking->choice();
     sensor.tracking = name == "fixed"      ? Tracking::fixed
                       : name == "sidereal" ? Tracking::sidereal
                       : name == "target"   ? Tracking::target
@@ -243,7 +364,7 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor,
     if (sensor.tracking == Tracking::fixed && !on_ground && (sky || target || scan))
       tracking->fail("in orbit, fixed needs a zenith or body pointing; use sidereal or target");
   }
-  sensor.roll_deg = map.number_or("roll_deg", 0.0, any_angle);
+  sensor.roll_deg = map.number_or("roll_deg", 0.0);
   if (cued && sensor.tracking == Tracking::fixed)
     map.require("tracking").fail("a cued sensor follows its target or the stars");
   if (body && sensor.roll_deg != 0.0)

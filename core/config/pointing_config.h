@@ -16,4 +16,7 @@ class JsonWriter;
 /// Writes the part that determines the products.
 void write_pointing(JsonWriter& json, const Pointing& pointing);
 
+/// The forms of `pointing`.
+Forms pointing_forms();
+
 }  // namespace dmise

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/config/distribution.h"
@@ -9,6 +10,7 @@
 #include "core/config/interpolation_choice.h"
 #include "core/config/node_names.h"
 #include "core/config/output_config.h"
+#include "core/config/schema.h"
 #include "core/config/search_path.h"
 #include "core/config/sensor_config.h"
 #include "core/config/yaml_reader.h"
@@ -19,6 +21,80 @@
 
 namespace dmise {
 namespace {
+
+constexpr std::int64_t most_seed = std::numeric_limits<std::int64_t>::max();
+
+const Section& simulation_section() {
+  static const Section section = [] {
+    Section made{
+        "simulation",
+        "When the run begins, how long it lasts and in which steps.",
+        {required("start", form::time(), "UTC at which the run begins, not before 1972."),
+         required("duration_s", form::number(1e-3, 3.2e8),
+                  "Length of the run [s], a whole number of ticks."),
+         required("tick_s", form::number(1e-6, 3600.0),
+                  "Time between ticks [s], at which the state of the world is published."),
+         optional("seed", form::integer(0, most_seed), "Seed of all random numbers.", "1"),
+         optional("interpolation", form::choice({"3", "5", "7"}),
+                  "Order of the polynomials that join objects between ticks. By default the lowest "
+                  "that the sensors' accuracy allows."),
+         optional(
+             "earth_orientation", form::text(),
+             "An IERS finals2000A file of UT1 - UTC and polar motion. Without it they are 0.")}};
+    for (auto& key : earth_keys()) made.keys.push_back(std::move(key));
+    return made;
+  }();
+  return section;
+}
+
+const Section& stars_section() {
+  static const Section section{
+      "stars",
+      "The stars behind the objects.",
+      {required("catalogue", form::text({"kstars"}),
+                "`kstars`, or a file: HYG in CSV, Yale BSC5, or kstars' own form."),
+       optional("faintest_mag", form::number(-2.0, 30.0), "Faintest star that is drawn [V mag].",
+                "9.5")}};
+  return section;
+}
+
+const Section& environment_section() {
+  static const Section section{
+      "environment",
+      "How often the environment node publishes.",
+      {optional("common_every_s", form::number(0.0, 3600.0),
+                "Interval of Sun, Moon and Earth [s]. 0: every tick.", "0"),
+       optional("site_every_s", form::number(0.0, 3600.0), "Interval of each site's weather [s].",
+                "60")}};
+  return section;
+}
+
+const Section& network_section() {
+  static const Section section{
+      "network",
+      "How the processes of a launched run work together.",
+      {optional("window_ticks", form::integer(1, 10000),
+                "Ticks by which a node may run ahead of the slowest.", "4"),
+       optional("on_silent_node", form::choice({"fail", "wait", "drop", "restart"}),
+                "What is done about a node that does not answer.", "fail"),
+       optional("silent_after_s", form::number(0.1, 3600.0),
+                "Time without an answer after which a node is silent [s].", "5"),
+       optional("restarts", form::integer(1, 1000000),
+                "Most restarts of a node, with `on_silent_node: restart`.", "5"),
+       optional("real_time", form::number(0.0, 1e6),
+                "Simulated seconds in a second of the clock on the wall. 0: as fast as possible.",
+                "0"),
+       optional("join_within_s", form::number(0.1, 86400.0),
+                "Time within which all nodes must have joined [s].", "30"),
+       optional("publish_states", form::flag(),
+                "Publishes states of all objects for subscribers that are no nodes of the "
+                "scenario.",
+                "on"),
+       optional("sensors_propagate", form::flag(),
+                "Sensors propagate the objects in their field. Off: they take published states.",
+                "on")}};
+  return section;
+}
 
 /// Checks that the ephemeris covers both ends of the run, so that no run stops half way.
 void check_span(const Scenario& scenario, const YamlValue& start, const YamlValue& duration) {
@@ -45,7 +121,7 @@ void check_whole_ticks(const Scenario& scenario, const YamlValue& duration) {
 }
 
 void read_simulation(const YamlValue& value, Scenario& scenario) {
-  YamlMap map(value);
+  YamlMap map(value, simulation_section());
   const auto start = map.require("start");
   scenario.start_utc = start.text();
   try {
@@ -55,12 +131,11 @@ void read_simulation(const YamlValue& value, Scenario& scenario) {
   } catch (const Error&) {
     start.fail("must be a UTC time such as 2018-01-21T00:30:00Z");
   }
-  scenario.duration = sim_seconds(map.number("duration_s", {.least = 1e-3, .most = 3.2e8}));
-  scenario.tick = sim_seconds(map.number("tick_s", {.least = 1e-6, .most = 3600.0}));
+  scenario.duration = sim_seconds(map.number("duration_s"));
+  scenario.tick = sim_seconds(map.number("tick_s"));
   check_whole_ticks(scenario, map.require("duration_s"));
-  scenario.seed = static_cast<std::uint64_t>(
-      map.integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
-  if (const auto order = map.find("interpolation")) order->choice({"3", "5", "7"});
+  scenario.seed = static_cast<std::uint64_t>(map.integer_or("seed", 1));
+  if (const auto order = map.find("interpolation")) order->choice();
   if (const auto eop = map.find("earth_orientation")) {
     scenario.earth_orientation_path = find_beside(eop->text(), value.file());
     if (scenario.earth_orientation_path.empty()) eop->fail("there is no such file");
@@ -99,7 +174,7 @@ void set_interpolation(Scenario& scenario, YamlMap simulation) {
 }
 
 void read_stars(const YamlValue& value, Scenario& scenario) {
-  YamlMap map(value);
+  YamlMap map(value, stars_section());
   const auto catalogue = map.require("catalogue");
   scenario.star_catalogue_named = catalogue.text();
   scenario.star_catalogue_where = catalogue.place();
@@ -110,32 +185,31 @@ void read_stars(const YamlValue& value, Scenario& scenario) {
     catalogue.fail(scenario.star_catalogue_named == "kstars"
                        ? "Debian's kstars catalogue is missing; ./dmise setup fetches it"
                        : "there is no such file");
-  scenario.faintest_star_mag = map.number_or("faintest_mag", 9.5, Bounds::between(-2.0, 30.0));
+  scenario.faintest_star_mag = map.number_or("faintest_mag", 9.5);
   map.done();
 }
 
 void read_environment(const YamlValue& value, EnvironmentConfig& environment) {
-  YamlMap map(value);
-  const Bounds period = Bounds::between(0.0, 3600.0);
-  environment.common_every_s = map.number_or("common_every_s", 0.0, period);
-  environment.site_every_s = map.number_or("site_every_s", 60.0, period);
+  YamlMap map(value, environment_section());
+  environment.common_every_s = map.number_or("common_every_s", 0.0);
+  environment.site_every_s = map.number_or("site_every_s", 60.0);
   map.done();
 }
 
 void read_network(const YamlValue& value, NetworkConfig& network) {
-  YamlMap map(value);
-  network.window_ticks = static_cast<int>(map.integer_or("window_ticks", 4, 1, 10000));
+  YamlMap map(value, network_section());
+  network.window_ticks = static_cast<int>(map.integer_or("window_ticks", 4));
   if (const auto policy = map.find("on_silent_node")) {
-    const std::string name = policy->choice({"fail", "wait", "drop", "restart"});
+    const std::string name = policy->choice();
     network.on_silent_node = name == "fail"   ? OnSilentNode::fail
                              : name == "wait" ? OnSilentNode::wait
                              : name == "drop" ? OnSilentNode::drop
                                               : OnSilentNode::restart;
   }
-  network.silent_after_s = map.number_or("silent_after_s", 5.0, Bounds::between(0.1, 3600.0));
-  network.restarts = static_cast<int>(map.integer_or("restarts", 5, 1, 1000000));
-  network.real_time = map.number_or("real_time", 0.0, Bounds::between(0.0, 1e6));
-  network.join_within_s = map.number_or("join_within_s", 30.0, Bounds::between(0.1, 86400.0));
+  network.silent_after_s = map.number_or("silent_after_s", 5.0);
+  network.restarts = static_cast<int>(map.integer_or("restarts", 5));
+  network.real_time = map.number_or("real_time", 0.0);
+  network.join_within_s = map.number_or("join_within_s", 30.0);
   network.publish_states = map.flag_or("publish_states", true);
   network.sensors_propagate = map.flag_or("sensors_propagate", true);
   map.done();
@@ -155,6 +229,28 @@ void check_cued(const Scenario& scenario, const SensorConfig& sensor) {
 
 }  // namespace
 
+const Section& scenario_section() {
+  static const Section section{
+      "scenario",
+      "A scenario: when, what is in space, who watches it, and what is written.",
+      {required("simulation", form::map(simulation_section), "The run."),
+       optional("objects", objects_forms(), "Catalogues of objects, and objects of one's own."),
+       optional("stars", form::map(stars_section), "The stars; without it there are none."),
+       required("sensors", form::list(form::map(sensor_section)), "The sensors, at least one."),
+       optional("accuracy", accuracy_forms(), "How accurate frames must be, for all sensors.",
+                "standard"),
+       optional("effects", effects_forms(), "Effects switched for all sensors."),
+       optional("detection", form::flag(), "Whether moving objects are detected in the frames.",
+                "on"),
+       optional("fusion", form::flag() | form::map(fusion_section),
+                "Tracks of what all sensors detect.", "off"),
+       optional("environment", form::map(environment_section),
+                "How often the environment is published."),
+       optional("network", form::map(network_section), "How processes work together."),
+       optional("output", form::map(output_section), "Files of every frame.")}};
+  return section;
+}
+
 Scenario load_scenario(const std::string& path) {
   const YamlValue root = YamlValue::load(path);
   refuse_distributions(root);
@@ -162,7 +258,7 @@ Scenario load_scenario(const std::string& path) {
 }
 
 Scenario read_scenario(const YamlValue& root) {
-  YamlMap map(root);
+  YamlMap map(root, scenario_section());
   Scenario scenario;
   scenario.path = root.file();
   read_simulation(map.require("simulation"), scenario);

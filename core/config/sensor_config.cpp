@@ -1,6 +1,8 @@
 #include "core/config/sensor_config.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
@@ -31,13 +33,13 @@ SiteConfig read_site(const YamlValue& value) {
     }
     return read_site(YamlValue::load(path));
   }
-  YamlMap map(value);
+  YamlMap map(value, site_section());
   SiteConfig site;
   site.name = map.text_or("name", "");
   map.find("source");  // informative only
-  site.latitude_deg = map.number("latitude_deg", Bounds::between(-90.0, 90.0));
-  site.longitude_deg = map.number("longitude_deg", Bounds::between(-180.0, 360.0));
-  site.height_m = map.number_or("height_m", 0.0, Bounds::between(-500.0, 9000.0));
+  site.latitude_deg = map.number("latitude_deg");
+  site.longitude_deg = map.number("longitude_deg");
+  site.height_m = map.number_or("height_m", 0.0);
   read_surroundings(map, site.surroundings);
   map.done();
   return site;
@@ -45,6 +47,9 @@ SiteConfig read_site(const YamlValue& value) {
 
 /// A trail is one parabola: over 10 deg it is accurate to 1e-4 of a focal length.
 constexpr double most_turn_deg = 10.0;
+
+/// Snapshots of an exposure, if it is drawn from snapshots.
+constexpr int usual_snapshots = 16;
 
 /// Airmass of a camera at fixed azimuth and elevation; 1 for one that follows the sky.
 double airmass_of(const Pointing& pointing) {
@@ -60,7 +65,7 @@ void read_sensor_surroundings(YamlMap& map, SensorConfig& sensor) {
   if (!site)
     for (const auto& ground_only : {map.find("atmosphere"), map.find("weather")})
       if (ground_only) ground_only->fail("is for a sensor on the ground", false);
-  if (old_key) around.atmosphere = standard_atmosphere(old_key->number(Bounds::between(0.0, 5.0)));
+  if (old_key) around.atmosphere = standard_atmosphere(old_key->number());
   read_surroundings(map, around);
   sensor.sky = around.sky ? *around.sky : sky_preset(site ? "dark" : "space");
   sensor.atmosphere = around.atmosphere ? *around.atmosphere : standard_atmosphere(0.17);
@@ -125,34 +130,155 @@ void read_level(const YamlValue& value, const EffectFacts& effect, EffectSet& ef
   }
 }
 
+Forms forms_of(const EffectFacts& effect) {
+  std::vector<std::string> levels;
+  for (const auto level : effect.levels)
+    if (level != "off" && level != "on") levels.emplace_back(level);
+  if (levels.empty()) return form::flag();
+  return effect.can_be_off() ? form::choice(levels) | form::flag() : form::choice(levels);
+}
+
+const Section& effects_section() {
+  static const Section section = [] {
+    Section made{
+        "effects",
+        "Effects switched on or off, or set to a level. What is not named is left to the plan.",
+        {}};
+    for (const EffectFacts* effect : all_effects())
+      if (effect->switchable)
+        made.keys.push_back(optional(
+            std::string(effect->name), forms_of(*effect),
+            sentence_of(effect->what) + " Left out: " + std::string(effect->error_if_off) + ".",
+            effect->usual ? "by the plan" : "off"));
+    made.keys.push_back(
+        optional("aberration", form::flag(), "Annual and diurnal aberration together."));
+    made.keys.push_back(optional("integration", form::choice({"analytic", "snapshots"}),
+                                 "How trails are drawn: exactly, or as a sum of snapshots.",
+                                 "analytic"));
+    made.keys.push_back(optional("snapshots", form::integer(1, 100000),
+                                 "Snapshots of an exposure, with `integration: snapshots`.",
+                                 std::to_string(usual_snapshots)));
+    made.keys.push_back(optional("evaluator", form::choice({"analytic", "opengl"}),
+                                 "What draws the snapshots.", "analytic"));
+    return made;
+  }();
+  return section;
+}
+
+const Section& accuracy_section() {
+  static const Section section = [] {
+    Section made{
+        "accuracy",
+        "How accurate frames must be, or how long one may take. A plan leaves out what this does "
+        "not call for.",
+        {optional("seconds_per_frame", form::above(0.0, 86400.0),
+                  "Time of a frame [s], in place of errors.")}};
+    static constexpr std::pair<std::string_view, std::string_view> meanings[] = {
+        {"photometry_mag", "Greatest error of the brightness of a source"},
+        {"position_px", "Greatest error of the place of a source"},
+        {"background_sigma", "Greatest error of the background between sources, in its noise"},
+        {"noise", "Greatest error of the noise of a pixel"}};
+    for (const auto& kind : error_kinds)
+      for (const auto& [key, meaning] : meanings)
+        if (key == kind.key) {
+          char text[32];
+          std::snprintf(text, sizeof text, "%.6g", standard_budget.*kind.value);
+          made.keys.push_back(optional(kind.key, form::number(0.0, 1e6),
+                                       std::string(meaning) + " [" + kind.unit + "].", text));
+        }
+    return made;
+  }();
+  return section;
+}
+
 }  // namespace
 
+Forms effects_forms() { return form::map(effects_section); }
+
+Forms accuracy_forms() {
+  return form::choice({"draft", "standard", "reference", "off"}) | form::map(accuracy_section);
+}
+
+const Section& site_section() {
+  static const Section section = [] {
+    Section made{"site",
+                 "A place on the ground, with what surrounds it.",
+                 {optional("name", form::text(), "Name of the site."),
+                  optional("source", form::text(), "Where the numbers come from. It is not used."),
+                  required("latitude_deg", form::number(-90.0, 90.0), "Geodetic latitude [deg]."),
+                  required("longitude_deg", form::number(-180.0, 360.0), "Longitude, east [deg]."),
+                  optional("height_m", form::number(-500.0, 9000.0),
+                           "Height above the ellipsoid [m].", "0")}};
+    for (auto& key : surroundings_keys()) made.keys.push_back(std::move(key));
+    return made;
+  }();
+  return section;
+}
+
+const Section& sensor_section() {
+  static const Section section = [] {
+    Section made{
+        "sensor",
+        "A camera at a site or aboard an object. Either `site` or `platform` is needed.",
+        {required("name", form::text(),
+                  "A unique name of 1 to 64 letters, digits, - and _. It names the directory of "
+                  "the sensor's products."),
+         optional("site", form::text(preset_names("sites")) | form::map(site_section),
+                  "The place on the ground: a name (`dmise list sites`), a file, or coordinates."),
+         optional("platform", form::text(),
+                  "Catalogue number or name of the object that carries the sensor."),
+         required("camera", form::text(preset_names("cameras")) | form::map(camera_section),
+                  "The camera: a name (`dmise list cameras`), a file, or its keys."),
+         required("pointing", pointing_forms(), "Where the camera points."),
+         required("exposure_s", form::number(1e-6, 3600.0),
+                  "Length of an exposure [s], at most the cadence."),
+         required("cadence_s", form::number(1e-3, 86400.0),
+                  "Time from the beginning of an exposure to that of the next [s]."),
+         optional("first_exposure_s", form::not_negative(),
+                  "Beginning of the first exposure after the start of the run [s].", "0"),
+         optional("detection", form::flag(),
+                  "Whether moving objects are detected in the frames. By default as the scenario "
+                  "says."),
+         optional("accuracy", accuracy_forms(),
+                  "How accurate frames must be. By default as the scenario says."),
+         optional("effects", effects_forms(), "Effects of this sensor, after the scenario's."),
+         optional("seeing", form::map(seeing_section),
+                  "Turbulence, for a camera with `psf: diffraction`."),
+         optional("mask_deg", form::number(0.0, 89.0),
+                  "Lowest elevation for `dmise visible` [deg], on the ground.", "0"),
+         optional("extinction_mag_per_airmass", form::number(0.0, 5.0),
+                  "Extinction at 550 nm: a short form of `atmosphere: {extinction: ..}`.")}};
+    for (auto& key : surroundings_keys()) made.keys.push_back(std::move(key));
+    for (auto& key : instrument_keys()) made.keys.push_back(std::move(key));
+    return made;
+  }();
+  return section;
+}
+
 void read_effects(const YamlValue& value, EffectSet& effects) {
-  YamlMap map(value);
+  YamlMap map(value, effects_section());
   for (const EffectFacts* effect : all_effects())
     if (effect->switchable)
       if (const auto level = map.find(effect->name)) read_level(*level, *effect, effects);
-  if (const auto streak = map.find(Streak::facts.name))
-    streak->fail("can't be switched; integration: analytic or snapshots chooses how it is drawn",
-                 false);
+  map.refuse(Streak::facts.name,
+             "can't be switched; integration: analytic or snapshots chooses how it is drawn");
   if (const auto both = map.find("aberration")) {
     effects.force(AnnualAberration::facts, both->flag());
     effects.force(DiurnalAberration::facts, both->flag());
   }
-  constexpr int usual_snapshots = 16;
   const auto integration = map.find("integration");
-  const bool analytic = integration && integration->choice({"analytic", "snapshots"}) == "analytic";
+  const bool analytic = integration && integration->choice() == "analytic";
   if (integration) effects.set_snapshots(analytic ? 0 : usual_snapshots);
   if (analytic) effects.draw_by_opengl(false);
   if (const auto evaluator = map.find("evaluator")) {
-    effects.draw_by_opengl(evaluator->choice({"analytic", "opengl"}) == "opengl");
+    effects.draw_by_opengl(evaluator->choice() == "opengl");
     if (effects.drawn_by_opengl() && analytic) evaluator->fail("needs integration: snapshots");
     if (effects.drawn_by_opengl() && effects.snapshots() == 0)
       effects.set_snapshots(usual_snapshots);
   }
   if (const auto count = map.find("snapshots")) {
     if (effects.snapshots() == 0) count->fail("needs integration: snapshots", false);
-    effects.set_snapshots(int(count->integer(1, 100000)));
+    effects.set_snapshots(int(count->integer()));
   }
   map.done();
 }
@@ -165,9 +291,9 @@ Accuracy read_accuracy(const YamlValue& value) {
            : name == "reference" ? reference_accuracy()
                                  : Accuracy{};
   }
-  YamlMap map(value);
+  YamlMap map(value, accuracy_section());
   if (const auto seconds = map.find("seconds_per_frame")) {
-    const double limit_s = seconds->number({.least = 0.0, .most = 86400.0, .least_open = true});
+    const double limit_s = seconds->number();
     map.done();
     return {.name = "seconds", .budget = {}, .seconds_per_frame = limit_s};
   }
@@ -175,7 +301,7 @@ Accuracy read_accuracy(const YamlValue& value) {
   bool any = false;
   for (const auto& kind : error_kinds)
     if (const auto number = map.find(kind.key)) {
-      accuracy.budget.*kind.value = number->number(Bounds::between(0.0, 1e6));
+      accuracy.budget.*kind.value = number->number();
       any = true;
     }
   map.done();
@@ -189,14 +315,15 @@ Accuracy read_accuracy(const YamlValue& value) {
 
 SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const Accuracy& accuracy,
                          bool detect, SimTime duration, const EarthConfig& earth) {
-  YamlMap map(value);
+  YamlMap map(value, sensor_section());
   SensorConfig sensor;
   sensor.where = value.place();
   sensor.effects = effects;
   sensor.accuracy = accuracy;
   sensor.ellipsoid = earth.ellipsoid;
   if (const auto own = map.find("accuracy")) sensor.accuracy = read_accuracy(*own);
-  sensor.detect = map.flag_or("detection", detect);
+  const auto detection = map.find("detection");
+  sensor.detect = detection ? detection->flag() : detect;
   sensor.name = map.require("name").text();
   const auto site = map.find("site");
   const auto platform = map.find("platform");
@@ -211,8 +338,8 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   read_pointing(map.require("pointing"), bool(site), sensor, earth.origin);
   read_instrument(map, sensor.instrument);
   const auto exposure = map.require("exposure_s");
-  sensor.exposure_s = exposure.number({.least = 1e-6, .most = 3600.0});
-  sensor.cadence_s = map.number("cadence_s", {.least = 1e-3, .most = 86400.0});
+  sensor.exposure_s = exposure.number();
+  sensor.cadence_s = map.number("cadence_s");
   if (sensor.cadence_s < sensor.exposure_s) exposure.fail("must be <= cadence_s");
   check_exposure(sensor.camera, exposure);
   const double rate_deg_per_s =
@@ -220,7 +347,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   if (rate_deg_per_s * sensor.exposure_s > most_turn_deg)
     exposure.fail("the camera must turn by no more than 10 deg within an exposure");
   const auto first = map.find("first_exposure_s");
-  if (first) sensor.first_exposure_s = first->number(Bounds::not_negative());
+  if (first) sensor.first_exposure_s = first->number();
   if (sim_seconds(sensor.first_exposure_s + sensor.exposure_s) > duration)
     exposure.fail("the first exposure ends after the run does");
   if (const auto seeing = map.find("seeing")) {
@@ -236,7 +363,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
     sensor.effects.force(AtmosphericRefraction::facts, *sensor.atmosphere.refraction);
   if (const auto mask = map.find("mask_deg")) {
     if (platform) mask->fail("a mask is for a sensor on the ground", false);
-    sensor.mask_deg = mask->number(Bounds::between(0.0, 89.0));
+    sensor.mask_deg = mask->number();
   }
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
   check_clock(map, sensor, duration);

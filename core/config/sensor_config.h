@@ -15,4 +15,10 @@ Accuracy read_accuracy(const YamlValue& value);
 SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const Accuracy& accuracy,
                          bool detect, SimTime duration, const EarthConfig& earth = {});
 
+// What the tables of scenarios are made of.
+Forms effects_forms();
+Forms accuracy_forms();
+const Section& site_section();
+const Section& sensor_section();
+
 }  // namespace dmise

@@ -13,8 +13,128 @@
 namespace dmise {
 namespace {
 
-const Bounds brightness = Bounds::between(-10.0, 30.0);
-const Bounds share = Bounds::between(0.0, 1.0);
+const Bounds brightness_bounds = Bounds::between(-10.0, 30.0);
+const Bounds extinction_bounds = Bounds::between(0.0, 5.0);
+constexpr std::int64_t most_seed = std::numeric_limits<std::int64_t>::max();
+
+Forms brightness() { return form::number(brightness_bounds.least, brightness_bounds.most); }
+Forms share() { return form::number(0.0, 1.0); }
+Forms sky_names() { return form::choice({"urban", "suburban", "dark", "space"}); }
+
+const Section& parts_section() {
+  static const Section section{
+      "parts",
+      "Parts of the sky's light, each switched on or off.",
+      {optional("uniform", form::flag(), "One brightness everywhere."),
+       optional("airglow", form::flag(), "Light of the upper atmosphere."),
+       optional("zodiacal_light", form::flag(), "Sunlight scattered by dust between the planets."),
+       optional("faint_starlight", form::flag(), "Stars fainter than the catalogue's limit."),
+       optional("scattered_moonlight", form::flag(), "Moonlight scattered by the air."),
+       optional("twilight", form::flag(), "Sunlight scattered by the air after sunset."),
+       optional("light_pollution", form::flag(), "Light of lamps scattered by the air.")}};
+  return section;
+}
+
+const Section& lamps_section() {
+  static const Section section{"lamps",
+                               "Shares of lamps in the light pollution; one must be above 0.",
+                               {optional("lps", share(), "Low-pressure sodium.", "0"),
+                                optional("hps", share(), "High-pressure sodium.", "0"),
+                                optional("led", share(), "White LED.", "0")}};
+  return section;
+}
+
+const Section& city_section() {
+  static const Section section{
+      "cities",
+      "The glow of a city at the horizon.",
+      {required("azimuth_deg", form::number(-360.0, 360.0), "From north through east [deg]."),
+       optional("half_width_deg", form::number(1.0, 180.0), "Standard deviation in azimuth [deg].",
+                "40.1"),
+       optional("height_deg", form::number(1.0, 90.0),
+                "Altitude at which the glow has fallen to 1/e [deg].", "14.9"),
+       optional("horizon_over_zenith", form::number(0.0, 1e4),
+                "Its peak, in units of the zenith's even light pollution.", "5")}};
+  return section;
+}
+
+const Section& sky_section() {
+  static const Section section{
+      "sky",
+      "The light of the sky: one brightness, or a preset with changes.",
+      {optional("preset", sky_names(), "A sky to start from."),
+       optional("zenith_mag_per_arcsec2", brightness(),
+                "Brightness of the zenith [V mag/arcsec^2]; alone, that of the whole sky."),
+       optional("parts", form::map(parts_section), "Parts switched on or off."),
+       optional("lamps", form::map(lamps_section), "What lamps the light pollution is of."),
+       optional("cities", form::list(form::map(city_section)), "Glows at the horizon."),
+       optional("airglow_zenith_mag_per_arcsec2", brightness(),
+                "Brightness of the airglow at the zenith [V mag/arcsec^2].")}};
+  return section;
+}
+
+std::vector<Key> turbulence_keys() {
+  return {
+      optional("profile", form::text({"hv57"}),
+               "`hv57` (Hufnagel-Valley), or a CSV file of height_m, cn2."),
+      optional("high_wind_m_per_s", form::number(0.0, 200.0),
+               "Rms wind at 5 to 20 km, of `hv57` [m/s].", "21"),
+      optional("ground_cn2", form::number(0.0, 1e-10), "Cn2 at the ground, of `hv57` [m^-2/3].",
+               "1.7e-14"),
+      optional("ground_wind_m_per_s", form::number(0.0, 200.0), "Wind at the ground [m/s].", "5"),
+      optional("jet_wind_m_per_s", form::number(0.0, 200.0), "Wind of the jet stream [m/s].",
+               "30")};
+}
+
+const Section& turbulence_section() {
+  static const Section section{"turbulence", "The turbulence of the air, by height.",
+                               turbulence_keys()};
+  return section;
+}
+
+const Section& atmosphere_section() {
+  static const Section section{
+      "atmosphere",
+      "What the air does to light.",
+      {optional("extinction",
+                form::number(extinction_bounds.least, extinction_bounds.most) |
+                    form::text(extinction_site_names()),
+                "A site's curve, or k at 550 nm [mag/airmass].", "0.17"),
+       optional("refraction", form::flag(),
+                "Whether the air bends light. The plan decides if "
+                "not given."),
+       optional("turbulence", form::choice({"hv57"}) | form::map(turbulence_section),
+                "Turbulence over the site, for scintillation.")}};
+  return section;
+}
+
+const Section& clouds_section() {
+  static const Section section{
+      "clouds",
+      "Clouds: a veil of one transmission, or patches that the wind carries.",
+      {optional("cover", share(), "Share of the sky that patches cover. Without it: a veil."),
+       optional("transmission", share(), "Of a veil, or of the middle of a patch at the zenith.",
+                "0.1"),
+       optional("patch_m", form::number(10.0, 1e6), "Size of the largest patches [m].", "3000"),
+       optional("height_m", form::number(10.0, 20e3), "Height above the site [m].", "3000"),
+       optional("wind_east_m_per_s", form::number(-200.0, 200.0), "Wind towards east [m/s].", "8"),
+       optional("wind_north_m_per_s", form::number(-200.0, 200.0), "Wind towards north [m/s].",
+                "0"),
+       optional("seed", form::integer(0, most_seed), "Seed of the pattern.", "1")}};
+  return section;
+}
+
+const Section& weather_section() {
+  static const Section section{
+      "weather",
+      "The weather at the site. Without pressure a standard atmosphere by height is taken.",
+      {optional("pressure_hpa", form::number(0.0, 1100.0), "Air pressure [hPa]."),
+       optional("temperature_c", form::number(-90.0, 60.0), "Air temperature [deg C]."),
+       optional("humidity", share(), "Relative humidity."),
+       optional("clouds", share() | form::map(clouds_section),
+                "Transmission of a veil, or clouds.")}};
+  return section;
+}
 
 SkyConfig one_brightness(double v_mag_per_arcsec2) {
   SkyConfig sky{.zenith_mag_per_arcsec2 = v_mag_per_arcsec2};
@@ -28,7 +148,7 @@ bool is_number(const YamlValue& value) {
 
 /// Adds lamps that bring the zenith to `zenith` together with the natural sky.
 void read_zenith(const YamlValue& value, SkyConfig& sky) {
-  const double zenith = value.number(brightness);
+  const double zenith = value.number(brightness_bounds);
   sky.zenith_mag_per_arcsec2 = zenith;
   if (sky.preset == "space") {
     sky.parts.uniform = UniformSky{zenith};
@@ -43,33 +163,28 @@ void read_zenith(const YamlValue& value, SkyConfig& sky) {
 }
 
 LampMix read_lamps(const YamlValue& value) {
-  YamlMap map(value);
-  LampMix lamps{.lps = map.number_or("lps", 0.0, share),
-                .hps = map.number_or("hps", 0.0, share),
-                .led = map.number_or("led", 0.0, share)};
+  YamlMap map(value, lamps_section());
+  LampMix lamps{.lps = map.number_or("lps", 0.0),
+                .hps = map.number_or("hps", 0.0),
+                .led = map.number_or("led", 0.0)};
   map.done();
   if (lamps.lps + lamps.hps + lamps.led <= 0) value.fail("one share must be > 0", false);
   return lamps;
 }
 
 CityGlow read_city(const YamlValue& value) {
-  YamlMap map(value);
-  const CityGlow usual;
+  YamlMap map(value, city_section());
   CityGlow city;
-  city.azimuth_rad = map.number("azimuth_deg", Bounds::between(-360.0, 360.0)) * deg;
-  city.half_width_rad =
-      map.number_or("half_width_deg", usual.half_width_rad / deg, Bounds::between(1.0, 180.0)) *
-      deg;
-  city.height_rad =
-      map.number_or("height_deg", usual.height_rad / deg, Bounds::between(1.0, 90.0)) * deg;
-  city.horizon_over_zenith =
-      map.number_or("horizon_over_zenith", usual.horizon_over_zenith, Bounds::between(0.0, 1e4));
+  city.azimuth_rad = map.number("azimuth_deg") * deg;
+  if (const auto width = map.find("half_width_deg")) city.half_width_rad = width->number() * deg;
+  if (const auto height = map.find("height_deg")) city.height_rad = height->number() * deg;
+  city.horizon_over_zenith = map.number_or("horizon_over_zenith", city.horizon_over_zenith);
   map.done();
   return city;
 }
 
 void read_parts(const YamlValue& value, SkyParts& parts) {
-  YamlMap map(value);
+  YamlMap map(value, parts_section());
   const auto switch_part = [&](std::string_view name, auto& part) {
     const auto flag = map.find(name);
     if (!flag) return;
@@ -90,17 +205,17 @@ void read_parts(const YamlValue& value, SkyParts& parts) {
 }
 
 SkyConfig read_sky(const YamlValue& value) {
-  if (is_number(value)) return one_brightness(value.number(brightness));
-  if (value.is_scalar()) return sky_preset(value.choice({"urban", "suburban", "dark", "space"}));
-  YamlMap map(value);
+  if (is_number(value)) return one_brightness(value.number());
+  if (value.is_scalar()) return sky_preset(value.choice());
+  YamlMap map(value, sky_section());
   const auto zenith = map.find("zenith_mag_per_arcsec2");
   const auto preset = map.find("preset");
   if (!preset) {
-    const double figure = map.number("zenith_mag_per_arcsec2", brightness);
+    const double figure = map.number("zenith_mag_per_arcsec2");
     map.done();
     return one_brightness(figure);
   }
-  SkyConfig sky = sky_preset(preset->choice({"urban", "suburban", "dark", "space"}));
+  SkyConfig sky = sky_preset(preset->choice());
   if (zenith) read_zenith(*zenith, sky);
   if (const auto parts = map.find("parts")) read_parts(*parts, sky.parts);
   const auto lit = [&](const YamlValue& key) -> LightPollution& {
@@ -112,7 +227,7 @@ SkyConfig read_sky(const YamlValue& value) {
     for (const auto& city : cities->list()) lit(city).cities.push_back(read_city(city));
   if (const auto airglow = map.find("airglow_zenith_mag_per_arcsec2")) {
     if (!sky.parts.airglow) airglow->fail("there is no airglow in this sky", false);
-    sky.parts.airglow->zenith_v_mag_per_arcsec2 = airglow->number(brightness);
+    sky.parts.airglow->zenith_v_mag_per_arcsec2 = airglow->number();
   }
   map.done();
   return sky;
@@ -122,9 +237,8 @@ TurbulenceProfile read_profile(YamlMap& map) {
   const auto profile = map.require("profile");
   const HufnagelValley usual;
   if (profile.text() == "hv57")
-    return HufnagelValley{
-        map.number_or("high_wind_m_per_s", usual.high_wind_m_per_s, Bounds::between(0.0, 200.0)),
-        map.number_or("ground_cn2", usual.ground_cn2, Bounds::between(0.0, 1e-10))};
+    return HufnagelValley{map.number_or("high_wind_m_per_s", usual.high_wind_m_per_s),
+                          map.number_or("ground_cn2", usual.ground_cn2)};
   const std::string path = find_beside(profile.text(), profile.file());
   if (path.empty()) profile.fail("must be hv57 or the path of a CSV file of height_m, cn2");
   return parse_cn2(read_text_file(path, 4u << 20), path);
@@ -133,28 +247,27 @@ TurbulenceProfile read_profile(YamlMap& map) {
 TurbulenceConfig read_turbulence_keys(YamlMap& map) {
   const TurbulenceWind usual;
   TurbulenceConfig config{.profile = read_profile(map), .wind = {}};
-  const Bounds speed = Bounds::between(0.0, 200.0);
-  config.wind.ground_m_per_s = map.number_or("ground_wind_m_per_s", usual.ground_m_per_s, speed);
-  config.wind.jet_m_per_s = map.number_or("jet_wind_m_per_s", usual.jet_m_per_s, speed);
+  config.wind.ground_m_per_s = map.number_or("ground_wind_m_per_s", usual.ground_m_per_s);
+  config.wind.jet_m_per_s = map.number_or("jet_wind_m_per_s", usual.jet_m_per_s);
   return config;
 }
 
 TurbulenceConfig read_turbulence(const YamlValue& value) {
   if (value.is_scalar()) {
-    value.choice({"hv57"});
+    value.choice();
     return {};
   }
-  YamlMap map(value);
+  YamlMap map(value, turbulence_section());
   TurbulenceConfig config = read_turbulence_keys(map);
   map.done();
   return config;
 }
 
 AtmosphereConfig read_atmosphere(const YamlValue& value, AtmosphereConfig known) {
-  YamlMap map(value);
+  YamlMap map(value, atmosphere_section());
   if (const auto extinction = map.find("extinction")) {
     if (is_number(*extinction)) {
-      known = standard_atmosphere(extinction->number(Bounds::between(0.0, 5.0)));
+      known = standard_atmosphere(extinction->number());
     } else if (auto curve = extinction_of_site(extinction->text())) {
       known.extinction = extinction->text();
       known.extinction_mag_per_airmass = std::move(*curve);
@@ -174,28 +287,27 @@ AtmosphereConfig read_atmosphere(const YamlValue& value, AtmosphereConfig known)
 }
 
 Clouds read_clouds(const YamlValue& value) {
-  if (value.is_scalar()) return UniformCloud{value.number(share)};
-  YamlMap map(value);
+  if (value.is_scalar()) return UniformCloud{value.number()};
+  YamlMap map(value, clouds_section());
   const auto cover = map.find("cover");
   if (!cover) {
-    const UniformCloud veil{map.number("transmission", share)};
+    const UniformCloud veil{map.number("transmission")};
     map.done();
     return veil;
   }
-  PatchyClouds p{.cover = cover->number(share)};
-  const Bounds wind = Bounds::between(-200.0, 200.0);
-  p.transmission = map.number_or("transmission", p.transmission, share);
-  p.patch_m = map.number_or("patch_m", p.patch_m, Bounds::between(10.0, 1e6));
-  p.height_m = map.number_or("height_m", p.height_m, Bounds::between(10.0, 20e3));
-  p.wind_east_m_per_s = map.number_or("wind_east_m_per_s", p.wind_east_m_per_s, wind);
-  p.wind_north_m_per_s = map.number_or("wind_north_m_per_s", p.wind_north_m_per_s, wind);
-  p.seed = std::uint64_t(map.integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
+  PatchyClouds p{.cover = cover->number()};
+  p.transmission = map.number_or("transmission", p.transmission);
+  p.patch_m = map.number_or("patch_m", p.patch_m);
+  p.height_m = map.number_or("height_m", p.height_m);
+  p.wind_east_m_per_s = map.number_or("wind_east_m_per_s", p.wind_east_m_per_s);
+  p.wind_north_m_per_s = map.number_or("wind_north_m_per_s", p.wind_north_m_per_s);
+  p.seed = std::uint64_t(map.integer_or("seed", 1));
   map.done();
   return p;
 }
 
 WeatherConfig read_weather(const YamlValue& value, WeatherConfig known) {
-  YamlMap map(value);
+  YamlMap map(value, weather_section());
   const auto pressure = map.find("pressure_hpa");
   const auto temperature = map.find("temperature_c");
   const auto humidity = map.find("humidity");
@@ -203,9 +315,9 @@ WeatherConfig read_weather(const YamlValue& value, WeatherConfig known) {
     Weather air = known.air.value_or(Weather{});
     if (!pressure && !known.air)
       value.fail("temperature and humidity need pressure_hpa beside them", false);
-    if (pressure) air.pressure_hpa = pressure->number(Bounds::between(0.0, 1100.0));
-    if (temperature) air.temperature_c = temperature->number(Bounds::between(-90.0, 60.0));
-    if (humidity) air.humidity = humidity->number(share);
+    if (pressure) air.pressure_hpa = pressure->number();
+    if (temperature) air.temperature_c = temperature->number();
+    if (humidity) air.humidity = humidity->number();
     known.air = air;
   }
   if (const auto clouds = map.find("clouds")) known.clouds = read_clouds(*clouds);
@@ -228,6 +340,14 @@ AtmosphereConfig standard_atmosphere(double k_v_mag_per_airmass) {
   return atmosphere;
 }
 
+std::vector<Key> surroundings_keys() {
+  return {optional("sky", brightness() | sky_names() | form::map(sky_section),
+                   "Light of the sky: a brightness [V mag/arcsec^2], a preset, or parts.",
+                   "dark on the ground, space in orbit"),
+          optional("atmosphere", form::map(atmosphere_section), "The air, on the ground."),
+          optional("weather", form::map(weather_section), "The weather, on the ground.")};
+}
+
 void read_surroundings(YamlMap& map, Surroundings& known) {
   constexpr double usual_k_v = 0.17;
   if (const auto sky = map.find("sky")) known.sky = read_sky(*sky);
@@ -238,6 +358,26 @@ void read_surroundings(YamlMap& map, Surroundings& known) {
     known.weather = read_weather(*weather, known.weather.value_or(WeatherConfig{}));
 }
 
+const Section& seeing_section() {
+  static const Section section = [] {
+    Section made{
+        "seeing",
+        "Turbulence as a camera with `psf: diffraction` sees it: `r0_m`, or a profile over "
+        "height.",
+        {optional("r0_m", form::number(1e-3, 1e6),
+                  "Fried's parameter at 500 nm in the direction of the camera [m]; needed without "
+                  "a profile."),
+         optional("outer_scale_m", form::number(0.1, 1e6), "Outer scale [m].", "infinite"),
+         optional("wind_m_per_s", form::number(0.0, 1e4),
+                  "Wind that carries the turbulence past the pupil [m/s].", "10"),
+         optional("wind_direction_deg", form::number(-360.0, 360.0),
+                  "Direction of the wind across the image [deg].", "0")}};
+    for (auto& key : turbulence_keys()) made.keys.push_back(std::move(key));
+    return made;
+  }();
+  return section;
+}
+
 bool names_profile(const YamlValue& seeing) {
   return seeing.is_map() && YamlMap(seeing).find("profile").has_value();
 }
@@ -245,13 +385,11 @@ bool names_profile(const YamlValue& seeing) {
 SensorSeeing read_seeing_profile(const YamlValue& value, double airmass,
                                  std::optional<TurbulenceConfig>& turbulence_over) {
   constexpr double wavelength_m = 500 * nm;  // of `SensorSeeing::r0_m`
-  YamlMap map(value);
+  YamlMap map(value, seeing_section());
   turbulence_over = read_turbulence_keys(map);
   SensorSeeing seeing;
-  if (const auto v = map.find("outer_scale_m"))
-    seeing.outer_scale_m = v->number(Bounds::between(0.1, 1e6));
-  seeing.wind_direction_deg =
-      map.number_or("wind_direction_deg", 0.0, Bounds::between(-360.0, 360.0));
+  if (const auto v = map.find("outer_scale_m")) seeing.outer_scale_m = v->number();
+  seeing.wind_direction_deg = map.number_or("wind_direction_deg", 0.0);
   map.done();
   const Turbulence t =
       turbulence(turbulence_over->profile, wavelength_m, airmass, turbulence_over->wind);

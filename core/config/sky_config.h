@@ -68,4 +68,9 @@ SensorSeeing read_seeing_profile(const YamlValue& value, double airmass,
 /// Throws `ConfigError` at `where` if a component of the sky has no spectrum in the band.
 void check_sky_in_band(const YamlValue& where, const SkyConfig& sky, const Band& band, bool in_air);
 
+/// The keys of `seeing`: r0 of the air above, or a profile of its turbulence.
+const Section& seeing_section();
+/// The keys of the surroundings, for the sections of sites and sensors.
+std::vector<Key> surroundings_keys();
+
 }  // namespace dmise

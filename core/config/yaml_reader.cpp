@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <stdexcept>
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
@@ -19,9 +20,8 @@ std::string place_of(const std::string& file, const YAML::Mark& mark) {
          std::to_string(mark.column + 1);
 }
 
-std::string number_text(double x) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
+[[noreturn]] void section_lacks(const std::string& what) {
+  throw std::logic_error("core/config: the section says nothing of " + what);
 }
 
 /// Path of a value in its file; formatted only for messages, because keys may be long.
@@ -101,7 +101,20 @@ void YamlValue::fail(const std::string& reason, bool show_value) const {
   throw ConfigError(complaint(reason, show_value));
 }
 
+const Form* YamlValue::form(std::initializer_list<Form::Kind> kinds) const {
+  if (!forms_) return nullptr;
+  for (const Form& form : *forms_)
+    if (std::find(kinds.begin(), kinds.end(), form.kind) != kinds.end()) return &form;
+  section_lacks("a form that is read of " + path_);
+}
+
+double YamlValue::number() const {
+  const Form* is = form({Form::Kind::number});
+  return number(is ? is->bounds : Bounds{});
+}
+
 double YamlValue::number(Bounds bounds) const {
+  form({Form::Kind::number});
   if (!is_scalar()) fail("must be a number");
   const std::string& s = node_.Scalar();
   double x = 0.0;
@@ -115,7 +128,14 @@ double YamlValue::number(Bounds bounds) const {
   return x;
 }
 
+std::int64_t YamlValue::integer() const {
+  const Form* is = form({Form::Kind::integer});
+  if (!is) section_lacks("the range of " + path_);
+  return integer(is->least, is->most);
+}
+
 std::int64_t YamlValue::integer(std::int64_t least, std::int64_t most) const {
+  form({Form::Kind::integer});
   if (!is_scalar()) fail("must be a whole number");
   const std::string& s = node_.Scalar();
   std::int64_t x = 0;
@@ -132,6 +152,7 @@ std::string YamlValue::text() const {
 }
 
 bool YamlValue::flag() const {
+  form({Form::Kind::flag});
   if (is_scalar()) {
     const std::string& s = node_.Scalar();
     if (s == "on" || s == "true" || s == "yes") return true;
@@ -140,7 +161,14 @@ bool YamlValue::flag() const {
   fail("must be on or off");
 }
 
+std::string YamlValue::choice() const {
+  const Form* is = form({Form::Kind::choice});
+  if (!is) section_lacks("the choices of " + path_);
+  return choice(std::vector<std::string_view>(is->words.begin(), is->words.end()));
+}
+
 std::string YamlValue::choice(std::span<const std::string_view> choices) const {
+  form({Form::Kind::choice});
   std::vector<std::string> names(choices.begin(), choices.end());
   const std::string word = is_scalar() ? node_.Scalar() : "";
   if (std::find(names.begin(), names.end(), word) != names.end()) return word;
@@ -150,11 +178,19 @@ std::string YamlValue::choice(std::span<const std::string_view> choices) const {
 }
 
 std::vector<YamlValue> YamlValue::list() const {
+  const Form* is = form({Form::Kind::list});
   if (!is_list()) fail("must be a list");
   std::vector<YamlValue> values;
   for (std::size_t i = 0; i < node_.size(); ++i)
-    values.push_back({node_[i], file_, path_ + "[" + std::to_string(i) + "]"});
+    values.push_back(
+        {node_[i], file_, path_ + "[" + std::to_string(i) + "]", is ? &is->items : nullptr});
   return values;
+}
+
+std::vector<double> YamlValue::numbers() const {
+  const Form* is = form({Form::Kind::list});
+  if (!is || is->items.empty()) section_lacks("the range of " + path_);
+  return numbers(is->fewest, is->items.front().bounds);
 }
 
 std::vector<double> YamlValue::numbers(std::size_t count, Bounds bounds) const {
@@ -169,16 +205,36 @@ YamlMap::YamlMap(const YamlValue& value) : value_(value) {
   if (!value.is_map()) value.fail("must be a mapping of keys to values");
 }
 
+YamlMap::YamlMap(const YamlValue& value, const Section& section) : YamlMap(value) {
+  section_ = &section;
+  if (!value.forms_) return;
+  const auto is_section = [&](const Form& form) {
+    return form.kind == Form::Kind::map && &form.section() == &section;
+  };
+  if (std::none_of(value.forms_->begin(), value.forms_->end(), is_section))
+    section_lacks("the mapping that is read of " + value.path_);
+}
+
 std::string YamlMap::child_path(std::string_view key) const {
   return value_.path_ + (value_.path_.empty() ? "" : ".") + std::string(key);
 }
 
 std::optional<YamlValue> YamlMap::find(std::string_view key) {
   known_.emplace(key);
+  const Key* is = section_ ? section_->find(key) : nullptr;
+  if (section_ && !is) section_lacks(section_->name + ": " + std::string(key));
+  return look_up(key, is ? &is->forms : nullptr);
+}
+
+void YamlMap::refuse(std::string_view key, const std::string& reason) {
+  if (const auto value = look_up(key, nullptr)) value->fail(reason, false);
+}
+
+std::optional<YamlValue> YamlMap::look_up(std::string_view key, const Forms* forms) {
   const YAML::Node& map = value_.node_;  // const, so that a lookup does not insert
   const YAML::Node child = map[std::string(key)];
   if (!child.IsDefined()) return std::nullopt;
-  YamlValue value(child, value_.file_, child_path(key));
+  YamlValue value(child, value_.file_, child_path(key), forms);
   if (child.IsNull()) value.fail("has no value", false);
   return value;
 }
@@ -201,24 +257,50 @@ std::vector<std::string> YamlMap::keys() const {
   return names;
 }
 
+void YamlMap::check_default(std::string_view key, const std::string& otherwise) const {
+  const Key* is = section_ ? section_->find(key) : nullptr;
+  if (is && is->otherwise != otherwise)
+    section_lacks("the default " + otherwise + " of " + section_->name + ": " + std::string(key));
+}
+
+void YamlMap::check_default(std::string_view key, double otherwise) const {
+  const Key* is = section_ ? section_->find(key) : nullptr;
+  if (!is) return;
+  const std::string& said = is->otherwise;
+  double x = 0.0;
+  const auto [end, error] = std::from_chars(said.data(), said.data() + said.size(), x);
+  // Angles are kept in radians, which changes their last digit.
+  const bool same = error == std::errc{} && end == said.data() + said.size() &&
+                    std::abs(x - otherwise) <= 1e-12 * std::abs(otherwise);
+  if (!same) check_default(key, number_text(otherwise));
+}
+
+double YamlMap::number_or(std::string_view key, double otherwise) {
+  const auto value = find(key);
+  check_default(key, otherwise);
+  return value ? value->number() : otherwise;
+}
+
 double YamlMap::number_or(std::string_view key, double otherwise, Bounds bounds) {
   const auto value = find(key);
   return value ? value->number(bounds) : otherwise;
 }
 
-std::int64_t YamlMap::integer_or(std::string_view key, std::int64_t otherwise, std::int64_t least,
-                                 std::int64_t most) {
+std::int64_t YamlMap::integer_or(std::string_view key, std::int64_t otherwise) {
   const auto value = find(key);
-  return value ? value->integer(least, most) : otherwise;
+  check_default(key, std::to_string(otherwise));
+  return value ? value->integer() : otherwise;
 }
 
 std::string YamlMap::text_or(std::string_view key, std::string otherwise) {
   const auto value = find(key);
+  check_default(key, otherwise);
   return value ? value->text() : std::move(otherwise);
 }
 
 bool YamlMap::flag_or(std::string_view key, bool otherwise) {
   const auto value = find(key);
+  check_default(key, otherwise ? "on" : "off");
   return value ? value->flag() : otherwise;
 }
 

@@ -2,7 +2,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <initializer_list>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -12,19 +11,9 @@
 #include <vector>
 
 #include "core/base/nearest_name.h"
+#include "core/config/section.h"
 
 namespace dmise {
-
-/// Range of a number, and the reason for it in messages.
-struct Bounds {
-  double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();
-  bool least_open = false;  // `least` itself is refused
-
-  static Bounds positive() { return {.least = 0.0, .least_open = true}; }
-  static Bounds not_negative() { return {.least = 0.0}; }
-  static Bounds between(double least, double most) { return {.least = least, .most = most}; }
-};
 
 /// A value of a YAML file with its position: every error reads `file:line:column: key.path: reason,
 /// got value`. Copies are the same value.
@@ -42,17 +31,23 @@ class YamlValue {
   std::string where() const;  // file:line:column
   std::string place() const;  // file:line:column: key.path
 
-  double number(Bounds bounds = {}) const;
+  // Without a range: that of the value's section, if it was read from one.
+  double number() const;
+  double number(Bounds bounds) const;
+  std::int64_t integer() const;
   std::int64_t integer(std::int64_t least, std::int64_t most) const;
   std::string text() const;
   bool flag() const;  // on/off, true/false, yes/no
-  /// One of `choices`; an error suggests the nearest.
+  /// One of the choices of the value's section.
+  std::string choice() const;
+  /// One of `choices`; an error names them.
   std::string choice(std::span<const std::string_view> choices) const;
   std::string choice(std::initializer_list<std::string_view> choices) const {
     return choice(std::span(choices.begin(), choices.size()));
   }
   std::vector<YamlValue> list() const;
-  /// A list of `count` numbers.
+  /// A list of `count` numbers; without a range, as the value's section says.
+  std::vector<double> numbers() const;
   std::vector<double> numbers(std::size_t count, Bounds bounds = {}) const;
 
   /// Replaces the value wherever it stands, also by aliases. Its place in the file stays.
@@ -67,28 +62,38 @@ class YamlValue {
 
  private:
   friend class YamlMap;
-  YamlValue(YAML::Node node, std::shared_ptr<const std::string> file, std::string path)
-      : node_(std::move(node)), file_(std::move(file)), path_(std::move(path)) {}
+  YamlValue(YAML::Node node, std::shared_ptr<const std::string> file, std::string path,
+            const Forms* forms = nullptr)
+      : node_(std::move(node)), file_(std::move(file)), path_(std::move(path)), forms_(forms) {}
+  /// Returns the form of its section that a reader asks for. Throws `std::logic_error` if the
+  /// section has none; null for a value of no section.
+  const Form* form(std::initializer_list<Form::Kind> kinds) const;
 
   YAML::Node node_;
   std::shared_ptr<const std::string> file_;
   std::string path_;
+  const Forms* forms_ = nullptr;  // of its section
 };
 
 /// The keys of a YAML mapping. Each model reads its own; `done()` refuses keys that were not read
-/// and suggests the nearest known one.
+/// and suggests the nearest known one. With a section, keys, types, ranges and defaults are those
+/// of the section: asking for others throws `std::logic_error`.
 class YamlMap {
  public:
   explicit YamlMap(const YamlValue& value);
+  YamlMap(const YamlValue& value, const Section& section);
 
   std::optional<YamlValue> find(std::string_view key);
   YamlValue require(std::string_view key);
   std::vector<std::string> keys() const;
+  /// Refuses a key that users may expect here; it is in no section.
+  void refuse(std::string_view key, const std::string& reason);
 
-  double number(std::string_view key, Bounds bounds = {}) { return require(key).number(bounds); }
-  double number_or(std::string_view key, double otherwise, Bounds bounds = {});
-  std::int64_t integer_or(std::string_view key, std::int64_t otherwise, std::int64_t least,
-                          std::int64_t most);
+  double number(std::string_view key) { return require(key).number(); }
+  double number(std::string_view key, Bounds bounds) { return require(key).number(bounds); }
+  double number_or(std::string_view key, double otherwise);
+  double number_or(std::string_view key, double otherwise, Bounds bounds);
+  std::int64_t integer_or(std::string_view key, std::int64_t otherwise);
   std::string text(std::string_view key) { return require(key).text(); }
   std::string text_or(std::string_view key, std::string otherwise);
   bool flag_or(std::string_view key, bool otherwise);
@@ -98,7 +103,13 @@ class YamlMap {
 
  private:
   std::string child_path(std::string_view key) const;
+  std::optional<YamlValue> look_up(std::string_view key, const Forms* forms);
+  /// Throws `std::logic_error` if the section states another default.
+  void check_default(std::string_view key, const std::string& otherwise) const;
+  void check_default(std::string_view key, double otherwise) const;
+
   YamlValue value_;
+  const Section* section_ = nullptr;
   std::set<std::string, std::less<>> known_;
 };
 

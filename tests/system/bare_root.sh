@@ -14,17 +14,9 @@ inside=/opt/dmise  # where the tree lies in the root
 
 say() { printf 'bare root: %s\n' "$*"; }
 die() { say "$*" >&2; exit 1; }
-source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/setup_proof.sh"
-
-# in_root ROOT COMMAND..: in namespaces of its own, so that no mount or process outlives it.
-in_root() {
-  unshare --mount --pid --fork --kill-child -- bash -euc '
-    root=$1; shift
-    mount -t proc proc "$root/proc"
-    mount --rbind /dev "$root/dev"
-    exec chroot "$root" env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-      HOME=/root LANG=C.UTF-8 http_proxy="${http_proxy-}" https_proxy="${https_proxy-}" "$@"' _ "$@"
-}
+tests=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
+source "$tests/setup_proof.sh"
+source "$tests/in_root.sh"
 
 prove() {
   local work=$1 log=$2 began=$SECONDS

@@ -10,7 +10,7 @@ digest_of_files() {
   {
     committed ls-tree -r HEAD | grep -E $'\t('"$1"')$' || true
     committed ls-tree -r HEAD |
-      grep -E $'\t(dmise|launch/(setup|scenarios)/.*|launch/stack/(base-system|apt-settings).sh|tests/system/(bare_root|setup_proof).sh|cmake/.*|CMakePresets.json)$'
+      grep -E $'\t(dmise|launch/(setup|scenarios)/.*|launch/stack/(base-system|apt-settings).sh|tests/system/(bare_root|in_root|setup_proof).sh|cmake/.*|CMakePresets.json)$'
     committed ls-tree -r HEAD | grep -E $'\t(.*/)?CMakeLists.txt$' | grep -vE $'\t(tests|bench)/'
     committed grep -hoE '^ *# *include <[^>]+>' HEAD -- '*.h' '*.cpp' | sort -u
   } | sha256sum | cut -c 1-16

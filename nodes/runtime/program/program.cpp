@@ -1,5 +1,6 @@
 #include "nodes/runtime/program/program.h"
 
+#include <cstdio>
 #include <optional>
 
 #include "core/base/error.h"
@@ -7,6 +8,8 @@
 #include "nodes/runtime/process/file_limit.h"
 #include "nodes/runtime/process/log.h"
 #include "nodes/runtime/program/command_line.h"
+#include "nodes/runtime/program/manual.h"
+#include "nodes/runtime/program/version_text.h"
 
 namespace dmise {
 
@@ -33,7 +36,16 @@ void add_common_flags(CLI::App& app, CommonFlags& flags) {
                  "127.0.0.1 unless given");
   app.add_option("--seed", flags.seed, "seed of all random numbers")->capture_default_str();
   app.add_flag("--check", flags.check, "check flags and files, then exit");
-  app.set_version_flag("--version", std::string("dmise ") + DMISE_VERSION);
+  const std::string version = version_text(app.get_name());
+  app.set_version_flag("--version", version);
+  app.add_flag_callback(
+         "--man",
+         [&app, version] {
+           std::printf("%s", manual_page(app, app.get_name(), version, {"dmise"}).c_str());
+           throw CLI::Success();
+         },
+         "print the manual page")
+      ->group("");  // for the build, which makes pages of it
 }
 
 int run_program(CLI::App& app, const CommonFlags& flags, int argc, char** argv,

@@ -1,0 +1,66 @@
+# What `cmake --install` and `./dmise package` put where. Component `runtime` is what the package and the container image
+# hold; `development` is what other projects need to use core/.
+include(CMakePackageConfigHelpers)
+
+foreach(kind cameras materials models scenarios sites)
+  install(DIRECTORY launch/${kind} DESTINATION share/dmise/launch COMPONENT runtime)
+endforeach()
+install(DIRECTORY proto/dmise DESTINATION share/dmise/proto COMPONENT runtime)
+foreach(catalogue stars.dat satellites.dat)  # from ./dmise setup, with their licences
+  install(FILES build/data/${catalogue} build/data/${catalogue}.copyright DESTINATION share/dmise/data COMPONENT runtime
+          OPTIONAL)
+endforeach()
+install(FILES LICENSE NOTICE CITATION.cff DESTINATION share/doc/dmise COMPONENT runtime)
+install(FILES launch/package/copyright DESTINATION share/doc/dmise COMPONENT runtime)
+
+get_target_property(python_dir dmise_proto_python PYTHON_DIR)
+install(DIRECTORY ${python_dir}/dmise DESTINATION lib/python3/dist-packages COMPONENT runtime PATTERN __pycache__ EXCLUDE)
+
+# Manual pages and completions, printed by the programs that they are of.
+get_property(programs GLOBAL PROPERTY DMISE_PROGRAMS)
+set(manuals ${CMAKE_BINARY_DIR}/share)
+add_custom_command(OUTPUT ${manuals}/made
+  COMMAND ${PROJECT_SOURCE_DIR}/launch/package/manuals.sh ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${manuals}
+  COMMAND ${CMAKE_COMMAND} -E touch ${manuals}/made
+  DEPENDS ${programs} launch/package/manuals.sh COMMENT "manual pages" VERBATIM)
+add_custom_target(manuals ALL DEPENDS ${manuals}/made)
+if(NOT DMISE_SANITIZE)
+  add_dependencies(programs manuals)
+endif()
+install(DIRECTORY ${manuals}/man ${manuals}/bash-completion ${manuals}/zsh ${manuals}/dmise DESTINATION share COMPONENT runtime)
+
+install(DIRECTORY core DESTINATION include/dmise COMPONENT development FILES_MATCHING PATTERN "*.h" PATTERN "*.inc")
+set(package_dir lib/cmake/dmise)
+install(EXPORT dmise NAMESPACE dmise:: FILE dmiseTargets.cmake DESTINATION ${package_dir} COMPONENT development)
+configure_package_config_file(cmake/dmiseConfig.cmake.in ${CMAKE_BINARY_DIR}/dmiseConfig.cmake
+                              INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/dmiseConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/dmiseConfig.cmake ${CMAKE_BINARY_DIR}/dmiseConfigVersion.cmake
+              cmake/CorePackages.cmake
+        DESTINATION ${package_dir} COMPONENT development)
+
+# The package of Debian: needs what the container image needs.
+file(STRINGS ${PROJECT_SOURCE_DIR}/launch/stack/runtime-packages.txt needed REGEX "^[^#]")
+list(JOIN needed ", " needed)
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME dmise)
+set(CPACK_PACKAGE_CONTACT "The DMISE developers <dmise@dmise.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "simulator of optical sensors that watch near-Earth space")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"A network of telescopes and cameras, on the ground and in orbit, renders what it
+sees of satellites, stars and sky, and detects what moves. Begin with `dmise demo`.")
+set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/package)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL runtime)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME dmise)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_RUNTIME_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "${needed}")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "man-db, python3-numpy, python3-protobuf, python3-zmq")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/launch/package/prerm)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+include(CPack)

@@ -1,0 +1,46 @@
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/config/search_path.h"
+#include "launch/commands.h"
+#include "launch/supervisor.h"
+
+namespace dmise {
+namespace {
+
+/// Replaces this process by `dmise launch` of the shipped demonstration.
+[[noreturn]] void launch_demo(const std::string& out, const std::vector<std::string>& more) {
+  const std::string scenario = home_directory() + "/launch/scenarios/demo.yaml";
+  if (!std::filesystem::is_regular_file(scenario))
+    throw Error(scenario + ": the demonstration's scenario is missing");
+  const std::string program = program_directory() + "/dmise";
+  std::vector<std::string> arguments{"dmise", "launch", scenario, "--out", out};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  execv(program.c_str(), argv.data());
+  throw Error(program + ": " + std::strerror(errno));
+}
+
+}  // namespace
+
+void add_demo_command(CLI::App& app) {
+  auto out = std::make_shared<std::string>("out/demo");
+  auto* command = app.add_subcommand(
+      "demo",
+      "Launches the shipped demonstration: two minutes of an evening with four sensors. Takes the "
+      "options of launch");
+  command->add_option("--out", *out, "directory of the products")->capture_default_str();
+  command->allow_extras();
+  command->callback([command, out] { launch_demo(*out, command->remaining()); });
+}
+
+}  // namespace dmise

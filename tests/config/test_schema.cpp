@@ -1,0 +1,83 @@
+#include "core/config/schema.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <stdexcept>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+#include "core/config/yaml_reader.h"
+
+namespace dmise {
+namespace {
+
+void expect_described(const Key& key, const std::string& place) {
+  EXPECT_GT(key.what.size(), 3u) << place << ": says nothing";
+  EXPECT_TRUE(key.what.ends_with('.')) << place << ": " << key.what << ": no sentence";
+  EXPECT_FALSE(key.forms.empty()) << place << ": has no type";
+  EXPECT_FALSE(key.required && !key.otherwise.empty()) << place << ": needs no default";
+}
+
+TEST(Schema, DescribesEveryKeyThatAReaderTakes) {
+  for (const FileKind& kind : file_kinds())
+    for (const Section* section : sections_within(kind.section())) {
+      EXPECT_FALSE(section->what.empty()) << section->name;
+      std::set<std::string> names;
+      for (const Key& key : section->keys) {
+        EXPECT_TRUE(names.insert(key.name).second) << section->name << ": " << key.name;
+        expect_described(key, section->name + "." + key.name);
+      }
+      if (section->any_other) expect_described(*section->any_other, section->name);
+    }
+}
+
+TEST(Schema, ItsPagesAreUpToDate) {
+  for (const FileKind& kind : file_kinds()) {
+    if (kind.draws) continue;  // as scenario
+    const std::string name(kind.name);
+    EXPECT_EQ(read_text_file(DMISE_SOURCE_DIR "/docs/reference/" + name + ".md"),
+              schema_markdown(kind))
+        << "dmise schema " << name << " --markdown > docs/reference/" << name << ".md";
+  }
+}
+
+const Section& lens_section() {
+  static const Section section{"lens",
+                               "A lens.",
+                               {required("pitch_m", form::above(0.0, 1.0), "Pitch [m]."),
+                                optional("gain", form::number(1.0, 9.0), "Gain.", "2"),
+                                optional("sharp", form::flag(), "Sharp.", "on")}};
+  return section;
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    YamlMap map(YamlValue::parse(text, "l.yaml"), lens_section());
+    map.number("pitch_m");
+    map.number_or("gain", 2.0);
+    map.flag_or("sharp", true);
+    map.done();
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Section, GivesReadersTheirRanges) {
+  EXPECT_EQ(complaint("pitch_m: 1\ngain: 9\n"), "");
+  EXPECT_EQ(complaint("pitch_m: 0\n"), "l.yaml:1:10: pitch_m: must be > 0, got 0");
+  EXPECT_EQ(complaint("pitch_m: 1.5\n"), "l.yaml:1:10: pitch_m: must be <= 1, got 1.5");
+  EXPECT_EQ(complaint("pitch_m: 1\ngain: 0\n"), "l.yaml:2:7: gain: must be >= 1, got 0");
+}
+
+TEST(Section, LetsReadersTakeNothingThatItDoesNotSay) {
+  YamlMap map(YamlValue::parse("pitch_m: 1\nother: 1\n", "l.yaml"), lens_section());
+  EXPECT_THROW(map.find("other"), std::logic_error);              // a key that it lacks
+  EXPECT_THROW(map.require("pitch_m").flag(), std::logic_error);  // another type
+  EXPECT_THROW(map.number_or("gain", 3.0), std::logic_error);     // another default
+  EXPECT_THROW(map.flag_or("sharp", false), std::logic_error);
+}
+
+}  // namespace
+}  // namespace dmise
