@@ -90,9 +90,7 @@ void write(const ExportedFile& file, const fs::path& path) {
   if (error) throw Error(path.string() + ": can't be written: " + error.message());
 }
 
-void run_export(const ExportOptions& options) {
-  const ExportFormat& format = format_named(options.to);
-  const ProductKind kind = kind_of(options, format);
+fs::path export_kind(const ExportOptions& options, const ExportFormat& format, ProductKind kind) {
   Progress progress;
   const RunProducts run =
       read_products(options.run,
@@ -115,6 +113,20 @@ void run_export(const ExportOptions& options) {
       options.out.empty() ? fs::path(options.run) / "export" / name : fs::path(options.out);
   for (const ExportedFile& file : format.files(request))
     write(file, file.path.empty() ? out : out / file.path);
+  return out;
+}
+
+void run_export(const ExportOptions& options) {
+  const ExportFormat& format = format_named(options.to);
+  fs::path out;
+  if (format.all_kinds && !options.truth && !options.detections && !options.tracks) {
+    std::error_code ignored;
+    for (const ProductKind kind : format.kinds)
+      if (kind != ProductKind::truth || fs::exists(options.run + "/truth.jsonl", ignored))
+        out = export_kind(options, format, kind);
+  } else {
+    out = export_kind(options, format, kind_of(options, format));
+  }
   std::printf("%s\n", out.c_str());
 }
 

@@ -1,10 +1,13 @@
 #include <poll.h>
+#include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <memory>
 
@@ -12,6 +15,7 @@
 #include "core/base/printable.h"
 #include "core/sim/run_phase.h"
 #include "launch/commands.h"
+#include "launch/status_watch.h"
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/process/event.h"
 #include "nodes/runtime/program/command_line.h"
@@ -21,7 +25,7 @@ namespace {
 
 struct StatusOptions {
   std::string master, keys, reason;
-  bool once = false, healthy = false;
+  bool once = false, watch = false, healthy = false;
   Tick tick = 0;
 };
 
@@ -69,6 +73,85 @@ bool healthy(const RunStatus& status) {
   return status.phase != Phase::failed;
 }
 
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// The terminal while a live table is on it: another screen, no echo, each key at once. As it was
+/// before when this ends.
+class LiveTerminal {
+ public:
+  LiveTerminal() {
+    keys_ = isatty(STDIN_FILENO) && tcgetattr(STDIN_FILENO, &before_) == 0;
+    if (keys_) {
+      termios live = before_;
+      live.c_lflag &= tcflag_t(~(ICANON | ECHO));
+      tcsetattr(STDIN_FILENO, TCSANOW, &live);
+    }
+    std::fputs("\x1b[?1049h\x1b[?25l", stdout);
+  }
+  ~LiveTerminal() {
+    std::fputs("\x1b[?25h\x1b[?1049l", stdout);
+    std::fflush(stdout);
+    if (keys_) tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+  }
+  LiveTerminal(const LiveTerminal&) = delete;
+  LiveTerminal& operator=(const LiveTerminal&) = delete;
+
+  StatusWatch::Layout layout() const {
+    winsize size{};
+    StatusWatch::Layout layout{.colours = wants_colours(true, getenv("NO_COLOR"), getenv("TERM"))};
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0)
+      layout.columns = size.ws_col, layout.rows = size.ws_row;
+    return layout;
+  }
+  /// Each line replaces what stood there, so that nothing flickers.
+  void show(const std::string& text) const {
+    std::string screen = "\x1b[H";
+    for (const char c : text) screen += c == '\n' ? std::string("\x1b[K\r\n") : std::string(1, c);
+    std::fputs((screen + "q ends\x1b[J").c_str(), stdout);
+    std::fflush(stdout);
+  }
+  /// Waits; true if q was pressed or the stop signal came.
+  bool ended(std::chrono::milliseconds within) const {
+    const Event& stop = stop_signal();
+    pollfd wait[] = {{.fd = stop.fd(), .events = POLLIN, .revents = 0},
+                     {.fd = STDIN_FILENO, .events = POLLIN, .revents = 0}};
+    poll(wait, keys_ ? 2 : 1, int(within.count()));
+    char key = 0;
+    return stop.is_set() ||
+           (wait[1].revents != 0 && (read(STDIN_FILENO, &key, 1) <= 0 || key == 'q' || key == 'Q'));
+  }
+
+ private:
+  termios before_{};
+  bool keys_ = false;
+};
+
+/// Shows the run until it ends, q, Ctrl-C, or `lost_after_s` without an answer.
+void watch(const StatusOptions& options, const Security& security, RunStatus status) {
+  constexpr double lost_after_s = 10.0;
+  stop_signal();
+  StatusWatch run;
+  run.take(status, seconds_now());
+  {
+    const LiveTerminal terminal;
+    while (true) {
+      terminal.show(run.table(terminal.layout()));
+      if (run.status().phase == Phase::ended || run.status().phase == Phase::failed) break;
+      if (terminal.ended(interval)) return;
+      try {
+        run.take(ask_master(options.master, patience_s, security), seconds_now());
+      } catch (const Error& error) {
+        run.miss(error.what(), seconds_now());
+        if (run.silent_s() > lost_after_s) break;
+      }
+    }
+  }
+  std::fputs(run.table({.columns = 500, .rows = 100'000}).c_str(), stdout);
+  if (run.silent_s() > lost_after_s) throw Error(options.master + ": does not answer any more");
+}
+
 void show(const StatusOptions& options) {
   const Security security = security_of(options);
   RunStatus status = ask_master(options.master, patience_s, security);
@@ -80,16 +163,7 @@ void show(const StatusOptions& options) {
     std::fputs(table(status).c_str(), stdout);
     return;
   }
-  const Event& stop = stop_signal();
-  while (!stop.is_set()) {
-    std::printf("\x1b[H\x1b[2J%s", table(status).c_str());
-    std::fflush(stdout);
-    if (status.phase == Phase::ended || status.phase == Phase::failed) return;
-    pollfd until_stopped{.fd = stop.fd(), .events = POLLIN, .revents = 0};
-    poll(&until_stopped, 1, int(interval.count()));
-    if (stop.is_set()) return;
-    status = ask_master(options.master, patience_s, security);
-  }
+  watch(options, security, status);
 }
 
 }  // namespace
@@ -102,7 +176,12 @@ void add_status_command(CLI::App& app) {
       ->required()
       ->check(transport_address());
   command->add_option("--keys", options->keys, "directory with operator.key");
-  command->add_flag("--once", options->once, "print once, also on a terminal");
+  auto* once = command->add_flag("--once", options->once, "print once, also on a terminal");
+  command
+      ->add_flag("--watch", options->watch,
+                 "a live table until the run ends, q or Ctrl-C, as on a terminal without --once; "
+                 "elsewhere it is printed once")
+      ->excludes(once);
   command->add_flag("--healthy", options->healthy,
                     "print nothing; exit with 0 if the run has not failed and no node is lost");
   command->callback([options] { show(*options); });

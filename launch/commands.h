@@ -24,6 +24,7 @@ void add_join_command(CLI::App& app);
 void add_dataset_command(CLI::App& app);
 void add_detect_command(CLI::App& app);
 void add_score_command(CLI::App& app);
+void add_report_command(CLI::App& app);
 void add_discriminate_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_solve_command(CLI::App& app);

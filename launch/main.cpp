@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   dmise::add_dataset_command(app);
   dmise::add_detect_command(app);
   dmise::add_score_command(app);
+  dmise::add_report_command(app);
   dmise::add_discriminate_command(app);
   dmise::add_export_command(app);
   dmise::add_solve_command(app);

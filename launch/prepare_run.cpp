@@ -15,7 +15,7 @@ RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bo
       if (!force) {
         std::printf("%s contains this run, complete; --force repeats it\n",
                     directory.path().c_str());
-        if (!has_index_page(directory)) write_index_page(directory, scenario);
+        if (!has_index_page(directory)) write_index_page(directory);
         std::fputs(what_to_open(directory, scenario).c_str(), stdout);
         return {.needed = false};
       }
@@ -48,8 +48,8 @@ RunStart prepare_directory(RunDirectory& directory, const Scenario& scenario, bo
 void finish_run(const RunDirectory& directory, const Scenario& scenario, RunOutcome outcome) {
   try {
     directory.merge_lines();
-    write_index_page(directory, scenario);
-    write_run_record(directory, scenario, outcome);  // last, because it marks completion
+    write_run_record(directory, scenario, outcome);  // the last product, for it marks completion
+    write_index_page(directory, outcome.status != "interrupted");  // which ends at once
   } catch (const Error& error) {
     // Report the first error; if that was a full disk, this one is a consequence.
     if (outcome.status != "failed") outcome.reason = error.what();

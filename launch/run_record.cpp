@@ -1,16 +1,16 @@
 #include "launch/run_record.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
+#include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/version.h"
 #include "core/base/whole_file.h"
 #include "core/orbit/interpolation_error.h"
 #include "core/products/frame_file.h"
-#include "launch/tracks_figure.h"
-#include "sensors/pipeline/frame_times.h"
+#include "launch/notes.h"
+#include "launch/write_report.h"
 
 namespace dmise {
 namespace {
@@ -30,12 +30,6 @@ void write_interpolation(JsonWriter& json, const Scenario& scenario) {
   json.field("order", static_cast<int>(scenario.interpolation)).field("tick_s", tick_s);
   if (error) json.field("median_m", error->median_m).field("worst_m", error->worst_m);
   json.end_object();
-}
-
-bool is_cueing(const Scenario& scenario) {
-  return std::ranges::any_of(scenario.sensors, [](const SensorConfig& s) {
-    return std::holds_alternative<PointCued>(s.pointing);
-  });
 }
 
 }  // namespace
@@ -69,49 +63,12 @@ void write_run_record(const RunDirectory& directory, const Scenario& scenario,
   write_file_whole(directory.path() + "/run.json", json.take() + "\n");
 }
 
-void write_index_page(const RunDirectory& directory, const Scenario& scenario) {
-  std::string html =
-      "<!doctype html><meta charset=utf-8><title>DMISE run</title>"
-      "<meta name=viewport content='width=device-width'>"
-      "<style>body{font:15px/1.4 sans-serif;background:#111;color:#ddd;margin:2em}"
-      "a{color:#8cf}img{max-width:100%;background:#000}table{border-collapse:collapse}"
-      "td,th{padding:.2em .8em;text-align:right;border-bottom:1px solid #333}"
-      "td:first-child,th:first-child{text-align:left}</style>"
-      "<h1>DMISE run</h1><p>Start " +
-      scenario.start_utc + ", " + std::to_string(static_cast<long>(scenario.duration.seconds())) +
-      " s, seed " + std::to_string(scenario.seed) +
-      ". Truth is green, streaks found are cyan, points yellow. <a "
-      "href=detections.jsonl>detections.jsonl</a> "
-      "<a href=truth.jsonl>truth.jsonl</a> " +
-      (scenario.fusion ? "<a href=tracks.jsonl>tracks.jsonl</a> " : "") +
-      (is_cueing(scenario) ? "<a href=tasks.jsonl>tasks.jsonl</a> " : "") +
-      "<a href=run.json>run.json</a></p>"
-      "<table><tr><th>sensor<th>frames<th>objects in frame<th>detections<th>s per frame<th>memory, "
-      "MB";
-  const auto summaries = summarise(scenario, directory.path());
-  char cells[256];
-  for (const auto& s : summaries) {
-    std::snprintf(cells, sizeof cells, "<td>%d<td>%d<td>%d<td>%.2f<td>%.0f", s.frames, s.objects,
-                  s.detections, s.seconds_per_frame, s.memory_mb);
-    html += "<tr><td><a href='#" + s.name + "'>" + s.name + "</a>" + cells;
+void write_index_page(const RunDirectory& directory, bool pixels) {
+  try {
+    write_report(directory.path(), pixels);
+  } catch (const Error& error) {
+    print_note(directory.path() + "/index.html was not written: " + error.what());
   }
-  html += "</table>";
-  if (write_tracks_figure(scenario, directory.path()))
-    html += "<h2>Tracks</h2><p><img src=tracks.svg></p>";
-  for (const auto& s : summaries) {
-    html += "<h2 id='" + s.name + "'>" + s.name + "</h2>";
-    const std::uint32_t last = frames_within(sensor_named(scenario, s.name), scenario.duration);
-    for (std::uint32_t frame = 1; frame <= last; ++frame) {
-      const std::string base = s.name + "/";
-      const std::string marked = base + frame_file_name(frame, "-marked.png");
-      if (!exists(directory.path() + "/" + marked)) continue;
-      html += "<p>frame " + std::to_string(frame) + ": <a href='" + base +
-              frame_file_name(frame, ".fits") + "'>FITS</a> <a href='" + base +
-              frame_file_name(frame, ".png") + "'>PNG</a><br><a href='" + marked +
-              "'><img loading=lazy src='" + marked + "'></a></p>";
-    }
-  }
-  write_file_whole(directory.path() + "/index.html", html + "\n");
 }
 
 bool has_index_page(const RunDirectory& directory) {

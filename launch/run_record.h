@@ -30,8 +30,9 @@ struct RunOutcome {
 void write_run_record(const RunDirectory& directory, const Scenario& scenario,
                       const RunOutcome& outcome);
 
-/// Writes index.html: the sensors with their frames and pictures.
-void write_index_page(const RunDirectory& directory, const Scenario& scenario);
+/// Writes index.html, the report of the run; says so if it can't be written. `pixels`: as in
+/// `write_report`.
+void write_index_page(const RunDirectory& directory, bool pixels = true);
 bool has_index_page(const RunDirectory& directory);
 
 /// Suggests what to open: the first marked picture and the index page, if they exist.

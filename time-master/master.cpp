@@ -200,6 +200,7 @@ void MasterProcess::enforce_limits() {
 }
 
 void MasterProcess::advance() {
+  tick_log_.grant(coordinator_.options().first_tick, coordinator_.granted(), now());
   const Phase before = publisher_.phase();
   if (!publisher_.publish_changes() || publisher_.phase() == before) return;
   const Phase phase = publisher_.phase();
@@ -236,6 +237,7 @@ MasterResult MasterProcess::result() const {
   if (started_) result.wall_s = as_seconds(ended_.value_or(now()) - *started_);
   result.times = times_;
   result.messages = messages_;
+  result.ticks = tick_log_.records();
   result.cpu_s = std::max(0.0, cpu_s_);
   return result;
 }

@@ -98,6 +98,7 @@ void MasterProcess::done(const std::string& name) {
   if (security_.on() && !owners_.keep_own(name, heard_.mutable_done()))
     log_.warn("messages refused", "refused what " + name + " reports about topics of others");
   coordinator_.done(name, tally_of(heard_.done()), now());
+  tick_log_.settle(coordinator_.settled(), now(), name);
   if (heard_.done().published().empty()) return;
   const auto member = coordinator_.members().find(name);
   if (member == coordinator_.members().end() || member->second.is_guest()) return;

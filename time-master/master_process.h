@@ -10,6 +10,7 @@
 #include "time-master/coordinator.h"
 #include "time-master/master.h"
 #include "time-master/master_publisher.h"
+#include "time-master/tick_log.h"
 
 namespace dmise {
 
@@ -95,6 +96,7 @@ class MasterProcess {
   std::map<std::string, TimeSplit> times_;
   v1::NodeMessage heard_;
   ClockWatch watch_;
+  TickLog tick_log_;
   std::optional<Instant> started_, ended_;
   std::uint64_t messages_ = 0;
   double cpu_s_ = 0.0;

@@ -48,7 +48,12 @@ std::string to_json(const MasterResult& result) {
     json.field("waiting_s", times.waiting_s);
     json.end_object();
   }
-  json.end_object().end_object();
+  json.end_object().key("ticks").begin_array();
+  for (const TickRecord& t : result.ticks) {
+    json.begin_object().field("tick", std::int64_t(t.tick)).field("granted_s", t.granted_s);
+    json.field("settled_s", t.settled_s).field("last", t.last).end_object();
+  }
+  json.end_array().end_object();
   return json.take();
 }
 

@@ -7,6 +7,7 @@
 #include "core/base/sim_time.h"
 #include "nodes/runtime/protocol/time_split.h"
 #include "time-master/coordinator.h"
+#include "time-master/tick_log.h"
 
 namespace dmise {
 
@@ -22,15 +23,16 @@ struct MasterResult {
   std::uint64_t digest = 0;                // of everything published; the same for the same run
   std::uint64_t overruns = 0;              // ticks not done when the next was due in real time
   double worst_lag_s = 0.0;
-  std::uint64_t messages = 0;  // received from the first grant to the end
-  double cpu_s = 0.0;          // of the master's whole process in that time
+  std::uint64_t messages = 0;     // received from the first grant to the end
+  double cpu_s = 0.0;             // of the master's whole process in that time
+  std::vector<TickRecord> ticks;  // the latest
 };
 
 /// Result of a coordinator's run.
 MasterResult result_of(const Coordinator& coordinator);
 
 /// One JSON object: status, cause, granted_tick, wall_s, digest, overruns, worst_lag_s, dropped,
-/// restarts, and the time split of each node.
+/// restarts, the time split of each node, and the latest ticks.
 std::string to_json(const MasterResult& result);
 
 }  // namespace dmise

@@ -3,8 +3,10 @@
 #include "core/base/error.h"
 #include "core/exchange/coco.h"
 #include "core/exchange/csv.h"
+#include "core/exchange/czml.h"
 #include "core/exchange/oem.h"
 #include "core/exchange/omm.h"
+#include "core/exchange/regions.h"
 #include "core/exchange/satnet.h"
 #include "core/exchange/tdm.h"
 #include "core/exchange/udl.h"
@@ -60,6 +62,18 @@ const std::vector<ExportFormat>& export_formats() {
        .file = "udl-KIND.json",
        .kinds = {detections, truth},
        .files = one_file<udl_json>},
+      {.name = "czml",
+       .what =
+           "CZML for CesiumJS: objects or confirmed tracks, sensors and fields of view over time",
+       .file = "KIND.czml",
+       .kinds = {truth, tracks},
+       .files = one_file<czml_text>},
+      {.name = "regions",
+       .what = "DS9 region files of each frame, in pixels and in ICRS: truth and detections",
+       .file = "regions",
+       .kinds = {detections, truth},
+       .all_kinds = true,
+       .files = region_files},
   };
   return formats;
 }

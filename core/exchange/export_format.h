@@ -32,6 +32,7 @@ struct ExportFormat {
   const char* file;                // of the output below RUN/export; without an ending: a directory
   std::vector<ProductKind> kinds;  // that it can hold, the default first
   bool takes_elements = false;
+  bool all_kinds = false;  // unless one is asked for, all that the run has
   std::vector<ExportedFile> (*files)(const ExportRequest&);
 };
 

@@ -11,6 +11,7 @@
 #include "core/frames/geodesy.h"
 #include "core/optics/psf_table.h"
 #include "core/score/json_record.h"
+#include "core/score/wcs_record.h"
 #include "core/time/iso8601.h"
 
 namespace dmise {
@@ -65,6 +66,7 @@ RunFrame frame_of(const JsonRecord& report, const RunSensor& sensor) {
              .sensor_velocity_m_per_s = vector("sensor_velocity_gcrs_m_per_s"),
              .psf_fwhm_px = sensor.psf_fwhm_px,
              .zero_point_mag = report.number("zero_point_mag")};
+  f.wcs = wcs_of(report.object("wcs"));
   const auto cd = report.object("wcs").numbers<4>("cd_deg_per_px");
   f.column_step_deg = std::hypot(cd[0], cd[2]);
   f.row_step_deg = std::hypot(cd[1], cd[3]);

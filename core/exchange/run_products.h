@@ -11,6 +11,7 @@
 #include "core/products/truth.h"
 #include "core/score/read_progress.h"
 #include "core/time/clock.h"
+#include "core/wcs/wcs.h"
 
 namespace dmise {
 
@@ -36,6 +37,7 @@ struct RunFrame {
   double column_step_deg = 0.0, row_step_deg = 0.0;      // angle of a pixel at the reference
   double psf_fwhm_px = 0.0;
   double zero_point_mag = 0.0;
+  std::optional<Wcs> wcs;  // of the image, as detection saw it
 
   double exposure_s() const { return (end - start).seconds(); }
 };

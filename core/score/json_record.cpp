@@ -84,6 +84,23 @@ std::vector<JsonRecord> JsonRecord::objects(const char* key) const {
   return out;
 }
 
+std::map<std::string, double> JsonRecord::all_numbers() const {
+  std::map<std::string, double> out;
+  for (const auto& [key, value] : object_.items()) {
+    if (value.is_null()) continue;
+    require(value.is_number() && is_finite(value), key.c_str(), "a number");
+    out.emplace(key, value.get<double>());
+  }
+  return out;
+}
+
+std::vector<std::pair<std::string, JsonRecord>> JsonRecord::all_objects() const {
+  std::vector<std::pair<std::string, JsonRecord>> out;
+  for (const auto& [key, value] : object_.items())
+    out.emplace_back(key, JsonRecord(value, place_ + ": " + key));
+  return out;
+}
+
 std::vector<double> JsonRecord::number_list(const char* key) const {
   std::vector<double> numbers;
   require(at(key).is_array(), key, "a list of numbers");

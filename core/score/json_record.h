@@ -2,8 +2,10 @@
 #include <array>
 #include <concepts>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/products/detection.h"
@@ -55,6 +57,9 @@ class JsonRecord {
   std::vector<JsonRecord> objects(const char* key) const;
   std::vector<std::string> texts(const char* key) const;
   std::vector<double> number_list(const char* key) const;
+  /// The members of an object of numbers, or of objects, by name.
+  std::map<std::string, double> all_numbers() const;
+  std::vector<std::pair<std::string, JsonRecord>> all_objects() const;
   /// Number of items of a list.
   std::size_t length(const char* key) const;
   [[noreturn]] void fail(const std::string& key, const std::string& reason) const;

@@ -26,18 +26,6 @@ class Unique {
   std::set<std::string> names_;
 };
 
-/// A camera of run.json, as far as it matters here.
-ScoredFrame camera_of(const JsonRecord& sensor) {
-  const JsonRecord camera = sensor.object("camera");
-  Optics optics{.focal_length_m = camera.number("focal_length_m"),
-                .aperture_m = camera.number("aperture_m"),
-                .pixel_pitch_m = camera.number("pixel_pitch_m"),
-                .psf_fwhm_px = camera.number("psf_fwhm_px")};
-  return {.columns = camera.get<int>("columns"),
-          .rows = camera.get<int>("rows"),
-          .sigma_px = psf_sigma_px(optics, camera.number("band_centre_m"))};
-}
-
 }  // namespace
 
 TrueSource source_of(const Truth& truth) {
@@ -75,6 +63,17 @@ ScoredFrame frame_of(const JsonRecord& report) {
   const auto cd = report.object("wcs").numbers<4>("cd_deg_per_px");
   f.scale_rad_per_px = std::sqrt(std::abs(cd[0] * cd[3] - cd[1] * cd[2])) * deg;
   return f;
+}
+
+ScoredFrame camera_of(const JsonRecord& sensor) {
+  const JsonRecord camera = sensor.object("camera");
+  Optics optics{.focal_length_m = camera.number("focal_length_m"),
+                .aperture_m = camera.number("aperture_m"),
+                .pixel_pitch_m = camera.number("pixel_pitch_m"),
+                .psf_fwhm_px = camera.number("psf_fwhm_px")};
+  return {.columns = camera.get<int>("columns"),
+          .rows = camera.get<int>("rows"),
+          .sigma_px = psf_sigma_px(optics, camera.number("band_centre_m"))};
 }
 
 ScoreInput read_run(const std::string& directory, const ReadProgress& progress) {

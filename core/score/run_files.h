@@ -18,5 +18,7 @@ class JsonRecord;
 /// The frame of a report (`FileDetections::report`, a line of frames.jsonl), without its size and,
 /// unless the report states it, its PSF.
 ScoredFrame frame_of(const JsonRecord& report);
+/// Size and PSF of a frame of a sensor, as run.json's scenario describes it.
+ScoredFrame camera_of(const JsonRecord& sensor);
 
 }  // namespace dmise

@@ -1,5 +1,5 @@
 """Readers of other people read what `dmise export` writes of a small run: ccsds-ndm the messages of CCSDS, sgp4 element sets,
-pycocotools COCO, csv tables; SatSim computes SatNet's annotations, the Unified Data Library's own client lists its fields.
+pycocotools COCO, csv tables, regions region files of DS9; SatSim computes SatNet's annotations, the Unified Data Library's own client lists its fields.
 
     read_exports.py DMISE
 """
@@ -14,6 +14,7 @@ import pathlib
 import subprocess
 import sys
 import types
+import warnings
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests/system"), str(ROOT / "tests/reference")]
@@ -23,7 +24,10 @@ try:
     import numpy as np
     import pycocotools.coco
     import pycocotools.cocoeval
+    import regions
     import sgp4.omm
+    from astropy.io import fits
+    from astropy.wcs import WCS
     from ccsds_ndm.ndm_io import NdmIo
     from sgp4.api import Satrec
     PACKAGES = {name: pathlib.Path(importlib.util.find_spec(name).origin).parent
@@ -260,6 +264,66 @@ def read_udl(path, detections):
         check_quietly(abs(r["raUnc"] / sigma - 1) < 1e-9, f"{d['id']}: sigma of right ascension")
 
 
+def read_czml(path, run, truths, frames):
+    packets = json.loads(path["czml", "truth"].read_text())
+    names = [p["id"] for p in packets]
+    check(names[0] == "document" and packets[0]["version"] == "1.0" and len(set(names)) == len(names), f"CZML has {len(names)} packets")
+    check("agi_" not in path["czml", "truth"].read_text(), "and no extension of one program")
+    start = packets[0]["clock"]["interval"].split("/")[0]
+    by_name = dict(zip(names, packets))
+    # Objects: where truth has them, in the inertial frame.
+    for t in truths:
+        p = by_name[f"object/{t['catalogue_number']}"]["position"]
+        check_quietly(p["referenceFrame"] == "INERTIAL" and p["epoch"] == start, t["name"])
+        rows = np.array(p["cartesianVelocity"]).reshape(-1, 7)
+        row = rows[np.argmin(abs(rows[:, 0] - t["middle_ns"] / 1e9))]
+        check_quietly(np.linalg.norm(row[1:4] - t["true_position_gcrs_m"]) < 1e-3 and
+                      np.linalg.norm(row[4:] - t["true_velocity_gcrs_m_per_s"]) < 1e-6 and np.all(np.diff(rows[:, 0]) > 0), t["name"])
+    check(by_name["sensor/savannah"]["position"]["cartographicDegrees"][1] > 30 and
+          by_name["sensor/metop"]["position"]["referenceFrame"] == "INERTIAL", "sensors are on the ground and in orbit")
+    fields = [p for p in packets if "polyline" in p]
+    check(len(fields) == len(frames), f"{len(fields)} fields of view, one a frame")
+    for p in packets:
+        for name in p.get("polyline", {}).get("positions", {}).get("references", []):
+            check_quietly(name.endswith("#position") and "position" in by_name[name[:-9]], f"{name} is a packet's position")
+    for f in frames:  # the corners of the field are the WCS's
+        with warnings.catch_warnings(), fits.open(run / f["sensor"] / f"frame-{f['frame']:06}.fits") as file:
+            warnings.simplefilter("ignore")
+            world, shape = WCS(file[0].header, file), file[0].data.shape
+        corner = world.all_pix2world([[shape[1] - 0.5, shape[0] - 0.5]], 0)[0]
+        at = np.array(by_name[f"field/{f['sensor']}/{f['frame']}/3"]["position"]["cartesianVelocity"][1:4])
+        line = at - f["sensor_position_gcrs_m"]
+        angle = np.linalg.norm(line / np.linalg.norm(line) - unit(*corner))
+        check_quietly(angle < 1e-6, f"corner of {f['sensor']}/{f['frame']} is off by {angle}")
+
+
+def read_regions(path, run, truths, detections):
+    directory = path["regions", "all"]
+    for kind, rows in (("truth", [t for t in truths if t["in_frame"]]), ("detections", detections)):
+        found = {"image": 0, "icrs": 0}
+        for frame in sorted(directory.glob(f"*/*-{kind}.image.reg")):
+            fits_file = run / frame.parent.name / (frame.name.split(f"-{kind}")[0] + ".fits")
+            with warnings.catch_warnings(), fits.open(fits_file) as file:
+                warnings.simplefilter("ignore")
+                world = WCS(file[0].header, file)
+            image, sky = (regions.Regions.read(name, format="ds9")
+                          for name in (frame, frame.with_name(frame.name.replace(".image.", ".icrs."))))
+            found["image"] += len(image)
+            found["icrs"] += len(sky)
+            for a, b in zip(image, sky):
+                circle = isinstance(a, regions.CirclePixelRegion)
+                place, direction = (a.center, b.center) if circle else (a.start, b.start)
+                x, y = world.all_world2pix([[direction.ra.deg, direction.dec.deg]], 0, quiet=True)[0]
+                inside = 0 <= place.x < world.pixel_shape[0] and 0 <= place.y < world.pixel_shape[1]
+                check_quietly(not inside or math.hypot(x - place.x, y - place.y) < 0.02, f"{frame.name}: both coordinates are one place")
+        check(found["image"] == found["icrs"] >= len(rows) > 20, f"{found['image']} regions of {len(rows)} {kind}, read by astropy's")
+    d = next(d for d in detections if d["kind"] == "point") if any(d["kind"] == "point" for d in detections) else detections[0]
+    name = f"{d['sensor']}/frame-{d['frame']:06}-detections.image.reg"
+    first = regions.Regions.read(directory / name, format="ds9")
+    places = [(r.center.x, r.center.y) if hasattr(r, "center") else (r.end.x, r.end.y) for r in first]
+    check(min(math.hypot(x - d["x_px"], y - d["y_px"]) for x, y in places) < 1e-3, "a region is where its detection is")
+
+
 def refusals(export, run):
     for arguments, words in ((("--to", "tdmm"), "did you mean tdm"), (("--to", "oem", "--detections"), "oem holds only truth"),
                              (("--to", "csv", "--sensor", "metopp"), "did you mean metop"),
@@ -283,7 +347,7 @@ def test(binary, directory):
 
     path = {}
     for to, kind in (("tdm", "detections"), ("tdm", "truth"), ("oem", "truth"), ("omm", "truth"), ("satnet", "truth"),
-                     ("coco", "truth"), ("coco", "detections"), ("csv", "detections"), ("udl", "detections"), ("udl", "truth")):
+                     ("coco", "truth"), ("coco", "detections"), ("csv", "detections"), ("udl", "detections"), ("udl", "truth"), ("czml", "truth")):
         path[to, kind] = directory / f"{to}-{kind}.out"
         export("--to", to, f"--{kind}", "--out", path[to, kind])
         if path[to, kind].is_file():
@@ -299,6 +363,10 @@ def test(binary, directory):
     read_csv(path, run)
     read_udl(path, detections)
     read_satnet(path, run, truths, frames)
+    read_czml(path, run, truths, frames)
+    path["regions", "all"] = directory / "regions"
+    export("--to", "regions", "--out", path["regions", "all"])
+    read_regions(path, run, truths, detections)
     refusals(export, run)
 
 

@@ -117,7 +117,8 @@ def check_cues(run):
     before = sigma[max(t for t in sigma if t <= tasks[0]["given_ns"])]
     first, last = sigma[min(t for t in sigma if t >= tasks[0]["end_ns"])], sigma[max(sigma)]
     check(first < before / 1.5 and last < before / 3, f"the orbit improves: {before:.0f} m before, {first:.0f} m after the first task, {last:.0f} m at the end")
-    check("telescope" in (run / "tracks.svg").read_text(), "the page draws it")
+    page = json.loads((run / "index.html").read_text().split('id="run">')[1].split("</script>")[0])
+    check(page["cue_count"] == len(tasks) and any(t["cues"] and len(t["curve"]) > 1 for t in page["tracks"]), "the page draws it")
 
 
 def is_complete(run, what):

@@ -1,0 +1,119 @@
+#include "core/exchange/regions.h"
+
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "core/base/units.h"
+#include "core/exchange/image_label.h"
+#include "core/products/frame_file.h"
+#include "core/score/trail.h"
+#include "core/wcs/wcs.h"
+
+namespace dmise {
+namespace {
+
+/// A text between braces, which has no other rule than that they end it.
+std::string braced(const std::string& text) {
+  std::string out = "{";
+  for (const char c : text)
+    out += c == '{' ? '(' : c == '}' ? ')' : static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  return out + "}";
+}
+
+template <class... Values>
+std::string format(const char* text, Values... values) {
+  char line[256];
+  std::snprintf(line, sizeof line, text, values...);
+  return line;
+}
+
+/// One source: its trail, and how it is drawn.
+struct Region {
+  PixelPosition start, middle, end;
+  std::string text, style;
+};
+
+std::string image_shapes(const Region& r, double radius_px) {
+  const auto place = [](PixelPosition p) { return format("%.3f,%.3f", p.x_px + 1, p.y_px + 1); };
+  const std::string tail = " # " + r.style + " text=" + braced(r.text) + "\n";
+  if (r.start == r.end) return "circle(" + place(r.middle) + format(",%.3f)", radius_px) + tail;
+  const std::string plain = " # line=0 0 " + r.style + "\n";
+  return "line(" + place(r.start) + "," + place(r.middle) + ")" + plain + "line(" +
+         place(r.middle) + "," + place(r.end) + ") # line=0 0 " + r.style +
+         " text=" + braced(r.text) + "\n";
+}
+
+std::string sky_shapes(const Region& r, double radius_px, const Wcs& wcs) {
+  const auto place = [&](PixelPosition p) {
+    const Vec<Gcrs> v = wcs_direction(wcs, p);
+    const double ra = std::atan2(v.y, v.x);
+    return format("%.8f,%.8f", (ra < 0.0 ? ra + 2 * pi : ra) / deg,
+                  std::atan2(v.z, std::hypot(v.x, v.y)) / deg);
+  };
+  const std::string tail = " # " + r.style + " text=" + braced(r.text) + "\n";
+  if (r.start == r.end)
+    return "circle(" + place(r.middle) +
+           format(",%.3f\")", radius_px * wcs_scale_rad_per_px(wcs) / arcsec) + tail;
+  return "line(" + place(r.start) + "," + place(r.middle) + ") # line=0 0 " + r.style + "\n" +
+         "line(" + place(r.middle) + "," + place(r.end) + ") # line=0 0 " + r.style +
+         " text=" + braced(r.text) + "\n";
+}
+
+Region region_of(const Truth& t) {
+  const auto [start, middle, end] = places_of(t);
+  const double length = std::hypot(end.x_px - start.x_px, end.y_px - start.y_px);
+  Region r{start, middle, end, t.name, "color=green width=1"};
+  if (length < 2.0) r.start = r.end = r.middle;
+  return r;
+}
+
+Region region_of(const Detection& d) {
+  const PixelPosition middle{d.x_px, d.y_px};
+  Region r{middle, middle, middle, format("mag %.2f SNR %.1f", d.magnitude, d.snr),
+           "color=cyan width=1 dash=1"};
+  if (d.kind == DetectionKind::streak) {
+    r.start = {d.end1_x_px, d.end1_y_px};
+    r.end = {d.end2_x_px, d.end2_y_px};
+  }
+  return r;
+}
+
+}  // namespace
+
+std::vector<ExportedFile> region_files(const ExportRequest& request) {
+  const RunProducts& run = request.run;
+  std::map<std::pair<std::string, std::uint32_t>, std::vector<Region>> regions;
+  for (const RunFrame& f : run.frames) regions[{f.sensor, f.frame}];
+  if (request.kind == ProductKind::truth) {
+    for (const Truth& t : run.truths)
+      if (t.in_frame) {
+        run.frame(t.sensor, t.frame);
+        regions[{t.sensor, t.frame}].push_back(region_of(t));
+      }
+  } else {
+    for (const Detection& d : run.detections) {
+      run.frame(d.sensor, d.frame);
+      regions[{d.sensor, d.frame}].push_back(region_of(d));
+    }
+  }
+  const std::string head = "# Region file format: DS9 version 4.1\n# " + run.software +
+                           ", scenario " + run.digest + "\nglobal font=\"helvetica 10 normal\"\n";
+  std::vector<ExportedFile> files;
+  for (const auto& [key, list] : regions) {
+    const RunFrame& frame = run.frame(key.first, key.second);
+    const double radius_px = std::max(4.0, 2.0 * frame.psf_fwhm_px);
+    std::string image = head + "image\n", sky = head + "icrs\n";
+    for (const Region& r : list) {
+      image += image_shapes(r, radius_px);
+      if (frame.wcs) sky += sky_shapes(r, radius_px, *frame.wcs);
+    }
+    const std::string stem =
+        key.first + "/" + frame_file_name(key.second, "-") + name_of(request.kind);
+    files.push_back({.path = stem + ".image.reg", .content = image, .copy_of = ""});
+    if (frame.wcs) files.push_back({.path = stem + ".icrs.reg", .content = sky, .copy_of = ""});
+  }
+  return files;
+}
+
+}  // namespace dmise

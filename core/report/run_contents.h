@@ -1,0 +1,109 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/products/detection.h"
+#include "core/products/task.h"
+#include "core/products/track.h"
+#include "core/products/truth.h"
+#include "core/score/score.h"
+
+namespace dmise {
+
+/// What an effect cost a sensor, summed over its frames.
+struct EffectCost {
+  std::map<std::string, std::size_t> levels;  // frames at each; empty without a plan
+  std::string why;                            // of its first decided level
+  std::size_t planned_frames = 0;             // that predict a cost
+  double predicted_s = 0.0, measured_s = 0.0;
+};
+
+struct ReportSensor {
+  /// Geodetic.
+  struct Site {
+    double latitude_deg = 0.0, longitude_deg = 0.0, height_m = 0.0;
+  };
+  std::string name;
+  std::optional<Site> site;
+  std::string platform, camera;
+  double exposure_s = 0.0, cadence_s = 0.0;
+  ScoredFrame camera_facts;  // columns, rows, sigma_px
+  std::size_t frames = 0, detections = 0;
+  double seconds_per_frame = 0.0, memory_mb = 0.0;
+  std::size_t costs = 0;  // frames of which the cost is known
+  std::map<std::string, EffectCost> effects;
+  std::string log;  // its path from the run's directory; empty: none
+};
+
+struct ReportFrame {
+  std::size_t sensor = 0;
+  std::uint32_t number = 0;
+  SimTime start, middle, end;
+  std::string middle_utc;
+  double boresight_ra_rad = 0.0, boresight_dec_rad = 0.0;
+  Vec<Gcrs> sensor_position_m;
+  std::optional<double> limiting_magnitude, background_e, noise_e, total_s, predicted_s;
+  std::size_t stars_found = 0, stars_expected = 0;
+  std::string fits, picture, marked;  // paths from the run's directory; empty: not there
+};
+
+struct ReportTruth {
+  std::size_t frame = 0;
+  Truth truth;
+  std::size_t scored = 0;  // in Score::truths
+};
+
+struct ReportDetection {
+  std::size_t frame = 0;
+  Detection detection;
+  bool of_truth = false;
+};
+
+/// A track, as far as it is drawn.
+struct ReportTrack {
+  Track last;
+  double first_s = 0.0;
+  std::size_t cues = 0;
+  std::vector<std::pair<double, double>> sigma_m;  // time [s], standard deviation of its position
+};
+
+/// What a clock did with a tick, seconds since its first.
+struct ReportTick {
+  Tick tick = 0;
+  double granted_s = 0.0, settled_s = 0.0;
+  std::string last;  // the node that all others waited for
+};
+
+struct NodeCost {
+  std::string name;
+  double compute_s = 0.0, messaging_s = 0.0, waiting_s = 0.0, start_s = 0.0;
+};
+
+/// The products of a run, complete or not.
+struct RunContents {
+  std::string directory, status, how, reason, software, digest, start_utc, star_catalogue;
+  std::optional<double> wall_s;
+  std::uint64_t seed = 0;
+  double duration_s = 0.0, tick_s = 0.0;
+  std::vector<ReportSensor> sensors;
+  std::vector<ReportFrame> frames;  // by sensor and number
+  std::vector<ReportTruth> truths;  // of objects that may have light in a frame
+  std::vector<ReportDetection> detections;
+  bool has_truth = false;
+  Score score;
+  std::vector<ReportTrack> tracks;
+  std::vector<Task> cues;
+  std::vector<ReportTick> ticks;
+  std::vector<NodeCost> nodes;
+  std::vector<std::string> files;  // products and logs, paths from the directory
+};
+
+/// Reads what is in a run's directory: the lines of each sensor, also of a run that was
+/// interrupted or has not ended. Throws `ConfigError` "FILE:LINE: KEY: reason" for what is invalid,
+/// and if no sensor has left a frame.
+RunContents read_contents(const std::string& directory);
+
+}  // namespace dmise

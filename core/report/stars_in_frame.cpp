@@ -1,0 +1,57 @@
+#include "core/report/stars_in_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/units.h"
+
+namespace dmise {
+
+std::vector<StarInFrame> stars_in_frame(const StarMap& map, const Wcs& wcs, int columns, int rows,
+                                        double jyear, std::size_t most) {
+  const Vec<Gcrs> axis = wcs_direction(wcs, {0.5 * (columns - 1), 0.5 * (rows - 1)});
+  double least_cosine = 1.0;
+  for (int k = 0; k <= 8; ++k)
+    for (const PixelPosition edge :
+         {PixelPosition{columns * k / 8.0, 0.0}, PixelPosition{columns * k / 8.0, double(rows)},
+          PixelPosition{0.0, rows * k / 8.0}, PixelPosition{double(columns), rows * k / 8.0}})
+      least_cosine = std::min(least_cosine, dot(wcs_direction(wcs, edge), axis));
+  const auto& stars = map.stars;
+  const double years = jyear - stars.epoch_jyear;
+  const double radius_rad =
+      std::min(pi, std::acos(std::clamp(least_cosine, -1.0, 1.0)) +
+                       std::abs(years) * map.index.fastest_motion_rad_per_yr + 0.1 * deg);
+  std::vector<StarInFrame> out;
+  std::vector<std::uint32_t> found;
+  const std::span<const float> magnitudes(stars.v_mag.data(), stars.v_mag.size());
+  for (double faintest = 2.0; faintest <= 16.0; faintest += 1.0) {
+    found.clear();
+    out.clear();
+    query_cone(magnitudes, map.index, axis, radius_rad, faintest, found);
+    for (const std::uint32_t i : found) {
+      const double dec = stars.dec_rad[i], ra = stars.ra_rad[i];
+      const Vec<Gcrs> east{-std::sin(ra), std::cos(ra), 0.0};
+      const Vec<Gcrs> north{-std::sin(dec) * std::cos(ra), -std::sin(dec) * std::sin(ra),
+                            std::cos(dec)};
+      const Vec<Gcrs> now = unit(
+          Vec<Gcrs>{std::cos(dec) * std::cos(ra), std::cos(dec) * std::sin(ra), std::sin(dec)} +
+          east * (years * stars.pm_ra_cosdec_rad_per_yr[i]) +
+          north * (years * stars.pm_dec_rad_per_yr[i]));
+      const auto pixel = wcs_pixel(wcs, now);
+      if (!pixel || !(pixel->x_px > -0.5) || !(pixel->y_px > -0.5) ||
+          !(pixel->x_px < columns - 0.5) || !(pixel->y_px < rows - 0.5) ||
+          !wcs_sees_sky(wcs, *pixel))
+        continue;
+      double ra_now = std::atan2(now.y, now.x);
+      if (ra_now < 0.0) ra_now += 2 * pi;
+      out.push_back({stars.id[i], *pixel, ra_now, std::asin(std::clamp(now.z, -1.0, 1.0)),
+                     double(stars.v_mag[i])});
+    }
+    if (out.size() >= most || found.size() > 20 * most) break;
+  }
+  std::ranges::stable_sort(out, {}, &StarInFrame::v_mag);
+  if (out.size() > most) out.resize(most);
+  return out;
+}
+
+}  // namespace dmise

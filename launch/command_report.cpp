@@ -1,0 +1,33 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "launch/commands.h"
+#include "launch/write_report.h"
+
+namespace dmise {
+namespace {
+
+struct ReportOptions {
+  std::string run;
+  int threads = 0;
+};
+
+}  // namespace
+
+void add_report_command(CLI::App& app) {
+  auto options = std::make_shared<ReportOptions>();
+  auto* command = app.add_subcommand("report",
+                                     "Writes the page of a run, RUN/index.html, from its products "
+                                     "alone: of one that has ended, was "
+                                     "interrupted or still goes on");
+  command->add_option("run", options->run, "directory of a run")->required();
+  command->add_option("--threads", options->threads, "number of threads; 0: of the processors")
+      ->default_val(0)
+      ->check(CLI::Range(0, 256));
+  command->callback([options] {
+    std::printf("%s\n", write_report(options->run, true, options->threads).c_str());
+  });
+}
+
+}  // namespace dmise

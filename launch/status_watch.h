@@ -1,0 +1,51 @@
+#pragma once
+#include <deque>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "nodes/runtime/observability/status.h"
+
+namespace dmise {
+
+/// The health of a run's nodes over time, from one answer of its time-master after another, as a
+/// table for a terminal.
+class StatusWatch {
+ public:
+  struct Layout {
+    int columns = 80, rows = 24;  // of the terminal; rows that do not fit are counted
+    bool colours = false;
+  };
+
+  /// `now_s`: when it was answered, seconds of any clock.
+  void take(const RunStatus& status, double now_s);
+  /// The time-master did not answer at `now_s`, and why.
+  void miss(const std::string& reason, double now_s);
+
+  const RunStatus& status() const { return status_; }
+  /// Seconds without an answer; 0 if the last one was answered.
+  double silent_s() const { return silent_s_; }
+
+  /// Lines with "\n", of at most `columns` characters. Text of other processes is `printable`.
+  std::string table(const Layout& layout) const;
+
+ private:
+  struct History {
+    std::deque<std::pair<double, Tick>> done;  // of the last seconds
+    bool alive = true;
+    std::uint64_t incarnation = 1;
+    int gaps = 0;            // times that it was lost or replaced
+    std::string last_error;  // what happened last, and when
+  };
+  double rate(const History& node) const;
+
+  RunStatus status_;
+  std::map<std::string, History> nodes_;
+  double answered_s_ = 0.0, silent_s_ = 0.0;
+  std::string silence_;
+};
+
+/// Whether to colour: on a terminal that can, unless NO_COLOR says no (no-color.org).
+bool wants_colours(bool terminal, const char* no_color, const char* term);
+
+}  // namespace dmise

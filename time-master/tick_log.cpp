@@ -1,0 +1,28 @@
+#include "time-master/tick_log.h"
+
+#include <chrono>
+
+namespace dmise {
+
+double TickLog::since_start_s(Instant now) const {
+  return std::chrono::duration<double>(now - *start_).count();
+}
+
+void TickLog::grant(Tick first, Tick granted, Instant now) {
+  if (granted < first || (granted_ && granted <= *granted_)) return;
+  if (!start_) start_ = now;
+  for (Tick tick = granted_ ? *granted_ + 1 : first; tick <= granted; ++tick)
+    open_[tick] = since_start_s(now);
+  granted_ = granted;
+}
+
+void TickLog::settle(Tick settled, Instant now, const std::string& last) {
+  if (!start_) return;
+  for (auto tick = open_.begin(); tick != open_.end() && tick->first <= settled;
+       tick = open_.erase(tick)) {
+    records_.push_back({tick->first, tick->second, since_start_s(now), last});
+    if (records_.size() > most) records_.pop_front();
+  }
+}
+
+}  // namespace dmise

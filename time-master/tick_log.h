@@ -1,0 +1,40 @@
+#pragma once
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/instant.h"
+#include "core/base/sim_time.h"
+
+namespace dmise {
+
+/// What became of a tick; times are seconds since the first grant.
+struct TickRecord {
+  Tick tick = 0;
+  double granted_s = 0.0, settled_s = 0.0;  // when it might be processed, and when all had done it
+  std::string last;                         // the node that was done last: all others waited for it
+
+  bool operator==(const TickRecord&) const = default;
+};
+
+/// Remembers when ticks were granted and done, the latest 10,000 of them.
+class TickLog {
+ public:
+  /// `first`: the first tick of the run.
+  void grant(Tick first, Tick granted, Instant now);
+  /// `last`: the node whose message was the last that was missing.
+  void settle(Tick settled, Instant now, const std::string& last);
+  std::vector<TickRecord> records() const { return {records_.begin(), records_.end()}; }
+
+ private:
+  static constexpr std::size_t most = 10'000;
+  double since_start_s(Instant now) const;
+  std::optional<Instant> start_;
+  std::optional<Tick> granted_;
+  std::map<Tick, double> open_;  // granted and not yet done
+  std::deque<TickRecord> records_;
+};
+
+}  // namespace dmise
