@@ -11,6 +11,7 @@ find_package(ZLIB REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(glm REQUIRED)
+find_package(Boost 1.74 REQUIRED)  # headers alone
 find_package(Eigen3 REQUIRED)
 list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)  # where Debian keeps its find module
 find_package(GeographicLib REQUIRED)
