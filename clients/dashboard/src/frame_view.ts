@@ -1,0 +1,98 @@
+// The last frame of a sensor with its detections.
+import type { Detection, Sensor } from "./messages";
+import { palette } from "./palette";
+
+const deg = 180 / Math.PI;
+
+export class FrameView {
+  private image: HTMLImageElement | null = null;
+  private loading = "";
+  private failed = "";
+  private shown = "";
+  private sensor: Sensor | null = null;
+  private detections: Detection[] = [];
+
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly note: HTMLElement) {
+    canvas.width = 640;
+    canvas.height = 400;
+    canvas.addEventListener("mousemove", (event) => this.hover(event));
+    canvas.addEventListener("mouseleave", () => this.describe());
+  }
+
+  show(sensor: Sensor | undefined, detections: Detection[], brightness: number): void {
+    this.canvas.style.setProperty("--brightness", String(brightness));
+    this.sensor = sensor ?? null;
+    this.detections = sensor ? detections.filter((d) => d.sensor === sensor.name && d.frame === sensor.frame) : [];
+    if (sensor) this.load(`/frames/${encodeURIComponent(sensor.name)}/${sensor.frame}.png`);
+    this.draw();
+    this.describe();
+  }
+
+  /** One picture is fetched at a time: of many that come meanwhile, the newest is next. */
+  private load(url: string): void {
+    if (this.loading || url === this.shown || url === this.failed) return;
+    this.loading = url;
+    const image = new Image();
+    const done = (loaded: boolean): void => {
+      this.loading = "";
+      if (loaded) { this.image = image; this.shown = url; } else { this.failed = url; this.image = null; this.shown = ""; }
+      this.canvas.dataset.shown = this.shown;
+      this.draw();
+      this.describe();
+      if (this.sensor) this.load(`/frames/${encodeURIComponent(this.sensor.name)}/${this.sensor.frame}.png`);
+    };
+    image.onload = () => done(true);
+    image.onerror = () => done(false);
+    image.src = url;
+  }
+
+  private scale(): number { return this.sensor ? this.canvas.width / this.sensor.columns : 1; }
+
+  private draw(): void {
+    const { canvas, sensor, image } = this;
+    const context = canvas.getContext("2d")!;
+    if (sensor) {
+      const height = Math.round((canvas.width * sensor.rows) / Math.max(1, sensor.columns));
+      if (canvas.height !== height) canvas.height = height;
+    }
+    context.fillStyle = "#000";
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    if (!sensor) return;
+    const current = this.shown === `/frames/${encodeURIComponent(sensor.name)}/${sensor.frame}.png`;
+    const same_sensor = this.shown.startsWith(`/frames/${encodeURIComponent(sensor.name)}/`);
+    if (image && same_sensor) context.drawImage(image, 0, 0, canvas.width, canvas.height);
+    if (!current && this.image) return; // the marks are of a picture that is on its way
+    const scale = this.scale();
+    context.strokeStyle = palette.detection;
+    context.fillStyle = palette.detection;
+    context.lineWidth = 1.5;
+    context.font = "12px sans-serif";
+    for (const d of this.detections) {
+      const [x1, y1, x2, y2] = d.kind === "streak" ? d.ends_px : [d.x_px, d.y_px, d.x_px, d.y_px];
+      const left = (Math.min(x1, x2) + 0.5) * scale - 7, top = (Math.min(y1, y2) + 0.5) * scale - 7;
+      context.strokeRect(left, top, Math.abs(x2 - x1) * scale + 14, Math.abs(y2 - y1) * scale + 14);
+      if (this.detections.length <= 20) context.fillText(d.magnitude.toFixed(1), left, top - 3);
+    }
+  }
+
+  private describe(): void {
+    const { sensor } = this;
+    if (!sensor) { this.note.textContent = "No frame yet."; return; }
+    const found = sensor.detection_off ? "detection is off" : `${sensor.detections} detections, limit ${sensor.limiting_magnitude.toFixed(1)} mag`;
+    const missing = this.failed.endsWith(`/${sensor.frame}.png`) ? " There is no preview (output: {png: true}, --products DIRECTORY)." : "";
+    this.note.textContent = `${sensor.name}, frame ${sensor.frame}, RA ${(sensor.ra_rad * deg).toFixed(2)} Dec ${(sensor.dec_rad * deg).toFixed(2)}, ${found}.${missing}`;
+  }
+
+  private hover(event: MouseEvent): void {
+    const box = this.canvas.getBoundingClientRect();
+    const to_px = (this.canvas.width / box.width) / this.scale();
+    const x = (event.clientX - box.left) * to_px - 0.5, y = (event.clientY - box.top) * to_px - 0.5;
+    let best: Detection | null = null, least = 12 * to_px;
+    for (const d of this.detections) {
+      const off = Math.hypot(d.x_px - x, d.y_px - y);
+      if (off < least) [least, best] = [off, d];
+    }
+    if (!best) return this.describe();
+    this.note.textContent = `${best.id}: ${best.kind}, ${best.magnitude.toFixed(2)} mag, SNR ${best.snr.toFixed(1)}, RA ${(best.ra_rad * deg).toFixed(4)} Dec ${(best.dec_rad * deg).toFixed(4)}`;
+  }
+}

@@ -1,0 +1,50 @@
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
+#include "core/base/error.h"
+#include "launch/commands.h"
+#include "launch/view_process.h"
+#include "nodes/runtime/program/command_line.h"
+
+namespace dmise {
+namespace {
+
+/// Becomes the gateway.
+void view(const ViewOptions& options) {
+  const auto command = gateway_command(options);
+  std::vector<char*> arguments;
+  for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+  arguments.push_back(nullptr);
+  execv(arguments[0], arguments.data());
+  throw Error(command[0] + ": " + std::strerror(errno));
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app) {
+  auto options = std::make_shared<ViewOptions>();
+  auto* command = app.add_subcommand(
+      "view", "Shows a run, or a replayed recording, in browsers; prints the URL; ends by Ctrl-C");
+  command->add_option("master", options->master, "address of the time-master, tcp://HOST:PORT")
+      ->required()
+      ->check(transport_address());
+  command->add_option("--products", options->products,
+                      "directory of the run, whose previews of frames are shown");
+  command
+      ->add_option("--listen", options->listen,
+                   "IP address and port of the pages; other than loopback only with --tokens")
+      ->capture_default_str();
+  command->add_option("--keys", options->keys,
+                      "directory with gateway.key, and operator.key to control the clock");
+  command->add_option("--tokens", options->tokens,
+                      "file with `view TOKEN` and `operator TOKEN`: who may watch, and who may "
+                      "control the clock");
+  command->add_flag("--no-control", options->no_control, "nobody controls the clock from here");
+  command->callback([options] { view(*options); });
+}
+
+}  // namespace dmise

@@ -1,0 +1,28 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dmise {
+
+/// What the gateway that shows a run is told.
+struct ViewOptions {
+  std::string master;                  // address of the time-master
+  std::string products;                // directory of the run; empty: no previews of frames
+  std::string keys;                    // directory of keys; empty: none
+  std::string tokens;                  // file of tokens; empty: none
+  std::string listen = "127.0.0.1:0";  // address of the pages
+  std::string announce;                // file for the URL; empty: none
+  bool no_control = false;
+};
+
+/// Command line of the gateway.
+std::vector<std::string> gateway_command(const ViewOptions& options);
+
+/// Writes a file of new tokens that only this user may read, and returns the operator's.
+std::string make_view_tokens(const std::string& path);
+
+/// The URL that the gateway announced; empty if it has not yet.
+std::optional<std::string> announced_url(const std::string& path);
+
+}  // namespace dmise

@@ -1,0 +1,64 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace dmise {
+
+/// What viewers are told. Each message is the whole state of its kind, so the newest replaces all
+/// before.
+enum class MessageSlot {
+  run,
+  status,
+  roster,
+  objects,
+  sensors,
+  detections,
+  tracks,
+  tasks,
+  notice,
+  count
+};
+inline constexpr std::size_t slot_count = std::size_t(MessageSlot::count);
+
+/// A message to viewers: JSON, or the binary layout of `encode_objects`.
+struct ViewerMessage {
+  std::string bytes;
+  bool binary = false;
+};
+using SharedMessage = std::shared_ptr<const ViewerMessage>;
+
+/// The newest message of each kind, from the thread that observes the run to the one that serves
+/// viewers. A viewer that is slow misses messages; nothing is queued.
+class LatestMessages {
+ public:
+  struct Slot {
+    SharedMessage message;      // null: none yet
+    std::uint64_t version = 0;  // counts the messages of this kind
+  };
+
+  void set(MessageSlot slot, ViewerMessage message) {
+    auto shared = std::make_shared<const ViewerMessage>(std::move(message));
+    const std::lock_guard lock(mutex_);
+    auto& place = slots_[std::size_t(slot)];
+    place.message = std::move(shared);
+    ++place.version;
+  }
+  std::array<Slot, slot_count> all() const {
+    const std::lock_guard lock(mutex_);
+    return slots_;
+  }
+  SharedMessage of(MessageSlot slot) const {
+    const std::lock_guard lock(mutex_);
+    return slots_[std::size_t(slot)].message;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::array<Slot, slot_count> slots_;
+};
+
+}  // namespace dmise

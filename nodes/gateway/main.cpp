@@ -1,0 +1,92 @@
+// dmise-gateway: shows a run to browsers.
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "core/base/whole_file.h"
+#include "nodes/gateway/run_observer.h"
+#include "nodes/gateway/web_server.h"
+#include "nodes/runtime/process/event.h"
+#include "nodes/runtime/process/json_log.h"
+#include "nodes/runtime/program/command_line.h"
+#include "nodes/runtime/program/program.h"
+#include "nodes/runtime/security/security.h"
+
+namespace dmise {
+namespace {
+
+struct GatewayOptions {
+  std::string listen = "127.0.0.1:0", tokens, products, dashboard, announce_file;
+  bool no_control = false;
+};
+
+/// The dashboard beside the programs: where it is built, or installed.
+std::string default_dashboard() {
+  std::error_code ignored;
+  const auto bin = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  for (const char* place : {"../dashboard", "../share/dmise/dashboard"})
+    if (std::filesystem::is_directory(bin / place, ignored))
+      return (bin / place).lexically_normal().string();
+  return {};
+}
+
+void set_address(const std::string& listen, WebServerOptions* options) {
+  const auto colon = listen.rfind(':');
+  const std::string digits = colon == std::string::npos ? "" : listen.substr(colon + 1);
+  if (digits.empty() || digits.size() > 5 ||
+      digits.find_first_not_of("0123456789") != std::string::npos || std::stoi(digits) > 65535)
+    throw ConfigError("--listen: must be HOST:PORT, got " + listen);
+  options->host = listen.substr(0, colon);
+  options->port = static_cast<unsigned short>(std::stoi(digits));
+}
+
+int serve(const CommonFlags& flags, const GatewayOptions& options) {
+  if (flags.master.empty()) throw ConfigError("--master: is required");
+  WebServerOptions web;
+  set_address(options.listen, &web);
+  web.may_control = !options.no_control;
+  if (!options.tokens.empty()) web.tokens = read_access_tokens(options.tokens);
+  if (!flags.keys.empty() && !web.tokens.any())
+    throw ConfigError("--keys: a run with keys is not shown without --tokens");
+  if (!flags.keys.empty()) Security(flags.keys, flags.name);
+  const StaticFiles files(options.dashboard.empty() ? default_dashboard() : options.dashboard);
+  if (flags.check) return 0;
+
+  LatestMessages latest;
+  ViewHistory history;
+  DirectoryPreviews previews(options.products);
+  RunObserver observer({flags.name, flags.master, flags.keys, &stop_signal()}, latest, history);
+  WebServer server(web, {files, latest, history, previews,
+                         [&](const ClockCommand& command) { return observer.command(command); }});
+  const std::string url = "http://" + web.host + ":" + std::to_string(server.port()) + "/";
+  log_event(spdlog::level::info, "gateway_served", {{"url", url}}, "the live view is at " + url);
+  if (files.empty()) spdlog::warn("the dashboard is not built: ./dmise dashboard");
+  if (!options.announce_file.empty()) write_file_whole(options.announce_file, url + "\n");
+  observer.run([&] { server.changed(); });
+  return 0;
+}
+
+}  // namespace
+}  // namespace dmise
+
+int main(int argc, char** argv) {
+  dmise::CommonFlags flags{.name = "gateway"};
+  dmise::GatewayOptions options;
+  CLI::App app("Shows a run to browsers: observes it and serves the dashboard.", "dmise-gateway");
+  dmise::add_common_flags(app, flags);
+  app.add_option("--listen", options.listen,
+                 "IP address and port of the pages; port 0: any free port; other than loopback "
+                 "only with --tokens")
+      ->capture_default_str();
+  app.add_option("--tokens", options.tokens,
+                 "file with `view TOKEN` and `operator TOKEN`: who may watch, and who may control "
+                 "the clock");
+  app.add_option("--products", options.products,
+                 "directory of the run, whose previews of frames are shown");
+  app.add_option("--dashboard", options.dashboard, "directory of the built dashboard");
+  app.add_option("--announce", options.announce_file, "file to write the URL to");
+  app.add_flag("--no-control", options.no_control, "nobody controls the clock from here");
+  return dmise::run_program(app, flags, argc, argv, [&] { return dmise::serve(flags, options); });
+}

@@ -1,0 +1,26 @@
+#include "nodes/gateway/preview_source.h"
+
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+
+namespace dmise {
+
+std::optional<std::string> DirectoryPreviews::preview(const std::string& sensor,
+                                                      std::uint32_t frame) {
+  if (directory_.empty() || sensor.empty() || sensor.front() == '.' ||
+      sensor.find('/') != std::string::npos)
+    return std::nullopt;
+  char name[32];
+  std::snprintf(name, sizeof name, "/frame-%06u.png", unsigned(frame));
+  try {
+    std::string png = read_text_file(directory_ + "/" + sensor + name, max_bytes);
+    if (!png.starts_with("\x89PNG")) return std::nullopt;
+    return png;
+  } catch (const ConfigError&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace dmise

@@ -1,0 +1,189 @@
+#include "nodes/gateway/request_rules.h"
+
+#include <sodium.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+
+#include "core/base/error.h"
+#include "core/base/text_file.h"
+
+namespace dmise {
+namespace {
+
+constexpr std::size_t longest_target = 1024, longest_sensor = 128;
+constexpr std::size_t shortest_token = 16, longest_token = 128;
+
+bool is_word(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+         c == '_';
+}
+
+bool is_token(std::string_view text) {
+  return text.size() >= shortest_token && text.size() <= longest_token &&
+         std::ranges::all_of(text, is_word);
+}
+
+/// Compares digests of the texts, so that the time tells nothing of either.
+bool same_token(std::string_view a, std::string_view b) {
+  unsigned char left[crypto_generichash_BYTES], right[crypto_generichash_BYTES];
+  const auto digest = [](std::string_view text, unsigned char* out) {
+    crypto_generichash(out, crypto_generichash_BYTES,
+                       reinterpret_cast<const unsigned char*>(text.data()), text.size(), nullptr,
+                       0);
+  };
+  digest(a, left);
+  digest(b, right);
+  return sodium_memcmp(left, right, sizeof left) == 0;
+}
+
+/// Removes "%41"; empty for what is not complete, or a control character.
+std::optional<std::string> unescape(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char c = text[i];
+    if (c == '%') {
+      unsigned value = 0;
+      if (i + 3 > text.size()) return std::nullopt;
+      const auto read = std::from_chars(text.data() + i + 1, text.data() + i + 3, value, 16);
+      if (read.ec != std::errc{} || read.ptr != text.data() + i + 3) return std::nullopt;
+      c = char(value);
+      i += 2;
+    }
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return std::nullopt;
+    plain += c;
+  }
+  return plain;
+}
+
+std::string token_of(std::string_view query) {
+  while (!query.empty()) {
+    const auto end = std::min(query.find('&'), query.size());
+    const std::string_view part = query.substr(0, end);
+    if (part.starts_with("token=") && is_token(part.substr(6))) return std::string(part.substr(6));
+    query.remove_prefix(std::min(end + 1, query.size()));
+  }
+  return {};
+}
+
+std::optional<FrameRequest> frame_of(std::string_view path) {
+  constexpr std::string_view ending = ".png";
+  const auto slash = path.find('/');
+  if (slash == std::string_view::npos || !path.ends_with(ending)) return std::nullopt;
+  const auto sensor = unescape(path.substr(0, slash));
+  if (!sensor || sensor->empty() || sensor->size() > longest_sensor || sensor->front() == '.' ||
+      sensor->find('/') != std::string::npos)
+    return std::nullopt;
+  const std::string_view digits = path.substr(slash + 1, path.size() - slash - 1 - ending.size());
+  FrameRequest request{*sensor, 0};
+  const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), request.frame);
+  if (digits.empty() || read.ec != std::errc{} || read.ptr != digits.data() + digits.size())
+    return std::nullopt;
+  return request;
+}
+
+/// Parts of letters, digits, ., -, _ and @ that do not begin with a point.
+bool is_file_path(std::string_view path) {
+  char last = '/';
+  for (const char c : path) {
+    if (!is_word(c) && c != '.' && c != '/' && c != '@') return false;
+    if (last == '/' && (c == '/' || c == '.')) return false;
+    last = c;
+  }
+  return last != '/';
+}
+
+std::string_view without_port(std::string_view host) {
+  const auto colon = host.rfind(':');
+  if (colon == std::string_view::npos || host.ends_with(']')) return host;
+  return host.substr(0, colon);
+}
+
+}  // namespace
+
+AccessTokens read_access_tokens(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0 && (status.st_mode & 077) != 0)
+    throw ConfigError(path + ": others may read it; chmod 600");
+  AccessTokens tokens;
+  std::istringstream lines(read_text_file(path, 4096));
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    std::istringstream words(line);
+    std::string kind, token, more;
+    if (!(words >> kind)) continue;
+    const std::string place = path + ":" + std::to_string(number) + ": ";
+    if (kind != "view" && kind != "operator")
+      throw ConfigError(place + "must be view TOKEN or operator TOKEN, got " + kind);
+    if (!(words >> token) || words >> more || !is_token(token))
+      throw ConfigError(place + kind + ": needs a token of 16 to 128 letters, digits, - or _");
+    std::string& place_of = kind == "view" ? tokens.view : tokens.control;
+    if (!place_of.empty()) throw ConfigError(place + kind + ": given twice");
+    place_of = token;
+  }
+  if (!tokens.any()) throw ConfigError(path + ": has no token");
+  if (tokens.view == tokens.control)
+    throw ConfigError(path + ": the tokens of view and operator must differ");
+  return tokens;
+}
+
+Access access_of(const AccessTokens& tokens, std::string_view presented, Access without_tokens) {
+  if (!tokens.any()) return without_tokens;
+  // Both are always compared. An unset token is equal to nothing that is_token lets through.
+  const bool is_control = same_token(tokens.control, presented) && !tokens.control.empty();
+  const bool is_view = same_token(tokens.view, presented) && !tokens.view.empty();
+  return is_control ? Access::control : is_view ? Access::view : Access::none;
+}
+
+bool is_loopback_host(std::string_view host) {
+  const std::string_view name = without_port(host);
+  return name == "localhost" || name == "127.0.0.1" || name == "[::1]";
+}
+
+bool is_own_origin(std::string_view origin, std::string_view host) {
+  if (origin.empty()) return true;
+  for (const std::string_view scheme : {"http://", "https://"})
+    if (origin.starts_with(scheme) && origin.substr(scheme.size()) == host) return !host.empty();
+  return false;
+}
+
+std::optional<RequestTarget> parse_target(std::string_view target) {
+  if (target.empty() || target.front() != '/' || target.size() > longest_target)
+    return std::nullopt;
+  const auto mark = std::min(target.find('?'), target.size());
+  std::string_view path = target.substr(1, mark - 1);
+  RequestTarget request;
+  request.token = token_of(target.substr(std::min(mark + 1, target.size())));
+  constexpr std::string_view frames = "frames/";
+  if (path == "live") {
+    request.path = LiveRequest{};
+  } else if (path.starts_with(frames)) {
+    const auto frame = frame_of(path.substr(frames.size()));
+    if (!frame) return std::nullopt;
+    request.path = *frame;
+  } else {
+    if (path.empty()) path = "index.html";
+    if (!is_file_path(path)) return std::nullopt;
+    request.path = FileRequest{std::string(path)};
+  }
+  return request;
+}
+
+std::string cookie_value(std::string_view cookies, std::string_view name) {
+  while (!cookies.empty()) {
+    const auto end = std::min(cookies.find(';'), cookies.size());
+    std::string_view part = cookies.substr(0, end);
+    while (part.starts_with(' ')) part.remove_prefix(1);
+    if (part.starts_with(name) && part.substr(name.size()).starts_with('=')) {
+      const std::string_view value = part.substr(name.size() + 1);
+      return is_token(value) ? std::string(value) : std::string();
+    }
+    cookies.remove_prefix(std::min(end + 1, cookies.size()));
+  }
+  return {};
+}
+
+}  // namespace dmise

@@ -1,0 +1,71 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+// Which requests are answered: pure functions of the text of a request, which may be hostile.
+namespace dmise {
+
+/// What a viewer may do.
+enum class Access { none, view, control };
+
+/// Tokens that viewers present. Both empty: every client on this machine may view.
+struct AccessTokens {
+  std::string view, control;  // empty: nobody gets this access by a token
+
+  bool any() const { return !view.empty() || !control.empty(); }
+};
+
+/// Reads a file with a line `view TOKEN` or `operator TOKEN` or both; each token has at least 16
+/// letters, digits, - or _. Throws `ConfigError`, also if others than its owner may read the file.
+AccessTokens read_access_tokens(const std::string& path);
+
+/// Access of a presented token. `without_tokens`: that of everybody if no tokens are set. Compares
+/// in constant time.
+Access access_of(const AccessTokens& tokens, std::string_view presented, Access without_tokens);
+
+/// Whether `host`, the value of a Host header, names this machine's loopback: of another name a
+/// page of a foreign site could make its own (DNS rebinding).
+bool is_loopback_host(std::string_view host);
+
+/// Whether a page of `origin`, an Origin header, may open a WebSocket of the server `host`. Empty:
+/// the client is no browser.
+bool is_own_origin(std::string_view origin, std::string_view host);
+
+/// `/frames/SENSOR/NUMBER.png`.
+struct FrameRequest {
+  std::string sensor;
+  std::uint32_t frame = 0;
+
+  bool operator==(const FrameRequest&) const = default;
+};
+
+struct LiveRequest {  // `/live`: the WebSocket
+  bool operator==(const LiveRequest&) const = default;
+};
+
+/// A file of the dashboard.
+struct FileRequest {
+  std::string path;  // "index.html", "assets/x.js": no leading slash, no . or .. part
+
+  bool operator==(const FileRequest&) const = default;
+};
+
+using RequestPath = std::variant<LiveRequest, FrameRequest, FileRequest>;
+
+struct RequestTarget {
+  RequestPath path;
+  std::string token;  // of the query
+
+  bool operator==(const RequestTarget&) const = default;
+};
+
+/// Reads the target of a request; empty if it is none that exists here.
+std::optional<RequestTarget> parse_target(std::string_view target);
+
+/// Value of `name` in a Cookie header; "" if it is not there.
+std::string cookie_value(std::string_view cookies, std::string_view name);
+
+}  // namespace dmise

@@ -1,0 +1,50 @@
+#pragma once
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nodes/gateway/latest_messages.h"
+#include "nodes/gateway/view_history.h"
+#include "nodes/gateway/viewer_command.h"
+#include "nodes/runtime/process/event.h"
+
+namespace dmise {
+
+struct RunObserverOptions {
+  std::string name = "gateway";  // of its key
+  std::string master;            // address of the time-master
+  std::string keys;              // directory of keys; empty: none
+  const Event* stop = nullptr;
+};
+
+/// Observes a run from outside, as any subscriber does: asks the time-master where it stands,
+/// subscribes at the broker, and asks the orbit node once for the roster. It is not a member of the
+/// clock, is waited for by nobody, and takes no truth.
+class RunObserver {
+ public:
+  RunObserver(RunObserverOptions options, LatestMessages& latest, ViewHistory& history)
+      : options_(std::move(options)), latest_(latest), history_(history) {}
+
+  /// Observes until `stop`, on its own thread. `changed`: called there some ten times a second when
+  /// there is news. Throws `ConfigError` for keys that cannot be used.
+  void run(const std::function<void()>& changed);
+
+  /// Asks the clock to do something, soon, with the operator's key; from any thread. False: too
+  /// many commands wait.
+  bool command(const ClockCommand& command);
+
+ private:
+  class Connections;
+  std::vector<ClockCommand> take_commands();
+
+  RunObserverOptions options_;
+  LatestMessages& latest_;
+  ViewHistory& history_;
+  std::mutex mutex_;
+  std::vector<ClockCommand> commands_;
+  Event has_commands_;
+};
+
+}  // namespace dmise

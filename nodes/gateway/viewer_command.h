@@ -1,0 +1,47 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+
+namespace dmise {
+
+/// Control of the clock by a viewer: what `dmise clock` does.
+struct ClockCommand {
+  enum class Action { pause, step, go_on };
+  Action action = Action::pause;
+  std::int64_t ticks = 1;  // of a step, [1, max_step_ticks]
+
+  bool operator==(const ClockCommand&) const = default;
+};
+
+/// Shows the state at, or last before, a simulation time that the gateway keeps.
+struct PastCommand {
+  double time_s = 0.0;
+
+  bool operator==(const PastCommand&) const = default;
+};
+
+/// Shows the run as it goes on.
+struct LiveCommand {
+  bool operator==(const LiveCommand&) const = default;
+};
+
+/// Why a message is no command.
+struct CommandError {
+  std::string reason;
+
+  bool operator==(const CommandError&) const = default;
+};
+
+using ViewerCommand = std::variant<CommandError, ClockCommand, PastCommand, LiveCommand>;
+
+inline constexpr std::size_t max_command_bytes = 1024;
+inline constexpr std::int64_t max_step_ticks = 1'000'000;
+
+/// Reads one message of a viewer: `{"do": "pause"}`, `{"do": "step", "ticks": 3}`, `{"do":
+/// "go-on"}`,
+/// `{"do": "past", "time_s": 40}`, `{"do": "live"}`. Anything else is a `CommandError`.
+ViewerCommand parse_viewer_command(std::string_view text);
+
+}  // namespace dmise

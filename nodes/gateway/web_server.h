@@ -1,0 +1,59 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "nodes/gateway/latest_messages.h"
+#include "nodes/gateway/preview_source.h"
+#include "nodes/gateway/request_rules.h"
+#include "nodes/gateway/static_files.h"
+#include "nodes/gateway/view_history.h"
+#include "nodes/gateway/viewer_command.h"
+
+namespace dmise {
+
+struct WebServerOptions {
+  std::string host = "127.0.0.1";
+  unsigned short port = 0;  // 0: any free port
+  AccessTokens tokens;
+  bool may_control =
+      false;  // whether viewers may control the clock, with their token if there is one
+
+  // Limits.
+  std::size_t most_connections = 64;
+  std::size_t most_commands_per_s = 20;  // of one viewer
+  double request_within_s = 10.0;        // the head of a request, and reading its answer
+  double idle_s = 30.0;                  // silence of a viewer that does not answer pings
+};
+
+/// What the server shows.
+struct WebContent {
+  const StaticFiles& files;
+  const LatestMessages& latest;
+  const ViewHistory& history;
+  PreviewSource& previews;
+  std::function<bool(const ClockCommand&)> control;  // false: busy
+};
+
+/// Serves the dashboard over HTTP/1.1 and its data over a WebSocket, from one thread. A viewer has
+/// one message on its way at a time; when it is through, the newest of each kind follows, so that a
+/// slow one gets fewer and needs no memory.
+class WebServer {
+ public:
+  /// Binds. Throws `ConfigError` for an address that is not loopback without tokens, `Error` if it
+  /// cannot be bound.
+  WebServer(WebServerOptions options, WebContent content);
+  ~WebServer();
+  WebServer(const WebServer&) = delete;
+  WebServer& operator=(const WebServer&) = delete;
+
+  int port() const;
+  /// There are new messages; from any thread.
+  void changed();
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace dmise

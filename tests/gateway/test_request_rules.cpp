@@ -1,0 +1,122 @@
+// Who may see what: tokens, hosts, origins, targets.
+#include "nodes/gateway/request_rules.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/base/error.h"
+
+namespace dmise {
+namespace {
+
+const std::string viewer(16, 'v'), operator_(16, 'o');
+
+AccessTokens tokens_of(const std::string& text, mode_t mode = 0600) {
+  const std::string path = testing::TempDir() + "/dmise-tokens";
+  std::ofstream(path) << text;
+  chmod(path.c_str(), mode);
+  return read_access_tokens(path);
+}
+
+TEST(AccessTokens, AreReadFromAFileOfTheirOwner) {
+  const AccessTokens tokens = tokens_of("view " + viewer + "\n\noperator " + operator_ + "\n");
+  EXPECT_EQ(tokens.view, viewer);
+  EXPECT_EQ(tokens.control, operator_);
+  EXPECT_EQ(tokens_of("view " + viewer).control, "");
+  EXPECT_THROW(tokens_of("view " + viewer, 0644), ConfigError);
+  for (const std::string& text : std::vector<std::string>{
+           "", "view short", "view " + std::string(129, 'a'), "view " + viewer + " x", "view a b",
+           "watch " + viewer, "view " + viewer + "\nview " + viewer,
+           "view " + viewer + "\noperator " + viewer, "view " + std::string(16, '&')})
+    EXPECT_THROW(tokens_of(text), ConfigError) << text;
+  EXPECT_THROW(read_access_tokens("/nowhere/tokens"), ConfigError);
+}
+
+TEST(Access, IsThatOfTheToken) {
+  const AccessTokens both{viewer, operator_}, view_alone{viewer, ""}, control_alone{"", operator_};
+  EXPECT_EQ(access_of(both, viewer, Access::control), Access::view);
+  EXPECT_EQ(access_of(both, operator_, Access::none), Access::control);
+  for (const std::string& wrong : {std::string(), viewer.substr(1), viewer + "v", std::string("x")})
+    for (const AccessTokens& tokens : {both, view_alone, control_alone})
+      EXPECT_EQ(access_of(tokens, wrong, Access::control), Access::none) << wrong;
+  EXPECT_EQ(access_of({}, "", Access::control), Access::control);
+}
+
+TEST(Hosts, OfLoopbackAreKnown) {
+  for (const char* host : {"localhost", "localhost:80", "127.0.0.1:8080", "[::1]:8080", "[::1]"})
+    EXPECT_TRUE(is_loopback_host(host)) << host;
+  for (const char* host : {"", "evil.example", "127.0.0.1.evil.example:80", "localhost.evil", ":80",
+                           "127.0.0.1:80:80", "LOCALHOST"})
+    EXPECT_FALSE(is_loopback_host(host)) << host;
+}
+
+TEST(Origins, OfOtherPagesAreRefused) {
+  EXPECT_TRUE(is_own_origin("", "127.0.0.1:80"));  // no browser
+  EXPECT_TRUE(is_own_origin("http://127.0.0.1:80", "127.0.0.1:80"));
+  EXPECT_TRUE(is_own_origin("https://view.example", "view.example"));
+  for (const char* origin : {"null", "http://", "http://evil.example", "http://127.0.0.1:81",
+                             "http://127.0.0.1:80.evil.example", "ftp://127.0.0.1:80"})
+    EXPECT_FALSE(is_own_origin(origin, "127.0.0.1:80")) << origin;
+  EXPECT_FALSE(is_own_origin("http://", ""));
+}
+
+TEST(Targets, AreRead) {
+  EXPECT_EQ(parse_target("/"), (RequestTarget{FileRequest{"index.html"}, ""}));
+  EXPECT_EQ(parse_target("/?a=b&token=" + viewer),
+            (RequestTarget{FileRequest{"index.html"}, viewer}));
+  EXPECT_EQ(parse_target("/assets/a-1.js"), (RequestTarget{FileRequest{"assets/a-1.js"}, ""}));
+  EXPECT_EQ(parse_target("/live?token=" + viewer), (RequestTarget{LiveRequest{}, viewer}));
+  EXPECT_EQ(parse_target("/frames/alpha/12.png"), (RequestTarget{FrameRequest{"alpha", 12}, ""}));
+  EXPECT_EQ(parse_target("/frames/a%20b%C3%A9/1.png"),
+            (RequestTarget{FrameRequest{"a b\xc3\xa9", 1}, ""}));
+}
+
+TEST(Targets, OfOtherFilesAreRefused) {
+  for (const char* target : {"",
+                             "x",
+                             "//",
+                             "/a//b",
+                             "/../etc/passwd",
+                             "/a/../b",
+                             "/a/..",
+                             "/.git/config",
+                             "/a/.b",
+                             "/a/",
+                             "/a%2e",
+                             "/a\\b",
+                             "/a b",
+                             "/\x01",
+                             "/frames/",
+                             "/frames/a",
+                             "/frames/a/1",
+                             "/frames/a/.png",
+                             "/frames/a/-1.png",
+                             "/frames/a/+1.png",
+                             "/frames/a/1x.png",
+                             "/frames/a/99999999999.png",
+                             "/frames//1.png",
+                             "/frames/../1.png",
+                             "/frames/..%2f..%2fx/1.png",
+                             "/frames/.a/1.png",
+                             "/frames/a%2/1.png",
+                             "/frames/a%zz/1.png",
+                             "/frames/a%00/1.png",
+                             "/frames/a/b/1.png"})
+    EXPECT_FALSE(parse_target(target)) << target;
+  EXPECT_FALSE(parse_target("/" + std::string(2000, 'a')));
+  EXPECT_FALSE(parse_target("/frames/" + std::string(200, 'a') + "/1.png"));
+}
+
+TEST(Cookies, AreFoundByTheirName) {
+  EXPECT_EQ(cookie_value("a=b; dmise_token=" + viewer + "; c=d", "dmise_token"), viewer);
+  EXPECT_EQ(cookie_value("dmise_token=" + viewer, "dmise_token"), viewer);
+  for (const char* cookies : {"", ";;", "dmise_token", "dmise_token=", "dmise_token=short",
+                              "xdmise_token=vvvvvvvvvvvvvvvv", "dmise_tokenx=vvvvvvvvvvvvvvvv"})
+    EXPECT_EQ(cookie_value(cookies, "dmise_token"), "") << cookies;
+}
+
+}  // namespace
+}  // namespace dmise

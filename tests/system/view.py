@@ -1,0 +1,134 @@
+"""The live view: what a browser shows of a run, and that the run does not notice it.
+
+    view.py DMISE
+"""
+
+import http.client
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import urllib.parse
+
+from harness import CAMERA, Run, check, check_same, first_frame, main, wait_until
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MODULES = ROOT / "build/node/node_modules"
+SCENARIO = """\
+simulation: {{start: 2018-01-21T00:15:00Z, duration_s: {duration_s}, tick_s: 5, seed: 1}}
+objects: [{{catalogue: gpredict}}]
+stars: {{catalogue: kstars}}
+sensors:
+  - {{name: alpha, site: atlanta, camera: small.yaml, pointing: zenith, exposure_s: 2, cadence_s: 10}}
+  - {{name: beta, site: la-palma, camera: small.yaml, pointing: zenith, exposure_s: 2, cadence_s: 10}}
+network: {{real_time: {real_time}}}
+output: {{png: true}}
+"""
+
+
+def write(directory, name, duration_s, real_time):
+    (directory / "small.yaml").write_text(CAMERA)
+    path = directory / name
+    path.write_text(SCENARIO.format(duration_s=duration_s, real_time=real_time))
+    return path
+
+
+def url_of(out):
+    path = out / "logs/view.url"
+    wait_until(path.exists, "the URL of the live view")
+    return path.read_text().strip()
+
+
+def killing_it_changes_nothing(binary, directory):
+    scenario = write(directory, "short.yaml", 60, 0)
+    whole, seen = directory / "whole", directory / "seen"
+    subprocess.run([binary, "run", scenario, "--out", whole], check=True, capture_output=True)
+    with Run(binary, "launch", scenario, "--out", seen, "--view") as run:
+        url_of(seen)
+        first_frame(seen)
+        gateway = run.node("gateway")
+        check(gateway is not None, "a gateway runs beside the run")
+        os.kill(gateway, signal.SIGKILL)
+        code, _ = run.finish()
+        check(code == 0, "the run does not notice that the gateway was killed" + (run.stderr[-300:] if code else ""))
+        check("live view: http://127.0.0.1:" in run.stdout + run.stderr, "the launcher tells the URL")
+    check_same(seen, whole, "its products are those of a run that nobody watched")
+
+
+def hostile_clients_do_not_disturb(url, seed=7):
+    """Bytes that no browser sends, then a request that is answered."""
+    place = urllib.parse.urlsplit(url)
+    draw = random.Random(seed)
+    handshake = (b"GET /live HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                 b"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n")
+    for trial in range(60):
+        with socket.create_connection((place.hostname, place.port), timeout=20) as client:
+            bytes_ = draw.randbytes(draw.randrange(1, 3000))
+            if trial % 3 == 1:
+                bytes_ = handshake + bytes_
+            elif trial % 3 == 2:  # of the right form, one byte changed
+                at = draw.randrange(len(handshake))
+                bytes_ = handshake[:at] + draw.randbytes(1) + handshake[at + 1:] + bytes_
+            try:
+                client.sendall(bytes_)
+                client.shutdown(socket.SHUT_WR)
+            except OSError:
+                pass  # it was closed before
+    answer = http.client.HTTPConnection(place.hostname, place.port, timeout=60)
+    answer.request("GET", "/", headers={"Host": "localhost"})
+    check(answer.getresponse().status == 200, "60 hostile clients do not disturb the gateway")
+    foreign = http.client.HTTPConnection(place.hostname, place.port, timeout=60)
+    foreign.request("GET", "/", headers={"Host": "foreign.example"})
+    check(foreign.getresponse().status == 421, "nor does a foreign name lead to it")
+
+
+def tool_that_misses(binary):
+    """What a browser's test needs and is not there; ""."""
+    for name in ("node", "chromium"):
+        if not shutil.which(name):
+            return name
+    if not (binary.parent.parent / "dashboard/index.html").exists():
+        return "the dashboard (./dmise dashboard)"
+    return "" if (MODULES / "playwright-core").exists() and (MODULES / "axe-core").exists() else f"playwright-core in {MODULES}"
+
+
+def a_browser_shows_it(url, directory):
+    script = pathlib.Path(__file__).parent / "view/browser.mjs"
+    done = subprocess.run(["node", script, MODULES, shutil.which("chromium"), url, "alpha", directory / "page.png"],
+                          capture_output=True, text=True, timeout=280, env=os.environ | {"HOME": str(directory)})
+    check(done.returncode == 0, "a browser shows the run" + done.stderr.strip()[-600:])
+    found = json.loads(done.stdout.strip().splitlines()[-1])
+    print(json.dumps(found))
+    check(found["errors"] == [], f"without an error in its console {found['errors'][:3]}")
+    check(found["foreign"] == [], f"and nothing from elsewhere {found['foreign'][:3]}")
+    check(found["objects"] > 900 and found["nodes"] == 5, f"{found['objects']} objects, {found['nodes']} nodes")
+    check(found["lit"], f"a click on a sensor shows its last frame, {found['click_ms']} ms later")
+    check(found["later_s"] == found["paused_s"], f"a pause stops the simulation's time, at {found['paused_s']} s")
+    check(found["past_s"] < found["paused_s"], f"the past is shown: {found['past_s']} s")
+    check(found["violations"] == [], f"axe-core finds no violation in {found['checked']} checks {found['violations']}")
+
+
+def test(binary, directory):
+    killing_it_changes_nothing(binary, directory)
+    scenario, out = write(directory, "long.yaml", 36000, 20), directory / "out"
+    with Run(binary, "launch", scenario, "--out", out, "--view") as run:
+        url = url_of(out)
+        first_frame(out)
+        hostile_clients_do_not_disturb(url)
+        missing = tool_that_misses(binary)
+        if not missing:
+            a_browser_shows_it(url, directory)
+        run.interrupt()
+        run.finish()
+        run.nothing_left()
+    if missing:
+        print(f"skipped: no browser shows the page: there is no {missing}")
+        sys.exit(77)
+
+
+main(test)
