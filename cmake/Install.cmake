@@ -16,6 +16,8 @@ install(FILES launch/package/copyright DESTINATION share/doc/dmise COMPONENT run
 get_target_property(python_dir dmise_proto_python PYTHON_DIR)
 install(DIRECTORY ${python_dir}/dmise DESTINATION lib/python3/dist-packages COMPONENT runtime PATTERN __pycache__ EXCLUDE)
 
+install(DIRECTORY ${CMAKE_BINARY_DIR}/dashboard DESTINATION share/dmise COMPONENT runtime OPTIONAL)  # where npm made it
+
 # Manual pages and completions, printed by the programs that they are of.
 get_property(programs GLOBAL PROPERTY DMISE_PROGRAMS)
 set(manuals ${CMAKE_BINARY_DIR}/share)

@@ -78,7 +78,7 @@ def shells_complete(prefix):
         script = f'source {bash}; COMP_WORDS=({typed}); COMP_CWORD={len(words)}; _dmise; printf "%s\\n" "${{COMPREPLY[@]}}"'
         check(call("bash", "-c", script).split() == wanted, f"bash completes {typed} to {wanted}")
         # Outside of a completion the functions of zsh's system are these:
-        script = (f'_describe() {{ shift $(($# - 1)); print -l ${{(P)1}}; }}; _files() {{ print FILES; }}; '
+        script = (f'_describe() {{ shift $(($# - 1)); print -l -- ${{(P)1}}; }}; _files() {{ print FILES; }}; '
                   f'words=({typed}); CURRENT={len(words) + 1}; source {zsh}')
         offered = [line.split(":")[0] for line in call("zsh", "-f", "-c", script).splitlines()]
         if wanted:

@@ -45,7 +45,7 @@ void write_options(const CLI::App& app, std::string& page) {
     page += "\n" + escaped(option->get_description());
     if (option->get_required()) page += " (needed)";
     if (takes_value && !option->get_default_str().empty())
-      page += "\nDefault: " + escaped(option->get_default_str()) + ".";
+      page += " (" + escaped(option->get_default_str()) + ")";
     page += "\n";
   }
 }
