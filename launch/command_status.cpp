@@ -108,7 +108,7 @@ class LiveTerminal {
   /// Each line replaces what stood there, so that nothing flickers.
   void show(const std::string& text) const {
     std::string screen = "\x1b[H";
-    for (const char c : text) screen += c == '\n' ? std::string("\x1b[K\r\n") : std::string(1, c);
+    for (const char c : text) screen += c == '\n' ? std::string("\x1b[K\n") : std::string(1, c);
     std::fputs((screen + "q ends\x1b[J").c_str(), stdout);
     std::fflush(stdout);
   }

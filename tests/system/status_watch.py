@@ -55,7 +55,7 @@ class Terminal:
 
 
 def lines_of(screen):
-    return [line.replace("\x1b[K", "") for line in screen.split("\r\n")]
+    return [line.replace("\x1b[K", "").strip("\r") for line in screen.split("\n")]
 
 
 def test(binary, directory):
