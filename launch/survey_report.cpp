@@ -122,14 +122,21 @@ void write_sensors(JsonWriter& json, const SurveyReport& report, const NightSumm
 
 void write_model(JsonWriter& json, const DetectionModel& model) {
   json.key("detection").begin_object().field("share", model.share);
-  json.key("lengths").begin_array();
-  for (const auto& l : model.lengths)
-    json.begin_object()
-        .field("length_px", l.length_px)
-        .field("half_snr", l.half_snr)
-        .field("spread", l.spread)
-        .end_object();
-  json.end_array().end_object();
+  json.field("share_among_round_stars", model.share_round);
+  const auto write = [&](const char* list, const auto& nodes) {
+    json.key(list).begin_array();
+    for (const auto& node : nodes)
+      json.begin_object()
+          .field("length_px", node.px)
+          .field("half_snr", node.half_snr)
+          .field("spread", node.spread)
+          .end_object();
+    json.end_array();
+  };
+  write("among_trailed_stars", model.trailed);
+  write("among_round_stars", model.round);
+  write("among_round_stars_that_are_known", model.round_known);
+  json.end_object();
 }
 
 void write_choice(JsonWriter& json, const SurveyReport& report) {

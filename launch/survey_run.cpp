@@ -68,11 +68,13 @@ std::string head_of(const Scenario& scenario, const SensorConfig& sensor,
   add(sensor.mask_deg);
   for (const double km : command.shells_km) add(km);
   add(model.share);
-  for (const auto& l : model.lengths) {
-    add(l.length_px);
-    add(l.half_snr);
-    add(l.spread);
-  }
+  add(model.share_round);
+  for (const auto* nodes : model.nodes())
+    for (const auto& node : *nodes) {
+      add(node.px);
+      add(node.half_snr);
+      add(node.spread);
+    }
   return head;
 }
 

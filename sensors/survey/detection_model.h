@@ -1,23 +1,44 @@
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
 namespace dmise {
 
-/// Probability that the chain detects a source in a frame, by the SNR of the ideal matched filter
-/// (`matched_filter_snr`) and the length of its trail: share x Q(ln(half / SNR) / spread). Between
-/// lengths `half` and `spread` are interpolated in log2(1 + length), beyond them they are those of
-/// the ends.
+/// A trail as the chain's detection is expected to meet it.
+struct ExpectedTrail {
+  double snr = 0.0;         // of the ideal matched filter (`matched_filter_snr`)
+  double length_px = 0.0;   // of its lit part in the frame
+  double star_px = 0.0;     // length of a star's trail there
+  double unlike_px = 0.0;   // difference of the trail from a star's
+  bool star_known = false;  // the catalogue of stars would have a star of its light
+};
+
+/// Probability that the chain detects a trail in a frame: share x Q(ln(half / SNR) / spread), where
+/// half and spread depend on its length and on what stars look like. Between nodes they are
+/// interpolated in log2(1 + px), beyond them they are those of the ends.
 struct DetectionModel {
-  struct Length {
-    double length_px = 0.0;
+  struct Node {
+    double px = 0.0;
     double half_snr = 6.0;  // at which half of what nothing hides is found
     double spread = 0.15;   // of its logarithm, > 0
 
-    bool operator==(const Length&) const = default;
+    bool operator==(const Node&) const = default;
   };
-  std::vector<Length> lengths;  // ascending, at least one
-  double share = 1.0;           // of bright sources that are found, (0, 1]
+  using Nodes = std::vector<Node>;  // ascending, at least one
+  // Among stars that trail by more than `trailed_px`, by length. Measured where stars trail by up
+  // to `usual_star_px`: what differs from longer ones by more counts as that much longer.
+  Nodes trailed;
+  // Among stars that trail by less than `round_px`: a short trail looks like a few of them in a row
+  // unless the catalogue would have such stars. In between both are mixed.
+  Nodes round, round_known;
+  // Of bright sources that are found, (0, 1]: among stars that trail, and among round ones.
+  double share = 1.0, share_round = 1.0;
+
+  static constexpr double round_px = 0.4, trailed_px = 1.0, usual_star_px = 2.4;
+  /// All nodes.
+  std::array<Nodes*, 3> nodes() { return {&trailed, &round, &round_known}; }
+  std::array<const Nodes*, 3> nodes() const { return {&trailed, &round, &round_known}; }
 
   bool operator==(const DetectionModel&) const = default;
 };
@@ -25,19 +46,19 @@ struct DetectionModel {
 /// The model with what was measured in rendered frames (docs/models/survey.md).
 const DetectionModel& measured_detection_model();
 
-/// Returns a probability in [0, 1) for any SNR >= 0 and length >= 0.
-double detection_probability(const DetectionModel& model, double snr, double length_px);
+/// Returns a probability in [0, 1) for any SNR >= 0 and lengths >= 0.
+double detection_probability(const DetectionModel& model, const ExpectedTrail& trail);
 
 /// Less is taken for 0.
 inline constexpr double least_probability = 1e-6;
 
 /// A source of a rendered frame.
 struct DetectionSample {
-  double snr = 0.0, length_px = 0.0;
+  ExpectedTrail trail;
   bool found = false;
 };
 
-/// Fits `half_snr`, `spread` and `share` of a model with the lengths of `start` to samples by
+/// Fits `half_snr`, `spread` and both shares of a model with the nodes of `start` to samples by
 /// maximum likelihood. A weak prior keeps what samples do not tell as it is in `start`. The result
 /// does not depend on the order of samples of equal values.
 DetectionModel fitted_detection_model(const DetectionModel& start,

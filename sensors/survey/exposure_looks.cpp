@@ -5,9 +5,11 @@
 #include <limits>
 
 #include "core/base/units.h"
+#include "core/detection/catalogue_sky.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "core/score/matched_filter.h"
+#include "core/sky/airmass.h"
 #include "sensors/outlook/detection_limit.h"
 #include "sensors/pipeline/object_sampler.h"
 #include "sensors/pipeline/objects_in_field.h"
@@ -32,6 +34,24 @@ double drawn_to(const SurveyScene& scene, const SensorConfig& sensor) {
                   StarLayer(sensor, scene.stars()).faintest_filled_v_mag());
 }
 
+/// Sets the lengths of a look that compare its trail with a star's at its centroid.
+void compare_with_star(Look& look, const std::vector<ObjectSample>& samples, const Optics& optics,
+                       const ExposureInstant& start, const ExposureInstant& middle,
+                       const ExposureInstant& end) {
+  const auto &a = samples.front().pixel, &b = samples.back().pixel;
+  const auto direction = unproject(optics, look.centroid);
+  if (!a || !b || !direction) return;
+  const Vec<Gcrs> star = middle.camera.inverse() * *direction;
+  const auto star_a = project(optics, start.camera * star),
+             star_b = project(optics, end.camera * star);
+  if (!star_a || !star_b) return;
+  const double x = b->x_px - a->x_px, y = b->y_px - a->y_px;
+  const double star_x = star_b->x_px - star_a->x_px, star_y = star_b->y_px - star_a->y_px;
+  look.star_px = std::hypot(star_x, star_y);
+  // Trails have no direction.
+  look.unlike_px = std::min(std::hypot(x - star_x, y - star_y), std::hypot(x + star_x, y + star_y));
+}
+
 bool inside(const std::optional<PixelPosition>& p, const Optics& optics) {
   return p && p->x_px > -0.5 && p->y_px > -0.5 && p->x_px < optics.columns - 0.5 &&
          p->y_px < optics.rows - 0.5;
@@ -44,7 +64,9 @@ SensorLooks::SensorLooks(const SurveyScene& scene, const SensorConfig& sensor)
       sensor_(sensor),
       shapes_(scene.scenario().own_objects, sensor.camera.band, sensor.effects),
       noise_(sensor, scene.scenario().seed),
-      drawn_to_v_mag_(drawn_to(scene, sensor)) {
+      drawn_to_v_mag_(drawn_to(scene, sensor)),
+      complete_to_v_mag_(scene.stars() ? CatalogueSky(scene.stars()).complete_to_v_mag()
+                                       : -std::numeric_limits<double>::infinity()) {
   for (const std::size_t i : needed_objects(sensor, *scene.roster()))
     needed_.push_back(std::uint32_t(i));
   const double blur = blur_sigma_px(sensor);
@@ -96,7 +118,7 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
   const ObjectSampler sampler(view, &shapes_);
   const ExposureInstant start(view, times.start), middle(view, times.middle), end(view, times.end);
   const Vec<Gcrs> up = view.up(times.middle);
-  const EarthShadow shadow(view.environment().sun_m, oblate_earth(view.earth()));
+  const EarthShadow shadow(view.environment().sun_m, view.surface());
   const bool draws = sensor_.effects.has(SpaceObjects::facts);
   const bool has_sky = sensor_.effects.has(SkyBackground::facts);
   std::optional<SkyModel> sky;  // made for the first object with light
@@ -110,6 +132,16 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
     if (!sky) sky.emplace(sky_over(view, drawn_to_v_mag_));
     return sky->photons_per_s_m2_sr(enu_from_gcrs * (gcrs_from_camera * *direction)) *
            electrons_per_photon * pixel_solid_angle_sr(optics, pixel) * view.illumination(pixel);
+  };
+  const Throughput throughput(view);
+  const double zero_point_mag = throughput.zero_point_mag();
+  const double extinction_mag = throughput.extinction_mag_per_airmass();
+  // Light above which the catalogue knows every star, in the direction of `line`.
+  const auto complete_e = [&](const Vec<Gcrs>& line) {
+    const double dimmed_mag =
+        view.on_ground() ? extinction_mag * airmass(std::asin(dot(up, unit(line)))) : 0.0;
+    return times.seconds() *
+           std::pow(10.0, 0.4 * (zero_point_mag - dimmed_mag - complete_to_v_mag_));
   };
   // No pixel has less noise: what is not detected with it needs no sky.
   const double least_noise_e = noise_.noise_e(0.0);
@@ -137,10 +169,18 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
     if (!draws || !(most > 0.0)) continue;
     TrailInFrame trail = trail_in_frame(samples, times.seconds(), optics);
     if (!(trail.signal_e > 0.0)) continue;
-    const double most_snr =
-        matched_filter_snr({trail.signal_e, trail.length_px, least_noise_e, sigma_px_});
-    const bool telling =
-        detection_probability(scene_.model(), most_snr, trail.length_px) >= least_probability;
+    const auto look_at = [&](const TrailInFrame& lit) {
+      Look look{.object = object,
+                .signal_e = lit.signal_e,
+                .length_px = lit.length_px,
+                .star_known = lit.signal_e >= complete_e(line),
+                .centroid = lit.centroid};
+      compare_with_star(look, samples, optics, start, middle, end);
+      return look;
+    };
+    Look look = look_at(trail);
+    look.snr = matched_filter_snr({trail.signal_e, trail.length_px, least_noise_e, sigma_px_});
+    const bool telling = detection_probability(scene_.model(), look.trail()) >= least_probability;
     if (least < abrupt_ratio * most && telling) {
       samples.clear();
       for (std::size_t k = 0; k < many_samples; ++k)
@@ -148,19 +188,17 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
             object, ExposureInstant(view, times.at(double(k) / double(many_samples - 1)))));
       trail = trail_in_frame(samples, times.seconds(), optics);
       if (!(trail.signal_e > 0.0)) continue;
+      look = look_at(trail);
     }
-    Look look{.object = object,
-              .signal_e = trail.signal_e,
-              .length_px = trail.length_px,
-              .centroid = trail.centroid};
     const auto under = to_spherical(itrs_from_gcrs * motion.position_m);
     look.longitude_rad = under[0];
     look.latitude_rad = under[1];
     const double sky_e = telling ? sky_at(trail.centroid) : 0.0;
     look.noise_e = noise_.noise_e(sky_e);
-    look.snr = matched_filter_snr({look.signal_e, look.length_px, look.noise_e, sigma_px_});
-    if (telling && sky_e < noise_.full_sky_e())
-      look.probability = detection_probability(scene_.model(), look.snr, look.length_px);
+    look.snr = 0.0;  // on a saturated sky
+    if (sky_e < noise_.full_sky_e())
+      look.snr = matched_filter_snr({look.signal_e, look.length_px, look.noise_e, sigma_px_});
+    if (telling) look.probability = detection_probability(scene_.model(), look.trail());
     out.looks.push_back(look);
   }
   return out;

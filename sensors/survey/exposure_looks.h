@@ -16,12 +16,17 @@ struct Look {
   std::uint32_t object = 0;  // index in the population
   double signal_e = 0.0;     // of its light in the frame
   double length_px = 0.0;    // of its lit trail in the frame
+  double star_px = 0.0;      // of the trail of a star there
+  double unlike_px = 0.0;    // difference of both trails
+  bool star_known = false;   // the catalogue would have a star of its light
   PixelPosition centroid;    // of that light
   // Of a pixel there, without the object's own; of the darkest sky for what no sky shows.
   double noise_e = 0.0;
   double snr = 0.0;                                // of the ideal matched filter
   double probability = 0.0;                        // of detection
   double latitude_rad = 0.0, longitude_rad = 0.0;  // geocentric, under it in mid exposure
+
+  ExpectedTrail trail() const { return {snr, length_px, star_px, unlike_px, star_known}; }
 };
 
 /// One exposure without rendering it.
@@ -56,7 +61,7 @@ class SensorLooks {
   ObjectShapes shapes_;
   NoiseTable noise_;
   double sigma_px_ = 0.0;  // of the Gaussian without pixel
-  double drawn_to_v_mag_;
+  double drawn_to_v_mag_, complete_to_v_mag_;
   double mask_sine_ = -1.0;
 };
 

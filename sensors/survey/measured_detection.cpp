@@ -3,7 +3,7 @@
 namespace dmise {
 
 const DetectionModel& measured_detection_model() {
-  static const DetectionModel model{.lengths = {{0.0, 19.95, 0.465},
+  static const DetectionModel model{.trailed = {{0.0, 19.95, 0.465},
                                                 {4.0, 35.64, 0.530},
                                                 {6.5, 21.41, 0.608},
                                                 {10.0, 19.64, 0.686},
@@ -12,7 +12,20 @@ const DetectionModel& measured_detection_model() {
                                                 {48.0, 7.37, 0.579},
                                                 {96.0, 9.31, 0.162},
                                                 {200.0, 7.67, 0.213}},
-                                    .share = 0.9796};
+                                    .round = {{5.0, 100.72, 0.288},
+                                              {7.0, 43.21, 0.340},
+                                              {9.0, 18.73, 0.361},
+                                              {12.0, 9.16, 0.362},
+                                              {18.0, 12.86, 0.394},
+                                              {40.0, 7.42, 0.307}},
+                                    .round_known = {{8.0, 39.61, 0.634},
+                                                    {11.0, 9.76, 0.351},
+                                                    {15.0, 9.20, 0.281},
+                                                    {20.0, 8.70, 0.275},
+                                                    {28.0, 7.88, 0.266},
+                                                    {50.0, 11.86, 0.299}},
+                                    .share = 0.9796,
+                                    .share_round = 0.995};
   return model;
 }
 

@@ -127,20 +127,21 @@ RenderedCheck check_rendered(const SurveyScene& scene, std::size_t count, FrameH
 std::vector<DetectionSample> samples_of(const RenderedCheck& check) {
   std::vector<DetectionSample> samples;
   for (const auto& o : check.objects)
-    if (o.look.probability > 0.0 || o.look.snr > 0.0)
-      samples.push_back({o.look.snr, o.look.length_px, o.found});
+    if (o.look.probability > 0.0 || o.look.snr > 0.0) samples.push_back({o.look.trail(), o.found});
   return samples;
 }
 
 std::string check_csv(const RenderedCheck& check) {
   std::ostringstream text;
   text.precision(9);
-  text << "sensor,frame,catalogue_number,expected_e,rendered_e,length_px,noise_e,snr,probability,"
-          "found\n";
+  text << "sensor,frame,catalogue_number,expected_e,rendered_e,length_px,star_px,unlike_px,star_"
+          "known,"
+          "noise_e,snr,probability,found\n";
   for (const auto& o : check.objects)
     text << o.sensor << ',' << o.frame << ',' << o.catalogue_number << ',' << o.look.signal_e << ','
-         << o.signal_e << ',' << o.look.length_px << ',' << o.look.noise_e << ',' << o.look.snr
-         << ',' << o.look.probability << ',' << (o.found ? 1 : 0) << '\n';
+         << o.signal_e << ',' << o.look.length_px << ',' << o.look.star_px << ','
+         << o.look.unlike_px << ',' << (o.look.star_known ? 1 : 0) << ',' << o.look.noise_e << ','
+         << o.look.snr << ',' << o.look.probability << ',' << (o.found ? 1 : 0) << '\n';
   return text.str();
 }
 
