@@ -145,7 +145,12 @@ class Document {
       // A point that moves with the sensor.
       begin(end, "");
       json_.field("availability", interval(frame.start, until));
-      inertial_position({{frame.middle, at, frame.sensor_velocity_m_per_s}});
+      const Vec<Gcrs>& velocity = frame.sensor_velocity_m_per_s;
+      std::vector<State> states;
+      for (const SimTime t : {frame.start, frame.middle, until})
+        if (states.empty() || states.back().time < t)
+          states.push_back({t, at + velocity * (t - frame.middle).seconds(), velocity});
+      inertial_position(states);
       this->end();
       ends.push_back(end);
     }

@@ -291,7 +291,9 @@ def read_czml(path, run, truths, frames):
             warnings.simplefilter("ignore")
             world, shape = WCS(file[0].header, file), file[0].data.shape
         corner = world.all_pix2world([[shape[1] - 0.5, shape[0] - 0.5]], 0)[0]
-        at = np.array(by_name[f"field/{f['sensor']}/{f['frame']}/3"]["position"]["cartesianVelocity"][1:4])
+        rows = np.array(by_name[f"field/{f['sensor']}/{f['frame']}/3"]["position"]["cartesianVelocity"]).reshape(-1, 7)
+        check_quietly(len(rows) > 1, "between two states there is one at any time")
+        at = rows[np.argmin(abs(rows[:, 0] - f["middle_ns"] / 1e9)), 1:4]
         line = at - f["sensor_position_gcrs_m"]
         angle = np.linalg.norm(line / np.linalg.norm(line) - unit(*corner))
         check_quietly(angle < 1e-6, f"corner of {f['sensor']}/{f['frame']} is off by {angle}")
