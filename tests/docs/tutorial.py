@@ -46,7 +46,7 @@ def main():
     page = (ROOT / "docs/tutorial.md").read_text()
     script = "set -euo pipefail\n" + "".join(re.findall(r"^```sh\n(.*?)^```", page, re.M | re.S))
     with tempfile.TemporaryDirectory(prefix="dmise-tutorial-") as name:
-        environment = {**os.environ, "PATH": f"{binary.parent}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT / "build/python")}
+        environment = {**os.environ, "PATH": f"{binary.parent}:/usr/bin:{os.environ['PATH']}", "PYTHONPATH": str(ROOT / "build/python")}
         done = subprocess.run(["/bin/bash", "-c", script], cwd=name, env=environment, capture_output=True, text=True,
                               timeout=280, check=False)
         check(done.returncode == 0, f"the commands of the tutorial: {done.returncode}: {done.stderr[-1500:]}")

@@ -77,7 +77,7 @@ std::string manual_page(const CLI::App& app, const std::string& name, const std:
   std::string upper = name;
   std::transform(upper.begin(), upper.end(), upper.begin(),
                  [](unsigned char c) { return char(std::toupper(c)); });
-  std::string page = ".TH \"" + upper + "\" 1 \"\" \"" + version + "\" \"DMISE\"\n";
+  std::string page = ".TH \"" + upper + "\" 1 \"\" \"" + version + "\" \"DMISE\"\n.ad l\n";
   page += ".SH NAME\n" + escaped(name) + " \\- " + escaped(first_sentence(app.get_description())) +
           "\n";
   page += ".SH SYNOPSIS\n" + bold(command);
