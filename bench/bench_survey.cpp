@@ -185,10 +185,25 @@ void add_survey_options(CLI::App& app) {
   app.add_option("--csv", asked.csv, "file of the objects in the rendered frames");
 }
 
-int bench_survey(bool json) {
+namespace {
+
+std::filesystem::path made_directory() {
   const auto directory =
       std::filesystem::temp_directory_path() / ("dmise-bench-survey-" + std::to_string(getpid()));
   std::filesystem::create_directories(directory);
+  return directory;
+}
+
+}  // namespace
+
+void bench_survey_night(bool json) {
+  const auto directory = made_directory();
+  measure_night(directory, catalogue_of_18470(directory), json);
+  std::filesystem::remove_all(directory);
+}
+
+int bench_survey(bool json) {
+  const auto directory = made_directory();
   const CatalogueFile catalogue = catalogue_of_18470(directory);
   bool good = true;
   if (!asked.no_night) measure_night(directory, catalogue, json);

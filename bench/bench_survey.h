@@ -11,4 +11,7 @@ namespace dmise {
 int bench_survey(bool json);
 void add_survey_options(CLI::App& app);
 
+/// Its first part alone: the night's time, and what is detected.
+void bench_survey_night(bool json);
+
 }  // namespace dmise

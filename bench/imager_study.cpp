@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include "core/config/material_config.h"
 #include "core/config/search_path.h"
 #include "core/detector/expected_noise.h"
+#include "core/detector/expected_signal.h"
 #include "core/detector/expose.h"
 #include "core/discrimination/aperture_fraction.h"
 #include "core/discrimination/material_likelihood.h"
@@ -23,6 +25,7 @@ namespace {
 
 constexpr const char* objects[][2] = {{"STARLINK-1014", "silicon"}, {"unknown", "germanium"}};
 constexpr int window_columns = 256, window_rows = 768;
+constexpr int piece_px = 48;
 
 std::string paper_file(const char* name) {
   return home_directory() + "/launch/scenarios/paper/" + name;
@@ -84,6 +87,47 @@ double noise_of(const BandWindow& window, PixelPosition at, const Aperture& aper
   return std::sqrt(variance + area * area * ring / n / n);
 }
 
+/// Light in an aperture above its ring, of an image without noise.
+double light_of(const ElectronImage& image, PixelPosition at, const Aperture& aperture) {
+  double light = 0.0, area = 0.0, ring = 0.0;
+  std::size_t ring_pixels = 0;
+  for (int y = 0; y < image.rows; ++y)
+    for (int x = 0; x < image.columns; ++x) {
+      const double dx = x - at.x_px, dy = y - at.y_px, away = std::hypot(dx, dy);
+      if (away >= aperture.inner_px && away <= aperture.outer_px) {
+        ring += double(image.at(x, y));
+        ++ring_pixels;
+      }
+      const double weight = pixel_in_circle(dx, dy, aperture.radius_px);
+      light += weight * double(image.at(x, y));
+      area += weight;
+    }
+  return light - area * ring / double(ring_pixels);
+}
+
+/// What the detector makes of the light without noise and without faults of single pixels.
+ElectronImage without_noise(const BandWindow& window, Threads& threads) {
+  Detector detector = window.sensor.camera.detector;
+  detector.prnu_rms = detector.hot_pixel_fraction = detector.cosmic_rays_per_px_s = 0.0;
+  return expected_signal(window.light, detector, window.exposure, window.sensor.effects, threads);
+}
+
+/// What is exposed for one object in one band.
+struct Cutout {
+  ExpectedElectronImage light;
+  PixelPosition at;
+};
+
+Cutout piece_about(const ExpectedElectronImage& light, PixelPosition at) {
+  const int x0 = int(std::lround(at.x_px)) - piece_px / 2;
+  const int y0 = int(std::lround(at.y_px)) - piece_px / 2;
+  Cutout piece{ExpectedElectronImage(piece_px, piece_px), {at.x_px - x0, at.y_px - y0}};
+  for (int y = 0; y < piece_px; ++y)
+    for (int x = 0; x < piece_px; ++x)
+      piece.light.pixels[std::size_t(y * piece_px + x)] = light.at(x0 + x, y0 + y);
+  return piece;
+}
+
 struct Sums {
   double sum = 0.0, square = 0.0;
   std::size_t count = 0;
@@ -105,7 +149,8 @@ double SeedStudy::bias_sigma() const {
   return std::abs(mean - truth) / (scatter / std::sqrt(double(seeds)));
 }
 
-std::vector<SeedStudy> study_seeds(std::size_t seeds, const Aperture& aperture, Threads& threads) {
+std::vector<SeedStudy> study_seeds(std::size_t seeds, const Aperture& aperture, Exposed exposed,
+                                   Threads& threads) {
   Scenario scenario = load_scenario(paper_file("space-imager.yaml"));
   for (SensorConfig& sensor : scenario.sensors) {
     sensor.camera.optics.columns = window_columns;
@@ -124,20 +169,33 @@ std::vector<SeedStudy> study_seeds(std::size_t seeds, const Aperture& aperture, 
                        .seeds = seeds});
   }
   std::vector<Sums> ratios(2), z(2), fluxes(2), sky(2);
+  std::array<std::array<Cutout, 2>, 2> pieces;  // by object and band
+  if (exposed == Exposed::pieces)
+    for (std::size_t o = 0; o < 2; ++o)
+      for (std::size_t b = 0; b < 2; ++b)
+        pieces[o][b] = piece_about(bands[b].light, bands[b].places.at(studies[o].object));
   CountImage counts[2];
+  const auto expose_band = [&](std::size_t b, const ExpectedElectronImage& light,
+                               std::uint64_t seed) {
+    Exposure exposure = bands[b].exposure;
+    exposure.seed = seed;
+    expose(light, bands[b].sensor.camera.detector, exposure, bands[b].sensor.effects, threads,
+           counts[b]);
+  };
   for (std::size_t seed = 1; seed <= seeds; ++seed) {
-    for (std::size_t b = 0; b < 2; ++b) {
-      Exposure exposure = bands[b].exposure;
-      exposure.seed = seed;
-      expose(bands[b].light, bands[b].sensor.camera.detector, exposure, bands[b].sensor.effects,
-             threads, counts[b]);
-    }
+    if (exposed == Exposed::window)
+      for (std::size_t b = 0; b < 2; ++b) expose_band(b, bands[b].light, seed);
     for (std::size_t o = 0; o < 2; ++o) {
       Measured light[2];
+      if (exposed == Exposed::pieces)
+        for (std::size_t b = 0; b < 2; ++b)
+          expose_band(b, pieces[o][b].light, seed + o * seeds);  // else both had the same noise
       for (std::size_t b = 0; b < 2; ++b) {
         const FrameHeader& h = bands[b].header;
-        const auto flux = aperture_flux(counts[b], {h.gain_e_per_dn, h.bias_dn, h.saturation_dn},
-                                        bands[b].places.at(studies[o].object), aperture);
+        const PixelPosition at =
+            exposed == Exposed::pieces ? pieces[o][b].at : bands[b].places.at(studies[o].object);
+        const auto flux =
+            aperture_flux(counts[b], {h.gain_e_per_dn, h.bias_dn, h.saturation_dn}, at, aperture);
         if (b == 0) fluxes[o].add(flux.flux_e);
         light[b] = reflected({flux.flux_e, flux.sigma_e},
                              full_sunlight_e(h.zero_point_mag, h.exposure_s), bands[b].fraction);
@@ -147,8 +205,16 @@ std::vector<SeedStudy> study_seeds(std::size_t seeds, const Aperture& aperture, 
       z[o].add((ratio.value - studies[o].truth) / ratio.sigma);
     }
   }
+  const ElectronImage quiet[2] = {without_noise(bands[0], threads),
+                                  without_noise(bands[1], threads)};
   for (std::size_t o = 0; o < 2; ++o) {
     SeedStudy& s = studies[o];
+    double share[2];  // of the sunlight
+    for (std::size_t b = 0; b < 2; ++b)
+      share[b] = light_of(quiet[b], bands[b].places.at(s.object), aperture) /
+                 full_sunlight_e(bands[b].header.zero_point_mag, bands[b].header.exposure_s) /
+                 bands[b].fraction;
+    s.without_noise = share[1] / share[0];
     s.mean = ratios[o].mean();
     s.scatter = ratios[o].scatter();
     s.z_width = z[o].scatter();

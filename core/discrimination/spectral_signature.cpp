@@ -20,7 +20,8 @@ Measured flux_ratio(const Measured& numerator, const Measured& denominator) {
   if (!(denominator.value > 0.0)) throw Error("flux ratio: no light in the denominator");
   const double ratio = numerator.value / denominator.value;
   const double spread = denominator.sigma / denominator.value;
-  return {ratio * (1.0 - spread * spread),
+  const double square = spread * spread;
+  return {ratio * (1.0 - square + 3.0 * square * square),
           std::hypot(numerator.sigma / denominator.value, ratio * spread)};
 }
 

@@ -21,7 +21,8 @@ double full_sunlight_e(double zero_point_mag, double exposure_s);
 Measured reflected(const Measured& flux_e, double full_sunlight_e, double aperture_fraction);
 
 /// Ratio of two independent measurements. The mean of a ratio is larger than the ratio of the means
-/// by (sigma / value)^2 of the denominator; that is taken off, which leaves 3 (sigma / value)^4.
+/// by (sigma / value)^2 + 3 (sigma / value)^4 of the denominator; both are taken off, which leaves
+/// 15 (sigma / value)^6.
 /// The standard deviation is that of the first order. Throws `Error` for a denominator <= 0.
 Measured flux_ratio(const Measured& numerator, const Measured& denominator);
 

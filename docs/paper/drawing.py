@@ -89,3 +89,25 @@ def svg_chart(lines, x_label, y_label, bands=(), marks=(), logarithmic=(False, F
     out.append(f'<text x="{(left + width - right) / 2}" y="{height - 14}" text-anchor="middle">{x_label}</text>')
     out.append(f'<text transform="translate(18 {(top + height - bottom) / 2}) rotate(-90)" text-anchor="middle">{y_label}</text></svg>\n')
     return "\n".join(out)
+
+
+def svg_map(columns, rows, values, x_label, y_label, width=760, height=360):
+    """Cells with their values, 1 light, what is far from it dark; `values[row][column]`, rows from the top."""
+    left, right, top, bottom = 70, 20, 20, 55
+    wide, high = (width - left - right) / len(columns), (height - top - bottom) / len(rows)
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="13">',
+           f'<rect width="{width}" height="{height}" fill="white"/>']
+    for i, row in enumerate(rows):
+        for j, column in enumerate(columns):
+            value = values[i][j]
+            light = round(255 * max(0.25, 1 - 0.5 * abs(np.log(value))))
+            x, y = left + j * wide, top + i * high
+            out.append(f'<rect x="{x:.1f}" y="{y:.1f}" width="{wide:.1f}" height="{high:.1f}" fill="rgb({light},{light},255)"/>'
+                       f'<text x="{x + wide / 2:.1f}" y="{y + high / 2 + 4:.1f}" text-anchor="middle" '
+                       f'fill="{"white" if light < 130 else "black"}">{value:.2f}</text>')
+        out.append(f'<text x="{left - 8}" y="{top + (i + 0.5) * high + 4:.1f}" text-anchor="end">{row:g}</text>')
+    for j, column in enumerate(columns):
+        out.append(f'<text x="{left + (j + 0.5) * wide:.1f}" y="{height - bottom + 18}" text-anchor="middle">{column:g}</text>')
+    out.append(f'<text x="{(left + width - right) / 2}" y="{height - 14}" text-anchor="middle">{x_label}</text>')
+    out.append(f'<text transform="translate(18 {(top + height - bottom) / 2}) rotate(-90)" text-anchor="middle">{y_label}</text></svg>\n')
+    return "\n".join(out)

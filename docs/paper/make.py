@@ -25,7 +25,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE))
 import page  # noqa: E402
-from drawing import binned, side_by_side, stretched, svg_chart, write_png  # noqa: E402
+from drawing import binned, side_by_side, stretched, svg_chart, svg_map, write_png  # noqa: E402
 
 SCENARIOS = ROOT / "launch/scenarios/paper"
 CATALOGUE = pathlib.Path(os.environ.get("DMISE_DATA", ROOT / "../shared/data")) / "tle/catalog_3le_2019-12-19_18470.txt.gz"
@@ -42,6 +42,14 @@ class Maker:
         done = subprocess.run([self.program, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         if done.returncode:
             raise SystemExit(f"dmise {' '.join(map(str, arguments))}: {done.stderr.strip().splitlines()[-1:]}")
+        return done.stdout
+
+    def referee(self, script, *arguments):
+        """What a program of tests/reference prints."""
+        done = subprocess.run(["/usr/bin/python3", ROOT / "tests/reference" / script, self.program, *map(str, arguments)],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        if done.returncode:
+            raise SystemExit(f"{script}: {(done.stderr or done.stdout).strip()}")
         return done.stdout
 
     def run(self, name, scenario=None):
@@ -65,11 +73,13 @@ def figure5(make):
     path = make.out / "figure5.yaml"
     path.write_text(json.dumps(scenario))
     text = make.call("visible", path, "--out", make.out / "figure5", "--rows", 1, "--threads", 2, "--sunlit")
+    counts = json.loads(make.referee("figure5_counts.py", "--json", "--counts", make.out / "figure5/atlanta/counts.csv"))
     passes = [json.loads(line) for line in (make.out / "figure5/atlanta/passes.jsonl").read_text().splitlines()]
     low = sum(one.get("orbit") == "LEO" for one in passes)
     return {"catalogue": "18,470 objects of 2019-12-19" if real else "Debian's of 2018-01-20",
             "passes": len(passes), "objects": len({one["catalogue_number"] for one in passes}),
-            "low_share": low / max(1, len(passes)), "line": [t for t in text.splitlines() if "passes of" in t][:1]}
+            "low_share": low / max(1, len(passes)), "line": [t for t in text.splitlines() if "passes of" in t][:1],
+            "counts": counts["rows"]}
 
 
 def figure6(make):
@@ -89,11 +99,7 @@ LAMPS = {"lps": "low-pressure sodium", "hps": "high-pressure sodium", "led": "LE
 
 def figure7(make):
     """Contrast as rendered, and what exposure, lamps and sky would give the paper's."""
-    done = subprocess.run(["/usr/bin/python3", ROOT / "tests/reference/streak_contrast.py", make.program, "--json"],
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    if done.returncode:
-        raise SystemExit(done.stderr.strip())
-    bands = json.loads(done.stdout)
+    bands = json.loads(make.referee("streak_contrast.py", "--json"))
     # Excess of the ridge [e-]: the same for every exposure longer than the streak stays on a pixel.
     excess = {b: (row["2 s"] - 1) * row["sky_e_per_s"] * 2 for b, row in bands.items()}
     magnitudes = [16.0, 16.5, 17.0, 17.5, 18.0, 18.5, 19.0]
@@ -138,6 +144,11 @@ def figure7(make):
     (make.pictures / "figure7.svg").write_text(svg_chart({name: (magnitudes, values) for name, values in ratios.items()},
                                                 "zenith sky, V mag/arcsec2", "(B - 1) / (G - 1)",
                                                 marks=[(18.0, 1.03 / 0.12, "the paper's 8.6")]))
+    shares = [k / 10 for k in range(11)]
+    surface = [[float(np.exp(min(s["miss"] for s in solutions if s["magnitude"] == m and abs(s["lps"] - share) < 1e-9)))
+                for share in shares] for m in magnitudes]
+    (make.pictures / "figure7-surface.svg").write_text(svg_map(shares, magnitudes, surface, "share of low-pressure sodium",
+                                                               "zenith sky, V mag/arcsec2"))
     ordered = [s for s in solutions if s["B"] > s["R"] > s["G"]]
     return {"bands": bands, "excess_e": excess, "best": solutions[:6], "tried": len(solutions), "ordered": ordered[:2],
             "at_18": [s for s in solutions if s["magnitude"] == 18.0][:1],
@@ -218,11 +229,9 @@ def figure10(make):
 
 def table3(make):
     figures = {}
-    many = {}
-    for into, options in ((figures, []), (many, ["--seeds", "4000", "--no-sequence"])):
-        for line in subprocess.run([make.program, "bench", "paper", "--json", *options], stdout=subprocess.PIPE, text=True).stdout.splitlines():
-            one = json.loads(line)
-            into[one["name"]] = one
+    for line in subprocess.run([make.program, "bench", "paper", "--json", "--no-night"], stdout=subprocess.PIPE, text=True).stdout.splitlines():
+        one = json.loads(line)
+        figures[one["name"]] = one
     design = json.loads(make.call("discriminate", "--design", SCENARIOS / "space-imager.yaml", "--materials",
                                   SCENARIOS / "cells.yaml", "--among", "silicon,germanium", "--area-m2", 0.05, "--json"))
     pairs = json.loads(make.call("discriminate", "--design", SCENARIOS / "space-imager.yaml", "--among",
@@ -231,7 +240,7 @@ def table3(make):
     (make.pictures / "design.svg").write_text(svg_chart(
         {"exposure of each band": ([p["range_m"] / 1e3 for p in points], [p["exposure_s"] for p in points])},
         "distance, km", "exposure, s", logarithmic=(True, True)))
-    return {"figures": figures, "many": many, "design": design, "pairs": pairs["pairs"][:5]}
+    return {"figures": figures, "design": design, "pairs": pairs["pairs"][:5]}
 
 
 STEPS = {"figure5": figure5, "figure6": figure6, "figure7": figure7, "figure8": figure8, "figure9": figure9,

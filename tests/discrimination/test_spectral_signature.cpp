@@ -49,8 +49,8 @@ TEST(FluxRatio, HasNoBiasAtASignalOfTwelveSigma) {
     plain += a.value / b.value;
   }
   const double mean = sum / draws, scatter = std::sqrt(square / draws - mean * mean);
-  // What is left is 3 / 12^4 of the ratio.
-  EXPECT_NEAR(mean, 15.6 * (1.0 - 3.0 / std::pow(12.0, 4)), 4 * scatter / std::sqrt(draws));
+  // What is left is 15 / 12^6 of the ratio.
+  EXPECT_NEAR(mean, 15.6 * (1.0 + 15.0 / std::pow(12.0, 6)), 4 * scatter / std::sqrt(draws));
   EXPECT_NEAR(plain / draws, 15.6 * (1.0 + 1.0 / 144.0 + 3.0 / std::pow(12.0, 4)),
               4 * scatter / std::sqrt(draws));
   EXPECT_NEAR(scatter / std::hypot(0.10, 15.6 / 12.0), 1.0, 0.04);
