@@ -36,9 +36,8 @@ def height_km(line1, line2, when):
 def elements(binary, name):
     """The two lines of an object of the catalogue that the page names."""
     listed = subprocess.run([binary, "list", "catalogues"], capture_output=True, text=True, check=True).stdout
-    lines = pathlib.Path(re.search(r"(\S+satellites\.dat)", listed)[1]).read_text().splitlines()
-    at = lines.index(name)
-    return lines[at + 1], lines[at + 2]
+    text = pathlib.Path(re.search(r"(\S+satellites\.dat)", listed)[1]).read_text()
+    return re.search(rf"^NAME={name}\n(?:NICKNAME=.*\n)?TLE1=(.*)\nTLE2=(.*)$", text, re.M).groups()
 
 
 def main():
