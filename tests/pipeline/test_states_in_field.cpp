@@ -43,7 +43,8 @@ double expect_same_field(const std::string& yaml, std::size_t least_found) {
   const Clock clock = make_clock(stage.scenario);
   const auto population = load_objects(stage.scenario, clock);
   const auto objects = std::make_shared<const PropagatedObjects>(published_roster(population),
-                                                                 stage.scenario.own_objects, clock);
+                                                                 stage.scenario.own_objects, clock,
+                                                                 stage.scenario.earth.ellipsoid);
   const World empty = without_states(stage, *objects);
   StatesInField states(objects, stage.scenario.tick);
   const auto& sensor = stage.scenario.sensors[0];
