@@ -57,8 +57,9 @@ endfunction()
 function(precompile_now target with)
   target_precompile_headers(${target} REUSE_FROM ${with})
   # GCC forgets that precompiled headers are the system's, whose false alarms it does not report.
-  target_compile_options(${target} PRIVATE
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-maybe-uninitialized;-Wno-restrict;-Wno-stringop-overflow>)
+  set(false_alarms array-bounds dangling-pointer maybe-uninitialized restrict stringop-overflow stringop-overread use-after-free)
+  list(TRANSFORM false_alarms PREPEND -Wno-)
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:${false_alarms}>)
   get_target_property(sources ${target} SOURCES)
   foreach(source ${sources})
     get_source_file_property(options ${source} COMPILE_OPTIONS)
