@@ -19,7 +19,8 @@ namespace dmise {
 namespace {
 
 Surroundings read(const std::string& text) {
-  YamlMap map(YamlValue::parse(text, "s.yaml"));
+  static const Section section{"surroundings", "", surroundings_keys()};
+  YamlMap map(YamlValue::parse(text, "s.yaml"), section);
   Surroundings known;
   read_surroundings(map, known);
   map.done();
