@@ -98,7 +98,8 @@ def names(binary, directory):
 
 def words(binary, directory, scenario):
     printed = "".join(call(binary, "run", scenario, "--out", directory / "words", "--force")[1:])
-    printed += (directory / "words/index.html").read_text()
+    page = (directory / "words/index.html").read_text()
+    printed += re.sub(r"[A-Za-z0-9+/=]{60,}", "", page)  # without pixels
     for word in OUR_WORDS:
         check(word not in printed, f"nothing is called {word!r}")
 
