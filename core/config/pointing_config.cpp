@@ -82,11 +82,11 @@ const Section& cued_section() {
        optional(
            "azimuth_deg_per_s", form::above(0.0, 360.0),
            "Fastest turn in azimuth [deg/s], of an altazimuth mount; by default as in elevation.",
-           number_text(CueSettings().azimuth_deg_per_s)),
+           yaml_text(CueSettings().azimuth_deg_per_s)),
        optional("azimuth_deg_per_s2", form::number(0.0, 1000.0),
                 "Acceleration in azimuth [deg/s^2], of an altazimuth mount. 0: it has its speed at "
                 "once.",
-                number_text(CueSettings().azimuth_deg_per_s2)),
+                yaml_text(CueSettings().azimuth_deg_per_s2)),
        optional("azimuth_range_deg", form::numbers(2, -3600.0, 3600.0),
                 "Least and greatest azimuth that cables allow [deg], of an altazimuth mount.",
                 "[-270, 270]"),
@@ -95,7 +95,7 @@ const Section& cued_section() {
                 "Lowest elevation that it observes at [deg].", "20"),
        optional("greatest_elevation_deg", form::number(0.0, 90.0),
                 "Highest elevation that it observes at [deg], above the lowest.",
-                number_text(CueSettings().greatest_elevation_deg)),
+                yaml_text(CueSettings().greatest_elevation_deg)),
        optional("sun_exclusion_deg", form::number(0.0, 180.0), "Least angle from the Sun [deg].",
                 "30"),
        optional("moon_exclusion_deg", form::number(0.0, 180.0), "Least angle from the Moon [deg].",

@@ -216,7 +216,7 @@ std::string range_text(const Form& form) {
                 : " " + std::to_string(form.least) + " to " + std::to_string(form.most);
   }
   const bool least = std::isfinite(form.bounds.least), most = std::isfinite(form.bounds.most);
-  const std::string from = number_text(form.bounds.least), to = number_text(form.bounds.most);
+  const std::string from = yaml_text(form.bounds.least), to = yaml_text(form.bounds.most);
   if (least && most && !form.bounds.least_open) return " " + from + " to " + to;
   std::string text;
   if (least) text += (form.bounds.least_open ? " > " : " >= ") + from;

@@ -52,7 +52,7 @@ Forms map(const Section& (*section)()) { return {{.kind = Kind::map, .section = 
 
 }  // namespace form
 
-std::string number_text(double number) {
+std::string yaml_text(double number) {
   char buffer[32];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr};
 }

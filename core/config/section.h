@@ -83,7 +83,7 @@ Forms map(const Section& (*section)());
 }  // namespace form
 
 /// The shortest text of a number, for defaults.
-std::string number_text(double number);
+std::string yaml_text(double number);
 
 /// "[unit] what it is" of a FITS comment as a sentence: "What it is [unit]."
 std::string sentence_of(std::string_view comment);

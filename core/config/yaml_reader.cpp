@@ -123,8 +123,8 @@ double YamlValue::number(Bounds bounds) const {
   if (error != std::errc{} || end != s.data() + s.size() || !std::isfinite(x))
     fail("must be a number");
   if (bounds.least_open ? x <= bounds.least : x < bounds.least)
-    fail("must be " + std::string(bounds.least_open ? "> " : ">= ") + number_text(bounds.least));
-  if (x > bounds.most) fail("must be <= " + number_text(bounds.most));
+    fail("must be " + std::string(bounds.least_open ? "> " : ">= ") + yaml_text(bounds.least));
+  if (x > bounds.most) fail("must be <= " + yaml_text(bounds.most));
   return x;
 }
 
@@ -272,7 +272,7 @@ void YamlMap::check_default(std::string_view key, double otherwise) const {
   // Angles are kept in radians, which changes their last digit.
   const bool same = error == std::errc{} && end == said.data() + said.size() &&
                     std::abs(x - otherwise) <= 1e-12 * std::abs(otherwise);
-  if (!same) check_default(key, number_text(otherwise));
+  if (!same) check_default(key, yaml_text(otherwise));
 }
 
 double YamlMap::number_or(std::string_view key, double otherwise) {
