@@ -131,10 +131,11 @@ check_compose() {
   compose down --volumes --timeout 1 >/dev/null 2>&1
 }
 
-# A scenario that nobody can run: compose gives the launcher's code.
+# A scenario that nobody can run: compose gives the launcher's code. It is alone, for where another container fails
+# first, compose ends it.
 check_failure() {
   local code=0
-  DMISE_SCENARIO=missing.yaml compose up --no-color --exit-code-from time-master \
+  DMISE_SCENARIO=missing.yaml compose up --no-color --exit-code-from time-master time-master \
     >"$work/missing.log" 2>&1 || code=$?
   ((code == 2)) || die "exit code $code of a run without scenario, not 2: $(tail -n 9 "$work/missing.log")"
   compose down --volumes --timeout 1 >/dev/null 2>&1
