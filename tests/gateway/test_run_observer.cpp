@@ -11,6 +11,7 @@
 #include "nodes/gateway/web_server.h"
 #include "tests/runtime/network_threads.h"
 #include "tests/runtime/toy.h"
+#include "tests/runtime/until_lost.h"
 
 namespace dmise {
 namespace {
@@ -77,7 +78,7 @@ TEST(RunObserver, SeesARunItJoinsLateAndControlsItsClock) {
                 test::start(camera, master.address, &stop),
                 test::start(environment, master.address, &stop)};
   const auto settled = [&] { return ask_master(master.address, 30.0).settled; };
-  while (settled() < 5) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  test::wait_until_settled(master.address, 5);
 
   ObserverThread seen(master.address);
   // Everything comes: also the roster, which was published before.
