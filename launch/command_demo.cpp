@@ -1,7 +1,4 @@
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -20,14 +17,9 @@ namespace {
   const std::string scenario = home_directory() + "/launch/scenarios/demo.yaml";
   if (!std::filesystem::is_regular_file(scenario))
     throw Error(scenario + ": the demonstration's scenario is missing");
-  const std::string program = program_directory() + "/dmise";
-  std::vector<std::string> arguments{"dmise", "launch", scenario, "--out", out};
+  std::vector<std::string> arguments{"launch", scenario, "--out", out};
   arguments.insert(arguments.end(), more.begin(), more.end());
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  execv(program.c_str(), argv.data());
-  throw Error(program + ": " + std::strerror(errno));
+  become_program("dmise", arguments);
 }
 
 }  // namespace

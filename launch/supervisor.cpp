@@ -162,4 +162,14 @@ std::string program_directory() {
   return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path().string();
 }
 
+void become_program(const std::string& name, std::vector<std::string> arguments) {
+  const std::string program = program_directory() + "/" + name;
+  arguments.insert(arguments.begin(), program);
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  execv(program.c_str(), argv.data());
+  throw Error(program + ": " + std::strerror(errno));
+}
+
 }  // namespace dmise

@@ -64,4 +64,7 @@ std::string last_line(const std::string& path);
 /// Directory of the running program.
 std::string program_directory();
 
+/// Replaces this process by a program of that directory. Throws `Error` if it cannot be started.
+[[noreturn]] void become_program(const std::string& name, std::vector<std::string> arguments);
+
 }  // namespace dmise

@@ -40,18 +40,4 @@ prove() {
   grep -q 'contains this run, complete' "$log.again" || die "a second ./dmise demo did the work again"
 }
 
-[[ ${DMISE_BARE_ROOT:-0} == 1 ]] || { say "skipped: set DMISE_BARE_ROOT=1 to spend a build on it"; exit 77; }
-((EUID == 0)) || die "needs root"
-command -v debootstrap >/dev/null || die "needs debootstrap"
-mkdir -p "$proofs"
-
-proof=$(setup_proof)
-if [[ -f $proof ]]; then
-  say "proved before: $(cat "$proof")"
-  exit 0
-fi
-base=$("$checkout/launch/stack/base-system.sh")
-work=$(mktemp -d "$proofs/root.XXXXXX")
-trap 'rm -rf --one-file-system "$work"' EXIT
-prove "$work" "${proof%.proof}.log"
-write_proof "$proof" "$SECONDS"
+prove_in_bare_root "a build" setup_proof

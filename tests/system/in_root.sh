@@ -14,3 +14,23 @@ in_namespaces() {
     exec chroot "$root" env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
       HOME=/root LANG=C.UTF-8 http_proxy="${http_proxy-}" https_proxy="${https_proxy-}" "$@"' _ "$@"
 }
+
+# prove_in_bare_root COST PROOF: `prove ROOT LOG` in a bare Debian, unless the proof that the function PROOF names is
+# there. Uses `checkout`, `say`, `die` and setup_proof.sh; sets `base`, its archive.
+prove_in_bare_root() {
+  [[ ${DMISE_BARE_ROOT:-0} == 1 ]] || { say "skipped: set DMISE_BARE_ROOT=1 to spend $1 on it"; exit 77; }
+  ((EUID == 0)) || die "needs root"
+  command -v debootstrap >/dev/null || die "needs debootstrap"
+  mkdir -p "$proofs"
+  local proof
+  proof=$("$2")
+  if [[ -f $proof ]]; then
+    say "proved before: $(cat "$proof")"
+    exit 0
+  fi
+  base=$("$checkout/launch/stack/base-system.sh")
+  work=$(mktemp -d "$proofs/root.XXXXXX")
+  trap 'rm -rf --one-file-system "$work" "$work".*' EXIT
+  prove "$work" "${proof%.proof}.log"
+  write_proof "$proof" "$SECONDS"
+}
