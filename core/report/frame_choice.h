@@ -1,0 +1,30 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "core/report/run_contents.h"
+
+namespace dmise {
+
+struct ReportSettings {
+  std::size_t most_views = 200;              // frames that can be opened with their pixels
+  double most_megapixels = 500.0;            // of FITS files that are read for them
+  std::size_t most_pixel_bytes = 6'000'000;  // of these pixels in the page
+  std::size_t most_frames = 6000;            // of which curves are drawn
+  std::size_t most_sources = 12000;          // of truth, likewise of detections
+};
+
+/// Which frames the page draws, and which of them can be opened with their pixels.
+struct FrameChoice {
+  std::size_t every = 1;            // of a sensor's frames
+  std::vector<std::size_t> row_of;  // of each frame of the run; npos: not in the page
+  std::vector<std::size_t> frames;  // of each row
+  std::vector<std::size_t> viewed;  // rows
+  std::vector<bool> with_sources;   // of each frame: its truth and detections are in the page
+  std::size_t source_every = 1;     // of a sensor's frames that are in the page
+  static constexpr std::size_t none = std::size_t(-1);
+};
+
+FrameChoice choose_frames(const RunContents& run, const ReportSettings& settings);
+
+}  // namespace dmise
