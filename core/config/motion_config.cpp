@@ -50,7 +50,7 @@ const Section& two_body_section() {
 const Section& fixed_section() {
   static const Section section{
       "fixed",
-      "A constant place: geodetic over WGS 84, or a vector.",
+      "A constant place: geodetic over the scenario's ellipsoid, or a vector.",
       {optional("latitude_deg", form::number(-90.0, 90.0), "Geodetic latitude [deg]."),
        optional("longitude_deg", form::number(-180.0, 360.0), "Longitude, east [deg]."),
        optional("height_m", form::number(least_height_m, farthest_m),

@@ -236,7 +236,7 @@ const Section& scenario_section() {
       {required("simulation", form::map(simulation_section), "The run."),
        optional("objects", objects_forms(), "Catalogues of objects, and objects of one's own."),
        optional("stars", form::map(stars_section), "The stars; without it there are none."),
-       required("sensors", form::list(form::map(sensor_section)), "The sensors, at least one."),
+       required("sensors", form::list(form::map(sensor_section), 1), "The sensors, at least one."),
        optional("accuracy", accuracy_forms(), "How accurate frames must be, for all sensors.",
                 "standard"),
        optional("effects", effects_forms(), "Effects switched for all sensors."),

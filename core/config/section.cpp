@@ -41,7 +41,9 @@ Forms flag() { return {{.kind = Kind::flag}}; }
 Forms choice(std::vector<std::string> words) {
   return {{.kind = Kind::choice, .words = std::move(words)}};
 }
-Forms list(Forms items) { return {{.kind = Kind::list, .items = std::move(items)}}; }
+Forms list(Forms items, std::size_t fewest) {
+  return {{.kind = Kind::list, .fewest = fewest, .items = std::move(items)}};
+}
 Forms numbers(std::size_t count, double least, double most) {
   return {{.kind = Kind::list, .fewest = count, .greatest = count, .items = number(least, most)}};
 }

@@ -75,7 +75,7 @@ Forms text(std::vector<std::string> suggested = {});
 Forms time();  // UTC
 Forms flag();
 Forms choice(std::vector<std::string> words);
-Forms list(Forms items);
+Forms list(Forms items, std::size_t fewest = 0);
 Forms numbers(std::size_t count, double least, double most);  // a list of them
 Forms positive_numbers(std::size_t count, double most);
 Forms map(const Section& (*section)());
