@@ -6,6 +6,7 @@
 #include <span>
 #include <tuple>
 
+#include "core/base/chi_square.h"
 #include "core/base/units.h"
 #include "core/tracking/initial_orbit.h"
 #include "core/tracking/three_lines.h"
@@ -79,11 +80,8 @@ Continued continued(const std::vector<const LooseSource*>& arc, SimTime time) {
   return out;
 }
 
-/// Chi-square that a fit of `degrees` of freedom exceeds in 1 of 1,000 (Wilson & Hilferty 1931).
-double largest_chi2(int degrees) {
-  const double n = std::max(1, degrees), part = 2 / (9 * n);
-  return n * std::pow(1 - part + 3.09 * std::sqrt(part), 3);
-}
+/// Chi-square that a fit of `degrees` of freedom exceeds in 1 of 1,000.
+double largest_chi2(int degrees) { return chi_square_of_normal(3.09, std::max(1, degrees)); }
 
 double range_sigma(const OrbitEstimate& estimate, const Vec<Gcrs>& sensor_m) {
   const Vec<Gcrs> line = estimate.state.position_m - sensor_m;

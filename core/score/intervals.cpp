@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/chi_square.h"
 #include "core/base/units.h"
 #include "core/score/matched_filter.h"
 
@@ -43,9 +44,7 @@ Interval nees_interval(std::size_t count) {
   const double degrees = 2.0 * double(count),
                far = degrees + 10.0 * std::sqrt(2.0 * degrees) + 20.0;
   const auto quantile = [&](double p, double z) {
-    // Wilson and Hilferty 1931, to 1e-6 there.
-    if (count > 2000)
-      return std::pow(1.0 - 2.0 / (9.0 * degrees) + z * std::sqrt(2.0 / (9.0 * degrees)), 3.0);
+    if (count > 2000) return chi_square_of_normal(z, degrees) / degrees;  // to 1e-6 there
     return root([&](double x) { return chi_square_share(x, count) - p; }, 1e-12, far) / degrees;
   };
   return {quantile(0.025, -z95), quantile(0.975, z95)};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/chi_square.h"
 #include "core/base/units.h"
 #include "core/orbit/two_body.h"
 #include "core/tracking/orbit_state.h"
@@ -85,12 +86,10 @@ Normal normal_of(std::span<const AngleObservation> lines, SimTime middle, double
   return out;
 }
 
-/// Probability that chi-square of `degrees` degrees of freedom is above `chi2`, by Wilson and
-/// Hilferty's cube root: good to a factor of 2 down to 1e-8.
+/// Probability that chi-square of `degrees` degrees of freedom is above `chi2`: good to a factor of
+/// 2 down to 1e-8.
 double tail(double chi2, int degrees) {
-  const double k = 2.0 / (9.0 * degrees);
-  const double z = (std::cbrt(chi2 / degrees) - (1 - k)) / std::sqrt(k);
-  return 0.5 * std::erfc(z / std::sqrt(2.0));
+  return 0.5 * std::erfc(normal_of_chi_square(chi2, degrees) / std::sqrt(2.0));
 }
 
 }  // namespace
