@@ -46,10 +46,8 @@ std::string image_shapes(const Region& r, double radius_px) {
 
 std::string sky_shapes(const Region& r, double radius_px, const Wcs& wcs) {
   const auto place = [&](PixelPosition p) {
-    const Vec<Gcrs> v = wcs_direction(wcs, p);
-    const double ra = std::atan2(v.y, v.x);
-    return format("%.8f,%.8f", (ra < 0.0 ? ra + 2 * pi : ra) / deg,
-                  std::atan2(v.z, std::hypot(v.x, v.y)) / deg);
+    const auto [ra_rad, dec_rad] = to_spherical(wcs_direction(wcs, p));
+    return format("%.8f,%.8f", ra_rad / deg, dec_rad / deg);
   };
   const std::string tail = " # " + r.style + " text=" + braced(r.text) + "\n";
   if (r.start == r.end)

@@ -29,23 +29,18 @@ std::vector<StarInFrame> stars_in_frame(const StarMap& map, const Wcs& wcs, int 
     out.clear();
     query_cone(magnitudes, map.index, axis, radius_rad, faintest, found);
     for (const std::uint32_t i : found) {
-      const double dec = stars.dec_rad[i], ra = stars.ra_rad[i];
-      const Vec<Gcrs> east{-std::sin(ra), std::cos(ra), 0.0};
-      const Vec<Gcrs> north{-std::sin(dec) * std::cos(ra), -std::sin(dec) * std::sin(ra),
-                            std::cos(dec)};
-      const Vec<Gcrs> now = unit(
-          Vec<Gcrs>{std::cos(dec) * std::cos(ra), std::cos(dec) * std::sin(ra), std::sin(dec)} +
-          east * (years * stars.pm_ra_cosdec_rad_per_yr[i]) +
-          north * (years * stars.pm_dec_rad_per_yr[i]));
+      const double ra = stars.ra_rad[i];
+      const Vec<Gcrs> then = from_spherical<Gcrs>(ra, stars.dec_rad[i]);
+      const Vec<Gcrs> east{-std::sin(ra), std::cos(ra), 0.0}, north = cross(then, east);
+      const Vec<Gcrs> now = unit(then + east * (years * stars.pm_ra_cosdec_rad_per_yr[i]) +
+                                 north * (years * stars.pm_dec_rad_per_yr[i]));
       const auto pixel = wcs_pixel(wcs, now);
       if (!pixel || !(pixel->x_px > -0.5) || !(pixel->y_px > -0.5) ||
           !(pixel->x_px < columns - 0.5) || !(pixel->y_px < rows - 0.5) ||
           !wcs_sees_sky(wcs, *pixel))
         continue;
-      double ra_now = std::atan2(now.y, now.x);
-      if (ra_now < 0.0) ra_now += 2 * pi;
-      out.push_back({stars.id[i], *pixel, ra_now, std::asin(std::clamp(now.z, -1.0, 1.0)),
-                     double(stars.v_mag[i])});
+      const auto [ra_now, dec_now] = to_spherical(now);
+      out.push_back({stars.id[i], *pixel, ra_now, dec_now, double(stars.v_mag[i])});
     }
     if (out.size() >= most || found.size() > 20 * most) break;
   }
