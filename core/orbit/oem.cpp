@@ -43,8 +43,10 @@ class OemReader {
         check_metadata();
         part = Part::data;
       } else if (line == "COVARIANCE_START") {
+        if (part != Part::data) fail("COVARIANCE_START outside the ephemeris lines", line);
         part = Part::covariance;
       } else if (line == "COVARIANCE_STOP") {
+        if (part != Part::covariance) fail("COVARIANCE_STOP without COVARIANCE_START", line);
         part = Part::data;
       } else if (part == Part::covariance) {
         continue;

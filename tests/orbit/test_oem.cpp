@@ -158,6 +158,10 @@ TEST(Oem, FaultsPointAtTheirLine) {
       {header + meta() + "2026-13-01T00:00:00 1 2 3 4 5 6\n", "t:11: not a time"},
       {header + meta() + lines(0, 0), "a segment needs at least two ephemeris lines"},
       {header + "META_START\nREF_FRAME = GCRF\nMETA_STOP\n", "t:6: segment without TIME_SYSTEM"},
+      {header + "COVARIANCE_START\nCOVARIANCE_STOP\n" + lines(0, 2),
+       "t:4: COVARIANCE_START outside the ephemeris lines"},
+      {header + "COVARIANCE_STOP\n" + lines(0, 2),
+       "t:4: COVARIANCE_STOP without COVARIANCE_START"},
       {meta() + lines(0, 2), "t: not a CCSDS OEM"},
       {header, "t: contains no ephemeris segment"}};
   for (const auto& c : cases) {
