@@ -1,7 +1,10 @@
 #include "core/image/fits_guard.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <cstdlib>
+#include <system_error>
 
 #include "core/base/error.h"
 
@@ -25,17 +28,22 @@ double checked_value(std::string_view card, bool divides, const std::string& nam
   };
   if (std::any_of(card.begin(), card.end(), [](char c) { return c < ' ' || c > '~'; }))
     throw ConfigError(name + ": a header holds bytes that are not printable ASCII");
-  if (card.substr(8, 1) != "=") return 0.0;
   std::string_view value = card.substr(value_at - 1);
   value.remove_prefix(std::min(value.size(), value.find_first_not_of(' ')));
-  if (value.starts_with('\'')) return 0.0;
+  const bool quoted = value.starts_with('\'');
   value = value.substr(0, value.find('/'));
   while (value.ends_with(' ')) value.remove_suffix(1);
+  // CFITSIO makes a whole number of texts and of fractions, too: those may be 0.
+  if (card.starts_with("ZTILE") || (divides && card.starts_with("ZVAL"))) {
+    std::uint32_t whole = 0;
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), whole);
+    if (card.substr(8, 1) != "=" || error != std::errc() || end != value.data() + value.size() ||
+        whole == 0)
+      fail("must be a whole number > 0");
+  }
+  if (card.substr(8, 1) != "=" || quoted) return 0.0;
   if (value.size() > longest_number) fail("is too long for a number");
-  const double number = std::strtod(std::string(value).c_str(), nullptr);
-  const bool divisor = card.starts_with("ZTILE") || (divides && card.starts_with("ZVAL"));
-  if (divisor && !(number > 0)) fail("must be > 0");
-  return number;
+  return std::strtod(std::string(value).c_str(), nullptr);
 }
 
 }  // namespace

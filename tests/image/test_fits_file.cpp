@@ -238,21 +238,24 @@ TEST(FitsFile, NamesTheMissingOrWrongKeyword) {
             "frame.fits: BITPIX: must be 16, got -32");
 }
 
-// CFITSIO divides by the sizes of tiles and blocks while it opens a compressed image.
+// CFITSIO divides by the sizes of tiles and blocks while it opens a compressed image, and makes
+// whole numbers of texts and fractions.
 TEST(FitsFile, RefusesTilesAndBlocksOfNoSize) {
-  for (const std::string key : {"ZVAL1   =", "ZTILE1  ="}) {
-    std::string bytes =
-        encoded(sample_counts(16, 12), sample_header(16, 12), FitsCompression::rice);
-    const std::size_t at = bytes.find(key);
-    ASSERT_NE(at, bytes.npos);
-    bytes.replace(at + key.size(), 21, std::string(20, ' ') + "0");
-    try {
-      decode_frame(bytes, "hostile.fits");
-      ADD_FAILURE() << key;
-    } catch (const ConfigError& error) {
-      EXPECT_EQ(error.what(), "hostile.fits: " + key.substr(0, key.find(' ')) + ": must be > 0");
+  for (const std::string key : {"ZVAL1   =", "ZTILE1  ="})
+    for (const std::string value : {"0", "'0'", "''", "0.5", "-3", "4294967296", ""}) {
+      std::string bytes =
+          encoded(sample_counts(16, 12), sample_header(16, 12), FitsCompression::rice);
+      const std::size_t at = bytes.find(key);
+      ASSERT_NE(at, bytes.npos);
+      bytes.replace(at + key.size(), 21, std::string(21 - value.size(), ' ') + value);
+      try {
+        decode_frame(bytes, "hostile.fits");
+        ADD_FAILURE() << key << value;
+      } catch (const ConfigError& error) {
+        EXPECT_EQ(error.what(),
+                  "hostile.fits: " + key.substr(0, key.find(' ')) + ": must be a whole number > 0");
+      }
     }
-  }
 }
 
 // A value of many digits overflows CFITSIO's message about it; other bytes than ASCII do too.
