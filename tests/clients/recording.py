@@ -5,7 +5,9 @@ for byte; after the recorder was killed, of damaged files, and beside a recorder
 """
 
 import collections
+import contextlib
 import faulthandler
+import io
 import itertools
 import os
 import pathlib
@@ -175,13 +177,22 @@ def replays_ignore_rubbish(path):
     check(reason and len(heard) == TICKS, f"rubbish changes nothing in a replay of {len(heard)} frames; a node hears: {reason}")
 
 
+def holds_messages(part):
+    """Whether what is on disk of a recording can be read up to a first message."""
+    try:
+        with contextlib.redirect_stderr(io.StringIO()):  # it says each time that the file is not finished
+            return any(message.sequence for message in dmise.open_recording(part).messages())
+    except (OSError, ValueError):
+        return False
+
+
 def killed_recorders_leave_files(binary, directory, reference):
     path, out = directory / "killed.mcap", directory / "killed"
     part = pathlib.Path(f"{path}.part")
     with Run(binary, "launch", write_scenario(directory, duration_s=5 * TICKS), "--out", out) as run:
         with Run(*command("record", address_of(out), path)) as recorder:
             first_frame(out)
-            wait_until(lambda: part.exists() and part.stat().st_size > 10_000, "a recorder's first chunks")
+            wait_until(lambda: holds_messages(part), "a recorder's first messages")
             os.kill(recorder.process.pid, signal.SIGKILL)
             recorder.finish()
         check(run.finish()[0] == 0, "the run is complete")
