@@ -24,7 +24,7 @@ namespace dmise {
 /// Effects between light on the pixels and counts, in running order.
 using DetectorEffects =
     EffectList<FrameTransfer, PixelResponse, PhotonNoise, DarkCurrent, HotPixels, CosmicRays,
-               ReferencePixels, Persistence, FullWell, Blooming, InterpixelCoupling, Nonlinearity,
+               ReferencePixels, Persistence, FullWell, Blooming, Nonlinearity, InterpixelCoupling,
                ColumnNoise, ReadNoise, Quantisation>;
 
 /// Parameters of a detector, those of its effects first. Effects with parameters of 0 do nothing

@@ -55,11 +55,11 @@ void Release::apply(std::span<float> trapped_e) const {
   for (float& e : trapped_e) e = e * kept_idle * kept_exposed;
 }
 
-void trap(double fraction, double full_well_e, std::span<const float> collected_e,
-          std::span<float> trapped_e) {
+void caught(double fraction, double full_well_e, std::span<const float> collected_e,
+            std::span<float> caught_e) {
   const auto share = float(fraction), well = float(full_well_e);
   for (std::size_t i = 0; i < collected_e.size(); ++i)
-    trapped_e[i] += share * std::min(collected_e[i], well);
+    caught_e[i] = share * std::min(collected_e[i], well);
 }
 
 std::span<const DetectorParameter> Persistence::parameters() {
@@ -92,19 +92,23 @@ void Persistence::apply(const ExposureFacts& exposed, const Prepared& release, P
   const auto trapped = of_piece(exposed.traps.trapped_e);
   const auto younger = of_piece(exposed.traps.younger_e);
   release.apply(younger);
-  if (!younger.empty()) trap(persistence_fraction, full_well_e, e, younger);
   constexpr std::size_t part = 1024;
   static_assert(part % rng_group == 0);
-  std::array<float, part> released;
+  std::array<float, part> released, caught_e;
   for (std::size_t i = 0; i < e.size(); i += part) {
     const std::size_t n = std::min(part, e.size() - i);
     const auto here = trapped.subspan(i, n);
     release.apply(here, std::span(released).first(n));
-    trap(persistence_fraction, full_well_e, e.subspan(i, n), here);
+    caught(persistence_fraction, full_well_e, e.subspan(i, n), caught_e);
     if (exposed.detector.photons_are_drawn)
       poisson(exposed.key, std::uint32_t(piece.first + i), released.data(), n, released.data(),
               exposed.level);
-    for (std::size_t j = 0; j < n; ++j) e[i + j] += released[j];
+    for (std::size_t j = 0; j < n; ++j) {
+      here[j] += caught_e[j];
+      e[i + j] += released[j] - caught_e[j];
+    }
+    if (!younger.empty())
+      for (std::size_t j = 0; j < n; ++j) younger[i + j] += caught_e[j];
   }
 }
 

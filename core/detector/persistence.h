@@ -34,8 +34,8 @@ struct Release {
   void apply(std::span<float> trapped_e) const;
 };
 
-/// A fraction of the collected charge is trapped and released in later exposures: a Poisson deviate
-/// of the released charge is added.
+/// A fraction of the collected charge is trapped, is missing from its exposure and is released in
+/// later ones: a Poisson deviate of the released charge is added.
 struct Persistence {
   static constexpr EffectFacts facts{"persistence",
                                      "charge trapped in one exposure appears in the next ones",
@@ -67,8 +67,8 @@ std::uint32_t persistence_first_frame(const Persistence& persistence, double cad
 void begin_frame(PersistenceMemory& memory, std::uint32_t frame, std::uint32_t window,
                  std::size_t pixels);
 
-/// Traps `fraction` of the collected charge, up to the full well.
-void trap(double fraction, double full_well_e, std::span<const float> collected_e,
-          std::span<float> trapped_e);
+/// Charge that goes into the traps: `fraction` of the collected, up to the full well.
+void caught(double fraction, double full_well_e, std::span<const float> collected_e,
+            std::span<float> caught_e);
 
 }  // namespace dmise

@@ -45,6 +45,27 @@ TEST(ExpectedSignal, IsTheMeanOfFrames) {
   EXPECT_NEAR(chi2 / double(sum.size()), 1.0, 0.15);
 }
 
+// Reference: tests/reference/galsim_detector.py.
+TEST(ExpectedSignal, CouplesWhatTheAmplifierHasBentLikeGalSim) {
+  Threads threads(1);
+  Detector d;
+  d.full_well_e = 30000.0;
+  d.nonlinearity = 0.05;
+  d.interpixel_coupling = 0.02;
+  ExpectedElectronImage light(5, 5);
+  for (int y = 0; y < 5; ++y)
+    for (int x = 0; x < 5; ++x)
+      light.at(x, y) = float(100 * x * x + 900 * y + (x == 2 && y == 2 ? 20000 : 0));
+  const Exposure exposure{.seed = 1, .sensor = "eye", .frame = 1, .exposure_s = 1.0, .idle_s = 0.0};
+  const ElectronImage signal = expected_signal(light, d, exposure, {}, threads);
+  const double galsim[3][3] = {{1002.262667, 1684.834000, 1798.497333},
+                               {2281.634000, 19847.572000, 3075.468667},
+                               {2790.838667, 3471.610000, 3582.273333}};
+  for (int y = 1; y < 4; ++y)
+    for (int x = 1; x < 4; ++x)
+      EXPECT_NEAR(signal.at(x, y), galsim[y - 1][x - 1], 2e-3) << x << ", " << y;
+}
+
 TEST(ExpectedSignal, HasWhatIsOnAlone) {
   Threads threads(1);
   Detector d;

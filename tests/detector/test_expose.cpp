@@ -54,8 +54,8 @@ TEST(Expose, FollowsThePhotonTransferCurveUntilItSaturates) {
 }
 
 // Janesick's curve again for the draw of photons, dark current and read-out at once, and for the
-// same with traps, where charge is held at 0 and read noise is drawn later: within what its bound
-// says, at light of no electron to many.
+// same with traps, which catch their share and where charge is held at 0 and read noise is drawn
+// later: within what its bound says, at light of no electron to many.
 TEST(Expose, AGaussianDrawFollowsThePhotonTransferCurveWithinItsBound) {
   EffectSet gaussian;
   gaussian.set_level(PhotonNoise::facts, PhotonNoise::gaussian);
@@ -80,7 +80,7 @@ TEST(Expose, AGaussianDrawFollowsThePhotonTransferCurveWithinItsBound) {
       const ErrorBound bound = PhotonNoise::error(PhotonNoise::gaussian, facts);
       const double variance_e2 = level + 0.4 + 4.0, n = 300000.0, dn = 0.35;
       const double sigma_dn = std::sqrt(variance_e2) / dn;
-      EXPECT_NEAR(m.mean, 1000 + (level + 0.4) / dn,
+      EXPECT_NEAR(m.mean, 1000 + (level + 0.4) * (1.0 - traps) / dn,
                   bound.background_sigma * sigma_dn + 4 * sigma_dn / std::sqrt(n))
           << level << " " << traps;
       const double variance = variance_e2 / dn / dn + 1.0 / 12;

@@ -82,7 +82,7 @@ TEST(DetectorInRun, TrappedChargeLeavesByTheCadence) {
   const PixelPosition at = brightest(first.counts);
   ASSERT_GT(at.x_px, 4);
   ASSERT_LT(at.x_px, 91);
-  const double charge = sum_around(first.counts, at, 3);
+  const double charge = sum_around(first.counts, at, 3) / (1.0 - share);  // with what is trapped
   const double after = sum_around(second.counts, at, 3), later = sum_around(third.counts, at, 3);
   ASSERT_GT(after, 500.0);
   EXPECT_NEAR(
