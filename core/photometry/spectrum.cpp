@@ -86,20 +86,26 @@ double photon_rate_per_m2(const Spectrum& spectrum, const Band& band) {
   return energy / (planck_j_s * speed_of_light_m_per_s);
 }
 
-double black_body_photon_rate(double temperature_k, const Band& band) {
-  const std::vector<double> coarse = knots(band);
+double black_body_photon_rate(double temperature_k, const Band& band, const Curve& factors) {
+  std::vector<double> coarse = knots(band);
+  for (const double x : factors.wavelength_m)
+    if (x > band.low_m() && x < band.high_m()) coarse.push_back(x);
+  std::sort(coarse.begin(), coarse.end());
   std::vector<double> at{coarse[0]};
   for (std::size_t i = 1; i < coarse.size(); ++i) {
     const double a = coarse[i - 1], b = coarse[i];
     const int pieces = std::max(1, int(std::ceil((b - a) / (10 * nm) - 1e-9)));
     for (int k = 1; k <= pieces; ++k) at.push_back(k == pieces ? b : a + (b - a) * k / pieces);
   }
-  const double scale_m = planck_j_s * speed_of_light_m_per_s / (boltzmann_j_per_k * temperature_k);
-  // Photons rather than energy: x^-4, in micrometres to stay near 1.
   return integrate(band, at, [&](double x) {
-    const double x_um = x / um;
-    return 1.0 / (x_um * x_um * x_um * x_um * std::expm1(scale_m / x));
+    return factors.at_or_end(x) * black_body_photons_at(temperature_k, x);
   });
+}
+
+double black_body_photons_at(double temperature_k, double wavelength_m) {
+  constexpr double scale_m_k = planck_j_s * speed_of_light_m_per_s / boltzmann_j_per_k;
+  const double x_um = wavelength_m / um;  // near 1
+  return 1.0 / (x_um * x_um * x_um * x_um * std::expm1(scale_m_k / (temperature_k * wavelength_m)));
 }
 
 }  // namespace dmise

@@ -23,8 +23,11 @@ const Spectrum& vega_spectrum();
 /// c), exact for both as tabulated. Throws `Error` if the band reaches beyond the spectrum.
 double photon_rate_per_m2(const Spectrum& spectrum, const Band& band);
 
-/// The same for a black body, up to a factor common to all bands, at `temperature_k` > 0. Relative
-/// error below 1e-6 for 1000 K and more.
-double black_body_photon_rate(double temperature_k, const Band& band);
+/// The same for a black body, up to a factor common to all bands, at `temperature_k` > 0, times
+/// `factors` over wavelength (the end values hold outside). Relative error below 1e-6 for 1000 K
+/// and more.
+double black_body_photon_rate(double temperature_k, const Band& band, const Curve& factors = {});
+/// Photons of a black body by wavelength, up to the same factor.
+double black_body_photons_at(double temperature_k, double wavelength_m);
 
 }  // namespace dmise

@@ -13,21 +13,32 @@ namespace {
 constexpr double step = 0.01;
 constexpr int steps = 240;  // least_bv + steps x step = greatest_bv
 
-}  // namespace
+/// Spectra of stars every `step` of B-V, with their photon rates in V.
+struct StarOfColour {
+  StarSpectrum spectrum;
+  double in_v = 0.0;
+};
 
-ColourTemperature colour_temperature(double bv) {
-  const double used = std::isnan(bv) ? least_bv : std::clamp(bv, least_bv, greatest_bv);
-  return {4600.0 * (1.0 / (0.92 * used + 1.7) + 1.0 / (0.92 * used + 0.62)), !(used == bv)};
+const std::vector<StarOfColour>& stars_by_bv() {
+  static const std::vector<StarOfColour> stars = [] {
+    std::vector<StarOfColour> out;
+    for (int i = 0; i <= steps; ++i) {
+      StarSpectrum star = star_spectrum(least_bv + i * step);
+      const double in_v = photon_rate(star, johnson_v());
+      out.push_back({std::move(star), in_v});
+    }
+    return out;
+  }();
+  return stars;
 }
+
+}  // namespace
 
 StarLight::StarLight(const Band& band) {
   check_band(band);
   const double zero_point = zero_point_photons_per_s_m2(johnson_v());
-  for (int i = 0; i <= steps; ++i) {
-    const double kelvin = colour_temperature(least_bv + i * step).kelvin;
-    at_v_0_.push_back(zero_point * black_body_photon_rate(kelvin, band) /
-                      black_body_photon_rate(kelvin, johnson_v()));
-  }
+  for (const StarOfColour& star : stars_by_bv())
+    at_v_0_.push_back(zero_point * photon_rate(star.spectrum, band) / star.in_v);
 }
 
 double StarLight::photons_per_s_m2(double v_mag, double bv) const {

@@ -8,7 +8,7 @@
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/spectrum.h"
-#include "core/photometry/star_light.h"
+#include "core/photometry/star_spectrum.h"
 
 namespace dmise {
 namespace {
@@ -27,7 +27,7 @@ constexpr Site sites[] = {{"lick", lick},           {"ctio", ctio},
                           {"mauna_kea", mauna_kea}, {"paranal", paranal}};
 
 // Nodes of the table. In airmass they are even in sqrt(X), which follows the bend near X = 0.
-constexpr int colours = 13;  // every 0.2 of B-V
+constexpr int colours = 49;  // every 0.05 of B-V, as spectra of stars are tabulated
 constexpr int airmasses = 33;
 constexpr double most_airmass = 40.0;
 constexpr double sun_bv = 0.65;
@@ -99,26 +99,23 @@ BandExtinction::BandExtinction(const Band& band, const Curve& extinction_mag_per
   // The band is narrow against the change of extinction: sums over even steps of wavelength.
   constexpr int steps = 128;
   const double step_m = (band.high_m() - band.low_m()) / steps;
-  std::vector<double> k(steps), response(steps), x_um(steps);
+  std::vector<double> response(steps), x_m(steps), photons(steps), transmission(steps * airmasses);
   for (int s = 0; s < steps; ++s) {
-    const double x = band.low_m() + (s + 0.5) * step_m;
-    k[s] = extinction_mag_per_airmass.at_or_end(x);
-    response[s] = band.response.at_or_zero(x);
-    x_um[s] = x / um;
+    x_m[s] = band.low_m() + (s + 0.5) * step_m;
+    response[s] = band.response.at_or_zero(x_m[s]);
+    const double k = extinction_mag_per_airmass.at_or_end(x_m[s]);
+    // Held above 0 in the thickest ultraviolet, so that the logarithm stays finite.
+    for (int a = 0; a < airmasses; ++a)
+      transmission[a * steps + s] = std::max(light_of_magnitude(k * airmass_of_node(a)), 1e-30);
   }
   log_of_transmission_.reserve(colours * airmasses);
   for (int c = 0; c < colours; ++c) {
-    const double kelvin = colour_temperature(bv_of_node(c)).kelvin;
-    const double scale_um = planck_j_s * speed_of_light_m_per_s / (boltzmann_j_per_k * kelvin) / um;
+    const StarSpectrum star = star_spectrum(bv_of_node(c));
+    double above = 0.0;
+    for (int s = 0; s < steps; ++s) above += photons[s] = response[s] * star.photons_at(x_m[s]);
     for (int a = 0; a < airmasses; ++a) {
-      double through = 0.0, above = 0.0;
-      for (int s = 0; s < steps; ++s) {
-        const double photons =
-            response[s] / (std::pow(x_um[s], 4) * std::expm1(scale_um / x_um[s]));
-        above += photons;
-        // Held above 0 in the thickest ultraviolet, so that the logarithm stays finite.
-        through += photons * std::max(std::pow(10.0, -0.4 * k[s] * airmass_of_node(a)), 1e-30);
-      }
+      double through = 0.0;
+      for (int s = 0; s < steps; ++s) through += photons[s] * transmission[a * steps + s];
       log_of_transmission_.push_back(std::log(through / above));
     }
   }

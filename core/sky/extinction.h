@@ -30,7 +30,7 @@ class BandExtinction {
   /// `extinction` [mag/airmass]; beyond its ends their values.
   BandExtinction(const Band& band, const Curve& extinction_mag_per_airmass);
 
-  /// For a star of this B-V (a black body); airmass in [0, 40], beyond it is clamped.
+  /// For a star of this B-V (`star_spectrum`); airmass in [0, 40], beyond it is clamped.
   double of_star(double airmass, double bv) const;
   /// For sunlit things: as for a star of the Sun's colour.
   double of_sunlight(double airmass) const;

@@ -11,18 +11,38 @@
 namespace dmise {
 namespace {
 
-// CALSPEC's Vega with the Bessell bands at full resolution, Vega V = 0.03 and U = 0.024.
+// CALSPEC's Vega through Bessell's curves divided by wavelength, both at full resolution, Vega V =
+// 0.03 and U = 0.024: tests/reference/star_spectra.py --check.
 TEST(Magnitude, PhotonRatesOfMagnitudeZero) {
   const struct {
     const char* band;
     double photons_per_s_m2;
-  } expected[] = {{"bessell-U", 4.81e9},
-                  {"bessell-B", 1.341e10},
-                  {"bessell-V", 8.991e9},
-                  {"bessell-R", 1.132e10},
-                  {"bessell-I", 6.921e9}};
+  } expected[] = {{"bessell-U", 4.813e9},
+                  {"bessell-B", 1.289e10},
+                  {"bessell-V", 8.748e9},
+                  {"bessell-R", 1.059e10},
+                  {"bessell-I", 6.781e9}};
   for (const auto& [band, rate] : expected)
     EXPECT_NEAR(zero_point_photons_per_s_m2(*filter_named(band)), rate, 0.005 * rate) << band;
+}
+
+// Bessell, Castelli & Plez 1998, A&A 333, 231, table A2: the flux of magnitude 0, 1790, 4063, 3636,
+// 3064 and 2416 Jy in UBVRI, from another model of Vega and averaged over energy.
+TEST(Magnitude, FluxOfMagnitudeZero) {
+  const struct {
+    const char* band;
+    double jansky;
+  } expected[] = {{"bessell-U", 1790},
+                  {"bessell-B", 4063},
+                  {"bessell-V", 3636},
+                  {"bessell-R", 3064},
+                  {"bessell-I", 2416}};
+  for (const auto& [name, jansky] : expected) {
+    const Band band = *filter_named(name);
+    EXPECT_NEAR(3631 * zero_point_photons_per_s_m2(band) / ab_zero_point_photons_per_s_m2(band),
+                jansky, 0.03 * jansky)
+        << name;
+  }
 }
 
 // Willmer 2018, ApJS 236, 47: the Sun's Vega magnitudes B -26.13, V -26.76, R -27.15, I -27.47

@@ -192,7 +192,7 @@ objects:
            effects + R"(photon_noise: off, read_noise: off, dark_current: off}
     camera:
       optics: {columns: 128, rows: 128, pixel_pitch_m: 1.0e-5, focal_length_m: 0.5, aperture_m: 0.2, psf_fwhm_px: 1.5}
-      detector: {full_well_e: 1.0e+9, gain_e_per_dn: 0.001, adc_bits: 16}
+      detector: {full_well_e: 1.0e+9, gain_e_per_dn: 0.002, adc_bits: 16}
       band: {name: V, centre_m: 0.55e-6, width_m: 0.1e-6}
 )";
   };

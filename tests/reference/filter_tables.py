@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """Prints core/photometry/filter_tables.inc from filter curves in ECSV (the argument: their folder).
 
-Bessell's are given every 5 or 10 nm and printed as they are; SDSS's are given every 2 nm and printed
-every 10 nm as means under the hat function, scaled to a peak of 1.
+Bessell's are given every 5 or 10 nm and are responses to energy: divided by the wavelength, scaled to
+a peak of 1, they are responses to photons. SDSS's are responses to photons, given every 2 nm and
+printed every 10 nm as means under the hat function, scaled to a peak of 1.
 """
 import sys
 
@@ -13,6 +14,10 @@ def curve(name):
     rows = [line.split() for line in open(f"{sys.argv[1]}/{name}.ecsv") if line[0].isdigit()]
     data = np.array(rows, float)
     return data[:, 0] / 10, data[:, 1]
+
+
+def of_photons(x, y):
+    return x, y / x / (y / x).max()
 
 
 def coarse(x, y):
@@ -34,9 +39,9 @@ def table(name, x, y):
 
 
 print("// Made by tests/reference/filter_tables.py. {wavelength [nm], response}")
-print("// Bessell 1990, PASP 102, 1181; airmass 0.")
+print("// Bessell 1990, PASP 102, 1181, divided by wavelength; airmass 0.")
 for band in "UBVRI":
-    table(f"bessell_{band.lower()}", *curve(f"bessell-{band}"))
+    table(f"bessell_{band.lower()}", *of_photons(*curve(f"bessell-{band}")))
 print("// Doi et al. 2010, AJ 139, 1628; with the camera, the telescope and 1.3 airmasses.")
 for band in "ugriz":
     table(f"sdss_{band}", *coarse(*curve(f"sdss2010-{band}")))
