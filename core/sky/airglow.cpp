@@ -35,13 +35,15 @@ const Spectrum& airglow_spectrum() {
     // OH of an average night, by I = 19.8 mag/arcsec2 of the whole dark sky (Patat 2003, A&A 400,
     // 1183).
     constexpr double oh_scale = 0.6;
+    // Herzberg's bands of O2, likewise by U = 22.1 (Patat 2003: 22.3; Benn & Ellison 1998: 22.0).
+    constexpr double herzberg_scale = 4.2;
     static constexpr double infrared[][2] = {{1000, 9.0},  {1250, 12.5}, {1650, 31.0},
                                              {1800, 15.0}, {2200, 25.0}, {2500, 25.0}};
-    Curve curve{{200 * nm}, {0.2}};
+    Curve curve{{200 * nm, 300 * nm}, {0.0, herzberg_scale * 0.23}};
     double at_nm = 350;
     for (const double flux : visible) {
       curve.wavelength_m.push_back(at_nm * nm);
-      curve.value.push_back(at_nm < 700 ? flux : oh_scale * flux);
+      curve.value.push_back(flux * (at_nm < 400 ? herzberg_scale : at_nm < 700 ? 1.0 : oh_scale));
       at_nm += 10;
     }
     for (const auto& [wavelength_nm, flux] : infrared) {

@@ -58,11 +58,13 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
   galactic_pole_ = (galactic_from_gcrs() * scene.gcrs_from_enu).inverse() * Vec<Galactic>{0, 0, 1};
   sun_longitude_rad_ = to_spherical(ecliptic_from_enu_ * scene.sun)[0];
   const double sun_altitude_rad = std::asin(std::clamp(scene.sun.z, -1.0, 1.0));
-  moon_v_mag_ = moon_v_mag(scene.moon_phase_rad) +
+  moon_v_mag_ = moon_v_mag(scene.moon_phase_rad) + opposition_surge_mag(scene.moon_phase_rad) +
                 5.0 * std::log10(scene.moon_distance_m / mean_moon_distance_m);
   if (scene.in_air) {
     k_v_ = zenith_extinction_mag(johnson_v(), extinction);
-    diffuse_mag_ = diffuse_share_of_extinction * zenith_extinction_mag(band, extinction);
+    const double k = zenith_extinction_mag(band, extinction);
+    diffuse_mag_ = diffuse_share_of_extinction * k;
+    if (parts_.scattered_moonlight) moonlit_air_ = moonlit_air(band, k_v_, k);
   } else {
     parts_ = acting_sky(parts, {}, {.on_ground = false});
   }
@@ -72,6 +74,8 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
   const double sunlit = photons_per_s_m2_sr_of_s10(band);
   photons_of_s10_.fill(sunlit);
   if (parts_.airglow) photons_of_s10_[1] = photons_per_s_m2_sr_of_s10(band, airglow_spectrum());
+  if (parts_.scattered_moonlight)
+    photons_of_s10_[4] = photons_per_s_m2_sr_of_s10(band, moonlight_spectrum());
   if (parts_.twilight) photons_of_s10_[5] = photons_per_s_m2_sr_of_s10(band, twilight_spectrum());
   if (parts_.light_pollution)
     photons_of_s10_[6] =
@@ -103,7 +107,7 @@ double SkyModel::above_clouds_s10(SkyPart part, const Vec<Enu>& direction) const
       if (!parts_.scattered_moonlight) return 0.0;
       return parts_.scattered_moonlight->factor *
              scattered_moonlight_s10(angle_rad(direction, scene_.moon), direction.z, scene_.moon.z,
-                                     moon_v_mag_, k_v_);
+                                     moon_v_mag_, moonlit_air_);
     case SkyPart::twilight:
       if (!(twilight_scale_s10_ > 0)) return 0.0;
       return twilight_scale_s10_ *

@@ -97,9 +97,10 @@ class SkyModel {
   /// The same of each part, in the order of `SkyPart`.
   std::array<double, sky_part_count> photons_of_parts(const Vec<Enu>& direction) const;
 
-  /// V brightness of one part [S10]; 0 where it is off.
+  /// V brightness of one part [S10]; 0 where it is off. What the air does to light from above it is
+  /// that of the band.
   double part_s10(SkyPart part, const Vec<Enu>& direction) const;
-  /// V brightness of each part [S10], in the order of `SkyPart`.
+  /// The same of each part [S10], in the order of `SkyPart`.
   std::array<double, sky_part_count> parts_s10(const Vec<Enu>& direction) const;
 
   /// V brightness of the whole [mag/arcsec2]; 99 where there is none.
@@ -119,6 +120,7 @@ class SkyModel {
   double moon_v_mag_ = 0.0;
   double k_v_ = 0.0;          // extinction of stars in V [mag/airmass], 0 in space
   double diffuse_mag_ = 0.0;  // that of extended light in the band [mag/airmass]
+  MoonlitAir moonlit_air_;
   std::array<double, sky_part_count> photons_of_s10_{};
 };
 

@@ -66,10 +66,10 @@ double twilight_pattern(double sin_altitude, double angle_from_sun_rad, double k
 
 const Spectrum& twilight_spectrum() {
   static const Spectrum spectrum = [] {
-    // Twilight over sunlight at the middles of UBVRI, 1 in V: 10^(0.4 ((X-V) of the Sun - that of
-    // twilight)).
+    // Twilight over sunlight, so that it has the B-V, V-R and V-I of Patat et al. 2006 for a Sun 5
+    // deg down.
     const Curve bluing{{300 * nm, 360 * nm, 438 * nm, 545 * nm, 641 * nm, 798 * nm, 1000 * nm},
-                       {2.5, 2.4, 2.16, 1.0, 1.06, 1.33, 1.35}};
+                       {2.5, 2.4, 2.53, 1.0, 1.36, 1.48, 1.48}};
     Spectrum sun = solar_spectrum();
     for (std::size_t i = 0; i < sun.irradiance.value.size(); ++i)
       sun.irradiance.value[i] *= bluing.at_or_end(sun.irradiance.wavelength_m[i]);

@@ -119,7 +119,7 @@ TEST(AtmosphericRefraction, ALowerMoonGivesNoLessLightThanTheBoundSays) {
     for (double true_rad = -5.0 * deg; true_rad < 80.0 * deg; true_rad += 0.05 * deg) {
       const double lifted_rad = sea_level.apparent_from_true_rad(true_rad);
       const auto moonlight = [&](double moon_rad) {
-        return scattered_moonlight_s10(60.0 * deg, 0.8, std::sin(moon_rad), -12.0, k_v);
+        return scattered_moonlight_s10(60.0 * deg, 0.8, std::sin(moon_rad), -12.0, {k_v});
       };
       PlanFacts f;
       f.moon_refraction_rad = lifted_rad - true_rad;

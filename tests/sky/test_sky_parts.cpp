@@ -9,9 +9,11 @@
 #include "core/photometry/magnitude.h"
 #include "core/sky/airglow.h"
 #include "core/sky/airmass.h"
+#include "core/sky/extinction.h"
 #include "core/sky/faint_starlight.h"
 #include "core/sky/light_pollution.h"
 #include "core/sky/scattered_moonlight.h"
+#include "core/sky/sky_model.h"
 #include "core/sky/surface_brightness.h"
 #include "core/sky/twilight.h"
 #include "core/sky/zodiacal_light.h"
@@ -101,19 +103,52 @@ TEST(ScatteredMoonlight, KrisciunasAndSchaefer) {
   for (const auto& c : cases) {
     const double s10 =
         scattered_moonlight_s10(c.angle * deg, std::cos(c.z * deg), std::cos(c.z_moon * deg),
-                                moon_v_mag(c.phase * deg), c.k);
+                                moon_v_mag(c.phase * deg), {c.k});
     EXPECT_NEAR(mag_per_arcsec2_of_s10(s10), c.mag, 1e-4);
     if (c.nl > 0) {
       EXPECT_NEAR(s10 / s10_of_nanolambert(1.0), c.nl, 1e-4 * c.nl);
     }
   }
   EXPECT_NEAR(moon_v_mag(0), -12.73, 1e-12);
+  EXPECT_NEAR(light_of_magnitude(opposition_surge_mag(0)), 1.35, 1e-12);
+  EXPECT_EQ(opposition_surge_mag(7 * deg), 0.0);
+}
+
+// The whole Moon's colours, B-V 0.92 and V-R 0.85 (Johnson's R; 0.6 in Cousins') and U-B 0.46, by
+// Allen's Astrophysical Quantities.
+TEST(ScatteredMoonlight, AboveTheAirItHasTheColoursOfTheMoon) {
+  const auto mag = [](const char* name) {
+    const Band band = *filter_named(name);
+    return magnitude_of_light(photon_rate_per_m2(moonlight_spectrum(), band) /
+                              zero_point_photons_per_s_m2(band));
+  };
+  EXPECT_NEAR(mag("bessell-B") - mag("bessell-V"), 0.92, 0.06);
+  EXPECT_NEAR(mag("bessell-U") - mag("bessell-B"), 0.46, 0.1);
+}
+
+// ESO's sky calculator, with the full Moon at an altitude of 45 deg, towards the zenith of Paranal:
+// V 18.04, B-V 0.17, V-R -0.02, V-I -0.14.
+TEST(ScatteredMoonlight, IsBluerThanTheSun) {
+  const SkyScene scene{.moon = {std::sqrt(0.5), 0, std::sqrt(0.5)}, .moon_phase_rad = 0.0};
+  SkyParts parts;
+  parts.scattered_moonlight = ScatteredMoonlight{};
+  const auto mag = [&](const char* name) {
+    const Band band = *filter_named(name);
+    const SkyModel sky(parts, scene, band, *extinction_of_site("paranal"));
+    return magnitude_of_light(sky.photons_per_s_m2_sr({0, 0, 1}) * arcsec * arcsec /
+                              zero_point_photons_per_s_m2(band));
+  };
+  const double v = mag("bessell-V");
+  EXPECT_NEAR(v, 18.04, 0.3);
+  EXPECT_NEAR(mag("bessell-B") - v, 0.17, 0.15);
+  EXPECT_NEAR(v - mag("bessell-R"), -0.02, 0.15);
+  EXPECT_NEAR(v - mag("bessell-I"), -0.14, 0.15);
 }
 
 TEST(ScatteredMoonlight, ContinuousThroughMoonriseAndTowardsTheMoon) {
   double last = 0;
   for (double altitude = -10; altitude <= 90; altitude += 0.02) {
-    const double here = scattered_moonlight_s10(1.0, 0.7, std::sin(altitude * deg), -12.7, 0.17);
+    const double here = scattered_moonlight_s10(1.0, 0.7, std::sin(altitude * deg), -12.7, {0.17});
     EXPECT_GT(here, last);
     if (last > 0) {
       EXPECT_LT(here / last, 1.03);
@@ -169,9 +204,9 @@ TEST(Twilight, Colours) {
     return magnitude_of_light(photons_per_s_m2_sr_of_s10(band, twilight_spectrum()) /
                               zero_point_photons_per_s_m2(band));
   };
-  EXPECT_NEAR(mag("bessell-B") - mag("bessell-V"), 0.00, 0.1);
-  EXPECT_NEAR(mag("bessell-V") - mag("bessell-R"), 0.44, 0.1);
-  EXPECT_NEAR(mag("bessell-V") - mag("bessell-I"), 0.91, 0.1);
+  EXPECT_NEAR(mag("bessell-B") - mag("bessell-V"), 0.00, 0.02);
+  EXPECT_NEAR(mag("bessell-V") - mag("bessell-R"), 0.44, 0.02);
+  EXPECT_NEAR(mag("bessell-V") - mag("bessell-I"), 0.91, 0.02);
 }
 
 // Photons in Bessell's B and R over V of three lamps measured for the Lamp Spectral Power
@@ -180,7 +215,7 @@ TEST(LightPollution, LampsHaveTheColoursOfMeasuredOnes) {
   const struct {
     LampMix lamp;
     double b_over_v, r_over_v;
-  } cases[] = {{{1, 0, 0}, 0.0, 2.076}, {{0, 1, 0}, 0.0985, 2.0945}, {{0, 0, 1}, 0.3722, 1.3131}};
+  } cases[] = {{{1, 0, 0}, 0.0, 2.331}, {{0, 1, 0}, 0.0985, 2.249}, {{0, 0, 1}, 0.3608, 1.356}};
   for (const auto& [lamp, b_over_v, r_over_v] : cases) {
     const Spectrum spectrum = lamp_spectrum(lamp);
     const double v = photon_rate_per_m2(spectrum, johnson_v());
