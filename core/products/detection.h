@@ -49,7 +49,9 @@ struct Detection {
   // Mean and standard deviation of that angle over altitudes from 300 km to GEO, uniform in their
   // logarithm; corrected_* are raised by the mean.
   double refraction_parallax_rad = 0.0, refraction_parallax_sigma_rad = 0.0;
-  double magnitude = 0.0;  // in `band`, above the atmosphere, by the header's zero point
+  // V of a source of the Sun's colour that is as bright in `band` ("V-solar"), above the
+  // atmosphere, by the header's zero point.
+  double magnitude = 0.0;
   double magnitude_sigma = 0.0;
   std::string band = "V";
   double snr = 0.0;               // signal_e / its standard error in the fit (a matched filter)

@@ -37,6 +37,7 @@
   VALUE(refraction_parallax_rad, "refraction_parallax_arcsec", arcsec)                  \
   VALUE(refraction_parallax_sigma_rad, "refraction_parallax_sigma_arcsec", arcsec)      \
   VALUE(magnitude, "magnitude", 1)                                                      \
+  TEXT("magnitude_system", "V-solar")                                                   \
   VALUE(magnitude_sigma, "magnitude_sigma", 1)                                          \
   VALUE(band, "band", 1)                                                                \
   VALUE(snr, "snr", 1)                                                                  \

@@ -160,8 +160,7 @@ TEST(Oem, FaultsPointAtTheirLine) {
       {header + "META_START\nREF_FRAME = GCRF\nMETA_STOP\n", "t:6: segment without TIME_SYSTEM"},
       {header + "COVARIANCE_START\nCOVARIANCE_STOP\n" + lines(0, 2),
        "t:4: COVARIANCE_START outside the ephemeris lines"},
-      {header + "COVARIANCE_STOP\n" + lines(0, 2),
-       "t:4: COVARIANCE_STOP without COVARIANCE_START"},
+      {header + "COVARIANCE_STOP\n" + lines(0, 2), "t:4: COVARIANCE_STOP without COVARIANCE_START"},
       {meta() + lines(0, 2), "t: not a CCSDS OEM"},
       {header, "t: contains no ephemeris segment"}};
   for (const auto& c : cases) {
