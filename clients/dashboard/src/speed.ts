@@ -12,7 +12,7 @@ export class Speed {
     list.onchange = () => ask(Number(list.value));
   }
 
-  /** The clock's pace; one that is being chosen is not disturbed. */
+  /** Shows the clock's pace. */
   show(factor: number): void {
     const wanted = factors.includes(factor) || factor === unlimited ? factors : [...factors, factor].sort((a, b) => a - b);
     if (wanted.join() !== this.listed.join()) {
