@@ -51,6 +51,7 @@ struct LaunchOptions {
   std::string metrics, log_format = "text";  // of every process
   bool nodes_elsewhere = false;              // nodes are started by `dmise join`
   bool view = false;                         // a gateway shows the run to browsers
+  bool view_truth = false;                   // also its truth
 };
 
 std::string number(double x) {
@@ -174,7 +175,8 @@ class Launch {
                                  .products = directory_.path(),
                                  .keys = options_.keys,
                                  .tokens = tokens,
-                                 .announce = view_announcement()}),
+                                 .announce = view_announcement(),
+                                 .truth = options_.view_truth}),
                 log_of("gateway"));
   }
 
@@ -398,8 +400,13 @@ void add_launch_command(CLI::App& app) {
       ->add_option("--log-format", options->log_format,
                    "format of the processes' logs: text or json")
       ->capture_default_str();
-  command->add_flag("--view", options->view,
-                    "show the run in browsers on this machine; prints the URL");
+  auto* view = command->add_flag("--view", options->view,
+                                 "show the run in browsers on this machine; prints the URL");
+  command
+      ->add_flag("--view-truth", options->view_truth,
+                 "show truth beside detections there; with keys gateway.key must be one of `dmise "
+                 "keygen --truth`")
+      ->needs(view);
   command->add_flag("--nodes-elsewhere", options->nodes_elsewhere,
                     "start only the time-master; other nodes are started by `dmise join`");
   command->add_flag("--force", options->force, "replace the products in the directory");

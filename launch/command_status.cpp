@@ -45,6 +45,10 @@ std::string table(const RunStatus& status) {
   if (!status.cause.empty()) text += "cause: " + printable(status.cause) + "\n";
   if (!status.missing.empty()) text += "missing: " + printable(joined(status.missing)) + "\n";
   if (!status.holding.empty()) text += "waiting for: " + printable(joined(status.holding)) + "\n";
+  if (status.pace > 0.0) {
+    std::snprintf(row, sizeof row, "pace: %g times real time\n", status.pace);
+    text += row;
+  }
   if (status.overruns > 0) {
     std::snprintf(row, sizeof row, "overruns: %llu, at most %.2f s late\n",
                   static_cast<unsigned long long>(status.overruns), status.worst_lag_s);
@@ -166,6 +170,28 @@ void show(const StatusOptions& options) {
   watch(options, security, status);
 }
 
+void add_pace_verb(CLI::App& clock) {
+  struct PaceCommand {
+    std::string master, keys;
+    double factor = 1.0;
+  };
+  auto options = std::make_shared<PaceCommand>();
+  auto* verb = clock.add_subcommand("pace", "sets how fast simulated time passes");
+  verb->add_option("master", options->master, "address of the time-master, tcp://HOST:PORT")
+      ->required()
+      ->check(transport_address());
+  verb->add_option("factor", options->factor,
+                   "simulated seconds per second, 0 to 1e6; 0: as fast as possible")
+      ->required()
+      ->check(number_between(0.0, 1e6));
+  verb->add_option("--keys", options->keys, "directory with operator.key");
+  verb->callback([options] {
+    const Security security(options->keys, operator_name);
+    std::fputs(table(pace_master(options->master, patience_s, options->factor, security)).c_str(),
+               stdout);
+  });
+}
+
 }  // namespace
 
 void add_status_command(CLI::App& app) {
@@ -188,7 +214,7 @@ void add_status_command(CLI::App& app) {
 }
 
 void add_clock_command(CLI::App& app) {
-  auto* command = app.add_subcommand("clock", "Pauses, steps or ends a run at a tick boundary");
+  auto* command = app.add_subcommand("clock", "Pauses, steps, paces or ends a run");
   command->require_subcommand(1);
   const std::map<std::string, std::pair<ClockAction, std::string>> actions{
       {"pause", {ClockAction::pause, "stop after the last granted tick, or after --tick"}},
@@ -213,6 +239,7 @@ void add_clock_command(CLI::App& app) {
                  stdout);
     });
   }
+  add_pace_verb(*command);
 }
 
 }  // namespace dmise

@@ -33,7 +33,7 @@ void add_view_command(CLI::App& app) {
       ->required()
       ->check(transport_address());
   command->add_option("--products", options->products,
-                      "directory of the run, whose previews of frames are shown");
+                      "directory of the run: previews of frames that no sensor serves any more");
   command
       ->add_option("--listen", options->listen,
                    "IP address and port of the pages; other than loopback only with --tokens")
@@ -41,8 +41,12 @@ void add_view_command(CLI::App& app) {
   command->add_option("--keys", options->keys,
                       "directory with gateway.key, and operator.key to control the clock");
   command->add_option("--tokens", options->tokens,
-                      "file with `view TOKEN` and `operator TOKEN`: who may watch, and who may "
-                      "control the clock");
+                      "file with `view TOKEN`, `truth TOKEN` and `operator TOKEN`: who may watch, "
+                      "also see truth, also control the clock");
+  command->add_flag(
+      "--truth", options->truth,
+      "show truth beside detections to whoever may see it; with keys gateway.key must "
+      "be one of `dmise keygen --truth`");
   command->add_flag("--no-control", options->no_control, "nobody controls the clock from here");
   command->callback([options] { view(*options); });
 }

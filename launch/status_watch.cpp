@@ -111,6 +111,7 @@ std::string StatusWatch::table(const Layout& layout) const {
   if (!status_.cause.empty()) add("cause: " + printable(status_.cause), red);
   if (!status_.missing.empty()) add("missing: " + printable(joined(status_.missing)), yellow);
   if (!status_.holding.empty()) add("waiting for: " + printable(joined(status_.holding)));
+  if (status_.pace > 0.0) add(format("pace: %g times real time", status_.pace));
   if (status_.overruns > 0)
     add(format("overruns: %llu, at most %.2f s late",
                static_cast<unsigned long long>(status_.overruns), status_.worst_lag_s),

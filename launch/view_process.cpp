@@ -37,6 +37,7 @@ std::vector<std::string> gateway_command(const ViewOptions& options) {
   add("--tokens", options.tokens);
   add("--announce", options.announce);
   if (options.no_control) command.push_back("--no-control");
+  if (options.truth) command.push_back("--truth");
   return command;
 }
 

@@ -14,6 +14,7 @@ struct ViewOptions {
   std::string listen = "127.0.0.1:0";  // address of the pages
   std::string announce;                // file for the URL; empty: none
   bool no_control = false;
+  bool truth = false;
 };
 
 /// Command line of the gateway.

@@ -112,7 +112,12 @@ void Coordinator::step(Tick ticks, Instant now) {
 }
 
 void Coordinator::go_on(Instant now) {
-  pace_.go_on(now);
+  pace_.go_on(granted_ + 1, now);
+  grant(now);
+}
+
+void Coordinator::change_pace(double factor, Instant now) {
+  pace_.change(factor, granted_ + 1, now);
   grant(now);
 }
 

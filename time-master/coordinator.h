@@ -115,6 +115,8 @@ class Coordinator {
   void pause(Tick at = -1);
   void step(Tick ticks, Instant now = Instant{0});
   void go_on(Instant now = Instant{0});
+  /// Simulated seconds per second from now on, 0 to max_pace_factor; 0: as fast as possible.
+  void change_pace(double factor, Instant now = Instant{0});
   /// Ends the run when all have done the granted ticks.
   void end_early(const std::string& reason);
 

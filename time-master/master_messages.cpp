@@ -114,6 +114,7 @@ void describe(v1::Endpoints* endpoints, const Coordinator& coordinator) {
   endpoints->set_settled_tick(coordinator.settled());
   endpoints->set_last_tick(coordinator.options().last_tick);
   endpoints->set_paused(coordinator.pace().paused());
+  endpoints->set_pace(coordinator.pace().factor());
   endpoints->set_overruns(coordinator.pace().overruns());
   endpoints->set_worst_lag_s(std::chrono::duration<double>(coordinator.pace().worst_lag()).count());
   endpoints->set_digest(coordinator.digest());
@@ -146,6 +147,8 @@ void apply(const v1::Control& control, Coordinator& coordinator, Instant now) {
       return coordinator.step(control.tick(), now);
     case v1::Control::ACTION_GO_ON:
       return coordinator.go_on(now);
+    case v1::Control::ACTION_PACE:
+      return coordinator.change_pace(control.factor(), now);
     case v1::Control::ACTION_END_EARLY:
       return coordinator.end_early(why);
     case v1::Control::ACTION_ABORT:

@@ -7,10 +7,21 @@
 #include "core/base/error.h"
 
 namespace dmise {
+namespace {
 
-Pace::Pace(PaceOptions options, Tick first_tick) : options_(options), first_tick_(first_tick) {
-  if (!(options_.factor >= 0.0) || std::isinf(options_.factor))
-    throw ConfigError("real_time: must be a factor >= 0, got " + std::to_string(options_.factor));
+constexpr double longest_wait_ns = 4e18;  // two of them after any present fit into an Instant
+
+void check(double factor) {
+  if (!is_pace_factor(factor))
+    throw ConfigError("real_time: must be a factor from 0 to 1e6, got " + std::to_string(factor));
+}
+
+}  // namespace
+
+bool is_pace_factor(double factor) { return factor >= 0.0 && factor <= max_pace_factor; }
+
+Pace::Pace(PaceOptions options, Tick first_tick) : options_(options), anchor_tick_(first_tick) {
+  check(options_.factor);
   if (options_.tick_length.ns < 1) throw ConfigError("tick: must be >= 1 ns");
 }
 
@@ -20,15 +31,32 @@ void Pace::step(Tick ticks) {
   if (pause_after_) *pause_after_ += ticks;
 }
 
-void Pace::go_on(Instant now) {
+void Pace::go_on(Tick next, Instant now) {
   if (!pause_after_) return;
-  const Tick next = *pause_after_ + 1;
   pause_after_.reset();
-  if (timed() && epoch_ && next >= first_tick_) *epoch_ += std::max(Instant{0}, now - due(next));
+  schedule(next, part_until(next, now), now);
+}
+
+void Pace::change(double factor, Tick next, Instant now) {
+  check(factor);
+  const double part = part_until(next, now);
+  options_.factor = factor;
+  schedule(next, part, now);
+}
+
+double Pace::part_until(Tick next, Instant now) const {
+  if (!timed() || !epoch_) return 1.0;
+  return std::clamp(double((due(next) - now).count()) / wall_ns_per_tick(), 0.0, 1.0);
+}
+
+void Pace::schedule(Tick next, double part, Instant now) {
+  if (!timed() || !epoch_) return;
+  anchor_tick_ = next;
+  *epoch_ = now + Instant(std::llround(std::min(part * wall_ns_per_tick(), longest_wait_ns)));
 }
 
 void Pace::finished(Tick tick, Instant now) {
-  if (!timed() || !epoch_ || paused()) return;
+  if (!timed() || !epoch_ || paused() || tick + 1 < anchor_tick_) return;
   const Instant lag = now - due(tick + 1);
   if (lag <= Instant{0}) return;
   ++overruns_;
@@ -38,14 +66,14 @@ void Pace::finished(Tick tick, Instant now) {
 Tick Pace::limit(Instant now) const {
   Tick limit = pause_after_.value_or(std::numeric_limits<Tick>::max());
   if (paused() || !timed()) return limit;
-  if (!epoch_ || now < *epoch_) return first_tick_ - 1;
+  if (!epoch_ || now < *epoch_) return anchor_tick_ - 1;
   const double ticks =
       double((now - *epoch_).count()) * options_.factor / double(options_.tick_length.ns);
   if (ticks > 9e15) return limit;  // beyond the integers of doubles
   // Rounding may be off by one at the very instant at which a tick is due.
-  Tick tick = first_tick_ + Tick(ticks);
+  Tick tick = anchor_tick_ + Tick(ticks);
   while (due(tick + 1) <= now) ++tick;
-  while (tick >= first_tick_ && due(tick) > now) --tick;
+  while (tick >= anchor_tick_ && due(tick) > now) --tick;
   return tick;
 }
 
@@ -55,9 +83,8 @@ std::optional<Instant> Pace::due_after(Tick granted) const {
 }
 
 Instant Pace::due(Tick tick) const {
-  const double wall_ns =
-      double(tick - first_tick_) * double(options_.tick_length.ns) / options_.factor;
-  return *epoch_ + Instant(std::llround(std::min(wall_ns, 4e18)));
+  const double wall_ns = double(tick - anchor_tick_) * wall_ns_per_tick();
+  return *epoch_ + Instant(std::llround(std::min(wall_ns, longest_wait_ns)));
 }
 
 }  // namespace dmise

@@ -12,11 +12,16 @@ struct PaceOptions {
   double factor = 0.0;  // simulated seconds per second; 0: as fast as possible
 };
 
+inline constexpr double max_pace_factor = 1e6;
+
+/// Whether a clock can run at `factor`: 0 to max_pace_factor.
+bool is_pace_factor(double factor);
+
 /// Limits how far the clock may advance, independent of nodes: real time times a factor, pauses,
 /// single steps. Late ticks are never skipped: the clock catches up, and the overrun is counted.
 class Pace {
  public:
-  /// Throws `ConfigError` for a factor that is negative or not finite.
+  /// Throws `ConfigError` for what is no pace factor.
   explicit Pace(PaceOptions options = {}, Tick first_tick = 0);
 
   /// `first_tick` is due now.
@@ -25,28 +30,38 @@ class Pace {
   void pause(Tick tick) { pause_after_ = tick; }
   /// If paused, allows `ticks` more.
   void step(Tick ticks);
-  /// Ticks held by a pause are due from now on; the pause is not an overrun.
-  void go_on(Instant now);
+  /// Ends a pause. `next`, the first tick that is not granted, is due as soon as it was at the
+  /// pause: at most a tick from now. Ticks that were late are due from now on; no overrun.
+  void go_on(Tick next, Instant now);
+  /// Simulated time passes at another factor from now on, also what is left of a tick until `next`
+  /// is due; otherwise as `go_on`. A pause stays. Throws `ConfigError` for what is no pace factor.
+  void change(double factor, Tick next, Instant now);
   /// All nodes have done `tick`.
   void finished(Tick tick, Instant now);
 
   bool paused() const { return pause_after_.has_value(); }
+  double factor() const { return options_.factor; }
   /// Last tick that may be granted.
   Tick limit(Instant now) const;
   /// When the tick after `granted` is due; empty if it is independent of real time.
   std::optional<Instant> due_after(Tick granted) const;
 
-  /// Ticks that were not done when the next was due, and the largest delay.
+  /// Ticks that were not done when the next was due, and the largest delay; not of ticks that were
+  /// granted before the last change of their schedule.
   std::uint64_t overruns() const { return overruns_; }
   Instant worst_lag() const { return worst_lag_; }
 
  private:
   bool timed() const { return options_.factor > 0.0; }
   Instant due(Tick tick) const;
+  /// Part of a tick until `next` is due, [0, 1]; 1 if it is independent of real time.
+  double part_until(Tick next, Instant now) const;
+  void schedule(Tick next, double part, Instant now);
+  double wall_ns_per_tick() const { return double(options_.tick_length.ns) / options_.factor; }
 
   PaceOptions options_;
-  Tick first_tick_;
-  std::optional<Instant> epoch_;  // when first_tick_ is due
+  Tick anchor_tick_;
+  std::optional<Instant> epoch_;  // when anchor_tick_ is due
   std::optional<Tick> pause_after_;
   std::uint64_t overruns_ = 0;
   Instant worst_lag_{0};

@@ -24,7 +24,7 @@ SHARED = {"accuracy-all-sky": "gallery/accuracy-all-sky.svg", "accuracy-resolved
           "figure5": "gallery/figure5.png", "inspector": "gallery/inspector.png", "survey": "gallery/survey.png",
           "paper/figure6": "paper/figure6.png", "paper/figure8": "paper/figure8.png"}
 # Drawn by this script: frame of which sensor, how long the run takes of the scenario's time, and what of the frame is shown.
-DRAWN = {"close-up": ("near-eye", None, None), "three-sites": ("atlanta", 15, (512, 512)), "cooperate": (None, 30, None),
+DRAWN = {"close-up": ("near-eye", None, None), "three-sites": ("atlanta", 15, (512, 512)), "cooperate": (None, 30, (360, 480)),
          "dataset": ("watcher", None, None)}
 
 
@@ -87,7 +87,7 @@ def draw(binary, name):
         if name == "dataset":
             subprocess.run(["tar", "-xf", next((out / "run").glob("*.tar")), "-C", out], check=True)
             counts = np.load(next(out.glob("*.image.npy"))).astype(float)
-            low, high = np.percentile(counts, (1, 99.8))
+            low, high = np.percentile(counts, (40, 99.95))
             frame = out / "frame.png"
             cv2.imwrite(str(frame), np.clip(255 * (counts - low) / (high - low), 0, 255).astype(np.uint8))
         else:

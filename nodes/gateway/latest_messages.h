@@ -19,6 +19,7 @@ enum class MessageSlot {
   detections,
   tracks,
   tasks,
+  truth,  // for those alone who may see it
   notice,
   count
 };

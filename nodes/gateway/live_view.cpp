@@ -17,6 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the layout is little endian");
 
 constexpr std::size_t most_tracks = 5000, most_detections = 200;  // of a frame
+constexpr std::size_t most_truths = 500;                          // of a frame, shown
 constexpr int points_per_side = 6;                                // of a field's border
 constexpr double unix_epoch_jd = 2440587.5;
 
@@ -123,6 +124,17 @@ void LiveView::take(const DetectionSet& set) {
   changed_.insert({MessageSlot::detections, MessageSlot::sensors});
 }
 
+void LiveView::take(const TruthSet& set) {
+  if (!takes_truth_) return;
+  SensorView& sensor = sensors_[set.sensor];
+  if (set.frame < sensor.truths_frame) return;
+  sensor.truths_frame = set.frame;
+  sensor.truths.clear();
+  for (const Truth& truth : set.truths)
+    if (truth.in_frame && sensor.truths.size() < most_truths) sensor.truths.push_back(truth);
+  changed_.insert(MessageSlot::truth);
+}
+
 void LiveView::take(const TrackSet& set) {
   for (const Track& track : set.tracks) {
     if (track.status == TrackStatus::lost)
@@ -161,6 +173,7 @@ void LiveView::take(const RunStatus& status, const std::map<std::string, std::ui
   JsonWriter json;
   json.begin_object().field("type", "status").field("run_id", run_id);
   json.field("phase", phase_name(status.phase)).field("paused", status.paused);
+  json.field("pace", status.pace);
   json.field("cause", status.cause).field("settled_tick", status.settled);
   json.field("granted_tick", status.granted).field("last_tick", status.last_tick);
   json.field("time_s", double(std::max<Tick>(status.settled, 0)) * status.tick_length.seconds());
@@ -316,6 +329,23 @@ std::string LiveView::tasks_json() const {
   return json.end_array().end_object().take();
 }
 
+std::string LiveView::truth_json() const {
+  JsonWriter json;
+  json.begin_object().field("type", "truth").key("truths").begin_array();
+  for (const auto& [name, sensor] : sensors_)
+    for (const Truth& t : sensor.truths) {
+      json.begin_object().field("sensor", name).field("frame", sensor.truths_frame);
+      json.field("number", t.catalogue_number).field("name", t.name);
+      json.field("magnitude", t.true_magnitude).field("signal_e", t.rendered_signal_e);
+      json.key("path_px").begin_array();
+      for (const double x :
+           {t.start_x_px, t.start_y_px, t.middle_x_px, t.middle_y_px, t.end_x_px, t.end_y_px})
+        json.value(x);
+      json.end_array().end_object();
+    }
+  return json.end_array().end_object().take();
+}
+
 void LiveView::publish() {
   if (changed_.empty()) return;
   if (changed_.contains(MessageSlot::sensors)) latest_.set(MessageSlot::sensors, {sensors_json()});
@@ -323,6 +353,7 @@ void LiveView::publish() {
     latest_.set(MessageSlot::detections, {detections_json()});
   if (changed_.contains(MessageSlot::tracks)) latest_.set(MessageSlot::tracks, {tracks_json()});
   if (changed_.contains(MessageSlot::tasks)) latest_.set(MessageSlot::tasks, {tasks_json()});
+  if (changed_.contains(MessageSlot::truth)) latest_.set(MessageSlot::truth, {truth_json()});
   changed_.clear();
   remember();
 }

@@ -28,7 +28,9 @@ std::string encode_objects(const ObjectStates& states, const EarthOrientation& e
 /// Texts and numbers passed the checks of nodes/wire before.
 class LiveView {
  public:
-  LiveView(LatestMessages& latest, ViewHistory& history) : latest_(latest), history_(history) {}
+  /// `takes_truth`: otherwise truth is ignored, and none can reach a viewer.
+  LiveView(LatestMessages& latest, ViewHistory& history, bool takes_truth = false)
+      : latest_(latest), history_(history), takes_truth_(takes_truth) {}
 
   /// Takes the state of a message.
   void take(const State& state);
@@ -50,6 +52,8 @@ class LiveView {
     std::vector<Detection> detections;  // of the last frame
     std::uint32_t detections_frame = 0;
     std::uint64_t detections_total = 0;
+    std::vector<Truth> truths;  // of the last frame, of what is in it
+    std::uint32_t truths_frame = 0;
     std::optional<Task> task;
   };
 
@@ -59,7 +63,7 @@ class LiveView {
   void take(const SiteState&) {}
   void take(const FrameReport& report);
   void take(const DetectionSet& set);
-  void take(const TruthSet&) {}  // viewers see none
+  void take(const TruthSet& set);
   void take(const TrackSet& set);
   void take(const TaskSet& set);
 
@@ -68,11 +72,13 @@ class LiveView {
   std::string detections_json() const;
   std::string tracks_json() const;
   std::string tasks_json() const;
+  std::string truth_json() const;
   double utc_ms(double time_s) const;
   void remember();
 
   LatestMessages& latest_;
   ViewHistory& history_;
+  bool takes_truth_;
   std::optional<EarthOrientation> earth_;
   std::optional<double> start_utc_ms_;
   std::optional<RunStatus> status_;

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/whole_file.h"
+#include "nodes/gateway/frame_previews.h"
 #include "nodes/gateway/run_observer.h"
 #include "nodes/gateway/web_server.h"
 #include "nodes/runtime/process/event.h"
@@ -19,7 +20,7 @@ namespace {
 
 struct GatewayOptions {
   std::string listen = "127.0.0.1:0", tokens, products, dashboard, announce_file;
-  bool no_control = false;
+  bool no_control = false, truth = false;
 };
 
 /// The dashboard beside the programs: where it is built, or installed.
@@ -47,6 +48,7 @@ int serve(const CommonFlags& flags, const GatewayOptions& options) {
   WebServerOptions web;
   set_address(options.listen, &web);
   web.may_control = !options.no_control;
+  web.shows_truth = options.truth;
   if (!options.tokens.empty()) web.tokens = read_access_tokens(options.tokens);
   if (!flags.keys.empty() && !web.tokens.any())
     throw ConfigError("--keys: a run with keys is not shown without --tokens");
@@ -56,8 +58,17 @@ int serve(const CommonFlags& flags, const GatewayOptions& options) {
 
   LatestMessages latest;
   ViewHistory history;
-  DirectoryPreviews previews(options.products);
-  RunObserver observer({flags.name, flags.master, flags.keys, &stop_signal()}, latest, history);
+  FramePreviews previews(flags.keys, flags.name, PreviewDirectory(options.products));
+  RunObserver observer({.name = flags.name,
+                        .master = flags.master,
+                        .keys = flags.keys,
+                        .takes_truth = options.truth,
+                        .stop = &stop_signal(),
+                        .frames_served_at =
+                            [&](std::uint64_t run_id, std::map<std::string, std::string> sensors) {
+                              previews.follow(run_id, std::move(sensors));
+                            }},
+                       latest, history);
   WebServer server(web, {files, latest, history, previews,
                          [&](const ClockCommand& command) { return observer.command(command); }});
   const std::string url = "http://" + web.host + ":" + std::to_string(server.port()) + "/";
@@ -81,12 +92,15 @@ int main(int argc, char** argv) {
                  "only with --tokens")
       ->capture_default_str();
   app.add_option("--tokens", options.tokens,
-                 "file with `view TOKEN` and `operator TOKEN`: who may watch, and who may control "
-                 "the clock");
+                 "file with `view TOKEN`, `truth TOKEN` and `operator TOKEN`: who may watch, also "
+                 "see truth, also control the clock");
   app.add_option("--products", options.products,
-                 "directory of the run, whose previews of frames are shown");
+                 "directory of the run: previews of frames that no sensor serves any more");
   app.add_option("--dashboard", options.dashboard, "directory of the built dashboard");
   app.add_option("--announce", options.announce_file, "file to write the URL to");
+  app.add_flag("--truth", options.truth,
+               "show truth beside detections to whoever may see it; with keys the own one must be "
+               "allowed to receive truth");
   app.add_flag("--no-control", options.no_control, "nobody controls the clock from here");
   return dmise::run_program(app, flags, argc, argv, [&] { return dmise::serve(flags, options); });
 }

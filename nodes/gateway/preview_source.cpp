@@ -7,19 +7,18 @@
 
 namespace dmise {
 
-std::optional<std::string> DirectoryPreviews::preview(const std::string& sensor,
-                                                      std::uint32_t frame) {
+SharedPreview PreviewDirectory::find(const std::string& sensor, std::uint32_t frame) const {
   if (directory_.empty() || sensor.empty() || sensor.front() == '.' ||
       sensor.find('/') != std::string::npos)
-    return std::nullopt;
+    return nullptr;
   char name[32];
   std::snprintf(name, sizeof name, "/frame-%06u.png", unsigned(frame));
   try {
     std::string png = read_text_file(directory_ + "/" + sensor + name, max_bytes);
-    if (!png.starts_with("\x89PNG")) return std::nullopt;
-    return png;
+    if (!png.starts_with("\x89PNG")) return nullptr;
+    return std::make_shared<const std::string>(std::move(png));
   } catch (const ConfigError&) {
-    return std::nullopt;
+    return nullptr;
   }
 }
 

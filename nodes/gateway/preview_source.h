@@ -1,26 +1,32 @@
 #pragma once
 #include <cstdint>
-#include <optional>
+#include <functional>
+#include <memory>
 #include <string>
 
 namespace dmise {
 
-/// Where previews of frames come from. To take them from elsewhere, as from the wire, implement
-/// this and name it in main.cpp. Called on the server's thread.
+/// A PNG of a frame without marks of any kind; null if there is none.
+using SharedPreview = std::shared_ptr<const std::string>;
+
+/// Where previews of frames come from.
 class PreviewSource {
  public:
+  using Answer = std::function<void(SharedPreview)>;
+
   virtual ~PreviewSource() = default;
-  /// A PNG of the frame without marks of any kind; empty if there is none (yet).
-  virtual std::optional<std::string> preview(const std::string& sensor, std::uint32_t frame) = 0;
+  /// Calls `answer` once, within seconds, from any thread. Does not wait for anything itself.
+  virtual void request(const std::string& sensor, std::uint32_t frame, Answer answer) = 0;
 };
 
 /// Previews in the directory of a run: SENSOR/frame-000001.png.
-class DirectoryPreviews : public PreviewSource {
+class PreviewDirectory {
  public:
   static constexpr std::size_t max_bytes = std::size_t(64) << 20;
 
-  explicit DirectoryPreviews(std::string directory) : directory_(std::move(directory)) {}
-  std::optional<std::string> preview(const std::string& sensor, std::uint32_t frame) override;
+  /// "": there is none.
+  explicit PreviewDirectory(std::string directory) : directory_(std::move(directory)) {}
+  SharedPreview find(const std::string& sensor, std::uint32_t frame) const;
 
  private:
   std::string directory_;

@@ -79,7 +79,8 @@ std::optional<FrameRequest> frame_of(std::string_view path) {
   const std::string_view digits = path.substr(slash + 1, path.size() - slash - 1 - ending.size());
   FrameRequest request{*sensor, 0};
   const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), request.frame);
-  if (digits.empty() || read.ec != std::errc{} || read.ptr != digits.data() + digits.size())
+  if (digits.empty() || read.ec != std::errc{} || read.ptr != digits.data() + digits.size() ||
+      request.frame == 0)
     return std::nullopt;
   return request;
 }
@@ -116,26 +117,34 @@ AccessTokens read_access_tokens(const std::string& path) {
     std::string kind, token, more;
     if (!(words >> kind)) continue;
     const std::string place = path + ":" + std::to_string(number) + ": ";
-    if (kind != "view" && kind != "operator")
-      throw ConfigError(place + "must be view TOKEN or operator TOKEN, got " + kind);
+    if (kind != "view" && kind != "truth" && kind != "operator")
+      throw ConfigError(place + "must be view, truth or operator TOKEN, got " + kind);
     if (!(words >> token) || words >> more || !is_token(token))
       throw ConfigError(place + kind + ": needs a token of 16 to 128 letters, digits, - or _");
-    std::string& place_of = kind == "view" ? tokens.view : tokens.control;
+    std::string& place_of = kind == "view"    ? tokens.view
+                            : kind == "truth" ? tokens.truth
+                                              : tokens.control;
     if (!place_of.empty()) throw ConfigError(place + kind + ": given twice");
     place_of = token;
   }
   if (!tokens.any()) throw ConfigError(path + ": has no token");
-  if (tokens.view == tokens.control)
-    throw ConfigError(path + ": the tokens of view and operator must differ");
+  const auto same = [](const std::string& a, const std::string& b) { return !a.empty() && a == b; };
+  if (same(tokens.view, tokens.truth) || same(tokens.view, tokens.control) ||
+      same(tokens.truth, tokens.control))
+    throw ConfigError(path + ": the tokens must differ");
   return tokens;
 }
 
 Access access_of(const AccessTokens& tokens, std::string_view presented, Access without_tokens) {
   if (!tokens.any()) return without_tokens;
-  // Both are always compared. An unset token is equal to nothing that is_token lets through.
+  // All are always compared. An unset token is equal to nothing that is_token lets through.
   const bool is_control = same_token(tokens.control, presented) && !tokens.control.empty();
   const bool is_view = same_token(tokens.view, presented) && !tokens.view.empty();
-  return is_control ? Access::control : is_view ? Access::view : Access::none;
+  const bool is_truth = same_token(tokens.truth, presented) && !tokens.truth.empty();
+  return is_control ? Access::control
+         : is_truth ? Access::truth
+         : is_view  ? Access::view
+                    : Access::none;
 }
 
 bool is_loopback_host(std::string_view host) {

@@ -8,18 +8,19 @@
 // Which requests are answered: pure functions of the text of a request, which may be hostile.
 namespace dmise {
 
-/// What a viewer may do.
-enum class Access { none, view, control };
+/// What a viewer may do; each includes those before it.
+enum class Access { none, view, truth, control };
 
 /// Tokens that viewers present. Both empty: every client on this machine may view.
 struct AccessTokens {
-  std::string view, control;  // empty: nobody gets this access by a token
+  std::string view, control, truth;  // empty: nobody gets this access by a token
 
-  bool any() const { return !view.empty() || !control.empty(); }
+  bool any() const { return !view.empty() || !truth.empty() || !control.empty(); }
 };
 
-/// Reads a file with a line `view TOKEN` or `operator TOKEN` or both; each token has at least 16
-/// letters, digits, - or _. Throws `ConfigError`, also if others than its owner may read the file.
+/// Reads a file with lines `view TOKEN`, `truth TOKEN` and `operator TOKEN`, or some of them; each
+/// token has at least 16 letters, digits, - or _. Throws `ConfigError`, also if others than its
+/// owner may read the file.
 AccessTokens read_access_tokens(const std::string& path);
 
 /// Access of a presented token. `without_tokens`: that of everybody if no tokens are set. Compares
@@ -34,7 +35,7 @@ bool is_loopback_host(std::string_view host);
 /// the client is no browser.
 bool is_own_origin(std::string_view origin, std::string_view host);
 
-/// `/frames/SENSOR/NUMBER.png`.
+/// `/frames/SENSOR/NUMBER.png`; frames count from 1.
 struct FrameRequest {
   std::string sensor;
   std::uint32_t frame = 0;

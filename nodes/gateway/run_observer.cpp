@@ -26,7 +26,7 @@ constexpr milliseconds receive_at_most{50};  // before viewers are told
 constexpr int unread_messages = 64;          // of the broker; further ones wait there, then drop
 constexpr std::size_t most_commands = 16;
 
-// What viewers see. Not truth, which has an endpoint of its own.
+// What every viewer may see. Not truth, which has endpoints of its own.
 constexpr const char* topics[] = {objects_topic,    environment_topic, frame_prefix,
                                   detection_prefix, track_prefix,      task_prefix};
 
@@ -43,9 +43,14 @@ class RunObserver::Connections {
         subscription_(make_socket(context_, zmq::socket_type::sub, max_data_bytes)),
         broker_(subscription_),
         latest_(latest),
-        view_(latest, history) {
+        view_(latest, history, options.takes_truth) {
     subscription_.set(zmq::sockopt::rcvhwm, unread_messages);
     for (const char* topic : topics) subscription_.set(zmq::sockopt::subscribe, topic);
+    if (options.takes_truth) {
+      truth_.emplace(make_socket(context_, zmq::socket_type::sub, max_data_bytes));
+      truth_->set(zmq::sockopt::rcvhwm, unread_messages);
+      truth_->set(zmq::sockopt::subscribe, truth_prefix);
+    }
     call_master();
   }
 
@@ -56,6 +61,7 @@ class RunObserver::Connections {
                                        {nullptr, commands.fd(), ZMQ_POLLIN, 0}};
     if (roster_) items.push_back({roster_->handle(), 0, ZMQ_POLLIN, 0});
     if (control_) items.push_back({control_->handle(), 0, ZMQ_POLLIN, 0});
+    if (truth_) items.push_back({truth_->handle(), 0, ZMQ_POLLIN, 0});
     wait_for(items, std::max(Instant{0}, until - now()));
   }
 
@@ -74,6 +80,11 @@ class RunObserver::Connections {
       if (message.empty()) break;
       heard(std::move(message));
     }
+    while (truth_ && now() < until) {
+      const RawMessage message = dmise::receive(*truth_);
+      if (message.empty()) break;
+      take(message);
+    }
   }
 
   /// Asks the master where the run stands, and for what is missing.
@@ -81,6 +92,7 @@ class RunObserver::Connections {
     if (now() - asked_ < hello_interval) return;
     if (now() - answered_ > silence && asked_ > answered_) {
       if (log_.admits("questions")) spdlog::info("the time-master does not answer");
+      options_.frames_served_at(run_.run_id, {});
       call_master();
       answered_ = now();
     }
@@ -110,6 +122,10 @@ class RunObserver::Connections {
         break;
       case ClockCommand::Action::go_on:
         control.set_action(v1::Control::ACTION_GO_ON);
+        break;
+      case ClockCommand::Action::pace:
+        control.set_action(v1::Control::ACTION_PACE);
+        control.set_factor(command.factor);
     }
     control_->send(to_frame(question), zmq::send_flags::dontwait);
   }
@@ -156,10 +172,39 @@ class RunObserver::Connections {
         publisher_of_[topic] = publisher.name();
         if (topic == objects_topic) orbit_ = publisher;
       }
+    if (truth_)
+      for (const auto& publisher : endpoints.publishers()) follow_truth(publisher);
     for (const auto& node : status.nodes)
       if (node.name == broker_name && !status.observe_endpoint.empty())
         broker_.follow(status.observe_endpoint, node.incarnation, security_);
+    tell_frame_endpoints(endpoints, status);
     view_.take(status, gaps_);
+  }
+
+  /// Each sensor publishes its truth itself.
+  void follow_truth(const v1::Publisher& publisher) {
+    if (publisher.direct_endpoint().empty()) return;
+    for (const auto& topic : publisher.direct_topics())
+      if (topic.starts_with(truth_prefix))
+        receiver_->allow(topic, publisher.name(), publisher.incarnation());
+    std::string& endpoint = truth_endpoints_[publisher.name()];
+    if (endpoint == publisher.direct_endpoint()) return;
+    if (!endpoint.empty()) truth_->disconnect(endpoint);
+    endpoint = publisher.direct_endpoint();
+    try {
+      connect_to(*truth_, endpoint, security_, publisher.name());
+    } catch (const Error& error) {
+      view_.notify(std::string("no truth: ") + error.what());
+    }
+  }
+
+  void tell_frame_endpoints(const v1::Endpoints& endpoints, const RunStatus& status) const {
+    std::map<std::string, std::string> by_sensor;
+    if (status.phase == Phase::running)
+      for (const auto& publisher : endpoints.publishers())
+        if (!publisher.frames_endpoint().empty())
+          by_sensor[publisher.name()] = publisher.frames_endpoint();
+    options_.frames_served_at(status.run_id, std::move(by_sensor));
   }
 
   /// A message of the broker. Of objects only the newest is read, and only when viewers are told.
@@ -228,7 +273,8 @@ class RunObserver::Connections {
   zmq::context_t context_{1};
   zmq::socket_t subscription_;
   BrokerPlace broker_;
-  std::optional<zmq::socket_t> master_, control_, roster_;
+  std::optional<zmq::socket_t> master_, control_, roster_, truth_;
+  std::map<std::string, std::string> truth_endpoints_;  // by sensor
   LatestMessages& latest_;
   LiveView view_;
   LimitedLog log_;

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -16,12 +17,16 @@ struct RunObserverOptions {
   std::string name = "gateway";  // of its key
   std::string master;            // address of the time-master
   std::string keys;              // directory of keys; empty: none
+  bool takes_truth = false;      // from each sensor; with keys its key must allow that
   const Event* stop = nullptr;
+  /// Told where sensors serve their frames, by sensor, some times a second; none: the run is over.
+  std::function<void(std::uint64_t run_id, std::map<std::string, std::string> endpoints)>
+      frames_served_at = [](std::uint64_t, const std::map<std::string, std::string>&) {};
 };
 
 /// Observes a run from outside, as any subscriber does: asks the time-master where it stands,
 /// subscribes at the broker, and asks the orbit node once for the roster. It is not a member of the
-/// clock, is waited for by nobody, and takes no truth.
+/// clock, is waited for by nobody, and takes truth only if it is told to.
 class RunObserver {
  public:
   RunObserver(RunObserverOptions options, LatestMessages& latest, ViewHistory& history)

@@ -28,6 +28,16 @@ ViewerCommand read_step(const Json& object) {
   return command;
 }
 
+ViewerCommand read_pace(const Json& object) {
+  const auto factor = object.find("factor");
+  if (factor == object.end() || !factor->is_number())
+    return CommandError{"factor: must be a number"};
+  ClockCommand command{.action = ClockCommand::Action::pace, .factor = factor->get<double>()};
+  if (!(command.factor >= 0.0 && command.factor <= max_pace))
+    return CommandError{"factor: must be 0 to 1e6"};
+  return command;
+}
+
 ViewerCommand read_past(const Json& object) {
   const auto time = object.find("time_s");
   if (time == object.end() || !time->is_number()) return CommandError{"time_s: must be a number"};
@@ -45,17 +55,16 @@ ViewerCommand parse_viewer_command(std::string_view text) {
   const auto verb = object.find("do");
   if (verb == object.end() || !verb->is_string()) return CommandError{"do: must be a text"};
   const auto& name = verb->get_ref<const std::string&>();
-  const bool step = name == "step", past = name == "past";
-  if (!has_only(object, step   ? std::set<std::string>{"do", "ticks"}
-                        : past ? std::set<std::string>{"do", "time_s"}
-                               : std::set<std::string>{"do"}))
-    return CommandError{"unknown key"};
+  const bool step = name == "step", past = name == "past", pace = name == "pace";
+  const char* parameter = step ? "ticks" : past ? "time_s" : pace ? "factor" : "do";
+  if (!has_only(object, {"do", parameter})) return CommandError{"unknown key"};
   if (step) return read_step(object);
   if (past) return read_past(object);
+  if (pace) return read_pace(object);
   if (name == "pause") return ClockCommand{ClockCommand::Action::pause, 0};
   if (name == "go-on") return ClockCommand{ClockCommand::Action::go_on, 0};
   if (name == "live") return LiveCommand{};
-  return CommandError{"do: must be pause, step, go-on, past or live"};
+  return CommandError{"do: must be pause, step, go-on, pace, past or live"};
 }
 
 }  // namespace dmise

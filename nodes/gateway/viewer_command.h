@@ -8,9 +8,10 @@ namespace dmise {
 
 /// Control of the clock by a viewer: what `dmise clock` does.
 struct ClockCommand {
-  enum class Action { pause, step, go_on };
+  enum class Action { pause, step, go_on, pace };
   Action action = Action::pause;
   std::int64_t ticks = 1;  // of a step, [1, max_step_ticks]
+  double factor = 0.0;     // of a pace: simulated seconds per second, [0, max_pace]; 0: no limit
 
   bool operator==(const ClockCommand&) const = default;
 };
@@ -38,10 +39,11 @@ using ViewerCommand = std::variant<CommandError, ClockCommand, PastCommand, Live
 
 inline constexpr std::size_t max_command_bytes = 1024;
 inline constexpr std::int64_t max_step_ticks = 1'000'000;
+inline constexpr double max_pace = 1e6;
 
 /// Reads one message of a viewer: `{"do": "pause"}`, `{"do": "step", "ticks": 3}`, `{"do":
-/// "go-on"}`,
-/// `{"do": "past", "time_s": 40}`, `{"do": "live"}`. Anything else is a `CommandError`.
+/// "go-on"}`, `{"do": "pace", "factor": 10}`, `{"do": "past", "time_s": 40}`, `{"do": "live"}`.
+/// Anything else is a `CommandError`.
 ViewerCommand parse_viewer_command(std::string_view text);
 
 }  // namespace dmise

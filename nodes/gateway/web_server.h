@@ -19,6 +19,8 @@ struct WebServerOptions {
   bool may_control =
       false;  // whether viewers may control the clock, with their token if there is one
 
+  bool shows_truth = false;  // to viewers who may see it
+
   // Limits.
   std::size_t most_connections = 64;
   std::size_t most_commands_per_s = 20;  // of one viewer

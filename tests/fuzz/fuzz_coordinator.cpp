@@ -1,7 +1,7 @@
 // The lock-step protocol under any order of events: processes that work as they should, die, hang,
-// are started again; a clock that is paused and stepped. No tick is done twice once all have done
-// it, none is lost, and while lost nodes come back the run reaches its end with the digest of an
-// undisturbed one.
+// are started again; a clock that is paused, stepped and paced. No tick is done twice once all
+// have done it, none is lost, and while lost nodes come back the run reaches its end with the
+// digest of an undisturbed one.
 #include <array>
 
 #include "core/base/fold_digest.h"
@@ -159,7 +159,7 @@ struct World {
       case 12:
         return event & 64 ? master->pause() : master->step(1, now);
       case 13:
-        return master->go_on(now);
+        return event & 64 ? master->go_on(now) : master->change_pace(event & 1 ? 2.0 : 0.0, now);
       case 14:
         if (event & 64 &&
             !master->join({.node = {"watcher", {}, {"image"}, 0, {}}, .observer = true}, now))
@@ -173,6 +173,7 @@ struct World {
   /// Whoever is lost is started again, everybody works: the run must end.
   void bring_to_end() {
     master->go_on(now);
+    master->change_pace(0.0, now);
     for (int round = 0; round < 30 && !master->over(); ++round) {
       pass(milliseconds(6000));
       for (std::size_t i = 0; i < roles().size(); ++i) {

@@ -17,9 +17,11 @@ void require(bool holds) {
 
 void check_command(std::string_view text) {
   const ViewerCommand command = parse_viewer_command(text);
-  if (const auto* clock = std::get_if<ClockCommand>(&command))
+  if (const auto* clock = std::get_if<ClockCommand>(&command)) {
     require(clock->action != ClockCommand::Action::step ||
             (clock->ticks >= 1 && clock->ticks <= max_step_ticks));
+    require(clock->factor >= 0.0 && clock->factor <= max_pace);
+  }
   if (const auto* past = std::get_if<PastCommand>(&command)) require(std::isfinite(past->time_s));
 }
 
@@ -61,7 +63,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 text.starts_with("[::1]"));
       break;
     default: {
-      const AccessTokens tokens{"viewerviewerviewer", "operatoroperator"};
+      const AccessTokens tokens{"viewerviewerviewer", "operatoroperator", "truthtruthtruthtruth"};
       const std::string cookie = cookie_value(text, "dmise_token");
       const Access access = access_of(tokens, cookie, Access::control);
       require((access == Access::view) == (cookie == tokens.view));

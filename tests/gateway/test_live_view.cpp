@@ -20,14 +20,36 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json json_of(const LatestMessages& latest, MessageSlot slot) {
-  const auto message = latest.of(slot);
-  return message ? Json::parse(message->bytes) : Json();
+/// A view, and what viewers are told by it.
+struct LiveViewTest : testing::Test {
+  /// Null before the first message.
+  Json told(MessageSlot slot) const {
+    const auto message = latest.of(slot);
+    return message ? Json::parse(message->bytes) : Json();
+  }
+  /// Directions and places can be told from here on.
+  void turn_the_earth() {
+    EnvironmentState environment;
+    environment.earth = earth_orientation(Clock(parse_utc("2018-01-21T00:15:00Z")), {});
+    view.take(State(environment));
+  }
+
+  LatestMessages latest;
+  ViewHistory history;
+  LiveView view{latest, history};
+};
+
+/// One object that is seen, one that is not.
+TruthSet truth_of(std::uint32_t frame) {
+  TruthSet set{.sensor = "alpha", .frame = frame, .truths = {{}, {}}};
+  set.truths[0] = {.name = "SECRET", .start_x_px = 3.5, .end_y_px = 7.25, .in_frame = true};
+  set.truths[1].name = "OUTSIDE";
+  return set;
 }
 
 // Reference: ERFA, eraC2t06a: the rotation from GCRS to ITRS. float32 of 42,000 km has steps of 4
 // m.
-TEST(LiveView, PositionsAreEarthFixedToTheStepOfTheirNumbers) {
+TEST(ObjectsMessage, PositionsAreEarthFixedToTheStepOfTheirNumbers) {
   const Clock clock(parse_utc("2018-01-21T00:15:00Z"));
   const SimTime t = sim_seconds(3000.0);
   ObjectStates states{.tick = 600, .time = t, .count = 3};
@@ -60,38 +82,45 @@ TEST(LiveView, PositionsAreEarthFixedToTheStepOfTheirNumbers) {
   for (int i = 6; i < 9; ++i) EXPECT_EQ(km[i], 0.0f);  // without a state
 }
 
-TEST(LiveView, EveryKindOfStateMakesValidMessages) {
-  LatestMessages latest;
-  ViewHistory history;
-  LiveView view(latest, history);
+TEST_F(LiveViewTest, EveryKindOfStateMakesValidMessages) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     for (const auto& example : test::examples(seed)) view.take(example.state);
     view.publish();
   }
   for (const auto slot : {MessageSlot::roster, MessageSlot::sensors, MessageSlot::detections,
                           MessageSlot::tracks, MessageSlot::tasks})
-    EXPECT_TRUE(json_of(latest, slot).is_object()) << int(slot);
+    EXPECT_TRUE(told(slot).is_object()) << int(slot);
   ASSERT_TRUE(latest.of(MessageSlot::objects));
   EXPECT_TRUE(latest.of(MessageSlot::objects)->binary);
   EXPECT_TRUE(view.has_roster());
   EXPECT_GE(history.span().snapshots, 1u);
 }
 
-TEST(LiveView, NoTruthReachesViewers) {
-  LatestMessages latest;
-  ViewHistory history;
-  LiveView view(latest, history);
-  TruthSet set{.sensor = "alpha", .frame = 1, .truths = {{}}};
-  set.truths[0].name = "SECRET";
-  view.take(State(set));
+TEST_F(LiveViewTest, NoTruthReachesViewers) {
+  view.take(State(truth_of(1)));
   view.publish();
   for (const auto& slot : latest.all()) EXPECT_FALSE(slot.message);
 }
 
-TEST(LiveView, StatusHasNodesWithStateLagAndGaps) {
-  LatestMessages latest;
-  ViewHistory history;
-  LiveView view(latest, history);
+TEST_F(LiveViewTest, TruthThatIsAskedForIsThatOfTheLastFrame) {
+  LiveView referee(latest, history, true);
+  referee.take(State(truth_of(4)));
+  referee.take(State(truth_of(3)));  // late
+  referee.publish();
+  const Json truths = told(MessageSlot::truth)["truths"];
+  ASSERT_EQ(truths.size(), 1u);
+  EXPECT_EQ(truths[0]["name"], "SECRET");
+  EXPECT_EQ(truths[0]["sensor"], "alpha");
+  EXPECT_EQ(truths[0]["frame"], 4);
+  EXPECT_EQ(truths[0]["path_px"], Json({3.5, 0.0, 0.0, 0.0, 0.0, 7.25}));
+  // Who looks back sees none.
+  const auto past = history.at(1e9);
+  ASSERT_TRUE(past);
+  for (const auto& message : past->messages)
+    EXPECT_EQ(message->bytes.find("SECRET"), std::string::npos);
+}
+
+TEST_F(LiveViewTest, StatusHasNodesWithStateLagAndGaps) {
   RunStatus status{.run_id = 0xab, .phase = Phase::running, .granted = 9, .last_tick = 20};
   status.tick_length = sim_seconds(5);
   status.start_utc = "2018-01-21T00:15:00Z";
@@ -100,7 +129,7 @@ TEST(LiveView, StatusHasNodesWithStateLagAndGaps) {
   status.nodes = {
       {.name = "a", .done = 9}, {.name = "b", .done = 4}, {.name = "c", .alive = false}};
   view.take(status, {{"b", 3}});
-  const Json json = json_of(latest, MessageSlot::status);
+  const Json json = told(MessageSlot::status);
   EXPECT_EQ(json["time_s"], 20.0);
   EXPECT_EQ(json["nodes"][0]["state"], "alive");
   EXPECT_EQ(json["nodes"][1]["state"], "awaited");
@@ -108,16 +137,11 @@ TEST(LiveView, StatusHasNodesWithStateLagAndGaps) {
   EXPECT_EQ(json["nodes"][1]["gaps"], 3);
   EXPECT_EQ(json["nodes"][2]["state"], "lost");
   // Reference: date -u -d 2018-01-21T00:15:00Z +%s
-  EXPECT_EQ(json_of(latest, MessageSlot::run)["start_utc_ms"], 1516493700000.0);
+  EXPECT_EQ(told(MessageSlot::run)["start_utc_ms"], 1516493700000.0);
 }
 
-TEST(LiveView, KeepsTheNewestFrameAndItsDetections) {
-  LatestMessages latest;
-  ViewHistory history;
-  LiveView view(latest, history);
-  EnvironmentState environment;
-  environment.earth = earth_orientation(Clock(parse_utc("2018-01-21T00:15:00Z")), {});
-  view.take(State(environment));
+TEST_F(LiveViewTest, KeepsTheNewestFrameAndItsDetections) {
+  turn_the_earth();
   FrameReport report{.sensor = "alpha", .frame = 3};
   report.wcs.crpix_x = 255.5, report.wcs.crpix_y = 191.5;
   report.wcs.cd_deg = {-0.01, 0, 0, 0.01};
@@ -129,18 +153,18 @@ TEST(LiveView, KeepsTheNewestFrameAndItsDetections) {
   view.take(State(report));
   view.take(State(DetectionSet{"alpha", 2, std::vector<Detection>(7)}));
   view.publish();
-  const Json sensor = json_of(latest, MessageSlot::sensors)["sensors"][0];
+  const Json sensor = told(MessageSlot::sensors)["sensors"][0];
   EXPECT_EQ(sensor["frame"], 3);
   EXPECT_EQ(sensor["columns"], 512);
   EXPECT_EQ(sensor["rows"], 384);
   EXPECT_EQ(sensor["field"].size(), 3u * 24);
-  EXPECT_EQ(json_of(latest, MessageSlot::detections)["detections"].size(), 2u);
+  EXPECT_EQ(told(MessageSlot::detections)["detections"].size(), 2u);
 }
 
 // Prints what a second of a large run costs: ten states of 20,000 objects as they come over the
 // wire, a frame with ten detections of each of 100 sensors, two answers of the time-master. Asserts
 // no time.
-TEST(LiveView, CostOfASecondOfTwentyThousandObjectsAndAHundredSensors) {
+TEST_F(LiveViewTest, CostOfASecondOfTwentyThousandObjectsAndAHundredSensors) {
   constexpr std::size_t objects = 20'000;
   constexpr int sensors = 100;
   const RunFacts run{.run_id = 1, .tick_length = sim_seconds(1), .last_tick = 1000};
@@ -190,12 +214,7 @@ TEST(LiveView, CostOfASecondOfTwentyThousandObjectsAndAHundredSensors) {
   }
   ASSERT_EQ(reports.size(), 2u * sensors);
 
-  LatestMessages latest;
-  ViewHistory history;
-  LiveView view(latest, history);
-  EnvironmentState environment;
-  environment.earth = earth_orientation(Clock(parse_utc("2018-01-21T00:15:00Z")), {});
-  view.take(State(environment));
+  turn_the_earth();
   const auto take = [&](const Frames& message) {
     const std::string_view parts[]{message.topic, message.envelope, message.payload,
                                    message.arrays};
@@ -213,7 +232,7 @@ TEST(LiveView, CostOfASecondOfTwentyThousandObjectsAndAHundredSensors) {
   }
   const double share = double(std::clock() - began) / CLOCKS_PER_SEC / seconds;
   std::printf("processor seconds for a second of the run: %.4f\n", share);
-  EXPECT_EQ(json_of(latest, MessageSlot::sensors)["sensors"].size(), std::size_t(sensors));
+  EXPECT_EQ(told(MessageSlot::sensors)["sensors"].size(), std::size_t(sensors));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace dmise {
 namespace {
 
-const std::string viewer(16, 'v'), operator_(16, 'o');
+const std::string viewer(16, 'v'), referee(16, 'r'), operator_(16, 'o');
 
 AccessTokens tokens_of(const std::string& text, mode_t mode = 0600) {
   const std::string path = testing::TempDir() + "/dmise-tokens";
@@ -22,25 +22,31 @@ AccessTokens tokens_of(const std::string& text, mode_t mode = 0600) {
 }
 
 TEST(AccessTokens, AreReadFromAFileOfTheirOwner) {
-  const AccessTokens tokens = tokens_of("view " + viewer + "\n\noperator " + operator_ + "\n");
+  const AccessTokens tokens =
+      tokens_of("view " + viewer + "\n\noperator " + operator_ + "\ntruth " + referee + "\n");
   EXPECT_EQ(tokens.view, viewer);
   EXPECT_EQ(tokens.control, operator_);
+  EXPECT_EQ(tokens.truth, referee);
   EXPECT_EQ(tokens_of("view " + viewer).control, "");
   EXPECT_THROW(tokens_of("view " + viewer, 0644), ConfigError);
   for (const std::string& text : std::vector<std::string>{
            "", "view short", "view " + std::string(129, 'a'), "view " + viewer + " x", "view a b",
            "watch " + viewer, "view " + viewer + "\nview " + viewer,
-           "view " + viewer + "\noperator " + viewer, "view " + std::string(16, '&')})
+           "view " + viewer + "\noperator " + viewer, "truth " + viewer + "\noperator " + viewer,
+           "view " + viewer + "\ntruth " + viewer, "view " + std::string(16, '&')})
     EXPECT_THROW(tokens_of(text), ConfigError) << text;
   EXPECT_THROW(read_access_tokens("/nowhere/tokens"), ConfigError);
 }
 
 TEST(Access, IsThatOfTheToken) {
-  const AccessTokens both{viewer, operator_}, view_alone{viewer, ""}, control_alone{"", operator_};
-  EXPECT_EQ(access_of(both, viewer, Access::control), Access::view);
-  EXPECT_EQ(access_of(both, operator_, Access::none), Access::control);
+  const AccessTokens all{viewer, operator_, referee}, view_alone{viewer, "", ""},
+      control_alone{"", operator_, ""};
+  EXPECT_EQ(access_of(all, viewer, Access::control), Access::view);
+  EXPECT_EQ(access_of(all, operator_, Access::none), Access::control);
+  EXPECT_EQ(access_of(all, referee, Access::none), Access::truth);
+  EXPECT_EQ(access_of(view_alone, referee, Access::control), Access::none);
   for (const std::string& wrong : {std::string(), viewer.substr(1), viewer + "v", std::string("x")})
-    for (const AccessTokens& tokens : {both, view_alone, control_alone})
+    for (const AccessTokens& tokens : {all, view_alone, control_alone})
       EXPECT_EQ(access_of(tokens, wrong, Access::control), Access::none) << wrong;
   EXPECT_EQ(access_of({}, "", Access::control), Access::control);
 }

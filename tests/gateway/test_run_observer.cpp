@@ -35,8 +35,8 @@ struct Environment : Actor {
 };
 
 struct ObserverThread {
-  explicit ObserverThread(const std::string& master)
-      : observer({.master = master, .stop = &stop}, latest, history),
+  explicit ObserverThread(const std::string& master, bool takes_truth = false)
+      : observer({.master = master, .takes_truth = takes_truth, .stop = &stop}, latest, history),
         thread([this] { observer.run([] {}); }) {}
   ~ObserverThread() {
     stop.set();
@@ -91,6 +91,15 @@ TEST(RunObserver, SeesARunItJoinsLateAndControlsItsClock) {
   std::memcpy(&count, seen.latest.of(MessageSlot::objects)->bytes.data() + 4, 4);
   EXPECT_EQ(count, 20u);
 
+  // Truth comes to whoever takes it, from the sensor itself.
+  EXPECT_FALSE(seen.latest.of(MessageSlot::truth));
+  {
+    const ObserverThread referee(master.address, true);
+    EXPECT_TRUE(
+        referee.until([&](const Json&) { return bool(referee.latest.of(MessageSlot::truth)); }));
+  }
+  EXPECT_FALSE(seen.latest.of(MessageSlot::truth));
+
   // The clock's list of who takes part and is waited for has no gateway in it.
   for (const auto& node : ask_master(master.address, 30.0).nodes) EXPECT_NE(node.name, "gateway");
 
@@ -103,6 +112,8 @@ TEST(RunObserver, SeesARunItJoinsLateAndControlsItsClock) {
   EXPECT_EQ(settled(), paused_at + 3);
   seen.observer.command({ClockCommand::Action::go_on, 0});
   EXPECT_TRUE(seen.until([&](const Json& s) { return s["settled_tick"] > paused_at + 3; }));
+  seen.observer.command({.action = ClockCommand::Action::pace, .factor = 200.0});
+  EXPECT_TRUE(seen.until([&](const Json& s) { return s["pace"] == 200.0; }));
   stop.set();
 }
 

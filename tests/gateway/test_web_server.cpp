@@ -26,13 +26,16 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-const std::string viewer(16, 'v'), operator_(16, 'o');
+const std::string viewer(16, 'v'), referee(16, 'r'), operator_(16, 'o');
 
-struct NoPreviews : PreviewSource {
-  std::optional<std::string> preview(const std::string& sensor, std::uint32_t frame) override {
-    if (sensor == "alpha" && frame == 2) return "\x89PNG picture";
-    return std::nullopt;
+/// One preview, and requests that are answered late.
+struct OnePreview : PreviewSource {
+  void request(const std::string& sensor, std::uint32_t frame, Answer answer) override {
+    if (sensor == "late") return late.set_value(answer);
+    const bool found = sensor == "alpha" && frame == 2;
+    answer(found ? std::make_shared<const std::string>("\x89PNG picture") : nullptr);
   }
+  std::promise<Answer> late;
 };
 
 std::string dashboard() {
@@ -41,6 +44,25 @@ std::string dashboard() {
   std::ofstream(directory + "/index.html") << "<html>dashboard</html>";
   std::ofstream(directory + "/assets/a.js") << "1;";
   return directory;
+}
+
+/// The whole answer of a server to some bytes.
+std::string ask(const WebServer& server, const std::string& bytes) {
+  boost::asio::io_context io;
+  tcp::socket socket(io);
+  socket.connect({boost::asio::ip::address_v4::loopback(), std::uint16_t(server.port())});
+  boost::system::error_code error;
+  boost::asio::write(socket, boost::asio::buffer(bytes), error);
+  socket.shutdown(tcp::socket::shutdown_send, error);
+  std::string answer;
+  boost::asio::read(socket, boost::asio::dynamic_buffer(answer), error);
+  return answer;
+}
+
+std::string get(const WebServer& server, const std::string& target, const std::string& headers = "",
+                const std::string& host = "localhost", const std::string& verb = "GET") {
+  return ask(server, verb + " " + target + " HTTP/1.1\r\nHost: " + host +
+                         "\r\nConnection: close\r\n" + headers + "\r\n");
 }
 
 struct Site {
@@ -53,28 +75,16 @@ struct Site {
                            return true;
                          }}) {}
 
-  /// The whole answer of the server to some bytes.
-  std::string ask(const std::string& bytes) const {
-    boost::asio::io_context io;
-    tcp::socket socket(io);
-    socket.connect({boost::asio::ip::address_v4::loopback(), std::uint16_t(server.port())});
-    boost::system::error_code error;
-    boost::asio::write(socket, boost::asio::buffer(bytes), error);
-    socket.shutdown(tcp::socket::shutdown_send, error);
-    std::string answer;
-    boost::asio::read(socket, boost::asio::dynamic_buffer(answer), error);
-    return answer;
-  }
+  std::string ask(const std::string& bytes) const { return dmise::ask(server, bytes); }
   std::string get(const std::string& target, const std::string& headers = "",
                   const std::string& host = "localhost", const std::string& verb = "GET") const {
-    return ask(verb + " " + target + " HTTP/1.1\r\nHost: " + host + "\r\nConnection: close\r\n" +
-               headers + "\r\n");
+    return dmise::get(server, target, headers, host, verb);
   }
 
   StaticFiles files;
   LatestMessages latest;
   ViewHistory history;
-  NoPreviews previews;
+  OnePreview previews;
   std::atomic<std::int64_t> ticks{0};
   std::atomic<int> commands{0};
   std::atomic<bool> busy{false};
@@ -131,25 +141,40 @@ TEST(WebServer, ServesPreviewsOfFrames) {
   const Site site;
   EXPECT_THAT(site.get("/frames/alpha/2.png"), HasSubstr("image/png"));
   EXPECT_THAT(site.get("/frames/alpha/3.png"), StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(site.get("/frames/alpha/0.png"), StartsWith("HTTP/1.1 404"));
+}
+
+TEST(WebServer, NobodyWaitsForThePreviewOfAnother) {
+  Site site;
+  auto first = std::async(std::launch::async, [&] { return site.get("/frames/late/1.png"); });
+  const auto answer = site.previews.late.get_future().get();
+  EXPECT_THAT(site.get("/frames/alpha/2.png"), HasSubstr("image/png"));
+  answer(std::make_shared<const std::string>("\x89PNG late"));
+  EXPECT_THAT(first.get(), HasSubstr("PNG late"));
+}
+
+TEST(WebServer, APreviewThatComesAfterItsEndIsDropped) {
+  const StaticFiles none("/nowhere");
+  LatestMessages latest;
+  ViewHistory history;
+  OnePreview previews;
+  auto server = std::make_unique<WebServer>(WebServerOptions{},
+                                            WebContent{none, latest, history, previews, {}});
+  auto request = std::async(std::launch::async,
+                            [at = server.get()] { return get(*at, "/frames/late/1.png"); });
+  const auto answer = previews.late.get_future().get();
+  server.reset();
+  EXPECT_EQ(request.get(), "");
+  answer(nullptr);
 }
 
 TEST(WebServer, SaysThatTheDashboardIsNotBuilt) {
   const StaticFiles none("/nowhere");
   LatestMessages latest;
   ViewHistory history;
-  NoPreviews previews;
-  Site site;
-  WebServer server({}, {none, latest, history, previews, {}});
-  boost::asio::io_context io;
-  tcp::socket socket(io);
-  socket.connect({boost::asio::ip::address_v4::loopback(), std::uint16_t(server.port())});
-  boost::asio::write(
-      socket, boost::asio::buffer(
-                  std::string("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")));
-  std::string answer;
-  boost::system::error_code error;
-  boost::asio::read(socket, boost::asio::dynamic_buffer(answer), error);
-  EXPECT_THAT(answer, HasSubstr("./dmise dashboard"));
+  OnePreview previews;
+  const WebServer server({}, {none, latest, history, previews, {}});
+  EXPECT_THAT(get(server, "/"), HasSubstr("./dmise dashboard"));
 }
 
 TEST(WebServer, RefusesWhatIsNoRequestForIt) {
@@ -172,16 +197,16 @@ TEST(WebServer, NeedsTokensWhereOthersReachIt) {
   const StaticFiles files(dashboard());
   LatestMessages latest;
   ViewHistory history;
-  NoPreviews previews;
+  OnePreview previews;
   const WebContent content{files, latest, history, previews, {}};
   EXPECT_THROW(WebServer({.host = "0.0.0.0"}, content), ConfigError);
   EXPECT_THROW(WebServer({.host = "::"}, content), ConfigError);
   EXPECT_THROW(WebServer({.host = "view.example"}, content), ConfigError);
-  EXPECT_NO_THROW(WebServer({.host = "0.0.0.0", .tokens = {viewer, ""}}, content));
+  EXPECT_NO_THROW(WebServer({.host = "0.0.0.0", .tokens = {viewer, "", ""}}, content));
 }
 
 TEST(WebServer, TokensDecideWhatAViewerMay) {
-  Site site({.tokens = {viewer, operator_}, .may_control = true});
+  Site site({.tokens = {viewer, operator_, referee}, .may_control = true});
   EXPECT_THAT(site.get("/"), StartsWith("HTTP/1.1 401"));
   EXPECT_THAT(site.get("/frames/alpha/2.png"), StartsWith("HTTP/1.1 401"));
   const std::string moved = site.get("/?token=" + viewer);
@@ -204,6 +229,31 @@ TEST(WebServer, TokensDecideWhatAViewerMay) {
   site.busy = true;
   controller.write(R"({"do": "pause"})");
   EXPECT_THAT(controller.read(), HasSubstr("too many commands"));
+}
+
+TEST(WebServer, TruthIsForThoseWhoMaySeeIt) {
+  Site site({.tokens = {viewer, operator_, referee}, .may_control = true, .shows_truth = true});
+  site.latest.set(MessageSlot::truth, {"SECRET"});
+  site.latest.set(MessageSlot::notice, {"after it"});
+  Watcher watcher(site, "/live?token=" + viewer);
+  EXPECT_THAT(watcher.read(), HasSubstr("\"sees_truth\":false"));
+  EXPECT_EQ(watcher.read(), "after it");  // the order is that of the kinds
+  site.latest.set(MessageSlot::truth, {"SECRET again"});
+  site.latest.set(MessageSlot::notice, {"after that"});
+  site.server.changed();
+  EXPECT_EQ(watcher.read(), "after that");
+  for (const std::string& token : {referee, operator_}) {
+    Watcher knows(site, "/live?token=" + token);
+    EXPECT_THAT(knows.read(), HasSubstr("\"sees_truth\":true"));
+    EXPECT_EQ(knows.read(), "SECRET again");
+  }
+  // A gateway that was not told to show it shows none, whoever asks.
+  Site blind({.tokens = {viewer, operator_, referee}, .may_control = true});
+  blind.latest.set(MessageSlot::truth, {"SECRET"});
+  blind.latest.set(MessageSlot::notice, {"after it"});
+  Watcher controller(blind, "/live?token=" + operator_);
+  EXPECT_THAT(controller.read(), HasSubstr("\"sees_truth\":false"));
+  EXPECT_EQ(controller.read(), "after it");
 }
 
 TEST(WebServer, PagesOfOtherSitesOpenNoWebSocket) {
@@ -258,8 +308,11 @@ TEST(WebServer, BoundsConnectionsAndMessages) {
   for (int i = 0; i < 3; ++i) watchers.push_back(std::make_unique<Watcher>(site));
   EXPECT_THROW(Watcher{site}, boost::system::system_error);
   watchers[0]->read();
-  watchers[0]->write(std::string(5000, ' '));
-  EXPECT_THROW(watchers[0]->read(), boost::system::system_error);
+  const auto too_long = [&] {  // it may be cut off while it is being written
+    watchers[0]->write(std::string(5000, ' '));
+    watchers[0]->read();
+  };
+  EXPECT_THROW(too_long(), boost::system::system_error);
   // Its place is free; who sends half a request loses it after a while.
   watchers.clear();
   std::string late;

@@ -75,6 +75,18 @@ TEST(Clock, EndsEarlyWithNoTickHalfDone) {
   }
 }
 
+// At the first pace its last tick would be due after 40 minutes.
+TEST(Clock, ChangesItsPace) {
+  auto options = run_of({"orbit", "a"}, 5);
+  options.run.pace.factor = 2e-3;
+  Network network(options);
+  network.begin();
+  EXPECT_TRUE(becomes(network.master.address, [](const auto& s) { return s.settled == 0; }));
+  EXPECT_EQ(ask_master(network.master.address, patience_s).pace, 2e-3);
+  EXPECT_EQ(pace_master(network.master.address, patience_s, 1e3).pace, 1e3);
+  EXPECT_EQ(network.master.result.get().exit_code, 0);
+}
+
 TEST(Clock, KeepsRealTime) {
   auto options = run_of({"orbit", "a"}, 5);
   options.run.pace.factor = 100;  // ticks of 1 s: 10 ms each

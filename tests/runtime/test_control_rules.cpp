@@ -44,6 +44,18 @@ TEST(ControlRules, NumbersAreThoseOfARun) {
   EXPECT_TRUE(fault_of(request));
 }
 
+TEST(ControlRules, APaceIsAFactor) {
+  v1::NodeMessage message;
+  for (const double factor : {0.0, 0.1, 1e6}) {
+    message.mutable_control()->set_factor(factor);
+    EXPECT_FALSE(fault_of(message)) << factor;
+  }
+  for (const double factor : {-1.0, 1.1e6, double(NAN), double(INFINITY)}) {
+    message.mutable_control()->set_factor(factor);
+    EXPECT_TRUE(fault_of(message)) << factor;
+  }
+}
+
 TEST(ControlRules, ARunFitsIntoIntegerNanoseconds) {
   v1::MasterMessage message;
   auto* welcome = message.mutable_welcome();

@@ -32,6 +32,7 @@ clean_up() {
 
 remove_containers() { docker ps -aq | xargs -r docker rm -fv >/dev/null; }
 compose() { docker-compose -p "$project" -f "$file" "$@"; }
+compose_with_view() { compose -f "$checkout/launch/stack/view.yaml" "$@"; }
 container_of() { compose ps -aq "$1" 2>/dev/null; }
 
 # A registry's Debian or, where none can be reached, one made here.
@@ -102,6 +103,8 @@ check_image() {
 
 make_keys() {
   install -d -m 700 -o 10001 -g 10001 "$DMISE_KEYS"
+  docker run --rm --network none --read-only -v "$DMISE_KEYS:/keys" "$DMISE_IMAGE" keygen /keys gateway >/dev/null
+  echo "view $view_token" | install -m 400 -o 10001 -g 10001 /dev/stdin "$DMISE_KEYS/view.tokens"
   docker run --rm --network none --read-only -v "$DMISE_KEYS:/keys" -v "$DMISE_SCENARIOS:/scenarios:ro" \
     "$DMISE_IMAGE" keygen /keys --scenario /scenarios/scenario.yaml --rings >/dev/null
 }
@@ -129,6 +132,24 @@ check_compose() {
   same_products "$work/reference" "$work/compose" 17 "compose ($((SECONDS - began)) s)"
   check_containers 9
   compose down --volumes --timeout 1 >/dev/null 2>&1
+}
+
+# The head and the page that the gateway's container serves to who has this token.
+page_of_view() {
+  compose_with_view exec -T gateway bash -c "exec 3<>/dev/tcp/127.0.0.1/7680
+    printf 'GET / HTTP/1.0\\r\\nHost: view\\r\\nCookie: dmise_token=%s\\r\\n\\r\\n' '$1' >&3; cat <&3" 2>/dev/null
+}
+view_is_served() { [[ $(page_of_view "$view_token") == *'DMISE live view'* ]]; }
+
+check_view() {
+  compose_with_view config -q >/dev/null 2>"$work/config.log" || die "compose config: $(cat "$work/config.log")"
+  compose_with_view up -d gateway >"$work/view.log" 2>&1 || die "the gateway: $(tail -n 5 "$work/view.log")"
+  wait_until 120 "the pages of the live view" view_is_served
+  [[ $(page_of_view "$view_token") == 'HTTP/1.1 200'* ]] || die "the live view: $(page_of_view "$view_token" | head -n 3)"
+  [[ $(page_of_view wrong-wrong-wrong) == 'HTTP/1.1 401'* ]] || die "the live view is shown to who has no token"
+  [[ $(page_of_view "$view_token") == *assets/* ]] || say "note: the image has no pages of the live view"
+  compose_with_view down --volumes --timeout 1 >/dev/null 2>&1
+  say "ok: the gateway's container serves its page, to who has a token"
 }
 
 # A scenario that nobody can run: compose gives the launcher's code. It is alone, for where another container fails
@@ -174,6 +195,7 @@ exec 9>"$proofs/docker.lock"
 flock 9  # one dockerd a data root
 work=$(mktemp -d -t dmise-stack-XXXXXX)
 trap clean_up EXIT
+view_token=view-of-the-stack-test
 export DMISE_SCENARIOS=$work/scenarios DMISE_SCENARIO=scenario.yaml DMISE_KEYS=$work/keys
 mkdir "$work/tree" "$DMISE_SCENARIOS"
 cp "$tests"/stack/*.yaml "$DMISE_SCENARIOS/"
@@ -197,6 +219,7 @@ remove_containers  # of a test that was cut short
 check_image
 make_keys
 check_compose
+check_view
 check_failure
 check_swarm
 [[ -z $given ]] || exit 0

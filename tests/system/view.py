@@ -32,7 +32,9 @@ output: {{png: true}}
 
 
 def write(directory, name, duration_s, real_time):
-    (directory / "small.yaml").write_text(CAMERA)
+    # So wide that something is in many frames.
+    wide = CAMERA.replace("field_of_view_deg: 15", "field_of_view_deg: 70").replace("aperture_m: 0.02", "aperture_m: 0.003")
+    (directory / "small.yaml").write_text(wide)
     path = directory / name
     path.write_text(SCENARIO.format(duration_s=duration_s, real_time=real_time))
     return path
@@ -58,6 +60,34 @@ def killing_it_changes_nothing(binary, directory):
         check(code == 0, "the run does not notice that the gateway was killed" + (run.stderr[-300:] if code else ""))
         check("live view: http://127.0.0.1:" in run.stdout + run.stderr, "the launcher tells the URL")
     check_same(seen, whole, "its products are those of a run that nobody watched")
+
+
+def another_pace_changes_nothing(binary, directory):
+    """At the scenario's pace the run would take 16 hours."""
+    scenario = write(directory, "slow.yaml", 60, 0.001)
+    whole, paced = directory / "unpaced", directory / "paced"
+    subprocess.run([binary, "run", scenario, "--out", whole], check=True, capture_output=True)
+    with Run(binary, "launch", scenario, "--out", paced) as run:
+        wait_until((paced / "logs/master.address").exists, "the address of the time-master")
+        master = (paced / "logs/master.address").read_text().strip()
+        wait_until(lambda: "tick 0 of" in status_of(binary, master), "the first tick")
+        check("pace: 0.001 times real time" in status_of(binary, master), "a run keeps the pace of its scenario")
+        done = subprocess.run([binary, "clock", "pace", master, "-1"], capture_output=True, text=True)
+        check(done.returncode == 2, f"a pace that is none is refused: {done.stderr.strip().splitlines()[0]}")
+        subprocess.run([binary, "clock", "pace", master, "0"], check=True, capture_output=True)
+        code, _ = run.finish()
+        check(code == 0, "as fast as possible it ends" + (run.stderr[-300:] if code else ""))
+    check_same(paced, whole, "and its products are those of any other pace")
+
+
+def status_of(binary, master):
+    return subprocess.run([binary, "status", master, "--once"], capture_output=True, text=True).stdout
+
+
+def truths_of(out, sensor, frame):
+    """How many objects are in a frame, by the sensor's own file."""
+    lines = (out / sensor / "truth.jsonl").read_text().splitlines()
+    return sum(t["in_frame"] for t in map(json.loads, lines) if t["frame"] == frame)
 
 
 def hostile_clients_do_not_disturb(url, seed=7):
@@ -97,7 +127,7 @@ def tool_that_misses(binary):
     return "" if (MODULES / "playwright-core").exists() and (MODULES / "axe-core").exists() else f"playwright-core in {MODULES}"
 
 
-def a_browser_shows_it(url, directory):
+def a_browser_shows_it(url, directory, out):
     script = pathlib.Path(__file__).parent / "view/browser.mjs"
     done = subprocess.run(["node", script, MODULES, shutil.which("chromium"), url, "alpha", directory / "page.png"],
                           capture_output=True, text=True, timeout=280, env=os.environ | {"HOME": str(directory)})
@@ -108,6 +138,9 @@ def a_browser_shows_it(url, directory):
     check(found["foreign"] == [], f"and nothing from elsewhere {found['foreign'][:3]}")
     check(found["objects"] > 900 and found["nodes"] == 5, f"{found['objects']} objects, {found['nodes']} nodes")
     check(found["lit"], f"a click on a sensor shows its last frame, {found['click_ms']} ms later")
+    check(found["pace"] == 50, f"the clock runs as fast as was chosen: {found['pace']} times real time")
+    check(found["shows_truth"] and 0 < found["truths"] == truths_of(out, "alpha", found["frame"]),
+          f"the truth of frame {found.get('frame')} is shown: {found.get('truths')} objects")
     check(found["later_s"] == found["paused_s"], f"a pause stops the simulation's time, at {found['paused_s']} s")
     check(found["past_s"] < found["paused_s"], f"the past is shown: {found['past_s']} s")
     check(found["violations"] == [], f"axe-core finds no violation in {found['checked']} checks {found['violations']}")
@@ -115,14 +148,15 @@ def a_browser_shows_it(url, directory):
 
 def test(binary, directory):
     killing_it_changes_nothing(binary, directory)
+    another_pace_changes_nothing(binary, directory)
     scenario, out = write(directory, "long.yaml", 36000, 20), directory / "out"
-    with Run(binary, "launch", scenario, "--out", out, "--view") as run:
+    with Run(binary, "launch", scenario, "--out", out, "--view", "--view-truth") as run:
         url = url_of(out)
         first_frame(out)
         hostile_clients_do_not_disturb(url)
         missing = tool_that_misses(binary)
         if not missing:
-            a_browser_shows_it(url, directory)
+            a_browser_shows_it(url, directory, out)
         run.interrupt()
         run.finish()
         run.nothing_left()

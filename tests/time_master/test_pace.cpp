@@ -65,8 +65,85 @@ TEST(Pace, IsExactForTicksOfAMicrosecondAndOfAnHour) {
 }
 
 TEST(Pace, RefusesAFactorThatIsNone) {
-  for (const double factor : {-1.0, std::nan(""), double(INFINITY)})
+  Pace pace({.factor = 1.0});
+  for (const double factor : {-1.0, std::nan(""), double(INFINITY), 1.1e6}) {
     EXPECT_THROW(Pace({.factor = factor}), ConfigError);
+    EXPECT_THROW(pace.change(factor, 0, Instant{0}), ConfigError);
+  }
+  EXPECT_EQ(pace.factor(), 1.0);
+}
+
+TEST(PaceChange, WhatIsLeftOfATickPassesAtTheNewFactor) {
+  Coordinator master = started(real_time(1.0, 4));  // ticks of 5 s
+  master.done("camera", 0, seconds(1));
+  master.change_pace(10.0, seconds(3));  // two fifths of the tick are left: 2 s, now 0.2 s
+  EXPECT_EQ(master.next_due(), milliseconds(3200));
+  master.check(milliseconds(3200));
+  EXPECT_EQ(master.granted(), 1);
+  EXPECT_EQ(master.next_due(), milliseconds(3700));
+  master.done("camera", 1, milliseconds(3300));
+  master.change_pace(0.1, milliseconds(3600));  // a fifth is left, of 50 s
+  EXPECT_EQ(master.next_due(), milliseconds(13600));
+  EXPECT_EQ(master.pace().overruns(), 0u);
+}
+
+TEST(PaceChange, ALateClockDoesNotCatchUp) {
+  Coordinator master = started(real_time(1.0));
+  master.check(seconds(100));  // the camera is late by 19 ticks
+  master.change_pace(2.0, seconds(100));
+  master.done("camera", 0, seconds(101));
+  EXPECT_EQ(master.pace().overruns(), 1u);
+  EXPECT_EQ(master.granted(), 1);  // was due at 100 s
+  EXPECT_EQ(master.pace().worst_lag(), seconds(1));
+  master.done("camera", 1, seconds(102));
+  EXPECT_EQ(master.granted(), 1);  // tick 2 is due at 102.5 s
+}
+
+TEST(PaceChange, AsFastAsPossibleAndBack) {
+  Coordinator master = started(real_time(1e-3, 4));
+  EXPECT_EQ(master.granted(), 0);
+  master.change_pace(0.0, seconds(1));
+  EXPECT_EQ(master.granted(), 3);
+  EXPECT_FALSE(master.next_due());
+  master.change_pace(1.0, seconds(2));
+  for (const Tick tick : {0, 1, 2, 3}) master.done("camera", tick, seconds(6));
+  EXPECT_EQ(master.granted(), 3);
+  EXPECT_EQ(master.next_due(), seconds(7));
+  // Granted before real time counted: when they were due is not known.
+  EXPECT_EQ(master.pace().overruns(), 0u);
+}
+
+TEST(PaceChange, LeavesAPauseAsItIs) {
+  Coordinator master = started(real_time(1.0, 4));
+  master.pause();
+  master.done("camera", 0, seconds(1));
+  master.change_pace(0.0, seconds(100));
+  EXPECT_EQ(master.granted(), 0);
+  master.change_pace(2.0, seconds(100));
+  master.go_on(seconds(200));
+  EXPECT_EQ(master.granted(), 1);
+  EXPECT_EQ(master.next_due(), milliseconds(202500));
+}
+
+TEST(PaceChange, BeforeTheStartItIsThatOfTheStart) {
+  Coordinator master(real_time(1.0, 4));
+  master.change_pace(5.0, seconds(1));
+  master.join(node("camera"), seconds(2));
+  master.ready("camera", seconds(10));
+  EXPECT_EQ(master.granted(), 0);
+  EXPECT_EQ(master.next_due(), seconds(11));
+}
+
+TEST(Pause, StepsAheadOfRealTimeAreNotWaitedForAfterwards) {
+  auto options = real_time(1.0);
+  options.last_tick = 99;
+  Coordinator master = started(options);
+  master.pause();
+  master.step(50, seconds(1));
+  for (Tick tick = 0; tick <= 50; ++tick) master.done("camera", tick, seconds(2));
+  EXPECT_TRUE(master.frozen());
+  master.go_on(seconds(3));
+  EXPECT_EQ(master.next_due(), seconds(8));  // a tick of 5 s later, not after 255 s
 }
 
 TEST(Pause, HoldsAtTheLastTickGrantedAndGoesOn) {

@@ -1,5 +1,5 @@
 // The last frame of a sensor with its detections.
-import type { Detection, Sensor } from "./messages";
+import type { Detection, Sensor, Truth } from "./messages";
 import { palette } from "./palette";
 
 const deg = 180 / Math.PI;
@@ -11,6 +11,7 @@ export class FrameView {
   private shown = "";
   private sensor: Sensor | null = null;
   private detections: Detection[] = [];
+  private truths: Truth[] = [];
 
   constructor(private readonly canvas: HTMLCanvasElement, private readonly note: HTMLElement) {
     canvas.width = 640;
@@ -19,10 +20,12 @@ export class FrameView {
     canvas.addEventListener("mouseleave", () => this.describe());
   }
 
-  show(sensor: Sensor | undefined, detections: Detection[], brightness: number): void {
+  show(sensor: Sensor | undefined, detections: Detection[], truths: Truth[], brightness: number): void {
     this.canvas.style.setProperty("--brightness", String(brightness));
     this.sensor = sensor ?? null;
     this.detections = sensor ? detections.filter((d) => d.sensor === sensor.name && d.frame === sensor.frame) : [];
+    this.truths = sensor ? truths.filter((t) => t.sensor === sensor.name && t.frame === sensor.frame) : [];
+    this.canvas.dataset.truths = String(this.truths.length);
     if (sensor) this.load(`/frames/${encodeURIComponent(sensor.name)}/${sensor.frame}.png`);
     this.draw();
     this.describe();
@@ -63,6 +66,7 @@ export class FrameView {
     if (image && same_sensor) context.drawImage(image, 0, 0, canvas.width, canvas.height);
     if (!current && this.image) return; // the marks are of a picture that is on its way
     const scale = this.scale();
+    this.draw_truth(context, scale);
     context.strokeStyle = palette.detection;
     context.fillStyle = palette.detection;
     context.lineWidth = 1.5;
@@ -75,12 +79,34 @@ export class FrameView {
     }
   }
 
+  /** Trails dashed, with a ring at mid exposure: another shape than the boxes of detections. */
+  private draw_truth(context: CanvasRenderingContext2D, scale: number): void {
+    context.strokeStyle = context.fillStyle = palette.truth;
+    context.lineWidth = 1.5;
+    context.font = "12px sans-serif";
+    for (const t of this.truths) {
+      const [x0, y0, x1, y1, x2, y2] = t.path_px.map((v) => (v + 0.5) * scale) as Truth["path_px"];
+      context.setLineDash([4, 4]);
+      context.beginPath();
+      context.moveTo(x0, y0);
+      context.lineTo(x1, y1);
+      context.lineTo(x2, y2);
+      context.stroke();
+      context.setLineDash([]);
+      context.beginPath();
+      context.arc(x1, y1, 5, 0, 2 * Math.PI);
+      context.stroke();
+      if (this.truths.length <= 20) context.fillText(`${t.name || t.number} ${t.magnitude.toFixed(1)}`, x1 + 8, y1 + 14);
+    }
+  }
+
   private describe(): void {
     const { sensor } = this;
     if (!sensor) { this.note.textContent = "No frame yet."; return; }
     const found = sensor.detection_off ? "detection is off" : `${sensor.detections} detections, limit ${sensor.limiting_magnitude.toFixed(1)} mag`;
-    const missing = this.failed.endsWith(`/${sensor.frame}.png`) ? " There is no preview (output: {png: true}, --products DIRECTORY)." : "";
-    this.note.textContent = `${sensor.name}, frame ${sensor.frame}, RA ${(sensor.ra_rad * deg).toFixed(2)} Dec ${(sensor.dec_rad * deg).toFixed(2)}, ${found}.${missing}`;
+    const missing = this.failed.endsWith(`/${sensor.frame}.png`) ? " Its sensor does not serve it any more (--products DIRECTORY has previews of all, with output: {png: true})." : "";
+    const truth = this.truths.length ? ` ${this.truths.length} objects in truth.` : "";
+    this.note.textContent = `${sensor.name}, frame ${sensor.frame}, RA ${(sensor.ra_rad * deg).toFixed(2)} Dec ${(sensor.dec_rad * deg).toFixed(2)}, ${found}.${truth}${missing}`;
   }
 
   private hover(event: MouseEvent): void {

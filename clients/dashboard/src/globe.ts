@@ -1,13 +1,15 @@
 // The globe: objects, sensors with their fields of view, detections, tracks and cues.
 import * as Cesium from "@cesium/engine";
 import type { Detection, Objects, Sensor, Task, Track } from "./messages";
+import { Horizon } from "./horizon";
 import { LineSet } from "./line_set";
 import { ObjectCloud } from "./object_cloud";
 import { colour_of, palette } from "./palette";
 
 const field_length_m = 1.5e6, detection_length_m = 3e6;
 const most_lines = 2000;
-const enough_pictures_per_s = 25, least_scale = 0.5;
+const scene_interval_ms = 200; // of the globe with what stands on it; a camera that is moved does not wait
+const sun_step_ms = 120_000; // of simulated time: half a degree of the terminator
 const most_named = 30, most_labels = 40; // sensors, tracks with names
 
 const metres = (km: ArrayLike<number>, i = 0): Cesium.Cartesian3 =>
@@ -18,7 +20,7 @@ const colour = (css: string, alpha = 1): Cesium.Color => Cesium.Color.fromCssCol
 
 export class Globe {
   readonly widget: Cesium.CesiumWidget;
-  private readonly cloud = new ObjectCloud(palette.object, () => Math.max(1.3, 2.5 * this.widget.resolutionScale));
+  private readonly cloud: ObjectCloud;
   private readonly sensor_points = new Cesium.PointPrimitiveCollection();
   private readonly labels: Cesium.LabelCollection;
   private readonly fields = new LineSet();
@@ -29,8 +31,11 @@ export class Globe {
   private roster: [number, string][] = [];
   private selected = "";
   private started = false;
-  pictures = 0;
-  private measured = { at: performance.now(), pictures: 0 };
+  pictures = 0; // of the objects
+  scenes = 0; // of the globe
+  private scene_ms = 0;
+  private scene_wanted = false;
+  private sun_ms = 0;
 
   constructor(container: Element, private readonly pick_sensor: (name: string) => void, private readonly tell: (text: string) => void) {
     this.widget = new Cesium.CesiumWidget(container, {
@@ -50,46 +55,47 @@ export class Globe {
     scene.screenSpaceCameraController.minimumZoomDistance = 1e4;
     this.labels = new Cesium.LabelCollection({ scene });
     this.track_labels = new Cesium.LabelCollection({ scene });
-    for (const part of [this.cloud, this.fields, this.detections, this.cues, this.track_points, this.sensor_points,
+    for (const part of [this.fields, this.detections, this.cues, this.track_points, this.sensor_points,
       this.labels, this.track_labels]) scene.primitives.add(part);
-    scene.postRender.addEventListener(() => { ++this.pictures; });
+    this.cloud = new ObjectCloud(this.widget.container, palette.object);
+    scene.postRender.addEventListener(() => { ++this.scenes; this.draw(); });
     this.whole();
     const canvas = this.widget.canvas;
     canvas.setAttribute("aria-hidden", "true"); // the tables tell the same
     canvas.removeAttribute("tabindex");
     new Cesium.ScreenSpaceEventHandler(canvas).setInputAction(
       (click: { position: Cesium.Cartesian2 }) => this.click(click.position), Cesium.ScreenSpaceEventType.LEFT_CLICK);
-    const draw = (): void => {
-      if (this.cloud.moves) scene.requestRender();
-      this.adapt();
-      requestAnimationFrame(draw);
+    const next = (now: number): void => {
+      if (this.drawing && this.cloud.moves) this.draw();
+      if (this.scene_wanted && now - this.scene_ms > scene_interval_ms) {
+        [this.scene_wanted, this.scene_ms] = [false, now];
+        scene.requestRender();
+      }
+      requestAnimationFrame(next);
     };
-    draw();
+    requestAnimationFrame(next);
   }
 
-  /** Where pictures are drawn without a graphics processor, they get fewer pixels until there are enough of them. */
-  private adapt(): void {
-    const now = performance.now();
-    if (document.hidden || !this.cloud.moves) { this.measured = { at: now, pictures: this.pictures }; return; }
-    const seconds = (now - this.measured.at) / 1e3;
-    if (seconds < 3) return;
-    const rate = (this.pictures - this.measured.pictures) / seconds;
-    this.measured = { at: now, pictures: this.pictures };
-    if (rate < enough_pictures_per_s && this.widget.resolutionScale > least_scale)
-      this.widget.resolutionScale = Math.max(least_scale, 0.8 * this.widget.resolutionScale);
+  private draw(): void {
+    ++this.pictures;
+    this.cloud.draw(this.widget.camera);
   }
+
+  /** Whether objects are drawn as they move. */
+  drawing = true;
 
   whole(): void {
     this.widget.camera.setView({ destination: Cesium.Cartesian3.fromDegrees(-84, 25, 2.6e7) });
-    this.widget.scene.requestRender();
+    this.redraw();
   }
 
   set_roster(roster: [number, string][]): void { this.roster = roster; }
 
   set_objects(objects: Objects): void {
     this.cloud.set(objects.position_km, objects.time_s);
-    if (objects.utc_ms > 0)
-      this.widget.clock.currentTime = Cesium.JulianDate.fromDate(new Date(objects.utc_ms));
+    if (Math.abs(objects.utc_ms - this.sun_ms) < sun_step_ms || objects.utc_ms <= 0) return;
+    this.sun_ms = objects.utc_ms;
+    this.widget.clock.currentTime = Cesium.JulianDate.fromDate(new Date(objects.utc_ms));
     this.redraw();
   }
 
@@ -189,17 +195,32 @@ export class Globe {
 
   select(sensor: string): void { this.selected = sensor; }
 
-  private redraw(): void { this.widget.scene.requestRender(); }
+  redraw(): void { this.scene_wanted = true; }
 
   private click(at: Cesium.Cartesian2): void {
-    const picked = this.widget.scene.pick(at, 15, 15) as { id?: { sensor?: string; track?: number } } | undefined;
-    if (picked?.id?.sensor) return this.pick_sensor(picked.id.sensor);
-    if (picked?.id?.track) return this.tell(`track ${picked.id.track}`);
+    const sensor = this.nearest(this.sensor_points, at) as { sensor: string } | undefined;
+    if (sensor) return this.pick_sensor(sensor.sensor);
+    const track = this.nearest(this.track_points, at) as { track: number } | undefined;
+    if (track) return this.tell(`track ${track.track}`);
     const object = this.object_at(at);
     if (object >= 0) {
       const [number, name] = this.roster[object] ?? [0, ""];
       this.tell(`object ${name || "without a name"}${number ? `, number ${number}` : ""}`);
     }
+  }
+
+  /** The point nearest to a place on the screen, before the Earth: found without drawing, which may take long. */
+  private nearest(points: Cesium.PointPrimitiveCollection, at: Cesium.Cartesian2): unknown {
+    const horizon = new Horizon(this.widget.camera.positionWC);
+    let best: unknown, least = 10;
+    for (let i = 0; i < points.length; ++i) {
+      const { position, id } = points.get(i);
+      const place = Cesium.SceneTransforms.worldToWindowCoordinates(this.widget.scene, position);
+      if (!place || horizon.hides(position.x, position.y, position.z)) continue;
+      const off = Cesium.Cartesian2.distance(place, at);
+      if (off < least) [least, best] = [off, id];
+    }
+    return best;
   }
 
   /** The nearest object within 8 pixels of a place on the screen, before the Earth; -1: none. */

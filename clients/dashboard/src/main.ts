@@ -3,8 +3,9 @@ import "./style.css";
 import { Chart } from "./charts";
 import { FrameView } from "./frame_view";
 import { Globe } from "./globe";
-import { Connection, type Detection, type Message, type Run, type Sensor, type Status, type Task, type Track } from "./messages";
+import { Connection, type Detection, type Message, type Run, type Sensor, type Status, type Task, type Track, type Truth } from "./messages";
 import { palette } from "./palette";
+import { Speed } from "./speed";
 import { show_nodes, show_tracks } from "./tables";
 
 const by_id = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
@@ -12,6 +13,7 @@ const by_id = <T extends HTMLElement>(id: string): T => document.getElementById(
 const sensor_list = by_id<HTMLSelectElement>("sensor"), stretch = by_id<HTMLSelectElement>("stretch");
 const pause = by_id<HTMLButtonElement>("pause"), step = by_id<HTMLButtonElement>("step"), live = by_id<HTMLButtonElement>("live");
 const step_ticks = by_id<HTMLInputElement>("step-ticks"), past = by_id<HTMLInputElement>("past");
+const truth = by_id<HTMLInputElement>("truth"), speed_list = by_id<HTMLSelectElement>("speed");
 const notice = by_id("notice");
 
 let run: Run | null = null;
@@ -20,6 +22,7 @@ let sensors: Sensor[] = [];
 let detections: Detection[] = [];
 let tracks: Track[] = [];
 let tasks: Task[] = [];
+let truths: Truth[] = [];
 let may_control = false, is_live = true, time_s = 0, states = "", statuses = 0;
 const counted = new Map<string, number>();
 
@@ -43,7 +46,7 @@ function choose(name: string): void {
 }
 
 function show_frame(): void {
-  frame.show(sensors.find((s) => s.name === sensor_list.value), detections, Number(stretch.value));
+  frame.show(sensors.find((s) => s.name === sensor_list.value), detections, truth.checked ? truths : [], Number(stretch.value));
 }
 
 function show_time(): void {
@@ -88,7 +91,8 @@ function take_status(news: Status): void {
   rate_chart.add(performance.now() / 1e3, news.rate);
   pause.textContent = news.paused ? "Go on" : "Pause";
   const running = news.phase === "running";
-  for (const button of [pause, step, step_ticks]) button.disabled = !may_control || !running;
+  speed.show(news.pace);
+  for (const button of [pause, step, step_ticks, speed_list]) button.disabled = !may_control || !running;
   step.disabled ||= !news.paused;
   past.min = String(news.past.from_s);
   past.max = String(Math.max(news.past.from_s + 1e-3, news.past.to_s));
@@ -103,7 +107,8 @@ function heard(message: Message): void {
   switch (message.type) {
     case "welcome":
       may_control = message.may_control;
-      if (!may_control) pause.title = step.title = "needs the operator's token";
+      if (!may_control) pause.title = step.title = speed_list.title = "needs the operator's token";
+      by_id("truth-switch").hidden = !message.sees_truth;
       break;
     case "run": run = message; show_time(); break;
     case "status": take_status(message); break;
@@ -111,6 +116,7 @@ function heard(message: Message): void {
     case "objects": time_s = message.time_s; globe.set_objects(message); show_time(); break;
     case "sensors": take_sensors(message.sensors); break;
     case "detections": detections = message.detections; globe.set_detections(detections); show_frame(); break;
+    case "truth": truths = message.truths; show_frame(); break;
     case "tracks": tracks = message.tracks; globe.set_tracks(tracks); show_tracks(by_id("tracks"), tracks, tasks, time_s); break;
     case "tasks": tasks = message.tasks; globe.set_tasks(tasks, time_s); show_tracks(by_id("tracks"), tracks, tasks, time_s); break;
     case "past": time_s = message.time_s; show_time(); break;
@@ -148,16 +154,19 @@ const next_sensor = (by: number): void => {
   if (count) choose(sensor_list.options[(sensor_list.selectedIndex + by + count) % count]!.value);
 };
 
+const speed = new Speed(speed_list, (factor) => connection.send({ do: "pace", factor }));
+
 pause.onclick = toggle;
 step.onclick = do_step;
 live.onclick = go_live;
 past.oninput = () => look_at(Number(past.value));
 sensor_list.onchange = () => choose(sensor_list.value);
-stretch.onchange = show_frame;
+stretch.onchange = truth.onchange = show_frame;
 document.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || /INPUT|SELECT|TEXTAREA/.test((event.target as Element).tagName)) return;
   const act: Record<string, () => void> = {
     " ": () => { if (!pause.disabled) toggle(); }, ".": () => { if (!step.disabled) do_step(); }, ",": () => move(-1), ";": () => move(1),
+    "-": () => speed.move(-1), "+": () => speed.move(1), t: () => { if (!by_id("truth-switch").hidden) truth.click(); },
     l: go_live, n: () => next_sensor(1), p: () => next_sensor(-1), h: () => globe.whole(),
   };
   if (event.key === " " && /BUTTON|SUMMARY/.test((event.target as Element).tagName)) return; // presses that
@@ -167,8 +176,8 @@ document.addEventListener("keydown", (event) => {
 // For tests and for whoever measures.
 Object.assign(window, {
   dmise: {
-    pictures: () => globe.pictures, objects: () => globe.objects, statuses: () => statuses, time_s: () => time_s,
-    screen_of: (sensor: string) => globe.screen_of(sensor), redraw: () => globe.widget.scene.requestRender(),
-    draw: (on: boolean) => { globe.widget.useDefaultRenderLoop = on; }, scale: () => globe.widget.resolutionScale,
+    pictures: () => globe.pictures, scenes: () => globe.scenes, objects: () => globe.objects, statuses: () => statuses, time_s: () => time_s,
+    screen_of: (sensor: string) => globe.screen_of(sensor), pace: () => status?.pace, frame: (sensor: string) => sensors.find((s) => s.name === sensor)?.frame,
+    draw: (on: boolean) => { globe.drawing = globe.widget.useDefaultRenderLoop = on; },
   },
 });

@@ -7,7 +7,7 @@ export interface NodeState {
   compute_s: number; message_s: number; wait_s: number; frames: number; detections: number; resident_bytes: number; gaps: number;
 }
 export interface Status {
-  type: "status"; run_id: string; phase: string; paused: boolean; cause: string; settled_tick: number; granted_tick: number;
+  type: "status"; run_id: string; phase: string; paused: boolean; pace: number; cause: string; settled_tick: number; granted_tick: number;
   last_tick: number; time_s: number; rate: number; ticks_per_s: number; overruns: number; worst_lag_s: number;
   missing: string[]; holding: string[]; past: { from_s: number; to_s: number; states: number }; nodes: NodeState[];
 }
@@ -21,6 +21,11 @@ export interface Detection {
   id: string; sensor: string; frame: number; time_s: number; kind: "point" | "streak"; x_px: number; y_px: number; magnitude: number;
   snr: number; ra_rad: number; dec_rad: number; ends_px: [number, number, number, number]; from_km?: Triple; direction?: Triple;
 }
+/// What was in a frame: pixels at the start, middle and end of the exposure.
+export interface Truth {
+  sensor: string; frame: number; number: number; name: string; magnitude: number; signal_e: number;
+  path_px: [number, number, number, number, number, number];
+}
 export interface Track {
   id: number; status: string; time_s: number; last_seen_s: number; number: number; name: string; detections: number;
   existence: number; sigma_km: number; position_km: Triple;
@@ -33,7 +38,8 @@ export interface Objects { type: "objects"; time_s: number; utc_ms: number; posi
 
 export type Message =
   | Run | Status | Objects
-  | { type: "welcome"; may_control: boolean }
+  | { type: "welcome"; may_control: boolean; sees_truth: boolean }
+  | { type: "truth"; truths: Truth[] }
   | { type: "roster"; objects: [number, string][] }
   | { type: "sensors"; sensors: Sensor[] }
   | { type: "detections"; detections: Detection[] }
@@ -44,7 +50,7 @@ export type Message =
   | { type: "refused"; text: string };
 
 export type Command =
-  | { do: "pause" } | { do: "go-on" } | { do: "step"; ticks: number } | { do: "past"; time_s: number } | { do: "live" };
+  | { do: "pause" } | { do: "go-on" } | { do: "step"; ticks: number } | { do: "pace"; factor: number } | { do: "past"; time_s: number } | { do: "live" };
 
 const magic = 0x424f4d44; // "DMOB", little endian
 const header_bytes = 24;

@@ -1,35 +1,16 @@
-// All objects as points in one draw call. Between two states the graphics processor interpolates, so that a picture costs no
-// work for each object; Cesium's PointPrimitiveCollection would write every point again for every picture.
+// All objects as points on a canvas above the globe, projected by the page itself. The globe does not turn beneath the camera, so
+// that a new picture of the objects needs no new picture of the globe: without a graphics processor that is a tenth of the work.
 import * as Cesium from "@cesium/engine";
-
-// What Cesium draws with is exported, and has no types; the version is pinned.
-// eslint-disable-next-line @typescript-eslint/no-explicit-any
-const gl = Cesium as any;
-
-const vertex_shader = `
-in vec3 before_km;
-in vec3 after_km;
-uniform float u_part;
-uniform float u_pixels;
-out float v_shown;
-void main() {
-  vec3 place = mix(before_km, after_km, u_part) * 1000.0;
-  v_shown = dot(after_km, after_km) > 1.0 ? 1.0 : 0.0;
-  gl_Position = czm_modelViewProjection * vec4(place, 1.0);
-  gl_PointSize = u_pixels;
-}`;
-
-const fragment_shader = `
-uniform vec4 u_colour;
-in float v_shown;
-void main() {
-  if (v_shown < 0.5) discard;
-  out_FragColor = u_colour;
-}`;
+import { Horizon } from "./horizon";
 
 const longest_step_s = 600; // beyond it, a straight line is no path
 
 export class ObjectCloud {
+  private readonly canvas = document.createElement("canvas");
+  private readonly context = this.canvas.getContext("2d")!;
+  private readonly colour: number; // as the canvas stores it
+  private image = new ImageData(1, 1);
+  private pixels = new Uint32Array(this.image.data.buffer);
   private before: Float32Array = new Float32Array();
   private after: Float32Array = new Float32Array();
   private time_s = 0;
@@ -37,13 +18,14 @@ export class ObjectCloud {
   private spacing_ms = 100;
   private jump = true;
   private dirty = false;
-  private buffers: any[] = []; // eslint-disable-line @typescript-eslint/no-explicit-any
-  private command: any = null; // eslint-disable-line @typescript-eslint/no-explicit-any
-  private readonly colour: Cesium.Color;
+  private readonly screen_from_km = new Cesium.Matrix4();
 
-  /** `pixels`: size of a point in the drawn picture. */
-  constructor(colour: string, private readonly pixels: () => number) {
-    this.colour = Cesium.Color.fromCssColorString(colour);
+  constructor(private readonly container: Element, colour: string) {
+    this.canvas.setAttribute("aria-hidden", "true");
+    this.canvas.className = "objects";
+    container.append(this.canvas);
+    const bytes = Cesium.Color.fromCssColorString(colour).toBytes();
+    this.colour = new Uint32Array(new Uint8Array(bytes).buffer)[0]!;
   }
 
   get count(): number { return this.after.length / 3; }
@@ -75,50 +57,40 @@ export class ObjectCloud {
 
   get moves(): boolean { return this.part() < 1 || this.dirty; }
 
-  // Called by the scene for each picture.
-  update(frame: { context: unknown; commandList: unknown[]; passes: { render: boolean } }): void {
-    if (!frame.passes.render || this.count === 0) return;
-    if (this.dirty) this.upload(frame.context);
-    frame.commandList.push(this.command);
-  }
-
-  private upload(context: unknown): void {
+  /** Draws the objects as the camera sees them now. */
+  draw(camera: Cesium.Camera): void {
     this.dirty = false;
-    if (this.buffers[0]?.sizeInBytes === this.after.byteLength) {
-      this.buffers[0].copyFromArrayView(this.before);
-      this.buffers[1].copyFromArrayView(this.after);
-      return;
+    const { clientWidth: columns, clientHeight: rows } = this.container;
+    if (columns < 2 || rows < 2) return;
+    if (this.image.width !== columns || this.image.height !== rows) {
+      [this.canvas.width, this.canvas.height] = [columns, rows];
+      this.image = new ImageData(columns, rows);
+      this.pixels = new Uint32Array(this.image.data.buffer);
     }
-    this.release();
-    this.buffers = [this.before, this.after].map((typedArray) =>
-      gl.Buffer.createVertexBuffer({ context, typedArray, usage: gl.BufferUsage.DYNAMIC_DRAW }));
-    const attributes = this.buffers.map((vertexBuffer, index) => ({
-      index, vertexBuffer, componentsPerAttribute: 3, componentDatatype: Cesium.ComponentDatatype.FLOAT,
-    }));
-    this.command = new gl.DrawCommand({
-      vertexArray: new gl.VertexArray({ context, attributes }),
-      shaderProgram: gl.ShaderProgram.fromCache({
-        context, vertexShaderSource: vertex_shader, fragmentShaderSource: fragment_shader,
-        attributeLocations: { before_km: 0, after_km: 1 },
-      }),
-      primitiveType: Cesium.PrimitiveType.POINTS,
-      renderState: gl.RenderState.fromCache({ depthTest: { enabled: true }, depthMask: false }),
-      uniformMap: { u_part: () => this.part(), u_pixels: this.pixels, u_colour: () => this.colour },
-      modelMatrix: Cesium.Matrix4.IDENTITY,
-      boundingVolume: new Cesium.BoundingSphere(Cesium.Cartesian3.ZERO, 5e7),
-      pass: gl.Pass.OPAQUE,
-      owner: this,
-    });
+    this.pixels.fill(0);
+    this.project(camera, columns, rows);
+    this.context.putImageData(this.image, 0, 0);
   }
 
-  private release(): void {
-    if (!this.command) return;
-    this.command.vertexArray.destroy();
-    this.command.shaderProgram.destroy();
-    this.command = null;
-    this.buffers = [];
+  private project(camera: Cesium.Camera, columns: number, rows: number): void {
+    const { before, after, pixels, colour } = this;
+    const part = this.part();
+    const m = Cesium.Matrix4.multiply(camera.frustum.projectionMatrix, camera.viewMatrix, this.screen_from_km);
+    const horizon = new Horizon(camera.positionWC);
+    for (let i = 0; i + 2 < after.length; i += 3) {
+      const ax = after[i]!, ay = after[i + 1]!, az = after[i + 2]!;
+      if (ax === 0 && ay === 0 && az === 0) continue; // without a state
+      const x = 1e3 * (before[i]! + part * (ax - before[i]!));
+      const y = 1e3 * (before[i + 1]! + part * (ay - before[i + 1]!));
+      const z = 1e3 * (before[i + 2]! + part * (az - before[i + 2]!));
+      const w = m[3]! * x + m[7]! * y + m[11]! * z + m[15]!;
+      if (w <= 0) continue; // behind the camera
+      const column = Math.floor((0.5 + (0.5 * (m[0]! * x + m[4]! * y + m[8]! * z + m[12]!)) / w) * columns);
+      const row = Math.floor((0.5 - (0.5 * (m[1]! * x + m[5]! * y + m[9]! * z + m[13]!)) / w) * rows);
+      if (column < 0 || row < 0 || column > columns - 2 || row > rows - 2) continue;
+      if (horizon.hides(x, y, z)) continue;
+      const at = row * columns + column;
+      pixels[at] = pixels[at + 1] = pixels[at + columns] = pixels[at + columns + 1] = colour;
+    }
   }
-
-  isDestroyed(): boolean { return false; }
-  destroy(): void { this.release(); }
 }

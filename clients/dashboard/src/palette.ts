@@ -8,6 +8,7 @@ export const palette = {
   detection: "#f5b041",
   track: "#35d0a5",
   cue: "#e69ac4",
+  truth: "#7fd6a0",
   ground: "#0f141b",
   text: "#e8edf2",
 } as const;

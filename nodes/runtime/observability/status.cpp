@@ -40,6 +40,12 @@ v1::Control::Action to_wire(ClockAction action) {
   return v1::Control::ACTION_ABORT;
 }
 
+v1::NodeMessage hello() {
+  v1::NodeMessage question;
+  question.mutable_hello();
+  return question;
+}
+
 /// A conversation with a time-master. Throws `Error` if there is no answer within the time.
 class Conversation {
  public:
@@ -62,18 +68,19 @@ class Conversation {
     return status_of(answer.endpoints());
   }
 
+  RunStatus ask_to(const v1::Control& control) {
+    v1::NodeMessage question;
+    question.set_run_id(ask(hello()).run_id);
+    *question.mutable_control() = control;
+    return ask(question);
+  }
+
  private:
   std::string address_;
   std::chrono::nanoseconds deadline_;
   zmq::context_t context_{1};
   zmq::socket_t socket_;
 };
-
-v1::NodeMessage hello() {
-  v1::NodeMessage question;
-  question.mutable_hello();
-  return question;
-}
 
 }  // namespace
 
@@ -87,6 +94,7 @@ RunStatus status_of(const v1::Endpoints& e) {
                    .start_utc = e.start_utc(),
                    .settled = e.settled_tick(),
                    .paused = e.paused(),
+                   .pace = e.pace(),
                    .overruns = e.overruns(),
                    .worst_lag_s = e.worst_lag_s(),
                    .digest = e.digest(),
@@ -113,13 +121,19 @@ RunStatus ask_master(const std::string& address, double within_s, const Security
 
 RunStatus control_master(const std::string& address, double within_s, ClockAction action, Tick tick,
                          const std::string& reason, const Security& security) {
-  Conversation conversation(address, within_s, security);
-  v1::NodeMessage question;
-  question.set_run_id(conversation.ask(hello()).run_id);
-  question.mutable_control()->set_action(to_wire(action));
-  question.mutable_control()->set_tick(tick);
-  question.mutable_control()->set_reason(reason);
-  return conversation.ask(question);
+  v1::Control control;
+  control.set_action(to_wire(action));
+  control.set_tick(tick);
+  control.set_reason(reason);
+  return Conversation(address, within_s, security).ask_to(control);
+}
+
+RunStatus pace_master(const std::string& address, double within_s, double factor,
+                      const Security& security) {
+  v1::Control control;
+  control.set_action(v1::Control::ACTION_PACE);
+  control.set_factor(factor);
+  return Conversation(address, within_s, security).ask_to(control);
 }
 
 }  // namespace dmise

@@ -36,6 +36,7 @@ struct RunStatus {
   std::string start_utc;  // of tick 0; empty if unknown
   Tick settled = -1;      // last tick done by all
   bool paused = false;
+  double pace = 0.0;           // simulated seconds per second asked for; 0: as fast as possible
   std::uint64_t overruns = 0;  // ticks behind real time
   double worst_lag_s = 0.0;
   std::uint64_t digest = 0;      // of everything published in settled ticks
@@ -50,6 +51,11 @@ struct RunStatus {
 RunStatus status_of(const v1::Endpoints& answer);
 
 enum class ClockAction { pause, step, go_on, end_early, abort };
+
+/// Changes the clock's pace and returns the resulting state. `factor`: simulated seconds per
+/// second, 0 to 1e6; 0: as fast as possible.
+RunStatus pace_master(const std::string& address, double within_s, double factor,
+                      const Security& security = {});
 
 /// Controls the clock and returns the resulting state. `tick`: to pause after, or number of steps.
 RunStatus control_master(const std::string& address, double within_s, ClockAction action,

@@ -157,8 +157,9 @@ std::optional<std::string> fault_of(const v1::NodeMessage& message) {
                         message.node_news().done_tick() <= most_ticks,
                     "node news: invalid name or tick");
     case v1::NodeMessage::kControl:
-      return unless(message.control().tick() >= -1 && message.control().tick() <= most_ticks,
-                    "control: invalid tick");
+      return unless(message.control().tick() >= -1 && message.control().tick() <= most_ticks &&
+                        is_duration(message.control().factor(), 1e6),
+                    "control: invalid tick or factor");
     case v1::NodeMessage::BODY_NOT_SET:
       return "says nothing";
     default:

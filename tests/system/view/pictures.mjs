@@ -31,7 +31,7 @@ function pretend({ objects, sensors }) {
     tell(message) { this.onmessage({ data: JSON.stringify(message) }); }
     begin() {
       this.onopen();
-      this.tell({ type: "welcome", may_control: true });
+      this.tell({ type: "welcome", may_control: true, sees_truth: false });
       this.tell({ type: "run", start_utc: "2018-01-21T00:15:00Z", start_utc_ms: 1516493700000, tick_s: 1, last_tick: 1e6 });
       const orbits = Array.from({ length: objects }, (_, i) => {
         const r = i % 10 === 0 ? 42164 : 6800 + (i % 1200), tilt = (i * 2.399963) % Math.PI, node = (i * 1.324718) % (2 * Math.PI);
@@ -54,7 +54,7 @@ function pretend({ objects, sensors }) {
       }, 100);
       setInterval(() => {
         this.tell({
-          type: "status", run_id: "1", phase: "running", paused: false, cause: "", settled_tick: t, granted_tick: t + 1, last_tick: 1e6, time_s: t,
+          type: "status", run_id: "1", phase: "running", paused: false, pace: 10, cause: "", settled_tick: t, granted_tick: t + 1, last_tick: 1e6, time_s: t,
           rate: 10, ticks_per_s: 10, overruns: 0, worst_lag_s: 0, missing: [], holding: [names[t % sensors]], past: { from_s: 0, to_s: t, states: t },
           nodes: names.map((name) => ({ name, state: "alive", tick: t, start: 1, lag_ticks: 0, ticks_per_s: 10, compute_s: t, message_s: 0, wait_s: 0, frames: t, detections: t, resident_bytes: 1e8, gaps: 0 })),
         });
@@ -96,7 +96,7 @@ function cpu_s() {
 }
 
 const browser = await chromium.launch({
-  executablePath, args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"],
+  executablePath, args: ["--no-sandbox", "--enable-unsafe-swiftshader"],
 });
 const page = await browser.newPage({ viewport: { width: Number(width), height: Number(height) } });
 page.setDefaultTimeout(300_000);
@@ -112,12 +112,12 @@ const between = await now();
 await page.evaluate(() => dmise.draw(true));
 await page.waitForTimeout(1e3 * Number(seconds));
 const end = await now();
-const scale = await page.evaluate(() => dmise.scale());
+
 if (picture) await page.screenshot({ path: picture });
 const pictures = end.pictures - between.pictures, drawn_s = (end.at - between.at) / 1e3;
 const cpu_s_per_s = (between.cpu - still.cpu) / ((between.at - still.at) / 1e3);
 console.log(JSON.stringify({
-  objects: Number(objects), sensors: Number(sensors), scale, pictures_per_s: pictures / drawn_s, cpu_s_per_s,
+  objects: Number(objects), sensors: Number(sensors), pictures_per_s: pictures / drawn_s, cpu_s_per_s,
   cpu_s_per_picture: (end.cpu - between.cpu - cpu_s_per_s * drawn_s) / pictures,
 }));
 await browser.close();

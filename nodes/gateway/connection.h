@@ -1,0 +1,74 @@
+#pragma once
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <chrono>
+#include <mutex>
+#include <set>
+#include <string_view>
+
+#include "nodes/gateway/web_server.h"
+
+// What the connections of the web server share. Boost.Beast is slow to compile: only what is a
+// connection includes this.
+namespace dmise {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+using boost::system::error_code;
+using tcp = boost::asio::ip::tcp;
+
+class Connection {
+ public:
+  virtual ~Connection() = default;
+  /// There may be new messages.
+  virtual void pump() {}
+};
+
+/// Hands work to the server's thread from any other, as long as there is a server.
+class ServerThread {
+ public:
+  explicit ServerThread(boost::asio::io_context& io) : io_(&io) {}
+
+  template <class Work>
+  void post(Work work) {
+    const std::lock_guard lock(mutex_);
+    if (io_) boost::asio::post(*io_, std::move(work));
+  }
+  void close() {
+    const std::lock_guard lock(mutex_);
+    io_ = nullptr;
+  }
+
+ private:
+  std::mutex mutex_;
+  boost::asio::io_context* io_;
+};
+
+/// Used on the server's thread alone.
+struct Hub {
+  WebServerOptions options;
+  WebContent content;
+  std::shared_ptr<ServerThread> thread;
+  std::set<Connection*> connections;
+  // Connections that wait for a preview, by a number that whoever makes it passes back: it never
+  // holds what belongs to this thread.
+  std::map<std::uint64_t, std::function<void(SharedPreview)>> waiting;
+  std::uint64_t last_ticket = 0;
+};
+
+inline std::chrono::milliseconds milliseconds_of(double seconds) {
+  return std::chrono::milliseconds(std::int64_t(seconds * 1e3));
+}
+inline std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
+
+/// Begins to answer the requests of HTTP that come over a socket.
+void serve_visitor(Hub& hub, tcp::socket socket);
+
+/// Accepts the WebSocket that `request` asks for, and sends what there is to see.
+void serve_viewer(Hub& hub, beast::tcp_stream stream,
+                  const http::request<http::empty_body>& request, Access access);
+
+}  // namespace dmise
