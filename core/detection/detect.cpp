@@ -185,7 +185,9 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   if (!known) filtered.flatten(threads);
   for (Source& source : find_faint_streaks(scene, filtered, settings, threads))
     judged.sources.push_back(std::move(source));
-  for (Source& source : judged.sources) source = with_likelier_ends(scene, std::move(source));
+  const std::vector<Source> others = judged.sources;
+  for (Source& source : judged.sources)
+    source = with_likelier_ends(scene, std::move(source), others);
   result.report = make_report(counts, header, background, scene.psf, settings.seed_snr);
   result.report.star_like = judged.star_like;
   result.report.stars_expected = std::uint32_t(result.stars.expected);

@@ -105,6 +105,18 @@ double least_gain_of(const Source& other, const Source& than) {
   return snr * snr - 3 * 2 * snr;
 }
 
+/// Whether a new fit lies on one of other streaks that the old one does not lie on. What is shorter
+/// than half of it may be a piece of it.
+bool reaches_another(const Scene& scene, const Source& now, const Source& before,
+                     std::span<const Source> others) {
+  const double margin_px = 3 * scene.sigma_px + 1.5, piece_px = before.trail().length_px / 2;
+  return std::any_of(others.begin(), others.end(), [&](const Source& other) {
+    const Trail& t = other.trail();
+    return t.length_px >= piece_px && !lies_on(before.trail(), t.x_px, t.y_px, margin_px) &&
+           lies_on(now.trail(), t.x_px, t.y_px, margin_px);
+  });
+}
+
 /// The fit without a bend; empty if there is none.
 std::optional<Source> straightened(const Scene& scene, const Source& source) {
   Trail straight = source.trail();
@@ -114,7 +126,8 @@ std::optional<Source> straightened(const Scene& scene, const Source& source) {
 }
 
 /// A fit of other ends, empty if there is none that is likelier.
-std::optional<Source> refitted(const Scene& scene, const Source& source) {
+std::optional<Source> refitted(const Scene& scene, const Source& source,
+                               std::span<const Source> others) {
   std::vector<Source> bases{source};
   if (auto straight = straightened(scene, source)) bases.push_back(std::move(*straight));
   std::optional<Source> best;
@@ -130,6 +143,7 @@ std::optional<Source> refitted(const Scene& scene, const Source& source) {
     const Line line = line_of(t);
     if (dark_gap(scene, line, extent_of(line, t.length_px / 2), t.flux_e / t.length_px))
       continue;  // behind it is another one
+    if (reaches_another(scene, *other, source, others)) continue;
     const double gain = gain_over(scene, *other, source);
     if (!(gain > std::max(most, least_gain_of(*other, source)))) continue;
     most = gain;
@@ -140,7 +154,7 @@ std::optional<Source> refitted(const Scene& scene, const Source& source) {
 
 }  // namespace
 
-Source with_likelier_ends(const Scene& scene, Source source) {
+Source with_likelier_ends(const Scene& scene, Source source, std::span<const Source> others) {
   if (has_faint_ends(source) && !source.beside && !(source.free & trail_sagitta)) {
     // It was found along a bend, which was not fitted: noise may have made it.
     auto straight = straightened(scene, source);
@@ -150,7 +164,7 @@ Source with_likelier_ends(const Scene& scene, Source source) {
     }
   }
   for (int refit = 0; refit < most_refits && has_faint_ends(source) && !source.beside; ++refit) {
-    auto other = refitted(scene, source);
+    auto other = refitted(scene, source, others);
     if (!other) break;
     other->at_edge |= source.at_edge;
     source = std::move(*other);
