@@ -14,6 +14,7 @@
 #include "core/detection/hide_stars.h"
 #include "core/detection/judge_components.h"
 #include "core/detection/line_profile.h"
+#include "core/detection/neglected_errors.h"
 #include "core/detection/psf_measure.h"
 #include "core/detection/scene.h"
 #include "core/detection/source_fit.h"
@@ -184,6 +185,9 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   if (!known) filtered.flatten(threads);
   for (Source& source : find_faint_streaks(scene, filtered, settings, threads))
     judged.sources.push_back(std::move(source));
+  const std::vector<Source> others = judged.sources;
+  for (Source& source : judged.sources)
+    source = with_likelier_ends(scene, std::move(source), others);
   result.report = make_report(counts, header, background, scene.psf, settings.seed_snr);
   result.report.star_like = judged.star_like;
   result.report.stars_expected = std::uint32_t(result.stars.expected);
@@ -193,13 +197,11 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
     source.at_edge |= may_leave(counts, source);
     const auto ends = errors_of_faint_ends(scene, source);
     Source seen = source;  // by errors that don't depend on what noise lies beside its ends
-    add_neglected_errors(seen, scene.sigma_px, nullptr);
+    add_steps_at_ends(seen, scene.sigma_px);
     add_errors_of_hidden_ends(scene, seen);
     if (seen.snr() < settings.least_light_snr) continue;
-    if (ends)
-      add_neglected_errors(source, scene.sigma_px, &*ends);
-    else
-      source = std::move(seen);
+    add_neglected_errors(source, ends ? &*ends : nullptr);
+    if (!ends) add_errors_of_hidden_ends(scene, source);
     Detection d = describe(source, header);
     d.index = std::uint32_t(result.detections.size());
     d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);

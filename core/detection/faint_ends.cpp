@@ -2,137 +2,198 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
-#include "core/base/units.h"
-#include "core/detection/components.h"
+#include "core/detection/line_between.h"
 #include "core/detection/line_profile.h"
+#include "core/detection/source_fit.h"
 
 namespace dmise {
 namespace {
 
 constexpr double faint_per_px = 4.0;      // SNR over the root of the length; brighter ends are seen
 constexpr double least_beyond_px = 24.0;  // beyond an end, where light may be its own
-constexpr int most_places = 256;          // of an end
-constexpr double least_step_px = 0.5;
-constexpr double edge_sigmas = 4.0;  // of the PSF, within which an end is in a slice
-constexpr double negligible = 20.0;  // logarithm of odds
-constexpr int turns = 3;             // to each side, by so much at the ends:
+constexpr double negligible = 20.0;       // logarithm of odds
+constexpr int turns = 3;                  // to each side, by so much at the ends:
 constexpr double turn_px = 0.6;
+constexpr int most_refits = 3;
+constexpr double most_reduced_chi2 = 2.0;
+constexpr double worth_a_fit = 6.0;  // logarithm of odds that a better line may gain
+constexpr double least_gain = 6.0;   // of deviance: by chance, the best of 20 places has 2 ln 20
+constexpr double most_residual2 = 16.0;  // that a pixel counts, over its variance
 
-double cumulative(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
-
-/// A slice's light per px over its variance, and the inverse of that, at a place along the line.
-struct Sample {
-  double along_px, light, weight;
-};
-
-/// Light along a trail's line and beyond its ends, by rising place.
-std::vector<Sample> samples_along(const Scene& scene, const Trail& t) {
-  const Line line = line_of(t);
-  const double reach_px = t.length_px / 2 + std::max(least_beyond_px, t.length_px);
-  const Extent extent = extent_of(line, reach_px);
-  double level_e = 0.0, scatter2 = 1.0;  // of the sky that faint stars make
-  if (scene.flat) {
-    const FilteredFrame::Cell cell = scene.flat->cell_at(t.x_px, t.y_px);
-    const int x = std::clamp(int(t.x_px), 0, scene.counts.columns - 1);
-    const int y = std::clamp(int(t.y_px), 0, scene.counts.rows - 1);
-    const double in_pixel = double(cell.middle) / FilteredFrame::steps *
-                            std::sqrt(kernel_square_sum(scene.flat->sigma_px)) *
-                            std::sqrt(double(scene.pixel(x, y).variance_e2));
-    level_e = in_pixel * 2 * std::sqrt(pi) * scene.sigma_px;
-    scatter2 = double(cell.scatter) * double(cell.scatter);
-  }
-  const double centre = line.by_columns() ? line.x : line.y;
-  const bool rises = (line.by_columns() ? line.ux : line.uy) > 0;
-  std::vector<Sample> out;
-  for (int k = extent.from; k <= extent.to; ++k) {
-    const Slice s = slice_at(scene, line, k, 0.0);
-    if (!(s.variance > 0)) continue;
-    const double weight = 1 / (s.variance * scatter2);
-    out.push_back({(rises ? 1 : -1) * (k - centre) * line.slice_px(),
-                   (s.e_per_px - level_e) * weight, weight});
-  }
-  if (!rises) std::reverse(out.begin(), out.end());
-  return out;
+bool has_faint_ends(const Source& source) {
+  return source.streak && !source.saturated &&
+         source.snr() < faint_per_px * std::sqrt(std::max(source.trail().length_px, 4.0));
 }
 
-/// Sums over samples of light that is on one side of an end, blurred by the PSF.
-struct Beyond {
-  double along_px, light, weight, square;
-};
+/// Calls visit(line, line between two ends, px^2 of pairs of ends that it stands for) for each pair
+/// of ends that is farther apart than the PSF is wide.
+template <class Visit>
+void for_pairs_of_ends(const Scene& scene, const Source& source, const Visit& visit) {
+  const Trail& t = source.trail();
+  const bool sloped = (source.free & trail_slope) != 0;
+  const double least_px = 3 * scene.sigma_px;
+  for (int turn = -turns; turn <= turns; ++turn) {
+    Trail line = t;
+    line.angle_rad += 2 * turn * turn_px / std::max(t.length_px, 4.0);
+    const auto ends = ends_along(scene, line, std::max(least_beyond_px, t.length_px));
+    for (std::size_t i = 0; i < ends.size(); ++i)
+      for (std::size_t j = i + 1; j < ends.size(); ++j)
+        if (ends[j].along_px - ends[i].along_px >= least_px)
+          visit(line, LineBetween(ends[i], ends[j], sloped), ends[i].width_px * ends[j].width_px);
+  }
+}
 
-std::vector<Beyond> sums_beyond(const std::vector<Sample>& samples, double sigma_px) {
-  const double first = samples.front().along_px, last = samples.back().along_px;
-  const double step = std::max(least_step_px, (last - first) / (most_places - 1));
-  std::vector<double> light(samples.size() + 1), weight(samples.size() + 1);
-  for (std::size_t k = samples.size(); k-- > 0;) {
-    light[k] = light[k + 1] + samples[k].light;
-    weight[k] = weight[k + 1] + samples[k].weight;
-  }
-  std::vector<Beyond> out;
-  std::size_t begin = 0, end = 0;
-  for (double at = first; at <= last; at += step) {
-    while (begin < samples.size() && samples[begin].along_px < at - edge_sigmas * sigma_px) ++begin;
-    while (end < samples.size() && samples[end].along_px <= at + edge_sigmas * sigma_px) ++end;
-    Beyond b{at, light[end], weight[end], weight[end]};
-    for (std::size_t k = begin; k < end; ++k) {
-      const double share = cumulative((samples[k].along_px - at) / sigma_px);
-      b.light += share * samples[k].light;
-      b.weight += share * samples[k].weight;
-      b.square += share * share * samples[k].weight;
+/// The likeliest trail on these lines an end of which is not that of the fit.
+std::optional<Trail> other_ends(const Scene& scene, const Source& source) {
+  const Trail& t = source.trail();
+  const double near_px = 3 * scene.sigma_px;
+  double most = -HUGE_VAL, here = -HUGE_VAL;
+  Trail best;
+  for_pairs_of_ends(scene, source, [&](const Trail& line, const LineBetween& between, double) {
+    const double first_px = between.middle_px() - between.length_px() / 2 + t.length_px / 2;
+    const double last_px = between.middle_px() + between.length_px() / 2 - t.length_px / 2;
+    const bool is_here = std::max(std::abs(first_px), std::abs(last_px)) < near_px;
+    double& odds = is_here ? here : most;
+    if (!(between.log_odds() > odds)) return;
+    odds = between.log_odds();
+    if (is_here) return;
+    best = line;
+    best.x_px += between.middle_px() * std::cos(line.angle_rad);
+    best.y_px += between.middle_px() * std::sin(line.angle_rad);
+    best.length_px = between.length_px();
+    best.flux_e = between.flux_e();
+    best.slope = best.sagitta_px = 0.0;
+  });
+  if (!(most > here - worth_a_fit)) return std::nullopt;
+  return best;
+}
+
+/// What one fit has of deviance less than another, over the pixels of both.
+double gain_over(const Scene& scene, const Source& better, const Source& than) {
+  const double margin_px = 3 * scene.sigma_px + 2.5;
+  std::vector<FitPixel> pixels = pixels_near(scene, better.trail(), margin_px);
+  const Around covered(better.trail(), margin_px);
+  for (const FitPixel& p : pixels_near(scene, than.trail(), margin_px))
+    if (!covered.has(p.x, p.y)) pixels.push_back(p);
+  const auto deviance = [&](const Source& source) {
+    const TrailLight light(source.trail(),
+                           scene.psf.at({source.trail().x_px, source.trail().y_px}));
+    TrailDerivatives unused{};
+    double sum = 0.0;
+    for (const FitPixel& p : pixels) {
+      const double model = light(p.x, p.y, unused);
+      const double variance = p.variance_e2 + std::max(model, 0.0);
+      const double residual = p.signal_e - model - source.fit.background_e;
+      sum += std::min(residual * residual / variance, most_residual2) + std::log(variance);
     }
-    out.push_back(b);
+    return sum;
+  };
+  return deviance(than) - deviance(better);
+}
+
+/// The least gain of deviance of a fit with other ends: where all that is added to a streak or
+/// taken from it is as bright as the rest, it is its SNR^2 with twice that SNR as deviation. Less
+/// by three deviations is light of something else.
+double least_gain_of(const Source& other, const Source& than) {
+  const double length_px = std::max(other.trail().length_px, 1.0);
+  const double snr =
+      other.snr() *
+      std::sqrt(std::abs(other.trail().length_px - than.trail().length_px) / length_px);
+  return snr * snr - 3 * 2 * snr;
+}
+
+/// Whether a new fit lies on one of other streaks that the old one does not lie on. What is shorter
+/// than half of it may be a piece of it.
+bool reaches_another(const Scene& scene, const Source& now, const Source& before,
+                     std::span<const Source> others) {
+  const double margin_px = 3 * scene.sigma_px + 1.5, piece_px = before.trail().length_px / 2;
+  return std::any_of(others.begin(), others.end(), [&](const Source& other) {
+    const Trail& t = other.trail();
+    return t.length_px >= piece_px && !lies_on(before.trail(), t.x_px, t.y_px, margin_px) &&
+           lies_on(now.trail(), t.x_px, t.y_px, margin_px);
+  });
+}
+
+/// The fit without a bend; empty if there is none.
+std::optional<Source> straightened(const Scene& scene, const Source& source) {
+  Trail straight = source.trail();
+  if (straight.sagitta_px == 0.0) return std::nullopt;
+  straight.sagitta_px = 0.0;
+  return fit_source(scene, straight, true, 0.0, false, source.free & ~unsigned(trail_sagitta));
+}
+
+/// A fit of other ends, empty if there is none that is likelier.
+std::optional<Source> refitted(const Scene& scene, const Source& source,
+                               std::span<const Source> others) {
+  std::vector<Source> bases{source};
+  if (auto straight = straightened(scene, source)) bases.push_back(std::move(*straight));
+  std::optional<Source> best;
+  double most = least_gain;
+  for (const Source& base : bases) {
+    const auto start = other_ends(scene, base);
+    if (!start) continue;
+    auto other = fit_source(scene, *start, true, 0.0, false, source.free | trail_line);
+    if (!other || other->fit.reduced_chi2() > most_reduced_chi2 ||
+        other->trail().length_px < 3 * scene.sigma_px)
+      continue;
+    const Trail& t = other->trail();
+    const Line line = line_of(t);
+    if (dark_gap(scene, line, extent_of(line, t.length_px / 2), t.flux_e / t.length_px))
+      continue;  // behind it is another one
+    if (reaches_another(scene, *other, source, others)) continue;
+    const double gain = gain_over(scene, *other, source);
+    if (!(gain > std::max(most, least_gain_of(*other, source)))) continue;
+    most = gain;
+    best = std::move(other);
   }
-  return out;
+  return best;
 }
 
 }  // namespace
 
-std::optional<EndErrors> errors_of_faint_ends(const Scene& scene, const Source& source) {
-  const Trail& t = source.trail();
-  if (!source.streak || source.saturated ||
-      !(source.snr() < faint_per_px * std::sqrt(std::max(t.length_px, 4.0))))
-    return std::nullopt;
-  // The light beyond may be on a line a little turned.
-  std::vector<std::vector<Beyond>> lines;
-  for (int turn = -turns; turn <= turns; ++turn) {
-    Trail line = t;
-    line.angle_rad += 2 * turn * turn_px / std::max(t.length_px, 4.0);
-    const auto samples = samples_along(scene, line);
-    if (samples.size() >= 3) lines.push_back(sums_beyond(samples, scene.sigma_px));
+Source with_likelier_ends(const Scene& scene, Source source, std::span<const Source> others) {
+  if (has_faint_ends(source) && !source.beside && !(source.free & trail_sagitta)) {
+    // It was found along a bend, which was not fitted: noise may have made it.
+    auto straight = straightened(scene, source);
+    if (straight && gain_over(scene, *straight, source) > -least_gain) {
+      straight->at_edge |= source.at_edge;
+      source = std::move(*straight);
+    }
   }
-  const double least_px = 3 * scene.sigma_px;
-  // Logarithm of the odds of a line between two ends, of any brightness.
-  const auto odds = [](const Beyond& a, const Beyond& b) {
-    const double light = a.light - b.light;
-    const double squares = a.square - 2 * b.weight + b.square;
-    if (!(light > 0) || !(squares > 0)) return -HUGE_VAL;
-    return 0.5 * light * light / squares - 0.5 * std::log(squares);
-  };
-  double most = -HUGE_VAL;
-  const auto for_pairs = [&](const auto& visit) {
-    for (const auto& ends : lines)
-      for (std::size_t i = 0; i < ends.size(); ++i)
-        for (std::size_t j = i + 1; j < ends.size(); ++j)
-          if (ends[j].along_px - ends[i].along_px >= least_px) visit(ends[i], ends[j]);
-  };
-  for_pairs([&](const Beyond& a, const Beyond& b) { most = std::max(most, odds(a, b)); });
-  if (!(most > -HUGE_VAL)) return std::nullopt;
-  EndErrors errors;
-  double all = 0.0;
-  for_pairs([&](const Beyond& a, const Beyond& b) {
-    const double less = most - odds(a, b);
-    if (less > negligible) return;
-    const double likely = std::exp(-less);
-    const double middle_px = 0.5 * (a.along_px + b.along_px);
-    const double longer_px = b.along_px - a.along_px - t.length_px;
-    all += likely;
-    errors.middle_px2 += likely * middle_px * middle_px;
-    errors.length_px2 += likely * longer_px * longer_px;
-  });
-  errors.middle_px2 /= all;
-  errors.length_px2 /= all;
+  for (int refit = 0; refit < most_refits && has_faint_ends(source) && !source.beside; ++refit) {
+    auto other = refitted(scene, source, others);
+    if (!other) break;
+    other->at_edge |= source.at_edge;
+    source = std::move(*other);
+  }
+  return source;
+}
+
+std::optional<EndErrors> errors_of_faint_ends(const Scene& scene, const Source& source) {
+  if (!has_faint_ends(source)) return std::nullopt;
+  EndErrors errors{};
+  double most = -HUGE_VAL, all = 0.0;  // sums are in units of exp(most)
+  for_pairs_of_ends(
+      scene, source, [&](const Trail& line, const LineBetween& between, double pairs_px2) {
+        const double odds = between.log_odds();
+        if (!(odds > most - negligible)) return;
+        if (odds > most) {
+          const double fewer = std::exp(most - odds);
+          for (auto& row : errors)
+            for (double& value : row) value *= fewer;
+          all *= fewer;
+          most = odds;
+        }
+        const double likely = std::exp(odds - most) * pairs_px2;
+        all += likely;
+        between.add_to(errors, source.trail(), line.angle_rad - source.trail().angle_rad, likely);
+      });
+  if (!(all > 0)) return std::nullopt;
+  for (auto& row : errors)
+    for (double& value : row) value /= all;
   return errors;
 }
 

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/detection/faint_ends.h"
-
 namespace dmise {
 namespace {
 
@@ -222,47 +220,6 @@ void set_flags(const Scene& scene, const Trail& trail, Source& source) {
       source.at_edge = true;
   }
   source.saturated = is_saturated(scene, trail);
-}
-
-double end_error_px(double snr2_per_px) { return std::sqrt(26.0) / snr2_per_px; }
-
-void add_neglected_errors(Source& source, double sigma_px, const EndErrors* ends) {
-  constexpr double model_px = 0.001, uneven = 0.007;
-  const double faint = 1 + 20 / (source.snr() * source.snr());
-  const Trail& t = source.trail();
-  const auto n = std::size_t(source.fit.parameters);
-  const auto add = [&](std::size_t i, std::size_t j, double value) {
-    source.fit.covariance[i * n + j] += value;
-    if (i != j) source.fit.covariance[j * n + i] += value;
-  };
-  add(0, 0, model_px * model_px);
-  add(1, 1, model_px * model_px);
-  if (source.streak)
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j)
-        source.fit.covariance[i * n + j] *=
-            std::sqrt((i == 2 ? 1.0 : faint) * (j == 2 ? 1.0 : faint));
-  const double snr2 = source.snr() * source.snr() / std::max(t.length_px, 1.0);
-  if (!source.streak || !(snr2 > 0)) return;
-  const double most_px2 = t.length_px * t.length_px / 12;
-  const double end_px2 = std::min(26 / (snr2 * snr2) * std::exp(-0.5 * snr2 * sigma_px), most_px2);
-  const double uneven_px = source.free & trail_slope ? 0.0 : uneven * t.length_px / 6;
-  double middle_px2 = end_px2 / 2, length_px2 = 2 * end_px2;
-  if (ends) {  // less what the fit has of it
-    const double fitted_px2 = source.free & trail_length ? source.fit.cov(3, 3) : 0.0;
-    middle_px2 = std::max(ends->middle_px2 - fitted_px2 / 4, 0.0);
-    length_px2 = std::max(ends->length_px2 - fitted_px2, 0.0);
-  }
-  const double along_px2 = middle_px2 + uneven_px * uneven_px;
-  const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
-  add(0, 0, along_px2 * c * c);
-  add(0, 1, along_px2 * c * s);
-  add(1, 1, along_px2 * s * s);
-  if (!(source.free & trail_length)) return;
-  const double e_per_px = t.flux_e / std::max(t.length_px, 1.0);
-  add(2, 2, length_px2 * e_per_px * e_per_px);
-  add(2, 3, length_px2 * e_per_px);
-  add(3, 3, length_px2);
 }
 
 }  // namespace dmise

@@ -7,8 +7,6 @@
 
 namespace dmise {
 
-struct EndErrors;
-
 /// What lies within a distance of a trail.
 class Around {
  public:
@@ -59,19 +57,5 @@ void hold_ends_at_edge(const Scene& scene, Source& source);
 
 /// Flags a source by where its trail is: at the frame's edge, saturated.
 void set_flags(const Scene& scene, const Trail& trail, Source& source);
-
-/// Error of a streak's end where it is a step lost in noise, by the square of the SNR of a pixel's
-/// worth of length (Yao 1987, Annals of Statistics 15, 1321).
-double end_error_px(double snr2_per_px);
-
-/// Adds to a covariance what the curvature of chi2 does not show. Ends: where a pixel's worth of
-/// length has an SNR below 1, an end is a step lost in noise, found with a variance of 26 / SNR^4
-/// px^2 (Yao 1987, Annals of Statistics 15, 1321); `sigma_px` of blur ends that smoothly, by
-/// exp(-sigma_px SNR^2 / 2). Faint streaks: all but the flux times 1 + 20 / SNR^2, the next order
-/// of the expansion, measured at SNR 10 to 20. Brightness: a short streak is fitted as even, and a
-/// change of 0.7 % from its middle to an end displaces it. Model: 0.001 px. Both sizes are what the
-/// directions of 475 bright streaks in twilight lacked (`FisheyeDirections`). `ends`: of a faint
-/// streak, which take the place of that of its ends; null: not known.
-void add_neglected_errors(Source& source, double sigma_px, const EndErrors* ends);
 
 }  // namespace dmise

@@ -1,0 +1,176 @@
+#include "core/detection/line_between.h"
+
+#include <algorithm>
+
+#include "core/base/units.h"
+#include "core/detection/components.h"
+#include "core/detection/line_profile.h"
+
+namespace dmise {
+namespace {
+
+constexpr double least_step_px = 0.5, step_share = 0.125;
+constexpr double slopes_inverse_variance = 3.0;  // of an even distribution from -1 to 1
+constexpr double edge_sigmas = 4.0;              // of the PSF, within which light fades at an end
+constexpr double across_sigmas = 2.5;            // within which pixels are used
+constexpr double outlier = 4.0;                  // standard deviations
+
+double cumulative(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+
+/// A pixel's light over its variance and the inverse of that, both of a line of one electron per
+/// px, at a place along the line.
+struct Sample {
+  double along_px, light, weight;
+};
+
+/// What faint stars add to the sky, and to the variance of sums of its noise, around a trail.
+struct StarlitSky {
+  double level_e = 0.0, scatter2 = 1.0;
+};
+
+StarlitSky starlit_sky(const Scene& scene, const Trail& t) {
+  if (!scene.flat) return {};
+  const FilteredFrame::Cell cell = scene.flat->cell_at(t.x_px, t.y_px);
+  const int x = std::clamp(int(t.x_px), 0, scene.counts.columns - 1);
+  const int y = std::clamp(int(t.y_px), 0, scene.counts.rows - 1);
+  const double noise_e = std::sqrt(double(scene.pixel(x, y).variance_e2));
+  return {double(cell.middle) / FilteredFrame::steps *
+              std::sqrt(kernel_square_sum(scene.flat->sigma_px)) * noise_e,
+          double(cell.scatter) * double(cell.scatter)};
+}
+
+/// Usable pixels on a trail's line and beyond its ends, without outliers, by rising place.
+std::vector<Sample> samples_along(const Scene& scene, const Trail& t, double sigma_px,
+                                  double beyond_px) {
+  const Line line = line_of(t);
+  const Extent extent = extent_of(line, t.length_px / 2 + beyond_px);
+  const StarlitSky sky = starlit_sky(scene, t);
+  const double peak = 1 / (sigma_px * std::sqrt(2 * pi));
+  const double level = t.flux_e / std::max(t.length_px, 1.0);
+  const int reach = int(std::ceil(across_sigmas * sigma_px * line.slice_px()));
+  std::vector<Sample> out;
+  for (int k = extent.from; k <= extent.to; ++k) {
+    const Point centre = line.at(k);
+    const int nearest = int(std::lround(line.by_columns() ? centre.y : centre.x));
+    for (int m = nearest - reach; m <= nearest + reach; ++m) {
+      const int x = line.by_columns() ? k : m, y = line.by_columns() ? m : k;
+      if (!scene.contains(x, y) || !scene.is_usable(x, y)) continue;
+      const double dx = x - t.x_px, dy = y - t.y_px;
+      const double along = dx * line.ux + dy * line.uy, r = along / line.half_length_px;
+      const double across = dy * line.ux - dx * line.uy - line.sagitta_px * (1.0 / 3 - r * r);
+      const double v = across / sigma_px, profile = peak * std::exp(-0.5 * v * v);
+      const FitPixel pixel = scene.pixel(x, y);
+      const double own_e = std::abs(r) < 1 ? level * profile : 0.0;
+      const double variance = pixel.variance_e2 + own_e, signal = pixel.signal_e - sky.level_e;
+      if (signal > level * profile + outlier * std::sqrt(variance)) continue;
+      const double weight = profile / (variance * sky.scatter2);
+      out.push_back({along, signal * weight, profile * weight});
+    }
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Sample& a, const Sample& b) { return a.along_px < b.along_px; });
+  return out;
+}
+
+std::vector<double> places_between(double first_px, double last_px, double half_length_px) {
+  std::vector<double> out;
+  for (double at = first_px; at <= last_px;) {
+    out.push_back(at);
+    const double distance_px = std::abs(std::abs(at) - half_length_px);
+    at += std::max(least_step_px, step_share * distance_px);
+  }
+  return out;
+}
+
+void add(Beyond& to, const Sample& s, double share) {
+  double light = share * s.light, weight = share * s.weight;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (k < 2) to.light[k] += light;
+    to.weight[k] += weight;
+    to.square[k] += share * weight;
+    light *= s.along_px;
+    weight *= s.along_px;
+  }
+}
+
+}  // namespace
+
+std::vector<Beyond> ends_along(const Scene& scene, const Trail& trail, double beyond_px) {
+  const double sigma_px = scene.psf.sigma_at({trail.x_px, trail.y_px});
+  const auto samples = samples_along(scene, trail, sigma_px, beyond_px);
+  if (samples.size() < 3) return {};
+  const auto places =
+      places_between(samples.front().along_px, samples.back().along_px, trail.length_px / 2);
+  std::vector<Beyond> whole(samples.size() + 1);  // all light from a sample on
+  for (std::size_t k = samples.size(); k-- > 0;) {
+    whole[k] = whole[k + 1];
+    add(whole[k], samples[k], 1.0);
+  }
+  std::vector<Beyond> out;
+  std::size_t begin = 0, end = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double at = places[i];
+    while (begin < samples.size() && samples[begin].along_px < at - edge_sigmas * sigma_px) ++begin;
+    while (end < samples.size() && samples[end].along_px <= at + edge_sigmas * sigma_px) ++end;
+    Beyond b = whole[end];
+    b.along_px = at;
+    b.width_px = (places[std::min(i + 1, places.size() - 1)] - places[i > 0 ? i - 1 : 0]) / 2;
+    for (std::size_t k = begin; k < end; ++k)
+      add(b, samples[k], cumulative((samples[k].along_px - at) / sigma_px));
+    out.push_back(b);
+  }
+  return out;
+}
+
+LineBetween::LineBetween(const Beyond& first, const Beyond& last, bool sloped)
+    : middle_px_((first.along_px + last.along_px) / 2), length_px_(last.along_px - first.along_px) {
+  // Of the line's shape h, sums of light h, and of weight h^2, times k^0, k^1, k^2. Where light is
+  // beyond the last end, the share beyond the first is 1.
+  std::array<double, 3> square;
+  for (std::size_t k = 0; k < 3; ++k)
+    square[k] = first.square[k] - 2 * last.weight[k] + last.square[k];
+  const double light = first.light[0] - last.light[0], by_half = 2 / length_px_;
+  if (!(light > 0) || !(square[0] > 0)) return;
+  const double even = light / square[0];
+  if (!sloped) {
+    level_ = even;
+    level2_ = 1 / square[0];
+    log_odds_ = 0.5 * light * even - 0.5 * std::log(square[0]) - std::log(light * even);
+    return;
+  }
+  // Level, and slope times level with the slope's prior.
+  const double turned = by_half * (first.light[1] - last.light[1] - middle_px_ * light);
+  const double cross = by_half * (square[1] - middle_px_ * square[0]);
+  const double spread =
+      square[2] - 2 * middle_px_ * square[1] + middle_px_ * middle_px_ * square[0];
+  const double tilt = by_half * by_half * spread + slopes_inverse_variance / (even * even);
+  const double determinant = square[0] * tilt - cross * cross;
+  if (!(determinant > 0)) return;
+  level_ = (tilt * light - cross * turned) / determinant;
+  if (!(level_ > 0)) return;
+  const double tilted = (square[0] * turned - cross * light) / determinant;
+  slope_ = tilted / level_;
+  level2_ = tilt / determinant;
+  both_ = -cross / determinant;
+  tilt2_ = square[0] / determinant;
+  log_odds_ = 0.5 * (level_ * light + tilted * turned) - 0.5 * std::log(determinant * even * even) -
+              std::log(light * even);
+}
+
+void LineBetween::add_to(EndErrors& errors, const Trail& trail, double turn_rad,
+                         double likely) const {
+  const std::array<double, end_parameters> off{
+      middle_px_ * std::cos(turn_rad), flux_e() - trail.flux_e, length_px_ - trail.length_px,
+      slope_ - trail.slope, middle_px_ * std::sin(turn_rad)};
+  for (std::size_t i = 0; i < end_parameters; ++i)
+    for (std::size_t j = 0; j < end_parameters; ++j) errors[i][j] += likely * off[i] * off[j];
+  const double both = length_px_ * (both_ - slope_ * level2_) / level_;
+  const double slope2 =
+      (tilt2_ - 2 * slope_ * both_ + slope_ * slope_ * level2_) / (level_ * level_);
+  errors[end_flux][end_flux] += likely * length_px_ * length_px_ * level2_;
+  errors[end_flux][end_slope] += likely * both;
+  errors[end_slope][end_flux] += likely * both;
+  errors[end_slope][end_slope] += likely * slope2;
+}
+
+}  // namespace dmise
