@@ -42,7 +42,8 @@ class FitsTable {
       check("a header can't be read");
       if (kind == BINARY_TBL) return;
     }
-    throw ConfigError(name_ + ": no binary table");
+    status_ = NOT_BTABLE;
+    check("no binary table");
   }
   FitsTable(const FitsTable&) = delete;
   FitsTable& operator=(const FitsTable&) = delete;
@@ -77,8 +78,9 @@ class FitsTable {
   }
   void read(int column, long first, std::vector<double>& values) {
     double missing = GaiaRow::missing;
+    int any_missing = 0;  // CFITSIO sets it unasked
     fits_read_col(file_, TDOUBLE, column, first + 1, 1, long(values.size()), &missing,
-                  values.data(), nullptr, &status_);
+                  values.data(), &any_missing, &status_);
     check("the table is cut short");
   }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 #include "core/base/error.h"
@@ -79,6 +80,18 @@ TEST(GaiaStars, AreReadOfBinaryTablesOfFits) {
   const StarReading read = parse_stars(barnards_table(), "gaia.fits");
   EXPECT_TRUE(read.problems.empty());
   expect_barnard(read.catalogue);
+}
+
+TEST(GaiaStars, MissingValuesOfATableAreNaN) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const StarReading read =
+      parse_stars(fits_table({"ra", "dec", "phot_g_mean_mag", "bp_rp"}, {"D", "D", "E", "E"},
+                             {{1, 2}, {3, 4}, {nan, 15}, {1, nan}}),
+                  "gaia.fits");
+  EXPECT_EQ(read.problems,
+            std::vector<std::string>{"gaia.fits: row 1: phot_g_mean_mag: must be a number"});
+  ASSERT_EQ(read.catalogue.size(), 1u);
+  EXPECT_TRUE(read.catalogue.flags[0] & star_has_no_colour);
 }
 
 std::string problem_of(const std::string& bytes) {
