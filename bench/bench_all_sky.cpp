@@ -17,6 +17,7 @@
 #include "bench/status_memory.h"
 #include "bench/timing.h"
 #include "core/base/text_file.h"
+#include "core/base/units.h"
 #include "core/config/effect_list.h"
 #include "core/config/make_clock.h"
 #include "core/config/search_path.h"
@@ -43,13 +44,16 @@ T median(std::vector<T> values) {
   return values[values.size() / 2];
 }
 
-std::string scenario_text(const CatalogueFile& catalogue, const std::string& name) {
+std::string scenario_text(const CatalogueFile& catalogue, const std::string& name,
+                          const std::string& stars = "{catalogue: kstars, faintest_mag: 9}") {
   return "simulation: {start: " + catalogue.start_utc +
          ", duration_s: 20, tick_s: 5}\n"
          "objects: [{catalogue: " +
          catalogue.path +
          "}]\n"
-         "stars: {catalogue: kstars, faintest_mag: 9}\n"
+         "stars: " +
+         stars +
+         "\n"
          "detection: off\n"
          "sensors:\n  - {name: " +
          name +
@@ -126,6 +130,66 @@ void print_shares(const Scenario& scenario, const FrameTimes& exposure, const Wo
     print_figure({"all_sky_" + std::string(effect) + "_ms", 1e3 * seconds, "ms"}, json);
 }
 
+/// One sensor's frames and what it needs for them.
+struct AllSky {
+  AllSky(const std::string& path, Threads& threads)
+      : scenario(load_scenario(path)),
+        world(world_of(scenario, threads)),
+        pipeline({.sensor = scenario.sensors[0],
+                  .clock = make_clock(scenario),
+                  .seed = 1,
+                  .digest = "bench",
+                  .faintest_star_mag = scenario.faintest_star_mag},
+                 load_stars(scenario), threads) {}
+  /// Makes a frame; processor seconds.
+  double make() {
+    const double before = thread_seconds();
+    stars = pipeline.run(frame_times(scenario.sensors[0], 1), world).report.stars_rendered;
+    return thread_seconds() - before;
+  }
+  Scenario scenario;
+  World world;
+  FramePipeline pipeline;
+  std::uint32_t stars = 0;
+};
+
+/// The frame with all of Tycho-2 beside that with stars.dat, by turns; and the private memory that
+/// the catalogue takes of a process.
+void measure_tycho2(const std::filesystem::path& directory, const CatalogueFile& objects,
+                    bool json) {
+  if (find_catalogue("tycho2.stars").empty()) {
+    std::fprintf(stderr, "bench all-sky: no tycho2.stars: the frame with it is skipped\n");
+    return;
+  }
+  Threads one(1);
+  const auto sky_of = [&](const std::string& name, const std::string& stars) {
+    const std::string path = (directory / (name + ".yaml")).string();
+    std::ofstream(path) << scenario_text(objects, name, stars);
+    return AllSky(path, one);
+  };
+  AllSky bright = sky_of("bright", "{catalogue: kstars, faintest_mag: 30}");
+  AllSky deep = sky_of("deep", "{catalogue: tycho2, faintest_mag: 30}");
+  std::vector<double> bright_s, deep_s, ratio;
+  for (int i = 0; i < repeats; ++i) {
+    bright_s.push_back(bright.make());
+    deep_s.push_back(deep.make());
+    ratio.push_back(deep_s.back() / bright_s.back());
+  }
+  print_figure({"all_sky_kstars_all_stars", double(bright.stars), "1"}, json);
+  print_figure({"all_sky_tycho2_stars", double(deep.stars), "1"}, json);
+  print_figure({"all_sky_tycho2_s", median(deep_s), "s", "with stars.dat [s]", median(bright_s)},
+               json);
+  print_figure({"all_sky_tycho2_ratio", median(ratio), "1", "", 0, 1.6, true}, json);
+  malloc_trim(0);
+  const double before_mb = status_mb("RssAnon");
+  const auto map = load_star_map(find_catalogue("tycho2.stars"));
+  std::vector<std::uint32_t> found;
+  query_cone(map, {0, 0, 1}, 0.5 * deg, 99.0, found);
+  print_figure(
+      {"tycho2_private_mb", std::max(0.0, status_mb("RssAnon") - before_mb), "MB", "", 0, 20, true},
+      json);
+}
+
 }  // namespace
 
 std::string all_sky_scenario(const std::filesystem::path& directory) {
@@ -185,6 +249,7 @@ void measure_all_sky(bool json) {
                  json);
     print_shares(scenario, exposure, world, measured, 3 * std::size_t(stars), json);
   }
+  measure_tycho2(directory, catalogue_of_18470(directory), json);
   std::filesystem::remove_all(directory);
 }
 

@@ -83,7 +83,7 @@ void stars(bool json) {
     std::vector<Vec<Gcrs>> places;
     return 1e3 * median_seconds(21, [&] {
              found.clear();
-             query_cone(c.v_mag, map.index, zenith, radius_deg * deg, faintest_v_mag, found);
+             query_cone(map, zenith, radius_deg * deg, faintest_v_mag, found);
              places.resize(found.size());
              const ApparentPlaces apparent(observer, EffectSet{});
              apparent.stars({c.epoch_jyear,

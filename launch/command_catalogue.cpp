@@ -18,6 +18,7 @@
 #include "core/time/iso8601.h"
 #include "launch/commands.h"
 #include "launch/notes.h"
+#include "launch/star_index_files.h"
 
 namespace dmise {
 namespace {
@@ -172,12 +173,41 @@ void print_synthetic(const SynthOptions& options) {
   }
 }
 
+/// What is done with catalogues of stars.
+void add_star_commands(CLI::App& command) {
+  struct Files {
+    std::string from, to;
+  };
+  auto fetched = std::make_shared<Files>();
+  auto* fetch = command.add_subcommand(
+      "fetch", "Fetches Tycho-2 (stars to V = 11), joins it with stars.dat and indexes both");
+  fetch->add_option("name", "tycho2")->required()->check(CLI::IsMember({"tycho2"}));
+  fetch->add_option("--from", fetched->from,
+                    "URL or path of deepstars.dat, or of an archive (.deb, .tar.gz) that holds it; "
+                    "without it fchart3 of PyPI");
+  fetch->add_option("--to", fetched->to,
+                    "directory; without it build/data of the checkout, else ~/.local/share/dmise");
+  fetch->callback(
+      [fetched] { std::printf("%s\n", fetch_tycho2(fetched->from, fetched->to).c_str()); });
+
+  auto indexed = std::make_shared<Files>();
+  auto* index = command.add_subcommand(
+      "index", "Makes the index of a large catalogue of stars, for `stars: {catalogue: OUT}`");
+  index->add_option("file", indexed->from, "any catalogue of stars that a scenario may name")
+      ->required();
+  index->add_option("--out", indexed->to, "the index")->required();
+  index->callback([indexed] {
+    std::printf("%s: %zu stars\n", indexed->to.c_str(), index_stars(indexed->from, indexed->to));
+  });
+}
+
 }  // namespace
 
 void add_catalogue_command(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("catalogue", "Element sets: content of a file, states at a time");
+  auto* command = app.add_subcommand(
+      "catalogue", "Element sets: content of a file, states at a time. Stars: fetch, index");
   command->require_subcommand(1);
+  add_star_commands(*command);
   auto options = std::make_shared<StatesOptions>();
   auto info_options = std::make_shared<FileOptions>();
   auto* info = command->add_subcommand(

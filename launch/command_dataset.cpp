@@ -18,6 +18,7 @@
 #include "launch/commands.h"
 #include "launch/dataset_directory.h"
 #include "launch/progress.h"
+#include "launch/run_directory.h"
 #include "launch/worker_processes.h"
 #include "nodes/runtime/process/event.h"
 
@@ -100,7 +101,7 @@ std::string digest_of(const DatasetPlan& plan, const ScenarioDraws& draws) {
     files.insert(scenario.earth_orientation_path);
   }
   for (const auto& path : files)
-    if (!path.empty()) sha.update("\n" + sha256_hex(read_text_file(path)));
+    if (!path.empty()) sha.update("\n" + file_digest(path));
   return sha.hex().substr(0, 32);
 }
 

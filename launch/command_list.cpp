@@ -65,14 +65,17 @@ void list_materials() {
 }
 
 void list_catalogues() {
-  const auto show = [](const char* name, const char* use, const char* what, const char* file) {
+  const auto show = [](const char* name, const char* use, const char* what, const char* file,
+                       const char* remedy = "./dmise setup fetches it") {
     const std::string path = find_catalogue(file);
     print(name, text("%s (%s): ", what, use) +
-                    (path.empty() ? "not installed; ./dmise setup fetches it" : path));
+                    (path.empty() ? std::string("not installed; ") + remedy : path));
   };
   show("gpredict", "objects: [{catalogue: gpredict}]", "objects in orbit of Debian's gpredict",
        "satellites.dat");
   show("kstars", "stars: {catalogue: kstars}", "stars of Debian's kstars-data", "stars.dat");
+  show("tycho2", "stars: {catalogue: tycho2}", "the same and Tycho-2", "tycho2.stars",
+       "dmise catalogue fetch tycho2 makes it");
 }
 
 void list_effects() { std::printf("%s", effects_markdown().c_str()); }

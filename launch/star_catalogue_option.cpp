@@ -5,24 +5,24 @@
 #include "core/base/cache_directory.h"
 #include "core/base/error.h"
 #include "core/config/search_path.h"
+#include "core/config/star_catalogues.h"
 #include "core/sky/star_cache.h"
 
 namespace dmise {
 
 CLI::Option* add_star_catalogue_option(CLI::App& command, std::string& name, bool may_be_none) {
-  name = "kstars";
-  return command
-      .add_option("--catalogue", name,
-                  may_be_none ? "star catalogue: kstars, a file, or none"
-                              : "star catalogue: kstars, or a file")
-      ->capture_default_str();
+  return command.add_option("--catalogue", name,
+                            std::string("star catalogue: kstars, tycho2, ") +
+                                (may_be_none ? "a file, or none" : "or a file") +
+                                "; by default kstars");
 }
 
 std::shared_ptr<const StarMap> load_star_catalogue(const std::string& name) {
   if (name == "none") return nullptr;
-  const std::string path = name == "kstars" ? find_catalogue("stars.dat") : name;
-  if (path.empty())
-    throw ConfigError("--catalogue: stars.dat is not installed; ./dmise setup fetches it");
+  const std::string named = name.empty() ? default_star_catalogue : name;
+  const char* file = star_catalogue_file(named);
+  const std::string path = file ? find_catalogue(file) : named;
+  if (path.empty()) throw ConfigError("--catalogue: " + missing_star_catalogue(named));
   const std::string cache = cache_directory();
   std::error_code ignored;  // without the directory nothing is kept, that is all
   if (!cache.empty()) std::filesystem::create_directories(cache, ignored);

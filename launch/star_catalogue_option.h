@@ -7,10 +7,11 @@
 
 namespace dmise {
 
-/// Adds `--catalogue`: kstars, which is the default, or a file; `none`, if that may be said.
+/// Adds `--catalogue`: kstars (the default), tycho2 or a file; `none`, if that may be said.
 CLI::Option* add_star_catalogue_option(CLI::App& command, std::string& name, bool may_be_none);
 
-/// The catalogue of that name, with its cache; null for "none". Throws `ConfigError`.
+/// The catalogue of that name, with its cache; null for "none", the default for "". Throws
+/// `ConfigError`.
 std::shared_ptr<const StarMap> load_star_catalogue(const std::string& name);
 
 }  // namespace dmise

@@ -15,6 +15,7 @@ constexpr double most_displaced_rad = 0.7 * deg;
 
 PlateSky::PlateSky(const StarMap& map, const Observer& observer)
     : map_(map), air_(observer.air), places_(observer, {}) {
+  if (!map.is_small()) return;
   sorted_v_mag_.assign(map.stars.v_mag.begin(), map.stars.v_mag.end());
   std::sort(sorted_v_mag_.begin(), sorted_v_mag_.end());
 }
@@ -30,11 +31,13 @@ Vec<Gcrs> PlateSky::direction(std::uint32_t star) const {
 }
 
 std::size_t PlateSky::brighter_than(float v_mag) const {
+  if (!map_.is_small()) return map_.summary.brighter_than(v_mag);
   return std::size_t(std::upper_bound(sorted_v_mag_.begin(), sorted_v_mag_.end(), v_mag) -
                      sorted_v_mag_.begin());
 }
 
 float PlateSky::magnitude_of_rank(double rank) const {
+  if (!map_.is_small()) return float(map_.summary.magnitude_of_rank(rank));
   if (sorted_v_mag_.empty()) return 0.0F;
   const double last = double(sorted_v_mag_.size() - 1);
   return sorted_v_mag_[std::size_t(std::clamp(rank, 0.0, last))];
@@ -43,8 +46,7 @@ float PlateSky::magnitude_of_rank(double rank) const {
 std::vector<std::uint32_t> PlateSky::catalogued(const Vec<Gcrs>& axis, double radius_rad,
                                                 double rank) const {
   std::vector<std::uint32_t> found;
-  query_cone({map_.stars.v_mag.data(), map_.stars.size()}, map_.index, axis, radius_rad,
-             magnitude_of_rank(rank), found);
+  query_cone(map_, axis, radius_rad, magnitude_of_rank(rank), found);
   return found;
 }
 
@@ -55,7 +57,7 @@ std::vector<SeenStar> PlateSky::brightest(const Vec<Gcrs>& axis, double radius_r
   // Twice as many as on average, because stars crowd in the Milky Way; all of them if too few.
   for (double rank = 2.0 * double(most) / share;; rank *= 4) {
     found = catalogued(axis, radius_rad + most_displaced_rad, rank);
-    if (found.size() >= most || rank >= double(sorted_v_mag_.size())) break;
+    if (found.size() >= most || rank >= double(map_.stars.size())) break;
   }
   const auto brighter = [&](std::uint32_t a, std::uint32_t b) {
     const float va = map_.stars.v_mag[a], vb = map_.stars.v_mag[b];

@@ -23,8 +23,7 @@ void nearest_brighter(const PlateSky& sky, std::uint32_t star, std::size_t most,
     const double share = std::min(1.0, expected / rank);
     const double radius_rad = share < 1 ? 2 * std::asin(std::sqrt(share)) : pi;
     near.clear();
-    query_cone({map.stars.v_mag.data(), map.stars.size()}, map.index, here, radius_rad, v_mag,
-               near);
+    query_cone(map, here, radius_rad, v_mag, near);
     // Companions closer than images resolve are the same source.
     std::erase_if(near, [&](std::uint32_t i) { return i == star || distance2(i) < 1e-10; });
     if (near.size() >= most || share >= 1) break;

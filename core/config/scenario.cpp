@@ -13,6 +13,7 @@
 #include "core/config/schema.h"
 #include "core/config/search_path.h"
 #include "core/config/sensor_config.h"
+#include "core/config/star_catalogues.h"
 #include "core/config/yaml_reader.h"
 #include "core/orbit/interpolation_error.h"
 #include "core/sky/sun_moon.h"
@@ -51,8 +52,11 @@ const Section& stars_section() {
   static const Section section{
       "stars",
       "The stars behind the objects.",
-      {required("catalogue", form::text({"kstars"}),
-                "`kstars`, or a file: HYG in CSV, Yale BSC5, or kstars' own form."),
+      {optional("catalogue", form::text({"kstars", "tycho2"}),
+                "`kstars` (V to 9), `tycho2` (that and Tycho-2, V to 11; `dmise catalogue fetch "
+                "tycho2` makes it), or a file: HYG in CSV, "
+                "Yale BSC5, kstars' own form, or an index that `dmise catalogue index` has made.",
+                default_star_catalogue),
        optional("faintest_mag", form::number(-2.0, 30.0), "Faintest star that is drawn [V mag].",
                 "9.5")}};
   return section;
@@ -175,16 +179,16 @@ void set_interpolation(Scenario& scenario, YamlMap simulation) {
 
 void read_stars(const YamlValue& value, Scenario& scenario) {
   YamlMap map(value, stars_section());
-  const auto catalogue = map.require("catalogue");
-  scenario.star_catalogue_named = catalogue.text();
-  scenario.star_catalogue_where = catalogue.place();
-  scenario.star_catalogue_path = scenario.star_catalogue_named == "kstars"
-                                     ? find_catalogue("stars.dat")
-                                     : find_beside(scenario.star_catalogue_named, value.file());
+  const auto catalogue = map.find("catalogue");
+  const YamlValue& where = catalogue ? *catalogue : value;
+  scenario.star_catalogue_named = catalogue ? catalogue->text() : default_star_catalogue;
+  scenario.star_catalogue_where = where.place();
+  const char* file = star_catalogue_file(scenario.star_catalogue_named);
+  scenario.star_catalogue_path =
+      file ? find_catalogue(file) : find_beside(scenario.star_catalogue_named, value.file());
   if (scenario.star_catalogue_path.empty())
-    catalogue.fail(scenario.star_catalogue_named == "kstars"
-                       ? "Debian's kstars catalogue is missing; ./dmise setup fetches it"
-                       : "there is no such file");
+    where.fail(file ? missing_star_catalogue(scenario.star_catalogue_named)
+                    : "there is no such file");
   scenario.faintest_star_mag = map.number_or("faintest_mag", 9.5);
   map.done();
 }

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "core/base/cache_directory.h"
+
 namespace dmise {
 
 namespace fs = std::filesystem;
@@ -50,7 +52,8 @@ std::string find_catalogue(const std::string& file_name) {
   std::error_code ignored;
   for (const auto& directory :
        {fs::path(home_directory()) / "build/data", fs::path(home_directory()) / "data",
-        fs::path("/usr/share/kstars"), fs::path("/usr/share/gpredict/data/satdata")})
+        fs::path(data_directory()), fs::path("/usr/share/kstars"),
+        fs::path("/usr/share/gpredict/data/satdata")})
     if (fs::is_regular_file(directory / file_name, ignored))
       return (directory / file_name).string();
   return "";

@@ -18,7 +18,8 @@ std::vector<std::string> preset_names(const std::string& kind);
 std::string find_beside(const std::string& name, const std::string& from_file);
 
 /// Path of one of Debian's catalogues, "stars.dat" (kstars-data) or "satellites.dat" (gpredict), as
-/// unpacked by the set-up or installed by the packages. Empty if absent.
+/// unpacked by the set-up or installed by the packages, or of one that `dmise catalogue fetch` has
+/// made. Empty if absent.
 std::string find_catalogue(const std::string& file_name);
 
 }  // namespace dmise

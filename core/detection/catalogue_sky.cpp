@@ -44,7 +44,7 @@ Vec<Gcrs> moved(const StarTable& stars, const Vec<Gcrs>& catalogued, std::uint32
 }  // namespace
 
 CatalogueSky::CatalogueSky(std::shared_ptr<const StarMap> map) : map_(std::move(map)) {
-  complete_to_v_mag_ = faintest_filled_v_mag(map_->stars.v_mag) - missing_from_mag;
+  complete_to_v_mag_ = map_->summary.faintest_filled_v_mag - missing_from_mag;
 }
 
 bool CatalogueSky::can_expect(const UnknownFacts& unknown) {
@@ -70,7 +70,7 @@ std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int 
   const Tt tt = Clock(parse_utc(header.middle_utc)).tt({});
   const double years = 2000.0 + julian_years_since_j2000(tt) - stars.epoch_jyear;
   std::vector<std::uint32_t> candidates;
-  query_cone(stars.v_mag, map_->index, axis,
+  query_cone(*map_, axis,
              reach_rad(header.wcs, axis, columns, rows, beyond_px) +
                  std::abs(years) * map_->index.fastest_motion_rad_per_yr,
              faintest_v_mag, candidates);

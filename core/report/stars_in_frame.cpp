@@ -23,11 +23,10 @@ std::vector<StarInFrame> stars_in_frame(const StarMap& map, const Wcs& wcs, int 
                        std::abs(years) * map.index.fastest_motion_rad_per_yr + 0.1 * deg);
   std::vector<StarInFrame> out;
   std::vector<std::uint32_t> found;
-  const std::span<const float> magnitudes(stars.v_mag.data(), stars.v_mag.size());
   for (double faintest = 2.0; faintest <= 16.0; faintest += 1.0) {
     found.clear();
     out.clear();
-    query_cone(magnitudes, map.index, axis, radius_rad, faintest, found);
+    query_cone(map, axis, radius_rad, faintest, found);
     for (const std::uint32_t i : found) {
       const double ra = stars.ra_rad[i];
       const Vec<Gcrs> then = from_spherical<Gcrs>(ra, stars.dec_rad[i]);

@@ -13,16 +13,13 @@ namespace {
 
 StarMap read_star_map(const std::string& path) {
   StarReading reading = parse_stars(read_text_file(path), path);
-  StarMap map;
-  map.index = build_star_index(reading.catalogue);
-  map.stars = table_of(std::move(reading.catalogue));
-  map.problems = std::move(reading.problems);
-  return map;
+  return star_map_of(std::move(reading.catalogue), std::move(reading.problems));
 }
 
 }  // namespace
 
 StarMap load_star_map(const std::string& path, const std::string& cache_dir) {
+  if (is_star_map_file(path)) return std::move(open_star_map(path).map);
   const auto source = cache_dir.empty() ? std::nullopt : star_source(path);
   if (!source) return read_star_map(path);
   const std::string cache_path = star_cache_path(cache_dir, *source);

@@ -1,6 +1,9 @@
 // Star catalogues of comma-separated values, columns by the names in their header.
+#include <array>
+
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/sky/gaia_stars.h"
 #include "core/sky/star_file.h"
 #include "core/sky/star_text.h"
 
@@ -87,6 +90,36 @@ StarReading parse_hyg(std::string_view text, const std::string& name) {
              const double parsec = row.value(dist).value_or(0.0);
              if (parsec > 0 && parsec < 100000) star.parallax_rad = arcsec / parsec;
              return append_star(reading.catalogue, star);
+           });
+  return reading;
+}
+
+// Missing values are empty, "null" or "nan". The place of a row in its file is the star's number:
+// Gaia's own have 64 bits.
+StarReading parse_gaia_csv(std::string_view text, const std::string& name) {
+  constexpr std::array<double GaiaRow::*, 8> value = {
+      &GaiaRow::ra_deg,       &GaiaRow::dec_deg,         &GaiaRow::g_mag,
+      &GaiaRow::bp_rp,        &GaiaRow::pmra_mas_per_yr, &GaiaRow::pmdec_mas_per_yr,
+      &GaiaRow::parallax_mas, &GaiaRow::ref_epoch_jyear};
+  const std::vector<std::string_view> columns = {"ra",   "dec",   "phot_g_mean_mag", "bp_rp",
+                                                 "pmra", "pmdec", "parallax",        "ref_epoch"};
+  StarReading reading;
+  std::string why;
+  for_rows(text, name, columns, 3, 0, reading.problems,
+           [&](const Row& row, std::uint32_t count) -> const char* {
+             GaiaRow star;
+             for (std::size_t i = 0; i < columns.size(); ++i) {
+               const std::string_view field = row.text(i);
+               if (field.empty() || field == "null" || field == "nan" || field == "NaN") continue;
+               const auto number = row.value(i);
+               if (!number) {
+                 why = std::string(columns[i]) + ": must be a number, got '" + std::string(field) +
+                       "'";
+                 return why.c_str();
+               }
+               star.*value[i] = *number;
+             }
+             return append_gaia_star(reading.catalogue, count, star);
            });
   return reading;
 }

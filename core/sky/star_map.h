@@ -1,11 +1,13 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/mapped_file.h"
 #include "core/sky/star_catalogue.h"
 #include "core/sky/star_index.h"
+#include "core/sky/star_summary.h"
 
 namespace dmise {
 
@@ -13,10 +15,33 @@ namespace dmise {
 struct StarMap {
   StarTable stars;
   StarIndex index;
-  std::vector<std::string> problems;       // `file:line: reason` of what could not be used
-  std::shared_ptr<const MappedFile> file;  // that holds the columns; null: they are in memory
+  StarSummary summary;
+  std::vector<std::string> problems;         // `file:line: reason` of what could not be used
+  std::shared_ptr<const StarBlocks> blocks;  // null: all stars were checked
+  std::shared_ptr<const MappedFile> file;    // that holds the columns; null: they are in memory
   bool from_cache = false;
   std::string cache_problem;  // why nothing was kept for the next time; empty when all is well
+
+  /// Whether all stars may be gone through: they are few, and were checked.
+  bool is_small() const { return stars.size() <= most_stars_at_once; }
 };
+
+/// Indexes a catalogue.
+inline StarMap star_map_of(StarCatalogue catalogue, std::vector<std::string> problems = {}) {
+  StarMap map;
+  map.index = build_star_index(catalogue);
+  map.stars = table_of(std::move(catalogue));
+  map.summary = summary_of(map.stars);
+  map.problems = std::move(problems);
+  return map;
+}
+
+/// Searches a map as the function of its index does. Throws `Error` for stars of a mapped file that
+/// is damaged.
+inline void query_cone(const StarMap& map, const Vec<Gcrs>& axis, double radius_rad,
+                       double faintest_v_mag, std::vector<std::uint32_t>& found) {
+  query_cone({map.stars.v_mag.data(), map.stars.size()}, map.index, axis, radius_rad,
+             faintest_v_mag, found, map.blocks.get());
+}
 
 }  // namespace dmise

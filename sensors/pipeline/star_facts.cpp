@@ -33,9 +33,9 @@ double share_of_sky(double radius_rad) { return 0.5 * (1.0 - std::cos(std::min(r
 
 }  // namespace
 
-void StarFacts::ByLimit::add(double v_mag, double photons) {
+void StarFacts::ByLimit::add(double v_mag, double photons, double stars) {
   const auto first = std::size_t(std::clamp(std::ceil(v_mag), 0.0, double(star_limits) - 1.0));
-  count[first] += 1.0;
+  count[first] += stars;
   brightest = std::max(brightest, photons);
   if (first > 0) beyond[first - 1] = std::max(beyond[first - 1], photons);
 }
@@ -54,7 +54,11 @@ StarFacts::StarFacts(const SensorConfig& sensor, const StarMap* stars, double fa
   if (!stars) return;
   const StarTable& table = stars->stars;
   if (sensor.effects.has(StarBackground::facts))
-    drawn_to_v_mag_ = std::min(faintest_v_mag, faintest_filled_v_mag(table.v_mag));
+    drawn_to_v_mag_ = std::min(faintest_v_mag, stars->summary.faintest_filled_v_mag);
+  if (!stars->is_small()) {
+    sum_up(stars->summary, stars->index.fastest_motion_rad_per_yr);
+    return;
+  }
   for (std::size_t i = 0; i < table.v_mag.size(); ++i) {
     if (table.v_mag[i] > faintest_v_mag) continue;
     whole_sky_.add(table.v_mag[i], light_.photons_per_s_m2(table.v_mag[i], table.bv[i]));
@@ -64,6 +68,22 @@ StarFacts::StarFacts(const SensorConfig& sensor, const StarMap* stars, double fa
   }
   whole_sky_.sum_up();
   if (stars->file) stars->file->release();  // the columns that only this has read
+}
+
+/// A star may be as bright in the band as any of its magnitude.
+void StarFacts::sum_up(const StarSummary& stars, double fastest_rad_per_yr) {
+  double brightest_colour = 0.0;
+  for (const double bv : {least_bv, double(default_star_bv), greatest_bv})
+    brightest_colour = std::max(brightest_colour, light_.photons_per_s_m2(0.0, bv));
+  for (std::size_t bin = 0; bin < StarSummary::bins; ++bin) {
+    const double v_mag = StarSummary::bright_edge(bin);
+    if (stars.count[bin] == 0 || v_mag > faintest_v_mag_) continue;
+    whole_sky_.add(v_mag + 0.5 * StarSummary::step_mag,
+                   brightest_colour * light_of_magnitude(v_mag), double(stars.count[bin]));
+  }
+  whole_sky_.sum_up();
+  fastest_rad_per_yr_ = fastest_rad_per_yr;
+  largest_parallax_rad_ = stars.largest_parallax_rad;
 }
 
 void StarFacts::add_trails(const View& view, PlanFacts& f) const {
@@ -100,8 +120,7 @@ StarFacts::ByLimit StarFacts::counted(const View& view, const PlanFacts& f,
       (places_rad + f.refraction_rad + f.star_shift_rad + f.star_parallax_rad) / f.pixel_rad;
   const StarTable& table = stars_->stars;
   std::vector<std::uint32_t> found;
-  query_cone(table.v_mag, stars_->index, boresight(view, times.middle), radius_rad, faintest_v_mag_,
-             found);
+  query_cone(*stars_, boresight(view, times.middle), radius_rad, faintest_v_mag_, found);
   ByLimit stars;
   for (const std::uint32_t star : found) {
     const Vec<Gcrs> direction = unit(stars_->index.direction[star] + aberration);

@@ -31,10 +31,11 @@ class StarFacts {
     std::array<double, star_limits> count{}, beyond{};
     double brightest = 0.0, processed = 0.0;
 
-    void add(double v_mag, double photons);
+    void add(double v_mag, double photons, double stars = 1.0);
     void sum_up();
   };
 
+  void sum_up(const StarSummary& stars, double fastest_rad_per_yr);
   ByLimit counted(const View& view, const PlanFacts& facts, double radius_rad) const;
 
   const StarMap* stars_;

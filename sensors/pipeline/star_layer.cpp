@@ -122,7 +122,7 @@ std::vector<std::uint32_t> StarLayer::candidates(const View& view, double fainte
   const double turned = std::max(angle_rad(middle, boresight(view.times().start)),
                                  angle_rad(middle, boresight(view.times().end)));
   std::vector<std::uint32_t> found;
-  query_cone(map_->stars.v_mag, map_->index, middle,
+  query_cone(*map_, middle,
              half_diagonal_rad(view.sensor().camera.optics) + turned + widest_shift_rad,
              faintest_v_mag, found);
   return found;
@@ -131,7 +131,7 @@ std::vector<std::uint32_t> StarLayer::candidates(const View& view, double fainte
 StarLayer::StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map)
     : map_(std::move(map)),
       light_(sensor.camera.band),
-      faintest_filled_v_mag_(dmise::faintest_filled_v_mag(map_->stars.v_mag)) {}
+      faintest_filled_v_mag_(map_->summary.faintest_filled_v_mag) {}
 
 std::uint32_t StarLayer::count(const View& view, double faintest_v_mag, double margin_px) const {
   const Exposure exposure{.view = view, .stars = map_->stars};

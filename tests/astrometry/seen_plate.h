@@ -28,10 +28,7 @@ inline const StarMap& crowded_sky() {
                       .ra_rad = 2 * pi * uniform(),
                       .dec_rad = std::asin(2 * uniform() - 1),
                       .v_mag = 12.0 + 1.25 / std::log(4.0) * std::log(1 - uniform())});
-    StarMap m;
-    m.index = build_star_index(c);
-    m.stars = table_of(std::move(c));
-    return m;
+    return star_map_of(std::move(c));
   }();
   return map;
 }

@@ -41,10 +41,7 @@ std::shared_ptr<const StarMap> random_stars(const FrameHeader& header, int count
                                   .bv = 0.65}),
               nullptr);
   }
-  StarMap map;
-  map.index = build_star_index(stars);
-  map.stars = table_of(std::move(stars));
-  return std::make_shared<const StarMap>(std::move(map));
+  return std::make_shared<const StarMap>(star_map_of(std::move(stars)));
 }
 
 /// A star of V = 8 has an SNR of 6: 650 e-.

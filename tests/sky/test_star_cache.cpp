@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -25,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t header_bytes = 128, crc_at = 12;
+constexpr std::size_t header_bytes = 2944, crc_at = 12, columns_at_at = 48, figures_at = 64;
 
 class StarCache : public testing::Test {
  protected:
@@ -58,13 +59,16 @@ class StarCache : public testing::Test {
 void expect_same(const StarMap& a, const StarMap& b) {
   EXPECT_EQ(a.stars, b.stars);
   EXPECT_EQ(a.index, b.index);
+  EXPECT_EQ(a.summary, b.summary);
   EXPECT_EQ(a.problems, b.problems);
 }
 
-/// A file with the checksum that belongs to it.
+/// A file with the checksum that belongs to what stands before its columns.
 std::string sealed(std::string file) {
   std::memset(file.data() + crc_at, 0, 4);
-  const std::uint32_t crc = crc32c(file.data(), file.size());
+  std::uint64_t columns_at = 0;
+  std::memcpy(&columns_at, file.data() + columns_at_at, 8);
+  const std::uint32_t crc = crc32c(file.data(), std::min<std::size_t>(columns_at, file.size()));
   std::memcpy(file.data() + crc_at, &crc, 4);
   return file;
 }
@@ -101,12 +105,12 @@ TEST_F(StarCache, AMapUnderAnothersNameIsPassedOver) {
   EXPECT_EQ(map.stars.size(), 1u);
 }
 
-// Each byte of the header, and every so often one of the rest.
+// Each byte of the header's first fields, and every so often one of the rest.
 TEST_F(StarCache, DamageIsPassedOver) {
   load_star_map(source_, cache_);
   const StarSource source = *star_source(source_);
   const std::string path = cached(), whole = read_text_file(path);
-  for (std::size_t at = 0; at < whole.size(); at += at < header_bytes ? 1 : 997) {
+  for (std::size_t at = 0; at < whole.size(); at += at < figures_at ? 1 : 97) {
     std::string damaged = whole;
     damaged[at] = char(damaged[at] ^ 0x40);
     place(damaged);
@@ -145,7 +149,7 @@ TEST_F(StarCache, WhatLeadsAstrayIsPassedOverThoughItIsWhole) {
   const std::string path = cached(), whole = read_text_file(path);
   place(sealed(whole));
   ASSERT_TRUE(map_star_cache(path, source));
-  // Each number of the header: epoch and fastest motion may be other than they were.
+  // Each number of the header: figures and counts of the catalogue may be other than they were.
   for (const std::uint32_t value : {0U, 1U, 7U, 0x7fffffffU, 0x80000000U, 0xffffffffU})
     for (std::size_t at = 0; at < header_bytes; at += 4) {
       std::string changed = whole;
@@ -154,39 +158,95 @@ TEST_F(StarCache, WhatLeadsAstrayIsPassedOverThoughItIsWhole) {
       place(sealed(changed));
       const auto kept = map_star_cache(path, source);
       if (!kept) continue;
-      EXPECT_GE(at, 56u);
+      EXPECT_GE(at, figures_at);
       std::vector<std::uint32_t> found;
-      query_cone(kept->stars.v_mag, kept->index, {0, 0, 1}, 4.0, 99.0, found);
+      query_cone(*kept, {0, 0, 1}, 4.0, 99.0, found);
       EXPECT_EQ(found, (std::vector<std::uint32_t>{0, 1}));
     }
-  place(whole);
-  const StarMap mapped = load_star_map(source_, cache_);
-  ASSERT_TRUE(mapped.from_cache);
-  const auto spoil = [&](const auto& column, std::size_t i, auto value) {
-    const auto* begin = reinterpret_cast<const char*>(mapped.stars.ra_rad.data()) - header_bytes;
-    std::string changed = whole;
-    const auto at = std::size_t(reinterpret_cast<const char*>(&column[i]) - begin);
-    std::memcpy(changed.data() + at, &value, sizeof value);
-    place(sealed(changed));
-    EXPECT_FALSE(map_star_cache(path, source)) << at;
+}
+
+/// The same values but for one.
+template <class T>
+Column<T> spoilt(const Column<T>& column, std::size_t i, T value) {
+  std::vector<T> values(column.begin(), column.end());
+  values[i] = value;
+  return values;
+}
+
+TEST_F(StarCache, WrongValuesArePassedOverThoughTheirChecksumsAreRight) {
+  const StarMap right = load_star_map(source_);
+  const std::string path = directory_ + "/map";
+  const auto is_refused = [&](const auto& spoil) {
+    StarMap map = right;
+    spoil(map);
+    write_star_map(path, map, {});
+    EXPECT_THROW(open_star_map(path), Error);
   };
-  const auto& index = mapped.index;
+  write_star_map(path, right, {});
+  expect_same(open_star_map(path).map, right);
+  const StarTier& tier = right.index.tiers[0];
   for (const std::size_t i :
-       {std::size_t(0), index.first_star.size() / 2, index.first_star.size() - 1})
+       {std::size_t(0), tier.first_star.size() / 2, tier.first_star.size() - 1})
     for (const std::uint32_t value : {3U, 0x7fffffffU, 0xffffffffU})
-      spoil(index.first_star, i, value);
-  for (std::size_t i = 0; i < index.first_cell.size(); ++i) spoil(index.first_cell, i, 12345U);
+      is_refused(
+          [&](StarMap& m) { m.index.tiers[0].first_star = spoilt(tier.first_star, i, value); });
+  for (std::size_t i = 0; i < tier.first_cell.size(); ++i)
+    is_refused(
+        [&](StarMap& m) { m.index.tiers[0].first_cell = spoilt(tier.first_cell, i, 12345U); });
   const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto spoil_star = [&](auto StarTable::*column, auto value) {
+    is_refused([&](StarMap& m) { m.stars.*column = spoilt(right.stars.*column, 1, value); });
+  };
   for (const double value : {nan, 1e300, -1e300}) {
-    spoil(index.direction, 1, value);
-    spoil(mapped.stars.ra_rad, 1, value);
-    spoil(mapped.stars.dec_rad, 1, value);
-    spoil(mapped.stars.pm_ra_cosdec_rad_per_yr, 1, value);
-    spoil(mapped.stars.pm_dec_rad_per_yr, 1, value);
-    spoil(mapped.stars.parallax_rad, 1, value);
-    spoil(mapped.stars.v_mag, 1, float(value));
+    is_refused([&](StarMap& m) {
+      m.index.direction = spoilt(right.index.direction, 1, Vec<Gcrs>{value, 0, 0});
+    });
+    for (auto column :
+         {&StarTable::ra_rad, &StarTable::dec_rad, &StarTable::pm_ra_cosdec_rad_per_yr,
+          &StarTable::pm_dec_rad_per_yr, &StarTable::parallax_rad})
+      spoil_star(column, value);
+    spoil_star(&StarTable::v_mag, float(value));
   }
-  spoil(mapped.stars.bv, 1, float(nan));
+  spoil_star(&StarTable::bv, float(nan));
+}
+
+// A large map is not read as a whole: a damaged block is found when its stars are looked for.
+TEST_F(StarCache, DamageOfALargeMapIsFoundWhereItIs) {
+  StarCatalogue stars;
+  const std::size_t count = most_stars_at_once + 5000;
+  for (std::size_t i = 0; i < count; ++i)
+    append_star(stars, {.id = std::uint32_t(i),
+                        .ra_rad = 6.28 * double(i) / double(count),
+                        .dec_rad = std::asin(-1 + 2 * std::fmod(0.618034 * double(i), 1.0)),
+                        .v_mag = 12.0});
+  const std::string path = directory_ + "/large";
+  write_star_map(path, star_map_of(std::move(stars)), {});
+  const auto search = [](const StarMap& map, double dec_sign) {
+    std::vector<std::uint32_t> found;
+    query_cone(map, {0, 0, dec_sign}, 0.05, 99.0, found);
+    return found;
+  };
+  StarMap map = open_star_map(path).map;
+  ASSERT_FALSE(search(map, 1).empty());
+  ASSERT_FALSE(search(map, -1).empty());
+  // The right ascension of the star that is first in the file, at the southern pole.
+  const auto* begin = reinterpret_cast<const char*>(map.file->bytes().data());
+  const auto at = reinterpret_cast<const char*>(map.stars.ra_rad.data()) - begin;
+  {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(at);
+    file.put('\x55');
+  }
+  map = open_star_map(path).map;
+  EXPECT_FALSE(search(map, 1).empty());
+  try {
+    search(map, -1);
+    ADD_FAILURE() << "the damage was not found";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.what(), path + ": stars 0 to 1023: the checksum is wrong");
+  }
+  fs::resize_file(path, fs::file_size(path) - 64);
+  EXPECT_THROW(open_star_map(path), ConfigError);
 }
 
 // Also of the process that made the file: what it read itself is given up.
@@ -214,7 +274,7 @@ TEST_F(StarCache, ColumnsBeginOnCacheLinesOfTheMappedFile) {
     expect_inside(s.pm_ra_cosdec_rad_per_yr), expect_inside(s.pm_dec_rad_per_yr);
     expect_inside(s.parallax_rad), expect_inside(s.v_mag), expect_inside(s.bv);
     expect_inside(s.flags), expect_inside(map->index.direction);
-    expect_inside(map->index.first_cell), expect_inside(map->index.first_star);
+    expect_inside(map->index.tiers[0].first_cell), expect_inside(map->index.tiers[0].first_star);
   }
 }
 

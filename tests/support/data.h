@@ -24,6 +24,15 @@ inline std::string catalogue_path(const std::string& name) {
   return std::string(DMISE_SOURCE_DIR "/build/data/") + name;
 }
 
+/// Tycho-2 as KStars has it: where `./dmise setup --tests` puts it, else in the reference data.
+/// Empty where there is none.
+inline std::string deep_stars_path() {
+  for (const std::string& path :
+       {catalogue_path("deepstars.dat"), data_path("stars/deepstars.dat")})
+    if (exists(path)) return path;
+  return "";
+}
+
 }  // namespace dmise::test
 
 /// Skips a test that lacks something; with DMISE_DATA set it fails instead. Streams like

@@ -1,0 +1,147 @@
+#include "launch/star_index_files.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "core/base/cache_directory.h"
+#include "core/base/crc32c.h"
+#include "core/base/digest.h"
+#include "core/base/error.h"
+#include "core/base/mapped_file.h"
+#include "core/base/text_file.h"
+#include "core/config/search_path.h"
+#include "core/config/star_catalogues.h"
+#include "core/sky/star_file.h"
+#include "core/sky/star_map_file.h"
+#include "core/sky/star_merge.h"
+#include "launch/notes.h"
+
+namespace dmise {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* deep_stars_name = "deepstars.dat";
+/// Of the file of 2,412,252 records that the tests were run with.
+constexpr std::string_view deep_stars_sha256 =
+    "136301c017094044d24b74711eeb3d693e908ec6d31c0f217a05565fb4704a00";
+
+/// Runs a program and returns what it wrote on its standard error; none if it ended with 0.
+std::string failure_of(std::vector<std::string> command) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) return std::strerror(errno);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+  std::vector<char*> arguments;
+  for (std::string& argument : command) arguments.push_back(argument.data());
+  arguments.push_back(nullptr);
+  pid_t child = 0;
+  const int refused =
+      posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  std::string said;
+  std::array<char, 4096> piece;
+  for (ssize_t n; (n = read(ends[0], piece.data(), piece.size())) != 0;) {
+    if (n > 0) said.append(piece.data(), std::size_t(n));
+    if (n < 0 && errno != EINTR) break;
+  }
+  close(ends[0]);
+  if (refused != 0) return command[0] + ": " + std::strerror(refused);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
+  return said.empty() ? command[0] + " failed" : said.substr(0, said.find('\n'));
+}
+
+std::string directory_for(const std::string& to) {
+  if (!to.empty()) return to;
+  const std::string of_checkout = home_directory() + "/build/data";
+  if (access(of_checkout.c_str(), W_OK) == 0) return of_checkout;
+  if (data_directory().empty()) throw ConfigError("--to: there is no home directory; say where to");
+  return data_directory();
+}
+
+/// Content of deepstars.dat: what lies in the directory, unless it is told from where, else
+/// fetched.
+std::string deep_stars(const std::string& directory, const std::string& from) {
+  const std::string kept = directory + "/" + deep_stars_name;
+  if (from.empty() && access(kept.c_str(), R_OK) == 0) return read_text_file(kept);
+  std::string work = directory + "/fetch.XXXXXX";
+  if (!mkdtemp(work.data())) throw ConfigError(directory + ": " + std::strerror(errno));
+  const std::string why =
+      failure_of({home_directory() + "/launch/setup/fetch-tycho2.sh", work, from});
+  std::string content;
+  if (why.empty()) content = read_text_file(work + "/" + deep_stars_name);
+  std::error_code ignored;
+  fs::remove_all(work, ignored);
+  if (!why.empty()) throw ConfigError(why);
+  return content;
+}
+
+/// What a file was made of, as the cache of catalogues tells it.
+StarSource source_of(std::string_view bytes) {
+  return {crc32c(bytes.data(), bytes.size()), bytes.size()};
+}
+
+/// Read as it lies there if it is not compressed: a catalogue may be larger than the memory.
+struct CatalogueBytes {
+  explicit CatalogueBytes(const std::string& path) : file(path) {
+    const auto bytes = file.bytes();
+    text = {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    if (!text.starts_with("\x1f\x8b")) return;
+    unpacked = read_text_file(path);
+    text = unpacked;
+  }
+  MappedFile file;
+  std::string unpacked;
+  std::string_view text;
+};
+
+}  // namespace
+
+std::string fetch_tycho2(const std::string& from, const std::string& to) {
+  const std::string bright_path = find_catalogue(star_catalogue_file("kstars"));
+  if (bright_path.empty()) throw ConfigError(missing_star_catalogue("kstars"));
+  const std::string directory = directory_for(to);
+  std::error_code failed;
+  fs::create_directories(directory, failed);
+  if (failed) throw ConfigError(directory + ": " + failed.message());
+  const std::string deep = deep_stars(directory, from);
+  if (const std::string digest = sha256_hex(deep); digest != deep_stars_sha256)
+    throw ConfigError(std::string(deep_stars_name) + ": its SHA-256 must be " +
+                      std::string(deep_stars_sha256) + ", is " + digest);
+  StarReading bright = parse_stars(read_text_file(bright_path), bright_path);
+  const StarReading faint = parse_stars(deep, deep_stars_name);
+  const std::string path = directory + "/" + star_catalogue_file("tycho2");
+  write_star_map(path, star_map_of(merge_stars(std::move(bright.catalogue), faint.catalogue)),
+                 source_of(deep));
+  return path;
+}
+
+std::size_t index_stars(const std::string& from, const std::string& to) try {
+  const CatalogueBytes bytes(from);
+  StarReading reading = parse_stars(bytes.text, from);
+  for (const std::string& problem : reading.problems) print_note(problem + " (left out)");
+  const StarSource source = source_of(bytes.text);
+  const StarMap map = star_map_of(std::move(reading.catalogue), std::move(reading.problems));
+  write_star_map(to, map, source);
+  return map.stars.size();
+} catch (const ConfigError&) {
+  throw;
+} catch (const Error& error) {  // a file that is not there
+  throw ConfigError(error.what());
+}
+
+}  // namespace dmise
