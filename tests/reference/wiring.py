@@ -186,7 +186,8 @@ def platform():
 
 
 def moon():
-    """Krisciunas & Schaefer's moonlight in the zenith by the Moon of ERFA, V, k = 0.17, in S10 (1 S10 = 27.78 mag/arcsec2)."""
+    """Krisciunas & Schaefer's moonlight in the zenith by the Moon of ERFA, V, k = 0.17, in S10 (1 S10 = 27.78 mag/arcsec2); within
+    7 deg of opposition brighter, by 35 % at 0 and linearly in magnitudes."""
     from moonlight import moon_nl
 
     for day in ((2018, 1, 31), (2018, 7, 27)):
@@ -201,7 +202,7 @@ def moon():
         d = np.linalg.norm(line)
         altitude = np.arcsin(line @ up / d) / DEG
         phase = np.arccos(-line @ to_sun / (d * np.linalg.norm(to_sun))) / DEG
-        nl = moon_nl(phase, 90 - altitude, 0, 90 - altitude, 0.17) * (384400e3 / d) ** 2
+        nl = moon_nl(phase, 90 - altitude, 0, 90 - altitude, 0.17) * (384400e3 / d) ** 2 * 1.35 ** max(0, 1 - phase / 7)
         v = (20.7233 - np.log(nl / 34.08)) / 0.92104
         print(f"moon {day}: altitude {altitude:.3f}, phase {phase:.3f}, {d / 1e3:.0f} km: {nl:.2f} nL, V {v:.4f}, "
               f"{10 ** (0.4 * (27.78 - v)):.3f} S10")
