@@ -59,7 +59,9 @@ def last_frames(frames, out):
 
 def test(binary, directory):
     out, path, shown = directory / "out", directory / "run.mcap", directory / "shown.rrd"
-    with Run(binary, "launch", write_scenario(directory, duration_s=5 * FRAMES), "--out", out) as run:
+    # Ten seconds, so that the run does not end before its readers have begun.
+    scenario = write_scenario(directory, duration_s=5 * FRAMES, network=", real_time: 30")
+    with Run(binary, "launch", scenario, "--out", out) as run:
         announced = out / "logs/master.address"
         address = wait_until(lambda: announced.exists() and announced.read_text().strip(), "the time-master's address")
         with concurrent.futures.ThreadPoolExecutor(2) as thread:
