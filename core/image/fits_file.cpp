@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/fits_guard.h"
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
 #include "core/image/fits_cards.h"
-#include "core/image/fits_guard.h"
 #include "core/image/fits_memory.h"
 #include "core/image/plain_image.h"
 #include "core/image/rice.h"

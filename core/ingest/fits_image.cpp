@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/fits_guard.h"
 #include "core/image/fits_block.h"
-#include "core/image/fits_guard.h"
 #include "core/ingest/tile_guard.h"
 
 namespace dmise {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/fits_guard.h"
 #include "core/sky/gaia_stars.h"
 #include "core/sky/star_file.h"
 
@@ -30,6 +31,7 @@ constexpr std::array<GaiaColumn, 8> gaia_columns = {{{"ra", &GaiaRow::ra_deg, tr
 class FitsTable {
  public:
   FitsTable(std::string_view bytes, const std::string& name) : name_(name), size_(bytes.size()) {
+    require_harmless_headers(bytes, name);
     bytes_ = const_cast<char*>(bytes.data());  // it is opened for reading
     fits_open_memfile(&file_, "stars", READONLY, &bytes_, &size_, 0, nullptr, &status_);
     check("no FITS file");

@@ -1,4 +1,4 @@
-#include "core/image/fits_guard.h"
+#include "core/base/fits_guard.h"
 
 #include <algorithm>
 #include <charconv>
