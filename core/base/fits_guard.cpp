@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdint>
 #include <cstdlib>
+#include <iterator>
 #include <system_error>
 
 #include "core/base/error.h"
@@ -15,6 +16,11 @@ namespace {
 constexpr std::size_t card_size = 80, value_at = 10, block_size = 2880;
 constexpr std::size_t longest_number = 30;
 constexpr double largest_file = 1e15;
+
+// CFITSIO reads these as numbers, and a long text overflows its message about it.
+constexpr std::string_view numbers[] = {
+    "NAXIS", "BITPIX", "PCOUNT", "GCOUNT",  "BZERO",   "BSCALE",  "TFIELDS", "THEAP",
+    "TZERO", "TSCAL",  "ZNAXIS", "ZBITPIX", "ZPCOUNT", "ZGCOUNT", "ZBLANK",  "ZDITHER"};
 
 std::string keyword_of(std::string_view card) {
   return std::string(card.substr(0, std::min<std::size_t>(8, card.find_first_of(" ="))));
@@ -41,6 +47,9 @@ double checked_value(std::string_view card, bool divides, const std::string& nam
         whole == 0)
       fail("must be a whole number > 0");
   }
+  if (quoted && std::any_of(std::begin(numbers), std::end(numbers),
+                            [&](std::string_view key) { return card.starts_with(key); }))
+    fail("must be a number");
   if (card.substr(8, 1) != "=" || quoted) return 0.0;
   if (value.size() > longest_number) fail("is too long for a number");
   return std::strtod(std::string(value).c_str(), nullptr);

@@ -263,7 +263,8 @@ TEST(FitsFile, RefusesHeadersThatAreNoText) {
   for (const FitsCompression compression : {FitsCompression::none, FitsCompression::rice}) {
     const std::string good = encoded(sample_counts(16, 12), sample_header(16, 12), compression);
     EXPECT_NO_THROW(decode_frame(good, "good.fits"));
-    for (const std::string& value : {std::string(60, '7'), std::string(60, char(0x8e))}) {
+    for (const std::string& value :
+         {std::string(60, '7'), std::string(60, char(0x8e)), "'" + std::string(58, 'd') + "'"}) {
       std::string bytes = good;
       bytes.replace(bytes.rfind("NAXIS1  =") + 10, value.size(), value);
       EXPECT_THROW(decode_frame(bytes, "hostile.fits"), ConfigError);
