@@ -89,6 +89,7 @@ World world_of(const Scenario& scenario, Threads& threads) {
 /// libraries count fully: their share (PSS) depends on other processes of the machine.
 template <class Work>
 double peak_mb(const Work& work) {
+  malloc_trim(0);                                 // what the set-up has freed is no part of it
   std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): resets the peak
   work();
   return status_mb("VmHWM");
