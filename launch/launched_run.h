@@ -1,0 +1,24 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace dmise {
+
+struct LaunchOptions {
+  std::string scenario, out, plan, bind = "tcp://127.0.0.1:0", keys;
+  std::optional<std::uint64_t> seed;  // instead of the scenario's
+  int threads = 1;
+  int hosts = 0;  // > 0: number of agents for the sensors
+  bool force = false;
+  std::string metrics, log_format = "text";  // of every process
+  bool nodes_elsewhere = false;              // nodes are started by `dmise join`
+  bool view = false;                         // a gateway shows the run to browsers
+  bool view_truth = false;                   // also its truth
+};
+
+/// Runs a scenario as a process per node, until it is complete and nobody views it any more. Throws
+/// `ConfigError` for options and scenarios that cannot run, `Error` if the run fails.
+void launch(const LaunchOptions& options);
+
+}  // namespace dmise
