@@ -89,7 +89,6 @@ World world_of(const Scenario& scenario, Threads& threads) {
 /// libraries count fully: their share (PSS) depends on other processes of the machine.
 template <class Work>
 double peak_mb(const Work& work) {
-  malloc_trim(0);                                 // what the set-up has freed is no part of it
   std::ofstream("/proc/self/clear_refs") << "5";  // proc(5): resets the peak
   work();
   return status_mb("VmHWM");
@@ -156,13 +155,13 @@ struct AllSky {
 
 /// The frame with all of Tycho-2 beside that with stars.dat, by turns; and the private memory that
 /// the catalogue takes of a process.
-void measure_tycho2(const std::filesystem::path& directory, const CatalogueFile& objects,
-                    bool json) {
+void measure_tycho2(const std::filesystem::path& directory, bool json) {
   if (find_catalogue("tycho2.stars").empty()) {
     std::fprintf(stderr, "bench all-sky: no tycho2.stars: the frame with it is skipped\n");
     return;
   }
   Threads one(1);
+  const CatalogueFile objects = catalogue_of_18470(directory);
   const auto sky_of = [&](const std::string& name, const std::string& stars) {
     const std::string path = (directory / (name + ".yaml")).string();
     std::ofstream(path) << scenario_text(objects, name, stars);
@@ -250,7 +249,7 @@ void measure_all_sky(bool json) {
                  json);
     print_shares(scenario, exposure, world, measured, 3 * std::size_t(stars), json);
   }
-  measure_tycho2(directory, catalogue_of_18470(directory), json);
+  measure_tycho2(directory, json);
   std::filesystem::remove_all(directory);
 }
 

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "core/base/cache_directory.h"
 #include "core/base/error.h"
+#include "core/base/user_directories.h"
 #include "core/config/search_path.h"
 #include "core/config/star_catalogues.h"
 #include "core/sky/star_cache.h"

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <spawn.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,12 +11,12 @@
 #include <filesystem>
 #include <utility>
 
-#include "core/base/cache_directory.h"
 #include "core/base/crc32c.h"
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/mapped_file.h"
 #include "core/base/text_file.h"
+#include "core/base/user_directories.h"
 #include "core/config/search_path.h"
 #include "core/config/star_catalogues.h"
 #include "core/sky/star_file.h"
@@ -78,15 +77,12 @@ std::string directory_for(const std::string& to) {
 std::string deep_stars(const std::string& directory, const std::string& from) {
   const std::string kept = directory + "/" + deep_stars_name;
   if (from.empty() && access(kept.c_str(), R_OK) == 0) return read_text_file(kept);
-  std::string work = directory + "/fetch.XXXXXX";
-  if (!mkdtemp(work.data())) throw ConfigError(directory + ": " + std::strerror(errno));
   const std::string why =
-      failure_of({home_directory() + "/launch/setup/fetch-tycho2.sh", work, from});
-  std::string content;
-  if (why.empty()) content = read_text_file(work + "/" + deep_stars_name);
-  std::error_code ignored;
-  fs::remove_all(work, ignored);
+      failure_of({home_directory() + "/launch/setup/fetch-tycho2.sh", directory, from});
   if (!why.empty()) throw ConfigError(why);
+  std::string content = read_text_file(kept);
+  std::error_code ignored;  // then it only takes room
+  fs::remove(kept, ignored);
   return content;
 }
 

@@ -12,8 +12,6 @@ struct PaceOptions {
   double factor = 0.0;  // simulated seconds per second; 0: as fast as possible
 };
 
-inline constexpr double max_pace_factor = 1e6;
-
 /// Whether a clock can run at `factor`: 0 to max_pace_factor.
 bool is_pace_factor(double factor);
 

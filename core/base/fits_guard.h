@@ -5,9 +5,9 @@
 namespace dmise {
 
 /// Checks the headers of all HDUs of a FITS file for input on which CFITSIO 4.2 crashes: bytes that
-/// are not printable ASCII, an unquoted value longer than any number (overflows its message), sizes
-/// of tiles and blocks that are not > 0 (division by zero). Throws `ConfigError` `name: KEYWORD:
-/// reason`. Other errors are left to CFITSIO.
+/// are not printable ASCII, a value longer than any number or a text where a number is read
+/// (overflows its message), sizes of tiles and blocks that are not whole numbers > 0 (division by
+/// zero). Throws `ConfigError` `name: KEYWORD: reason`. Other errors are left to CFITSIO.
 void require_harmless_headers(std::string_view bytes, const std::string& name);
 
 }  // namespace dmise

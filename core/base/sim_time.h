@@ -23,4 +23,7 @@ inline SimTime sim_seconds(double s) { return {static_cast<std::int64_t>(std::ll
 /// Number of a clock tick; tick k is at start + k * tick length.
 using Tick = std::int64_t;
 
+/// Greatest pace of the clock [simulated seconds per second].
+inline constexpr double max_pace_factor = 1e6;
+
 }  // namespace dmise

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "core/base/cache_directory.h"
+#include "core/base/user_directories.h"
 
 namespace dmise {
 

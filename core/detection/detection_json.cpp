@@ -6,6 +6,7 @@
 #include "core/base/units.h"
 #include "core/detection/unknown_fields.h"
 #include "core/products/detection_fields.h"
+#include "core/products/magnitude_system.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -174,7 +175,7 @@ std::string to_json(const FrameReport& r, const UtcText& utc, const UnknownFacts
   line.measured("limiting_magnitude", r.limiting_magnitude, measured);
   line.measured("background_e", r.background_e, measured);
   line.measured("noise_e", r.noise_e, measured).field("zero_point_mag", r.zero_point_mag);
-  line.field("magnitude_system", "V-solar");
+  line.field("magnitude_system", magnitude_system);
   line.measured("psf_fwhm_px", r.psf_fwhm_px, measured);
   line.measured("psf_stars", r.psf_stars, measured);
   line.measured("stars_expected", r.stars_expected, measured);
@@ -199,7 +200,7 @@ std::string to_json(const Truth& t, const UtcText& utc) {
   line.angle("true_elevation_deg", t.true_elevation_rad)
       .angle("phase_angle_deg", t.phase_angle_rad);
   line.field("sunlit", t.sunlit).field("true_magnitude", t.true_magnitude);
-  line.field("magnitude_system", "V-solar");
+  line.field("magnitude_system", magnitude_system);
   line.field("rendered_signal_e", t.rendered_signal_e);
   const std::array<double, 2> rendered_px{t.rendered_x_px, t.rendered_y_px};
   t.rendered_signal_e > 0.0 ? line.array("rendered_px", rendered_px)

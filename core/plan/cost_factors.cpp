@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "core/base/cache_directory.h"
 #include "core/base/error.h"
 #include "core/base/text_file.h"
+#include "core/base/user_directories.h"
 
 namespace dmise {
 namespace {

@@ -73,13 +73,14 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
                           twilight_pattern(1.0, pi / 2 - sun_altitude_rad, k_v_);
   const double sunlit = photons_per_s_m2_sr_of_s10(band);
   photons_of_s10_.fill(sunlit);
-  if (parts_.airglow) photons_of_s10_[1] = photons_per_s_m2_sr_of_s10(band, airglow_spectrum());
-  if (parts_.scattered_moonlight)
-    photons_of_s10_[4] = photons_per_s_m2_sr_of_s10(band, moonlight_spectrum());
-  if (parts_.twilight) photons_of_s10_[5] = photons_per_s_m2_sr_of_s10(band, twilight_spectrum());
+  const auto photons_of = [&](SkyPart part, const Spectrum& spectrum) {
+    photons_of_s10_[std::size_t(part)] = photons_per_s_m2_sr_of_s10(band, spectrum);
+  };
+  if (parts_.airglow) photons_of(SkyPart::airglow, airglow_spectrum());
+  if (parts_.scattered_moonlight) photons_of(SkyPart::scattered_moonlight, moonlight_spectrum());
+  if (parts_.twilight) photons_of(SkyPart::twilight, twilight_spectrum());
   if (parts_.light_pollution)
-    photons_of_s10_[6] =
-        photons_per_s_m2_sr_of_s10(band, lamp_spectrum(parts_.light_pollution->lamps));
+    photons_of(SkyPart::light_pollution, lamp_spectrum(parts_.light_pollution->lamps));
 }
 
 double SkyModel::above_air_s10(SkyPart part, const Vec<Enu>& direction) const {

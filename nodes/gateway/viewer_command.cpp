@@ -33,7 +33,7 @@ ViewerCommand read_pace(const Json& object) {
   if (factor == object.end() || !factor->is_number())
     return CommandError{"factor: must be a number"};
   ClockCommand command{.action = ClockCommand::Action::pace, .factor = factor->get<double>()};
-  if (!(command.factor >= 0.0 && command.factor <= max_pace))
+  if (!(command.factor >= 0.0 && command.factor <= max_pace_factor))
     return CommandError{"factor: must be 0 to 1e6"};
   return command;
 }

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <variant>
 
+#include "core/base/sim_time.h"
+
 namespace dmise {
 
 /// Control of the clock by a viewer: what `dmise clock` does.
@@ -11,7 +13,7 @@ struct ClockCommand {
   enum class Action { pause, step, go_on, pace };
   Action action = Action::pause;
   std::int64_t ticks = 1;  // of a step, [1, max_step_ticks]
-  double factor = 0.0;     // of a pace: simulated seconds per second, [0, max_pace]; 0: no limit
+  double factor = 0.0;     // of a pace: simulated seconds per second, [0, max_pace_factor]
 
   bool operator==(const ClockCommand&) const = default;
 };
@@ -39,7 +41,6 @@ using ViewerCommand = std::variant<CommandError, ClockCommand, PastCommand, Live
 
 inline constexpr std::size_t max_command_bytes = 1024;
 inline constexpr std::int64_t max_step_ticks = 1'000'000;
-inline constexpr double max_pace = 1e6;
 
 /// Reads one message of a viewer: `{"do": "pause"}`, `{"do": "step", "ticks": 3}`, `{"do":
 /// "go-on"}`, `{"do": "pace", "factor": 10}`, `{"do": "past", "time_s": 40}`, `{"do": "live"}`.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "core/base/cache_directory.h"
 #include "core/base/error.h"
+#include "core/base/user_directories.h"
 #include "core/config/make_clock.h"
 #include "core/photometry/band_parts.h"
 

@@ -20,7 +20,7 @@ void check_command(std::string_view text) {
   if (const auto* clock = std::get_if<ClockCommand>(&command)) {
     require(clock->action != ClockCommand::Action::step ||
             (clock->ticks >= 1 && clock->ticks <= max_step_ticks));
-    require(clock->factor >= 0.0 && clock->factor <= max_pace);
+    require(clock->factor >= 0.0 && clock->factor <= max_pace_factor);
   }
   if (const auto* past = std::get_if<PastCommand>(&command)) require(std::isfinite(past->time_s));
 }

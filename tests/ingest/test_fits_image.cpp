@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "tests/ingest/foreign_file.h"
+#include "tests/support/config_error.h"
 
 // Files are written by CFITSIO 4.2, and in tests/reference/foreign_frames.py by astropy.
 namespace dmise {
@@ -34,12 +35,7 @@ std::vector<double> read(const std::string& bytes, int plane = 0) {
 }
 
 std::string error_of(const std::string& bytes) {
-  try {
-    FitsImage(bytes, "frame.fits");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::config_error_of([&] { FitsImage(bytes, "frame.fits"); });
 }
 
 TEST(FitsImage, ReadsEachKindOfPixel) {

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Reference for tests/photometry/test_star_light.cpp: photon rate of a black body in the 0.50-0.60 um and
+"""Reference for tests/photometry/test_star_spectrum.cpp: photon rate of a black body in the 0.50-0.60 um and
 0.80-0.90 um top hats relative to 0.50-0.51 um, by scipy's quadrature of astropy's Planck law."""
 from astropy import units as u
 from astropy.modeling.models import BlackBody

@@ -6,7 +6,7 @@ multiplied, at eight wavelengths, so that the star has the colours of real ones 
     star_spectra.py FILTERS VEGA --check NLANDOLT BSC5
 
 --check prints median colours of Landolt's standards (nlandolt.dat of IRAF's noao package) and of the Yale
-Bright Star Catalogue, for tests/photometry/test_star_light.cpp.
+Bright Star Catalogue, for tests/photometry/test_star_spectrum.cpp.
 """
 import gzip
 import sys

@@ -9,6 +9,7 @@
 #include "core/base/units.h"
 #include "core/sky/star_file.h"
 #include "tests/sky/gaia_table.h"
+#include "tests/support/config_error.h"
 
 namespace dmise {
 namespace {
@@ -95,12 +96,7 @@ TEST(GaiaStars, MissingValuesOfATableAreNaN) {
 }
 
 std::string problem_of(const std::string& bytes) {
-  try {
-    parse_stars(bytes, "gaia.fits");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "none";
+  return test::config_error_of([&] { parse_stars(bytes, "gaia.fits"); });
 }
 
 TEST(GaiaStars, TablesThatAreNoCatalogueAreRefusedInALine) {

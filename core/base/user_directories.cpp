@@ -1,4 +1,4 @@
-#include "core/base/cache_directory.h"
+#include "core/base/user_directories.h"
 
 #include <cstdlib>
 
