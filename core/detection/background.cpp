@@ -104,6 +104,7 @@ std::array<std::uint16_t, 2> two_of(const std::vector<std::uint16_t>& values,
 /// Memory for a cell's values, and where those of the cell before were.
 struct CellMemory {
   std::vector<std::uint16_t> values, some;
+  std::vector<float> levels;
   std::vector<std::uint32_t> histogram;
   int near = 0;
 };
@@ -172,8 +173,18 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads)
   const auto measure = [&](std::size_t cell, bool flatten, CellMemory& memory) {
     std::vector<std::uint16_t>& values = memory.values;
     const Area area = area_of(cell);
-    const float mean = flatten ? mean_level(area) : 0.0f;
+    const int width = area.x1 - area.x0 + 1;
+    float mean = 0.0f;
+    if (flatten) {
+      memory.levels.resize(std::size_t(width) * std::size_t(area.y1 - area.y0 + 1));
+      float* to = memory.levels.data();
+      for (int y = area.y0; y <= area.y1; ++y, to += width) level_.row(y, area.x0, area.x1 + 1, to);
+      double sum = 0.0;
+      for (const float v : memory.levels) sum += double(v);
+      mean = float(sum / double(memory.levels.size()));
+    }
     values.clear();
+    const float* level_at = memory.levels.data();
     for (int y = area.y0; y <= area.y1; ++y) {
       const std::uint16_t* from = counts.row(y);
       if (!flatten) {
@@ -181,7 +192,7 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads)
         continue;
       }
       for (int x = area.x0; x <= area.x1; ++x) {
-        const float flat = float(from[x]) - level_.at(x, y) + mean;
+        const float flat = float(from[x]) - *level_at++ + mean;
         values.push_back(std::uint16_t(std::clamp(flat + 0.5f, 0.0f, 65535.0f)));
       }
     }
@@ -213,13 +224,6 @@ Background::Area Background::area_of(std::size_t cell) const {
   };
   return {place(i, columns_, cells_.across), place(j, rows_, cells_.down),
           place(i + 1, columns_, cells_.across) - 1, place(j + 1, rows_, cells_.down) - 1};
-}
-
-float Background::mean_level(const Area& area) const {
-  double sum = 0.0;
-  for (int y = area.y0; y <= area.y1; ++y)
-    for (int x = area.x0; x <= area.x1; ++x) sum += double(level_.at(x, y));
-  return float(sum / ((area.x1 - area.x0 + 1.0) * (area.y1 - area.y0 + 1.0)));
 }
 
 bool Background::is_sloped(std::size_t cell) const {

@@ -37,7 +37,6 @@ class Background {
   /// Whether the level changes over a cell by so much that its noise is measured too high by 2 %.
   bool is_sloped(std::size_t cell) const;
   Area area_of(std::size_t cell) const;
-  float mean_level(const Area& area) const;
 
   int columns_, rows_;  // of the frame
   CellMesh cells_;      // levels of the cells

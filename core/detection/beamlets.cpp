@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/detection/beamlet_kernels.h"
-#include "core/detection/transpose_tile.h"
+#include "core/detection/turned_frame.h"
 
 namespace dmise {
 namespace {
@@ -46,34 +46,6 @@ Level level_of(const FilteredFrame& frame, int n, double least_snr) {
     level.least.push_back(std::int16_t(std::min(least_snr * noise, 32767.0)));
   }
   return level;
-}
-
-/// The frame with columns as rows.
-std::vector<std::int8_t> transposed_steps(const FilteredFrame& frame) {
-  std::vector<std::int8_t> out(frame.snr.size());
-  const auto to = [&](int x, int y) {
-    return out.data() + std::size_t(x) * std::size_t(frame.rows) + std::size_t(y);
-  };
-  // By bands of columns, so that what is written to stays in the cache.
-  constexpr int side = transpose_side, band = 4 * side;
-  for (int x0 = 0; x0 < frame.columns; x0 += band)
-    for (int y = 0; y < frame.rows; y += side)
-      for (int x = x0; x < std::min(x0 + band, frame.columns); x += side) {
-        const int across = std::min(side, frame.columns - x), down = std::min(side, frame.rows - y);
-        if (across < side || down < side) {
-          for (int j = 0; j < down; ++j)
-            for (int i = 0; i < across; ++i) *to(x + i, y + j) = frame.row(y + j)[x + i];
-          continue;
-        }
-        const std::int8_t* from[side];
-        std::int8_t* turned[side];
-        for (int i = 0; i < side; ++i) {
-          from[i] = frame.row(y + i) + x;
-          turned[i] = to(x + i, y);
-        }
-        transpose_tile(from, turned);
-      }
-  return out;
 }
 
 /// A frame of which lines are summed: its rows, or its columns as rows.
@@ -301,9 +273,9 @@ std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, double least_snr,
   }
   std::vector<Level> levels;
   for (int n = 2; n <= longest; n *= 2) levels.push_back(level_of(frame, n, least_snr));
-  const std::vector<std::int8_t> transposed = transposed_steps(frame);
+  const TurnedFrame turned(frame);
   const Lines by_rows{frame.snr.data(), frame.columns, frame.rows};
-  const Lines by_columns{transposed.data(), frame.rows, frame.columns};
+  const Lines by_columns{turned.snr.data(), frame.rows, frame.columns};
   const Kernels kernels(level);
   SumsPool pool;
   std::vector<std::vector<Beamlet>> found(tasks.size());

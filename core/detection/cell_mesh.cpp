@@ -17,6 +17,7 @@ CellMesh::CellMesh(int columns, int rows, int across_cells, int down_cells)
     ends_.resize(std::size_t(across_.back().cell), x);
   }
   ends_.push_back(columns_);
+  for (int y = 0; y < rows_; ++y) down_.push_back(between(y, rows_, down));
 }
 
 CellMesh::Between CellMesh::between(int pixel, int pixels, int cells) {
@@ -30,8 +31,8 @@ float CellMesh::cell(int i, int j) const {
                 std::size_t(std::clamp(i, 0, across - 1))];
 }
 
-float CellMesh::at(int x, const Between& v) const {
-  const Between u = across_[std::size_t(x)];
+float CellMesh::at(int x, int y) const {
+  const Between u = across_[std::size_t(x)], v = down_[std::size_t(y)];
   const float* above = values.data() + std::size_t(v.cell) * std::size_t(across) + u.cell;
   const float* below = down > 1 ? above + across : above;
   const int right = across > 1 ? 1 : 0;
@@ -40,18 +41,20 @@ float CellMesh::at(int x, const Between& v) const {
   return one + u.next * (next - one);
 }
 
-void CellMesh::row(int y, float* out) const {
-  const Between v = between(y, rows_, down);
+void CellMesh::row(int y, int begin, int end, float* out) const {
+  if (begin >= end) return;
+  const Between v = down_[std::size_t(y)];
   const float* above = values.data() + std::size_t(v.cell) * std::size_t(across);
   const float* below = down > 1 ? above + across : above;
-  std::vector<float> line(std::size_t(across) + 1);
-  for (int i = 0; i < across; ++i) line[std::size_t(i)] = above[i] + v.next * (below[i] - above[i]);
-  line.back() = line[std::size_t(across) - 1];
-  const float* next = next_.data();
-  int x = 0;
-  for (std::size_t cell = 0; cell < ends_.size(); ++cell) {
-    const float one = line[cell], rise = line[cell + 1] - one;
-    for (; x < ends_[cell]; ++x) out[x] = one + next[x] * rise;
+  const auto in_row = [&](std::size_t cell) {
+    return above[cell] + v.next * (below[cell] - above[cell]);
+  };
+  const auto last_cell = std::size_t(across) - 1;
+  auto cell = std::size_t(across_[std::size_t(begin)].cell);
+  for (int x = begin; x < end; ++cell) {
+    const float one = in_row(cell), rise = in_row(std::min(cell + 1, last_cell)) - one;
+    const int stop = std::min(ends_[cell], end);
+    for (; x < stop; ++x) *out++ = one + next_[std::size_t(x)] * rise;
   }
 }
 

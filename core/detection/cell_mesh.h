@@ -12,9 +12,10 @@ class CellMesh {
   /// `columns` and `rows` of the frame, `across` and `down` of the mesh; at least 1.
   CellMesh(int columns, int rows, int across, int down);
 
-  float at(int x, int y) const { return at(x, between(y, rows_, down)); }
-  /// The values along row `y` of the frame: all its columns.
-  void row(int y, float* out) const;
+  float at(int x, int y) const;
+  /// The values along row `y` of the frame: all its columns, or those from `begin` to before `end`.
+  void row(int y, float* out) const { row(y, 0, columns_, out); }
+  void row(int y, int begin, int end, float* out) const;
   /// A cell's value; that of the nearest cell beside the mesh.
   float cell(int i, int j) const;
 
@@ -28,12 +29,10 @@ class CellMesh {
     float next;
   };
   static Between between(int pixel, int pixels, int cells);
-  float at(int x, const Between& v) const;
-
   int columns_ = 0, rows_ = 0;
-  std::vector<Between> across_;  // of every column
-  std::vector<float> next_;      // the weights of across_
-  std::vector<int> ends_;        // of each cell, the column after its last
+  std::vector<Between> across_, down_;  // of every column and row
+  std::vector<float> next_;             // the weights of across_
+  std::vector<int> ends_;               // of each cell, the column after its last
 };
 
 }  // namespace dmise

@@ -37,16 +37,21 @@ Trail trail_of(const Beamlet& b) {
 
 /// Whether most of a trail lies on another.
 bool is_part_of(const Trail& part, const Trail& whole, double margin_px) {
+  const double reach_px =
+      0.5 * (part.length_px + whole.length_px) + std::abs(whole.sagitta_px) + margin_px;
+  if (std::abs(part.x_px - whole.x_px) > reach_px || std::abs(part.y_px - whole.y_px) > reach_px)
+    return false;
   const double c = std::cos(part.angle_rad), s = std::sin(part.angle_rad);
+  const Around around(whole, margin_px);
   int on = 0;
   for (int k = -2; k <= 2; ++k) {
     const double along = 0.25 * k * part.length_px;
-    on += lies_on(whole, part.x_px + along * c, part.y_px + along * s, margin_px);
+    on += around.has(part.x_px + along * c, part.y_px + along * s);
   }
   return on >= 3;
 }
 
-void hide(FilteredFrame& frame, const Trail& t, double margin_px) {
+void hide(FilteredFrame& frame, TurnedFrame& turned, const Trail& t, double margin_px) {
   const double c = std::abs(std::cos(t.angle_rad)), s = std::abs(std::sin(t.angle_rad));
   const double bend = std::abs(t.sagitta_px) + margin_px + 1;
   const auto within = [](double place, int pixels) {
@@ -55,9 +60,12 @@ void hide(FilteredFrame& frame, const Trail& t, double margin_px) {
   const double reach_x = t.length_px / 2 * c + bend, reach_y = t.length_px / 2 * s + bend;
   const int x1 = within(t.x_px + reach_x, frame.columns), y1 = within(t.y_px + reach_y, frame.rows);
   const Around around(t, margin_px);
-  for (int y = within(t.y_px - reach_y, frame.rows); y <= y1; ++y)
-    for (int x = within(t.x_px - reach_x, frame.columns); x <= x1; ++x)
-      if (around.has(x, y)) frame.hide(y, x, x);
+  const int x0 = within(t.x_px - reach_x, frame.columns);
+  for (int y = within(t.y_px - reach_y, frame.rows); y <= y1; ++y) {
+    const auto [first, last] = around.columns(y);
+    for (int x = std::max(x0, first); x <= std::min(x1, last); ++x)
+      if (around.has(x, y)) frame.hide(y, x, x), turned.hide(x, y);
+  }
 }
 
 /// The fit of a streak of `snr`. What it is too faint to show is not fitted.
@@ -235,12 +243,15 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
   seen.hidden = &frame;
   const std::vector<Beamlet> beamlets =
       find_beamlets(frame, candidate_snr, best_simd_level(), threads);
+  TurnedFrame turned(frame);
+  LineBand band;
   const double margin_px = 2 * scene.sigma_px + 1;
   std::vector<Source> found;
   std::vector<Trail> tried;
   int failures = 0;
   for (const Beamlet& beamlet : beamlets) {
     Trail trail = trail_of(beamlet);
+    if (beamlet.snr < candidate_snr) continue;  // as all that is beside it would say
     if (snr_along(frame, trail) < 0.8 * candidate_snr) continue;  // hidden meanwhile
     if (std::any_of(tried.begin(), tried.end(),
                     [&](const Trail& t) { return is_part_of(trail, t, margin_px); }))
@@ -248,7 +259,7 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
     const Trail star = scene.star_trail(trail.x_px, trail.y_px);
     if (trail.length_px < chain_px && star_snr_on(frame, trail, star) > 1.2 * beamlet.snr) continue;
     // Where the light along parallel lines scatters more than noise, so must a streak.
-    const Beside around = beside(frame, trail);
+    const Beside around = beside(frame, turned, trail, band);
     if (beamlet.snr < around.middle + candidate_snr * around.scatter) continue;
     trail = climbed(frame, trail);
     tried.push_back(trail);
@@ -272,14 +283,14 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
                                         std::clamp(int(trail.y_px), 0, frame.rows - 1))
                                  .variance_e2) *
                    trail.length_px;
-    const Beside near = beside(frame, trail);
+    const Beside near = beside(frame, turned, trail, band);
     if (snr <
         near.middle + least_streak_snr(trail.length_px) * near.scatter * crowding(frame, trail))
       continue;
     const double star_snr = star_snr_on(frame, trail, star);
     if (snr * snr - star_snr * star_snr < settings.blend_margin) continue;
     auto source = fitted(seen, trail, snr);
-    if (source) hide(frame, source->trail(), 4 * scene.sigma_px);
+    if (source) hide(frame, turned, source->trail(), 4 * scene.sigma_px);
     if (source && is_streak(scene, *source, settings))
       for (Source& piece : pieces(scene, std::move(*source), settings))
         found.push_back(with_hidden_light(scene, seen, std::move(piece)));

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
+
+#include "core/base/simd_level.h"
+#include "core/detection/line_kernels.h"
 
 namespace dmise {
 namespace {
@@ -14,44 +18,46 @@ constexpr int most_rounds = 8;      // of moving the ends
 /// The samples of a frame along a trail: one in each row or column, between two pixels.
 class Walk {
  public:
-  int from = 0, to = -1;  // rows or columns
+  LineSamples line;
   double spacing_px = 1.0;
 
-  Walk(const FilteredFrame& frame, const Trail& t) : frame_(frame) {
+  Walk(const FilteredFrame& frame, const Trail& t) {
     const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
     const bool by_columns = std::abs(c) >= std::abs(s);
     spacing_px = 1.0 / std::max(std::abs(c), std::abs(s));
-    across_ = by_columns ? frame.rows : frame.columns;
-    centre_ = by_columns ? t.x_px : t.y_px;
+    const auto columns = std::size_t(frame.columns);
+    line.pixels = frame.snr.data();
+    line.count = frame.snr.size();
+    line.across = by_columns ? frame.rows : frame.columns;
+    line.centre = by_columns ? t.x_px : t.y_px;
     const int size = by_columns ? frame.columns : frame.rows;
     const double half = std::max(t.length_px / 2, 0.5);
     const double reach = half / spacing_px;
-    from = std::max(0, int(std::ceil(std::max(centre_ - reach, -1.0))));
-    to = std::min(size - 1, int(std::floor(std::min(centre_ + reach, double(size)))));
-    along_step_ = by_columns ? 1 : std::size_t(frame.columns);
-    across_step_ = by_columns ? std::size_t(frame.columns) : 1;
-    // Along the row or column k the line is at middle + slope (k - centre) + bend (1/3 - r^2).
-    middle_ = by_columns ? t.y_px : t.x_px;
-    slope_ = by_columns ? s / c : c / s;
-    bend_ = t.sagitta_px * (by_columns ? 1 / c : -1 / s);
-    to_r_ = spacing_px / half;
+    line.from = std::max(0, int(std::ceil(std::max(line.centre - reach, -1.0))));
+    line.to = std::min(size - 1, int(std::floor(std::min(line.centre + reach, double(size)))));
+    line.along_step = by_columns ? 1 : columns;
+    line.across_step = by_columns ? columns : 1;
+    line.middle = by_columns ? t.y_px : t.x_px;
+    line.slope = by_columns ? s / c : c / s;
+    line.bend = t.sagitta_px * (by_columns ? 1 / c : -1 / s);
+    line.to_r = spacing_px / half;
     rises_ = (by_columns ? c : s) > 0;
   }
 
   /// Calls `visit` (row or column, value, whether it is seen), with value 0 where it is not.
   template <class Visit>
   void visit(Visit&& visit) const {
-    for (int k = from; k <= to; ++k) {
-      const double d = k - centre_, r = d * to_r_;
-      const double place = middle_ + slope_ * d + bend_ * (1.0 / 3 - r * r);
-      if (!(place >= 0 && place < across_ - 1)) {
+    for (int k = line.from; k <= line.to; ++k) {
+      const double d = k - line.centre, r = d * line.to_r;
+      const double place = line.middle + line.slope * d + line.bend * (1.0 / 3 - r * r);
+      if (!(place >= 0 && place < line.across - 1)) {
         visit(k, 0.0, false);
         continue;
       }
       const int m = int(place);
       const std::int8_t* at =
-          frame_.snr.data() + std::size_t(k) * along_step_ + std::size_t(m) * across_step_;
-      const std::int8_t a = at[0], b = at[across_step_];
+          line.pixels + std::size_t(k) * line.along_step + std::size_t(m) * line.across_step;
+      const std::int8_t a = at[0], b = at[line.across_step];
       if (a == 0 || b == 0)
         visit(k, 0.0, false);
       else
@@ -60,13 +66,9 @@ class Walk {
   }
 
   /// Distance along the trail from its middle to a row or column.
-  double along_px(double k) const { return (rises_ ? 1 : -1) * (k - centre_) * spacing_px; }
+  double along_px(double k) const { return (rises_ ? 1 : -1) * (k - line.centre) * spacing_px; }
 
  private:
-  const FilteredFrame& frame_;
-  int across_ = 0;
-  double centre_, middle_, slope_, bend_, to_r_;
-  std::size_t along_step_, across_step_;
   bool rises_;
 };
 
@@ -93,6 +95,12 @@ class SumNoise {
   std::array<double, most - 1> twice_;
   int correlated_ = 0;
 };
+
+SampleSum sum_of(const LineSamples& line) {
+  static const auto sum_samples =
+      kernel_of(best_simd_level(), sse2::sum_samples, avx2::sum_samples, avx512::sum_samples);
+  return sum_samples(line);
+}
 
 struct Fit {
   Trail trail;
@@ -149,15 +157,16 @@ Fit with_best_ends(const FilteredFrame& frame, const Fit& start) {
     Trail line = part_of(start.trail, -reach, reach);
     line.angle_rad += 2 * turn * turn_px / length;
     const Walk walk(frame, line);
-    if (walk.to < walk.from) continue;
-    const int step = (walk.to - walk.from) / parts + 1;
-    sum.assign(1, 0.0), count.assign(1, 0), at.assign(1, walk.from);
+    const auto [from, to] = std::pair(walk.line.from, walk.line.to);
+    if (to < from) continue;
+    const int step = (to - from) / parts + 1;
+    sum.assign(1, 0.0), count.assign(1, 0), at.assign(1, from);
     double total = 0.0;
     int samples = 0;
     walk.visit([&](int k, double value, bool seen) {
       total += value;
       samples += seen;
-      if ((k + 1 - walk.from) % step != 0 && k != walk.to) return;
+      if ((k + 1 - from) % step != 0 && k != to) return;
       sum.push_back(total);
       count.push_back(samples);
       at.push_back(k + 1);
@@ -208,15 +217,12 @@ Trail changed(Trail t, int parameter, double by_px) {
 
 LineSum sum_along(const FilteredFrame& frame, const Trail& t) {
   const Walk walk(frame, t);
+  const SampleSum sum = sum_of(walk.line);
   LineSum out;
-  double sum = 0.0;
-  walk.visit([&](int, double value, bool seen) {
-    sum += value;
-    out.samples += seen;
-  });
-  out.sum = sum;
-  out.slices = std::max(walk.to - walk.from + 1, 1);
-  out.noise = SumNoise(frame, walk.spacing_px).of(out.samples);
+  out.sum = double(sum.sum) / (1 << SampleSum::bits);
+  out.samples = sum.samples;
+  out.noise = SumNoise(frame, walk.spacing_px).of(sum.samples);
+  out.slices = std::max(walk.line.to - walk.line.from + 1, 1);
   return out;
 }
 
@@ -236,20 +242,61 @@ Trail climbed(const FilteredFrame& frame, const Trail& start, double least_snr) 
   return best.trail;
 }
 
-Beside beside(const FilteredFrame& frame, const Trail& trail) {
+BandSums LineBand::of(int reach) {
+  const int width = (2 * reach + BandSums::block) / BandSums::block * BandSums::block;
+  const auto size = std::size_t(width);
+  sum.assign(size, 0);
+  samples.assign(size, 0);
+  part.assign(size, 0);
+  part_count.assign(size, 0);
+  row.assign(size + BandSums::spare, 0);
+  return {.reach = reach,
+          .width = width,
+          .sum = sum.data(),
+          .samples = samples.data(),
+          .part = part.data(),
+          .part_count = part_count.data(),
+          .row = row.data()};
+}
+
+Beside beside(const FilteredFrame& frame, const TurnedFrame& turned, const Trail& trail,
+              LineBand& band) {
   constexpr int least_lines = 12;
+  constexpr int widest_step = 24;  // of lines that are summed together
   // On each side; what is beside a short line changes sooner.
   const int lines = trail.length_px > 100 ? 48 : 24;
-  const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
+  const Walk walk(frame, trail);
+  LineSamples line = walk.line;
+  if (line.across_step != 1) {
+    line.pixels = turned.snr.data();
+    line.along_step = std::size_t(turned.rows);
+    line.across_step = 1;
+  }
+  // Lines are moved along rows, or columns: so far that they are 4 sigma apart.
+  const int step = std::max(1, int(std::lround(4 * frame.sigma_px * walk.spacing_px)));
+  const SumNoise noise(frame, walk.spacing_px);
+  static const auto sum_band =
+      kernel_of(best_simd_level(), sse2::sum_band, avx2::sum_band, avx512::sum_band);
+  const bool together = step <= widest_step;
+  if (together) sum_band(line, band.of(lines * step));
   std::vector<double> snr;
+  snr.reserve(std::size_t(2 * lines + 1));
   for (int k = -lines; k <= lines; ++k) {
     if (std::abs(k) < 2) continue;
-    const double off_px = 4 * frame.sigma_px * k;
-    Trail other = trail;
-    other.x_px -= off_px * s;
-    other.y_px += off_px * c;
-    const LineSum line = sum_along(frame, other);
-    if (line.samples > 2) snr.push_back(line.sum / line.noise);
+    double sum;
+    int samples;
+    if (together) {
+      const auto at = std::size_t((lines + k) * step);
+      sum = double(band.sum[at]) / (1 << BandSums::bits);
+      samples = band.samples[at];
+    } else {
+      LineSamples other = line;
+      other.middle += k * step;
+      const SampleSum one = sum_of(other);
+      sum = double(one.sum) / (1 << SampleSum::bits);
+      samples = one.samples;
+    }
+    if (samples > 2) snr.push_back(sum / noise.of(samples));
   }
   if (snr.size() < least_lines) return {};
   std::sort(snr.begin(), snr.end());

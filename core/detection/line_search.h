@@ -1,6 +1,11 @@
 #pragma once
+#include <cstdint>
+#include <vector>
+
 #include "core/detection/filtered_frame.h"
+#include "core/detection/line_kernels.h"
 #include "core/detection/trail_fit.h"
+#include "core/detection/turned_frame.h"
 
 // Sums of a filtered frame along trails. Hidden pixels and those beside the frame count neither as
 // light nor as noise.
@@ -26,6 +31,15 @@ Trail changed(Trail trail, int parameter, double by_px);
 /// ends and curvature; only by the first two where these find less than `least_snr`.
 Trail climbed(const FilteredFrame& frame, const Trail& start, double least_snr = 5.2);
 
+/// Memory for the sums of lines beside each other, which is used again.
+struct LineBand {
+  std::vector<std::int32_t> sum, samples;
+  std::vector<std::int16_t> part, part_count;
+  std::vector<std::int8_t> row;
+
+  BandSums of(int reach);
+};
+
 /// Lines parallel to a trail: the middle of their SNRs, at least 0, and its scatter, at least 1.
 /// Where faint stars are dense or the sky is uneven both exceed those of noise. The scatter is that
 /// of the upper half, because stars only add light.
@@ -33,6 +47,7 @@ struct Beside {
   double middle = 0.0, scatter = 1.0;
 };
 
-Beside beside(const FilteredFrame& frame, const Trail& trail);
+Beside beside(const FilteredFrame& frame, const TurnedFrame& turned, const Trail& trail,
+              LineBand& band);
 
 }  // namespace dmise

@@ -193,17 +193,23 @@ Trail trail_on(const Scene& scene, const Line& line, const Extent& extent) {
   return trail_along(line, extent, median_level(slices(scene, line, extent.from, extent.to, 0.0)));
 }
 
+std::vector<Around> around(const std::vector<Source>& sources, double margin_px) {
+  std::vector<Around> out;
+  for (const Source& source : sources) out.emplace_back(source.trail(), margin_px);
+  return out;
+}
+
 /// Points of the component off known streaks. Weights are the light, limited to the level of the
 /// brightest fifth: a star on a streak must not outweigh the streak.
 std::vector<Point> free_points(const Scene& scene, const Component& component, double skirt_px,
                                const std::vector<Source>& found) {
+  const std::vector<Around> streaks = around(found, skirt_px);
   std::vector<Point> points;
   std::vector<double> lights;
   for (const Run& run : component.runs)
     for (int x = run.first_x; x <= run.last_x; ++x) {
-      const bool taken = std::any_of(found.begin(), found.end(), [&](const Source& s) {
-        return lies_on(s.trail(), x, run.y, skirt_px);
-      });
+      const bool taken = std::any_of(streaks.begin(), streaks.end(),
+                                     [&](const Around& streak) { return streak.has(x, run.y); });
       if (taken || scene.is_hidden(x, run.y)) continue;
       points.push_back({double(x), double(run.y), std::max(1.0f, scene.pixel(x, run.y).signal_e)});
       lights.push_back(points.back().weight);
@@ -244,10 +250,11 @@ void find_long_streaks(const Scene& scene, const Component& component,
     std::vector<Source> sources = streaks_beside(
         scene, source ? source->trail() : trail_on(scene, line, {int(*low), int(*high)}), settings);
     if (sources.empty() && source) sources.push_back(std::move(*source));
+    const std::vector<Around> streaks = around(sources, skirt_px);
     std::erase_if(points, [&](const Point& p) {
       return std::abs(line.off(p)) < width_px ||
-             std::any_of(sources.begin(), sources.end(),
-                         [&](const Source& s) { return lies_on(s.trail(), p.x, p.y, skirt_px); });
+             std::any_of(streaks.begin(), streaks.end(),
+                         [&](const Around& streak) { return streak.has(p.x, p.y); });
     });
     if (!sources.empty()) {
       std::move(sources.begin(), sources.end(), std::back_inserter(found));

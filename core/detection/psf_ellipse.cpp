@@ -40,8 +40,9 @@ void add(const ShapeStar& star, const PsfField& field, Sum& sum) {
   SmallMatrix matrix{};
   SmallVector right{};
   TrailDerivatives by{}, unused{};
+  const Around around(star.trail, reach_px);
   for (const FitPixel& p : star.pixels) {
-    if (!lies_on(star.trail, p.x, p.y, reach_px)) continue;
+    if (!around.has(p.x, p.y)) continue;
     const double model = light[0](p.x, p.y, by);
     const auto change = [&](std::size_t k) { return (light[k](p.x, p.y, unused) - model) / step; };
     const std::array<double, all> gradient = {by[2],     by[0],     by[1],    1.0,

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/detection/line_search.h"
+
 namespace dmise {
 namespace {
 
@@ -17,14 +19,14 @@ constexpr double background_prior = 0.1;  // error of the mesh, in units of a pi
 bool is_saturated(const Scene& scene, const Trail& trail) {
   const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
   const int steps = int(std::ceil(trail.length_px)) + 1;
+  const Around around(trail, 1.0);
   for (int i = 0; i <= steps; ++i) {
     const double along = (double(i) / steps - 0.5) * trail.length_px;
     const int x = int(std::lround(trail.x_px + along * c));
     const int y = int(std::lround(trail.y_px + along * s));
     for (int py = y - 1; py <= y + 1; ++py)
       for (int px = x - 1; px <= x + 1; ++px)
-        if (scene.contains(px, py) && scene.saturated(px, py) && lies_on(trail, px, py, 1.0))
-          return true;
+        if (scene.contains(px, py) && scene.saturated(px, py) && around.has(px, py)) return true;
   }
   return false;
 }
@@ -67,8 +69,9 @@ double way_to_edge_px(const Trail& t, const Scene& scene, double side) {
 }
 
 /// Puts an end outside the frame on its edge: of what is beyond, no pixel tells, so that length and
-/// light would have no bound. A measurement of that end, by the gain of a Kalman filter.
-void end_at_edge(TrailFit& fit, unsigned free, const Scene& scene, double side) {
+/// light would have no bound. The part in the frame stays as it is; errors are those after a
+/// measurement of that end, by the gain of a Kalman filter.
+void end_at_edge(TrailFit& fit, const Scene& scene, double side) {
   Trail& t = fit.trails[0];
   const double way_px = way_to_edge_px(t, scene, side) - t.length_px / 2;
   if (!(way_px < 0)) return;
@@ -84,15 +87,16 @@ void end_at_edge(TrailFit& fit, unsigned free, const Scene& scene, double side) 
   for (std::size_t i = 0; i < n; ++i) variance += h[i] * gain[i];
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = 0; k < n; ++k) fit.covariance[i * n + k] -= gain[i] * gain[k] / variance;
-  const double step = way_px / variance;
-  t.x_px += gain[0] * step;
-  t.y_px += gain[1] * step;
-  t.flux_e += gain[2] * step;
-  t.length_px += gain[3] * step;
-  t.angle_rad += gain[4] * step;
-  std::size_t next = 5;
-  if (free & trail_slope) t.slope += gain[next++] * step;
-  if (free & trail_sagitta) t.sagitta_px += gain[next] * step;
+  const Trail part = changed(t, side < 0 ? 2 : 3, way_px);
+  const double share = part.length_px / t.length_px;
+  t = part;
+  t.flux_e *= share;
+  t.slope *= share;
+}
+
+bool are_same(const std::vector<FitPixel>& a, const std::vector<FitPixel>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const FitPixel& p, const FitPixel& q) { return p.x == q.x && p.y == q.y; });
 }
 
 }  // namespace
@@ -139,9 +143,11 @@ std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double
   const int y1 = std::min(scene.counts.rows - 1, int(std::ceil(trail.y_px + reach_y)));
   const Around around(trail, margin_px);
   std::vector<FitPixel> out;
-  for (int y = y0; y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x)
+  for (int y = y0; y <= y1; ++y) {
+    const auto [first, last] = around.columns(y);
+    for (int x = std::max(x0, first); x <= std::min(x1, last); ++x)
       if (around.has(x, y) && scene.is_usable(x, y)) out.push_back(scene.pixel(x, y));
+  }
   return out;
 }
 
@@ -155,6 +161,15 @@ Around::Around(const Trail& trail, double margin_px)
       margin_px_(margin_px),
       cos_(std::cos(trail.angle_rad)),
       sin_(std::sin(trail.angle_rad)) {}
+
+std::pair<int, int> Around::columns(int y) const {
+  constexpr double most = 1e9, least_sine = 1e-3;
+  if (std::abs(sin_) < least_sine) return {int(-most), int(most)};
+  const double reach_px = margin_px_ + std::abs(trail_.sagitta_px) + 1;
+  const double middle = trail_.x_px + (y - trail_.y_px) * cos_ / sin_;
+  const double half = reach_px / std::abs(sin_);
+  return {int(std::clamp(middle - half, -most, most)), int(std::clamp(middle + half, -most, most))};
+}
 
 bool lies_on(const Trail& trail, double x_px, double y_px, double margin_px) {
   return Around(trail, margin_px).has(x_px, y_px);
@@ -175,7 +190,7 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
   const double sigma_px = scene.psf.sigma_at(middle);
   const double margin_px = 3 * sigma_px + 2.5;
   const double tolerance = std::max(0.15, 3 * model_error);
-  std::vector<FitPixel> pixels;
+  std::vector<FitPixel> pixels, before;
   double moved_px = 0.0;
   const int least_rounds = draft ? 2 : 3, last_round = draft ? 2 : most_rounds;
   for (int round = 0; round < least_rounds || (round < last_round && moved_px > settled_px);
@@ -195,7 +210,13 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
     settings.model_error = model_error;
     settings.background_sigma_e = background_prior * std::sqrt(double(pixels.front().variance_e2));
     settings.most_steps = 20;
+    // Nothing has changed since the round before.
+    const bool same_psf = round + 1 != least_rounds || draft || scene.psf.is_round_gaussian();
+    if (round > 0 && same_psf && source.fit.converged && moved_px <= settled_px &&
+        are_same(pixels, before))
+      continue;
     source.fit = fit_trails(pixels, {trail}, {source.free}, settings);
+    std::swap(pixels, before);
     hold_ends_at_edge(scene, source);
     moved_px = move_ends(trail, source.fit.trails[0], margin_px - 2 * sigma_px);
   }
@@ -207,7 +228,7 @@ std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool st
 
 void hold_ends_at_edge(const Scene& scene, Source& source) {
   if ((source.free & trail_line) != trail_line || !(source.fit.cov(2, 2) > 0)) return;
-  for (const double side : {-1.0, 1.0}) end_at_edge(source.fit, source.free, scene, side);
+  for (const double side : {-1.0, 1.0}) end_at_edge(source.fit, scene, side);
 }
 
 void set_flags(const Scene& scene, const Trail& trail, Source& source) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/detection/scene.h"
@@ -21,6 +22,9 @@ class Around {
     const double beyond = std::max(std::abs(along) - half, 0.0);
     return off * off + beyond * beyond <= margin_px_ * margin_px_;
   }
+
+  /// The first and the last column of a row outside of which nothing is.
+  std::pair<int, int> columns(int y) const;
 
  private:
   Trail trail_;

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/base/error.h"
+#include "core/base/simd_level.h"
 #include "core/detection/small_matrix.h"
+#include "core/detection/trail_kernels.h"
 
 namespace dmise {
 namespace {
@@ -22,7 +25,7 @@ class Problem {
  public:
   Problem(const std::vector<FitPixel>& pixels, const std::vector<unsigned>& free,
           const FitSettings& settings)
-      : pixels_(pixels),
+      : used_(pixels.size()),
         free_(free),
         settings_(settings),
         fits_background_(settings.background_sigma_e > 0) {
@@ -30,6 +33,17 @@ class Problem {
       for (unsigned bit = 0; bit < trail_parameters; ++bit) size_ += mask >> bit & 1u;
     size_ += fits_background_ ? 1u : 0u;
     if (size_ > most_parameters) throw Error("trail fit: more than 16 free parameters");
+    const std::size_t whole = (used_ + trail_block - 1) / trail_block * trail_block;
+    x_.assign(whole, 0.0);
+    y_.assign(whole, 0.0);
+    signal_.assign(whole, 0.0);
+    variance_.assign(whole, 1.0);
+    for (std::size_t i = 0; i < used_; ++i) {
+      x_[i] = pixels[i].x;
+      y_[i] = pixels[i].y;
+      signal_[i] = double(pixels[i].signal_e);
+      variance_[i] = double(pixels[i].variance_e2);
+    }
   }
 
   std::size_t size() const { return size_; }
@@ -45,43 +59,49 @@ class Problem {
   };
 
   Linear linearise(State state, const std::vector<double>* before) const {
+    static const auto trail_light =
+        kernel_of(best_simd_level(), sse2::trail_light, avx2::trail_light, avx512::trail_light);
+    static const auto add_block =
+        kernel_of(best_simd_level(), sse2::add_block, avx2::add_block, avx512::add_block);
     Linear out;
-    out.variance.resize(pixels_.size());
-    double logs = 0.0, product = 1.0;
-    std::vector<TrailLight> evaluators;
-    evaluators.reserve(state.trails.size());
-    for (const Trail& trail : state.trails) evaluators.emplace_back(trail, settings_.psf);
-    TrailDerivatives d{};
-    Vector gradient{};
-    for (std::size_t p = 0; p < pixels_.size(); ++p) {
-      const FitPixel& pixel = pixels_[p];
-      double model = 0.0;
-      std::size_t k = 0;
-      for (std::size_t t = 0; t < evaluators.size(); ++t) {
-        model += evaluators[t](pixel.x, pixel.y, d);
-        for (unsigned bit = 0; bit < trail_parameters; ++bit)
-          if (free_[t] >> bit & 1u) gradient[k++] = d[bit];
-      }
-      if (fits_background_) gradient[k++] = 1.0;
-      const double error = settings_.model_error * model;
-      const double variance = pixel.variance_e2 + std::max(model, 0.0) + error * error;
-      const double residual = pixel.signal_e - model - state.background_e;
-      const double weight = 1 / variance;
-      out.chi2 += residual * residual * weight;
-      out.merit += residual * residual / (before ? (*before)[p] : variance);
-      out.variance[p] = variance;
-      product *= variance;
-      if (product > 1e200 || product < 1e-200) {  // one logarithm for many pixels
-        logs += std::log(product);
-        product = 1.0;
-      }
-      for (std::size_t i = 0; i < size_; ++i) {
-        const double wg = weight * gradient[i];
-        out.right[i] += wg * residual;
-        for (std::size_t j = 0; j <= i; ++j) out.matrix[i][j] += wg * gradient[j];
-      }
+    out.variance.resize(x_.size());
+    std::vector<TrailLight> lights;
+    lights.reserve(state.trails.size());
+    for (const Trail& trail : state.trails) lights.emplace_back(trail, settings_.psf);
+    std::vector<double> derivatives(trail_parameters * trail_block * lights.size());
+    const auto of = [&](std::size_t t) {
+      return reinterpret_cast<double(*)[trail_block]>(derivatives.data() +
+                                                      t * trail_parameters * trail_block);
+    };
+    std::array<double, trail_block> ones;
+    ones.fill(1.0);
+    std::array<const double*, most_parameters> gradients{};
+    std::size_t k = 0;
+    for (std::size_t t = 0; t < lights.size(); ++t)
+      for (unsigned bit = 0; bit < trail_parameters; ++bit)
+        if (free_[t] >> bit & 1u) gradients[k++] = of(t)[bit];
+    if (fits_background_) gradients[k++] = ones.data();
+    TrailSums sums;
+    for (std::size_t begin = 0; begin < x_.size(); begin += trail_block) {
+      std::array<double, trail_block> model{};
+      for (std::size_t t = 0; t < lights.size(); ++t)
+        trail_light(lights[t].shape(), normal_table(), x_.data() + begin, y_.data() + begin,
+                    model.data(), of(t));
+      const TrailPixels pixels{.x = x_.data() + begin,
+                               .y = y_.data() + begin,
+                               .signal_e = signal_.data() + begin,
+                               .variance_e2 = variance_.data() + begin,
+                               .before = before ? before->data() + begin : nullptr,
+                               .used = std::min(trail_block, used_ - begin)};
+      add_block(pixels, model.data(), state.background_e, settings_.model_error, gradients.data(),
+                size_, out.variance.data() + begin, sums);
     }
-    logs += std::log(product);
+    out.chi2 = sums.chi2;
+    out.merit = sums.merit;
+    for (std::size_t i = 0; i < size_; ++i) {
+      out.right[i] = sums.right[i];
+      for (std::size_t j = 0; j <= i; ++j) out.matrix[i][j] = sums.matrix[i][j];
+    }
     if (fits_background_) {
       const double weight = 1 / (settings_.background_sigma_e * settings_.background_sigma_e);
       const double penalty = weight * state.background_e * state.background_e;
@@ -90,9 +110,30 @@ class Problem {
       out.chi2 += penalty;
       out.merit += penalty;
     }
-    out.deviance = out.chi2 + logs;
+    out.deviance = out.chi2 + sum_of_logarithms(out.variance);
     out.state = std::move(state);
     return out;
+  }
+
+  /// The step from a state by its damped equations. A slope at its bound that would go beyond
+  /// stays.
+  std::optional<Vector> step_from(const Linear& now, double damping) const {
+    std::vector<std::size_t> held;
+    while (true) {
+      Matrix damped = now.matrix;
+      Vector right = now.right;
+      for (std::size_t i = 0; i < size_; ++i) damped[i][i] *= 1 + damping;
+      for (const std::size_t k : held) {
+        for (std::size_t i = 0; i < size_; ++i) damped[std::max(i, k)][std::min(i, k)] = 0.0;
+        damped[k][k] = 1.0;
+        right[k] = 0.0;
+      }
+      if (!cholesky(damped, size_)) return std::nullopt;
+      const Vector step = solve(damped, right, size_);
+      const auto beyond = slope_beyond(now.state, step);
+      if (!beyond) return step;
+      held.push_back(*beyond);
+    }
   }
 
   State moved(const State& from, const Vector& step) const {
@@ -113,12 +154,56 @@ class Problem {
   }
 
  private:
-  const std::vector<FitPixel>& pixels_;
+  /// Of the variances of all pixels: one logarithm for many of them.
+  double sum_of_logarithms(const std::vector<double>& variance) const {
+    double logs = 0.0, product = 1.0;
+    for (std::size_t i = 0; i < used_; ++i) {
+      product *= variance[i];
+      if (product > 1e200 || product < 1e-200) {
+        logs += std::log(product);
+        product = 1.0;
+      }
+    }
+    return logs + std::log(product);
+  }
+
+  /// The number of a slope that is 1 or -1 and that a step takes further.
+  std::optional<std::size_t> slope_beyond(const State& from, const Vector& step) const {
+    std::size_t k = 0;
+    for (std::size_t t = 0; t < from.trails.size(); ++t)
+      for (unsigned bit = 0; bit < trail_parameters; ++bit) {
+        if (!(free_[t] >> bit & 1u)) continue;
+        const double slope = from.trails[t].slope;
+        if (1u << bit == trail_slope && std::abs(slope) >= 1 && slope * step[k] > 0) return k;
+        ++k;
+      }
+    return std::nullopt;
+  }
+
+  std::size_t used_;  // pixels; more follow, to whole blocks
+  std::vector<double> x_, y_, signal_, variance_;
   const std::vector<unsigned>& free_;
   const FitSettings& settings_;
   bool fits_background_;
   std::size_t size_ = 0;
 };
+
+/// How much of a step to take after the one before: weights change with the model, so that an end
+/// swings about its place, each step `-back` of the last one; all that remains is the step over 1 +
+/// back.
+double share_of_step(const Matrix& matrix, const Vector& step, const Vector& before,
+                     std::size_t n) {
+  constexpr double least_back = 0.2;
+  double along = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) {
+      const double m = matrix[std::max(i, j)][std::min(i, j)];
+      along += step[i] * m * before[j];
+      size += before[i] * m * before[j];
+    }
+  const double back = -along / size;
+  return back > least_back ? 1 / (1 + back) : 1.0;
+}
 
 }  // namespace
 
@@ -130,25 +215,31 @@ TrailFit fit_trails(const std::vector<FitPixel>& pixels, std::vector<Trail> star
                     const std::vector<unsigned>& free, const FitSettings& settings) {
   const Problem problem(pixels, free, settings);
   const std::size_t n = problem.size();
+  constexpr double near_chi2 = 1.0;
   TrailFit fit;
   double damping = 1e-3;
+  Vector before{};
+  bool swings = false;  // whether the step may be one about the place
   Problem::Linear now = problem.linearise({std::move(start), 0.0}, nullptr);
   fit.degrees = int(pixels.size()) - int(n) + (settings.background_sigma_e > 0 ? 1 : 0);
   for (int step = 0; step < settings.most_steps && !fit.converged; ++step) {
     fit.chi2 = now.chi2;
     if (settings.good_enough_sigmas && fit.good(*settings.good_enough_sigmas)) break;
-    Matrix damped = now.matrix;
-    for (std::size_t i = 0; i < n; ++i) damped[i][i] *= 1 + damping;
-    if (!cholesky(damped, n)) break;
-    Problem::Linear trial =
-        problem.linearise(problem.moved(now.state, solve(damped, now.right, n)), &now.variance);
+    std::optional<Vector> by = problem.step_from(now, damping);
+    if (!by) break;
+    const double share = swings ? share_of_step(now.matrix, *by, before, n) : 1.0;
+    for (std::size_t i = 0; i < n; ++i) (*by)[i] *= share;
+    Problem::Linear trial = problem.linearise(problem.moved(now.state, *by), &now.variance);
     const double gain = now.chi2 - trial.merit;
     fit.converged = std::abs(gain) < settings.settled_chi2;
     if (gain < 0 || !std::isfinite(trial.merit)) {
       damping *= 10;
+      swings = false;
       continue;
     }
     now = std::move(trial);
+    before = *by;
+    swings = gain < near_chi2;
     damping *= 0.1;
   }
   State& state = now.state;

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "core/detection/psf.h"
+#include "core/detection/trail_shape.h"
 
 namespace dmise {
 
@@ -48,18 +49,14 @@ class TrailLight {
   /// `TrailParameter`.
   double operator()(double x, double y, TrailDerivatives& by) const;
 
- private:
-  static constexpr double square_below_px = 0.75;
+  const TrailShape& shape() const { return shape_; }
 
-  Trail t_;
-  double cos_, sin_;
-  double fourth_, mixed_,
-      odd_;  // factors of derivatives along and across in the term of the square
-  std::size_t parts_;
-  // Of each part: inverse of sigma along the line at a place across it, and across; how far the
-  // middle of its light along the line moves with the place across.
-  std::array<double, Psf::most> weight_{}, along_{}, across_{}, lean_{};
+ private:
+  TrailShape shape_;
 };
+
+/// The normal distribution that kernels look up.
+const NormalTable& normal_table();
 
 /// Electrons of the trail in pixel (x, y).
 double trail_value(const Trail& trail, const Psf& psf, double x, double y);
