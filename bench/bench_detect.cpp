@@ -1,5 +1,6 @@
 #include "bench/bench_detect.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -23,6 +24,8 @@ namespace dmise {
 namespace {
 
 constexpr int columns = 3326, rows = 2504;
+
+unsigned first_seed = 0;
 
 std::shared_ptr<const StarMap> kstars() {
   const std::string path = find_catalogue("stars.dat");
@@ -50,7 +53,7 @@ FrameFigures figures_of(const std::vector<StarField>& fields, int frames, int ra
   for (int f = 0; f < frames; ++f) {
     const StarField& field = fields[std::size_t(f) % fields.size()];
     const FrameHeader header = trial_header(columns, rows, 20, field, deeper_mag);
-    auto frame = trial_frame(header, columns, rows, field, 50u + unsigned(f));
+    auto frame = trial_frame(header, columns, rows, field, first_seed + 50u + unsigned(f));
     frame.add_stars(random_stars, 300, 2e6);
     const CountImage counts = frame.expose();
     Threads one;
@@ -75,6 +78,15 @@ void print_frames(const std::string& suffix, const FrameFigures& f, bool json) {
 
 }  // namespace
 
+void add_detect_options(CLI::App& command) {
+  command
+      .add_option_function<unsigned>(
+          "--seed", [](unsigned seed) { first_seed = 100000 * seed; },
+          "other stars, noise and places for each")
+      ->check(CLI::Range(0, 1000))
+      ->type_name("N");
+}
+
 int bench_detect(bool json) {
   const CatalogueSky sky(kstars());
   const std::vector<StarField> fields = fields_of(sky);
@@ -91,7 +103,7 @@ int bench_detect(bool json) {
                                           length > 600   ? 12
                                           : length > 250 ? 6
                                                          : 3,
-                                          field));
+                                          field, first_seed + 1000));
     double& all = length > 0 ? streaks : points;
     all = std::max(all, worst);
     if (length > 0)
@@ -105,16 +117,16 @@ int bench_detect(bool json) {
 
   // More than 2,000 of each, of all lengths and of SNR 10 to 40.
   const StarField& field = fields[1];
-  const DetectionOutcome point = detection_trial(0, 20, 6, 36, field, 3000);
+  const DetectionOutcome point = detection_trial(0, 20, 6, 36, field, first_seed + 3000);
   using Trial = std::tuple<double, double, int>;  // length, SNR, frames
   DetectionOutcome streak, faint;
   for (const auto& [length, snr, frames] :
        {Trial{20, 20, 8}, Trial{20, 40, 8}, Trial{40, 20, 8}, Trial{100, 20, 8}, Trial{100, 40, 8},
         Trial{300, 40, 16}})
-    streak.add(detection_trial(length, snr, 7, frames, field, 4000));
+    streak.add(detection_trial(length, snr, 7, frames, field, first_seed + 4000));
   for (const auto& [length, snr, frames] :
        {Trial{8, 10, 8}, Trial{20, 10, 8}, Trial{40, 10, 8}, Trial{100, 12, 8}, Trial{300, 15, 16}})
-    faint.add(detection_trial(length, snr, 7, frames, field, 5000));
+    faint.add(detection_trial(length, snr, 7, frames, field, first_seed + 5000));
   using Named = std::pair<const char*, const DetectionOutcome*>;
   for (const auto& [name, o] :
        {Named{"points", &point}, Named{"streaks", &streak}, Named{"faint_streaks", &faint}}) {

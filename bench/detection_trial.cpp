@@ -203,14 +203,15 @@ DetectionOutcome detection_trial(double length, double snr, double threshold, in
   return out;
 }
 
-double late_by_snr(double length, double threshold, int frames, const StarField& field) {
+double late_by_snr(double length, double threshold, int frames, const StarField& field,
+                   unsigned seed) {
   constexpr double step = 0.5, most = 8.0;
   const auto crossing = [](double snr, double now, double before) {
     return snr - step * (now - 0.5) / std::max(now - before, 1e-9);
   };
   double measured = HUGE_VAL, in_theory = HUGE_VAL, now = 0.0, theory = 0.0;
   for (double snr = threshold - 1; snr < threshold + most; snr += step) {
-    const DetectionOutcome o = detection_trial(length, snr, threshold, frames, field, 1000);
+    const DetectionOutcome o = detection_trial(length, snr, threshold, frames, field, seed);
     const double p = o.probability(), q = o.probability_in_theory();
     if (p >= 0.5 && measured == HUGE_VAL) measured = crossing(snr, p, now);
     if (q >= 0.5 && in_theory == HUGE_VAL) in_theory = crossing(snr, q, theory);

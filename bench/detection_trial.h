@@ -48,6 +48,7 @@ DetectionOutcome detection_trial(double length, double snr, double threshold, in
                                  const StarField& field, unsigned seed);
 
 /// SNR by which half are found later than in theory, at most 8.
-double late_by_snr(double length, double threshold, int frames, const StarField& field);
+double late_by_snr(double length, double threshold, int frames, const StarField& field,
+                   unsigned seed);
 
 }  // namespace dmise
