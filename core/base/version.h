@@ -3,7 +3,7 @@
 
 namespace dmise {
 
-/// "DMISE 0.1.0"
+/// "DMISE 1.0.0"
 inline std::string software_name() { return "DMISE " DMISE_VERSION; }
 
 }  // namespace dmise

@@ -42,4 +42,4 @@ __all__ = ["ArrayLike", "Detection", "EarthOrientation", "EnvironmentState", "Fr
            "SunTrackingPanel", "Task", "Tick", "Track", "Triangulated", "Truth", "Wcs", "WcsRefraction", "aio", "apparent_direction",
            "datasets", "fit_orbit", "frames", "line_of_sight", "open_recording", "open_run",
            "pole_of", "propagate", "read_frame", "record", "subscribe", "to_pandas", "triangulate"]
-__version__ = "0.1.0"
+__version__ = "1.0.0"
