@@ -26,12 +26,12 @@ struct Options {
 };
 Options options;
 
-constexpr int most_tries = 4;
+constexpr int most_tries = 5;
 constexpr int pilot_sensors = 8, pilot_frames = 3;
 constexpr double share_at_first = 0.96;  // of the processors' time, for the first try
-// The same with detection, whose frames are long compared to the ticks of their deadline.
-constexpr double share_detecting = 0.56;
-constexpr double step = 0.95;  // factor between tries
+constexpr double share_detecting = 0.9;
+// Factors between tries; with detection frames are long compared to the ticks of their deadline.
+constexpr double step = 0.95, step_detecting = 0.87;
 
 double cores() { return double(std::max(1u, std::thread::hardware_concurrency())); }
 
@@ -66,6 +66,7 @@ struct Kept {
 
 /// The largest number, from `sensors` down, that keeps up; none needs more than `share`.
 Kept keep_up(NetworkCase network, double share, const std::filesystem::path& directory) {
+  const double by = network.detect ? step_detecting : step;
   Kept kept;
   for (int tried = 0; tried < most_tries && network.sensors > 0; ++tried) {
     kept.run = measure(network, directory);
@@ -74,7 +75,7 @@ Kept keep_up(NetworkCase network, double share, const std::filesystem::path& dir
       break;
     }
     const int affordable = sensors_within(share, kept.run.cpu_s_per_frame(), network.real_time);
-    network.sensors = std::min(int(step * network.sensors), affordable);
+    network.sensors = std::min(int(by * network.sensors), affordable);
   }
   return kept;
 }
