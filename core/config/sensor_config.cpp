@@ -72,6 +72,21 @@ void read_sensor_surroundings(YamlMap& map, SensorConfig& sensor) {
   sensor.weather = around.weather.value_or(WeatherConfig{});
 }
 
+/// Refuses a rolling shutter that is not through with the first frame when the run ends, or during
+/// which a camera turns too far.
+void check_rows(const YamlValue& exposure, const SensorConfig& sensor, double rate_deg_per_s,
+                SimTime duration) {
+  if (!sensor.effects.has(RollingShutter::facts)) return;
+  const RollingShutter& shutter = sensor.camera.detector;
+  const double delay_s = shutter.last_row_delay_s(sensor.camera.optics.rows);
+  if (delay_s == 0.0) return;
+  const double until_s = sensor.exposure_s + delay_s;
+  if (sim_seconds(sensor.first_exposure_s + until_s) > duration)
+    exposure.fail("the first exposure of the last row ends after the run does");
+  if (rate_deg_per_s * until_s > most_turn_deg)
+    exposure.fail("the camera must turn by no more than 10 deg until the last row is exposed");
+}
+
 // Refuses a point spread without a possible kernel. An error "a.b: reason" is reported at that key,
 // or at its nearest ancestor in this file (a camera may be a preset).
 void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
@@ -367,6 +382,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   }
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
   check_clock(map, sensor, duration);
+  check_rows(exposure, sensor, rate_deg_per_s, duration);
   if (sensor.effects.has(SkyBackground::facts))
     check_sky_in_band(value, sensor.sky, sensor.camera.band, bool(site));
   check_point_spread(value, sensor);

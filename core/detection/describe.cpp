@@ -129,6 +129,12 @@ double arc_of(const Source& source, const FrameHeader& header) {
                    wcs_direction(header.wcs, line_point(source, 1).place));
 }
 
+/// How much later than the first a row is exposed, in whole microseconds, as times are written.
+SimTime row_delay(const FrameHeader& header, double y_px) {
+  if (!header.detector || !(header.detector->row_time_us > 0.0)) return {};
+  return {1000 * std::llround(header.detector->row_time_us * std::max(y_px, 0.0))};
+}
+
 void describe_ends(const Source& source, const FrameHeader& header, Detection& d) {
   const double arc_rad = arc_of(source, header);
   LinePoint first = line_end(source, header, -1, arc_rad);
@@ -146,9 +152,11 @@ void describe_ends(const Source& source, const FrameHeader& header, Detection& d
   const Vec<Gcrs> end2 = wcs_direction(header.wcs, last.place);
   std::tie(d.end1_ra_rad, d.end1_dec_rad) = std::tuple_cat(to_spherical(end1));
   std::tie(d.end2_ra_rad, d.end2_dec_rad) = std::tuple_cat(to_spherical(end2));
-  d.end1_time = source.streak ? header.start : header.middle;
-  d.end2_time = source.streak ? header.end : header.middle;
-  d.rate_rad_per_s = source.streak ? angle_rad(end1, end2) / header.exposure_s : 0.0;
+  const SimTime delay1 = row_delay(header, d.end1_y_px), delay2 = row_delay(header, d.end2_y_px);
+  d.end1_time = (source.streak ? header.start : header.middle) + delay1;
+  d.end2_time = (source.streak ? header.end : header.middle) + delay2;
+  const double moving_s = std::max(header.exposure_s + (delay2 - delay1).seconds(), 1e-9);
+  d.rate_rad_per_s = source.streak ? angle_rad(end1, end2) / moving_s : 0.0;
 }
 
 /// Change of light from the middle to the second end, relative, by distance and air.
@@ -199,6 +207,10 @@ MidPoint mid_point(const Source& source, const FrameHeader& header) {
 
 void describe_direction(const Source& source, const FrameHeader& header, Detection& d) {
   const MidPoint mid = mid_point(source, header);
+  const SimTime delay = row_delay(header, mid.point.place.y_px);
+  d.time = header.middle + delay;
+  d.sensor_position_m =
+      header.sensor_position_m + header.sensor_velocity_m_per_s * delay.seconds();
   const Vec<Gcrs> here = wcs_direction(header.wcs, mid.point.place);
   std::tie(d.ra_rad, d.dec_rad) = std::tuple_cat(to_spherical(here));
   const RefractionParallax parallax = refraction_parallax(header, here);
@@ -233,8 +245,6 @@ Detection describe(const Source& source, const FrameHeader& header) {
   d.frame = header.frame;
   d.kind = source.streak ? DetectionKind::streak : DetectionKind::point;
   d.epoch = ExposureEpoch::middle;
-  d.time = header.middle;
-  d.sensor_position_m = header.sensor_position_m;
   d.sensor_velocity_m_per_s = header.sensor_velocity_m_per_s;
   d.aberration_removed = true;
   d.band = header.band.name;

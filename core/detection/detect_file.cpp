@@ -2,15 +2,38 @@
 
 #include "core/base/error.h"
 #include "core/detection/detection_json.h"
+#include "core/time/clock.h"
+#include "core/time/iso8601.h"
 
 namespace dmise {
+
+namespace {
+
+/// UTC text of a row that is exposed later than the first; empty where the header has no time that
+/// is whole microseconds before.
+std::string utc_of_row(const FrameHeader& header, SimTime time) {
+  if (!header.detector || !(header.detector->row_time_us > 0.0)) return "";
+  const std::pair<SimTime, const std::string&> known[] = {{header.middle, header.middle_utc},
+                                                          {header.start, header.start_utc},
+                                                          {header.end, header.end_utc}};
+  for (const auto& [base, text] : known)
+    if (time > base && (time - base).ns % 1000 == 0 && !text.empty())
+      return format_utc(Clock(parse_utc(text)).utc(time - base), 6);
+  return "";
+}
+
+}  // namespace
 
 std::string utc_in_frame(const FrameHeader& header, SimTime time) {
   const std::string& text = time == header.middle  ? header.middle_utc
                             : time == header.start ? header.start_utc
                                                    : header.end_utc;
-  if (time != header.start && time != header.middle && time != header.end)
-    throw Error("not a time of this exposure: " + std::to_string(time.ns) + " ns");
+  if (time != header.start && time != header.middle && time != header.end) {
+    const std::string of_row = utc_of_row(header, time);
+    if (of_row.empty())
+      throw Error("not a time of this exposure: " + std::to_string(time.ns) + " ns");
+    return of_row;
+  }
   return text.ends_with('Z') || text.empty() ? text : text + "Z";
 }
 

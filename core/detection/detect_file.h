@@ -31,8 +31,8 @@ FileDetections detect_file(const std::string& path, const DetectorSettings& sett
                            Threads& threads, const CatalogueSky* sky = nullptr);
 
 /// UTC text of a time in the frame: the header's own for start, middle and end of the exposure
-/// (with a Z, which FITS omits); empty where the header does not say it. Throws `Error` for other
-/// times.
+/// (with a Z, which FITS omits) and, with a rolling shutter, whole microseconds later; empty where
+/// the header does not say it. Throws `Error` for other times.
 std::string utc_in_frame(const FrameHeader& header, SimTime time);
 
 }  // namespace dmise

@@ -11,16 +11,17 @@
 
 namespace dmise {
 
-enum class Reach { piece, neighbours, image };
+enum class Reach { drawing, piece, neighbours, image };
 
-/// Which part of the image an effect needs.
+/// Which part of the image an effect needs; `drawing`: it acts before there is one.
 template <class Effect>
 constexpr Reach reach_of() {
   using X = const ExposureFacts&;
   if (requires(const Effect& e, X x, const WholeImage& i) { e.apply(x, i); }) return Reach::image;
   if (requires(const Effect& e, X x, const ElectronImage& i, Piece& p) { e.apply(x, i, p); })
     return Reach::neighbours;
-  return Reach::piece;
+  constexpr bool has_pixels = requires { &Effect::apply; };
+  return has_pixels ? Reach::piece : Reach::drawing;
 }
 
 /// Result of an effect's `prepare`.
@@ -73,6 +74,7 @@ class Chain<EffectList<Effects...>> {
     Laps laps;
     each_slot([&]<class Effect>(std::size_t i, std::optional<ActingEffect<Effect>>& slot) {
       const Effect& effect = exposed.detector;
+      if (reach_of<Effect>() == Reach::drawing) return;
       if (!effect.applies(exposed.detector)) return;
       const Exposure& named = exposed.exposure;
       exposed.key = rng_key(named.seed, named.sensor, named.frame, Effect::facts.name);
@@ -88,7 +90,7 @@ class Chain<EffectList<Effects...>> {
   std::size_t next_beyond_pieces(std::size_t from) const {
     std::size_t found = size;
     each([&](std::size_t i, const auto& effect) {
-      if (i >= from && found == size && effect.reach != Reach::piece) found = i;
+      if (i >= from && found == size && effect.reach > Reach::piece) found = i;
     });
     return found;
   }

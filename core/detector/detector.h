@@ -18,14 +18,15 @@
 #include "core/detector/quantisation.h"
 #include "core/detector/read_noise.h"
 #include "core/detector/reference_pixels.h"
+#include "core/detector/rolling_shutter.h"
 
 namespace dmise {
 
 /// Effects between light on the pixels and counts, in running order.
 using DetectorEffects =
-    EffectList<FrameTransfer, PixelResponse, PhotonNoise, DarkCurrent, HotPixels, CosmicRays,
-               ReferencePixels, Persistence, FullWell, Blooming, Nonlinearity, InterpixelCoupling,
-               ColumnNoise, ReadNoise, Quantisation>;
+    EffectList<RollingShutter, FrameTransfer, PixelResponse, PhotonNoise, DarkCurrent, HotPixels,
+               CosmicRays, ReferencePixels, Persistence, FullWell, Blooming, Nonlinearity,
+               InterpixelCoupling, ColumnNoise, ReadNoise, Quantisation>;
 
 /// Parameters of a detector, those of its effects first. Effects with parameters of 0 do nothing
 /// and cost nothing.

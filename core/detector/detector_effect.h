@@ -22,6 +22,7 @@
 //  apply(const ExposureFacts&, Piece&) const                         on a piece of the image, or
 //  apply(const ExposureFacts&, const ElectronImage&, Piece&) const   with neighbouring pixels, or
 //  apply(const ExposureFacts&, const WholeImage&) const              on the whole image
+//      or none, if it acts where light is drawn (sensors/pipeline)
 // and optionally
 //  Prepared prepare(const ExposureFacts&) const;
 //      called before the first pixel; its result is passed to `apply` after the facts

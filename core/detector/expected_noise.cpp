@@ -37,8 +37,7 @@ ElectronImage expected_noise(const ExpectedElectronImage& unshifted, const Detec
   if (d.reference_px > 0)
     visit_border(d.reference_px, light.columns, light.rows, 0, light.pixels.size(),
                  [&](std::size_t begin, std::size_t end) {
-                   for (std::size_t i = begin; i < end; ++i)
-                     noise.pixels[i] = float(std::sqrt(reading_e2));
+                   for (std::size_t i = begin; i < end; ++i) noise.pixels[i] = sigma(0.0f, 0.0f);
                  });
   return noise;
 }

@@ -8,7 +8,9 @@ namespace dmise {
 
 ExposureErrors::ExposureErrors(const SensorConfig& sensor, const FrameTimes& commanded,
                                std::uint64_t seed)
-    : commanded_(commanded), instrument_(acting_instrument(sensor.instrument, sensor.effects)) {
+    : commanded_(commanded),
+      last_row_delay_(last_row_delay(sensor)),
+      instrument_(acting_instrument(sensor.instrument, sensor.effects)) {
   const auto deviate = [&](const EffectFacts& effect, std::uint32_t number) {
     const RngKey key = rng_key(seed, sensor.name, commanded.frame, effect.name);
     return double(normal_of(rng_word(key, number, 0)));
@@ -32,7 +34,7 @@ SimTime ExposureErrors::reading(SimTime t) const {
   if (!of_clock()) return t;
   // Rounding must not ask for states beyond those of the exposure.
   const SimTime reading = instrument_.ClockError::reading(t, clock_jitter_s_);
-  return std::clamp(reading, commanded_.start, commanded_.end);
+  return std::clamp(reading, commanded_.start, commanded_.end + last_row_delay_);
 }
 
 Rotation<CameraFrame, CameraFrame> ExposureErrors::true_from_commanded(SimTime t) const {

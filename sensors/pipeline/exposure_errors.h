@@ -24,13 +24,14 @@ class ExposureErrors {
   /// Returns when the shutter is truly open.
   FrameTimes exposed() const;
   /// Returns what the sensor's clock reads at the true time `t` of the exposure, never outside the
-  /// commanded one.
+  /// commanded one of all rows.
   SimTime reading(SimTime t) const;
   /// Returns the camera's true axes from those commanded.
   Rotation<CameraFrame, CameraFrame> true_from_commanded(SimTime t) const;
 
  private:
   FrameTimes commanded_;
+  SimTime last_row_delay_;
   Instrument instrument_;
   double clock_jitter_s_ = 0.0;
   ImageAxes pointing_deviate_{};

@@ -4,11 +4,18 @@
 
 namespace dmise {
 
+SimTime last_row_delay(const SensorConfig& sensor) {
+  if (!sensor.effects.has(RollingShutter::facts)) return {};
+  const RollingShutter& shutter = sensor.camera.detector;
+  return sim_seconds(shutter.last_row_delay_s(sensor.camera.optics.rows));
+}
+
 ExposureSpan exposure_span(const SensorConfig& sensor, const FrameTimes& commanded) {
   const ClockError clock = acting_instrument(sensor.instrument, sensor.effects);
-  if (!clock.applies()) return {commanded.start, commanded.end};
+  const SimTime delay = last_row_delay(sensor);
+  if (!clock.applies()) return {commanded.start, commanded.end + delay};
   return {std::min(commanded.start, clock.earliest(commanded.start)),
-          std::max(commanded.end, clock.latest(commanded.end))};
+          std::max(commanded.end, clock.latest(commanded.end)) + delay};
 }
 
 ExposureSpan exposure_span(const SensorConfig& sensor, std::uint32_t frame) {
@@ -18,7 +25,7 @@ ExposureSpan exposure_span(const SensorConfig& sensor, std::uint32_t frame) {
 std::uint32_t frames_within(const SensorConfig& sensor, SimTime duration) {
   const ClockError clock = acting_instrument(sensor.instrument, sensor.effects);
   if (clock.applies()) duration = std::min(duration, clock.surely_read_by(duration));
-  const std::int64_t room = duration.ns - frame_times(sensor, 1).end.ns;
+  const std::int64_t room = duration.ns - (frame_times(sensor, 1).end + last_row_delay(sensor)).ns;
   return room >= 0 ? static_cast<std::uint32_t>(room / sim_seconds(sensor.cadence_s).ns + 1) : 0;
 }
 

@@ -17,6 +17,9 @@ struct FrameTimes {
   double seconds() const { return (end - start).seconds(); }
 };
 
+/// Returns how long after the first row the last one is exposed.
+SimTime last_row_delay(const SensorConfig& sensor);
+
 /// Returns an exposure as it is commanded, by the sensor's clock.
 inline FrameTimes frame_times(const SensorConfig& sensor, std::uint32_t frame) {
   const SimTime length = sim_seconds(sensor.exposure_s);

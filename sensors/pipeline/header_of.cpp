@@ -28,7 +28,10 @@ Wcs wcs_of(const View& view) {
   const auto star_at = [&](PixelPosition pixel) -> std::optional<Vec<Gcrs>> {
     const auto seen = unproject(optics, pixel);
     if (!seen) return std::nullopt;
-    return places.star_seen_at(gcrs_from_camera * *seen);
+    if (!view.rolls()) return places.star_seen_at(gcrs_from_camera * *seen);
+    // The middle of its own row's exposure.
+    const SimTime own = middle + view.row_delay(pixel.y_px);
+    return places.star_seen_at(view.camera_from_gcrs(own).inverse() * *seen);
   };
   return best_wcs(optics, star_at, air);
 }

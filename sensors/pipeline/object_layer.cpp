@@ -7,8 +7,10 @@
 
 #include "core/base/error.h"
 #include "core/effects/frame_effects.h"
+#include "core/optics/projection.h"
 #include "core/optics/snapshots.h"
 #include "sensors/pipeline/object_sampler.h"
+#include "sensors/pipeline/row_window.h"
 #include "sensors/pipeline/shape_exposure.h"
 #include "sensors/render/resolution.h"
 
@@ -182,11 +184,35 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
   return truths;
 }
 
+/// The same with a rolling shutter, which exposes each object in its own time.
+std::vector<Truth> paint_rolled(const View& view, const std::vector<std::size_t>& objects,
+                                const ObjectShapes* shapes, OpticsStage& stage, OcclusionMask& mask,
+                                ExpectedElectronImage& image) {
+  std::map<std::size_t, std::vector<Truth>> truth_of;
+  const ExposureInstant middle(view, view.times_of_all_rows().middle);
+  for (const std::size_t object : nearest_first(view, objects, middle)) {
+    const auto row_at = [&](SimTime t) -> std::optional<double> {
+      const ExposureInstant at(view, t);
+      const Motion motion = view.world().motion(object, t);
+      const auto place = at.places.satellite(motion.position_m, motion.slope_m_per_s);
+      const auto pixel = project(view.sensor().camera.optics, at.camera * place.direction);
+      return pixel ? std::optional(pixel->y_px) : std::nullopt;
+    };
+    const View own = view.during(row_window(view, row_at));
+    truth_of[object] = paint(own, ObjectSampler(own, shapes), {object}, stage, mask, image);
+  }
+  std::vector<Truth> truths;  // as listed
+  for (const std::size_t object : objects)
+    for (Truth& truth : truth_of[object]) truths.push_back(std::move(truth));
+  return truths;
+}
+
 }  // namespace
 
 std::vector<Truth> draw_objects(const View& view, const std::vector<std::size_t>& objects,
                                 const ObjectShapes* shapes, OpticsStage& optics,
                                 OcclusionMask& mask, ExpectedElectronImage& image) {
+  if (view.rolls()) return paint_rolled(view, objects, shapes, optics, mask, image);
   return paint(view, ObjectSampler(view, shapes), objects, optics, mask, image);
 }
 

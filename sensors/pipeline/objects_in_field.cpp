@@ -44,8 +44,8 @@ constexpr double longest_look_s = 10.0;
 /// Directions that may touch the frame, around a camera that moves and turns during an exposure.
 class FieldCone {
  public:
-  explicit FieldCone(const View& view) : view_(view) {
-    const auto& exposure = view.times();
+  explicit FieldCone(const View& view) : view_(view), times_(view.times_of_all_rows()) {
+    const FrameTimes& exposure = times_;
     const double half =
         std::min(pi, half_diagonal_rad(view.sensor().camera.optics) + widest_shift_rad);
     cos_ = std::cos(half);
@@ -67,7 +67,7 @@ class FieldCone {
 
   /// Whether an object is where the sensor is: its own host, under whatever number.
   bool at_sensor(std::size_t object) {
-    const auto& exposure = view_.times();
+    const FrameTimes& exposure = times_;
     for (const SimTime t : {exposure.start, exposure.middle, exposure.end})
       if (norm(view_.world().motion(object, t).position_m - moment(t).observer.position_m) <
           Sight::nearest_m)
@@ -81,7 +81,7 @@ class FieldCone {
   /// `radius_m`: of the sphere about the object that holds it.
   bool crossed_by(std::size_t object, double radius_m) {
     radius_m_ = radius_m;
-    const auto& exposure = view_.times();
+    const FrameTimes& exposure = times_;
     const Motion motion = view_.world().motion(object, exposure.middle);
     const ObserverState& observer = moment(exposure.middle).observer;
     const double range_m = norm(motion.position_m - observer.position_m);
@@ -112,7 +112,7 @@ class FieldCone {
   };
   /// Instant `k` of 2 `halves`, evenly before and after the middle.
   SimTime looked_at(int k, int halves) const {
-    const auto& [frame, start, middle, end] = view_.times();
+    const auto& [frame, start, middle, end] = times_;
     if (k <= halves) return {start.ns + (middle.ns - start.ns) * k / halves};
     return {middle.ns + (end.ns - middle.ns) * (k - halves) / halves};
   }
@@ -139,6 +139,7 @@ class FieldCone {
   Shortlist shortlist_of(const RoughPlaces& rough, const Stance& sight) const;
 
   const View& view_;
+  const FrameTimes times_;
   double cos_ = 1.0, sin_ = 0.0, half_s_ = 0.0, turn_rad_per_s_ = 0.0, radius_m_ = 0.0;
   std::map<std::int64_t, Moment> moments_;
 };
@@ -210,7 +211,7 @@ std::vector<std::uint32_t> FieldCone::candidates(RoughPlaces& rough) {
     std::iota(found.begin(), found.end(), 0u);
     return found;
   }
-  const SimTime middle = view_.times().middle;
+  const SimTime middle = times_.middle;
   const Moment& now = moment(middle);
   const double dt_s = (middle - rough.time).seconds();
   const double error_m = this->error_m(rough, dt_s), pull_m_per_s = this->pull_m_per_s(dt_s);
@@ -247,7 +248,7 @@ std::set<std::size_t> needed_objects(const SensorConfig& sensor, const ObjectRos
 }
 
 std::vector<std::size_t> objects_in_field(const View& view, const ObjectShapes* shapes) {
-  const auto& exposure = view.times();
+  const FrameTimes exposure = view.times_of_all_rows();
   const auto& world = view.world();
   FieldCone cone(view);
   std::vector<std::size_t> found;

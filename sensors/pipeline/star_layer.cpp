@@ -7,6 +7,8 @@
 #include "core/effects/frame_effects.h"
 #include "core/optics/deposit.h"
 #include "core/optics/projection.h"
+#include "core/optics/snapshots.h"
+#include "sensors/pipeline/row_window.h"
 #include "sensors/pipeline/star_snapshots.h"
 #include "sensors/pipeline/stopwatch.h"
 #include "sensors/pipeline/throughput.h"
@@ -44,7 +46,8 @@ struct StarLayer::Exposure {
   const View& view;
   const StarTable& stars;
   StarColumns columns = columns_of(stars);
-  std::array<SimTime, 3> instants = {view.times().start, view.times().middle, view.times().end};
+  FrameTimes times = view.times_of_all_rows();
+  std::array<SimTime, 3> instants = {times.start, times.middle, times.end};
   std::array<ApparentPlaces, 3> places = {view.places(instants[0]), view.places(instants[1]),
                                           view.places(instants[2])};
   std::optional<EarthOccultation> earth = view.earth_occultation(instants[1]);
@@ -111,6 +114,21 @@ std::vector<Deposited> add_past(const OcclusionMask& mask, std::span<const Arc> 
   return deposited;
 }
 
+/// Deposits snapshots of arcs at even times of each.
+std::vector<Deposited> add_snapshots(const View& view, std::span<const Arc> arcs, int count,
+                                     OpticsStage& optics, const OcclusionMask& mask,
+                                     ExpectedElectronImage& image) {
+  std::vector<Deposited> deposited;
+  for (const Arc& arc : arcs) {
+    std::vector<Arc> points = as_snapshots({&arc, 1}, count);
+    for (Arc& point : points) point.signal_e *= view.illumination(point.middle);
+    Deposited star;
+    for (const Deposited& part : add_past(mask, points, optics, image)) star = star + part;
+    deposited.push_back(star);
+  }
+  return deposited;
+}
+
 }  // namespace
 
 /// Stars around the boresight of mid exposure, wide enough for the field to have turned.
@@ -119,8 +137,9 @@ std::vector<std::uint32_t> StarLayer::candidates(const View& view, double fainte
     return view.camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1};
   };
   const Vec<Gcrs> middle = boresight(view.times().middle);
-  const double turned = std::max(angle_rad(middle, boresight(view.times().start)),
-                                 angle_rad(middle, boresight(view.times().end)));
+  const FrameTimes times = view.times_of_all_rows();
+  const double turned =
+      std::max(angle_rad(middle, boresight(times.start)), angle_rad(middle, boresight(times.end)));
   std::vector<std::uint32_t> found;
   query_cone(*map_, middle,
              half_diagonal_rad(view.sensor().camera.optics) + turned + widest_shift_rad,
@@ -179,7 +198,7 @@ std::uint32_t StarLayer::draw(const Exposure& exposure, std::span<const std::uin
   const int snapshots = view.sensor().effects.snapshots();
   std::vector<Arc> arcs;
   const double electrons_per_rate =
-      exposure.throughput.electrons_per_photon_m2() * view.times().seconds();
+      exposure.throughput.electrons_per_photon_m2() * exposure.times.seconds();
   arcs.reserve(trails.size());
   for (std::size_t i = 0; i < trails.size(); ++i) {
     const auto& t = trails[i];
@@ -188,8 +207,15 @@ std::uint32_t StarLayer::draw(const Exposure& exposure, std::span<const std::uin
                         electrons_per_rate * factor_of_air[i] *
                         (snapshots ? 1.0 : view.illumination(t.pixel[1]))});
   }
+  if (view.rolls())
+    for (std::size_t i = 0; i < arcs.size(); ++i) {
+      arcs[i] = rolled(view, arcs[i]);
+      trails[i].pixel = {arcs[i].start, arcs[i].middle, arcs[i].end};
+    }
   std::vector<Deposited> deposited;
-  if (snapshots) {
+  if (snapshots && view.rolls()) {
+    deposited = add_snapshots(view, arcs, snapshots, optics, mask, image);
+  } else if (snapshots) {
     std::vector<std::uint32_t> drawn;
     std::vector<double> signal_e;
     for (std::size_t i = 0; i < arcs.size(); ++i) {

@@ -16,6 +16,7 @@ View::View(const SensorConfig& sensor, const FrameTimes& commanded, const World&
       errors_(belief == Belief::truth ? ExposureErrors(sensor, commanded, seed)
                                       : ExposureErrors(commanded)),
       times_(errors_.exposed()),
+      shutter_(acting_detector(sensor.camera.detector, sensor.effects)),
       world_(world),
       seed_(seed),
       environment_(world.environment(times_.middle)),
@@ -33,7 +34,8 @@ View::View(const SensorConfig& sensor, const FrameTimes& commanded, const World&
   if (const auto* target = std::get_if<PointTarget>(&sensor.pointing))
     target_ = object_index(world.roster(), target->object, sensor.name + ": pointing.target");
   for (const auto& needed : {platform_, target_})
-    for (const SimTime t : {commanded.start, commanded.end, times_.start, times_.end})
+    for (const SimTime t :
+         {commanded.start, commanded.end, times_.start, times_.end, times_of_all_rows().end})
       if (needed && !world.has_state(*needed, t))
         throw Error(sensor.name + ": " + world.roster().objects[*needed].name +
                     " has no state at frame " + std::to_string(commanded.frame));
@@ -43,6 +45,22 @@ View::View(const SensorConfig& sensor, const FrameTimes& commanded, const World&
                 " is where the sensor is, at frame " + std::to_string(commanded.frame));
   aimed_ = pointing_scene(commanded.middle);
   vignettes_ = acts<Vignetting>(sensor.effects, scene());
+}
+
+View View::during(const FrameTimes& times) const {
+  View view = *this;
+  view.times_ = times;
+  return view;
+}
+
+SimTime View::row_delay(double y_px) const {
+  return sim_seconds(shutter_.row_delay_s(y_px, sensor_.camera.optics.rows));
+}
+
+FrameTimes View::times_of_all_rows() const {
+  if (!rolls()) return times_;
+  const SimTime delay = row_delay(sensor_.camera.optics.rows - 1);
+  return {times_.frame, times_.start, {times_.middle.ns + delay.ns / 2}, times_.end + delay};
 }
 
 SceneFacts View::scene() const { return scene_facts(sensor_); }

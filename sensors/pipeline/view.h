@@ -27,12 +27,20 @@ class View {
   /// view.
   View(const SensorConfig& sensor, const FrameTimes& commanded, const World& world,
        std::uint64_t seed = 1, Belief belief = Belief::truth);
-  View(const View&) = delete;
+  View(const View&) = default;
   View& operator=(const View&) = delete;
 
   const SensorConfig& sensor() const { return sensor_; }
-  /// When the shutter is open.
+  /// When the shutter is open: of a rolling one in its first row.
   const FrameTimes& times() const { return times_; }
+  /// The same view while a source is exposed.
+  View during(const FrameTimes& times) const;
+  /// Whether rows are exposed one after another.
+  bool rolls() const { return shutter_.row_time_us > 0.0; }
+  /// From the first row's opening to the last row's end.
+  FrameTimes times_of_all_rows() const;
+  /// How much later than the first the row at `y_px` is exposed.
+  SimTime row_delay(double y_px) const;
   /// What the sensor does not know of this; none in a view of what it believes.
   const ExposureErrors& errors() const { return errors_; }
   const World& world() const { return world_; }
@@ -88,7 +96,8 @@ class View {
 
   const SensorConfig& sensor_;
   const ExposureErrors errors_;
-  const FrameTimes times_;
+  FrameTimes times_;
+  RollingShutter shutter_;
   const World& world_;
   std::uint64_t seed_;
   EnvironmentState environment_;  // of mid exposure

@@ -102,6 +102,14 @@ TEST(DetectorConfig, NonsenseIsRefusedWhereItStands) {
   EXPECT_EQ(complaint("full_well_e: 20000\n", ""), "c.yaml:1:1: full_well_e: is missing");
 }
 
+TEST(DetectorConfig, WhatDoesNotGoTogetherIsRefusedAtItsKey) {
+  const auto with = [](const std::string& more) { return complaint("adc_bits: 14", more); };
+  EXPECT_EQ(with("frame_transfer_s: 0.1\nrow_time_us: 10"),
+            "c.yaml:24:14: row_time_us: must be 0 with frame_transfer_s: one shutter or the other, "
+            "got 10");
+  EXPECT_EQ(with("row_time_us: 10"), "");
+}
+
 TEST(DetectorConfig, OneBitAndSixteenAreAdcs) {
   EXPECT_EQ(read("{full_well_e: 1, gain_e_per_dn: 1, adc_bits: 1}").adc_bits, 1);
   EXPECT_EQ(read("{full_well_e: 1, gain_e_per_dn: 1, adc_bits: 16}").adc_bits, 16);
