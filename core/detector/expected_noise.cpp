@@ -39,6 +39,18 @@ ElectronImage expected_noise(const ExpectedElectronImage& unshifted, const Detec
                  [&](std::size_t begin, std::size_t end) {
                    for (std::size_t i = begin; i < end; ++i) noise.pixels[i] = sigma(0.0f, 0.0f);
                  });
+  if (d.is_spread()) {
+    const RngKey key = rng_key(exposure.seed, exposure.sensor, 0, ReadNoise::facts.name);
+    threads.for_ranges(light.pixels.size(), grain, [&](std::size_t begin, std::size_t end) {
+      std::vector<float> rms_e(end - begin);
+      d.rms_of_pixels(key, begin, rms_e);
+      for (std::size_t i = begin; i < end; ++i) {
+        const double own_e = rms_e[i - begin], mean_e = d.read_noise_e, all_e = noise.pixels[i];
+        noise.pixels[i] =
+            float(std::sqrt(std::max(0.0, all_e * all_e - mean_e * mean_e) + own_e * own_e));
+      }
+    });
+  }
   return noise;
 }
 

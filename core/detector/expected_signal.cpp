@@ -10,7 +10,7 @@ namespace {
 // Those of `DetectorEffects` that are not noise, before and after dark current is added.
 using BeforeDark = EffectList<FrameTransfer, PixelResponse>;
 using AfterDark = EffectList<HotPixels, CosmicRays, ReferencePixels, Persistence, FullWell,
-                             Blooming, Nonlinearity, InterpixelCoupling>;
+                             Blooming, Nonlinearity, InterpixelCoupling, FixedPattern>;
 
 template <class List>
 void run(const ExposureFacts& exposed, Threads& threads, ElectronImage& image) {

@@ -1,5 +1,9 @@
 #include "core/detector/read_noise.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "core/detector/detector.h"
 #include "core/detector/detector_kernels.h"
 
@@ -7,11 +11,38 @@ namespace dmise {
 
 std::span<const DetectorParameter> ReadNoise::parameters() {
   static constexpr DetectorParameter table[] = {
-      {"read_noise_e", "", "[e-] rms", &ReadNoise::read_noise_e, 0.0, 1e6}};
+      {"read_noise_e", "", "[e-] rms", &ReadNoise::read_noise_e, 0.0, 1e6},
+      {"read_noise_spread", "RNSPREAD", "deviation of the logarithm of the pixels' rms",
+       &ReadNoise::read_noise_spread, 0.0, 2.0}};
   return table;
 }
 
+void ReadNoise::rms_of_pixels(const RngKey& fixed_key, std::size_t first,
+                              std::span<float> rms_e) const {
+  std::array<std::uint32_t, 1024> words;
+  const double median_e = read_noise_e * std::exp(-read_noise_spread * read_noise_spread);
+  for (std::size_t i = 0; i < rms_e.size(); i += words.size()) {
+    const std::size_t n = std::min(words.size(), rms_e.size() - i);
+    rng_words(fixed_key, std::uint32_t(first + i), n, 0, words.data());
+    normals_of(words.data(), n, rms_e.data() + i);
+  }
+  for (float& e : rms_e) e = float(median_e * std::exp(read_noise_spread * double(e)));
+}
+
 void ReadNoise::apply(const ExposureFacts& exposed, Piece& piece) const {
+  if (is_spread()) {
+    std::array<float, 1024> rms_e, normals;
+    std::array<std::uint32_t, 1024> words;
+    const auto e = piece.electrons;
+    for (std::size_t i = 0; i < e.size(); i += words.size()) {
+      const std::size_t n = std::min(words.size(), e.size() - i), first = piece.first + i;
+      rms_of_pixels(exposed.fixed_key, first, std::span(rms_e).first(n));
+      rng_words(exposed.key, std::uint32_t(first), n, 0, words.data());
+      normals_of(words.data(), n, normals.data());
+      for (std::size_t j = 0; j < n; ++j) e[i + j] += rms_e[j] * normals[j];
+    }
+    return;
+  }
   const auto kernel =
       kernel_of(exposed.level, sse2::add_normal, avx2::add_normal, avx512::add_normal);
   kernel(exposed.key, std::uint32_t(piece.first), float(read_noise_e), piece.electrons.data(),
