@@ -7,6 +7,7 @@
 #include "core/detector/column_noise.h"
 #include "core/detector/cosmic_rays.h"
 #include "core/detector/dark_current.h"
+#include "core/detector/em_gain.h"
 #include "core/detector/fixed_pattern.h"
 #include "core/detector/frame_transfer.h"
 #include "core/detector/full_well.h"
@@ -26,7 +27,7 @@ namespace dmise {
 /// Effects between light on the pixels and counts, in running order.
 using DetectorEffects =
     EffectList<RollingShutter, FrameTransfer, PixelResponse, PhotonNoise, DarkCurrent, HotPixels,
-               CosmicRays, ReferencePixels, Persistence, FullWell, Blooming, Nonlinearity,
+               CosmicRays, ReferencePixels, Persistence, FullWell, Blooming, EmGain, Nonlinearity,
                InterpixelCoupling, ColumnNoise, ReadNoise, FixedPattern, Quantisation>;
 
 /// Parameters of a detector, those of its effects first. Effects with parameters of 0 do nothing

@@ -51,7 +51,8 @@ ElectronImage expected_signal(const ExpectedElectronImage& light, const Detector
   std::copy(light.pixels.begin(), light.pixels.end(), image.pixels.begin());
   run<BeforeDark>(exposed, threads, image);
   const auto dark_e = float(detector.dark_e_per_s * exposure.exposure_s);
-  for (float& e : image.pixels) e += dark_e;
+  const auto induced_e = float(detector.clock_induced_e);
+  for (float& e : image.pixels) e += dark_e + induced_e;
   run<AfterDark>(exposed, threads, image);
   return image;
 }

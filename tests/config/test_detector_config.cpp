@@ -107,7 +107,8 @@ TEST(DetectorConfig, WhatDoesNotGoTogetherIsRefusedAtItsKey) {
   EXPECT_EQ(with("frame_transfer_s: 0.1\nrow_time_us: 10"),
             "c.yaml:24:14: row_time_us: must be 0 with frame_transfer_s: one shutter or the other, "
             "got 10");
-  EXPECT_EQ(with("row_time_us: 10"), "");
+  EXPECT_EQ(with("em_gain: 0.5").find("c.yaml:23:10: em_gain: must be >= 1"), 0u);
+  EXPECT_EQ(with("row_time_us: 10\nem_gain: 1000"), "");
 }
 
 TEST(DetectorConfig, OneBitAndSixteenAreAdcs) {
