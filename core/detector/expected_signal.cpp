@@ -9,8 +9,9 @@ namespace {
 
 // Those of `DetectorEffects` that are not noise, before and after dark current is added.
 using BeforeDark = EffectList<FrameTransfer, PixelResponse>;
-using AfterDark = EffectList<HotPixels, CosmicRays, ReferencePixels, Persistence, FullWell,
-                             Blooming, Nonlinearity, InterpixelCoupling, FixedPattern>;
+using AfterDark =
+    EffectList<HotPixels, CosmicRays, ReferencePixels, Persistence, FullWell, Blooming,
+               ChargeTransfer, Nonlinearity, InterpixelCoupling, FixedPattern>;
 
 template <class List>
 void run(const ExposureFacts& exposed, Threads& threads, ElectronImage& image) {

@@ -108,6 +108,8 @@ TEST(DetectorConfig, WhatDoesNotGoTogetherIsRefusedAtItsKey) {
             "c.yaml:24:14: row_time_us: must be 0 with frame_transfer_s: one shutter or the other, "
             "got 10");
   EXPECT_EQ(with("em_gain: 0.5").find("c.yaml:23:10: em_gain: must be >= 1"), 0u);
+  EXPECT_EQ(with("parallel_cti: 0.1").find("c.yaml:23:15: parallel_cti: must be <= 0.01"), 0u)
+      << with("parallel_cti: 0.1");
   EXPECT_EQ(with("row_time_us: 10\nem_gain: 1000"), "");
 }
 
