@@ -131,7 +131,7 @@ Detector acting_detector(const Detector& detector, const EffectSet& effects) {
 bool reads_after_others(const Detector& d) {
   return d.interpixel_coupling > 0.0 || d.nonlinearity > 0.0 || d.persistence_fraction > 0.0 ||
          d.blooming || d.reference_px > 0 || d.is_spread() || d.EmGain::applies(d) ||
-         d.ChargeTransfer::applies(d);
+         d.ChargeTransfer::applies(d) || d.BrighterFatter::applies(d);
 }
 
 Detector drawn_together(const Detector& acting, const EffectSet& effects) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/detector/blooming.h"
+#include "core/detector/brighter_fatter.h"
 #include "core/detector/charge_transfer.h"
 #include "core/detector/column_noise.h"
 #include "core/detector/cosmic_rays.h"
@@ -27,10 +28,10 @@ namespace dmise {
 
 /// Effects between light on the pixels and counts, in running order.
 using DetectorEffects =
-    EffectList<RollingShutter, FrameTransfer, PixelResponse, PhotonNoise, DarkCurrent, HotPixels,
-               CosmicRays, ReferencePixels, Persistence, FullWell, Blooming, ChargeTransfer, EmGain,
-               Nonlinearity, InterpixelCoupling, ColumnNoise, ReadNoise, FixedPattern,
-               Quantisation>;
+    EffectList<RollingShutter, FrameTransfer, PixelResponse, PhotonNoise, BrighterFatter,
+               DarkCurrent, HotPixels, CosmicRays, ReferencePixels, Persistence, FullWell, Blooming,
+               ChargeTransfer, EmGain, Nonlinearity, InterpixelCoupling, ColumnNoise, ReadNoise,
+               FixedPattern, Quantisation>;
 
 /// Parameters of a detector, those of its effects first. Effects with parameters of 0 do nothing
 /// and cost nothing.

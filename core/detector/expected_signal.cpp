@@ -8,7 +8,7 @@ namespace dmise {
 namespace {
 
 // Those of `DetectorEffects` that are not noise, before and after dark current is added.
-using BeforeDark = EffectList<FrameTransfer, PixelResponse>;
+using BeforeDark = EffectList<FrameTransfer, PixelResponse, BrighterFatter>;
 using AfterDark =
     EffectList<HotPixels, CosmicRays, ReferencePixels, Persistence, FullWell, Blooming,
                ChargeTransfer, Nonlinearity, InterpixelCoupling, FixedPattern>;

@@ -74,8 +74,11 @@ SaturatedPixels expose(const ExpectedElectronImage& light, const Detector& param
                              .fixed_key = {}},
                             seconds);
   std::mutex sums;
+  ElectronImage before;  // what a piece's neighbours had, where the image itself is written
   const auto on_pieces = [&](std::size_t begin, std::size_t end, bool first, bool by_neighbours) {
     const bool in_buffer = end == DetectorChain::size && (first || by_neighbours);
+    if (by_neighbours && !in_buffer) before = image;
+    const ElectronImage& around = in_buffer ? image : before;
     threads.for_ranges(light.pixels.size(), piece_px, [&](std::size_t from, std::size_t to) {
       thread_local std::vector<float> buffer(piece_px);
       DetectorChain::Seconds spent{};
@@ -89,7 +92,7 @@ SaturatedPixels expose(const ExpectedElectronImage& light, const Detector& param
           .counts = counts.pixels.data() + from,
           .saturated = &here};
       if (first) take_light(light, piece, options.level);
-      chain.run(begin, end, &image, piece, spent);
+      chain.run(begin, end, &around, piece, spent);
       std::lock_guard lock(sums);
       saturated.full_well += here.full_well;
       saturated.adc += here.adc;

@@ -103,6 +103,7 @@ TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeas
   d.prnu_rms = d.interpixel_coupling = d.nonlinearity = d.persistence_fraction = 0.01;
   d.hot_pixel_fraction = d.hot_pixel_e_per_s = d.cosmic_rays_per_px_s = d.frame_transfer_s = 0.1;
   d.parallel_cti = d.row_time_us = d.pixel_gain_rms = d.read_noise_spread = 0.01;
+  d.brighter_fatter_per_e = 1e-7;
   d.em_gain = 100.0;
   d.reference_px = 4;
   d.persistence_s = 10.0;
