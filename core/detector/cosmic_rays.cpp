@@ -49,6 +49,7 @@ CosmicRays::Prepared CosmicRays::charges(int columns, int rows, double exposure_
     const double across = std::min(cosmic_ray_depth_px * std::sqrt(1 - cosine * cosine) / cosine,
                                    std::hypot(columns, rows));
     const double dx = across * std::cos(2 * pi * u(4)), dy = across * std::sin(2 * pi * u(4));
+    const auto time = float(u(5));
     const double charge = std::hypot(across, cosmic_ray_depth_px) * cosmic_ray_e_per_px;
     cuts.assign({0.0, 1.0});
     add_crossings(x, dx, cuts);
@@ -60,7 +61,7 @@ CosmicRays::Prepared CosmicRays::charges(int columns, int rows, double exposure_
                  py = std::int64_t(std::floor(y + dy * middle + 0.5));
       if (px < 0 || px >= columns || py < 0 || py >= rows) continue;
       charges.push_back(
-          {std::uint32_t(py * columns + px), float(charge * (cuts[i + 1] - cuts[i]))});
+          {std::uint32_t(py * columns + px), float(charge * (cuts[i + 1] - cuts[i])), time});
     }
   }
   std::stable_sort(charges.begin(), charges.end(),

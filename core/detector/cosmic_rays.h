@@ -9,6 +9,7 @@ namespace dmise {
 struct CosmicCharge {
   std::uint32_t pixel;
   float electrons;
+  float time = 0.0f;  // when it came, of the exposure: [0, 1)
 };
 
 /// Limit on the number of hits in one exposure.

@@ -125,13 +125,14 @@ Detector acting_detector(const Detector& detector, const EffectSet& effects) {
   DetectorEffects::for_each([&]<class Effect>() {
     if (!effects.has(Effect::facts)) static_cast<Effect&>(d).switch_off();
   });
+  d.read_noise_e = d.fitted_noise_e(d.read_noise_e);
   return d;
 }
 
 bool reads_after_others(const Detector& d) {
   return d.interpixel_coupling > 0.0 || d.nonlinearity > 0.0 || d.persistence_fraction > 0.0 ||
          d.blooming || d.reference_px > 0 || d.is_spread() || d.EmGain::applies(d) ||
-         d.ChargeTransfer::applies(d) || d.BrighterFatter::applies(d);
+         d.ChargeTransfer::applies(d) || d.BrighterFatter::applies(d) || d.Ramp::applies(d);
 }
 
 Detector drawn_together(const Detector& acting, const EffectSet& effects) {

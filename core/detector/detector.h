@@ -20,6 +20,7 @@
 #include "core/detector/photon_noise.h"
 #include "core/detector/pixel_response.h"
 #include "core/detector/quantisation.h"
+#include "core/detector/ramp.h"
 #include "core/detector/read_noise.h"
 #include "core/detector/reference_pixels.h"
 #include "core/detector/rolling_shutter.h"
@@ -30,8 +31,8 @@ namespace dmise {
 using DetectorEffects =
     EffectList<RollingShutter, FrameTransfer, PixelResponse, PhotonNoise, BrighterFatter,
                DarkCurrent, HotPixels, CosmicRays, ReferencePixels, Persistence, FullWell, Blooming,
-               ChargeTransfer, EmGain, Nonlinearity, InterpixelCoupling, ColumnNoise, ReadNoise,
-               FixedPattern, Quantisation>;
+               ChargeTransfer, EmGain, Nonlinearity, InterpixelCoupling, Ramp, ColumnNoise,
+               ReadNoise, FixedPattern, Quantisation>;
 
 /// Parameters of a detector, those of its effects first. Effects with parameters of 0 do nothing
 /// and cost nothing.
@@ -52,7 +53,7 @@ std::optional<DetectorFault> fault_of(const Detector& detector);
 void check(const Detector& detector);
 
 /// Returns the detector for a frame: the parameters of effects that are off are neutral; dark
-/// currents and their reference are those at `temperature_c`.
+/// currents and their reference are those at `temperature_c`, read noise is that of a ramp's fit.
 Detector acting_detector(const Detector& detector, const EffectSet& effects);
 
 /// Whether effects that take charge, or that of neighbours, come between the draw of photons and

@@ -18,7 +18,7 @@ ElectronImage expected_noise(const ExpectedElectronImage& unshifted, const Detec
   const double rounding_e2 = d.gain_e_per_dn * d.gain_e_per_dn / 12.0;
   const double reading_e2 =
       d.read_noise_e * d.read_noise_e + d.column_noise_e * d.column_noise_e + rounding_e2;
-  const double excess2 = d.excess_noise2();
+  const double excess2 = d.excess_noise2() * d.shot_noise2();
   const double bend = 2.0 * d.nonlinearity / d.full_well_e;
   const auto sigma = [&](float light_e, float freed_e) {
     const double slope = std::max(0.0, 1.0 - bend * (light_e + freed_e));

@@ -120,7 +120,7 @@ void ExposurePlanner::look_at_sensor() {
         ghost.ghost_fraction / std::max(1.0, pi * ghost.ghost_radius_px * ghost.ghost_radius_px);
   f.airy_px = airy_px(optics, band.centre_m);
   f.speckle_px = std::hypot(1.0, f.airy_px);
-  f.read_noise_e = detector.read_noise_e;
+  f.read_noise_e = detector.fitted_noise_e(detector.read_noise_e);
   f.read_later = reads_after_others(detector);
   f.dark_e = dark_rate_e_per_s(detector) * sensor_.exposure_s;
   if (blur.method != PointSpread::Method::deposit) {

@@ -105,6 +105,7 @@ TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeas
   d.parallel_cti = d.row_time_us = d.pixel_gain_rms = d.read_noise_spread = 0.01;
   d.brighter_fatter_per_e = 1e-7;
   d.em_gain = 100.0;
+  d.ramp_reads = 8;
   d.reference_px = 4;
   d.persistence_s = 10.0;
   d.blooming = true;

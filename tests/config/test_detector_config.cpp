@@ -107,13 +107,15 @@ TEST(DetectorConfig, WhatDoesNotGoTogetherIsRefusedAtItsKey) {
   EXPECT_EQ(with("frame_transfer_s: 0.1\nrow_time_us: 10"),
             "c.yaml:24:14: row_time_us: must be 0 with frame_transfer_s: one shutter or the other, "
             "got 10");
+  EXPECT_EQ(with("ramp_reads: 7\nfowler_reads: 4"),
+            "c.yaml:24:15: fowler_reads: must be at most half of ramp_reads, got 4");
   EXPECT_EQ(
       with("brighter_fatter_per_e: 2e-5"),
       "c.yaml:23:24: brighter_fatter_per_e: times full_well_e must be at most 0.25, got 2e-5");
   EXPECT_EQ(with("em_gain: 0.5").find("c.yaml:23:10: em_gain: must be >= 1"), 0u);
   EXPECT_EQ(with("parallel_cti: 0.1").find("c.yaml:23:15: parallel_cti: must be <= 0.01"), 0u)
       << with("parallel_cti: 0.1");
-  EXPECT_EQ(with("row_time_us: 10\nem_gain: 1000"), "");
+  EXPECT_EQ(with("row_time_us: 10\nem_gain: 1000\nramp_reads: 16\nfowler_reads: 8"), "");
 }
 
 TEST(DetectorConfig, OneBitAndSixteenAreAdcs) {
