@@ -19,13 +19,19 @@ std::string_view meaning_of(std::string_view key) {
        "Rms error of each exposure [arcsec]: right, down, roll, or one number for the first two."},
       {"offset_ms", "Time by which the clock is fast at the start of the run [ms]."},
       {"drift_ppm", "Rate by which it gains [1e-6]."},
-      {"jitter_ms", "Rms error of each reading [ms]."}};
+      {"jitter_ms", "Rms error of each reading [ms]."},
+      {"psd_hz", "Frequencies of the power spectral density [Hz], rising."},
+      {"psd_arcsec2_per_hz",
+       "One-sided density of an axis there [arcsec2/Hz]; straight between, none outside."},
+      {"sine_hz", "Frequencies of sinusoids [Hz]."},
+      {"sine_rms_arcsec", "Their rms along an axis [arcsec]."}};
   for (const auto& [of, meaning] : meanings)
     if (of == key) return meaning;
   return "";
 }
 
 Forms forms_of(const InstrumentParameter& p) {
+  if (p.kind == Kind::list) return form::list(form::number(0.0, p.most));
   const bool is_rms = p.kind == Kind::rms || p.kind == Kind::rms_of_axes;
   const double least = is_rms ? 0.0 : -p.most;
   if (std::holds_alternative<double Instrument::*>(p.value)) return form::number(least, p.most);
@@ -48,6 +54,10 @@ const Section& section_of() {
 void read_number(const YamlValue& value, const InstrumentParameter& p, Instrument& instrument) {
   if (const auto* number = std::get_if<double Instrument::*>(&p.value)) {
     instrument.** number = value.number() * p.unit;
+    return;
+  }
+  if (const auto* list = std::get_if<std::vector<double> Instrument::*>(&p.value)) {
+    for (const auto& number : value.list()) (instrument.**list).push_back(number.number() * p.unit);
     return;
   }
   ImageAxes& axes = instrument.*std::get<ImageAxes Instrument::*>(p.value);
@@ -77,6 +87,10 @@ void read_effect(const YamlValue& value, Instrument& instrument) {
   }
   map.done();
   if (given.empty()) value.fail("needs one of " + keys, false);
+  if constexpr (requires(const Effect& effect) { effect.fault(); }) {
+    const std::string_view fault = static_cast<const Effect&>(instrument).fault();
+    if (!fault.empty()) value.fail(std::string(fault), false);
+  }
 }
 
 }  // namespace
@@ -116,6 +130,10 @@ std::vector<double> numbers_of(const InstrumentParameter& p, const Instrument& i
   if (const auto* number = std::get_if<double Instrument::*>(&p.value))
     return {instrument.**number / p.unit};
   std::vector<double> numbers;
+  if (const auto* list = std::get_if<std::vector<double> Instrument::*>(&p.value)) {
+    for (const double number : instrument.**list) numbers.push_back(number / p.unit);
+    return numbers;
+  }
   for (const double number : instrument.*std::get<ImageAxes Instrument::*>(p.value))
     numbers.push_back(number / p.unit);
   return numbers;

@@ -1,6 +1,7 @@
 #include "core/config/sensor_config.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include "core/config/search_path.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/psf_plan.h"
+#include "core/optics/psf_table.h"
 #include "core/optics/pupil_sampling.h"
 #include "core/sky/airmass.h"
 #include "core/sky/place_effects.h"
@@ -70,6 +72,23 @@ void read_sensor_surroundings(YamlMap& map, SensorConfig& sensor) {
   sensor.sky = around.sky ? *around.sky : sky_preset(site ? "dark" : "space");
   sensor.atmosphere = around.atmosphere ? *around.atmosphere : standard_atmosphere(0.17);
   sensor.weather = around.weather.value_or(WeatherConfig{});
+}
+
+/// Adds to the point spread what an exposure sees of the camera's vibration as blur.
+void add_blur_of_vibration(YamlMap& map, SensorConfig& sensor) {
+  const Vibration vibration = acting_instrument(sensor.instrument, sensor.effects);
+  if (!vibration.applies()) return;
+  const double blur_rad = vibration.blur_rad(sensor.exposure_s);
+  Optics& optics = sensor.camera.optics;
+  constexpr double widest_px = 1000.0;
+  if (fwhm_per_sigma * blur_rad > widest_px * optics.pixel_angle_rad())
+    map.require(Vibration::facts.name)
+        .fail("what an exposure sees of it as blur must be at most 1000 px wide", false);
+  if (optics.spread.model == PointSpread::Model::gaussian)
+    optics.psf_fwhm_px =
+        std::hypot(optics.psf_fwhm_px, fwhm_per_sigma * blur_rad / optics.pixel_angle_rad());
+  else
+    optics.spread.jitter_rad = std::hypot(optics.spread.jitter_rad, blur_rad);
 }
 
 /// Refuses a rolling shutter that is not through with the first frame when the run ends, or during
@@ -383,6 +402,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   if (const auto own = map.find("effects")) read_effects(*own, sensor.effects);
   check_clock(map, sensor, duration);
   check_rows(exposure, sensor, rate_deg_per_s, duration);
+  add_blur_of_vibration(map, sensor);
   if (sensor.effects.has(SkyBackground::facts))
     check_sky_in_band(value, sensor.sky, sensor.camera.band, bool(site));
   check_point_spread(value, sensor);

@@ -1,11 +1,12 @@
 #pragma once
 #include "core/instrument/clock_error.h"
 #include "core/instrument/pointing_error.h"
+#include "core/instrument/vibration.h"
 
 namespace dmise {
 
 /// In the order in which they run.
-using InstrumentEffects = EffectList<ClockError, PointingError>;
+using InstrumentEffects = EffectList<ClockError, PointingError, Vibration>;
 
 /// What a sensor does not know of itself.
 struct Instrument : InstrumentEffects::Parameters {

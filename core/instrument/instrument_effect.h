@@ -3,6 +3,7 @@
 #include <span>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "core/effects/plan_facts.h"
 
@@ -11,6 +12,7 @@
 //   static constexpr EffectFacts facts;       its name is the key of its parameters in YAML
 //   static std::span<const InstrumentParameter> parameters();
 //   bool applies() const;                     whether a parameter is not 0
+//   std::string_view fault() const;           optional: why parameters do not go together
 //   ErrorBound error(int level, const PlanFacts&)   of a frame without it
 // To add one: write its file pair, list it in core/instrument/instrument.h, test it.
 namespace dmise {
@@ -28,12 +30,14 @@ struct InstrumentParameter {
     axes,         // a list [x, y, roll]
     rms,          // >= 0
     rms_of_axes,  // >= 0; in YAML also one number, that of x and y
+    list,         // of numbers >= 0, as many as there are
   };
   std::string_view key;  // in YAML
   double unit = 1.0;     // of the key in that of the member
   double most = 0.0;     // size of the number, in the unit of the key
   Kind kind = Kind::number;
-  std::variant<double Instrument::*, ImageAxes Instrument::*> value;
+  std::variant<double Instrument::*, ImageAxes Instrument::*, std::vector<double> Instrument::*>
+      value;
 };
 
 }  // namespace dmise

@@ -29,7 +29,7 @@ double camera_rate_rad_per_s(const View& view) {
 void add_error_facts(const View& view, PlanFacts& f) {
   const ExposureErrors& errors = view.errors();
   const FrameTimes &told = errors.commanded(), &truly = view.times();
-  if (errors.of_pointing())
+  if (errors.displace())
     for (const SimTime t : {truly.start, truly.end})
       f.pointing_error_rad =
           std::max(f.pointing_error_rad, rotation_angle_rad(errors.true_from_commanded(t)));

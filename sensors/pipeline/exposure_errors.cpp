@@ -19,6 +19,11 @@ ExposureErrors::ExposureErrors(const SensorConfig& sensor, const FrameTimes& com
   if (of_pointing())
     for (std::uint32_t k = 0; k < pointing_deviate_.size(); ++k)
       pointing_deviate_[k] = deviate(PointingError::facts, k);
+  if (of_vibration()) {
+    const FrameTimes times = exposed();
+    vibration_rad_ = instrument_.shift_rad(rng_key(seed, sensor.name, 0, Vibration::facts.name),
+                                           times.middle, times.seconds());
+  }
 }
 
 FrameTimes ExposureErrors::exposed() const {
@@ -38,7 +43,9 @@ SimTime ExposureErrors::reading(SimTime t) const {
 }
 
 Rotation<CameraFrame, CameraFrame> ExposureErrors::true_from_commanded(SimTime t) const {
-  return dmise::true_from_commanded(instrument_.at_rad(t, pointing_deviate_));
+  ImageAxes displaced_rad = instrument_.at_rad(t, pointing_deviate_);
+  for (std::size_t k = 0; k < displaced_rad.size(); ++k) displaced_rad[k] += vibration_rad_[k];
+  return dmise::true_from_commanded(displaced_rad);
 }
 
 }  // namespace dmise

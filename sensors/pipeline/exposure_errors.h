@@ -18,7 +18,10 @@ class ExposureErrors {
 
   bool of_clock() const { return instrument_.ClockError::applies(); }
   bool of_pointing() const { return instrument_.PointingError::applies(); }
-  bool any() const { return of_clock() || of_pointing(); }
+  bool of_vibration() const { return instrument_.Vibration::applies(); }
+  /// Whether the camera points elsewhere than it is told to.
+  bool displace() const { return of_pointing() || of_vibration(); }
+  bool any() const { return of_clock() || displace(); }
 
   const FrameTimes& commanded() const { return commanded_; }
   /// Returns when the shutter is truly open.
@@ -34,7 +37,7 @@ class ExposureErrors {
   SimTime last_row_delay_;
   Instrument instrument_;
   double clock_jitter_s_ = 0.0;
-  ImageAxes pointing_deviate_{};
+  ImageAxes pointing_deviate_{}, vibration_rad_{};
 };
 
 }  // namespace dmise

@@ -114,7 +114,7 @@ Rotation<CameraFrame, Gcrs> View::camera_from_gcrs(SimTime t) const {
   // A mount on the ground is told axes of the Earth, as they are by its clock.
   if (by_clock && site_)
     camera = camera * earth().itrs_from_gcrs(reading).inverse() * earth().itrs_from_gcrs(t);
-  return errors_.of_pointing() ? errors_.true_from_commanded(t) * camera : camera;
+  return errors_.displace() ? errors_.true_from_commanded(t) * camera : camera;
 }
 
 ApparentPlaces View::places(SimTime t, const EffectSet& effects) const {

@@ -97,6 +97,8 @@ TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeas
   sensor.camera.optics.vignetting.natural = true;
   sensor.camera.optics.image.ghost_fraction = 1e-3;
   sensor.instrument.offset_s = 1e-3;
+  sensor.instrument.sine_frequency_hz = {1.0};
+  sensor.instrument.sine_rms_rad = {1e-6};
   sensor.instrument.bias_rad = {1e-6, 0, 0};
   Detector& d = sensor.camera.detector;
   d.dark_e_per_s = d.read_noise_e = d.column_noise_e = 1.0;

@@ -230,6 +230,58 @@ TEST(InstrumentErrors, TruthHasTheTrueAttitude) {
   EXPECT_EQ(to_json(truth_of(exact.frame()), utc).find("camera_from_gcrs"), std::string::npos);
 }
 
+// A tremble of 0.4 Hz displaces exposures of 0.5 s, one of 40 Hz blurs them; both are 6 arcsec rms,
+// 0.29 px. The truth and the header do not know of it.
+TEST(InstrumentErrors, VibrationDisplacesBySlowAndBlursByFastFrequencies) {
+  const auto scene = [](const std::string& hz) {
+    return among_stars(", vibration: {sine_hz: [" + hz + "], sine_rms_arcsec: [60]}", 0.5, 200);
+  };
+  const std::vector<Star> star{{30, 40, {}, {}}};
+  test::Stage slow(scene("0.4"), csv(star)), fast(scene("40.3"), csv(star));
+  test::Stage still(among_stars("", 0.5, 200), csv(star));
+  const double whole_px = 60 * arcsec * 1e4;
+  const auto width_px2 = [](const CountImage& counts) {
+    const PixelPosition at = test::centroid(counts, {599.5, 499.5}, 40);
+    double sum = 0, squares = 0;
+    for (int y = 460; y < 540; ++y)
+      for (int x = 560; x < 640; ++x) {
+        sum += counts.at(x, y);
+        squares += counts.at(x, y) * (std::pow(x - at.x_px, 2) + std::pow(y - at.y_px, 2)) / 2;
+      }
+    return squares / sum;
+  };
+  const auto sharp = still.frame();
+  double squares[2] = {};
+  constexpr int frames = 30;
+  for (std::uint32_t k = 1; k <= frames; ++k) {
+    const auto frame = slow.frame(k);
+    EXPECT_TRUE(k > 1 || frame.header.wcs == sharp.header.wcs);
+    const PixelPosition off = frame.stars.at(0).middle - PixelPosition{599.5, 499.5};
+    squares[0] += off.x_px * off.x_px / frames;
+    squares[1] += off.y_px * off.y_px / frames;
+  }
+  // A sine at every 5 s is in phase: its amplitude at a phase of its own. The mean of 0.2 of a turn
+  // is 0.935 of it.
+  EXPECT_LT(std::sqrt(squares[0]), 1.001 * std::sqrt(2.0) * 0.935 * whole_px);
+  EXPECT_GT(squares[0] + squares[1], 0.01);
+  const double sinc = std::sin(pi * 0.2) / (pi * 0.2);
+  EXPECT_NEAR(width_px2(slow.frame().counts) - width_px2(sharp.counts),
+              whole_px * whole_px * (1 - sinc * sinc), 0.02 * whole_px * whole_px);
+  const auto blurred = fast.frame();
+  EXPECT_NEAR(width_px2(blurred.counts) - width_px2(sharp.counts), whole_px * whole_px,
+              0.03 * whole_px * whole_px);
+  const PixelPosition off = blurred.stars.at(0).middle - PixelPosition{599.5, 499.5};
+  EXPECT_LT(std::hypot(off.x_px, off.y_px), 0.05 * whole_px);
+}
+
+TEST(InstrumentErrors, VibrationOfNoPowerChangesNoByte) {
+  const std::vector<Star> star{{30, 40, {}, {}}};
+  test::Stage none(among_stars(", vibration: {psd_hz: [0.1, 10], psd_arcsec2_per_hz: [0, 0]}"),
+                   csv(star));
+  test::Stage still(among_stars(""), csv(star));
+  EXPECT_EQ(none.frame().counts.pixels, still.frame().counts.pixels);
+}
+
 // 4000 exposures: rms within 4 sigma of 1 / sqrt(2 n), no mean, nothing common to two axes.
 TEST(InstrumentErrors, JitterHasItsRms) {
   SensorConfig sensor;
