@@ -37,6 +37,8 @@ struct Facts {
 void PrintTo(const Facts& facts, std::ostream* out) { *out << facts.name; }
 
 constexpr Facts presets[] = {
+    {"all-sky-scmos", 0.0016, 300.0, 213.3, 0.1},
+    {"fast-survey-1m", 1.0, 1.375, 2.35, 0.01},
     {"geo-watch", 0.075, 8.25, 7.6, 0.05},
     {"gt-sort", 0.5, 0.67, 0.19, 0.002},
     {"hawaii-4rg", 0.15, 0.879, 1.0, 1e-4},
@@ -46,6 +48,7 @@ constexpr Facts presets[] = {
     {"omnissa-swir", 0.0034, 644.0, 90.0, 1e-6},
     {"raven", 0.4, 2.32, 1.32, 0.01},
     {"sst", 3.5, 2.157, 2.45, 0.01},
+    {"star-tracker", 0.0341, 77.8, 21.87, 0.02},
     {"telescope-3m", 3.0, 0.0189, 9.68 / 3600, 0.02 / 3600},
     {"wide-field-cmos", 0.0857, 18.9, 10.73, 0.02},
 };
@@ -58,8 +61,10 @@ TEST_P(Presets, HasTheFieldAndApertureOfItsSource) {
   EXPECT_EQ(optics.aperture_m, GetParam().aperture_m);
   EXPECT_NEAR(optics.pixel_angle_rad() / arcsec, GetParam().pixel_arcsec,
               0.004 * GetParam().pixel_arcsec);
-  const double half = std::atan(optics.columns * optics.pixel_pitch_m / 2 / optics.focal_length_m);
-  EXPECT_NEAR(2 * half / deg, GetParam().field_deg, GetParam().field_tolerance_deg);
+  const auto edge = unproject(optics, {-0.5, (optics.rows - 1) / 2.0});
+  ASSERT_TRUE(edge);
+  EXPECT_NEAR(2 * angle_rad(*edge, Vec<CameraFrame>{0, 0, 1}) / deg, GetParam().field_deg,
+              GetParam().field_tolerance_deg);
 }
 
 // A frame of the middle of its field: a V = 7 star gives the electrons of its photons.
