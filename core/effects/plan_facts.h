@@ -102,6 +102,7 @@ struct PlanFacts {
   bool near_shadow = false;     // an object is in the Earth's shadow or close
   double brightest_object_e = 0.0;
   std::vector<double> shape_radius_px;    // of each object with a shape
+  bool near_shadow_of_air = false;  // sunlight to an object passes the Earth's air, or may
   double narrowest_object_px = 0.0;       // 0: a point
   double hidden_sky_px = 0.0;             // pixels of sky behind an object, most
   bool faint_objects = false;             // one may be no source that counts

@@ -17,7 +17,9 @@ ObjectSampler::ObjectSampler(const View& view, const ObjectShapes* shapes)
       with_earthshine_(acts<Earthshine>(view.sensor().effects, view.scene())),
       zero_mag_(object_photons_per_s_m2(0.0, view.sensor().camera.band)) {
   if (acts<EarthShadow>(view.sensor().effects, view.scene()))
-    shadow_.emplace(view.environment().sun_m, view.surface());
+    shadow_.emplace(view.environment().sun_m, view.surface(),
+                    EarthShadow::Edge(view.sensor().effects.level(EarthShadow::facts)),
+                    view.sensor().camera.band);
 }
 
 ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at) const {
