@@ -65,8 +65,8 @@ using LightEffects =
     EffectList<SkyBackground, SkyGrid, Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight,
                Twilight, LightPollution, SpaceObjects, ResolvedShapes, EarthShadow, Earthshine,
                ThermalEmission, StarBackground, EarthOccultation, AirExtinction, CloudCover,
-               Scintillation, Vignetting, Streak, Occlusion, Drawing, PointSpread, AirTurbulence,
-               PsfWavelengths>;
+               Scintillation, MovingScintillation, Vignetting, Streak, Occlusion, Drawing,
+               PointSpread, AirTurbulence, PsfWavelengths>;
 
 std::vector<const EffectFacts*> list() {
   std::vector<const EffectFacts*> all;

@@ -9,6 +9,7 @@
 #include "core/photometry/band.h"
 #include "core/sky/clouds.h"
 
+#include "core/sky/turbulence.h"
 namespace dmise {
 
 /// What effects of the air may use of an exposure of a ground sensor.
@@ -18,6 +19,7 @@ struct AirExposure {
   const std::optional<Clouds>& clouds;
   double aperture_m, exposure_s, site_height_m;
   double time_s;  // of mid exposure, since the start of the run
+  std::optional<BlownTurbulence> turbulence;  // none: scintillation does not heed motion
   Vec<Gcrs> up;   // unit, at mid exposure
   Rotation<Enu, Gcrs> enu_from_gcrs;
   std::uint64_t seed;
@@ -32,7 +34,8 @@ struct SightLine {
   Vec<Gcrs> apparent;  // unit
   double bv;           // colour: B - V [mag]
   Source source;
-  std::uint32_t number;  // in its catalogue
+  std::uint32_t number;         // in its catalogue
+  double rate_rad_per_s = 0.0;  // against the air
 };
 
 inline constexpr double sun_bv = 0.65;

@@ -87,8 +87,8 @@ std::vector<double> StarLayer::Exposure::factors_of_air(const std::vector<Trail>
   std::vector<SightLine> lines;
   lines.reserve(trails.size());
   for (const Trail& trail : trails)
-    lines.push_back(
-        {trail.middle, stars.bv[trail.star], SightLine::Source::star, stars.id[trail.star]});
+    lines.push_back({trail.middle, stars.bv[trail.star], SightLine::Source::star,
+                     stars.id[trail.star], view.turns_rad_per_s(trail.middle)});
   return throughput.of_air(lines, times);
 }
 

@@ -34,11 +34,17 @@ Throughput::Throughput(const View& view) {
                            .site_height_m = view.site()->height_m,
                            .time_s = middle.seconds(),
                            .up = view.up(middle),
+  std::optional<BlownTurbulence> turbulence;
+  if (acts<MovingScintillation>(sensor.effects, view.scene())) {
+    const auto& over = sensor.atmosphere.turbulence;
+    turbulence = over ? BlownTurbulence{over->profile, over->wind} : BlownTurbulence{};
+  }
                            .enu_from_gcrs = view.enu_from_gcrs(middle),
                            .seed = view.seed(),
                            .sensor = sensor.name,
                            .frame = view.times().frame});
 }
+                           .turbulence = turbulence,
 
 double Throughput::of_air(const SightLine& line) const {
   double factor = 1.0;
