@@ -13,6 +13,7 @@
 #include "core/optics/air_turbulence.h"
 #include "core/optics/image_optics.h"
 #include "core/sky/air_effects.h"
+#include "core/sky/dispersion.h"
 #include "core/sky/occultation.h"
 #include "core/sky/place_effects.h"
 #include "core/sky/shadow.h"
@@ -65,8 +66,8 @@ using LightEffects =
     EffectList<SkyBackground, SkyGrid, Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight,
                Twilight, LightPollution, SpaceObjects, ResolvedShapes, EarthShadow, Earthshine,
                ThermalEmission, StarBackground, EarthOccultation, AirExtinction, CloudCover,
-               Scintillation, MovingScintillation, Vignetting, Streak, Occlusion, Drawing,
-               PointSpread, AirTurbulence, PsfWavelengths>;
+               Scintillation, MovingScintillation, Dispersion, Vignetting, Streak, Occlusion,
+               Drawing, PointSpread, AirTurbulence, PsfWavelengths>;
 
 std::vector<const EffectFacts*> list() {
   std::vector<const EffectFacts*> all;

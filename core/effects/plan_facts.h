@@ -75,6 +75,7 @@ struct PlanFacts {
   double scintillation = 0.0;   // deviation of a source's light at the largest airmass
   double refraction_rad = 0.0;  // largest in the field
   double moon_refraction_rad = 0.0;
+  double dispersion_rad = 0.0;  // length of the longest spectrum of the band's light
   bool moon_is_down = false;  // below the horizon without refraction
   // Directions.
   double nearest_sun_rad = 3.0;                                      // of the field's edge

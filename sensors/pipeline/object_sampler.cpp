@@ -14,6 +14,7 @@ ObjectSampler::ObjectSampler(const View& view, const ObjectShapes* shapes)
     : view_(view),
       shapes_(shapes),
       throughput_(view),
+      spectra_(Spectra::over(view)),
       with_earthshine_(acts<Earthshine>(view.sensor().effects, view.scene())),
       zero_mag_(object_photons_per_s_m2(0.0, view.sensor().camera.band)) {
   if (acts<EarthShadow>(view.sensor().effects, view.scene()))
@@ -22,7 +23,6 @@ ObjectSampler::ObjectSampler(const View& view, const ObjectShapes* shapes)
                     view.sensor().camera.band);
 }
 
-ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at) const {
 namespace {
 
 /// How fast an object moves over the sky of an observer on the ground.
@@ -37,10 +37,13 @@ double rate_rad_per_s(const Motion& motion, const ObserverState& observer) {
 
 }  // namespace
 
+ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at) const {
   const Motion motion = view_.world().motion(object, at.time);
   const auto place = at.places.satellite(motion.position_m, motion.slope_m_per_s);
   ObjectSample s;
   s.pixel = project(view_.sensor().camera.optics, at.camera * place.direction);
+  if (spectra_ && s.pixel)
+    s.ends = spectra_->ends(place.direction, place.range_m, view_.up(at.time), at.camera, *s.pixel);
   s.sunlit = shadow_ ? shadow_->sunlit_fraction(motion.position_m) : 1.0;
   const bool hidden = at.earth && at.earth->hides_object(motion.position_m, place.direction);
   const ObjectShape* own_shape = shape(object);

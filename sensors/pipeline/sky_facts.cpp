@@ -7,6 +7,7 @@
 #include "core/effects/frame_effects.h"
 #include "core/sky/airmass.h"
 #include "core/sky/cloud_cover.h"
+#include "core/sky/dispersion.h"
 #include "core/sky/scattered_moonlight.h"
 #include "core/sky/scintillation.h"
 #include "core/sky/sky_frames.h"
@@ -170,6 +171,7 @@ void add_sky_facts(const View& view, double drawn_to_v_mag, PlanFacts& f) {
   f.refraction_rad = view.refraction().at_apparent_rad(lowest_rad);
   const double moon_up_rad = std::asin(std::clamp(dot(view.up(middle), moon), -1.0, 1.0));
   f.moon_refraction_rad = view.refraction().apparent_from_true_rad(moon_up_rad) - moon_up_rad;
+  f.dispersion_rad = dispersion_rad(sensor.camera.band, view.refraction(), lowest_rad);
   f.moon_is_down = moon_up_rad < 0.0;
   f.nearest_moon_rad = from_moon_rad(view, moon) - f.moon_refraction_rad;
   f.nearest_moon_rad = std::max(held_rad, f.nearest_moon_rad);
