@@ -7,19 +7,21 @@
 
 #include "core/effects/effects.h"
 #include "core/photometry/band.h"
+#include "core/sky/air_gases.h"
 #include "core/sky/clouds.h"
-
 #include "core/sky/turbulence.h"
+
 namespace dmise {
 
 /// What effects of the air may use of an exposure of a ground sensor.
 struct AirExposure {
   const Band& band;
   const Curve& extinction_mag_per_airmass;  // over wavelength
+  std::optional<AirGases> gases;            // none: in the curve, as far as it is measured
   const std::optional<Clouds>& clouds;
+  std::optional<BlownTurbulence> turbulence;  // none: scintillation does not heed motion
   double aperture_m, exposure_s, site_height_m;
   double time_s;  // of mid exposure, since the start of the run
-  std::optional<BlownTurbulence> turbulence;  // none: scintillation does not heed motion
   Vec<Gcrs> up;   // unit, at mid exposure
   Rotation<Enu, Gcrs> enu_from_gcrs;
   std::uint64_t seed;
