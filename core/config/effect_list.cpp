@@ -13,6 +13,7 @@
 #include "core/optics/air_turbulence.h"
 #include "core/optics/image_optics.h"
 #include "core/sky/air_effects.h"
+#include "core/sky/dispersion.h"
 #include "core/sky/occultation.h"
 #include "core/sky/place_effects.h"
 #include "core/sky/shadow.h"
@@ -64,9 +65,9 @@ constexpr std::string_view always_listed[] = {"proper_motion",
 using LightEffects =
     EffectList<SkyBackground, SkyGrid, Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight,
                Twilight, LightPollution, SpaceObjects, ResolvedShapes, EarthShadow, Earthshine,
-               ThermalEmission, StarBackground, EarthOccultation, AirExtinction, CloudCover,
-               Scintillation, Vignetting, Streak, Occlusion, Drawing, PointSpread, AirTurbulence,
-               PsfWavelengths>;
+               ThermalEmission, StarBackground, EarthOccultation, AirExtinction, GasAbsorption,
+               CloudCover, Scintillation, MovingScintillation, Dispersion, Vignetting, Streak,
+               Occlusion, Drawing, PointSpread, AirTurbulence, PsfWavelengths>;
 
 std::vector<const EffectFacts*> list() {
   std::vector<const EffectFacts*> all;
@@ -121,6 +122,7 @@ SceneFacts scene_facts(const SensorConfig& sensor) {
   const bool diffracts = sensor.camera.optics.spread.model == PointSpread::Model::diffraction;
   return {.on_ground = std::holds_alternative<SiteConfig>(sensor.place),
           .clouds = sensor.weather.clouds.has_value(),
+          .gases = sensor.weather.pwv_mm.has_value(),
           .vignettes = sensor.camera.optics.vignetting.any(),
           .diffracts = diffracts,
           .turbulent = diffracts && sensor.seeing && std::isfinite(sensor.seeing->r0_m) &&

@@ -69,7 +69,11 @@ const Section& sky_section() {
        optional("lamps", form::map(lamps_section), "What lamps the light pollution is of."),
        optional("cities", form::list(form::map(city_section)), "Glows at the horizon."),
        optional("airglow_zenith_mag_per_arcsec2", brightness(),
-                "Brightness of the airglow at the zenith [V mag/arcsec^2].")}};
+                "Brightness of the airglow at the zenith [V mag/arcsec^2].", "22.4"),
+       optional("solar_flux_sfu", form::number(50.0, 400.0),
+                "The Sun's flux at 10.7 cm, monthly mean [10^-22 W/m^2/Hz]: 70 at its minimum, 200 "
+                "at its maximum. Airglow follows it.",
+                "130")}};
   return section;
 }
 
@@ -132,7 +136,10 @@ const Section& weather_section() {
        optional("temperature_c", form::number(-90.0, 60.0), "Air temperature [deg C]."),
        optional("humidity", share(), "Relative humidity."),
        optional("clouds", share() | form::map(clouds_section),
-                "Transmission of a veil, or clouds.")}};
+                "Transmission of a veil, or clouds."),
+       optional("pwv_mm", form::number(0.0, 100.0),
+                "Precipitable water [mm]; with it water vapour and oxygen absorb in their bands.",
+                "as measured in the extinction curve, to 1.1 um")}};
   return section;
 }
 
@@ -229,6 +236,10 @@ SkyConfig read_sky(const YamlValue& value) {
     if (!sky.parts.airglow) airglow->fail("there is no airglow in this sky", false);
     sky.parts.airglow->zenith_v_mag_per_arcsec2 = airglow->number();
   }
+  if (const auto flux = map.find("solar_flux_sfu")) {
+    if (!sky.parts.airglow) flux->fail("there is no airglow in this sky", false);
+    sky.parts.airglow->solar_flux_sfu = flux->number();
+  }
   map.done();
   return sky;
 }
@@ -321,6 +332,7 @@ WeatherConfig read_weather(const YamlValue& value, WeatherConfig known) {
     known.air = air;
   }
   if (const auto clouds = map.find("clouds")) known.clouds = read_clouds(*clouds);
+  if (const auto water = map.find("pwv_mm")) known.pwv_mm = water->number();
   map.done();
   return known;
 }

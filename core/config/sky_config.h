@@ -42,6 +42,7 @@ struct AtmosphereConfig {
 struct WeatherConfig {
   std::optional<Weather> air;  // none: the standard atmosphere at the site's height
   std::optional<Clouds> clouds;
+  std::optional<double> pwv_mm;  // precipitable water
 };
 
 /// Sky, atmosphere and weather as far as they are configured.

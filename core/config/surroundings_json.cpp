@@ -25,6 +25,8 @@ void write_sky(JsonWriter& json, const SkyConfig& sky) {
     if (on[i]) json.value(sky_part_names[i]);
   json.end_array();
   if (p.airglow) json.field("airglow", p.airglow->zenith_v_mag_per_arcsec2);
+  if (p.airglow && p.airglow->solar_flux_sfu)
+    json.field("solar_flux_sfu", *p.airglow->solar_flux_sfu);
   if (p.light_pollution) {
     const LightPollution& l = *p.light_pollution;
     json.key("light_pollution").begin_object();
@@ -93,6 +95,7 @@ void write_surroundings(JsonWriter& json, const SensorConfig& sensor) {
   json.key("weather").begin_object();
   if (w.air)
     write_numbers(json, "air", {w.air->pressure_hpa, w.air->temperature_c, w.air->humidity});
+  if (w.pwv_mm) json.field("pwv_mm", *w.pwv_mm);
   if (w.clouds) std::visit(CloudWriter{json}, *w.clouds);
   json.end_object();
 }

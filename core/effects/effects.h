@@ -32,6 +32,7 @@ struct EffectFacts {
 struct SceneFacts {
   bool on_ground = true;
   bool clouds = false;     // over a ground sensor
+  bool gases = false;      // over it are known, water vapour among them
   bool stars = true;       // there is a catalogue
   bool shapes = true;      // there are objects with a shape
   bool vignettes = false;  // the optics lose light off the axis

@@ -72,8 +72,10 @@ struct PlanFacts {
   bool read_later = false;  // its noise is drawn after effects that take charge only
   // The air.
   double most_airmass = 1.0, zenith_extinction_mag = 0.0;
+  double gas_mag = 0.0;         // absorption of sunlight by gases at the largest airmass
   double scintillation = 0.0;   // deviation of a source's light at the largest airmass
   double refraction_rad = 0.0;  // largest in the field
+  double dispersion_rad = 0.0;  // length of the longest spectrum of the band's light
   double moon_refraction_rad = 0.0;
   bool moon_is_down = false;  // below the horizon without refraction
   // Directions.
@@ -100,6 +102,7 @@ struct PlanFacts {
   std::size_t objects = 0, shapes = 0;
   double light_time_rad = 0.0;  // way of an object while its light travels, seen from the sensor
   bool near_shadow = false;     // an object is in the Earth's shadow or close
+  bool near_shadow_of_air = false;  // sunlight to an object passes the Earth's air, or may
   double brightest_object_e = 0.0;
   std::vector<double> shape_radius_px;    // of each object with a shape
   double narrowest_object_px = 0.0;       // 0: a point

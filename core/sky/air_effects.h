@@ -1,6 +1,7 @@
 #pragma once
 #include "core/sky/air_extinction.h"
 #include "core/sky/cloud_cover.h"
+#include "core/sky/gas_absorption.h"
 #include "core/sky/scintillation.h"
 
 // An effect of the air takes light of a source on its way down to a ground sensor. It is a struct
@@ -13,6 +14,6 @@
 namespace dmise {
 
 /// In the order in which they run.
-using AirEffects = EffectList<AirExtinction, CloudCover, Scintillation>;
+using AirEffects = EffectList<AirExtinction, GasAbsorption, CloudCover, Scintillation>;
 
 }  // namespace dmise

@@ -7,7 +7,9 @@
 
 #include "core/effects/effects.h"
 #include "core/photometry/band.h"
+#include "core/sky/air_gases.h"
 #include "core/sky/clouds.h"
+#include "core/sky/turbulence.h"
 
 namespace dmise {
 
@@ -15,7 +17,9 @@ namespace dmise {
 struct AirExposure {
   const Band& band;
   const Curve& extinction_mag_per_airmass;  // over wavelength
+  std::optional<AirGases> gases;            // none: in the curve, as far as it is measured
   const std::optional<Clouds>& clouds;
+  std::optional<BlownTurbulence> turbulence;  // none: scintillation does not heed motion
   double aperture_m, exposure_s, site_height_m;
   double time_s;  // of mid exposure, since the start of the run
   Vec<Gcrs> up;   // unit, at mid exposure
@@ -32,7 +36,8 @@ struct SightLine {
   Vec<Gcrs> apparent;  // unit
   double bv;           // colour: B - V [mag]
   Source source;
-  std::uint32_t number;  // in its catalogue
+  std::uint32_t number;         // in its catalogue
+  double rate_rad_per_s = 0.0;  // against the air
 };
 
 inline constexpr double sun_bv = 0.65;

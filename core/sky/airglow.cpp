@@ -18,12 +18,21 @@ double van_rhijn(double sin_altitude, double layer_height_m) {
 }
 
 double airglow_s10(const Airglow& airglow, double sin_altitude, double diffuse_extinction_mag) {
-  return s10_of_mag_per_arcsec2(airglow.zenith_v_mag_per_arcsec2) *
+  const double by_sun =
+      airglow.solar_flux_sfu ? airglow_by_solar_flux(*airglow.solar_flux_sfu) : 1.0;
+  return by_sun * s10_of_mag_per_arcsec2(airglow.zenith_v_mag_per_arcsec2) *
          van_rhijn(sin_altitude, airglow.layer_height_m) *
          light_of_magnitude(diffuse_extinction_mag * (scattering_airmass(sin_altitude) - 1.0));
 }
 
-const Spectrum& airglow_spectrum() {
+double airglow_by_solar_flux(double solar_flux_sfu) {
+  const auto light = [](double sfu) { return 0.2068 + 0.006139 * sfu; };
+  return light(solar_flux_sfu) / light(130.0);
+}
+
+namespace {
+
+const Spectrum& usual_spectrum() {
   static const Spectrum spectrum = [] {
     // Relative flux per wavelength from 350 nm on, every 10 nm.
     static constexpr double visible[] = {
@@ -37,8 +46,11 @@ const Spectrum& airglow_spectrum() {
     constexpr double oh_scale = 0.6;
     // Herzberg's bands of O2, likewise by U = 22.1 (Patat 2003: 22.3; Benn & Ellison 1998: 22.0).
     constexpr double herzberg_scale = 4.2;
-    static constexpr double infrared[][2] = {{1000, 9.0},  {1250, 12.5}, {1650, 31.0},
-                                             {1800, 15.0}, {2200, 25.0}, {2500, 25.0}};
+    // Means over 100 nm: OH to 2.2 um, then the air's warmth.
+    static constexpr double infrared[][2] = {{1000, 9.0},  {1100, 10.0}, {1250, 13.0}, {1400, 15.0},
+                                             {1500, 40.0}, {1600, 48.0}, {1700, 48.0}, {1800, 25.0},
+                                             {1900, 8.0},  {2000, 11.0}, {2100, 9.0},  {2200, 4.0},
+                                             {2300, 6.0},  {2400, 14.0}, {2500, 25.0}};
     Curve curve{{200 * nm, 300 * nm}, {0.0, herzberg_scale * 0.23}};
     double at_nm = 350;
     for (const double flux : visible) {
@@ -52,6 +64,16 @@ const Spectrum& airglow_spectrum() {
     }
     return Spectrum{curve};
   }();
+  return spectrum;
+}
+
+}  // namespace
+
+Spectrum airglow_spectrum(double brighter) {
+  Spectrum spectrum = usual_spectrum();
+  Curve& curve = spectrum.irradiance;
+  for (std::size_t i = 0; i < curve.value.size(); ++i)
+    if (curve.wavelength_m[i] > 695 * nm) curve.value[i] /= brighter;
   return spectrum;
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "core/effects/plan_facts.h"
 #include "core/photometry/spectrum.h"
 
@@ -16,7 +18,14 @@ struct Airglow {
 
   double zenith_v_mag_per_arcsec2 = 22.4;  // at the ground; 21.9 to 22.6 over the solar cycle
   double layer_height_m = 90e3;
+  /// The Sun's flux at 10.7 cm, monthly mean [10^-22 W/m2/Hz]; none: as `zenith_v_mag_per_arcsec2`
+  /// says, else that is of 130.
+  std::optional<double> solar_flux_sfu;
 };
+
+/// Light of lines and continuum but for OH at a solar flux over that at 130 sfu: (0.2068 + 0.006139
+/// S) / 1.0049. Source: Noll et al. 2012, A&A 543, A92, for the continuum.
+double airglow_by_solar_flux(double solar_flux_sfu);
 
 /// Path through a thin layer at `layer_height_m` relative to the zenith's; `sin_altitude` is held
 /// at 0 below it. Source: van Rhijn 1921, Publ. Astr. Lab. Groningen 31.
@@ -27,8 +36,9 @@ double van_rhijn(double sin_altitude, double layer_height_m);
 double airglow_s10(const Airglow& airglow, double sin_altitude, double diffuse_extinction_mag);
 
 /// Its colour, 0.2-2.5 um: lines of oxygen, sodium and OH over a continuum. To 0.97 um the night
-/// sky of La Palma (Benn & Ellison 1998, ING technical note 115) every 10 nm, beyond it by J and H
-/// sky brightness (+-0.4 mag).
-const Spectrum& airglow_spectrum();
+/// sky of La Palma (Benn & Ellison 1998, ING technical note 115) every 10 nm, beyond it by Y, J, H
+/// and K of ESO's sky calculator: OH to 2.2 um, then the warmth of the air (of Paranal).
+/// `brighter`: light but for OH over that at 130 sfu; OH, from 0.7 um on, does not follow the Sun.
+Spectrum airglow_spectrum(double brighter = 1.0);
 
 }  // namespace dmise

@@ -5,28 +5,77 @@
 
 #include "core/base/error.h"
 #include "core/sky/airmass.h"
+#include "core/sky/kept_tables.h"
 
 namespace dmise {
+namespace {
+
+constexpr double pattern_m_per_s = 20.0;  // of the shadows over the aperture
+
+}  // namespace
 
 double scintillation_sigma(double aperture_m, double exposure_s, double airmass,
                            double site_height_m) {
   if (!(aperture_m > 0)) throw Error("scintillation: aperture must be > 0");
   if (!(exposure_s >= 0)) throw Error("scintillation: exposure must be >= 0");
-  constexpr double scale_height_m = 8000.0, pattern_m_per_s = 20.0;
+  constexpr double scale_height_m = 8000.0;
   const double exposure = std::max(exposure_s, aperture_m / pattern_m_per_s);
   return std::sqrt(10e-6 * std::pow(aperture_m, -4.0 / 3.0) / exposure * airmass * airmass *
                    airmass * std::exp(-2.0 * site_height_m / scale_height_m));
+}
+
+namespace {
+
+// Rate x airmass of the nodes: even in its logarithm.
+constexpr double least_rate = 1e-6, greatest_rate = 1.0;
+constexpr int rates = 121;
+
+}  // namespace
+
+MotionAveraging::MotionAveraging(const BlownTurbulence& turbulence) {
+  BlownTurbulence moving = turbulence;
+  moving.wind.slew_rad_per_s = 0.0;
+  const double still = scintillation_time_m_s(moving);
+  for (int i = 0; i < rates; ++i) {
+    moving.wind.slew_rad_per_s =
+        least_rate * std::pow(greatest_rate / least_rate, double(i) / (rates - 1));
+    log_ratio_.push_back(
+        still > 0.0 ? std::min(0.0, std::log(scintillation_time_m_s(moving) / still)) : 0.0);
+  }
+}
+
+double MotionAveraging::operator()(double rate_rad_per_s, double airmass) const {
+  const double rate = rate_rad_per_s * airmass;
+  if (!(rate > least_rate)) return 1.0;
+  static const double per_node = (rates - 1) / std::log(greatest_rate / least_rate);
+  const double at = std::min(std::log(rate / least_rate) * per_node, rates - 1.0);
+  const int low = std::min(int(at), rates - 2);
+  return std::exp(
+      std::lerp(log_ratio_[std::size_t(low)], log_ratio_[std::size_t(low) + 1], at - low));
 }
 
 Scintillation::Scintillation(const AirExposure& exposure)
     : key_(rng_key(exposure.seed, exposure.sensor, exposure.frame, facts.name)),
       up_(exposure.up),
       sigma_at_zenith_(scintillation_sigma(exposure.aperture_m, exposure.exposure_s, 1.0,
-                                           exposure.site_height_m)) {}
+                                           exposure.site_height_m)),
+      exposure_s_(exposure.exposure_s),
+      shortest_s_(exposure.aperture_m / pattern_m_per_s) {
+  if (!exposure.turbulence) return;
+  static KeptTables<BlownTurbulence, MotionAveraging> tables;
+  averaging_ =
+      tables.of(*exposure.turbulence, [&] { return MotionAveraging(*exposure.turbulence); });
+}
 
 double Scintillation::apply(const SightLine& line) const {
   const double x = airmass(elevation_over(up_, line.apparent));
-  const double sigma = std::min(1.0, sigma_at_zenith_ * x * std::sqrt(x));
+  // A longer exposure averages as much; a short one averages nothing however fast the source is.
+  const double by_motion =
+      averaging_
+          ? std::sqrt(std::max(exposure_s_, shortest_s_) /
+                      std::max(exposure_s_ / (*averaging_)(line.rate_rad_per_s, x), shortest_s_))
+          : 1.0;
+  const double sigma = std::min(1.0, sigma_at_zenith_ * x * std::sqrt(x) * by_motion);
   const double log_variance = std::log1p(sigma * sigma);
   const double z =
       normal_of(rng_word(key_, line.number, line.source == SightLine::Source::star ? 0 : 1));

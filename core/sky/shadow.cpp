@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/sky/kept_tables.h"
 
 namespace dmise {
 namespace {
@@ -13,36 +14,8 @@ namespace {
 constexpr double sun_radius_m = 6.957e8;  // IAU 2015 Resolution B3, nominal
 
 // The cheap tests hold for any Sun from 0.98 au on and any object out to 2e8 m.
-constexpr double cone_slope =
-    0.0048;  // of the penumbra's and umbra's edge: tan of the Sun's radius
-constexpr double margin_m = 100e3;
-
-// 2/3 b^3 - ... = b - sin b cos b, without cancellation.
-double segment(double b) {
-  if (b > 0.05) return b - std::sin(b) * std::cos(b);
-  const double bb = b * b;
-  return b * bb * (2.0 / 3 - bb * (2.0 / 15 - bb * (4.0 / 315)));
-}
-
-// Visible fraction of a disc of angular radius `s` whose centre stands `above` outside a limb of
-// geodesic curvature `k` >= 0 (the limb's circle has radius 1/k in the plane that touches the
-// sphere at the Sun; k = 0 is a straight horizon). All in radians.
-double visible_fraction(double s, double above, double k) {
-  if (above >= s) return 1.0;
-  const double centres = 1.0 + above * k;  // distance of the two centres, times k
-  if (s * k <= 1.0 && above <= -s) return 0.0;
-  if (s * k > 1.0 && centres <= s * k - 1.0) return 1.0 - 1.0 / (s * s * k * k);
-
-  // Half angles of the chord where the circles cross, seen from the disc's and the limb's centre.
-  const double cos_a = (2 * above + (above * above + s * s) * k) / (2 * s * centres);
-  const double a = std::acos(std::clamp(cos_a, -1.0, 1.0));
-  const double sin_b = s * k * std::sin(a);
-  const double cos_b = (centres * centres + 1.0 - s * s * k * k) / (2 * centres);
-  const double b = std::atan2(sin_b, cos_b);
-  const double of_disc = a - std::sin(a) * std::cos(a);
-  const double of_limb = b > 0.0 ? segment(b) / (s * s * k * k) : 0.0;
-  return std::clamp(1.0 - (of_disc + of_limb) / pi, 0.0, 1.0);
-}
+constexpr double margin_m = 110e3;
+constexpr double most_bending = 0.021;  // of a ray along the ground
 
 // A unit vector across `v` in the plane of `v` and `towards`; any across `v` when these are
 // parallel.
@@ -58,6 +31,23 @@ Vec<Gcrs> across(const Vec<Gcrs>& v, const Vec<Gcrs>& towards) {
 EarthShadow::EarthShadow(const Vec<Gcrs>& sun_m, const OblateEarth& earth)
     : sun_m_(sun_m), towards_sun_(unit(sun_m)), earth_(earth) {}
 
+EarthShadow::EarthShadow(const Vec<Gcrs>& sun_m, const OblateEarth& earth, Edge edge,
+                         const Band& band)
+    : EarthShadow(sun_m, earth) {
+  edge_ = edge;
+  if (edge != Edge::sharp) band_ = band;
+  if (edge == Edge::air) dark_slope_ = cone_slope + most_bending;
+}
+
+double EarthShadow::light_of(const LowSun& sun, double distance_m, double radius_m) const {
+  if (edge_ == Edge::sharp) return visible_fraction(sun);
+  // Made for the first object that is near the shadow: few are.
+  static KeptTables<Band, GrazingAir> tables;
+  const auto air = tables.of(band_, [&] { return GrazingAir(band_); });
+  return edge_ == Edge::limb ? air->light_past_sharp_limb(sun)
+                             : air->light(sun, distance_m, radius_m);
+}
+
 bool EarthShadow::fully_lit(double along_m, double across_squared_m2) const {
   if (along_m > margin_m) return true;
   const double reach =
@@ -67,7 +57,7 @@ bool EarthShadow::fully_lit(double along_m, double across_squared_m2) const {
 
 bool EarthShadow::fully_dark(double along_m, double across_squared_m2) const {
   if (along_m > -margin_m) return false;
-  const double reach = earth_.ellipsoid.polar_radius_m() - margin_m + cone_slope * along_m;
+  const double reach = earth_.ellipsoid.polar_radius_m() - margin_m + dark_slope_ * along_m;
   return reach > 0.0 && across_squared_m2 < reach * reach;
 }
 
@@ -86,7 +76,8 @@ double EarthShadow::in_penumbra(const Vec<Gcrs>& object_m, const Vec<Gcrs>& stre
 
   const double sun_distance = norm(to_sun);
   const double above = std::asin(std::clamp(dot(normal, to_sun) / sun_distance, -1.0, 1.0));
-  return visible_fraction(std::asin(sun_radius_m / sun_distance), above, cos_limb / sin_limb);
+  return light_of({std::asin(sun_radius_m / sun_distance), above, cos_limb / sin_limb}, distance,
+                  radius);
 }
 
 double EarthShadow::sunlit_fraction(const Vec<Gcrs>& object_m) const {

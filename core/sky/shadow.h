@@ -1,30 +1,49 @@
 #pragma once
+#include <array>
 #include <span>
 
 #include "core/effects/plan_facts.h"
 #include "core/frames/oblate_earth.h"
+#include "core/sky/grazing_air.h"
 
 namespace dmise {
 
 /// The shadow of the oblate Earth at one instant: umbra, penumbra and, beyond 1.38e6 km, the ring.
-/// The Sun is a uniform disc of 695,700 km radius (IAU 2015 Resolution B3), the Earth has no air:
-/// refracted and absorbed light at the shadow's edge is left out.
+/// The Sun has a radius of 695,700 km (IAU 2015 Resolution B3). Its disc is even and the Earth has
+/// no air; or it darkens towards its limb; or the air dims and refracts what grazes it, too.
 class EarthShadow {
  public:
+  /// Of the shadow, by level.
+  enum class Edge { sharp = 1, limb, air };
+  static constexpr std::array<std::string_view, 4> levels{"off", "sharp", "limb", "air"};
   static constexpr EffectFacts facts{
-      "shadow", "objects are dimmed by the Earth's penumbra and umbra",
-      "objects in shadow are drawn fully lit", "two discs: the Sun's and the Earth's"};
+      "shadow",
+      "objects are dimmed by the Earth's penumbra and umbra",
+      "objects in shadow are drawn fully lit; sharp: 3 mag too bright at its edge in a low orbit, "
+      "0.5 in a geosynchronous one",
+      "two discs; limb darkening by Hestroffer & Magnan 1998, A&A 333, 338; rays through the "
+      "standard atmosphere",
+      true,
+      true,
+      levels,
+      1};
 
-  static ErrorBound error(int, const PlanFacts& f) {
-    return f.near_shadow ? not_bounded : ErrorBound{};
+  static ErrorBound error(int level, const PlanFacts& f) {
+    const bool lacks = level == 0 ? f.near_shadow || f.near_shadow_of_air : f.near_shadow_of_air;
+    return lacks ? not_bounded : ErrorBound{};
   }
-  static double cost_s(int level, const PlanFacts& f) { return level * 2e-6 * double(f.objects); }
+  static double cost_s(int level, const PlanFacts& f) {
+    constexpr std::array<double, 4> object_s{0.0, 2e-6, 10e-6, 30e-6};
+    return object_s[std::size_t(level)] * double(f.objects);
+  }
 
   /// `sun_m`: geocentric position of the Sun.
   EarthShadow(const Vec<Gcrs>& sun_m, const OblateEarth& earth);
+  /// In a band; `sharp` is the same in all.
+  EarthShadow(const Vec<Gcrs>& sun_m, const OblateEarth& earth, Edge edge, const Band& band);
 
-  /// Fraction of the solar disc that an object at `object_m` sees past the Earth, 0..1: continuous,
-  /// monotone through the penumbra. Throws `Error` for a place inside the Earth.
+  /// Fraction of the Sun's light that reaches an object at `object_m` past the Earth, 0..1:
+  /// continuous, monotone through the penumbra. Throws `Error` for a place inside the Earth.
   double sunlit_fraction(const Vec<Gcrs>& object_m) const;
 
   /// The same for a whole catalogue: `position_m` is all x, all y, all z of `fraction.size()`
@@ -34,10 +53,17 @@ class EarthShadow {
                                std::span<double> fraction) const;
 
  private:
+  double light_of(const LowSun& sun, double distance_m, double radius_m) const;
   double in_penumbra(const Vec<Gcrs>& object_m, const Vec<Gcrs>& stretched_m) const;
   bool fully_lit(double along_m, double across_squared_m2) const;
   bool fully_dark(double along_m, double across_squared_m2) const;
 
+  // Of the penumbra's and umbra's edge: tan of the Sun's radius.
+  static constexpr double cone_slope = 0.0048;
+
+  Edge edge_ = Edge::sharp;
+  Band band_;  // of sunlight, but for the sharp edge
+  double dark_slope_ = cone_slope;
   Vec<Gcrs> sun_m_;
   Vec<Gcrs> towards_sun_;
   OblateEarth earth_;

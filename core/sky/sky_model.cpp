@@ -73,14 +73,26 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
                           twilight_pattern(1.0, pi / 2 - sun_altitude_rad, k_v_);
   const double sunlit = photons_per_s_m2_sr_of_s10(band);
   photons_of_s10_.fill(sunlit);
-  const auto photons_of = [&](SkyPart part, const Spectrum& spectrum) {
-    photons_of_s10_[std::size_t(part)] = photons_per_s_m2_sr_of_s10(band, spectrum);
+  const auto photons_of = [&](SkyPart part, const Spectrum& spectrum, const Band& of) {
+    photons_of_s10_[std::size_t(part)] = photons_per_s_m2_sr_of_s10(of, spectrum);
   };
-  if (parts_.airglow) photons_of(SkyPart::airglow, airglow_spectrum());
-  if (parts_.scattered_moonlight) photons_of(SkyPart::scattered_moonlight, moonlight_spectrum());
-  if (parts_.twilight) photons_of(SkyPart::twilight, twilight_spectrum());
+  const bool absorbs = scene.in_air && scene.gases;
+  const Band above = absorbs ? through(band, gas_transmission(*scene.gases, 1.0)) : band;
+  if (absorbs)
+    for (const SkyPart part : {SkyPart::zodiacal_light, SkyPart::faint_starlight})
+      photons_of(part, solar_spectrum(), above);
+  if (parts_.zodiacal_light) zodiacal_redness_ = zodiacal_redness(above);
+  if (parts_.airglow)
+    photons_of(SkyPart::airglow,
+               airglow_spectrum(parts_.airglow->solar_flux_sfu
+                                    ? airglow_by_solar_flux(*parts_.airglow->solar_flux_sfu)
+                                    : 1.0),
+               band);
+  if (parts_.scattered_moonlight)
+    photons_of(SkyPart::scattered_moonlight, moonlight_spectrum(), above);
+  if (parts_.twilight) photons_of(SkyPart::twilight, twilight_spectrum(sun_altitude_rad), above);
   if (parts_.light_pollution)
-    photons_of(SkyPart::light_pollution, lamp_spectrum(parts_.light_pollution->lamps));
+    photons_of(SkyPart::light_pollution, lamp_spectrum(parts_.light_pollution->lamps), band);
 }
 
 double SkyModel::above_air_s10(SkyPart part, const Vec<Enu>& direction) const {
@@ -149,6 +161,9 @@ std::array<double, sky_part_count> SkyModel::parts_s10(const Vec<Enu>& direction
 std::array<double, sky_part_count> SkyModel::photons_of_parts(const Vec<Enu>& direction) const {
   auto parts = parts_s10(direction);
   for (std::size_t i = 0; i < parts.size(); ++i) parts[i] *= photons_of_s10_[i];
+  double& zodiacal = parts[std::size_t(SkyPart::zodiacal_light)];
+  if (zodiacal > 0.0)
+    zodiacal *= 1.0 + zodiacal_slope(angle_rad(direction, scene_.sun)) * zodiacal_redness_;
   return parts;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/effects/plan_facts.h"
 #include "core/frames/vec.h"
+#include "core/sky/air_gases.h"
 #include "core/sky/airglow.h"
 #include "core/sky/clouds.h"
 #include "core/sky/faint_starlight.h"
@@ -78,6 +79,8 @@ struct SkyScene {
   double moon_distance_m = mean_moon_distance_m;
   Rotation<Gcrs, Enu> gcrs_from_enu;
   bool in_air = true;  // false: a camera in space, no extinction
+  /// Take light from above the air, by the path towards the zenith; none: they take nothing.
+  std::optional<AirGases> gases;
   /// Dim what comes from above them; null: none. Lamps below are neither dimmed nor mirrored, and a
   /// `UniformSky` is as it is given.
   std::shared_ptr<const CloudMap> clouds;
@@ -117,6 +120,7 @@ class SkyModel {
   Vec<Enu> galactic_pole_;
   double sun_longitude_rad_ = 0.0;
   double twilight_scale_s10_ = 0.0;  // brightness over twilight_pattern
+  double zodiacal_redness_ = 0.0;
   double moon_v_mag_ = 0.0;
   double k_v_ = 0.0;          // extinction of stars in V [mag/airmass], 0 in space
   double diffuse_mag_ = 0.0;  // that of extended light in the band [mag/airmass]

@@ -9,12 +9,16 @@ namespace dmise {
 struct HufnagelValley {
   double high_wind_m_per_s = 21.0;  // rms wind at 5 to 20 km
   double ground_cn2 = 1.7e-14;      // at the ground [m^-2/3]
+
+  bool operator==(const HufnagelValley&) const = default;
 };
 
 /// Cn2 measured at heights, log-linear between them and 0 outside.
 struct Cn2Table {
   std::vector<double> height_m;  // above the site, ascending
   std::vector<double> cn2;       // [m^-2/3], > 0
+
+  bool operator==(const Cn2Table&) const = default;
 };
 
 /// To add a profile: list it here, give it a `cn2` in turbulence.cpp, test it in
@@ -29,6 +33,16 @@ struct TurbulenceWind {
   double ground_m_per_s = 5.0;
   double jet_m_per_s = 30.0;    // at 9.4 km; Bufton 1973, Applied Optics 12, 1785
   double slew_rad_per_s = 0.0;  // tracking: each layer seems to move by this times its distance
+
+  bool operator==(const TurbulenceWind&) const = default;
+};
+
+/// Turbulence that is carried past the line of sight.
+struct BlownTurbulence {
+  TurbulenceProfile profile;
+  TurbulenceWind wind;
+
+  bool operator==(const BlownTurbulence&) const = default;
 };
 
 /// Speed of the layer at a height [m/s]; the wind and the slew are taken as at right angles.
@@ -52,6 +66,10 @@ struct Turbulence {
 /// 1977, JOSA 67, 390.
 Turbulence turbulence(const TurbulenceProfile& profile, double wavelength_m, double airmass = 1.0,
                       const TurbulenceWind& wind = {});
+
+/// The mean of h^2 / speed over the turbulence, to which the variance of scintillation in a long
+/// exposure is proportional [m s]; 0 for a profile without turbulence.
+double scintillation_time_m_s(const BlownTurbulence& turbulence, double airmass = 1.0);
 
 /// r0 known at one wavelength and airmass, at another: it goes as wavelength^(6/5) airmass^(-3/5).
 double scale_r0(double r0_m, double from_wavelength_m, double to_wavelength_m,

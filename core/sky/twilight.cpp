@@ -64,18 +64,42 @@ double twilight_pattern(double sin_altitude, double angle_from_sun_rad, double k
          (1.0 - light_of_magnitude(k * scattering_airmass(s)));
 }
 
-const Spectrum& twilight_spectrum() {
-  static const Spectrum spectrum = [] {
-    // Twilight over sunlight, so that it has the B-V, V-R and V-I of Patat et al. 2006 for a Sun 5
-    // deg down.
-    const Curve bluing{{300 * nm, 360 * nm, 438 * nm, 545 * nm, 641 * nm, 798 * nm, 1000 * nm},
-                       {2.5, 2.4, 2.53, 1.0, 1.36, 1.48, 1.48}};
-    Spectrum sun = solar_spectrum();
-    for (std::size_t i = 0; i < sun.irradiance.value.size(); ++i)
-      sun.irradiance.value[i] *= bluing.at_or_end(sun.irradiance.wavelength_m[i]);
-    return sun;
-  }();
-  return spectrum;
+Spectrum twilight_spectrum(double sun_altitude_rad) {
+  // Brightness a0 + a1 x + a2 x^2, x = depression - 5 deg, and that of the night sky; the factor on
+  // sunlight at the middle of the band for 5 deg.
+  struct BandOfPatat {
+    double wavelength_nm, a0, a1, a2, night, factor;
+  };
+  constexpr BandOfPatat bands[] = {{360, 11.78, 1.376, -0.039, 22.28, 2.4},
+                                   {438, 11.84, 1.411, -0.041, 22.64, 2.53},
+                                   {545, 11.84, 1.518, -0.057, dark_v_mag_per_arcsec2, 1.0},
+                                   {641, 11.40, 1.567, -0.064, 20.87, 1.36},
+                                   {798, 10.93, 1.470, -0.062, 19.71, 1.48}};
+  constexpr int of_v = 2;
+  const double x = std::clamp(-sun_altitude_rad / deg, 5.0, 14.0) - 5.0;
+  const auto darker = [](const BandOfPatat& band, double at) {  // than 5 deg down [mag]
+    const auto light = [&](double y) {
+      return light_of_magnitude(band.a0 + band.a1 * y + band.a2 * y * y) -
+             light_of_magnitude(band.night);
+    };
+    return magnitude_of_light(light(at) / light(0.0));
+  };
+  Curve factors;
+  const auto add = [&](double wavelength_nm, double factor) {
+    factors.wavelength_m.push_back(wavelength_nm * nm);
+    factors.value.push_back(factor);
+  };
+  for (const BandOfPatat& band : bands) {
+    const double factor =
+        band.factor * light_of_magnitude(darker(band, x) - darker(bands[of_v], x));
+    if (factors.empty()) add(300, factor * 2.5 / 2.4);
+    add(band.wavelength_nm, factor);
+  }
+  add(1000, factors.value.back());
+  Spectrum sun = solar_spectrum();
+  for (std::size_t i = 0; i < sun.irradiance.value.size(); ++i)
+    sun.irradiance.value[i] *= factors.at_or_end(sun.irradiance.wavelength_m[i]);
+  return sun;
 }
 
 }  // namespace dmise

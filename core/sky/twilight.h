@@ -29,8 +29,9 @@ double twilight_zenith_s10(double sun_altitude_rad);
 /// more. Source: Schaefer 1993, Vistas in Astronomy 36, 311, twilight term.
 double twilight_pattern(double sin_altitude, double angle_from_sun_rad, double k_v);
 
-/// Colour, 0.2-2.5 um: sunlight, bluer by what the constants of Patat et al. 2006 for UBVRI say of
-/// a Sun 5 deg down.
-const Spectrum& twilight_spectrum();
+/// Colour by the Sun's altitude [rad], 0.2-2.5 um: sunlight times factors that give it the UBVRI of
+/// Patat et al. 2006, table 1, for depressions of 5 to 14 deg, the night sky of Patat 2003 taken
+/// off; held outside of them.
+Spectrum twilight_spectrum(double sun_altitude_rad);
 
 }  // namespace dmise

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "core/base/units.h"
+#include "core/photometry/spectrum.h"
 
 namespace dmise {
 namespace {
@@ -54,6 +55,24 @@ double zodiacal_light_s10(double longitude_from_sun_rad, double latitude_rad) {
   const double low = logs[i][j] + v * (logs[i][j + 1] - logs[i][j]);
   const double high = logs[i + 1][j] + v * (logs[i + 1][j + 1] - logs[i + 1][j]);
   return std::exp(low + u * (high - low));
+}
+
+double zodiacal_slope(double angle_from_sun_rad) {
+  constexpr double near_rad = 30 * deg, far_rad = 90 * deg, near_slope = 0.8, far_slope = 0.6;
+  const double t = (angle_from_sun_rad - near_rad) / (far_rad - near_rad);
+  return std::lerp(near_slope, far_slope, std::clamp(t, 0.0, 1.0));
+}
+
+double zodiacal_redness(const Band& band) {
+  const auto redness = [](double wavelength_m) {
+    const double decades = std::log10(std::clamp(wavelength_m, 220 * nm, 2500 * nm) / (500 * nm));
+    return decades < 0.0 ? 1.5 * decades : decades;
+  };
+  Spectrum reddened = solar_spectrum();
+  Curve& curve = reddened.irradiance;
+  for (std::size_t i = 0; i < curve.value.size(); ++i)
+    curve.value[i] *= 1.0 + redness(curve.wavelength_m[i]);
+  return photon_rate_per_m2(reddened, band) / photon_rate_per_m2(solar_spectrum(), band) - 1.0;
 }
 
 }  // namespace dmise

@@ -155,6 +155,8 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
   const ExposureInstant middle(view, times.middle);
   const ObjectSampler sampler(view, shapes_);
   const EarthShadow shadow(view.environment().sun_m, view.surface());
+  const EarthShadow shadow_of_air(view.environment().sun_m, view.surface(), EarthShadow::Edge::air,
+                                  sensor_.camera.band);
   const Throughput throughput(view);
   const double electrons = object_photons_per_s_m2(0.0, sensor_.camera.band) *
                            throughput.electrons_per_photon_m2() * times.seconds();
@@ -169,7 +171,7 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
   const End start = end_at(times.start), end = end_at(times.end);
   const double diagonal_px = std::hypot(double(optics.columns), double(optics.rows));
   double faintest_e = unbounded, narrowest_px = unbounded;
-  f.near_shadow = times.seconds() > short_exposure_s;
+  f.near_shadow = f.near_shadow_of_air = times.seconds() > short_exposure_s;
   for (const std::size_t object : objects) {
     const Motion motion = view.world().motion(object, times.middle);
     const Vec<Gcrs> line_m = motion.position_m - middle.observer.position_m;
@@ -185,6 +187,9 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
                                              std::max(range_m * range_m, 1.0));
     const auto sees = [&](const Vec<Gcrs>& position_m) {
       f.near_shadow = f.near_shadow || shadow.sunlit_fraction(position_m) < 1.0;
+      if (f.near_shadow_of_air) return;
+      const double light = shadow_of_air.sunlit_fraction(position_m);
+      f.near_shadow_of_air = light < 1.0 && (light > 0.0 || shadow.sunlit_fraction(position_m) > 0);
     };
     sees(motion.position_m);
     const auto pixel = [&](const End& at) {

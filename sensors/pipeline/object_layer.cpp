@@ -81,6 +81,32 @@ std::vector<std::size_t> nearest_first(const View& view, std::vector<std::size_t
   return objects;
 }
 
+/// The arcs of an object with their light spread along the vertical. `arcs` are of `samples`.
+std::vector<Arc> spread(const View& view, const ObjectSampler& sampler, std::size_t object,
+                        std::vector<ObjectSample> samples, const std::vector<Arc>& arcs,
+                        const ExposureInstant& middle) {
+  const int count = view.sensor().effects.snapshots();
+  // The light of an object with a shape is not that of its samples: any gives the path.
+  const bool is_whole = std::all_of(samples.begin(), samples.end(),
+                                    [](const auto& s) { return s.pixel.has_value(); });
+  if (sampler.shape(object) && is_whole)
+    for (auto& s : samples) s.electrons_per_s = 1.0;
+  const auto path = [&](PixelPosition SpectrumEnds::*end) {
+    for (auto& s : samples)
+      if (s.pixel) s.pixel = (*s.ends).*end;
+    const auto whole = arcs_of(samples, view.times().seconds());
+    return count ? as_snapshots(whole, count) : whole;
+  };
+  const auto blue = path(&SpectrumEnds::blue), red = path(&SpectrumEnds::red);
+  if (blue.size() != arcs.size()) return arcs;
+  const Motion motion = view.world().motion(object, middle.time);
+  const auto place = middle.places.satellite(motion.position_m, motion.slope_m_per_s);
+  std::vector<Arc> parts;
+  for (std::size_t i = 0; i < arcs.size(); ++i)
+    sampler.spectra()->add(arcs[i], blue[i], red[i], place.direction, sun_bv, parts);
+  return parts;
+}
+
 std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
                          const std::vector<std::size_t>& objects, OpticsStage& stage,
                          OcclusionMask& mask, ExpectedElectronImage& image) {
@@ -123,7 +149,10 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
     } else {
       auto arcs = shaped ? shape_arcs(view, sampler, object, samples)
                          : arcs_of(samples, exposure.seconds());
-      if (const int count = view.sensor().effects.snapshots()) arcs = as_snapshots(arcs, count);
+      const int count = view.sensor().effects.snapshots();
+      if (count) arcs = as_snapshots(arcs, count);
+      if (sampler.spectra())
+        arcs = spread(view, sampler, object, samples, arcs, instant(changing_arcs));
       arcs = mask.past(arcs);
       for (const auto& part : stage.add(arcs, image)) light = light + part;
     }

@@ -14,24 +14,44 @@ ObjectSampler::ObjectSampler(const View& view, const ObjectShapes* shapes)
     : view_(view),
       shapes_(shapes),
       throughput_(view),
+      spectra_(Spectra::over(view)),
       with_earthshine_(acts<Earthshine>(view.sensor().effects, view.scene())),
       zero_mag_(object_photons_per_s_m2(0.0, view.sensor().camera.band)) {
   if (acts<EarthShadow>(view.sensor().effects, view.scene()))
-    shadow_.emplace(view.environment().sun_m, view.surface());
+    shadow_.emplace(view.environment().sun_m, view.surface(),
+                    EarthShadow::Edge(view.sensor().effects.level(EarthShadow::facts)),
+                    view.sensor().camera.band);
 }
+
+namespace {
+
+/// How fast an object moves over the sky of an observer on the ground.
+double rate_rad_per_s(const Motion& motion, const ObserverState& observer) {
+  constexpr double earth_rad_per_s = 7.2921e-5;
+  const Vec<Gcrs> spin{0, 0, earth_rad_per_s};  // the pole is z to 0.1 deg
+  const Vec<Gcrs> line_m = motion.position_m - observer.position_m;
+  const Vec<Gcrs> passing_m_per_s =
+      motion.slope_m_per_s - observer.velocity_m_per_s - cross(spin, line_m);
+  return norm(cross(passing_m_per_s, line_m)) / std::max(dot(line_m, line_m), 1.0);
+}
+
+}  // namespace
 
 ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at) const {
   const Motion motion = view_.world().motion(object, at.time);
   const auto place = at.places.satellite(motion.position_m, motion.slope_m_per_s);
   ObjectSample s;
   s.pixel = project(view_.sensor().camera.optics, at.camera * place.direction);
+  if (spectra_ && s.pixel)
+    s.ends = spectra_->ends(place.direction, place.range_m, view_.up(at.time), at.camera, *s.pixel);
   s.sunlit = shadow_ ? shadow_->sunlit_fraction(motion.position_m) : 1.0;
   const bool hidden = at.earth && at.earth->hides_object(motion.position_m, place.direction);
   const ObjectShape* own_shape = shape(object);
   if (hidden || (s.sunlit <= 0.0 && !own_shape && !with_earthshine_)) return s;
   s.electrons_per_photon_m2 =
       throughput_.of_air({place.direction, sun_bv, SightLine::Source::object,
-                          view_.world().roster().objects[object].catalogue_number}) *
+                          view_.world().roster().objects[object].catalogue_number,
+                          rate_rad_per_s(motion, at.observer)}) *
       throughput_.electrons_per_photon_m2() * (s.pixel ? view_.illumination(*s.pixel) : 1.0);
   const double photons =
       own_shape ? shape_photons(object, *own_shape, at.time, at.observer, s.sunlit)

@@ -6,6 +6,7 @@
 #include "core/photometry/diffuse_sphere.h"
 #include "core/sky/shadow.h"
 #include "sensors/pipeline/object_shapes.h"
+#include "sensors/pipeline/spectra.h"
 #include "sensors/pipeline/throughput.h"
 #include "sensors/pipeline/view.h"
 
@@ -16,6 +17,7 @@ struct ObjectSample {
   std::optional<PixelPosition> pixel;
   double electrons_per_s = 0.0;  // expected at the detector; 0 when dark or hidden
   double sunlit = 0.0;
+  std::optional<SpectrumEnds> ends;      // with dispersion, where there is a pixel
   double electrons_per_photon_m2 = 0.0;  // of the way from above the atmosphere; 0 when hidden
 };
 
@@ -48,6 +50,9 @@ class ObjectSampler {
   /// Returns V above the atmosphere when fully lit.
   double magnitude(std::size_t object, const Motion& motion, const ExposureInstant& at) const;
 
+  /// Null where light is not spread along the vertical.
+  const Spectra* spectra() const { return spectra_ ? &*spectra_ : nullptr; }
+
   /// Null for an object without a shape.
   const ObjectShape* shape(std::size_t object) const;
   const ObjectShapes& shapes() const { return *shapes_; }
@@ -67,6 +72,7 @@ class ObjectSampler {
   const ObjectShapes* shapes_;
   Throughput throughput_;
   std::optional<EarthShadow> shadow_;
+  std::optional<Spectra> spectra_;
   bool with_earthshine_;
   double zero_mag_;
 };

@@ -7,6 +7,7 @@
 #include "core/effects/frame_effects.h"
 #include "core/sky/airmass.h"
 #include "core/sky/cloud_cover.h"
+#include "core/sky/dispersion.h"
 #include "core/sky/scattered_moonlight.h"
 #include "core/sky/scintillation.h"
 #include "core/sky/sky_frames.h"
@@ -165,9 +166,12 @@ void add_sky_facts(const View& view, double drawn_to_v_mag, PlanFacts& f) {
   f.cloud_detail_px = cloud_detail_px(view, lowest_rad, f.pixel_rad);
   f.most_airmass = airmass(lowest_rad);
   f.zenith_extinction_mag = throughput.extinction_mag_per_airmass();
+  if (const auto* gases = throughput.find<GasAbsorption>())
+    f.gas_mag = gases->sunlight_mag(f.most_airmass);
   f.scintillation = scintillation_sigma(optics.aperture_m, view.times().seconds(), f.most_airmass,
                                         view.site()->height_m);
   f.refraction_rad = view.refraction().at_apparent_rad(lowest_rad);
+  f.dispersion_rad = dispersion_rad(sensor.camera.band, view.refraction(), lowest_rad);
   const double moon_up_rad = std::asin(std::clamp(dot(view.up(middle), moon), -1.0, 1.0));
   f.moon_refraction_rad = view.refraction().apparent_from_true_rad(moon_up_rad) - moon_up_rad;
   f.moon_is_down = moon_up_rad < 0.0;

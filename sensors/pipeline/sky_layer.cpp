@@ -30,6 +30,7 @@ SkyScene scene_of(const View& view) {
       .moon_distance_m = norm(to_moon),
       .gcrs_from_enu = enu_from_gcrs.inverse(),
       .in_air = view.on_ground(),
+      .gases = gases_over(view),
       .time_s = t.seconds()};
   if (acts<CloudCover>(view.sensor().effects, view.scene()))
     scene.clouds = std::make_shared<const CloudMap>(*view.sensor().weather.clouds);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 
 #include "core/effects/frame_effects.h"
@@ -9,6 +10,7 @@
 #include "core/optics/projection.h"
 #include "core/optics/snapshots.h"
 #include "sensors/pipeline/row_window.h"
+#include "sensors/pipeline/spectra.h"
 #include "sensors/pipeline/star_snapshots.h"
 #include "sensors/pipeline/stopwatch.h"
 #include "sensors/pipeline/throughput.h"
@@ -52,11 +54,15 @@ struct StarLayer::Exposure {
                                           view.places(instants[2])};
   std::optional<EarthOccultation> earth = view.earth_occultation(instants[1]);
   Throughput throughput{view};
+  std::array<Vec<Gcrs>, 3> up = {view.up(instants[0]), view.up(instants[1]), view.up(instants[2])};
+  std::optional<Spectra> spectra = Spectra::over(view);
 
   /// Trails of those that the projection can image throughout the exposure.
   std::vector<Trail> trails(std::span<const std::uint32_t> which) const;
   /// Factors of the air on their light.
   std::vector<double> factors_of_air(const std::vector<Trail>& trails, EffectTimes& times) const;
+  /// Adds the arcs of a star's spectrum, with the light of `arc`.
+  void spread(const Arc& arc, const Trail& trail, std::vector<Arc>& parts) const;
   bool hides(const Vec<Gcrs>& apparent) const { return earth && earth->hides_direction(apparent); }
 };
 
@@ -90,24 +96,50 @@ std::vector<double> StarLayer::Exposure::factors_of_air(const std::vector<Trail>
   std::vector<SightLine> lines;
   lines.reserve(trails.size());
   for (const Trail& trail : trails)
-    lines.push_back(
-        {trail.middle, stars.bv[trail.star], SightLine::Source::star, stars.id[trail.star]});
+    lines.push_back({trail.middle, stars.bv[trail.star], SightLine::Source::star,
+                     stars.id[trail.star], view.turns_rad_per_s(trail.middle)});
   return throughput.of_air(lines, times);
+}
+
+void StarLayer::Exposure::spread(const Arc& arc, const Trail& trail,
+                                 std::vector<Arc>& parts) const {
+  Arc blue, red;
+  PixelPosition* const of_blue[] = {&blue.start, &blue.middle, &blue.end};
+  PixelPosition* const of_red[] = {&red.start, &red.middle, &red.end};
+  for (std::size_t k = 0; k < instants.size(); ++k) {
+    Vec<Gcrs> apparent;
+    places[k].stars(columns, {&trail.star, 1}, {&apparent, 1});
+    const SpectrumEnds ends = spectra->ends(apparent, Refraction::star, up[k],
+                                            view.camera_from_gcrs(instants[k]), trail.pixel[k]);
+    *of_blue[k] = ends.blue;
+    *of_red[k] = ends.red;
+  }
+  spectra->add(arc, blue, red, trail.middle, stars.bv[trail.star], parts);
 }
 
 namespace {
 
-/// Deposits arcs, each as far as it is not behind something.
+/// Deposits arcs, each as far as it is not behind something, as spectra where `spread` makes them
+/// of an arc's number.
+template <class Spread>
 std::vector<Deposited> add_past(const OcclusionMask& mask, std::span<const Arc> arcs,
-                                OpticsStage& optics, ExpectedElectronImage& image) {
-  if (mask.empty()) return optics.add(arcs, image);
+                                const Spread& spread, OpticsStage& optics,
+                                ExpectedElectronImage& image) {
+  if (mask.empty() && !spread) return optics.add(arcs, image);
   std::vector<Arc> free;
   std::vector<std::size_t> star;
-  for (std::size_t i = 0; i < arcs.size(); ++i)
-    for (const Arc& part : mask.past(arcs.subspan(i, 1))) {
+  std::vector<Arc> whole;
+  for (std::size_t i = 0; i < arcs.size(); ++i) {
+    whole.clear();
+    if (spread)
+      spread(i, whole);
+    else
+      whole.push_back(arcs[i]);
+    for (const Arc& part : mask.empty() ? whole : mask.past(whole)) {
       free.push_back(part);
       star.push_back(i);
     }
+  }
   std::vector<Deposited> deposited(arcs.size());
   const auto parts = optics.add(free, image);
   for (std::size_t k = 0; k < parts.size(); ++k) deposited[star[k]] = deposited[star[k]] + parts[k];
@@ -222,10 +254,16 @@ std::uint32_t StarLayer::draw(const Exposure& exposure, std::span<const std::uin
       drawn.push_back(trails[i].star);
       signal_e.push_back(arcs[i].signal_e);
     }
-    deposited = draw_star_snapshots(view, exposure.columns, drawn, signal_e, snapshots, optics,
-                                    mask, image);
+    deposited = draw_star_snapshots(view, exposure.columns, drawn, signal_e, snapshots,
+                                    exposure.spectra ? &*exposure.spectra : nullptr, stars.bv,
+                                    optics, mask, image);
   } else {
-    deposited = add_past(mask, arcs, optics, image);
+    std::function<void(std::size_t, std::vector<Arc>&)> spread;
+    if (exposure.spectra)
+      spread = [&](std::size_t i, std::vector<Arc>& parts) {
+        exposure.spread(arcs[i], trails[i], parts);
+      };
+    deposited = add_past(mask, arcs, spread, optics, image);
   }
   std::uint32_t inside = 0;
   for (std::size_t i = 0; i < arcs.size(); ++i) {

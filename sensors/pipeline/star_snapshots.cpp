@@ -16,12 +16,13 @@ constexpr int most_snapshots = 64;
 std::vector<Deposited> draw_star_snapshots(const View& view, const StarColumns& columns,
                                            const std::vector<std::uint32_t>& stars,
                                            std::span<const double> signal_e, int count,
+                                           const Spectra* spectra, std::span<const float> bv,
                                            OpticsStage& optics, const OcclusionMask& mask,
                                            ExpectedElectronImage& image) {
   const Optics& camera = view.sensor().camera.optics;
   std::vector<Deposited> result(stars.size());
   std::vector<Vec<Gcrs>> direction(stars.size());
-  std::vector<Arc> points;
+  std::vector<Arc> points, parts;
   std::vector<std::size_t> star_of;
   const auto put = [&] {
     const auto deposited = optics.add(points, image);
@@ -34,11 +35,19 @@ std::vector<Deposited> draw_star_snapshots(const View& view, const StarColumns& 
     const SimTime t = view.times().at((k + 0.5) / count);
     view.places(t).stars(columns, stars, direction);
     const auto camera_from_gcrs = view.camera_from_gcrs(t);
+    const Vec<Gcrs> up = view.up(t);
     for (std::size_t i = 0; i < stars.size(); ++i) {
       const auto pixel = project(camera, camera_from_gcrs * direction[i]);
       if (!pixel) continue;
       const Arc point{*pixel, *pixel, *pixel, signal_e[i] / count * view.illumination(*pixel), 0.0};
-      for (const Arc& part : mask.past({&point, 1})) {
+      parts.assign(1, point);
+      if (spectra) {
+        const auto [blue, red] =
+            spectra->ends(direction[i], Refraction::star, up, camera_from_gcrs, *pixel);
+        parts.clear();
+        spectra->add(point, {blue, blue, blue}, {red, red, red}, direction[i], bv[stars[i]], parts);
+      }
+      for (const Arc& part : mask.past(parts)) {
         points.push_back(part);
         star_of.push_back(i);
       }

@@ -1,13 +1,22 @@
 #include "sensors/pipeline/throughput.h"
 
+#include <algorithm>
+
 #include "core/photometry/diffuse_sphere.h"
 #include "core/photometry/magnitude.h"
 #include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
 
+std::optional<AirGases> gases_over(const View& view) {
+  if (!acts<GasAbsorption>(view.sensor().effects, view.scene())) return std::nullopt;
+  return AirGases{.pwv_mm = *view.sensor().weather.pwv_mm,
+                  .pressure_hpa = std::min(view.weather().pressure_hpa, 1100.0)};
+}
+
 Curve extinction_over(const View& view) {
   Curve curve = view.sensor().atmosphere.extinction_mag_per_airmass;
+  if (view.sensor().weather.pwv_mm) curve = with_haze_beyond(curve);
   if (!view.air() || curve.empty()) return curve;
   const double published = view.air()->extinction_mag_per_airmass;
   const double here = curve.at_or_end(550 * nm);
@@ -25,10 +34,17 @@ Throughput::Throughput(const View& view) {
   if (!view.on_ground()) return;
   const SimTime middle = view.times().middle;
   const Curve extinction = extinction_over(view);
+  std::optional<BlownTurbulence> turbulence;
+  if (acts<MovingScintillation>(sensor.effects, view.scene())) {
+    const auto& over = sensor.atmosphere.turbulence;
+    turbulence = over ? BlownTurbulence{over->profile, over->wind} : BlownTurbulence{};
+  }
   air_.emplace(sensor.effects, view.scene(),
                AirExposure{.band = camera.band,
                            .extinction_mag_per_airmass = extinction,
+                           .gases = gases_over(view),
                            .clouds = sensor.weather.clouds,
+                           .turbulence = turbulence,
                            .aperture_m = camera.optics.aperture_m,
                            .exposure_s = view.times().seconds(),
                            .site_height_m = view.site()->height_m,
@@ -59,8 +75,10 @@ std::vector<double> Throughput::of_air(std::span<const SightLine> lines, EffectT
 double Throughput::of_sunlight(const Vec<Gcrs>& apparent) const {
   const SightLine line{apparent, sun_bv, SightLine::Source::object, 0};
   const auto* extinction = find<AirExtinction>();
+  const auto* gases = find<GasAbsorption>();
   const auto* clouds = find<CloudCover>();
-  return (extinction ? extinction->apply(line) : 1.0) * (clouds ? clouds->apply(line) : 1.0);
+  return (extinction ? extinction->apply(line) : 1.0) * (gases ? gases->apply(line) : 1.0) *
+         (clouds ? clouds->apply(line) : 1.0);
 }
 
 double Throughput::zero_point_mag() const {
@@ -69,7 +87,9 @@ double Throughput::zero_point_mag() const {
 
 double Throughput::extinction_mag_per_airmass() const {
   const auto* extinction = find<AirExtinction>();
-  return extinction ? extinction->sunlight_mag_per_airmass() : 0.0;
+  const auto* gases = find<GasAbsorption>();
+  return (extinction ? extinction->sunlight_mag_per_airmass() : 0.0) +
+         (gases ? gases->sunlight_mag(1.0) : 0.0);
 }
 
 }  // namespace dmise

@@ -43,7 +43,12 @@ class Throughput {
   std::optional<ActingEffects<AirEffects>> air_;  // null: in space
 };
 
-/// Extinction over wavelength [mag/airmass] at a ground sensor, by its environment.
+/// Gases over a ground sensor; none where nobody said how much water vapour there is, or where they
+/// are switched off.
+std::optional<AirGases> gases_over(const View& view);
+
+/// Extinction over wavelength [mag/airmass] at a ground sensor, by its environment; beside gases
+/// that of the rest of the air, which goes on beyond the curve.
 Curve extinction_over(const View& view);
 
 }  // namespace dmise

@@ -1,5 +1,7 @@
 #include "sensors/pipeline/view.h"
 
+#include <cmath>
+
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/config/effect_list.h"
@@ -139,6 +141,11 @@ Rotation<Enu, Gcrs> View::enu_from_gcrs(SimTime t) const {
   Rotation<Enu, Gcrs> r;
   r.m = {{{-sa, ca, 0}, {-ca * sd, -sa * sd, cd}, {ca * cd, sa * cd, sd}}};
   return r;
+}
+
+double View::turns_rad_per_s(const Vec<Gcrs>& direction) const {
+  constexpr double earth_rad_per_s = 7.2921e-5;
+  return earth_rad_per_s * std::hypot(direction.x, direction.y);  // the pole is z to 0.1 deg
 }
 
 std::optional<PixelPosition> View::pixel(const Vec<Gcrs>& apparent, SimTime t) const {

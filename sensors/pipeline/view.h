@@ -78,6 +78,9 @@ class View {
   /// East, north and `up` at `t`; in space any east and north.
   Rotation<Enu, Gcrs> enu_from_gcrs(SimTime t) const;
 
+  /// How fast a direction that is fixed among the stars moves over a ground sensor's sky [rad/s].
+  double turns_rad_per_s(const Vec<Gcrs>& direction) const;
+
   /// Returns what decides which effects apply.
   SceneFacts scene() const;
   /// Returns the Earth's occultation of what is behind it at `t`; nothing where the effect is off.

@@ -112,6 +112,7 @@ TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeas
   d.persistence_s = 10.0;
   d.blooming = true;
   const auto list = plannable_effects(sensor, {.clouds = true,
+                                               .gases = true,
                                                .stars = true,
                                                .shapes = true,
                                                .vignettes = true,

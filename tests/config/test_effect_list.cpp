@@ -10,6 +10,7 @@
 #include "core/effects/frame_effects.h"
 #include "core/facets/facet_light.h"
 #include "core/sky/air_effects.h"
+#include "core/sky/dispersion.h"
 #include "core/sky/place_effects.h"
 #include "core/sky/sky_model.h"
 
@@ -70,11 +71,17 @@ TEST(EffectList, InSpaceThereIsNoAir) {
   const EffectFacts* of_air[] = {&AtmosphericRefraction::facts,
                                  &AirExtinction::facts,
                                  &Scintillation::facts,
+                                 &GasAbsorption::facts,
+                                 &Dispersion::facts,
+                                 &MovingScintillation::facts,
                                  &CloudCover::facts,
                                  &Airglow::facts,
                                  &Twilight::facts};
   sensor.place = PlatformConfig{};
   sensor.weather.clouds = UniformCloud{};
+  sensor.weather.pwv_mm = 3.0;
+  for (const auto& asked : {Dispersion::facts, MovingScintillation::facts})
+    sensor.effects.set(asked, true);
   for (const EffectFacts* effect : of_air)
     EXPECT_FALSE(runs(effects_in(sensor, scene_facts(sensor)), *effect)) << effect->name;
   EXPECT_TRUE(runs(effects_in(sensor, scene_facts(sensor)), ZodiacalLight::facts));

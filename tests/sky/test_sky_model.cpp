@@ -6,6 +6,7 @@
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
+#include "core/photometry/spectrum.h"
 #include "core/sky/extinction.h"
 #include "core/sky/surface_brightness.h"
 
@@ -109,6 +110,160 @@ TEST(SkyModel, ADarkSkyIsReddish) {
                 0.25)
         << names[i];
   }
+}
+
+/// Vega, whose table ends at 2.195 um, to 2.5 um by the power -4 of a hot body.
+Spectrum vega_to_k() {
+  Spectrum vega = vega_spectrum();
+  Curve& curve = vega.irradiance;
+  const double last_m = curve.wavelength_m.back(), last = curve.value.back();
+  for (double x = 2200 * nm; x < 2510 * nm; x += 25 * nm) {
+    curve.wavelength_m.push_back(x);
+    curve.value.push_back(last * std::pow(x / last_m, -4.0));
+  }
+  return vega;
+}
+
+/// Vega magnitude a square arc second of a dark zenith.
+double dark_zenith_mag(const Band& band, const SkyParts& parts) {
+  const SkyModel sky(parts, night(), band, *extinction_of_site("lick"));
+  const double vega = photon_rate_per_m2(vega_to_k(), band) / light_of_magnitude(0.03);
+  return magnitude_of_light(sky.photons_per_s_m2_sr({0, 0, 1}) * arcsec * arcsec / vega);
+}
+
+Band top_hat(const char* name, double low_nm, double high_nm) {
+  return {name, 0.5 * (low_nm + high_nm) * nm, (high_nm - low_nm) * nm, {}};
+}
+
+// ESO's sky calculator, dark sky in the zenith: J 16.9, H 14.4, K 15.2.
+TEST(SkyModel, ADarkSkyIsBrightInTheInfrared) {
+  const SkyParts dark = *sky_parts_named("dark");
+  EXPECT_NEAR(dark_zenith_mag(top_hat("J", 1170, 1330), dark), 16.9, 0.5);
+  EXPECT_NEAR(dark_zenith_mag(top_hat("H", 1490, 1780), dark), 14.4, 0.5);
+  EXPECT_NEAR(dark_zenith_mag(top_hat("K", 2030, 2370), dark), 15.2, 0.5);
+}
+
+// Noll et al. 2012: the airglow's continuum goes as 0.2068 + 0.006139 S. Walker 1988 found the dark
+// sky 0.5 mag brighter in V at the Sun's maximum (200) than at its minimum (70).
+TEST(SkyModel, AirglowFollowsTheSunsCycle) {
+  SkyParts parts = *sky_parts_named("dark");
+  const auto mag = [&](const Band& band, double solar_flux_sfu) {
+    parts.airglow->solar_flux_sfu = solar_flux_sfu;
+    return dark_zenith_mag(band, parts);
+  };
+  EXPECT_EQ(mag(johnson_v(), 130), dark_zenith_mag(johnson_v(), *sky_parts_named("dark")));
+  EXPECT_NEAR(mag(johnson_v(), 70) - mag(johnson_v(), 200), 0.5, 0.2);
+  EXPECT_NEAR(airglow_by_solar_flux(200) / airglow_by_solar_flux(70),
+              (0.2068 + 0.006139 * 200) / (0.2068 + 0.006139 * 70), 1e-12);
+  // OH does not follow.
+  const Band h = top_hat("H", 1490, 1780);
+  EXPECT_NEAR(mag(h, 70), mag(h, 200), 0.01);
+  // Both ends of the range.
+  for (const double sfu : {50.0, 400.0})
+    for (const Band& band : {top_hat("line", 557, 558), top_hat("all", 300, 2490)})
+      EXPECT_TRUE(std::isfinite(mag(band, sfu))) << band.name << sfu;
+  EXPECT_GT(mag(johnson_v(), 50), mag(johnson_v(), 400) + 0.8);
+}
+
+// Leinert et al. 1998, table 19: the zodiacal light 90 deg from the Sun over that at 0.5 um, two
+// figures each (so 4 %), against their section 8.4.2 over the spectrum of the Sun. Sunlight alone
+// is 35 % too faint at 2.2 um.
+TEST(SkyModel, ZodiacalLightIsRedderThanTheSun) {
+  SkyParts parts;
+  parts.zodiacal_light = ZodiacalLight{};
+  SkyScene space = night();
+  space.in_air = false;
+  space.sun = {1, 0, 0};
+  const auto energy = [&](double um_) {
+    const Band line{"line", um_ * um, 0.04 * um, {}};
+    return SkyModel(parts, space, line, {}).photons_per_s_m2_sr({0, 0, 1}) / um_;
+  };
+  const struct {
+    double um, over_500_nm;
+  } table[] = {
+      {0.7, 2.0 / 2.6}, {0.9, 1.3 / 2.6}, {1.0, 1.2 / 2.6}, {1.2, 0.81 / 2.6}, {2.2, 0.17 / 2.6}};
+  for (const auto& [at, expected] : table)
+    EXPECT_NEAR(energy(at) / energy(0.5) / expected, 1.0, 0.12) << at;
+}
+
+// Leinert et al. 1998, section 8.4.2: f = 1 + a log10(wavelength / 500 nm) with a = 1.2 (below 500
+// nm) and 0.8 (above) 30 deg from the Sun, 0.9 and 0.6 at 90 deg.
+TEST(ZodiacalLight, IsReddenedAsLeinertStates) {
+  const auto factor = [](double wavelength_nm, double from_sun_deg) {
+    const Band line{"line", wavelength_nm * nm, 1 * nm, {}};
+    return 1.0 + zodiacal_slope(from_sun_deg * deg) * zodiacal_redness(line);
+  };
+  EXPECT_NEAR(factor(250, 30), 1 - 1.2 * 0.30103, 0.003);
+  EXPECT_NEAR(factor(250, 90), 1 - 0.9 * 0.30103, 0.003);
+  EXPECT_NEAR(factor(500, 60), 1.0, 0.001);
+  EXPECT_NEAR(factor(1000, 30), 1 + 0.8 * 0.30103, 0.001);
+  EXPECT_NEAR(factor(1000, 60), 1 + 0.7 * 0.30103, 0.001);
+  EXPECT_NEAR(factor(1000, 150), 1 + 0.6 * 0.30103, 0.001);
+  EXPECT_NEAR(factor(2400, 90), 1 + 0.6 * 0.68124, 0.001);
+  EXPECT_EQ(zodiacal_slope(0.0), 0.8);
+}
+
+// Patat et al. 2006, table 1: zenith over Paranal in UBVRI; his night sky (Patat 2003) added to
+// ours of twilight alone.
+TEST(SkyModel, TwilightHasPatatsColoursAtEveryDepression) {
+  SkyParts parts;
+  parts.twilight = Twilight{};
+  const struct {
+    const char* band;
+    double a0, a1, a2, night;
+  } table[] = {{"bessell-U", 11.78, 1.376, -0.039, 22.28},
+               {"bessell-B", 11.84, 1.411, -0.041, 22.64},
+               {"bessell-V", 11.84, 1.518, -0.057, 21.61},
+               {"bessell-R", 11.40, 1.567, -0.064, 20.87},
+               {"bessell-I", 10.93, 1.470, -0.062, 19.71}};
+  for (const auto& [name, a0, a1, a2, night_mag] : table)
+    for (const double depression_deg : {5.0, 8.0, 11.0, 14.0}) {
+      SkyScene scene = night();
+      scene.sun = towards(80, -depression_deg);
+      const Band band = *filter_named(name);
+      const SkyModel sky(parts, scene, band, *extinction_of_site("paranal"));
+      const double light =
+          sky.photons_per_s_m2_sr({0, 0, 1}) * arcsec * arcsec / zero_point_photons_per_s_m2(band) +
+          light_of_magnitude(night_mag);
+      const double x = depression_deg - 5.0;
+      EXPECT_NEAR(magnitude_of_light(light), a0 + a1 * x + a2 * x * x, 0.2)
+          << name << " " << depression_deg;
+    }
+}
+
+// Over the ends of the polynomials, too.
+TEST(SkyModel, TwilightsColourIsContinuousInTime) {
+  const auto b_over_i = [](double depression_deg) {
+    const Spectrum spectrum = twilight_spectrum(-depression_deg * deg);
+    return photon_rate_per_m2(spectrum, *filter_named("bessell-B")) /
+           photon_rate_per_m2(spectrum, *filter_named("bessell-I"));
+  };
+  double last = b_over_i(-90.0);
+  for (double depression_deg = -90; depression_deg <= 90; depression_deg += 0.05) {
+    const double here = b_over_i(depression_deg);
+    ASSERT_TRUE(std::isfinite(here) && here > 0.0) << depression_deg;
+    EXPECT_NEAR(here / last, 1.0, 0.03) << depression_deg;
+    last = here;
+  }
+}
+
+// Water over the site takes light from above the air in its bands, and none of the airglow.
+TEST(SkyModel, WaterDimsWhatIsAboveTheAir) {
+  SkyParts parts;
+  parts.zodiacal_light = ZodiacalLight{};
+  SkyScene scene = night();
+  const auto light = [&](const Band& band) {
+    return SkyModel(parts, scene, band, *extinction_of_site("lick")).photons_per_s_m2_sr({0, 0, 1});
+  };
+  const Band water = top_hat("water", 1350, 1450), window = top_hat("window", 1600, 1650);
+  const double dry[] = {light(water), light(window)};
+  scene.gases = AirGases{10.0, 1013.25};
+  EXPECT_LT(light(water) / dry[0], 0.4);
+  EXPECT_GT(light(window) / dry[1], 0.9);
+  scene.in_air = false;
+  const double above = light(water);
+  scene.gases.reset();
+  EXPECT_EQ(above, light(water));
 }
 
 // Lamps are brightest in G: a grey streak stands out most in B and least in G (the paper's figure

@@ -201,7 +201,7 @@ TEST(Twilight, PatternBySchaefer) {
 TEST(Twilight, Colours) {
   const auto mag = [](const char* name) {
     const Band band = *filter_named(name);
-    return magnitude_of_light(photons_per_s_m2_sr_of_s10(band, twilight_spectrum()) /
+    return magnitude_of_light(photons_per_s_m2_sr_of_s10(band, twilight_spectrum(-5 * deg)) /
                               zero_point_photons_per_s_m2(band));
   };
   EXPECT_NEAR(mag("bessell-B") - mag("bessell-V"), 0.00, 0.02);

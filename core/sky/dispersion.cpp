@@ -1,0 +1,192 @@
+#include "core/sky/dispersion.h"
+
+#include <cmath>
+
+#include "core/base/units.h"
+#include "core/photometry/magnitude.h"
+#include "core/photometry/star_spectrum.h"
+#include "core/sky/kept_tables.h"
+
+namespace dmise {
+namespace {
+
+constexpr int edges = BandDispersion::most_cells + 1;
+// Nodes as of extinction: every 0.1 of B-V, even in sqrt(X).
+constexpr int colours = 25, airmasses = 17;
+constexpr double most_airmass = 40.0;
+
+double airmass_of_node(int i) {
+  const double t = double(i) / (airmasses - 1);
+  return most_airmass * t * t;
+}
+
+// Refractivity of dry air in eraRefco: a + b s + c s^2 with s = 1 / um^2.
+constexpr double refractivity_a = 77.53484, refractivity_b = 0.439108, refractivity_c = 0.003666;
+
+double refractivity(double wavelength_m) {
+  const double s = 1e-12 / (wavelength_m * wavelength_m);
+  return refractivity_a + s * (refractivity_b + s * refractivity_c);
+}
+
+double wavelength_of(double refractivity) {
+  const double q =
+      refractivity_b * refractivity_b + 4.0 * refractivity_c * (refractivity - refractivity_a);
+  return um / std::sqrt((std::sqrt(q) - refractivity_b) / (2.0 * refractivity_c));
+}
+
+struct Lit {
+  double blue_m, red_m;
+};
+
+/// The band without its ends that have no light.
+Lit lit_part(const Band& band) {
+  Lit lit{band.low_m(), band.high_m()};
+  const Curve& r = band.response;
+  for (std::size_t i = 0; i + 1 < r.value.size() && r.value[i] == 0.0 && r.value[i + 1] == 0.0; ++i)
+    lit.blue_m = r.wavelength_m[i + 1];
+  for (std::size_t i = r.value.size(); i > 1 && r.value[i - 1] == 0.0 && r.value[i - 2] == 0.0; --i)
+    lit.red_m = r.wavelength_m[i - 2];
+  return lit;
+}
+
+/// The same air at another wavelength, held within what eraRefco takes.
+Refraction refraction_at(const Refraction& air, double wavelength_m) {
+  return Refraction(air.weather(), std::clamp(wavelength_m / um, 0.1, 100.0));
+}
+
+/// A node at or below a place on an axis of `count` nodes, and the fraction to the next.
+struct Place {
+  int node;
+  double fraction;
+};
+
+Place place_on(double at, int count) {
+  const int node = std::clamp(int(at), 0, count - 2);
+  return {node, at - node};
+}
+
+}  // namespace
+
+BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
+  const auto [blue_m, red_m] = lit_part(band);
+  blue_m_ = blue_m;
+  red_m_ = red_m;
+  // Wavelengths every 2 nm, and at least twice between samples of the band.
+  double step_m = 2 * nm;
+  const std::vector<double> samples = knots(band);
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    step_m = std::min(step_m, 0.5 * (samples[i] - samples[i - 1]));
+  step_m = std::max(step_m, 0.1 * nm);
+  const double blue = refractivity(blue_m), red = refractivity(red_m);
+  struct Step {
+    double wavelength_m, at, weight;  // the response times the step
+    int cell;
+  };
+  std::vector<Step> steps;
+  for (int cell = 0; cell < most_cells; ++cell) {
+    const auto edge_m = [&](int edge) {
+      return edge == 0            ? blue_m
+             : edge == most_cells ? red_m
+                                  : wavelength_of(std::lerp(blue, red, double(edge) / most_cells));
+    };
+    const double low = edge_m(cell), high = edge_m(cell + 1);
+    const int pieces = std::max(4, int(std::ceil((high - low) / step_m)));
+    for (int k = 0; k < pieces; ++k) {
+      const double x = low + (high - low) * (k + 0.5) / pieces;
+      steps.push_back({x, std::clamp((blue - refractivity(x)) / (blue - red), 0.0, 1.0),
+                       band.response.at_or_zero(x) * (high - low) / pieces, cell});
+    }
+  }
+  std::vector<double> k_mag(steps.size()), photons(steps.size());
+  for (std::size_t s = 0; s < steps.size(); ++s)
+    k_mag[s] = extinction.at_or_end(steps[s].wavelength_m);
+  // What all wavelengths lose changes nothing: taken off, so that something is left at the horizon.
+  const double least_k = *std::min_element(k_mag.begin(), k_mag.end());
+  std::vector<double> transmission(steps.size() * airmasses);
+  for (int a = 0; a < airmasses; ++a)
+    for (std::size_t s = 0; s < steps.size(); ++s)
+      transmission[a * steps.size() + s] =
+          light_of_magnitude((k_mag[s] - least_k) * airmass_of_node(a));
+  sums_.reserve(std::size_t(colours * airmasses * edges * 2));
+  for (int c = 0; c < colours; ++c) {
+    const StarSpectrum star =
+        star_spectrum(least_bv + c * (greatest_bv - least_bv) / (colours - 1));
+    for (std::size_t s = 0; s < steps.size(); ++s)
+      photons[s] = steps[s].weight * star.photons_at(steps[s].wavelength_m);
+    for (int a = 0; a < airmasses; ++a) {
+      std::array<double, edges> light{}, moment{};
+      for (std::size_t s = 0; s < steps.size(); ++s) {
+        const double through = photons[s] * transmission[a * steps.size() + s];
+        light[steps[s].cell + 1] += through;
+        moment[steps[s].cell + 1] += through * steps[s].at;
+      }
+      for (int e = 1; e < edges; ++e) {
+        light[e] += light[e - 1];
+        moment[e] += moment[e - 1];
+      }
+      const double whole = light[edges - 1];
+      for (int e = 0; e < edges; ++e) {
+        sums_.push_back(light[e] / whole);
+        sums_.push_back(moment[e] / whole);
+      }
+    }
+  }
+}
+
+void BandDispersion::add_cells(double airmass, double bv, int count,
+                               std::vector<SpectrumCell>& cells) const {
+  const double x = std::clamp(airmass, 0.0, most_airmass);
+  const auto [a, between] = place_on(std::sqrt(x / most_airmass) * (airmasses - 1), airmasses);
+  const double ta = (x - airmass_of_node(a)) / (airmass_of_node(a + 1) - airmass_of_node(a));
+  const double used = bv >= least_bv ? std::min(bv, greatest_bv) : least_bv;
+  const auto [c, tc] =
+      place_on((used - least_bv) / (greatest_bv - least_bv) * (colours - 1), colours);
+  const auto sum = [&](int edge, int which) {
+    const auto at = [&](int colour, int node) {
+      return sums_[std::size_t(((colour * airmasses + node) * edges + edge) * 2 + which)];
+    };
+    return std::lerp(std::lerp(at(c, a), at(c, a + 1), ta),
+                     std::lerp(at(c + 1, a), at(c + 1, a + 1), ta), tc);
+  };
+  double light = 0.0, moment = 0.0;
+  for (int k = 1; k <= count; ++k) {
+    const int edge = k * (most_cells / count);
+    const double light_to = sum(edge, 0), moment_to = sum(edge, 1);
+    const double share = light_to - light;
+    if (share > 0.0) cells.push_back({std::clamp((moment_to - moment) / share, 0.0, 1.0), share});
+    light = light_to;
+    moment = moment_to;
+  }
+}
+
+int Dispersion::cells(int level, double length_px) {
+  int count = 1;
+  while (count < BandDispersion::most_cells && length_px > count * cell_px[std::size_t(level)])
+    count *= 2;
+  return count;
+}
+
+Dispersion::Dispersion(const Band& band, const Curve& extinction, const Refraction& air,
+                       bool is_refracted)
+    : middle_(air), is_refracted_(is_refracted) {
+  static KeptTables<std::pair<Band, Curve>, BandDispersion> tables;
+  band_ = tables.of({band, extinction}, [&] { return BandDispersion(band, extinction); });
+  blue_ = refraction_at(air, band_->blue_m());
+  red_ = refraction_at(air, band_->red_m());
+}
+
+Dispersion::Ends Dispersion::ends(double elevation_rad, double distance_m) const {
+  const double truly =
+      is_refracted_ ? middle_.true_from_apparent_rad(elevation_rad, distance_m) : elevation_rad;
+  const double middle = middle_.apparent_from_true_rad(truly, distance_m);
+  return {blue_.apparent_from_true_rad(truly, distance_m) - middle,
+          red_.apparent_from_true_rad(truly, distance_m) - middle};
+}
+
+double dispersion_rad(const Band& band, const Refraction& air, double elevation_rad) {
+  const auto [blue_m, red_m] = lit_part(band);
+  return refraction_at(air, blue_m).at_apparent_rad(elevation_rad) -
+         refraction_at(air, red_m).at_apparent_rad(elevation_rad);
+}
+
+}  // namespace dmise

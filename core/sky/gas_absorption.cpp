@@ -1,0 +1,136 @@
+#include "core/sky/gas_absorption.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/units.h"
+#include "core/photometry/magnitude.h"
+#include "core/photometry/star_spectrum.h"
+#include "core/sky/airmass.h"
+#include "core/sky/kept_tables.h"
+
+namespace dmise {
+namespace {
+
+struct Gas {
+  double wavelength_nm, water, mixed;
+};
+#include "core/sky/gas_tables.inc"
+
+// Nodes as of extinction: every 0.1 of B-V, even in sqrt(X).
+constexpr int colours = 25, airmasses = 33;
+constexpr double most_airmass = 40.0;
+
+double airmass_of_node(int i) {
+  const double t = double(i) / (airmasses - 1);
+  return most_airmass * t * t;
+}
+
+void check(double value, double most, const char* name) {
+  if (!(value >= 0.0 && value <= most))
+    throw Error(std::string(name) + ": must be in [0, " + std::to_string(most) + "], got " +
+                std::to_string(value));
+}
+
+}  // namespace
+
+Curve gas_transmission(const AirGases& air, double airmass) {
+  check(air.pwv_mm, 100.0, "pwv_mm");
+  check(air.pressure_hpa, 1100.0, "pressure_hpa");
+  const double water_cm = 0.1 * air.pwv_mm * airmass;
+  const double mixed_airmass = airmass * air.pressure_hpa / 1013.25;
+  Curve curve;
+  for (const Gas& gas : gases) {
+    const double w = gas.water * water_cm, u = gas.mixed * mixed_airmass;
+    curve.wavelength_m.push_back(gas.wavelength_nm * nm);
+    curve.value.push_back(std::exp(-0.2385 * w / std::pow(1.0 + 20.07 * w, 0.45) -
+                                   1.41 * u / std::pow(1.0 + 118.3 * u, 0.45)));
+  }
+  return curve;
+}
+
+Curve with_haze_beyond(const Curve& extinction) {
+  Curve curve = extinction;
+  if (curve.empty()) return curve;
+  const double last_m = curve.wavelength_m.back(), last = curve.value.back();
+  for (double x = last_m + 100 * nm; x < 4.05 * um; x += 100 * nm) {
+    curve.wavelength_m.push_back(x);
+    curve.value.push_back(last * std::pow(x / last_m, -1.3));
+  }
+  return curve;
+}
+
+BandGases::BandGases(const Band& band, const Curve& extinction, const AirGases& air) {
+  const double width_m = band.high_m() - band.low_m();
+  const int steps = std::max(128, int(std::ceil(width_m / (2 * nm))));
+  const double step_m = width_m / steps;
+  std::vector<double> x_m(steps), k_mag(steps), response(steps), photons(steps);
+  for (int s = 0; s < steps; ++s) {
+    x_m[s] = band.low_m() + (s + 0.5) * step_m;
+    k_mag[s] = extinction.at_or_end(x_m[s]);
+    response[s] = band.response.at_or_zero(x_m[s]);
+  }
+  const double least_k = *std::min_element(k_mag.begin(), k_mag.end());
+  std::vector<double> without(std::size_t(steps) * airmasses), with(without.size());
+  for (int a = 0; a < airmasses; ++a) {
+    const Curve transmission = gas_transmission(air, airmass_of_node(a));
+    for (int s = 0; s < steps; ++s) {
+      const auto at = std::size_t(a * steps + s);
+      without[at] = light_of_magnitude((k_mag[s] - least_k) * airmass_of_node(a));
+      with[at] = without[at] * transmission.at_or_end(x_m[s]);
+    }
+  }
+  for (int c = 0; c < colours; ++c) {
+    const StarSpectrum star =
+        star_spectrum(least_bv + c * (greatest_bv - least_bv) / (colours - 1));
+    for (int s = 0; s < steps; ++s) photons[s] = response[s] * star.photons_at(x_m[s]);
+    for (int a = 0; a < airmasses; ++a) {
+      double through = 0.0, above = 0.0;
+      for (int s = 0; s < steps; ++s) {
+        through += photons[s] * with[std::size_t(a * steps + s)];
+        above += photons[s] * without[std::size_t(a * steps + s)];
+      }
+      log_of_transmission_.push_back(std::log(std::max(through / above, 1e-30)));
+    }
+  }
+}
+
+double BandGases::of_star(double airmass, double bv) const {
+  const double x = std::clamp(airmass, 0.0, most_airmass);
+  const double a = std::sqrt(x / most_airmass) * (airmasses - 1);
+  const int low = std::min(int(a), airmasses - 2);
+  const double x0 = airmass_of_node(low), x1 = airmass_of_node(low + 1);
+  const double ta = (x - x0) / (x1 - x0);
+  const double used = bv >= least_bv ? std::min(bv, greatest_bv) : least_bv;
+  const double c = (used - least_bv) / (greatest_bv - least_bv) * (colours - 1);
+  const int row = std::min(int(c), colours - 2);
+  const double* at = &log_of_transmission_[std::size_t(row * airmasses + low)];
+  return std::exp(std::lerp(std::lerp(at[0], at[1], ta),
+                            std::lerp(at[airmasses], at[airmasses + 1], ta), c - row));
+}
+
+GasAbsorption::GasAbsorption(const AirExposure& exposure) : up_(exposure.up) {
+  struct Key {
+    Band band;
+    Curve extinction;
+    AirGases gases;
+    bool operator==(const Key&) const = default;
+  };
+  static KeptTables<Key, BandGases> tables;
+  const AirGases gases = exposure.gases.value_or(AirGases{.pwv_mm = 0.0, .pressure_hpa = 0.0});
+  table_ = tables.of({exposure.band, exposure.extinction_mag_per_airmass, gases}, [&] {
+    return BandGases(exposure.band, exposure.extinction_mag_per_airmass, gases);
+  });
+}
+
+double GasAbsorption::apply(const SightLine& line) const {
+  return table_->of_star(airmass(elevation_over(up_, line.apparent)), line.bv);
+}
+
+double GasAbsorption::sunlight_mag(double airmass) const {
+  return magnitude_of_light(table_->of_star(airmass, sun_bv));
+}
+
+}  // namespace dmise

@@ -1,0 +1,252 @@
+#include "core/sky/grazing_air.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/units.h"
+#include "core/photometry/spectrum.h"
+
+namespace dmise {
+namespace {
+
+constexpr double earth_radius_m = 6371e3;
+
+// Heights of the table: every 250 m to 40 km, every 1 km to 110 km.
+constexpr int fine_heights = 160, coarse_heights = 70, heights = fine_heights + coarse_heights + 1;
+constexpr double height_of_node(int i) {
+  return i <= fine_heights ? 250.0 * i : 40e3 + 1e3 * (i - fine_heights);
+}
+int node_of_height(double height_m) {
+  const double at = height_m < 40e3 ? height_m / 250.0 : fine_heights + (height_m - 40e3) / 1e3;
+  return std::clamp(int(std::lround(at)), 0, heights - 1);
+}
+
+struct Layer {
+  double from_m, kelvin, kelvin_per_m, pressure;  // of its lower end; geopotential height
+};
+
+/// Pressure at a height over that at the lower end of a layer.
+double falls(const Layer& layer, double geopotential_m) {
+  constexpr double kelvin_per_m = 0.0341632;  // gravity over the gas constant
+  const double rises_m = geopotential_m - layer.from_m;
+  if (layer.kelvin_per_m == 0.0) return std::exp(-kelvin_per_m * rises_m / layer.kelvin);
+  const double kelvin = std::max(1.0, layer.kelvin + layer.kelvin_per_m * rises_m);
+  return std::pow(kelvin / layer.kelvin, -kelvin_per_m / layer.kelvin_per_m);
+}
+
+/// Density of the standard atmosphere over that at the sea, also below it. Source: ISO 2533; U.S.
+/// Standard Atmosphere 1976.
+double relative_density(double height_m) {
+  static const auto layers = [] {
+    std::array<Layer, 7> known{{{0, 288.15, -6.5e-3, 1.0},
+                                {11e3, 216.65, 0.0, 0.0},
+                                {20e3, 216.65, 1e-3, 0.0},
+                                {32e3, 228.65, 2.8e-3, 0.0},
+                                {47e3, 270.65, 0.0, 0.0},
+                                {51e3, 270.65, -2.8e-3, 0.0},
+                                {71e3, 214.65, -2e-3, 0.0}}};
+    for (std::size_t i = 1; i < known.size(); ++i)
+      known[i].pressure = known[i - 1].pressure * falls(known[i - 1], known[i].from_m);
+    return known;
+  }();
+  const double geopotential_m = 6356766.0 * height_m / (6356766.0 + height_m);
+  std::size_t i = layers.size() - 1;
+  while (i > 0 && geopotential_m < layers[i].from_m) --i;
+  const double kelvin = std::max(
+      150.0, layers[i].kelvin + layers[i].kelvin_per_m * (geopotential_m - layers[i].from_m));
+  return layers[i].pressure * falls(layers[i], geopotential_m) * 288.15 / kelvin;
+}
+
+/// Ozone [atm-cm/m].
+double ozone_density(double height_m) {
+  constexpr double column_atm_cm = 0.3, middle_m = 22e3, width_m = 5e3;
+  const double t = (height_m - middle_m) / width_m;
+  return column_atm_cm * std::exp(-0.5 * t * t) / (width_m * std::sqrt(2 * pi));
+}
+
+/// Absorption of ozone [1/atm-cm]. Source: Bird & Riordan 1986, J. Climate Appl. Meteor. 25, 87.
+double ozone_absorption(double wavelength_m) {
+  static const Curve curve{
+      {300 * nm, 305 * nm, 310 * nm, 315 * nm, 320 * nm, 325 * nm, 330 * nm, 335 * nm,
+       340 * nm, 350 * nm, 440 * nm, 450 * nm, 480 * nm, 500 * nm, 530 * nm, 550 * nm,
+       570 * nm, 593 * nm, 610 * nm, 630 * nm, 656 * nm, 690 * nm, 740 * nm, 780 * nm},
+      {10.0,  4.8,  2.7,   1.35,  0.8,  0.38,  0.16, 0.075, 0.04,  0.007, 0.0,  0.003,
+       0.014, 0.03, 0.063, 0.085, 0.12, 0.119, 0.12, 0.09,  0.065, 0.028, 0.01, 0.0}};
+  return curve.at_or_end(wavelength_m);
+}
+
+/// Optical depth of Rayleigh scattering towards the zenith from the sea. Source: Hansen & Travis
+/// 1974, Space Sci. Rev. 16, 527.
+double rayleigh_depth(double wavelength_m) {
+  const double s = um * um / (wavelength_m * wavelength_m);
+  return 0.008569 * s * s * (1 + 0.0113 * s + 0.00013 * s * s);
+}
+
+/// Refractivity at the sea, 15 C, as in eraRefco.
+double refractivity_at_sea(double wavelength_m) {
+  const double s = um * um / (wavelength_m * wavelength_m);
+  return (77.53484e-6 + s * (4.39108e-7 + s * 3.666e-9)) * 1013.25 / 288.15;
+}
+
+double density_slope(double height_m) {
+  constexpr double step_m = 50.0;
+  return (relative_density(height_m + step_m) - relative_density(height_m - step_m)) / (2 * step_m);
+}
+
+// 2/3 b^3 - ... = b - sin b cos b, without cancellation.
+double segment(double b) {
+  if (b > 0.05) return b - std::sin(b) * std::cos(b);
+  const double bb = b * b;
+  return b * bb * (2.0 / 3 - bb * (2.0 / 15 - bb * (4.0 / 315)));
+}
+
+}  // namespace
+
+double visible_fraction(const LowSun& sun) {
+  const auto [s, above, k] = sun;
+  if (above >= s) return 1.0;
+  const double centres = 1.0 + above * k;  // distance of the two centres, times k
+  if (s * k <= 1.0 && above <= -s) return 0.0;
+  if (s * k > 1.0 && centres <= s * k - 1.0) return 1.0 - 1.0 / (s * s * k * k);
+
+  // Half angles of the chord where the circles cross, seen from the disc's and the limb's centre.
+  const double cos_a = (2 * above + (above * above + s * s) * k) / (2 * s * centres);
+  const double a = std::acos(std::clamp(cos_a, -1.0, 1.0));
+  const double sin_b = s * k * std::sin(a);
+  const double cos_b = (centres * centres + 1.0 - s * s * k * k) / (2 * centres);
+  const double b = std::atan2(sin_b, cos_b);
+  const double of_disc = a - std::sin(a) * std::cos(a);
+  const double of_limb = b > 0.0 ? segment(b) / (s * s * k * k) : 0.0;
+  return std::clamp(1.0 - (of_disc + of_limb) / pi, 0.0, 1.0);
+}
+
+GrazingAir::GrazingAir(const Band& band) {
+  constexpr int wavelengths = 64;
+  std::array<double, wavelengths> x_m, light;
+  double whole = 0.0, refractivity = 0.0, alpha = 0.0;
+  for (int i = 0; i < wavelengths; ++i) {
+    x_m[i] = std::lerp(band.low_m(), band.high_m(), (i + 0.5) / wavelengths);
+    light[i] = band.response.at_or_zero(x_m[i]) * sunlight_spectrum().irradiance.at_or_end(x_m[i]) *
+               x_m[i];
+    whole += light[i];
+    refractivity += light[i] * refractivity_at_sea(x_m[i]);
+    alpha += light[i] * std::max(0.0, -0.023 + 0.292 * um / x_m[i]);
+  }
+  refractivity /= whole;
+  alpha /= whole;
+  divide_disc(alpha);
+
+  // Air over the sea, and along rays.
+  constexpr double sea_step_m = 100.0;
+  double column_m = 0.0;
+  for (double z = 0.5 * sea_step_m; z < 120e3; z += sea_step_m)
+    column_m += sea_step_m * relative_density(z);
+  for (int node = 0; node < heights; ++node) {
+    const double height_m = height_of_node(node);
+    const double slope = refractivity * density_slope(height_m);
+    // The ray bends downwards: it rises like a straight one over a larger Earth.
+    const double rises = std::max(0.2, 1.0 + slope * earth_radius_m) / (2 * earth_radius_m);
+    constexpr double step_m = 5e3, farthest_m = 1.3e6;
+    double turns = 0.0, air_m = 0.0, ozone = 0.0;
+    for (double s = 0.5 * step_m; s < farthest_m; s += step_m) {
+      const double z = height_m + s * s * rises;
+      turns -= 2 * step_m * refractivity * density_slope(z);
+      air_m += 2 * step_m * relative_density(z);
+      ozone += 2 * step_m * ozone_density(z);
+    }
+    bending_rad_.push_back(turns);
+    double left = 0.0;
+    for (int i = 0; i < wavelengths; ++i)
+      left += light[i] * std::exp(-rayleigh_depth(x_m[i]) * air_m / column_m -
+                                  ozone_absorption(x_m[i]) * ozone);
+    transmission_.push_back(left / whole);
+  }
+}
+
+void GrazingAir::divide_disc(double alpha) {
+  // Chords of the disc along the limb, and places on them, by even steps of the angle whose cosine
+  // they are at: as Gauss and Chebyshev.
+  constexpr int chords = 96, places = 4;
+  double whole = 0.0;
+  for (int i = 0; i < chords; ++i) {
+    const double chord = pi * (i + 0.5) / chords, half = std::sin(chord);
+    for (int j = 0; j < places; ++j) {
+      const double at = 0.5 * pi * (j + 0.5) / places;
+      const double share = half * half * std::sin(at) * std::pow(half * std::sin(at), alpha);
+      disc_.push_back({std::cos(chord), half * std::cos(at), share});
+      whole += share;
+    }
+  }
+  for (Place& place : disc_) place.share /= whole;
+  // Brightness I is that of even discs with radii to sqrt(1 - I^(2 / alpha)).
+  constexpr int levels = 32;
+  whole = 0.0;
+  for (int i = 0; i < levels; ++i) {
+    const double area = alpha > 1e-6 ? 1.0 - std::pow((i + 0.5) / levels, 2.0 / alpha) : 1.0;
+    pile_.push_back({std::sqrt(area), area});
+    whole += area;
+  }
+  for (auto& disc : pile_) disc[1] /= whole;
+}
+
+double GrazingAir::bending_rad(double height_m) const {
+  return bending_rad_[std::size_t(node_of_height(height_m))];
+}
+
+double GrazingAir::transmission(double height_m) const {
+  return transmission_[std::size_t(node_of_height(height_m))];
+}
+
+double GrazingAir::light_past_sharp_limb(const LowSun& sun) const {
+  if (sun.above_rad >= sun.radius_rad) return 1.0;
+  double light = 0.0;
+  for (const auto& [radius, share] : pile_) {
+    LowSun disc = sun;
+    disc.radius_rad *= radius;
+    light += share * visible_fraction(disc);
+  }
+  return std::clamp(light, 0.0, 1.0);
+}
+
+double GrazingAir::light(const LowSun& sun, double distance_m, double radius_m) const {
+  // Where a ray of each height is seen over the limb: it leaves the air so that r sin(angle from
+  // the nadir + bending) is the distance of its line from the centre, and light is spread by how
+  // much farther rays are apart behind the air than before it.
+  std::array<double, heights> seen_rad, gain;
+  const double limb_rad = std::asin(std::min(1.0, radius_m / distance_m));
+  int nodes = 0;
+  for (; nodes < heights && radius_m + height_of_node(nodes) < distance_m; ++nodes)
+    seen_rad[nodes] = std::asin((radius_m + height_of_node(nodes)) / distance_m) -
+                      bending_rad_[std::size_t(nodes)] - limb_rad;
+  if (nodes < 3) return light_past_sharp_limb(sun);
+  for (int i = 0; i < nodes; ++i) {
+    const int below = std::max(0, i - 1), next = std::min(nodes - 1, i + 1);
+    const double apart_m = height_of_node(next) - height_of_node(below);
+    const auto line_m = [&](int node) { return distance_m * std::sin(limb_rad + seen_rad[node]); };
+    gain[i] = transmission_[std::size_t(i)] *
+              std::min(1.0, (radius_m + height_of_node(i)) * apart_m /
+                                (line_m(i) * std::max(line_m(next) - line_m(below), 1e-9)));
+  }
+  if (!(gain[nodes - 1] > 0.0)) return 0.0;
+  const auto light_at = [&](double angle_rad) {
+    if (angle_rad >= seen_rad[nodes - 1]) return 1.0;
+    if (angle_rad < seen_rad[0]) return 0.0;
+    const auto* above = std::upper_bound(seen_rad.data(), seen_rad.data() + nodes, angle_rad);
+    const auto i = std::size_t(above - seen_rad.data());
+    const double t = (angle_rad - seen_rad[i - 1]) / (seen_rad[i] - seen_rad[i - 1]);
+    return std::lerp(gain[i - 1], gain[i], t);
+  };
+  const auto [s, above, k] = sun;
+  if (above - s >= seen_rad[nodes - 1]) return 1.0;
+  double light = 0.0;
+  for (const auto& [up, aside, share] : disc_) {
+    const double over = above + s * up, across = s * aside;
+    const double angle = (2 * over + k * (across * across + over * over)) /
+                         (1 + std::hypot(k * across, 1 + k * over));
+    light += share * light_at(angle);
+  }
+  return std::clamp(light, 0.0, 1.0);
+}
+
+}  // namespace dmise
