@@ -19,6 +19,7 @@ struct Arc {
   PixelPosition start, middle, end;  // anywhere, also outside the frame
   double signal_e = 0.0;             // of the whole arc, expected [e-], >= 0
   double tilt = 0.0;                 // [-1, 1]
+  double may_miss_e = 0.0;           // in a pixel, >= 0; 0: 2e-6 of its brightest
 
   bool is_point() const {
     const auto is_middle = [this](PixelPosition p) {
@@ -49,9 +50,10 @@ struct DepositView {
 
 /// Adds arcs to `image` [e-] and returns what is inside the frame for each. Light per pixel is
 /// accurate to 2e-6 of the arc's brightest pixel, the sum over pixels to 1e-6, for lengths of 0 to
-/// 1e12 px: panels of 2 sigma along the path with five Gauss-Legendre nodes. The bytes do not
-/// depend on the number of threads or the instruction set. Throws `Error` naming the arc if a value
-/// is not finite or the signal is negative.
+/// 1e12 px: panels of 2 sigma along the path with five Gauss-Legendre nodes. An arc of up to 4
+/// sigma is one panel where it may miss what that leaves. The bytes do not depend on the number of
+/// threads or the instruction set. Throws `Error` naming the arc if a value is not finite or the
+/// signal is negative.
 std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
                                ExpectedElectronImage& image, Threads& threads,
                                SimdLevel level = best_simd_level());

@@ -22,6 +22,29 @@ DMISE_INLINE void place(const PsfTableView& t, float phase, float scale, int off
     for (int j = 0; j < block; ++j) out[i + j] = scale * (a[i + j] + f * (b[i + j] - a[i + j]));
 }
 
+// The same sums for a narrow table and nodes that are near each other, without memory between.
+template <int Nodes>
+DMISE_INLINE void add_narrow(const PanelView& panel, const PsfTableView& t, const BandView& band,
+                             int column, int row, int last_row) {
+  constexpr int most = 2 * block;
+  float along_x[Nodes][most] = {}, along_y[Nodes][most] = {};
+  for (int k = 0; k < Nodes; ++k) {
+    place(t, panel.phase_x[k], 1.0f, panel.column[k] - column, along_x[k]);
+    place(t, panel.phase_y[k], panel.weight[k], panel.row[k] - row, along_y[k]);
+  }
+  const int top = row + t.first;
+  const int y_begin = larger(0, band.row_begin - top);
+  const int y_end = smaller(last_row - row + t.size, band.row_end - top);
+  float* out = band.pixels + std::ptrdiff_t(top + y_begin) * band.stride + column + t.first;
+  for (int y = y_begin; y < y_end; ++y, out += band.stride) {
+    float sum[most];
+    for (int j = 0; j < most; ++j) sum[j] = along_y[0][y] * along_x[0][j];
+    for (int k = 1; k < Nodes; ++k)
+      for (int j = 0; j < most; ++j) sum[j] += along_y[k][y] * along_x[k][j];
+    for (int j = 0; j < most; ++j) out[j] += sum[j];
+  }
+}
+
 template <int Nodes>
 DMISE_INLINE void add(const PanelView& panel, const PsfTableView& t, const BandView& band,
                       float* work) {
@@ -40,6 +63,11 @@ DMISE_INLINE void add(const PanelView& panel, const PsfTableView& t, const BandV
   const int y_begin = larger(0, band.row_begin - top);
   const int y_end = smaller(last_row - row + t.size, band.row_end - top);
   if (x_begin >= x_end || y_begin >= y_end) return;
+  if (t.stride == block && width <= 2 * block && height <= 2 * block && left >= 0 &&
+      left + 2 * block <= band.columns) {
+    add_narrow<Nodes>(panel, t, band, column, row, last_row);
+    return;
+  }
 
   float* along_x = work;                     // Nodes x width
   float* along_y = along_x + Nodes * width;  // Nodes x height

@@ -198,5 +198,48 @@ TEST(Deposit, AnArcThatIsNotANumberIsNamed) {
   EXPECT_THROW(draw(point(1, 1, -1), image), Error);
 }
 
+// An arc of up to four widths is summed as one panel if it may miss a little, and then misses less:
+// beside the sum of panels of two widths.
+TEST(Deposit, OneWidePanelMissesNoMoreThanItMay) {
+  int wide = 0;
+  for (const double sigma : {0.3, 0.637, 1.2, 2.5})
+    for (const double widths : {0.5, 1.5, 2.2, 3.0, 3.9})
+      for (const double signal_e : {10.0, 3e3, 1e6}) {
+        const double length = widths * sigma;
+        Arc arc{{20.3, 20.8}, {}, {20.3 + 0.8 * length, 20.8 + 0.6 * length}, signal_e};
+        arc.middle = (arc.start + arc.end) * 0.5;
+        ExpectedElectronImage exact(48, 48), rough(48, 48);
+        draw(arc, exact, sigma);
+        arc.may_miss_e = 0.05;
+        const Deposited all = draw(arc, rough, sigma);
+        double worst = 0.0;
+        bool differ = false;
+        for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
+          worst = std::max(worst, double(std::abs(exact.pixels[i] - rough.pixels[i])));
+          differ = differ || exact.pixels[i] != rough.pixels[i];
+        }
+        EXPECT_LE(worst, 0.05 + 4e-6 * signal_e) << sigma << " " << widths << " " << signal_e;
+        EXPECT_NEAR(all.signal_e, signal_e, 2e-6 * signal_e);
+        wide += differ;
+      }
+  EXPECT_GT(wide, 5);
+}
+
+// Arcs in one band of rows and in several, within the frame and beyond each edge: what is returned
+// is what was drawn.
+TEST(Deposit, ReturnsWhatIsInTheFrameAcrossBandsAndEdges) {
+  for (const double y : {-1.0, 5.0, 126.0, 128.0, 200.0, 298.5})
+    for (const double x : {-2.0, 10.0, 39.5})
+      for (const double length : {0.0, 1.0, 30.0, 400.0}) {
+        ExpectedElectronImage image(40, 300);
+        const Deposited d = draw(straight({x, y}, {x + 1, y + length}, 1000.0), image);
+        const Deposited there = measured(image);
+        EXPECT_NEAR(d.signal_e, there.signal_e, 0.01);
+        if (d.signal_e < 1.0) continue;
+        EXPECT_NEAR(d.x_px, there.x_px, 1e-4);
+        EXPECT_NEAR(d.y_px, there.y_px, 1e-3);
+      }
+}
+
 }  // namespace
 }  // namespace dmise
