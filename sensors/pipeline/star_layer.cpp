@@ -282,16 +282,24 @@ std::vector<Deposited> add_past(const OcclusionMask& mask, std::span<const Arc> 
   return deposited;
 }
 
-/// Deposits snapshots of arcs at even times of each.
+/// Deposits snapshots of arcs at even times of each, as spectra where `spread` makes them.
+template <class Spread>
 std::vector<Deposited> add_snapshots(const View& view, std::span<const Arc> arcs, int count,
-                                     OpticsStage& optics, const OcclusionMask& mask,
-                                     ExpectedElectronImage& image) {
+                                     const Spread& spread, OpticsStage& optics,
+                                     const OcclusionMask& mask, ExpectedElectronImage& image) {
   std::vector<Deposited> deposited;
-  for (const Arc& arc : arcs) {
-    std::vector<Arc> points = as_snapshots({&arc, 1}, count);
+  std::vector<Arc> whole;
+  for (std::size_t i = 0; i < arcs.size(); ++i) {
+    whole.clear();
+    if (spread)
+      spread(i, whole);
+    else
+      whole.push_back(arcs[i]);
+    std::vector<Arc> points = as_snapshots(whole, count);
     for (Arc& point : points) point.signal_e *= view.illumination(point.middle);
     Deposited star;
-    for (const Deposited& part : add_past(mask, points, optics, image)) star = star + part;
+    for (const Deposited& part : optics.add(mask.empty() ? points : mask.past(points), image))
+      star = star + part;
     deposited.push_back(star);
   }
   return deposited;
@@ -444,9 +452,14 @@ std::uint32_t StarLayer::draw(const Exposure& exposure, std::vector<Trail> trail
       arcs[i] = rolled(view, arcs[i]);
       trails[i].pixel = {arcs[i].start, arcs[i].middle, arcs[i].end};
     }
+  std::function<void(std::size_t, std::vector<Arc>&)> spread;
+  if (exposure.spectra)
+    spread = [&](std::size_t i, std::vector<Arc>& parts) {
+      exposure.spread(arcs[i], trails[i], parts);
+    };
   std::vector<Deposited> deposited;
   if (in_snapshots && view.rolls()) {
-    deposited = add_snapshots(view, arcs, snapshots, optics, mask, image);
+    deposited = add_snapshots(view, arcs, snapshots, spread, optics, mask, image);
   } else if (in_snapshots) {
     std::vector<std::uint32_t> drawn;
     std::vector<double> signal_e;
@@ -458,11 +471,6 @@ std::uint32_t StarLayer::draw(const Exposure& exposure, std::vector<Trail> trail
                                     exposure.spectra ? &*exposure.spectra : nullptr,
                                     exposure.stars.bv, optics, mask, image);
   } else {
-    std::function<void(std::size_t, std::vector<Arc>&)> spread;
-    if (exposure.spectra)
-      spread = [&](std::size_t i, std::vector<Arc>& parts) {
-        exposure.spread(arcs[i], trails[i], parts);
-      };
     deposited = add_past(mask, arcs, spread, optics, image);
   }
   std::uint32_t inside = 0;
