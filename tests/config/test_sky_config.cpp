@@ -74,6 +74,21 @@ TEST(SkyConfig, AirAndWeather) {
             0.7);
 }
 
+TEST(SkyConfig, WaterAndTheSunsFlux) {
+  EXPECT_EQ(read("weather: {pwv_mm: 0}").weather->pwv_mm, 0.0);
+  EXPECT_FALSE(read("weather: {clouds: 0.5}").weather->pwv_mm);
+  EXPECT_EQ(read("sky: {preset: dark, solar_flux_sfu: 150}").sky->parts.airglow->solar_flux_sfu,
+            150.0);
+  EXPECT_NE(complaint("weather: {pwv_mm: 101}").find("s.yaml:1:19: weather.pwv_mm: must be"),
+            std::string::npos)
+      << complaint("weather: {pwv_mm: 101}");
+  EXPECT_NE(complaint("sky: {preset: dark, solar_flux_sfu: 20}").find("s.yaml:1:37: sky.solar"),
+            std::string::npos)
+      << complaint("sky: {preset: dark, solar_flux_sfu: 20}");
+  EXPECT_NE(complaint("sky: {preset: space, solar_flux_sfu: 70}").find("there is no airglow"),
+            std::string::npos);
+}
+
 TEST(SkyConfig, SaysWhereAndWhy) {
   EXPECT_EQ(complaint("sky: urbn"),
             "s.yaml:1:6: sky: must be one of urban, suburban, dark, space, got urbn");
