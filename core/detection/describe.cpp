@@ -209,8 +209,7 @@ void describe_direction(const Source& source, const FrameHeader& header, Detecti
   const MidPoint mid = mid_point(source, header);
   const SimTime delay = row_delay(header, mid.point.place.y_px);
   d.time = header.middle + delay;
-  d.sensor_position_m =
-      header.sensor_position_m + header.sensor_velocity_m_per_s * delay.seconds();
+  d.sensor_position_m = header.sensor_position_m + header.sensor_velocity_m_per_s * delay.seconds();
   const Vec<Gcrs> here = wcs_direction(header.wcs, mid.point.place);
   std::tie(d.ra_rad, d.dec_rad) = std::tuple_cat(to_spherical(here));
   const RefractionParallax parallax = refraction_parallax(header, here);
