@@ -16,6 +16,7 @@
 #include "bench/bench_scaling.h"
 #include "bench/bench_sgp4.h"
 #include "bench/bench_sky.h"
+#include "bench/bench_stars.h"
 #include "bench/bench_survey.h"
 #include "bench/bench_tick.h"
 
@@ -48,6 +49,8 @@ std::vector<Bench> benches() {
       {"sgp4", "propagation of whole catalogues against the compiled reference",
        [](bool json) { return bench_sgp4(json) | bench_figure5(json); }},
       {"sky", "the sky of a frame and the stars of a field", bench_sky},
+      {"stars", "a field of an index of many stars, and of synthetic ones", bench_stars,
+       add_stars_options},
       {"survey", "a night's survey of many sites, and its detections against rendered frames",
        bench_survey, add_survey_options},
       {"tick", "lock-step ticks compared to a bare ZeroMQ floor", bench_tick},

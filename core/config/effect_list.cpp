@@ -65,9 +65,10 @@ constexpr std::string_view always_listed[] = {"proper_motion",
 using LightEffects =
     EffectList<SkyBackground, SkyGrid, Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight,
                Twilight, LightPollution, SpaceObjects, ResolvedShapes, EarthShadow, Earthshine,
-               ThermalEmission, StarBackground, EarthOccultation, AirExtinction, GasAbsorption,
-               CloudCover, Scintillation, MovingScintillation, Dispersion, Vignetting, Streak,
-               Occlusion, Drawing, PointSpread, AirTurbulence, PsfWavelengths>;
+               ThermalEmission, StarBackground, SyntheticBackground, EarthOccultation,
+               AirExtinction, GasAbsorption, CloudCover, Scintillation, MovingScintillation,
+               Dispersion, Vignetting, Streak, Occlusion, Drawing, PointSpread, AirTurbulence,
+               PsfWavelengths>;
 
 std::vector<const EffectFacts*> list() {
   std::vector<const EffectFacts*> all;
@@ -126,7 +127,8 @@ SceneFacts scene_facts(const SensorConfig& sensor) {
           .vignettes = sensor.camera.optics.vignetting.any(),
           .diffracts = diffracts,
           .turbulent = diffracts && sensor.seeing && std::isfinite(sensor.seeing->r0_m) &&
-                       sensor.effects.has(PointSpread::facts)};
+                       sensor.effects.has(PointSpread::facts),
+          .synthetic_stars = sensor.synthetic_stars_to_v_mag.has_value()};
 }
 
 std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const SceneFacts& scene) {

@@ -119,7 +119,10 @@ std::string physics_json(const Scenario& scenario) {
   json.field("common_every_s", scenario.environment.common_every_s);
   json.field("site_every_s", scenario.environment.site_every_s).end_object();
   json.key("stars").begin_object().field("catalogue", scenario.star_catalogue_named);
-  json.field("faintest_mag", scenario.faintest_star_mag).end_object();
+  json.field("faintest_mag", scenario.faintest_star_mag);
+  if (scenario.synthetic_stars_to_v_mag)
+    json.field("synthetic_to", *scenario.synthetic_stars_to_v_mag);
+  json.end_object();
   json.key("sensors").begin_array();
   for (const auto& sensor : scenario.sensors) write_sensor(json, sensor);
   json.end_array();

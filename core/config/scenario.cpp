@@ -57,8 +57,11 @@ const Section& stars_section() {
                 "tycho2` makes it), or a file: HYG in CSV, "
                 "Yale BSC5, kstars' own form, or an index that `dmise catalogue index` has made.",
                 default_star_catalogue),
-       optional("faintest_mag", form::number(-2.0, 30.0), "Faintest star that is drawn [V mag].",
-                "9.5")}};
+       optional("faintest_mag", form::number(-2.0, 30.0),
+                "Faintest star of the catalogue that is drawn [V mag].", "9.5"),
+       optional("synthetic_to", form::number(0.0, 21.0),
+                "Where the catalogue ends, stars go on by counts to this magnitude [V mag]; "
+                "without it there are none.")}};
   return section;
 }
 
@@ -190,6 +193,7 @@ void read_stars(const YamlValue& value, Scenario& scenario) {
     where.fail(file ? missing_star_catalogue(scenario.star_catalogue_named)
                     : "there is no such file");
   scenario.faintest_star_mag = map.number_or("faintest_mag", 9.5);
+  if (const auto to = map.find("synthetic_to")) scenario.synthetic_stars_to_v_mag = to->number();
   map.done();
 }
 
@@ -288,6 +292,8 @@ Scenario read_scenario(const YamlValue& root) {
     scenario.sensors.push_back(
         read_sensor(value, effects, accuracy, detect, scenario.duration, scenario.earth));
   }
+  for (auto& sensor : scenario.sensors)
+    sensor.synthetic_stars_to_v_mag = scenario.synthetic_stars_to_v_mag;
   for (const auto& sensor : scenario.sensors)
     for (const auto& line : sensor.camera.warnings)
       if (std::find(scenario.warnings.begin(), scenario.warnings.end(), line) ==

@@ -131,6 +131,7 @@ struct SensorConfig {
   Accuracy accuracy{};    // what frames are planned for; none: effects run as above
   /// Of a sensor that is planned: effects of the scenario before the plan, for truth.
   std::optional<EffectSet> unplanned = {};
+  std::optional<double> synthetic_stars_to_v_mag = {};  // the scenario's; none: there are none
   bool detect = true;                 // false: frames are reported without detection
   RecordedPlans recorded_plans = {};  // of a run that is replayed; empty: frames are planned
 };
@@ -201,6 +202,7 @@ struct Scenario {
   std::string star_catalogue_named;
   std::string star_catalogue_where;  // `file:line:column: stars.catalogue`, for messages
   double faintest_star_mag = 9.5;
+  std::optional<double> synthetic_stars_to_v_mag = {};  // none: there are none
   std::vector<SensorConfig> sensors;
   EnvironmentConfig environment;
   NetworkConfig network;

@@ -31,13 +31,14 @@ struct EffectFacts {
 /// The facts by which effects of place and light apply to a sensor's frames or not.
 struct SceneFacts {
   bool on_ground = true;
-  bool clouds = false;     // over a ground sensor
-  bool gases = false;      // over it are known, water vapour among them
-  bool stars = true;       // there is a catalogue
-  bool shapes = true;      // there are objects with a shape
-  bool vignettes = false;  // the optics lose light off the axis
-  bool diffracts = false;  // their blur depends on the wavelength
-  bool turbulent = false;  // and on the air
+  bool clouds = false;           // over a ground sensor
+  bool gases = false;            // over it are known, water vapour among them
+  bool stars = true;             // there is a catalogue
+  bool shapes = true;            // there are objects with a shape
+  bool vignettes = false;        // the optics lose light off the axis
+  bool diffracts = false;        // their blur depends on the wavelength
+  bool turbulent = false;        // and on the air
+  bool synthetic_stars = false;  // the scenario asks for some
 };
 
 /// A closed family of effects, in the order in which they run.

@@ -97,4 +97,15 @@ ErrorBound StarBackground::error(int level, const PlanFacts& f) {
   return error;
 }
 
+ErrorBound SyntheticBackground::error(int level, const PlanFacts& f) {
+  // Their light is there, smooth: what is missing is stars that can be seen one by one.
+  constexpr double seen_snr = 2.5;
+  const double left_e = f.synthetic_left_e[f.limit(limit_v_mag(level))];
+  if (!(left_e > 0.0)) return {};
+  const double snr = left_e * f.pattern_share(f.star_trail_px) / f.least_noise_e();
+  const double share = std::min(PlanFacts::neighbour_share, left_e / f.faintest_source_e());
+  return {.photometry_mag = snr >= seen_snr ? unbounded : 1.086 * share,
+          .position_px = 3.0 * share * std::hypot(1.0, f.fwhm_px)};
+}
+
 }  // namespace dmise

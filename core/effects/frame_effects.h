@@ -79,6 +79,31 @@ struct StarBackground {
   }
 };
 
+/// Stars beyond the catalogue, by counts.
+struct SyntheticBackground {
+  static constexpr std::array<std::string_view, 14> levels{"off", "v10", "v11", "v12", "v13",
+                                                           "v14", "v15", "v16", "v17", "v18",
+                                                           "v19", "v20", "v21", "all"};
+  static constexpr EffectFacts facts{
+      "synthetic_stars",
+      "stars that no catalogue has, where it ends (if `stars.synthetic_to` asks for them)",
+      "they are in the smooth starlight; a pixel of 10 arcsec in the Milky Way has 0.8 to V = 21",
+      "counts of Tycho-2 and USNO-B1.0; Bahcall & Soneira 1980, ApJS 44, 73",
+      true,
+      true,
+      levels};
+  static bool applies(const SceneFacts& scene) { return scene.stars && scene.synthetic_stars; }
+  static double limit_v_mag(int level) {
+    return level == 0 ? -unbounded : level == facts.reference() ? unbounded : level + 9.0;
+  }
+  static ErrorBound error(int level, const PlanFacts& f);
+  static double cost_s(int level, const PlanFacts& f) {
+    constexpr double star_s = 0.7e-6;
+    const double limit = limit_v_mag(level);
+    return level == 0 ? 0.0 : star_s * f.synthetic_brighter[PlanFacts::limit(limit)];
+  }
+};
+
 /// How the smooth sky comes to the pixels.
 struct SkyGrid {
   /// Relative error of the grid between pixels at which the sky is looked at.

@@ -98,6 +98,8 @@ struct PlanFacts {
   double star_parallax_rad = 0.0;
   /// Faint starlight of a pixel, most, with stars drawn to each limit.
   std::array<double, star_limits> starlight_e{};
+  /// Synthetic stars that are made, and light of the brightest beyond, by the same limits.
+  std::array<double, star_limits> synthetic_brighter{}, synthetic_left_e{};
   // Objects.
   std::size_t objects = 0, shapes = 0;
   double light_time_rad = 0.0;  // way of an object while its light travels, seen from the sensor

@@ -8,6 +8,7 @@
 #include "core/effects/effects.h"
 #include "core/photometry/band.h"
 #include "core/sky/air_gases.h"
+#include "core/sky/airmass.h"
 #include "core/sky/clouds.h"
 #include "core/sky/turbulence.h"
 
@@ -38,6 +39,8 @@ struct SightLine {
   Source source;
   std::uint32_t number;         // in its catalogue
   double rate_rad_per_s = 0.0;  // against the air
+  /// At its elevation; none: not known yet.
+  std::optional<double> known_airmass = std::nullopt;
 };
 
 inline constexpr double sun_bv = 0.65;
@@ -45,6 +48,11 @@ inline constexpr double sun_bv = 0.65;
 /// Over the horizon whose zenith is `up` (unit) [rad].
 inline double elevation_over(const Vec<Gcrs>& up, const Vec<Gcrs>& direction) {
   return std::asin(std::clamp(dot(up, direction), -1.0, 1.0));
+}
+
+/// Of a source over the horizon whose zenith is `up` (unit).
+inline double airmass_along(const Vec<Gcrs>& up, const SightLine& line) {
+  return line.known_airmass ? *line.known_airmass : airmass(elevation_over(up, line.apparent));
 }
 
 }  // namespace dmise

@@ -14,7 +14,7 @@ AirExtinction::AirExtinction(const AirExposure& exposure) : up_(exposure.up) {
 }
 
 double AirExtinction::apply(const SightLine& line) const {
-  return table_->of_star(airmass(elevation_over(up_, line.apparent)), line.bv);
+  return table_->of_star(airmass_along(up_, line), line.bv);
 }
 
 double AirExtinction::sunlight_mag_per_airmass() const {

@@ -31,12 +31,19 @@ ApparentPlaces::ApparentPlaces(const Observer& observer, const EffectSet& effect
 }
 
 Vec<Gcrs> ApparentPlaces::star(const StarPlace& star) const {
-  const CataloguedStar catalogued(star);
+  return seen(astrometric(CataloguedStar(star)));
+}
+
+Vec<Gcrs> ApparentPlaces::astrometric(const CataloguedStar& catalogued) const {
   Vec<Gcrs> place = catalogued.outward;
   effects_.for_each([&](const auto& effect) {
     if constexpr (requires { effect.apply(catalogued, place); }) effect.apply(catalogued, place);
   });
-  const Vec<Gcrs> above_air = bent_and_aberrated(unit(place));
+  return unit(place);
+}
+
+Vec<Gcrs> ApparentPlaces::seen(const Vec<Gcrs>& astrometric) const {
+  const Vec<Gcrs> above_air = bent_and_aberrated(astrometric);
   const auto* refraction = effects_.find<AtmosphericRefraction>();
   return refraction ? refraction->apply(above_air, Refraction::star) : above_air;
 }

@@ -36,6 +36,11 @@ class ApparentPlaces {
   /// eraAb.
   Vec<Gcrs> star(const StarPlace& star) const;
 
+  /// The two halves of `star`: where a star stands at the observer's time, and in what direction
+  /// one is seen that stands there. Unit vectors.
+  Vec<Gcrs> astrometric(const CataloguedStar& catalogued) const;
+  Vec<Gcrs> seen(const Vec<Gcrs>& astrometric) const;
+
   /// Where a star without parallax and proper motion stands that is seen at an apparent direction:
   /// the inverse of `star`, to 1e-12 rad. A unit vector.
   Vec<Gcrs> star_seen_at(const Vec<Gcrs>& apparent) const;

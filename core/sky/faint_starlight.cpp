@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/sky/star_counts.h"
 
 namespace dmise {
 
@@ -15,6 +16,12 @@ double faint_starlight_s10(const FaintStarlight& starlight, double sin_galactic_
   if (limit >= counted_to_v_mag) return fainter * std::exp2((counted_to_v_mag - limit) / 2.5);
   const double a_magnitude = 4.0 + 7.5 * std::exp(-std::asin(s) / (17.0 * deg));
   return fainter + (counted_to_v_mag - limit) * a_magnitude;
+}
+
+double faint_starlight_s10(const FaintStarlight& starlight, const Vec<Galactic>& direction) {
+  if (starlight.by_counts)
+    return starlight_of_counts_s10(std::max(starlight.brighter_limit_v_mag, 5.0), direction);
+  return faint_starlight_s10(starlight, direction.z);
 }
 
 }  // namespace dmise

@@ -126,7 +126,7 @@ GasAbsorption::GasAbsorption(const AirExposure& exposure) : up_(exposure.up) {
 }
 
 double GasAbsorption::apply(const SightLine& line) const {
-  return table_->of_star(airmass(elevation_over(up_, line.apparent)), line.bv);
+  return table_->of_star(airmass_along(up_, line), line.bv);
 }
 
 double GasAbsorption::sunlight_mag(double airmass) const {

@@ -68,7 +68,7 @@ Scintillation::Scintillation(const AirExposure& exposure)
 }
 
 double Scintillation::apply(const SightLine& line) const {
-  const double x = airmass(elevation_over(up_, line.apparent));
+  const double x = airmass_along(up_, line);
   // A longer exposure averages as much; a short one averages nothing however fast the source is.
   const double by_motion =
       averaging_

@@ -55,7 +55,8 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
     : parts_(parts), scene_(scene) {
   const Rotation<Ecliptic, Gcrs> ecliptic = ecliptic_from_gcrs();
   ecliptic_from_enu_ = ecliptic * scene.gcrs_from_enu;
-  galactic_pole_ = (galactic_from_gcrs() * scene.gcrs_from_enu).inverse() * Vec<Galactic>{0, 0, 1};
+  galactic_from_enu_ = galactic_from_gcrs() * scene.gcrs_from_enu;
+  galactic_pole_ = galactic_from_enu_.inverse() * Vec<Galactic>{0, 0, 1};
   sun_longitude_rad_ = to_spherical(ecliptic_from_enu_ * scene.sun)[0];
   const double sun_altitude_rad = std::asin(std::clamp(scene.sun.z, -1.0, 1.0));
   moon_v_mag_ = moon_v_mag(scene.moon_phase_rad) + opposition_surge_mag(scene.moon_phase_rad) +
@@ -96,6 +97,8 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
 }
 
 double SkyModel::above_air_s10(SkyPart part, const Vec<Enu>& direction) const {
+  if (part == SkyPart::faint_starlight && parts_.faint_starlight->by_counts)
+    return faint_starlight_s10(*parts_.faint_starlight, galactic_from_enu_ * direction);
   if (part == SkyPart::faint_starlight)
     return faint_starlight_s10(*parts_.faint_starlight, dot(galactic_pole_, direction));
   const Vec<Ecliptic> e = ecliptic_from_enu_ * direction;

@@ -117,6 +117,7 @@ class SkyModel {
   SkyParts parts_;
   SkyScene scene_;
   Rotation<Ecliptic, Enu> ecliptic_from_enu_;
+  Rotation<Galactic, Enu> galactic_from_enu_;
   Vec<Enu> galactic_pole_;
   double sun_longitude_rad_ = 0.0;
   double twilight_scale_s10_ = 0.0;  // brightness over twilight_pattern

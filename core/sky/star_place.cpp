@@ -12,4 +12,15 @@ CataloguedStar::CataloguedStar(const StarPlace& place) : star(place) {
   north = {-cos_ra * sin_dec, -sin_ra * sin_dec, cos_dec};
 }
 
+CataloguedStar::CataloguedStar(const StarPlace& place, const Vec<Gcrs>& direction)
+    : star(place), outward(direction) {
+  const double from_axis = std::sqrt(direction.x * direction.x + direction.y * direction.y);
+  constexpr double at_the_pole = 1e-9;  // rounding turns east there
+  if (from_axis < at_the_pole)
+    east = {-std::sin(place.ra_rad), std::cos(place.ra_rad), 0.0};
+  else
+    east = {-direction.y / from_axis, direction.x / from_axis, 0.0};
+  north = cross(outward, east);
+}
+
 }  // namespace dmise

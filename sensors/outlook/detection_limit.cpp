@@ -76,7 +76,7 @@ DetectionLimit detection_limit(double noise_e, double sigma_px, double streak_px
   return limit;
 }
 
-PixelBackground background_at_centre(const View& view, double drawn_to_v_mag) {
+PixelBackground background_at_centre(const View& view, const DrawnStars& drawn) {
   const auto& sensor = view.sensor();
   const auto& optics = sensor.camera.optics;
   const PixelPosition centre = principal_point(optics);
@@ -86,10 +86,9 @@ PixelBackground background_at_centre(const View& view, double drawn_to_v_mag) {
   const Vec<Gcrs> boresight = gcrs_from_camera * Vec<CameraFrame>{0, 0, 1};
   const auto earth = view.earth_occultation(middle);
   if (sensor.effects.has(SkyBackground::facts) && !(earth && earth->hides_direction(boresight)))
-    sky_e =
-        sky_over(view, drawn_to_v_mag).photons_per_s_m2_sr(view.enu_from_gcrs(middle) * boresight) *
-        Throughput(view).electrons_per_photon_m2() * view.times().seconds() *
-        pixel_solid_angle_sr(optics, centre) * view.illumination(centre);
+    sky_e = sky_over(view, drawn).photons_per_s_m2_sr(view.enu_from_gcrs(middle) * boresight) *
+            Throughput(view).electrons_per_photon_m2() * view.times().seconds() *
+            pixel_solid_angle_sr(optics, centre) * view.illumination(centre);
   const Detector detector = acting_detector(sensor.camera.detector, sensor.effects);
   return {sky_e + detector.dark_e_per_s * view.times().seconds(),
           noise_over_sky_e(sensor, view.times(), view.seed(), sky_e)};

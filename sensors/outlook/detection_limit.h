@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "core/sky/faint_starlight.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -40,7 +41,7 @@ struct PixelBackground {
   double electrons = 0.0;  // expected: sky and dark current
   double noise_e = 0.0;    // from frame to frame
 };
-PixelBackground background_at_centre(const View& view, double drawn_to_v_mag);
+PixelBackground background_at_centre(const View& view, const DrawnStars& drawn);
 
 /// Noise [e-] of a pixel with `sky_e` expected electrons of sky: the median of a few pixels,
 /// because some are hot.

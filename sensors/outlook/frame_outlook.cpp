@@ -81,16 +81,16 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
       FieldOfView(optics).contains(camera_from_gcrs * to_sun_m) && !hides(unit(to_sun_m));
 
   const double reach_px = 5 * scene.psf_sigma_px + 1;  // radius of a source's light
-  double drawn_to_v_mag = -std::numeric_limits<double>::infinity();
+  DrawnStars drawn;
   if (scene.stars && sensor.effects.has(StarBackground::facts)) {
-    const StarLayer layer(sensor, scene.stars);
-    drawn_to_v_mag = std::min(scene.faintest_star_mag, layer.faintest_filled_v_mag());
+    const StarLayer layer(sensor, scene.stars, scene.faintest_star_mag);
+    drawn = layer.drawn(scene.faintest_star_mag, sensor.effects);
     out.stars = layer.count(view, scene.faintest_star_mag, reach_px);
   }
   if (scene.count_objects && sensor.effects.has(SpaceObjects::facts))
     out.objects = objects_with_light(view, scene.shapes, reach_px);
 
-  out.background = background_at_centre(view, drawn_to_v_mag);
+  out.background = background_at_centre(view, drawn);
   out.full_e = saturation_e(acting_detector(sensor.camera.detector, sensor.effects));
   const double pixels_per_deg = deg / optics.pixel_angle_rad();
   out.streak_deg_per_s = usual_rate_deg_per_s;

@@ -22,7 +22,7 @@ struct LightFrame {
   Threads& threads;
   EffectTimes& times;
   const LightOptions& options;
-  double drawn_to_v_mag;
+  DrawnStars drawn;
   OcclusionMask mask{image.columns, image.rows};
   LightTruth truth{};
 };
@@ -38,7 +38,7 @@ double faintest_e(const View& view, const ExpectedElectronImage& sky) {
 
 struct SkyStage : SkyBackground {
   static void apply(LightFrame& f) {
-    fill_sky(f.view, f.drawn_to_v_mag, f.image, f.threads, f.sources.evaluator);
+    fill_sky(f.view, f.drawn, f.image, f.threads, f.sources.evaluator);
     if (f.options.sky) *f.options.sky = f.image;
   }
   static void leave_out(LightFrame& f) { apply(f); }
@@ -63,7 +63,7 @@ struct OcclusionStage : Occlusion {
   static void apply(LightFrame& f) {
     if (f.mask.empty() || !f.view.sensor().effects.has(SkyBackground::facts)) return;
     ExpectedElectronImage behind(f.image.columns, f.image.rows);
-    fill_sky_behind(f.view, f.drawn_to_v_mag, behind, f.threads);
+    fill_sky_behind(f.view, f.drawn, behind, f.threads);
     f.mask.take_hidden(behind, f.image);
   }
 };
@@ -108,10 +108,9 @@ double LightSources::limit_v_mag(const EffectSet& effects) const {
                   StarBackground::limit_v_mag(effects.level(StarBackground::facts)));
 }
 
-double LightSources::drawn_to_v_mag(const EffectSet& effects) const {
-  if (!stars || !effects.has(StarBackground::facts))
-    return -std::numeric_limits<double>::infinity();
-  return std::min(limit_v_mag(effects), stars->faintest_filled_v_mag());
+DrawnStars LightSources::drawn(const EffectSet& effects) const {
+  if (!stars || !effects.has(StarBackground::facts)) return {};
+  return stars->drawn(limit_v_mag(effects), effects);
 }
 
 LightTruth expected_electrons(const View& view, const LightSources& sources, OpticsStage& optics,
@@ -125,7 +124,7 @@ LightTruth expected_electrons(const View& view, const LightSources& sources, Opt
                    .threads = threads,
                    .times = times,
                    .options = options,
-                   .drawn_to_v_mag = sources.drawn_to_v_mag(effects)};
+                   .drawn = sources.drawn(effects)};
   LightStages::for_each([&]<class Stage>() {
     if (acts<Stage>(effects, view.scene()))
       run<Stage>(frame);

@@ -24,8 +24,9 @@ struct LightSources {
   /// Returns V of the faintest stars asked for.
   double limit_v_mag(const EffectSet& effects) const;
 
-  /// Returns V of the faintest stars drawn one by one: the limit asked for or the catalogue's.
-  double drawn_to_v_mag(const EffectSet& effects) const;
+  /// Returns which stars are drawn one by one: to the limit asked for or the catalogue's, and
+  /// synthetic ones.
+  DrawnStars drawn(const EffectSet& effects) const;
 };
 
 /// Optional outputs of an exposure's light.

@@ -227,7 +227,7 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
 
 PlanFacts ExposurePlanner::facts(const View& view, const std::vector<std::size_t>& objects) const {
   PlanFacts f = of_sensor_;
-  add_sky_facts(view, stars_.drawn_to_v_mag(), f);
+  add_sky_facts(view, stars_.drawn(), f);
   stars_.add(view, f);
   add_error_facts(view, f);
   look_at_objects(view, objects, f);

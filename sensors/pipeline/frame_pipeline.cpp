@@ -65,7 +65,7 @@ struct FramePipeline::Work {
     used_counts = room_for_image<CountImage>(grid);
     if (settings.sensor.effects.drawn_by_opengl()) evaluator.emplace();
     make_optics();
-    if (map) stars.emplace(settings.sensor, std::move(map));
+    if (map) stars.emplace(settings.sensor, std::move(map), settings.faintest_star_mag);
     if (!settings.sensor.accuracy.is_planned() && settings.sensor.recorded_plans.empty()) return;
     if (!planned.unplanned) planned.unplanned = settings.sensor.effects;
     planner.emplace(settings.sensor, stars ? stars->map().get() : nullptr,
@@ -144,7 +144,7 @@ RadianceMap FramePipeline::Work::radiance_in(const PipelineSettings::Part& part,
   OpticsStage part_optics(sensor, settings.seed, threads);
   if (evaluator) part_optics.draw_by(*evaluator);
   std::optional<StarLayer> part_stars;
-  if (stars) part_stars.emplace(sensor, stars->map());
+  if (stars) part_stars.emplace(sensor, stars->map(), settings.faintest_star_mag);
   ExpectedElectronImage image(light.columns, light.rows);
   EffectTimes elsewhere;
   expected_electrons(view, sources(part_stars ? &*part_stars : nullptr, part.shapes.get()),

@@ -104,6 +104,7 @@ std::vector<Deposited> OpticsStage::sum_directly(std::span<const Arc> arcs,
 }
 
 void OpticsStage::begin(const FrameTimes& exposure, double limit_e) {
+  limit_e_ = limit_e;
   if (!model_) return;
   bright_e_ = bright_ratio * limit_e;
   exposure_start_s_ = exposure.start.seconds();

@@ -35,6 +35,7 @@ class OpticsStage {
   /// Starts a frame: the exposure's kernels, where they differ from the last. `limit_e`: electrons
   /// of the faintest source that matters.
   void begin(const FrameTimes& exposure, double limit_e);
+  double limit_e() const { return limit_e_; }
   /// Puts light on the plane; returns what of each arc fell inside the frame.
   std::vector<Deposited> add(std::span<const Arc> arcs, ExpectedElectronImage& light);
   /// Blurs and adds what is still on the grid; then the light is complete, nowhere negative.
@@ -57,7 +58,7 @@ class OpticsStage {
   PsfKernel central_;          // of the boresight
   bool direct_ready_ = false;  // `direct_` holds `central_`
   bool has_kernels_ = false;
-  double bright_e_ = 0.0, exposure_start_s_ = 0.0, exposure_s_ = 0.0;
+  double limit_e_ = 0.0, bright_e_ = 0.0, exposure_start_s_ = 0.0, exposure_s_ = 0.0;
 };
 
 }  // namespace dmise

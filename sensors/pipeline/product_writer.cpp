@@ -129,8 +129,10 @@ void ProductWriter::write(const FrameProducts& f) {
     std::string csv = "id,v_mag,bv,x_px,y_px,signal_e\n";
     for (const auto& star : f.stars) {
       char row[160];
-      std::snprintf(row, sizeof row, "%u,%.3f,%.3f,%.6f,%.6f,%.6g\n", star.id, star.v_mag, star.bv,
-                    star.x_px, star.y_px, star.signal_e);
+      const bool is_synthetic = star.id & synthetic_star_bit;
+      std::snprintf(row, sizeof row, "%s%llu,%.3f,%.3f,%.6f,%.6f,%.6g\n", is_synthetic ? "S" : "",
+                    static_cast<unsigned long long>(star.id & ~synthetic_star_bit), star.v_mag,
+                    star.bv, star.x_px, star.y_px, star.signal_e);
       csv += row;
     }
     write_file_whole(frame_path(number, ".stars.csv"), csv);

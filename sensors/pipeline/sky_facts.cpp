@@ -11,6 +11,7 @@
 #include "core/sky/scattered_moonlight.h"
 #include "core/sky/scintillation.h"
 #include "core/sky/sky_frames.h"
+#include "core/sky/star_counts.h"
 #include "sensors/pipeline/sky_layer.h"
 #include "sensors/pipeline/throughput.h"
 
@@ -27,13 +28,15 @@ EarthOccultation earth_seen(const View& view, SimTime t) {
 /// Starlight that is not drawn star by star, by the limit of those that are.
 class StarlightByLimit {
  public:
-  StarlightByLimit(const View& view, double drawn_to_v_mag)
+  StarlightByLimit(const View& view, const DrawnStars& drawn)
       : given_(view.sensor().sky.parts.faint_starlight),
-        drawn_to_v_mag_(drawn_to_v_mag),
+        drawn_to_v_mag_(drawn.to_v_mag),
+        by_counts_(drawn.by_counts),
         pole_(galactic_from_gcrs().inverse() * Vec<Galactic>{0, 0, 1}) {}
 
   void look(const Vec<Gcrs>& direction, double starlight_e) {
     if (!(starlight_e > 0.0)) return;
+    if (by_counts_) look_by_counts(direction, starlight_e);
     const double sine = dot(pole_, direction);
     least_ = std::min(least_, sine);
     most_ = std::max(most_, sine);
@@ -43,6 +46,10 @@ class StarlightByLimit {
   /// than at the samples.
   void add(PlanFacts& f) const {
     if (!(e_per_s10_ > 0.0)) return;
+    if (by_counts_) {
+      f.starlight_e = counted_e_;
+      return;
+    }
     const double between = 0.25 * (most_ - least_);
     const double nearest =
         most_ * least_ <= 0.0
@@ -64,8 +71,19 @@ class StarlightByLimit {
     return faint_starlight_s10(starlight, sine);
   }
 
+  void look_by_counts(const Vec<Gcrs>& direction, double starlight_e) {
+    const Vec<Galactic> galactic = galactic_from_gcrs() * direction;
+    const double left = starlight_of_counts_s10(drawn_to_v_mag_, galactic);
+    const double e_per_s10 = starlight_e / std::max(left, 1e-9);
+    for (std::size_t m = 0; m < counted_e_.size() && double(m) < drawn_to_v_mag_; ++m)
+      counted_e_[m] = std::max(
+          counted_e_[m], 1.25 * e_per_s10 * (starlight_of_counts_s10(double(m), galactic) - left));
+  }
+
   std::optional<FaintStarlight> given_;
   double drawn_to_v_mag_;
+  bool by_counts_;
+  std::array<double, star_limits> counted_e_{};
   Vec<Gcrs> pole_;
   double least_ = 1.0, most_ = -1.0, e_per_s10_ = 0.0;  // sines of the latitude
 };
@@ -116,7 +134,7 @@ Vec<Gcrs> boresight(const View& view, SimTime t) {
   return view.camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1};
 }
 
-void add_sky_facts(const View& view, double drawn_to_v_mag, PlanFacts& f) {
+void add_sky_facts(const View& view, const DrawnStars& drawn, PlanFacts& f) {
   const SensorConfig& sensor = view.sensor();
   const Optics& optics = sensor.camera.optics;
   const SimTime middle = view.times().middle;
@@ -125,11 +143,11 @@ void add_sky_facts(const View& view, double drawn_to_v_mag, PlanFacts& f) {
   const EarthOccultation earth = earth_seen(view, middle);
   const bool with_sky = sensor.effects.has(SkyBackground::facts);
   const Throughput throughput(view);
-  const SkyModel sky = sky_over(view, drawn_to_v_mag);
+  const SkyModel sky = sky_over(view, drawn);
   const double electrons = throughput.electrons_per_photon_m2() * view.times().seconds();
   const double read_e2 =
       f.read_noise_e * f.read_noise_e + std::pow(sensor.camera.detector.gain_e_per_dn, 2) / 12.0;
-  StarlightByLimit starlight(view, drawn_to_v_mag);
+  StarlightByLimit starlight(view, drawn);
   const Vec<Gcrs> moon = unit(view.environment().moon_m - view.observer(middle).position_m);
   double lowest_rad = pi / 2, sampled_moon_rad = pi;
   look_over(optics, 0.0, [&](PixelPosition at, const Vec<CameraFrame>& direction) {

@@ -4,6 +4,7 @@
 
 #include "core/effects/plan_facts.h"
 #include "core/optics/projection.h"
+#include "core/sky/faint_starlight.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -31,8 +32,8 @@ inline double most_by_scintillation(const PlanFacts& facts) {
   return std::exp(s * (3.0 - 0.5 * s));
 }
 
-/// Sets what is known of the sky, the air and the horizon in an exposure. `drawn_to_v_mag`: stars
-/// that are drawn one by one.
-void add_sky_facts(const View& view, double drawn_to_v_mag, PlanFacts& facts);
+/// Sets what is known of the sky, the air and the horizon in an exposure. `drawn`: stars that
+/// are drawn one by one.
+void add_sky_facts(const View& view, const DrawnStars& drawn, PlanFacts& facts);
 
 }  // namespace dmise

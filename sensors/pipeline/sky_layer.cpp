@@ -10,9 +10,12 @@
 namespace dmise {
 namespace {
 
-SkyParts parts_over(const View& view, double drawn_to_v_mag) {
+SkyParts parts_over(const View& view, const DrawnStars& drawn) {
   SkyParts parts = acting_sky(view.sensor().sky.parts, view.sensor().effects, view.scene());
-  if (parts.faint_starlight) parts.faint_starlight->brighter_limit_v_mag = drawn_to_v_mag;
+  if (parts.faint_starlight) {
+    parts.faint_starlight->brighter_limit_v_mag = drawn.to_v_mag;
+    parts.faint_starlight->by_counts = drawn.by_counts;
+  }
   return parts;
 }
 
@@ -73,22 +76,22 @@ void fill_with(const View& view, const SkyModel& sky, ExpectedElectronImage& ima
 
 }  // namespace
 
-SkyModel sky_over(const View& view, double drawn_to_v_mag) {
-  return sky_of(view, parts_over(view, drawn_to_v_mag));
+SkyModel sky_over(const View& view, const DrawnStars& drawn) {
+  return sky_of(view, parts_over(view, drawn));
 }
 
-void fill_sky(const View& view, double drawn_to_v_mag, ExpectedElectronImage& image,
+void fill_sky(const View& view, const DrawnStars& drawn, ExpectedElectronImage& image,
               Threads& threads, GlEvaluator* evaluator) {
   if (!acts<SkyBackground>(view.sensor().effects, view.scene())) {
     std::fill(image.pixels.begin(), image.pixels.end(), 0.0f);
     return;
   }
-  fill_with(view, sky_over(view, drawn_to_v_mag), image, threads, evaluator);
+  fill_with(view, sky_over(view, drawn), image, threads, evaluator);
 }
 
-void fill_sky_behind(const View& view, double drawn_to_v_mag, ExpectedElectronImage& image,
+void fill_sky_behind(const View& view, const DrawnStars& drawn, ExpectedElectronImage& image,
                      Threads& threads) {
-  SkyParts parts = parts_over(view, drawn_to_v_mag);
+  SkyParts parts = parts_over(view, drawn);
   if (view.on_ground())
     parts = {.zodiacal_light = parts.zodiacal_light, .faint_starlight = parts.faint_starlight};
   fill_with(view, sky_of(view, parts), image, threads);

@@ -8,19 +8,19 @@
 namespace dmise {
 
 /// The sky over a sensor in its band in the middle of its exposure: the parts that are on, Sun and
-/// Moon where the environment says. Stars to `drawn_to_v_mag` are drawn one by one and left out.
-SkyModel sky_over(const View& view, double drawn_to_v_mag);
+/// Moon where the environment says. Stars that are `drawn` one by one are left out.
+SkyModel sky_over(const View& view, const DrawnStars& drawn);
 
 /// Fills `image` with the expected electrons of the sky: `sky_over` at each pixel's centre times
 /// the pixel's own solid angle; 0 where the Earth hides it. From a grid, within the tolerance of
 /// `SkyGrid` at the sensor's level. All zero with the effect off. With an `evaluator` that one
 /// draws the grid.
-void fill_sky(const View& view, double drawn_to_v_mag, ExpectedElectronImage& image,
+void fill_sky(const View& view, const DrawnStars& drawn, ExpectedElectronImage& image,
               Threads& threads, GlEvaluator* evaluator = nullptr);
 
 /// Fills `image` with what of the same sky comes from beyond every object: on the ground zodiacal
 /// light and faint starlight, as the air and lamps shine before objects; in orbit all of it.
-void fill_sky_behind(const View& view, double drawn_to_v_mag, ExpectedElectronImage& image,
+void fill_sky_behind(const View& view, const DrawnStars& drawn, ExpectedElectronImage& image,
                      Threads& threads);
 
 }  // namespace dmise

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/config/effect_list.h"
 #include "core/effects/frame_effects.h"
 #include "core/photometry/magnitude.h"
 #include "sensors/pipeline/sky_facts.h"
@@ -47,14 +48,22 @@ void StarFacts::ByLimit::sum_up() {
 }
 
 StarFacts::StarFacts(const SensorConfig& sensor, const StarMap* stars, double faintest_v_mag)
-    : stars_(stars),
-      faintest_v_mag_(faintest_v_mag),
-      drawn_to_v_mag_(-unbounded),
-      light_(sensor.camera.band) {
+    : stars_(stars), faintest_v_mag_(faintest_v_mag), light_(sensor.camera.band) {
   if (!stars) return;
   const StarTable& table = stars->stars;
   if (sensor.effects.has(StarBackground::facts))
-    drawn_to_v_mag_ = std::min(faintest_v_mag, stars->summary.faintest_filled_v_mag);
+    drawn_ = std::min(faintest_v_mag, stars->summary.faintest_filled_v_mag);
+  if (drawn_.to_v_mag > -unbounded && scene_facts(sensor).synthetic_stars &&
+      sensor.effects.has(SyntheticBackground::facts)) {
+    // The catalogue outlives this.
+    auto synthetic = std::make_unique<const SyntheticStars>(
+        std::shared_ptr<const StarMap>(std::shared_ptr<void>(), stars), faintest_v_mag,
+        *sensor.synthetic_stars_to_v_mag);
+    if (synthetic->from_v_mag() < synthetic->to_v_mag()) {
+      drawn_ = {synthetic->to_v_mag(), true};
+      synthetic_ = std::move(synthetic);
+    }
+  }
   if (!stars->is_small()) {
     sum_up(stars->summary, stars->index.fastest_motion_rad_per_yr);
     return;
@@ -165,6 +174,28 @@ void StarFacts::add_stars(const View& view, PlanFacts& f) const {
   }
   f.stars = f.stars_brighter.back();
   f.brightest_star_e = electrons * stars.brightest;
+  if (synthetic_) add_synthetic(axis, seen_rad, electrons, f);
+}
+
+/// A star may be as bright in the band as any of its magnitude.
+void StarFacts::add_synthetic(const Vec<Gcrs>& axis, double seen_rad, double electrons,
+                              PlanFacts& f) const {
+  double brightest_colour = 0.0;
+  for (const double bv : {least_bv, double(default_star_bv), greatest_bv})
+    brightest_colour = std::max(brightest_colour, light_.photons_per_s_m2(0.0, bv));
+  for (std::size_t m = 0; m < star_limits; ++m) {
+    const double limit = std::max(double(m), synthetic_->from_v_mag());
+    if (limit >= synthetic_->to_v_mag()) break;
+    f.synthetic_left_e[m] = electrons * brightest_colour * light_of_magnitude(limit);
+  }
+  // As most of the sky has them; near the galactic plane, cell by cell.
+  double made = 0.0;
+  for (std::size_t m = 0; m < star_limits; ++m) {
+    const double limit = std::min(double(m), synthetic_->to_v_mag());
+    if (limit > synthetic_->from_v_mag() && double(m) < synthetic_->to_v_mag() + 1.0)
+      made = synthetic_->expected_around(axis, seen_rad, limit);
+    f.synthetic_brighter[m] = made;
+  }
 }
 
 void StarFacts::add(const View& view, PlanFacts& f) const {
@@ -180,7 +211,7 @@ void StarFacts::add(const View& view, PlanFacts& f) const {
   f.diurnal_aberration_rad =
       1.01 * norm(velocity) / speed_of_light_m_per_s * largest_sine(velocity, axis, half_rad);
   add_trails(view, f);
-  if (!stars_ || drawn_to_v_mag_ == -unbounded) return;  // there are none in the frame
+  if (!stars_ || drawn_.to_v_mag == -unbounded) return;  // there are none in the frame
   const double years = 2000.0 +
                        julian_years_since_j2000(Tt{environment.tt_jd1, environment.tt_jd2}) -
                        stars_->stars.epoch_jyear;

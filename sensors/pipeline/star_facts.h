@@ -1,10 +1,13 @@
 #pragma once
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "core/effects/plan_facts.h"
 #include "core/photometry/star_light.h"
+#include "core/sky/faint_starlight.h"
 #include "core/sky/star_map.h"
+#include "core/sky/synthetic_stars.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -15,8 +18,8 @@ class StarFacts {
   /// `stars`: null for none; must outlive it.
   StarFacts(const SensorConfig& sensor, const StarMap* stars, double faintest_v_mag);
 
-  /// Returns how faint the stars are that are drawn one by one at most.
-  double drawn_to_v_mag() const { return drawn_to_v_mag_; }
+  /// Returns which stars are drawn one by one at most.
+  const DrawnStars& drawn() const { return drawn_; }
 
   /// Sets what is known of the stars in an exposure. The sky's facts must be there.
   void add(const View& view, PlanFacts& facts) const;
@@ -24,6 +27,8 @@ class StarFacts {
  private:
   void add_trails(const View& view, PlanFacts& facts) const;
   void add_stars(const View& view, PlanFacts& facts) const;
+  void add_synthetic(const Vec<Gcrs>& axis, double seen_rad, double electrons,
+                     PlanFacts& facts) const;
 
   /// Stars by whole V magnitudes: those not fainter, and the light of the brightest beyond
   /// [photons/s/m2]; the brightest of all, and how many were looked at.
@@ -39,7 +44,9 @@ class StarFacts {
   ByLimit counted(const View& view, const PlanFacts& facts, double radius_rad) const;
 
   const StarMap* stars_;
-  double faintest_v_mag_, drawn_to_v_mag_;
+  double faintest_v_mag_;
+  DrawnStars drawn_;
+  std::unique_ptr<const SyntheticStars> synthetic_;  // null: there are none
   StarLight light_;
   ByLimit whole_sky_;
   double fastest_rad_per_yr_ = 0.0, largest_parallax_rad_ = 0.0;

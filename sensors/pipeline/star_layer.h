@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/photometry/star_light.h"
 #include "core/sky/star_cache.h"
+#include "core/sky/synthetic_stars.h"
 #include "sensors/pipeline/occlusion_mask.h"
 #include "sensors/pipeline/optics_stage.h"
 #include "sensors/pipeline/view.h"
@@ -15,23 +16,29 @@ namespace dmise {
 
 /// One star as it was drawn.
 struct StarTruth {
-  std::uint32_t id = 0;  // in its catalogue
+  std::uint64_t id = 0;  // in its catalogue, or of a synthetic star: with `synthetic_star_bit`
   double v_mag = 0.0, bv = 0.0;
   double x_px = 0.0, y_px = 0.0;     // centroid of its light in the frame
   double signal_e = 0.0;             // expected electrons deposited in the frame
   PixelPosition start, middle, end;  // of its trail, also beside the frame
 };
 
-/// The star background: every star of the field with its own place and its own trail.
+/// The star background: every star of the field with its own place and its own trail, and the
+/// synthetic ones that go on where the catalogue ends.
 class StarLayer {
  public:
-  StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map);
+  /// `faintest_v_mag`: of the catalogue's stars that are drawn.
+  StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> map, double faintest_v_mag);
 
   const std::shared_ptr<const StarMap>& map() const { return map_; }
   /// V to which the catalogue goes.
   double faintest_filled_v_mag() const { return faintest_filled_v_mag_; }
 
-  /// How many stars have a path over the frame or within `margin_px` of it; none is drawn.
+  /// Which stars are drawn one by one, by the limit of the catalogue's and an exposure's effects.
+  DrawnStars drawn(double limit_v_mag, const EffectSet& effects) const;
+
+  /// How many stars of the catalogue have a path over the frame or within `margin_px` of it; none
+  /// is drawn.
   std::uint32_t count(const View& view, double faintest_v_mag, double margin_px) const;
 
   /// Adds the stars' light that gets past `mask` to `image`; returns how many left some in the
@@ -43,12 +50,17 @@ class StarLayer {
 
  private:
   struct Exposure;
-  std::uint32_t draw(const Exposure& exposure, std::span<const std::uint32_t> which,
+  struct Trail;
+  std::uint32_t draw(const Exposure& exposure, std::vector<Trail> trails, double may_miss_e,
                      OpticsStage& optics, const OcclusionMask& mask, ExpectedElectronImage& image,
                      std::vector<StarTruth>* truth, EffectTimes& times) const;
+  std::uint32_t draw_synthetic(Exposure& exposure, OpticsStage& optics, const OcclusionMask& mask,
+                               ExpectedElectronImage& image, std::vector<StarTruth>* truth,
+                               EffectTimes& times) const;
   std::vector<std::uint32_t> candidates(const View& view, double faintest_v_mag) const;
 
   std::shared_ptr<const StarMap> map_;
+  std::unique_ptr<const SyntheticStars> synthetic_;  // null: there are none
   StarLight light_;
   double faintest_filled_v_mag_;
 };

@@ -27,11 +27,10 @@ constexpr std::int64_t longest_between_ns = 60'000'000'000;
 constexpr std::size_t many_samples = 33;
 constexpr double abrupt_ratio = 0.5;
 
-double drawn_to(const SurveyScene& scene, const SensorConfig& sensor) {
-  if (!scene.stars() || !sensor.effects.has(StarBackground::facts))
-    return -std::numeric_limits<double>::infinity();
-  return std::min(scene.scenario().faintest_star_mag,
-                  StarLayer(sensor, scene.stars()).faintest_filled_v_mag());
+DrawnStars drawn_of(const SurveyScene& scene, const SensorConfig& sensor) {
+  if (!scene.stars() || !sensor.effects.has(StarBackground::facts)) return {};
+  const double faintest_v_mag = scene.scenario().faintest_star_mag;
+  return StarLayer(sensor, scene.stars(), faintest_v_mag).drawn(faintest_v_mag, sensor.effects);
 }
 
 /// Sets the lengths of a look that compare its trail with a star's at its centroid.
@@ -64,7 +63,7 @@ SensorLooks::SensorLooks(const SurveyScene& scene, const SensorConfig& sensor)
       sensor_(sensor),
       shapes_(scene.scenario().own_objects, sensor.camera.band, sensor.effects),
       noise_(sensor, scene.scenario().seed),
-      drawn_to_v_mag_(drawn_to(scene, sensor)),
+      drawn_(drawn_of(scene, sensor)),
       complete_to_v_mag_(scene.stars() ? CatalogueSky(scene.stars()).complete_to_v_mag()
                                        : -std::numeric_limits<double>::infinity()) {
   for (const std::size_t i : needed_objects(sensor, *scene.roster()))
@@ -129,7 +128,7 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
   const auto sky_at = [&](const PixelPosition& pixel) {
     const auto direction = unproject(optics, pixel);
     if (!direction || !has_sky) return 0.0;
-    if (!sky) sky.emplace(sky_over(view, drawn_to_v_mag_));
+    if (!sky) sky.emplace(sky_over(view, drawn_));
     return sky->photons_per_s_m2_sr(enu_from_gcrs * (gcrs_from_camera * *direction)) *
            electrons_per_photon * pixel_solid_angle_sr(optics, pixel) * view.illumination(pixel);
   };

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/sky/faint_starlight.h"
 #include "sensors/pipeline/frame_times.h"
 #include "sensors/pipeline/object_shapes.h"
 #include "sensors/survey/noise_table.h"
@@ -61,7 +62,8 @@ class SensorLooks {
   ObjectShapes shapes_;
   NoiseTable noise_;
   double sigma_px_ = 0.0;  // of the Gaussian without pixel
-  double drawn_to_v_mag_, complete_to_v_mag_;
+  DrawnStars drawn_;
+  double complete_to_v_mag_;
   double mask_sine_ = -1.0;
 };
 

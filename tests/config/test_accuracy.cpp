@@ -117,7 +117,8 @@ TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeas
                                                .shapes = true,
                                                .vignettes = true,
                                                .diffracts = true,
-                                               .turbulent = true});
+                                               .turbulent = true,
+                                               .synthetic_stars = true});
   for (const EffectFacts* effect : all_effects())
     EXPECT_TRUE(
         std::any_of(list.begin(), list.end(),
