@@ -115,14 +115,16 @@ TEST_F(Tycho2, HoldsItsStarsOnce) {
 TEST_F(Tycho2, NamedStarsAreWhereTheyArePublished) {
   struct Named {
     const char* name;
-    double ra_deg, dec_deg, pm_ra_mas, pm_dec_mas, v_mag;
+    double ra_deg, dec_deg, pm_ra_mas, pm_dec_mas, v_mag, within_mag = 0.2;
   };
-  for (const Named& star : {Named{"Barnard's star", 269.452083, 4.693391, -798.80, 10277.30, 9.54},
-                            Named{"Kapteyn's star", 77.919088, -45.018414, 6544.20, -5774.30, 8.86},
-                            Named{"Groombridge 34 A", 4.595357, 44.022953, 2887.50, 408.90, 8.09},
-                            Named{"Ross 154", 282.455679, -23.836231, 640.48, -192.00, 10.37},
-                            Named{"HD 209458", 330.794886, 18.884319, 29.05, -17.80, 7.65},
-                            Named{"HD 189733", 300.182137, 22.710853, -2.31, -251.28, 7.67}}) {
+  constexpr double of_a_flare_star = 0.3;
+  for (const Named& star :
+       {Named{"Barnard's star", 269.452083, 4.693391, -798.80, 10277.30, 9.54},
+        Named{"Kapteyn's star", 77.919088, -45.018414, 6544.20, -5774.30, 8.86},
+        Named{"Groombridge 34 A", 4.595357, 44.022953, 2887.50, 408.90, 8.09},
+        Named{"Ross 154", 282.455679, -23.836231, 640.48, -192.00, 10.37, of_a_flare_star},
+        Named{"HD 209458", 330.794886, 18.884319, 29.05, -17.80, 7.65},
+        Named{"HD 189733", 300.182137, 22.710853, -2.31, -251.28, 7.67}}) {
     const std::size_t i = nearest(star.ra_deg, star.dec_deg);
     const Vec<Gcrs> there = from_spherical<Gcrs>(star.ra_deg * deg, star.dec_deg * deg);
     EXPECT_LT(angle_rad(there, map_->index.direction[i]), 0.5 * arcsec) << star.name;
@@ -130,7 +132,7 @@ TEST_F(Tycho2, NamedStarsAreWhereTheyArePublished) {
     const double off_mas = std::hypot(map_->stars.pm_ra_cosdec_rad_per_yr[i] / mas - star.pm_ra_mas,
                                       map_->stars.pm_dec_rad_per_yr[i] / mas - star.pm_dec_mas);
     EXPECT_LT(off_mas, 5 + 0.012 * motion_mas) << star.name;
-    EXPECT_NEAR(map_->stars.v_mag[i], star.v_mag, 0.2) << star.name;
+    EXPECT_NEAR(map_->stars.v_mag[i], star.v_mag, star.within_mag) << star.name;
   }
 }
 
