@@ -68,16 +68,16 @@ Place place_on(double at, int count) {
 }  // namespace
 
 BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
-  const auto [blue_m, red_m] = lit_part(band);
-  blue_m_ = blue_m;
-  red_m_ = red_m;
+  const Lit lit = lit_part(band);
+  blue_m_ = lit.blue_m;
+  red_m_ = lit.red_m;
   // Wavelengths every 2 nm, and at least twice between samples of the band.
   double step_m = 2 * nm;
   const std::vector<double> samples = knots(band);
   for (std::size_t i = 1; i < samples.size(); ++i)
     step_m = std::min(step_m, 0.5 * (samples[i] - samples[i - 1]));
   step_m = std::max(step_m, 0.1 * nm);
-  const double blue = refractivity(blue_m), red = refractivity(red_m);
+  const double blue = refractivity(blue_m_), red = refractivity(red_m_);
   struct Step {
     double wavelength_m, at, weight;  // the response times the step
     int cell;
@@ -85,8 +85,8 @@ BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
   std::vector<Step> steps;
   for (int cell = 0; cell < most_cells; ++cell) {
     const auto edge_m = [&](int edge) {
-      return edge == 0            ? blue_m
-             : edge == most_cells ? red_m
+      return edge == 0            ? blue_m_
+             : edge == most_cells ? red_m_
                                   : wavelength_of(std::lerp(blue, red, double(edge) / most_cells));
     };
     const double low = edge_m(cell), high = edge_m(cell + 1);
@@ -136,17 +136,18 @@ BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
 void BandDispersion::add_cells(double airmass, double bv, int count,
                                std::vector<SpectrumCell>& cells) const {
   const double x = std::clamp(airmass, 0.0, most_airmass);
-  const auto [a, between] = place_on(std::sqrt(x / most_airmass) * (airmasses - 1), airmasses);
+  const int a = place_on(std::sqrt(x / most_airmass) * (airmasses - 1), airmasses).node;
   const double ta = (x - airmass_of_node(a)) / (airmass_of_node(a + 1) - airmass_of_node(a));
   const double used = bv >= least_bv ? std::min(bv, greatest_bv) : least_bv;
-  const auto [c, tc] =
+  const Place colour =
       place_on((used - least_bv) / (greatest_bv - least_bv) * (colours - 1), colours);
+  const int c = colour.node;
   const auto sum = [&](int edge, int which) {
-    const auto at = [&](int colour, int node) {
-      return sums_[std::size_t(((colour * airmasses + node) * edges + edge) * 2 + which)];
+    const auto at = [&](int column, int node) {
+      return sums_[std::size_t(((column * airmasses + node) * edges + edge) * 2 + which)];
     };
     return std::lerp(std::lerp(at(c, a), at(c, a + 1), ta),
-                     std::lerp(at(c + 1, a), at(c + 1, a + 1), ta), tc);
+                     std::lerp(at(c + 1, a), at(c + 1, a + 1), ta), colour.fraction);
   };
   double light = 0.0, moment = 0.0;
   for (int k = 1; k <= count; ++k) {
