@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "core/base/simd_level.h"
@@ -157,7 +156,7 @@ Fit with_best_ends(const FilteredFrame& frame, const Fit& start) {
     Trail line = part_of(start.trail, -reach, reach);
     line.angle_rad += 2 * turn * turn_px / length;
     const Walk walk(frame, line);
-    const auto [from, to] = std::pair(walk.line.from, walk.line.to);
+    const int from = walk.line.from, to = walk.line.to;
     if (to < from) continue;
     const int step = (to - from) / parts + 1;
     sum.assign(1, 0.0), count.assign(1, 0), at.assign(1, from);
