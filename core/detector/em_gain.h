@@ -7,8 +7,9 @@ namespace dmise {
 /// electron with a small probability, and clock-induced charge before it. n electrons become
 /// n + Poisson(Gamma(a n, (G - 1) / a)), which has the mean n G and the variance of Robbins &
 /// Hadwen 2003 for the number of stages by its a, about 1: the negative binomial distribution of
-/// the register without end, at large gains the Gamma distribution. What follows counts electrons
-/// before the register: read noise and gain of the detector are divided by G.
+/// the register without end, at large gains the Gamma distribution. The image keeps
+/// electrons before the register: `read_noise_e` and `gain_e_per_dn` are those of the amplifier
+/// behind it, divided by G.
 struct EmGain {
   static constexpr EffectFacts facts{
       "em_gain", "a register multiplies electrons at random",

@@ -8,6 +8,9 @@ namespace dmise {
 struct Cirs {};  // celestial intermediate: GCRS turned to the CIP of date, x axis at the CIO
 struct Tirs {};  // terrestrial intermediate: CIRS turned by the Earth rotation angle
 
+/// Rotation of the Earth, of its angle ERA (IERS 2010, equation 5.15) [rad/s of UT1].
+inline constexpr double earth_turn_rad_per_s = 7.292115146706979e-5;
+
 /// Orientation of the Earth around one instant. Precession, nutation and polar motion are frozen at
 /// `time` and the rotation angles advance from there; the error of the frozen part grows by less
 /// than 2 microarcseconds a second (0.12 mas in a minute). Plain data: the environment node
@@ -17,7 +20,7 @@ struct EarthOrientation {
   Rotation<Cirs, Gcrs> cirs_from_gcrs;  // IAU 2006/2000A (or 2000B) bias-precession-nutation
   Rotation<Itrs, Tirs> itrs_from_tirs;  // polar motion and TIO locator s'
   double era_rad = 0.0;                 // Earth rotation angle at `time`, [0, 2 pi)
-  double era_rate_rad_per_s = 7.292115146706979e-5;
+  double era_rate_rad_per_s = earth_turn_rad_per_s;
   double gmst82_rad = 0.0;  // Greenwich mean sidereal time, IAU 1982, at `time`
   double gmst82_rate_rad_per_s = 7.292115855306587e-5;
 

@@ -1,38 +1,21 @@
 #include "core/sky/dispersion.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/star_spectrum.h"
+#include "core/sky/colour_airmass.h"
 #include "core/sky/kept_tables.h"
 
 namespace dmise {
 namespace {
 
 constexpr int edges = BandDispersion::most_cells + 1;
-// Nodes as of extinction: every 0.1 of B-V, even in sqrt(X).
-constexpr int colours = 25, airmasses = 17;
-constexpr double most_airmass = 40.0;
-
-double airmass_of_node(int i) {
-  const double t = double(i) / (airmasses - 1);
-  return most_airmass * t * t;
-}
-
-// Refractivity of dry air in eraRefco: a + b s + c s^2 with s = 1 / um^2.
-constexpr double refractivity_a = 77.53484, refractivity_b = 0.439108, refractivity_c = 0.003666;
-
-double refractivity(double wavelength_m) {
-  const double s = 1e-12 / (wavelength_m * wavelength_m);
-  return refractivity_a + s * (refractivity_b + s * refractivity_c);
-}
-
-double wavelength_of(double refractivity) {
-  const double q =
-      refractivity_b * refractivity_b + 4.0 * refractivity_c * (refractivity - refractivity_a);
-  return um / std::sqrt((std::sqrt(q) - refractivity_b) / (2.0 * refractivity_c));
-}
+constexpr int colours = 25, airmasses = 17;  // every 0.1 of B-V
+constexpr ColourAirmassNodes nodes{colours, airmasses};
 
 struct Lit {
   double blue_m, red_m;
@@ -54,17 +37,6 @@ Refraction refraction_at(const Refraction& air, double wavelength_m) {
   return Refraction(air.weather(), std::clamp(wavelength_m / um, 0.1, 100.0));
 }
 
-/// A node at or below a place on an axis of `count` nodes, and the fraction to the next.
-struct Place {
-  int node;
-  double fraction;
-};
-
-Place place_on(double at, int count) {
-  const int node = std::clamp(int(at), 0, count - 2);
-  return {node, at - node};
-}
-
 }  // namespace
 
 BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
@@ -77,7 +49,7 @@ BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
   for (std::size_t i = 1; i < samples.size(); ++i)
     step_m = std::min(step_m, 0.5 * (samples[i] - samples[i - 1]));
   step_m = std::max(step_m, 0.1 * nm);
-  const double blue = refractivity(blue_m_), red = refractivity(red_m_);
+  const double blue = dry_air_refractivity(blue_m_), red = dry_air_refractivity(red_m_);
   struct Step {
     double wavelength_m, at, weight;  // the response times the step
     int cell;
@@ -85,15 +57,16 @@ BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
   std::vector<Step> steps;
   for (int cell = 0; cell < most_cells; ++cell) {
     const auto edge_m = [&](int edge) {
-      return edge == 0            ? blue_m_
-             : edge == most_cells ? red_m_
-                                  : wavelength_of(std::lerp(blue, red, double(edge) / most_cells));
+      return edge == 0 ? blue_m_
+             : edge == most_cells
+                 ? red_m_
+                 : wavelength_of_dry_air_m(std::lerp(blue, red, double(edge) / most_cells));
     };
     const double low = edge_m(cell), high = edge_m(cell + 1);
     const int pieces = std::max(4, int(std::ceil((high - low) / step_m)));
     for (int k = 0; k < pieces; ++k) {
       const double x = low + (high - low) * (k + 0.5) / pieces;
-      steps.push_back({x, std::clamp((blue - refractivity(x)) / (blue - red), 0.0, 1.0),
+      steps.push_back({x, std::clamp((blue - dry_air_refractivity(x)) / (blue - red), 0.0, 1.0),
                        band.response.at_or_zero(x) * (high - low) / pieces, cell});
     }
   }
@@ -106,11 +79,10 @@ BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
   for (int a = 0; a < airmasses; ++a)
     for (std::size_t s = 0; s < steps.size(); ++s)
       transmission[a * steps.size() + s] =
-          light_of_magnitude((k_mag[s] - least_k) * airmass_of_node(a));
+          light_of_magnitude((k_mag[s] - least_k) * nodes.airmass(a));
   sums_.reserve(std::size_t(colours * airmasses * edges * 2));
   for (int c = 0; c < colours; ++c) {
-    const StarSpectrum star =
-        star_spectrum(least_bv + c * (greatest_bv - least_bv) / (colours - 1));
+    const StarSpectrum star = star_spectrum(nodes.bv(c));
     for (std::size_t s = 0; s < steps.size(); ++s)
       photons[s] = steps[s].weight * star.photons_at(steps[s].wavelength_m);
     for (int a = 0; a < airmasses; ++a) {
@@ -135,19 +107,11 @@ BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
 
 void BandDispersion::add_cells(double airmass, double bv, int count,
                                std::vector<SpectrumCell>& cells) const {
-  const double x = std::clamp(airmass, 0.0, most_airmass);
-  const int a = place_on(std::sqrt(x / most_airmass) * (airmasses - 1), airmasses).node;
-  const double ta = (x - airmass_of_node(a)) / (airmass_of_node(a + 1) - airmass_of_node(a));
-  const double used = bv >= least_bv ? std::min(bv, greatest_bv) : least_bv;
-  const Place colour =
-      place_on((used - least_bv) / (greatest_bv - least_bv) * (colours - 1), colours);
-  const int c = colour.node;
+  const auto place = nodes.place(airmass, bv);
   const auto sum = [&](int edge, int which) {
-    const auto at = [&](int column, int node) {
-      return sums_[std::size_t(((column * airmasses + node) * edges + edge) * 2 + which)];
-    };
-    return std::lerp(std::lerp(at(c, a), at(c, a + 1), ta),
-                     std::lerp(at(c + 1, a), at(c + 1, a + 1), ta), colour.fraction);
+    return nodes.between(place, [&](int colour, int node) {
+      return sums_[std::size_t(((colour * airmasses + node) * edges + edge) * 2 + which)];
+    });
   };
   double light = 0.0, moment = 0.0;
   for (int k = 1; k <= count; ++k) {

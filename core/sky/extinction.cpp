@@ -9,6 +9,7 @@
 #include "core/photometry/magnitude.h"
 #include "core/photometry/spectrum.h"
 #include "core/photometry/star_spectrum.h"
+#include "core/sky/colour_airmass.h"
 
 namespace dmise {
 namespace {
@@ -26,18 +27,10 @@ constexpr Site sites[] = {{"lick", lick},           {"ctio", ctio},
                           {"kitt_peak", kitt_peak}, {"la_palma", la_palma},
                           {"mauna_kea", mauna_kea}, {"paranal", paranal}};
 
-// Nodes of the table. In airmass they are even in sqrt(X), which follows the bend near X = 0.
 constexpr int colours = 49;  // every 0.05 of B-V, as spectra of stars are tabulated
 constexpr int airmasses = 33;
-constexpr double most_airmass = 40.0;
+constexpr ColourAirmassNodes nodes{colours, airmasses};
 constexpr double sun_bv = 0.65;
-
-double airmass_of_node(int i) {
-  const double t = double(i) / (airmasses - 1);
-  return most_airmass * t * t;
-}
-
-double bv_of_node(int i) { return least_bv + i * (greatest_bv - least_bv) / (colours - 1); }
 
 }  // namespace
 
@@ -106,11 +99,11 @@ BandExtinction::BandExtinction(const Band& band, const Curve& extinction_mag_per
     const double k = extinction_mag_per_airmass.at_or_end(x_m[s]);
     // Held above 0 in the thickest ultraviolet, so that the logarithm stays finite.
     for (int a = 0; a < airmasses; ++a)
-      transmission[a * steps + s] = std::max(light_of_magnitude(k * airmass_of_node(a)), 1e-30);
+      transmission[a * steps + s] = std::max(light_of_magnitude(k * nodes.airmass(a)), 1e-30);
   }
   log_of_transmission_.reserve(colours * airmasses);
   for (int c = 0; c < colours; ++c) {
-    const StarSpectrum star = star_spectrum(bv_of_node(c));
+    const StarSpectrum star = star_spectrum(nodes.bv(c));
     double above = 0.0;
     for (int s = 0; s < steps; ++s) above += photons[s] = response[s] * star.photons_at(x_m[s]);
     for (int a = 0; a < airmasses; ++a) {
@@ -122,19 +115,9 @@ BandExtinction::BandExtinction(const Band& band, const Curve& extinction_mag_per
 }
 
 double BandExtinction::of_star(double airmass, double bv) const {
-  const double x = std::clamp(airmass, 0.0, most_airmass);
-  const double a = std::sqrt(x / most_airmass) * (airmasses - 1);
-  const int low = std::min(int(a), airmasses - 2);
-  const double x0 = airmass_of_node(low), x1 = airmass_of_node(low + 1);
-  const double ta = (x - x0) / (x1 - x0);
-  const double used = bv >= least_bv ? std::min(bv, greatest_bv) : least_bv;
-  const double c = (used - least_bv) / (greatest_bv - least_bv) * (colours - 1);
-  const int row = std::min(int(c), colours - 2);
-  const double tc = c - row;
-  const double* at = &log_of_transmission_[std::size_t(row) * airmasses + std::size_t(low)];
-  const double here = at[0] + ta * (at[1] - at[0]);
-  const double next = at[airmasses] + ta * (at[airmasses + 1] - at[airmasses]);
-  return std::exp(here + tc * (next - here));
+  return std::exp(nodes.between(nodes.place(airmass, bv), [&](int colour, int node) {
+    return log_of_transmission_[std::size_t(colour * airmasses + node)];
+  }));
 }
 
 double BandExtinction::of_sunlight(double airmass) const { return of_star(airmass, sun_bv); }

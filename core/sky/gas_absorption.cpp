@@ -9,6 +9,7 @@
 #include "core/photometry/magnitude.h"
 #include "core/photometry/star_spectrum.h"
 #include "core/sky/airmass.h"
+#include "core/sky/colour_airmass.h"
 #include "core/sky/kept_tables.h"
 
 namespace dmise {
@@ -19,14 +20,8 @@ struct Gas {
 };
 #include "core/sky/gas_tables.inc"
 
-// Nodes as of extinction: every 0.1 of B-V, even in sqrt(X).
-constexpr int colours = 25, airmasses = 33;
-constexpr double most_airmass = 40.0;
-
-double airmass_of_node(int i) {
-  const double t = double(i) / (airmasses - 1);
-  return most_airmass * t * t;
-}
+constexpr int colours = 25, airmasses = 33;  // every 0.1 of B-V
+constexpr ColourAirmassNodes nodes{colours, airmasses};
 
 void check(double value, double most, const char* name) {
   if (!(value >= 0.0 && value <= most))
@@ -75,16 +70,15 @@ BandGases::BandGases(const Band& band, const Curve& extinction, const AirGases& 
   const double least_k = *std::min_element(k_mag.begin(), k_mag.end());
   std::vector<double> without(std::size_t(steps) * airmasses), with(without.size());
   for (int a = 0; a < airmasses; ++a) {
-    const Curve transmission = gas_transmission(air, airmass_of_node(a));
+    const Curve transmission = gas_transmission(air, nodes.airmass(a));
     for (int s = 0; s < steps; ++s) {
       const auto at = std::size_t(a * steps + s);
-      without[at] = light_of_magnitude((k_mag[s] - least_k) * airmass_of_node(a));
+      without[at] = light_of_magnitude((k_mag[s] - least_k) * nodes.airmass(a));
       with[at] = without[at] * transmission.at_or_end(x_m[s]);
     }
   }
   for (int c = 0; c < colours; ++c) {
-    const StarSpectrum star =
-        star_spectrum(least_bv + c * (greatest_bv - least_bv) / (colours - 1));
+    const StarSpectrum star = star_spectrum(nodes.bv(c));
     for (int s = 0; s < steps; ++s) photons[s] = response[s] * star.photons_at(x_m[s]);
     for (int a = 0; a < airmasses; ++a) {
       double through = 0.0, above = 0.0;
@@ -98,17 +92,9 @@ BandGases::BandGases(const Band& band, const Curve& extinction, const AirGases& 
 }
 
 double BandGases::of_star(double airmass, double bv) const {
-  const double x = std::clamp(airmass, 0.0, most_airmass);
-  const double a = std::sqrt(x / most_airmass) * (airmasses - 1);
-  const int low = std::min(int(a), airmasses - 2);
-  const double x0 = airmass_of_node(low), x1 = airmass_of_node(low + 1);
-  const double ta = (x - x0) / (x1 - x0);
-  const double used = bv >= least_bv ? std::min(bv, greatest_bv) : least_bv;
-  const double c = (used - least_bv) / (greatest_bv - least_bv) * (colours - 1);
-  const int row = std::min(int(c), colours - 2);
-  const double* at = &log_of_transmission_[std::size_t(row * airmasses + low)];
-  return std::exp(std::lerp(std::lerp(at[0], at[1], ta),
-                            std::lerp(at[airmasses], at[airmasses + 1], ta), c - row));
+  return std::exp(nodes.between(nodes.place(airmass, bv), [&](int colour, int node) {
+    return log_of_transmission_[std::size_t(colour * airmasses + node)];
+  }));
 }
 
 GasAbsorption::GasAbsorption(const AirExposure& exposure) : up_(exposure.up) {

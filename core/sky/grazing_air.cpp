@@ -6,6 +6,7 @@
 
 #include "core/base/units.h"
 #include "core/photometry/spectrum.h"
+#include "core/sky/refraction.h"
 
 namespace dmise {
 namespace {
@@ -83,10 +84,9 @@ double rayleigh_depth(double wavelength_m) {
   return 0.008569 * s * s * (1 + 0.0113 * s + 0.00013 * s * s);
 }
 
-/// Refractivity at the sea, 15 C, as in eraRefco.
+/// Refractivity at the sea, 15 C.
 double refractivity_at_sea(double wavelength_m) {
-  const double s = um * um / (wavelength_m * wavelength_m);
-  return (77.53484e-6 + s * (4.39108e-7 + s * 3.666e-9)) * 1013.25 / 288.15;
+  return 1e-6 * dry_air_refractivity(wavelength_m) * 1013.25 / 288.15;
 }
 
 double density_slope(double height_m) {

@@ -12,6 +12,9 @@
 namespace dmise {
 namespace {
 
+// Refractivity of dry air: a + b s + c s^2 with s = 1 / um^2.
+constexpr double dry_a = 77.53484, dry_b = 0.439108, dry_c = 0.003666;
+
 constexpr double series_ends_rad = 15 * deg;   // elevation: the series alone above
 constexpr double bennett_ends_rad = 10 * deg;  // Bennett alone below
 constexpr double earth_radius_m = 6371e3;
@@ -32,6 +35,16 @@ Weather standard_weather(double height_m) {
   double pressure = 1013.25 * std::pow(temperature_k / 288.15, 5.255876);
   if (height_m > 11000.0) pressure *= std::exp(-(height_m - 11000.0) / 6341.62);
   return {.pressure_hpa = pressure, .temperature_c = temperature_k - 273.15};
+}
+
+double dry_air_refractivity(double wavelength_m) {
+  const double s = 1e-12 / (wavelength_m * wavelength_m);
+  return dry_a + s * (dry_b + s * dry_c);
+}
+
+double wavelength_of_dry_air_m(double refractivity) {
+  const double q = dry_b * dry_b + 4.0 * dry_c * (refractivity - dry_a);
+  return 1e-6 / std::sqrt((std::sqrt(q) - dry_b) / (2.0 * dry_c));
 }
 
 Refraction::Refraction(const Weather& weather, double wavelength_um)

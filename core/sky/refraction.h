@@ -16,6 +16,11 @@ struct Weather {
 /// the ellipsoid; isothermal from 11 km up.
 Weather standard_weather(double height_m);
 
+/// Refractivity of dry air over wavelength: 1e6 (n - 1) T / P [K/hPa], as eraRefco has it; and the
+/// wavelength [m] of one.
+double dry_air_refractivity(double wavelength_m);
+double wavelength_of_dry_air_m(double refractivity);
+
 /// Bending of light by the air over a ground site. Elevations are over its horizon; "true" is as
 /// without air, "apparent" is what the camera sees. To 75 deg from the zenith ERFA's eraRefco, from
 /// 80 deg down Bennett 1982 scaled to join it, between them a smooth blend; constant under the

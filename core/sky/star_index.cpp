@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/units.h"
+#include "core/sky/sphere_cells.h"
 
 namespace dmise {
 namespace {
@@ -37,26 +38,11 @@ std::size_t tiers_for(const std::vector<float>& v_mag) {
   return std::size_t(std::clamp(std::ceil(faintest) - first_limit + 1, 1.0, 13.0));
 }
 
-int band_of(double dec_rad, int bands) {
-  return std::clamp(int((dec_rad + pi / 2) / (pi / bands)), 0, bands - 1);
-}
-
 template <class T>
 void reorder(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
   std::vector<T> sorted(values.size());
   for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = values[order[i]];
   values = std::move(sorted);
-}
-
-std::vector<std::uint32_t> first_cells(int bands) {
-  const double band_rad = pi / bands;
-  std::vector<std::uint32_t> first(std::size_t(bands) + 1, 0);
-  for (int b = 0; b < bands; ++b) {
-    const double middle = (b + 0.5) * band_rad - pi / 2;
-    const double cells = std::max(3.0, std::round(2 * pi * std::cos(middle) / band_rad));
-    first[b + 1] = first[b] + std::uint32_t(cells);
-  }
-  return first;
 }
 
 }  // namespace
@@ -74,10 +60,7 @@ StarIndex build_star_index(StarCatalogue& c) {
     std::size_t t = 0;
     while (c.v_mag[i] > index.tiers[t].faintest_v_mag) ++t;
     const StarTier& tier = index.tiers[t];
-    const int b = band_of(c.dec_rad[i], tier.bands);
-    const std::uint32_t cells = tier.first_cell[b + 1] - tier.first_cell[b];
-    const auto within = std::uint32_t(c.ra_rad[i] / (2 * pi) * cells);
-    cell[i] = std::uint32_t(cells_before[t]) + tier.first_cell[b] + std::min(within, cells - 1);
+    cell[i] = std::uint32_t(cells_before[t]) + cell_at(tier.first_cell, c.ra_rad[i], c.dec_rad[i]);
   }
   std::vector<std::uint32_t> order(n);
   std::iota(order.begin(), order.end(), 0U);
@@ -161,35 +144,8 @@ void ConeSearch::in_cell(const StarTier& tier, std::uint32_t cell) {
 }
 
 void ConeSearch::in_tier(const StarTier& tier) {
-  const auto [ra, dec] = to_spherical(axis);
-  const double margin = 1e-9;  // cells are chosen a little wider than the cone
-  const double low = dec - radius_rad - margin, high = dec + radius_rad + margin;
-  const bool holds_pole = low <= -pi / 2 || high >= pi / 2;
-  // A cone without a pole spans asin(sin r / cos dec) of right ascension to either side.
-  const double ratio = std::sin(std::min(radius_rad + margin, pi / 2)) / std::cos(dec);
-  const double half_ra = holds_pole || ratio >= 1 ? pi : std::asin(ratio) + margin;
-  // The cells `from`..`to` of a band lie together, and so do their stars.
-  const auto take = [&](std::uint32_t first, std::int64_t from, std::int64_t to) {
-    for (std::int64_t k = from; k <= to; ++k) in_cell(tier, first + std::uint32_t(k));
-  };
-  for (int b = band_of(low, tier.bands); b <= band_of(high, tier.bands); ++b) {
-    const std::uint32_t first = tier.first_cell[b];
-    const auto cells = std::int64_t(tier.first_cell[b + 1] - first);
-    const double per_rad = double(cells) / (2 * pi);
-    const auto from = std::int64_t(std::floor((ra - half_ra) * per_rad));
-    const auto to = std::int64_t(std::floor((ra + half_ra) * per_rad));
-    if (to - from + 1 >= cells) {
-      take(first, 0, cells - 1);
-    } else if (from < 0) {  // through 0 h
-      take(first, 0, to);
-      take(first, from + cells, cells - 1);
-    } else if (to >= cells) {
-      take(first, 0, to - cells);
-      take(first, from, cells - 1);
-    } else {
-      take(first, from, to);
-    }
-  }
+  for (const auto& [first, last] : cells_around(tier.first_cell, axis, radius_rad))
+    for (std::uint32_t cell = first; cell <= last; ++cell) in_cell(tier, cell);
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 #include "core/base/rng.h"
 #include "core/base/units.h"
-#include "core/sky/sky_cells.h"
 #include "core/sky/sky_frames.h"
+#include "core/sky/sphere_cells.h"
 #include "core/sky/star_counts.h"
 
 namespace dmise {
@@ -24,13 +24,13 @@ constexpr std::array<Tier, 3> tiers = {Tier{14.0, 90}, Tier{17.0, 360}, Tier{25.
 /// Of the key of all synthetic skies: no run's seed.
 constexpr std::uint64_t sky_seed = 0x73796e7468657469;
 
-const SkyCells& cells_of(std::size_t tier) {
-  static const std::array<SkyCells, tiers.size()> cells = {
-      SkyCells(tiers[0].bands), SkyCells(tiers[1].bands), SkyCells(tiers[2].bands)};
+const SphereCells& cells_of(std::size_t tier) {
+  static const std::array<SphereCells, tiers.size()> cells = {
+      SphereCells(tiers[0].bands), SphereCells(tiers[1].bands), SphereCells(tiers[2].bands)};
   return cells[tier];
 }
 
-double square_degrees(const SkyCells::Cell& cell) { return cell.area_sr() / (deg * deg); }
+double square_degrees(const SphereCells::Cell& cell) { return cell.area_sr() / (deg * deg); }
 
 /// A Poisson deviate of a mean: by its distribution function, above 64 as a normal one.
 std::uint32_t poisson(double mean, const std::array<std::uint32_t, 4>& words) {
@@ -74,8 +74,8 @@ SyntheticStars::Missing SyntheticStars::count_missing(std::uint32_t number) cons
   Missing missing;
   missing.fill(1.0F);
   if (!catalogue_) return missing;
-  const SkyCells& cells = cells_of(0);
-  const SkyCells::Cell cell = cells.cell(number);
+  const SphereCells& cells = cells_of(0);
+  const SphereCells::Cell cell = cells.cell(number);
   std::vector<std::uint32_t> found;
   query_cone(*catalogue_, cell.middle, cells.half_rad(), catalogue_to_v_mag_, found);
   std::array<double, most_bins> count{};
@@ -111,18 +111,16 @@ template <class Use>
 void for_cells(const Vec<Gcrs>& axis, double radius_rad, double from_v_mag, double to_v_mag,
                Use&& use) {
   const Rotation<Galactic, Gcrs> galactic = galactic_from_gcrs();
-  std::vector<std::uint32_t> found;
   double tier_from = -std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < tiers.size(); ++t) {
     const double from = std::max(from_v_mag, tier_from), to = std::min(to_v_mag, tiers[t].to_v_mag);
     tier_from = tiers[t].to_v_mag;
     if (from >= to) continue;
-    found.clear();
-    cells_of(t).around(axis, radius_rad, found);
-    for (const std::uint32_t number : found) {
-      const SkyCells::Cell cell = cells_of(t).cell(number);
-      use(t, cell, StarCounts(galactic * cell.middle), from, to);
-    }
+    for (const auto& [first, last] : cells_of(t).around(axis, radius_rad))
+      for (std::uint32_t number = first; number <= last; ++number) {
+        const SphereCells::Cell cell = cells_of(t).cell(number);
+        use(t, cell, StarCounts(galactic * cell.middle), from, to);
+      }
   }
 }
 
@@ -146,7 +144,7 @@ void SyntheticStars::visit(const Vec<Gcrs>& axis, double radius_rad, double fain
   Stars stars;
   for_cells(
       axis, radius_rad, from_v_mag_, std::min(to_v_mag_, faintest_v_mag),
-      [&](std::size_t tier, const SkyCells::Cell& cell, const StarCounts& counts, double from,
+      [&](std::size_t tier, const SphereCells::Cell& cell, const StarCounts& counts, double from,
           double to) {
         const Missing& missing = missing_at(cell.middle);
         const RngKey key = rng_key(sky_seed, "", std::uint32_t(tier) << 28 | cell.number, "stars");
@@ -194,7 +192,7 @@ double SyntheticStars::expected_around(const Vec<Gcrs>& axis, double radius_rad,
                                        double faintest_v_mag) const {
   double sum = 0.0;
   for_cells(axis, radius_rad, from_v_mag_, std::min(to_v_mag_, faintest_v_mag),
-            [&](std::size_t, const SkyCells::Cell& cell, const StarCounts& counts, double from,
+            [&](std::size_t, const SphereCells::Cell& cell, const StarCounts& counts, double from,
                 double to) {
               sum += (counts.brighter_than(to) - counts.brighter_than(from)) * square_degrees(cell);
             });

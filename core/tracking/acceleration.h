@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/frames/earth_orientation.h"
 #include "core/orbit/two_body.h"
 #include "core/tracking/forces.h"
 
@@ -16,7 +17,6 @@ inline constexpr double earth_zonal_radius_m = 6378136.3;
 /// Of the solid Earth, to tell heights and shadow [m].
 inline constexpr double earth_equatorial_radius_m = 6378137.0;
 inline constexpr double earth_flattening = 1 / 298.257223563;
-inline constexpr double earth_turn_rad_per_s = 7.292115146706979e-5;
 /// Of sunlight on a black plate at 1 au [N/m^2]: 1361 W/m^2 (Kopp & Lean 2011) over c.
 inline constexpr double solar_pressure_n_per_m2 = 1361.0 / speed_of_light_m_per_s;
 inline constexpr double sun_gm_m3_per_s2 = 1.32712440018e20;  // DE405

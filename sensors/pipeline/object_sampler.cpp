@@ -27,8 +27,7 @@ namespace {
 
 /// How fast an object moves over the sky of an observer on the ground.
 double rate_rad_per_s(const Motion& motion, const ObserverState& observer) {
-  constexpr double earth_rad_per_s = 7.2921e-5;
-  const Vec<Gcrs> spin{0, 0, earth_rad_per_s};  // the pole is z to 0.1 deg
+  const Vec<Gcrs> spin{0, 0, earth_turn_rad_per_s};  // the pole is z to 0.1 deg
   const Vec<Gcrs> line_m = motion.position_m - observer.position_m;
   const Vec<Gcrs> passing_m_per_s =
       motion.slope_m_per_s - observer.velocity_m_per_s - cross(spin, line_m);

@@ -14,6 +14,9 @@
 
 namespace dmise {
 
+struct StarExposure;
+struct StarTrail;
+
 /// One star as it was drawn.
 struct StarTruth {
   std::uint64_t id = 0;  // in its catalogue, or of a synthetic star: with `synthetic_star_bit`
@@ -49,14 +52,12 @@ class StarLayer {
                      std::vector<StarTruth>* truth, EffectTimes& times) const;
 
  private:
-  struct Exposure;
-  struct Trail;
-  std::uint32_t draw(const Exposure& exposure, std::vector<Trail> trails, double may_miss_e,
+  std::uint32_t draw(const StarExposure& exposure, std::vector<StarTrail> trails, double may_miss_e,
                      OpticsStage& optics, const OcclusionMask& mask, ExpectedElectronImage& image,
                      std::vector<StarTruth>* truth, EffectTimes& times) const;
-  std::uint32_t draw_synthetic(Exposure& exposure, OpticsStage& optics, const OcclusionMask& mask,
-                               ExpectedElectronImage& image, std::vector<StarTruth>* truth,
-                               EffectTimes& times) const;
+  std::uint32_t draw_synthetic(StarExposure& exposure, OpticsStage& optics,
+                               const OcclusionMask& mask, ExpectedElectronImage& image,
+                               std::vector<StarTruth>* truth, EffectTimes& times) const;
   std::vector<std::uint32_t> candidates(const View& view, double faintest_v_mag) const;
 
   std::shared_ptr<const StarMap> map_;

@@ -144,8 +144,7 @@ Rotation<Enu, Gcrs> View::enu_from_gcrs(SimTime t) const {
 }
 
 double View::turns_rad_per_s(const Vec<Gcrs>& direction) const {
-  constexpr double earth_rad_per_s = 7.2921e-5;
-  return earth_rad_per_s * std::hypot(direction.x, direction.y);  // the pole is z to 0.1 deg
+  return earth_turn_rad_per_s * std::hypot(direction.x, direction.y);  // the pole is z to 0.1 deg
 }
 
 std::optional<PixelPosition> View::pixel(const Vec<Gcrs>& apparent, SimTime t) const {

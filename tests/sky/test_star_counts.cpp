@@ -53,12 +53,13 @@ TEST(StarCounts, TychoTwoFromThePlaneToThePole) {
   EXPECT_NEAR(mean_over_longitude(11, 85) / 8.69, 1.0, 0.1);
 }
 
-// Reference: Tycho-2 with UCAC4, whose magnitudes are some 0.3 mag redder than V, which makes 25 %
-// of the stars; USNO-B1.0 to V = 21. Stars a square degree.
+// Reference: Tycho-2 with UCAC4 (hnsky.org), of which ours are a fifth to a quarter fewer: a colour
+// of UCAC4's band, between V and R, would explain that, but nobody has shown it; USNO-B1.0 to V
+// = 21. Stars a square degree.
 TEST(StarCounts, OfTheWholeSky) {
-  EXPECT_NEAR(mean_over_the_sky(12) / 71.65, 0.75, 0.1);
-  EXPECT_NEAR(mean_over_the_sky(14) / 417.28, 0.75, 0.1);
-  EXPECT_NEAR(mean_over_the_sky(16) / 2154.9, 0.75, 0.1);
+  EXPECT_NEAR(mean_over_the_sky(12) / 71.65, 1.0, 0.3);
+  EXPECT_NEAR(mean_over_the_sky(14) / 417.28, 1.0, 0.3);
+  EXPECT_NEAR(mean_over_the_sky(16) / 2154.9, 1.0, 0.3);
   EXPECT_NEAR(mean_over_the_sky(21) / 25273.78, 1.0, 0.2);
 }
 

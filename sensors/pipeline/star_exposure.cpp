@@ -1,0 +1,138 @@
+#include "sensors/pipeline/star_exposure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/optics/projection.h"
+
+namespace dmise {
+
+StarColumns columns_of(const StarTable& stars) {
+  return {.epoch_jyear = stars.epoch_jyear,
+          .ra_rad = stars.ra_rad,
+          .dec_rad = stars.dec_rad,
+          .pm_ra_cosdec_rad_per_yr = stars.pm_ra_cosdec_rad_per_yr,
+          .pm_dec_rad_per_yr = stars.pm_dec_rad_per_yr,
+          .parallax_rad = stars.parallax_rad};
+}
+
+std::vector<StarTrail> StarExposure::trails(std::span<const std::uint32_t> which) const {
+  const auto& optics = view.sensor().camera.optics;
+  std::vector<StarTrail> trails(which.size());
+  std::vector<bool> imaged(which.size(), true);
+  std::vector<Vec<Gcrs>> direction(which.size());
+  for (std::size_t i = 0; i < which.size(); ++i) trails[i] = trail_of(which[i]);
+  for (std::size_t k = 0; k < instants.size(); ++k) {
+    places[k].stars(columns, which, direction);
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      const auto pixel = project(optics, camera[k] * direction[i]);
+      imaged[i] = imaged[i] && pixel;
+      if (pixel) trails[i].pixel[k] = *pixel;
+      if (k == 1) trails[i].middle = direction[i];
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < which.size(); ++i)
+    if (imaged[i]) trails[kept++] = trails[i];
+  trails.resize(kept);
+  return trails;
+}
+
+std::optional<StarPath> StarExposure::exact_path(const Vec<Gcrs>& astrometric) const {
+  const Optics& optics = view.sensor().camera.optics;
+  StarPath path;
+  for (std::size_t k = 0; k < instants.size(); ++k) {
+    const Vec<Gcrs> direction = places[k].seen(astrometric);
+    const auto pixel = project(optics, camera[k] * direction);
+    if (!pixel) return std::nullopt;
+    path.pixel[k] = *pixel;
+    if (k == 1) path.middle = direction;
+  }
+  if (view.on_ground()) path.airmass = airmass(elevation_over(up[1], path.middle));
+  path.illumination = view.illumination(path.pixel[1]);
+  return path;
+}
+
+std::optional<StarPath> StarExposure::path(const Vec<Gcrs>& astrometric) const {
+  if (grid) {
+    StarPath path;
+    const auto found = grid->find(astrometric, path);
+    if (found == StarPathGrid::Found::path) return path;
+    if (found == StarPathGrid::Found::beside) return std::nullopt;
+  }
+  return exact_path(astrometric);
+}
+
+std::vector<StarTrail> StarExposure::trails_by_grid(std::span<const std::uint32_t> which,
+                                                    const Column<Vec<Gcrs>>& direction) const {
+  std::vector<StarTrail> trails;
+  trails.reserve(which.size());
+  for (const std::uint32_t i : which) {
+    const StarPlace place{.ra_rad = stars.ra_rad[i],
+                          .dec_rad = stars.dec_rad[i],
+                          .pm_ra_cosdec_rad_per_yr = stars.pm_ra_cosdec_rad_per_yr[i],
+                          .pm_dec_rad_per_yr = stars.pm_dec_rad_per_yr[i],
+                          .parallax_rad = stars.parallax_rad[i],
+                          .epoch_jyear = stars.epoch_jyear};
+    const Vec<Gcrs> astrometric = places[1].astrometric(CataloguedStar(place, direction[i]));
+    const auto at = path(astrometric);
+    if (!at) continue;
+    StarTrail& trail = trails.emplace_back(trail_of(i));
+    trail.astrometric = astrometric;
+    trail.middle = at->middle, trail.pixel = at->pixel;
+    trail.airmass = at->airmass, trail.illumination = at->illumination;
+  }
+  return trails;
+}
+
+std::pair<Vec<Gcrs>, double> StarExposure::seen_cone() const {
+  const Optics& optics = view.sensor().camera.optics;
+  const Vec<Gcrs> axis = places[1].star_seen_at(camera[1].inverse() * Vec<CameraFrame>{0, 0, 1});
+  const double widest_rad = half_diagonal_rad(optics);
+  // Beyond the rim light of a source that is outside reaches the frame.
+  constexpr double beside_px = 8.0, between = 1.02;
+  constexpr int looks = 8;
+  double radius_rad = 0.0;
+  for (int i = 0; i <= looks; ++i)
+    for (const auto& [x, y] :
+         {std::array{double(i) / looks, 0.0}, std::array{double(i) / looks, 1.0},
+          std::array{0.0, double(i) / looks}, std::array{1.0, double(i) / looks}}) {
+      const auto rim = unproject(optics, {-beside_px + x * (optics.columns + 2 * beside_px),
+                                          -beside_px + y * (optics.rows + 2 * beside_px)});
+      if (!rim) return {axis, std::min(pi, widest_rad + widest_shift_rad)};
+      for (std::size_t k = 0; k < instants.size(); ++k)
+        radius_rad = std::max(radius_rad,
+                              angle_rad(axis, places[k].star_seen_at(camera[k].inverse() * *rim)));
+    }
+  return {axis, std::min(pi, between * radius_rad)};
+}
+
+std::vector<double> StarExposure::factors_of_air(const std::vector<StarTrail>& trails,
+                                                 EffectTimes& times) const {
+  std::vector<SightLine> lines;
+  lines.reserve(trails.size());
+  for (const StarTrail& trail : trails)
+    lines.push_back({trail.middle, trail.bv, SightLine::Source::star, trail.number,
+                     view.turns_rad_per_s(trail.middle), trail.airmass});
+  return throughput.of_air(lines, times);
+}
+
+void StarExposure::spread(const Arc& arc, const StarTrail& trail, std::vector<Arc>& parts) const {
+  Arc blue, red;
+  PixelPosition* const of_blue[] = {&blue.start, &blue.middle, &blue.end};
+  PixelPosition* const of_red[] = {&red.start, &red.middle, &red.end};
+  for (std::size_t k = 0; k < instants.size(); ++k) {
+    Vec<Gcrs> apparent;
+    if (trail.astrometric)
+      apparent = places[k].seen(*trail.astrometric);
+    else
+      places[k].stars(columns, {&trail.place, 1}, {&apparent, 1});
+    const SpectrumEnds ends =
+        spectra->ends(apparent, Refraction::star, up[k], camera[k], trail.pixel[k]);
+    *of_blue[k] = ends.blue;
+    *of_red[k] = ends.red;
+  }
+  spectra->add(arc, blue, red, trail.middle, trail.bv, parts);
+}
+
+}  // namespace dmise
