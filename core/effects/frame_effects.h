@@ -137,7 +137,8 @@ struct SkyGrid {
     constexpr double smallest_px = 64.0;
     const double share =
         f.cloud_detail_px < smallest_px ? 1.0 : 0.9 * tolerance[std::size_t(level)];
-    return share * (s.sky_e - s.of(SkyPart::scattered_moonlight) + f.moonlight_e(s));
+    const double brightest_e = s.sky_e - s.of(SkyPart::scattered_moonlight) + f.moonlight_e(s);
+    return share * std::min(brightest_e, (1.0 + share) * f.saturated_e);
   }
   static ErrorBound error(int level, const PlanFacts& f) {
     return f.without_light(

@@ -65,6 +65,8 @@ struct PlanFacts {
     usual.fill(usual_between);
     return usual;
   }();
+  /// Light of a pixel beyond which it is saturated, whatever the plan: more of it shows nowhere.
+  double saturated_e = unbounded;
   double nearest_moon_rad = 3.0;       // to the nearest of the field
   double cloud_detail_px = unbounded;  // size of the smallest pieces of cloud in the field
   double sky_look_s = 0.32e-6;         // what one look at all parts costs

@@ -60,6 +60,13 @@ double kernel_end_share(const Optics& optics, double wavelength_m, const PsfPlan
   return of_rings + 1e-4 * peak_share(blur.fwhm_px) * std::pow(widths, -11.0 / 3.0);
 }
 
+/// Charge that pixels do not exceed; unbounded where what is over it goes elsewhere.
+double saturated_e(const SensorConfig& sensor) {
+  const Detector& detector = sensor.camera.detector;
+  const bool limited = detector.well_is_limited && sensor.effects.has(FullWell::facts);
+  return limited && !detector.blooming ? detector.full_well_e : unbounded;
+}
+
 /// Turbulence before a sensor, whatever level of it the scenario asks for.
 PlanFacts::Air air_facts(const SensorConfig& sensor) {
   const Optics& optics = sensor.camera.optics;
@@ -122,6 +129,7 @@ void ExposurePlanner::look_at_sensor() {
   f.speckle_px = std::hypot(1.0, f.airy_px);
   f.read_noise_e = detector.fitted_noise_e(detector.read_noise_e);
   f.read_later = reads_after_others(detector);
+  f.saturated_e = saturated_e(sensor_);
   f.dark_e = dark_rate_e_per_s(detector) * sensor_.exposure_s;
   if (blur.method != PointSpread::Method::deposit) {
     f.screens = blur.screens;

@@ -90,6 +90,32 @@ TEST(ExposurePlanner, KeepsATimePerFrame) {
   EXPECT_FALSE(Scene{.accuracy = "{seconds_per_frame: 1e-5}"}.frame().plan.in_time);
 }
 
+// The Moon's aureole is a thousand full wells: no share of it shows in a saturated pixel, and every
+// pixel of the sky would cost ten times the frame.
+TEST(ExposurePlanner, SaturatedSkiesNeedNoFinerGrid) {
+  const Scene aureole{.accuracy = "{background_sigma: 0.3}",
+                      .camera = "omnissa",
+                      .place = "site: huntsville",
+                      .pointing = "{azimuth_deg: 250, elevation_deg: 60}",
+                      .effects = "{photon_noise: off, read_noise: off}",
+                      .exposure_s = 10.0};
+  Scene every_pixel = aureole;
+  every_pixel.effects = "{photon_noise: off, read_noise: off, sky_grid: pixel}";
+  const FrameProducts frame = aureole.frame(2), exact = every_pixel.frame(2);
+  const int level = frame.plan.effects.level(SkyGrid::facts);
+  EXPECT_LT(level, SkyGrid::facts.reference());
+  const auto full = std::size_t(std::ranges::count_if(
+      exact.counts.pixels, [&](std::uint16_t dn) { return dn >= exact.header.saturation_dn - 1; }));
+  EXPECT_GT(full, 1000u);
+  int worst_dn = 0;
+  for (std::size_t i = 0; i < frame.counts.pixels.size(); ++i)
+    worst_dn =
+        std::max(worst_dn, std::abs(int(frame.counts.pixels[i]) - int(exact.counts.pixels[i])));
+  EXPECT_LE(worst_dn * frame.header.gain_e_per_dn,
+            SkyGrid::tolerance[std::size_t(level)] * frame.header.full_well_e +
+                frame.header.gain_e_per_dn);
+}
+
 TEST(ExposurePlanner, InDaylightThereAreNoStars) {
   const FrameProducts day =
       Scene{.start = "2018-01-21T17:00:00Z", .exposure_s = 0.01, .star_v_mag = "12"}.frame();
