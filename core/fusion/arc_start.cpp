@@ -31,9 +31,9 @@ constexpr OrbitLimits limits{.least_perigee_m = 6.45e6, .largest_apogee_m = 1e8}
 
 const AngleObservation& seen(const LooseSource& s) { return s.source.observation; }
 
-auto order(const LooseSource& s) {
-  return std::tie(seen(s).time, seen(s).sensor, seen(s).detection_id);
-}
+/// Of one sensor's sources. Those of an exposure have each its own time where rows are exposed one
+/// after the other.
+auto order(const LooseSource& s) { return std::tie(s.frame, seen(s).time, seen(s).detection_id); }
 
 double sigma_rad(const LooseSource& s) {
   return std::sqrt(std::max(seen(s).covariance_rad2[0], seen(s).covariance_rad2[2]));
@@ -103,18 +103,13 @@ ArcStart::ArcStart(const ForceModel& forces, const FusionSettings& settings)
 
 std::vector<ArcStart::Arc> ArcStart::arcs_to(const LooseSource& last,
                                              const std::vector<LooseSource>& earlier) const {
-  std::vector<SimTime> exposures;  // before the last, by falling time
+  std::vector<std::uint32_t> exposures;  // frames before the last, the newest first
   for (auto s = earlier.rbegin(); s != earlier.rend(); ++s)
-    if ((seen(last).time - seen(*s).time).seconds() >= shortest_gap_s &&
-        (exposures.empty() || exposures.back() != seen(*s).time))
-      exposures.push_back(seen(*s).time);
-  const auto at = [&](SimTime time) -> std::span<const LooseSource> {
-    const auto first =
-        std::lower_bound(earlier.begin(), earlier.end(), time,
-                         [](const LooseSource& s, SimTime of) { return seen(s).time < of; });
-    const auto end =
-        std::upper_bound(first, earlier.end(), time,
-                         [](SimTime of, const LooseSource& s) { return of < seen(s).time; });
+    if (s->frame < last.frame && (seen(last).time - seen(*s).time).seconds() >= shortest_gap_s &&
+        (exposures.empty() || exposures.back() != s->frame))
+      exposures.push_back(s->frame);
+  const auto at = [&](std::uint32_t frame) -> std::span<const LooseSource> {
+    const auto [first, end] = std::ranges::equal_range(earlier, frame, {}, &LooseSource::frame);
     return {first, end};
   };
   std::vector<Arc> arcs;
@@ -128,16 +123,17 @@ std::vector<ArcStart::Arc> ArcStart::arcs_to(const LooseSource& last,
       int skipped = 0;
       double chance = double(at(exposures[first]).size()) * double(first + 1);
       for (std::size_t k = first + 1; k < exposures.size() && skipped <= most_skipped; ++k) {
-        const Continued expected = continued(arc, exposures[k]);
         const LooseSource* best = nullptr;
+        Continued expected;  // where the best is
         double best_d2 = 1.0;
         for (const LooseSource& s : at(exposures[k])) {
-          const Vec<Gcrs> miss = seen(s).direction - expected.direction;
-          const double along = dot(miss, expected.along);
+          const Continued there = continued(arc, seen(s).time);
+          const Vec<Gcrs> miss = seen(s).direction - there.direction;
+          const double along = dot(miss, there.along);
           const double across2 = std::max(0.0, dot(miss, miss) - along * along);
-          const double d2 = along * along / (expected.along_rad * expected.along_rad) +
-                            across2 / (expected.across_rad * expected.across_rad);
-          if (d2 < best_d2) best_d2 = d2, best = &s;
+          const double d2 = along * along / (there.along_rad * there.along_rad) +
+                            across2 / (there.across_rad * there.across_rad);
+          if (d2 < best_d2) best_d2 = d2, best = &s, expected = there;
         }
         if (!best) {
           ++skipped;
@@ -183,14 +179,14 @@ std::vector<StartedOrbit> ArcStart::add(const std::vector<LooseSource>& sources)
   for (auto& [sensor, found] : fresh) {
     std::vector<LooseSource>& kept = loose_[sensor];
     std::ranges::sort(found, [](const auto& a, const auto& b) {
-      return std::tuple(seen(a).time, a.source.magnitude, seen(a).detection_id) <
-             std::tuple(seen(b).time, b.source.magnitude, seen(b).detection_id);
+      return std::tuple(a.frame, a.source.magnitude, seen(a).detection_id) <
+             std::tuple(b.frame, b.source.magnitude, seen(b).detection_id);
     });
     std::size_t of_exposure = 0;
-    SimTime exposure;
+    std::uint32_t exposure = 0;
     for (LooseSource& s : found) {
-      of_exposure = seen(s).time == exposure && of_exposure > 0 ? of_exposure + 1 : 1;
-      exposure = seen(s).time;
+      of_exposure = s.frame == exposure && of_exposure > 0 ? of_exposure + 1 : 1;
+      exposure = s.frame;
       if (of_exposure <= most_per_exposure) kept.push_back(std::move(s));
     }
     std::ranges::sort(kept, [](const auto& a, const auto& b) { return order(a) < order(b); });
@@ -199,7 +195,7 @@ std::vector<StartedOrbit> ArcStart::add(const std::vector<LooseSource>& sources)
       return (newest - seen(s).time).seconds() > settings_.arc_window_s;
     });
     for (const LooseSource& s : kept) {
-      if (seen(s).time != newest) continue;
+      if (s.frame != kept.back().frame) continue;
       for (const Arc& arc : arcs_to(s, kept)) {
         // Of a growing arc not every length is tried: 4, 5, 6, 8, 11, 15, 20, ...
         int wanted = settings_.arc_exposures;

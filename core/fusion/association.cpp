@@ -159,7 +159,7 @@ void FusionBody::associate(Scene& scene, const SensorFrame& frame,
         track = nullptr;
       }
     }
-    if (!track) scene.loose.push_back({source, false_per_sr});
+    if (!track) scene.loose.push_back({source, false_per_sr, frame.frame});
   }
   for (std::size_t k = 0; k < all.size(); ++k) {
     const Candidate& c = all[k];

@@ -14,6 +14,7 @@ namespace dmise {
 struct LooseSource {
   SeenSource source;
   double false_per_sr = 0.0;  // of its frame
+  std::uint32_t frame = 0;    // of its sensor
 };
 
 /// An orbit from two places, each seen by two sites.

@@ -24,7 +24,10 @@ TrackingTrial trial_of(std::uint64_t seed, double sigma_arcsec, int exposures = 
   return tracking_trial(forces, settings, seed);
 }
 
-LooseSource source_of(const AngleObservation& seen) { return {{seen, 8.0, false}, 1.0}; }
+/// An exposure takes all sources of one second.
+LooseSource source_of(const AngleObservation& seen) {
+  return {{seen, 8.0, false}, 1.0, std::uint32_t(seen.time.seconds()) + 1};
+}
 
 /// Gives the exposures one by one; the first orbits that begin, and when.
 std::pair<std::vector<StartedOrbit>, std::size_t> begun(
@@ -94,6 +97,31 @@ TEST(ArcStart, OfSeveralObjectsEachHasItsOwn) {
   EXPECT_GE(orbits, 2u);
 }
 
+// Each row of a rolling shutter has its own time: what else an exposure shows is no exposure of its
+// own.
+TEST(ArcStart, ARollingShuttersExposureIsOne) {
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal;
+  const TrackingTrial trial = trial_of(3, 2.0);
+  ArcStart start(forces, {});
+  const Vec<Gcrs> up = unit(trial.observations[0].sensor_m);
+  std::size_t orbits = 0;
+  for (const AngleObservation& truth : trial.observations) {
+    std::vector<LooseSource> sources{source_of(truth)};
+    while (sources.size() < 9) {
+      const Vec<Gcrs> direction = unit(Vec<Gcrs>{normal(random), normal(random), normal(random)});
+      if (dot(direction, up) < 0.5) continue;
+      LooseSource other = source_of(truth);
+      other.source.observation.direction = direction;
+      other.source.observation.time.ns += std::int64_t(5'000'000 * sources.size());
+      other.source.observation.detection_id += "x" + std::to_string(sources.size());
+      sources.push_back(std::move(other));
+    }
+    orbits += start.add(sources).size();
+  }
+  EXPECT_GE(orbits, 1u);
+}
+
 // Ten false alarms a frame over 60 degrees around the zenith, for half an hour.
 TEST(ArcStart, NoiseBeginsNothing) {
   std::mt19937_64 random(7);
@@ -112,7 +140,7 @@ TEST(ArcStart, NoiseBeginsNothing) {
       seen.direction = direction;
       seen.covariance_rad2 = {1e-8, 0, 1e-8};  // 20 arcsec
       seen.detection_id = std::to_string(k) + "/" + std::to_string(sources.size());
-      sources.push_back({{seen, 8.0, false}, 1 / pi});
+      sources.push_back({{seen, 8.0, false}, 1 / pi, std::uint32_t(k) + 1});
     }
     orbits += start.add(sources).size();
   }
