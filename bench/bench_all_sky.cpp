@@ -44,7 +44,7 @@ T median(std::vector<T> values) {
   return values[values.size() / 2];
 }
 
-std::string scenario_text(const CatalogueFile& catalogue, const std::string& name,
+std::string scenario_text(const WrittenCatalogue& catalogue, const std::string& name,
                           const std::string& stars = "{catalogue: kstars, faintest_mag: 9}") {
   return "simulation: {start: " + catalogue.start_utc +
          ", duration_s: 20, tick_s: 5}\n"
@@ -161,7 +161,7 @@ void measure_tycho2(const std::filesystem::path& directory, bool json) {
     return;
   }
   Threads one(1);
-  const CatalogueFile objects = catalogue_of_18470(directory);
+  const WrittenCatalogue objects = catalogue_of_18470(directory);
   const auto sky_of = [&](const std::string& name, const std::string& stars) {
     const std::string path = (directory / (name + ".yaml")).string();
     std::ofstream(path) << scenario_text(objects, name, stars);

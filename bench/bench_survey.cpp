@@ -61,7 +61,7 @@ constexpr const char* piece_of_omnissa =
     "read_noise_e: 9.3, full_well_e: 25500, gain_e_per_dn: 0.35, bias_dn: 100, adc_bits: 16}, "
     "band: {name: V, centre_m: 0.55e-6, width_m: 0.128e-6}}";
 
-std::string head_of(const CatalogueFile& catalogue, const std::string& start_utc) {
+std::string head_of(const WrittenCatalogue& catalogue, const std::string& start_utc) {
   return "simulation: {start: " + start_utc +
          ", duration_s: 86400, tick_s: 10, seed: 1}\nobjects: [{catalogue: " + catalogue.path +
          "}]\nstars: {catalogue: kstars}\nsensors:\n";
@@ -106,7 +106,7 @@ struct Surveyed {
 };
 
 /// Surveys of whole nights; wall time from the scenario's file to the summary.
-void measure_night(const std::filesystem::path& directory, const CatalogueFile& catalogue,
+void measure_night(const std::filesystem::path& directory, const WrittenCatalogue& catalogue,
                    bool json) {
   std::string yaml = head_of(catalogue, catalogue.start_utc);
   for (const char* site : network)
@@ -124,7 +124,7 @@ void measure_night(const std::filesystem::path& directory, const CatalogueFile& 
   print_figure({"survey_night_detected", summary.run.all.detected, "1"}, json);
 }
 
-void measure_choice(const std::filesystem::path& directory, const CatalogueFile& catalogue,
+void measure_choice(const std::filesystem::path& directory, const WrittenCatalogue& catalogue,
                     bool json) {
   const double start = seconds_of(CLOCK_MONOTONIC), cpu_start = process_seconds();
   Surveyed sites(directory / "sites.yaml",
@@ -145,7 +145,7 @@ void measure_choice(const std::filesystem::path& directory, const CatalogueFile&
 
 /// Compares with rendered frames of another night, other places and other pointings than those in
 /// which detection was measured.
-bool measure_frames(const std::filesystem::path& directory, const CatalogueFile& catalogue,
+bool measure_frames(const std::filesystem::path& directory, const WrittenCatalogue& catalogue,
                     bool json) {
   std::ostringstream yaml;
   const std::string other_day =
@@ -204,7 +204,7 @@ void bench_survey_night(bool json) {
 
 int bench_survey(bool json) {
   const auto directory = made_directory();
-  const CatalogueFile catalogue = catalogue_of_18470(directory);
+  const WrittenCatalogue catalogue = catalogue_of_18470(directory);
   bool good = true;
   if (!asked.no_night) measure_night(directory, catalogue, json);
   if (!asked.no_choice) measure_choice(directory, catalogue, json);

@@ -8,7 +8,7 @@
 
 namespace dmise {
 
-CatalogueFile catalogue_of_18470(const std::filesystem::path& directory) {
+WrittenCatalogue catalogue_of_18470(const std::filesystem::path& directory) {
   if (const char* data = std::getenv("DMISE_DATA")) {
     const std::string path = std::string(data) + "/tle/catalog_3le_2019-12-19_18470.txt.gz";
     if (std::filesystem::exists(path)) return {path, "2019-12-20T00:15:00Z"};

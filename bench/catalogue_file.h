@@ -5,11 +5,11 @@
 namespace dmise {
 
 /// A catalogue of 18,470 objects and a dark evening over North America near its epoch.
-struct CatalogueFile {
+struct WrittenCatalogue {
   std::string path, start_utc;
 };
 
 /// The real one of December 2019 if `$DMISE_DATA` has it, or a similar one written to `directory`.
-CatalogueFile catalogue_of_18470(const std::filesystem::path& directory);
+WrittenCatalogue catalogue_of_18470(const std::filesystem::path& directory);
 
 }  // namespace dmise

@@ -84,7 +84,7 @@ class FieldWatcher : public Evaluator {
 
 Scenario telescope_network(int sensors, Tick ticks, const std::filesystem::path& directory) {
   std::filesystem::create_directories(directory);
-  const CatalogueFile catalogue = catalogue_of_18470(directory);
+  const WrittenCatalogue catalogue = catalogue_of_18470(directory);
   std::ostringstream text;
   text << "simulation: {start: " << catalogue.start_utc
        << ", duration_s: " << tick_s * double(ticks) << ", tick_s: " << tick_s

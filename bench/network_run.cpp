@@ -103,7 +103,7 @@ std::string last_line_of(const std::string& text) {
 }  // namespace
 
 std::string network_scenario(const NetworkCase& network, const fs::path& directory) {
-  const CatalogueFile catalogue = catalogue_of_18470(directory);
+  const WrittenCatalogue catalogue = catalogue_of_18470(directory);
   std::ostringstream text;
   const double duration_s = network_cadence_s * network.frames + tick_s * (shutters - 1);
   text << "simulation: {start: " << catalogue.start_utc << ", duration_s: " << duration_s

@@ -206,7 +206,7 @@ void check(const CheckOptions& options) {
   if (!options.out.empty()) check_directory(options.out);
   if (!options.keys.empty()) check_keys(scenario, options);
   const Clock clock = make_clock(scenario);
-  const Scene scene = load_scene(scenario, clock);
+  const ScenarioInputs scene = load_scene(scenario, clock);
   make_sensors(scenario, scene.stars);
   const auto outlook =
       scenario_outlook(scenario, scene, clock, {.least_limb_angle_rad = options.limb_deg * deg});

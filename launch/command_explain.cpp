@@ -59,7 +59,7 @@ void explain(const ExplainOptions& options) {
   const Scenario scenario = load_scenario(options.scenario);
   if (!options.sensor.empty()) sensor_named(scenario, options.sensor);
   const Clock clock = make_clock(scenario);
-  const Scene scene = load_scene(scenario, clock);
+  const ScenarioInputs scene = load_scene(scenario, clock);
   const CostFactors factors = load_cost_factors(cost_factors_path());
   Threads threads(1);
   JsonWriter json;

@@ -41,7 +41,7 @@ constexpr auto patience_after_stop = std::chrono::milliseconds(1500);
 /// request is handled promptly, also in the middle of a frame.
 class EmbeddedRun {
  public:
-  EmbeddedRun(const Scenario& scenario, Scene scene, const RunDirectory& directory,
+  EmbeddedRun(const Scenario& scenario, ScenarioInputs scene, const RunDirectory& directory,
               int thread_count, Tick first_tick)
       : scenario_(scenario), threads_(thread_count), first_tick_(first_tick) {
     print_outlook(scenario, scene, make_clock(scenario));
@@ -171,7 +171,7 @@ void run(const RunOptions& options) {
   if (options.seed) scenario.seed = *options.seed;
   if (!options.plan.empty()) replay_plans(options.plan, scenario);
   scenario.network.publish_states = false;  // nobody outside this process can take them
-  Scene scene = load_scene(scenario, make_clock(scenario));
+  ScenarioInputs scene = load_scene(scenario, make_clock(scenario));
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   const RunStart begin = prepare_directory(directory, scenario, options.force);
   if (!begin.needed) return;

@@ -342,7 +342,7 @@ void launch(const LaunchOptions& options) {
   if (options.seed) scenario.seed = *options.seed;
   if (!options.plan.empty()) replay_plans(options.plan, scenario);
   // Find errors here, once, before any process starts.
-  const Scene scene = load_scene(scenario, make_clock(scenario));
+  const ScenarioInputs scene = load_scene(scenario, make_clock(scenario));
   RunDirectory directory(options.out, scenario, scenario_digest(scenario));
   const RunStart begin = prepare_directory(directory, scenario, options.force);
   if (!begin.needed) return;

@@ -14,7 +14,7 @@ namespace dmise {
 /// Inputs for the participants of a run in one process.
 struct NodeParts {
   const Scenario& scenario;
-  Scene& scene;  // parts with a single user are moved out
+  ScenarioInputs& scene;  // parts with a single user are moved out
   std::string digest, directory;
   Threads& threads;
   std::function<void(const std::string&)> note;  // prints a line

@@ -17,15 +17,15 @@ void append(std::vector<std::string>& all, const std::vector<std::string>& more)
 
 }  // namespace
 
-Scene load_scene(const Scenario& scenario, const Clock& clock) {
-  Scene scene{.population = load_objects(scenario, clock), .stars = nullptr};
+ScenarioInputs load_scene(const Scenario& scenario, const Clock& clock) {
+  ScenarioInputs scene{.population = load_objects(scenario, clock), .stars = nullptr};
   check_sensors(scenario, scene.population.roster);
   scene.stars = load_stars(scenario);
   return scene;
 }
 
-ScenarioOutlook scenario_outlook(const Scenario& scenario, const Scene& scene, const Clock& clock,
-                                 const OutlookOptions& options) {
+ScenarioOutlook scenario_outlook(const Scenario& scenario, const ScenarioInputs& scene,
+                                 const Clock& clock, const OutlookOptions& options) {
   const ObjectPopulation& population = scene.population;
   ScenarioOutlook outlook{.objects = population.roster.objects.size()};
   append(outlook.notes, population.notes);
@@ -41,7 +41,7 @@ ScenarioOutlook scenario_outlook(const Scenario& scenario, const Scene& scene, c
   return outlook;
 }
 
-void print_outlook(const Scenario& scenario, const Scene& scene, const Clock& clock) {
+void print_outlook(const Scenario& scenario, const ScenarioInputs& scene, const Clock& clock) {
   constexpr std::size_t most_sensors = 16;
   Scenario first = scenario;
   first.sensors.resize(std::min(scenario.sensors.size(), most_sensors));

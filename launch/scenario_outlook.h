@@ -9,13 +9,13 @@ namespace dmise {
 
 /// Inputs that a run reads before its first frame. All errors in them are reported before the run's
 /// directory is touched.
-struct Scene {
+struct ScenarioInputs {
   ObjectPopulation population;
   std::shared_ptr<const StarMap> stars;  // null: none
 };
 
 /// Throws `ConfigError` with the position of the invalid key.
-Scene load_scene(const Scenario& scenario, const Clock& clock);
+ScenarioInputs load_scene(const Scenario& scenario, const Clock& clock);
 
 /// Notes, warnings and outlooks of a scenario before it runs.
 struct ScenarioOutlook {
@@ -24,11 +24,11 @@ struct ScenarioOutlook {
   std::vector<std::string> notes, warnings;  // one line each
 };
 
-ScenarioOutlook scenario_outlook(const Scenario& scenario, const Scene& scene, const Clock& clock,
-                                 const OutlookOptions& options);
+ScenarioOutlook scenario_outlook(const Scenario& scenario, const ScenarioInputs& scene,
+                                 const Clock& clock, const OutlookOptions& options);
 
 /// At the start of a run: prints notes and warnings, and a line for each of the first sensors, on
 /// stderr. Examines three frames of each and counts objects of small populations only.
-void print_outlook(const Scenario& scenario, const Scene& scene, const Clock& clock);
+void print_outlook(const Scenario& scenario, const ScenarioInputs& scene, const Clock& clock);
 
 }  // namespace dmise

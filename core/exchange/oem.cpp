@@ -12,7 +12,7 @@
 namespace dmise {
 namespace {
 
-void write_covariances(const RunProducts& run, const Ephemeris& object, KvnText& kvn) {
+void write_covariances(const RunProducts& run, const ObjectEphemeris& object, KvnText& kvn) {
   bool any = false;
   for (const EphemerisState& state : object.states) {
     if (!state.covariance) continue;
@@ -34,7 +34,7 @@ void write_covariances(const RunProducts& run, const Ephemeris& object, KvnText&
   if (any) kvn.line("COVARIANCE_STOP");
 }
 
-void write(const RunProducts& run, const Ephemeris& object, KvnText& kvn) {
+void write(const RunProducts& run, const ObjectEphemeris& object, KvnText& kvn) {
   kvn.line("META_START").key("OBJECT_NAME", object.name).key("OBJECT_ID", object.id);
   kvn.key("CENTER_NAME", "EARTH").key("REF_FRAME", "GCRF").key("TIME_SYSTEM", "UTC");
   kvn.key("START_TIME", run.utc(object.states.front().time));
@@ -49,13 +49,13 @@ void write(const RunProducts& run, const Ephemeris& object, KvnText& kvn) {
 
 }  // namespace
 
-std::string oem_text(const RunProducts& run, const std::vector<Ephemeris>& ephemerides) {
+std::string oem_text(const RunProducts& run, const std::vector<ObjectEphemeris>& ephemerides) {
   KvnText kvn;
   kvn.key("CCSDS_OEM_VERS", "2.0");
   kvn.comment(run.software + ", scenario " + run.digest + ", seed " + std::to_string(run.seed));
   kvn.comment("CREATION_DATE is the start of the simulation");
   kvn.key("CREATION_DATE", run.utc({0})).key("ORIGINATOR", "DMISE");
-  for (const Ephemeris& object : ephemerides)
+  for (const ObjectEphemeris& object : ephemerides)
     if (!object.states.empty()) write(run, object, kvn);
   return kvn.take();
 }
@@ -71,7 +71,7 @@ std::string truth_oem_text(const ExportRequest& request) {
     objects[{t.catalogue_number, t.name}].try_emplace(
         t.middle, EphemerisState{t.middle, t.true_position_m, t.true_velocity_m_per_s, {}});
   }
-  std::vector<Ephemeris> ephemerides;
+  std::vector<ObjectEphemeris> ephemerides;
   for (const auto& [key, states] : objects) {
     const auto& [number, name] = key;
     ephemerides.push_back({name, number > 0 ? std::to_string(number) : name, {}});
@@ -83,16 +83,16 @@ std::string truth_oem_text(const ExportRequest& request) {
 
 std::string track_oem_text(const ExportRequest& request) {
   const RunProducts& run = request.run;
-  std::map<std::uint32_t, Ephemeris> objects;
+  std::map<std::uint32_t, ObjectEphemeris> objects;
   for (const Track& t : run.tracks) {
     if (t.status != TrackStatus::confirmed) continue;
     const std::string track = track_name(t);
-    Ephemeris& object = objects[t.id];
+    ObjectEphemeris& object = objects[t.id];
     object.name = t.name.empty() ? track : t.name;
     object.id = t.catalogue_number > 0 ? std::to_string(t.catalogue_number) : track;
     object.states.push_back({t.time, t.position_m, t.velocity_m_per_s, t.covariance});
   }
-  std::vector<Ephemeris> ephemerides;
+  std::vector<ObjectEphemeris> ephemerides;
   for (auto& [id, object] : objects) ephemerides.push_back(std::move(object));
   if (ephemerides.empty()) fail_empty(run, "an OEM", ProductKind::tracks);
   return oem_text(run, ephemerides);

@@ -18,14 +18,14 @@ struct EphemerisState {
   std::optional<std::array<double, 21>> covariance;
 };
 
-struct Ephemeris {
+struct ObjectEphemeris {
   std::string name, id;
   std::vector<EphemerisState> states;  // at least one; times increase
 };
 
 /// A CCSDS Orbit Ephemeris Message (502.0-B-2) in KVN, in GCRF and UTC: a segment for each object.
 /// No interpolation is recommended, for the states may lie far apart.
-std::string oem_text(const RunProducts& run, const std::vector<Ephemeris>& ephemerides);
+std::string oem_text(const RunProducts& run, const std::vector<ObjectEphemeris>& ephemerides);
 
 /// True states of the objects in the sensors' frames at mid exposure. Throws `ConfigError` for a
 /// run of a version that did not write them.

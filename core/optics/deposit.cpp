@@ -207,7 +207,7 @@ Arc part_of(const Arc& arc, double tau_begin, double tau_end) {
           brightness > 0.0 ? std::clamp(arc.tilt * length / brightness, -1.0, 1.0) : 0.0};
 }
 
-Extent extent(const Arc& arc) {
+ArcExtent extent(const Arc& arc) {
   const Box b = bounds(Motion(arc), 0.0, 1.0);
   return {b.left, b.top, b.right, b.bottom};
 }

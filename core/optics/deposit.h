@@ -69,10 +69,10 @@ Deposited deposited_in_frame(const Arc& arc, const PsfTable& psf, const DepositV
 Arc part_of(const Arc& arc, double tau_begin, double tau_end);
 
 /// Bounding rectangle of the arc's path [px].
-struct Extent {
+struct ArcExtent {
   double left, top, right, bottom;
 };
-Extent extent(const Arc& arc);
+ArcExtent extent(const Arc& arc);
 
 /// Splits a source's arc into one per interval of `brightness`: relative values at equally spaced
 /// times from start to end (at least 2, each >= 0), linear in between. The signals sum to

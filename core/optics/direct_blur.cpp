@@ -13,11 +13,11 @@ namespace {
 constexpr int band_rows = 128;
 constexpr double piece_px = 16.0;
 
-bool meet(const Extent& a, const Extent& b) {
+bool meet(const ArcExtent& a, const ArcExtent& b) {
   return a.left <= b.right && b.left <= a.right && a.top <= b.bottom && b.top <= a.bottom;
 }
 
-double size_of(const Extent& e) { return std::max(e.right - e.left, e.bottom - e.top); }
+double size_of(const ArcExtent& e) { return std::max(e.right - e.left, e.bottom - e.top); }
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
@@ -66,10 +66,10 @@ Arc DirectBlur::on_cells(const Arc& arc) const {
 
 // Calls use(piece) for short pieces of the arc that meet `reach`, in the order of time.
 template <class Use>
-void DirectBlur::for_pieces(const Arc& arc, const Extent& reach, const Use& use) const {
+void DirectBlur::for_pieces(const Arc& arc, const ArcExtent& reach, const Use& use) const {
   const auto visit = [&](const auto& self, double begin, double end, int depth) -> void {
     const Arc piece = part_of(arc, begin, end);
-    const Extent e = extent(piece);
+    const ArcExtent e = extent(piece);
     if (!meet(e, reach)) return;
     if (size_of(e) <= piece_px || depth > 60) return use(piece);
     const double middle = 0.5 * (begin + end);
@@ -83,7 +83,7 @@ void DirectBlur::add(const Arc& piece, int row_begin, int row_end,
                      ExpectedElectronImage& light) const {
   // The piece on its own cells, starting at the first cell of a pixel.
   Arc arc = on_cells(piece);
-  const Extent e = extent(arc);
+  const ArcExtent e = extent(arc);
   const int margin = table_.size / 2 + 1;
   const int left_px = floor_div(int(std::floor(e.left)) - margin, k_),
             top_px = floor_div(int(std::floor(e.top)) - margin, k_);
@@ -138,7 +138,7 @@ std::vector<Deposited> DirectBlur::deposit(std::span<const Arc> arcs, ExpectedEl
   threads.for_ranges(bands, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       const int first = int(b) * band_rows, last = std::min(light.rows, first + band_rows);
-      const Extent near{-reach, first - reach, light.columns + reach, last + reach};
+      const ArcExtent near{-reach, first - reach, light.columns + reach, last + reach};
       for (const Arc& arc : arcs) {
         if (!meet(extent(arc), near)) continue;
         for_pieces(arc, near, [&](const Arc& piece) { add(piece, first, last, light); });

@@ -26,7 +26,7 @@ class DirectBlur {
  private:
   struct Patch;
   template <class Use>
-  void for_pieces(const Arc& arc, const Extent& reach, const Use& use) const;
+  void for_pieces(const Arc& arc, const ArcExtent& reach, const Use& use) const;
   void add(const Arc& piece, int row_begin, int row_end, ExpectedElectronImage& light) const;
   Arc on_cells(const Arc& arc) const;
 

@@ -15,7 +15,7 @@ struct ReportSettings {
 };
 
 /// Which frames the page draws, and which of them can be opened with their pixels.
-struct FrameChoice {
+struct DrawnFrames {
   std::size_t every = 1;            // of a sensor's frames
   std::vector<std::size_t> row_of;  // of each frame of the run; npos: not in the page
   std::vector<std::size_t> frames;  // of each row
@@ -25,6 +25,6 @@ struct FrameChoice {
   static constexpr std::size_t none = std::size_t(-1);
 };
 
-FrameChoice choose_frames(const RunContents& run, const ReportSettings& settings);
+DrawnFrames choose_frames(const RunContents& run, const ReportSettings& settings);
 
 }  // namespace dmise

@@ -179,7 +179,7 @@ void write_sensors(const RunContents& run, JsonWriter& json) {
   json.end_array();
 }
 
-void write_frames(const RunContents& run, const FrameChoice& choice, JsonWriter& json) {
+void write_frames(const RunContents& run, const DrawnFrames& choice, JsonWriter& json) {
   std::vector<std::int64_t> view(choice.frames.size(), -1);
   for (std::size_t k = 0; k < choice.viewed.size(); ++k) view[choice.viewed[k]] = std::int64_t(k);
   json.key("frames").begin_array();
@@ -215,7 +215,7 @@ void write_frames(const RunContents& run, const FrameChoice& choice, JsonWriter&
 
 /// Rows: frame, object, fate, start, middle and end [px], light [px] or null, RA and Dec [deg], V,
 /// expected SNR, range [km], and the place in the plot of the sky.
-void write_truths(const RunContents& run, const FrameChoice& choice, JsonWriter& json) {
+void write_truths(const RunContents& run, const DrawnFrames& choice, JsonWriter& json) {
   std::vector<std::string> objects;
   std::map<std::string, std::size_t> place_of;
   json.key("truths").begin_array();
@@ -248,7 +248,7 @@ void write_truths(const RunContents& run, const FrameChoice& choice, JsonWriter&
 
 /// Rows: frame, 1 if it is a streak, 1 if it is of a truth, centroid and both ends [px], RA and Dec
 /// [deg], magnitude, SNR.
-void write_detections(const RunContents& run, const FrameChoice& choice, JsonWriter& json) {
+void write_detections(const RunContents& run, const DrawnFrames& choice, JsonWriter& json) {
   json.key("detections").begin_array();
   for (const ReportDetection& found : run.detections) {
     if (!choice.with_sources[found.frame]) continue;
@@ -380,7 +380,7 @@ void write_clock(const RunContents& run, JsonWriter& json) {
 
 std::string report_json(const RunContents& run, const StarMap* stars, Threads& threads,
                         const ReportSettings& settings) {
-  const FrameChoice choice = choose_frames(run, settings);
+  const DrawnFrames choice = choose_frames(run, settings);
   JsonWriter json;
   json.begin_object().field("status", run.status.empty() ? "unknown" : run.status);
   json.field("how", run.how).field("reason", run.reason).field("software", run.software);

@@ -15,12 +15,12 @@ struct Pair {
 };
 
 /// Whether at least half of a detection's line is near the trail.
-bool lies_on(const Detection& d, const Trail& trail, double gate_px) {
+bool lies_on(const Detection& d, const TrueTrail& trail, double gate_px) {
   const PixelPosition centroid{d.x_px, d.y_px};
   if (!trail.may_be_near(centroid, gate_px) || trail.nearest(centroid).distance_px > gate_px)
     return false;
   if (d.length_px <= 0.0) return true;
-  const Trail line({d.end1_x_px, d.end1_y_px}, centroid, {d.end2_x_px, d.end2_y_px});
+  const TrueTrail line({d.end1_x_px, d.end1_y_px}, centroid, {d.end2_x_px, d.end2_y_px});
   constexpr int samples = 33;
   int near = 0;
   for (int k = 0; k < samples; ++k)
@@ -34,7 +34,7 @@ std::vector<std::vector<Pair>> possible_pairs(std::span<const TrueSource> truths
   std::vector<std::vector<Pair>> pairs(truths.size());
   for (std::size_t t = 0; t < truths.size(); ++t) {
     if (!truths[t].light) continue;
-    const Trail trail(truths[t].start, truths[t].middle, truths[t].end);
+    const TrueTrail trail(truths[t].start, truths[t].middle, truths[t].end);
     const double light_px = trail.nearest(*truths[t].light).along_px;
     for (std::size_t k = 0; k < detections.size(); ++k) {
       const Detection& d = detections[k].detection;

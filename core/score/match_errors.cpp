@@ -39,7 +39,7 @@ void add_direction(MatchErrors& e, const ScoredTruth& t, const Detection& d) {
   }
 }
 
-void add_ends(MatchErrors& e, const ScoredTruth& t, const Detection& d, const Trail& trail) {
+void add_ends(MatchErrors& e, const ScoredTruth& t, const Detection& d, const TrueTrail& trail) {
   if (t.is_point() || !t.truth.whole || d.kind != DetectionKind::streak) return;
   auto first = trail.nearest({d.end1_x_px, d.end1_y_px});
   auto second = trail.nearest({d.end2_x_px, d.end2_y_px});
@@ -63,7 +63,7 @@ void add_ends(MatchErrors& e, const ScoredTruth& t, const Detection& d, const Tr
 
 MatchErrors errors_of(const ScoredTruth& t, const Detection& d, const ScoredFrame& frame) {
   MatchErrors e;
-  const Trail trail(t.truth.start, t.truth.middle, t.truth.end);
+  const TrueTrail trail(t.truth.start, t.truth.middle, t.truth.end);
   const PixelPosition off = PixelPosition{d.x_px, d.y_px} - *t.truth.light;
   const PixelPosition along =
       t.is_point() ? PixelPosition{1.0, 0.0} : trail.direction(trail.nearest(*t.truth.light).u);

@@ -42,7 +42,7 @@ std::optional<double> if_finite(const std::optional<double>& value) {
 ScoredTruth known(const TrueSource& truth, const ScoredFrame* frame) {
   ScoredTruth t{.truth = truth};
   if (!frame || !frame->searched) return t;
-  const Trail trail(truth.start, truth.middle, truth.end);
+  const TrueTrail trail(truth.start, truth.middle, truth.end);
   t.length_px = trail.length_inside_px(frame->columns, frame->rows);
   const bool enters = t.length_px > 0.0 || is_inside(truth.middle, frame->columns, frame->rows);
   t.fate = truth.light ? Fate::missed : enters ? Fate::dark : Fate::outside;

@@ -18,7 +18,7 @@ bool is_inside(PixelPosition place, int columns, int rows) {
          place.y_px <= rows - 0.5;
 }
 
-Trail::Trail(PixelPosition start, PixelPosition middle, PixelPosition end)
+TrueTrail::TrueTrail(PixelPosition start, PixelPosition middle, PixelPosition end)
     : start_(start),
       slope_(middle * 4.0 - start * 3.0 - end),
       bend_(start * 2.0 + end * 2.0 - middle * 4.0) {
@@ -30,27 +30,27 @@ Trail::Trail(PixelPosition start, PixelPosition middle, PixelPosition end)
   std::tie(least_.y_px, most_.y_px) = std::minmax({start.y_px, corner.y_px, end.y_px});
 }
 
-bool Trail::may_be_near(PixelPosition place, double distance_px) const {
+bool TrueTrail::may_be_near(PixelPosition place, double distance_px) const {
   return place.x_px >= least_.x_px - distance_px && place.x_px <= most_.x_px + distance_px &&
          place.y_px >= least_.y_px - distance_px && place.y_px <= most_.y_px + distance_px;
 }
 
-PixelPosition Trail::velocity(double u) const {
+PixelPosition TrueTrail::velocity(double u) const {
   return slope_ + bend_ * (2.0 * std::clamp(u, 0.0, 1.0));
 }
 
-PixelPosition Trail::at(double u) const {
+PixelPosition TrueTrail::at(double u) const {
   const double v = std::clamp(u, 0.0, 1.0);
   return start_ + slope_ * v + bend_ * (v * v) + velocity(v) * (u - v);
 }
 
-PixelPosition Trail::direction(double u) const {
+PixelPosition TrueTrail::direction(double u) const {
   const PixelPosition v = velocity(u);
   const double speed = norm(v);
   return speed > 0.0 ? v * (1.0 / speed) : PixelPosition{1.0, 0.0};
 }
 
-double Trail::arc_px(double u) const {
+double TrueTrail::arc_px(double u) const {
   if (u <= 0.0) return u * norm(velocity(0.0));
   if (u >= 1.0) return length_px() + (u - 1.0) * norm(velocity(1.0));
   const double k = std::floor(u * pieces);
@@ -58,7 +58,7 @@ double Trail::arc_px(double u) const {
   return arc_px_[i] + (u * pieces - double(i)) * (arc_px_[i + 1] - arc_px_[i]);
 }
 
-Trail::Nearest Trail::nearest(PixelPosition place) const {
+TrueTrail::Nearest TrueTrail::nearest(PixelPosition place) const {
   double best_u = 0.5, best_square = dot(place - places_[pieces / 2], place - places_[pieces / 2]);
   for (std::size_t k = 0; k < pieces; ++k) {
     const PixelPosition piece = places_[k + 1] - places_[k], off = place - places_[k];
@@ -85,7 +85,7 @@ Trail::Nearest Trail::nearest(PixelPosition place) const {
   return found;
 }
 
-double Trail::length_inside_px(int columns, int rows) const {
+double TrueTrail::length_inside_px(int columns, int rows) const {
   if (is_inside(least_, columns, rows) && is_inside(most_, columns, rows)) return length_px();
   constexpr int steps = 1024;
   double sum = 0.0;

@@ -8,9 +8,9 @@ namespace dmise {
 
 /// The path of a source over the detector: the parabola in time through its places at the start,
 /// the middle and the end of the exposure, and its tangents beyond. A point if all are equal.
-class Trail {
+class TrueTrail {
  public:
-  Trail(PixelPosition start, PixelPosition middle, PixelPosition end);
+  TrueTrail(PixelPosition start, PixelPosition middle, PixelPosition end);
 
   /// Place on the trail; `u`: fraction of the exposure, outside 0..1 on the tangents.
   PixelPosition at(double u) const;

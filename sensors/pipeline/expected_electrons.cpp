@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/stopwatch.h"
 #include "core/effects/frame_effects.h"
 #include "sensors/pipeline/object_layer.h"
 #include "sensors/pipeline/objects_in_field.h"
 #include "sensors/pipeline/occlusion_mask.h"
 #include "sensors/pipeline/sky_layer.h"
-#include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
 namespace {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/memory.h"
+#include "core/base/stopwatch.h"
 #include "core/calibration/calibrated_detection.h"
 #include "core/config/effect_list.h"
 #include "core/detection/detect.h"
@@ -16,7 +17,6 @@
 #include "sensors/pipeline/exposure_planner.h"
 #include "sensors/pipeline/header_of.h"
 #include "sensors/pipeline/objects_in_field.h"
-#include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
 namespace {

@@ -27,7 +27,7 @@ std::vector<Arc> OcclusionMask::past(std::span<const Arc> path) const {
   if (empty()) return {path.begin(), path.end()};
   std::vector<Arc> free;
   for (const Arc& arc : path) {
-    const Extent e = extent(arc);
+    const ArcExtent e = extent(arc);
     if (e.right < covered_.left - margin_px - 1 || e.left > covered_.right - margin_px ||
         e.bottom < covered_.top - margin_px - 1 || e.top > covered_.bottom - margin_px) {
       free.push_back(arc);

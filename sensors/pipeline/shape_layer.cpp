@@ -23,7 +23,7 @@ double length_px(const Arc& arc) {
 double reach_px(const std::vector<Arc>& sweep) {
   double reach = 0.0;
   for (const Arc& arc : sweep) {
-    const Extent e = extent(arc);
+    const ArcExtent e = extent(arc);
     reach = std::max({reach, -e.left, -e.top, e.right, e.bottom});
   }
   return reach;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/stopwatch.h"
 #include "core/config/effect_list.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/deposit.h"
@@ -15,7 +16,6 @@
 #include "sensors/pipeline/row_window.h"
 #include "sensors/pipeline/star_exposure.h"
 #include "sensors/pipeline/star_snapshots.h"
-#include "sensors/pipeline/stopwatch.h"
 #include "sensors/pipeline/throughput.h"
 
 namespace dmise {

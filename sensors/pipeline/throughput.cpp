@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "core/base/stopwatch.h"
 #include "core/photometry/diffuse_sphere.h"
 #include "core/photometry/magnitude.h"
-#include "sensors/pipeline/stopwatch.h"
 
 namespace dmise {
 

@@ -4,7 +4,7 @@
 
 namespace dmise {
 
-void add_box_means(const float* samples, const PixelBox& box, int oversampling,
+void add_box_means(const float* samples, const TileBox& box, int oversampling,
                    std::size_t first_band, bool with_coverage, Tile& tile) {
   using Four = float __attribute__((vector_size(16)));
   const std::size_t n = std::size_t(oversampling);

@@ -160,8 +160,8 @@ class GlRenderer final : public Renderer {
     const int step = std::max(1, piece_samples / scene.oversampling);
     for (int top = 0; top < tile.rows; top += step)
       for (int left = 0; left < tile.columns; left += step) {
-        const PixelBox box{left, top, std::min(step, tile.columns - left),
-                           std::min(step, tile.rows - top)};
+        const TileBox box{left, top, std::min(step, tile.columns - left),
+                          std::min(step, tile.rows - top)};
         if (!draw_piece(scene, stage, mesh, box, first_band)) continue;
         add_box_means(samples_.data(), box, scene.oversampling, first_band, with_coverage, tile);
       }
@@ -184,7 +184,7 @@ class GlRenderer final : public Renderer {
 
   /// Indices of the triangles in the box, sorted by material if they have pictures; underlays
   /// first.
-  void choose(const TileMesh& mesh, const PixelBox& box, std::size_t materials) {
+  void choose(const TileMesh& mesh, const TileBox& box, std::size_t materials) {
     indices_.clear();
     ranges_.clear();
     const float x0 = float(box.left) - 0.5f, x1 = x0 + float(box.columns);
@@ -223,7 +223,7 @@ class GlRenderer final : public Renderer {
 
   /// Draws into `samples_`; false if the box is empty.
   bool draw_piece(const TileScene& scene, const Stage& stage, const TileMesh& mesh,
-                  const PixelBox& box, std::size_t first_band) {
+                  const TileBox& box, std::size_t first_band) {
     choose(mesh, box, scene.mesh->materials.size());
     if (indices_.empty()) return false;
     gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, std::ptrdiff_t(indices_.size() * 4), indices_.data(),

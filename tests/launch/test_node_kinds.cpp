@@ -50,7 +50,7 @@ struct SmallRun {
 
 TEST(NodeKinds, EveryKindIsMadeUnderItsNameAndPublishesItsTopics) {
   SmallRun run;
-  Scene scene = load_scene(run.scenario, make_clock(run.scenario));
+  ScenarioInputs scene = load_scene(run.scenario, make_clock(run.scenario));
   Threads threads(1);
   NodeParts parts{run.scenario, scene, "digest", run.directory, threads, [](const auto&) {}};
   for (const NodeKind& kind : node_kinds()) {

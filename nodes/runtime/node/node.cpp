@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 #include "nodes/runtime/master_link/master_link.h"
 #include "nodes/runtime/master_link/run_result.h"
 #include "nodes/runtime/node/frame_server.h"
@@ -208,7 +209,7 @@ class Node {
       carried.clear();
       for (Message& message : outputs) message.tick = tick;
       {
-        const Stopwatch watch(&result_->times.compute_s);
+        const Stopwatch watch(result_->times.compute_s);
         link_.set_computing(true);
         update_metrics(true);
         for (Message& message : participant_.step(tick, inputs))
@@ -216,7 +217,7 @@ class Node {
         link_.set_computing(false);
       }
       if (link_.stopped()) return;  // an interrupted step may be incomplete
-      const Stopwatch watch(&result_->times.messaging_s);
+      const Stopwatch watch(result_->times.messaging_s);
       for (const SharedFrames& frames : outbox_->pack(tick, outputs)) publish(frames);
       count(outputs, &result_->times);
       if (tick >= resume_tick_) link_.done(outbox_->tally());
@@ -267,7 +268,7 @@ class Node {
       if (granted && inputs_.complete(tick)) return true;
       const nanoseconds patience = granted ? inputs_.ask_for(tick) : nanoseconds(idle);
       {
-        const Stopwatch watch(&result_->times.waiting_s);
+        const Stopwatch watch(result_->times.waiting_s);
         link_.wait(inputs_.sockets(), patience);
       }
       receive_data();
@@ -277,7 +278,7 @@ class Node {
   }
 
   void receive_data() {
-    const Stopwatch watch(&result_->times.messaging_s);
+    const Stopwatch watch(result_->times.messaging_s);
     inputs_.receive();
     if (listeners_ && now() >= next_look_) {
       for (const std::string& closed : listeners_->enforce(now())) spdlog::warn("{}", closed);

@@ -1,5 +1,4 @@
 #pragma once
-#include <chrono>
 #include <cstdint>
 
 namespace dmise {
@@ -15,19 +14,6 @@ struct TimeSplit {
   std::uint64_t peak_resident_bytes = 0, private_bytes = 0;
 
   bool operator==(const TimeSplit&) const = default;
-};
-
-/// Adds the time of its life to one part of the split.
-class Stopwatch {
- public:
-  explicit Stopwatch(double* total_s) : total_s_(total_s) {}
-  ~Stopwatch() {
-    *total_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  double* total_s_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace dmise
