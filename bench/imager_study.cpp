@@ -197,8 +197,9 @@ std::vector<SeedStudy> study_seeds(std::size_t seeds, const Aperture& aperture, 
         const auto flux =
             aperture_flux(counts[b], {h.gain_e_per_dn, h.bias_dn, h.saturation_dn}, at, aperture);
         if (b == 0) fluxes[o].add(flux.flux_e);
-        light[b] = reflected({flux.flux_e, flux.sigma_e},
-                             full_sunlight_e(h.zero_point_mag, h.exposure_s), bands[b].fraction);
+        light[b] =
+            reflected({flux.flux_e, flux.sigma_e},
+                      full_sunlight_e(h.v_solar_zero_point_mag(), h.exposure_s), bands[b].fraction);
       }
       const Measured ratio = flux_ratio(light[1], light[0]);
       ratios[o].add(ratio.value);
@@ -211,9 +212,10 @@ std::vector<SeedStudy> study_seeds(std::size_t seeds, const Aperture& aperture, 
     SeedStudy& s = studies[o];
     double share[2];  // of the sunlight
     for (std::size_t b = 0; b < 2; ++b)
-      share[b] = light_of(quiet[b], bands[b].places.at(s.object), aperture) /
-                 full_sunlight_e(bands[b].header.zero_point_mag, bands[b].header.exposure_s) /
-                 bands[b].fraction;
+      share[b] =
+          light_of(quiet[b], bands[b].places.at(s.object), aperture) /
+          full_sunlight_e(bands[b].header.v_solar_zero_point_mag(), bands[b].header.exposure_s) /
+          bands[b].fraction;
     s.without_noise = share[1] / share[0];
     s.mean = ratios[o].mean();
     s.scatter = ratios[o].scatter();
@@ -226,8 +228,8 @@ std::vector<SeedStudy> study_seeds(std::size_t seeds, const Aperture& aperture, 
       double flux_e = fluxes[o].mean();
       if (b == 1)
         flux_e *= s.truth * bands[1].fraction / bands[0].fraction *
-                  full_sunlight_e(bands[1].header.zero_point_mag, 1.0) /
-                  full_sunlight_e(bands[0].header.zero_point_mag, 1.0);
+                  full_sunlight_e(bands[1].header.v_solar_zero_point_mag(), 1.0) /
+                  full_sunlight_e(bands[0].header.v_solar_zero_point_mag(), 1.0);
       square += std::pow(noise_of(bands[b], at, aperture) / flux_e, 2);
     }
     s.theory = s.truth * std::sqrt(square);

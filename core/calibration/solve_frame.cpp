@@ -154,7 +154,7 @@ FrameHeader solved_header(const FrameHeader& header, const FrameSolution& soluti
   h.unknown.remove(FrameFact::pointing);
   h.unknown.remove(FrameFact::focal_length);
   if (const auto& z = solution.zero_point) {
-    h.zero_point_mag = z->zero_point_mag;
+    h.zero_point_mag = z->zero_point_mag + h.magnitudes.solar_colour_mag;
     h.extinction_mag_per_airmass = z->extinction_mag_per_airmass;
     h.unknown.remove(FrameFact::zero_point);
     h.unknown.remove(FrameFact::extinction);

@@ -1,11 +1,14 @@
 #include "core/config/camera_config.h"
 
+#include <span>
+
 #include "core/base/error.h"
 #include "core/config/band_config.h"
 #include "core/config/detector_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/proportion.h"
 #include "core/config/search_path.h"
+#include "core/photometry/magnitude.h"
 
 namespace dmise {
 namespace {
@@ -17,6 +20,23 @@ void apply_quantum_efficiency(const YamlValue& value, Camera& camera) {
   if (efficiency.relative.empty()) return;
   try {
     camera.band = through(camera.band, efficiency.relative);
+  } catch (const Error& e) {
+    value.fail(e.what());
+  }
+}
+
+std::vector<std::string> words(std::span<const char* const> names) {
+  return {names.begin(), names.end()};
+}
+
+/// Of the band as the detector sees it.
+void read_magnitude_system(const YamlValue& value, Camera& camera) {
+  const auto system = magnitude_system_of(value.text());
+  if (!system)
+    value.fail(std::string("must be one of ") + magnitude_system_names[0] + ", " +
+               magnitude_system_names[1] + ", " + magnitude_system_names[2]);
+  try {
+    camera.magnitudes = magnitude_scale(*system, camera.band);
   } catch (const Error& e) {
     value.fail(e.what());
   }
@@ -34,7 +54,11 @@ const Section& camera_section() {
        required("detector", form::map(detector_section), "The detector."),
        required("band", band_forms(),
                 "The band: the name of a filter (`dmise list filters`), a CSV file of its "
-                "transmission, or a box.")}};
+                "transmission, or a box."),
+       optional("magnitude_system", form::choice(words(magnitude_system_names)),
+                "Of the magnitudes of detections and of the header's zero point: the V of a source "
+                "of the Sun's colour that is as bright in the band, or the band's own.",
+                magnitude_system_names[0])}};
   return section;
 }
 
@@ -60,6 +84,7 @@ Camera read_camera(const YamlValue& value) {
   camera.band = read_band(map.require("band"));
   if (const auto efficiency = YamlMap(map.require("detector")).find("quantum_efficiency"))
     apply_quantum_efficiency(*efficiency, camera);
+  if (const auto system = map.find("magnitude_system")) read_magnitude_system(*system, camera);
   camera.warnings = disproportions_of_camera(value, camera);
   map.done();
   return camera;

@@ -40,6 +40,9 @@ void write_camera(JsonWriter& json, const Camera& camera) {
   json.field("adc_bits", d.adc_bits).field("band", camera.band.name);
   json.field("band_centre_m", camera.band.centre_m).field("band_width_m", camera.band.width_m);
   write_curve(json, "band_response", camera.band.response);
+  if (camera.magnitudes.system != MagnitudeSystem::v_solar)
+    json.field("magnitude_system", magnitude_system_name(camera.magnitudes.system))
+        .field("solar_colour_mag", camera.magnitudes.solar_colour_mag);
   json.end_object();
 }
 

@@ -21,6 +21,7 @@
 #include "core/optics/seeing.h"
 #include "core/orbit/interpolation.h"
 #include "core/photometry/band.h"
+#include "core/photometry/magnitude_system.h"
 
 namespace dmise {
 
@@ -30,6 +31,7 @@ struct Camera {
   Optics optics;
   Detector detector;
   Band band;
+  MagnitudeScale magnitudes;               // of detections and of PHOTZP
   std::vector<std::string> warnings = {};  // see `disproportions_of_camera`
 };
 

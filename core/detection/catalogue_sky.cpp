@@ -64,7 +64,7 @@ std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int 
                                             light.photons_per_s_m2(0.0, greatest_bv), sunlike}) /
                                   sunlike;
   const double faintest_v_mag =
-      header.zero_point_mag -
+      header.v_solar_zero_point_mag() -
       2.5 * std::log10(least_signal_e / (header.exposure_s * brightest_colour));
   const Vec<Gcrs> axis = wcs_direction(header.wcs, {(columns - 1) / 2.0, (rows - 1) / 2.0});
   const Tt tt = Clock(parse_utc(header.middle_utc)).tt({});
@@ -89,7 +89,7 @@ std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int 
     const double colour = light.photons_per_s_m2(0.0, stars.bv[i]) / sunlike;
     const double signal_e =
         header.exposure_s * colour *
-        std::pow(10.0, 0.4 * (header.zero_point_mag - extinction_mag - stars.v_mag[i]));
+        std::pow(10.0, 0.4 * (header.v_solar_zero_point_mag() - extinction_mag - stars.v_mag[i]));
     if (!(signal_e >= least_signal_e)) continue;
     const auto place = wcs_pixel(header.wcs, direction);
     if (!place || !(place->x_px > -beyond_px && place->y_px > -beyond_px &&
@@ -102,7 +102,7 @@ std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int 
 
 double complete_to_e(const CatalogueSky& sky, const FrameHeader& header, PixelPosition pixel) {
   return header.exposure_s *
-         std::pow(10.0, 0.4 * (header.zero_point_mag - extinction_mag(header, pixel) -
+         std::pow(10.0, 0.4 * (header.v_solar_zero_point_mag() - extinction_mag(header, pixel) -
                                sky.complete_to_v_mag()));
 }
 

@@ -251,6 +251,7 @@ Detection describe(const Source& source, const FrameHeader& header) {
   d.snr = source.snr();
   d.magnitude = header.zero_point_mag - 2.5 * std::log10(d.signal_e / header.exposure_s) -
                 extinction_mag(header, {source.trail().x_px, source.trail().y_px});
+  d.magnitude_system = header.magnitudes.system;
   d.magnitude_sigma = 2.5 / std::log(10.0) / d.snr;
   d.saturated = source.saturated;
   d.at_edge = source.at_edge;

@@ -125,6 +125,7 @@ FrameReport unmeasured_report(const CountImage& counts, const FrameHeader& heade
   r.wcs = header.wcs;
   r.sensor_position_m = header.sensor_position_m;
   r.sensor_velocity_m_per_s = header.sensor_velocity_m_per_s;
+  r.magnitudes = header.magnitudes;
   r.zero_point_mag = header.zero_point_mag;
   return r;
 }
@@ -136,7 +137,7 @@ FrameReport make_report(const CountImage& counts, const FrameHeader& header,
   r.background_e = (background.median_level_dn() - header.bias_dn) * header.gain_e_per_dn;
   r.noise_e = background.median_sigma_dn() * header.gain_e_per_dn;
   const double least_e = threshold_snr * r.noise_e / std::sqrt(kernel_square_sum(sigma_px));
-  r.limiting_magnitude = header.zero_point_mag - 2.5 * std::log10(least_e / header.exposure_s) -
+  r.limiting_magnitude = r.zero_point_mag - 2.5 * std::log10(least_e / header.exposure_s) -
                          extinction_mag(header, centre_of(counts));
   r.psf_fwhm_px = fwhm_before_pixel(sigma_px);
   r.psf_stars = std::uint32_t(psf.stars);

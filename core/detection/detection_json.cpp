@@ -5,8 +5,8 @@
 #include "core/base/json.h"
 #include "core/base/units.h"
 #include "core/detection/unknown_fields.h"
+#include "core/photometry/magnitude_system.h"
 #include "core/products/detection_fields.h"
-#include "core/products/magnitude_system.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -20,6 +20,7 @@ const T& in_unit(const T& value, int) {
 
 const char* name_of(DetectionKind kind) { return detection_kind_name(kind); }
 const char* name_of(ExposureEpoch epoch) { return exposure_epoch_name(epoch); }
+const char* name_of(MagnitudeSystem system) { return magnitude_system_name(system); }
 
 /// Writes keys of common forms.
 class Line {
@@ -175,7 +176,9 @@ std::string to_json(const FrameReport& r, const UtcText& utc, const UnknownFacts
   line.measured("limiting_magnitude", r.limiting_magnitude, measured);
   line.measured("background_e", r.background_e, measured);
   line.measured("noise_e", r.noise_e, measured).field("zero_point_mag", r.zero_point_mag);
-  line.field("magnitude_system", magnitude_system);
+  line.field("magnitude_system", name_of(r.magnitudes.system));
+  if (r.magnitudes.system != MagnitudeSystem::v_solar)
+    line.field("solar_colour_mag", r.magnitudes.solar_colour_mag);
   line.measured("psf_fwhm_px", r.psf_fwhm_px, measured);
   line.measured("psf_stars", r.psf_stars, measured);
   line.measured("stars_expected", r.stars_expected, measured);
@@ -200,7 +203,7 @@ std::string to_json(const Truth& t, const UtcText& utc) {
   line.angle("true_elevation_deg", t.true_elevation_rad)
       .angle("phase_angle_deg", t.phase_angle_rad);
   line.field("sunlit", t.sunlit).field("true_magnitude", t.true_magnitude);
-  line.field("magnitude_system", magnitude_system);
+  line.field("magnitude_system", name_of(MagnitudeSystem::v_solar));
   line.field("rendered_signal_e", t.rendered_signal_e);
   const std::array<double, 2> rendered_px{t.rendered_x_px, t.rendered_y_px};
   t.rendered_signal_e > 0.0 ? line.array("rendered_px", rendered_px)

@@ -159,7 +159,7 @@ void RunReader::measure_frame(std::size_t sensor, std::uint32_t number, std::siz
   const Frame frame = read_frame(file(s.name + "/" + frame_file_name(number)));
   const FrameHeader& h = frame.header;
   const CountScale scale{h.gain_e_per_dn, h.bias_dn, h.saturation_dn};
-  const double sunlight_e = full_sunlight_e(h.zero_point_mag, h.exposure_s);
+  const double sunlight_e = full_sunlight_e(h.v_solar_zero_point_mag(), h.exposure_s);
   for (const auto& place : places_[sensor].of_frame[number]) {
     const auto& object = place.first;  // clang 14 captures no structured binding
     const auto& at = place.second;

@@ -49,21 +49,23 @@ double SensorFrame::solid_angle_sr() const { return 2 * pi * (1 - std::cos(half_
 
 SensorFrame sensor_frame(const FrameReport& report, const std::vector<Detection>& detections,
                          int columns, int rows, double half_angle_rad) {
-  SensorFrame out{.sensor = report.sensor,
-                  .frame = report.frame,
-                  .time = report.middle,
-                  .sensor_m = report.sensor_position_m,
-                  .axis = from_spherical<Gcrs>(report.boresight_ra_rad, report.boresight_dec_rad),
-                  .half_angle_rad = half_angle_rad,
-                  .wcs = report.wcs,
-                  .columns = columns,
-                  .rows = rows,
-                  .limiting_magnitude = report.limiting_magnitude,
-                  .searched = !report.detection_off};
+  SensorFrame out{
+      .sensor = report.sensor,
+      .frame = report.frame,
+      .time = report.middle,
+      .sensor_m = report.sensor_position_m,
+      .axis = from_spherical<Gcrs>(report.boresight_ra_rad, report.boresight_dec_rad),
+      .half_angle_rad = half_angle_rad,
+      .wcs = report.wcs,
+      .columns = columns,
+      .rows = rows,
+      .limiting_magnitude = report.limiting_magnitude - report.magnitudes.solar_colour_mag,
+      .searched = !report.detection_off};
   for (const Detection& d : detections)
     if (auto observation = angle_observation(d)) {
       widen(observation->covariance_rad2);
-      out.sources.push_back({std::move(*observation), d.magnitude, d.star_like});
+      out.sources.push_back(
+          {std::move(*observation), d.magnitude - report.magnitudes.solar_colour_mag, d.star_like});
     }
   return out;
 }

@@ -22,12 +22,12 @@ struct SensorFrame {
   std::uint32_t frame = 0;
   SimTime time;  // mid exposure
   Vec<Gcrs> sensor_m;
-  Vec<Gcrs> axis;               // unit: the middle of the cone that contains the field
-  double half_angle_rad = 0.0;  // of the cone, (0, pi]
-  std::optional<Wcs> wcs;       // with columns and rows tells what is in the frame
-  int columns = 0, rows = 0;    // without a wcs the cone is the field
-  double limiting_magnitude = 0.0;
-  bool searched = true;  // false: nothing can be concluded from what it does not show
+  Vec<Gcrs> axis;                   // unit: the middle of the cone that contains the field
+  double half_angle_rad = 0.0;      // of the cone, (0, pi]
+  std::optional<Wcs> wcs;           // with columns and rows tells what is in the frame
+  int columns = 0, rows = 0;        // without a wcs the cone is the field
+  double limiting_magnitude = 0.0;  // V-solar, as those of `sources`
+  bool searched = true;             // false: nothing can be concluded from what it does not show
   std::vector<SeenSource> sources;
 
   /// Whether a direction is in the frame, at least `margin_px` from its edge.

@@ -10,6 +10,7 @@
 #include "core/base/units.h"
 #include "core/image/card_text.h"
 #include "core/image/fits_cards.h"
+#include "core/photometry/magnitude_system.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -57,6 +58,16 @@ class CardReader {
     double found = 0.0;
     number(key, found, "");
     if (found != value) fail(key, "must be " + number_text(value) + ", got " + find(key));
+  }
+  /// Without MAGSYS it is V-solar.
+  void zero_point(double& zero_point_mag, MagnitudeScale& scale) {
+    number("PHOTZP", zero_point_mag, "");
+    scale = {};
+    if (!values_.contains("MAGSYS")) return;
+    const auto system = magnitude_system_of(find("MAGSYS"));
+    if (!system) fail("MAGSYS", "must be V-solar, Vega or AB, got " + find("MAGSYS"));
+    scale.system = *system;
+    if (*system != MagnitudeSystem::v_solar) number("SUNCOL", scale.solar_colour_mag, "");
   }
   void projection(const char* key, Projection& value, const char*) {
     const auto named = Projection::index_of_name(find(key));

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/image/card_text.h"
+#include "core/photometry/magnitude_system.h"
 #include "core/products/unknown_facts.h"
 #include "core/wcs/wcs.h"
 
@@ -61,6 +62,17 @@ class CardWriter {
   void constant(const char* key, int value, const char* comment) { integer(key, value, comment); }
   void number_constant(const char* key, double value, const char* comment) {
     number(key, value, comment);
+  }
+  /// PHOTZP in the system that MAGSYS names.
+  void zero_point(double& zero_point_mag, MagnitudeScale& scale) {
+    number("PHOTZP", zero_point_mag, "[mag] of 1 e-/s, without atmosphere");
+    constexpr std::array<const char*, 3> meanings{"V of a source of the Sun's colour",
+                                                  "Vega has 0.03 in every band",
+                                                  "3631 Jy at every wavelength"};
+    const auto system = std::size_t(scale.system);
+    constant("MAGSYS", magnitude_system_names[system], meanings[system]);
+    if (scale.system != MagnitudeSystem::v_solar)
+      number("SUNCOL", scale.solar_colour_mag, "[mag] the Sun's in it, less its V");
   }
   void projection(const char* key, Projection& value, const char* comment) {
     constant(key, value.name(), comment);

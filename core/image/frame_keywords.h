@@ -3,8 +3,8 @@
 
 #include "core/detector/detector.h"
 #include "core/image/observation_cards.h"
+#include "core/photometry/magnitude_system.h"
 #include "core/products/frame_header.h"
-#include "core/products/magnitude_system.h"
 
 // The keywords of a frame, listed once for writing (CardWriter) and reading (CardReader).
 namespace dmise {
@@ -129,9 +129,7 @@ void visit(Visitor& v, FrameHeader& h) {
       v.number(std::string(p.keyword), number, std::string(p.meaning).c_str());
   }
   v.number("PSFFWHM", h.psf_fwhm_px, "[px] Gaussian, before pixel integration");
-  v.number("PHOTZP", h.zero_point_mag, "[mag] of 1 e-/s, without atmosphere");
-  if (v.present("MAGSYS", true))
-    v.constant("MAGSYS", magnitude_system, "V of a source of the Sun's colour");
+  v.zero_point(h.zero_point_mag, h.magnitudes);
   v.number("EXTINCT", h.extinction_mag_per_airmass, "[mag/airmass]");
   if (v.present("R0", h.r0_m > 0)) {
     v.number("R0", h.r0_m, "[m] Fried parameter, zenith, 500 nm");

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/photometry/spectrum.h"
 
@@ -41,6 +42,17 @@ double ab_zero_point_photons_per_s_m2(const Band& band) {
 double sun_magnitude(const Band& band) {
   return magnitude_of_light(photon_rate_per_m2(solar_spectrum(), band) /
                             zero_point_photons_per_s_m2(band));
+}
+
+MagnitudeScale magnitude_scale(MagnitudeSystem system, const Band& band) {
+  if (system == MagnitudeSystem::v_solar) return {};
+  if (system == MagnitudeSystem::vega &&
+      band.high_m() > vega_spectrum().irradiance.wavelength_m.back())
+    throw Error("Vega: its spectrum ends at 2.195 um, before the band " + band.name +
+                " does: take AB or V-solar");
+  const double zero = system == MagnitudeSystem::vega ? zero_point_photons_per_s_m2(band)
+                                                      : ab_zero_point_photons_per_s_m2(band);
+  return {system, magnitude_of_light(sunlight_photons_per_s_m2(0.0, band) / zero)};
 }
 
 double sunlight_photons_per_s_m2(double v_mag, const Band& band) {

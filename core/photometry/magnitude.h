@@ -1,5 +1,6 @@
 #pragma once
 #include "core/photometry/band.h"
+#include "core/photometry/magnitude_system.h"
 
 namespace dmise {
 
@@ -21,6 +22,10 @@ double sun_magnitude(const Band& band);
 /// Photons/s/m2 in `band` of sunlight of magnitude `v_mag` (Johnson V): the Moon, a grey object,
 /// the zodiacal light.
 double sunlight_photons_per_s_m2(double v_mag, const Band& band);
+
+/// The scale of a system's magnitudes in `band`. Throws `Error` for Vega beyond 2.195 um, where its
+/// spectrum ends.
+MagnitudeScale magnitude_scale(MagnitudeSystem system, const Band& band);
 
 /// The Johnson V in which catalogues give magnitudes (bessell-V).
 const Band& johnson_v();

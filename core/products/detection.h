@@ -5,6 +5,7 @@
 
 #include "core/base/sim_time.h"
 #include "core/frames/vec.h"
+#include "core/photometry/magnitude_system.h"
 #include "core/products/frame_notes.h"
 #include "core/wcs/wcs.h"
 
@@ -49,9 +50,9 @@ struct Detection {
   // Mean and standard deviation of that angle over altitudes from 300 km to GEO, uniform in their
   // logarithm; corrected_* are raised by the mean.
   double refraction_parallax_rad = 0.0, refraction_parallax_sigma_rad = 0.0;
-  // V of a source of the Sun's colour that is as bright in `band` ("V-solar"), above the
-  // atmosphere, by the header's zero point.
+  // Above the atmosphere, by the header's zero point.
   double magnitude = 0.0;
+  MagnitudeSystem magnitude_system = MagnitudeSystem::v_solar;
   double magnitude_sigma = 0.0;
   std::string band = "V";
   double snr = 0.0;               // signal_e / its standard error in the fit (a matched filter)
@@ -91,6 +92,7 @@ struct FrameReport {
   double background_e = 0.0;        // median [e-/px]
   double noise_e = 0.0;             // median of the per-pixel noise [e-]
   double zero_point_mag = 0.0;      // magnitude of a source of 1 e-/s
+  MagnitudeScale magnitudes;        // of this report and its detections
   // Of the Gaussian with the PSF's sum of squares in the frame's middle, before pixel integration.
   double psf_fwhm_px = 0.0;
   std::uint32_t psf_stars = 0;  // from which the PSF was measured; 0: it is the header's

@@ -1,7 +1,6 @@
 #pragma once
 #include "core/base/units.h"
 #include "core/products/detection.h"
-#include "core/products/magnitude_system.h"
 
 // The table of a detection's fields, in the order of a JSON line: the wire's codec and the JSON
 // line are made from it. Its rows are
@@ -38,7 +37,7 @@
   VALUE(refraction_parallax_rad, "refraction_parallax_arcsec", arcsec)                  \
   VALUE(refraction_parallax_sigma_rad, "refraction_parallax_sigma_arcsec", arcsec)      \
   VALUE(magnitude, "magnitude", 1)                                                      \
-  TEXT("magnitude_system", magnitude_system)                                            \
+  NAME(magnitude_system, "magnitude_system", MagnitudeSystem)                           \
   VALUE(magnitude_sigma, "magnitude_sigma", 1)                                          \
   VALUE(band, "band", 1)                                                                \
   VALUE(snr, "snr", 1)                                                                  \

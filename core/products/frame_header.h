@@ -11,6 +11,7 @@
 #include "core/frames/vec.h"
 #include "core/optics/camera.h"
 #include "core/photometry/band.h"
+#include "core/photometry/magnitude_system.h"
 #include "core/products/detection.h"
 #include "core/products/observation.h"
 #include "core/products/unknown_facts.h"
@@ -55,6 +56,7 @@ struct FrameHeader {
   double psf_fwhm_px = 0.0;          // Gaussian, before pixel integration
   Band band;
   double zero_point_mag = 0.0;              // of a source of 1 e-/s, without atmosphere
+  MagnitudeScale magnitudes;                // that products have; PHOTZP is in it
   double extinction_mag_per_airmass = 0.0;  // of the atmosphere in this band; 0 in space
   // Turbulence towards the zenith at 500 nm; all 0 if none is given.
   double r0_m = 0.0, isoplanatic_angle_rad = 0.0, tau0_s = 0.0;
@@ -77,6 +79,9 @@ struct FrameHeader {
   // Air that refracts in a ground sensor's frame, pressure 0 if refraction is off. Empty in space
   // and in files without it.
   std::optional<Weather> air;
+
+  /// The zero point for the V of sources of the Sun's colour, as catalogues and truth have it.
+  double v_solar_zero_point_mag() const { return zero_point_mag - magnitudes.solar_colour_mag; }
 
   bool operator==(const FrameHeader&) const = default;
 };

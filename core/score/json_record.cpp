@@ -23,6 +23,7 @@ void read(const JsonRecord& record, const char* key, int, T& value) {
 
 const char* name_of(DetectionKind kind) { return detection_kind_name(kind); }
 const char* name_of(ExposureEpoch epoch) { return exposure_epoch_name(epoch); }
+const char* name_of(MagnitudeSystem system) { return magnitude_system_name(system); }
 const char* name_of(TrackStatus status) { return track_status_name(status); }
 
 /// One of the three values of an enumeration, by its name.

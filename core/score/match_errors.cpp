@@ -75,7 +75,7 @@ MatchErrors errors_of(const ScoredTruth& t, const Detection& d, const ScoredFram
                                                      *frame.sigma_px});
   add_direction(e, t, d);
   if (t.truth.magnitude && (d.band == "V" || !t.truth.start_time)) {
-    e.magnitude = d.magnitude - *t.truth.magnitude;
+    e.magnitude = d.magnitude - frame.solar_colour_mag - *t.truth.magnitude;
     if (d.magnitude_sigma > 0.0) e.magnitude_over_sigma = *e.magnitude / d.magnitude_sigma;
   }
   if (t.truth.signal_e && d.signal_e > 0.0) {

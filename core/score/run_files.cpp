@@ -59,6 +59,7 @@ ScoredFrame frame_of(const JsonRecord& report) {
     f.sigma_px = report.number("psf_fwhm_px") / std::sqrt(8.0 * std::log(2.0));
   f.exposure_s = (report.time("end_ns") - report.time("start_ns")).seconds();
   f.searched = !report.has("detection_off") || !report.get<bool>("detection_off");
+  if (report.has("solar_colour_mag")) f.solar_colour_mag = report.number("solar_colour_mag");
   if (!report.has("wcs")) return f;
   const auto cd = report.object("wcs").numbers<4>("cd_deg_per_px");
   f.scale_rad_per_px = std::sqrt(std::abs(cd[0] * cd[3] - cd[1] * cd[2])) * deg;

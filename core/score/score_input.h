@@ -36,6 +36,7 @@ struct ScoredFrame {
   std::optional<double> noise_e;   // median of the noise per pixel
   std::optional<double> sigma_px;  // of the Gaussian nearest to the PSF, before pixel integration
   double exposure_s = 0.0;
+  double solar_colour_mag = 0.0;  // magnitudes of detections less V-solar ones
   double scale_rad_per_px = 0.0;  // at the reference pixel; 0: unknown
   bool searched = true;           // detection was on
 };

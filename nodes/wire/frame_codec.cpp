@@ -98,6 +98,8 @@ Encoded encode_body(const FrameReport& report) {
   message.set_start_ns(report.start.ns);
   message.set_middle_ns(report.middle.ns);
   message.set_end_ns(report.end.ns);
+  message.set_magnitude_system(static_cast<v1::MagnitudeSystem>(report.magnitudes.system));
+  message.set_solar_colour_mag(report.magnitudes.solar_colour_mag);
   put_wcs(message.mutable_wcs(), report.wcs);
   put(message.mutable_sensor_position_m(), report.sensor_position_m);
   put(message.mutable_sensor_velocity_m_per_s(), report.sensor_velocity_m_per_s);
@@ -113,6 +115,10 @@ FrameReport decode_report(std::string_view payload) {
   report.start = {message.start_ns()};
   report.middle = {message.middle_ns()};
   report.end = {message.end_ns()};
+  if (!v1::MagnitudeSystem_IsValid(message.magnitude_system()))
+    throw Refused(Refusal::value, "magnitude_system: unknown");
+  report.magnitudes = {static_cast<MagnitudeSystem>(message.magnitude_system()),
+                       message.solar_colour_mag()};
   report.wcs = take_wcs(message.wcs());
   report.sensor_position_m = take_vec<Gcrs>(message.sensor_position_m(), "sensor_position_m");
   report.sensor_velocity_m_per_s =

@@ -238,6 +238,7 @@ void check(const FrameReport& report) {
   finite(report.background_e, "background_e");
   not_negative(report.noise_e, "noise_e");
   finite(report.zero_point_mag, "zero_point_mag");
+  finite(report.magnitudes.solar_colour_mag, "solar_colour_mag");
   utf8(report.plan, text_limit_bytes, "plan");
   not_negative(report.psf_fwhm_px, "psf_fwhm_px");
 }

@@ -68,7 +68,9 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
                 .detector = detector,
                 .psf_fwhm_px = psf_fwhm_px,
                 .band = sensor.camera.band,
-                .zero_point_mag = Throughput(view).zero_point_mag(),
+                .zero_point_mag =
+                    Throughput(view).zero_point_mag() + sensor.camera.magnitudes.solar_colour_mag,
+                .magnitudes = sensor.camera.magnitudes,
                 .extinction_mag_per_airmass = Throughput(view).extinction_mag_per_airmass(),
                 .projection = optics.projection,
                 .focal_length_px = optics.focal_length_px(),

@@ -216,6 +216,19 @@ TEST(FitsFile, ReadsBackWhatIsUnknownAndAMirrorImage) {
             "frame.fits: UNKNOWN: holds a word that names no fact, got time colour");
 }
 
+TEST(FitsFile, ReadsBackInWhichSystemMagnitudesAre) {
+  FrameHeader header = sample_header();
+  for (const auto system : {MagnitudeSystem::vega, MagnitudeSystem::ab}) {
+    header.magnitudes = {system, -0.38};
+    const std::string bytes = encoded(sample_counts(), header);
+    EXPECT_EQ(decode_frame(bytes, "frame.fits").header, as_in_file(header));
+    EXPECT_EQ(error_of(with_card(bytes, "SUNCOL", "COMMENT")), "frame.fits: SUNCOL: is missing");
+  }
+  const std::string bytes = encoded(sample_counts(), sample_header());
+  EXPECT_EQ(error_of(with_card(bytes, "MAGSYS", "MAGSYS  = 'STMAG'")),
+            "frame.fits: MAGSYS: must be V-solar, Vega or AB, got STMAG");
+}
+
 TEST(FitsFile, NamesTheMissingOrWrongKeyword) {
   const std::string good = encoded(sample_counts(), sample_header());
   EXPECT_EQ(error_of(with_card(good, "EXPTIME", "COMMENT")), "frame.fits: EXPTIME: is missing");

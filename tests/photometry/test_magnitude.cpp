@@ -67,6 +67,33 @@ TEST(Magnitude, AbAgainstVega) {
   }
 }
 
+// Willmer 2018, ApJS 236, 47, table 3: the Sun's absolute magnitudes in BVRI,
+// Vega 5.44, 4.81, 4.43, 4.10 and AB 5.31, 4.80, 4.60, 4.51, less its V of 4.81; 0.05 mag as above.
+TEST(Magnitude, TheSunsColourInEachSystem) {
+  const struct {
+    const char* band;
+    double vega, ab;
+  } expected[] = {{"bessell-B", 0.63, 0.50},
+                  {"bessell-V", 0.00, -0.01},
+                  {"bessell-R", -0.38, -0.21},
+                  {"bessell-I", -0.71, -0.30}};
+  for (const auto& [name, vega, ab] : expected) {
+    const Band band = *filter_named(name);
+    EXPECT_NEAR(magnitude_scale(MagnitudeSystem::vega, band).solar_colour_mag, vega, 0.05) << name;
+    EXPECT_NEAR(magnitude_scale(MagnitudeSystem::ab, band).solar_colour_mag, ab, 0.05) << name;
+    EXPECT_EQ(magnitude_scale(MagnitudeSystem::v_solar, band), MagnitudeScale());
+  }
+}
+
+TEST(Magnitude, VegaEndsWhereItsSpectrumDoes) {
+  Band band;
+  band.name = "L";
+  band.centre_m = 3.5 * um;
+  band.width_m = 0.5 * um;
+  EXPECT_THROW(magnitude_scale(MagnitudeSystem::vega, band), Error);
+  EXPECT_TRUE(std::isfinite(magnitude_scale(MagnitudeSystem::ab, band).solar_colour_mag));
+}
+
 // ASTM E490-00a: the solar constant is 1366.1 W/m2, of which 0.2 to 5 um hold all but about 0.5 %.
 TEST(Magnitude, SolarConstantIsKeptByTheShortTable) {
   const Curve& sun = solar_spectrum().irradiance;

@@ -15,8 +15,9 @@ const Site chile{-30.17, -70.8, 2200.0};
 const std::string evening = "2018-01-21T01:05:00Z";
 
 /// A quarter of the raven's frame: the same optics and pixels.
-std::string camera_file(const std::string& psf = "psf_fwhm_px: 1.6",
-                        const std::string& blooming = "false") {
+std::string camera_file(
+    const std::string& psf = "psf_fwhm_px: 1.6", const std::string& blooming = "false",
+    const std::string& band = "{name: V, centre_m: 0.55e-6, width_m: 0.128e-6}") {
   const auto path = std::filesystem::path(testing::TempDir()) /
                     ("telescope-0.4m-" + std::to_string(getpid()) + ".yaml");
   std::ofstream(path)
@@ -30,7 +31,8 @@ std::string camera_file(const std::string& psf = "psf_fwhm_px: 1.6",
              "full_well_e: 100000, gain_e_per_dn: 1.6, bias_dn: 300, adc_bits: 16, blooming: " +
              blooming +
              "}\n"
-             "band: {name: V, centre_m: 0.55e-6, width_m: 0.128e-6}\n";
+             "band: " +
+             band + "\n";
   return path.string();
 }
 
@@ -111,6 +113,31 @@ std::vector<test::SkyTarget> targets_between(double lowest_m, double highest_m, 
 }
 
 const std::string stars = "ra_deg,dec_deg,mag_v\n0,89,6\n";
+
+// The Sun's R in Vega and AB magnitudes, less its V of 4.81: 4.43 and 4.60 (Willmer 2018, ApJS 236,
+// 47).
+TEST(Magnitudes, ASourceOfTheSunsColourHasTheSunsColourInTheCamerasSystem) {
+  const auto targets = targets_between(1000e3, 1000e3, 1, 8);
+  double true_v = 0.0, v_solar = 0.0;
+  for (const auto& [system, v_r, tolerance] :
+       {std::tuple("V-solar", 0.0, 0.0), {"Vega", 0.38, 0.02}, {"AB", 0.21, 0.02}}) {
+    const std::string camera = camera_file("psf_fwhm_px: 1.6", "false",
+                                           "bessell-R\nmagnitude_system: " + std::string(system));
+    test::Stage stage(scenario(targets, ", tracking: target}, exposure_s: 1, cadence_s: 2", camera),
+                      stars);
+    const auto frame = stage.frame(1, 0);
+    ASSERT_EQ(frame.detections.size(), 1u) << system;
+    const Detection& d = frame.detections[0];
+    EXPECT_STREQ(magnitude_system_name(d.magnitude_system), system);
+    EXPECT_EQ(frame.report.magnitudes, frame.header.magnitudes);
+    if (tolerance == 0.0) {
+      v_solar = d.magnitude;
+      true_v = frame.truths.at(0).true_magnitude;
+      EXPECT_NEAR(v_solar, true_v, 0.02 + 3 * d.magnitude_sigma);
+    }
+    EXPECT_NEAR(d.magnitude, v_solar - v_r, tolerance) << system;
+  }
+}
 
 class DirectionNees : public testing::Test {
  protected:

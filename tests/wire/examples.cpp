@@ -141,6 +141,7 @@ FrameReport report(Numbers& n) {
   r.background_e = n.in(0, 1e4);
   r.noise_e = n.in(1, 100);
   r.zero_point_mag = n.in(15, 25);
+  r.magnitudes = {MagnitudeSystem::ab, n.in(-1, 1)};
   r.detections = 2;
   r.star_like = 900;
   r.saturated_px = 4;
@@ -177,6 +178,7 @@ Detection detection(Numbers& n, std::uint32_t index) {
   d.refraction_offset_m = n.vec<Gcrs>(100);
   d.refraction_parallax_rad = n.in(0, 1e-5), d.refraction_parallax_sigma_rad = n.in(0, 1e-5);
   d.magnitude = n.in(-1, 20);
+  d.magnitude_system = MagnitudeSystem::vega;
   d.magnitude_sigma = n.in(0, 1);
   d.band = "swir140";
   d.snr = n.in(3, 1000);

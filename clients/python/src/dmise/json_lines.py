@@ -52,7 +52,9 @@ def record_of_line(values: dict[str, Any], cls: type[Record], start: datetime.da
 
 def _named(key: str, value: Any, fields: dict[str, Any]) -> Iterator[tuple[str, Any]]:
     """The fields of a record that a key of a line stands for, none for what only people read."""
-    if key in fields:
+    if key in fields and key == "magnitude_system":
+        yield key, value.lower().replace("-", "_")
+    elif key in fields:
         texts = fields[key].default_factory is list
         yield key, numbers_of(value) if isinstance(value, list) and not texts else value
     elif key.endswith("_px") and isinstance(value, list):

@@ -16,6 +16,7 @@ import numpy.typing as npt
 ArrayLike = npt.NDArray[Any]
 Floats = npt.NDArray[np.float64]
 Instant = Literal["start", "middle", "end"]
+MagnitudeSystem = Literal["v_solar", "vega", "ab"]  # docs/models/sky.md
 
 
 def no_numbers() -> Floats:
@@ -90,6 +91,7 @@ class Detection(Record):
     refraction_parallax_rad: float = 0.0
     refraction_parallax_sigma_rad: float = 0.0
     position_angle_rad: float = 0.0
+    magnitude_system: MagnitudeSystem = "v_solar"
 
     @property
     def time_utc(self) -> datetime.datetime:
@@ -312,3 +314,5 @@ class FrameReport(_Exposure):
     psf_stars: int = 0
     stars_expected: int = 0
     stars_found: int = 0
+    magnitude_system: MagnitudeSystem = "v_solar"  # of all magnitudes here and of the frame's detections
+    solar_colour_mag: float = 0.0  # a magnitude in it less the V-solar one of the same source
