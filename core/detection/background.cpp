@@ -161,7 +161,7 @@ float median_of(std::vector<float> values) {
 
 }  // namespace
 
-Background::Background(const CountImage& counts, int cell_px, Threads& threads)
+Background::Background(const CountImage& counts, int cell_px, Threads& threads, const BitMask* lit)
     : columns_(counts.columns),
       rows_(counts.rows),
       cells_(columns_, rows_, std::max(1, (columns_ + cell_px / 2) / cell_px),
@@ -170,9 +170,16 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads)
       sigma_(cells_) {
   CellMesh level = cells_, sigma = cells_;
   const std::size_t cells = cells_.values.size();
+  const auto is_dark = [&](const Area& area) {
+    int dark = 0;
+    for (int y = area.y0; y <= area.y1; ++y)
+      for (int x = area.x0; x <= area.x1; ++x) dark += !lit->at(x, y);
+    return 8 * dark >= (area.x1 - area.x0 + 1) * (area.y1 - area.y0 + 1);
+  };
   const auto measure = [&](std::size_t cell, bool flatten, CellMemory& memory) {
     std::vector<std::uint16_t>& values = memory.values;
     const Area area = area_of(cell);
+    const bool skip = lit && is_dark(area);
     const int width = area.x1 - area.x0 + 1;
     float mean = 0.0f;
     if (flatten) {
@@ -187,12 +194,14 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads)
     const float* level_at = memory.levels.data();
     for (int y = area.y0; y <= area.y1; ++y) {
       const std::uint16_t* from = counts.row(y);
-      if (!flatten) {
+      if (!flatten && !skip) {
         values.insert(values.end(), from + area.x0, from + area.x1 + 1);
         continue;
       }
       for (int x = area.x0; x <= area.x1; ++x) {
-        const float flat = float(from[x]) - *level_at++ + mean;
+        const float level_here = flatten ? *level_at++ : mean;
+        if (skip && lit->at(x, y)) continue;
+        const float flat = float(from[x]) - level_here + mean;
         values.push_back(std::uint16_t(std::clamp(flat + 0.5f, 0.0f, 65535.0f)));
       }
     }

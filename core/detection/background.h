@@ -3,6 +3,7 @@
 
 #include "core/base/image.h"
 #include "core/base/parallel.h"
+#include "core/detection/bit_mask.h"
 #include "core/detection/cell_mesh.h"
 
 namespace dmise {
@@ -15,7 +16,8 @@ namespace dmise {
 /// level bends, as in the Moon's glow, so does the median's and what is between centres.
 class Background {
  public:
-  Background(const CountImage& counts, int cell_px, Threads& threads);
+  /// `lit`: pixels that are left out, unless they leave less than an eighth of a cell; null: none.
+  Background(const CountImage& counts, int cell_px, Threads& threads, const BitMask* lit = nullptr);
 
   float level_dn(int x, int y) const { return level_.at(x, y); }
   float sigma_dn(int x, int y) const { return sigma_.at(x, y); }

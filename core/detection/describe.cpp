@@ -1,6 +1,7 @@
 #include "core/detection/describe.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <tuple>
 
@@ -236,6 +237,14 @@ void describe_direction(const Source& source, const FrameHeader& header, Detecti
   add_along(d.covariance_rad2, e / chord, n / chord, mid.sigma_rad * mid.sigma_rad);
 }
 
+/// A fit places a source's shape where noise adds to its light: by 1 / (2 SNR) of its error for
+/// each parameter of the shape, in the next order (Refregier et al. 2012, MNRAS 425, 1951).
+double light_without_noise_e(const Source& source) {
+  constexpr unsigned shape = trail_x | trail_y | trail_length | trail_angle | trail_sagitta;
+  const double snr = std::max(source.snr(), 5.0);
+  return source.trail().flux_e * (1.0 - std::popcount(source.free & shape) / (2.0 * snr * snr));
+}
+
 }  // namespace
 
 Detection describe(const Source& source, const FrameHeader& header) {
@@ -247,7 +256,7 @@ Detection describe(const Source& source, const FrameHeader& header) {
   d.sensor_velocity_m_per_s = header.sensor_velocity_m_per_s;
   d.aberration_removed = true;
   d.band = header.band.name;
-  d.signal_e = source.trail().flux_e;
+  d.signal_e = light_without_noise_e(source);
   d.snr = source.snr();
   d.magnitude = header.zero_point_mag - 2.5 * std::log10(d.signal_e / header.exposure_s) -
                 extinction_mag(header, {source.trail().x_px, source.trail().y_px});

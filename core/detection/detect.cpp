@@ -150,7 +150,7 @@ FrameReport make_report(const CountImage& counts, const FrameHeader& header,
 DetectionResult detect(const CountImage& counts, const FrameHeader& header,
                        const DetectorSettings& settings, Threads& threads,
                        const CatalogueSky* sky) {
-  const Background background(counts, settings.background_cell_px, threads);
+  Background background(counts, settings.background_cell_px, threads);
   const StarMotion stars(header, counts.columns, counts.rows);
   Scene scene{counts,
               background,
@@ -170,6 +170,8 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   std::optional<KnownStars> known;
   if (sky) known = hide_stars(scene, filtered, *sky, header, result.stars);
   if (known) {
+    // Beside the stars it is lower, and so is its noise.
+    background = Background(counts, settings.background_cell_px, threads, &known->lit());
     filtered.flatten(threads, &known->lit());
     scene.flat = &filtered;
     scene.known = &*known;

@@ -92,6 +92,48 @@ TEST(Background, OneSourceInTwentyPixelsHardlyLiftsIt) {
   EXPECT_NEAR(b.median_sigma_dn(), 10, 0.5);
 }
 
+/// Stars of 3 x 3 pixels, 30 of noise, on a share of the cells' pixels, and where they are.
+BitMask add_stars(CountImage& counts, double share) {
+  BitMask lit(counts.columns, counts.rows);
+  std::mt19937_64 random(7);
+  const auto below = [&](int n) { return int(random() % std::uint64_t(n)); };
+  const int stars = int(share * counts.columns * counts.rows / 9);
+  for (int k = 0; k < stars; ++k) {
+    const int x = below(counts.columns - 2), y = below(counts.rows - 2);
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) {
+        lit.set(x + i, y + j);
+        counts.at(x + i, y + j) = std::uint16_t(counts.at(x + i, y + j) + 30);
+      }
+  }
+  return lit;
+}
+
+TEST(Background, KnownStarsLiftNeitherLevelNorNoise) {
+  Threads threads;
+  CountImage counts = noise(640, 512, 1000, 0.5, 20, 6);
+  const BitMask lit = add_stars(counts, 0.4);
+  const Background with(counts, 64, threads), beside(counts, 64, threads, &lit);
+  EXPECT_GT(with.median_sigma_dn(), 21.0);
+  EXPECT_NEAR(beside.median_sigma_dn(), 20.0, 0.2);
+  for (int x = 40; x < 640; x += 40) {
+    EXPECT_NEAR(beside.level_dn(x, 250), 1000 + 0.5 * x, 2.0);
+    EXPECT_GT(with.level_dn(x, 250), 1000 + 0.5 * x + 3.0);
+  }
+}
+
+TEST(Background, WhereAllIsLitAllPixelsAreTaken) {
+  Threads threads;
+  const CountImage counts = noise(128, 128, 1000, 0, 20, 8);
+  BitMask lit(128, 128);
+  for (int y = 0; y < 128; ++y)
+    for (int x = 0; x < 128; ++x)
+      if (x % 16 != 0) lit.set(x, y);
+  const Background all(counts, 64, threads), few(counts, 64, threads, &lit);
+  EXPECT_EQ(all.level_dn(60, 60), few.level_dn(60, 60));
+  EXPECT_EQ(all.sigma_dn(60, 60), few.sigma_dn(60, 60));
+}
+
 TEST(Background, RowAndPixelAgree) {
   Threads threads;
   const Background b(noise(200, 150, 1000, 0.7, 10, 4), 64, threads);
