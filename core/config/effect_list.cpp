@@ -68,7 +68,7 @@ using LightEffects =
                ThermalEmission, StarBackground, SyntheticBackground, EarthOccultation,
                AirExtinction, GasAbsorption, CloudCover, Scintillation, MovingScintillation,
                Dispersion, Vignetting, Streak, Occlusion, Drawing, PointSpread, AirTurbulence,
-               PsfWavelengths>;
+               PsfWavelengths, FieldBlur, FocusDrift>;
 
 std::vector<const EffectFacts*> list() {
   std::vector<const EffectFacts*> all;
@@ -128,7 +128,11 @@ SceneFacts scene_facts(const SensorConfig& sensor) {
           .diffracts = diffracts,
           .turbulent = diffracts && sensor.seeing && std::isfinite(sensor.seeing->r0_m) &&
                        sensor.effects.has(PointSpread::facts),
-          .synthetic_stars = sensor.synthetic_stars_to_v_mag.has_value()};
+          .synthetic_stars = sensor.synthetic_stars_to_v_mag.has_value(),
+          .blur_varies =
+              sensor.camera.optics.spread.varying.any() && sensor.effects.has(PointSpread::facts),
+          .focus_drifts =
+              sensor.camera.optics.spread.drift.any() && sensor.effects.has(PointSpread::facts)};
 }
 
 std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const SceneFacts& scene) {
@@ -200,11 +204,49 @@ EffectSet recorded_effects(std::span<const PlannableEffect> effects, const Senso
   return set;
 }
 
+namespace {
+
+/// All keys for documents, else those that are in use.
+std::vector<ParameterValue> parameters_of(const Vignetting& v) {
+  std::vector<ParameterValue> numbers;
+  if (v.table.empty())
+    numbers = {{"natural", {double(v.natural)}}, {"corner", {v.corner}}, {"power", {v.power}}};
+  if (v.table.empty() && v.any()) return numbers;
+  numbers.push_back({name(v.table_radius), v.table.at()});
+  numbers.push_back({"relative_illumination", v.table.value()});
+  return numbers;
+}
+
+std::vector<ParameterValue> parameters_of(const FieldBlur& field) {
+  std::vector<ParameterValue> numbers;
+  const bool all = !field.any(), widths = !field.fwhm_radial_px.empty();
+  std::vector<double> terms;
+  for (const FieldTerm& t : field.wavefront) {
+    terms.push_back(t.noll);
+    for (const double rms_m : t.rms_m.value()) terms.push_back(1e9 * rms_m);
+  }
+  numbers.push_back({name(field.radius),
+                     widths || all ? field.fwhm_radial_px.at() : field.wavefront[0].rms_m.at()});
+  if (widths || all) {
+    numbers.push_back({"fwhm_radial_px", field.fwhm_radial_px.value()});
+    numbers.push_back({"fwhm_tangential_px", field.fwhm_tangential_px.value()});
+  }
+  if (!widths || all) numbers.push_back({"zernike_nm", terms});
+  return numbers;
+}
+
+}  // namespace
+
 std::vector<ParameterValue> parameters_in(const SensorConfig& sensor, const EffectFacts& effect) {
   const Camera& camera = sensor.camera;
-  const Vignetting& v = camera.optics.vignetting;
-  if (effect.name == Vignetting::facts.name)
-    return {{"natural", {double(v.natural)}}, {"corner", {v.corner}}, {"power", {v.power}}};
+  if (effect.name == Vignetting::facts.name) return parameters_of(camera.optics.vignetting);
+  if (effect.name == FieldBlur::facts.name) return parameters_of(camera.optics.spread.varying);
+  if (effect.name == FocusDrift::facts.name) {
+    std::vector<ParameterValue> numbers;
+    for (const FocusParameter& p : focus_parameters())
+      numbers.push_back({p.key, {camera.optics.spread.drift.*p.value}});
+    return numbers;
+  }
   if (effect.name == Streak::facts.name && sensor.effects.snapshots() > 0)
     return {{"snapshots", {double(sensor.effects.snapshots())}}};
   std::vector<ParameterValue> numbers;

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "core/base/units.h"
+#include "core/config/field_tables_config.h"
 #include "core/config/sky_config.h"
 #include "core/optics/projection.h"
 
@@ -69,17 +70,6 @@ const Section& grid_section() {
       "Kernels over the field, between which the point spread is interpolated.",
       {required("columns", form::integer(1, 9), "Kernels along a row."),
        required("rows", form::integer(1, 9), "Kernels along a column.")}};
-  return section;
-}
-
-const Section& vignetting_section() {
-  static const Section section{
-      "vignetting",
-      "Light lost away from the axis.",
-      {optional("natural", form::flag(), "Applies the cosine of the pupil's projection.", "off"),
-       optional("corner", form::above(0.0, 1.0), "Share of the light that reaches a corner.", "1"),
-       optional("power", form::number(1.0, 16.0),
-                "Power of the distance from the axis with which light is lost.", "2")}};
   return section;
 }
 
@@ -167,6 +157,17 @@ PointSpread read_point_spread(YamlMap& map, Optics& optics) {
     s.grid_rows = int(grid.require("rows").integer());
     grid.done();
   }
+  if (const auto v = map.find("psf_field")) {
+    s.varying = read_psf_field(*v, diffraction);
+    if (const auto grid = map.find("psf_grid"))
+      grid->fail("goes without psf_field: the level of that effect is the number of kernels",
+                 false);
+    if (width) width->fail("goes without psf_field, which has the widths", false);
+    if (!diffraction) optics.psf_fwhm_px = 0.0;
+  }
+  if (const auto v = map.find("focus_drift")) s.drift = read_focus_drift(*v);
+  if (s.field.any() && s.varying.any())
+    map.require("field_nm").fail("goes without psf_field", false);
   if (s.field.any() && s.grid_columns * s.grid_rows == 1)
     map.value().fail("field_nm needs a psf_grid of more than one kernel", false);
   if (const auto v = of_pupil("wavelengths")) s.wavelengths = int(v->integer());
@@ -184,16 +185,6 @@ PointSpread read_point_spread(YamlMap& map, Optics& optics) {
     s.resampling =
         v->choice() == "area" ? PointSpread::Resampling::area : PointSpread::Resampling::bilinear;
   return s;
-}
-
-Vignetting read_vignetting(const YamlValue& value) {
-  YamlMap map(value, vignetting_section());
-  Vignetting v;
-  v.natural = map.flag_or("natural", false);
-  v.corner = map.number_or("corner", 1.0);
-  v.power = map.number_or("power", 2.0);
-  map.done();
-  return v;
 }
 
 [[noreturn]] void fail_fold(const YamlValue& optics, double fold_rad) {
@@ -248,6 +239,10 @@ const Section& optics_section() {
          optional("field_nm", form::map(field_section),
                   "Aberrations that grow with the field; they need a `psf_grid`."),
          optional("psf_grid", form::map(grid_section), "Kernels over the field.", "1 x 1"),
+         optional("psf_field", form::map(psf_field_section),
+                  "A point spread that changes with the distance from the axis."),
+         optional("focus_drift", form::map(focus_drift_section),
+                  "The focus drifts with time and temperature."),
          optional("wavelengths", form::integer(1, 16),
                   "Wavelengths of the band at which diffraction is computed.", "1"),
          optional("most_screens", form::integer(1, 1000),
@@ -350,6 +345,7 @@ void write_optics_json(JsonWriter& json, const Optics& optics) {
     json.key("vignetting").begin_object().field("natural", v.natural);
     json.field("corner", v.corner).field("power", v.power).end_object();
   }
+  write_field_tables_json(json, optics);
   for (const ImageParameter& p : image_parameters())
     if (optics.image.*p.value != ImageOptics().*p.value) json.field(p.key, optics.image.*p.value);
 }

@@ -376,6 +376,8 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   sensor.cadence_s = map.number("cadence_s");
   if (sensor.cadence_s < sensor.exposure_s) exposure.fail("must be <= cadence_s");
   check_exposure(sensor.camera, exposure);
+  if (FocusDrift& drift = sensor.camera.optics.spread.drift; drift.any())
+    drift.run_s = duration.seconds();
   const double rate_deg_per_s =
       turn_rate_deg_per_s(sensor.pointing) + sensor.instrument.drift_size_rad_per_s() / deg;
   if (rate_deg_per_s * sensor.exposure_s > most_turn_deg)

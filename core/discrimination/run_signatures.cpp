@@ -23,6 +23,8 @@ Optics optics_of(const JsonRecord& camera) {
                 .columns = camera.get<int>("columns"),
                 .rows = camera.get<int>("rows"),
                 .psf_fwhm_px = camera.number("psf_fwhm_px")};
+  // Not the same everywhere, or always.
+  if (camera.has("psf_field") || camera.has("focus_drift")) optics.spread.wavefront.emplace_back();
   if (!camera.has("spread")) return optics;
   const JsonRecord spread = camera.object("spread");
   PointSpread& s = optics.spread;

@@ -39,6 +39,8 @@ struct SceneFacts {
   bool diffracts = false;        // their blur depends on the wavelength
   bool turbulent = false;        // and on the air
   bool synthetic_stars = false;  // the scenario asks for some
+  bool blur_varies = false;      // over the field, by a table
+  bool focus_drifts = false;
 };
 
 /// A closed family of effects, in the order in which they run.

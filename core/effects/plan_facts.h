@@ -85,6 +85,7 @@ struct PlanFacts {
   double annual_aberration_rad = 0.0, diurnal_aberration_rad = 0.0;  // largest in the field
   bool sees_horizon = false;                                         // the Earth is in the field
   double least_illumination = 1.0;                                   // by vignetting
+  double illumination_slope_per_px = 0.0;  // steepest, relative, of a vignetting by a table
   // What the sensor does not know of itself.
   double pointing_error_rad = 0.0;  // largest displacement in the field
   double clock_error_s = 0.0;       // size, in the exposure
@@ -131,6 +132,12 @@ struct PlanFacts {
   int least_wavelengths = 1;    // of the band, by the camera
   bool kernels_change = false;  // with every exposure
   double kernel_s = 0.0;        // of all kernels of one wavelength
+  /// What the kernels over the field that a level of `psf_field` has lack of that of a place: the
+  /// share of a point's light that is elsewhere, and the displacement of its centroid, at most.
+  static constexpr std::size_t field_levels = 4;
+  std::array<double, field_levels> field_misplaced{}, field_shift_px{};
+  /// By how much defocus differs from the usual in the run, as the diameter of its disc.
+  double defocus_px = 0.0;
 
   double pixels() const { return double(columns) * rows; }
   /// Returns how often the sky is looked at for its grid, about.
@@ -214,6 +221,21 @@ struct PlanFacts {
     const double share = charge_e / (noise_e * noise_e);
     error.background_sigma = std::max(error.background_sigma, charge_e / noise_e);
     error.noise = std::max(error.noise, 1.0 - std::sqrt(std::max(0.0, 1.0 - share)));
+    return error;
+  }
+  /// Error of a blur that puts a share of a point's light elsewhere within its width, `shift_px` of
+  /// it to one side. Between sources, where a source has less than half of the noise.
+  ErrorBound misplaced(double share, double shift_px) const {
+    if (!(share > 0.0 || shift_px > 0.0)) return {};
+    share = std::min(share, 1.0);
+    constexpr double half_noise = 0.5, beyond = 2.0;
+    const double background_sigma =
+        std::min(half_noise + beyond * share, share * in_noise(brightest_e() * peak_share));
+    ErrorBound error{.photometry_mag = share < 0.99 ? -2.5 * std::log10(1.0 - share) : unbounded,
+                     .position_px = shift_px + share * std::hypot(1.0, fwhm_px),
+                     .background_sigma = background_sigma,
+                     .noise = noise_of(background_sigma)};
+    if (!(share < 0.99)) error.position_px = error.background_sigma = error.noise = unbounded;
     return error;
   }
   /// The same for a part of the sky.

@@ -7,10 +7,12 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/monotone_cubic.h"
 #include "core/base/units.h"
 #include "core/image/card_text.h"
 #include "core/image/fits_cards.h"
 #include "core/photometry/magnitude_system.h"
+#include "core/products/frame_header.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -74,6 +76,25 @@ class CardReader {
     if (!named) fail(key, "not a projection, got " + find(key));
     value = with_coefficients(key, *named,
                               [](const ProjectionCoefficient& c) -> std::string { return c.card; });
+  }
+  void illumination(MonotoneCubic& table, FieldRadius& radius) {
+    constexpr int most_rows = 1000;
+    int rows = 0;
+    integer("VIGNROWS", rows, "");
+    if (rows < 1 || rows > most_rows) fail("VIGNROWS", "must be 1 to 1000");
+    const std::string& unit = find("VIGNUNIT");
+    if (unit != unit_text(FieldRadius::angle_deg) && unit != unit_text(FieldRadius::distance_px))
+      fail("VIGNUNIT", "must be deg or px, got " + unit);
+    radius = unit == unit_text(FieldRadius::angle_deg) ? FieldRadius::angle_deg
+                                                       : FieldRadius::distance_px;
+    std::vector<double> at(static_cast<std::size_t>(rows)), value(at.size());
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const std::string row = std::to_string(i + 1);
+      number("VIGR" + row, at[i], "");
+      number("VIGT" + row, value[i], "");
+      if (i > 0 && !(at[i] > at[i - 1])) fail("VIGR" + row, "must rise");
+    }
+    table = MonotoneCubic(std::move(at), std::move(value));
   }
   // Values of other types in foreign files (RA as a text) are ignored.
   void optional_text(const char* key, std::string& value, const char*) {

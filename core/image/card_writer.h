@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/monotone_cubic.h"
 #include "core/base/units.h"
 #include "core/image/card_text.h"
 #include "core/photometry/magnitude_system.h"
+#include "core/products/frame_header.h"
 #include "core/products/unknown_facts.h"
 #include "core/wcs/wcs.h"
 
@@ -111,6 +113,17 @@ class CardWriter {
       text("DP" + number, record + std::string(record[0] == 'E' ? number : ""), "");
   }
   bool present(const char*, bool here) const { return here; }
+  /// The rows of a vignetting table.
+  void illumination(MonotoneCubic& table, FieldRadius& radius) {
+    integer("VIGNROWS", table.at().size(), "rows of the relative illumination");
+    text("VIGNUNIT", unit_text(radius), "of the distances VIGRn from the axis");
+    for (std::size_t i = 0; i < table.at().size(); ++i) {
+      const std::string row = std::to_string(i + 1);
+      number_constant(("VIGR" + row).c_str(), table.at()[i], "");
+      number_constant(("VIGT" + row).c_str(), table.value()[i],
+                      i == 0 ? "light there, relative to the axis" : "");
+    }
+  }
   void sip(Wcs& wcs) {
     if (wcs.order == 0) return;
     if (wcs.order < 0 || wcs.order > highest_sip_order)

@@ -129,6 +129,9 @@ void visit(Visitor& v, FrameHeader& h) {
       v.number(std::string(p.keyword), number, std::string(p.meaning).c_str());
   }
   v.number("PSFFWHM", h.psf_fwhm_px, "[px] Gaussian, before pixel integration");
+  v.optional_number("DEFOCUS", h.defocus_um, "[um] of the detector from the focus, mid exposure");
+  if (v.present("VIGNROWS", !h.illumination.empty()))
+    v.illumination(h.illumination, h.illumination_radius);
   v.zero_point(h.zero_point_mag, h.magnitudes);
   v.number("EXTINCT", h.extinction_mag_per_airmass, "[mag/airmass]");
   if (v.present("R0", h.r0_m > 0)) {

@@ -22,7 +22,7 @@ float hat(int node, int count, double at, double length) {
 }  // namespace
 
 BlurGrid::BlurGrid(int columns, int rows, int oversampling, int half_cells, int field_columns,
-                   int field_rows)
+                   int field_rows, bool in_tiles)
     : columns_(columns),
       rows_(rows),
       oversampling_(oversampling),
@@ -33,7 +33,34 @@ BlurGrid::BlurGrid(int columns, int rows, int oversampling, int half_cells, int 
            good_fft_size(rows * oversampling + 2 * half_cells)),
       cells_(fft_.floats()),
       lit_(std::size_t(fft_.rows())),
-      of_row_(std::size_t(rows)) {}
+      of_row_(std::size_t(rows)) {
+  if (!in_tiles || field_columns_ * field_rows_ == 1) return;
+  const auto widest = [&](int count, int length, int grid_cells) {
+    int cells = 0;
+    for (int node = 0; node < count; ++node) {
+      const Range range = tile_along(node, count, length, grid_cells);
+      cells = std::max(cells, range.end - range.begin);
+    }
+    return cells + 2 * half_;
+  };
+  tile_ = std::make_unique<RealFft2>(
+      good_fft_size(widest(field_columns_, columns_, fft_.columns()), true),
+      good_fft_size(widest(field_rows_, rows_, fft_.rows())));
+  part_ = FftBuffer(tile_->floats());
+  sum_ = FftBuffer(fft_.floats());
+}
+
+// The cells along an axis in which a node has a weight.
+BlurGrid::Range BlurGrid::tile_along(int node, int count, int length, int cells) const {
+  if (count == 1) return {0, cells};
+  const double step_px = (length - 1.0) / (count - 1);
+  const auto cell = [&](double px) {
+    return oversampling_ * px + 0.5 * (oversampling_ - 1) + half_;
+  };
+  return {
+      node == 0 ? 0 : std::max(0, int(std::floor(cell((node - 1) * step_px)))),
+      node == count - 1 ? cells : std::min(cells, int(std::ceil(cell((node + 1) * step_px))) + 1)};
+}
 
 void BlurGrid::set_kernels(const std::vector<PsfKernel>& kernels, Threads& threads) {
   if (int(kernels.size()) != field_columns_ * field_rows_) throw Error("blur: number of kernels");
@@ -41,6 +68,18 @@ void BlurGrid::set_kernels(const std::vector<PsfKernel>& kernels, Threads& threa
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     const PsfKernel& kernel = kernels[i];
     if (kernel.half != half_) throw Error("blur: size of a kernel");
+    if (tile_) {
+      std::fill(part_.data(), part_.data() + part_.size(), 0.0f);
+      for (int dy = -half_; dy <= half_; ++dy)
+        for (int dx = -half_; dx <= half_; ++dx) {
+          const int y = (dy + tile_->rows()) % tile_->rows(),
+                    x = (dx + tile_->columns()) % tile_->columns();
+          part_.data()[std::size_t(y) * std::size_t(tile_->stride()) + std::size_t(x)] =
+              kernel.at(dx, dy);
+        }
+      tile_->spectrum(part_, threads, spectra_[i]);
+      continue;
+    }
     empty_ = false;
     clear(threads);
     for (int dy = -half_; dy <= half_; ++dy)
@@ -127,6 +166,57 @@ void BlurGrid::weigh(int node, Threads& threads) {
   });
 }
 
+// Blurs the light near one node, weighted as above, on a grid of its own, and adds it to the sum.
+void BlurGrid::blur_tile(int node, Threads& threads) {
+  const int node_x = node % field_columns_, node_y = node / field_columns_;
+  const Range across = tile_along(node_x, field_columns_, columns_, fft_.columns()),
+              down = tile_along(node_y, field_rows_, rows_, fft_.rows());
+  const auto stride = std::size_t(fft_.stride()), own_stride = std::size_t(tile_->stride());
+  std::vector<float> share_of_column;
+  for (int x = across.begin; x < across.end; ++x)
+    share_of_column.push_back(
+        hat(node_x, field_columns_, pixel_of({double(x), 0.0}).x_px, columns_));
+  std::vector<char> lit(std::size_t(tile_->rows()));
+  threads.for_ranges(
+      std::size_t(tile_->rows()), row_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+          const int y = down.begin + int(v) - half_;
+          if (y < down.begin || y >= down.end || !lit_[std::size_t(y)]) continue;
+          const float share = hat(node_y, field_rows_, pixel_of({0.0, double(y)}).y_px, rows_);
+          const float* in = cells_.data() + std::size_t(y) * stride + across.begin;
+          float* row = part_.data() + v * own_stride;
+          std::fill(row, row + own_stride, 0.0f);
+          bool is_lit = false;
+          for (std::size_t i = 0; i < share_of_column.size(); ++i) {
+            const float light = in[i] * share * share_of_column[i];
+            row[std::size_t(half_) + i] = light;
+            is_lit = is_lit || light != 0.0f;
+          }
+          lit[v] = is_lit;
+        }
+      });
+  if (std::none_of(lit.begin(), lit.end(), [](char l) { return l; })) return;
+  // Rows and columns of the tile within the frame.
+  const auto within = [&](const Range& range, int length) {
+    const int begin = std::max(half_, range.begin - half_),
+              end = std::min(half_ + length * oversampling_, range.end + half_);
+    return Range{begin, std::max(begin, end)};
+  };
+  const Range rows = within(down, rows_), columns = within(across, columns_);
+  const int first = down.begin - half_, left = across.begin - half_;
+  tile_->convolve(part_, lit, rows.begin - first, rows.end - first, spectra_[std::size_t(node)],
+                  threads);
+  threads.for_ranges(std::size_t(rows.end - rows.begin), row_grain,
+                     [&](std::size_t begin, std::size_t end) {
+                       for (std::size_t r = begin; r < end; ++r) {
+                         const auto y = std::size_t(rows.begin) + r;
+                         const float* in = part_.data() + (y - std::size_t(first)) * own_stride;
+                         float* out = sum_.data() + y * stride;
+                         for (int x = columns.begin; x < columns.end; ++x) out[x] += in[x - left];
+                       }
+                     });
+}
+
 FftBuffer& BlurGrid::blur(Threads& threads) {
   const int begin = half_, end = half_ + rows_ * oversampling_;
   if (spectra_.size() == 1) {
@@ -134,6 +224,10 @@ FftBuffer& BlurGrid::blur(Threads& threads) {
     return cells_;
   }
   std::fill(sum_.data(), sum_.data() + sum_.size(), 0.0f);
+  if (tile_) {
+    for (int node = 0; node < int(spectra_.size()); ++node) blur_tile(node, threads);
+    return sum_;
+  }
   for (int node = 0; node < int(spectra_.size()); ++node) {
     weigh(node, threads);
     fft_.add_product(part_, lit_, spectra_[std::size_t(node)], sum_, threads);

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "core/base/image.h"
@@ -10,8 +11,8 @@ namespace dmise {
 
 /// The image plane on cells smaller than pixels, with a margin as wide as the kernel, so that light
 /// beside the frame contributes and nothing wraps around. Blurred with one pair of transforms per
-/// frame, or with one forward transform per kernel if kernels vary over the field. All memory is
-/// allocated in the constructor.
+/// frame, or with one forward transform per kernel if kernels vary over the field, of the whole
+/// grid or, in tiles, of the part that the kernel has. All memory is allocated in the constructor.
 ///
 /// Accurate to 1e-6 of the frame's brightest cell (single precision). Dark pixels that rounding
 /// makes negative are set to 0, and the rest is rescaled to keep the sum.
@@ -20,7 +21,7 @@ class BlurGrid {
   /// `field_columns` x `field_rows` kernels with linear interpolation; 1 x 1: one for the whole
   /// frame.
   BlurGrid(int columns, int rows, int oversampling, int half_cells, int field_columns = 1,
-           int field_rows = 1);
+           int field_rows = 1, bool in_tiles = false);
 
   /// Kernels in row-major order; each must have the grid's `half_cells`.
   void set_kernels(const std::vector<PsfKernel>& kernels, Threads& threads);
@@ -51,12 +52,18 @@ class BlurGrid {
  private:
   void find_lit_rows(Threads& threads);
   void weigh(int node, Threads& threads);
+  struct Range {
+    int begin, end;
+  };
+  Range tile_along(int node, int count, int length, int cells) const;
+  void blur_tile(int node, Threads& threads);
   FftBuffer& blur(Threads& threads);
   void resample(FftBuffer& cells, PointSpread::Resampling resampling, Threads& threads);
   void add_positive(const FftBuffer& cells, ExpectedElectronImage& light, Threads& threads) const;
 
   int columns_, rows_, oversampling_, half_, field_columns_, field_rows_;
   RealFft2 fft_;
+  std::unique_ptr<RealFft2> tile_;  // null: kernels are of the whole grid
   FftBuffer cells_, part_, sum_;
   std::vector<RealFft2::Spectrum> spectra_;
   std::vector<char> lit_;

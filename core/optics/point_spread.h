@@ -2,16 +2,10 @@
 #include <vector>
 
 #include "core/effects/plan_facts.h"
+#include "core/optics/field_blur.h"
+#include "core/optics/focus_drift.h"
 
 namespace dmise {
-
-/// A Zernike term of the optics' wavefront, in Noll's index; rms in metres of path.
-struct WavefrontTerm {
-  int noll = 4;  // 4..66: piston and tilts do not blur
-  double rms_m = 0.0;
-
-  bool operator==(const WavefrontTerm&) const = default;
-};
 
 /// Aberrations that grow with the distance from the boresight; rms path at the farthest corner.
 struct FieldAberrations {
@@ -33,7 +27,8 @@ struct PointSpread {
   /// Of the plane, once, unless it is the air that makes it necessary; sources have that of their
   /// deposit.
   static double cost_s(int level, const PlanFacts& f) {
-    const bool transforms = f.scene.diffracts && !f.air.still_is_deposited;
+    const bool transforms = (f.scene.diffracts && !f.air.still_is_deposited) ||
+                            f.scene.blur_varies || f.scene.focus_drifts;
     return transforms ? level * PlanFacts::transform_pixel_s * f.pixels() : 0.0;
   }
 
@@ -66,6 +61,8 @@ struct PointSpread {
   FieldAberrations field;
   int grid_columns = 1, grid_rows = 1;  // kernels over the field, 1..9, interpolated
   int most_screens = 32;                // beyond so many tau0: long exposure
+  FieldBlur varying;                    // over the field, by tables
+  FocusDrift drift;                     // of the detector along the axis
 
   bool operator==(const PointSpread&) const = default;
 };

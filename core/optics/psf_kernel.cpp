@@ -9,7 +9,7 @@ namespace dmise {
 namespace {
 
 PsfKernel make(const TransferFunction& otf, double cutoff_per_rad, double cell_rad, int half,
-               bool point_spread, double* lost) {
+               bool point_spread, bool even_along_axes, double* lost) {
   if (!(cell_rad > 0.0) || half < 0 || half > 2048) throw Error("psf kernel: cell or size");
   // Fine grid: an odd number of samples per cell, so that a sample is at each cell's centre, and
   // enough that the transfer function ends below the Nyquist frequency. The period is twice the
@@ -22,18 +22,27 @@ PsfKernel make(const TransferFunction& otf, double cutoff_per_rad, double cell_r
   FftBuffer data(2 * std::size_t(n) * std::size_t(n));
   const double step = 1.0 / (period_cells * cell_rad);
   const auto frequency = [&](int i) { return step * (i <= n / 2 ? i : i - n); };
-  // Symmetric in both axes: a quarter is enough.
+  // Symmetric in both axes: a quarter is enough; else half.
   std::vector<double> cell(std::size_t(n) / 2 + 1);
   for (int i = 0; i <= n / 2; ++i)
     cell[std::size_t(i)] = point_spread ? pixel_otf(frequency(i), cell_rad) : 1.0;
   for (int y = 0; y <= n / 2; ++y)
     for (int x = 0; x <= n / 2; ++x) {
-      const auto value = float(otf(frequency(x), frequency(y)) * cell[std::size_t(x)] *
-                               cell[std::size_t(y)] / (double(period_cells) * period_cells));
-      if (value == 0.0f) continue;
-      for (int v : {y, (n - y) % n})
-        for (int u : {x, (n - x) % n})
-          data.data()[2 * (std::size_t(v) * std::size_t(n) + std::size_t(u))] = value;
+      const auto value_at = [&](double nu_x) {
+        return float(otf(nu_x, frequency(y)) * cell[std::size_t(x)] * cell[std::size_t(y)] /
+                     (double(period_cells) * period_cells));
+      };
+      const float value = value_at(frequency(x)),
+                  mirrored = even_along_axes ? value : value_at(-frequency(x));
+      if (value == 0.0f && mirrored == 0.0f) continue;
+      const int y2 = (n - y) % n, x2 = (n - x) % n;
+      const auto put = [&](int v, int u, float share) {
+        data.data()[2 * (std::size_t(v) * std::size_t(n) + std::size_t(u))] = share;
+      };
+      put(y, x2, mirrored);
+      put(y2, x, mirrored);
+      put(y, x, value);
+      put(y2, x2, value);
     }
   ComplexFft2(n).transform(data);
 
@@ -56,12 +65,17 @@ PsfKernel make(const TransferFunction& otf, double cutoff_per_rad, double cell_r
 
 PsfKernel kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad, int half,
                     double* lost) {
-  return make(otf, cutoff_per_rad, cell_rad, half, true, lost);
+  return make(otf, cutoff_per_rad, cell_rad, half, true, true, lost);
 }
 
 PsfKernel signed_kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad,
                            int half, double* lost) {
-  return make(otf, cutoff_per_rad, cell_rad, half, false, lost);
+  return make(otf, cutoff_per_rad, cell_rad, half, false, true, lost);
+}
+
+PsfKernel signed_kernel_of_even(const TransferFunction& otf, double cutoff_per_rad, double cell_rad,
+                                int half, double* lost) {
+  return make(otf, cutoff_per_rad, cell_rad, half, false, false, lost);
 }
 
 PsfKernel optical_kernel(const Blur& blur, double cell_rad, int half, double* lost) {

@@ -17,7 +17,7 @@ struct PsfKernel {
   float at(int dx, int dy) const { return values[std::size_t((dy + half) * side() + dx + half)]; }
 };
 
-/// Transfer function by frequencies along x and y [cycles/rad]; real and even.
+/// Transfer function by frequencies along x and y [cycles/rad]; real and even along each axis.
 using TransferFunction = std::function<double(double nu_x, double nu_y)>;
 
 /// Kernel of a transfer function, integrated over cells of angular size `cell_rad` and truncated
@@ -31,6 +31,10 @@ PsfKernel kernel_of(const TransferFunction& otf, double cutoff_per_rad, double c
 /// not point spreads.
 PsfKernel signed_kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad,
                            int half, double* lost = nullptr);
+
+/// The same of a function that is even, but not along each axis.
+PsfKernel signed_kernel_of_even(const TransferFunction& otf, double cutoff_per_rad, double cell_rad,
+                                int half, double* lost = nullptr);
 
 /// Kernel of the optics: diffraction, long exposure, jitter, defocus, cell integration.
 PsfKernel optical_kernel(const Blur& blur, double cell_rad, int half, double* lost = nullptr);

@@ -61,10 +61,12 @@ PsfModel::PsfModel(const Optics& optics, std::vector<WavelengthShare> band, cons
 }
 
 // Tilts that put the centroid of the truncated kernel without air on the axis: first by the
-// wavefront's mean slope, then by the remaining offset.
+// wavefront's mean slope, then by the remaining offset. Tables have their own tilt.
 std::array<ZernikeTerm, 2> PsfModel::centring(const FieldPlace& place, std::size_t wavelength) {
   const double wavelength_m = band_[wavelength].wavelength_m;
-  const Pupil own = pupil_at(optics_, place, wavelength_m);
+  Optics centred = optics_;
+  centred.spread.varying = {};
+  const Pupil own = pupil_at(centred, place, wavelength_m);
   std::array<ZernikeTerm, 2> tilt = centring_tilt(own);
   const bool symmetric = std::none_of(own.wavefront.begin(), own.wavefront.end(),
                                       [](const ZernikeTerm& t) { return has_odd_order(t.noll); });
@@ -94,7 +96,35 @@ bool PsfModel::is_round(const FieldPlace& place) const {
   const PointSpread& s = optics_.spread;
   return s.model == Model::gaussian ||
          (!flow_ && s.spiders == 0 && s.wavefront.empty() && s.defocus_m == 0.0 &&
-          (place.radius == 0.0 || !s.field.any()));
+          s.varying.wavefront.empty() && (place.radius == 0.0 || !s.field.any()));
+}
+
+void PsfModel::set_defocus(double defocus_m) {
+  if (optics_.spread.defocus_m == defocus_m) return;
+  optics_.spread.defocus_m = defocus_m;
+  centred_.clear();
+}
+
+// Of geometrical optics: light is even over the disc, or over the ring of an obscured pupil.
+double PsfModel::disc_otf(double nu) const {
+  if (optics_.spread.defocus_m == 0.0) return 1.0;
+  const double disc_rad =
+      std::abs(optics_.spread.defocus_m) / optics_.f_number() / optics_.focal_length_m;
+  const double e = optics_.obscuration;
+  return (defocus_otf(nu, disc_rad) - e * e * defocus_otf(nu, e * disc_rad)) / (1 - e * e);
+}
+
+PsfKernel PsfModel::gaussian_kernel(const FieldPlace& place, double wavelength_m) {
+  const GaussianShape shape = gaussian_at(optics_, place, wavelength_m);
+  const double pixel_rad = optics_.pixel_angle_rad(), scale = 2 * pi * pi * pixel_rad * pixel_rad;
+  const auto otf = [&](double nu_x, double nu_y) {
+    const double square =
+        shape.xx * nu_x * nu_x + 2 * shape.xy * nu_x * nu_y + shape.yy * nu_y * nu_y;
+    const double extra = extra_otf(nu_x, nu_y, wavelength_m);
+    if (extra == 0.0) return 0.0;
+    return std::exp(-scale * square) * disc_otf(std::hypot(nu_x, nu_y)) * extra;
+  };
+  return signed_kernel_of_even(otf, 0.5 / cell_rad_, cell_rad_, plan_.half_cells, &lost_);
 }
 
 double PsfModel::air_otf(double nu, double wavelength_m) const {
@@ -161,7 +191,10 @@ PsfKernel PsfModel::kernel(const FieldPlace& place, double start_s, double expos
   const auto add = [&](const PsfKernel& k, double share) {
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += share * double(k.values[i]);
   };
-  if (is_round(place)) {
+  if (optics_.spread.model == Model::gaussian &&
+      (optics_.spread.varying.any() || optics_.spread.drift.any())) {
+    for (const WavelengthShare& w : band_) add(gaussian_kernel(place, w.wavelength_m), w.share);
+  } else if (is_round(place)) {
     for (const WavelengthShare& w : band_) add(round_kernel(w.wavelength_m), w.share);
   } else if (!flow_) {
     for (std::size_t w = 0; w < band_.size(); ++w)

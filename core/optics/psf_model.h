@@ -14,7 +14,8 @@ namespace dmise {
 /// divided by the Gaussian of `grid_sigma_cells` of deposits on the grid, and not integrated over
 /// cells, because deposits are. With bilinear resampling, multiplied by pixel / cell. A kernel
 /// tapers off over the outer half of its radius. Aberrations of the pupil do not move the centroid:
-/// that displacement is part of a camera's plate solution.
+/// that displacement is part of a camera's plate solution. Those of `psf_field` do: the kernel's
+/// centre is the place of the chief ray.
 class PsfModel {
  public:
   /// `turbulence` is the random key of this sensor's turbulence. Screens are sampled for the
@@ -22,8 +23,12 @@ class PsfModel {
   PsfModel(const Optics& optics, std::vector<WavelengthShare> band, const PsfPlan& plan,
            const std::optional<SensorSeeing>& seeing, const RngKey& turbulence);
 
-  /// Whether each exposure has its own kernels.
+  /// Whether each exposure has its own kernels, for the air.
   bool changes() const { return flow_.has_value(); }
+
+  /// Sets the distance of the detector from the focus, the camera's and what it has drifted. It
+  /// must be within that of the run.
+  void set_defocus(double defocus_m);
 
   /// Kernel of an exposure that starts at `start_s` of simulation time and lasts `exposure_s`.
   PsfKernel kernel(const FieldPlace& place, double start_s, double exposure_s);
@@ -39,6 +44,8 @@ class PsfModel {
   const SampledOtf& extra_at(std::size_t wavelength);
   std::array<ZernikeTerm, 2> centring(const FieldPlace& place, std::size_t wavelength);
   PsfKernel round_kernel(double wavelength_m);
+  double disc_otf(double nu_per_rad) const;
+  PsfKernel gaussian_kernel(const FieldPlace& place, double wavelength_m);
   PsfKernel pupil_kernel_at(const FieldPlace& place, std::size_t wavelength,
                             const PhaseScreen* screen);
 

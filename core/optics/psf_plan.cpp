@@ -24,26 +24,38 @@ constexpr double most_cycles_per_cell = 0.40;
 constexpr int usual_half_cells = 512, widest_half_cells = 1024;
 
 bool is_aberrated(const PointSpread& s) {
-  return !s.wavefront.empty() || s.field.any() || s.defocus_m != 0.0;
+  return !s.wavefront.empty() || s.field.any() || s.defocus_m != 0.0 || s.varying.any() ||
+         s.drift.any();
 }
 
 // Widths and frequencies of the blur, in pixels.
 struct Measures {
   double airy_px, seeing_px, jitter_px, defocus_px, cutoff_per_px;
+  double widest_px;  // diameter of defocus and of the tables' spots in the run, over the field
 };
 
 Measures measure(const Optics& o, double wavelength_m, const SensorSeeing* seeing, bool lasting) {
   const PointSpread& s = o.spread;
   const double pixel_rad = o.pixel_angle_rad();
   Measures m{};
+  const double px_per_m = 1.0 / o.f_number() / o.pixel_pitch_m;
+  m.widest_px = (std::abs(s.defocus_m) + s.drift.most_m()) * px_per_m;
   if (s.model == Model::gaussian) {
     m.airy_px = fwhm_per_sigma * psf_sigma_px(o, wavelength_m);
     m.cutoff_per_px = gaussian_end / psf_sigma_px(o, wavelength_m);
+    if (s.varying.any()) {
+      const GaussianShape axis = gaussian_at(o, {}, wavelength_m);
+      const WidthRange range = gaussian_widths(o, wavelength_m);
+      m.airy_px = fwhm_per_sigma * std::sqrt(0.5 * (axis.xx + axis.yy));
+      m.cutoff_per_px = gaussian_end / range.least_px;
+      m.widest_px += 5.0 * fwhm_per_sigma * range.most_px;
+    }
     return m;
   }
+  if (s.varying.any()) m.widest_px += 2.0 * field_spot_px(o);
   m.airy_px = 1.029 * wavelength_m / o.aperture_m / pixel_rad;
   m.jitter_px = fwhm_per_sigma * s.jitter_rad / pixel_rad;
-  m.defocus_px = std::abs(s.defocus_m) / o.f_number() / o.pixel_pitch_m;
+  m.defocus_px = std::abs(s.defocus_m) * px_per_m;
   m.cutoff_per_px = o.aperture_m / wavelength_m * pixel_rad;
   if (seeing) {
     const double r0_m = seeing->r0_at_m(wavelength_m);
@@ -107,10 +119,14 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
   plan.fwhm_px = width_px(m);
 
   const bool plain = s.model == Model::gaussian;
+  const bool even = !s.varying.any() && !s.drift.any();
   const bool narrow = !plain && plan.fwhm_px < narrow_px && !is_aberrated(s);
+  if (s.method == Method::deposit && !even)
+    refuse("method", "deposit is for a blur without psf_field and focus_drift");
   if (s.method == Method::deposit && !plain && !narrow)
     refuse("method", "deposit is for psf: gaussian, or a blur below 0.25 px");
-  if (s.method == Method::deposit || (s.method == Method::automatic && (plain || narrow))) {
+  if (even &&
+      (s.method == Method::deposit || (s.method == Method::automatic && (plain || narrow)))) {
     plan.method = Method::deposit;
     // Airy wings beyond a pixel's half side carry about 0.2 (lambda / D) / radius of the light.
     plan.error = plain ? 2e-6 : 0.2 * m.airy_px / 0.5;
@@ -128,9 +144,9 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
     refuse("oversampling", "must be at least " + std::to_string(least) +
                                " to sample the blur, got " + std::to_string(plan.oversampling));
   const double cells = double(plan.oversampling) * plan.oversampling * o.columns * o.rows;
-  plan.method = s.method != Method::automatic ? s.method
-                : cells <= largest_grid_cells ? Method::transform
-                                              : Method::direct;
+  plan.method = s.method != Method::automatic                    ? s.method
+                : cells <= largest_grid_cells || s.varying.any() ? Method::transform
+                                                                 : Method::direct;
   // Wide kernels are cheap for a transform, expensive for sums and screens.
   const bool cheap = plan.method == Method::transform && short_screens == 0;
   const double airy_widths = cheap ? 64.0 : 24.0;
@@ -141,7 +157,13 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
       : plain          ? 5.0 * plan.fwhm_px
               : std::max(std::min(airy_widths * m.airy_px, widest_px), 5.0 * full_width_px);
   // The defocus disc must be within the inner half, which does not taper.
-  const double disc_cells = s.support_px > 0 ? 0.0 : 1.05 * m.defocus_px * plan.oversampling;
+  const double disc_px = even ? m.defocus_px : m.widest_px;
+  const double disc_cells = s.support_px > 0 ? 0.0 : 1.05 * disc_px * plan.oversampling;
+  if (disc_cells > widest_half_cells && !even)
+    refuse(s.drift.any() ? "focus_drift" : "psf_field",
+           "its blur of " + std::to_string(std::lround(disc_px)) +
+               " px is wider than a kernel holds, " +
+               std::to_string(int(widest_half_cells / 1.05 / plan.oversampling)) + " px");
   if (disc_cells > widest_half_cells)
     refuse("defocus_m", "its disc of " + std::to_string(std::lround(m.defocus_px)) +
                             " px is wider than a kernel holds, " +
@@ -156,6 +178,13 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
                                     (0.75 * plan.half_cells / plan.oversampling));
   if (s.grid_columns * s.grid_rows > 1 && plan.method == Method::direct)
     refuse("psf_grid", "kernels over the field go with method: transform");
+  if (s.varying.any() && plan.method == Method::direct)
+    refuse("psf_field", "goes with method: transform");
+  if (s.varying.any() && cells > largest_field_cells)
+    refuse("psf_field", "the blur needs " + std::to_string(plan.oversampling) + " cells a pixel, " +
+                            std::to_string(std::lround(1e-6 * cells)) +
+                            " million in this frame, more than " +
+                            std::to_string(std::lround(1e-6 * largest_field_cells)) + " million");
   plan.error = 1e-4;
   char text[160];
   std::snprintf(text, sizeof text, "%.2f px wide, %d cells a pixel, %.1f million cells",

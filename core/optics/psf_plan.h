@@ -44,6 +44,8 @@ PsfPlan plan_psf(const Optics& optics, double wavelength_m,
                  AirTurbulence::Level turbulence = AirTurbulence::short_exposure);
 
 inline constexpr double largest_grid_cells = 40e6;
+/// Of a blur that changes over the field, which is transformed in any case.
+inline constexpr double largest_field_cells = 160e6;
 inline constexpr int largest_oversampling = 16;
 /// Gaussian width of deposits on the grid in cells; the kernel is divided by it.
 inline constexpr double grid_sigma_cells = 1.0;

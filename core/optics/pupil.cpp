@@ -12,21 +12,12 @@
 namespace dmise {
 namespace {
 
-// Noll's single index as radial order and azimuthal frequency; negative: the sine term.
-std::array<int, 2> orders(int noll) {
-  int n = 0, first = 1;
-  while (noll >= first + n + 1) first += ++n;
-  const int place = noll - first;
-  const int m = n % 2 ? 2 * (place / 2) + 1 : 2 * ((place + 1) / 2);
-  return {n, noll % 2 ? -m : m};
-}
-
 /// A Zernike polynomial with its radial coefficients.
 class ZernikePolynomial {
  public:
   explicit ZernikePolynomial(int noll) {
     if (noll < 1 || noll > 66) throw Error("zernike: Noll index must be 1..66");
-    const auto [n, signed_m] = orders(noll);
+    const auto [n, signed_m] = noll_orders(noll);
     sine_ = signed_m < 0;
     m_ = std::abs(signed_m);
     terms_ = (n - m_) / 2 + 1;
@@ -87,6 +78,14 @@ double open_share(const Pupil& p, double x, double y, double step) {
 }
 
 }  // namespace
+
+std::array<int, 2> noll_orders(int noll) {
+  int n = 0, first = 1;
+  while (noll >= first + n + 1) first += ++n;
+  const int place = noll - first;
+  const int m = n % 2 ? 2 * (place / 2) + 1 : 2 * ((place + 1) / 2);
+  return {n, noll % 2 ? -m : m};
+}
 
 double zernike(int noll, double rho, double theta_rad) {
   return ZernikePolynomial(noll).at(std::polar(rho, theta_rad));
@@ -235,7 +234,7 @@ std::array<ZernikeTerm, 2> centring_tilt(const Pupil& pupil) {
   std::array<ZernikeTerm, 2> tilt{{{2, 0.0}, {3, 0.0}}};
   const double e = pupil.obscuration;
   for (const ZernikeTerm& t : pupil.wavefront) {
-    const auto [n, m] = orders(t.noll);
+    const auto [n, m] = noll_orders(t.noll);
     if (std::abs(m) != 1) continue;
     const double theta = m > 0 ? 0.0 : pi / 2;
     const double slope =

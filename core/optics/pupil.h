@@ -19,6 +19,9 @@ struct ZernikeTerm {
 /// `Error` for an index outside 1..66.
 double zernike(int noll, double rho, double theta_rad);
 
+/// Noll's index as radial order and azimuthal frequency; negative: the sine term.
+std::array<int, 2> noll_orders(int noll);
+
 /// The pupil of a telescope.
 struct Pupil {
   double aperture_m = 0.1;

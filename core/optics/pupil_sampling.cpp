@@ -18,13 +18,29 @@ using Model = PointSpread::Model;
 constexpr int still_samples = 128, turbulent_samples = 48;
 
 bool needs_pupil(const PointSpread& s, const PsfPlan& plan) {
-  const bool aberrated = s.spiders != 0 || !s.wavefront.empty() || s.defocus_m != 0.0;
+  const bool aberrated = s.spiders != 0 || !s.wavefront.empty() || s.defocus_m != 0.0 ||
+                         !s.varying.wavefront.empty() || s.drift.any();
   return has_screens(plan) || (s.model != Model::gaussian && (aberrated || s.field.any()));
 }
 
 /// The steepest slope over the field. Terms grow outwards, so centre and corners suffice.
 double steepest_in_field(const Optics& optics, double wavelength_m) {
+  if (optics.spread.drift.any()) {
+    double steepest = 0.0;
+    for (const double sign : {-1.0, 1.0}) {
+      Optics drifted = optics;
+      drifted.spread.defocus_m += sign * optics.spread.drift.most_m();
+      drifted.spread.drift = {};
+      steepest = std::max(steepest, steepest_in_field(drifted, wavelength_m));
+    }
+    return steepest;
+  }
   double steepest = steepest_slope(pupil_at(optics, {}, wavelength_m));
+  if (!optics.spread.varying.wavefront.empty())
+    for (const double height : table_heights(optics)) {
+      const Pupil pupil = pupil_at(optics, {height, 0.0}, wavelength_m);
+      steepest = std::max({steepest, steepest_slope(pupil), steepest_slope_of(pupil.wavefront)});
+    }
   if (!optics.spread.field.any()) return steepest;
   constexpr int directions = 8;
   for (int i = 0; i < directions; ++i)
@@ -35,14 +51,26 @@ double steepest_in_field(const Optics& optics, double wavelength_m) {
 
 /// The key of the largest contribution to the slope.
 std::string steepest_key(const Optics& optics, double wavelength_m) {
-  Optics wavefront = optics, field = optics, defocus = optics;
-  wavefront.spread.field = field.spread.field = defocus.spread.field = {};
-  wavefront.spread.defocus_m = field.spread.defocus_m = 0.0;
-  field.spread.wavefront = defocus.spread.wavefront = {};
+  Optics plain = optics;
+  plain.spread.field = {};
+  plain.spread.wavefront = {};
+  plain.spread.varying = {};
+  plain.spread.drift = {};
+  plain.spread.defocus_m = 0.0;
+  Optics wavefront = plain, field = plain, defocus = plain, varying = plain, drift = plain;
+  wavefront.spread.wavefront = optics.spread.wavefront;
   field.spread.field = optics.spread.field;
+  defocus.spread.defocus_m = optics.spread.defocus_m;
+  varying.spread.varying = optics.spread.varying;
+  drift.spread.drift = optics.spread.drift;
   const double of_wavefront = steepest_in_field(wavefront, wavelength_m),
                of_field = steepest_in_field(field, wavelength_m),
-               of_defocus = steepest_in_field(defocus, wavelength_m);
+               of_defocus = steepest_in_field(defocus, wavelength_m),
+               of_varying = steepest_in_field(varying, wavelength_m),
+               of_drift = steepest_in_field(drift, wavelength_m);
+  if (of_varying > std::max({of_wavefront, of_field, of_defocus, of_drift}))
+    return "optics.psf_field";
+  if (of_drift > std::max({of_wavefront, of_field, of_defocus})) return "optics.focus_drift";
   if (of_wavefront >= std::max(of_field, of_defocus)) return "optics.zernike_nm";
   return of_field >= of_defocus ? "optics.field_nm" : "optics.defocus_m";
 }
@@ -74,16 +102,22 @@ Pupil pupil_at(const Optics& optics, const FieldPlace& place, double wavelength_
   add(6, s.field.astigmatism_m * r * r * std::cos(2 * a));
   add(5, s.field.astigmatism_m * r * r * std::sin(2 * a));
   add(4, s.field.curvature_m * r * r);
+  for (const WavefrontTerm& t : terms_of_field(optics, place)) add(t.noll, t.rms_m);
   return p;
 }
 
 double steepest_slope(const Pupil& pupil) {
   if (pupil.wavefront.empty()) return 0.0;
-  constexpr int radii = 16, angles = 64;  // Noll's term 66 has ten periods around the edge
-  constexpr double h = 1e-4;
   std::vector<ZernikeTerm> terms = pupil.wavefront;
   const auto tilt = centring_tilt(pupil);
   terms.insert(terms.end(), tilt.begin(), tilt.end());
+  return steepest_slope_of(terms);
+}
+
+double steepest_slope_of(const std::vector<ZernikeTerm>& terms) {
+  if (terms.empty()) return 0.0;
+  constexpr int radii = 16, angles = 64;  // Noll's term 66 has ten periods around the edge
+  constexpr double h = 1e-4;
   double steepest = 0.0;
   for (int i = 1; i <= radii; ++i)
     for (int j = 0; j < angles; ++j) {

@@ -13,15 +13,6 @@ struct WavelengthShare {
   double share = 1.0;
 };
 
-/// Position in the field: distance and angle (from +x to +y) from the principal point, 1 at the
-/// frame's farthest corner.
-struct FieldPlace {
-  double radius = 0.0;
-  double angle_rad = 0.0;
-
-  bool operator==(const FieldPlace&) const = default;
-};
-
 /// Whether exposures use drawn screens.
 bool has_screens(const PsfPlan& plan);
 
@@ -31,6 +22,9 @@ Pupil pupil_at(const Optics& optics, const FieldPlace& place, double wavelength_
 /// Steepest slope of a pupil's wavefront, including its centring tilt [rad of phase per aperture
 /// radius].
 double steepest_slope(const Pupil& pupil);
+
+/// The same without the tilt, from the chief ray.
+double steepest_slope_of(const std::vector<ZernikeTerm>& terms);
 
 /// Grids of the pupil for each wavelength. Empty if the camera's kernel needs no pupil. Fine enough
 /// that the wavefront changes by less than pi between samples anywhere in the field: otherwise

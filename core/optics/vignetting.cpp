@@ -10,6 +10,10 @@ namespace dmise {
 double relative_illumination(const Optics& optics, PixelPosition pixel) {
   const Vignetting& v = optics.vignetting;
   if (!v.any()) return 1.0;
+  if (!v.table.empty()) {
+    const auto radius = field_radius(optics, pixel, v.table_radius);
+    return radius ? std::clamp(v.table(*radius), 0.0, 1.0) : 0.0;
+  }
   double share = 1.0;
   if (v.natural) {
     const auto direction = unproject(optics, pixel);
@@ -22,6 +26,23 @@ double relative_illumination(const Optics& optics, PixelPosition pixel) {
     share *= 1.0 - (1.0 - v.corner) * std::pow(r, v.power);
   }
   return share;
+}
+
+double illumination_slope_per_px(const Optics& optics) {
+  const Vignetting& v = optics.vignetting;
+  if (v.table.empty()) return 0.0;
+  constexpr int steps = 256;
+  constexpr double darkest = 1e-3;
+  double steepest = 0.0, before = -1.0;
+  const double step_px = corner_px(optics) / steps;
+  for (int i = 0; i <= steps; ++i) {
+    const auto radius = field_radius_at(optics, i * step_px, v.table_radius);
+    const double here = radius ? std::clamp(v.table(*radius), 0.0, 1.0) : 0.0;
+    if (before >= 0.0)
+      steepest = std::max(steepest, std::abs(here - before) / step_px / std::max(here, darkest));
+    before = here;
+  }
+  return steepest;
 }
 
 }  // namespace dmise

@@ -2,8 +2,10 @@
 #include <array>
 #include <string_view>
 
+#include "core/base/monotone_cubic.h"
 #include "core/base/pixel.h"
 #include "core/effects/plan_facts.h"
+#include "core/optics/field_radius.h"
 
 namespace dmise {
 
@@ -14,7 +16,7 @@ struct Vignetting {
   static constexpr EffectFacts facts{
       "vignetting", "lenses lose light off the axis",
       "corners too bright: 0.16 mag at 30 deg by the pupil alone",
-      "cos theta of the pupil, and a power of the distance from the axis"};
+      "cos theta of the pupil and a power of the distance from the axis, or a measured table"};
   static bool applies(const SceneFacts& scene) { return scene.vignettes; }
 
   static ErrorBound error(int, const PlanFacts& f) {
@@ -26,7 +28,8 @@ struct Vignetting {
     for (const double radius_px : f.shape_radius_px)
       length_px = std::max(length_px, 2.0 * radius_px);
     const double half_diagonal_px = 0.5 * std::hypot(double(f.columns), double(f.rows));
-    const double change = lost * std::min(1.0, 2.0 * length_px / half_diagonal_px);
+    const double change = std::max(lost * std::min(1.0, 2.0 * length_px / half_diagonal_px),
+                                   std::min(1.0, f.illumination_slope_per_px * length_px));
     error.position_px = 0.25 * change * length_px;
     // Where a source leaves less than half of the noise.
     if (f.stars > 0.0 || f.objects > 0)
@@ -43,11 +46,20 @@ struct Vignetting {
   double corner = 1.0;
   double power = 2.0;  // 1..16
 
-  bool any() const { return natural || corner < 1.0; }
+  /// Relative illumination, 0..1, by the distance from the axis, in place of all that: a measured
+  /// lens. Beyond its ends it stays what it is there; where no direction is imaged it is 0.
+  MonotoneCubic table;
+  FieldRadius table_radius = FieldRadius::angle_deg;
+
+  bool any() const { return natural || corner < 1.0 || !table.empty(); }
   bool operator==(const Vignetting&) const = default;
 };
 
-/// Light that reaches a pixel, relative to the boresight's: (0, 1]; anywhere in the image plane.
+/// Light that reaches a pixel, relative to the boresight's: 0..1; anywhere in the image plane.
 double relative_illumination(const Optics& optics, PixelPosition pixel);
+
+/// Steepest change of the table's illumination within the frame, relative to it [1/px]; 0 without a
+/// table.
+double illumination_slope_per_px(const Optics& optics);
 
 }  // namespace dmise

@@ -54,6 +54,9 @@ struct FrameHeader {
   std::optional<Detector> detector;  // effects that are on; empty in foreign files
   double saturation_dn = 0.0;        // lowest count that may be clipped: full well or ADC
   double psf_fwhm_px = 0.0;          // Gaussian, before pixel integration
+  std::optional<double> defocus_um;  // of a focus that drifts, mid exposure
+  MonotoneCubic illumination;        // relative, of a lens with a table of it, by
+  FieldRadius illumination_radius = FieldRadius::angle_deg;
   Band band;
   double zero_point_mag = 0.0;              // of a source of 1 e-/s, without atmosphere
   MagnitudeScale magnitudes;                // that products have; PHOTZP is in it

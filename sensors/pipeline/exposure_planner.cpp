@@ -94,6 +94,24 @@ PlanFacts::Air air_facts(const SensorConfig& sensor) {
   return air;
 }
 
+/// Of a blur that changes over the field, and of a focus that drifts.
+void add_blur_facts(const Optics& optics, double wavelength_m, PlanFacts& f) {
+  const PointSpread& s = optics.spread;
+  if (f.scene.blur_varies) {
+    const std::size_t reference = FieldBlur::places.size() - 1;
+    const FieldGridError left =
+        field_grid_error(optics, wavelength_m, FieldBlur::places[reference]);
+    for (std::size_t level = 0; level < reference; ++level) {
+      const FieldGridError error = field_grid_error(optics, wavelength_m, FieldBlur::places[level]);
+      f.field_misplaced[level] = error.misplaced + left.misplaced;
+      f.field_shift_px[level] = error.shift_px + left.shift_px;
+    }
+  }
+  if (!f.scene.focus_drifts) return;
+  f.kernels_change = true;
+  f.defocus_px = s.drift.most_m() / optics.f_number() / optics.pixel_pitch_m;
+}
+
 }  // namespace
 
 ExposurePlanner::ExposurePlanner(const SensorConfig& sensor, const StarMap* stars,
@@ -142,6 +160,7 @@ void ExposurePlanner::look_at_sensor() {
     f.kernel_s = cell_s * cells * std::max(1, blur.screens) * optics.spread.grid_columns *
                  optics.spread.grid_rows;
   }
+  add_blur_facts(optics, band.centre_m, f);
   // The finest scale: neighbours of pixels from the centre to a corner.
   f.pixel_rad = optics.pixel_angle_rad();
   look_over(optics, 1.0, [&](PixelPosition at, const Vec<CameraFrame>& here) {
@@ -152,6 +171,7 @@ void ExposurePlanner::look_at_sensor() {
     if (optics.vignetting.any())
       f.least_illumination = std::min(f.least_illumination, relative_illumination(optics, at));
   });
+  f.illumination_slope_per_px = illumination_slope_per_px(optics);
 }
 
 void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::size_t>& objects,

@@ -83,7 +83,8 @@ struct FramePipeline::Work {
       return planned.effects.level(effect) == effects.level(effect);
     };
     const bool same_blur = same_level(PointSpread::facts) && same_level(AirTurbulence::facts) &&
-                           same_level(PsfWavelengths::facts);
+                           same_level(PsfWavelengths::facts) && same_level(FieldBlur::facts) &&
+                           same_level(FocusDrift::facts);
     planned.effects = effects;
     if (!same_blur) make_optics();
   }

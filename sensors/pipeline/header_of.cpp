@@ -81,6 +81,13 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
     h.earth_velocity_m_per_s = environment.earth_velocity_m_per_s;
   h.band.name = header_text(h.band.name);
   h.image_optics = acting_optics(optics.image, sensor.effects);
+  if (const FocusDrift& drift = optics.spread.drift;
+      drift.any() && ran.has(PointSpread::facts) && ran.has(FocusDrift::facts))
+    h.defocus_um = 1e6 * (optics.spread.defocus_m + drift.at_m(times.middle.seconds()));
+  if (ran.has(Vignetting::facts)) {
+    h.illumination = optics.vignetting.table;
+    h.illumination_radius = optics.vignetting.table_radius;
+  }
   if (const SiteState* air = view.air()) {
     h.r0_m = air->r0_m;
     h.isoplanatic_angle_rad = air->isoplanatic_angle_rad;

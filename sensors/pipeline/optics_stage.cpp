@@ -21,6 +21,17 @@ PsfPlan plan_of(const SensorConfig& sensor) {
   return {.why = "off"};
 }
 
+/// The optics with those effects of them that are on. Kernels reach as far as without.
+Optics acting_blur(const SensorConfig& sensor) {
+  Optics optics = sensor.camera.optics;
+  PointSpread& s = optics.spread;
+  if (!s.varying.any()) return optics;
+  const int places = FieldBlur::places[std::size_t(sensor.effects.level(FieldBlur::facts))];
+  s.grid_columns = optics.columns > 1 ? places : 1;
+  s.grid_rows = optics.rows > 1 ? places : 1;
+  return optics;
+}
+
 FieldPlace field_place(const Optics& o, PixelPosition pixel) {
   const PixelPosition d = pixel - principal_point(o);
   return {std::hypot(d.x_px, d.y_px) / (0.5 * std::hypot(o.columns, o.rows)),
@@ -44,8 +55,10 @@ std::vector<FieldPlace> field_places(const Optics& o) {
 }  // namespace
 
 OpticsStage::OpticsStage(const SensorConfig& sensor, std::uint64_t seed, Threads& threads)
-    : optics_(sensor.camera.optics),
+    : optics_(acting_blur(sensor)),
       blurs_(sensor.effects.has(PointSpread::facts)),
+      drifts_(sensor.camera.optics.spread.drift.any() && sensor.effects.has(FocusDrift::facts)),
+      defocus_m_(optics_.spread.defocus_m),
       plan_(plan_of(sensor)),
       threads_(threads) {
   const Band& band = sensor.camera.band;
@@ -70,7 +83,26 @@ OpticsStage::OpticsStage(const SensorConfig& sensor, std::uint64_t seed, Threads
   if (plan_.method == Method::transform)
     grid_ = std::make_unique<BlurGrid>(optics_.columns, optics_.rows, plan_.oversampling,
                                        plan_.half_cells, optics_.spread.grid_columns,
-                                       optics_.spread.grid_rows);
+                                       optics_.spread.grid_rows, optics_.spread.varying.any());
+}
+
+double OpticsStage::fwhm_px() const {
+  if (!model_ || defocus_m_ == optics_.spread.defocus_m) return plan_.fwhm_px;
+  const auto square_px = [&](double defocus_m) {
+    const double disc_px = defocus_m / optics_.f_number() / optics_.pixel_pitch_m;
+    return disc_px * disc_px;
+  };
+  return std::sqrt(std::max(0.0, plan_.fwhm_px * plan_.fwhm_px + square_px(defocus_m_) -
+                                     square_px(optics_.spread.defocus_m)));
+}
+
+/// Whether that changes the kernels.
+bool OpticsStage::set_defocus(double time_s) {
+  if (!drifts_) return false;
+  const double before_m = defocus_m_;
+  defocus_m_ = optics_.spread.defocus_m + optics_.spread.drift.at_m(time_s);
+  model_->set_defocus(defocus_m_);
+  return defocus_m_ != before_m;
 }
 
 void OpticsStage::make_kernels() {
@@ -109,7 +141,8 @@ void OpticsStage::begin(const FrameTimes& exposure, double limit_e) {
   bright_e_ = bright_ratio * limit_e;
   exposure_start_s_ = exposure.start.seconds();
   exposure_s_ = exposure.seconds();
-  if (!has_kernels_ || model_->changes()) make_kernels();
+  const bool refocused = set_defocus(exposure.middle.seconds());
+  if (!has_kernels_ || refocused || model_->changes()) make_kernels();
   if (grid_) grid_->clear(threads_);
 }
 

@@ -29,8 +29,9 @@ class OpticsStage {
   void draw_by(GlEvaluator& evaluator) { evaluator_ = &evaluator; }
 
   const PsfPlan& plan() const { return plan_; }
-  /// Full width at half maximum before pixel integration.
-  double fwhm_px() const { return plan_.fwhm_px; }
+  /// Full width at half maximum before pixel integration, in the centre; of a drifting focus that
+  /// of the frame, about.
+  double fwhm_px() const;
 
   /// Starts a frame: the exposure's kernels, where they differ from the last. `limit_e`: electrons
   /// of the faintest source that matters.
@@ -43,11 +44,14 @@ class OpticsStage {
 
  private:
   void make_kernels();
+  bool set_defocus(double time_s);
   std::vector<Deposited> put(std::span<const Arc> arcs, const DepositView& view);
   std::vector<Deposited> sum_directly(std::span<const Arc> arcs, ExpectedElectronImage& light);
 
   Optics optics_;
-  bool blurs_;  // the effect psf is on
+  bool blurs_;              // the effect psf is on
+  bool drifts_;             // its focus
+  double defocus_m_ = 0.0;  // of the frame
   PsfPlan plan_;
   PsfTable table_;  // of deposits: the Gaussian's, or the grid's
   Threads& threads_;

@@ -20,6 +20,8 @@ std::string_view stage_of(std::string_view effect) {
   within(SkyGrid::facts, SkyBackground::facts);
   within(AirTurbulence::facts, PointSpread::facts);
   within(PsfWavelengths::facts, PointSpread::facts);
+  within(FieldBlur::facts, PointSpread::facts);
+  within(FocusDrift::facts, PointSpread::facts);
   within(DarkCurrent::facts, PhotonNoise::facts);
   within(ReadNoise::facts, PhotonNoise::facts);
   return stage;

@@ -118,7 +118,9 @@ TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeas
                                                .vignettes = true,
                                                .diffracts = true,
                                                .turbulent = true,
-                                               .synthetic_stars = true});
+                                               .synthetic_stars = true,
+                                               .blur_varies = true,
+                                               .focus_drifts = true});
   for (const EffectFacts* effect : all_effects())
     EXPECT_TRUE(
         std::any_of(list.begin(), list.end(),
