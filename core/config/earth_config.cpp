@@ -60,11 +60,16 @@ std::vector<Key> earth_keys() {
   return {optional("ellipsoid", form::choice(ellipsoid_names()) | form::map(ellipsoid_section),
                    "The figure of the Earth: of sites, heights, shadow and limb.", "WGS84"),
           optional("origin", form::map(origin_section),
-                   "The place of east, north and up, for motions, cameras and positions.")};
+                   "The place of east, north and up, for motions, cameras and positions."),
+          optional("earth_albedo", form::number(0.0, 1.0),
+                   "Share of the light that the Earth returns, as a diffuse ellipsoid: of its disc "
+                   "and of earthshine.",
+                   "0.3")};
 }
 
 EarthConfig read_earth(YamlMap& simulation) {
   EarthConfig earth;
+  earth.albedo = simulation.number_or("earth_albedo", earth.albedo);
   if (const auto ellipsoid = simulation.find("ellipsoid"))
     earth.ellipsoid = read_ellipsoid(*ellipsoid);
   if (const auto origin = simulation.find("origin")) {
@@ -92,6 +97,7 @@ void write_earth(JsonWriter& json, const EarthConfig& earth) {
         .field("longitude_deg", earth.origin->longitude_deg)
         .field("height_m", earth.origin->height_m)
         .end_object();
+  if (earth.albedo != usual_earth_albedo) json.field("earth_albedo", earth.albedo);
 }
 
 }  // namespace dmise

@@ -10,13 +10,17 @@
 #include "core/detector/detector.h"
 #include "core/effects/frame_effects.h"
 #include "core/facets/earthshine.h"
+#include "core/facets/moonlight.h"
 #include "core/optics/air_turbulence.h"
 #include "core/optics/image_optics.h"
 #include "core/sky/air_effects.h"
 #include "core/sky/dispersion.h"
+#include "core/sky/earth_disc.h"
+#include "core/sky/moon_disc.h"
 #include "core/sky/occultation.h"
 #include "core/sky/place_effects.h"
 #include "core/sky/shadow.h"
+#include "core/sky/sun_disc.h"
 
 namespace dmise {
 namespace {
@@ -64,11 +68,11 @@ constexpr std::string_view always_listed[] = {"proper_motion",
 /// sky's parts, the air's effects and those of the image have lists of their own, where they run.
 using LightEffects =
     EffectList<SkyBackground, SkyGrid, Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight,
-               Twilight, LightPollution, SpaceObjects, ResolvedShapes, EarthShadow, Earthshine,
-               ThermalEmission, StarBackground, SyntheticBackground, EarthOccultation,
-               AirExtinction, GasAbsorption, CloudCover, Scintillation, MovingScintillation,
-               Dispersion, Vignetting, Streak, Occlusion, Drawing, PointSpread, AirTurbulence,
-               PsfWavelengths, FieldBlur, FocusDrift>;
+               Twilight, LightPollution, StrayLight, SunDisc, MoonDisc, EarthDisc, SpaceObjects,
+               ResolvedShapes, EarthShadow, Earthshine, Moonlight, ThermalEmission, StarBackground,
+               SyntheticBackground, EarthOccultation, AirExtinction, GasAbsorption, CloudCover,
+               Scintillation, MovingScintillation, Dispersion, Vignetting, Streak, Occlusion,
+               Drawing, PointSpread, AirTurbulence, PsfWavelengths, FieldBlur, FocusDrift>;
 
 std::vector<const EffectFacts*> list() {
   std::vector<const EffectFacts*> all;
@@ -132,7 +136,8 @@ SceneFacts scene_facts(const SensorConfig& sensor) {
           .blur_varies =
               sensor.camera.optics.spread.varying.any() && sensor.effects.has(PointSpread::facts),
           .focus_drifts =
-              sensor.camera.optics.spread.drift.any() && sensor.effects.has(PointSpread::facts)};
+              sensor.camera.optics.spread.drift.any() && sensor.effects.has(PointSpread::facts),
+          .stray_light = sensor.camera.optics.stray_light.any()};
 }
 
 std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const SceneFacts& scene) {
@@ -247,6 +252,10 @@ std::vector<ParameterValue> parameters_in(const SensorConfig& sensor, const Effe
       numbers.push_back({p.key, {camera.optics.spread.drift.*p.value}});
     return numbers;
   }
+  if (effect.name == StrayLight::facts.name)
+    return {{"angle_deg", camera.optics.stray_light.angle_deg},
+            {"transmittance", camera.optics.stray_light.transmittance}};
+  if (effect.name == EarthDisc::facts.name) return {{"earth_albedo", {sensor.earth_albedo}}};
   if (effect.name == Streak::facts.name && sensor.effects.snapshots() > 0)
     return {{"snapshots", {double(sensor.effects.snapshots())}}};
   std::vector<ParameterValue> numbers;

@@ -22,6 +22,7 @@
 #include "core/orbit/interpolation.h"
 #include "core/photometry/band.h"
 #include "core/photometry/magnitude_system.h"
+#include "core/sky/earth_disc.h"
 
 namespace dmise {
 
@@ -115,6 +116,7 @@ struct SensorConfig {
   std::string where = {};  // `file:line:column: sensors[0]`, for messages
   std::variant<SiteConfig, PlatformConfig> place;
   Ellipsoid ellipsoid{};  // the scenario's Earth
+  double earth_albedo = usual_earth_albedo;
   Camera camera;
   Pointing pointing;
   Tracking tracking = Tracking::fixed;

@@ -355,6 +355,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
   sensor.effects = effects;
   sensor.accuracy = accuracy;
   sensor.ellipsoid = earth.ellipsoid;
+  sensor.earth_albedo = earth.albedo;
   if (const auto own = map.find("accuracy")) sensor.accuracy = read_accuracy(*own);
   const auto detection = map.find("detection");
   sensor.detect = detection ? detection->flag() : detect;

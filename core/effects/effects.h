@@ -41,6 +41,9 @@ struct SceneFacts {
   bool synthetic_stars = false;  // the scenario asks for some
   bool blur_varies = false;      // over the field, by a table
   bool focus_drifts = false;
+  bool stray_light = false;  // the optics scatter what is beside the field
+  // Whose disc is in the field or next to it, in the exposure.
+  bool sun_in_field = false, moon_in_field = false, earth_in_field = false;
 };
 
 /// A closed family of effects, in the order in which they run.

@@ -84,7 +84,9 @@ struct PlanFacts {
   double nearest_sun_rad = 3.0;                                      // of the field's edge
   double annual_aberration_rad = 0.0, diurnal_aberration_rad = 0.0;  // largest in the field
   bool sees_horizon = false;                                         // the Earth is in the field
-  double least_illumination = 1.0;                                   // by vignetting
+  double disc_e = 0.0;              // of the brightest pixel of Sun, Moon and Earth in the field
+  double stray_light_e = 0.0;       // of a pixel
+  double least_illumination = 1.0;  // by vignetting
   double illumination_slope_per_px = 0.0;  // steepest, relative, of a vignetting by a table
   // What the sensor does not know of itself.
   double pointing_error_rad = 0.0;  // largest displacement in the field
@@ -299,6 +301,7 @@ struct PlanFacts {
     const double background_sigma =
         peak * std::min(1.0, steepest * px / width_px) +
         in_noise(ghost_pixel_share * brightest_e() * std::min(1.0, px)) + kernel_end_in_noise(px) +
+        in_noise(disc_e * std::min(1.0, px)) +
         rings * 0.5 * std::min(1.0, std::numbers::pi * px / speckle_px);
     return {.photometry_mag = of_light * px,
             .position_px = centroid_px,

@@ -3,6 +3,7 @@
 
 #include "core/optics/image_optics.h"
 #include "core/optics/point_spread.h"
+#include "core/optics/stray_light.h"
 #include "core/optics/vignetting.h"
 #include "core/projection/projection.h"
 
@@ -21,6 +22,7 @@ struct Optics {
   double psf_fwhm_px = 1.5;   // of the lens and focus (Gaussian), before pixel integration; >= 0
   PointSpread spread;         // how points are blurred, and by which method
   Vignetting vignetting;
+  StrayLight stray_light;            // of what is beside the field
   ImageOptics image;                 // effects on the whole image
   bool equivalent_aperture = false;  // allows N < 0.5: aperture is only a collecting area
 

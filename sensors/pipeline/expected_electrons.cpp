@@ -5,10 +5,15 @@
 
 #include "core/base/stopwatch.h"
 #include "core/effects/frame_effects.h"
+#include "core/sky/earth_disc.h"
+#include "core/sky/moon_disc.h"
+#include "core/sky/sun_disc.h"
+#include "sensors/pipeline/disc_layer.h"
 #include "sensors/pipeline/object_layer.h"
 #include "sensors/pipeline/objects_in_field.h"
 #include "sensors/pipeline/occlusion_mask.h"
 #include "sensors/pipeline/sky_layer.h"
+#include "sensors/pipeline/stray_light.h"
 
 namespace dmise {
 namespace {
@@ -25,6 +30,18 @@ struct LightFrame {
   DrawnStars drawn;
   OcclusionMask mask{image.columns, image.rows};
   LightTruth truth{};
+  ExpectedElectronImage discs{};  // light of Sun, Moon and Earth in the frame; empty: none
+
+  /// Adds light of a disc, which what covers it hides.
+  template <class Draw>
+  void add_disc(const Draw& draw) {
+    ExpectedElectronImage disc(image.columns, image.rows);
+    draw(view, optics, disc, threads);
+    if (discs.pixels.empty()) discs = ExpectedElectronImage(image.columns, image.rows);
+    for (ExpectedElectronImage* to : {&image, &discs, options.sky})
+      if (to)
+        for (std::size_t i = 0; i < disc.pixels.size(); ++i) to->pixels[i] += disc.pixels[i];
+  }
 };
 
 /// Electrons of a source that just stands out of a pixel's noise of sky, dark current and read-out.
@@ -50,6 +67,27 @@ struct KernelStage {
   static void apply(LightFrame& f) { f.optics.begin(f.view.times(), faintest_e(f.view, f.image)); }
 };
 
+struct StrayLightStage : StrayLight {
+  static void apply(LightFrame& f) {
+    const auto light_e = float(stray_light_e(f.view));
+    for (ExpectedElectronImage* to : {&f.image, f.options.sky})
+      if (to)
+        for (float& pixel : to->pixels) pixel += light_e;
+  }
+};
+
+struct SunStage : SunDisc {
+  static void apply(LightFrame& f) { f.add_disc(draw_sun); }
+};
+
+struct MoonStage : MoonDisc {
+  static void apply(LightFrame& f) { f.add_disc(draw_moon); }
+};
+
+struct EarthStage : EarthDisc {
+  static void apply(LightFrame& f) { f.add_disc(draw_earth); }
+};
+
 struct ObjectStage : SpaceObjects {
   static void apply(LightFrame& f) {
     f.truth.objects = draw_objects(
@@ -58,10 +96,12 @@ struct ObjectStage : SpaceObjects {
   }
 };
 
-/// The sky behind what objects cover.
+/// Sky and discs behind what objects cover.
 struct OcclusionStage : Occlusion {
   static void apply(LightFrame& f) {
-    if (f.mask.empty() || !f.view.sensor().effects.has(SkyBackground::facts)) return;
+    if (f.mask.empty()) return;
+    if (!f.discs.pixels.empty()) f.mask.take_hidden(f.discs, f.image);
+    if (!f.view.sensor().effects.has(SkyBackground::facts)) return;
     ExpectedElectronImage behind(f.image.columns, f.image.rows);
     fill_sky_behind(f.view, f.drawn, behind, f.threads);
     f.mask.take_hidden(behind, f.image);
@@ -86,8 +126,8 @@ struct BlurStage {
 /// In the order in which they run. A stage has the facts of its effect and
 ///   static void apply(LightFrame&);
 ///   static void leave_out(LightFrame&);   where there is something to do when the effect is off
-using LightStages =
-    EffectList<SkyStage, KernelStage, ObjectStage, OcclusionStage, StarStage, BlurStage>;
+using LightStages = EffectList<SkyStage, StrayLightStage, KernelStage, SunStage, MoonStage,
+                               EarthStage, ObjectStage, OcclusionStage, StarStage, BlurStage>;
 
 /// Runs a stage. Its effect is charged what the stage does not charge to others.
 template <class Stage>

@@ -96,9 +96,9 @@ struct FramePipeline::Work {
 
   bool has(const EffectFacts& effect) const { return planned.effects.has(effect); }
 
-  std::string plan() const {
+  std::string plan(const View& view) const {
     std::string text;
-    SceneFacts scene = scene_facts(planned);
+    SceneFacts scene = view.scene();
     scene.stars = stars.has_value();
     scene.shapes = settings.shapes && !settings.shapes->empty();
     for (const EffectFacts* effect : effects_in(planned, scene)) {
@@ -256,7 +256,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
   frame.report = std::move(result.report);
   frame.report.stars_rendered = truth.stars;
   for (const auto& truth : frame.truths) frame.report.objects_rendered += truth.in_frame;
-  frame.report.plan = plan();
+  frame.report.plan = plan(view);
   return frame;
 }
 

@@ -4,6 +4,9 @@
 #include <map>
 
 #include "core/effects/frame_effects.h"
+#include "core/sky/earth_disc.h"
+#include "core/sky/moon_disc.h"
+#include "core/sky/sun_disc.h"
 #include "sensors/pipeline/objects_in_field.h"
 
 namespace dmise {
@@ -31,8 +34,10 @@ void take_object_lights(const View& view, const FrameTimes& commanded, const Lig
                         const ObjectLightTaker& take) {
   if (std::none_of(truths.begin(), truths.end(), [](const Truth& t) { return t.in_frame; })) return;
   SensorConfig dark = view.sensor();
-  dark.effects.force(SkyBackground::facts, false);
-  dark.effects.force(StarBackground::facts, false);
+  for (const EffectFacts* other :
+       {&SkyBackground::facts, &StarBackground::facts, &StrayLight::facts, &SunDisc::facts,
+        &MoonDisc::facts, &EarthDisc::facts})
+    dark.effects.force(*other, false);
   const View in_the_dark(dark, commanded, view.world(), view.seed());
   const auto indices = indices_of(view, sources, truths);
   const auto& grid = dark.camera.optics;

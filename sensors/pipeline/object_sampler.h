@@ -60,20 +60,20 @@ class ObjectSampler {
   /// Photons/s/m2 above the atmosphere of an object with a shape.
   double shape_photons(std::size_t object, const ObjectShape& shape, SimTime t,
                        const ObserverState& observer, double sunlit) const;
-  /// The same without earthshine, which changes slowly and costs much.
+  /// The same without light of Earth and Moon, which changes slowly and costs much.
   double quick_photons(std::size_t object, const ObjectShape& shape, SimTime t,
                        const ObserverState& observer, double sunlit) const;
 
  private:
-  double earthshine_photons(std::size_t object, const Motion& motion,
-                            const ExposureInstant& at) const;
+  double borrowed_photons(std::size_t object, const Motion& motion,
+                          const ExposureInstant& at) const;
 
   const View& view_;
   const ObjectShapes* shapes_;
   Throughput throughput_;
   std::optional<EarthShadow> shadow_;
   std::optional<Spectra> spectra_;
-  bool with_earthshine_;
+  bool with_borrowed_;
   double zero_mag_;
 };
 

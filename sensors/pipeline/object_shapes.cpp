@@ -5,8 +5,10 @@
 
 #include "core/base/units.h"
 #include "core/facets/earthshine.h"
+#include "core/facets/moonlight.h"
 #include "core/photometry/diffuse_sphere.h"
 #include "core/photometry/magnitude.h"
+#include "core/sky/moon_disc.h"
 #include "sensors/render/render_module.h"
 
 namespace dmise {
@@ -52,16 +54,32 @@ std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTim
                  .to_viewer = unit(body_from_gcrs * to_viewer),
                  .range_m = norm(to_viewer),
                  .sun_distance_au = norm(to_sun) / au_m,
-                 .earthshine = {}};
-  if (rings > 0 && acts<Earthshine>(view.sensor().effects, view.scene()))
-    pose.earthshine = earthshine_on(position_m, view.environment().sun_m, body_from_gcrs, rings);
+                 .borrowed = {}};
+  if (rings > 0 && has_borrowed_light(view))
+    pose.borrowed = borrowed_light_on(view, position_m, body_from_gcrs, rings);
   return pose;
 }
 
-std::vector<LightSource> earthshine_on(const Vec<Gcrs>& position_m, const Vec<Gcrs>& sun_m,
-                                       const Rotation<Body, Gcrs>& body_from_gcrs, int rings) {
-  return earthshine_sources({.rings = rings}, body_from_gcrs * -position_m,
-                            unit(body_from_gcrs * (sun_m - position_m)));
+bool has_borrowed_light(const View& view) {
+  const EffectSet& effects = view.sensor().effects;
+  return effects.has(Earthshine::facts) || effects.has(Moonlight::facts);
+}
+
+std::vector<LightSource> borrowed_light_on(const View& view, const Vec<Gcrs>& position_m,
+                                           const Rotation<Body, Gcrs>& body_from_gcrs, int rings) {
+  const EffectSet& effects = view.sensor().effects;
+  const Vec<Gcrs> to_sun = view.environment().sun_m - position_m;
+  std::vector<LightSource> sources;
+  if (effects.has(Earthshine::facts))
+    sources = earthshine_sources({.albedo = view.sensor().earth_albedo, .rings = rings},
+                                 body_from_gcrs * -position_m, unit(body_from_gcrs * to_sun));
+  const Vec<Gcrs>& moon_m = view.environment().moon_m;
+  if (effects.has(Moonlight::facts) && FreeSight(position_m, view.surface()).clear(moon_m)) {
+    const double share =
+        moonlight_over_sunlight(moon_m - position_m, to_sun) * view.moonlight_colour();
+    if (share > 0.0) sources.push_back({unit(body_from_gcrs * (moon_m - position_m)), share});
+  }
+  return sources;
 }
 
 double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
@@ -72,14 +90,14 @@ double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& sha
                         (pose.sun_distance_au * pose.sun_distance_au) *
                         shape.light.reflected_m2_per_sr(pose.to_sun, pose.to_viewer);
   return photons_per_s_sr / (pose.range_m * pose.range_m) +
-         earthshine_photons_per_s_m2(shapes, shape, pose);
+         borrowed_photons_per_s_m2(shapes, shape, pose);
 }
 
-double earthshine_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
-                                   const ShapePose& pose) {
-  if (pose.earthshine.empty()) return 0.0;
+double borrowed_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
+                                 const ShapePose& pose) {
+  if (pose.borrowed.empty()) return 0.0;
   return shapes.sun_photons() / (pose.sun_distance_au * pose.sun_distance_au) *
-         shape.light.reflected_m2_per_sr(pose.earthshine, pose.to_viewer) /
+         shape.light.reflected_m2_per_sr(pose.borrowed, pose.to_viewer) /
          (pose.range_m * pose.range_m);
 }
 

@@ -7,6 +7,7 @@
 #include "core/config/band_wavelengths.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
+#include "sensors/pipeline/bodies_in_field.h"
 
 namespace dmise {
 namespace {
@@ -190,6 +191,22 @@ std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, ExpectedElect
     result.push_back(d);
   }
   return result;
+}
+
+int OpticsStage::reach_px() const {
+  const int reach = grid_ ? plan_.half_cells / plan_.oversampling + 1
+                          : gaussian_reach_px(plan_.fwhm_px / fwhm_per_sigma) + 1;
+  return std::min(reach, disc_margin_px);
+}
+
+void OpticsStage::add_extended(const ExtendedLight& source, ExpectedElectronImage& light) {
+  if (!grid_) {
+    add_by_gaussian(source, plan_.fwhm_px / fwhm_per_sigma, light, threads_);
+    return;
+  }
+  lay_on(source, *grid_, threads_);
+  grid_->blur_into(light, optics_.spread.resampling, threads_);
+  grid_->clear(threads_);
 }
 
 void OpticsStage::finish(ExpectedElectronImage& light) {

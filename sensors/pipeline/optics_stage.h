@@ -7,6 +7,7 @@
 #include "core/optics/blur_grid.h"
 #include "core/optics/deposit.h"
 #include "core/optics/direct_blur.h"
+#include "core/optics/extended_light.h"
 #include "core/optics/psf_model.h"
 #include "sensors/pipeline/frame_times.h"
 #include "sensors/pipeline/gl_evaluator.h"
@@ -37,6 +38,12 @@ class OpticsStage {
   /// of the faintest source that matters.
   void begin(const FrameTimes& exposure, double limit_e);
   double limit_e() const { return limit_e_; }
+  /// How far beside the frame light of extended sources still reaches into it, at most
+  /// `disc_margin_px`.
+  int reach_px() const;
+  /// Adds the light of an extended source, blurred, to `light`: before the first arc of a frame.
+  /// Where arcs are summed one by one the blur is a Gaussian of its width.
+  void add_extended(const ExtendedLight& source, ExpectedElectronImage& light);
   /// Puts light on the plane; returns what of each arc fell inside the frame.
   std::vector<Deposited> add(std::span<const Arc> arcs, ExpectedElectronImage& light);
   /// Blurs and adds what is still on the grid; then the light is complete, nowhere negative.

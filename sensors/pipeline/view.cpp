@@ -5,7 +5,9 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/config/effect_list.h"
+#include "core/facets/moonlight.h"
 #include "core/optics/projection.h"
+#include "core/sky/moon_disc.h"
 #include "core/visibility/sight.h"
 #include "core/visibility/target_direction.h"
 #include "sensors/pipeline/cue_path.h"
@@ -47,6 +49,9 @@ View::View(const SensorConfig& sensor, const FrameTimes& commanded, const World&
                 " is where the sensor is, at frame " + std::to_string(commanded.frame));
   aimed_ = pointing_scene(commanded.middle);
   vignettes_ = acts<Vignetting>(sensor.effects, scene());
+  bodies_ = bodies_in_field(*this);
+  if (sensor.effects.has(Moonlight::facts))
+    moonlight_colour_ = dmise::moonlight_colour(sensor.camera.band);
 }
 
 View View::during(const FrameTimes& times) const {
@@ -65,7 +70,13 @@ FrameTimes View::times_of_all_rows() const {
   return {times_.frame, times_.start, {times_.middle.ns + delay.ns / 2}, times_.end + delay};
 }
 
-SceneFacts View::scene() const { return scene_facts(sensor_); }
+SceneFacts View::scene() const {
+  SceneFacts scene = scene_facts(sensor_);
+  scene.sun_in_field = bodies_.sun;
+  scene.moon_in_field = bodies_.moon;
+  scene.earth_in_field = bodies_.earth;
+  return scene;
+}
 
 std::optional<EarthOccultation> View::earth_occultation(SimTime t) const {
   if (!acts<EarthOccultation>(sensor_.effects, scene())) return std::nullopt;

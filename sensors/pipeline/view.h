@@ -8,6 +8,7 @@
 #include "core/sky/apparent.h"
 #include "core/sky/occultation.h"
 #include "core/visibility/pointing.h"
+#include "sensors/pipeline/bodies_in_field.h"
 #include "sensors/pipeline/exposure_errors.h"
 #include "sensors/pipeline/world.h"
 
@@ -88,6 +89,9 @@ class View {
   /// Light that reaches a pixel, relative to the boresight's: (0, 1].
   double illumination(PixelPosition pixel) const;
 
+  /// Of moonlight on objects, `moonlight_colour` of the band; 1 where the effect is off.
+  double moonlight_colour() const { return moonlight_colour_; }
+
   /// Pixel of an apparent direction (observed: aberration and refraction in it); nothing where the
   /// projection has no image.
   std::optional<PixelPosition> pixel(const Vec<Gcrs>& apparent, SimTime t) const;
@@ -112,6 +116,8 @@ class View {
   Refraction refraction_;
   PointingScene aimed_;
   bool vignettes_ = false;
+  BodiesInField bodies_;
+  double moonlight_colour_ = 1.0;
 };
 
 }  // namespace dmise

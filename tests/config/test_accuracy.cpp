@@ -88,8 +88,8 @@ TEST(EffectLevels, ALevelThatThereIsNotIsRefused) {
 
 TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeastAccurate) {
   // What has another choice than its level, is asked for by scenarios alone, or always runs.
-  const std::set<std::string_view> as_asked{"earthshine", "thermal_emission", "streak", "evaluator",
-                                            "quantisation"};
+  const std::set<std::string_view> as_asked{"earthshine", "moonlight", "thermal_emission",
+                                            "streak",     "evaluator", "quantisation"};
   SensorConfig sensor;
   sensor.place = SiteConfig{};
   sensor.sky.parts = *sky_parts_named("suburban");
@@ -120,7 +120,11 @@ TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeas
                                                .turbulent = true,
                                                .synthetic_stars = true,
                                                .blur_varies = true,
-                                               .focus_drifts = true});
+                                               .focus_drifts = true,
+                                               .stray_light = true,
+                                               .sun_in_field = true,
+                                               .moon_in_field = true,
+                                               .earth_in_field = true});
   for (const EffectFacts* effect : all_effects())
     EXPECT_TRUE(
         std::any_of(list.begin(), list.end(),

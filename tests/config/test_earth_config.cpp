@@ -140,6 +140,8 @@ TEST_F(OwnEarth, IsInTheDigestUnlessItIsTheDefault) {
   EXPECT_EQ(usual,
             physics_json(load(text(", ellipsoid: {a_m: 6378137, f: 0.0033528106647474805}"))));
   EXPECT_NE(usual, physics_json(load(text(", ellipsoid: WGS72"))));
+  EXPECT_EQ(usual, physics_json(load(text(", earth_albedo: 0.3"))));
+  EXPECT_NE(usual, physics_json(load(text(", earth_albedo: 0.31"))));
   EXPECT_NE(usual, physics_json(load(text(", ellipsoid: GRS80"))));
   const std::string here = physics_json(load(text(origin_key(1, 2, 3))));
   EXPECT_NE(usual, here);

@@ -99,6 +99,14 @@ TEST(OpticsConfig, RefusesWhatDoesNotGoTogetherAtItsPlace) {
   EXPECT_NE(refusal("oversampling: 17\n").find("camera.yaml:6:15: oversampling"),
             std::string::npos);
   EXPECT_NE(refusal("vignetting: {corner: 0}\n").find("corner"), std::string::npos);
+  const auto stray = [](const std::string& angles, const std::string& shares) {
+    return refusal("stray_light: {angle_deg: " + angles + ", transmittance: " + shares + "}\n");
+  };
+  EXPECT_NE(stray("[30, 20]", "[0, 0]").find("angles must rise, got 20"), std::string::npos);
+  EXPECT_NE(stray("[30, 40]", "[0]").find("as many numbers as angle_deg"), std::string::npos);
+  EXPECT_NE(stray("[30, 181]", "[0, 0]").find("angle_deg"), std::string::npos);
+  EXPECT_NE(stray("[30, 40]", "[0, 1.1]").find("transmittance"), std::string::npos);
+  EXPECT_NE(stray("[]", "[]").find("angle_deg"), std::string::npos);
   EXPECT_NE(refusal("psf: diffraction\nspider: 4\n").find("did you mean"), std::string::npos);
 }
 

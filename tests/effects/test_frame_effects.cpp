@@ -5,6 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/optics/stray_light.h"
+#include "core/sky/earth_disc.h"
+#include "core/sky/moon_disc.h"
+#include "core/sky/sun_disc.h"
+
 namespace dmise {
 namespace {
 
@@ -26,6 +31,22 @@ void expect_no_worse_by_rising_level(const PlanFacts& f) {
     for (const auto& kind : error_kinds)
       EXPECT_LE(here.*kind.value, lower.*kind.value) << Effect::facts.name << " " << level;
   }
+}
+
+TEST(Discs, InTheFieldMustNotBeLeftOutAndHoldWhatDisplacesThem) {
+  PlanFacts f = plain();
+  for (const auto& error : {SunDisc::error(0, f), MoonDisc::error(0, f), EarthDisc::error(0, f)})
+    EXPECT_EQ(error, ErrorBound{});
+  EXPECT_EQ(StrayLight::error(0, f), ErrorBound{});
+  const double usual = f.shifted_stars(0.1 * f.pixel_rad).background_sigma;
+  f.disc_e = 1000.0;
+  EXPECT_GE(f.shifted_stars(0.1 * f.pixel_rad).background_sigma, usual + 10.0);
+  f.scene.sun_in_field = f.scene.moon_in_field = f.scene.earth_in_field = true;
+  for (const auto& error : {SunDisc::error(0, f), MoonDisc::error(0, f), EarthDisc::error(0, f)})
+    EXPECT_EQ(error, not_bounded);
+  f.stray_light_e = 5.0;
+  EXPECT_DOUBLE_EQ(StrayLight::error(0, f).background_sigma, 0.5);
+  EXPECT_EQ(MoonDisc::cost_s(0, f), 0.0);
 }
 
 TEST(StarBackground, WithoutStarsInTheFieldTheStarlightThatStandsForThemIsAnError) {

@@ -31,7 +31,8 @@ std::string scenario(const std::string& objects, const std::string& pointing,
          "sensors:\n  - name: eye\n    platform: platform\n    pointing: " + pointing +
          "\n    exposure_s: 0.5\n    cadence_s: 5\n    sky: space\n    effects: {sky: off, "
          "photon_noise: off, read_noise: off, dark_current: off, quantisation: off, "
-         "annual_aberration: off}\n    camera:\n      optics: " +
+         "annual_aberration: off, sun_disc: off, moon_disc: off, earth_disc: off}\n    camera:\n   "
+         "   optics: " +
          optics +
          "\n      detector: {full_well_e: 1.0e+9, gain_e_per_dn: 1, adc_bits: 16}\n      band: "
          "{name: V, centre_m: 0.55e-6, width_m: 0.1e-6}\n";
@@ -82,7 +83,7 @@ TEST(HardLight, TwoObjectsInOnePixelAddTheirLightAndKeepTheirLabels) {
   EXPECT_NEAR(total(all.counts), total(first.counts) + total(second.counts), 40.0);  // rounding
 }
 
-// The discs of Sun and Moon are not drawn: an object before the Moon is as before the empty sky,
+// But for their discs, which are off here: an object before the Moon is as before the empty sky,
 // and one before the Sun shows its dark side.
 TEST(HardLight, AnObjectBeforeTheMoonKeepsItsLightAndBeforeTheSunIsDark) {
   Stage any(scenario(object("x", eye_m * 1.01, "    radius_m: 0.01\n"), "zenith", wide));

@@ -126,7 +126,7 @@ TEST(Registration, AStreakOfHundredsOfPixels) {
   test::Stage stage(
       scenario("{name: chaser, platform: \"41866\", camera: raven, pointing: "
                "{target: \"25544\", tracking: sidereal}, exposure_s: 20, cadence_s: 30, "
-               "effects: {earth_occultation: off, shadow: off}}",
+               "effects: {earth_occultation: off, earth_disc: off, shadow: off}}",
                "[{catalogue: objects.tle, radius_m: 20}]"),
       "ra_deg,dec_deg,mag_v\n0,-80,6\n", elements);
   const auto frame = stage.frame();
