@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/rare.h"
 #include "core/base/sim_time.h"
 #include "core/frames/earth_orientation.h"
 #include "core/frames/vec.h"
@@ -21,8 +22,8 @@ struct ObjectInfo {
   std::string name;
   std::string designator;  // international designator, may be empty
   Geometry geometry;
-  double element_age_s = 0.0;             // start of the run minus the epoch of the elements
-  std::optional<SunTrackingPanel> panel;  // of an object with an attitude
+  double element_age_s = 0.0;    // start of the run minus the epoch of the elements
+  Rare<SunTrackingPanel> panel;  // of an object with an attitude
 
   bool operator==(const ObjectInfo&) const = default;
 };
