@@ -39,6 +39,23 @@ std::vector<double> numbers_in(const YamlValue& list) {
   return numbers;
 }
 
+std::vector<double> rising_numbers_in(const YamlValue& list) {
+  std::vector<double> numbers = numbers_in(list);
+  for (std::size_t i = 1; i < numbers.size(); ++i)
+    if (!(numbers[i] > numbers[i - 1])) list.list()[i].fail("must rise");
+  return numbers;
+}
+
+/// A column of a table, beside one of `rows` numbers that is named `beside`.
+std::vector<double> column_in(const YamlValue& list, std::size_t rows, const char* beside) {
+  std::vector<double> column = numbers_in(list);
+  if (column.size() != rows)
+    list.fail("must have a number for each of the " + std::to_string(rows) + " of " + beside +
+                  ", has " + std::to_string(column.size()),
+              false);
+  return column;
+}
+
 /// The places of a table, which rise.
 struct Radii {
   FieldRadius unit = FieldRadius::angle_deg;
@@ -49,21 +66,15 @@ Radii read_radii(YamlMap& map) {
   if (bool(degrees) == bool(pixels))
     map.value().fail("needs one of radius_deg and radius_px", false);
   const YamlValue& list = degrees ? *degrees : *pixels;
-  const Radii radii{degrees ? FieldRadius::angle_deg : FieldRadius::distance_px, numbers_in(list)};
+  const Radii radii{degrees ? FieldRadius::angle_deg : FieldRadius::distance_px,
+                    rising_numbers_in(list)};
   if (radii.at.empty()) list.fail("needs a radius", false);
   if (radii.at.size() > most_radii) list.fail("must have at most 1000 radii", false);
-  for (std::size_t i = 1; i < radii.at.size(); ++i)
-    if (!(radii.at[i] > radii.at[i - 1])) list.list()[i].fail("must rise");
   return radii;
 }
 
 MonotoneCubic read_column(const YamlValue& list, const Radii& radii) {
-  std::vector<double> column = numbers_in(list);
-  if (column.size() != radii.at.size())
-    list.fail("must have a number for each of the " + std::to_string(radii.at.size()) + " of " +
-                  name(radii.unit) + ", has " + std::to_string(column.size()),
-              false);
-  return {radii.at, std::move(column)};
+  return {radii.at, column_in(list, radii.at.size(), name(radii.unit))};
 }
 
 }  // namespace
@@ -196,6 +207,29 @@ FocusDrift read_focus_drift(const YamlValue& value) {
   return drift;
 }
 
+const Section& stray_light_section() {
+  static const Section section{
+      "stray_light",
+      "Point source transmittance of the optics, against the angle from the boresight.",
+      {required("angle_deg", form::list(form::number(0.0, 180.0), 1),
+                "Angles of a source from the boresight [deg], rising."),
+       required("transmittance", form::list(form::number(0.0, 1.0), 1),
+                "Irradiance of the focal plane over that of the aperture, at each angle.")}};
+  return section;
+}
+
+StrayLight read_stray_light(const YamlValue& value) {
+  YamlMap map(value, stray_light_section());
+  StrayLight stray;
+  const YamlValue angles = map.require("angle_deg");
+  stray.angle_deg = rising_numbers_in(angles);
+  if (!stray.any()) angles.fail("needs an angle", false);
+  stray.transmittance =
+      column_in(map.require("transmittance"), stray.angle_deg.size(), "angle_deg");
+  map.done();
+  return stray;
+}
+
 void write_field_tables_json(JsonWriter& json, const Optics& optics) {
   const auto write = [&](const MonotoneCubic& table) {
     for (const double x : table.at()) json.value(x);
@@ -222,6 +256,13 @@ void write_field_tables_json(JsonWriter& json, const Optics& optics) {
     json.key("relative_illumination").begin_array().value(int(v.table_radius));
     write(v.table);
     json.end_array();
+  }
+  if (const StrayLight& stray = optics.stray_light; stray.any()) {
+    json.key("stray_light").begin_object().key("angle_deg").begin_array();
+    for (const double angle_deg : stray.angle_deg) json.value(angle_deg);
+    json.end_array().key("transmittance").begin_array();
+    for (const double share : stray.transmittance) json.value(share);
+    json.end_array().end_object();
   }
 }
 

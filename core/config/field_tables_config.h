@@ -4,17 +4,19 @@
 #include "core/optics/camera.h"
 
 // What a camera's optics state by the distance from the axis and by time: vignetting, the point
-// spread over the field, the drift of the focus.
+// spread over the field, stray light, the drift of the focus.
 namespace dmise {
 
 const Section& vignetting_section();
 const Section& psf_field_section();
 const Section& focus_drift_section();
+const Section& stray_light_section();
 
 Vignetting read_vignetting(const YamlValue& value);
 /// With widths for psf: gaussian, a wavefront for psf: diffraction.
 FieldBlur read_psf_field(const YamlValue& value, bool diffraction);
 FocusDrift read_focus_drift(const YamlValue& value);
+StrayLight read_stray_light(const YamlValue& value);
 
 /// What stands in digests where it is not at its default.
 void write_field_tables_json(JsonWriter& json, const Optics& optics);

@@ -73,17 +73,6 @@ const Section& grid_section() {
   return section;
 }
 
-const Section& stray_light_section() {
-  static const Section section{
-      "stray_light",
-      "Point source transmittance of the optics, against the angle from the boresight.",
-      {required("angle_deg", form::list(form::number(0.0, 180.0), 1),
-                "Angles of a source from the boresight [deg], rising."),
-       required("transmittance", form::list(form::number(0.0, 1.0), 1),
-                "Irradiance of the focal plane over that of the aperture, at each angle.")}};
-  return section;
-}
-
 std::vector<std::string> projection_names() {
   std::vector<std::string> names;
   for (const Projection::Row& row : Projection::rows()) names.push_back(row.name);
@@ -109,26 +98,6 @@ Projection read_projection(YamlMap& map) {
     coefficients.done();
   }
   return Projection::make(index, values);
-}
-
-StrayLight read_stray_light(const YamlValue& value) {
-  YamlMap map(value, stray_light_section());
-  StrayLight stray;
-  const YamlValue angles = map.require("angle_deg"), transmittance = map.require("transmittance");
-  if (angles.list().empty()) angles.fail("needs at least one angle", false);
-  for (const auto& angle : angles.list()) {
-    const double angle_deg = angle.number();
-    if (stray.any() && !(angle_deg > stray.angle_deg.back())) angle.fail("angles must rise", true);
-    stray.angle_deg.push_back(angle_deg);
-  }
-  for (const auto& share : transmittance.list()) stray.transmittance.push_back(share.number());
-  map.done();
-  if (stray.angle_deg.size() != stray.transmittance.size())
-    transmittance.fail("needs as many numbers as angle_deg, " +
-                           std::to_string(stray.angle_deg.size()) + ", and has " +
-                           std::to_string(stray.transmittance.size()),
-                       false);
-  return stray;
 }
 
 // {NOLL INDEX: rms in nanometres of path, ...}
@@ -380,13 +349,6 @@ void write_optics_json(JsonWriter& json, const Optics& optics) {
     json.field("corner", v.corner).field("power", v.power).end_object();
   }
   write_field_tables_json(json, optics);
-  if (const StrayLight& stray = optics.stray_light; stray.any()) {
-    json.key("stray_light").begin_object().key("angle_deg").begin_array();
-    for (const double angle_deg : stray.angle_deg) json.value(angle_deg);
-    json.end_array().key("transmittance").begin_array();
-    for (const double share : stray.transmittance) json.value(share);
-    json.end_array().end_object();
-  }
   for (const ImageParameter& p : image_parameters())
     if (optics.image.*p.value != ImageOptics().*p.value) json.field(p.key, optics.image.*p.value);
 }

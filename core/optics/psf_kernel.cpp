@@ -73,8 +73,8 @@ PsfKernel signed_kernel_of(const TransferFunction& otf, double cutoff_per_rad, d
   return make(otf, cutoff_per_rad, cell_rad, half, false, true, lost);
 }
 
-PsfKernel signed_kernel_of_even(const TransferFunction& otf, double cutoff_per_rad, double cell_rad,
-                                int half, double* lost) {
+PsfKernel point_symmetric_signed_kernel_of(const TransferFunction& otf, double cutoff_per_rad,
+                                           double cell_rad, int half, double* lost) {
   return make(otf, cutoff_per_rad, cell_rad, half, false, false, lost);
 }
 

@@ -32,9 +32,9 @@ PsfKernel kernel_of(const TransferFunction& otf, double cutoff_per_rad, double c
 PsfKernel signed_kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad,
                            int half, double* lost = nullptr);
 
-/// The same of a function that is even, but not along each axis.
-PsfKernel signed_kernel_of_even(const TransferFunction& otf, double cutoff_per_rad, double cell_rad,
-                                int half, double* lost = nullptr);
+/// The same of a function that is point-symmetric alone: f(-x, -y) = f(x, y).
+PsfKernel point_symmetric_signed_kernel_of(const TransferFunction& otf, double cutoff_per_rad,
+                                           double cell_rad, int half, double* lost = nullptr);
 
 /// Kernel of the optics: diffraction, long exposure, jitter, defocus, cell integration.
 PsfKernel optical_kernel(const Blur& blur, double cell_rad, int half, double* lost = nullptr);

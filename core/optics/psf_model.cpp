@@ -124,7 +124,8 @@ PsfKernel PsfModel::gaussian_kernel(const FieldPlace& place, double wavelength_m
     if (extra == 0.0) return 0.0;
     return std::exp(-scale * square) * disc_otf(std::hypot(nu_x, nu_y)) * extra;
   };
-  return signed_kernel_of_even(otf, 0.5 / cell_rad_, cell_rad_, plan_.half_cells, &lost_);
+  return point_symmetric_signed_kernel_of(otf, 0.5 / cell_rad_, cell_rad_, plan_.half_cells,
+                                          &lost_);
 }
 
 double PsfModel::air_otf(double nu, double wavelength_m) const {

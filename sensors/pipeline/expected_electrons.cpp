@@ -30,11 +30,13 @@ struct LightFrame {
   DrawnStars drawn;
   OcclusionMask mask{image.columns, image.rows};
   LightTruth truth{};
-  ExpectedElectronImage discs{};  // light of Sun, Moon and Earth in the frame; empty: none
+  /// Light of Sun, Moon and Earth in the frame, where a shape may cover it; empty: none.
+  ExpectedElectronImage discs{};
 
-  /// Adds light of a disc, which what covers it hides.
   template <class Draw>
   void add_disc(const Draw& draw) {
+    const bool may_be_covered = sources.shapes && !sources.shapes->empty();
+    if (!may_be_covered && !options.sky) return draw(view, optics, image, threads);
     ExpectedElectronImage disc(image.columns, image.rows);
     draw(view, optics, disc, threads);
     if (discs.pixels.empty()) discs = ExpectedElectronImage(image.columns, image.rows);

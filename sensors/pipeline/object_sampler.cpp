@@ -14,7 +14,7 @@ ObjectSampler::ObjectSampler(const View& view, const ObjectShapes* shapes)
       shapes_(shapes),
       throughput_(view),
       spectra_(Spectra::over(view)),
-      with_borrowed_(has_borrowed_light(view)),
+      with_secondary_(has_secondary_light(view)),
       zero_mag_(object_photons_per_s_m2(0.0, view.sensor().camera.band)) {
   if (acts<EarthShadow>(view.sensor().effects, view.scene()))
     shadow_.emplace(view.environment().sun_m, view.surface(),
@@ -45,7 +45,7 @@ ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at
   s.sunlit = shadow_ ? shadow_->sunlit_fraction(motion.position_m) : 1.0;
   const bool hidden = at.earth && at.earth->hides_object(motion.position_m, place.direction);
   const ObjectShape* own_shape = shape(object);
-  if (hidden || (s.sunlit <= 0.0 && !own_shape && !with_borrowed_)) return s;
+  if (hidden || (s.sunlit <= 0.0 && !own_shape && !with_secondary_)) return s;
   s.electrons_per_photon_m2 =
       throughput_.of_air({place.direction, sun_bv, SightLine::Source::object,
                           view_.world().roster().objects[object].catalogue_number,
@@ -54,7 +54,7 @@ ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at
   const double photons =
       own_shape ? shape_photons(object, *own_shape, at.time, at.observer, s.sunlit)
                 : zero_mag_ * light_of_magnitude(magnitude(object, motion, at)) * s.sunlit +
-                      borrowed_photons(object, motion, at);
+                      secondary_photons(object, motion, at);
   s.electrons_per_s = photons * s.electrons_per_photon_m2;
   return s;
 }
@@ -95,15 +95,15 @@ double ObjectSampler::quick_photons(std::size_t object, const ObjectShape& shape
   return pose ? shape_photons_per_s_m2(*shapes_, shape, *pose, sunlit) : 0.0;
 }
 
-double ObjectSampler::borrowed_photons(std::size_t object, const Motion& motion,
-                                       const ExposureInstant& at) const {
-  if (!with_borrowed_) return 0.0;
+double ObjectSampler::secondary_photons(std::size_t object, const Motion& motion,
+                                        const ExposureInstant& at) const {
+  if (!with_secondary_) return 0.0;
   const auto& sphere = std::get<DiffuseSphere>(view_.world().roster().objects[object].geometry);
   Rotation<Body, Gcrs> axes;  // a sphere looks the same in any
   const Illumination seen = illumination(motion, at.observer.position_m);
   const Vec<Body> to_viewer = axes * unit(at.observer.position_m - motion.position_m);
   double light = 0.0;
-  for (const auto& source : borrowed_light_on(view_, motion.position_m, axes))
+  for (const auto& source : secondary_light_on(view_, motion.position_m, axes))
     light += diffuse_sphere_light(sphere, {.range_m = seen.range_m,
                                            .phase_rad = angle_rad(source.to_source, to_viewer),
                                            .sun_distance_au = seen.sun_distance_au,

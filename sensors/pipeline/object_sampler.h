@@ -65,15 +65,15 @@ class ObjectSampler {
                        const ObserverState& observer, double sunlit) const;
 
  private:
-  double borrowed_photons(std::size_t object, const Motion& motion,
-                          const ExposureInstant& at) const;
+  double secondary_photons(std::size_t object, const Motion& motion,
+                           const ExposureInstant& at) const;
 
   const View& view_;
   const ObjectShapes* shapes_;
   Throughput throughput_;
   std::optional<EarthShadow> shadow_;
   std::optional<Spectra> spectra_;
-  bool with_borrowed_;
+  bool with_secondary_;
   double zero_mag_;
 };
 

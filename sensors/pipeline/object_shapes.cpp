@@ -54,19 +54,19 @@ std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTim
                  .to_viewer = unit(body_from_gcrs * to_viewer),
                  .range_m = norm(to_viewer),
                  .sun_distance_au = norm(to_sun) / au_m,
-                 .borrowed = {}};
-  if (rings > 0 && has_borrowed_light(view))
-    pose.borrowed = borrowed_light_on(view, position_m, body_from_gcrs, rings);
+                 .secondary = {}};
+  if (rings > 0 && has_secondary_light(view))
+    pose.secondary = secondary_light_on(view, position_m, body_from_gcrs, rings);
   return pose;
 }
 
-bool has_borrowed_light(const View& view) {
+bool has_secondary_light(const View& view) {
   const EffectSet& effects = view.sensor().effects;
   return effects.has(Earthshine::facts) || effects.has(Moonlight::facts);
 }
 
-std::vector<LightSource> borrowed_light_on(const View& view, const Vec<Gcrs>& position_m,
-                                           const Rotation<Body, Gcrs>& body_from_gcrs, int rings) {
+std::vector<LightSource> secondary_light_on(const View& view, const Vec<Gcrs>& position_m,
+                                            const Rotation<Body, Gcrs>& body_from_gcrs, int rings) {
   const EffectSet& effects = view.sensor().effects;
   const Vec<Gcrs> to_sun = view.environment().sun_m - position_m;
   std::vector<LightSource> sources;
@@ -90,14 +90,14 @@ double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& sha
                         (pose.sun_distance_au * pose.sun_distance_au) *
                         shape.light.reflected_m2_per_sr(pose.to_sun, pose.to_viewer);
   return photons_per_s_sr / (pose.range_m * pose.range_m) +
-         borrowed_photons_per_s_m2(shapes, shape, pose);
+         secondary_photons_per_s_m2(shapes, shape, pose);
 }
 
-double borrowed_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
-                                 const ShapePose& pose) {
-  if (pose.borrowed.empty()) return 0.0;
+double secondary_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
+                                  const ShapePose& pose) {
+  if (pose.secondary.empty()) return 0.0;
   return shapes.sun_photons() / (pose.sun_distance_au * pose.sun_distance_au) *
-         shape.light.reflected_m2_per_sr(pose.borrowed, pose.to_viewer) /
+         shape.light.reflected_m2_per_sr(pose.secondary, pose.to_viewer) /
          (pose.range_m * pose.range_m);
 }
 

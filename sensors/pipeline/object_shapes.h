@@ -24,7 +24,7 @@ struct ShapePose {
   Vec<Body> to_sun, to_viewer;  // unit
   double range_m = 0.0;
   double sun_distance_au = 1.0;
-  std::vector<LightSource> borrowed;  // light of Earth and Moon, where the effects are on
+  std::vector<LightSource> secondary;  // light of Earth and Moon, where the effects are on
 };
 
 /// Rings of the Earth's face: for the flux (to 1 % of earthshine) and for pictures (to
@@ -32,12 +32,12 @@ struct ShapePose {
 inline constexpr int earthshine_flux_rings = 8, earthshine_picture_rings = 3;
 
 /// Whether Earth or Moon throw light on objects.
-bool has_borrowed_light(const View& view);
+bool has_secondary_light(const View& view);
 /// Returns the light of Earth and Moon, those that do, on an object at `position_m`, in any axes
 /// `body_from_gcrs`, over the Sun's there.
-std::vector<LightSource> borrowed_light_on(const View& view, const Vec<Gcrs>& position_m,
-                                           const Rotation<Body, Gcrs>& body_from_gcrs,
-                                           int rings = earthshine_flux_rings);
+std::vector<LightSource> secondary_light_on(const View& view, const Vec<Gcrs>& position_m,
+                                            const Rotation<Body, Gcrs>& body_from_gcrs,
+                                            int rings = earthshine_flux_rings);
 
 /// The objects of a scenario that have a shape, for one sensor. The renderer is loaded when the
 /// first of them is near enough to show it.
@@ -64,19 +64,19 @@ class ObjectShapes {
   double sun_photons_ = 0.0;
 };
 
-/// Returns the pose at `t`; nothing for an object without an attitude then. With borrowed
+/// Returns the pose at `t`; nothing for an object without an attitude then. With secondary
 /// light, the Earth's in `rings`, unless they are 0.
 std::optional<ShapePose> shape_pose(const View& view, std::size_t object, SimTime t,
                                     const Vec<Gcrs>& observer_m, int rings = earthshine_flux_rings);
 
 /// Photons/s/m2 above the atmosphere at the observer, in the band: sunlight of which `sunlit`
-/// reaches the object, borrowed light, and what it emits.
+/// reaches the object, secondary light, and what it emits.
 double shape_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
                               const ShapePose& pose, double sunlit);
 
 /// Returns the part of them that is light of Earth and Moon.
-double borrowed_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
-                                 const ShapePose& pose);
+double secondary_photons_per_s_m2(const ObjectShapes& shapes, const ObjectShape& shape,
+                                  const ShapePose& pose);
 
 /// V magnitude of the sunlight alone when fully sunlit, `darkest_mag` at most.
 double shape_magnitude(const ObjectShape& shape, const ShapePose& pose);

@@ -31,10 +31,10 @@ ArcLight light_of_arc(const View& view, const ObjectSampler& sampler, std::size_
   }
   double sum = half[0] + half[1];
   ArcLight light{.tilt = sum > 0.0 ? std::clamp(2 * (half[1] - half[0]) / sum, -1.0, 1.0) : 0.0};
-  if (has_borrowed_light(view)) {
+  if (has_secondary_light(view)) {
     const SimTime t = at(0.5);
     const auto pose = shape_pose(view, object, t, view.observer(t).position_m);
-    if (pose) sum += halves * borrowed_photons_per_s_m2(sampler.shapes(), shape, *pose);
+    if (pose) sum += halves * secondary_photons_per_s_m2(sampler.shapes(), shape, *pose);
   }
   light.signal_e =
       sum / halves * middle.electrons_per_photon_m2 * exposure.seconds() / double(count);

@@ -77,8 +77,8 @@ class ShapePainter {
                  const TileCamera& camera) {
     const double au2 = snapshot.pose.sun_distance_au * snapshot.pose.sun_distance_au;
     std::vector<LightSource> sources{{snapshot.pose.to_sun, snapshot.sunlit}};
-    const auto& borrowed = snapshot.pose.borrowed;
-    sources.insert(sources.end(), borrowed.begin(), borrowed.end());
+    const auto& secondary = snapshot.pose.secondary;
+    sources.insert(sources.end(), secondary.begin(), secondary.end());
     const Tile tile = shapes_.renderer().draw(
         {.mesh = &snapshot.shape->light.mesh(),
          .bands = {{&snapshot.shape->light.facets(), shapes_.sun_photons() / au2}},

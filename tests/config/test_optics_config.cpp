@@ -102,8 +102,10 @@ TEST(OpticsConfig, RefusesWhatDoesNotGoTogetherAtItsPlace) {
   const auto stray = [](const std::string& angles, const std::string& shares) {
     return refusal("stray_light: {angle_deg: " + angles + ", transmittance: " + shares + "}\n");
   };
-  EXPECT_NE(stray("[30, 20]", "[0, 0]").find("angles must rise, got 20"), std::string::npos);
-  EXPECT_NE(stray("[30, 40]", "[0]").find("as many numbers as angle_deg"), std::string::npos);
+  EXPECT_NE(stray("[30, 20]", "[0, 0]").find("angle_deg[1]: must rise, got 20"), std::string::npos);
+  EXPECT_NE(stray("[30, 40]", "[0]")
+                .find("transmittance: must have a number for each of the 2 of angle_deg"),
+            std::string::npos);
   EXPECT_NE(stray("[30, 181]", "[0, 0]").find("angle_deg"), std::string::npos);
   EXPECT_NE(stray("[30, 40]", "[0, 1.1]").find("transmittance"), std::string::npos);
   EXPECT_NE(stray("[]", "[]").find("angle_deg"), std::string::npos);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <memory>
 #include <string>
 
@@ -78,6 +79,27 @@ class Stage {
         *message.state);
   }
 };
+
+/// The first two frames of the first sensor are the same whichever comes first, by any of these
+/// numbers of threads.
+inline void expect_same_by_threads(Stage& stage, std::initializer_list<int> numbers) {
+  const auto second = stage.frame(2).counts.pixels, first = stage.frame(1).counts.pixels;
+  EXPECT_NE(first, second);
+  auto config = stage.scenario.sensors[0];
+  config.detect = false;
+  for (const int n : numbers) {
+    Threads threads(n);
+    FramePipeline pipeline({.sensor = config,
+                            .clock = make_clock(stage.scenario),
+                            .seed = stage.scenario.seed,
+                            .digest = "test",
+                            .faintest_star_mag = 15},
+                           stage.stars, threads);
+    EXPECT_EQ(pipeline.run(frame_times(config, 2), stage.world).counts.pixels, second) << n;
+    EXPECT_EQ(pipeline.run(frame_times(config, 1), stage.world).counts.pixels, first) << n;
+    EXPECT_EQ(pipeline.run(frame_times(config, 2), stage.world).counts.pixels, second) << n;
+  }
+}
 
 /// Centroid of the counts within `radius_px` of a place; the frame must have no background.
 inline PixelPosition centroid(const CountImage& counts, PixelPosition at, double radius_px) {

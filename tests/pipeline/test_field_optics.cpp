@@ -88,9 +88,9 @@ TEST(FieldOptics, TruthIsWhereTheChiefRayIsAndComaPutsTheLightBesideIt) {
     const auto light = test::centroid(frame.counts, {star.x_px, star.y_px}, 13);
     const double dx = star.x_px - 79.5, dy = star.y_px - 59.5, r = std::hypot(dx, dy);
     const auto shift = centroid_of_field_px(o, {r / corner_px(o), std::atan2(dy, dx)});
-    // Within 13 px there is nearly all of the light; what is not is farther out.
-    EXPECT_NEAR(light.x_px - star.x_px, shift[0], 0.06);
-    EXPECT_NEAR(light.y_px - star.y_px, shift[1], 0.06);
+    // Of coma 0.05 px of the shift is in light beyond 13 px.
+    EXPECT_NEAR(light.x_px - star.x_px, shift[0], 0.05);
+    EXPECT_NEAR(light.y_px - star.y_px, shift[1], 0.05);
     if (r > 50) {
       EXPECT_GT(std::hypot(shift[0], shift[1]), 0.3);
     }
@@ -122,21 +122,7 @@ TEST(FieldOptics, FramesAreTheSameByAnyNumberOfThreads) {
       scenario(coarse + ", focus_drift: {um_per_hour: 3600}, psf_field: {radius_px: [0, 100], "
                         "fwhm_radial_px: [2, 5], fwhm_tangential_px: [2, 3]}"),
       stars(0.05, 8));
-  const auto first = stage.frame(1).counts.pixels, second = stage.frame(2).counts.pixels;
-  EXPECT_NE(first, second);  // the focus is another
-  auto config = stage.scenario.sensors[0];
-  config.detect = false;
-  for (const int n : {3}) {
-    Threads threads(n);
-    FramePipeline pipeline({.sensor = config,
-                            .clock = make_clock(stage.scenario),
-                            .seed = stage.scenario.seed,
-                            .digest = "test",
-                            .faintest_star_mag = 15},
-                           stage.stars, threads);
-    EXPECT_EQ(pipeline.run(frame_times(config, 2), stage.world).counts.pixels, second) << n;
-    EXPECT_EQ(pipeline.run(frame_times(config, 1), stage.world).counts.pixels, first) << n;
-  }
+  test::expect_same_by_threads(stage, {3});  // each with a focus of its own
 }
 
 TEST(FieldOptics, SwitchedOffTheBlurIsThatOfTheCentreAndInFocus) {

@@ -80,22 +80,7 @@ TEST(OpticsStage, AFrameOfFrozenTurbulenceIsMadeAgainByItselfAndByAnyThreads) {
   test::Stage stage(scenario(fine + ", psf: diffraction",
                              "exposure_s: 0.005, seeing: {r0_m: 0.08, wind_m_per_s: 10}"),
                     stars(0.003, 3));
-  const auto second = stage.frame(2).counts.pixels, first = stage.frame(1).counts.pixels;
-  EXPECT_NE(first, second);
-  EXPECT_EQ(stage.frame(2).counts.pixels, second);
-  auto config = stage.scenario.sensors[0];
-  config.detect = false;
-  for (int n : {1, 2, 4}) {
-    Threads threads(n);
-    FramePipeline pipeline({.sensor = config,
-                            .clock = make_clock(stage.scenario),
-                            .seed = stage.scenario.seed,
-                            .digest = "test",
-                            .faintest_star_mag = 15},
-                           stage.stars, threads);
-    EXPECT_EQ(pipeline.run(frame_times(config, 1), stage.world).counts.pixels, first) << n;
-    EXPECT_EQ(pipeline.run(frame_times(config, 2), stage.world).counts.pixels, second) << n;
-  }
+  test::expect_same_by_threads(stage, {1, 2, 4});
 }
 
 TEST(OpticsStage, TheCornersAreDarkerByTheVignetting) {
