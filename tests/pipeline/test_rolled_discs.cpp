@@ -36,8 +36,8 @@ struct Turning {
     const std::string detector =
         "full_well_e: 1.0e+9, gain_e_per_dn: 1, row_time_us: " + std::to_string(row_time_us);
     return scenario("2018-01-21T00:15:00Z", 5, "platform: platform",
-                    camera(side, rows, 1e-5 / pixel_rad, detector, ", aperture_m: 0.002"), text, exposure_s, 5, more(), "",
-                    platform);
+                    camera(side, rows, 1e-5 / pixel_rad, detector, ", aperture_m: 0.002"), text,
+                    exposure_s, 5, more(), "", platform);
   }
 };
 
