@@ -84,11 +84,16 @@ def test(binary, directory):
     solved = done("solve", frame, code=1)
     check("the shutter was closed because of the Moon" in solved.stderr, f"solve, too: {solved.stderr}")
 
-    passes = {name: done("visible", path, "--sensor", name, "--csv", "--print-only", "--duration", "3600").stdout.splitlines()
+    passes = {name: done("visible", path, "--sensor", name, "--csv", "--print-only", "--duration", "10800").stdout.splitlines()
               for name in ("closed", "flagged", "plain")}
     check(passes["flagged"][0] == passes["plain"][0] + ",excluded", "visible has a column of its own for it")
-    check(len(passes["closed"]) == 1, f"no pass behind a closed shutter: {passes['closed'][1:3]}")
-    check(all(line.endswith(",true") for line in passes["flagged"][1:]), "flagged passes are flagged")
+    of_passes = {name: [line.split(",", 1)[1] for line in lines[1:]] for name, lines in passes.items()}  # without the sensor
+    flagged = [line.rsplit(",", 1) for line in of_passes["flagged"]]
+    check([line for line, _ in flagged] == of_passes["plain"], "and the same passes")
+    excluded = [line for line, mark in flagged if mark == "true"]
+    check(len(excluded) >= 2 and len(excluded) < len(flagged), f"{len(excluded)} of {len(flagged)} while the Moon is up")
+    check([line for line, mark in flagged if mark == "false"] == [line.rsplit(",", 1)[0] for line in of_passes["closed"]],
+          "behind a shutter that the Moon closes there are those after it has set")
 
 
 main(test)
