@@ -60,39 +60,56 @@ double least_between(const AngleAt& angle, SimTime from, SimTime to, double leas
   return least;
 }
 
-/// Times of the exposure between which the axis turns little.
-std::vector<SimTime> times_of(const View& view) {
+/// Where the angles of an exposure are looked at.
+struct Looks {
+  std::vector<SimTime> times;
+  SimTime reach;      // on either side of one, in which the axis turns little
+  bool many_turns{};  // too many for times between which it turns little: all phases of a turn
+};
+
+Looks looks_of(const View& view) {
   const FrameTimes all = view.times_of_all_rows();
   const SimTime moment{std::clamp<std::int64_t>((all.end - all.start).ns / 1000, 1, 1'000'000)};
   double fastest_rad = 0.0;
   for (const SimTime t : {all.start, all.at(0.5), all.end - moment})
     fastest_rad = std::max(fastest_rad, angle_rad(axis_of(view, t), axis_of(view, t + moment)));
-  const double turns_rad = fastest_rad / moment.seconds() * all.seconds();
-  const int steps = std::clamp(int(std::min(turns_rad / step_rad, double(most_steps))) + 1,
-                               fewest_steps, most_steps);
-  std::vector<SimTime> times;
-  for (int k = 0; k <= steps; ++k) times.push_back(all.at(double(k) / steps));
-  return times;
+  const double steps = fastest_rad / moment.seconds() * all.seconds() / step_rad;
+  Looks looks{.times = {}, .reach = {}, .many_turns = steps > most_steps};
+  const int count =
+      std::clamp(int(std::min(steps, double(most_steps))) + 1, fewest_steps, most_steps);
+  looks.reach = {(all.end - all.start).ns /
+                 std::int64_t(std::max(1.0, std::max(steps, double(count))))};
+  const double golden = 0.6180339887498949;
+  for (int k = 0; k <= count; ++k) {
+    const double within = looks.many_turns ? std::fmod(k * golden, 1.0) - 0.5 : 0.0;
+    looks.times.push_back(all.at(std::clamp((k + within) / count, 0.0, 1.0)));
+  }
+  return looks;
 }
 
-double least_of(const std::vector<SimTime>& times, const AngleAt& angle) {
+double least_of(const Looks& looks, const AngleAt& angle) {
+  const auto& times = looks.times;
   std::vector<double> angles;
   for (const SimTime t : times) angles.push_back(angle(t));
-  double least = angles.front();
+  double least = *std::ranges::min_element(angles);
   for (std::size_t k = 0; k < times.size(); ++k) {
     const double here = angles[k];
     const std::size_t before = k == 0 ? 0 : k - 1, after = std::min(k + 1, times.size() - 1);
-    if (here > angles[before] || here > angles[after]) continue;
-    least = std::min(least, least_between(angle, times[before], times[after], here));
+    const bool is_least = looks.many_turns ? here < least + step_rad / 4
+                                           : here <= angles[before] && here <= angles[after];
+    if (!is_least) continue;
+    least = std::min(least, least_between(angle, std::max(times.front(), times[k] - looks.reach),
+                                          std::min(times.back(), times[k] + looks.reach), here));
   }
   return least;
 }
 
-std::optional<double> least_from(const View& view, const std::vector<SimTime>& times,
+std::optional<double> least_from(const View& view, const Looks& looks,
                                  SeenBody (*seen)(const View&, SimTime)) {
-  if (std::ranges::all_of(times, [&](SimTime t) { return is_hidden(view, seen(view, t), t); }))
+  if (std::ranges::all_of(looks.times,
+                          [&](SimTime t) { return is_hidden(view, seen(view, t), t); }))
     return std::nullopt;
-  return least_of(times,
+  return least_of(looks,
                   [&](SimTime t) { return angle_rad(axis_of(view, t), seen(view, t).apparent); });
 }
 
@@ -102,11 +119,11 @@ BodyAngles body_angles(const View& view) {
   const Exclusion& limits = view.sensor().camera.exclusion;
   BodyAngles angles;
   if (!limits.any()) return angles;
-  const auto times = times_of(view);
-  if (limits.sun_deg) angles.sun_rad = least_from(view, times, truly_seen_sun);
-  if (limits.moon_deg) angles.moon_rad = least_from(view, times, truly_seen_moon);
+  const Looks looks = looks_of(view);
+  if (limits.sun_deg) angles.sun_rad = least_from(view, looks, truly_seen_sun);
+  if (limits.moon_deg) angles.moon_rad = least_from(view, looks, truly_seen_moon);
   if (limits.earth_limb_deg && !view.on_ground())
-    angles.earth_limb_rad = least_of(times, [&](SimTime t) {
+    angles.earth_limb_rad = least_of(looks, [&](SimTime t) {
       return from_limb_rad(view.observer(t).position_m, axis_of(view, t), view.surface());
     });
   return angles;

@@ -16,7 +16,8 @@ struct BodyAngles {
 
 /// Those that the camera has a limit for. Of the axis as it is, with what the sensor does not know
 /// of its pointing, and of the places where the bodies are seen, with all effects of place that the
-/// scenario asks for. To 1e-6 rad, unless the camera turns by more than 22 times in an exposure.
+/// scenario asks for. To 1e-6 rad, also of a camera that turns
+/// many times in an exposure.
 BodyAngles body_angles(const View& view);
 
 /// Which of them are less than the camera's limits.

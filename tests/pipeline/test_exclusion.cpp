@@ -149,6 +149,30 @@ TEST(Exclusion, IsByTheLeastAngleOfATurnPastTheSun) {
   }
 }
 
+// The axis is 70 deg from that of the spin, which is 50 deg from the Sun: 20 deg at the nearest, in
+// 1.5 to 1000 turns of an exposure.
+TEST(Exclusion, IsByTheLeastAngleOfACameraThatSpins) {
+  const Vec<Gcrs> at_m = unit(bodies().sun_m) * 4e7, to_sun = unit(bodies().sun_m - at_m);
+  const Vec<Gcrs> spin = beside(to_sun, 50.0 * deg);
+  for (const double rpm : {9.0, 18.0, 600.0, 6000.0}) {
+    char objects[400];
+    std::snprintf(
+        objects, sizeof objects,
+        "objects:\n  - name: platform\n    motion: {fixed: {gcrs_m: [%.3f, %.3f, %.3f]}}\n"
+        "    attitude: {spinning: {axis: [%.15f, %.15f, %.15f], rate_rpm: %g, phase_deg: "
+        "12.3}}\n",
+        at_m.x, at_m.y, at_m.z, spin.x, spin.y, spin.z, rpm);
+    const Vec<Gcrs> boresight = beside(spin, 70.0 * deg);
+    char pointing[160];
+    std::snprintf(pointing, sizeof pointing, "{body: {boresight: [%.15f, %.15f, %.15f]}}",
+                  boresight.x, boresight.y, boresight.z);
+    Stage stage(scenario("2018-01-21T00:15:00Z", 20, "platform: platform", camera(8, 8, 0.1),
+                         pointing, 10.0, 20, more(", annual_aberration: off, light_time: off"), "",
+                         objects));
+    EXPECT_NEAR(*angles_of(stage, sun(40.0)).sun_rad / deg, 20.0, 2e-4) << rpm;
+  }
+}
+
 // Rows of a rolling shutter that are exposed later count: here the last ones alone are near.
 TEST(Exclusion, OfARollingShutterIsThatOfAllRows) {
   const std::string rolling = "full_well_e: 1.0e+9, gain_e_per_dn: 1, row_time_us: 100000";
