@@ -42,6 +42,9 @@ void print_detections(const DetectOptions& o) {
   read_frames_of(o.frame, *o.choice, threads, [&](const Frame& frame) {
     if (frame.notes != last) print_notes(o.frame, frame.notes);
     last = frame.notes;
+    if (frame.header.shutter_closed())
+      std::fprintf(stderr, "note: %s: the shutter was closed because of %s: nothing to detect\n",
+                   o.frame.c_str(), excluding_text(frame.header.excluded).c_str());
     auto found = detected(detector, o, frame, threads);
     if (found.solution)
       std::fprintf(stderr, "note: %s: solved: %d stars, %.3f px rms\n", o.frame.c_str(),

@@ -44,6 +44,9 @@ void print_span(const PlanSpan& span, const Clock& clock, const CostFactors& fac
               format_utc(clock.utc(span.end), 0).c_str(), predicted_s(plan, factors),
               error_text(plan.error).c_str(), error_text(plan.budget).c_str(),
               plan.in_time ? "" : "; no plan is as fast as was asked");
+  if (span.shutter_closed)
+    std::printf(
+        "    the shutter is closed: no light comes in, and the detector alone is planned\n");
   std::printf("    %-22s %-9s %9s  %-28s %s\n", "effect", "level", "cost, ms", "next lower level",
               "why");
   for (const auto& p : plan.planned) {
@@ -76,6 +79,7 @@ void explain(const ExplainOptions& options) {
         json.field("last_frame", span.last_frame);
         json.field("start", format_utc(clock.utc(span.start), 6));
         json.field("end", format_utc(clock.utc(span.end), 6));
+        if (span.shutter_closed) json.field("shutter_closed", true);
         write_plan(json.key("plan"), span.plan, factors);
         json.end_object();
       }

@@ -70,6 +70,9 @@ void solve(const SolveOptions& o) {
   Threads threads(o.threads);
   const Frame frame = read_any_frame(o.frame, *o.choice, threads);
   print_notes(o.frame, frame.notes);
+  if (frame.header.shutter_closed())
+    throw Error(o.frame + ": the shutter was closed because of " +
+                excluding_text(frame.header.excluded) + ": there are no stars in it");
   SolveSettings settings{.blind = o.blind};
   set_widths(o, frame, settings.search);
   const auto stars = load_star_catalogue(o.catalogue);

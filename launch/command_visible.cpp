@@ -121,7 +121,7 @@ void write_products(const std::string& directory, const PassList& list, const st
 
 void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
                  const ObjectPopulation& population, const Sgp4Batch& batch, const SkyHours& sky,
-                 const TimeGrid& grid, Threads& threads, bool first) {
+                 const TimeGrid& grid, Threads& threads, bool first, bool tells_excluded) {
   std::optional<std::size_t> platform, target;
   if (const auto* p = std::get_if<PlatformConfig>(&sensor.place))
     platform = followed(population, p->object, sensor.name + ": platform");
@@ -144,7 +144,7 @@ void show_sensor(const SensorConfig& sensor, const VisibleOptions& options,
   });
   if (first) print_notes(lost_notes(found, population, clock), " without a state");
 
-  const PassList list{sensor, clock, population.elements, passes};
+  const PassList list{sensor, clock, population.elements, passes, tells_excluded};
   if (options.csv) {
     std::fputs(pass_csv(list, first).c_str(), stdout);
   } else if (options.jsonl) {
@@ -191,9 +191,11 @@ void visible(const VisibleOptions& options) {
   const SkyHours sky(clock, grid.from, grid.last(), scenario.earth.ellipsoid);
   std::unique_ptr<RunLock> lock;
   if (!options.print_only) lock = lock_directory(options.out);
+  const bool tells_excluded = std::ranges::any_of(
+      sensors, [](const SensorConfig* sensor) { return sensor->camera.exclusion.any(); });
   bool first = true;
   for (const SensorConfig* sensor : sensors) {
-    show_sensor(*sensor, options, population, batch, sky, grid, threads, first);
+    show_sensor(*sensor, options, population, batch, sky, grid, threads, first, tells_excluded);
     first = false;
   }
 }
@@ -246,7 +248,8 @@ void add_visible_command(CLI::App& app) {
       ->check(CLI::Range(1, 256));
   command->footer(
       "An object is visible if it is in the camera's frame, above the sensor's mask_deg and "
-      "not behind\nthe Earth; '<' and '>' mark passes cut by the span. docs/models/visibility.md");
+      "not behind\nthe Earth, and the shutter is open; '<' and '>' mark passes cut by the span. "
+      "docs/models/visibility.md");
   command->callback([o] { visible(*o); });
 }
 

@@ -41,10 +41,10 @@ Value elevation(const PassMoment& m) {
   return m.horizontal ? of(m.horizontal->elevation_rad / deg, "%.3f") : Value{};
 }
 
-const std::vector<Column>& columns() {
+std::vector<Column> columns_of(const PassList& list) {
   using L = const PassList&;
   using P = const Pass&;
-  static const std::vector<Column> all = {
+  std::vector<Column> all = {
       {"sensor", [](L l, P) { return of(l.sensor.name); }},
       {"catalogue_number",
        [](L l, P p) { return of(double(l.elements[p.object].catalogue_number), "%.0f"); }},
@@ -72,6 +72,7 @@ const std::vector<Column>& columns() {
          return p.top.sun_elevation_rad ? of(*p.top.sun_elevation_rad / deg, "%.2f") : Value{};
        }},
   };
+  if (list.tells_excluded) all.push_back({"excluded", [](L, P p) { return of(p.excluded); }});
   return all;
 }
 
@@ -145,6 +146,7 @@ std::string pass_table(const PassList& list, std::size_t rows) {
                          p.top.rate_rad_per_s / deg, light(list, p).c_str());
     text.append(row, std::size_t(used));
     if (p.top.sun_elevation_rad) text += printed("  %5.1f", *p.top.sun_elevation_rad / deg);
+    if (p.excluded) text += "  excluded";
     text += '\n';
   }
   if (rows && list.passes.size() > rows)
@@ -154,14 +156,15 @@ std::string pass_table(const PassList& list, std::size_t rows) {
 }
 
 std::string pass_csv(const PassList& list, bool with_header) {
+  const auto columns = columns_of(list);
   std::string text;
   if (with_header) {
-    for (const Column& c : columns()) text += (text.empty() ? "" : ",") + std::string(c.name);
+    for (const Column& c : columns) text += (text.empty() ? "" : ",") + std::string(c.name);
     text += '\n';
   }
   for (const Pass& p : list.passes) {
     const char* comma = "";
-    for (const Column& c : columns()) {
+    for (const Column& c : columns) {
       text += comma + quoted(c.value(list, p).text);
       comma = ",";
     }
@@ -171,11 +174,12 @@ std::string pass_csv(const PassList& list, bool with_header) {
 }
 
 std::string pass_jsonl(const PassList& list) {
+  const auto columns = columns_of(list);
   std::string text;
   for (const Pass& p : list.passes) {
     JsonWriter w;
     w.begin_object();
-    for (const Column& c : columns()) {
+    for (const Column& c : columns) {
       const Value v = c.value(list, p);
       w.key(c.name);
       switch (v.kind) {

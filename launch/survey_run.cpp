@@ -194,6 +194,11 @@ class Survey {
       notes_.push_back(sensor.name + ": in " + std::to_string(survey.without_state) + " of " +
                        std::to_string(survey.frames) +
                        " exposures its platform or target has no state");
+    if (survey.closed > 0)
+      notes_.push_back(sensor.name + ": in " + std::to_string(survey.closed) + " of " +
+                       std::to_string(survey.exposures.size()) +
+                       " exposures its shutter is closed: a body is nearer to the axis than "
+                       "camera.exclusion allows");
   }
 
   SurveySummary summary_of(const std::vector<SensorSurvey>& surveys,

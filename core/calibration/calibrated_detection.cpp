@@ -39,6 +39,7 @@ CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame,
     return dmise::detect(frame.counts, header, with_mask, threads, sky_ ? &*sky_ : nullptr);
   };
   Result result{.detection = {}, .header = frame.header, .solution = std::nullopt};
+  if (frame.header.shutter_closed()) blind = false;  // there are no stars
   if (!blind) {
     result.detection = detected_by(frame.header);
     const Observation& o = frame.header.observation;

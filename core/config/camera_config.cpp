@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/config/band_config.h"
 #include "core/config/detector_config.h"
+#include "core/config/exclusion_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/proportion.h"
 #include "core/config/search_path.h"
@@ -58,7 +59,9 @@ const Section& camera_section() {
        optional("magnitude_system", form::choice(words(magnitude_system_names)),
                 "Of the magnitudes of detections and of the header's zero point: the V of a source "
                 "of the Sun's colour that is as bright in the band, or the band's own.",
-                magnitude_system_names[0])}};
+                magnitude_system_names[0]),
+       optional("exclusion", form::map(exclusion_section),
+                "How near Sun, Moon and the Earth's limb may be to the optical axis.")}};
   return section;
 }
 
@@ -85,6 +88,7 @@ Camera read_camera(const YamlValue& value) {
   if (const auto efficiency = YamlMap(map.require("detector")).find("quantum_efficiency"))
     apply_quantum_efficiency(*efficiency, camera);
   if (const auto system = map.find("magnitude_system")) read_magnitude_system(*system, camera);
+  if (const auto exclusion = map.find("exclusion")) camera.exclusion = read_exclusion(*exclusion);
   camera.warnings = disproportions_of_camera(value, camera);
   map.done();
   return camera;

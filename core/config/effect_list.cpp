@@ -105,11 +105,13 @@ void for_each_in(const SensorConfig& sensor, const SceneFacts& scene, const Imag
     const Effect& effect = sensor.instrument;
     if (effect.applies()) visit.template operator()<Effect>(effect);
   });
-  PlaceEffects::for_each(visit_in_scene);
-  LightEffects::for_each(visit_in_scene);
-  ImageEffects::for_each([&]<class Effect>() {
-    if (static_cast<const Effect&>(optics).applies()) visit.template operator()<Effect>(optics);
-  });
+  if (!scene.shutter_closed) {
+    PlaceEffects::for_each(visit_in_scene);
+    LightEffects::for_each(visit_in_scene);
+    ImageEffects::for_each([&]<class Effect>() {
+      if (static_cast<const Effect&>(optics).applies()) visit.template operator()<Effect>(optics);
+    });
+  }
   DetectorEffects::for_each([&]<class Effect>() {
     if (static_cast<const Effect&>(detector).applies(detector))
       visit.template operator()<Effect>(detector);

@@ -1,5 +1,6 @@
 #include "core/base/json.h"
 #include "core/config/effect_list.h"
+#include "core/config/exclusion_config.h"
 #include "core/config/instrument_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/pointing_config.h"
@@ -43,6 +44,7 @@ void write_camera(JsonWriter& json, const Camera& camera) {
   if (camera.magnitudes.system != MagnitudeSystem::v_solar)
     json.field("magnitude_system", magnitude_system_name(camera.magnitudes.system))
         .field("solar_colour_mag", camera.magnitudes.solar_colour_mag);
+  write_exclusion_json(json, camera.exclusion);
   json.end_object();
 }
 

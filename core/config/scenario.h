@@ -18,6 +18,7 @@
 #include "core/fusion/fusion_settings.h"
 #include "core/instrument/instrument.h"
 #include "core/optics/camera.h"
+#include "core/optics/exclusion.h"
 #include "core/optics/seeing.h"
 #include "core/orbit/interpolation.h"
 #include "core/photometry/band.h"
@@ -34,6 +35,7 @@ struct Camera {
   Band band;
   MagnitudeScale magnitudes;               // of detections and of PHOTZP
   std::vector<std::string> warnings = {};  // see `disproportions_of_camera`
+  Exclusion exclusion = {};
 };
 
 /// A sensor on the ground.

@@ -12,6 +12,7 @@
 #include "core/config/camera_config.h"
 #include "core/config/detector_config.h"
 #include "core/config/effect_list.h"
+#include "core/config/exclusion_config.h"
 #include "core/config/instrument_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/pointing_config.h"
@@ -370,6 +371,7 @@ SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const
     sensor.place = PlatformConfig{printable(platform->text()), platform->place()};
   }
   sensor.camera = read_camera(map.require("camera"));
+  if (site) check_exclusion_on_ground(map.require("camera"), sensor.camera.exclusion);
   read_pointing(map.require("pointing"), bool(site), sensor, earth.origin);
   read_instrument(map, sensor.instrument);
   const auto exposure = map.require("exposure_s");

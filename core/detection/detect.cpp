@@ -127,6 +127,8 @@ FrameReport unmeasured_report(const CountImage& counts, const FrameHeader& heade
   r.sensor_velocity_m_per_s = header.sensor_velocity_m_per_s;
   r.magnitudes = header.magnitudes;
   r.zero_point_mag = header.zero_point_mag;
+  r.excluded = header.excluded;
+  r.shutter_closed = header.shutter_closed();
   return r;
 }
 
@@ -150,6 +152,7 @@ FrameReport make_report(const CountImage& counts, const FrameHeader& header,
 DetectionResult detect(const CountImage& counts, const FrameHeader& header,
                        const DetectorSettings& settings, Threads& threads,
                        const CatalogueSky* sky) {
+  if (header.shutter_closed()) return without_detection(counts, header);
   Background background(counts, settings.background_cell_px, threads);
   const StarMotion stars(header, counts.columns, counts.rows);
   Scene scene{counts,
@@ -207,6 +210,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
     if (!ends) add_errors_of_hidden_ends(scene, source);
     Detection d = describe(source, header);
     d.index = std::uint32_t(result.detections.size());
+    d.excluded = header.excluded.any();
     d.id = d.sensor + "/" + std::to_string(d.frame) + "/" + std::to_string(d.index);
     result.detections.push_back(std::move(d));
   }

@@ -45,8 +45,9 @@ struct DetectionResult {
 /// Detects what is no star, from the counts and the header alone. With a catalogue of stars, what
 /// it knows is hidden, and what is bright enough for it and not in it is no star whatever it looks
 /// like; if the frame does not show the catalogue's stars where they should be, and without one,
-/// what does not move like the stars is detected. Equal for any number of threads. Needs memory for
-/// two images of 16 bits, a few rows and the sources, besides the frame.
+/// what does not move like the stars is detected. Equal for any number of threads. Nothing is
+/// looked for where the header has the shutter closed. Needs memory for two images of 16 bits, a
+/// few rows and the sources, besides the frame.
 DetectionResult detect(const CountImage& counts, const FrameHeader& header,
                        const DetectorSettings& settings, Threads& threads,
                        const CatalogueSky* sky = nullptr);

@@ -157,8 +157,10 @@ std::string to_json(const Detection& d, const UtcText& utc, const UnknownFacts& 
 #define DMISE_VECTOR(field_, key) line.vector(key, d.field_);
 #define DMISE_PAIR(x, y, key) line.array(key, std::array<double, 2>{d.x, d.y});
 #define DMISE_TEXT(key, value) line.field(key, value);
+#define DMISE_WHERE(field_, key) \
+  if (d.field_) line.field(key, true);
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_PAIR,
-                         DMISE_TEXT)
+                         DMISE_TEXT, DMISE_WHERE)
   return line.end();
 }
 
@@ -173,6 +175,12 @@ std::string to_json(const FrameReport& r, const UtcText& utc, const UnknownFacts
   line.vector("sensor_velocity_gcrs_m_per_s", r.sensor_velocity_m_per_s);
   const bool measured = !r.detection_off;
   if (!measured) line.field("detection_off", true);
+  const std::pair<const char*, bool> rare[] = {{"shutter_closed", r.shutter_closed},
+                                               {"sun_excludes", r.excluded.sun},
+                                               {"moon_excludes", r.excluded.moon},
+                                               {"earth_limb_excludes", r.excluded.earth_limb}};
+  for (const auto& [name, is] : rare)
+    if (is) line.field(name, true);
   line.measured("limiting_magnitude", r.limiting_magnitude, measured);
   line.measured("background_e", r.background_e, measured);
   line.measured("noise_e", r.noise_e, measured).field("zero_point_mag", r.zero_point_mag);

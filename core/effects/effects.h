@@ -44,6 +44,7 @@ struct SceneFacts {
   bool stray_light = false;  // the optics scatter what is beside the field
   // Whose disc is in the field or next to it, in the exposure.
   bool sun_in_field = false, moon_in_field = false, earth_in_field = false;
+  bool shutter_closed = false;  // in the exposure: no light comes in
 };
 
 /// A closed family of effects, in the order in which they run.

@@ -132,6 +132,12 @@ class CardReader {
   }
   void lookup(int axis) { constant(("CPDIS" + std::to_string(axis)).c_str(), "LOOKUP", ""); }
   bool present(const char* key, bool) const { return values_.contains(key); }
+  template <class Enum, std::size_t count>
+  void choice(const char* key, Enum& value, const char* const (&names)[count], const char*) {
+    const auto named = std::ranges::find(names, find(key));
+    if (named == std::end(names)) fail(key, "is no such choice, got " + find(key));
+    value = Enum(named - std::begin(names));
+  }
   void sip(Wcs& wcs) {
     if (!values_.contains("A_ORDER")) return;
     integer("A_ORDER", wcs.order, "");

@@ -113,6 +113,10 @@ class CardWriter {
       text("DP" + number, record + std::string(record[0] == 'E' ? number : ""), "");
   }
   bool present(const char*, bool here) const { return here; }
+  template <class Enum, std::size_t count>
+  void choice(const char* key, Enum value, const char* const (&names)[count], const char* comment) {
+    constant(key, names[std::size_t(value)], comment);
+  }
   /// The rows of a vignetting table.
   void illumination(MonotoneCubic& table, FieldRadius& radius) {
     integer("VIGNROWS", table.at().size(), "rows of the relative illumination");

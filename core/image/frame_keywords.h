@@ -98,6 +98,25 @@ void visit_detector(Visitor& v, FrameHeader& h) {
   d.bias_dn = h.bias_dn;
 }
 
+/// Limits of a camera that has some, and whether they were kept.
+template <class Visitor>
+void visit_exclusion(Visitor& v, FrameHeader& h) {
+  if (!v.present("EXCLACT", h.exclusion.any())) return;
+  const auto limit = [&](const char* key, std::optional<double>& limit_deg, const char* nearer_key,
+                         bool& nearer, const char* comment) {
+    v.optional_number(key, limit_deg, comment);
+    if (limit_deg) v.flag(nearer_key, nearer, "it was, in the exposure");
+  };
+  limit("SUNEXCL", h.exclusion.sun_deg, "SUNNEAR", h.excluded.sun,
+        "[deg] of the axis: the Sun must not be nearer");
+  limit("MOONEXCL", h.exclusion.moon_deg, "MOONNEAR", h.excluded.moon,
+        "[deg] of the axis: the Moon must not be nearer");
+  limit("LIMBEXCL", h.exclusion.earth_limb_deg, "LIMBNEAR", h.excluded.earth_limb,
+        "[deg] of the axis: the limb must not be nearer");
+  v.choice("EXCLACT", h.exclusion.action, exclusion_action_names, "what happens if one is");
+  v.constant("SHUTTER", h.shutter_closed() ? "closed" : "open", "in the exposure");
+}
+
 template <class Visitor>
 void visit(Visitor& v, FrameHeader& h) {
   v.text("INSTRUME", h.sensor, "sensor");
@@ -152,6 +171,7 @@ void visit(Visitor& v, FrameHeader& h) {
   }
   if (v.present("MIRRORED", h.mirrored))
     v.flag("MIRRORED", h.mirrored, "rows run against the camera's y axis");
+  visit_exclusion(v, h);
   if (v.present("UNKNOWN", h.unknown.any())) v.facts("UNKNOWN", h.unknown, "stand-ins");
   visit_vector(v, "SENPOS", h.sensor_position_m, "[m] sensor, GCRS, mid exposure");
   visit_vector(v, "SENVEL", h.sensor_velocity_m_per_s, "[m/s] sensor, GCRS, mid exposure");

@@ -5,6 +5,7 @@
 
 #include "core/base/sim_time.h"
 #include "core/frames/vec.h"
+#include "core/optics/exclusion.h"
 #include "core/photometry/magnitude_system.h"
 #include "core/products/frame_notes.h"
 #include "core/wcs/wcs.h"
@@ -76,6 +77,7 @@ struct Detection {
   bool saturated = false;  // a pixel is at full well or at the ADC's limit
   bool at_edge = false;    // touches the frame's edge: an end is missing
   bool star_like = false;  // has the shape and direction of a star's trail
+  bool excluded = false;   // Sun, Moon or limb was nearer to the axis than the camera allows
 
   bool operator==(const Detection&) const = default;
 };
@@ -107,7 +109,9 @@ struct FrameReport {
   // Detection was off: limiting magnitude, background, noise, saturated_px and the numbers of
   // detections are 0.
   bool detection_off = false;
-  FrameNotes notes;  // of another camera's frame; not sent
+  Excluded excluded;            // bodies nearer to the axis than the camera allows
+  bool shutter_closed = false;  // because of them: the frame is dark, and detection was off
+  FrameNotes notes;             // of another camera's frame; not sent
 
   bool operator==(const FrameReport&) const = default;
 };

@@ -11,10 +11,11 @@
 //   VECTOR(field, key)          a vector in GCRS
 //   PAIR(x, y, key)             two numbers, an array in JSON
 //   TEXT(key, value)            a constant, only in JSON
+//   WHERE(field, key)           a flag that is in JSON only where it is set
 // A field on the wire has the name of the member. To add one: the member, its row here, and its
 // field in proto/dmise/v1/detection.proto; core/detection/describe.cpp computes it.
 // clang-format off
-#define DMISE_DETECTION_FIELDS(VALUE, TIME, NAME, LIST, VECTOR, PAIR, TEXT)             \
+#define DMISE_DETECTION_FIELDS(VALUE, TIME, NAME, LIST, VECTOR, PAIR, TEXT, WHERE)      \
   VALUE(id, "id", 1)                                                                    \
   VALUE(sensor, "sensor", 1)                                                            \
   VALUE(frame, "frame", 1)                                                              \
@@ -61,5 +62,6 @@
   VALUE(position_angle_rad, "position_angle_deg", deg)                                   \
   VALUE(saturated, "saturated", 1)                                                      \
   VALUE(at_edge, "at_edge", 1)                                                          \
-  VALUE(star_like, "star_like", 1)
+  VALUE(star_like, "star_like", 1)                                                      \
+  WHERE(excluded, "excluded")
 // clang-format on

@@ -10,6 +10,7 @@
 #include "core/frames/quaternion.h"
 #include "core/frames/vec.h"
 #include "core/optics/camera.h"
+#include "core/optics/exclusion.h"
 #include "core/photometry/band.h"
 #include "core/photometry/magnitude_system.h"
 #include "core/products/detection.h"
@@ -72,6 +73,9 @@ struct FrameHeader {
   std::array<Quaternion, 3> camera_from_gcrs;
   bool mirrored = false;  // rows run against the camera's y axis
 
+  Exclusion exclusion;  // of the camera
+  Excluded excluded;    // in this exposure
+
   UnknownFacts unknown;  // none in a run's frames
 
   Vec<Gcrs> sensor_position_m, sensor_velocity_m_per_s;  // geocentric, mid exposure
@@ -85,6 +89,9 @@ struct FrameHeader {
 
   /// The zero point for the V of sources of the Sun's colour, as catalogues and truth have it.
   double v_solar_zero_point_mag() const { return zero_point_mag - magnitudes.solar_colour_mag; }
+
+  /// Whether no light came in.
+  bool shutter_closed() const { return closes_shutter(exclusion, excluded); }
 
   bool operator==(const FrameHeader&) const = default;
 };

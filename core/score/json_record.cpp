@@ -143,8 +143,9 @@ Detection detection_of(const JsonRecord& record) {
     d.second = v[1];                       \
   }
 #define DMISE_TEXT(key, value)
+#define DMISE_WHERE(field, key) d.field = record.has(key) && record.get<bool>(key);
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_PAIR,
-                         DMISE_TEXT)
+                         DMISE_TEXT, DMISE_WHERE)
 #undef DMISE_VALUE
 #undef DMISE_TIME
 #undef DMISE_NAME

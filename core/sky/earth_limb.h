@@ -9,4 +9,8 @@ namespace dmise {
 double above_limb_rad(const Vec<Gcrs>& from_m, const Vec<Gcrs>& direction,
                       const OblateEarth& earth);
 
+/// The same from the limb's nearest point, wherever that is [rad]: that plane is not the nearest
+/// one by 1e-5 of the angle near the limb, by up to 0.5 deg from low orbit near the zenith.
+double from_limb_rad(const Vec<Gcrs>& from_m, const Vec<Gcrs>& direction, const OblateEarth& earth);
+
 }  // namespace dmise

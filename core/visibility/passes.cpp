@@ -49,6 +49,10 @@ class Follower {
   bool visible(const Place& p) const {
     return p.ok() && sight_.visible(p.camera, p.state.position_m);
   }
+  /// Whether exposures are flagged, not lost, where a body is too near the axis.
+  bool is_flagged() const {
+    return track_.sensor().camera.exclusion.action == ExclusionAction::flag;
+  }
   bool lit(const Place& p) const { return sunlit(p) >= lit_fraction; }
   double sunlit(const Place& p) const {
     return p.ok() ? Sunlight(track_.sky(), p.time()).fraction(p.state.position_m) : 0.0;
@@ -165,6 +169,9 @@ void find_light(const Follower& object, const std::vector<Place>& places, Pass& 
 void describe(const Follower& object, SimTime rise, SimTime set, Pass& pass) {
   const auto places = object.along(instants_along(rise, set));
   find_light(object, places, pass);
+  pass.excluded = object.is_flagged() && std::ranges::any_of(places, [](const Place& p) {
+                    return p.camera.excluded.any();
+                  });
   const auto greatest = [&](auto&& value) {
     std::size_t best = 0;
     for (std::size_t k = 1; k < places.size(); ++k)

@@ -22,6 +22,7 @@ struct Pass {
   PassMoment rise, top, set;  // top: culmination at a site, closest approach to a sensor in orbit
   bool open_start = false;    // in sight before the span
   bool open_end = false;      // in sight after the span
+  bool excluded = false;      // flagged: a body is nearer to the axis than the camera allows
   double least_range_m = 0.0;
   double lit_s = 0.0;                       // sunlit time within the pass
   std::optional<SimTime> lit_from, lit_to;  // first and last sunlit instant

@@ -1,6 +1,13 @@
 #include "core/visibility/sensor_track.h"
 
+#include <cmath>
+
+#include "core/base/units.h"
 #include "core/config/pointing_config.h"
+#include "core/sky/earth_limb.h"
+#include "core/sky/moon_disc.h"
+#include "core/sky/sun_disc.h"
+#include "core/sky/sun_moon.h"
 #include "core/visibility/target_direction.h"
 
 namespace dmise {
@@ -49,6 +56,35 @@ std::optional<ObserverState> SensorTrack::state_of(
 }
 
 CameraMoment SensorTrack::at(SimTime t) const {
+  CameraMoment now = camera_at(t);
+  if (now.there && sensor_.camera.exclusion.any()) now.excluded = excluded_at(now);
+  return now;
+}
+
+Excluded SensorTrack::excluded_at(const CameraMoment& now) const {
+  const Exclusion& limits = sensor_.camera.exclusion;
+  const auto gcrs_from_teme = sky_.earth(now.time).gcrs_from_teme(now.time);
+  const Vec<Gcrs> here_m = gcrs_from_teme * now.apex_m, up = gcrs_from_teme * now.up;
+  const Vec<Gcrs> axis =
+      gcrs_from_teme * (now.camera_from_teme.inverse() * Vec<CameraFrame>{0, 0, 1});
+  const OblateEarth earth = sky_.surface(now.time);
+  const auto is_near = [&](const Vec<Gcrs>& body_m, double radius_m, double limit_deg) {
+    const Vec<Gcrs> line_m = body_m - here_m;
+    if (!(angle_rad(axis, line_m) < limit_deg * deg)) return false;
+    const double radius_rad = std::asin(std::min(1.0, radius_m / norm(line_m)));
+    return site_ ? dot(up, unit(line_m)) >= -std::sin(radius_rad)
+                 : from_limb_rad(here_m, line_m, earth) >= -radius_rad;
+  };
+  Excluded excluded;
+  if (limits.sun_deg) excluded.sun = is_near(sky_.sun_m(now.time), sun_radius_m, *limits.sun_deg);
+  if (limits.moon_deg)
+    excluded.moon = is_near(moon_m(sky_.clock().tt(now.time)), moon_radius_m, *limits.moon_deg);
+  if (limits.earth_limb_deg && !site_)
+    excluded.earth_limb = from_limb_rad(here_m, axis, earth) < *limits.earth_limb_deg * deg;
+  return excluded;
+}
+
+CameraMoment SensorTrack::camera_at(SimTime t) const {
   CameraMoment now{.time = t, .utc = sky_.clock().utc(t)};
   const EarthOrientation& earth = sky_.earth(t);
   const Rotation<Itrs, Teme> itrs_from_teme = earth.itrs_from_teme(t);

@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "core/config/scenario.h"
+#include "core/optics/exclusion.h"
 #include "core/orbit/sgp4_batch.h"
 #include "core/sky/occultation.h"
 #include "core/sky/refraction.h"
@@ -20,6 +21,7 @@ struct CameraMoment {
   Vec<Teme> up;                         // unit: zenith of a ground site; 0 in orbit
   std::optional<FreeSight> sight;       // in orbit
   Rotation<Gcrs, Teme> gcrs_from_teme;  // in orbit
+  Excluded excluded;                    // bodies nearer to the axis than the camera allows
 
   Vec<CameraFrame> from_camera_m(const Vec<Teme>& position_m) const {
     return camera_from_teme * (position_m - apex_m);
@@ -48,6 +50,9 @@ class SensorTrack {
   CameraMoment at(SimTime t) const;
 
  private:
+  CameraMoment camera_at(SimTime t) const;
+  /// By straight lines, without refraction.
+  Excluded excluded_at(const CameraMoment& now) const;
   std::optional<ObserverState> state_of(std::size_t object, const CameraMoment& now,
                                         const Rotation<Gcrs, Teme>& gcrs_from_teme) const;
 

@@ -21,7 +21,9 @@ double behind_earth_m(const Vec<Gcrs>& a_m, const Vec<Gcrs>& b_m, const OblateEa
 }  // namespace
 
 Sight::Sight(const SensorConfig& sensor)
-    : field_(sensor.camera.optics), masked_(std::holds_alternative<SiteConfig>(sensor.place)) {
+    : field_(sensor.camera.optics),
+      exclusion_(sensor.camera.exclusion),
+      masked_(std::holds_alternative<SiteConfig>(sensor.place)) {
   mask_cos_ = std::cos(sensor.mask_deg * deg);
   mask_sin_ = std::sin(sensor.mask_deg * deg);
 }
@@ -33,7 +35,7 @@ double Sight::below_mask_m(const CameraMoment& now, const Vec<Teme>& from_camera
 }
 
 bool Sight::visible(const CameraMoment& now, const Vec<Teme>& position_m) const {
-  if (!now.there) return false;
+  if (!now.there || closes_shutter(exclusion_, now.excluded)) return false;
   const Vec<CameraFrame> line = now.from_camera_m(position_m);
   if (!(dot(line, line) > nearest_m * nearest_m)) return false;
   if (!field_.contains(line)) return false;

@@ -5,8 +5,9 @@
 namespace dmise {
 
 /// Visibility of a position for a sensor at an instant: in its true field, above its mask, not
-/// behind the Earth. Straight lines at one time: neglects light time and aberration (together below
-/// 30 arcsec) and refraction (1 arcmin at 45 deg of elevation, 0.57 deg at the horizon).
+/// behind the Earth, and no shutter closed. Straight lines at one time: neglects light time and
+/// aberration (together below 30 arcsec) and refraction (1 arcmin at 45 deg of elevation, 0.57 deg
+/// at the horizon).
 class Sight {
  public:
   /// Closer objects are the sensor's own platform, under any number: not seen.
@@ -24,6 +25,7 @@ class Sight {
   double below_mask_m(const CameraMoment& now, const Vec<Teme>& from_camera_m) const;
 
   FieldOfView field_;
+  Exclusion exclusion_;
   bool masked_ = false;
   double mask_cos_ = 1.0, mask_sin_ = 0.0;
 };

@@ -14,15 +14,21 @@ namespace {
 
 constexpr double axis_slack_rad = 0.01;  // the boresight of a report is that of the stars
 
-/// A sensor as the scheduler knows it; nothing of one that is not cued.
+}  // namespace
+
 std::optional<CuedSensor> cued_sensor(const SensorConfig& sensor) {
   const auto* cued = std::get_if<PointCued>(&sensor.pointing);
   if (!cued) return std::nullopt;
   const Optics& optics = sensor.camera.optics;
+  CueSettings cue = cued->cue;
+  if (const Exclusion& e = sensor.camera.exclusion; e.action == ExclusionAction::close_shutter) {
+    cue.sun_exclusion_deg = std::max(cue.sun_exclusion_deg, e.sun_deg.value_or(0.0));
+    cue.moon_exclusion_deg = std::max(cue.moon_exclusion_deg, e.moon_deg.value_or(0.0));
+  }
   return CuedSensor{
       .name = sensor.name,
       .site = *site_of(sensor),
-      .cue = cued->cue,
+      .cue = cue,
       .park_azimuth_deg = cued->park.azimuth_deg,
       .park_elevation_deg = cued->park.elevation_deg,
       .half_angle_rad = optics.pixel_angle_rad() * std::min(optics.columns, optics.rows) / 2,
@@ -30,8 +36,6 @@ std::optional<CuedSensor> cued_sensor(const SensorConfig& sensor) {
       .cadence_s = sensor.cadence_s,
       .first_exposure_s = sensor.first_exposure_s};
 }
-
-}  // namespace
 
 std::string fusion_journal_path(const std::string& directory) {
   return directory + "/" + fusion_node + "/inputs.journal";

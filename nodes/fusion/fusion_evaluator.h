@@ -15,6 +15,10 @@
 
 namespace dmise {
 
+/// A sensor as the scheduler knows it, away from where its camera closes the shutter; nothing of
+/// one that is not cued.
+std::optional<CuedSensor> cued_sensor(const SensorConfig& sensor);
+
 /// Makes tracks of the detections of all sensors: publishes those that changed at a tick and writes
 /// them to tracks.jsonl in the directory of the run. Gives sensors that are cued their tasks, which
 /// are in tasks.jsonl, too.

@@ -23,13 +23,15 @@ void put_detection(v1::Detection* message, const Detection& d) {
 #define DMISE_NAME(field, key, Enum) message->set_##field(static_cast<v1::Enum>(d.field));
 #define DMISE_LIST(field, ...) put(message->mutable_##field(), d.field);
 #define DMISE_PAIR(x, y, key) message->set_##x(d.x), message->set_##y(d.y);
+#define DMISE_WHERE(field, key) message->set_##field(d.field);
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_LIST, DMISE_PAIR,
-                         DMISE_NONE)
+                         DMISE_NONE, DMISE_WHERE)
 #undef DMISE_VALUE
 #undef DMISE_TIME
 #undef DMISE_NAME
 #undef DMISE_LIST
 #undef DMISE_PAIR
+#undef DMISE_WHERE
 }
 
 Detection take_detection(const v1::Detection& message) {
@@ -42,8 +44,9 @@ Detection take_detection(const v1::Detection& message) {
 #define DMISE_LIST(field, key, unit) d.field = take<3>(message.field(), #field);
 #define DMISE_VECTOR(field, key) d.field = take_vec<Gcrs>(message.field(), #field);
 #define DMISE_PAIR(x, y, key) d.x = message.x(), d.y = message.y();
+#define DMISE_WHERE(field, key) d.field = message.field();
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_NAME, DMISE_LIST, DMISE_VECTOR, DMISE_PAIR,
-                         DMISE_NONE)
+                         DMISE_NONE, DMISE_WHERE)
   return d;
 }
 

@@ -7,7 +7,7 @@
 #define DMISE_REPORT_FIELDS(X) \
   X(sensor) X(frame) X(boresight_ra_rad) X(boresight_dec_rad) X(limiting_magnitude) \
   X(background_e) X(noise_e) X(zero_point_mag) X(detections) X(star_like) X(saturated_px) \
-  X(stars_rendered) X(objects_rendered) X(plan) X(detection_off) \
+  X(stars_rendered) X(objects_rendered) X(plan) X(detection_off) X(shutter_closed) \
   X(psf_fwhm_px) X(psf_stars) X(stars_expected) X(stars_found)
 // clang-format on
 
@@ -95,6 +95,9 @@ Encoded encode_body(const FrameReport& report) {
 #define X(field) message.set_##field(report.field);
   DMISE_REPORT_FIELDS(X)
 #undef X
+  message.set_sun_excludes(report.excluded.sun);
+  message.set_moon_excludes(report.excluded.moon);
+  message.set_earth_limb_excludes(report.excluded.earth_limb);
   message.set_start_ns(report.start.ns);
   message.set_middle_ns(report.middle.ns);
   message.set_end_ns(report.end.ns);
@@ -112,6 +115,8 @@ FrameReport decode_report(std::string_view payload) {
 #define X(field) report.field = message.field();
   DMISE_REPORT_FIELDS(X)
 #undef X
+  report.excluded = {message.sun_excludes(), message.moon_excludes(),
+                     message.earth_limb_excludes()};
   report.start = {message.start_ns()};
   report.middle = {message.middle_ns()};
   report.end = {message.end_ns()};

@@ -268,7 +268,7 @@ void check(const Detection& d) {
 #define DMISE_VALUE(field, ...) finite_number(d.field, #field);
 #define DMISE_PAIR(x, y, key) finite(d.x, #x), finite(d.y, #y);
   DMISE_DETECTION_FIELDS(DMISE_VALUE, DMISE_NONE, DMISE_NONE, DMISE_NONE, DMISE_NONE, DMISE_PAIR,
-                         DMISE_NONE)
+                         DMISE_NONE, DMISE_NONE)
 }
 
 void check(const DetectionSet& set) {

@@ -85,7 +85,8 @@ PixelBackground background_at_centre(const View& view, const DrawnStars& drawn) 
   const auto gcrs_from_camera = view.camera_from_gcrs(middle).inverse();
   const Vec<Gcrs> boresight = gcrs_from_camera * Vec<CameraFrame>{0, 0, 1};
   const auto earth = view.earth_occultation(middle);
-  if (sensor.effects.has(SkyBackground::facts) && !(earth && earth->hides_direction(boresight)))
+  if (!view.shutter_closed() && sensor.effects.has(SkyBackground::facts) &&
+      !(earth && earth->hides_direction(boresight)))
     sky_e = sky_over(view, drawn).photons_per_s_m2_sr(view.enu_from_gcrs(middle) * boresight) *
             Throughput(view).electrons_per_photon_m2() * view.times().seconds() *
             pixel_solid_angle_sr(optics, centre) * view.illumination(centre);

@@ -80,22 +80,24 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
   out.sun_in_field =
       FieldOfView(optics).contains(camera_from_gcrs * to_sun_m) && !hides(unit(to_sun_m));
 
+  out.shutter_closed = view.shutter_closed();
   const double reach_px = 5 * scene.psf_sigma_px + 1;  // radius of a source's light
   DrawnStars drawn;
   if (scene.stars && sensor.effects.has(StarBackground::facts)) {
     const StarLayer layer(sensor, scene.stars, scene.faintest_star_mag);
     drawn = layer.drawn(scene.faintest_star_mag, sensor.effects);
-    out.stars = layer.count(view, scene.faintest_star_mag, reach_px);
+    out.stars = out.shutter_closed ? 0 : layer.count(view, scene.faintest_star_mag, reach_px);
   }
   if (scene.count_objects && sensor.effects.has(SpaceObjects::facts))
-    out.objects = objects_with_light(view, scene.shapes, reach_px);
+    out.objects = out.shutter_closed ? 0 : objects_with_light(view, scene.shapes, reach_px);
 
   out.background = background_at_centre(view, drawn);
   out.full_e = saturation_e(acting_detector(sensor.camera.detector, sensor.effects));
   const double pixels_per_deg = deg / optics.pixel_angle_rad();
   out.streak_deg_per_s = usual_rate_deg_per_s;
   out.streak_px = usual_rate_deg_per_s * pixels_per_deg * view.times().seconds();
-  if (out.boresight_hidden || out.background.electrons >= out.full_e) return out;
+  if (out.shutter_closed || out.boresight_hidden || out.background.electrons >= out.full_e)
+    return out;
   const auto star_at = [&](SimTime t) {
     return project(optics, view.camera_from_gcrs(t) * boresight);
   };

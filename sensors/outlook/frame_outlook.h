@@ -21,6 +21,7 @@ struct FrameOutlook {
   bool boresight_hidden = false;         // by the Earth
   bool target_hidden = false;
   bool sun_in_field = false;
+  bool shutter_closed = false;  // nothing is in the field
   PixelBackground background;   // at the frame's centre
   double full_e = 0.0;          // saturation level
   double extinction_mag = 0.0;  // along the boresight

@@ -95,6 +95,35 @@ std::string limit_text(const SensorOutlook& o) {
   return text;
 }
 
+const char* name_of(std::string_view body) {
+  return body == "sun" ? "the Sun" : body == "moon" ? "the Moon" : "the Earth's limb";
+}
+
+std::string frames_of(std::uint32_t count, const SensorOutlook& o) {
+  std::string text = std::to_string(count) + " of " + std::to_string(o.looked_for_exclusion);
+  if (o.looked_for_exclusion < o.frames_in_run)
+    text += " (looked at, of " + std::to_string(o.frames_in_run) + ")";
+  return text + " frames";
+}
+
+/// Where a body is beside a camera's limit, in one line.
+std::string exclusion_text(const ExcludedFrames& of, const SensorOutlook& o) {
+  std::string text = std::string("exclusion: ") + name_of(of.body);
+  if (!of.least_rad)
+    return text + (o.on_ground ? " is below the horizon in " : " is behind the Earth in ") +
+           frames_of(o.looked_for_exclusion, o);
+  const std::string nearest = printed("%.1f deg at the nearest", *of.least_rad / deg);
+  if (of.count == 0)
+    return text + printed(" is beyond %g deg in ", of.limit_deg) +
+           frames_of(o.looked_for_exclusion, o) + ", " + nearest;
+  return text + printed(" is within %g deg in ", of.limit_deg) + frames_of(of.count, o) +
+         printed(", from frame %u (%.6g s after the start) to %u (%.6g s), ", of.first,
+                 of.first_middle.seconds(), of.last, of.last_middle.seconds()) +
+         nearest +
+         (o.exclusion_action == ExclusionAction::close_shutter ? ": the shutter is closed"
+                                                               : ": flagged");
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& where) {
@@ -107,6 +136,9 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
                ? "in all " + looked_at(o) + " looked at"
                : "in " + std::to_string(n) + " of " + std::to_string(looked) + " frames looked at";
   };
+  if (o.excluded_frames > 0 && o.exclusion_action == ExclusionAction::close_shutter)
+    warn("the shutter is closed in " + frames_of(o.excluded_frames, o) +
+         ", which are dark: a body is nearer to the axis than camera.exclusion allows");
   if (const auto n = count_if(o.frames, [](auto& f) { return f.target_hidden; }))
     warn("the target " + o.target + " is " +
          (o.on_ground ? "below the horizon " : "behind the Earth ") + of_frames(n));
@@ -182,6 +214,7 @@ std::vector<std::string> lines_of(const SensorOutlook& o) {
   if (o.frames.front().limb_angle_rad)
     say("boresight " + course_of(o.frames, &FrameOutlook::limb_angle_rad) +
         " above the Earth's limb");
+  for (const ExcludedFrames& of : o.excluded) say(exclusion_text(of, o));
   const Range stars = range_of(o.frames, &FrameOutlook::stars);
   const Range objects = range_of(o.frames, &FrameOutlook::objects);
   std::string text;
@@ -205,6 +238,25 @@ void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
   json.field("point_limit_snr", point_limit_snr).field("streak_limit_snr", streak_limit_snr);
   if (!o.target.empty()) json.field("target", o.target);
   if (o.cued) json.field("cued", true);
+  if (!o.excluded.empty()) {
+    json.key("exclusion").begin_object();
+    json.field("action", exclusion_action_names[std::size_t(o.exclusion_action)]);
+    json.field("frames_looked_at", std::int64_t(o.looked_for_exclusion));
+    json.field("frames_excluded", std::int64_t(o.excluded_frames));
+    for (const ExcludedFrames& of : o.excluded) {
+      json.key(of.body).begin_object().field("limit_deg", of.limit_deg);
+      if (of.least_rad) json.field("least_deg", *of.least_rad / deg);
+      json.field("frames", std::int64_t(of.count));
+      if (of.count > 0) {
+        json.field("first_frame", std::int64_t(of.first))
+            .field("last_frame", std::int64_t(of.last));
+        json.field("first_middle_utc", format_utc(clock.utc(of.first_middle), 3));
+        json.field("last_middle_utc", format_utc(clock.utc(of.last_middle), 3));
+      }
+      json.end_object();
+    }
+    json.end_object();
+  }
   json.key("frames").begin_array();
   for (const auto& f : o.frames) {
     const auto angle = [&](const char* key, const std::optional<double>& rad) {
@@ -219,6 +271,7 @@ void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
     angle("limb_angle_deg", f.limb_angle_rad);
     json.field("boresight_hidden", f.boresight_hidden).field("target_hidden", f.target_hidden);
     json.field("sun_in_field", f.sun_in_field);
+    if (f.shutter_closed) json.field("shutter_closed", true);
     json.field("background_e", f.background.electrons).field("noise_e", f.background.noise_e);
     json.field("saturates_at_e", f.full_e).field("extinction_mag", f.extinction_mag);
     if (f.point_limit_v_mag) json.field("point_limit_v_mag", *f.point_limit_v_mag);

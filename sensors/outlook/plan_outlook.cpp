@@ -26,11 +26,13 @@ std::vector<PlanSpan> plan_outlook(const Scenario& scenario, const SensorConfig&
     const View view(sensor, exposure, world, scenario.seed);
     EffectPlan plan = planner.plan(
         view, wants_objects ? objects_in_field(view, &shapes) : std::vector<std::size_t>());
-    if (!spans.empty() && spans.back().plan.effects == plan.effects) {
+    if (!spans.empty() && spans.back().plan.effects == plan.effects &&
+        spans.back().shutter_closed == view.shutter_closed()) {
       spans.back().last_frame = frame;
       spans.back().end = exposure.end;
     } else {
-      spans.push_back({frame, frame, exposure.start, exposure.end, std::move(plan)});
+      spans.push_back(
+          {frame, frame, exposure.start, exposure.end, std::move(plan), view.shutter_closed()});
     }
   }
   return spans;

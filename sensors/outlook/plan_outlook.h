@@ -14,6 +14,7 @@ struct PlanSpan {
   std::uint32_t first_frame = 1, last_frame = 1;
   SimTime start, end;  // of the first and the last exposure
   EffectPlan plan;
+  bool shutter_closed = false;
 };
 
 /// Plans the frames of a sensor as its run does, at most `most_frames` of them, evenly over the

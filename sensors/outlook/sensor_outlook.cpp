@@ -11,6 +11,7 @@
 #include "core/effects/frame_effects.h"
 #include "sensors/outlook/frame_worlds.h"
 #include "sensors/outlook/outlook_text.h"
+#include "sensors/pipeline/exclusion.h"
 
 namespace dmise {
 namespace {
@@ -39,6 +40,42 @@ std::optional<Loss> first_loss(const Scenario& scenario, const SensorConfig& sen
   return std::nullopt;
 }
 
+/// In all frames, or in so many.
+void look_for_exclusion(const Scenario& scenario, const SensorConfig& sensor,
+                        const ObjectPopulation& needed, const StateSource& source,
+                        std::uint32_t frames, FrameWorlds& worlds, SensorOutlook& out) {
+  const Exclusion& limits = sensor.camera.exclusion;
+  const auto add = [&](std::string_view body, const std::optional<double>& limit_deg) {
+    if (limit_deg) out.excluded.push_back({.body = body, .limit_deg = *limit_deg});
+  };
+  add("sun", limits.sun_deg);
+  add("moon", limits.moon_deg);
+  add("earth_limb", limits.earth_limb_deg);
+  for (const std::uint32_t frame : evenly(frames, most_frames_with_states)) {
+    const FrameTimes exposure = frame_times(sensor, frame);
+    const World world = worlds.around(exposure, needed, source);
+    const View view(sensor, exposure, world, scenario.seed);
+    const BodyAngles angles = body_angles(view);
+    const Excluded& in_force = view.excluded();
+    ++out.looked_for_exclusion;
+    out.excluded_frames += in_force.any();
+    for (ExcludedFrames& of : out.excluded) {
+      const bool is_sun = of.body == "sun", is_moon = of.body == "moon";
+      const auto& angle = is_sun    ? angles.sun_rad
+                          : is_moon ? angles.moon_rad
+                                    : angles.earth_limb_rad;
+      if (angle) of.least_rad = std::min(of.least_rad.value_or(*angle), *angle);
+      if (!(is_sun ? in_force.sun : is_moon ? in_force.moon : in_force.earth_limb)) continue;
+      if (of.count++ == 0) {
+        of.first = frame;
+        of.first_middle = exposure.middle;
+      }
+      of.last = frame;
+      of.last_middle = exposure.middle;
+    }
+  }
+}
+
 }  // namespace
 
 SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& sensor,
@@ -59,6 +96,10 @@ SensorOutlook sensor_outlook(const Scenario& scenario, const SensorConfig& senso
   const std::uint32_t frames = loss ? loss->frame - 1 : out.frames_in_run;
 
   FrameWorlds worlds(scenario, sensor, clock);
+  if (sensor.camera.exclusion.any()) {
+    out.exclusion_action = sensor.camera.exclusion.action;
+    look_for_exclusion(scenario, sensor, needed, source_of_needed, frames, worlds, out);
+  }
   std::uint32_t looks = options.most_frames;
   if (frames > 0 && sensor.effects.has(SpaceObjects::facts) && !population.roster.objects.empty()) {
     const auto ticks = worlds.ticks_of(frame_times(sensor, 1));

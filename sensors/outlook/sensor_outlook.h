@@ -10,6 +10,15 @@
 
 namespace dmise {
 
+/// Frames in which a body is nearer to the axis than the camera allows.
+struct ExcludedFrames {
+  std::string_view body;
+  double limit_deg = 0.0;
+  std::uint32_t count = 0, first = 0, last = 0;
+  SimTime first_middle, last_middle;
+  std::optional<double> least_rad;  // over all frames looked at
+};
+
 /// Prediction of a sensor's frames from a few of them, without rendering.
 struct SensorOutlook {
   std::string sensor;
@@ -19,9 +28,13 @@ struct SensorOutlook {
   bool cued = false;   // examined as it is parked
   double least_limb_angle_rad = 0.0;
   std::uint32_t frames_in_run = 0;
-  bool objects_counted = true;        // false: too many objects
-  std::vector<FrameOutlook> frames;   // examined: the first, the last, and evenly spaced ones
-  std::vector<std::string> warnings;  // one line each, with the sensor's place in the scenario
+  ExclusionAction exclusion_action = ExclusionAction::flag;
+  std::uint32_t looked_for_exclusion = 0;  // frames: all, or so many evenly spaced ones
+  std::uint32_t excluded_frames = 0;       // in which a body is, or more
+  std::vector<ExcludedFrames> excluded;    // of each body that the camera has a limit for
+  bool objects_counted = true;             // false: too many objects
+  std::vector<FrameOutlook> frames;        // examined: the first, the last, and evenly spaced ones
+  std::vector<std::string> warnings;       // one line each, with the sensor's place in the scenario
 };
 
 struct OutlookOptions {

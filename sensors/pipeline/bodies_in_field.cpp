@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/base/units.h"
 #include "core/optics/projection.h"
@@ -30,13 +31,23 @@ std::array<Vec<Gcrs>, around> limb(const Vec<Gcrs>& centre, double radius_rad) {
   return points;
 }
 
-SeenBody seen(const View& view, SimTime t, const Vec<Gcrs>& middle_m, const Vec<Gcrs>& velocity,
-              double radius_m) {
+SeenBody seen(const View& view, const ApparentPlaces& places, SimTime t, const Vec<Gcrs>& middle_m,
+              const Vec<Gcrs>& velocity, double radius_m) {
   const Vec<Gcrs> now_m = middle_m + velocity * (t - view.environment().time).seconds();
-  const SatellitePlace place = view.places(t).satellite(now_m, velocity);
+  const SatellitePlace place = places.satellite(now_m, velocity);
   return {.above_air_m = place.aberrated * place.range_m,
           .apparent = place.direction,
           .radius_rad = std::asin(std::min(1.0, radius_m / place.range_m))};
+}
+
+SeenBody sun(const View& view, const ApparentPlaces& places, SimTime t) {
+  const auto& e = view.environment();
+  return seen(view, places, t, e.sun_m, -e.earth_velocity_m_per_s, sun_radius_m);
+}
+
+SeenBody moon(const View& view, const ApparentPlaces& places, SimTime t) {
+  const auto& e = view.environment();
+  return seen(view, places, t, e.moon_m, e.moon_velocity_m_per_s, moon_radius_m);
 }
 
 /// A quick bound: false for nearly all fields.
@@ -81,15 +92,10 @@ bool earth_is_seen(const View& view, SimTime t) {
 
 }  // namespace
 
-SeenBody seen_sun(const View& view, SimTime t) {
-  const auto& e = view.environment();
-  return seen(view, t, e.sun_m, -e.earth_velocity_m_per_s, sun_radius_m);
-}
-
-SeenBody seen_moon(const View& view, SimTime t) {
-  const auto& e = view.environment();
-  return seen(view, t, e.moon_m, e.moon_velocity_m_per_s, moon_radius_m);
-}
+SeenBody seen_sun(const View& view, SimTime t) { return sun(view, view.places(t), t); }
+SeenBody seen_moon(const View& view, SimTime t) { return moon(view, view.places(t), t); }
+SeenBody truly_seen_sun(const View& view, SimTime t) { return sun(view, view.true_places(t), t); }
+SeenBody truly_seen_moon(const View& view, SimTime t) { return moon(view, view.true_places(t), t); }
 
 DiscBox frame_and_margin(const View& view, int margin_px) {
   const Optics& optics = view.sensor().camera.optics;
@@ -122,9 +128,11 @@ DiscBox box_of(const View& view, const SeenBody& body, SimTime t, int margin_px)
 
 BodiesInField bodies_in_field(const View& view) {
   const EffectSet& effects = view.sensor().effects;
-  const FrameTimes& times = view.times();
+  const FrameTimes times = view.times_of_all_rows();
   BodiesInField bodies;
-  for (const SimTime t : {times.middle, times.start, times.end}) {
+  std::vector<SimTime> looks{times.middle, times.start, times.end};
+  if (view.rolls()) looks.insert(looks.end(), {times.at(0.25), times.at(0.75)});
+  for (const SimTime t : looks) {
     if (effects.has(SunDisc::facts)) bodies.sun = bodies.sun || is_seen(view, seen_sun(view, t), t);
     if (effects.has(MoonDisc::facts))
       bodies.moon = bodies.moon || is_seen(view, seen_moon(view, t), t);

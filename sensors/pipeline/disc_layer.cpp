@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/units.h"
+#include "core/frames/rotation_angle.h"
 #include "core/optics/projection.h"
 #include "core/sky/earth_disc.h"
 #include "core/sky/moon_disc.h"
@@ -79,6 +80,39 @@ void draw(const View& view, const Disc& disc, const std::vector<SimTime>& times,
   optics.add_extended(window.finish(), image);
 }
 
+/// Times at which the places of a disc enclose all that it takes in the exposure.
+std::vector<SimTime> times_of_box(const View& view, const std::vector<SimTime>& drawn) {
+  const FrameTimes all = view.times_of_all_rows();
+  if (all.end == view.times().end) return drawn;
+  constexpr int steps = 32;
+  std::vector<SimTime> times;
+  for (int k = 0; k <= steps; ++k) times.push_back(all.at(double(k) / steps));
+  return times;
+}
+
+/// Rows of a rolling shutter between whose exposures nothing of a disc moves by more than a small
+/// part of a pixel. `passes_rad_per_s`: how fast what is near passes by.
+int rows_together(const View& view, const std::function<Vec<Gcrs>(SimTime)>& towards,
+                  double passes_rad_per_s) {
+  if (!view.rolls()) return 1;
+  constexpr int steps = 16;
+  constexpr double still_px = 0.02;
+  const Optics& optics = view.sensor().camera.optics;
+  const FrameTimes all = view.times_of_all_rows();
+  const double seconds = all.seconds() / steps;
+  double fastest_rad_per_s = 0.0;
+  for (int k = 0; k < steps; ++k) {
+    const SimTime a = all.at(double(k) / steps), b = all.at(double(k + 1) / steps);
+    const double turns_rad =
+        rotation_angle_rad(view.camera_from_gcrs(b) * view.camera_from_gcrs(a).inverse());
+    fastest_rad_per_s =
+        std::max(fastest_rad_per_s, (turns_rad + angle_rad(towards(a), towards(b))) / seconds);
+  }
+  const double px_per_row = (fastest_rad_per_s + passes_rad_per_s) / optics.pixel_angle_rad() *
+                            view.row_delay(1.0).seconds();
+  return int(std::clamp(still_px / std::max(px_per_row, 1e-9), 1.0, 1e6));
+}
+
 constexpr double least_large_px = 64.0;
 
 using SeenAt = SeenBody (*)(const View&, SimTime);
@@ -86,7 +120,10 @@ using SeenAt = SeenBody (*)(const View&, SimTime);
 /// A disc of Sun or Moon, but for its radiance.
 Disc round_disc(const View& view, SeenAt seen, const std::vector<SimTime>& times, int reach_px) {
   Disc disc;
-  for (const SimTime t : times) disc.box = both(disc.box, box_of(view, seen(view, t), t, reach_px));
+  for (const SimTime t : times_of_box(view, times))
+    disc.box = both(disc.box, box_of(view, seen(view, t), t, reach_px));
+  disc.rows_together = rows_together(
+      view, [&](SimTime t) { return seen(view, t).apparent; }, 0.0);
   const SeenBody middle = seen(view, view.times().middle);
   const double radius_px =
       middle.radius_rad / pixel_rad_near(view, middle.apparent, view.times().middle);
@@ -105,10 +142,8 @@ struct Way {
   std::shared_ptr<const Throughput> throughput;
   bool on_ground;
 
-  Way(const View& view, SimTime t)
-      : earth(view.earth_occultation(t)),
-        throughput(std::make_shared<const Throughput>(view)),
-        on_ground(view.on_ground()) {}
+  Way(const View& view, SimTime t, std::shared_ptr<const Throughput> air)
+      : earth(view.earth_occultation(t)), throughput(std::move(air)), on_ground(view.on_ground()) {}
   bool hides(const Vec<Gcrs>& apparent) const { return earth && earth->hides_direction(apparent); }
   double air(const Vec<Gcrs>& apparent) const {
     return on_ground ? throughput->of_sunlight(apparent) : 1.0;
@@ -121,10 +156,11 @@ void draw_sun(const View& view, OpticsStage& optics, ExpectedElectronImage& imag
               Threads& threads) {
   const auto times = times_of(view, [&](SimTime t) { return seen_sun(view, t).apparent; });
   Disc disc = round_disc(view, seen_sun, times, optics.reach_px());
-  disc.at = [&](SimTime t) -> Radiance {
+  const auto air = std::make_shared<const Throughput>(view);
+  disc.at = [&, air](SimTime t) -> Radiance {
     const SeenBody sun = seen_sun(view, t), moon = seen_moon(view, t);
     const double distance_m = norm(sun.above_air_m);
-    return [=, way = Way(view, t), above = AboveAir(view, t, distance_m),
+    return [=, way = Way(view, t, air), above = AboveAir(view, t, distance_m),
             radiance = SunRadiance(view.sensor().camera.band, distance_m),
             centre = unit(sun.above_air_m), moon_centre = unit(moon.above_air_m),
             moon_rad = moon.radius_rad](const Vec<Gcrs>& apparent) {
@@ -147,9 +183,10 @@ void draw_moon(const View& view, OpticsStage& optics, ExpectedElectronImage& ima
   const MoonRadiance moon(band, seen_moon(view, middle).above_air_m,
                           seen_sun(view, middle).above_air_m);
   disc.finest_px *= 1.0 + std::cos(moon.phase_rad());  // of a crescent
-  disc.at = [&](SimTime t) -> Radiance {
+  const auto air = std::make_shared<const Throughput>(view);
+  disc.at = [&, air](SimTime t) -> Radiance {
     const Vec<Gcrs> moon_m = seen_moon(view, t).above_air_m;
-    return [=, way = Way(view, t), above = AboveAir(view, t, norm(moon_m)),
+    return [=, way = Way(view, t, air), above = AboveAir(view, t, norm(moon_m)),
             radiance = MoonRadiance(band, moon_m, seen_sun(view, t).above_air_m)](
                const Vec<Gcrs>& apparent) {
       if (way.hides(apparent)) return -1.0;
@@ -162,14 +199,15 @@ void draw_moon(const View& view, OpticsStage& optics, ExpectedElectronImage& ima
 
 void draw_earth(const View& view, OpticsStage& optics, ExpectedElectronImage& image,
                 Threads& threads) {
-  const auto times = times_of(view, [&](SimTime t) { return -unit(view.observer(t).position_m); });
+  const auto down = [&](SimTime t) { return -unit(view.observer(t).position_m); };
+  const auto times = times_of(view, down);
   Disc disc{.box = frame_and_margin(view, optics.reach_px())};
   const SimTime middle = view.times().middle;
   const Vec<Gcrs> here_m = view.observer(middle).position_m;
   const double sine = view.sensor().ellipsoid.equatorial_radius_m / norm(here_m);
   if (sine < 0.5) {
     disc.box = {};
-    for (const SimTime t : {view.times().start, middle, view.times().end}) {
+    for (const SimTime t : times_of_box(view, {view.times().start, middle, view.times().end})) {
       const Vec<Gcrs> at_m = view.observer(t).position_m;
       disc.box =
           both(disc.box, box_of(view, {.apparent = -unit(at_m), .radius_rad = std::asin(sine)}, t,
@@ -179,6 +217,9 @@ void draw_earth(const View& view, OpticsStage& optics, ExpectedElectronImage& im
     disc.fits_a_pixel = disc.finest_px < 4.0;
   }
   disc.is_large = disc.finest_px > least_large_px;
+  const double height_m = norm(here_m) - view.sensor().ellipsoid.equatorial_radius_m;
+  disc.rows_together = rows_together(
+      view, down, norm(view.observer(middle).velocity_m_per_s) / std::max(height_m, 1e3));
   disc.at = [&](SimTime t) -> Radiance {
     return [radiance = EarthRadiance(view.sensor().camera.band, view.observer(t).position_m,
                                      view.environment().sun_m, view.surface(),

@@ -41,6 +41,17 @@ DiscWindow::DiscWindow(const View& view, const Disc& disc, std::size_t times, Th
 }
 
 void DiscWindow::add(SimTime t, double share) {
+  const int rows = window_.light.rows;
+  if (!view_.rolls()) return add_rows(t, share, 0, rows);
+  for (int first = 0; first < rows; first += disc_.rows_together) {
+    const int last = std::min(first + disc_.rows_together, rows);
+    const double middle_px = window_.top + 0.5 * (first + last - 1);
+    add_rows(t + view_.row_delay(middle_px), share, first, last);
+  }
+}
+
+/// Adds to rows of the window, from the first to before the last, the disc of one time.
+void DiscWindow::add_rows(SimTime t, double share, int first, int last) {
   const Radiance radiance = disc_.at(t);
   const auto gcrs_from_camera = view_.camera_from_gcrs(t).inverse();
   const Look look = [&](double x, double y) {
@@ -51,8 +62,8 @@ void DiscWindow::add(SimTime t, double share) {
   const DiscBox box = disc_.box_at ? disc_.box_at(t) : disc_.box;
   const int left = std::max(0, box.left - window_.left);
   const int right = std::min(window_.light.columns, box.right - window_.left);
-  const int top = std::max(0, box.top - window_.top);
-  const int bottom = std::min(window_.light.rows, box.bottom - window_.top);
+  const int top = std::max(first, box.top - window_.top);
+  const int bottom = std::min(last, box.bottom - window_.top);
   if (left >= right || top >= bottom) return;
   threads_.for_ranges(std::size_t(bottom - top), tile_px, [&](std::size_t begin, std::size_t end) {
     for (int x = left; x < right; x += tile_px)

@@ -18,6 +18,7 @@ struct Disc {
   double radius_px = 1e9, finest_px = 1e9;  // finest: width of the narrowest part of it
   bool fits_a_pixel = false;                // it may lie between the corners of pixels
   bool is_large = false;                    // against tiles, and nothing but its edges is uneven
+  int rows_together = 1;                    // behind a rolling shutter it stands still so long
   std::function<Radiance(SimTime)> at = {};
   std::function<DiscBox(SimTime)> box_at = {};  // of one time; none: it may be anywhere in the box
 };
@@ -28,13 +29,15 @@ class DiscWindow {
   /// All must outlive it. `times`: at which the disc is drawn.
   DiscWindow(const View& view, const Disc& disc, std::size_t times, Threads& threads);
 
-  /// Adds the disc of one time, which stands for a share of the exposure.
+  /// Adds the disc of one time, which stands for a share of the exposure; of a rolling shutter it
+  /// is the time of the first row, and each row has its own.
   void add(SimTime t, double share);
   /// From mean radiance to electrons; returns the light.
   const ExtendedLight& finish();
 
  private:
   using Look = std::function<double(double x_px, double y_px)>;
+  void add_rows(SimTime t, double share, int first, int last);
   void add_tile(const Look& look, double share, const DiscBox& tile);
   void add_pixels(const Look& look, double share, const DiscBox& tile);
   double sampled(const Look& look, double x, double y) const;

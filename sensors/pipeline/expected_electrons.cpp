@@ -143,6 +143,21 @@ void run(LightFrame& frame) {
   frame.times[Stage::facts] += std::max(0.0, stage_s - (frame.times.sum_s() - before_s));
 }
 
+/// Of an exposure behind a closed shutter: objects are there, without light.
+LightTruth without_light(LightFrame& f) {
+  if (f.view.sensor().effects.has(SpaceObjects::facts)) {
+    f.optics.begin(f.view.times(), 1.0);
+    ObjectStage::apply(f);
+    for (Truth& truth : f.truth.objects) {
+      truth.rendered_signal_e = truth.rendered_x_px = truth.rendered_y_px = 0.0;
+      truth.in_frame = false;
+    }
+  }
+  std::ranges::fill(f.image.pixels, 0.0f);
+  if (f.options.sky) *f.options.sky = f.image;
+  return std::move(f.truth);
+}
+
 }  // namespace
 
 double LightSources::limit_v_mag(const EffectSet& effects) const {
@@ -167,6 +182,7 @@ LightTruth expected_electrons(const View& view, const LightSources& sources, Opt
                    .times = times,
                    .options = options,
                    .drawn = sources.drawn(effects)};
+  if (view.shutter_closed()) return without_light(frame);
   LightStages::for_each([&]<class Stage>() {
     if (acts<Stage>(effects, view.scene()))
       run<Stage>(frame);

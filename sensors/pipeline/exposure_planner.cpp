@@ -122,6 +122,9 @@ ExposurePlanner::ExposurePlanner(const SensorConfig& sensor, const StarMap* star
   scene.stars = stars != nullptr;
   scene.shapes = shapes && !shapes->empty();
   effects_ = plannable_effects(sensor, scene);
+  SceneFacts dark = scene;
+  dark.shutter_closed = true;
+  effects_in_the_dark_ = plannable_effects(sensor, dark);
   look_at_sensor();
 }
 
@@ -253,7 +256,17 @@ void ExposurePlanner::look_at_objects(const View& view, const std::vector<std::s
                                            f.pattern_share(f.longest_trail_px);
 }
 
+PlanFacts ExposurePlanner::dark_facts() const {
+  PlanFacts f = of_sensor_;
+  f.scene.shutter_closed = true;
+  const double quantum_e = sensor_.camera.detector.gain_e_per_dn;
+  const double noise_e2 = f.dark_e + f.read_noise_e * f.read_noise_e + quantum_e * quantum_e / 12.0;
+  f.sky.push_back({.noise_e = std::sqrt(std::max(noise_e2, 1e-6))});
+  return f;
+}
+
 PlanFacts ExposurePlanner::facts(const View& view, const std::vector<std::size_t>& objects) const {
+  if (view.shutter_closed()) return dark_facts();
   PlanFacts f = of_sensor_;
   add_sky_facts(view, stars_.drawn(), f);
   stars_.add(view, f);
@@ -264,9 +277,10 @@ PlanFacts ExposurePlanner::facts(const View& view, const std::vector<std::size_t
 
 EffectPlan ExposurePlanner::plan(const View& view, const std::vector<std::size_t>& objects) const {
   const PlanFacts known = facts(view, objects);
+  const auto& effects = view.shutter_closed() ? effects_in_the_dark_ : effects_;
   if (sensor_.recorded_plans.empty())
-    return plan_effects(effects_, known, sensor_.effects, sensor_.accuracy);
-  return plan_effects(effects_, known, recorded_effects(effects_, sensor_, view.times().frame),
+    return plan_effects(effects, known, sensor_.effects, sensor_.accuracy);
+  return plan_effects(effects, known, recorded_effects(effects, sensor_, view.times().frame),
                       sensor_.accuracy);
 }
 

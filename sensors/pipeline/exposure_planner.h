@@ -28,6 +28,7 @@ class ExposurePlanner {
 
  private:
   void look_at_sensor();
+  PlanFacts dark_facts() const;
   void look_at_objects(const View& view, const std::vector<std::size_t>& objects,
                        PlanFacts& facts) const;
 
@@ -35,7 +36,8 @@ class ExposurePlanner {
   const ObjectShapes* shapes_;
   StarFacts stars_;
   std::vector<PlannableEffect> effects_;
-  PlanFacts of_sensor_;  // what no exposure changes
+  std::vector<PlannableEffect> effects_in_the_dark_;  // behind a closed shutter
+  PlanFacts of_sensor_;                               // what no exposure changes
 };
 
 }  // namespace dmise

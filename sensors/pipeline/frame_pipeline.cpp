@@ -225,6 +225,7 @@ FrameProducts FramePipeline::Work::make(const FrameTimes& times, const World& wo
     for (const auto& part : settings.radiance_parts)
       frame.planes.radiance_parts.push_back({part.band, radiance_in(part, times, world)});
   frame.header = header_of(believed ? *believed : view, settings, optics->fwhm_px());
+  frame.header.excluded = view.excluded();
   if (planner) {
     frame.header.accuracy = sensor.accuracy.name;
     frame.header.error = frame.plan.error;

@@ -80,6 +80,7 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
   if (ran.has(AnnualAberration::facts))
     h.earth_velocity_m_per_s = environment.earth_velocity_m_per_s;
   h.band.name = header_text(h.band.name);
+  h.exclusion = sensor.camera.exclusion;
   h.image_optics = acting_optics(optics.image, sensor.effects);
   if (const FocusDrift& drift = optics.spread.drift;
       drift.any() && ran.has(PointSpread::facts) && ran.has(FocusDrift::facts))

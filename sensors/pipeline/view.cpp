@@ -11,6 +11,7 @@
 #include "core/visibility/sight.h"
 #include "core/visibility/target_direction.h"
 #include "sensors/pipeline/cue_path.h"
+#include "sensors/pipeline/exclusion.h"
 
 namespace dmise {
 
@@ -49,7 +50,8 @@ View::View(const SensorConfig& sensor, const FrameTimes& commanded, const World&
                 " is where the sensor is, at frame " + std::to_string(commanded.frame));
   aimed_ = pointing_scene(commanded.middle);
   vignettes_ = acts<Vignetting>(sensor.effects, scene());
-  bodies_ = bodies_in_field(*this);
+  if (belief == Belief::truth) excluded_ = excluded_by(sensor.camera.exclusion, body_angles(*this));
+  if (!shutter_closed()) bodies_ = bodies_in_field(*this);
   if (sensor.effects.has(Moonlight::facts))
     moonlight_colour_ = dmise::moonlight_colour(sensor.camera.band);
 }
@@ -75,6 +77,7 @@ SceneFacts View::scene() const {
   scene.sun_in_field = bodies_.sun;
   scene.moon_in_field = bodies_.moon;
   scene.earth_in_field = bodies_.earth;
+  scene.shutter_closed = shutter_closed();
   return scene;
 }
 

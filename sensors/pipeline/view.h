@@ -5,6 +5,7 @@
 #include "core/base/pixel.h"
 #include "core/config/scenario.h"
 #include "core/frames/geodesy.h"
+#include "core/optics/exclusion.h"
 #include "core/sky/apparent.h"
 #include "core/sky/occultation.h"
 #include "core/visibility/pointing.h"
@@ -84,6 +85,10 @@ class View {
 
   /// Returns what decides which effects apply.
   SceneFacts scene() const;
+  /// Bodies that are nearer to the axis than the camera allows; none in a view of what it believes.
+  const Excluded& excluded() const { return excluded_; }
+  /// Whether no light comes in, because of them.
+  bool shutter_closed() const { return closes_shutter(sensor_.camera.exclusion, excluded_); }
   /// Returns the Earth's occultation of what is behind it at `t`; nothing where the effect is off.
   std::optional<EarthOccultation> earth_occultation(SimTime t) const;
   /// Light that reaches a pixel, relative to the boresight's: (0, 1].
@@ -116,6 +121,7 @@ class View {
   Refraction refraction_;
   PointingScene aimed_;
   bool vignettes_ = false;
+  Excluded excluded_;
   BodiesInField bodies_;
   double moonlight_colour_ = 1.0;
 };

@@ -112,6 +112,10 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
     for (const SimTime t : {span.start, commanded.start, commanded.end, span.end})
       if (!world.has_state(i, t)) return std::nullopt;
   const View view(sensor_, commanded, world, scene_.scenario().seed);
+  if (view.shutter_closed()) {
+    out.closed = true;
+    return out;
+  }
   const FrameTimes& times = view.times();
   const Optics& optics = sensor_.camera.optics;
   const ObjectSampler sampler(view, &shapes_);

@@ -35,6 +35,7 @@ struct ExposureLooks {
   std::vector<Look> looks;     // by ascending object
   std::uint32_t in_field = 0;  // objects in the frame and above the mask in mid exposure
   std::uint32_t sunlit = 0;    // those of them that see half of the Sun's disc or more
+  bool closed = false;         // the shutter: nothing is in the frame
 };
 
 /// What is expected in the exposures of one sensor: by the same states, directions, light, sky and

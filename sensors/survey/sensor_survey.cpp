@@ -38,6 +38,7 @@ class Collector {
   void take(SurveyExposure exposure, const ExposureLooks& seen) {
     exposure.in_field = seen.in_field;
     exposure.sunlit = seen.sunlit;
+    survey_.closed += seen.closed;
     for (const Look& look : seen.looks) {
       exposure.expected += look.probability;
       take(look, exposure.middle);

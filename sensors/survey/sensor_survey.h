@@ -60,6 +60,7 @@ struct SensorSurvey {
   std::string sensor;
   std::uint32_t frames = 0;               // in the run
   std::uint32_t without_state = 0;        // of them, as platform or target has none
+  std::uint32_t closed = 0;               // of the exposures, with the shutter closed
   std::vector<SurveyExposure> exposures;  // at night, in orbit all
   std::vector<SurveyPass> passes;         // by object, then time
   MapCells map;

@@ -86,7 +86,9 @@ void write_survey(const std::string& directory, const std::string& head, const S
   if (error) throw Error(directory + ": " + error.message());
   const auto utc = [&](SimTime t) { return format_utc(scene.clock().utc(t), 3); };
   const std::string totals = "# frames " + std::to_string(survey.frames) + " without state " +
-                             std::to_string(survey.without_state) + "\n";
+                             std::to_string(survey.without_state) +
+                             (survey.closed ? " closed " + std::to_string(survey.closed) : "") +
+                             "\n";
   std::string text = "# " + head + "\n" + totals + exposure_columns + "\n";
   for (const auto& e : survey.exposures)
     text += std::to_string(e.frame) + "," + std::to_string(e.middle.ns) + "," + utc(e.middle) +
@@ -122,6 +124,7 @@ std::optional<SensorSurvey> read_survey(const std::string& directory, const std:
   std::string hash, frames, without, state;
   totals >> hash >> frames >> survey.frames >> without >> state >> survey.without_state;
   if (!totals) return std::nullopt;
+  if (std::string closed; totals >> closed && !(totals >> survey.closed)) return std::nullopt;
   passes.each([&] {
     SurveyPass p;
     p.object = passes.number<std::uint32_t>();

@@ -176,5 +176,24 @@ TEST(FusionEvaluator, KnowsNoObjectThatIsInNoCatalogue) {
   EXPECT_THROW(other.step(0, wrong.inputs(0)), ConfigError);
 }
 
+// The scheduler keeps from what closes a camera's shutter, as far as the scenario does not keep
+// farther; what is flagged alone it may look at.
+TEST(CuedSensor, IsKeptFromWhereItsShutterIsClosed) {
+  SensorConfig sensor{.name = "eye", .place = SiteConfig{"", 33.7, -84.4, 0.0}};
+  sensor.camera.optics.columns = sensor.camera.optics.rows = 100;
+  sensor.camera.optics.focal_length_m = 1.0;
+  sensor.camera.optics.pixel_pitch_m = 1e-5;
+  EXPECT_FALSE(cued_sensor(sensor));
+  PointCued cued;
+  cued.cue.sun_exclusion_deg = 30.0;
+  cued.cue.moon_exclusion_deg = 5.0;
+  sensor.pointing = cued;
+  sensor.camera.exclusion = {.sun_deg = 40.0, .moon_deg = 3.0, .earth_limb_deg = {}};
+  EXPECT_EQ(cued_sensor(sensor)->cue.sun_exclusion_deg, 30.0);
+  sensor.camera.exclusion.action = ExclusionAction::close_shutter;
+  EXPECT_EQ(cued_sensor(sensor)->cue.sun_exclusion_deg, 40.0);
+  EXPECT_EQ(cued_sensor(sensor)->cue.moon_exclusion_deg, 5.0);
+}
+
 }  // namespace
 }  // namespace dmise

@@ -57,6 +57,22 @@ TEST(Cue, TheTargetOfATaskIsInTheMiddleOfTheFrame) {
   }
 }
 
+// Told to look while the Moon is up, which this camera does not do: the frame is dark.
+TEST(Cue, ATaskWhereTheShutterIsClosedLeavesADarkFrame) {
+  test::Stage stage(text);
+  stage.world.follow(task_along(stage, 1, 0, 20));
+  stage.scenario.sensors[0].camera.exclusion = {.sun_deg = {},
+                                                .moon_deg = 180.0,
+                                                .earth_limb_deg = {},
+                                                .action = ExclusionAction::close_shutter};
+  const FrameProducts made = stage.frame(2);
+  EXPECT_TRUE(made.report.shutter_closed && made.report.excluded.moon);
+  ASSERT_EQ(made.truths.size(), 1u);
+  EXPECT_EQ(made.truths[0].rendered_signal_e, 0.0);
+  EXPECT_NEAR(made.truths[0].middle_x_px, 99.5, 0.2);
+  EXPECT_TRUE(made.detections.empty());
+}
+
 TEST(Cue, WithoutATaskItIsParked) {
   test::Stage stage(text);
   const FrameProducts made = stage.frame(1);

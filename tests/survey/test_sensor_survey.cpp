@@ -196,5 +196,33 @@ TEST(SensorSurvey, MapAndPassesAndExposuresCountTheSame) {
   EXPECT_NEAR(expected, expected_of(survey), 1e-9 * expected);
 }
 
+// The Moon sets 2 h 20 min 29 s after midnight (astropy 5.2, upper limb without refraction; with it
+// some minutes later): until then a camera that shuts for a Moon anywhere sees nothing.
+TEST(SensorSurvey, OfAClosedShutterHasNothingInIt) {
+  const std::string evening = "{start: 2018-01-21T02:10:00Z, duration_s: 1800, tick_s: 10}";
+  std::string shutting = zenith_camera("a");
+  const std::string band = "width_m: 0.128e-6}";
+  shutting.insert(shutting.find(band) + band.size(),
+                  ", exclusion: {moon_deg: 180, action: close_shutter}");
+  Network plain(evening, {zenith_camera("a")}), closed(evening, {shutting});
+  const SensorSurvey all = plain.survey(), left = closed.survey();
+  ASSERT_EQ(left.exposures.size(), all.exposures.size());
+  EXPECT_EQ(all.closed, 0u);
+  std::uint32_t dark = 0;
+  for (std::size_t k = 0; k < all.exposures.size(); ++k) {
+    SurveyExposure e = left.exposures[k];
+    const double until_s = e.middle.seconds() - 5.0 - 628.95;  // of its begin from the set
+    if (until_s < 0.0 || until_s > 300.0) {
+      EXPECT_EQ(e.in_field, until_s < 0.0 ? 0u : all.exposures[k].in_field) << k;
+      EXPECT_EQ(e.expected, until_s < 0.0 ? 0.0 : all.exposures[k].expected) << k;
+    }
+    dark += e.in_field == 0 && e.expected == 0.0 && all.exposures[k].in_field > 0;
+  }
+  EXPECT_GT(left.closed, 31u);
+  EXPECT_LT(left.closed, 31u + 16u);
+  EXPECT_GT(dark, 0u);
+  EXPECT_LT(expected_of(left), expected_of(all));
+}
+
 }  // namespace
 }  // namespace dmise

@@ -199,5 +199,42 @@ TEST(Passes, TheSunsElevationAtTheSiteIsTold) {
   FAIL();
 }
 
+// Reference: astropy 5.2, the Moon's upper limb sets over Atlanta 8428.95 s after midnight, without
+// refraction. Before that a camera that shuts for a Moon anywhere sees nothing, then as any other.
+TEST(PassesOfAClosedShutter, BeginWhenTheMoonHasSet) {
+  constexpr double moonset_s = 8428.95;
+  const auto elements = synthetic_catalogue({.objects = 300, .seed = 3});
+  SensorConfig sensor = test::at_atlanta(test::all_sky_camera(), 10.0);
+  Watch plain(sensor, elements, "2018-01-21T00:00:00Z", 14400, 10);
+  sensor.camera.exclusion = {
+      .sun_deg = {}, .moon_deg = 180.0, .earth_limb_deg = {}, .action = ExclusionAction::flag};
+  Watch flagged(sensor, elements, "2018-01-21T00:00:00Z", 14400, 10);
+  sensor.camera.exclusion.action = ExclusionAction::close_shutter;
+  Watch closed(sensor, elements, "2018-01-21T00:00:00Z", 14400, 10);
+  const auto all = plain.passes(), marked = flagged.passes(), left = closed.passes();
+  ASSERT_EQ(marked.size(), all.size());
+  std::size_t later = 0, cut = 0;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    EXPECT_FALSE(all[k].excluded);
+    EXPECT_EQ(marked[k].rise.time, all[k].rise.time);
+    EXPECT_EQ(marked[k].excluded, all[k].rise.time.seconds() < moonset_s) << k;
+    if (all[k].set.time.seconds() < moonset_s - 2.0) continue;
+    const auto found = std::ranges::find_if(left, [&](const Pass& p) {
+      return p.object == all[k].object && std::abs((p.set.time - all[k].set.time).seconds()) < 0.1;
+    });
+    if (all[k].set.time.seconds() < moonset_s + 2.0) continue;
+    ASSERT_NE(found, left.end()) << k;
+    const bool is_cut = all[k].rise.time.seconds() < moonset_s;
+    is_cut ? ++cut : ++later;
+    EXPECT_NEAR(found->rise.time.seconds(), is_cut ? moonset_s : all[k].rise.time.seconds(),
+                is_cut ? 2.0 : 0.02);
+    EXPECT_FALSE(found->excluded);
+  }
+  EXPECT_GT(later, 3u);
+  EXPECT_GT(cut, 3u);
+  for (const Pass& p : left) EXPECT_GT(p.rise.time.seconds(), moonset_s - 2.0);
+  EXPECT_EQ(closed.sightings().seen, closed.one_by_one().seen);
+}
+
 }  // namespace
 }  // namespace dmise

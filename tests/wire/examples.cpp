@@ -149,6 +149,8 @@ FrameReport report(Numbers& n) {
   r.objects_rendered = 17;
   r.plan = "proper_motion refraction photon_noise";
   r.detection_off = true;
+  r.excluded = {.sun = true, .moon = true, .earth_limb = true};
+  r.shutter_closed = true;
   r.psf_fwhm_px = n.in(1, 4);
   r.psf_stars = 99;
   r.stars_expected = 120;
@@ -198,6 +200,7 @@ Detection detection(Numbers& n, std::uint32_t index) {
   d.position_angle_rad = angle();
   d.saturated = d.at_edge = index % 2;
   d.star_like = index % 3;
+  d.excluded = index % 2 == 0;
   return d;
 }
 

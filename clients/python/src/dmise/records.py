@@ -92,6 +92,7 @@ class Detection(Record):
     refraction_parallax_sigma_rad: float = 0.0
     position_angle_rad: float = 0.0
     magnitude_system: MagnitudeSystem = "v_solar"
+    excluded: bool = False  # Sun, Moon or limb was nearer to the axis than the camera allows
 
     @property
     def time_utc(self) -> datetime.datetime:
@@ -316,3 +317,7 @@ class FrameReport(_Exposure):
     stars_found: int = 0
     magnitude_system: MagnitudeSystem = "v_solar"  # of all magnitudes here and of the frame's detections
     solar_colour_mag: float = 0.0  # a magnitude in it less the V-solar one of the same source
+    shutter_closed: bool = False  # because of a body that excludes: the frame is dark, and detection_off
+    sun_excludes: bool = False  # it was nearer to the axis than the camera allows
+    moon_excludes: bool = False
+    earth_limb_excludes: bool = False
