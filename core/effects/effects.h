@@ -44,6 +44,7 @@ struct SceneFacts {
   bool stray_light = false;  // the optics scatter what is beside the field
   // Whose disc is in the field or next to it, in the exposure.
   bool sun_in_field = false, moon_in_field = false, earth_in_field = false;
+  bool limb_in_field = false;  // from space: light may come through the air over the Earth's limb
 };
 
 /// A closed family of effects, in the order in which they run.

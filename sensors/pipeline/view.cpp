@@ -75,6 +75,7 @@ SceneFacts View::scene() const {
   scene.sun_in_field = bodies_.sun;
   scene.moon_in_field = bodies_.moon;
   scene.earth_in_field = bodies_.earth;
+  scene.limb_in_field = bodies_.limb;
   return scene;
 }
 
