@@ -13,7 +13,7 @@ namespace dmise {
 struct LimbAirglow {
   static constexpr EffectFacts facts{
       "limb_airglow", "airglow over the Earth's limb and before its disc, seen from space",
-      "no airglow: 17.7 mag/arcsec2 in V at its brightest",
+      "no airglow: 17.9 mag/arcsec2 in V at its brightest",
       "van Rhijn 1921; Baker & Stair 1988, Phys. Scr. 37, 611; Mende et al. 1993, JGR 98, 19117"};
   static bool applies(const SceneFacts& scene) { return scene.limb_in_field; }
   static ErrorBound error(int, const PlanFacts& f) {

@@ -12,9 +12,18 @@ namespace dmise {
 namespace {
 
 constexpr int tile_px = 16;
-/// A pixel whose corners' lines are further apart over the ground is sampled, every so much.
-constexpr double fine_m = 500.0;
-constexpr double samples_at_ground = 8.0, most_samples = 24.0;
+/// A pixel whose corners' lines are further apart over the ground is sampled, twice every so much
+/// at least.
+constexpr double fine_m = 1e3;
+/// Even lattices of so many places in a square, k / places and k x step / places: Fibonacci's, in
+/// which no two places share a row, a column or nearly any other line. Source: Niederreiter 1992,
+/// Random Number Generation and Quasi-Monte Carlo Methods, chapter 5.
+struct Lattice {
+  int places, step;
+};
+constexpr std::array<Lattice, 7> lattices{
+    {{8, 5}, {13, 8}, {21, 13}, {34, 21}, {55, 34}, {89, 55}, {144, 89}}};
+constexpr double places_at_ground = 55.0;
 /// A tile over the ground whose lines differ by less may be even.
 constexpr double even_m = 4e3;
 
@@ -32,8 +41,9 @@ LimbWindow::LimbWindow(const View& view, int margin_px, Source source, Threads& 
 }
 
 std::vector<SimTime> LimbWindow::times() const {
-  constexpr int most = 16;
-  constexpr double step_m = 1e3;
+  // Layers are 8.6 km wide.
+  constexpr int most = 8;
+  constexpr double step_m = 4e3;
   const FrameTimes& times = view_.times();
   const auto down = [&](SimTime t) {
     return view_.camera_from_gcrs(t) * -unit(view_.observer(t).position_m);
@@ -164,21 +174,25 @@ void LimbWindow::add_pixels(const std::vector<Row>& rows, float share, const Dis
       const bool on_edge = lowest_m < 0.0 && highest_m > 0.0;
       double mean = 0.25 * sum;
       if (!before_ground && (on_edge || spread_m > fine_m)) {
-        const double samples = std::clamp(std::ceil(spread_m / fine_m),
-                                          on_edge ? samples_at_ground : 1.0, most_samples);
-        mean = sampled(row, x + i + 0.5, at_y + 0.5, int(samples));
+        const double places = std::max(2.0 * spread_m / fine_m, on_edge ? places_at_ground : 0.0) *
+                              double(share);  // times share them
+        mean = sampled(row, x + i + 0.5, at_y + 0.5, places);
       }
       window_.light.at(tile.left + i, j) += share * float(mean);
     }
   }
 }
 
-double LimbWindow::sampled(const Row& row, double x_px, double y_px, int samples) const {
+double LimbWindow::sampled(const Row& row, double x_px, double y_px, double least_places) const {
+  const auto* lattice = lattices.begin();
+  while (lattice + 1 != lattices.end() && lattice->places < least_places) ++lattice;
   double sum = 0.0;
-  for (int j = 0; j < samples; ++j)
-    for (int i = 0; i < samples; ++i)
-      sum += look(row, x_px - 0.5 + (i + 0.5) / samples, y_px - 0.5 + (j + 0.5) / samples).radiance;
-  return sum / (double(samples) * samples);
+  for (int k = 0; k < lattice->places; ++k) {
+    const double across = (k + 0.5) / lattice->places;
+    const double down = (k * lattice->step % lattice->places + 0.5) / lattice->places;
+    sum += look(row, x_px - 0.5 + across, y_px - 0.5 + down).radiance;
+  }
+  return sum / lattice->places;
 }
 
 }  // namespace dmise
