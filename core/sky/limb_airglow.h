@@ -20,7 +20,7 @@ struct LimbAirglow {
     return f.without_light([&](const SkySample&) { return f.limb_airglow_e; });
   }
   static double cost_s(int level, const PlanFacts& f) {
-    return f.scene.limb_in_field ? level * 100e-9 * f.pixels() : 0.0;
+    return f.scene.limb_in_field ? level * 130e-9 * f.pixels() : 0.0;
   }
 };
 
