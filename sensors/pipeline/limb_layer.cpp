@@ -114,6 +114,7 @@ void add_limb_facts(const View& view, PlanFacts& f) {
     for_lines(
         view, view.times().middle, 0, 8, [&](const LimbLine& line, const Vec<Gcrs>& direction) {
           photons = std::max(photons, light(line, direction));
+          if (!(line.nearest_m > 1.0)) return true;
           // The brightest height may lie between two lines.
           LimbLine at = line;
           for (double height_m = 5e3; at.from_m < 0.0 && height_m < zone_top_m; height_m += 5e3) {
