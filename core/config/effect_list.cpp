@@ -16,6 +16,9 @@
 #include "core/sky/air_effects.h"
 #include "core/sky/dispersion.h"
 #include "core/sky/earth_disc.h"
+#include "core/sky/limb_air.h"
+#include "core/sky/limb_airglow.h"
+#include "core/sky/limb_extinction.h"
 #include "core/sky/moon_disc.h"
 #include "core/sky/occultation.h"
 #include "core/sky/place_effects.h"
@@ -68,11 +71,12 @@ constexpr std::string_view always_listed[] = {"proper_motion",
 /// sky's parts, the air's effects and those of the image have lists of their own, where they run.
 using LightEffects =
     EffectList<SkyBackground, SkyGrid, Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight,
-               Twilight, LightPollution, StrayLight, SunDisc, MoonDisc, EarthDisc, SpaceObjects,
-               ResolvedShapes, EarthShadow, Earthshine, Moonlight, ThermalEmission, StarBackground,
-               SyntheticBackground, EarthOccultation, AirExtinction, GasAbsorption, CloudCover,
-               Scintillation, MovingScintillation, Dispersion, Vignetting, Streak, Occlusion,
-               Drawing, PointSpread, AirTurbulence, PsfWavelengths, FieldBlur, FocusDrift>;
+               Twilight, LightPollution, StrayLight, SunDisc, MoonDisc, EarthDisc, LimbAir,
+               LimbAirglow, SpaceObjects, ResolvedShapes, EarthShadow, Earthshine, Moonlight,
+               ThermalEmission, StarBackground, SyntheticBackground, EarthOccultation,
+               LimbExtinction, AirExtinction, GasAbsorption, CloudCover, Scintillation,
+               MovingScintillation, Dispersion, Vignetting, Streak, Occlusion, Drawing, PointSpread,
+               AirTurbulence, PsfWavelengths, FieldBlur, FocusDrift>;
 
 std::vector<const EffectFacts*> list() {
   std::vector<const EffectFacts*> all;

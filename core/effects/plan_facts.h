@@ -84,10 +84,11 @@ struct PlanFacts {
   double nearest_sun_rad = 3.0;                                      // of the field's edge
   double annual_aberration_rad = 0.0, diurnal_aberration_rad = 0.0;  // largest in the field
   bool sees_horizon = false;                                         // the Earth is in the field
-  double disc_e = 0.0;              // of the brightest pixel of Sun, Moon and Earth in the field
-  double stray_light_e = 0.0;       // of a pixel
-  double least_illumination = 1.0;  // by vignetting
-  double illumination_slope_per_px = 0.0;  // steepest, relative, of a vignetting by a table
+  double disc_e = 0.0;         // of the brightest pixel of Sun, Moon and Earth in the field
+  double stray_light_e = 0.0;  // of a pixel
+  double limb_airglow_e = 0.0, limb_air_e = 0.0;  // of the brightest pixel of the Earth's limb
+  double least_illumination = 1.0;                // by vignetting
+  double illumination_slope_per_px = 0.0;         // steepest, relative, of a vignetting by a table
   // What the sensor does not know of itself.
   double pointing_error_rad = 0.0;  // largest displacement in the field
   double clock_error_s = 0.0;       // size, in the exposure

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -41,6 +42,7 @@ struct SightLine {
   double rate_rad_per_s = 0.0;  // against the air
   /// At its elevation; none: not known yet.
   std::optional<double> known_airmass = std::nullopt;
+  double distance_m = std::numeric_limits<double>::infinity();
 };
 
 inline constexpr double sun_bv = 0.65;

@@ -7,8 +7,12 @@
 #include "core/base/units.h"
 #include "core/optics/projection.h"
 #include "core/sky/earth_disc.h"
+#include "core/sky/limb_air.h"
+#include "core/sky/limb_airglow.h"
+#include "core/sky/limb_extinction.h"
 #include "core/sky/moon_disc.h"
 #include "core/sky/sun_disc.h"
+#include "sensors/pipeline/limb_layer.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -130,6 +134,9 @@ BodiesInField bodies_in_field(const View& view) {
   const EffectSet& effects = view.sensor().effects;
   const FrameTimes times = view.times_of_all_rows();
   BodiesInField bodies;
+  const bool with_limb =
+      !view.on_ground() && (effects.has(LimbAirglow::facts) || effects.has(LimbAir::facts) ||
+                            effects.has(LimbExtinction::facts));
   std::vector<SimTime> looks{times.middle, times.start, times.end};
   if (view.rolls()) looks.insert(looks.end(), {times.at(0.25), times.at(0.75)});
   for (const SimTime t : looks) {
@@ -138,6 +145,7 @@ BodiesInField bodies_in_field(const View& view) {
       bodies.moon = bodies.moon || is_seen(view, seen_moon(view, t), t);
     if (effects.has(EarthDisc::facts) && !view.on_ground())
       bodies.earth = bodies.earth || earth_is_seen(view, t);
+    if (with_limb) bodies.limb = bodies.limb || limb_is_seen(view, t);
   }
   return bodies;
 }

@@ -9,6 +9,7 @@ class View;
 /// behind the Earth.
 struct BodiesInField {
   bool sun = false, moon = false, earth = false;
+  bool limb = false;  // lines of sight through the air over the Earth's limb, or before its disc
 };
 
 /// How far beside the frame light may lie that the blur brings into it.

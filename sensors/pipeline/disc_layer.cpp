@@ -140,14 +140,11 @@ Disc round_disc(const View& view, SeenAt seen, const std::vector<SimTime>& times
 struct Way {
   std::optional<EarthOccultation> earth;
   std::shared_ptr<const Throughput> throughput;
-  bool on_ground;
 
   Way(const View& view, SimTime t, std::shared_ptr<const Throughput> air)
-      : earth(view.earth_occultation(t)), throughput(std::move(air)), on_ground(view.on_ground()) {}
+      : earth(view.earth_occultation(t)), throughput(std::move(air)) {}
   bool hides(const Vec<Gcrs>& apparent) const { return earth && earth->hides_direction(apparent); }
-  double air(const Vec<Gcrs>& apparent) const {
-    return on_ground ? throughput->of_sunlight(apparent) : 1.0;
-  }
+  double air(const Vec<Gcrs>& apparent) const { return throughput->of_sunlight(apparent); }
 };
 
 }  // namespace

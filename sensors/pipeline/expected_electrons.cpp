@@ -6,9 +6,12 @@
 #include "core/base/stopwatch.h"
 #include "core/effects/frame_effects.h"
 #include "core/sky/earth_disc.h"
+#include "core/sky/limb_air.h"
+#include "core/sky/limb_airglow.h"
 #include "core/sky/moon_disc.h"
 #include "core/sky/sun_disc.h"
 #include "sensors/pipeline/disc_layer.h"
+#include "sensors/pipeline/limb_layer.h"
 #include "sensors/pipeline/object_layer.h"
 #include "sensors/pipeline/objects_in_field.h"
 #include "sensors/pipeline/occlusion_mask.h"
@@ -30,7 +33,7 @@ struct LightFrame {
   DrawnStars drawn;
   OcclusionMask mask{image.columns, image.rows};
   LightTruth truth{};
-  /// Light of Sun, Moon and Earth in the frame, where a shape may cover it; empty: none.
+  /// Light of Sun, Moon, Earth and its air in the frame, where a shape may cover it; empty: none.
   ExpectedElectronImage discs{};
 
   template <class Draw>
@@ -90,6 +93,14 @@ struct EarthStage : EarthDisc {
   static void apply(LightFrame& f) { f.add_disc(draw_earth); }
 };
 
+struct LimbAirStage : LimbAir {
+  static void apply(LightFrame& f) { f.add_disc(draw_limb_air); }
+};
+
+struct LimbAirglowStage : LimbAirglow {
+  static void apply(LightFrame& f) { f.add_disc(draw_limb_airglow); }
+};
+
 struct ObjectStage : SpaceObjects {
   static void apply(LightFrame& f) {
     f.truth.objects = draw_objects(
@@ -128,8 +139,9 @@ struct BlurStage {
 /// In the order in which they run. A stage has the facts of its effect and
 ///   static void apply(LightFrame&);
 ///   static void leave_out(LightFrame&);   where there is something to do when the effect is off
-using LightStages = EffectList<SkyStage, StrayLightStage, KernelStage, SunStage, MoonStage,
-                               EarthStage, ObjectStage, OcclusionStage, StarStage, BlurStage>;
+using LightStages =
+    EffectList<SkyStage, StrayLightStage, KernelStage, SunStage, MoonStage, EarthStage,
+               LimbAirStage, LimbAirglowStage, ObjectStage, OcclusionStage, StarStage, BlurStage>;
 
 /// Runs a stage. Its effect is charged what the stage does not charge to others.
 template <class Stage>

@@ -5,6 +5,8 @@
 
 #include "core/effects/frame_effects.h"
 #include "core/sky/earth_disc.h"
+#include "core/sky/limb_air.h"
+#include "core/sky/limb_airglow.h"
 #include "core/sky/moon_disc.h"
 #include "core/sky/sun_disc.h"
 #include "sensors/pipeline/objects_in_field.h"
@@ -36,7 +38,7 @@ void take_object_lights(const View& view, const FrameTimes& commanded, const Lig
   SensorConfig dark = view.sensor();
   for (const EffectFacts* other :
        {&SkyBackground::facts, &StarBackground::facts, &StrayLight::facts, &SunDisc::facts,
-        &MoonDisc::facts, &EarthDisc::facts})
+        &MoonDisc::facts, &EarthDisc::facts, &LimbAir::facts, &LimbAirglow::facts})
     dark.effects.force(*other, false);
   const View in_the_dark(dark, commanded, view.world(), view.seed());
   const auto indices = indices_of(view, sources, truths);

@@ -49,7 +49,7 @@ ObjectSample ObjectSampler::sample(std::size_t object, const ExposureInstant& at
   s.electrons_per_photon_m2 =
       throughput_.of_air({place.direction, sun_bv, SightLine::Source::object,
                           view_.world().roster().objects[object].catalogue_number,
-                          rate_rad_per_s(motion, at.observer)}) *
+                          rate_rad_per_s(motion, at.observer), std::nullopt, place.range_m}) *
       throughput_.electrons_per_photon_m2() * (s.pixel ? view_.illumination(*s.pixel) : 1.0);
   const double photons =
       own_shape ? shape_photons(object, *own_shape, at.time, at.observer, s.sunlit)

@@ -13,6 +13,7 @@
 #include "core/sky/sky_frames.h"
 #include "core/sky/star_counts.h"
 #include "sensors/pipeline/disc_layer.h"
+#include "sensors/pipeline/limb_layer.h"
 #include "sensors/pipeline/sky_layer.h"
 #include "sensors/pipeline/throughput.h"
 
@@ -176,6 +177,7 @@ void add_sky_facts(const View& view, const DrawnStars& drawn, PlanFacts& f) {
   starlight.add(f);
   if (f.sky.empty()) f.sky.push_back({.noise_e = std::sqrt(std::max(f.dark_e + read_e2, 1e-6))});
   add_disc_facts(view, f);
+  add_limb_facts(view, f);
   if (!view.on_ground()) {
     f.sky_look_s = 0.16e-6;
     f.sees_horizon = f.sees_horizon || sees_limb(view, middle);

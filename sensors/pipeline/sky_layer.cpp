@@ -50,13 +50,17 @@ void fill_with(const View& view, const SkyModel& sky, ExpectedElectronImage& ima
   const auto gcrs_from_camera = view.camera_from_gcrs(view.times().middle).inverse();
   const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) * gcrs_from_camera;
   const auto earth = view.earth_occultation(view.times().middle);
+  const Throughput throughput(view);
   const double electrons_per_photon_m2 =
-      Throughput(view).electrons_per_photon_m2() * view.times().seconds();
+      throughput.electrons_per_photon_m2() * view.times().seconds();
   const PixelFunction electrons = [&](double x, double y) {
     const auto direction = unproject(optics, {x, y});
-    if (!direction || (earth && earth->hides_direction(gcrs_from_camera * *direction))) return 0.0;
-    return sky.photons_per_s_m2_sr(enu_from_camera * *direction) * electrons_per_photon_m2 *
-           pixel_solid_angle_sr(optics, {x, y}) * view.illumination({x, y});
+    if (!direction) return 0.0;
+    const Vec<Gcrs> seen = gcrs_from_camera * *direction;
+    if (earth && earth->hides_direction(seen)) return 0.0;
+    return sky.photons_per_s_m2_sr(enu_from_camera * *direction) * throughput.of_limb(seen) *
+           electrons_per_photon_m2 * pixel_solid_angle_sr(optics, {x, y}) *
+           view.illumination({x, y});
   };
   const int level = view.sensor().effects.level(SkyGrid::facts);
   const double tolerance = SkyGrid::tolerance[std::size_t(level)];

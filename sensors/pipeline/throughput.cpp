@@ -31,6 +31,9 @@ Throughput::Throughput(const View& view) {
   electrons_per_photon_m2_ = camera.optics.collecting_area_m2() * camera.optics.transmission *
                              camera.detector.quantum_efficiency;
   zero_mag_photons_per_s_m2_ = object_photons_per_s_m2(0.0, camera.band);
+  if (acts<LimbExtinction>(sensor.effects, view.scene()))
+    limb_.emplace(camera.band,
+                  LimbSight(view.observer(view.times().middle).position_m, view.surface()));
   if (!view.on_ground()) return;
   const SimTime middle = view.times().middle;
   const Curve extinction = extinction_over(view);
@@ -57,13 +60,18 @@ Throughput::Throughput(const View& view) {
 }
 
 double Throughput::of_air(const SightLine& line) const {
-  double factor = 1.0;
+  double factor = limb_ ? limb_->of_point(line.apparent, line.distance_m) : 1.0;
   if (air_) air_->for_each([&](const auto& effect) { factor *= effect.apply(line); });
   return factor;
 }
 
 std::vector<double> Throughput::of_air(std::span<const SightLine> lines, EffectTimes& times) const {
   std::vector<double> factors(lines.size(), 1.0);
+  if (limb_) {
+    Stopwatch timing(times[LimbExtinction::facts]);
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      factors[i] = limb_->of_point(lines[i].apparent, lines[i].distance_m);
+  }
   if (air_)
     air_->for_each([&](const auto& effect) {
       Stopwatch timing(times[effect.facts]);
@@ -78,7 +86,7 @@ double Throughput::of_sunlight(const Vec<Gcrs>& apparent) const {
   const auto* gases = find<GasAbsorption>();
   const auto* clouds = find<CloudCover>();
   return (extinction ? extinction->apply(line) : 1.0) * (gases ? gases->apply(line) : 1.0) *
-         (clouds ? clouds->apply(line) : 1.0);
+         (clouds ? clouds->apply(line) : 1.0) * of_limb(apparent);
 }
 
 double Throughput::zero_point_mag() const {

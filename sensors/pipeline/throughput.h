@@ -5,6 +5,7 @@
 
 #include "core/effects/acting_effects.h"
 #include "core/sky/air_effects.h"
+#include "core/sky/limb_extinction.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -19,10 +20,15 @@ class Throughput {
   /// photon/s/m2 in the band [m2].
   double electrons_per_photon_m2() const { return electrons_per_photon_m2_; }
 
-  /// Factor of the air on a source's light; 1 in space.
+  /// Factor of the air on a source's light; in space of that over the Earth's limb.
   double of_air(const SightLine& line) const;
   /// The same of many; the seconds of each effect are added to `times`.
   std::vector<double> of_air(std::span<const SightLine> lines, EffectTimes& times) const;
+  /// Share of the sky's light from an apparent direction (unit) that air over the Earth's limb
+  /// leaves, [0, 1]; 1 on the ground.
+  double of_limb(const Vec<Gcrs>& apparent) const {
+    return limb_ ? limb_->of_surface(apparent) : 1.0;
+  }
   /// Share of sunlight from an apparent direction (unit) that air and clouds leave, [0, 1].
   double of_sunlight(const Vec<Gcrs>& apparent) const;
 
@@ -41,6 +47,7 @@ class Throughput {
   double electrons_per_photon_m2_ = 0.0;
   double zero_mag_photons_per_s_m2_ = 0.0;
   std::optional<ActingEffects<AirEffects>> air_;  // null: in space
+  std::optional<LimbExtinction> limb_;            // null: on the ground, or there is none near
 };
 
 /// Gases over a ground sensor; none where nobody said how much water vapour there is, or where they

@@ -78,6 +78,7 @@ SceneFacts View::scene() const {
   scene.moon_in_field = bodies_.moon;
   scene.earth_in_field = bodies_.earth;
   scene.shutter_closed = shutter_closed();
+  scene.limb_in_field = bodies_.limb;
   return scene;
 }
 

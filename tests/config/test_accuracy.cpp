@@ -124,7 +124,8 @@ TEST(EffectLevels, EveryEffectWithAChoiceStatesItsErrorAndTheFirstLevelIsTheLeas
                                                .stray_light = true,
                                                .sun_in_field = true,
                                                .moon_in_field = true,
-                                               .earth_in_field = true});
+                                               .earth_in_field = true,
+                                               .limb_in_field = true});
   for (const EffectFacts* effect : all_effects())
     EXPECT_TRUE(
         std::any_of(list.begin(), list.end(),

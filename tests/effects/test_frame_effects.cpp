@@ -7,6 +7,9 @@
 
 #include "core/optics/stray_light.h"
 #include "core/sky/earth_disc.h"
+#include "core/sky/limb_air.h"
+#include "core/sky/limb_airglow.h"
+#include "core/sky/limb_extinction.h"
 #include "core/sky/moon_disc.h"
 #include "core/sky/sun_disc.h"
 
@@ -47,6 +50,21 @@ TEST(Discs, InTheFieldMustNotBeLeftOutAndHoldWhatDisplacesThem) {
   f.stray_light_e = 5.0;
   EXPECT_DOUBLE_EQ(StrayLight::error(0, f).background_sigma, 0.5);
   EXPECT_EQ(MoonDisc::cost_s(0, f), 0.0);
+}
+
+TEST(Limb, InTheFieldItsLightIsBoundedAndItsExtinctionIsNot) {
+  PlanFacts f = plain();
+  for (const auto& error :
+       {LimbAirglow::error(0, f), LimbAir::error(0, f), LimbExtinction::error(0, f)})
+    EXPECT_EQ(error, ErrorBound{});
+  EXPECT_EQ(LimbAir::cost_s(1, f), 0.0);
+  f.scene.limb_in_field = true;
+  f.limb_airglow_e = 5.0;
+  f.limb_air_e = 20.0;
+  EXPECT_DOUBLE_EQ(LimbAirglow::error(0, f).background_sigma, 0.5);
+  EXPECT_DOUBLE_EQ(LimbAir::error(0, f).background_sigma, 2.0);
+  EXPECT_EQ(LimbExtinction::error(0, f), not_bounded);
+  EXPECT_GT(LimbAir::cost_s(1, f), 0.0);
 }
 
 TEST(StarBackground, WithoutStarsInTheFieldTheStarlightThatStandsForThemIsAnError) {

@@ -46,6 +46,9 @@ inline std::string more(const std::string& effects = "") {
   return ", sky: dark, detection: off, effects: {" + noiseless + effects + "}";
 }
 
+/// Without the light of the Earth's air.
+inline const std::string no_air = ", limb_air: off, limb_airglow: off";
+
 inline std::string radec(double ra_deg, double dec_deg) {
   char text[96];
   std::snprintf(text, sizeof text, "{ra_deg: %.8f, dec_deg: %.8f}", ra_deg, dec_deg);

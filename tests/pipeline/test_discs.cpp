@@ -145,8 +145,8 @@ TEST(MoonInField, SetsBehindTheHorizonAndIsFlattenedThere) {
 TEST(EarthInField, HasTheLightOfALambertSphere) {
   for (const Vec<Gcrs>& at : {Vec<Gcrs>{1, 0.2, 0.1}, Vec<Gcrs>{0, 1, 0}, Vec<Gcrs>{-1, 0.5, 0}}) {
     const Vec<Gcrs> from_m = unit(at) * 9e9;
-    Stage stage(
-        in_space(from_m, towards(-from_m), camera(320, 320, 2.0), "", "", ", earth_albedo: 0.4"));
+    Stage stage(in_space(from_m, towards(-from_m), camera(320, 320, 2.0), no_air, "",
+                         ", earth_albedo: 0.4"));
     const double a = angle_rad(bodies().sun_m, from_m), size = 6371e3 / 9e9;
     const double au = norm(bodies().sun_m) / 149597870700.0;
     const double expected =
@@ -172,7 +172,7 @@ TEST(EarthInField, FillsTheWholeFieldFromALowOrbit) {
 
 TEST(EarthInField, ItsNightSideIsDark) {
   const Vec<Gcrs> night_m = -unit(bodies().sun_m) * 6900e3;
-  Stage night(in_space(night_m, towards(-night_m), camera(64, 64, 0.05)));
+  Stage night(in_space(night_m, towards(-night_m), camera(64, 64, 0.05), no_air));
   EXPECT_EQ(sum_of(light_of(night)), 0.0);
 }
 
@@ -185,7 +185,8 @@ TEST(EarthInField, IsNotSeenFromTheGround) {
 // The limb of the lit Earth from a geosynchronous orbit.
 TEST(EarthInField, ItsLimbIsWhereTheEllipsoidIs) {
   const Vec<Gcrs> from_m = unit(Vec<Gcrs>{bodies().sun_m.x, bodies().sun_m.y, 0}) * 42164e3;
-  Stage stage(in_space(from_m, towards(-from_m), camera(801, 801, 0.02, "", ", psf_fwhm_px: 0.3")));
+  Stage stage(
+      in_space(from_m, towards(-from_m), camera(801, 801, 0.02, "", ", psf_fwhm_px: 0.3"), no_air));
   const auto image = light_of(stage);
   int lit = 0;  // along the equator
   for (int x = 0; x < 801; ++x) lit += image.at(x, 400) > 0.0f;

@@ -87,7 +87,7 @@ const std::string origin =
 const std::string plain =
     "effects: {sky: off, photon_noise: off, dark_current: off, read_noise: off, full_well: off,"
     " quantisation: off, annual_aberration: off, diurnal_aberration: off, light_time: off,"
-    " shadow: off}\n";
+    " shadow: off, limb_air: off, limb_airglow: off}\n";
 
 std::string enu_object(const std::string& name, const Vec<Enu>& r, const Vec<Enu>& v = {}) {
   char text[240];

@@ -124,10 +124,12 @@ TEST(Registration, AGeostationaryPointAmongTrailingStars) {
 TEST(Registration, AStreakOfHundredsOfPixels) {
   // The ISS crosses the field of a telescope aboard GOES 16 that keeps its attitude to the stars.
   test::Stage stage(
-      scenario("{name: chaser, platform: \"41866\", camera: raven, pointing: "
-               "{target: \"25544\", tracking: sidereal}, exposure_s: 20, cadence_s: 30, "
-               "effects: {earth_occultation: off, earth_disc: off, shadow: off}}",
-               "[{catalogue: objects.tle, radius_m: 20}]"),
+      scenario(
+          "{name: chaser, platform: \"41866\", camera: raven, pointing: "
+          "{target: \"25544\", tracking: sidereal}, exposure_s: 20, cadence_s: 30, "
+          "effects: {earth_occultation: off, earth_disc: off, limb_air: off, limb_airglow: off, "
+          "shadow: off}}",
+          "[{catalogue: objects.tle, radius_m: 20}]"),
       "ra_deg,dec_deg,mag_v\n0,-80,6\n", elements);
   const auto frame = stage.frame();
   ASSERT_EQ(frame.truths.size(), 1u);

@@ -1,0 +1,95 @@
+#include "core/sky/limb_extinction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/sky/grazing_air.h"
+#include "core/sky/kept_tables.h"
+#include "core/sky/refraction.h"
+#include "core/sky/standard_air.h"
+
+namespace dmise {
+namespace {
+
+constexpr double step_m = 500.0;
+constexpr std::size_t count = std::size_t(LimbExtinction::top_m / step_m) + 1;
+constexpr double darkest = -700.0;  // of logarithms
+
+}  // namespace
+
+struct LimbRays {
+  struct Ray {
+    double bending_rad;
+    /// By how much more than its lowest height its straight part passes over the ground.
+    double lifted_m;
+    double log_transmission;
+  };
+  std::vector<Ray> rays;  // every `step_m`
+
+  LimbRays(const Band& band, double radius_m) {
+    const GrazingAir air(band);
+    // 1e6 (n - 1) T / P, at 15 C and 1013.25 hPa.
+    const double refractivity = 1e-6 * dry_air_refractivity(band.centre_m) * 1013.25 / 288.15;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double height_m = step_m * double(i);
+      rays.push_back({air.bending_rad(height_m),
+                      refractivity * relative_density(height_m) * (radius_m + height_m),
+                      std::max(darkest, std::log(std::max(1e-300, air.transmission(height_m))))});
+    }
+    // All of it is left above.
+    const Ray last = rays.back();
+    for (Ray& ray : rays) {
+      ray.bending_rad = std::max(0.0, ray.bending_rad - last.bending_rad);
+      ray.lifted_m -= last.lifted_m;
+      ray.log_transmission = std::min(0.0, ray.log_transmission - last.log_transmission);
+    }
+  }
+
+  double transmission(std::size_t ray, double part) const {
+    const double log = std::lerp(rays[ray].log_transmission, rays[ray + 1].log_transmission, part);
+    return log > darkest ? std::exp(log) : 0.0;
+  }
+};
+
+LimbExtinction::LimbExtinction(const Band& band, const LimbSight& sight) : sight_(sight) {
+  static KeptTables<std::pair<Band, double>, LimbRays> tables;
+  const double radius_m = sight.earth().ellipsoid.equatorial_radius_m;
+  rays_ = tables.of({band, radius_m}, [&] { return LimbRays(band, radius_m); });
+}
+
+double LimbExtinction::of_surface(const LimbLine& line) const {
+  const double height_m = line.tangent_height_m();
+  if (line.from_m >= 0.0 || height_m >= top_m) return 1.0;
+  const double at = std::max(0.0, height_m) / step_m;
+  const auto ray = std::min(std::size_t(at), count - 2);
+  return rays_->transmission(ray, at - double(ray));
+}
+
+double LimbExtinction::of_point(const Vec<Gcrs>& direction, double distance_m) const {
+  const LimbLine line = sight_.line(direction);
+  const double height_m = line.tangent_height_m();
+  if (line.from_m >= 0.0 || height_m >= top_m) return 1.0;
+  const double to_m = -line.from_m, behind_m = distance_m * (1.0 / line.true_scale) - to_m;
+  if (behind_m <= 0.0) return 1.0;
+  // A ray that is bent comes along a straight line that passes lower, or higher over the ground.
+  const double lever_m = std::isfinite(behind_m) ? to_m * behind_m / (to_m + behind_m) : to_m;
+  const auto& rays = rays_->rays;
+  const auto straight_m = [&](std::size_t i) {
+    return step_m * double(i) + rays[i].lifted_m - lever_m * rays[i].bending_rad;
+  };
+  // The highest ray from which on all pass higher.
+  std::size_t low = 0, high = count - 1;
+  if (height_m <= straight_m(0)) return 0.0;
+  while (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    (straight_m(middle) > height_m ? high : low) = middle;
+  }
+  const double from_m = straight_m(low), to_next_m = std::max(1.0, straight_m(high) - from_m);
+  const double part = std::clamp((height_m - from_m) / to_next_m, 0.0, 1.0);
+  const std::size_t below = low > 0 ? low - 1 : 0, above = std::min(high + 1, count - 1);
+  const double spread =
+      step_m * double(above - below) / std::max(1.0, straight_m(above) - straight_m(below));
+  return rays_->transmission(low, part) * std::min(1.0, spread);
+}
+
+}  // namespace dmise
