@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/vector_math.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/spectrum.h"
 
@@ -41,20 +42,25 @@ StarLight::StarLight(const Band& band) {
     at_v_0_.push_back(zero_point * photon_rate(star.spectrum, band) / star.in_v);
 }
 
-double StarLight::photons_per_s_m2(double v_mag, double bv) const {
+double StarLight::at_v_0(double bv) const {
   const double used = bv >= least_bv ? std::min(bv, greatest_bv) : least_bv;
   const double at = (used - least_bv) / step;
   const int low = std::min(int(at), steps - 1);
-  const double at_v_0 = at_v_0_[low] + (at - low) * (at_v_0_[low + 1] - at_v_0_[low]);
-  return light_of_magnitude(v_mag) * at_v_0;
+  return at_v_0_[low] + (at - low) * (at_v_0_[low + 1] - at_v_0_[low]);
 }
 
-void StarLight::photons_per_s_m2(std::span<const float> v_mag, std::span<const float> bv,
+double StarLight::photons_per_s_m2(double v_mag, double bv) const {
+  return light_of_magnitude(v_mag) * at_v_0(bv);
+}
+
+void StarLight::photons_per_s_m2(std::span<const double> v_mag, std::span<const double> bv,
                                  std::span<double> rate) const {
   if (v_mag.size() != rate.size() || bv.size() != rate.size())
     throw Error("star light: magnitudes, colours and rates differ in number");
-  for (std::size_t i = 0; i < rate.size(); ++i)
-    rate[i] = photons_per_s_m2(double(v_mag[i]), double(bv[i]));
+  constexpr double log_per_mag = -0.4 * 2.302585092994045684;
+  for (std::size_t i = 0; i < rate.size(); ++i) rate[i] = log_per_mag * v_mag[i];
+  exp_of(rate, rate);
+  for (std::size_t i = 0; i < rate.size(); ++i) rate[i] *= at_v_0(bv[i]);
 }
 
 }  // namespace dmise

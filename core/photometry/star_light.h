@@ -17,11 +17,13 @@ class StarLight {
 
   double photons_per_s_m2(double v_mag, double bv) const;
 
-  /// For many stars; all spans must have one size.
-  void photons_per_s_m2(std::span<const float> v_mag, std::span<const float> bv,
+  /// The same of many stars, to 1e-14 of it; all spans must have one size.
+  void photons_per_s_m2(std::span<const double> v_mag, std::span<const double> bv,
                         std::span<double> rate) const;
 
  private:
+  double at_v_0(double bv) const;
+
   std::vector<double> at_v_0_;  // by B-V, `step` apart, from least_bv
 };
 

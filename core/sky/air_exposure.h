@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "core/effects/effects.h"
@@ -41,6 +42,18 @@ struct SightLine {
   double rate_rad_per_s = 0.0;  // against the air
   /// At its elevation; none: not known yet.
   std::optional<double> known_airmass = std::nullopt;
+};
+
+/// Stars as a ground sensor sees them, with known airmasses: of one size each.
+struct SightLines {
+  std::span<const Vec<Gcrs>> apparent;  // unit
+  std::span<const double> airmass, bv, rate_rad_per_s;
+  std::span<const std::uint32_t> number;  // in their catalogue
+
+  std::size_t size() const { return apparent.size(); }
+  SightLine operator[](std::size_t i) const {
+    return {apparent[i], bv[i], SightLine::Source::star, number[i], rate_rad_per_s[i], airmass[i]};
+  }
 };
 
 inline constexpr double sun_bv = 0.65;

@@ -23,6 +23,8 @@ class Throughput {
   double of_air(const SightLine& line) const;
   /// The same of many; the seconds of each effect are added to `times`.
   std::vector<double> of_air(std::span<const SightLine> lines, EffectTimes& times) const;
+  /// Multiplies factors of many stars by that of the air, to 1e-14 of it.
+  void apply_air(const SightLines& lines, std::span<double> factors, EffectTimes& times) const;
   /// Share of sunlight from an apparent direction (unit) that air and clouds leave, [0, 1].
   double of_sunlight(const Vec<Gcrs>& apparent) const;
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
@@ -25,6 +26,18 @@ TEST(StarLight, AStarHasItsVMagnitudeInV) {
   const StarLight light(johnson_v());
   EXPECT_NEAR(light.photons_per_s_m2(0.0, 0.0), 8.75e9, 0.01 * 8.75e9);
   EXPECT_NEAR(light.photons_per_s_m2(5.0, 1.5), 8.75e7, 0.01 * 8.75e7);
+}
+
+TEST(StarLight, ManyStarsHaveTheLightOfEach) {
+  const StarLight light(*filter_named("bessell-B"));
+  std::vector<double> v_mag, bv;
+  for (double v = -1.5; v < 20; v += 0.173) v_mag.push_back(v), bv.push_back(0.21 * v - 0.7);
+  std::vector<double> rate(v_mag.size());
+  light.photons_per_s_m2(v_mag, bv, rate);
+  for (std::size_t i = 0; i < rate.size(); ++i) {
+    const double one = light.photons_per_s_m2(v_mag[i], bv[i]);
+    EXPECT_NEAR(rate[i], one, 1e-14 * one);
+  }
 }
 
 TEST(StarLight, TheTableIsTheIntegralTo1e4) {

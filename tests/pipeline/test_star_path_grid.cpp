@@ -62,7 +62,8 @@ double compare(const std::string& yaml) {
     if (!truly) continue;
     ++in_frame;
     StarPath path;
-    const auto answer = grid.find(astrometric, path);
+    StarPathGrid::Found answer{};
+    grid.find({&astrometric, 1}, {&path, 1}, {&answer, 1});
     EXPECT_NE(answer, StarPathGrid::Found::beside) << i;
     if (answer != StarPathGrid::Found::path) continue;
     ++found;
