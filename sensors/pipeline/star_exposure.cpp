@@ -68,11 +68,31 @@ StarExposure::Paths StarExposure::paths(std::span<const Vec<Gcrs>> astrometric) 
   return paths;
 }
 
+namespace {
+
+/// Fetches what a star has in the columns of its catalogue. Inline, as a function that only fetches
+/// is taken for one that does nothing.
+[[gnu::always_inline]] inline void prefetch(const StarTable& stars,
+                                            const Column<Vec<Gcrs>>& direction,
+                                            std::uint32_t star) {
+  const auto fetch = [star](const auto& column) __attribute__((always_inline)) {
+    __builtin_prefetch(column.data() + star);
+  };
+  fetch(stars.ra_rad), fetch(stars.dec_rad), fetch(stars.pm_ra_cosdec_rad_per_yr);
+  fetch(stars.pm_dec_rad_per_yr), fetch(stars.parallax_rad), fetch(direction);
+  fetch(stars.id), fetch(stars.v_mag), fetch(stars.bv);
+}
+
+}  // namespace
+
 std::vector<StarTrail> StarExposure::trails_by_grid(std::span<const std::uint32_t> which,
                                                     const Column<Vec<Gcrs>>& direction) const {
   std::vector<Vec<Gcrs>> astrometric;
   astrometric.reserve(which.size());
-  for (const std::uint32_t i : which) {
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    constexpr std::size_t ahead = 24;  // stars
+    if (k + ahead < which.size()) prefetch(stars, direction, which[k + ahead]);
+    const std::uint32_t i = which[k];
     const StarPlace place{.ra_rad = stars.ra_rad[i],
                           .dec_rad = stars.dec_rad[i],
                           .pm_ra_cosdec_rad_per_yr = stars.pm_ra_cosdec_rad_per_yr[i],
@@ -87,7 +107,11 @@ std::vector<StarTrail> StarExposure::trails_by_grid(std::span<const std::uint32_
   for (std::size_t i = 0; i < which.size(); ++i) {
     if (!paths.is_there[i]) continue;
     const StarPath& at = paths.path[i];
-    StarTrail& trail = trails.emplace_back(trail_of(which[i]));
+    const std::uint32_t star = which[i];
+    StarTrail& trail = trails.emplace_back();
+    trail.id = trail.number = stars.id[star];
+    trail.place = star;
+    trail.v_mag = stars.v_mag[star], trail.bv = stars.bv[star];
     trail.astrometric = astrometric[i];
     trail.middle = at.middle, trail.pixel = at.pixel;
     trail.airmass = at.airmass, trail.illumination = at.illumination;

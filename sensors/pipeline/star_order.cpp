@@ -60,14 +60,15 @@ struct PlaneBox {
 void order_for_drawing(std::vector<std::uint32_t>& stars, const Column<Vec<Gcrs>>& direction,
                        const Rotation<CameraFrame, Gcrs>& camera, const Optics& optics,
                        double beside_rad) {
-  constexpr int tiles = 96;  // along each side
+  constexpr std::size_t tiles = 96, block = 4;  // along each side
   constexpr std::size_t group = 16;
   const PlaneBox box(optics, beside_rad);
   const auto tile = [&](PlanePlace at) {
     const auto along = [&](double x, double low, double high) {
       return std::size_t(std::clamp((x - low) / (high - low) * tiles, 0.0, tiles - 1.0));
     };
-    return along(at.y, box.top, box.bottom) * tiles + along(at.x, box.left, box.right);
+    const std::size_t x = along(at.x, box.left, box.right), y = along(at.y, box.top, box.bottom);
+    return ((y / block * (tiles / block) + x / block) * block + y % block) * block + x % block;
   };
   std::vector<std::uint32_t> first(tiles * tiles + 1, 0);
   std::vector<std::uint16_t> of;  // tile of each group

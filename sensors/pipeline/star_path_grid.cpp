@@ -127,12 +127,17 @@ void StarPathGrid::find(std::span<const Vec<Gcrs>> astrometric, std::span<StarPa
   std::vector<PatchPlace> places;
   std::vector<PixelPosition> pixels;
   places.reserve(found.size()), pixels.reserve(found.size());
+  const PixelPosition centre = principal_point(*optics_);
+  const double focal_length_px = optics_->focal_length_px(), per_spacing = 1.0 / spacing_px_;
   for (std::size_t n = 0; n < found.size(); ++n) {
     found[n] = Found::none;
     if (good_.empty()) continue;
-    const auto at = project(*optics_, camera_ * astrometric[n]);
-    if (!at) continue;
-    const double u = (at->x_px - left_) / spacing_px_, v = (at->y_px - top_) / spacing_px_;
+    const Vec<CameraFrame> direction = camera_ * astrometric[n];
+    const auto image = optics_->projection.image_of(direction.x, direction.y, direction.z);
+    if (!image) continue;
+    const PixelPosition at{centre.x_px + focal_length_px * (*image)[0],
+                           centre.y_px + focal_length_px * (*image)[1]};
+    const double u = (at.x_px - left_) * per_spacing, v = (at.y_px - top_) * per_spacing;
     if (!(u >= 0.0 && v >= 0.0 && u < 2.0 * double(columns_) && v < 2.0 * double(rows_))) {
       found[n] = Found::beside;
       continue;
@@ -141,7 +146,7 @@ void StarPathGrid::find(std::span<const Vec<Gcrs>> astrometric, std::span<StarPa
     if (!good_[j * columns_ + i]) continue;
     found[n] = Found::path;
     places.push_back(place_in(i, j, u - 2.0 * double(i), v - 2.0 * double(j)));
-    pixels.push_back(*at);
+    pixels.push_back(at);
   }
   std::vector<Node> nodes(places.size());
   if (!nodes.empty()) interpolate(places, nodes);
