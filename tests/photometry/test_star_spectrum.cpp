@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
@@ -65,14 +67,52 @@ TEST(StarSpectrum, HasTheColoursOfTheStarsOfCatalogues) {
   }
 }
 
-/// Greatest difference [mag] of a known spectrum's colours to V from those of stars of one B-V, in
-/// UBRI and griz.
-double worst_colour(const Spectrum& known, double bv) {
+// Spectra of Pickles 1998, PASP 110, 863, through synphot (tests/reference/pickles_colours.py):
+// stars of B-V as these have it. One B-V has stars of other colours, too: of giants and dwarfs as
+// red as the last ones, and the reddest giants of all (M), whose B-V no longer grows.
+TEST(StarSpectrum, HasTheColoursOfPicklesStars) {
+  const struct {
+    const char* type;
+    double bv, ub, vr, vi;
+  } stars[] = {{"B8V", -0.110, -0.286, -0.012, -0.025}, {"B9V", -0.045, -0.206, 0.005, -0.006},
+               {"A0V", 0.014, -0.020, 0.009, 0.039},    {"A2V", 0.028, 0.032, 0.027, 0.080},
+               {"A3V", 0.089, 0.019, 0.058, 0.131},     {"A5V", 0.153, 0.049, 0.075, 0.190},
+               {"A7V", 0.202, 0.051, 0.131, 0.275},     {"F0V", 0.303, -0.002, 0.197, 0.408},
+               {"F2V", 0.396, -0.056, 0.234, 0.497},    {"F5V", 0.458, -0.091, 0.263, 0.535},
+               {"F6V", 0.470, -0.050, 0.293, 0.601},    {"F8V", 0.544, 0.007, 0.325, 0.657},
+               {"G0V", 0.573, 0.070, 0.344, 0.712},     {"G2V", 0.637, 0.124, 0.377, 0.761},
+               {"G5V", 0.690, 0.221, 0.386, 0.780},     {"G8V", 0.756, 0.308, 0.438, 0.857},
+               {"K0V", 0.776, 0.377, 0.474, 0.911},     {"K2V", 0.930, 0.594, 0.543, 1.016},
+               {"A0III", 0.036, -0.040, 0.021, 0.038},  {"A3III", 0.129, 0.080, 0.066, 0.107},
+               {"A5III", 0.174, 0.071, 0.094, 0.200},   {"A7III", 0.210, 0.104, 0.138, 0.275},
+               {"F0III", 0.271, 0.086, 0.163, 0.359},   {"F2III", 0.418, -0.005, 0.253, 0.484},
+               {"F5III", 0.426, 0.023, 0.274, 0.542},   {"G0III", 0.665, 0.221, 0.392, 0.772},
+               {"G5III", 0.891, 0.503, 0.474, 0.921},   {"G8III", 0.952, 0.638, 0.504, 0.978},
+               {"K0III", 0.963, 0.795, 0.527, 1.027},   {"K1III", 1.043, 0.902, 0.569, 1.098},
+               {"K2III", 1.113, 1.011, 0.612, 1.189},   {"K3III", 1.218, 1.199, 0.647, 1.226}};
+  double sum_vr = 0.0, sum_vi = 0.0;
+  for (const auto& s : stars) {
+    const double v = magnitude("bessell-V", s.bv);
+    EXPECT_NEAR(magnitude("bessell-B", s.bv) - v, s.bv, 0.005) << s.type;
+    EXPECT_NEAR(magnitude("bessell-U", s.bv) - v, s.bv + s.ub, 0.095) << s.type;
+    EXPECT_NEAR(v - magnitude("bessell-R", s.bv), s.vr, 0.05) << s.type;
+    EXPECT_NEAR(v - magnitude("bessell-I", s.bv), s.vi, 0.09) << s.type;
+    sum_vr += v - magnitude("bessell-R", s.bv) - s.vr;
+    sum_vi += v - magnitude("bessell-I", s.bv) - s.vi;
+  }
+  EXPECT_NEAR(sum_vr / double(std::size(stars)), 0.0, 0.02);
+  EXPECT_NEAR(sum_vi / double(std::size(stars)), 0.0, 0.045);
+}
+
+constexpr std::array johnson_cousins{"bessell-U", "bessell-B", "bessell-R", "bessell-I"};
+constexpr std::array sloan{"sdss-g", "sdss-r", "sdss-i", "sdss-z"};
+
+/// Greatest difference [mag] of a known spectrum's colours to V from those of stars of one B-V.
+double worst_colour(const Spectrum& known, double bv, std::span<const char* const> filters) {
   const StarSpectrum star = star_spectrum(bv);
   const double at_v = photon_rate_per_m2(known, johnson_v()) / photon_rate(star, johnson_v());
   double worst = 0.0;
-  for (const char* name : {"bessell-U", "bessell-B", "bessell-R", "bessell-I", "sdss-g", "sdss-r",
-                           "sdss-i", "sdss-z"}) {
+  for (const char* name : filters) {
     const Band band = *filter_named(name);
     const double ratio = photon_rate_per_m2(known, band) / photon_rate(star, band);
     worst = std::max(worst, std::abs(magnitude_of_light(ratio / at_v)));
@@ -81,10 +121,16 @@ double worst_colour(const Spectrum& known, double bv) {
 }
 
 // ASTM E490.
-TEST(StarSpectrum, TheSunAmongStars) { EXPECT_LT(worst_colour(solar_spectrum(), 0.65), 0.06); }
+TEST(StarSpectrum, TheSunAmongStars) {
+  EXPECT_LT(worst_colour(solar_spectrum(), 0.65, johnson_cousins), 0.02);
+  EXPECT_LT(worst_colour(solar_spectrum(), 0.65, sloan), 0.02);
+}
 
 // CALSPEC.
-TEST(StarSpectrum, VegaAmongStars) { EXPECT_LT(worst_colour(vega_spectrum(), 0.0), 0.07); }
+TEST(StarSpectrum, VegaAmongStars) {
+  EXPECT_LT(worst_colour(vega_spectrum(), 0.0, johnson_cousins), 0.01);
+  EXPECT_LT(worst_colour(vega_spectrum(), 0.0, sloan), 0.065);
+}
 
 }  // namespace
 }  // namespace dmise
