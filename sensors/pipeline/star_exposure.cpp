@@ -80,7 +80,7 @@ namespace {
   };
   fetch(stars.ra_rad), fetch(stars.dec_rad), fetch(stars.pm_ra_cosdec_rad_per_yr);
   fetch(stars.pm_dec_rad_per_yr), fetch(stars.parallax_rad), fetch(direction);
-  fetch(stars.id), fetch(stars.v_mag), fetch(stars.bv);
+  fetch(stars.id), fetch(stars.v_mag), fetch(stars.bv), fetch(stars.flags);
 }
 
 }  // namespace
@@ -112,6 +112,7 @@ std::vector<StarTrail> StarExposure::trails_by_grid(std::span<const std::uint32_
     trail.id = trail.number = stars.id[star];
     trail.place = star;
     trail.v_mag = stars.v_mag[star], trail.bv = stars.bv[star];
+    trail.kind = stars.colour(star).kind;
     trail.astrometric = astrometric[i];
     trail.middle = at.middle, trail.pixel = at.pixel;
     trail.airmass = at.airmass, trail.illumination = at.illumination;

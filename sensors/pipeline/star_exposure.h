@@ -24,6 +24,7 @@ struct StarTrail {
   std::uint32_t number = 0;  // by which it scintillates
   std::uint32_t place = 0;   // in the table of the catalogue
   double v_mag = 0.0, bv = 0.0;
+  StarKind kind = StarKind::most;
   Vec<Gcrs> middle;                             // apparent direction in mid exposure
   std::array<PixelPosition, 3> pixel;           // start, middle, end
   std::optional<double> airmass, illumination;  // of its middle, if they are known already
@@ -85,7 +86,8 @@ struct StarExposure {
             .number = stars.id[star],
             .place = star,
             .v_mag = stars.v_mag[star],
-            .bv = stars.bv[star]};
+            .bv = stars.bv[star],
+            .kind = stars.colour(star).kind};
   }
 };
 

@@ -226,8 +226,8 @@ std::vector<double> StarLayer::signals_e(const StarExposure& exposure,
   if (trails.empty() || !trails[0].airmass) {
     const auto factor_of_air = exposure.factors_of_air(trails, times);
     for (std::size_t i = 0; i < trails.size(); ++i)
-      signal_e[i] = light_.photons_per_s_m2(trails[i].v_mag, trails[i].bv) * electrons_per_rate *
-                    factor_of_air[i];
+      signal_e[i] = light_.photons_per_s_m2(trails[i].v_mag, {trails[i].bv, trails[i].kind}) *
+                    electrons_per_rate * factor_of_air[i];
     return signal_e;
   }
   std::vector<double> v_mag(trails.size()), bv(trails.size());
@@ -236,6 +236,9 @@ std::vector<double> StarLayer::signals_e(const StarExposure& exposure,
     bv[i] = trails[i].bv;
   }
   light_.photons_per_s_m2(v_mag, bv, signal_e);
+  for (std::size_t i = 0; i < trails.size(); ++i)
+    if (trails[i].kind != StarKind::most)
+      signal_e[i] = light_.photons_per_s_m2(v_mag[i], {bv[i], trails[i].kind});
   for (double& signal : signal_e) signal *= electrons_per_rate;
   exposure.apply_air(trails, bv, signal_e, times);
   return signal_e;

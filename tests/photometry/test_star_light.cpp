@@ -49,6 +49,15 @@ TEST(StarLight, TheTableIsTheIntegralTo1e4) {
                         photon_rate(star, johnson_v());
     EXPECT_NEAR(light.photons_per_s_m2(0.0, bv), rate, 1e-4 * rate) << bv;
   }
+  for (int kind = 0; kind <= int(StarKind::m5_dwarf); ++kind)
+    for (const double bv : {-0.4, 0.3, 0.95, 0.957, 1.433, 1.9999, 2.0, 9.0}) {
+      const StarColour colour{bv, StarKind(kind)};
+      const StarSpectrum star = star_spectrum(colour);
+      const double rate = zero_point_photons_per_s_m2(johnson_v()) * photon_rate(star, band) /
+                          photon_rate(star, johnson_v());
+      EXPECT_NEAR(light.photons_per_s_m2(0.0, colour), rate, 3e-4 * rate) << kind << ' ' << bv;
+      EXPECT_LE(rate, light.most_photons_per_s_m2(0.0) * (1.0 + 3e-4)) << kind << ' ' << bv;
+    }
 }
 
 }  // namespace
