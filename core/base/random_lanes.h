@@ -5,8 +5,29 @@
 // Vectorised forms of core/base/rng.h.
 namespace dmise::DMISE_SIMD {
 
-/// Words of `Pixels` consecutive pixels from `first` on, a multiple of rng_group: Philox4x32-10 on
-/// several vectors of blocks at a time, which hides the latency of its multiplications.
+/// Philox4x32-10 on several vectors of blocks at a time, which hides the latency of its
+/// multiplications. Counters are in the low halves; high halves are undefined afterwards.
+template <int Abreast>
+DMISE_INLINE void philox_rounds(const RngKey& key, U64 (&c0)[Abreast], U64 (&c1)[Abreast],
+                                U64 (&c2)[Abreast], U64 (&c3)[Abreast]) {
+  const U64 zero{};
+  std::uint32_t k0 = key.key[0], k1 = key.key[1];
+  for (int round = 0; round < 10; ++round) {
+    for (int j = 0; j < Abreast; ++j) {
+      const U64 p0 = multiply_low(c0[j], zero + 0xD2511F53u);
+      const U64 p1 = multiply_low(c2[j], zero + 0xCD9E8D57u);
+      // `multiply_low` ignores the high halves.
+      c0[j] = (p1 >> 32) ^ c1[j] ^ (zero + k0);
+      c1[j] = p1;
+      c2[j] = (p0 >> 32) ^ c3[j] ^ (zero + k1);
+      c3[j] = p0;
+    }
+    k0 += 0x9E3779B9u;
+    k1 += 0xBB67AE85u;
+  }
+}
+
+/// Words of `Pixels` consecutive pixels from `first` on, a multiple of rng_group.
 template <int Pixels>
 DMISE_INLINE void words_of(const RngKey& key, std::uint32_t first, std::uint32_t draw,
                            std::uint32_t* words) {
@@ -24,26 +45,37 @@ DMISE_INLINE void words_of(const RngKey& key, std::uint32_t first, std::uint32_t
       c2[j] = zero + key.stream[0];
       c3[j] = zero + key.stream[1];
     }
-    std::uint32_t k0 = key.key[0], k1 = key.key[1];
-    for (int round = 0; round < 10; ++round) {
-      for (int j = 0; j < abreast; ++j) {
-        const U64 p0 = multiply_low(c0[j], zero + 0xD2511F53u);
-        const U64 p1 = multiply_low(c2[j], zero + 0xCD9E8D57u);
-        // The high halves are undefined from here on; `multiply_low` ignores them.
-        c0[j] = (p1 >> 32) ^ c1[j] ^ (zero + k0);
-        c1[j] = p1;
-        c2[j] = (p0 >> 32) ^ c3[j] ^ (zero + k1);
-        c3[j] = p0;
-      }
-      k0 += 0x9E3779B9u;
-      k1 += 0xBB67AE85u;
-    }
+    philox_rounds<abreast>(key, c0, c1, c2, c3);
     for (int j = 0; j < abreast; ++j) {
       const int block = (v + j) * wide_lanes;
       std::uint32_t* group = words + block / 8 * int(rng_group) + block % 8 * 2;
       store(group, (c0[j] & low) | (c1[j] << 32));
       store(group + 16, (c2[j] & low) | (c3[j] << 32));
     }
+  }
+}
+
+/// Words of any `pixels_abreast` pixels.
+inline constexpr int pixels_abreast = 4 * wide_lanes;
+DMISE_INLINE void words_at(const RngKey& key, const std::uint32_t* pixels, std::uint32_t draw,
+                           std::uint32_t* words) {
+  constexpr int abreast = pixels_abreast / wide_lanes;
+  const U64 zero{}, low = zero + 0xffffffffu;
+  U64 pixel[abreast], c0[abreast], c1[abreast], c2[abreast], c3[abreast];
+  for (int j = 0; j < abreast; ++j) {
+    for (int i = 0; i < wide_lanes; ++i) pixel[j][i] = pixels[j * wide_lanes + i];
+    c0[j] = (pixel[j] >> 5 << 3) + ((pixel[j] & 15) >> 1);
+    c1[j] = zero + draw;
+    c2[j] = zero + key.stream[0];
+    c3[j] = zero + key.stream[1];
+  }
+  philox_rounds<abreast>(key, c0, c1, c2, c3);
+  for (int j = 0; j < abreast; ++j) {
+    const U64 upper = zero - (pixel[j] >> 4 & 1), odd = zero - (pixel[j] & 1);
+    const U64 even_word = (c0[j] & ~upper) | (c2[j] & upper);
+    const U64 odd_word = (c1[j] & ~upper) | (c3[j] & upper);
+    const U64 word = ((even_word & ~odd) | (odd_word & odd)) & low;
+    for (int i = 0; i < wide_lanes; ++i) words[j * wide_lanes + i] = std::uint32_t(word[i]);
   }
 }
 

@@ -7,6 +7,8 @@
   /* rng_words for `first` and `count` that are multiples of rng_group. */                   \
   void rng_groups(const RngKey&, std::uint32_t first, std::size_t count, std::uint32_t draw, \
                   std::uint32_t* out);                                                       \
+  void rng_words_at(const RngKey&, const std::uint32_t* pixels, std::size_t count,           \
+                    std::uint32_t draw, std::uint32_t* out);                                 \
   void normals_of(const std::uint32_t* words, std::size_t count, float* out);                \
   }
 DMISE_RNG_KERNELS(sse2)

@@ -91,6 +91,8 @@ std::optional<ZeroPoint> zero_point_of(const Frame& frame, const PlateSolution& 
     const PlateSource& source = sources[plate.matches[k].source];
     if (!plate.fit.used[k] || source.saturated) continue;
     const SeenStar& star = plate.stars[plate.matches[k].star];
+    // A colour term by B-V is not that of red dwarfs and giants of type M.
+    if (sky.map().stars.colour(star.index).kind != StarKind::most) continue;
     double x = 0.0;
     if (sky.air()) {
       const double sine = dot(star.direction, sky.air()->zenith);

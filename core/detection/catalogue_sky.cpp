@@ -60,9 +60,7 @@ std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int 
   const StarTable& stars = map_->stars;
   const StarLight light(header.band);
   const double sunlike = light.photons_per_s_m2(0.0, sunlike_bv);
-  const double brightest_colour = std::max({light.photons_per_s_m2(0.0, least_bv),
-                                            light.photons_per_s_m2(0.0, greatest_bv), sunlike}) /
-                                  sunlike;
+  const double brightest_colour = light.most_photons_per_s_m2(0.0) / sunlike;
   const double faintest_v_mag =
       header.v_solar_zero_point_mag() -
       2.5 * std::log10(least_signal_e / (header.exposure_s * brightest_colour));
@@ -86,7 +84,7 @@ std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int 
       if (elevation_rad < 0.0) continue;
       extinction_mag = header.extinction_mag_per_airmass * airmass(elevation_rad);
     }
-    const double colour = light.photons_per_s_m2(0.0, stars.bv[i]) / sunlike;
+    const double colour = light.photons_per_s_m2(0.0, stars.colour(i)) / sunlike;
     const double signal_e =
         header.exposure_s * colour *
         std::pow(10.0, 0.4 * (header.v_solar_zero_point_mag() - extinction_mag - stars.v_mag[i]));

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/optics/deposit_kernels.h"
+#include "core/optics/short_arcs.h"
 
 namespace dmise {
 namespace {
@@ -164,7 +165,49 @@ Deposited inside(const Arc& arc, const PsfTable& psf, const DepositView& view) {
   return inside.sum();
 }
 
+/// The short arc of one that may miss some light, where a kernel takes it; else without nodes.
+ShortArc short_arc(const Arc& arc, const Motion& m, const Box& box, const ShortArcRule& rule,
+                   const PsfTable& psf, const DepositView& view) {
+  ShortArc a{m.start.x_px, m.start.y_px, m.slope.x_px,       m.slope.y_px,
+             m.curve.x_px, m.curve.y_px, float(arc.signal_e)};
+  constexpr int window = 16;
+  if (!(arc.may_miss_e > 0.0) || arc.tilt != 0.0 || psf.stride != window / 2 ||
+      box.left < double(-psf.first) || box.left > double(view.columns - window - psf.first) ||
+      box.right - box.left > longest_short_px || box.bottom - box.top > longest_short_px)
+    return a;
+  const PixelPosition end = m.slope + m.curve * 2.0;
+  const auto square = [](PixelPosition p) { return p.x_px * p.x_px + p.y_px * p.y_px; };
+  a.nodes = rule.nodes(arc.signal_e, arc.may_miss_e, std::max(square(m.slope), square(end)));
+  return a;
+}
+
+/// Fetches the pixels of a short arc that will be drawn soon: its rows are far apart in memory.
+/// Inline, as a function that only fetches is taken for one that does nothing.
+[[gnu::always_inline]] inline void prefetch(const ShortArc& a, const PsfTable& psf,
+                                            const DepositView& view) {
+  if (a.nodes == 0) return;
+  const int top = std::clamp(int(std::floor(a.y_px)) + psf.first - 1, 0, view.rows - 1);
+  const int bottom = std::min(top + psf.size + 2, view.rows);
+  const float* at = view.pixels + std::ptrdiff_t(top) * view.stride + int(a.x_px) + psf.first;
+  for (int row = top; row < bottom; ++row, at += view.stride) {
+    __builtin_prefetch(at, 1);
+    __builtin_prefetch(at + 15, 1);
+  }
+}
+
+/// Whether all light of what is within a box falls into the frame.
+bool is_whole(const Box& box, const PsfTable& psf, const DepositView& view) {
+  return box.left + psf.first >= view.left && box.top + psf.first >= view.top &&
+         box.right + psf.first + psf.size <= view.left + view.frame_columns &&
+         box.bottom + psf.first + psf.size <= view.top + view.frame_rows;
+}
+
 void check(const Arc& arc, std::size_t index) {
+  const double sum = std::abs(arc.start.x_px) + std::abs(arc.start.y_px) +
+                     std::abs(arc.middle.x_px) + std::abs(arc.middle.y_px) +
+                     std::abs(arc.end.x_px) + std::abs(arc.end.y_px) + arc.signal_e;
+  if (sum < 1e15 && arc.signal_e >= 0.0 && std::abs(arc.tilt) <= 1.0 && arc.may_miss_e >= 0.0)
+    return;
   const double all[] = {arc.start.x_px, arc.start.y_px, arc.middle.x_px, arc.middle.y_px,
                         arc.end.x_px,   arc.end.y_px,   arc.signal_e,    arc.tilt};
   bool fine = arc.signal_e >= 0.0 && std::abs(arc.tilt) <= 1.0 && arc.may_miss_e >= 0.0;
@@ -183,7 +226,8 @@ Deposited operator+(const Deposited& a, const Deposited& b) {
 }
 
 std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
-                               ExpectedElectronImage& image, Threads& threads, SimdLevel level) {
+                               ExpectedElectronImage& image, Threads& threads, SimdLevel level,
+                               DepositSums sums) {
   return deposit(arcs, psf,
                  DepositView{.pixels = image.pixels.data(),
                              .columns = image.columns,
@@ -191,7 +235,7 @@ std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
                              .stride = image.columns,
                              .frame_columns = image.columns,
                              .frame_rows = image.rows},
-                 threads, level);
+                 threads, level, sums);
 }
 
 Deposited deposited_in_frame(const Arc& arc, const PsfTable& psf, const DepositView& view) {
@@ -212,61 +256,93 @@ ArcExtent extent(const Arc& arc) {
   return {b.left, b.top, b.right, b.bottom};
 }
 
-std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
-                               const DepositView& image, Threads& threads, SimdLevel level) {
-  const auto add = level == SimdLevel::avx512 ? avx512::add_panel
-                   : level == SimdLevel::avx2 ? avx2::add_panel
-                                              : sse2::add_panel;
-  const PsfTableView table{psf.weights.data(), psf.phases, psf.first, psf.size, psf.stride};
-  const std::size_t bands = std::size_t((image.rows + band_rows - 1) / band_rows);
+namespace {
 
-  // Arcs of each band, in order.
-  std::vector<std::vector<std::uint32_t>> of_band(bands);
+/// Arcs of the bands of rows of an image, in order.
+struct Bands {
+  std::vector<std::vector<std::uint32_t>> of_band;
   std::vector<std::uint32_t> in_many;  // that are in more than one band
-  for (std::size_t i = 0; i < arcs.size(); ++i) {
-    check(arcs[i], i);
-    const Box box = bounds(Motion(arcs[i]), 0.0, 1.0);
-    if (!box.meets(reach(psf, image, 0, image.rows))) continue;
-    const double last = double(image.rows - 1);
-    const auto from = std::size_t(std::clamp(box.top - psf.size, 0.0, last)) / band_rows;
-    const auto to = std::size_t(std::clamp(box.bottom + psf.size, 0.0, last)) / band_rows;
-    for (std::size_t b = from; b <= to; ++b) of_band[b].push_back(std::uint32_t(i));
-    if (from != to) in_many.push_back(std::uint32_t(i));
-  }
+  std::vector<ShortArc> short_arc;     // of each arc
+  std::vector<bool> told;              // which arcs need no sums
 
+  Bands(std::span<const Arc> arcs, const PsfTable& psf, const DepositView& image, DepositSums sums,
+        std::vector<Deposited>& result)
+      : of_band(std::size_t((image.rows + band_rows - 1) / band_rows)),
+        short_arc(arcs.size()),
+        told(arcs.size(), false) {
+    const ShortArcRule rule(psf);
+    for (std::size_t i = 0; i < arcs.size(); ++i) {
+      check(arcs[i], i);
+      const Motion motion(arcs[i]);
+      const Box box = bounds(motion, 0.0, 1.0);
+      if (!box.meets(reach(psf, image, 0, image.rows))) continue;
+      short_arc[i] = dmise::short_arc(arcs[i], motion, box, rule, psf, image);
+      if (sums == DepositSums::cut && is_whole(box, psf, image)) {
+        told[i] = true;
+        if (arcs[i].signal_e > 0.0)
+          result[i] = {arcs[i].signal_e, arcs[i].middle.x_px, arcs[i].middle.y_px};
+      }
+      const double last = double(image.rows - 1);
+      const auto from = std::size_t(std::clamp(box.top - psf.size, 0.0, last)) / band_rows;
+      const auto to = std::size_t(std::clamp(box.bottom + psf.size, 0.0, last)) / band_rows;
+      for (std::size_t b = from; b <= to; ++b) of_band[b].push_back(std::uint32_t(i));
+      if (from != to) in_many.push_back(std::uint32_t(i));
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
+                               const DepositView& image, Threads& threads, SimdLevel level,
+                               DepositSums sums) {
+  const auto add = kernel_of(level, sse2::add_panel, avx2::add_panel, avx512::add_panel);
+  const auto add_short = kernel_of(level, sse2::add_short, avx2::add_short, avx512::add_short);
+  const PsfTableView table{psf.weights.data(), psf.phases, psf.first, psf.size, psf.stride};
   std::vector<Deposited> result(arcs.size());
+  const Bands bands(arcs, psf, image, sums, result);
+
   const std::size_t span =
       std::size_t(psf.stride) + std::size_t(widest_panel_sigmas * psf.sigma_px) + 16;
-  threads.for_ranges(bands, 1, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> work((2 * panel_nodes + 1) * span);
+  threads.for_ranges(bands.of_band.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> work;
     for (std::size_t b = begin; b < end; ++b) {
+      const std::vector<std::uint32_t>& of_band = bands.of_band[b];
+      if (of_band.empty()) continue;
+      work.resize((2 * panel_nodes + 1) * span);
       const int row_begin = int(b) * band_rows,
                 row_end = std::min(image.rows, row_begin + band_rows);
       const BandView band{image.pixels, image.columns, row_begin, row_end, image.stride};
       const Box box = reach(psf, image, row_begin, row_end);
-      auto many = std::lower_bound(in_many.begin(), in_many.end(),
-                                   of_band[b].empty() ? 0 : of_band[b].front());
-      for (std::uint32_t i : of_band[b]) {
-        while (many != in_many.end() && *many < i) ++many;
-        if (many != in_many.end() && *many == i) {
-          for_panels(arcs[i], psf, box,
-                     [&](const PanelView& panel) { add(panel, table, band, work.data()); });
+      auto many = std::lower_bound(bands.in_many.begin(), bands.in_many.end(), of_band.front());
+      for (std::size_t k = 0; k < of_band.size(); ++k) {
+        const std::uint32_t i = of_band[k];
+        constexpr std::size_t ahead = 6;  // arcs
+        if (k + ahead < of_band.size()) prefetch(bands.short_arc[of_band[k + ahead]], psf, image);
+        while (many != bands.in_many.end() && *many < i) ++many;
+        // All of its panels that reach the frame reach this band.
+        const bool is_here = many == bands.in_many.end() || *many != i;
+        const bool sums_here = is_here && !bands.told[i];
+        if (bands.short_arc[i].nodes > 0) {
+          add_short(bands.short_arc[i], table, band);
+          if (sums_here) result[i] = inside(arcs[i], psf, image);
           continue;
         }
-        // All of its panels that reach the frame reach this band.
         Inside inside{psf, image};
         for_panels(arcs[i], psf, box, [&](const PanelView& panel) {
           add(panel, table, band, work.data());
-          inside.add(panel);
+          if (sums_here) inside.add(panel);
         });
-        result[i] = inside.sum();
+        if (sums_here) result[i] = inside.sum();
       }
     }
   });
 
-  threads.for_ranges(in_many.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k)
-      result[in_many[k]] = inside(arcs[in_many[k]], psf, image);
+  threads.for_ranges(bands.in_many.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t i = bands.in_many[k];
+      if (!bands.told[i]) result[i] = inside(arcs[i], psf, image);
+    }
   });
   return result;
 }

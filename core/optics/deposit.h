@@ -48,19 +48,25 @@ struct DepositView {
   int left = 0, top = 0, frame_columns = 0, frame_rows = 0;
 };
 
+/// Of which arcs what fell into the frame is summed: of each, or of those that the frame's rim
+/// cuts. Others are then told as all of their light at their middle.
+enum class DepositSums { all, cut };
+
 /// Adds arcs to `image` [e-] and returns what is inside the frame for each. Light per pixel is
 /// accurate to 2e-6 of the arc's brightest pixel, the sum over pixels to 1e-6, for lengths of 0 to
-/// 1e12 px: panels of 2 sigma along the path with five Gauss-Legendre nodes. An arc of up to 4
-/// sigma is one panel where it may miss what that leaves. The bytes do not depend on the number of
-/// threads or the instruction set. Throws `Error` naming the arc if a value is not finite or the
-/// signal is negative.
+/// 1e12 px: panels of 2 sigma along the path with five Gauss-Legendre nodes. A short arc that may
+/// miss some light is one panel of as few nodes as that allows (`ShortArcRule`). The bytes depend
+/// neither on the number of threads nor on the instruction set nor on `sums`. Throws `Error` naming
+/// the arc if a value is not finite or the signal is negative.
 std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
                                ExpectedElectronImage& image, Threads& threads,
-                               SimdLevel level = best_simd_level());
+                               SimdLevel level = best_simd_level(),
+                               DepositSums sums = DepositSums::all);
 
 std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
                                const DepositView& view, Threads& threads,
-                               SimdLevel level = best_simd_level());
+                               SimdLevel level = best_simd_level(),
+                               DepositSums sums = DepositSums::all);
 
 /// Returns the part of an arc inside the frame of a view, without writing pixels.
 Deposited deposited_in_frame(const Arc& arc, const PsfTable& psf, const DepositView& view);

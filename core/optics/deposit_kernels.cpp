@@ -91,7 +91,137 @@ DMISE_INLINE void add(const PanelView& panel, const PsfTableView& t, const BandV
   }
 }
 
+constexpr int short_window = 2 * block;
+
+/// Nodes and weights of Gauss and Legendre on [0, 1].
+template <int Nodes>
+struct Quadrature;
+template <>
+struct Quadrature<1> {
+  static constexpr double tau[] = {0.5}, weight[] = {1.0};
+};
+template <>
+struct Quadrature<2> {
+  static constexpr double tau[] = {0.21132486540518713, 0.78867513459481287};
+  static constexpr double weight[] = {0.5, 0.5};
+};
+template <>
+struct Quadrature<3> {
+  static constexpr double tau[] = {0.1127016653792583, 0.5, 0.8872983346207417};
+  static constexpr double weight[] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+};
+template <>
+struct Quadrature<4> {
+  static constexpr double tau[] = {0.069431844202973714, 0.33000947820757187, 0.66999052179242813,
+                                   0.93056815579702623};
+  static constexpr double weight[] = {0.17392742256872684, 0.3260725774312731, 0.3260725774312731,
+                                      0.17392742256872684};
+};
+template <>
+struct Quadrature<5> {
+  static constexpr double tau[] = {0.046910077030668018, 0.23076534494715845, 0.5,
+                                   0.7692346550528415, 0.95308992296933193};
+  static constexpr double weight[] = {0.11846344252809471, 0.2393143352496831, 0.2844444444444445,
+                                      0.2393143352496831, 0.11846344252809471};
+};
+template <>
+struct Quadrature<6> {
+  static constexpr double tau[] = {0.033765242898423975, 0.16939530676686776, 0.38069040695840151,
+                                   0.61930959304159849,  0.83060469323313224, 0.96623475710157603};
+  static constexpr double weight[] = {0.085662246189584873, 0.18038078652406947,
+                                      0.23395696728634569,  0.23395696728634569,
+                                      0.18038078652406947,  0.085662246189584873};
+};
+template <>
+struct Quadrature<7> {
+  static constexpr double tau[] = {
+      0.025446043828620757, 0.12923440720030277, 0.29707742431130141, 0.5,
+      0.70292257568869854,  0.87076559279969723, 0.97455395617137919};
+  static constexpr double weight[] = {
+      0.064742483084435323, 0.13985269574463829, 0.19091502525255916, 0.20897959183673448,
+      0.19091502525255916,  0.13985269574463829, 0.064742483084435323};
+};
+template <>
+struct Quadrature<8> {
+  static constexpr double tau[] = {0.019855071751231912, 0.10166676129318664, 0.2372337950418355,
+                                   0.40828267875217511,  0.59171732124782483, 0.7627662049581645,
+                                   0.89833323870681336,  0.98014492824876809};
+  static constexpr double weight[] = {
+      0.050614268145188344, 0.11119051722668717, 0.15685332293894352, 0.18134189168918088,
+      0.18134189168918088,  0.15685332293894352, 0.11119051722668717, 0.050614268145188344};
+};
+
+DMISE_INLINE int floor_of(double x) {
+  const int whole = int(x);
+  return whole - (x < double(whole));
+}
+
+template <int Nodes>
+DMISE_INLINE void add_short_of(const ShortArc& arc, const PsfTableView& table,
+                               const BandView& band) {
+  PsfTableView t = table;
+  t.stride = block;
+  int columns[Nodes], rows[Nodes];
+  float phase_x[Nodes], phase_y[Nodes], share[Nodes];
+  for (int k = 0; k < Nodes; ++k) {
+    const double tau = Quadrature<Nodes>::tau[k];
+    const double x = arc.x_px + tau * (arc.slope_x + tau * arc.curve_x);
+    const double y = arc.y_px + tau * (arc.slope_y + tau * arc.curve_y);
+    columns[k] = floor_of(x);
+    rows[k] = floor_of(y);
+    phase_x[k] = float(x - columns[k]);
+    phase_y[k] = float(y - rows[k]);
+    share[k] = arc.signal_e * float(Quadrature<Nodes>::weight[k]);
+  }
+  int column = columns[0], row = rows[0], last_row = row;
+  for (int k = 1; k < Nodes; ++k) {
+    column = smaller(column, columns[k]);
+    row = smaller(row, rows[k]);
+    last_row = larger(last_row, rows[k]);
+  }
+  float along_x[Nodes][short_window] = {}, along_y[Nodes][short_window] = {};
+  for (int k = 0; k < Nodes; ++k) {
+    place(t, phase_x[k], 1.0f, columns[k] - column, along_x[k]);
+    place(t, phase_y[k], share[k], rows[k] - row, along_y[k]);
+  }
+  constexpr int parts = short_window / lanes;
+  F32 x[Nodes][parts];
+  for (int k = 0; k < Nodes; ++k)
+    for (int p = 0; p < parts; ++p) x[k][p] = load<F32>(along_x[k] + p * lanes);
+  const int top = row + t.first;
+  const int y_begin = larger(0, band.row_begin - top);
+  const int y_end = smaller(last_row - row + t.size, band.row_end - top);
+  float* out = band.pixels + std::ptrdiff_t(top + y_begin) * band.stride + column + t.first;
+  for (int y = y_begin; y < y_end; ++y, out += band.stride)
+    for (int p = 0; p < parts; ++p) {
+      F32 sum = splat(along_y[0][y]) * x[0][p];
+      for (int k = 1; k < Nodes; ++k) sum += splat(along_y[k][y]) * x[k][p];
+      store(out + p * lanes, load<F32>(out + p * lanes) + sum);
+    }
+}
+
 }  // namespace
+
+void add_short(const ShortArc& arc, const PsfTableView& table, const BandView& band) {
+  switch (arc.nodes) {
+    case 1:
+      return add_short_of<1>(arc, table, band);
+    case 2:
+      return add_short_of<2>(arc, table, band);
+    case 3:
+      return add_short_of<3>(arc, table, band);
+    case 4:
+      return add_short_of<4>(arc, table, band);
+    case 5:
+      return add_short_of<5>(arc, table, band);
+    case 6:
+      return add_short_of<6>(arc, table, band);
+    case 7:
+      return add_short_of<7>(arc, table, band);
+    default:
+      return add_short_of<8>(arc, table, band);
+  }
+}
 
 void add_panel(const PanelView& panel, const PsfTableView& table, const BandView& band,
                float* work) {

@@ -13,6 +13,17 @@ struct PanelView {
   float phase_x[panel_nodes], phase_y[panel_nodes];  // fraction, [0, 1]
 };
 
+inline constexpr int most_short_nodes = 8;
+/// Most pixels along each axis between the ends of a short arc.
+inline constexpr double longest_short_px = 7.0;
+
+/// A path for one panel: position = start + tau (slope + tau curve), tau in [0, 1].
+struct ShortArc {
+  double x_px, y_px, slope_x, slope_y, curve_x, curve_y;
+  float signal_e;
+  int nodes = 0;  // 1 to most_short_nodes
+};
+
 struct PsfTableView {
   const float* weights;
   int phases, first, size, stride;
@@ -30,6 +41,9 @@ struct BandView {
   /* Adds the panel to the band; `work` has room for panel_work_floats(table). */         \
   void add_panel(const PanelView& panel, const PsfTableView& table, const BandView& band, \
                  float* work);                                                            \
+  /* Adds a short arc to the band. The table's stride is 8; the 16 columns from the arc's \
+     leftmost on are in the image. */                                                     \
+  void add_short(const ShortArc& arc, const PsfTableView& table, const BandView& band);   \
   }
 DMISE_DEPOSIT_KERNELS(sse2)
 DMISE_DEPOSIT_KERNELS(avx2)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/vector_math.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/spectrum.h"
 
@@ -12,21 +13,39 @@ namespace {
 
 constexpr double step = 0.01;
 constexpr int steps = 240;  // least_bv + steps x step = greatest_bv
+constexpr double least_dwarf_bv = 0.95;
 
-/// Spectra of stars every `step` of B-V, with their photon rates in V.
+/// Spectra of stars with their photon rates in V.
 struct StarOfColour {
   StarSpectrum spectrum;
   double in_v = 0.0;
 };
 
-const std::vector<StarOfColour>& stars_by_bv() {
-  static const std::vector<StarOfColour> stars = [] {
-    std::vector<StarOfColour> out;
-    for (int i = 0; i <= steps; ++i) {
-      StarSpectrum star = star_spectrum(least_bv + i * step);
-      const double in_v = photon_rate(star, johnson_v());
-      out.push_back({std::move(star), in_v});
-    }
+StarOfColour star_of(const StarColour& colour) {
+  StarSpectrum star = star_spectrum(colour);
+  const double in_v = photon_rate(star, johnson_v());
+  return {std::move(star), in_v};
+}
+
+/// Every `step` of B-V from a least one.
+std::vector<StarOfColour> stars_by_bv(double least, StarKind kind) {
+  std::vector<StarOfColour> stars;
+  for (int i = 0; least + i * step < greatest_bv + 0.5 * step; ++i)
+    stars.push_back(star_of({least + i * step, kind}));
+  return stars;
+}
+
+struct StarsOfKinds {
+  std::vector<StarOfColour> most = stars_by_bv(least_bv, StarKind::most);
+  std::vector<StarOfColour> red_dwarfs = stars_by_bv(least_dwarf_bv, StarKind::red_dwarf);
+  std::vector<StarOfColour> m_stars;
+};
+
+const StarsOfKinds& stars_of_kinds() {
+  static const StarsOfKinds stars = [] {
+    StarsOfKinds out;
+    for (int kind = int(StarKind::m0_giant); kind <= int(StarKind::m5_dwarf); ++kind)
+      out.m_stars.push_back(star_of({0.0, StarKind(kind)}));
     return out;
   }();
   return stars;
@@ -37,24 +56,53 @@ const std::vector<StarOfColour>& stars_by_bv() {
 StarLight::StarLight(const Band& band) {
   check_band(band);
   const double zero_point = zero_point_photons_per_s_m2(johnson_v());
-  for (const StarOfColour& star : stars_by_bv())
-    at_v_0_.push_back(zero_point * photon_rate(star.spectrum, band) / star.in_v);
+  const auto light_of = [&](const std::vector<StarOfColour>& stars) {
+    std::vector<double> light;
+    for (const StarOfColour& star : stars)
+      light.push_back(zero_point * photon_rate(star.spectrum, band) / star.in_v);
+    return light;
+  };
+  at_v_0_ = light_of(stars_of_kinds().most);
+  red_dwarf_at_v_0_ = light_of(stars_of_kinds().red_dwarfs);
+  m_at_v_0_ = light_of(stars_of_kinds().m_stars);
 }
 
-double StarLight::photons_per_s_m2(double v_mag, double bv) const {
+double StarLight::at_v_0(double bv) const {
   const double used = bv >= least_bv ? std::min(bv, greatest_bv) : least_bv;
   const double at = (used - least_bv) / step;
   const int low = std::min(int(at), steps - 1);
-  const double at_v_0 = at_v_0_[low] + (at - low) * (at_v_0_[low + 1] - at_v_0_[low]);
-  return light_of_magnitude(v_mag) * at_v_0;
+  return at_v_0_[low] + (at - low) * (at_v_0_[low + 1] - at_v_0_[low]);
 }
 
-void StarLight::photons_per_s_m2(std::span<const float> v_mag, std::span<const float> bv,
+double StarLight::at_v_0(const StarColour& colour) const {
+  if (colour.kind == StarKind::most) return at_v_0(colour.bv);
+  if (colour.kind != StarKind::red_dwarf)
+    return m_at_v_0_[std::size_t(colour.kind) - std::size_t(StarKind::m0_giant)];
+  const double used =
+      colour.bv >= least_dwarf_bv ? std::min(colour.bv, greatest_bv) : least_dwarf_bv;
+  const double at = (used - least_dwarf_bv) / step;
+  const std::size_t low = std::min(std::size_t(at), red_dwarf_at_v_0_.size() - 2);
+  return std::lerp(red_dwarf_at_v_0_[low], red_dwarf_at_v_0_[low + 1], at - double(low));
+}
+
+double StarLight::photons_per_s_m2(double v_mag, const StarColour& colour) const {
+  return light_of_magnitude(v_mag) * at_v_0(colour);
+}
+
+double StarLight::most_photons_per_s_m2(double v_mag) const {
+  return light_of_magnitude(v_mag) *
+         std::max({std::ranges::max(at_v_0_), std::ranges::max(red_dwarf_at_v_0_),
+                   std::ranges::max(m_at_v_0_)});
+}
+
+void StarLight::photons_per_s_m2(std::span<const double> v_mag, std::span<const double> bv,
                                  std::span<double> rate) const {
   if (v_mag.size() != rate.size() || bv.size() != rate.size())
     throw Error("star light: magnitudes, colours and rates differ in number");
-  for (std::size_t i = 0; i < rate.size(); ++i)
-    rate[i] = photons_per_s_m2(double(v_mag[i]), double(bv[i]));
+  constexpr double log_per_mag = -0.4 * 2.302585092994045684;
+  for (std::size_t i = 0; i < rate.size(); ++i) rate[i] = log_per_mag * v_mag[i];
+  exp_of(rate, rate);
+  for (std::size_t i = 0; i < rate.size(); ++i) rate[i] *= at_v_0(bv[i]);
 }
 
 }  // namespace dmise

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 
 #include "core/base/units.h"
 #include "core/photometry/spectrum.h"
@@ -12,8 +13,9 @@ namespace {
 
 #include "core/photometry/star_spectrum_table.inc"
 
-constexpr double first_bv = -0.3, step_bv = 0.05;  // of the table
-constexpr int rows = int(std::size(factors_of_colour));
+constexpr double first_bv = -0.3, first_dwarf_bv = 0.95, step_bv = 0.05;  // of the tables
+constexpr double m_kelvin = 3500.0;  // of the black body that their factors are for
+using Factors = double[std::size(nodes_nm)];
 
 double clamped(double bv) {
   return std::isnan(bv) ? least_bv : std::clamp(bv, least_bv, greatest_bv);
@@ -26,14 +28,27 @@ ColourTemperature colour_temperature(double bv) {
   return {4600.0 * (1.0 / (0.92 * used + 1.7) + 1.0 / (0.92 * used + 0.62)), !(used == bv)};
 }
 
-StarSpectrum star_spectrum(double bv) {
-  const double at = std::clamp((clamped(bv) - first_bv) / step_bv, 0.0, rows - 1.0);
-  const int row = std::min(int(at), rows - 2);
-  StarSpectrum star{.kelvin = colour_temperature(bv).kelvin, .factors = {}};
+StarSpectrum star_spectrum(const StarColour& colour) {
+  std::span<const Factors> table = factors_of_colour;
+  double kelvin = colour_temperature(colour.bv).kelvin;
+  double at = (clamped(colour.bv) - first_bv) / step_bv;
+  if (colour.kind == StarKind::red_dwarf) {
+    const double bv = std::max(clamped(colour.bv), first_dwarf_bv);
+    kelvin = colour_temperature(bv).kelvin;
+    table = factors_of_red_dwarf, at = (bv - first_dwarf_bv) / step_bv;
+  } else if (colour.kind >= StarKind::m0_dwarf) {
+    kelvin = m_kelvin;
+    table = factors_of_m_dwarf, at = int(colour.kind) - int(StarKind::m0_dwarf);
+  } else if (colour.kind >= StarKind::m0_giant) {
+    kelvin = m_kelvin;
+    table = factors_of_m_giant, at = int(colour.kind) - int(StarKind::m0_giant);
+  }
+  at = std::clamp(at, 0.0, double(table.size()) - 1.0);
+  const std::size_t row = std::min(std::size_t(at), table.size() - 2);
+  StarSpectrum star{.kelvin = kelvin, .factors = {}};
   for (std::size_t i = 0; i < std::size(nodes_nm); ++i) {
     star.factors.wavelength_m.push_back(nodes_nm[i] * nm);
-    star.factors.value.push_back(
-        std::lerp(factors_of_colour[row][i], factors_of_colour[row + 1][i], at - row));
+    star.factors.value.push_back(std::lerp(table[row][i], table[row + 1][i], at - double(row)));
   }
   return star;
 }

@@ -10,6 +10,8 @@
 //   static bool applies(const SceneFacts&);
 //   a constructor from an AirExposure
 //   double apply(const SightLine&) const;   the factor on the source's light
+// and may have, where it is faster for many stars,
+//   void apply(const SightLines&, std::span<double> factors) const;   multiplies the factors by it
 // To add one: write its file pair, list it here, test it in tests/sky.
 namespace dmise {
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "core/effects/effects.h"
@@ -43,6 +44,18 @@ struct SightLine {
   /// At its elevation; none: not known yet.
   std::optional<double> known_airmass = std::nullopt;
   double distance_m = std::numeric_limits<double>::infinity();
+};
+
+/// Stars as a ground sensor sees them, with known airmasses: of one size each.
+struct SightLines {
+  std::span<const Vec<Gcrs>> apparent;  // unit
+  std::span<const double> airmass, bv, rate_rad_per_s;
+  std::span<const std::uint32_t> number;  // in their catalogue
+
+  std::size_t size() const { return apparent.size(); }
+  SightLine operator[](std::size_t i) const {
+    return {apparent[i], bv[i], SightLine::Source::star, number[i], rate_rad_per_s[i], airmass[i]};
+  }
 };
 
 inline constexpr double sun_bv = 0.65;

@@ -1,5 +1,7 @@
 #include "core/sky/air_extinction.h"
 
+#include <vector>
+
 #include "core/photometry/magnitude.h"
 #include "core/sky/airmass.h"
 #include "core/sky/kept_tables.h"
@@ -15,6 +17,12 @@ AirExtinction::AirExtinction(const AirExposure& exposure) : up_(exposure.up) {
 
 double AirExtinction::apply(const SightLine& line) const {
   return table_->of_star(airmass_along(up_, line), line.bv);
+}
+
+void AirExtinction::apply(const SightLines& lines, std::span<double> factors) const {
+  std::vector<double> passed(lines.size());
+  table_->of_stars(lines.airmass, lines.bv, passed);
+  for (std::size_t i = 0; i < passed.size(); ++i) factors[i] *= passed[i];
 }
 
 double AirExtinction::sunlight_mag_per_airmass() const {

@@ -23,6 +23,7 @@ class AirExtinction {
   explicit AirExtinction(const AirExposure& exposure);
   /// Share of a source's light in the band that arrives, (0, 1].
   double apply(const SightLine& line) const;
+  void apply(const SightLines& lines, std::span<double> factors) const;
   /// Returns the zenith's extinction of sunlight in the band.
   double sunlight_mag_per_airmass() const;
 

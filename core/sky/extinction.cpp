@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
+#include "core/base/vector_math.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/spectrum.h"
 #include "core/photometry/star_spectrum.h"
@@ -114,10 +115,20 @@ BandExtinction::BandExtinction(const Band& band, const Curve& extinction_mag_per
   }
 }
 
-double BandExtinction::of_star(double airmass, double bv) const {
-  return std::exp(nodes.between(nodes.place(airmass, bv), [&](int colour, int node) {
+double BandExtinction::log_of_star(double airmass, double bv) const {
+  return nodes.between(nodes.place(airmass, bv), [&](int colour, int node) {
     return log_of_transmission_[std::size_t(colour * airmasses + node)];
-  }));
+  });
+}
+
+double BandExtinction::of_star(double airmass, double bv) const {
+  return std::exp(log_of_star(airmass, bv));
+}
+
+void BandExtinction::of_stars(std::span<const double> airmass, std::span<const double> bv,
+                              std::span<double> share) const {
+  for (std::size_t i = 0; i < share.size(); ++i) share[i] = log_of_star(airmass[i], bv[i]);
+  exp_of(share, share);
 }
 
 double BandExtinction::of_sunlight(double airmass) const { return of_star(airmass, sun_bv); }

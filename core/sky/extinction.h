@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,10 +33,15 @@ class BandExtinction {
 
   /// For a star of this B-V (`star_spectrum`); airmass in [0, 40], beyond it is clamped.
   double of_star(double airmass, double bv) const;
+  /// The same of many, to 1e-15 of it.
+  void of_stars(std::span<const double> airmass, std::span<const double> bv,
+                std::span<double> share) const;
   /// For sunlit things: as for a star of the Sun's colour.
   double of_sunlight(double airmass) const;
 
  private:
+  double log_of_star(double airmass, double bv) const;
+
   std::vector<double> log_of_transmission_;  // colours x airmasses
 };
 

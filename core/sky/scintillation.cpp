@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/rng_at.h"
+#include "core/base/vector_math.h"
 #include "core/sky/airmass.h"
 #include "core/sky/kept_tables.h"
 
@@ -67,19 +69,38 @@ Scintillation::Scintillation(const AirExposure& exposure)
       tables.of(*exposure.turbulence, [&] { return MotionAveraging(*exposure.turbulence); });
 }
 
-double Scintillation::apply(const SightLine& line) const {
-  const double x = airmass_along(up_, line);
+double Scintillation::sigma(double x, double rate_rad_per_s) const {
   // A longer exposure averages as much; a short one averages nothing however fast the source is.
   const double by_motion =
-      averaging_
-          ? std::sqrt(std::max(exposure_s_, shortest_s_) /
-                      std::max(exposure_s_ / (*averaging_)(line.rate_rad_per_s, x), shortest_s_))
-          : 1.0;
-  const double sigma = std::min(1.0, sigma_at_zenith_ * x * std::sqrt(x) * by_motion);
-  const double log_variance = std::log1p(sigma * sigma);
+      averaging_ ? std::sqrt(std::max(exposure_s_, shortest_s_) /
+                             std::max(exposure_s_ / (*averaging_)(rate_rad_per_s, x), shortest_s_))
+                 : 1.0;
+  return std::min(1.0, sigma_at_zenith_ * x * std::sqrt(x) * by_motion);
+}
+
+double Scintillation::apply(const SightLine& line) const {
+  const double deviation = sigma(airmass_along(up_, line), line.rate_rad_per_s);
+  const double log_variance = std::log1p(deviation * deviation);
   const double z =
       normal_of(rng_word(key_, line.number, line.source == SightLine::Source::star ? 0 : 1));
   return std::exp(std::sqrt(log_variance) * z - 0.5 * log_variance);
+}
+
+void Scintillation::apply(const SightLines& lines, std::span<double> factors) const {
+  const std::size_t n = lines.size();
+  std::vector<double> factor(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double deviation = sigma(lines.airmass[i], lines.rate_rad_per_s[i]);
+    factor[i] = deviation * deviation;
+  }
+  log1p_of(factor, factor);
+  std::vector<std::uint32_t> word(n);
+  rng_words_at(key_, lines.number, 0, word);
+  std::vector<float> z(n);
+  normals_of(word.data(), n, z.data());
+  for (std::size_t i = 0; i < n; ++i) factor[i] = std::sqrt(factor[i]) * z[i] - 0.5 * factor[i];
+  exp_of(factor, factor);
+  for (std::size_t i = 0; i < n; ++i) factors[i] *= factor[i];
 }
 
 }  // namespace dmise

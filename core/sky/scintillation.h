@@ -66,8 +66,12 @@ class Scintillation {
 
   explicit Scintillation(const AirExposure& exposure);
   double apply(const SightLine& line) const;
+  void apply(const SightLines& lines, std::span<double> factors) const;
 
  private:
+  /// At an airmass, of a source that moves by a rate.
+  double sigma(double airmass, double rate_rad_per_s) const;
+
   RngKey key_;
   Vec<Gcrs> up_;
   double sigma_at_zenith_;

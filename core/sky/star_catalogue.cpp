@@ -51,6 +51,19 @@ std::optional<double> bv_of_spectral_type(std::string_view type) {
   return bv[low] + (at - double(low)) * (bv[low + 1] - bv[low]);
 }
 
+StarKind star_kind(const StarRecord& star, double bv) {
+  constexpr double faintest_giant_mag = 4.5, least_dwarf_bv = 0.95;
+  const std::string_view type = star.spectral_type;
+  // Dwarfs are of class V; IV is that of subgiants.
+  bool dwarf = false;
+  for (std::size_t i = 1; i < type.size(); ++i) dwarf |= type[i] == 'V' && type[i - 1] != 'I';
+  if (star.parallax_rad && *star.parallax_rad > 0.0)
+    dwarf = star.v_mag + 5.0 + 5.0 * std::log10(*star.parallax_rad / arcsec) > faintest_giant_mag;
+  if (type.size() > 1 && type[0] == 'M' && type[1] >= '0' && type[1] <= '9')
+    return (dwarf ? m_dwarf : m_giant)(type[1] - '0');
+  return dwarf && bv >= least_dwarf_bv ? StarKind::red_dwarf : StarKind::most;
+}
+
 const char* append_star(StarCatalogue& catalogue, const StarRecord& star) {
   if (!(star.ra_rad >= 0 && star.ra_rad < 2 * pi)) return "right ascension must be in [0, 360) deg";
   if (!(std::abs(star.dec_rad) <= pi / 2)) return "declination must be in [-90, 90] deg";
@@ -73,6 +86,7 @@ const char* append_star(StarCatalogue& catalogue, const StarRecord& star) {
   const bool has_parallax = star.parallax_rad && *star.parallax_rad > 0;
   if (!has_parallax) flags |= star_has_no_parallax;
   if (!star.pm_ra_cosdec_rad_per_yr || !star.pm_dec_rad_per_yr) flags |= star_has_no_proper_motion;
+  flags |= std::uint8_t(int(star_kind(star, bv)) << star_kind_shift);
 
   catalogue.id.push_back(star.id);
   catalogue.ra_rad.push_back(star.ra_rad);

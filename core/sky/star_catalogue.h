@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/column.h"
+#include "core/photometry/star_spectrum.h"
 
 namespace dmise {
 
@@ -16,6 +17,7 @@ enum StarFlag : std::uint8_t {
   star_has_no_parallax = 2,       // parallax_rad is 0: as far as it gets
   star_has_no_proper_motion = 4,  // both motions are 0
 };
+inline constexpr int star_kind_shift = 4;  // what is above them is its `StarKind`
 
 /// Colour of a star whose catalogue gives neither B-V nor spectral class: the Sun's [mag].
 inline constexpr float default_star_bv = 0.65F;
@@ -32,8 +34,9 @@ struct StarFields {
   Array<double> parallax_rad;  // >= 0
   Array<float> v_mag;          // Johnson V
   Array<float> bv;             // Johnson B-V [mag]
-  Array<std::uint8_t> flags;   // StarFlag, or-ed
+  Array<std::uint8_t> flags;   // StarFlag, or-ed, and StarKind
 
+  StarColour colour(std::size_t i) const { return {bv[i], StarKind(flags[i] >> star_kind_shift)}; }
   std::size_t size() const { return ra_rad.size(); }
   bool operator==(const StarFields&) const = default;
 };
@@ -61,6 +64,10 @@ struct StarRecord {
   std::optional<double> bv;
   std::string_view spectral_type;  // may be empty
 };
+
+/// Kind of a star, by its spectral type and by its absolute magnitude where its parallax is known:
+/// dwarfs as red as giants are fainter than 4.5. `bv`: its own or that of its class.
+StarKind star_kind(const StarRecord& star, double bv);
 
 /// Appends a star with the defaults of `StarFlag`. Returns null, or what is wrong with the record,
 /// which is then left out: places outside the sphere, |magnitude| > 50, motions beyond 100

@@ -17,7 +17,7 @@ struct StarSource {
 };
 
 /// Raise it whenever a reader, the index or the layout of the file changes.
-inline constexpr std::uint32_t star_map_version = 3;
+inline constexpr std::uint32_t star_map_version = 4;
 
 /// Whether a regular file begins like a map's; false where there is none.
 bool is_star_map_file(const std::string& path);

@@ -16,10 +16,12 @@ CataloguedStar::CataloguedStar(const StarPlace& place, const Vec<Gcrs>& directio
     : star(place), outward(direction) {
   const double from_axis = std::sqrt(direction.x * direction.x + direction.y * direction.y);
   constexpr double at_the_pole = 1e-9;  // rounding turns east there
-  if (from_axis < at_the_pole)
+  if (from_axis < at_the_pole) {
     east = {-std::sin(place.ra_rad), std::cos(place.ra_rad), 0.0};
-  else
-    east = {-direction.y / from_axis, direction.x / from_axis, 0.0};
+  } else {
+    const double per_axis = 1.0 / from_axis;
+    east = {-direction.y * per_axis, direction.x * per_axis, 0.0};
+  }
   north = cross(outward, east);
 }
 

@@ -147,8 +147,9 @@ void OpticsStage::begin(const FrameTimes& exposure, double limit_e) {
   if (grid_) grid_->clear(threads_);
 }
 
-std::vector<Deposited> OpticsStage::put(std::span<const Arc> arcs, const DepositView& view) {
-  if (!evaluator_) return deposit(arcs, table_, view, threads_);
+std::vector<Deposited> OpticsStage::put(std::span<const Arc> arcs, const DepositView& view,
+                                        DepositSums sums) {
+  if (!evaluator_) return deposit(arcs, table_, view, threads_, best_simd_level(), sums);
   std::vector<Arc> points, moving;
   for (const Arc& arc : arcs) (arc.is_point() ? points : moving).push_back(arc);
   const auto drawn = evaluator_->add(points, table_, view, threads_);
@@ -159,14 +160,17 @@ std::vector<Deposited> OpticsStage::put(std::span<const Arc> arcs, const Deposit
   return result;
 }
 
-std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, ExpectedElectronImage& light) {
+std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, ExpectedElectronImage& light,
+                                        DepositSums sums) {
   if (!model_)
-    return put(arcs, DepositView{.pixels = light.pixels.data(),
-                                 .columns = light.columns,
-                                 .rows = light.rows,
-                                 .stride = light.columns,
-                                 .frame_columns = light.columns,
-                                 .frame_rows = light.rows});
+    return put(arcs,
+               DepositView{.pixels = light.pixels.data(),
+                           .columns = light.columns,
+                           .rows = light.rows,
+                           .stride = light.columns,
+                           .frame_columns = light.columns,
+                           .frame_rows = light.rows},
+               sums);
   const auto is_bright = [&](const Arc& arc) { return !grid_ || arc.signal_e > bright_e_; };
   if (!grid_) return sum_directly(arcs, light);
 
@@ -175,7 +179,7 @@ std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, ExpectedElect
   for (Arc& arc : others) arc = grid_->on_cells(arc);
   std::vector<Deposited> direct, on_grid;
   if (!bright.empty()) direct = sum_directly(bright, light);
-  if (!others.empty()) on_grid = put(others, grid_->cells());
+  if (!others.empty()) on_grid = put(others, grid_->cells(), sums);
   std::vector<Deposited> result;
   std::size_t b = 0, o = 0;
   for (const Arc& arc : arcs) {

@@ -45,14 +45,15 @@ class OpticsStage {
   /// Where arcs are summed one by one the blur is a Gaussian of its width.
   void add_extended(const ExtendedLight& source, ExpectedElectronImage& light);
   /// Puts light on the plane; returns what of each arc fell inside the frame.
-  std::vector<Deposited> add(std::span<const Arc> arcs, ExpectedElectronImage& light);
+  std::vector<Deposited> add(std::span<const Arc> arcs, ExpectedElectronImage& light,
+                             DepositSums sums = DepositSums::all);
   /// Blurs and adds what is still on the grid; then the light is complete, nowhere negative.
   void finish(ExpectedElectronImage& light);
 
  private:
   void make_kernels();
   bool set_defocus(double time_s);
-  std::vector<Deposited> put(std::span<const Arc> arcs, const DepositView& view);
+  std::vector<Deposited> put(std::span<const Arc> arcs, const DepositView& view, DepositSums sums);
   std::vector<Deposited> sum_directly(std::span<const Arc> arcs, ExpectedElectronImage& light);
 
   Optics optics_;

@@ -53,34 +53,69 @@ std::optional<StarPath> StarExposure::exact_path(const Vec<Gcrs>& astrometric) c
   return path;
 }
 
-std::optional<StarPath> StarExposure::path(const Vec<Gcrs>& astrometric) const {
-  if (grid) {
-    StarPath path;
-    const auto found = grid->find(astrometric, path);
-    if (found == StarPathGrid::Found::path) return path;
-    if (found == StarPathGrid::Found::beside) return std::nullopt;
+StarExposure::Paths StarExposure::paths(std::span<const Vec<Gcrs>> astrometric) const {
+  Paths paths{std::vector<StarPath>(astrometric.size()),
+              std::vector<char>(astrometric.size(), false)};
+  std::vector<StarPathGrid::Found> found(astrometric.size(), StarPathGrid::Found::none);
+  if (grid) grid->find(astrometric, paths.path, found);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    paths.is_there[i] = found[i] == StarPathGrid::Found::path;
+    if (found[i] != StarPathGrid::Found::none) continue;
+    const auto exact = exact_path(astrometric[i]);
+    paths.is_there[i] = exact.has_value();
+    if (exact) paths.path[i] = *exact;
   }
-  return exact_path(astrometric);
+  return paths;
 }
+
+namespace {
+
+/// Fetches what a star has in the columns of its catalogue. Inline, as a function that only fetches
+/// is taken for one that does nothing.
+[[gnu::always_inline]] inline void prefetch(const StarTable& stars,
+                                            const Column<Vec<Gcrs>>& direction,
+                                            std::uint32_t star) {
+  const auto fetch = [star](const auto& column) __attribute__((always_inline)) {
+    __builtin_prefetch(column.data() + star);
+  };
+  fetch(stars.ra_rad), fetch(stars.dec_rad), fetch(stars.pm_ra_cosdec_rad_per_yr);
+  fetch(stars.pm_dec_rad_per_yr), fetch(stars.parallax_rad), fetch(direction);
+  fetch(stars.id), fetch(stars.v_mag), fetch(stars.bv), fetch(stars.flags);
+}
+
+}  // namespace
 
 std::vector<StarTrail> StarExposure::trails_by_grid(std::span<const std::uint32_t> which,
                                                     const Column<Vec<Gcrs>>& direction) const {
-  std::vector<StarTrail> trails;
-  trails.reserve(which.size());
-  for (const std::uint32_t i : which) {
+  std::vector<Vec<Gcrs>> astrometric;
+  astrometric.reserve(which.size());
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    constexpr std::size_t ahead = 24;  // stars
+    if (k + ahead < which.size()) prefetch(stars, direction, which[k + ahead]);
+    const std::uint32_t i = which[k];
     const StarPlace place{.ra_rad = stars.ra_rad[i],
                           .dec_rad = stars.dec_rad[i],
                           .pm_ra_cosdec_rad_per_yr = stars.pm_ra_cosdec_rad_per_yr[i],
                           .pm_dec_rad_per_yr = stars.pm_dec_rad_per_yr[i],
                           .parallax_rad = stars.parallax_rad[i],
                           .epoch_jyear = stars.epoch_jyear};
-    const Vec<Gcrs> astrometric = places[1].astrometric(CataloguedStar(place, direction[i]));
-    const auto at = path(astrometric);
-    if (!at) continue;
-    StarTrail& trail = trails.emplace_back(trail_of(i));
-    trail.astrometric = astrometric;
-    trail.middle = at->middle, trail.pixel = at->pixel;
-    trail.airmass = at->airmass, trail.illumination = at->illumination;
+    astrometric.push_back(places[1].astrometric(CataloguedStar(place, direction[i])));
+  }
+  const Paths paths = this->paths(astrometric);
+  std::vector<StarTrail> trails;
+  trails.reserve(which.size());
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    if (!paths.is_there[i]) continue;
+    const StarPath& at = paths.path[i];
+    const std::uint32_t star = which[i];
+    StarTrail& trail = trails.emplace_back();
+    trail.id = trail.number = stars.id[star];
+    trail.place = star;
+    trail.v_mag = stars.v_mag[star], trail.bv = stars.bv[star];
+    trail.kind = stars.colour(star).kind;
+    trail.astrometric = astrometric[i];
+    trail.middle = at.middle, trail.pixel = at.pixel;
+    trail.airmass = at.airmass, trail.illumination = at.illumination;
   }
   return trails;
 }
@@ -115,6 +150,22 @@ std::vector<double> StarExposure::factors_of_air(const std::vector<StarTrail>& t
     lines.push_back({trail.middle, trail.bv, SightLine::Source::star, trail.number,
                      view.turns_rad_per_s(trail.middle), trail.airmass});
   return throughput.of_air(lines, times);
+}
+
+void StarExposure::apply_air(const std::vector<StarTrail>& trails, std::span<const double> bv,
+                             std::span<double> light, EffectTimes& times) const {
+  if (!throughput.has_air()) return;
+  const std::size_t n = trails.size();
+  std::vector<Vec<Gcrs>> apparent(n);
+  std::vector<double> airmass(n), rate_rad_per_s(n);
+  std::vector<std::uint32_t> number(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    apparent[i] = trails[i].middle;
+    airmass[i] = *trails[i].airmass;
+    rate_rad_per_s[i] = view.turns_rad_per_s(trails[i].middle);
+    number[i] = trails[i].number;
+  }
+  throughput.apply_air({apparent, airmass, bv, rate_rad_per_s, number}, light, times);
 }
 
 void StarExposure::spread(const Arc& arc, const StarTrail& trail, std::vector<Arc>& parts) const {

@@ -24,6 +24,7 @@ struct StarTrail {
   std::uint32_t number = 0;  // by which it scintillates
   std::uint32_t place = 0;   // in the table of the catalogue
   double v_mag = 0.0, bv = 0.0;
+  StarKind kind = StarKind::most;
   Vec<Gcrs> middle;                             // apparent direction in mid exposure
   std::array<PixelPosition, 3> pixel;           // start, middle, end
   std::optional<double> airmass, illumination;  // of its middle, if they are known already
@@ -55,8 +56,13 @@ struct StarExposure {
   /// The same by the grid, without those that don't come near the frame. `direction`: of all stars.
   std::vector<StarTrail> trails_by_grid(std::span<const std::uint32_t> which,
                                         const Column<Vec<Gcrs>>& direction) const;
-  /// The path of what stands at an astrometric place; none: it is not imaged or beside the frame.
-  std::optional<StarPath> path(const Vec<Gcrs>& astrometric) const;
+  /// Paths of what stands at astrometric places, by the grid where there is one, and whether each
+  /// is: it is imaged, and not beside the frame.
+  struct Paths {
+    std::vector<StarPath> path;
+    std::vector<char> is_there;
+  };
+  Paths paths(std::span<const Vec<Gcrs>> astrometric) const;
   std::optional<StarPath> exact_path(const Vec<Gcrs>& astrometric) const;
   void make_grid() {
     if (!grid)
@@ -67,6 +73,9 @@ struct StarExposure {
   /// Factors of the air on their light.
   std::vector<double> factors_of_air(const std::vector<StarTrail>& trails,
                                      EffectTimes& times) const;
+  /// Multiplies the light of stars of known airmass by the same factors, to 1e-14 of them.
+  void apply_air(const std::vector<StarTrail>& trails, std::span<const double> bv,
+                 std::span<double> light, EffectTimes& times) const;
   /// Adds the arcs of a star's spectrum, with the light of `arc`.
   void spread(const Arc& arc, const StarTrail& trail, std::vector<Arc>& parts) const;
   bool hides(const Vec<Gcrs>& apparent) const { return earth && earth->hides_direction(apparent); }
@@ -77,7 +86,8 @@ struct StarExposure {
             .number = stars.id[star],
             .place = star,
             .v_mag = stars.v_mag[star],
-            .bv = stars.bv[star]};
+            .bv = stars.bv[star],
+            .kind = stars.colour(star).kind};
   }
 };
 

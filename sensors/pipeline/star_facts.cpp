@@ -70,7 +70,7 @@ StarFacts::StarFacts(const SensorConfig& sensor, const StarMap* stars, double fa
   }
   for (std::size_t i = 0; i < table.v_mag.size(); ++i) {
     if (table.v_mag[i] > faintest_v_mag) continue;
-    whole_sky_.add(table.v_mag[i], light_.photons_per_s_m2(table.v_mag[i], table.bv[i]));
+    whole_sky_.add(table.v_mag[i], light_.photons_per_s_m2(table.v_mag[i], table.colour(i)));
     fastest_rad_per_yr_ = std::max(fastest_rad_per_yr_, std::hypot(table.pm_ra_cosdec_rad_per_yr[i],
                                                                    table.pm_dec_rad_per_yr[i]));
     largest_parallax_rad_ = std::max(largest_parallax_rad_, double(table.parallax_rad[i]));
@@ -81,9 +81,7 @@ StarFacts::StarFacts(const SensorConfig& sensor, const StarMap* stars, double fa
 
 /// A star may be as bright in the band as any of its magnitude.
 void StarFacts::sum_up(const StarSummary& stars, double fastest_rad_per_yr) {
-  double brightest_colour = 0.0;
-  for (const double bv : {least_bv, double(default_star_bv), greatest_bv})
-    brightest_colour = std::max(brightest_colour, light_.photons_per_s_m2(0.0, bv));
+  const double brightest_colour = light_.most_photons_per_s_m2(0.0);
   for (std::size_t bin = 0; bin < StarSummary::bins; ++bin) {
     const double v_mag = StarSummary::bright_edge(bin);
     if (stars.count[bin] == 0 || v_mag > faintest_v_mag_) continue;
@@ -143,7 +141,7 @@ StarFacts::ByLimit StarFacts::counted(const View& view, const PlanFacts& f,
       }
     if (right > -margin_px && left < optics.columns + margin_px && bottom > -margin_px &&
         top < optics.rows + margin_px)
-      stars.add(table.v_mag[star], light_.photons_per_s_m2(table.v_mag[star], table.bv[star]));
+      stars.add(table.v_mag[star], light_.photons_per_s_m2(table.v_mag[star], table.colour(star)));
   }
   stars.sum_up();
   stars.processed = double(found.size());
@@ -180,7 +178,7 @@ void StarFacts::add_stars(const View& view, PlanFacts& f) const {
 /// A star may be as bright in the band as any of its magnitude.
 void StarFacts::add_synthetic(const Vec<Gcrs>& axis, double seen_rad, double electrons,
                               PlanFacts& f) const {
-  double brightest_colour = 0.0;
+  double brightest_colour = 0.0;  // of synthetic ones
   for (const double bv : {least_bv, double(default_star_bv), greatest_bv})
     brightest_colour = std::max(brightest_colour, light_.photons_per_s_m2(0.0, bv));
   for (std::size_t m = 0; m < star_limits; ++m) {

@@ -15,6 +15,7 @@
 #include "core/optics/snapshots.h"
 #include "sensors/pipeline/row_window.h"
 #include "sensors/pipeline/star_exposure.h"
+#include "sensors/pipeline/star_order.h"
 #include "sensors/pipeline/star_snapshots.h"
 #include "sensors/pipeline/throughput.h"
 
@@ -33,33 +34,6 @@ constexpr std::size_t least_for_grid = 8192;
 /// that a grid placed may be summed so roughly, in a pixel.
 constexpr double missed_share = 1e-4;
 
-/// Sorts stars by the part of the field that they are in, row by row: those that are drawn one
-/// after the other share pixels, which then stay in the cache.
-void sort_by_place(std::vector<std::uint32_t>& stars, const Column<Vec<Gcrs>>& direction,
-                   const Rotation<CameraFrame, Gcrs>& camera, double half_field_rad) {
-  constexpr int tiles = 96;  // along each side
-  const double scale = 0.5 * tiles / std::tan(0.5 * std::min(half_field_rad, 2.0));
-  const auto tile = [&](std::uint32_t star) {
-    const Vec<CameraFrame> at = camera * direction[star];
-    const double stretch = scale / std::max(1e-3, 1.0 + at.z);  // stereographic
-    const auto along = [&](double x) {
-      return std::size_t(std::clamp(0.5 * tiles + x * stretch, 0.0, tiles - 1.0));
-    };
-    return along(at.y) * tiles + along(at.x);
-  };
-  std::vector<std::uint32_t> first(tiles * tiles + 1, 0), sorted(stars.size());
-  std::vector<std::uint16_t> of(stars.size());
-  for (std::size_t i = 0; i < stars.size(); ++i)
-    ++first[(of[i] = std::uint16_t(tile(stars[i]))) + 1];
-  for (std::size_t t = 1; t < first.size(); ++t) first[t] += first[t - 1];
-  for (std::size_t i = 0; i < stars.size(); ++i) sorted[first[of[i]]++] = stars[i];
-  stars = std::move(sorted);
-}
-
-}  // namespace
-
-namespace {
-
 /// The arc of a number, or those of its spectrum where `spread` makes them of it.
 template <class Spread>
 void spectrum_of(std::span<const Arc> arcs, std::size_t i, const Spread& spread,
@@ -76,8 +50,8 @@ void spectrum_of(std::span<const Arc> arcs, std::size_t i, const Spread& spread,
 template <class Spread>
 std::vector<Deposited> add_past(const OcclusionMask& mask, std::span<const Arc> arcs,
                                 const Spread& spread, OpticsStage& optics,
-                                ExpectedElectronImage& image) {
-  if (mask.empty() && !spread) return optics.add(arcs, image);
+                                ExpectedElectronImage& image, DepositSums sums) {
+  if (mask.empty() && !spread) return optics.add(arcs, image, sums);
   std::vector<Arc> free;
   std::vector<std::size_t> star;
   std::vector<Arc> whole;
@@ -89,7 +63,7 @@ std::vector<Deposited> add_past(const OcclusionMask& mask, std::span<const Arc> 
     }
   }
   std::vector<Deposited> deposited(arcs.size());
-  const auto parts = optics.add(free, image);
+  const auto parts = optics.add(free, image, sums);
   for (std::size_t k = 0; k < parts.size(); ++k) deposited[star[k]] = deposited[star[k]] + parts[k];
   return deposited;
 }
@@ -115,18 +89,27 @@ std::vector<Deposited> add_snapshots(const View& view, std::span<const Arc> arcs
 
 }  // namespace
 
+namespace {
+
+Vec<Gcrs> boresight(const View& view, SimTime t) {
+  return view.camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1};
+}
+
+/// How far the boresight turns from where it is in mid exposure.
+double turned_rad(const View& view) {
+  const Vec<Gcrs> middle = boresight(view, view.times().middle);
+  const FrameTimes times = view.times_of_all_rows();
+  return std::max(angle_rad(middle, boresight(view, times.start)),
+                  angle_rad(middle, boresight(view, times.end)));
+}
+
+}  // namespace
+
 /// Stars around the boresight of mid exposure, wide enough for the field to have turned.
 std::vector<std::uint32_t> StarLayer::candidates(const View& view, double faintest_v_mag) const {
-  const auto boresight = [&](SimTime t) {
-    return view.camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1};
-  };
-  const Vec<Gcrs> middle = boresight(view.times().middle);
-  const FrameTimes times = view.times_of_all_rows();
-  const double turned =
-      std::max(angle_rad(middle, boresight(times.start)), angle_rad(middle, boresight(times.end)));
   std::vector<std::uint32_t> found;
-  query_cone(*map_, middle,
-             half_diagonal_rad(view.sensor().camera.optics) + turned + widest_shift_rad,
+  query_cone(*map_, boresight(view, view.times().middle),
+             half_diagonal_rad(view.sensor().camera.optics) + turned_rad(view) + widest_shift_rad,
              faintest_v_mag, found);
   return found;
 }
@@ -177,8 +160,8 @@ std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Occlu
   const bool by_grid = !map_->is_small() && found.size() >= least_for_grid && snapshots == 0;
   if (by_grid) {
     exposure.make_grid();
-    sort_by_place(found, map_->index.direction, exposure.camera[1],
-                  half_diagonal_rad(view.sensor().camera.optics));
+    order_for_drawing(found, map_->index.direction, exposure.camera[1], view.sensor().camera.optics,
+                      widest_shift_rad + turned_rad(view));
   }
   // OpenGL's pictures are read back whole, so that there all go at once.
   const std::size_t at_a_time =
@@ -212,22 +195,53 @@ std::uint32_t StarLayer::draw_synthetic(StarExposure& exposure, OpticsStage& opt
     exposure.make_grid();
   std::uint32_t inside = 0;
   synthetic_->visit(axis, radius_rad, limit, [&](const SyntheticStars::Stars& stars) {
+    const StarExposure::Paths paths = exposure.paths(stars.direction);
     std::vector<StarTrail> trails;
-    for (std::size_t i = 0; i < stars.id.size(); ++i)
-      if (const auto at = exposure.path(stars.direction[i]))
-        trails.push_back({.id = stars.id[i],
-                          .number = std::uint32_t(stars.id[i] ^ stars.id[i] >> 31),
-                          .v_mag = stars.v_mag[i],
-                          .bv = stars.bv[i],
-                          .middle = at->middle,
-                          .pixel = at->pixel,
-                          .airmass = at->airmass,
-                          .illumination = at->illumination,
-                          .astrometric = stars.direction[i]});
+    for (std::size_t i = 0; i < stars.id.size(); ++i) {
+      if (!paths.is_there[i]) continue;
+      const StarPath& at = paths.path[i];
+      trails.push_back({.id = stars.id[i],
+                        .number = std::uint32_t(stars.id[i] ^ stars.id[i] >> 31),
+                        .v_mag = stars.v_mag[i],
+                        .bv = stars.bv[i],
+                        .middle = at.middle,
+                        .pixel = at.pixel,
+                        .airmass = at.airmass,
+                        .illumination = at.illumination,
+                        .astrometric = stars.direction[i]});
+    }
     inside += draw(exposure, std::move(trails), missed_share * optics.limit_e(), optics, mask,
                    image, truth, times);
   });
   return inside;
+}
+
+/// Electrons of stars over the exposure behind the air and before vignetting.
+std::vector<double> StarLayer::signals_e(const StarExposure& exposure,
+                                         const std::vector<StarTrail>& trails,
+                                         EffectTimes& times) const {
+  std::vector<double> signal_e(trails.size());
+  const double electrons_per_rate =
+      exposure.throughput.electrons_per_photon_m2() * exposure.times.seconds();
+  if (trails.empty() || !trails[0].airmass) {
+    const auto factor_of_air = exposure.factors_of_air(trails, times);
+    for (std::size_t i = 0; i < trails.size(); ++i)
+      signal_e[i] = light_.photons_per_s_m2(trails[i].v_mag, {trails[i].bv, trails[i].kind}) *
+                    electrons_per_rate * factor_of_air[i];
+    return signal_e;
+  }
+  std::vector<double> v_mag(trails.size()), bv(trails.size());
+  for (std::size_t i = 0; i < trails.size(); ++i) {
+    v_mag[i] = trails[i].v_mag;
+    bv[i] = trails[i].bv;
+  }
+  light_.photons_per_s_m2(v_mag, bv, signal_e);
+  for (std::size_t i = 0; i < trails.size(); ++i)
+    if (trails[i].kind != StarKind::most)
+      signal_e[i] = light_.photons_per_s_m2(v_mag[i], {bv[i], trails[i].kind});
+  for (double& signal : signal_e) signal *= electrons_per_rate;
+  exposure.apply_air(trails, bv, signal_e, times);
+  return signal_e;
 }
 
 std::uint32_t StarLayer::draw(const StarExposure& exposure, std::vector<StarTrail> trails,
@@ -239,20 +253,17 @@ std::uint32_t StarLayer::draw(const StarExposure& exposure, std::vector<StarTrai
     Stopwatch timing(times[EarthOccultation::facts]);
     std::erase_if(trails, [&](const StarTrail& t) { return exposure.hides(t.middle); });
   }
-  const auto factor_of_air = exposure.factors_of_air(trails, times);
+  const std::vector<double> signal_e = signals_e(exposure, trails, times);
   const int snapshots = view.sensor().effects.snapshots();
   const bool in_snapshots = snapshots && (trails.empty() || !trails[0].airmass);
   std::vector<Arc> arcs;
-  const double electrons_per_rate =
-      exposure.throughput.electrons_per_photon_m2() * exposure.times.seconds();
   arcs.reserve(trails.size());
   for (std::size_t i = 0; i < trails.size(); ++i) {
     const auto& t = trails[i];
     arcs.push_back({t.pixel[0], t.pixel[1], t.pixel[2],
-                    light_.photons_per_s_m2(t.v_mag, t.bv) * electrons_per_rate * factor_of_air[i] *
-                        (in_snapshots     ? 1.0
-                         : t.illumination ? *t.illumination
-                                          : view.illumination(t.pixel[1])),
+                    signal_e[i] * (in_snapshots     ? 1.0
+                                   : t.illumination ? *t.illumination
+                                                    : view.illumination(t.pixel[1])),
                     0.0, may_miss_e});
   }
   if (view.rolls())
@@ -270,16 +281,13 @@ std::uint32_t StarLayer::draw(const StarExposure& exposure, std::vector<StarTrai
     deposited = add_snapshots(view, arcs, snapshots, spread, optics, mask, image);
   } else if (in_snapshots) {
     std::vector<std::uint32_t> drawn;
-    std::vector<double> signal_e;
-    for (std::size_t i = 0; i < arcs.size(); ++i) {
-      drawn.push_back(trails[i].place);
-      signal_e.push_back(arcs[i].signal_e);
-    }
+    for (const StarTrail& t : trails) drawn.push_back(t.place);
     deposited = draw_star_snapshots(view, exposure.columns, drawn, signal_e, snapshots,
                                     exposure.spectra ? &*exposure.spectra : nullptr,
                                     exposure.stars.bv, optics, mask, image);
   } else {
-    deposited = add_past(mask, arcs, spread, optics, image);
+    deposited =
+        add_past(mask, arcs, spread, optics, image, truth ? DepositSums::all : DepositSums::cut);
   }
   std::uint32_t inside = 0;
   for (std::size_t i = 0; i < arcs.size(); ++i) {

@@ -55,6 +55,8 @@ class StarLayer {
   std::uint32_t draw(const StarExposure& exposure, std::vector<StarTrail> trails, double may_miss_e,
                      OpticsStage& optics, const OcclusionMask& mask, ExpectedElectronImage& image,
                      std::vector<StarTruth>* truth, EffectTimes& times) const;
+  std::vector<double> signals_e(const StarExposure& exposure, const std::vector<StarTrail>& trails,
+                                EffectTimes& times) const;
   std::uint32_t draw_synthetic(StarExposure& exposure, OpticsStage& optics,
                                const OcclusionMask& mask, ExpectedElectronImage& image,
                                std::vector<StarTruth>* truth, EffectTimes& times) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/simd_level.h"
 #include "core/optics/projection.h"
 
 namespace dmise {
@@ -12,11 +13,6 @@ constexpr double widest_margin_px = 512.0;  // paths that are longer take no gri
 constexpr double coarsest_px = 64.0, finest_px = 16.0;
 constexpr double most_bad = 0.05;  // share of patches, before the grid is made finer
 constexpr double direction_tolerance = 1e-7, relative_tolerance = 1e-4;
-
-/// Lagrange's weights of nodes at 0, 1 and 2.
-std::array<double, 3> weights_at(double u) {
-  return {0.5 * (u - 1.0) * (u - 2.0), u * (2.0 - u), 0.5 * u * (u - 1.0)};
-}
 
 }  // namespace
 
@@ -93,17 +89,14 @@ void StarPathGrid::make(double spacing_px, double margin_px, const Exact& exact)
     for (std::size_t i = 0; i < columns_; ++i) good_[j * columns_ + i] = holds(i, j, exact);
 }
 
-void StarPathGrid::interpolate(std::size_t i, std::size_t j, double u, double v, Node& out) const {
-  const std::size_t across = 2 * columns_ + 1;
-  const auto along = weights_at(u), down = weights_at(v);
-  out = {};
-  for (std::size_t b = 0; b < 3; ++b) {
-    const Node* row = nodes_.data() + (2 * j + b) * across + 2 * i;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double weight = along[a] * down[b];
-      for (std::size_t k = 0; k < stride; ++k) out[k] += weight * row[a][k];
-    }
-  }
+PatchPlace StarPathGrid::place_in(std::size_t i, std::size_t j, double u, double v) const {
+  return {2 * j * (2 * columns_ + 1) + 2 * i, u, v};
+}
+
+void StarPathGrid::interpolate(std::span<const PatchPlace> places, std::span<Node> out) const {
+  static const auto kernel = kernel_of(best_simd_level(), sse2::interpolate_paths,
+                                       avx2::interpolate_paths, avx512::interpolate_paths);
+  kernel(nodes_.data()->data(), 2 * columns_ + 1, places.data(), places.size(), out.data()->data());
 }
 
 bool StarPathGrid::holds(std::size_t i, std::size_t j, const Exact& exact) const {
@@ -116,8 +109,9 @@ bool StarPathGrid::holds(std::size_t i, std::size_t j, const Exact& exact) const
   for (const auto& [u, v] : {std::array{low, high}, std::array{high, high}}) {
     const auto truly = look(node_at(2.0 * double(i) + u, 2.0 * double(j) + v), exact);
     if (!truly) return false;
+    const PatchPlace place = place_in(i, j, u, v);
     Node node;
-    interpolate(i, j, u, v, node);
+    interpolate({&place, 1}, {&node, 1});
     for (std::size_t k = 0; k < values; ++k) {
       const double tolerance = k < 6   ? 0.5 * tolerance_px
                                : k < 9 ? direction_tolerance
@@ -128,23 +122,46 @@ bool StarPathGrid::holds(std::size_t i, std::size_t j, const Exact& exact) const
   return true;
 }
 
-StarPathGrid::Found StarPathGrid::find(const Vec<Gcrs>& astrometric, StarPath& path) const {
-  if (good_.empty()) return Found::none;
-  const auto at = project(*optics_, camera_ * astrometric);
-  if (!at) return Found::none;
-  const double u = (at->x_px - left_) / spacing_px_, v = (at->y_px - top_) / spacing_px_;
-  if (!(u >= 0.0 && v >= 0.0 && u < 2.0 * double(columns_) && v < 2.0 * double(rows_)))
-    return Found::beside;
-  const auto i = std::size_t(0.5 * u), j = std::size_t(0.5 * v);
-  if (!good_[j * columns_ + i]) return Found::none;
-  Node node;
-  interpolate(i, j, u - 2.0 * double(i), v - 2.0 * double(j), node);
-  for (std::size_t k = 0; k < 3; ++k)
-    path.pixel[k] = {at->x_px + node[2 * k], at->y_px + node[2 * k + 1]};
-  path.middle = astrometric + Vec<Gcrs>{node[6], node[7], node[8]};
-  path.airmass = node[9];
-  path.illumination = node[10];
-  return Found::path;
+void StarPathGrid::find(std::span<const Vec<Gcrs>> astrometric, std::span<StarPath> paths,
+                        std::span<Found> found) const {
+  std::vector<PatchPlace> places;
+  std::vector<PixelPosition> pixels;
+  places.reserve(found.size()), pixels.reserve(found.size());
+  const PixelPosition centre = principal_point(*optics_);
+  const double focal_length_px = optics_->focal_length_px(), per_spacing = 1.0 / spacing_px_;
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    found[n] = Found::none;
+    if (good_.empty()) continue;
+    const Vec<CameraFrame> direction = camera_ * astrometric[n];
+    const auto image = optics_->projection.image_of(direction.x, direction.y, direction.z);
+    if (!image) continue;
+    const PixelPosition at{centre.x_px + focal_length_px * (*image)[0],
+                           centre.y_px + focal_length_px * (*image)[1]};
+    const double u = (at.x_px - left_) * per_spacing, v = (at.y_px - top_) * per_spacing;
+    if (!(u >= 0.0 && v >= 0.0 && u < 2.0 * double(columns_) && v < 2.0 * double(rows_))) {
+      found[n] = Found::beside;
+      continue;
+    }
+    const auto i = std::size_t(0.5 * u), j = std::size_t(0.5 * v);
+    if (!good_[j * columns_ + i]) continue;
+    found[n] = Found::path;
+    places.push_back(place_in(i, j, u - 2.0 * double(i), v - 2.0 * double(j)));
+    pixels.push_back(at);
+  }
+  std::vector<Node> nodes(places.size());
+  if (!nodes.empty()) interpolate(places, nodes);
+  std::size_t next = 0;
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    if (found[n] != Found::path) continue;
+    const Node& node = nodes[next];
+    const PixelPosition at = pixels[next++];
+    StarPath& path = paths[n];
+    for (std::size_t k = 0; k < 3; ++k)
+      path.pixel[k] = {at.x_px + node[2 * k], at.y_px + node[2 * k + 1]};
+    path.middle = astrometric[n] + Vec<Gcrs>{node[6], node[7], node[8]};
+    path.airmass = node[9];
+    path.illumination = node[10];
+  }
 }
 
 }  // namespace dmise

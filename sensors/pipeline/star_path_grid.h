@@ -2,11 +2,13 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/pixel.h"
 #include "core/frames/vec.h"
 #include "core/sky/apparent.h"
+#include "sensors/pipeline/star_path_kernels.h"
 #include "sensors/pipeline/view.h"
 
 namespace dmise {
@@ -34,21 +36,22 @@ class StarPathGrid {
   /// Most that a path is off [px].
   static constexpr double tolerance_px = 2e-4;
 
-  enum class Found { path, none, beside };
-  /// The path of a star at an astrometric place (unit). `none`: the exact path is to be taken.
-  /// `beside`: it is not near the frame.
-  Found find(const Vec<Gcrs>& astrometric, StarPath& path) const;
+  enum class Found : char { path, none, beside };
+  /// The paths of stars at astrometric places (unit). `none`: the exact path is to be taken.
+  /// `beside`: it is not near the frame. The spans are of one size.
+  void find(std::span<const Vec<Gcrs>> astrometric, std::span<StarPath> paths,
+            std::span<Found> found) const;
 
  private:
   // Differences from the astrometric place: of three pixels, of a direction; airmass, illumination.
-  static constexpr std::size_t values = 11, stride = 12;
-  using Node = std::array<double, stride>;
+  static constexpr std::size_t values = 11;
+  using Node = std::array<double, path_values>;
 
   void make(double spacing_px, double margin_px, const Exact& exact);
   PixelPosition node_at(double column, double row) const;
   std::optional<Node> look(PixelPosition pixel, const Exact& exact) const;
-  void interpolate(std::size_t patch_column, std::size_t patch_row, double u, double v,
-                   Node& out) const;
+  PatchPlace place_in(std::size_t patch_column, std::size_t patch_row, double u, double v) const;
+  void interpolate(std::span<const PatchPlace> places, std::span<Node> out) const;
   bool holds(std::size_t patch_column, std::size_t patch_row, const Exact& exact) const;
   double bad_share() const;
 

@@ -80,6 +80,23 @@ std::vector<double> Throughput::of_air(std::span<const SightLine> lines, EffectT
   return factors;
 }
 
+void Throughput::apply_air(const SightLines& lines, std::span<double> factors,
+                           EffectTimes& times) const {
+  if (limb_) {
+    Stopwatch timing(times[LimbExtinction::facts]);
+    for (std::size_t i = 0; i < factors.size(); ++i)
+      factors[i] *= limb_->of_point(lines.apparent[i]);
+  }
+  if (!air_) return;
+  air_->for_each([&](const auto& effect) {
+    Stopwatch timing(times[effect.facts]);
+    if constexpr (requires { effect.apply(lines, factors); })
+      effect.apply(lines, factors);
+    else
+      for (std::size_t i = 0; i < factors.size(); ++i) factors[i] *= effect.apply(lines[i]);
+  });
+}
+
 double Throughput::of_sunlight(const Vec<Gcrs>& apparent) const {
   const SightLine line{apparent, sun_bv, SightLine::Source::object, 0};
   const auto* extinction = find<AirExtinction>();

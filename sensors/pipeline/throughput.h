@@ -29,6 +29,10 @@ class Throughput {
   double of_limb(const Vec<Gcrs>& apparent) const {
     return limb_ ? limb_->of_surface(apparent) : 1.0;
   }
+  /// Whether air takes light here.
+  bool has_air() const { return air_ || limb_; }
+  /// Multiplies factors of many stars by that of the air, to 1e-14 of it.
+  void apply_air(const SightLines& lines, std::span<double> factors, EffectTimes& times) const;
   /// Share of sunlight from an apparent direction (unit) that air and clouds leave, [0, 1].
   double of_sunlight(const Vec<Gcrs>& apparent) const;
 

@@ -146,7 +146,8 @@ std::vector<Arc> star_field(int count) {
 }
 
 TEST(Deposit, TheBytesDependOnNeitherThreadsNorInstructionSet) {
-  const auto arcs = star_field(3000);
+  auto arcs = star_field(3000);
+  for (std::size_t i = 0; i < arcs.size(); i += 2) arcs[i].may_miss_e = 0.02;
   const PsfTable psf = make_psf_table(fwhm_px / fwhm_per_sigma);
   ExpectedElectronImage reference(3326, 2504, 1000.0f);
   Threads one(1);
@@ -198,31 +199,70 @@ TEST(Deposit, AnArcThatIsNotANumberIsNamed) {
   EXPECT_THROW(draw(point(1, 1, -1), image), Error);
 }
 
-// An arc of up to four widths is summed as one panel if it may miss a little, and then misses less:
-// beside the sum of panels of two widths.
-TEST(Deposit, OneWidePanelMissesNoMoreThanItMay) {
-  int wide = 0;
-  for (const double sigma : {0.3, 0.637, 1.2, 2.5})
-    for (const double widths : {0.5, 1.5, 2.2, 3.0, 3.9})
-      for (const double signal_e : {10.0, 3e3, 1e6}) {
-        const double length = widths * sigma;
-        Arc arc{{20.3, 20.8}, {}, {20.3 + 0.8 * length, 20.8 + 0.6 * length}, signal_e};
-        arc.middle = (arc.start + arc.end) * 0.5;
-        ExpectedElectronImage exact(48, 48), rough(48, 48);
-        draw(arc, exact, sigma);
-        arc.may_miss_e = 0.05;
-        const Deposited all = draw(arc, rough, sigma);
+Arc across(double length, double signal_e, double may_miss_e) {
+  Arc arc{{20.3, 20.8}, {}, {20.3 + 0.8 * length, 20.8 + 0.6 * length}, signal_e};
+  arc.middle = (arc.start + arc.end) * 0.5;
+  arc.may_miss_e = may_miss_e;
+  return arc;
+}
+
+// An arc that may miss a little is one panel of few nodes, and misses less: beside the sum of
+// panels of two widths.
+TEST(Deposit, AShortArcMissesNoMoreThanItMay) {
+  int differ = 0;
+  for (const double sigma : {0.1, 0.2, 0.3, 0.4, 0.5, 0.637, 0.7, 1.2, 2.5})
+    for (const double widths : {0.1, 0.5, 1.5, 2.2, 3.0, 3.9, 6.0, 9.0})
+      for (const double signal_e : {10.0, 300.0, 3e3, 1e5, 1e6}) {
+        ExpectedElectronImage exact(64, 64), rough(64, 64);
+        draw(across(widths * sigma, signal_e, 0.0), exact, sigma);
+        const Deposited all = draw(across(widths * sigma, signal_e, 0.05), rough, sigma);
         double worst = 0.0;
-        bool differ = false;
-        for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
+        for (std::size_t i = 0; i < exact.pixels.size(); ++i)
           worst = std::max(worst, double(std::abs(exact.pixels[i] - rough.pixels[i])));
-          differ = differ || exact.pixels[i] != rough.pixels[i];
-        }
         EXPECT_LE(worst, 0.05 + 4e-6 * signal_e) << sigma << " " << widths << " " << signal_e;
+        EXPECT_NEAR(measured(rough).signal_e, measured(exact).signal_e, 1e-6 * signal_e);
         EXPECT_NEAR(all.signal_e, signal_e, 2e-6 * signal_e);
-        wide += differ;
+        differ += exact.pixels != rough.pixels;
       }
-  EXPECT_GT(wide, 5);
+  EXPECT_GT(differ, 30);
+}
+
+// Across the bands of rows and beside the rim of the frame, where other kernels take over.
+TEST(Deposit, AShortArcMissesNoMoreThanItMayAnywhere) {
+  std::vector<Arc> arcs;
+  for (double y = -6.37; y < 142; y += 1.171)
+    for (double x = -6.2; x < 71; x += 2.9173)
+      arcs.push_back({{x, y}, {x + 0.8, y - 0.6}, {x + 1.7, y - 1.1}, 300.0, 0.0, 0.02});
+  ExpectedElectronImage exact(64, 136), rough(64, 136);
+  Threads one(1);
+  const PsfTable psf = make_psf_table(fwhm_px / fwhm_per_sigma);
+  deposit(arcs, psf, rough, one);
+  for (Arc& arc : arcs) arc.may_miss_e = 0.0;
+  deposit(arcs, psf, exact, one);
+  EXPECT_NE(exact.pixels, rough.pixels);
+  // Some six arcs share a pixel.
+  for (std::size_t i = 0; i < exact.pixels.size(); ++i)
+    ASSERT_NEAR(rough.pixels[i], exact.pixels[i], 0.1) << i;
+}
+
+// What is told of arcs changes no pixel; what is cut by the rim is told as by all sums.
+TEST(Deposit, SumsOfCutArcsAloneAreTheSame) {
+  std::vector<Arc> arcs = star_field(4000);
+  for (std::size_t i = 0; i < arcs.size(); i += 2) arcs[i].may_miss_e = 0.02;
+  const PsfTable psf = make_psf_table(fwhm_px / fwhm_per_sigma);
+  ExpectedElectronImage all(3326, 2504), cut(3326, 2504);
+  Threads one(1);
+  const auto of_all = deposit(arcs, psf, all, one);
+  const auto of_cut = deposit(arcs, psf, cut, one, best_simd_level(), DepositSums::cut);
+  EXPECT_EQ(all.pixels, cut.pixels);
+  int at_the_rim = 0;
+  for (std::size_t i = 0; i < arcs.size(); ++i) {
+    EXPECT_NEAR(of_cut[i].signal_e, of_all[i].signal_e, 2e-6 * arcs[i].signal_e);
+    EXPECT_NEAR(of_cut[i].x_px, of_all[i].x_px, 0.02);
+    EXPECT_NEAR(of_cut[i].y_px, of_all[i].y_px, 0.02);
+    at_the_rim += of_all[i].signal_e < 0.99 * arcs[i].signal_e;
+  }
+  EXPECT_GT(at_the_rim, 5);
 }
 
 // Arcs in one band of rows and in several, within the frame and beyond each edge: what is returned

@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "core/base/simd_level.h"
 #include "core/base/units.h"
 #include "core/optics/projection.h"
 #include "core/sky/air_exposure.h"
@@ -62,7 +63,8 @@ double compare(const std::string& yaml) {
     if (!truly) continue;
     ++in_frame;
     StarPath path;
-    const auto answer = grid.find(astrometric, path);
+    StarPathGrid::Found answer{};
+    grid.find({&astrometric, 1}, {&path, 1}, {&answer, 1});
     EXPECT_NE(answer, StarPathGrid::Found::beside) << i;
     if (answer != StarPathGrid::Found::path) continue;
     ++found;
@@ -97,6 +99,25 @@ TEST(StarPathGrid, ATelescopeLowOverTheHorizonIsWithinItsTolerance) {
 TEST(StarPathGrid, HasNoneOfPathsAcrossTheField) {
   EXPECT_EQ(compare(scenario(camera("gnomonic", 8.0), "{azimuth_deg: 100, elevation_deg: 50}", 50)),
             0.0);
+}
+
+TEST(StarPathGrid, InterpolatesTheSameBytesOnEveryInstructionSet) {
+  std::mt19937 random(8);
+  std::normal_distribution<double> normal;
+  constexpr std::size_t across = 9, down = 7, count = 101;
+  std::vector<double> nodes(across * down * path_values);
+  for (double& node : nodes) node = normal(random);
+  std::vector<PatchPlace> places(count);
+  for (std::size_t i = 0; i < count; ++i)
+    places[i] = {2 * (i % 3) * across + 2 * (i % 4), 0.0199 * double(i), 2.0 - 0.0151 * double(i)};
+  std::vector<double> reference(count * path_values), other(reference.size());
+  sse2::interpolate_paths(nodes.data(), across, places.data(), count, reference.data());
+  for (const SimdLevel level : {SimdLevel::avx2, SimdLevel::avx512}) {
+    if (level > best_simd_level()) continue;
+    kernel_of(level, sse2::interpolate_paths, avx2::interpolate_paths, avx512::interpolate_paths)(
+        nodes.data(), across, places.data(), count, other.data());
+    EXPECT_EQ(other, reference) << name(level);
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Prints core/photometry/star_spectrum_table.inc: by what a black body of a star's colour temperature is
-multiplied, at eight wavelengths, so that the star has the colours of real ones of its B-V.
+multiplied, at eight wavelengths, so that the star has the colours of real ones of its B-V; for red dwarfs, and for
+stars of type M, in tables of their own.
 
     star_spectra.py FILTERS VEGA         (folders of filter curves in ECSV, CALSPEC's Vega [nm])
     star_spectra.py FILTERS VEGA --check NLANDOLT BSC5
@@ -51,6 +52,37 @@ COLOURS = np.array([
     (1.800, 1.960, 1.010, 1.940, 3.910, 0.617, 0.215),
     (1.900, 1.970, 1.090, 2.110, 4.130, 0.607, 0.229),
     (2.000, 2.000, 1.165, 2.280, 4.390, 0.592, 0.242),
+])
+# Dwarfs from there on: Pecaut & Mamajek 2013, as of 2024. Beyond M6 they grow no redder in B-V.
+RED_DWARFS = np.array([
+    (0.938, 0.691, 0.513, 0.974, 2.274, 0.459, 0.104),
+    (0.986, 0.776, 0.537, 1.013, 2.380, 0.483, 0.109),
+    (1.050, 0.917, 0.592, 1.108, 2.582, 0.520, 0.118),
+    (1.100, 1.004, 0.640, 1.190, 2.733, 0.544, 0.125),
+    (1.150, 1.081, 0.685, 1.272, 2.883, 0.568, 0.132),
+    (1.240, 1.184, 0.759, 1.420, 3.143, 0.601, 0.148),
+    (1.330, 1.221, 0.806, 1.529, 3.330, 0.617, 0.162),
+    (1.408, 1.204, 0.889, 1.766, 3.680, 0.626, 0.193),
+    (1.475, 1.172, 0.959, 2.019, 4.020, 0.613, 0.225),
+    (1.500, 1.170, 1.001, 2.173, 4.240, 0.600, 0.234),
+    (1.544, 1.181, 1.079, 2.420, 4.600, 0.579, 0.252),
+    (1.602, 1.200, 1.178, 2.680, 5.000, 0.558, 0.269),
+    (1.661, 1.222, 1.241, 2.831, 5.250, 0.557, 0.282),
+    (1.720, 1.230, 1.345, 3.073, 5.640, 0.564, 0.301),
+    (1.874, 1.240, 1.446, 3.277, 5.940, 0.580, 0.311),
+    (2.000, 1.300, 1.950, 4.130, 7.300, 0.605, 0.352),
+])
+# Giants M0 to M7: B-V and U-B are medians of the Yale Bright Star Catalogue (72 to 10 giants), V-R that of dwarfs of the
+# V-I, the rest of Bessell & Brett 1988, PASP 100, 1134, tables II and III; V-I of M6 and M7 by steps of theirs in V-K.
+M_GIANTS = np.array([
+    (1.585, 1.945, 0.893, 1.780, 3.850, 0.830, 0.190),
+    (1.630, 1.950, 0.926, 1.900, 4.050, 0.850, 0.205),
+    (1.640, 1.930, 0.967, 2.050, 4.300, 0.870, 0.215),
+    (1.640, 1.880, 1.025, 2.250, 4.640, 0.900, 0.235),
+    (1.600, 1.710, 1.128, 2.550, 5.100, 0.930, 0.245),
+    (1.580, 1.485, 1.334, 3.050, 5.960, 0.950, 0.285),
+    (1.475, 1.120, 1.557, 3.500, 6.840, 0.960, 0.300),
+    (1.590, 0.385, 1.800, 3.950, 7.800, 0.960, 0.310),
 ])
 NODES_NM = np.array([360, 440, 550, 650, 800, 1235, 1662, 2159.0])
 VEGA = {"U": 0.024, "B": 0.03, "V": 0.03, "R": 0.03, "I": 0.03}
@@ -110,11 +142,11 @@ def wanted(colours):
     return np.array([ub + bv, bv, -vr, -vi, -(vk - jh - hk), -(vk - hk), -vk])
 
 
-def factors_of(bands, colours):
+def factors_of(bands, colours, kelvin=None):
     factors = np.ones(8)
     want = wanted(colours)
     for _ in range(200):
-        m = bands.magnitudes(temperature(colours[0]), factors)
+        m = bands.magnitudes(kelvin or temperature(colours[0]), factors)
         left = np.delete(m, 2) - m[2] - want
         factors[[0, 1, 3, 4, 5, 6, 7]] *= 10 ** (0.4 * 0.7 * left)
     assert np.abs(left).max() < 1e-6, left
@@ -159,6 +191,19 @@ def main():
         colours = [bv] + [np.interp(bv, COLOURS[:, 0], COLOURS[:, i]) for i in range(1, 7)]
         print("    {" + ", ".join(f"{f:.4f}" for f in factors_of(bands, colours)) + "},")
     print("};")
+    print("// Of dwarfs, by B-V from 0.95, 0.05 apart.")
+    print("constexpr double factors_of_red_dwarf[][std::size(nodes_nm)] = {")
+    for bv in np.arange(19, 41) / 20:
+        colours = [bv] + [np.interp(bv, RED_DWARFS[:, 0], RED_DWARFS[:, i]) for i in range(1, 7)]
+        print("    {" + ", ".join(f"{f:.4f}" for f in factors_of(bands, colours)) + "},")
+    print("};")
+    m_dwarfs = RED_DWARFS[np.searchsorted(RED_DWARFS[:, 0], (1.408, 1.475, 1.5, 1.544, 1.661, 1.874))]
+    for name, stars in ("giant", M_GIANTS), ("dwarf", m_dwarfs):
+        print(f"// Of {name}s M0 to M{len(stars) - 1}, of black bodies of 3500 K.")
+        print(f"constexpr double factors_of_m_{name}[][std::size(nodes_nm)] = {{")
+        for colours in stars:
+            print("    {" + ", ".join(f"{f:.4f}" for f in factors_of(bands, colours, 3500.0)) + "},")
+        print("};")
 
 
 main()

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "core/base/units.h"
+#include "core/sky/air_extinction.h"
 #include "core/sky/scintillation.h"
 
 namespace dmise {
@@ -83,6 +85,49 @@ TEST(MovingScintillation, IsFiniteForEveryRateAndProfile) {
   }
   EXPECT_FALSE(MovingScintillation::applies({.on_ground = false}));
   EXPECT_FALSE(EffectSet().has(MovingScintillation::facts));
+}
+
+template <class Effect>
+void expect_factors_of_each(const AirExposure& exposure) {
+  const Effect effect(exposure);
+  std::vector<Vec<Gcrs>> apparent;
+  std::vector<double> airmass, bv, rate;
+  std::vector<std::uint32_t> number;
+  for (std::uint32_t i = 0; i < 1001; ++i) {
+    apparent.push_back({0, 0, 1});
+    airmass.push_back(1.0 + 0.039 * i);
+    bv.push_back(-0.6 + 0.003 * i);
+    rate.push_back(1e-5 * i);
+    number.push_back(i * 7919 * 104729);
+  }
+  const SightLines lines{apparent, airmass, bv, rate, number};
+  std::vector<double> factors(lines.size(), 2.0);
+  effect.apply(lines, factors);
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    const double one = 2.0 * effect.apply(lines[i]);
+    EXPECT_NEAR(factors[i], one, 1e-14 * one) << i;
+  }
+}
+
+TEST(AirEffects, OfManyStarsAreThoseOfEach) {
+  const Band band = *filter_named("bessell-V");
+  const Curve extinction = *extinction_of_site("lick");
+  const std::optional<Clouds> clouds;
+  AirExposure exposure{.band = band,
+                       .extinction_mag_per_airmass = extinction,
+                       .clouds = clouds,
+                       .aperture_m = 0.01,
+                       .exposure_s = 0.1,
+                       .site_height_m = 0.0,
+                       .time_s = 0.0,
+                       .up = {0, 0, 1},
+                       .seed = 7,
+                       .sensor = "a",
+                       .frame = 1};
+  expect_factors_of_each<AirExtinction>(exposure);
+  expect_factors_of_each<Scintillation>(exposure);
+  exposure.turbulence = BlownTurbulence{};
+  expect_factors_of_each<Scintillation>(exposure);
 }
 
 }  // namespace

@@ -49,6 +49,36 @@ TEST(StarCatalogue, WhatIsMissingGetsItsStatedDefaultAndAFlag) {
   EXPECT_FALSE(bv_of_spectral_type("N0"));
 }
 
+TEST(StarCatalogue, RedStarsAreDwarfsOrGiants) {
+  const auto kind = [](double v_mag, double bv, double parallax_mas, std::string_view type) {
+    StarCatalogue c;
+    StarRecord star{.v_mag = v_mag, .bv = bv, .spectral_type = type};
+    if (parallax_mas != 0.0) star.parallax_rad = parallax_mas * mas;
+    EXPECT_EQ(append_star(c, star), nullptr);
+    return c.colour(0).kind;
+  };
+  // Hipparcos: Betelgeuse, Arcturus, 61 Cygni A, Barnard's star, the Sun's like 18 Scorpii.
+  EXPECT_EQ(kind(0.45, 1.50, 7.6, "M2"), m_giant(2));
+  EXPECT_EQ(kind(-0.05, 1.24, 88.8, "K2"), StarKind::most);
+  EXPECT_EQ(kind(5.20, 1.07, 287.1, "K5"), StarKind::red_dwarf);
+  EXPECT_EQ(kind(9.54, 1.57, 549.0, "sd"), StarKind::red_dwarf);
+  EXPECT_EQ(kind(9.54, 1.57, 549.0, "M5"), m_dwarf(5));
+  EXPECT_EQ(kind(5.49, 0.65, 71.3, "G2"), StarKind::most);
+  // By the type alone: dwarfs, subgiants, giants beyond the table, a carbon star, no number.
+  EXPECT_EQ(kind(7.5, 1.47, 0.0, "M2V"), m_dwarf(2));
+  EXPECT_EQ(kind(7.5, 1.0, 0.0, "K1IV"), StarKind::most);
+  EXPECT_EQ(kind(7.5, 1.0, 0.0, "K1IV-V"), StarKind::red_dwarf);
+  EXPECT_EQ(kind(7.5, 1.4, 0.0, "M9III"), StarKind::m7_giant);
+  EXPECT_EQ(kind(16.0, 1.9, 0.0, "M8Ve"), StarKind::m5_dwarf);
+  EXPECT_EQ(kind(7.5, 2.5, 0.0, "C5"), StarKind::most);
+  EXPECT_EQ(kind(7.5, 1.6, 0.0, "M"), StarKind::most);
+  // Beside what a catalogue did not say.
+  StarCatalogue c;
+  ASSERT_EQ(append_star(c, {.spectral_type = "M4III"}), nullptr);
+  EXPECT_EQ(c.flags[0] & 15, star_has_no_colour | star_has_no_parallax | star_has_no_proper_motion);
+  EXPECT_EQ(c.colour(0).kind, m_giant(4));
+}
+
 TEST(StarCatalogue, RefusesNonsense) {
   StarCatalogue c;
   EXPECT_NE(append_star(c, {.ra_rad = 7.0}), nullptr);
