@@ -107,6 +107,40 @@ TEST(StarBatches, AreTheLightOfStarsOneByOne) {
   RecordProperty("worst_sigmas", std::to_string(worst_sigmas));
 }
 
+// From space, with the Earth's limb through the middle of the field.
+TEST(StarBatches, StarsBehindTheEarthsLimbAreDimmedOneByOneAndTogether) {
+  const double r_m = 7e6, limb_deg = 180.0 - std::asin(6.39e6 / r_m) / deg;
+  std::string text = scenario;
+  const auto put = [&](const std::string& what, const std::string& with) {
+    text.replace(text.find(what), what.size(), with);
+  };
+  put("site: {latitude_deg: 33.777, longitude_deg: -84.398, height_m: 300}", "platform: platform");
+  put("pointing: zenith", "pointing: {ra_deg: " + std::to_string(limb_deg) + ", dec_deg: 0}");
+  put("sensors:",
+      "objects:\n  - name: platform\n    motion: {fixed: {gcrs_m: [7000000, 0, 0]}}\nsensors:");
+  test::Stage stage(text);
+  const SensorConfig& sensor = stage.scenario.sensors[0];
+  const View view(sensor, frame_times(sensor, 1), stage.world);
+  ASSERT_TRUE(view.scene().limb_in_field);
+  const Catalogues catalogues(view.camera_from_gcrs(view.times().middle).inverse() *
+                              Vec<CameraFrame>{0, 0, 1});
+  const Drawn exact = draw(view, catalogues.of_bright, true),
+              many = draw(view, catalogues.large, true);
+  ASSERT_GT(exact.truth.size(), 3000u);
+  ASSERT_EQ(many.truth.size(), exact.truth.size());
+  const double full_e = view.sensor().camera.optics.collecting_area_m2();
+  int dimmed = 0;
+  for (std::size_t i = 0; i < exact.truth.size(); ++i) {
+    const StarTruth &a = many.truth[i], &b = exact.truth[i];
+    ASSERT_EQ(a.id, b.id);
+    EXPECT_NEAR(a.signal_e, b.signal_e, 2e-3 * b.signal_e + 1e-3);
+    const double alone_e =
+        StarLight(sensor.camera.band).photons_per_s_m2(b.v_mag, b.bv) * full_e * 0.43 * 20;
+    dimmed += b.signal_e < 0.5 * alone_e && b.x_px > 100 && b.x_px < 1100;
+  }
+  EXPECT_GT(dimmed, 10);
+}
+
 TEST(StarBatches, AreTheSameBytesWithoutTruthAndOnAnyNumberOfThreads) {
   test::Stage stage(scenario);
   const SensorConfig& sensor = stage.scenario.sensors[0];
