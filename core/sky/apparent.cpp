@@ -1,5 +1,7 @@
 #include "core/sky/apparent.h"
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "core/base/units.h"
 
@@ -8,6 +10,17 @@ namespace {
 
 /// The Sun's potential bends nothing over the distances of satellites: it is put far away.
 constexpr double no_sun_au = 1e9;
+
+/// Fetches what moves a star from the columns of its catalogue. Inline, as a function that only
+/// fetches is taken for one that does nothing.
+[[gnu::always_inline]] inline void prefetch(const StarColumns& c,
+                                            std::span<const Vec<Gcrs>> directions,
+                                            std::uint32_t star) {
+  __builtin_prefetch(c.pm_ra_cosdec_rad_per_yr.data() + star);
+  __builtin_prefetch(c.pm_dec_rad_per_yr.data() + star);
+  __builtin_prefetch(c.parallax_rad.data() + star);
+  __builtin_prefetch(directions.data() + star);
+}
 
 }  // namespace
 
@@ -40,6 +53,54 @@ Vec<Gcrs> ApparentPlaces::astrometric(const CataloguedStar& catalogued) const {
     if constexpr (requires { effect.apply(catalogued, place); }) effect.apply(catalogued, place);
   });
   return unit(place);
+}
+
+void ApparentPlaces::astrometric(const StarColumns& c, std::span<const std::uint32_t> which,
+                                 std::span<const Vec<Gcrs>> directions, std::span<Vec<Gcrs>> places,
+                                 SimdLevel level) const {
+  if (places.size() != which.size()) throw Error("stars: one place a star");
+  CatalogueMotion motion;
+  effects_.for_each([&]<class Effect>(const Effect& effect) {
+    constexpr bool moves_one = requires(const CataloguedStar& star, Vec<Gcrs>& place) {
+      effect.apply(star, place);
+    };
+    constexpr bool moves_many = requires { effect.apply(c.epoch_jyear, motion); };
+    static_assert(moves_one == moves_many, "an effect that moves a star moves many, too");
+    if constexpr (moves_many) effect.apply(c.epoch_jyear, motion);
+  });
+  constexpr std::size_t room = 256;  // stars at a time
+  double x[room], y[room], z[room], pm_ra[room], pm_dec[room], parallax[room];
+  const auto move = kernel_of(level, sse2::move_stars, avx2::move_stars, avx512::move_stars);
+  for (std::size_t begin = 0; begin < which.size(); begin += room) {
+    const std::size_t count = std::min(room, which.size() - begin);
+    const std::size_t whole = (count + 7) / 8 * 8;
+    for (std::size_t k = 0; k < whole; ++k) {
+      constexpr std::size_t ahead = 24;
+      const std::size_t last = which.size() - 1;
+      prefetch(c, directions, which[std::min(begin + k + ahead, last)]);
+      const std::uint32_t i = which[std::min(begin + k, last)];
+      x[k] = directions[i].x, y[k] = directions[i].y, z[k] = directions[i].z;
+      pm_ra[k] = c.pm_ra_cosdec_rad_per_yr[i], pm_dec[k] = c.pm_dec_rad_per_yr[i];
+      parallax[k] = c.parallax_rad[i];
+    }
+    move(motion, {x, y, z, pm_ra, pm_dec, parallax}, whole);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t i = which[begin + k];
+      const Vec<Gcrs>& from = directions[i];
+      constexpr double at_the_pole2 = 1e-18;  // east and north are by right ascension there
+      if (from.x * from.x + from.y * from.y < at_the_pole2)
+        places[begin + k] =
+            astrometric(CataloguedStar({.ra_rad = c.ra_rad[i],
+                                        .dec_rad = c.dec_rad[i],
+                                        .pm_ra_cosdec_rad_per_yr = c.pm_ra_cosdec_rad_per_yr[i],
+                                        .pm_dec_rad_per_yr = c.pm_dec_rad_per_yr[i],
+                                        .parallax_rad = c.parallax_rad[i],
+                                        .epoch_jyear = c.epoch_jyear},
+                                       from));
+      else
+        places[begin + k] = {x[k], y[k], z[k]};
+    }
+  }
 }
 
 Vec<Gcrs> ApparentPlaces::seen(const Vec<Gcrs>& astrometric) const {

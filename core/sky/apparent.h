@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 
+#include "core/base/simd_level.h"
 #include "core/effects/acting_effects.h"
 #include "core/sky/observer.h"
 #include "core/sky/place_effects.h"
@@ -40,6 +41,13 @@ class ApparentPlaces {
   /// one is seen that stands there. Unit vectors.
   Vec<Gcrs> astrometric(const CataloguedStar& catalogued) const;
   Vec<Gcrs> seen(const Vec<Gcrs>& astrometric) const;
+
+  /// The first half of many: `places[i]` of star `which[i]` of a catalogue without radial
+  /// velocities whose directions at its epoch, of all stars, are known (unit). To 1e-15 rad of
+  /// each.
+  void astrometric(const StarColumns& catalogue, std::span<const std::uint32_t> which,
+                   std::span<const Vec<Gcrs>> directions, std::span<Vec<Gcrs>> places,
+                   SimdLevel level = best_simd_level()) const;
 
   /// Where a star without parallax and proper motion stands that is seen at an apparent direction:
   /// the inverse of `star`, to 1e-12 rad. A unit vector.

@@ -2,6 +2,7 @@
 #include "core/effects/plan_facts.h"
 #include "core/sky/observer.h"
 #include "core/sky/star_place.h"
+#include "core/sky/star_place_kernels.h"
 
 namespace dmise {
 
@@ -18,6 +19,12 @@ class Parallax {
   /// `place`: of the star, in units of its distance.
   void apply(const CataloguedStar& catalogued, Vec<Gcrs>& place) const {
     place = place - catalogued.star.parallax_rad * barycentric_au_;
+  }
+  /// The same of many stars.
+  void apply(double, CatalogueMotion& motion) const {
+    motion.au[0] = barycentric_au_.x;
+    motion.au[1] = barycentric_au_.y;
+    motion.au[2] = barycentric_au_.z;
   }
 
  private:

@@ -12,7 +12,8 @@
 //   static bool applies(const SceneFacts&);   unless it always does
 //   a constructor from an Observer, where it has constants of one
 // and one of
-//   apply(const CataloguedStar&, Vec<Gcrs>& place) const   moves a star
+//   apply(const CataloguedStar&, Vec<Gcrs>& place) const   moves a star, and
+//   apply(double epoch_jyear, CatalogueMotion&) const      many
 //   Vec<Gcrs> apply(const Vec<Gcrs>& direction) const      turns starlight
 //   velocity_c and displaces_satellites                    a velocity that aberrates
 //   apply of LightTime and AtmosphericRefraction, which satellites have too

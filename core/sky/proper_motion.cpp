@@ -25,4 +25,13 @@ void ProperMotion::apply(const CataloguedStar& catalogued, Vec<Gcrs>& place) con
                     receding_per_yr * outward);
 }
 
+void ProperMotion::apply(double epoch_jyear, CatalogueMotion& motion) const {
+  const Vec<Gcrs> light_years = light_years_per_au * barycentric_au_;
+  motion.moves = 1.0;
+  motion.years = years_ - epoch_jyear;
+  motion.light_years[0] = light_years.x;
+  motion.light_years[1] = light_years.y;
+  motion.light_years[2] = light_years.z;
+}
+
 }  // namespace dmise

@@ -2,6 +2,7 @@
 #include "core/effects/plan_facts.h"
 #include "core/sky/observer.h"
 #include "core/sky/star_place.h"
+#include "core/sky/star_place_kernels.h"
 
 namespace dmise {
 
@@ -18,6 +19,8 @@ class ProperMotion {
   explicit ProperMotion(const Observer& observer);
   /// `place`: of the star, in units of its distance.
   void apply(const CataloguedStar& catalogued, Vec<Gcrs>& place) const;
+  /// The same of many stars of one epoch, without radial velocities.
+  void apply(double epoch_jyear, CatalogueMotion& motion) const;
 
  private:
   Vec<Gcrs> barycentric_au_;

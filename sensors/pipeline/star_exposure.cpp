@@ -70,37 +70,22 @@ StarExposure::Paths StarExposure::paths(std::span<const Vec<Gcrs>> astrometric) 
 
 namespace {
 
-/// Fetches what a star has in the columns of its catalogue. Inline, as a function that only fetches
-/// is taken for one that does nothing.
-[[gnu::always_inline]] inline void prefetch(const StarTable& stars,
-                                            const Column<Vec<Gcrs>>& direction,
-                                            std::uint32_t star) {
-  const auto fetch = [star](const auto& column) __attribute__((always_inline)) {
-    __builtin_prefetch(column.data() + star);
-  };
-  fetch(stars.ra_rad), fetch(stars.dec_rad), fetch(stars.pm_ra_cosdec_rad_per_yr);
-  fetch(stars.pm_dec_rad_per_yr), fetch(stars.parallax_rad), fetch(direction);
-  fetch(stars.id), fetch(stars.v_mag), fetch(stars.bv), fetch(stars.flags);
+/// Fetches what tells a star's light. Inline, as a function that only fetches is taken for one that
+/// does nothing.
+[[gnu::always_inline]] inline void prefetch(const StarTable& stars, std::uint32_t star) {
+  __builtin_prefetch(stars.id.data() + star);
+  __builtin_prefetch(stars.v_mag.data() + star);
+  __builtin_prefetch(stars.bv.data() + star);
+  __builtin_prefetch(stars.flags.data() + star);
 }
 
 }  // namespace
 
 std::vector<StarTrail> StarExposure::trails_by_grid(std::span<const std::uint32_t> which,
                                                     const Column<Vec<Gcrs>>& direction) const {
-  std::vector<Vec<Gcrs>> astrometric;
-  astrometric.reserve(which.size());
-  for (std::size_t k = 0; k < which.size(); ++k) {
-    constexpr std::size_t ahead = 24;  // stars
-    if (k + ahead < which.size()) prefetch(stars, direction, which[k + ahead]);
-    const std::uint32_t i = which[k];
-    const StarPlace place{.ra_rad = stars.ra_rad[i],
-                          .dec_rad = stars.dec_rad[i],
-                          .pm_ra_cosdec_rad_per_yr = stars.pm_ra_cosdec_rad_per_yr[i],
-                          .pm_dec_rad_per_yr = stars.pm_dec_rad_per_yr[i],
-                          .parallax_rad = stars.parallax_rad[i],
-                          .epoch_jyear = stars.epoch_jyear};
-    astrometric.push_back(places[1].astrometric(CataloguedStar(place, direction[i])));
-  }
+  std::vector<Vec<Gcrs>> astrometric(which.size());
+  for (const std::uint32_t star : which) prefetch(stars, star);
+  places[1].astrometric(columns, which, {direction.data(), direction.size()}, astrometric);
   const Paths paths = this->paths(astrometric);
   std::vector<StarTrail> trails;
   trails.reserve(which.size());

@@ -283,5 +283,42 @@ TEST(ApparentStars, ABatchGivesTheSameAsOneByOne) {
   }
 }
 
+// With each of the effects that move stars and without, at the poles, too.
+TEST(ApparentStars, ManyAstrometricPlacesAreThoseOfEachOnEveryInstructionSet) {
+  constexpr std::size_t n = 2011;
+  std::vector<double> ra(n), dec(n), pm_ra(n), pm_dec(n), parallax(n);
+  std::vector<Vec<Gcrs>> from(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    ra[i] = std::fmod(0.37 * double(i), 2 * pi);
+    dec[i] = i < 8 ? (i % 2 ? 0.5 : -0.5) * pi : std::asin(std::sin(0.11 * double(i)));
+    pm_ra[i] = 5e-5 * std::sin(0.3 * double(i)), pm_dec[i] = 5e-5 * std::cos(0.7 * double(i));
+    parallax[i] = 1e-9 * double(i % 100);
+    from[i] = from_spherical<Gcrs>(ra[i], dec[i]);
+  }
+  const StarColumns columns{1991.25, ra, dec, pm_ra, pm_dec, parallax, {}};
+  std::vector<std::uint32_t> which(n);
+  std::iota(which.rbegin(), which.rend(), 0u);
+  for (const EffectSet& effects :
+       {EffectSet(), all_but({ProperMotion::facts}), all_but({Parallax::facts}),
+        all_but({ProperMotion::facts, Parallax::facts})}) {
+    const ApparentPlaces places(atlanta("2018-01-20T23:40:00Z"), effects);
+    std::vector<Vec<Gcrs>> many(n), other(n);
+    places.astrometric(columns, which, from, many, SimdLevel::sse2);
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t i = which[k];
+      const StarPlace star{ra[i], dec[i], pm_ra[i], pm_dec[i], parallax[i], 0.0, 1991.25};
+      const Vec<Gcrs> one = places.astrometric(CataloguedStar(star, from[i]));
+      ASSERT_LT(norm(many[k] - one), 2e-15) << i;
+      ASSERT_LT(norm(many[k] - places.astrometric(CataloguedStar(star))), 1e-11) << i;
+    }
+    for (const SimdLevel level : {SimdLevel::avx2, SimdLevel::avx512}) {
+      if (level > best_simd_level()) continue;
+      places.astrometric(columns, which, from, other, level);
+      EXPECT_EQ(other, many) << name(level);
+    }
+    places.astrometric(columns, {}, from, {});
+  }
+}
+
 }  // namespace
 }  // namespace dmise

@@ -1,0 +1,29 @@
+#pragma once
+#include <cstddef>
+
+namespace dmise {
+
+/// What moves stars between a catalogue and an observer: years from the catalogue's epoch, and
+/// where the observer is from the barycentre as light takes years [yr] and in parallaxes [au].
+struct CatalogueMotion {
+  double years = 0.0, light_years[3] = {}, au[3] = {};
+  double moves = 0.0;  // 1 with proper motion, else 0
+};
+
+/// Places of stars, unit vectors, and their motions and parallaxes: arrays of one size.
+struct StarArrays {
+  double *x, *y, *z;
+  const double *pm_ra_cosdec_rad_per_yr, *pm_dec_rad_per_yr, *parallax_rad;
+};
+
+#define DMISE_STAR_PLACE_KERNELS(level)                                                       \
+  namespace level {                                                                           \
+  /* Moves stars that are not at a pole; `count` is a multiple of 8. */                       \
+  void move_stars(const CatalogueMotion& motion, const StarArrays& stars, std::size_t count); \
+  }
+DMISE_STAR_PLACE_KERNELS(sse2)
+DMISE_STAR_PLACE_KERNELS(avx2)
+DMISE_STAR_PLACE_KERNELS(avx512)
+#undef DMISE_STAR_PLACE_KERNELS
+
+}  // namespace dmise
