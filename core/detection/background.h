@@ -24,6 +24,13 @@ class Background {
   /// The same along row `y`: `columns` values.
   void level_row(int y, float* level_dn) const { level_.row(y, level_dn); }
   void sigma_row(int y, float* sigma_dn) const { sigma_.row(y, sigma_dn); }
+  /// The same of the columns from `begin` to before `end`.
+  void level_row(int y, int begin, int end, float* level_dn) const {
+    level_.row(y, begin, end, level_dn);
+  }
+  void sigma_row(int y, int begin, int end, float* sigma_dn) const {
+    sigma_.row(y, begin, end, sigma_dn);
+  }
   /// A rectangle of pixels, the first and the last of both coordinates.
   struct Area {
     int x0, y0, x1, y1;

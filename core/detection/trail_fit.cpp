@@ -207,6 +207,25 @@ double share_of_step(const Matrix& matrix, const Vector& step, const Vector& bef
 
 }  // namespace
 
+std::vector<double> light_in(std::span<const FitPixel> pixels, std::span<const TrailLight> lights) {
+  static const auto trail_values =
+      kernel_of(best_simd_level(), sse2::trail_values, avx2::trail_values, avx512::trail_values);
+  const std::size_t whole = (pixels.size() + trail_block - 1) / trail_block * trail_block;
+  std::vector<double> out(whole, 0.0);
+  std::array<double, trail_block> x{}, y{};
+  for (std::size_t begin = 0; begin < pixels.size(); begin += trail_block) {
+    const std::size_t count = std::min(trail_block, pixels.size() - begin);
+    for (std::size_t i = 0; i < count; ++i) {
+      x[i] = pixels[begin + i].x;
+      y[i] = pixels[begin + i].y;
+    }
+    for (const TrailLight& light : lights)
+      trail_values(light.shape(), normal_table(), x.data(), y.data(), out.data() + begin);
+  }
+  out.resize(pixels.size());
+  return out;
+}
+
 bool TrailFit::good(double sigmas) const {
   return degrees > 0 && chi2 <= degrees + sigmas * std::sqrt(2.0 * degrees);
 }
