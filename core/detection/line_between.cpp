@@ -135,7 +135,8 @@ LineBetween::LineBetween(const Beyond& first, const Beyond& last, bool sloped)
   if (!sloped) {
     level_ = even;
     level2_ = 1 / square[0];
-    log_odds_ = 0.5 * light * even - 0.5 * std::log(square[0]) - std::log(light * even);
+    const double gain = light * even;
+    log_odds_ = 0.5 * gain - 0.5 * std::log(square[0] * gain * gain);
     return;
   }
   // Level, and slope times level with the slope's prior.
@@ -153,8 +154,8 @@ LineBetween::LineBetween(const Beyond& first, const Beyond& last, bool sloped)
   level2_ = tilt / determinant;
   both_ = -cross / determinant;
   tilt2_ = square[0] / determinant;
-  log_odds_ = 0.5 * (level_ * light + tilted * turned) - 0.5 * std::log(determinant * even * even) -
-              std::log(light * even);
+  const double flat = even * light * even;
+  log_odds_ = 0.5 * (level_ * light + tilted * turned) - 0.5 * std::log(determinant * flat * flat);
 }
 
 void LineBetween::add_to(EndErrors& errors, const Trail& trail, double turn_rad,

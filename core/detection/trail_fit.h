@@ -18,6 +18,12 @@ struct FitPixel {
 /// Electrons of trails in each of some pixels, the sums over all trails.
 std::vector<double> light_in(std::span<const FitPixel> pixels, std::span<const TrailLight> lights);
 
+/// The same of one trail, with the derivatives by its place.
+struct PlacedLight {
+  double value = 0.0, by_x = 0.0, by_y = 0.0;
+};
+std::vector<PlacedLight> placed_light_in(std::span<const FitPixel> pixels, const TrailLight& light);
+
 struct FitSettings {
   Psf psf;
   double model_error = 0.0;         // relative error of the model, added to the noise
