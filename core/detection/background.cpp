@@ -190,7 +190,7 @@ float median_of(std::vector<float> values) {
 
 }  // namespace
 
-Background::Background(const CountImage& counts, int cell_px, Threads& threads, const BitMask* lit)
+Background::Background(const CountImage& counts, int cell_px, Threads& threads)
     : columns_(counts.columns),
       rows_(counts.rows),
       cells_(columns_, rows_, std::max(1, (columns_ + cell_px / 2) / cell_px),
@@ -198,6 +198,17 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads, 
       level_(cells_),
       sigma_(cells_) {
   CellMesh level = cells_, sigma = cells_;
+  measure(counts, threads, nullptr, Cells::as_they_are, level, sigma);
+  measure(counts, threads, nullptr, Cells::sloped, level, sigma);
+}
+
+void Background::measure_without(const BitMask& lit, const CountImage& counts, Threads& threads) {
+  CellMesh level = cells_, sigma = cells_;
+  measure(counts, threads, &lit, Cells::all, level, sigma);
+}
+
+void Background::measure(const CountImage& counts, Threads& threads, const BitMask* lit,
+                         Cells which, CellMesh& level, CellMesh& sigma) {
   const std::size_t cells = cells_.values.size();
   constexpr int word = 64;
   const auto is_dark = [&](const Area& area) {
@@ -208,7 +219,7 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads, 
         dark -= std::popcount(lit->bits(x, y, std::min(word, area.x1 - x + 1)));
     return dark >= eighth;
   };
-  const auto measure = [&](std::size_t cell, bool flatten, CellMemory& memory) {
+  const auto measure_cell = [&](std::size_t cell, bool flatten, CellMemory& memory) {
     const Area area = area_of(cell);
     const bool skip = lit && is_dark(area);
     const int width = area.x1 - area.x0 + 1;
@@ -244,21 +255,19 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads, 
     level.values[cell] = sky.level;
     sigma.values[cell] = sky.sigma;
   };
-  const auto measure_all = [&](bool only_sloped) {
-    threads.for_ranges(cells, std::size_t(cells_.across), [&](std::size_t begin, std::size_t end) {
-      CellMemory memory;
-      for (std::size_t cell = begin; cell < end; ++cell)
-        if (!only_sloped || is_sloped(cell)) measure(cell, only_sloped, memory);
-    });
-    level_ = cells_ = median_of_cells(level);
-    sigma_ = median_of_cells(sigma);
-    const auto bends = sky_bends(cells_, sigma_);
-    if (!is_bent(bends)) return;
-    cells_ = without_sources(level, cells_, sigma_, bends);
-    level_ = refined(cells_, sky_bends(cells_, sigma_), columns_, rows_);
-  };
-  measure_all(false);
-  measure_all(true);
+  threads.for_ranges(cells, std::size_t(cells_.across), [&](std::size_t begin, std::size_t end) {
+    CellMemory memory;
+    for (std::size_t cell = begin; cell < end; ++cell) {
+      const bool flatten = which != Cells::as_they_are && is_sloped(cell);
+      if (flatten || which != Cells::sloped) measure_cell(cell, flatten, memory);
+    }
+  });
+  level_ = cells_ = median_of_cells(level);
+  sigma_ = median_of_cells(sigma);
+  const auto bends = sky_bends(cells_, sigma_);
+  if (!is_bent(bends)) return;
+  cells_ = without_sources(level, cells_, sigma_, bends);
+  level_ = refined(cells_, sky_bends(cells_, sigma_), columns_, rows_);
 }
 
 Background::Area Background::area_of(std::size_t cell) const {

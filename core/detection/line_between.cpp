@@ -15,8 +15,6 @@ constexpr double edge_sigmas = 4.0;              // of the PSF, within which lig
 constexpr double across_sigmas = 2.5;            // within which pixels are used
 constexpr double outlier = 4.0;                  // standard deviations
 
-double cumulative(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
-
 /// A pixel's light over its variance and the inverse of that, both of a line of one electron per
 /// px, at a place along the line.
 struct Sample {
@@ -45,7 +43,6 @@ std::vector<Sample> samples_along(const Scene& scene, const Trail& t, double sig
   const Line line = line_of(t);
   const Extent extent = extent_of(line, t.length_px / 2 + beyond_px);
   const StarlitSky sky = starlit_sky(scene, t);
-  const double peak = 1 / (sigma_px * std::sqrt(2 * pi));
   const double level = t.flux_e / std::max(t.length_px, 1.0);
   const int reach = int(std::ceil(across_sigmas * sigma_px * line.slice_px()));
   std::vector<Sample> out;
@@ -58,7 +55,7 @@ std::vector<Sample> samples_along(const Scene& scene, const Trail& t, double sig
       const double dx = x - t.x_px, dy = y - t.y_px;
       const double along = dx * line.ux + dy * line.uy, r = along / line.half_length_px;
       const double across = dy * line.ux - dx * line.uy - line.sagitta_px * (1.0 / 3 - r * r);
-      const double v = across / sigma_px, profile = peak * std::exp(-0.5 * v * v);
+      const double profile = normal_density(across / sigma_px) / sigma_px;
       const FitPixel pixel = scene.pixel(x, y);
       const double own_e = std::abs(r) < 1 ? level * profile : 0.0;
       const double variance = pixel.variance_e2 + own_e, signal = pixel.signal_e - sky.level_e;
@@ -116,7 +113,7 @@ std::vector<Beyond> ends_along(const Scene& scene, const Trail& trail, double be
     b.along_px = at;
     b.width_px = (places[std::min(i + 1, places.size() - 1)] - places[i > 0 ? i - 1 : 0]) / 2;
     for (std::size_t k = begin; k < end; ++k)
-      add(b, samples[k], cumulative((samples[k].along_px - at) / sigma_px));
+      add(b, samples[k], normal_below((samples[k].along_px - at) / sigma_px));
     out.push_back(b);
   }
   return out;
