@@ -144,13 +144,14 @@ LineBetween::LineBetween(const Beyond& first, const Beyond& last, bool sloped)
   const double tilt = by_half * by_half * spread + slopes_inverse_variance / (even * even);
   const double determinant = square[0] * tilt - cross * cross;
   if (!(determinant > 0)) return;
-  level_ = (tilt * light - cross * turned) / determinant;
+  const double inverse = 1 / determinant;
+  level_ = (tilt * light - cross * turned) * inverse;
   if (!(level_ > 0)) return;
-  const double tilted = (square[0] * turned - cross * light) / determinant;
+  const double tilted = (square[0] * turned - cross * light) * inverse;
   slope_ = tilted / level_;
-  level2_ = tilt / determinant;
-  both_ = -cross / determinant;
-  tilt2_ = square[0] / determinant;
+  level2_ = tilt * inverse;
+  both_ = -cross * inverse;
+  tilt2_ = square[0] * inverse;
   const double flat = even * light * even;
   log_odds_ = 0.5 * (level_ * light + tilted * turned) - 0.5 * std::log(determinant * flat * flat);
 }
