@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -103,7 +105,7 @@ std::array<std::uint16_t, 2> two_of(const std::vector<std::uint16_t>& values,
 
 /// Memory for a cell's values, and where those of the cell before were.
 struct CellMemory {
-  std::vector<std::uint16_t> values, some;
+  std::vector<std::uint16_t> values, some, row;
   std::vector<float> levels;
   std::vector<std::uint32_t> histogram;
   int near = 0;
@@ -153,6 +155,33 @@ Sky clipped_sky(CellMemory& memory) {
   return {float(level), float(sigma)};
 }
 
+float mean_of(const std::vector<float>& values) {
+  std::array<double, 8> sums{};
+  std::size_t i = 0;
+  for (; i + sums.size() <= values.size(); i += sums.size())
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += double(values[i + k]);
+  double sum = 0.0;
+  for (; i < values.size(); ++i) sum += double(values[i]);
+  for (const double one : sums) sum += one;
+  return float(sum / double(values.size()));
+}
+
+std::uint16_t rounded(float count) {
+  count += 0.5f;
+  count = count < 65535.0f ? count : 65535.0f;
+  return std::uint16_t(std::int32_t(count > 0.0f ? count : 0.0f));
+}
+
+/// Copies up to 64 values but those of which a bit is set; returns the end.
+std::uint16_t* copy_without(const std::uint16_t* from, int count, std::uint64_t left_out,
+                            std::uint16_t* to) {
+  for (int i = 0; i < count; ++i, left_out >>= 1) {
+    *to = from[i];
+    to += 1 - std::ptrdiff_t(left_out & 1);
+  }
+  return to;
+}
+
 float median_of(std::vector<float> values) {
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -161,7 +190,7 @@ float median_of(std::vector<float> values) {
 
 }  // namespace
 
-Background::Background(const CountImage& counts, int cell_px, Threads& threads, const BitMask* lit)
+Background::Background(const CountImage& counts, int cell_px, Threads& threads)
     : columns_(counts.columns),
       rows_(counts.rows),
       cells_(columns_, rows_, std::max(1, (columns_ + cell_px / 2) / cell_px),
@@ -169,61 +198,76 @@ Background::Background(const CountImage& counts, int cell_px, Threads& threads, 
       level_(cells_),
       sigma_(cells_) {
   CellMesh level = cells_, sigma = cells_;
+  measure(counts, threads, nullptr, Cells::as_they_are, level, sigma);
+  measure(counts, threads, nullptr, Cells::sloped, level, sigma);
+}
+
+void Background::measure_without(const BitMask& lit, const CountImage& counts, Threads& threads) {
+  CellMesh level = cells_, sigma = cells_;
+  measure(counts, threads, &lit, Cells::all, level, sigma);
+}
+
+void Background::measure(const CountImage& counts, Threads& threads, const BitMask* lit,
+                         Cells which, CellMesh& level, CellMesh& sigma) {
   const std::size_t cells = cells_.values.size();
+  constexpr int word = 64;
   const auto is_dark = [&](const Area& area) {
-    int dark = 0;
+    int dark = (area.x1 - area.x0 + 1) * (area.y1 - area.y0 + 1);
+    const int eighth = (dark + 7) / 8;
     for (int y = area.y0; y <= area.y1; ++y)
-      for (int x = area.x0; x <= area.x1; ++x) dark += !lit->at(x, y);
-    return 8 * dark >= (area.x1 - area.x0 + 1) * (area.y1 - area.y0 + 1);
+      for (int x = area.x0; x <= area.x1; x += word)
+        dark -= std::popcount(lit->bits(x, y, std::min(word, area.x1 - x + 1)));
+    return dark >= eighth;
   };
-  const auto measure = [&](std::size_t cell, bool flatten, CellMemory& memory) {
-    std::vector<std::uint16_t>& values = memory.values;
+  const auto measure_cell = [&](std::size_t cell, bool flatten, CellMemory& memory) {
     const Area area = area_of(cell);
     const bool skip = lit && is_dark(area);
     const int width = area.x1 - area.x0 + 1;
+    const std::size_t pixels = std::size_t(width) * std::size_t(area.y1 - area.y0 + 1);
     float mean = 0.0f;
     if (flatten) {
-      memory.levels.resize(std::size_t(width) * std::size_t(area.y1 - area.y0 + 1));
+      memory.levels.resize(pixels);
       float* to = memory.levels.data();
       for (int y = area.y0; y <= area.y1; ++y, to += width) level_.row(y, area.x0, area.x1 + 1, to);
-      double sum = 0.0;
-      for (const float v : memory.levels) sum += double(v);
-      mean = float(sum / double(memory.levels.size()));
+      mean = mean_of(memory.levels);
     }
-    values.clear();
-    const float* level_at = memory.levels.data();
+    memory.values.resize(pixels);
+    memory.row.resize(std::size_t(width));
+    std::uint16_t* to = memory.values.data();
     for (int y = area.y0; y <= area.y1; ++y) {
-      const std::uint16_t* from = counts.row(y);
-      if (!flatten && !skip) {
-        values.insert(values.end(), from + area.x0, from + area.x1 + 1);
-        continue;
+      const std::uint16_t* from = counts.row(y) + area.x0;
+      for (int x = 0; x < width; x += 32) __builtin_prefetch(from + width + x);  // the next cell's
+      if (flatten) {
+        const float* level_at = memory.levels.data() + std::ptrdiff_t(y - area.y0) * width;
+        std::uint16_t* flat = memory.row.data();
+        for (int x = 0; x < width; ++x) flat[x] = rounded(float(from[x]) - level_at[x] + mean);
+        from = flat;
       }
-      for (int x = area.x0; x <= area.x1; ++x) {
-        const float level_here = flatten ? *level_at++ : mean;
-        if (skip && lit->at(x, y)) continue;
-        const float flat = float(from[x]) - level_here + mean;
-        values.push_back(std::uint16_t(std::clamp(flat + 0.5f, 0.0f, 65535.0f)));
+      for (int x = 0; x < width; x += word) {
+        const int count = std::min(word, width - x);
+        const std::uint64_t left_out = skip ? lit->bits(area.x0 + x, y, count) : 0;
+        to = left_out == 0 ? std::copy_n(from + x, count, to)
+                           : copy_without(from + x, count, left_out, to);
       }
     }
+    memory.values.resize(std::size_t(to - memory.values.data()));
     const Sky sky = clipped_sky(memory);
     level.values[cell] = sky.level;
     sigma.values[cell] = sky.sigma;
   };
-  const auto measure_all = [&](bool only_sloped) {
-    threads.for_ranges(cells, std::size_t(cells_.across), [&](std::size_t begin, std::size_t end) {
-      CellMemory memory;
-      for (std::size_t cell = begin; cell < end; ++cell)
-        if (!only_sloped || is_sloped(cell)) measure(cell, only_sloped, memory);
-    });
-    level_ = cells_ = median_of_cells(level);
-    sigma_ = median_of_cells(sigma);
-    const auto bends = sky_bends(cells_, sigma_);
-    if (!is_bent(bends)) return;
-    cells_ = without_sources(level, cells_, sigma_, bends);
-    level_ = refined(cells_, sky_bends(cells_, sigma_), columns_, rows_);
-  };
-  measure_all(false);
-  measure_all(true);
+  threads.for_ranges(cells, std::size_t(cells_.across), [&](std::size_t begin, std::size_t end) {
+    CellMemory memory;
+    for (std::size_t cell = begin; cell < end; ++cell) {
+      const bool flatten = which != Cells::as_they_are && is_sloped(cell);
+      if (flatten || which != Cells::sloped) measure_cell(cell, flatten, memory);
+    }
+  });
+  level_ = cells_ = median_of_cells(level);
+  sigma_ = median_of_cells(sigma);
+  const auto bends = sky_bends(cells_, sigma_);
+  if (!is_bent(bends)) return;
+  cells_ = without_sources(level, cells_, sigma_, bends);
+  level_ = refined(cells_, sky_bends(cells_, sigma_), columns_, rows_);
 }
 
 Background::Area Background::area_of(std::size_t cell) const {

@@ -16,14 +16,24 @@ namespace dmise {
 /// level bends, as in the Moon's glow, so does the median's and what is between centres.
 class Background {
  public:
-  /// `lit`: pixels that are left out, unless they leave less than an eighth of a cell; null: none.
-  Background(const CountImage& counts, int cell_px, Threads& threads, const BitMask* lit = nullptr);
+  Background(const CountImage& counts, int cell_px, Threads& threads);
+
+  /// Measures the same frame again, with the gradients that are known. `lit`: pixels that are left
+  /// out, unless they leave less than an eighth of a cell.
+  void measure_without(const BitMask& lit, const CountImage& counts, Threads& threads);
 
   float level_dn(int x, int y) const { return level_.at(x, y); }
   float sigma_dn(int x, int y) const { return sigma_.at(x, y); }
   /// The same along row `y`: `columns` values.
   void level_row(int y, float* level_dn) const { level_.row(y, level_dn); }
   void sigma_row(int y, float* sigma_dn) const { sigma_.row(y, sigma_dn); }
+  /// The same of the columns from `begin` to before `end`.
+  void level_row(int y, int begin, int end, float* level_dn) const {
+    level_.row(y, begin, end, level_dn);
+  }
+  void sigma_row(int y, int begin, int end, float* sigma_dn) const {
+    sigma_.row(y, begin, end, sigma_dn);
+  }
   /// A rectangle of pixels, the first and the last of both coordinates.
   struct Area {
     int x0, y0, x1, y1;
@@ -36,6 +46,13 @@ class Background {
   float median_sigma_dn() const;
 
  private:
+  enum class Cells {
+    as_they_are,
+    all,
+    sloped
+  };  // sloped ones without their gradient in all and sloped
+  void measure(const CountImage& counts, Threads& threads, const BitMask* lit, Cells which,
+               CellMesh& level, CellMesh& sigma);
   /// Whether the level changes over a cell by so much that its noise is measured too high by 2 %.
   bool is_sloped(std::size_t cell) const;
   Area area_of(std::size_t cell) const;

@@ -256,6 +256,11 @@ class SumsPool {
 
 std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, double least_snr, SimdLevel level,
                                    Threads& threads) {
+  return find_beamlets(frame, TurnedFrame(frame), least_snr, level, threads);
+}
+
+std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, const TurnedFrame& turned,
+                                   double least_snr, SimdLevel level, Threads& threads) {
   struct Task {
     Orientation orientation;
     int first, size;
@@ -273,7 +278,6 @@ std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, double least_snr,
   }
   std::vector<Level> levels;
   for (int n = 2; n <= longest; n *= 2) levels.push_back(level_of(frame, n, least_snr));
-  const TurnedFrame turned(frame);
   const Lines by_rows{frame.snr.data(), frame.columns, frame.rows};
   const Lines by_columns{turned.snr.data(), frame.rows, frame.columns};
   const Kernels kernels(level);

@@ -4,6 +4,7 @@
 #include "core/base/parallel.h"
 #include "core/base/simd_level.h"
 #include "core/detection/filtered_frame.h"
+#include "core/detection/turned_frame.h"
 
 namespace dmise {
 
@@ -22,5 +23,8 @@ struct Beamlet {
 /// N^2 log N additions, and memory for 1024 rows a thread.
 std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, double least_snr, SimdLevel level,
                                    Threads& threads);
+/// The same of a frame that has been turned.
+std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, const TurnedFrame& turned,
+                                   double least_snr, SimdLevel level, Threads& threads);
 
 }  // namespace dmise

@@ -26,6 +26,14 @@ class BitMask {
     word[0] |= bits << shift;
     if (shift != 0 && bits >> (64 - shift) != 0) word[1] |= bits >> (64 - shift);
   }
+  /// Up to 64 pixels of a row from a column on, all in the frame.
+  std::uint64_t bits(int x, int y, int count) const {
+    const std::uint64_t* word = bits_.data() + std::size_t(y) * words_ + std::size_t(x) / 64;
+    const unsigned shift = unsigned(x) % 64;
+    std::uint64_t out = word[0] >> shift;
+    if (int(shift) + count > 64) out |= word[1] << (64 - shift);
+    return count < 64 ? out & ((std::uint64_t(1) << count) - 1) : out;
+  }
   /// Calls `visit` with the columns of a row that are set, from `begin` to before `end`.
   template <class Visit>
   void for_set(int y, int begin, int end, Visit&& visit) const {

@@ -31,16 +31,6 @@ float CellMesh::cell(int i, int j) const {
                 std::size_t(std::clamp(i, 0, across - 1))];
 }
 
-float CellMesh::at(int x, int y) const {
-  const Between u = across_[std::size_t(x)], v = down_[std::size_t(y)];
-  const float* above = values.data() + std::size_t(v.cell) * std::size_t(across) + u.cell;
-  const float* below = down > 1 ? above + across : above;
-  const int right = across > 1 ? 1 : 0;
-  const float one = above[0] + v.next * (below[0] - above[0]);
-  const float next = above[right] + v.next * (below[right] - above[right]);
-  return one + u.next * (next - one);
-}
-
 void CellMesh::row(int y, int begin, int end, float* out) const {
   if (begin >= end) return;
   const Between v = down_[std::size_t(y)];

@@ -12,7 +12,15 @@ class CellMesh {
   /// `columns` and `rows` of the frame, `across` and `down` of the mesh; at least 1.
   CellMesh(int columns, int rows, int across, int down);
 
-  float at(int x, int y) const;
+  float at(int x, int y) const {
+    const Between u = across_[std::size_t(x)], v = down_[std::size_t(y)];
+    const float* above = values.data() + std::size_t(v.cell) * std::size_t(across) + u.cell;
+    const float* below = down > 1 ? above + across : above;
+    const int right = across > 1 ? 1 : 0;
+    const float one = above[0] + v.next * (below[0] - above[0]);
+    const float next = above[right] + v.next * (below[right] - above[right]);
+    return one + u.next * (next - one);
+  }
   /// The values along row `y` of the frame: all its columns, or those from `begin` to before `end`.
   void row(int y, float* out) const { row(y, 0, columns_, out); }
   void row(int y, int begin, int end, float* out) const;

@@ -174,7 +174,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   if (sky) known = hide_stars(scene, filtered, *sky, header, result.stars);
   if (known) {
     // Beside the stars it is lower, and so is its noise.
-    background = Background(counts, settings.background_cell_px, threads, &known->lit());
+    background.measure_without(known->lit(), counts, threads);
     filtered.flatten(threads, &known->lit());
     scene.flat = &filtered;
     scene.known = &*known;

@@ -81,10 +81,11 @@ double gain_over(const Scene& scene, const Source& better, const Source& than) {
   const auto deviance = [&](const Source& source) {
     const TrailLight light(source.trail(),
                            scene.psf.at({source.trail().x_px, source.trail().y_px}));
-    TrailDerivatives unused{};
+    const std::vector<double> all = light_in(pixels, {&light, 1});
     double sum = 0.0;
-    for (const FitPixel& p : pixels) {
-      const double model = light(p.x, p.y, unused);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const FitPixel& p = pixels[i];
+      const double model = all[i];
       const double variance = p.variance_e2 + std::max(model, 0.0);
       const double residual = p.signal_e - model - source.fit.background_e;
       sum += std::min(residual * residual / variance, most_residual2) + std::log(variance);

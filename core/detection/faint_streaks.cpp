@@ -241,9 +241,9 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
                                        const DetectorSettings& settings, Threads& threads) {
   Scene seen = scene;
   seen.hidden = &frame;
-  const std::vector<Beamlet> beamlets =
-      find_beamlets(frame, candidate_snr, best_simd_level(), threads);
   TurnedFrame turned(frame);
+  const std::vector<Beamlet> beamlets =
+      find_beamlets(frame, turned, candidate_snr, best_simd_level(), threads);
   LineBand band;
   const double margin_px = 2 * scene.sigma_px + 1;
   std::vector<Source> found;

@@ -15,8 +15,6 @@ constexpr double edge_sigmas = 4.0;              // of the PSF, within which lig
 constexpr double across_sigmas = 2.5;            // within which pixels are used
 constexpr double outlier = 4.0;                  // standard deviations
 
-double cumulative(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
-
 /// A pixel's light over its variance and the inverse of that, both of a line of one electron per
 /// px, at a place along the line.
 struct Sample {
@@ -45,7 +43,6 @@ std::vector<Sample> samples_along(const Scene& scene, const Trail& t, double sig
   const Line line = line_of(t);
   const Extent extent = extent_of(line, t.length_px / 2 + beyond_px);
   const StarlitSky sky = starlit_sky(scene, t);
-  const double peak = 1 / (sigma_px * std::sqrt(2 * pi));
   const double level = t.flux_e / std::max(t.length_px, 1.0);
   const int reach = int(std::ceil(across_sigmas * sigma_px * line.slice_px()));
   std::vector<Sample> out;
@@ -58,7 +55,7 @@ std::vector<Sample> samples_along(const Scene& scene, const Trail& t, double sig
       const double dx = x - t.x_px, dy = y - t.y_px;
       const double along = dx * line.ux + dy * line.uy, r = along / line.half_length_px;
       const double across = dy * line.ux - dx * line.uy - line.sagitta_px * (1.0 / 3 - r * r);
-      const double v = across / sigma_px, profile = peak * std::exp(-0.5 * v * v);
+      const double profile = normal_density(across / sigma_px) / sigma_px;
       const FitPixel pixel = scene.pixel(x, y);
       const double own_e = std::abs(r) < 1 ? level * profile : 0.0;
       const double variance = pixel.variance_e2 + own_e, signal = pixel.signal_e - sky.level_e;
@@ -116,7 +113,7 @@ std::vector<Beyond> ends_along(const Scene& scene, const Trail& trail, double be
     b.along_px = at;
     b.width_px = (places[std::min(i + 1, places.size() - 1)] - places[i > 0 ? i - 1 : 0]) / 2;
     for (std::size_t k = begin; k < end; ++k)
-      add(b, samples[k], cumulative((samples[k].along_px - at) / sigma_px));
+      add(b, samples[k], normal_below((samples[k].along_px - at) / sigma_px));
     out.push_back(b);
   }
   return out;
@@ -135,7 +132,8 @@ LineBetween::LineBetween(const Beyond& first, const Beyond& last, bool sloped)
   if (!sloped) {
     level_ = even;
     level2_ = 1 / square[0];
-    log_odds_ = 0.5 * light * even - 0.5 * std::log(square[0]) - std::log(light * even);
+    const double gain = light * even;
+    log_odds_ = 0.5 * gain - 0.5 * std::log(square[0] * gain * gain);
     return;
   }
   // Level, and slope times level with the slope's prior.
@@ -146,15 +144,16 @@ LineBetween::LineBetween(const Beyond& first, const Beyond& last, bool sloped)
   const double tilt = by_half * by_half * spread + slopes_inverse_variance / (even * even);
   const double determinant = square[0] * tilt - cross * cross;
   if (!(determinant > 0)) return;
-  level_ = (tilt * light - cross * turned) / determinant;
+  const double inverse = 1 / determinant;
+  level_ = (tilt * light - cross * turned) * inverse;
   if (!(level_ > 0)) return;
-  const double tilted = (square[0] * turned - cross * light) / determinant;
+  const double tilted = (square[0] * turned - cross * light) * inverse;
   slope_ = tilted / level_;
-  level2_ = tilt / determinant;
-  both_ = -cross / determinant;
-  tilt2_ = square[0] / determinant;
-  log_odds_ = 0.5 * (level_ * light + tilted * turned) - 0.5 * std::log(determinant * even * even) -
-              std::log(light * even);
+  level2_ = tilt * inverse;
+  both_ = -cross * inverse;
+  tilt2_ = square[0] * inverse;
+  const double flat = even * light * even;
+  log_odds_ = 0.5 * (level_ * light + tilted * turned) - 0.5 * std::log(determinant * flat * flat);
 }
 
 void LineBetween::add_to(EndErrors& errors, const Trail& trail, double turn_rad,

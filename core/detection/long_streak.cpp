@@ -31,10 +31,49 @@ Line line_through(const Point& a, const Point& b) {
   return {a.x, a.y, (b.x - a.x) / length, (b.y - a.y) / length};
 }
 
+/// Points by coordinates, of which weights are summed along lines.
+struct PointLanes {
+  static constexpr std::size_t block = 64, lanes = 8;
+  std::vector<double> x, y, weight;
+  std::vector<double> after;  // weights from a block on
+
+  explicit PointLanes(const std::vector<Point>& points) {
+    const std::size_t step = points.size() / 400 + 1;
+    for (std::size_t i = 0; i < points.size(); i += step) {
+      x.push_back(points[i].x);
+      y.push_back(points[i].y);
+      weight.push_back(points[i].weight);
+    }
+    const std::size_t blocks = (x.size() + block - 1) / block;
+    x.resize(blocks * block), y.resize(blocks * block), weight.resize(blocks * block);
+    after.assign(blocks + 1, 0.0);
+    for (std::size_t b = blocks; b-- > 0;) {
+      after[b] = after[b + 1];
+      for (std::size_t i = b * block; i < (b + 1) * block; ++i) after[b] += weight[i];
+    }
+  }
+
+  /// Of the points within `width_px` of a line; may be less where it is not more than `most`.
+  double within(const Line& line, double width_px, double most) const {
+    std::array<double, lanes> sums{};
+    double sum = 0.0;
+    for (std::size_t b = 0; b + 1 < after.size() && sum + after[b] > most; ++b) {
+      for (std::size_t i = b * block; i < (b + 1) * block; i += lanes)
+        for (std::size_t k = 0; k < lanes; ++k) {
+          const double off = (y[i + k] - line.y) * line.ux - (x[i + k] - line.x) * line.uy;
+          sums[k] += std::abs(off) < width_px ? weight[i + k] : 0.0;
+        }
+      sum = 0.0;
+      for (const double one : sums) sum += one;
+    }
+    return sum;
+  }
+};
+
 /// The line with the most points, from pairs of distant points; empty below `least_px`.
 std::optional<Line> main_line(const std::vector<Point>& points, double width_px, double least_px) {
-  const std::size_t step = points.size() / 400 + 1,
-                    anchors = std::min<std::size_t>(40, points.size());
+  const std::size_t anchors = std::min<std::size_t>(40, points.size());
+  const PointLanes lanes(points);
   std::optional<Line> best;
   double most = 0.0;
   for (std::size_t a = 0; a < anchors; ++a)
@@ -43,9 +82,7 @@ std::optional<Line> main_line(const std::vector<Point>& points, double width_px,
       const Point& q = points[b * (points.size() - 1) / (anchors - 1)];
       if (std::hypot(p.x - q.x, p.y - q.y) < least_px) continue;
       const Line line = line_through(p, q);
-      double weight = 0.0;
-      for (std::size_t i = 0; i < points.size(); i += step)
-        if (std::abs(line.off(points[i])) < width_px) weight += points[i].weight;
+      const double weight = lanes.within(line, width_px, most);
       if (weight > most) {
         most = weight;
         best = line;

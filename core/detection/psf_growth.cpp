@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/detection/aperture_light.h"
 #include "core/detection/small_matrix.h"
 
 namespace dmise {
@@ -17,11 +18,14 @@ constexpr double outlier_sigmas = 4.0;
 constexpr double model_error = 0.15;      // relative, that does not make a pixel an outlier
 constexpr double sky_error = 0.3;         // around a star, in units of its background's prior
 constexpr double most_difference = 0.25;  // from the mixture's light
-// Light beyond a distance falls with its first power where there is diffraction, which leaves dark
-// rings, a little faster so near; with the power 5/3 (Kolmogorov) to 3 (Moffat, beta 2.5) in
-// seeing.
+// Light beyond a distance falls with the power 5/3 (Kolmogorov) to 3 (Moffat, beta 2.5) in seeing,
+// 1.9 to 2.8 so near.
+// Diffraction leaves dark rings; between them it does not grow, so that no power describes it.
 constexpr double dark_ring = -1.0;  // least weight of a part
-constexpr double power_of_rings = 1.1, power_of_seeing = 2.2;
+constexpr double power_of_seeing = 2.4;
+constexpr std::array obscurations = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
+constexpr double growth_error = 1e-3;  // of light within a distance
+constexpr double least_gain = 4.0;     // of chi2, by which a shape is likelier
 static_assert(zones < most_parameters);
 
 double distance_px(const Trail& t, const FitPixel& p) {
@@ -73,6 +77,73 @@ double light_between(const Psf& psf, double width_px, double from, double to) {
   return light;
 }
 
+using Growth = std::array<double, zones>;  // within the outer edges of zones
+
+/// Light as it grows with the distance, and what an error of the sky by its prior adds to it.
+struct MeasuredGrowth {
+  Growth light{}, by_sky{};
+};
+
+/// All light of a shape of growth, an error of the sky and how well both explain what was measured.
+struct Extrapolation {
+  double total = 0.0, chi2 = HUGE_VAL;
+};
+
+/// `fall`: what a share of the light may be less by, if that is fitted, too; null: all is known.
+Extrapolation extrapolated(const MeasuredGrowth& measured, const Growth& shape,
+                           const Growth* fall) {
+  const std::size_t n = fall ? 3 : 2;
+  constexpr double weight = 1 / (growth_error * growth_error);
+  SmallMatrix matrix{};
+  SmallVector right{};
+  double squares = 0.0;
+  for (std::size_t k = 0; k < zones; ++k) {
+    const std::array<double, 3> by{shape[k], measured.by_sky[k], fall ? -(*fall)[k] : 0.0};
+    for (std::size_t i = 0; i < n; ++i) {
+      right[i] += weight * by[i] * measured.light[k];
+      for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += weight * by[i] * by[j];
+    }
+    squares += weight * measured.light[k] * measured.light[k];
+  }
+  matrix[1][1] += 1.0;
+  if (!cholesky(matrix, n)) return {};
+  const SmallVector found = solve(matrix, right, n);
+  if (fall && found[2] < 0) return extrapolated(measured, shape, nullptr);
+  Extrapolation out{found[0], squares};
+  for (std::size_t i = 0; i < n; ++i) out.chi2 -= found[i] * right[i];
+  return out;
+}
+
+/// By a power of the distance; as of the mixture, which has no light far out, if that is likelier.
+Extrapolation by_seeing(const MeasuredGrowth& measured, const Growth& mixture) {
+  Growth all, fall;
+  for (std::size_t k = 0; k < zones; ++k) {
+    all[k] = 1.0;
+    fall[k] = std::pow(edges[k + 1], -power_of_seeing);
+  }
+  const Extrapolation by_power = extrapolated(measured, all, &fall);
+  const Extrapolation by_mixture = extrapolated(measured, mixture, nullptr);
+  return by_power.chi2 > by_mixture.chi2 + least_gain ? by_mixture : by_power;
+}
+
+/// By the aperture's obscuration and the scale of diffraction that fit best.
+Extrapolation by_aperture(const MeasuredGrowth& measured, double width_px) {
+  constexpr double least_scale = 1.6, most_scale = 3.2, step = 1.01;  // in widths
+  const double pixel = pixel_variance_px2 / (width_px * width_px);
+  Extrapolation best;
+  for (const double obscuration : obscurations) {
+    const ApertureLight light(obscuration);
+    for (double scale = least_scale; scale < most_scale; scale *= step) {
+      Growth shape;
+      for (std::size_t k = 0; k < zones; ++k)
+        shape[k] = light.within(edges[k + 1] / scale, pixel / (scale * scale));
+      const Extrapolation found = extrapolated(measured, shape, nullptr);
+      if (found.chi2 < best.chi2) best = found;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 double light_by_growth(const std::vector<ShapeStar>& stars, const PsfField& mixture) {
@@ -116,24 +187,24 @@ double light_by_growth(const std::vector<ShapeStar>& stars, const PsfField& mixt
   }
   if (!(all > 0)) return 1.0;
   matrix[sky][sky] += 1 / std::pow(sky_error * stars.front().background_sigma_e, 2);
+  Growth of_sky;  // light of a zone by an error of the sky by its prior
+  for (std::size_t k = 0; k < zones; ++k)
+    of_sky[k] = stars.front().background_sigma_e * matrix[sky][k] / matrix[k][k];
   if (!cholesky(matrix, zones + 1)) return 1.0;
   const SmallVector over = solve(matrix, right, zones + 1);
-  // Light within a distance is all of it less a share that falls with a power of the distance.
+  MeasuredGrowth measured;
+  Growth model;
+  double light = 0.0, by_model = 0.0, by_sky = 0.0;
+  for (std::size_t k = 0; k < zones; ++k) {
+    measured.light[k] = light += of_model[k] / all + over[k];
+    model[k] = by_model += of_model[k] / all;
+    measured.by_sky[k] = by_sky += of_sky[k];
+  }
   const double least_weight = *std::min_element(
       mixture.weights.begin(), mixture.weights.begin() + std::ptrdiff_t(mixture.count));
-  const double power = least_weight < dark_ring ? power_of_rings : power_of_seeing;
-  double within = 0.0, n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
-  for (std::size_t k = 0; k < zones; ++k) {
-    within += of_model[k] / all + over[k];
-    const double fall = std::pow(edges[k + 1], -power);
-    n += 1;
-    x += fall;
-    y += within;
-    xx += fall * fall;
-    xy += fall * within;
-  }
-  const double slope = (n * xy - x * y) / (n * xx - x * x);
-  const double total = slope < 0 ? (y - slope * x) / n : within;
+  const double total = least_weight < dark_ring
+                           ? by_aperture(measured, mixture.sigma_at(mixture.centre)).total
+                           : by_seeing(measured, model).total;
   return std::abs(total - 1) < most_difference ? total : 1.0;
 }
 

@@ -51,16 +51,18 @@ Equations equations_of(const ShapeStar& star, const PsfField& field, const Weigh
     lights.emplace_back(star.trail, part);
   }
   Equations out;
-  TrailDerivatives by{};
   SmallVector gradient{};
-  for (const FitPixel& p : star.pixels) {
+  std::array<std::vector<PlacedLight>, parts> of_part;
+  for (std::size_t k = 0; k < parts; ++k) of_part[k] = placed_light_in(star.pixels, lights[k]);
+  for (std::size_t n = 0; n < star.pixels.size(); ++n) {
+    const FitPixel& p = star.pixels[n];
     double model = 0.0, by_x = 0.0, by_y = 0.0;
     for (std::size_t k = 0; k < parts; ++k) {
-      const double light = lights[k](p.x, p.y, by);
-      gradient[own + k] = light;
-      model += weights[k] * light;
-      by_x += weights[k] * by[0];
-      by_y += weights[k] * by[1];
+      const PlacedLight& light = of_part[k][n];
+      gradient[own + k] = light.value;
+      model += weights[k] * light.value;
+      by_x += weights[k] * light.by_x;
+      by_y += weights[k] * light.by_y;
     }
     gradient[0] = model / star.trail.flux_e;
     gradient[1] = by_x;

@@ -59,9 +59,12 @@ struct Scene {
            !((y > 0 && saturated(x, y - 1)) || (y + 1 < counts.rows && saturated(x, y + 1)));
   }
   FitPixel pixel(int x, int y) const {
-    const double noise_e = background.sigma_dn(x, y) * gain_e_per_dn;
-    return {x, y, float((counts.at(x, y) - background.level_dn(x, y)) * gain_e_per_dn),
-            float(noise_e * noise_e)};
+    return pixel(x, y, background.level_dn(x, y), background.sigma_dn(x, y));
+  }
+  /// The same where level and noise of the sky are known.
+  FitPixel pixel(int x, int y, float level_dn, float sigma_dn) const {
+    const double noise_e = sigma_dn * gain_e_per_dn;
+    return {x, y, float((counts.at(x, y) - level_dn) * gain_e_per_dn), float(noise_e * noise_e)};
   }
   /// Trail of a star at a position, without flux.
   Trail star_trail(double x_px, double y_px) const {

@@ -110,12 +110,11 @@ std::vector<TrailLight> lights_of(std::span<const Trail> trails, const Psf& psf)
 std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels,
                                        std::span<const Trail> trails, double background_e,
                                        double tolerance, const Psf& psf) {
-  const std::vector<TrailLight> lights = lights_of(trails, psf);
-  TrailDerivatives unused{};
+  const std::vector<double> light = light_in(pixels, lights_of(trails, psf));
   std::vector<const FitPixel*> outliers;
-  for (const FitPixel& p : pixels) {
-    double model = 0.0;
-    for (const TrailLight& light : lights) model += light(p.x, p.y, unused);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const FitPixel& p = pixels[i];
+    const double model = light[i];
     const double tolerated = tolerance * model;
     const double limit =
         4.0 * std::sqrt(p.variance_e2 + std::max(model, 0.0) + tolerated * tolerated);
@@ -143,10 +142,18 @@ std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double
   const int y1 = std::min(scene.counts.rows - 1, int(std::ceil(trail.y_px + reach_y)));
   const Around around(trail, margin_px);
   std::vector<FitPixel> out;
+  if (x1 < x0) return out;
+  std::vector<float> level(std::size_t(x1 - x0 + 1)), sigma(level.size());
   for (int y = y0; y <= y1; ++y) {
     const auto [first, last] = around.columns(y);
-    for (int x = std::max(x0, first); x <= std::min(x1, last); ++x)
-      if (around.has(x, y) && scene.is_usable(x, y)) out.push_back(scene.pixel(x, y));
+    const int begin = std::max(x0, first), end = std::min(x1, last) + 1;
+    if (end <= begin) continue;
+    scene.background.level_row(y, begin, end, level.data());
+    scene.background.sigma_row(y, begin, end, sigma.data());
+    for (int x = begin; x < end; ++x)
+      if (around.has(x, y) && scene.is_usable(x, y))
+        out.push_back(
+            scene.pixel(x, y, level[std::size_t(x - begin)], sigma[std::size_t(x - begin)]));
   }
   return out;
 }

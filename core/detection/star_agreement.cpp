@@ -110,12 +110,12 @@ void StarAgreement::measure_light(const Scene& scene, const FilteredFrame& frame
     if (peak < measured_snr || peak > crowded_snr) continue;
     trail.flux_e = 1.0;
     const TrailLight light(trail, scene.psf.at(at));
-    TrailDerivatives unused{};
+    const auto pixels = pixels_near(scene, trail, 2 * scene.sigma_px + 0.5);
+    const std::vector<double> shape = light_in(pixels, {&light, 1});
     double sum = 0.0, squares = 0.0;
-    for (const FitPixel& p : pixels_near(scene, trail, 2 * scene.sigma_px + 0.5)) {
-      const double g = light(p.x, p.y, unused);
-      sum += g * p.signal_e;
-      squares += g * g;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      sum += shape[i] * pixels[i].signal_e;
+      squares += shape[i] * shape[i];
     }
     if (!(squares > 0)) continue;
     const double ratio = std::max(sum / squares / star.signal_e, least_ratio);

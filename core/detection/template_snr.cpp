@@ -29,10 +29,11 @@ double snr_of(const Scene& scene, const std::vector<FitPixel>& pixels, Trail tra
   trail.flux_e = 1.0;
   const TrailLight light(trail, scene.psf.at({trail.x_px, trail.y_px}));
   const Sky sky(scene, trail);
-  TrailDerivatives unused{};
+  const std::vector<double> shape = light_in(pixels, {&light, 1});
   double sum = 0.0, squares = 0.0;
-  for (const FitPixel& p : pixels) {
-    const double g = light(p.x, p.y, unused);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const FitPixel& p = pixels[i];
+    const double g = shape[i];
     const double sky_e = sky.level * std::sqrt(double(p.variance_e2));
     sum += g * (p.signal_e - sky_e) / p.variance_e2;
     squares += g * g / p.variance_e2;

@@ -207,6 +207,51 @@ double share_of_step(const Matrix& matrix, const Vector& step, const Vector& bef
 
 }  // namespace
 
+namespace {
+
+/// Calls visit(first pixel, count, x, y) for blocks of pixels.
+template <class Visit>
+void for_blocks(std::span<const FitPixel> pixels, const Visit& visit) {
+  std::array<double, trail_block> x{}, y{};
+  for (std::size_t begin = 0; begin < pixels.size(); begin += trail_block) {
+    const std::size_t count = std::min(trail_block, pixels.size() - begin);
+    for (std::size_t i = 0; i < count; ++i) {
+      x[i] = pixels[begin + i].x;
+      y[i] = pixels[begin + i].y;
+    }
+    visit(begin, count, x.data(), y.data());
+  }
+}
+
+}  // namespace
+
+std::vector<double> light_in(std::span<const FitPixel> pixels, std::span<const TrailLight> lights) {
+  static const auto trail_values =
+      kernel_of(best_simd_level(), sse2::trail_values, avx2::trail_values, avx512::trail_values);
+  std::vector<double> out((pixels.size() + trail_block - 1) / trail_block * trail_block, 0.0);
+  for_blocks(pixels, [&](std::size_t begin, std::size_t, const double* x, const double* y) {
+    for (const TrailLight& light : lights)
+      trail_values(light.shape(), normal_table(), x, y, out.data() + begin);
+  });
+  out.resize(pixels.size());
+  return out;
+}
+
+std::vector<PlacedLight> placed_light_in(std::span<const FitPixel> pixels,
+                                         const TrailLight& light) {
+  static const auto trail_light =
+      kernel_of(best_simd_level(), sse2::trail_light, avx2::trail_light, avx512::trail_light);
+  std::vector<PlacedLight> out;
+  out.reserve(pixels.size());
+  for_blocks(pixels, [&](std::size_t, std::size_t count, const double* x, const double* y) {
+    std::array<double, trail_block> value{};
+    double by[trail_parameters][trail_block];
+    trail_light(light.shape(), normal_table(), x, y, value.data(), by);
+    for (std::size_t i = 0; i < count; ++i) out.push_back({value[i], by[0][i], by[1][i]});
+  });
+  return out;
+}
+
 bool TrailFit::good(double sigmas) const {
   return degrees > 0 && chi2 <= degrees + sigmas * std::sqrt(2.0 * degrees);
 }

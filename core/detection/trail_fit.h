@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/detection/trail_light.h"
@@ -13,6 +14,15 @@ struct FitPixel {
   float signal_e = 0.0f;
   float variance_e2 = 1.0f;
 };
+
+/// Electrons of trails in each of some pixels, the sums over all trails.
+std::vector<double> light_in(std::span<const FitPixel> pixels, std::span<const TrailLight> lights);
+
+/// The same of one trail, with the derivatives by its place.
+struct PlacedLight {
+  double value = 0.0, by_x = 0.0, by_y = 0.0;
+};
+std::vector<PlacedLight> placed_light_in(std::span<const FitPixel> pixels, const TrailLight& light);
 
 struct FitSettings {
   Psf psf;

@@ -91,6 +91,18 @@ void trail_light(const TrailShape& trail, const NormalTable& normal, const doubl
   }
 }
 
+void trail_values(const TrailShape& trail, const NormalTable& normal, const double* x,
+                  const double* y, double* model) {
+  const NormalLanes lanes_of_normal{normal};
+  const auto within = [](F64 v) __attribute__((always_inline)) { return held(v, 1.0); };
+  for (std::size_t i = 0; i < trail_block; i += places) {
+    F64 unused[7];
+    const F64 light =
+        light_of_trail(trail, load<F64>(x + i), load<F64>(y + i), lanes_of_normal, within, unused);
+    store(model + i, load<F64>(model + i) + light);
+  }
+}
+
 void add_block(const TrailPixels& pixels, const double* model, double background_e,
                double model_error, const double* const* gradients, std::size_t n, double* variance,
                TrailSums& to) {

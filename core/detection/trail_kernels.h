@@ -29,6 +29,9 @@ struct TrailPixels {
   /* Electrons of a trail in each pixel, added to `model`, and the seven derivatives by rows. */ \
   void trail_light(const TrailShape& trail, const NormalTable& normal, const double* x,          \
                    const double* y, double* model, double (*derivatives)[trail_block]);          \
+  /* The same without derivatives. */                                                            \
+  void trail_values(const TrailShape& trail, const NormalTable& normal, const double* x,         \
+                    const double* y, double* model);                                             \
   /* Adds a block. Weights are the inverse of variance + model + (model_error model)^2, which    \
      goes to `variance`. `gradients`: a row of `trail_block` values for each of n parameters. */ \
   void add_block(const TrailPixels& pixels, const double* model, double background_e,            \

@@ -47,6 +47,14 @@ struct Normal {
 
 const NormalTable& normal_table() { return table; }
 
+double normal_density(double x) { return Normal().pdf(x); }
+
+double normal_below(double x) {
+  double cdf, pdf;
+  Normal().both(x, cdf, pdf);
+  return cdf;
+}
+
 TrailLight::TrailLight(const Trail& trail, const Psf& psf) {
   // -1/2880 (d^4/dx^4 + d^4/dy^4), turned by the trail's angle.
   constexpr double square = -1.0 / 2880;

@@ -57,6 +57,9 @@ class TrailLight {
 
 /// The normal distribution that kernels look up.
 const NormalTable& normal_table();
+/// Its density and distribution function, to 1e-10.
+double normal_density(double x);
+double normal_below(double x);
 
 /// Electrons of the trail in pixel (x, y).
 double trail_value(const Trail& trail, const Psf& psf, double x, double y);

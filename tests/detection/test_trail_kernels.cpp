@@ -14,14 +14,16 @@ namespace {
 
 struct Kernels {
   decltype(&sse2::trail_light) trail_light;
+  decltype(&sse2::trail_values) trail_values;
   decltype(&sse2::add_block) add_block;
 };
 
 std::vector<Kernels> levels() {
-  std::vector<Kernels> out{{sse2::trail_light, sse2::add_block}};
-  if (best_simd_level() >= SimdLevel::avx2) out.push_back({avx2::trail_light, avx2::add_block});
+  std::vector<Kernels> out{{sse2::trail_light, sse2::trail_values, sse2::add_block}};
+  if (best_simd_level() >= SimdLevel::avx2)
+    out.push_back({avx2::trail_light, avx2::trail_values, avx2::add_block});
   if (best_simd_level() >= SimdLevel::avx512)
-    out.push_back({avx512::trail_light, avx512::add_block});
+    out.push_back({avx512::trail_light, avx512::trail_values, avx512::add_block});
   return out;
 }
 
@@ -66,6 +68,10 @@ TEST(TrailKernels, LightIsThatOfEachPixelOnEveryInstructionSet) {
       double derivatives[trail_parameters][trail_block];
       kernels.trail_light(light.shape(), normal_table(), pixels.x.data(), pixels.y.data(),
                           model.data(), derivatives);
+      Block values{};
+      kernels.trail_values(light.shape(), normal_table(), pixels.x.data(), pixels.y.data(),
+                           values.data());
+      EXPECT_EQ(values, model);
       std::vector<double> all(model.begin(), model.end());
       for (const auto& row : derivatives) all.insert(all.end(), row, row + trail_block);
       if (first.empty()) first = all;
