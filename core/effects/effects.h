@@ -45,7 +45,7 @@ struct SceneFacts {
   // Whose disc is in the field or next to it, in the exposure.
   bool sun_in_field = false, moon_in_field = false, earth_in_field = false;
   bool shutter_closed = false;  // in the exposure: no light comes in
-  bool limb_in_field = false;  // from space: light may come through the air over the Earth's limb
+  bool limb_in_field = false;   // from space: light may come through the air over the Earth's limb
 };
 
 /// A closed family of effects, in the order in which they run.

@@ -78,7 +78,7 @@ Excluded SensorTrack::excluded_at(const CameraMoment& now) const {
   Excluded excluded;
   if (limits.sun_deg) excluded.sun = is_near(sky_.sun_m(now.time), sun_radius_m, *limits.sun_deg);
   if (limits.moon_deg)
-    excluded.moon = is_near(moon_m(sky_.clock().tt(now.time)), moon_radius_m, *limits.moon_deg);
+    excluded.moon = is_near(sky_.moon_m(now.time), moon_radius_m, *limits.moon_deg);
   if (limits.earth_limb_deg && !site_)
     excluded.earth_limb = from_limb_rad(here_m, axis, earth) < *limits.earth_limb_deg * deg;
   return excluded;

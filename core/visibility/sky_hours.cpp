@@ -16,12 +16,21 @@ std::int64_t hour_of(SimTime t) {
 SkyHours::SkyHours(const Clock& clock, SimTime from, SimTime to, const Ellipsoid& ellipsoid)
     : clock_(clock), ellipsoid_(ellipsoid) {
   const auto sun_at = [&](std::int64_t k) { return solar_system(clock.tt({k * hour_ns})).sun_m; };
-  Vec<Gcrs> sun = sun_at(hour_of(from));
+  const auto moon_at = [&](std::int64_t half_hours) {
+    return dmise::moon_m(clock.tt({half_hours * (hour_ns / 2)}));
+  };
+  Vec<Gcrs> sun = sun_at(hour_of(from)), moon = moon_at(2 * hour_of(from));
   for (std::int64_t k = hour_of(from); k <= hour_of(to); ++k) {
-    const Vec<Gcrs> next = sun_at(k + 1);
-    hours_.push_back(
-        {{k * hour_ns}, earth_orientation(clock, {k * hour_ns + hour_ns / 2}), sun, next - sun});
+    const Vec<Gcrs> next = sun_at(k + 1), half = moon_at(2 * k + 1), end = moon_at(2 * k + 2);
+    hours_.push_back({.start = {k * hour_ns},
+                      .earth = earth_orientation(clock, {k * hour_ns + hour_ns / 2}),
+                      .sun_m = sun,
+                      .sun_step_m = next - sun,
+                      .moon_m = moon,
+                      .moon_step_m = half * 4.0 - moon * 3.0 - end,
+                      .bend_m = (end - half * 2.0 + moon) * 2.0});
     sun = next;
+    moon = end;
   }
 }
 
@@ -33,6 +42,12 @@ const SkyHours::Hour& SkyHours::hour(SimTime t) const {
 Vec<Gcrs> SkyHours::sun_m(SimTime t) const {
   const Hour& h = hour(t);
   return h.sun_m + h.sun_step_m * (double((t - h.start).ns) / double(hour_ns));
+}
+
+Vec<Gcrs> SkyHours::moon_m(SimTime t) const {
+  const Hour& h = hour(t);
+  const double share = double((t - h.start).ns) / double(hour_ns);
+  return h.moon_m + (h.moon_step_m + h.bend_m * share) * share;
 }
 
 Sunlight::Sunlight(const SkyHours& sky, SimTime t)

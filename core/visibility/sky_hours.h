@@ -8,9 +8,9 @@
 
 namespace dmise {
 
-/// Earth and Sun over a span of time, computed once an hour; the result depends on the instant
-/// alone. Precession and nutation are constant over the hour (4 mas at its ends), the Sun moves
-/// linearly (0.02 arcsec). Immutable.
+/// Earth, Sun and Moon over a span of time, computed once an hour; the result depends on the
+/// instant alone. Precession and nutation are constant over the hour (4 mas at its ends), the Sun
+/// moves linearly (0.02 arcsec), the Moon along a parabola (10 m). Immutable.
 class SkyHours {
  public:
   /// For instants in [from, to]; `ellipsoid` casts the shadow.
@@ -20,12 +20,14 @@ class SkyHours {
   const EarthOrientation& earth(SimTime t) const { return hour(t).earth; }
   OblateEarth surface(SimTime t) const { return oblate_earth(earth(t), ellipsoid_); }
   Vec<Gcrs> sun_m(SimTime t) const;
+  Vec<Gcrs> moon_m(SimTime t) const;
 
  private:
   struct Hour {
     SimTime start;
     EarthOrientation earth;
-    Vec<Gcrs> sun_m, sun_step_m;  // at its start, and from there to its end
+    Vec<Gcrs> sun_m, sun_step_m;            // at its start, and from there to its end
+    Vec<Gcrs> moon_m, moon_step_m, bend_m;  // the same; by the share of the hour and its square
   };
   const Hour& hour(SimTime t) const;
 

@@ -250,6 +250,7 @@ std::string LiveView::sensors_json() const {
     json.field("stars_expected", report.stars_expected).field("stars_found", report.stars_found);
     json.field("objects_rendered", report.objects_rendered);
     json.field("detections", report.detections).field("detection_off", report.detection_off);
+    json.field("shutter_closed", report.shutter_closed);
     json.field("detections_total", sensor.detections_total);
     put(json, "position_km", sensor.position_m, km_per_m, 1e3);
     put(json, "boresight", sensor.boresight, 1.0, 1e6);

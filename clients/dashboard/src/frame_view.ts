@@ -103,7 +103,7 @@ export class FrameView {
   private describe(): void {
     const { sensor } = this;
     if (!sensor) { this.note.textContent = "No frame yet."; return; }
-    const found = sensor.detection_off ? "detection is off" : `${sensor.detections} detections, limit ${sensor.limiting_magnitude.toFixed(1)} mag`;
+    const found = sensor.shutter_closed ? "the shutter is closed" : sensor.detection_off ? "detection is off" : `${sensor.detections} detections, limit ${sensor.limiting_magnitude.toFixed(1)} mag`;
     const missing = this.failed.endsWith(`/${sensor.frame}.png`) ? " Its sensor does not serve it any more (--products DIRECTORY has previews of all, with output: {png: true})." : "";
     const truth = this.truths.length ? ` ${this.truths.length} objects in truth.` : "";
     this.note.textContent = `${sensor.name}, frame ${sensor.frame}, RA ${(sensor.ra_rad * deg).toFixed(2)} Dec ${(sensor.dec_rad * deg).toFixed(2)}, ${found}.${truth}${missing}`;

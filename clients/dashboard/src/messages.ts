@@ -14,7 +14,7 @@ export interface Status {
 export interface Sensor {
   name: string; frame: number; start_s: number; end_s: number; columns: number; rows: number; ra_rad: number; dec_rad: number;
   scale_rad: number; limiting_magnitude: number; background_e: number; noise_e: number; stars_expected: number; stars_found: number;
-  objects_rendered: number; detections: number; detection_off: boolean; detections_total: number;
+  objects_rendered: number; detections: number; detection_off: boolean; shutter_closed: boolean; detections_total: number;
   position_km: Triple; boresight: Triple; field: number[];
 }
 export interface Detection {
