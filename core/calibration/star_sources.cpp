@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "core/base/golden_section.h"
 #include "core/base/quantile.h"
 #include "core/base/units.h"
 #include "core/calibration/deblend.h"
@@ -23,7 +24,6 @@ constexpr double rise_of_a_star = 5.0;   // over a saddle, in noise of a pixel
 double best_sigma_px(const SourceMeasure& measure,
                      std::span<const std::optional<SourceMoments>> moments, double start_px) {
   constexpr std::size_t brightest = 400, most_images = 50;
-  constexpr double golden = 0.6180339887498949;
   std::vector<SourceMoments> images;
   for (const auto& m : moments)
     if (m && images.size() < brightest) images.push_back(*m);
@@ -39,25 +39,7 @@ double best_sigma_px(const SourceMeasure& measure,
     }
     return quantile_of(std::move(chi2), 0.3);
   };
-  double low = 0.75 * start_px, high = 1.5 * start_px;
-  double a = high - golden * (high - low), b = low + golden * (high - low);
-  double at_a = misfit(a), at_b = misfit(b);
-  while (high - low > 0.004 * start_px) {
-    if (at_a < at_b) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      a = high - golden * (high - low);
-      at_a = misfit(a);
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      b = low + golden * (high - low);
-      at_b = misfit(b);
-    }
-  }
-  return 0.5 * (low + high);
+  return golden_section(misfit, 0.75 * start_px, 1.5 * start_px, 0.004 * start_px).at;
 }
 
 /// Images that may be stars, the brightest first, and the width of most of them.

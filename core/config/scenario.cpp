@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/config/distribution.h"
+#include "core/config/effects_config.h"
 #include "core/config/fusion_config.h"
 #include "core/config/interpolation_choice.h"
 #include "core/config/node_names.h"

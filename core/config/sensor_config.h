@@ -4,20 +4,12 @@
 
 namespace dmise {
 
-/// Reads `effects:` of a scenario or a sensor and applies it to `effects`. Throws `ConfigError`.
-void read_effects(const YamlValue& value, EffectSet& effects);
-
-/// Reads `accuracy:` of a scenario or a sensor. Throws `ConfigError`.
-Accuracy read_accuracy(const YamlValue& value);
-
 /// Reads one of `sensors:`; `effects`, `accuracy` and `detect` are the scenario's, `duration` the
 /// run's. Throws `ConfigError`.
 SensorConfig read_sensor(const YamlValue& value, const EffectSet& effects, const Accuracy& accuracy,
                          bool detect, SimTime duration, const EarthConfig& earth = {});
 
 // What the tables of scenarios are made of.
-Forms effects_forms();
-Forms accuracy_forms();
 const Section& site_section();
 const Section& sensor_section();
 

@@ -76,10 +76,10 @@ struct LaneSum {
   }
 };
 
-}  // namespace
-
-void trail_light(const TrailShape& trail, const NormalTable& normal, const double* x,
-                 const double* y, double* model, double (*derivatives)[trail_block]) {
+/// Adds a trail's light to `model`; `keep` gets its derivatives.
+template <class Keep>
+DMISE_INLINE void for_places(const TrailShape& trail, const NormalTable& normal, const double* x,
+                             const double* y, double* model, const Keep& keep) {
   const NormalLanes lanes_of_normal{normal};
   const auto within = [](F64 v) __attribute__((always_inline)) { return held(v, 1.0); };
   for (std::size_t i = 0; i < trail_block; i += places) {
@@ -87,20 +87,24 @@ void trail_light(const TrailShape& trail, const NormalTable& normal, const doubl
     const F64 light =
         light_of_trail(trail, load<F64>(x + i), load<F64>(y + i), lanes_of_normal, within, d);
     store(model + i, load<F64>(model + i) + light);
-    for (int k = 0; k < 7; ++k) store(derivatives[k] + i, d[k]);
+    keep(i, d);
   }
+}
+
+}  // namespace
+
+void trail_light(const TrailShape& trail, const NormalTable& normal, const double* x,
+                 const double* y, double* model, double (*derivatives)[trail_block]) {
+  for_places(
+      trail, normal, x, y, model, [&](std::size_t i, const F64* d) __attribute__((always_inline)) {
+        for (int k = 0; k < 7; ++k) store(derivatives[k] + i, d[k]);
+      });
 }
 
 void trail_values(const TrailShape& trail, const NormalTable& normal, const double* x,
                   const double* y, double* model) {
-  const NormalLanes lanes_of_normal{normal};
-  const auto within = [](F64 v) __attribute__((always_inline)) { return held(v, 1.0); };
-  for (std::size_t i = 0; i < trail_block; i += places) {
-    F64 unused[7];
-    const F64 light =
-        light_of_trail(trail, load<F64>(x + i), load<F64>(y + i), lanes_of_normal, within, unused);
-    store(model + i, load<F64>(model + i) + light);
-  }
+  for_places(trail, normal, x, y, model,
+             [](std::size_t, const F64*) __attribute__((always_inline)){});
 }
 
 void add_block(const TrailPixels& pixels, const double* model, double background_e,

@@ -80,7 +80,7 @@ std::size_t poisson(const RngKey& key, std::uint32_t first, const float* mean, s
 }
 
 int poisson_cumulative(float mean, double* cumulative) {
-  double p = exp_minus(splat(double(mean)))[0], sum = p;
+  double p = exp_of_lanes(splat(-double(mean)))[0], sum = p;
   int k = 0;
   for (; k < poisson_most_steps; ++k) {
     cumulative[k] = sum;

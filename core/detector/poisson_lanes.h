@@ -1,4 +1,5 @@
 #pragma once
+#include "core/base/lane_functions.h"
 #include "core/base/random_lanes.h"
 
 // Vectorised core/detector/poisson.h.
@@ -6,28 +7,6 @@ namespace dmise::DMISE_SIMD {
 
 using F32Half = float __attribute__((vector_size(DMISE_SIMD_BYTES / 2)));
 using U32Half = std::uint32_t __attribute__((vector_size(DMISE_SIMD_BYTES / 2)));
-
-/// exp(-m) for m in [0, 50], relative error below 4e-16.
-DMISE_INLINE F64 exp_minus(F64 m) {
-  constexpr double magic = 0x1.8p52;  // adding it leaves the nearest integer in the low bits
-  const F64 shifted = m * 1.4426950408889634 + magic;
-  const F64 n = shifted - magic;
-  const F64 r = (n * 0.693147180369123816490 - m) + n * 1.90821492927058770002e-10;
-  F64 p = splat(1.0 / 479001600);
-  p = p * r + 1.0 / 39916800;
-  p = p * r + 1.0 / 3628800;
-  p = p * r + 1.0 / 362880;
-  p = p * r + 1.0 / 40320;
-  p = p * r + 1.0 / 5040;
-  p = p * r + 1.0 / 720;
-  p = p * r + 1.0 / 120;
-  p = p * r + 1.0 / 24;
-  p = p * r + 1.0 / 6;
-  p = p * r + 0.5;
-  p = p * (r * r) + r + 1.0;
-  const I64 scale = (1023 - (bits<I64>(shifted) & 0xffff)) << 52;  // 2^-n
-  return p * bits<F64>(scale);
-}
 
 /// Uniform in (0, 1) of 52 bits.
 DMISE_INLINE F64 uniform_of(U64 high, U64 low) {
@@ -46,7 +25,7 @@ inline constexpr Reciprocals reciprocals;
 
 /// Number of k with u > P(N <= k), for means below 24 (for others undefined, but it terminates).
 DMISE_INLINE F64 poisson_small(F64 mean, F64 u) {
-  F64 p = exp_minus(mean), cumulative = p, k{};
+  F64 p = exp_of_lanes(-mean), cumulative = p, k{};
   for (int i = 1; i < 129; ++i) {
     const I64 above = u > cumulative;
     if (!any(above)) break;

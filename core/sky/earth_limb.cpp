@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/golden_section.h"
 #include "core/base/units.h"
 #include "core/sky/occultation.h"
 
@@ -51,7 +52,7 @@ double above_limb_rad(const Vec<Gcrs>& from_m, const Vec<Gcrs>& direction,
 double from_limb_rad(const Vec<Gcrs>& from_m, const Vec<Gcrs>& direction,
                      const OblateEarth& earth) {
   constexpr int sides = 36;
-  constexpr double golden = 0.6180339887498949, step = 2.0 * pi / sides, found_within = 1e-5;
+  constexpr double step = 2.0 * pi / sides, found_within = 1e-5;
   const Limb limb(from_m, earth);
   const Vec<Gcrs> u = limb.any_side(), v = cross(limb.down(), u);
   const auto angle = [&](double at) {
@@ -63,15 +64,8 @@ double from_limb_rad(const Vec<Gcrs>& from_m, const Vec<Gcrs>& direction,
       least = here;
       nearest = k * step;
     }
-  double low = nearest - step, high = nearest + step;
-  while (high - low > found_within) {
-    const double a = high - golden * (high - low), b = low + golden * (high - low);
-    if (angle(a) < angle(b))
-      high = b;
-    else
-      low = a;
-  }
-  least = std::min(least, angle(0.5 * (low + high)));
+  least =
+      std::min(least, golden_section(angle, nearest - step, nearest + step, found_within).value);
   return FreeSight(from_m, earth).clear_direction(direction) ? least : -least;
 }
 

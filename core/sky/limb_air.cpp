@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include "core/base/table_place.h"
 #include "core/base/units.h"
 #include "core/sky/kept_tables.h"
 #include "core/sky/standard_air.h"
@@ -16,17 +17,6 @@ namespace {
 
 constexpr double earth_radius_m = AirColumns::earth_radius_m;
 constexpr float darkest = -200.0f;  // of logarithms
-
-/// Where a value lies between the nodes of a table.
-struct Between {
-  std::size_t node;
-  double part;
-};
-Between between(double at, std::size_t nodes) {
-  const double held = std::clamp(at, 0.0, double(nodes) - 1.0);
-  const auto node = std::min(std::size_t(held), nodes - 2);
-  return {node, held - double(node)};
-}
 
 // Nodes of the table of scattered light.
 constexpr std::size_t tangent_nodes = 71;  // every 1 km to 40, 2.3 km above
@@ -55,7 +45,7 @@ double node_of_towards_sun(double towards_sun) {
   const double root = std::copysign(std::sqrt(std::abs(towards_sun)), towards_sun);
   return 0.5 * (root + 1.0) * (azimuths - 1);
 }
-Between between_suns(double zenith_rad) {
+TablePlace between_suns(double zenith_rad) {
   const double at_deg = std::clamp(zenith_rad / deg, 0.0, sun_nodes_deg.back());
   const auto above = std::upper_bound(sun_nodes_deg.begin() + 1, sun_nodes_deg.end() - 1, at_deg);
   const auto node = std::size_t(above - sun_nodes_deg.begin()) - 1;
@@ -164,9 +154,10 @@ double LimbAirTable::integrated(const LimbSun& at) const {
 double LimbAirTable::scattered(const LimbSun& at) const {
   if (!(at.tangent_height_m >= 0.0 && at.tangent_height_m < top_m)) return 0.0;
   if (!(at.sun_zenith_rad < sun_nodes_deg.back() * deg)) return 0.0;
-  const Between h = between(node_of_tangent(at.tangent_height_m), tangent_nodes);
-  const Between z = between_suns(at.sun_zenith_rad);
-  const Between a = between(node_of_towards_sun(std::clamp(at.towards_sun, -1.0, 1.0)), azimuths);
+  const TablePlace h = table_place(node_of_tangent(at.tangent_height_m), tangent_nodes);
+  const TablePlace z = between_suns(at.sun_zenith_rad);
+  const TablePlace a =
+      table_place(node_of_towards_sun(std::clamp(at.towards_sun, -1.0, 1.0)), azimuths);
   const auto of = [&](std::size_t sun, std::size_t azimuth) {
     const float* const log = nodes_->of(sun, azimuth) + h.node;
     return std::lerp(double(log[0]), double(log[1]), h.part);

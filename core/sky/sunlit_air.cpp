@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/table_place.h"
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
 #include "core/photometry/spectrum.h"
@@ -41,16 +42,6 @@ AirColumn along(double height_m, double cos_zenith) {
   return sum;
 }
 
-struct Between {
-  std::size_t node;
-  double part;
-};
-Between between(double at, std::size_t nodes) {
-  const double held = std::clamp(at, 0.0, double(nodes) - 1.0);
-  const auto node = std::min(std::size_t(held), nodes - 2);
-  return {node, held - double(node)};
-}
-
 }  // namespace
 
 const AirColumns& AirColumns::standard() {
@@ -77,7 +68,7 @@ AirColumns::AirColumns() {
 }
 
 AirColumns::Level AirColumns::level(double height_m) const {
-  const Between h = between(height_m / height_step_m, heights);
+  const TablePlace h = table_place(height_m / height_step_m, heights);
   const AirColumn &below = log_up_[h.node], &above = log_up_[h.node + 1];
   return {height_m,
           h.node,
@@ -88,7 +79,7 @@ AirColumns::Level AirColumns::level(double height_m) const {
 
 AirColumn AirColumns::upwards(const Level& level, double cos_zenith) const {
   const double over = 1.0 / (cos_zenith + horizon);
-  const Between a = between(cos_zenith * over * (1.0 + horizon) * (angles - 1), angles);
+  const TablePlace a = table_place(cos_zenith * over * (1.0 + horizon) * (angles - 1), angles);
   const AirColumn* below = &stretched_[level.node * angles + a.node];
   const AirColumn* above = below + angles;
   const auto stretch = [&](double AirColumn::*part) {
@@ -138,13 +129,13 @@ double ScatteredSunlight::behind(const AirColumn& column) const {
   if (!(column.air < most_air) || !(column.ozone < most_ozone)) return 0.0;
   // Linear in the columns themselves, as their logarithms nearly are.
   const auto of_root = [](double value, double most, std::size_t nodes) {
-    Between at = between(std::sqrt(value / most) * double(nodes - 1), nodes);
+    TablePlace at = table_place(std::sqrt(value / most) * double(nodes - 1), nodes);
     const double step = 1.0 / double(nodes - 1), from = double(at.node) * step;
     at.part = (value / most - from * from) / (step * (2.0 * from + step));
     return at;
   };
-  const Between a = of_root(column.air, most_air, airs);
-  const Between o = of_root(column.ozone, most_ozone, ozones);
+  const TablePlace a = of_root(column.air, most_air, airs);
+  const TablePlace o = of_root(column.ozone, most_ozone, ozones);
   const double* at = &log_light_[a.node * ozones + o.node];
   const double log = std::lerp(std::lerp(at[0], at[1], o.part),
                                std::lerp(at[ozones], at[ozones + 1], o.part), a.part);

@@ -2,97 +2,21 @@
 
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 #include "core/base/units.h"
 #include "core/products/detection_fields.h"
+#include "nodes/wire/field_rules.h"
 
 namespace dmise {
 namespace {
 
-constexpr double angle_limit_rad = 2 * pi;  // right ascensions may start at -pi or 0
-constexpr double latitude_limit_rad = pi / 2 * (1 + 1e-12);
+using namespace field_rules;
+
 constexpr double distance_limit_m = 1e15;  // 6,700 au
 constexpr double speed_limit_m_per_s = speed_of_light_m_per_s;
 constexpr double rate_limit_rad_per_s = 1e6;
-constexpr std::size_t name_limit_bytes = 256;
 constexpr std::size_t text_limit_bytes = 16384;
 constexpr std::size_t most_path_numbers = 30000;
-
-[[noreturn]] void refuse(const std::string& field, const std::string& reason) {
-  throw Refused(Refusal::value, field + ": " + reason);
-}
-
-void finite(double value, const char* field) {
-  if (!std::isfinite(value)) refuse(field, "must be finite");
-}
-
-/// Checks numbers of a table that also has texts and flags.
-template <class T>
-void finite_number(const T& value, const char* field) {
-  if constexpr (std::is_same_v<T, double>) finite(value, field);
-}
-
-void in_range(double value, double low, double high, const char* field) {
-  if (!(value >= low && value <= high))
-    refuse(field, "must be in [" + std::to_string(low) + ", " + std::to_string(high) + "], got " +
-                      std::to_string(value));
-}
-
-void not_negative(double value, const char* field) {
-  in_range(value, 0.0, std::numeric_limits<double>::max(), field);
-}
-
-void direction(double ra_rad, double dec_rad, const char* field) {
-  in_range(ra_rad, -angle_limit_rad, angle_limit_rad, field);
-  in_range(dec_rad, -latitude_limit_rad, latitude_limit_rad, field);
-}
-
-template <class F>
-void vector_within(const Vec<F>& v, double limit, const char* field) {
-  for (const double component : {v.x, v.y, v.z}) in_range(component, -limit, limit, field);
-}
-
-template <class To, class From>
-void rotates(const Rotation<To, From>& r, const char* field) {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      double product = 0;
-      for (int k = 0; k < 3; ++k) product += r.m[i][k] * r.m[j][k];
-      if (!(std::abs(product - (i == j)) < 1e-9)) refuse(field, "rows must be orthonormal");
-    }
-  const Vec<To> x{r.m[0][0], r.m[0][1], r.m[0][2]}, y{r.m[1][0], r.m[1][1], r.m[1][2]},
-      z{r.m[2][0], r.m[2][1], r.m[2][2]};
-  if (!(dot(cross(x, y), z) > 0)) refuse(field, "must be right-handed");
-}
-
-/// A 2x2 covariance as variance, covariance, variance.
-void covariance(const std::array<double, 3>& c, const char* field) {
-  for (const double value : c) finite(value, field);
-  if (c[0] < 0 || c[2] < 0 || c[1] * c[1] > c[0] * c[2] * (1 + 1e-9))
-    refuse(field, "must be positive semi-definite");
-}
-
-void utf8(const std::string& text, std::size_t limit, const char* field) {
-  if (text.size() > limit) refuse(field, "longer than " + std::to_string(limit) + " bytes");
-  const auto* p = reinterpret_cast<const unsigned char*>(text.data());
-  const auto* end = p + text.size();
-  while (p < end) {
-    const int more = *p < 0x80 ? 0 : *p >> 5 == 6 ? 1 : *p >> 4 == 14 ? 2 : *p >> 3 == 30 ? 3 : -1;
-    if (more < 0 || end - p <= more) refuse(field, "must be UTF-8");
-    std::uint32_t code = more == 0 ? *p : *p & (0x3fu >> more);
-    for (int i = 1; i <= more; ++i) {
-      if (p[i] >> 6 != 2) refuse(field, "must be UTF-8");
-      code = code << 6 | (p[i] & 0x3fu);
-    }
-    constexpr std::uint32_t smallest[] = {0, 0x80, 0x800, 0x10000};
-    if (code < smallest[more] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000))
-      refuse(field, "must be UTF-8");
-    p += more + 1;
-  }
-}
-
-void name_text(const std::string& text, const char* field) { utf8(text, name_limit_bytes, field); }
 
 void frame_number(std::uint32_t frame) {
   if (frame == 0) refuse("frame", "counts from 1");

@@ -95,10 +95,6 @@ std::string limit_text(const SensorOutlook& o) {
   return text;
 }
 
-const char* name_of(std::string_view body) {
-  return body == "sun" ? "the Sun" : body == "moon" ? "the Moon" : "the Earth's limb";
-}
-
 std::string frames_of(std::uint32_t count, const SensorOutlook& o) {
   std::string text = std::to_string(count) + " of " + std::to_string(o.looked_for_exclusion);
   if (o.looked_for_exclusion < o.frames_in_run)
@@ -108,7 +104,7 @@ std::string frames_of(std::uint32_t count, const SensorOutlook& o) {
 
 /// Where a body is beside a camera's limit, in one line.
 std::string exclusion_text(const ExcludedFrames& of, const SensorOutlook& o) {
-  std::string text = std::string("exclusion: ") + name_of(of.body);
+  std::string text = std::string("exclusion: ") + of.body->name;
   if (!of.least_rad)
     return text + (o.on_ground ? " is below the horizon in " : " is behind the Earth in ") +
            frames_of(o.looked_for_exclusion, o);
@@ -244,7 +240,7 @@ void write_json(JsonWriter& json, const SensorOutlook& o, const Clock& clock) {
     json.field("frames_looked_at", std::int64_t(o.looked_for_exclusion));
     json.field("frames_excluded", std::int64_t(o.excluded_frames));
     for (const ExcludedFrames& of : o.excluded) {
-      json.key(of.body).begin_object().field("limit_deg", of.limit_deg);
+      json.key(of.body->key).begin_object().field("limit_deg", of.limit_deg);
       if (of.least_rad) json.field("least_deg", *of.least_rad / deg);
       json.field("frames", std::int64_t(of.count));
       if (of.count > 0) {

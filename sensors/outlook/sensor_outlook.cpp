@@ -11,7 +11,6 @@
 #include "core/effects/frame_effects.h"
 #include "sensors/outlook/frame_worlds.h"
 #include "sensors/outlook/outlook_text.h"
-#include "sensors/pipeline/exclusion.h"
 
 namespace dmise {
 namespace {
@@ -45,27 +44,21 @@ void look_for_exclusion(const Scenario& scenario, const SensorConfig& sensor,
                         const ObjectPopulation& needed, const StateSource& source,
                         std::uint32_t frames, FrameWorlds& worlds, SensorOutlook& out) {
   const Exclusion& limits = sensor.camera.exclusion;
-  const auto add = [&](std::string_view body, const std::optional<double>& limit_deg) {
-    if (limit_deg) out.excluded.push_back({.body = body, .limit_deg = *limit_deg});
-  };
-  add("sun", limits.sun_deg);
-  add("moon", limits.moon_deg);
-  add("earth_limb", limits.earth_limb_deg);
+  for (const ExcludingBody& body : excluding_bodies)
+    if (const auto& limit_deg = limits.*body.limit_deg)
+      out.excluded.push_back({.body = &body, .limit_deg = *limit_deg});
   for (const std::uint32_t frame : evenly(frames, most_frames_with_states)) {
     const FrameTimes exposure = frame_times(sensor, frame);
     const World world = worlds.around(exposure, needed, source);
     const View view(sensor, exposure, world, scenario.seed);
     const BodyAngles angles = body_angles(view);
-    const Excluded& in_force = view.excluded();
+    const Excluded in_force = excluded_by(limits, angles);
     ++out.looked_for_exclusion;
     out.excluded_frames += in_force.any();
     for (ExcludedFrames& of : out.excluded) {
-      const bool is_sun = of.body == "sun", is_moon = of.body == "moon";
-      const auto& angle = is_sun    ? angles.sun_rad
-                          : is_moon ? angles.moon_rad
-                                    : angles.earth_limb_rad;
-      if (angle) of.least_rad = std::min(of.least_rad.value_or(*angle), *angle);
-      if (!(is_sun ? in_force.sun : is_moon ? in_force.moon : in_force.earth_limb)) continue;
+      if (const auto& angle = angles.*of.body->angle_rad)
+        of.least_rad = std::min(of.least_rad.value_or(*angle), *angle);
+      if (!(in_force.*of.body->excluded)) continue;
       if (of.count++ == 0) {
         of.first = frame;
         of.first_middle = exposure.middle;

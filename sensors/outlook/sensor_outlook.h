@@ -7,12 +7,13 @@
 #include "core/time/clock.h"
 #include "sensors/outlook/camera_figures.h"
 #include "sensors/outlook/frame_outlook.h"
+#include "sensors/pipeline/exclusion.h"
 
 namespace dmise {
 
 /// Frames in which a body is nearer to the axis than the camera allows.
 struct ExcludedFrames {
-  std::string_view body;
+  const ExcludingBody* body = nullptr;
   double limit_deg = 0.0;
   std::uint32_t count = 0, first = 0, last = 0;
   SimTime first_middle, last_middle;

@@ -4,26 +4,15 @@
 #include <cmath>
 
 #include "core/optics/projection.h"
-#include "sensors/pipeline/throughput.h"
+#include "sensors/pipeline/even_tile.h"
 
 namespace dmise {
 namespace {
-
-constexpr int tile_px = 16;
 
 int kind(double radiance) { return radiance < 0.0 ? 0 : radiance == 0.0 ? 1 : 2; }
 /// Some are on the disc, or lit, and some are not.
 bool on_edge(std::span<const double> looks) {
   return std::ranges::any_of(looks, [&](double r) { return kind(r) != kind(looks[0]); });
-}
-
-/// Between 3 x 3 places, at parts of the way across.
-double bilinear(const double (&at)[9], double across, double down) {
-  const int i = across < 0.5 ? 0 : 1, j = down < 0.5 ? 0 : 1;
-  const double u = 2.0 * across - i, v = 2.0 * down - j;
-  const double* corner = at + 3 * j + i;
-  return (1.0 - v) * ((1.0 - u) * corner[0] + u * corner[1]) +
-         v * ((1.0 - u) * corner[3] + u * corner[4]);
 }
 
 }  // namespace
@@ -72,17 +61,7 @@ void DiscWindow::add_rows(SimTime t, double share, int first, int last) {
 }
 
 const ExtendedLight& DiscWindow::finish() {
-  const double electrons = Throughput(view_).electrons_per_photon_m2() * view_.times().seconds();
-  auto& light = window_.light;
-  threads_.for_ranges(std::size_t(light.rows), tile_px, [&](std::size_t begin, std::size_t end) {
-    for (int j = int(begin); j < int(end); ++j)
-      for (int i = 0; i < light.columns; ++i)
-        if (float& e = light.at(i, j); e > 0.0f) {
-          const PixelPosition at{double(window_.left + i), double(window_.top + j)};
-          e = float(double(e) * electrons * pixel_solid_angle_sr(optics_, at) *
-                    view_.illumination(at));
-        }
-  });
+  to_electrons(view_, window_, threads_);
   return window_;
 }
 
@@ -95,11 +74,7 @@ void DiscWindow::add_tile(const Look& look, double share, const DiscBox& tile) {
     double at[9];
     for (int k = 0; k < 9; ++k) at[k] = look(x + 0.5 * width * (k % 3), y + 0.5 * height * (k / 3));
     if (!on_edge(at) && kind(at[0]) < 2) return;
-    const double between[] = {0.25 * (at[0] + at[2] + at[6] + at[8]), 0.5 * (at[1] + at[7]),
-                              0.5 * (at[3] + at[5])};
-    if (!on_edge(at) && std::ranges::all_of(between, [&](double mean) {
-          return std::abs(mean - at[4]) < 4e-3 * at[4];
-        })) {
+    if (!on_edge(at) && is_even(at)) {
       for (int j = tile.top; j < tile.bottom; ++j)
         for (int i = tile.left; i < tile.right; ++i)
           window_.light.at(i, j) += float(

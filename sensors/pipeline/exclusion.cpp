@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/base/golden_section.h"
 #include "core/base/units.h"
 #include "core/sky/earth_limb.h"
 #include "core/sky/moon_disc.h"
@@ -34,30 +35,10 @@ using AngleAt = std::function<double(SimTime)>;
 
 /// The least angle between the neighbours of a time at which it is less than at these.
 double least_between(const AngleAt& angle, SimTime from, SimTime to, double least) {
-  constexpr double golden = 0.6180339887498949;
-  double low = 0.0, high = 1.0;
   const auto at = [&](double share) {
-    const double value = angle({from.ns + std::llround(share * double(to.ns - from.ns))});
-    least = std::min(least, value);
-    return value;
+    return angle({from.ns + std::llround(share * double(to.ns - from.ns))});
   };
-  double a = high - golden, b = low + golden, of_a = at(a), of_b = at(b);
-  while (high - low > found_within) {
-    if (of_a < of_b) {
-      high = b;
-      b = a;
-      of_b = of_a;
-      a = high - golden * (high - low);
-      of_a = at(a);
-    } else {
-      low = a;
-      a = b;
-      of_a = of_b;
-      b = low + golden * (high - low);
-      of_b = at(b);
-    }
-  }
-  return least;
+  return std::min(least, golden_section(at, 0.0, 1.0, found_within).value);
 }
 
 /// Where the angles of an exposure are looked at.
@@ -130,12 +111,13 @@ BodyAngles body_angles(const View& view) {
 }
 
 Excluded excluded_by(const Exclusion& exclusion, const BodyAngles& angles) {
-  const auto nearer = [](const std::optional<double>& angle_rad,
-                         const std::optional<double>& limit_deg) {
-    return angle_rad && limit_deg && *angle_rad < *limit_deg * deg;
-  };
-  return {nearer(angles.sun_rad, exclusion.sun_deg), nearer(angles.moon_rad, exclusion.moon_deg),
-          nearer(angles.earth_limb_rad, exclusion.earth_limb_deg)};
+  Excluded excluded;
+  for (const ExcludingBody& body : excluding_bodies) {
+    const auto& angle_rad = angles.*body.angle_rad;
+    const auto& limit_deg = exclusion.*body.limit_deg;
+    excluded.*body.excluded = angle_rad && limit_deg && *angle_rad < *limit_deg * deg;
+  }
+  return excluded;
 }
 
 }  // namespace dmise

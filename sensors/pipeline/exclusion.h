@@ -1,5 +1,7 @@
 #pragma once
+#include <array>
 #include <optional>
+#include <string_view>
 
 #include "core/optics/exclusion.h"
 
@@ -14,10 +16,23 @@ struct BodyAngles {
   std::optional<double> earth_limb_rad;     // from its nearest point, in orbit; < 0: at the Earth
 };
 
+/// A body that may exclude, wherever one is told of.
+struct ExcludingBody {
+  std::string_view key;
+  const char* name;
+  std::optional<double> Exclusion::*limit_deg;
+  std::optional<double> BodyAngles::*angle_rad;
+  bool Excluded::*excluded;
+};
+inline constexpr std::array<ExcludingBody, 3> excluding_bodies{
+    {{"sun", "the Sun", &Exclusion::sun_deg, &BodyAngles::sun_rad, &Excluded::sun},
+     {"moon", "the Moon", &Exclusion::moon_deg, &BodyAngles::moon_rad, &Excluded::moon},
+     {"earth_limb", "the Earth's limb", &Exclusion::earth_limb_deg, &BodyAngles::earth_limb_rad,
+      &Excluded::earth_limb}}};
+
 /// Those that the camera has a limit for. Of the axis as it is, with what the sensor does not know
 /// of its pointing, and of the places where the bodies are seen, with all effects of place that the
-/// scenario asks for. To 1e-6 rad, also of a camera that turns
-/// many times in an exposure.
+/// scenario asks for. To 1e-6 rad, also of a camera that turns many times in an exposure.
 BodyAngles body_angles(const View& view);
 
 /// Which of them are less than the camera's limits.

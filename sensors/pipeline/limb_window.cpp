@@ -6,12 +6,11 @@
 #include <limits>
 
 #include "core/optics/projection.h"
-#include "sensors/pipeline/throughput.h"
+#include "sensors/pipeline/even_tile.h"
 
 namespace dmise {
 namespace {
 
-constexpr int tile_px = 16;
 /// A pixel whose corners' lines are further apart over the ground is sampled, twice every so much
 /// at least.
 constexpr double fine_m = 1e3;
@@ -75,17 +74,7 @@ LimbWindow::Look LimbWindow::look(const Row& row, double x_px, double y_px) cons
 const ExtendedLight& LimbWindow::drawn() {
   const auto drawn_at = times();
   for (const SimTime t : drawn_at) add(t, 1.0f / float(drawn_at.size()));
-  const double electrons = Throughput(view_).electrons_per_photon_m2() * view_.times().seconds();
-  auto& light = window_.light;
-  threads_.for_ranges(std::size_t(light.rows), tile_px, [&](std::size_t begin, std::size_t end) {
-    for (int j = int(begin); j < int(end); ++j)
-      for (int i = 0; i < light.columns; ++i)
-        if (float& e = light.at(i, j); e > 0.0f) {
-          const PixelPosition at{double(window_.left + i), double(window_.top + j)};
-          e = float(double(e) * electrons * pixel_solid_angle_sr(optics_, at) *
-                    view_.illumination(at));
-        }
-  });
+  to_electrons(view_, window_, threads_);
   return window_;
 }
 
@@ -106,12 +95,12 @@ void LimbWindow::add_tile(const std::vector<Row>& rows, float share, const DiscB
   const double x = window_.left + tile.left - 0.5, y = window_.top + tile.top - 0.5;
   const double width = tile.right - tile.left, height = tile.bottom - tile.top;
   double lowest_m = std::numeric_limits<double>::infinity(), highest_m = -lowest_m;
-  std::array<double, 9> at;
+  double at[9];
   bool imaged = true;
   for (int k = 0; k < 9; ++k) {
     const int row = std::min(tile.bottom - 1, tile.top + int(0.5 * height * (k / 3)));
     const Look seen = look(of(rows, row), x + 0.5 * width * (k % 3), y + 0.5 * height * (k / 3));
-    at[std::size_t(k)] = seen.radiance;
+    at[k] = seen.radiance;
     imaged = imaged && seen.imaged;
     if (!seen.imaged) continue;
     lowest_m = std::min(lowest_m, seen.height_m);
@@ -122,20 +111,11 @@ void LimbWindow::add_tile(const std::vector<Row>& rows, float share, const DiscB
   const bool before_ground = imaged && highest_m + spread_m < 0.0;
   if (before_ground && !source_.before_ground) return;
   if (before_ground || (imaged && lowest_m - spread_m > 0.0 && spread_m < even_m)) {
-    const double between[] = {0.25 * (at[0] + at[2] + at[6] + at[8]), 0.5 * (at[1] + at[7]),
-                              0.5 * (at[3] + at[5])};
-    if (std::ranges::all_of(between,
-                            [&](double mean) { return std::abs(mean - at[4]) < 4e-3 * at[4]; })) {
+    if (is_even(at)) {
       for (int j = tile.top; j < tile.bottom; ++j)
-        for (int i = tile.left; i < tile.right; ++i) {
-          const double across = 2.0 * (i + 0.5 - tile.left) / width;
-          const double down = 2.0 * (j + 0.5 - tile.top) / height;
-          const int u = across < 1.0 ? 0 : 1, v = down < 1.0 ? 0 : 1;
-          const double* corner = at.data() + 3 * v + u;
-          window_.light.at(i, j) +=
-              share * float(std::lerp(std::lerp(corner[0], corner[1], across - u),
-                                      std::lerp(corner[3], corner[4], across - u), down - v));
-        }
+        for (int i = tile.left; i < tile.right; ++i)
+          window_.light.at(i, j) += share * float(bilinear(at, (i + 0.5 - tile.left) / width,
+                                                           (j + 0.5 - tile.top) / height));
       return;
     }
   }

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/config/effect_list.h"
-#include "core/config/sensor_config.h"
+#include "core/config/effects_config.h"
 #include "core/effects/frame_effects.h"
 #include "core/optics/image_optics.h"
 

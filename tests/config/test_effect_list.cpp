@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/base/text_file.h"
-#include "core/config/sensor_config.h"
+#include "core/config/effects_config.h"
 #include "core/effects/frame_effects.h"
 #include "core/facets/facet_light.h"
 #include "core/sky/air_effects.h"

@@ -1,0 +1,17 @@
+#pragma once
+#include "core/config/scenario.h"
+#include "core/config/yaml_reader.h"
+
+namespace dmise {
+
+/// Reads `effects:` of a scenario or a sensor and applies it to `effects`. Throws `ConfigError`.
+void read_effects(const YamlValue& value, EffectSet& effects);
+
+/// Reads `accuracy:` of a scenario or a sensor. Throws `ConfigError`.
+Accuracy read_accuracy(const YamlValue& value);
+
+// What the tables of scenarios are made of.
+Forms effects_forms();
+Forms accuracy_forms();
+
+}  // namespace dmise
