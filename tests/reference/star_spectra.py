@@ -73,7 +73,7 @@ RED_DWARFS = np.array([
     (2.000, 1.300, 1.950, 4.130, 7.300, 0.605, 0.352),
 ])
 # Giants M0 to M7: B-V and U-B are medians of the Yale Bright Star Catalogue (72 to 10 giants), V-R that of dwarfs of the
-# V-I, the rest of Bessell & Brett 1988, PASP 100, 1134, tables II and III; V-I of M6 and M7 by steps of theirs in V-K.
+# V-I, the rest of Bessell & Brett 1988, PASP 100, 1134; V-I of M6 and M7 by steps of theirs in V-K.
 M_GIANTS = np.array([
     (1.585, 1.945, 0.893, 1.780, 3.850, 0.830, 0.190),
     (1.630, 1.950, 0.926, 1.900, 4.050, 0.850, 0.205),
