@@ -57,7 +57,7 @@ double checked_value(std::string_view card, bool divides, const std::string& nam
 
 }  // namespace
 
-void require_harmless_headers(std::string_view bytes, const std::string& name) {
+std::size_t require_harmless_headers(std::string_view bytes, const std::string& name) {
   std::size_t at = 0;
   while (at + card_size <= bytes.size()) {
     double bits = 8, elements = 0, extra = 0, groups = 1;
@@ -79,10 +79,11 @@ void require_harmless_headers(std::string_view bytes, const std::string& name) {
       if (key.starts_with("NAXIS") && key.size() > 5) elements *= value;
     }
     const double data = bits / 8 * groups * (extra + elements);
-    if (!ended || !(data >= 0 && data < largest_file)) return;
+    if (!ended || !(data >= 0 && data < largest_file)) break;
     at = (at + block_size - 1) / block_size * block_size;
     at += (static_cast<std::size_t>(data) + block_size - 1) / block_size * block_size;
   }
+  return at;
 }
 
 }  // namespace dmise

@@ -111,6 +111,7 @@ TEST(GaiaStars, TablesThatAreNoCatalogueAreRefusedInALine) {
     EXPECT_TRUE(problem.starts_with("gaia.fits: ")) << size << " " << problem;
     EXPECT_EQ(problem.find('\n'), problem.npos);
   }
+  EXPECT_EQ(problem_of(whole.substr(0, 5760)), "gaia.fits: is truncated: 5760 of 8640 bytes");
 }
 
 }  // namespace
