@@ -12,7 +12,6 @@
 namespace dmise {
 namespace {
 
-constexpr double albedo = 0.2;
 constexpr double least_elevation_sine = 0.17;
 
 }  // namespace

@@ -133,7 +133,7 @@ class LiveTerminal {
 };
 
 /// Shows the run until it ends, q, Ctrl-C, or `lost_after_s` without an answer.
-void watch(const StatusOptions& options, const Security& security, RunStatus status) {
+void watch(const StatusOptions& options, const Security& security, const RunStatus& status) {
   constexpr double lost_after_s = 10.0;
   stop_signal();
   StatusWatch run;

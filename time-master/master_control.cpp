@@ -1,6 +1,8 @@
 // Control messages of nodes, agents and observers, and what the time-master answers.
 #include <spdlog/spdlog.h>
 
+#include <utility>
+
 #include "core/base/printable.h"
 #include "nodes/runtime/process/json_log.h"
 #include "nodes/runtime/process/monotonic_clock.h"
@@ -130,7 +132,7 @@ void MasterProcess::join(std::string_view sender, zmq::message_t& frame) {
   else if (join.observer() && join.ByteSizeLong() > most_observed_bytes)
     refusal = "an observer's topics may have 64 KiB in all";
   else if (auto fault = join.observer() ? std::nullopt : owners_.fault_of(join))
-    refusal = fault;
+    refusal = std::move(fault);
   else
     refusal = coordinator_.join(request, now());
   if (refusal) {

@@ -20,8 +20,10 @@ MappedFile::MappedFile(const std::string& path) {
   const auto size = regular ? std::size_t(info.st_size) : 0;
   void* at = nullptr;
   int reason = 0;
-  if (size > 0 && (at = mmap(nullptr, size, PROT_READ, MAP_SHARED, file, 0)) == MAP_FAILED)
-    reason = errno;
+  if (size > 0) {
+    at = mmap(nullptr, size, PROT_READ, MAP_SHARED, file, 0);
+    if (at == MAP_FAILED) reason = errno;
+  }
   close(file);
   if (!regular) throw Error(path + ": is not a regular file");
   if (reason != 0) throw Error(path + ": can't be mapped: " + std::strerror(reason));

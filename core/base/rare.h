@@ -13,7 +13,10 @@ class Rare {
   Rare(const std::optional<T>& value) : value_(value ? std::make_unique<T>(*value) : nullptr) {}
   Rare(const Rare& other) : value_(other.value_ ? std::make_unique<T>(*other) : nullptr) {}
   Rare(Rare&&) noexcept = default;
-  Rare& operator=(const Rare& other) { return *this = Rare(other); }
+  Rare& operator=(const Rare& other) {
+    *this = Rare(other);
+    return *this;
+  }
   Rare& operator=(Rare&&) noexcept = default;
   ~Rare() = default;
 

@@ -98,7 +98,7 @@ void subtract_light(const float* light, float hidden, std::size_t count, bool od
     const Row half = scaled < 0.0F ? of(-0.5F) : of(0.5F);
     const RowMask step = __builtin_convertvector(scaled + half, RowMask);
     const RowMask seen = step != 0 ? step : sign_of_zero;
-    const RowMask left = (wide == 0) | (drawn > hidden) ? RowMask{} : seen;
+    const RowMask left = ((wide == 0) | (drawn > hidden)) ? RowMask{} : seen;
     const Steps after = __builtin_convertvector(left, Steps);
     __builtin_memcpy(steps + x, &after, n);
   }

@@ -28,7 +28,7 @@ struct NormalLanes {
   F64 pdf(F64 x) const __attribute__((always_inline)) {
     const Near near(x);
     const F64 p = gather(table.pdf, near.at);
-    return (x > -NormalTable::reach) & (x <= NormalTable::reach) ? near.pdf(p) : F64{};
+    return ((x > -NormalTable::reach) & (x <= NormalTable::reach)) ? near.pdf(p) : F64{};
   }
   void both(F64 x, F64& cdf, F64& pdf) const __attribute__((always_inline)) {
     const F64 above = x > NormalTable::reach ? F64{} + 1.0 : F64{};

@@ -37,7 +37,7 @@ DMISE_ALWAYS_INLINE FourDerivatives<V> of_gaussian(V x, V p, double s) {
 template <class V, class Normal, class Within>
 DMISE_ALWAYS_INLINE V light_of_trail(const TrailShape& t, V px, V py, const Normal& normal,
                                      const Within& within, V* d) {
-  const V zero = px - px;
+  const V zero{};
   const V dx = px - t.x_px, dy = py - t.y_px;
   const V along = dx * t.cos_angle + dy * t.sin_angle, across = dy * t.cos_angle - dx * t.sin_angle;
   const double length = t.length_px;

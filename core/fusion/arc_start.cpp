@@ -109,7 +109,8 @@ std::vector<ArcStart::Arc> ArcStart::arcs_to(const LooseSource& last,
         (exposures.empty() || exposures.back() != s->frame))
       exposures.push_back(s->frame);
   const auto at = [&](std::uint32_t frame) -> std::span<const LooseSource> {
-    const auto [first, end] = std::ranges::equal_range(earlier, frame, {}, &LooseSource::frame);
+    const auto first = std::ranges::lower_bound(earlier, frame, {}, &LooseSource::frame);
+    const auto end = std::ranges::upper_bound(earlier, frame, {}, &LooseSource::frame);
     return {first, end};
   };
   std::vector<Arc> arcs;

@@ -60,8 +60,7 @@ FusionTick FusionBody::step(SimTime time, std::vector<SensorFrame> frames) {
   age(time);
 
   FusionTick out;
-  std::uint32_t taken = 0, sources = 0;
-  for (const SensorFrame& frame : frames) sources += std::uint32_t(frame.sources.size());
+  std::uint32_t taken = 0;
   for (const auto& track : tracks_) {
     if (track->status != TrackStatus::lost) ++out.live;
     if (!track->changed) continue;

@@ -93,7 +93,10 @@ void add_card(FitsValues& values, const std::string& card) {
   std::string value;
   if (at != std::string::npos && card[at] == '\'') {
     for (++at; at < card.size(); ++at) {
-      if (card[at] == '\'' && (at + 1 >= card.size() || card[++at] != '\'')) break;
+      if (card[at] == '\'') {  // one ends the text, two are one of it
+        ++at;
+        if (at >= card.size() || card[at] != '\'') break;
+      }
       value += card[at];
     }
   } else if (at != std::string::npos) {

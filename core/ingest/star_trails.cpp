@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/quantile.h"
@@ -141,7 +142,7 @@ void measure_attitudes(const StandardCards& cards, const CountImage& counts, con
     set_at_rest(at_rest);
     const MedianOf ratio = elongation_at_rest(at_rest, counts, shape);
     if (ratio.error < 0.15 && ratio.value > 0.6 && ratio.value < 1.8) {
-      header = at_rest;
+      header = std::move(at_rest);
       const auto trail = trail_in_the_middle(header, counts.columns, counts.rows);
       cards.assumed("mount: at rest: " + trail_text(trail) + ", as the Earth turns");
       return;

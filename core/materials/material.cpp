@@ -32,7 +32,7 @@ Brdf brdf_of(const Material& m, Value&& value) {
 
 }  // namespace
 
-Material sandford_robertson_of(std::string name, Curve reflectance, double diffuse_share,
+Material sandford_robertson_of(std::string name, const Curve& reflectance, double diffuse_share,
                                double grazing, double lobe_width) {
   const double mean = sandford_robertson_mean(grazing);
   Material m{.name = std::move(name),

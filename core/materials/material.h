@@ -36,7 +36,7 @@ struct Material {
 
 /// Sandford-Robertson whose reflectance at normal incidence is `reflectance`, of which
 /// `diffuse_share` is diffuse: eps = (1 - R) G(b), rho_D = share R G(b).
-Material sandford_robertson_of(std::string name, Curve reflectance, double diffuse_share,
+Material sandford_robertson_of(std::string name, const Curve& reflectance, double diffuse_share,
                                double grazing, double lobe_width);
 
 /// BRDF at one wavelength.

@@ -8,7 +8,7 @@ namespace {
 
 double in_unit(double value, double unit) { return value / unit; }
 template <class T>
-const T& in_unit(const T& value, int) {
+T in_unit(const T& value, int) {
   return value;
 }
 

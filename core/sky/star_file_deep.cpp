@@ -21,7 +21,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "records are read as they lie there");
 
-constexpr std::size_t text_bytes = 124, field_bytes = 16, trixel_bytes = 12, record_bytes = 32;
+constexpr std::size_t text_bytes = 124, trixel_bytes = 12, record_bytes = 32;
 constexpr std::int16_t byte_order_mark = 0x4B53;
 constexpr std::int32_t most_trixels = 8 << 14;
 

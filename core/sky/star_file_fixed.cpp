@@ -42,7 +42,7 @@ StarReading parse_kstars(std::string_view text, const std::string& name) {
     star.v_mag = *v;
     star.spectral_type = columns(line, 57, 58);
     const char letter = star.spectral_type.empty() ? ' ' : star.spectral_type[0];
-    if (*bv != 0 || letter == 'O' || letter == 'B' || letter == 'A') star.bv = *bv;
+    if (*bv != 0 || letter == 'O' || letter == 'B' || letter == 'A') star.bv = bv;
     if (const char* why = append_star(reading.catalogue, star)) refuse(why);
   });
   return reading;

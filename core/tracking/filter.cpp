@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 #include <variant>
 
 #include "core/base/error.h"
@@ -90,7 +91,7 @@ struct OrbitFilter::Body {
     RootGaussian belief = previous.belief;
     if (!next.seen) {
       // The orbit stays: only a later observation moves it.
-      next.belief = belief;
+      next.belief = std::move(belief);
       const double p = next.detection_probability, e = previous.existence;
       next.existence = e * (1 - p) / (1 - e * p);
       return {};

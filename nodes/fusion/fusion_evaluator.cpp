@@ -131,10 +131,10 @@ FusionEvaluator::Found FusionEvaluator::fuse(Tick tick, std::span<const Message>
   out.unassociated = found.unassociated;
   out.tracks = std::move(found.tracks);
   ++progress_;
-  return {std::move(out), schedule(tick)};
+  return {std::move(out), tasks_of(tick)};
 }
 
-std::vector<Task> FusionEvaluator::schedule(Tick tick) {
+std::vector<Task> FusionEvaluator::tasks_of(Tick tick) {
   const Tick delay = scenario_.fusion->cue_delay_ticks;
   const SimTime begin = scenario_.time_of(tick + delay), next = scenario_.time_of(tick + delay + 1);
   if (!scheduler_ || !scheduler_->is_asked(begin, next)) return {};

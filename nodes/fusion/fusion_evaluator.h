@@ -50,7 +50,7 @@ class FusionEvaluator : public Evaluator {
     std::vector<Task> tasks;
   };
   Found fuse(Tick tick, std::span<const Message> inputs);
-  std::vector<Task> schedule(Tick tick);
+  std::vector<Task> tasks_of(Tick tick);
   void open_files(Tick tick);
   void write(const Found& found);
 

@@ -42,7 +42,6 @@ class RunObserver::Connections {
         security_(options.keys, options.name),
         subscription_(make_socket(context_, zmq::socket_type::sub, max_data_bytes)),
         broker_(subscription_),
-        latest_(latest),
         view_(latest, history, options.takes_truth) {
     subscription_.set(zmq::sockopt::rcvhwm, unread_messages);
     for (const char* topic : topics) subscription_.set(zmq::sockopt::subscribe, topic);
@@ -275,7 +274,6 @@ class RunObserver::Connections {
   BrokerPlace broker_;
   std::optional<zmq::socket_t> master_, control_, roster_, truth_;
   std::map<std::string, std::string> truth_endpoints_;  // by sensor
-  LatestMessages& latest_;
   LiveView view_;
   LimitedLog log_;
   RunFacts run_;

@@ -84,8 +84,8 @@ class Visitor : public Connection, public std::enable_shared_from_this<Visitor> 
 
   void send_frame(const FrameRequest& request) {
     const std::uint64_t ticket = ++hub_.last_ticket;
-    hub_.waiting[ticket] = [self = shared_from_this()](SharedPreview png) {
-      self->send_preview(std::move(png));
+    hub_.waiting[ticket] = [self = shared_from_this()](const SharedPreview& png) {
+      self->send_preview(png);
     };
     hub_.content.previews.request(request.sensor, request.frame,
                                   [thread = hub_.thread, hub = &hub_, ticket](SharedPreview png) {
@@ -96,7 +96,7 @@ class Visitor : public Connection, public std::enable_shared_from_this<Visitor> 
                                   });
   }
 
-  void send_preview(SharedPreview png) {
+  void send_preview(const SharedPreview& png) {
     if (!png) return refuse(http::status::not_found, "no preview of this frame");
     Answer answer = begin(http::status::ok);
     answer.set(http::field::content_type, "image/png");

@@ -69,7 +69,8 @@ struct Sensor {
 /// "": there is none.
 std::string preview_of(FramePreviews& previews, const std::string& sensor, std::uint32_t frame) {
   auto answered = std::make_shared<std::promise<SharedPreview>>();
-  previews.request(sensor, frame, [answered](SharedPreview found) { answered->set_value(found); });
+  previews.request(sensor, frame,
+                   [answered](const SharedPreview& found) { answered->set_value(found); });
   const SharedPreview found = answered->get_future().get();
   return found ? *found : "";
 }
@@ -125,7 +126,7 @@ TEST(FramePreviews, ManyAreAnsweredInTheirOrder) {
   previews.follow(run_id, {{"alpha", sensor.address}});
   std::vector<std::promise<SharedPreview>> answers(30);
   for (std::size_t i = 0; i < answers.size(); ++i)
-    previews.request("alpha", std::uint32_t(i % 6), [&answers, i](SharedPreview found) {
+    previews.request("alpha", std::uint32_t(i % 6), [&answers, i](const SharedPreview& found) {
       answers[i].set_value(std::move(found));
     });
   for (std::size_t i = 0; i < answers.size(); ++i)

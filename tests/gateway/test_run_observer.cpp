@@ -74,9 +74,9 @@ TEST(RunObserver, SeesARunItJoinsLateAndControlsItsClock) {
   test::ToyCamera camera("a");
   Environment environment;
   Event stop;
-  auto nodes = {test::start(orbit, master.address, &stop),
-                test::start(camera, master.address, &stop),
-                test::start(environment, master.address, &stop)};
+  [[maybe_unused]] auto nodes = {test::start(orbit, master.address, &stop),
+                                 test::start(camera, master.address, &stop),
+                                 test::start(environment, master.address, &stop)};
   const auto settled = [&] { return ask_master(master.address, 30.0).settled; };
   test::wait_until_settled(master.address, 5);
 

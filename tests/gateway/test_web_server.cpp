@@ -66,7 +66,7 @@ std::string get(const WebServer& server, const std::string& target, const std::s
 }
 
 struct Site {
-  explicit Site(WebServerOptions options = {})
+  explicit Site(const WebServerOptions& options = {})
       : files(dashboard()),
         server(options, {files, latest, history, previews, [this](const ClockCommand& command) {
                            if (busy) return false;

@@ -105,8 +105,10 @@ double half_light_radius_px(const PsfKernel& k, int cells) {
       rings.emplace_back(std::hypot(dx, dy) / cells, k.at(dx, dy));
   std::sort(rings.begin(), rings.end());
   double light = 0;
-  for (const auto& [radius, share] : rings)
-    if ((light += share) >= 0.5) return radius;
+  for (const auto& [radius, share] : rings) {
+    light += share;
+    if (light >= 0.5) return radius;
+  }
   return 0;
 }
 

@@ -177,7 +177,6 @@ TEST_F(RunFiles, RefusalsNameFileLineAndKey) {
     put();
     const auto at = line.find(from);
     EXPECT_NE(at, std::string::npos) << from;
-    const std::string good = line;
     line.replace(at, from.size(), to);
     write(file, line + "\n");
     std::string text = refusal();

@@ -107,7 +107,7 @@ def touched(names, commands, includes):
 def read(path, build, end):
     if time.monotonic() > end:
         return path, None, "", ""
-    done = subprocess.run(["clang-tidy", "--quiet", "-p", str(build / "tidy"), path], cwd=ROOT,
+    done = subprocess.run(["clang-tidy", "--quiet", "-p", str(build / "read"), path], cwd=ROOT,
                           capture_output=True, text=True)
     return path, done.returncode, done.stdout, done.stderr
 
@@ -128,8 +128,8 @@ def main():
             return 2
     build = Path(build).resolve()
     commands, includes = commands_of(build), Includes()
-    (build / "tidy").mkdir(exist_ok=True)
-    (build / "tidy/compile_commands.json").write_text(json.dumps(
+    (build / "read").mkdir(exist_ok=True)
+    (build / "read/compile_commands.json").write_text(json.dumps(
         [{"directory": str(build), "file": str(ROOT / path), "arguments": words} for path, words in commands.items()]))
     common = subprocess.run(["clang-tidy", "--version"], capture_output=True, check=True).stdout
     common += b"".join(path.read_bytes() for path in (ROOT / ".clang-tidy", ROOT / "tests/.clang-tidy"))

@@ -48,7 +48,8 @@ std::string described(std::string name, std::string text) {
 }  // namespace
 
 std::string bash_completion(const CLI::App& app) {
-  const std::string name = app.get_name(), function = "_" + name;
+  const std::string& name = app.get_name();
+  const std::string function = "_" + name;
   std::string text = "# Completion of " + name + " for bash: written by `" + name +
                      " completion bash`.\n" + function +
                      "() {\n  local current=${COMP_WORDS[COMP_CWORD]} at=" + name +
@@ -79,7 +80,8 @@ std::string bash_completion(const CLI::App& app) {
 }
 
 std::string zsh_completion(const CLI::App& app) {
-  const std::string name = app.get_name(), function = "_" + name;
+  const std::string& name = app.get_name();
+  const std::string function = "_" + name;
   std::string text = "#compdef " + name + "\n# Written by `" + name + " completion zsh`.\n" +
                      function + "() {\n  local at=" + name +
                      " word\n  local -a commands options\n"
