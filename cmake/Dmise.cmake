@@ -12,6 +12,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)  # for clang-tidy
 
 set(DMISE_SANITIZE "" CACHE STRING "sanitizers to build with, as for -fsanitize=")
 option(DMISE_FUZZ "build the libFuzzer targets (clang)" OFF)
+set(DMISE_TEST_OBJECTS "" CACHE PATH "tree whose compiled tests are linked to the libraries of this one")
 option(DMISE_WERROR "treat warnings as errors" ON)
 option(DMISE_PRECOMPILE "read the standard library and GoogleTest once for all tests, with sanitizers for all sources" ON)
 
@@ -28,12 +29,12 @@ if(DMISE_WERROR)
 endif()
 if(DMISE_SANITIZE)
   add_compile_options(-fsanitize=${DMISE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
-  add_link_options(-fsanitize=${DMISE_SANITIZE})
-endif()
-if(DMISE_FUZZ)
-  add_compile_options(-fsanitize=fuzzer-no-link)
+  add_link_options(-fsanitize=${DMISE_SANITIZE} -fuse-ld=lld)
 endif()
 include_directories(${CMAKE_SOURCE_DIR})
+
+# For what compiles longer than it runs: tests and commands, but not what they call.
+set(DMISE_ONCE "$<$<CONFIG:Release>:-O1>")
 
 if(DMISE_PRECOMPILE)
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp CONTENT "int main() {}\n")
@@ -45,6 +46,7 @@ if(DMISE_PRECOMPILE)
   endif()
   add_executable(precompiled_tests EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cpp)
   target_link_libraries(precompiled_tests PRIVATE GTest::gtest GTest::gmock)
+  target_compile_options(precompiled_tests PRIVATE ${DMISE_ONCE})
   target_precompile_headers(precompiled_tests PRIVATE ${often} <gmock/gmock.h> <gtest/gtest.h>)
 endif()
 
@@ -119,13 +121,35 @@ function(dmise_module name)
   install(TARGETS ${name} LIBRARY DESTINATION lib/dmise COMPONENT runtime)
 endfunction()
 
-# dmise_test(NAME SOURCES test_a.cpp ... [DEPENDS lib ...]): a GoogleTest program, each TEST a ctest.
+# dmise_test(NAME SOURCES test_a.cpp ... [DEPENDS lib ...]): a GoogleTest program, each TEST a ctest. Target
+# `unit_tests` builds them all, and unit-tests.txt in the build directory names them.
+add_custom_target(unit_tests)
 function(dmise_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  if(DMISE_TEST_OBJECTS)
+    compiled_elsewhere(ARG_SOURCES ${name} ${ARG_SOURCES})
+  endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main)
+  add_dependencies(unit_tests ${name})
+  set_property(GLOBAL APPEND PROPERTY DMISE_TESTS ${name})
+  if(DMISE_TEST_OBJECTS)
+    set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)
+    return()
+  endif()
   target_compile_definitions(${name} PRIVATE
     DMISE_SOURCE_DIR="${CMAKE_SOURCE_DIR}" DMISE_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  target_compile_options(${name} PRIVATE ${DMISE_ONCE})
   precompile(${name} precompiled_tests)
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
+endfunction()
+
+# compiled_elsewhere(VARIABLE TARGET a.cpp ..): what these sources of the target are in DMISE_TEST_OBJECTS.
+function(compiled_elsewhere variable target)
+  file(RELATIVE_PATH here ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  list(TRANSFORM ARGN REPLACE "\\.\\./" "__/")
+  list(TRANSFORM ARGN PREPEND "${DMISE_TEST_OBJECTS}/${here}/CMakeFiles/${target}.dir/")
+  list(TRANSFORM ARGN APPEND ".o")
+  set_source_files_properties(${ARGN} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+  set(${variable} ${ARGN} PARENT_SCOPE)
 endfunction()
