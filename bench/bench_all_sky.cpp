@@ -236,7 +236,7 @@ void measure_all_sky(bool json) {
     };
     for (int i = 0; i < repeats; ++i) make();
     const double s = median(measured.cpu_s);
-    print_figure({"all_sky_s", s, "s", "", 0, 0.25, true}, json);
+    print_figure({"all_sky_s", s, "s", "", 0, 0.18, true}, json);
     print_figure({"all_sky_wall_s", median(measured.wall_s), "s"}, json);
     print_stages(measured, json);
     print_figure({"all_sky_stars", double(stars), "1"}, json);
