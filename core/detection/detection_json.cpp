@@ -7,16 +7,11 @@
 #include "core/detection/unknown_fields.h"
 #include "core/photometry/magnitude_system.h"
 #include "core/products/detection_fields.h"
+#include "core/products/field_value.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
 namespace {
-
-double in_unit(double value, double unit) { return value / unit; }
-template <class T>
-T in_unit(const T& value, int) {
-  return value;
-}
 
 const char* name_of(DetectionKind kind) { return detection_kind_name(kind); }
 const char* name_of(ExposureEpoch epoch) { return exposure_epoch_name(epoch); }

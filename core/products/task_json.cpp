@@ -1,18 +1,10 @@
 #include "core/products/task_json.h"
 
 #include "core/base/json.h"
+#include "core/products/field_value.h"
 #include "core/products/task_fields.h"
 
 namespace dmise {
-namespace {
-
-double in_unit(double value, double unit) { return value / unit; }
-template <class T>
-T in_unit(const T& value, int) {
-  return value;
-}
-
-}  // namespace
 
 std::string to_json(const Task& t, const std::function<std::string(SimTime)>& utc) {
   JsonWriter json;
