@@ -15,7 +15,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
-constexpr milliseconds look_interval{100};  // between checks of connections, while there are any
+constexpr milliseconds look_interval{20};  // between checks of connections, while there are any
 constexpr milliseconds idle{1000};
 constexpr int requests_at_once = 256;
 constexpr std::size_t remembered_readers = 2 * FrameServer::most_readers;
