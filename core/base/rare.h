@@ -14,7 +14,7 @@ class Rare {
   Rare(const Rare& other) : value_(other.value_ ? std::make_unique<T>(*other) : nullptr) {}
   Rare(Rare&&) noexcept = default;
   Rare& operator=(const Rare& other) {
-    *this = Rare(other);
+    if (this != &other) *this = Rare(other);
     return *this;
   }
   Rare& operator=(Rare&&) noexcept = default;
