@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 
@@ -19,7 +20,8 @@ using std::chrono::duration;
 
 namespace {
 
-constexpr std::chrono::milliseconds look_interval{100};  // between checks of connection limits
+/// Between checks of connections, while there are any.
+constexpr std::chrono::milliseconds look_interval{50};
 constexpr int questions_at_once = 64;
 constexpr std::chrono::seconds gone_after{5};  // of a time-master that is silent after the end
 
@@ -64,13 +66,16 @@ void HeartbeatThread::run() {
     std::vector<zmq::pollitem_t> items{{nullptr, quit_.fd(), ZMQ_POLLIN, 0},
                                        {heartbeat_.handle(), 0, ZMQ_POLLIN, 0}};
     if (resend_) items.push_back({resend_->handle(), 0, ZMQ_POLLIN, 0});
-    wait_for(items, next_beat - now());
+    if (askers_) items.push_back({askers_->handle(), 0, ZMQ_POLLIN, 0});
+    // A message without an end wakes nobody.
+    wait_for(items,
+             (askers_ && askers_->size() > 0 ? std::min(next_beat, next_look) : next_beat) - now());
     // While this process was suspended it could not receive anything.
     if (now() - awake > options_.silent_after / 2) heard_ = now();
     awake = now();
     handle_replies();
     if (resend_) answer();
-    if (askers_ && now() >= next_look) {
+    if (askers_ && (items.back().revents || now() >= next_look)) {
       for (const std::string& closed : askers_->enforce(now())) spdlog::warn("{}", closed);
       askers_->forget(askers_->broken());
       next_look = now() + look_interval;
