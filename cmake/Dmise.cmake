@@ -34,7 +34,7 @@ endif()
 include_directories(${CMAKE_SOURCE_DIR})
 
 # For what compiles longer than it runs: tests and commands, but not what they call.
-set(DMISE_ONCE "$<$<CONFIG:Release>:-O1>")
+set(DMISE_QUICK_TO_COMPILE "$<$<CONFIG:Release>:-O1>")
 
 if(DMISE_PRECOMPILE)
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp CONTENT "int main() {}\n")
@@ -46,7 +46,7 @@ if(DMISE_PRECOMPILE)
   endif()
   add_executable(precompiled_tests EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled.cpp)
   target_link_libraries(precompiled_tests PRIVATE GTest::gtest GTest::gmock)
-  target_compile_options(precompiled_tests PRIVATE ${DMISE_ONCE})
+  target_compile_options(precompiled_tests PRIVATE ${DMISE_QUICK_TO_COMPILE})
   target_precompile_headers(precompiled_tests PRIVATE ${often} <gmock/gmock.h> <gtest/gtest.h>)
 endif()
 
@@ -139,7 +139,7 @@ function(dmise_test name)
   endif()
   target_compile_definitions(${name} PRIVATE
     DMISE_SOURCE_DIR="${CMAKE_SOURCE_DIR}" DMISE_BINARY_DIR="${CMAKE_BINARY_DIR}")
-  target_compile_options(${name} PRIVATE ${DMISE_ONCE})
+  target_compile_options(${name} PRIVATE ${DMISE_QUICK_TO_COMPILE})
   precompile(${name} precompiled_tests)
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 300)
 endfunction()

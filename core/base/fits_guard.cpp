@@ -86,4 +86,10 @@ std::size_t require_harmless_headers(std::string_view bytes, const std::string& 
   return at;
 }
 
+void require_bytes(std::string_view bytes, std::size_t asked, const std::string& name) {
+  if (bytes.size() < asked)
+    throw ConfigError(name + ": is truncated: " + std::to_string(bytes.size()) + " of " +
+                      std::to_string(asked) + " bytes");
+}
+
 }  // namespace dmise

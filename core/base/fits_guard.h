@@ -9,8 +9,11 @@ namespace dmise {
 /// are not printable ASCII, a value longer than any number or a text where a number is read
 /// (overflows its message), sizes of tiles and blocks that are not whole numbers > 0 (division by
 /// zero). Throws `ConfigError` `name: KEYWORD: reason`. Other errors are left to CFITSIO. Returns
-/// how many bytes the HDUs take that can be told from each other; when a file in memory has fewer,
-/// CFITSIO reads beyond its end once all HDUs have been counted.
+/// how many bytes the headers ask for, up to the first header without an end. CFITSIO takes a file
+/// in memory for that long once it has counted the HDUs, and reads beyond the end of a shorter one.
 std::size_t require_harmless_headers(std::string_view bytes, const std::string& name);
+
+/// Throws `ConfigError` `name: is truncated: N of ASKED bytes` if there are fewer than `asked`.
+void require_bytes(std::string_view bytes, std::size_t asked, const std::string& name);
 
 }  // namespace dmise

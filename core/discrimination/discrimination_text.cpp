@@ -132,7 +132,7 @@ std::string discrimination_table(const RunDiscrimination& run) {
           o.samples, ratio.c_str(), o.scatter[i - 1], o.sample_sigma[i - 1],
           printable(o.fits[0].name).c_str(), o.fits[0].probability);
     }
-    text += "\n";
+    text += '\n';
   }
   bool any = false;
   const auto& names = run.confusion.names();
@@ -141,12 +141,12 @@ std::string discrimination_table(const RunDiscrimination& run) {
     text += "samples by what they are (rows) and what they are found to be\n";
     add(text, "%-18s", "");
     for (const auto& name : names) add(text, " %14.14s", printable(name).c_str());
-    text += "\n";
+    text += '\n';
     for (std::size_t a = 0; a < names.size(); ++a) {
       if (run.confusion.total(a) == 0) continue;
       add(text, "%-18.18s", printable(names[a]).c_str());
       for (std::size_t f = 0; f < names.size(); ++f) add(text, " %14zu", run.confusion.count(a, f));
-      text += "\n";
+      text += '\n';
     }
     add(text, "right: %.4f\n", run.confusion.accuracy());
   }

@@ -179,9 +179,8 @@ Frame decode_frame(std::string_view bytes, const std::string& name) {
   const auto shape = image_shape(fits, bytes.size(), name);
   LONGLONG end = 0;
   fits_get_hduaddrll(fits.file, nullptr, nullptr, &end, &fits.status);
-  if (fits.status != 0 || std::size_t(end) > bytes.size())
-    throw ConfigError(name + ": is truncated: " + std::to_string(bytes.size()) + " of " +
-                      std::to_string(end) + " bytes");
+  if (fits.status != 0) throw ConfigError(name + ": not a FITS file: " + fits.reason());
+  require_bytes(bytes, std::size_t(end), name);
   const FitsValues values = read_cards(fits, name);
   Frame frame;
   frame.header = header_from_values(values, name);

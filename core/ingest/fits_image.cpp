@@ -79,9 +79,8 @@ void FitsImage::read_shape() {
 void FitsImage::require_data(bool compressed) {
   LONGLONG end = 0;
   fits_get_hduaddrll(fits_.file, nullptr, nullptr, &end, &fits_.status);
-  if (fits_.status != 0 || std::size_t(end) > bytes_.size())
-    throw ConfigError(name_ + ": is truncated: " + std::to_string(bytes_.size()) + " of " +
-                      std::to_string(end) + " bytes");
+  if (fits_.status != 0) throw ConfigError(name_ + ": not a FITS file: " + fits_.reason());
+  require_bytes(bytes_, std::size_t(end), name_);
   const double bytes = double(columns_) * rows_ * planes_ * std::abs(bitpix_) / 8;
   if (bytes > double(bytes_.size()) * (compressed ? most_bytes_per_byte : 1.0))
     fail("NAXIS1: the image is larger than the file can hold");

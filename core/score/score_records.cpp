@@ -132,7 +132,7 @@ std::string score_csv(const Score& score) {
       "sensor,frame,fate,id,detection,pieces,clean,expected_snr,measured_snr,length_px,"
       "rate_arcsec_per_s,magnitude,x_px,y_px";
   for (const ErrorKey& error : error_keys) text += std::string(",error_") + error.key;
-  text += "\n";
+  text += '\n';
   for (const ScoredTruth& t : score.truths) {
     text += quoted(t.truth.sensor) + "," + quoted(t.truth.frame) + "," +
             fate_names[std::size_t(t.fate)] + "," + quoted(t.truth.id) + "," +
@@ -147,7 +147,7 @@ std::string score_csv(const Score& score) {
     cell(text, place.x_px);
     cell(text, place.y_px);
     for (const ErrorKey& error : error_keys) cell(text, t.errors.*error.value);
-    text += "\n";
+    text += '\n';
   }
   for (const FoundSource& found : score.false_alarms) {
     const Detection& d = found.detection;

@@ -58,7 +58,7 @@ void add_errors(std::string& text, const SensorScore& s) {
       else
         add(text, " %10s %11s %11s ", "-", "-", "-");
     }
-    text += "\n";
+    text += '\n';
     if (error_keys[k].value != &MatchErrors::nees_px &&
         error_keys[k].value != &MatchErrors::nees_sky)
       continue;
@@ -68,7 +68,7 @@ void add_errors(std::string& text, const SensorScore& s) {
         const Interval i = nees_interval(f->count);
         add(text, "  %.3f..%.3f (%s)", i.low, i.high, f == &p ? "points" : "streaks");
       }
-    text += "\n";
+    text += '\n';
   }
 }
 
@@ -107,7 +107,7 @@ void add_sensor_errors(std::string& text, const Score& score) {
         f.count > 0 ? add(text, " %10.4g", value) : add(text, " %10s", "-");
       }
     }
-  text += "\n";
+  text += '\n';
 }
 
 }  // namespace
@@ -135,7 +135,7 @@ std::string score_table(const Score& score) {
     add(text, " Points fit a threshold of %.2f.", *total.points_threshold);
   if (total.streaks_threshold)
     add(text, " Streaks fit a threshold of %.2f.", *total.streaks_threshold);
-  text += "\n";
+  text += '\n';
   add_bins(text, "expected SNR", total.by_snr);
   add_bins(text, "magnitude V", total.by_magnitude);
   add_bins(text, "length [px]", total.by_length_px);

@@ -31,9 +31,7 @@ constexpr std::array<GaiaColumn, 8> gaia_columns = {{{"ra", &GaiaRow::ra_deg, tr
 class FitsTable {
  public:
   FitsTable(std::string_view bytes, const std::string& name) : name_(name), size_(bytes.size()) {
-    if (const std::size_t all = require_harmless_headers(bytes, name); all > bytes.size())
-      throw ConfigError(name + ": is truncated: " + std::to_string(bytes.size()) + " of " +
-                        std::to_string(all) + " bytes");
+    require_bytes(bytes, require_harmless_headers(bytes, name), name);
     bytes_ = const_cast<char*>(bytes.data());  // it is opened for reading
     fits_open_memfile(&file_, "stars", READONLY, &bytes_, &size_, 0, nullptr, &status_);
     check("no FITS file");

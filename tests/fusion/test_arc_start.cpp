@@ -83,7 +83,7 @@ TEST(ArcStart, OfSeveralObjectsEachHasItsOwn) {
   std::size_t orbits = 0;
   for (std::size_t k = 0; k < one.observations.size(); ++k) {
     LooseSource other = source_of(two.observations[k]);
-    other.source.observation.detection_id += "b";
+    other.source.observation.detection_id += 'b';
     for (const StartedOrbit& orbit : start.add({source_of(one.observations[k]), other})) {
       std::vector<std::string> ids;
       for (const LooseSource& s : orbit.sources) ids.push_back(s.source.observation.detection_id);

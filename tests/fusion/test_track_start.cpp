@@ -101,7 +101,7 @@ TEST(TrackStart, OfTwoObjectsEachSourceIsInOneOrbit) {
   for (std::size_t k = 0; k < 3; ++k) {
     auto sources = sources_of(one, k, k);
     for (LooseSource s : sources_of(two, k, k)) {
-      s.source.observation.detection_id += "b";
+      s.source.observation.detection_id += 'b';
       sources.push_back(std::move(s));
     }
     for (StartedOrbit& orbit : start.add(sources)) {

@@ -4,8 +4,8 @@
 #
 #   run.sh address|thread BIN_DIRECTORY [PROGRAM..]
 #
-# Under AddressSanitizer all programs run but for the tests in `left-out.txt`, which says why; `thread.txt`
-# lists the programs that run under ThreadSanitizer.
+# Under AddressSanitizer all run but for what `left-out.txt` names, which says why; `thread.txt` lists the
+# programs that run under ThreadSanitizer.
 set -euo pipefail
 
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
@@ -19,7 +19,8 @@ export left_out=''
 launcher=()
 case $kind in
   address)
-    left_out=$(sed -e 's/#.*//' -e 's/[[:space:]]*$//' -e '/^$/d' "$here/left-out.txt" | paste -sd :)
+    named=$(sed -e 's/#.*//' -e 's/[[:space:]]*$//' -e '/^$/d' "$here/left-out.txt")
+    left_out=$(grep -F . <<<"$named" | paste -sd :)
     export ASAN_OPTIONS=log_path=$reports/address:detect_stack_use_after_return=1
     export LSAN_OPTIONS=suppressions=$here/lsan.supp:print_suppressions=0
     export UBSAN_OPTIONS=log_path=$reports/undefined:print_stacktrace=1
@@ -32,9 +33,12 @@ case $kind in
   *) echo "sanitizers: $kind: must be address or thread" >&2; exit 2 ;;
 esac
 
-programs=$here/thread.txt
-[[ $kind != address ]] || programs=$bin/../unit-tests.txt
-(($#)) || set -- $(<"$programs")
+if (($# == 0)); then
+  case $kind in
+    address) set -- $(grep -vxFf <(grep -vF . <<<"$named") "$bin/../unit-tests.txt") ;;
+    thread) set -- $(<"$here/thread.txt") ;;
+  esac
+fi
 
 run_one() {
   local name=${1##*/} log=$reports/${1##*/}.log began=$SECONDS code=0

@@ -105,8 +105,7 @@ TEST(GaiaStars, TablesThatAreNoCatalogueAreRefusedInALine) {
   EXPECT_EQ(problem_of(fits_table({"ra", "dec", "phot_g_mean_mag"}, {"D", "8A", "E"}, {{1}})),
             "gaia.fits: column dec must hold one number a row");
   const std::string whole = barnards_table();
-  for (const std::size_t size :
-       {std::size_t(100), std::size_t(2880), whole.size() / 2, whole.size() - 2880}) {
+  for (std::size_t size = 0; size < whole.size(); size += 80) {
     const std::string problem = problem_of(whole.substr(0, size));
     EXPECT_TRUE(problem.starts_with("gaia.fits: ")) << size << " " << problem;
     EXPECT_EQ(problem.find('\n'), problem.npos);

@@ -13,6 +13,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -131,8 +132,11 @@ def main():
     (build / "read").mkdir(exist_ok=True)
     (build / "read/compile_commands.json").write_text(json.dumps(
         [{"directory": str(build), "file": str(ROOT / path), "arguments": words} for path, words in commands.items()]))
+    if not shutil.which("clang-tidy"):
+        print("tidy: clang-tidy is missing: ./dmise setup --tests fetches it from PyPI", file=sys.stderr)
+        return 2
     common = subprocess.run(["clang-tidy", "--version"], capture_output=True, check=True).stdout
-    common += b"".join(path.read_bytes() for path in (ROOT / ".clang-tidy", ROOT / "tests/.clang-tidy"))
+    common += b"".join((ROOT / name).read_bytes() for name in (git("ls-files", "*.clang-tidy") or "").split())
     record = build / "tidy.json"
     clean = json.loads(record.read_text()) if record.exists() else {}
     digests = {path: digest(path, words, includes, common) for path, words in commands.items()}

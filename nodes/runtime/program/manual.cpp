@@ -46,7 +46,7 @@ void write_options(const CLI::App& app, std::string& page) {
     if (option->get_required()) page += " (needed)";
     if (takes_value && !option->get_default_str().empty())
       page += " (" + escaped(option->get_default_str()) + ")";
-    page += "\n";
+    page += '\n';
   }
 }
 
