@@ -67,9 +67,9 @@ std::string printable(std::string_view text, std::size_t most_bytes) {
   return out;
 }
 
-std::string joined(const std::vector<std::string>& names) {
+std::string joined(const std::vector<std::string>& names, std::string_view separator) {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  for (const std::string& name : names) text.append(text.empty() ? "" : separator).append(name);
   return text;
 }
 

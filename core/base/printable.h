@@ -12,6 +12,6 @@ namespace dmise {
 std::string printable(std::string_view text, std::size_t most_bytes = 1000);
 
 /// "a, b, c"
-std::string joined(const std::vector<std::string>& names);
+std::string joined(const std::vector<std::string>& names, std::string_view separator = ", ");
 
 }  // namespace dmise

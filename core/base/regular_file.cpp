@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
@@ -44,6 +45,11 @@ int open_regular_file(const std::string& path) {
     throw ConfigError(printable(path) + ": " + reason);
   }
   return file;
+}
+
+bool path_exists(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
 }
 
 }  // namespace dmise

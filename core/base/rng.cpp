@@ -56,14 +56,12 @@ std::uint32_t rng_word(const RngKey& key, std::uint32_t pixel, std::uint32_t dra
 
 void rng_words(const RngKey& key, std::uint32_t first, std::size_t count, std::uint32_t draw,
                std::uint32_t* out, SimdLevel level) {
-  const auto groups = level == SimdLevel::avx512 ? avx512::rng_groups
-                      : level == SimdLevel::avx2 ? avx2::rng_groups
-                                                 : sse2::rng_groups;
   const std::size_t head =
       std::min<std::size_t>(count, (rng_group - first % rng_group) % rng_group);
   for (std::size_t i = 0; i < head; ++i) out[i] = rng_word(key, first + std::uint32_t(i), draw);
   const std::size_t whole = (count - head) / rng_group * rng_group;
-  groups(key, first + std::uint32_t(head), whole, draw, out + head);
+  kernel_of(level, sse2::rng_groups, avx2::rng_groups, avx512::rng_groups)(
+      key, first + std::uint32_t(head), whole, draw, out + head);
   for (std::size_t i = head + whole; i < count; ++i)
     out[i] = rng_word(key, first + std::uint32_t(i), draw);
 }
@@ -75,10 +73,7 @@ float normal_of(std::uint32_t word) {
 }
 
 void normals_of(const std::uint32_t* words, std::size_t count, float* out, SimdLevel level) {
-  const auto kernel = level == SimdLevel::avx512 ? avx512::normals_of
-                      : level == SimdLevel::avx2 ? avx2::normals_of
-                                                 : sse2::normals_of;
-  kernel(words, count, out);
+  kernel_of(level, sse2::normals_of, avx2::normals_of, avx512::normals_of)(words, count, out);
 }
 
 }  // namespace dmise
