@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -31,6 +32,13 @@ class JsonWriter {
   JsonWriter& field(std::string_view name, const T& v) {
     key(name);
     return value(v);
+  }
+  /// A field that is an array.
+  template <class Values = std::initializer_list<double>>
+  JsonWriter& list(std::string_view name, const Values& values) {
+    key(name).begin_array();
+    for (const auto& v : values) value(v);
+    return end_array();
   }
 
   const std::string& text() const { return text_; }

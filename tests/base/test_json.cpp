@@ -4,6 +4,8 @@
 
 #include <cstdlib>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "core/base/error.h"
 
@@ -15,6 +17,12 @@ TEST(JsonWriter, WritesNestedValuesInTheOrderGiven) {
   json.begin_object().field("b", 1).key("a").begin_array().value(true).null().value("x");
   json.end_array().key("c").begin_object().end_object().end_object();
   EXPECT_EQ(json.text(), R"({"b":1,"a":[true,null,"x"],"c":{}})");
+}
+
+TEST(JsonWriter, WritesLists) {
+  JsonWriter json;
+  json.begin_object().list("a", {1.5, 2}).list("b", std::vector<std::string>{"x"}).end_object();
+  EXPECT_EQ(json.text(), R"({"a":[1.5,2],"b":["x"]})");
 }
 
 TEST(JsonWriter, EscapesWhatJsonCannotHold) {
