@@ -1,15 +1,32 @@
 #pragma once
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace dmise {
 
-/// The value at a share `q` of values (not empty), 0 the least, 1 the greatest.
-inline double quantile_of(std::vector<double> values, double q) {
-  const auto at = values.begin() + std::ptrdiff_t(q * double(values.size() - 1));
+/// Returns the value of a rank from 0, below `values.size()`; brings the values into another order.
+template <class T>
+T value_of_rank(std::vector<T>& values, std::size_t rank) {
+  const auto at = values.begin() + std::ptrdiff_t(rank);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
-inline double median_of(std::vector<double> values) { return quantile_of(std::move(values), 0.5); }
+/// The one in the middle of values (not empty); of an even number of them the upper one.
+template <class T>
+T middle_of(std::vector<T>& values) {
+  return value_of_rank(values, values.size() / 2);
+}
+
+/// The value at a share `q` of values (not empty), 0 the least, 1 the greatest.
+template <class T>
+T quantile_of(std::vector<T> values, double q) {
+  return value_of_rank(values, std::size_t(q * double(values.size() - 1)));
+}
+template <class T>
+T median_of(std::vector<T> values) {
+  return quantile_of(std::move(values), 0.5);
+}
 
 }  // namespace dmise
