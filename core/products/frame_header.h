@@ -35,8 +35,7 @@ struct FrameHeader {
   std::string sensor;          // at most 64 printable ASCII characters, as all texts here
   std::uint32_t frame = 0;     // counts from 1
   SimTime start, middle, end;  // of the exposure
-  std::string start_utc, middle_utc,
-      end_utc;  // ISO 8601; FITS has no Z: a trailing one is dropped
+  std::string start_utc, middle_utc, end_utc;  // ISO 8601; FITS drops the Z at the end
   double exposure_s = 0.0;
   std::string mount;     // "fixed", "sidereal", ...
   std::string software;  // name and version
@@ -56,7 +55,7 @@ struct FrameHeader {
   double saturation_dn = 0.0;        // lowest count that may be clipped: full well or ADC
   double psf_fwhm_px = 0.0;          // Gaussian, before pixel integration
   std::optional<double> defocus_um;  // of a focus that drifts, mid exposure
-  MonotoneCubic illumination;        // relative, of a lens with a table of it, by
+  MonotoneCubic illumination;        // relative, of a lens with a table of it
   FieldRadius illumination_radius = FieldRadius::angle_deg;
   Band band;
   double zero_point_mag = 0.0;              // of a source of 1 e-/s, without atmosphere

@@ -12,10 +12,7 @@ std::string to_json(const Task& t, const std::function<std::string(SimTime)>& ut
 #define DMISE_VALUE(field_, name, unit) json.field(name, in_unit(t.field_, unit));
 #define DMISE_TIME(field_, name) \
   json.field(name "_ns", t.field_.ns).field(name "_utc", utc(t.field_));
-#define DMISE_LIST(field_, name, ...)                    \
-  json.key(name).begin_array();                          \
-  for (const double value : t.field_) json.value(value); \
-  json.end_array();
+#define DMISE_LIST(field_, name, ...) json.list(name, t.field_);
   DMISE_TASK_FIELDS(DMISE_VALUE, DMISE_TIME, DMISE_LIST, DMISE_LIST)
   return json.end_object().take();
 }

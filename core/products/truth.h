@@ -26,10 +26,10 @@ struct Truth {
   double sunlit = 0.0;             // fraction of the Sun's disc, mean over the exposure
   double true_magnitude = 0.0;     // V above the atmosphere, when fully sunlit
   double rendered_signal_e = 0.0;  // expected electrons deposited in the frame
-  double rendered_x_px = 0.0,
-         rendered_y_px = 0.0;  // centroid of the light in the frame; 0 without light
-  double start_x_px = 0.0, start_y_px = 0.0, middle_x_px = 0.0, middle_y_px = 0.0, end_x_px = 0.0,
-         end_y_px = 0.0;  // position of the object; may be outside the frame
+  double rendered_x_px = 0.0, rendered_y_px = 0.0;  // centroid of its light in the frame; 0: none
+  // Position of the object; may be outside the frame.
+  double start_x_px = 0.0, start_y_px = 0.0, middle_x_px = 0.0, middle_y_px = 0.0;
+  double end_x_px = 0.0, end_y_px = 0.0;
   bool in_frame = false;  // some of its light is in the frame
   bool whole = false;     // start, middle and end are inside
   bool resolved = false;  // drawn with its shape, not as a point
