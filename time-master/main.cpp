@@ -1,16 +1,9 @@
 // dmise-time-master: runs the clock of one run, from the first node that joins to the last tick.
 #include "core/base/whole_file.h"
+#include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/program/command_line.h"
 #include "nodes/runtime/program/program.h"
 #include "time-master/master.h"
-
-namespace {
-
-std::chrono::nanoseconds from_seconds(double s) {
-  return std::chrono::nanoseconds(dmise::sim_seconds(s).ns);
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   dmise::CommonFlags flags{.name = "time-master"};
@@ -73,11 +66,11 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   return dmise::run_program(app, flags, argc, argv, [&] {
     options.run.last_tick = ticks - 1;
-    options.run.silent_after = from_seconds(silent_after_s);
-    options.run.progress_after = from_seconds(progress_after_s);
-    options.run.stalled_after = from_seconds(stalled_after_s);
-    options.run.start_within = from_seconds(start_within_s);
-    options.run.rejoin_within = from_seconds(rejoin_within_s);
+    options.run.silent_after = dmise::from_seconds(silent_after_s);
+    options.run.progress_after = dmise::from_seconds(progress_after_s);
+    options.run.stalled_after = dmise::from_seconds(stalled_after_s);
+    options.run.start_within = dmise::from_seconds(start_within_s);
+    options.run.rejoin_within = dmise::from_seconds(rejoin_within_s);
     options.keys = flags.keys;
     options.stop = &dmise::stop_signal();
     if (flags.check) return dmise::Coordinator(options.run).over() ? 1 : 0;

@@ -10,6 +10,7 @@
 #include "nodes/runtime/process/cpu_time.h"
 #include "nodes/runtime/process/json_log.h"
 #include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/protocol/time_split_codec.h"
 #include "time-master/master_messages.h"
 #include "time-master/master_process.h"
@@ -17,7 +18,6 @@
 namespace dmise {
 namespace {
 
-using std::chrono::duration;
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
@@ -44,8 +44,6 @@ CoordinatorOptions with_broker(const MasterOptions& options) {
   if (options.with_broker) run.expected.insert(run.expected.begin(), broker_name);
   return run;
 }
-
-double as_seconds(nanoseconds t) { return duration<double>(t).count(); }
 
 /// Subscribers of the clock send subscriptions only.
 ConnectionLimits limits_of_listeners(std::size_t nodes) {
@@ -158,7 +156,7 @@ void MasterProcess::wait(nanoseconds at_most) {
 void MasterProcess::check_suspension(nanoseconds since) {
   const nanoseconds slept = now() - since;
   if (slept > options_.run.silent_after - 2 * coordinator_.options().heartbeat)
-    coordinator_.stop(fmt::format("time-master was stopped for {:.1f} s", as_seconds(slept)));
+    coordinator_.stop(fmt::format("time-master was stopped for {:.1f} s", to_seconds(slept)));
   else if (slept > options_.run.silent_after / 2)
     coordinator_.excuse(since, now());
 }
@@ -234,7 +232,7 @@ void MasterProcess::fill(v1::Endpoints* endpoints) const {
 
 MasterResult MasterProcess::result() const {
   MasterResult result = result_of(coordinator_);
-  if (started_) result.wall_s = as_seconds(ended_.value_or(now()) - *started_);
+  if (started_) result.wall_s = to_seconds(ended_.value_or(now()) - *started_);
   result.times = times_;
   result.messages = messages_;
   result.ticks = tick_log_.records();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/transport/socket.h"
 #include "time-master/master_messages.h"
 
@@ -94,7 +95,6 @@ void MasterPublisher::publish_to_few() {
 v1::MasterMessage MasterPublisher::welcome(const std::string& name,
                                            const std::string& tick_endpoint,
                                            std::uint64_t heartbeat_token) const {
-  const auto in_seconds = [](Instant t) { return std::chrono::duration<double>(t).count(); };
   const CoordinatorOptions& options = coordinator_.options();
   v1::MasterMessage answer;
   auto* welcome = answer.mutable_welcome();
@@ -106,9 +106,9 @@ v1::MasterMessage MasterPublisher::welcome(const std::string& name,
   welcome->set_tick_ns(options.pace.tick_length.ns);
   welcome->set_last_tick(options.last_tick);
   welcome->set_window_ticks(std::uint32_t(options.window_ticks));
-  welcome->set_heartbeat_s(in_seconds(options.heartbeat));
-  welcome->set_silent_after_s(in_seconds(options.silent_after));
-  welcome->set_progress_after_s(in_seconds(options.progress_after));
+  welcome->set_heartbeat_s(to_seconds(options.heartbeat));
+  welcome->set_silent_after_s(to_seconds(options.silent_after));
+  welcome->set_progress_after_s(to_seconds(options.progress_after));
   welcome->set_tick_endpoint(tick_endpoint);
   welcome->set_heartbeat_token(heartbeat_token);
   return answer;

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "core/base/json.h"
+#include "nodes/runtime/process/seconds.h"
 
 namespace dmise {
 
@@ -12,7 +13,7 @@ MasterResult result_of(const Coordinator& coordinator) {
   result.exit_code = coordinator.phase() == Phase::ended && result.reason.empty() ? 0 : 1;
   result.digest = coordinator.digest();
   result.overruns = coordinator.pace().overruns();
-  result.worst_lag_s = std::chrono::duration<double>(coordinator.pace().worst_lag()).count();
+  result.worst_lag_s = to_seconds(coordinator.pace().worst_lag());
   result.granted = coordinator.granted();
   for (const auto* members : {&coordinator.members(), &coordinator.behind()})
     for (const auto& [name, member] : *members) {

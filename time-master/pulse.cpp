@@ -2,11 +2,13 @@
 
 #include <cstdio>
 
+#include "nodes/runtime/process/seconds.h"
+
 namespace dmise {
 
 std::string in_seconds(Instant duration) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.1f s", std::chrono::duration<double>(duration).count());
+  std::snprintf(text, sizeof text, "%.1f s", to_seconds(duration));
   return text;
 }
 

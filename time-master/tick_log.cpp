@@ -1,12 +1,10 @@
 #include "time-master/tick_log.h"
 
-#include <chrono>
+#include "nodes/runtime/process/seconds.h"
 
 namespace dmise {
 
-double TickLog::since_start_s(Instant now) const {
-  return std::chrono::duration<double>(now - *start_).count();
-}
+double TickLog::since_start_s(Instant now) const { return to_seconds(now - *start_); }
 
 void TickLog::grant(Tick first, Tick granted, Instant now) {
   if (granted < first || (granted_ && granted <= *granted_)) return;

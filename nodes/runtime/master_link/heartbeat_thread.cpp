@@ -11,13 +11,11 @@
 #include "dmise/v1/node.pb.h"
 #include "nodes/runtime/process/monotonic_clock.h"
 #include "nodes/runtime/process/process_memory.h"
+#include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/protocol/control_rules.h"
 #include "nodes/runtime/protocol/time_split_codec.h"
 
 namespace dmise {
-
-using std::chrono::duration;
-
 namespace {
 
 /// Between checks of connections, while there are any.
@@ -117,7 +115,7 @@ void HeartbeatThread::handle_replies() {
     lost.set_run_id(options_.run_id);
     lost.set_phase(v1::PHASE_FAILED);
     lost.set_cause(fmt::format("the time-master at {} has been silent for {:.1f} s",
-                               options_.master, duration<double>(silence).count()));
+                               options_.master, to_seconds(silence)));
     post(lost);
   } else if (over_ && !gone_ && silence > gone_after) {
     v1::Grant alone;  // its last words were lost

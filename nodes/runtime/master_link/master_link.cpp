@@ -4,13 +4,12 @@
 
 #include "core/base/error.h"
 #include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/protocol/control_rules.h"
 #include "nodes/runtime/protocol/time_split_codec.h"
 
 namespace dmise {
 
-using std::chrono::duration;
-using std::chrono::duration_cast;
 using std::chrono::nanoseconds;
 
 MasterLink::MasterLink(zmq::context_t& context, std::string master, const Event* stop,
@@ -54,8 +53,8 @@ void MasterLink::keep(HeartbeatOptions options, std::optional<zmq::socket_t> res
   options.run_id = welcome_.run_id();
   options.incarnation = welcome_.incarnation();
   options.heartbeat_token = welcome_.heartbeat_token();
-  options.heartbeat = duration_cast<nanoseconds>(duration<double>(welcome_.heartbeat_s()));
-  options.silent_after = duration_cast<nanoseconds>(duration<double>(welcome_.silent_after_s()));
+  options.heartbeat = from_seconds(welcome_.heartbeat_s());
+  options.silent_after = from_seconds(welcome_.silent_after_s());
   options.stop = stop_;
   heartbeat_ =
       std::make_unique<HeartbeatThread>(context_, std::move(options), std::move(resend_socket));

@@ -17,8 +17,6 @@ class Event {
   void clear();
   /// Readable while the flag is set.
   int fd() const { return fd_; }
-  /// For long computations that check whether to continue.
-  const std::atomic<bool>& flag() const { return flag_; }
 
  private:
   std::atomic<bool> flag_{false};
