@@ -2,25 +2,13 @@
 
 #include <algorithm>
 
+#include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/protocol/control_rules.h"
 
 namespace dmise {
 
-v1::Phase to_wire(Phase phase) {
-  switch (phase) {
-    case Phase::gathering:
-      return v1::PHASE_GATHERING;
-    case Phase::connecting:
-      return v1::PHASE_CONNECTING;
-    case Phase::running:
-      return v1::PHASE_RUNNING;
-    case Phase::ended:
-      return v1::PHASE_ENDED;
-    case Phase::failed:
-      break;
-  }
-  return v1::PHASE_FAILED;
-}
+static_assert(int(Phase::gathering) == v1::PHASE_GATHERING &&
+              int(Phase::failed) == v1::PHASE_FAILED);
 
 Coordinator::Request request_of(const v1::Join& join) {
   Coordinator::Request request;
@@ -91,7 +79,7 @@ void describe(v1::Grant* grant, std::uint64_t run_id, const Coordinator& coordin
   grant->Clear();
   grant->set_run_id(run_id);
   grant->set_tick(coordinator.granted());
-  grant->set_phase(to_wire(coordinator.phase()));
+  grant->set_phase(static_cast<v1::Phase>(coordinator.phase()));
   grant->set_cause(coordinator.cause());
   for (const auto& [name, member] : coordinator.members()) {
     if (!member.dropped) continue;
@@ -108,7 +96,7 @@ void describe(v1::Grant* grant, std::uint64_t run_id, const Coordinator& coordin
 }
 
 void describe(v1::Endpoints* endpoints, const Coordinator& coordinator) {
-  endpoints->set_phase(to_wire(coordinator.phase()));
+  endpoints->set_phase(static_cast<v1::Phase>(coordinator.phase()));
   endpoints->set_cause(coordinator.cause());
   endpoints->set_granted_tick(coordinator.granted());
   endpoints->set_settled_tick(coordinator.settled());
@@ -116,7 +104,7 @@ void describe(v1::Endpoints* endpoints, const Coordinator& coordinator) {
   endpoints->set_paused(coordinator.pace().paused());
   endpoints->set_pace(coordinator.pace().factor());
   endpoints->set_overruns(coordinator.pace().overruns());
-  endpoints->set_worst_lag_s(std::chrono::duration<double>(coordinator.pace().worst_lag()).count());
+  endpoints->set_worst_lag_s(to_seconds(coordinator.pace().worst_lag()));
   endpoints->set_digest(coordinator.digest());
   const auto add = [&](const std::string& name, const Coordinator::Member& member, bool heard) {
     auto* node = endpoints->add_nodes();

@@ -7,8 +7,6 @@
 // Conversion between the coordinator's types and messages.
 namespace dmise {
 
-v1::Phase to_wire(Phase phase);
-
 /// Converts a valid Join.
 Coordinator::Request request_of(const v1::Join& join);
 TickTally tally_of(const v1::Done& done);

@@ -2,10 +2,10 @@
 
 namespace dmise {
 
-/// Phase of a run.
+/// Phase of a run; values are those of Phase in proto/dmise/v1/time.proto.
 enum class Phase {
-  gathering,   // expected nodes join
-  connecting,  // all have joined and check their subscriptions
+  gathering = 1,  // expected nodes join
+  connecting,     // all have joined and check their subscriptions
   running,
   ended,   // every tick is done
   failed,  // see the time-master for the cause

@@ -36,17 +36,8 @@ PulseLimits limits_of(const v1::Welcome& welcome) {
   return limits;
 }
 
-v1::NodeNews::What to_wire(HostBarrier::News::What what) {
-  switch (what) {
-    case HostBarrier::News::What::lost:
-      return v1::NodeNews::WHAT_LOST;
-    case HostBarrier::News::What::found:
-      return v1::NodeNews::WHAT_FOUND;
-    case HostBarrier::News::What::failed:
-      break;
-  }
-  return v1::NodeNews::WHAT_FAILED;
-}
+static_assert(int(HostBarrier::News::What::lost) == v1::NodeNews::WHAT_LOST &&
+              int(HostBarrier::News::What::failed) == v1::NodeNews::WHAT_FAILED);
 
 }  // namespace
 
@@ -190,7 +181,7 @@ void HostAgentProcess::report_to_master() {
   for (const HostBarrier::News& news : barrier_->take_news()) {
     v1::NodeMessage message;
     auto* wire = message.mutable_node_news();
-    wire->set_what(to_wire(news.what));
+    wire->set_what(static_cast<v1::NodeNews::What>(news.what));
     wire->set_name(news.name);
     wire->set_incarnation(news.incarnation);
     wire->set_reason(news.reason);

@@ -33,7 +33,7 @@ class HostBarrier {
   };
   /// A report to the master.
   struct News {
-    enum class What { lost, found, failed };
+    enum class What { lost = 1, found, failed };  // as NodeNews.What in proto/dmise/v1/node.proto
     What what;
     std::string name;
     std::uint64_t incarnation = 0;

@@ -30,6 +30,9 @@ constexpr std::size_t most_commands = 16;
 constexpr const char* topics[] = {objects_topic,    environment_topic, frame_prefix,
                                   detection_prefix, track_prefix,      task_prefix};
 
+static_assert(int(ClockCommand::Action::pause) == v1::Control::ACTION_PAUSE &&
+              int(ClockCommand::Action::pace) == v1::Control::ACTION_PACE);
+
 using RawMessage = std::vector<zmq::message_t>;
 
 }  // namespace
@@ -111,21 +114,9 @@ class RunObserver::Connections {
     v1::NodeMessage question;
     question.set_run_id(run_.run_id);
     auto& control = *question.mutable_control();
-    switch (command.action) {
-      case ClockCommand::Action::pause:
-        control.set_action(v1::Control::ACTION_PAUSE);
-        break;
-      case ClockCommand::Action::step:
-        control.set_action(v1::Control::ACTION_STEP);
-        control.set_tick(command.ticks);
-        break;
-      case ClockCommand::Action::go_on:
-        control.set_action(v1::Control::ACTION_GO_ON);
-        break;
-      case ClockCommand::Action::pace:
-        control.set_action(v1::Control::ACTION_PACE);
-        control.set_factor(command.factor);
-    }
+    control.set_action(static_cast<v1::Control::Action>(command.action));
+    if (command.action == ClockCommand::Action::step) control.set_tick(command.ticks);
+    control.set_factor(command.factor);
     control_->send(to_frame(question), zmq::send_flags::dontwait);
   }
 

@@ -10,7 +10,8 @@ namespace dmise {
 
 /// Control of the clock by a viewer: what `dmise clock` does.
 struct ClockCommand {
-  enum class Action { pause, step, go_on, pace };
+  /// Values are those of Control.Action in proto/dmise/v1/node.proto.
+  enum class Action { pause = 1, step = 2, go_on = 3, pace = 6 };
   Action action = Action::pause;
   std::int64_t ticks = 1;  // of a step, [1, max_step_ticks]
   double factor = 0.0;     // of a pace: simulated seconds per second, [0, max_pace_factor]

@@ -3,41 +3,20 @@
 #include "core/base/error.h"
 #include "dmise/v1/time.pb.h"
 #include "nodes/runtime/process/monotonic_clock.h"
+#include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/protocol/time_split_codec.h"
 #include "nodes/runtime/transport/socket.h"
 
 namespace dmise {
 namespace {
 
-Phase from_wire(v1::Phase phase) {
-  switch (phase) {
-    case v1::PHASE_CONNECTING:
-      return Phase::connecting;
-    case v1::PHASE_RUNNING:
-      return Phase::running;
-    case v1::PHASE_ENDED:
-      return Phase::ended;
-    case v1::PHASE_FAILED:
-      return Phase::failed;
-    default:
-      return Phase::gathering;
-  }
-}
+static_assert(int(ClockAction::pause) == v1::Control::ACTION_PAUSE &&
+              int(ClockAction::abort) == v1::Control::ACTION_ABORT);
 
-v1::Control::Action to_wire(ClockAction action) {
-  switch (action) {
-    case ClockAction::pause:
-      return v1::Control::ACTION_PAUSE;
-    case ClockAction::step:
-      return v1::Control::ACTION_STEP;
-    case ClockAction::go_on:
-      return v1::Control::ACTION_GO_ON;
-    case ClockAction::end_early:
-      return v1::Control::ACTION_END_EARLY;
-    case ClockAction::abort:
-      break;
-  }
-  return v1::Control::ACTION_ABORT;
+/// A phase that is not known here counts as the first.
+Phase from_wire(v1::Phase phase) {
+  return phase > v1::PHASE_GATHERING && phase <= v1::PHASE_FAILED ? static_cast<Phase>(phase)
+                                                                  : Phase::gathering;
 }
 
 v1::NodeMessage hello() {
@@ -51,8 +30,7 @@ class Conversation {
  public:
   Conversation(const std::string& address, double within_s, const Security& security)
       : address_(address),
-        deadline_(now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
-                              std::chrono::duration<double>(within_s))),
+        deadline_(now() + from_seconds(within_s)),
         socket_(make_socket(context_, zmq::socket_type::dealer, max_control_bytes)) {
     connect_to(socket_, address, security, master_name);
   }
@@ -122,7 +100,7 @@ RunStatus ask_master(const std::string& address, double within_s, const Security
 RunStatus control_master(const std::string& address, double within_s, ClockAction action, Tick tick,
                          const std::string& reason, const Security& security) {
   v1::Control control;
-  control.set_action(to_wire(action));
+  control.set_action(static_cast<v1::Control::Action>(action));
   control.set_tick(tick);
   control.set_reason(reason);
   return Conversation(address, within_s, security).ask_to(control);

@@ -50,7 +50,8 @@ struct RunStatus {
 /// Converts the master's answer.
 RunStatus status_of(const v1::Endpoints& answer);
 
-enum class ClockAction { pause, step, go_on, end_early, abort };
+/// Values are those of Control.Action in proto/dmise/v1/node.proto.
+enum class ClockAction { pause = 1, step, go_on, end_early, abort };
 
 /// Changes the clock's pace and returns the resulting state. `factor`: simulated seconds per
 /// second, 0 to 1e6; 0: as fast as possible.
