@@ -1,37 +1,29 @@
 #include "core/orbit/catalogue_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 #include "core/orbit/epoch.h"
+#include "core/orbit/sgp4_terms.h"
 
 namespace dmise {
 
 namespace {
 
-constexpr double earth_gm_km3_per_s2 = 398600.8;  // WGS72
-constexpr double earth_radius_km = 6378.135;
+using sgp4::earth_radius_km;
 
 double period_min(const MeanElements& e) { return 2 * pi / e.mean_motion_rad_per_min; }
 
-double semi_major_axis_km(const MeanElements& e) {
-  const double n_rad_per_s = e.mean_motion_rad_per_min / 60;
-  return std::cbrt(earth_gm_km3_per_s2 / (n_rad_per_s * n_rad_per_s));
-}
-
 std::string line(const char* what, const std::string& value) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%-22s", what);
-  return text + value + "\n";
+  return formatted("%-22s", what) + value + "\n";
 }
 
-std::string rounded(double value, const char* unit) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.0f %s", value, unit);
-  return text;
-}
+// By OrbitRegime.
+constexpr std::array regime_names = {"low (< 127 min)", "medium", "geosynchronous",
+                                     "elliptic (e >= 0.25)", "beyond"};
 
 }  // namespace
 
@@ -39,20 +31,9 @@ double element_age_days(const MeanElements& elements, const Utc& at) {
   return epoch_days_between({elements.epoch_jd1, elements.epoch_jd2}, at);
 }
 
-const char* name_of(OrbitRegime regime) {
-  switch (regime) {
-    case OrbitRegime::low:
-      return "low (< 127 min)";
-    case OrbitRegime::medium:
-      return "medium";
-    case OrbitRegime::geosynchronous:
-      return "geosynchronous";
-    case OrbitRegime::highly_elliptic:
-      return "elliptic (e >= 0.25)";
-    case OrbitRegime::beyond:
-      return "beyond";
-  }
-  return "";
+double semi_major_axis_km(const MeanElements& e) {
+  const double n_rad_per_s = e.mean_motion_rad_per_min / 60;
+  return std::cbrt(sgp4::mu_km3_per_s2 / (n_rad_per_s * n_rad_per_s));
 }
 
 OrbitRegime regime_of(const MeanElements& e) {
@@ -82,7 +63,6 @@ CatalogueReport report_of(const CatalogueFile& file, const std::optional<Utc>& a
     const bool first = &e == &file.elements.front();
     r.lowest_perigee_km = first ? perigee_km : std::min(r.lowest_perigee_km, perigee_km);
     r.highest_apogee_km = first ? apogee_km : std::max(r.highest_apogee_km, apogee_km);
-    r.greatest_eccentricity = std::max(r.greatest_eccentricity, e.eccentricity);
     r.deep_space += period_min(e) >= 225;
     ++r.by_regime[static_cast<std::size_t>(regime_of(e))];
   }
@@ -104,13 +84,13 @@ std::string format(const CatalogueReport& r, std::size_t problems) {
   if (r.oldest_epoch) {
     text += line("oldest epoch", format_iso_epoch(*r.oldest_epoch));
     text += line("newest epoch", format_iso_epoch(*r.newest_epoch));
-    text += line("stale", std::to_string(r.stale) + " older than " +
-                              rounded(stale_after_days, "days") + " at " + format_iso_epoch(r.at));
-    for (std::size_t k = 0; k < std::size(r.by_regime); ++k)
-      text += line(name_of(static_cast<OrbitRegime>(k)), std::to_string(r.by_regime[k]));
+    text += line("stale", formatted("%zu older than %.0f days at ", r.stale, stale_after_days) +
+                              format_iso_epoch(r.at));
+    for (std::size_t k = 0; k < regime_names.size(); ++k)
+      text += line(regime_names[k], std::to_string(r.by_regime[k]));
     text += line("deep space (SDP4)", std::to_string(r.deep_space));
-    text += line("lowest perigee", rounded(r.lowest_perigee_km, "km"));
-    text += line("highest apogee", rounded(r.highest_apogee_km, "km"));
+    text += line("lowest perigee", formatted("%.0f km", r.lowest_perigee_km));
+    text += line("highest apogee", formatted("%.0f km", r.highest_apogee_km));
   }
   for (std::size_t k = 0; k < std::min(problems, r.problems.size()); ++k)
     text += r.problems[k] + "\n";

@@ -19,10 +19,10 @@ double element_age_days(const MeanElements& elements, const Utc& at);
 /// Orbit classes by period and eccentricity.
 enum class OrbitRegime { low, medium, geosynchronous, highly_elliptic, beyond };
 
-/// "low (period < 127 min)", ...
-const char* name_of(OrbitRegime regime);
-
 OrbitRegime regime_of(const MeanElements& elements);
+
+/// Semi-major axis of the mean motion, with the constants of SGP4 (WGS72).
+double semi_major_axis_km(const MeanElements& elements);
 
 /// Content of `dmise catalogue info FILE`.
 struct CatalogueReport {
@@ -39,7 +39,6 @@ struct CatalogueReport {
   std::optional<Utc> oldest_epoch, newest_epoch;
   Utc at;                                                   // reference time of ages
   double lowest_perigee_km = 0.0, highest_apogee_km = 0.0;  // above 6378.135 km
-  double greatest_eccentricity = 0.0;
   std::vector<std::string> problems;  // `file:line: reason`, refused first, then warnings
 };
 

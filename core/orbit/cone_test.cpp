@@ -25,11 +25,6 @@ PreparedCone prepare(const Cone& cone) {
   return p;
 }
 
-const ConeKernels& kernels_for(SimdLevel simd) {
-  if (simd == SimdLevel::avx512) return cone_kernels_avx512;
-  return simd == SimdLevel::avx2 ? cone_kernels_avx2 : cone_kernels_sse2;
-}
-
 }  // namespace
 
 void cone_test(std::span<const double> position_m, std::span<const Cone> cones,
@@ -42,7 +37,8 @@ void cone_test(std::span<const double> position_m, std::span<const Cone> cones,
                 std::to_string(inside.size()) + " words");
   std::vector<PreparedCone> prepared(cones.size());
   std::transform(cones.begin(), cones.end(), prepared.begin(), prepare);
-  const ConeKernels& kernels = kernels_for(simd);
+  const ConeKernels& kernels =
+      *kernel_of(simd, &cone_kernels_sse2, &cone_kernels_avx2, &cone_kernels_avx512);
 
   const auto work = [&](std::size_t begin, std::size_t end) {
     alignas(64) double chunk[3][64 * chunk_words];

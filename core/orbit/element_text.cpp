@@ -1,9 +1,9 @@
 #include "core/orbit/element_text.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 #include "core/orbit/epoch.h"
 #include "core/orbit/tle.h"
@@ -14,20 +14,12 @@ namespace {
 
 constexpr double rev_per_day = 1440.0 / (2.0 * pi);  // in one rad/min
 
-/// printf into a string; what is written here is far below its room.
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[200];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
-
 std::string alpha5(std::uint32_t number) {
-  if (number < 100000) return format("%05u", number);
+  if (number < 100000) return formatted("%05u", number);
   if (number > 339999)
     throw Error("catalogue number does not fit a TLE, got " + std::to_string(number));
   const char* letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
-  return format("%c%04u", letters[number / 10000 - 10], number % 10000);
+  return formatted("%c%04u", letters[number / 10000 - 10], number % 10000);
 }
 
 /// " 12345-3": five digits after an assumed point and a power of ten.
@@ -41,8 +33,8 @@ std::string exponent_field(double value) {
   }
   if (power < -9) return " 00000-0";
   if (power > 9) throw Error("value does not fit a TLE, got " + std::to_string(value));
-  return format("%c%05ld%c%d", value < 0 ? '-' : ' ', digits, power < 0 ? '-' : '+',
-                std::abs(power));
+  return formatted("%c%05ld%c%d", value < 0 ? '-' : ' ', digits, power < 0 ? '-' : '+',
+                   std::abs(power));
 }
 
 /// Year and day of the year of a midnight.
@@ -63,7 +55,7 @@ std::string epoch_field(const MeanElements& e) {
   const Ordinal date = ordinal_of(midnight);
   if (date.year < 1957 || date.year > 2056)
     throw Error("epoch does not fit a TLE, got year " + std::to_string(date.year));
-  return format("%02d%03d.%08ld", date.year % 100, date.day, fraction);
+  return formatted("%02d%03d.%08ld", date.year % 100, date.day, fraction);
 }
 
 std::string with_checksum(const std::string& line) {
@@ -88,18 +80,18 @@ std::string omm_designator(const std::string& id) {
 std::string format_tle(const MeanElements& e) {
   const double dot = e.mean_motion_dot_rad_per_min2 * (rev_per_day * 1440.0);
   const double ddot = e.mean_motion_ddot_rad_per_min3 * (rev_per_day * 1440.0 * 1440.0);
-  const std::string dot_text = format("%.8f", std::abs(dot));  // "0.00000184": the zero goes
+  const std::string dot_text = formatted("%.8f", std::abs(dot));  // "0.00000184": the zero goes
   const std::string line1 = "1 " + alpha5(e.catalogue_number) + e.classification + " " +
-                            format("%-8.8s ", e.designator.c_str()) + epoch_field(e) +
+                            formatted("%-8.8s ", e.designator.c_str()) + epoch_field(e) +
                             (dot < 0 ? " -" : "  ") + dot_text.substr(dot_text.find('.')) + " " +
                             exponent_field(ddot) + " " + exponent_field(e.bstar_per_earth_radius) +
-                            format(" %d %4d", e.ephemeris_type % 10, e.element_number % 10000);
+                            formatted(" %d %4d", e.ephemeris_type % 10, e.element_number % 10000);
   const std::string line2 =
       "2 " + alpha5(e.catalogue_number) +
-      format(" %8.4f %8.4f %07ld", e.inclination_rad / deg, e.raan_rad / deg,
-             std::min(9999999L, std::lround(e.eccentricity * 1e7))) +
-      format(" %8.4f %8.4f %11.8f%5d", e.argument_of_perigee_rad / deg, e.mean_anomaly_rad / deg,
-             e.mean_motion_rad_per_min * rev_per_day, e.revolution % 100000);
+      formatted(" %8.4f %8.4f %07ld", e.inclination_rad / deg, e.raan_rad / deg,
+                std::min(9999999L, std::lround(e.eccentricity * 1e7))) +
+      formatted(" %8.4f %8.4f %11.8f%5d", e.argument_of_perigee_rad / deg, e.mean_anomaly_rad / deg,
+                e.mean_motion_rad_per_min * rev_per_day, e.revolution % 100000);
   return with_checksum(line1) + "\n" + with_checksum(line2) + "\n";
 }
 
@@ -119,14 +111,14 @@ std::string format_omm_csv(std::span<const MeanElements> catalogue) {
   for (const MeanElements& e : catalogue) {
     text += quoted(e.name) + "," + omm_designator(e.designator) + ",";
     text += format_iso_epoch({e.epoch_jd1, e.epoch_jd2}, 6);
-    text += format(",%.8f,%.8f,%.4f,%.4f", e.mean_motion_rad_per_min * rev_per_day, e.eccentricity,
-                   e.inclination_rad / deg, e.raan_rad / deg);
-    text += format(",%.4f,%.4f,%d,%c", e.argument_of_perigee_rad / deg, e.mean_anomaly_rad / deg,
-                   e.ephemeris_type, e.classification);
-    text += format(",%u,%d,%d", e.catalogue_number, e.element_number, e.revolution);
-    text += format(",%.8g,%.8g,%.8g\n", e.bstar_per_earth_radius,
-                   e.mean_motion_dot_rad_per_min2 * (rev_per_day * 1440.0),
-                   e.mean_motion_ddot_rad_per_min3 * (rev_per_day * 1440.0 * 1440.0));
+    text += formatted(",%.8f,%.8f,%.4f,%.4f", e.mean_motion_rad_per_min * rev_per_day,
+                      e.eccentricity, e.inclination_rad / deg, e.raan_rad / deg);
+    text += formatted(",%.4f,%.4f,%d,%c", e.argument_of_perigee_rad / deg, e.mean_anomaly_rad / deg,
+                      e.ephemeris_type, e.classification);
+    text += formatted(",%u,%d,%d", e.catalogue_number, e.element_number, e.revolution);
+    text += formatted(",%.8g,%.8g,%.8g\n", e.bstar_per_earth_radius,
+                      e.mean_motion_dot_rad_per_min2 * (rev_per_day * 1440.0),
+                      e.mean_motion_ddot_rad_per_min3 * (rev_per_day * 1440.0 * 1440.0));
   }
   return text;
 }

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 
+#include "core/base/formatted.h"
 #include "core/orbit/text_fields.h"
 
 namespace dmise {
@@ -114,15 +114,11 @@ std::string format_iso_epoch(const Utc& epoch, int decimals) {
   eraJd2cal(midnight, 0.0, &year, &month, &day, &fraction);
   const std::int64_t second_of_day = time / unit;
   const std::int64_t minute_of_day = std::min<std::int64_t>(second_of_day / 60, 1439);
-  char text[64];
-  int length =
-      std::snprintf(text, sizeof text, "%04d-%02d-%02dT%02d:%02d:%02d", year, month, day,
-                    static_cast<int>(minute_of_day / 60), static_cast<int>(minute_of_day % 60),
-                    static_cast<int>(second_of_day - minute_of_day * 60));
-  if (decimals > 0)
-    std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length), ".%0*d", decimals,
-                  static_cast<int>(time % unit));
-  return text;
+  const std::string whole = formatted(
+      "%04d-%02d-%02dT%02d:%02d:%02d", year, month, day, static_cast<int>(minute_of_day / 60),
+      static_cast<int>(minute_of_day % 60), static_cast<int>(second_of_day - minute_of_day * 60));
+  if (decimals == 0) return whole;
+  return whole + formatted(".%0*d", decimals, static_cast<int>(time % unit));
 }
 
 }  // namespace dmise

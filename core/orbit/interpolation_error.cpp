@@ -1,6 +1,6 @@
 #include "core/orbit/interpolation_error.h"
 
-#include <cstdio>
+#include "core/base/formatted.h"
 
 namespace dmise {
 namespace {
@@ -45,14 +45,10 @@ std::optional<StatedInterpolationError> stated_interpolation_error(HermiteOrder 
 }
 
 std::string interpolation_text(HermiteOrder order, double tick_s) {
-  char text[160];
-  if (const auto error = stated_interpolation_error(order, tick_s))
-    std::snprintf(text, sizeof text, "order %d, ticks of %g s: %.2g m median, %.2g m at worst",
-                  static_cast<int>(order), tick_s, error->median_m, error->worst_m);
-  else
-    std::snprintf(text, sizeof text, "order %d, ticks of %g s: not measured",
-                  static_cast<int>(order), tick_s);
-  return text;
+  const std::string of = formatted("order %d, ticks of %g s: ", static_cast<int>(order), tick_s);
+  const auto error = stated_interpolation_error(order, tick_s);
+  if (!error) return of + "not measured";
+  return of + formatted("%.2g m median, %.2g m at worst", error->median_m, error->worst_m);
 }
 
 double longest_tick_s(HermiteOrder order) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
@@ -17,10 +18,8 @@ constexpr const char* stop_key = "STOP_TIME = ";
 }  // namespace
 
 std::string oem_state_line(const std::string& utc, const Vec<Gcrs>& r, const Vec<Gcrs>& v) {
-  char numbers[256];
-  std::snprintf(numbers, sizeof numbers, " %.9f %.9f %.9f %.12f %.12f %.12f\n", r.x / km, r.y / km,
-                r.z / km, v.x / km, v.y / km, v.z / km);
-  return utc + numbers;
+  return utc + formatted(" %.9f %.9f %.9f %.12f %.12f %.12f\n", r.x / km, r.y / km, r.z / km,
+                         v.x / km, v.y / km, v.z / km);
 }
 
 OemFile::OemFile(std::string path, OemSubject subject)

@@ -15,18 +15,6 @@ using namespace sgp4;
 
 namespace {
 
-const Kernels& kernels_for(SimdLevel simd) {
-  switch (simd) {
-    case SimdLevel::avx512:
-      return kernels_avx512;
-    case SimdLevel::avx2:
-      return kernels_avx2;
-    case SimdLevel::sse2:
-      break;
-  }
-  return kernels_sse2;
-}
-
 constexpr std::size_t tile_states = 4096;  // of output: 57 bytes each
 constexpr std::size_t tile_of_thread = 1024;
 
@@ -159,7 +147,7 @@ std::string_view describe(Sgp4Code code) {
 
 Sgp4Batch::Sgp4Batch(SimdLevel simd) : state_(std::make_unique<State>()) {
   state_->simd = simd;
-  state_->kernels = &kernels_for(simd);
+  state_->kernels = kernel_of(simd, &kernels_sse2, &kernels_avx2, &kernels_avx512);
 }
 
 Sgp4Batch::Sgp4Batch(std::span<const MeanElements> elements, Threads* threads, SimdLevel simd)

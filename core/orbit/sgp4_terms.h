@@ -123,14 +123,6 @@ void set_lane(Terms<Lanes>& block, int lane, const Terms<double>& one) {
   const auto* from = reinterpret_cast<const double*>(&one);
   for (std::size_t k = 0; k < sizeof(one) / sizeof(double); ++k) to[k].lane[lane] = from[k];
 }
-/// Copies one lane of a block to all lanes of another.
-template <template <class> class Terms>
-void spread_lane(Terms<Lanes>& to_block, const Terms<Lanes>& from_block, int lane) {
-  auto* to = reinterpret_cast<Lanes*>(&to_block);
-  const auto* from = reinterpret_cast<const Lanes*>(&from_block);
-  for (std::size_t k = 0; k < sizeof(to_block) / sizeof(Lanes); ++k)
-    for (double& value : to[k].lane) value = from[k].lane[lane];
-}
 /// Copies one lane of a block to one lane of another.
 template <template <class> class Terms>
 void copy_lane(Terms<Lanes>& to_block, int to_lane, const Terms<Lanes>& from_block, int lane) {

@@ -9,13 +9,13 @@
 #include "core/base/rng.h"
 #include "core/base/units.h"
 #include "core/orbit/record.h"
+#include "core/orbit/sgp4_terms.h"
 
 namespace dmise {
 
 namespace {
 
-constexpr double earth_gm_km3_per_s2 = 398600.8;  // WGS72, as SGP4 takes it
-constexpr double earth_radius_km = 6378.135;
+using sgp4::earth_radius_km;
 
 enum class Shape { near_circular, debris, sun_synchronous, transfer, molniya, geostationary };
 
@@ -72,7 +72,7 @@ double rounded_to(double value, double steps_per_unit) {
 
 double mean_motion_rev_per_day(double semi_major_axis_km) {
   const double a = semi_major_axis_km;
-  return day_s / (2 * pi) * std::sqrt(earth_gm_km3_per_s2 / (a * a * a));
+  return day_s / (2 * pi) * std::sqrt(sgp4::mu_km3_per_s2 / (a * a * a));
 }
 
 void set_heights(double perigee_km, double apogee_km, PublishedOrbit& orbit) {

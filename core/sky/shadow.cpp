@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 #include "core/sky/kept_tables.h"
 
@@ -83,12 +83,9 @@ double EarthShadow::in_penumbra(const Vec<Gcrs>& object_m, const Vec<Gcrs>& stre
 double EarthShadow::sunlit_fraction(const Vec<Gcrs>& object_m) const {
   const Vec<Gcrs> stretched_m = earth_.stretched(object_m);
   const double r = norm(stretched_m), radius = earth_.ellipsoid.equatorial_radius_m;
-  if (!(r >= radius * (1 - 1e-12))) {
-    char text[160];
-    std::snprintf(text, sizeof text, "object inside the Earth: position (%.0f, %.0f, %.0f) m",
-                  object_m.x, object_m.y, object_m.z);
-    throw Error(text);
-  }
+  if (!(r >= radius * (1 - 1e-12)))
+    throw Error(formatted("object inside the Earth: position (%.0f, %.0f, %.0f) m", object_m.x,
+                          object_m.y, object_m.z));
   const double along = dot(object_m, towards_sun_);
   const double across_squared = dot(object_m, object_m) - along * along;
   if (fully_lit(along, across_squared)) return 1.0;

@@ -6,13 +6,13 @@
 
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <random>
 #include <utility>
 
 #include "core/base/crc32c.h"
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/regular_file.h"
 
 namespace dmise {
@@ -21,9 +21,7 @@ namespace {
 /// A name beside `path` that no other process uses.
 std::string own_name(const std::string& path) {
   std::random_device random;
-  char ending[32];
-  std::snprintf(ending, sizeof ending, ".%08x%08x", random(), random());
-  return path + ending;
+  return path + formatted(".%08x%08x", random(), random());
 }
 
 }  // namespace
@@ -51,10 +49,8 @@ std::optional<StarSource> star_source(const std::string& path) {
 }
 
 std::string star_cache_path(const std::string& directory, const StarSource& source) {
-  char name[64];
-  std::snprintf(name, sizeof name, "/stars-%08x-%zu-v%u.bin", source.crc, std::size_t(source.bytes),
-                star_map_version);
-  return directory + name;
+  return directory + formatted("/stars-%08x-%zu-v%u.bin", source.crc, std::size_t(source.bytes),
+                               star_map_version);
 }
 
 void write_star_cache(const std::string& path, const StarMap& map, const StarSource& source) {

@@ -5,11 +5,10 @@
 #include <cstdio>
 
 #include "core/orbit/catalogue_report.h"
+#include "core/orbit/sgp4_terms.h"
 
 namespace dmise {
 namespace {
-
-constexpr double mu_km3_per_s2 = 398600.8, earth_radius_km = 6378.135;  // WGS72, as SGP4's
 
 std::string km_text(double value) {
   char text[32];
@@ -20,8 +19,7 @@ std::string km_text(double value) {
 }  // namespace
 
 double mean_altitude_km(const MeanElements& elements) {
-  const double n = elements.mean_motion_rad_per_min / 60.0;
-  return std::cbrt(mu_km3_per_s2 / (n * n)) - earth_radius_km;
+  return semi_major_axis_km(elements) - sgp4::earth_radius_km;
 }
 
 Shells shells_of(const ObjectPopulation& population, const std::vector<double>& limits_km) {
