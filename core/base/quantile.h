@@ -15,7 +15,7 @@ T value_of_rank(std::vector<T>& values, std::size_t rank) {
 }
 /// The one in the middle of values (not empty); of an even number of them the upper one.
 template <class T>
-T middle_of(std::vector<T>& values) {
+T middle_of(std::vector<T> values) {
   return value_of_rank(values, values.size() / 2);
 }
 

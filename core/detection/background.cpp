@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "core/base/quantile.h"
 #include "core/detection/bent_sky.h"
 
 namespace dmise {
@@ -182,12 +183,6 @@ std::uint16_t* copy_without(const std::uint16_t* from, int count, std::uint64_t 
   return to;
 }
 
-float median_of(std::vector<float> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 Background::Background(const CountImage& counts, int cell_px, Threads& threads)
@@ -301,7 +296,7 @@ std::vector<Background::Area> Background::bent_cells(double share) const {
   return out;
 }
 
-float Background::median_level_dn() const { return median_of(cells_.values); }
-float Background::median_sigma_dn() const { return median_of(sigma_.values); }
+float Background::median_level_dn() const { return middle_of(cells_.values); }
+float Background::median_sigma_dn() const { return middle_of(sigma_.values); }
 
 }  // namespace dmise

@@ -24,10 +24,7 @@ class Background {
 
   float level_dn(int x, int y) const { return level_.at(x, y); }
   float sigma_dn(int x, int y) const { return sigma_.at(x, y); }
-  /// The same along row `y`: `columns` values.
-  void level_row(int y, float* level_dn) const { level_.row(y, level_dn); }
-  void sigma_row(int y, float* sigma_dn) const { sigma_.row(y, sigma_dn); }
-  /// The same of the columns from `begin` to before `end`.
+  /// The same along row `y`, of the columns from `begin` to before `end`.
   void level_row(int y, int begin, int end, float* level_dn) const {
     level_.row(y, begin, end, level_dn);
   }
@@ -46,11 +43,8 @@ class Background {
   float median_sigma_dn() const;
 
  private:
-  enum class Cells {
-    as_they_are,
-    all,
-    sloped
-  };  // sloped ones without their gradient in all and sloped
+  /// Which cells are measured; sloped ones without their gradient, but for `as_they_are`.
+  enum class Cells { as_they_are, all, sloped };
   void measure(const CountImage& counts, Threads& threads, const BitMask* lit, Cells which,
                CellMesh& level, CellMesh& sigma);
   /// Whether the level changes over a cell by so much that its noise is measured too high by 2 %.

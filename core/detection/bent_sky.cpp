@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
+#include "core/base/quantile.h"
 #include "core/detection/small_matrix.h"
 
 namespace dmise {
@@ -67,9 +69,7 @@ Around around(const CellMesh& raw, float sigma, int i, int j) {
         residual[k] = raw.cell(i + u, j + v) - level;
         off.push_back(std::abs(residual[k]));
       }
-    const auto middle = off.begin() + std::ptrdiff_t(off.size() / 2);
-    std::nth_element(off.begin(), middle, off.end());
-    scatter = std::max(1.4826 * *middle, least_scatter * double(sigma));
+    scatter = std::max(1.4826 * middle_of(std::move(off)), least_scatter * double(sigma));
     for (std::size_t n = 0; n < weight.size(); ++n) {
       const double in_scatter = residual[n] / (3 * scatter);
       weight[n] = 1 / (1 + in_scatter * in_scatter * in_scatter * in_scatter);
@@ -106,8 +106,7 @@ std::vector<SkyBend> sky_bends(const CellMesh& level, const CellMesh& sigma) {
 }
 
 bool is_bent(const std::vector<SkyBend>& bends) {
-  return std::any_of(bends.begin(), bends.end(),
-                     [](const SkyBend& b) { return b.xx != 0.0f || b.xy != 0.0f || b.yy != 0.0f; });
+  return std::ranges::any_of(bends, [](const SkyBend& b) { return is_bent(b); });
 }
 
 CellMesh median_of_cells(const CellMesh& raw) {
@@ -120,9 +119,8 @@ CellMesh median_of_cells(const CellMesh& raw) {
                 high = std::min({1, j, raw.down - 1 - j});
       for (int v = -high; v <= high; ++v)
         for (int u = -wide; u <= wide; ++u) near.push_back(raw.cell(i + u, j + v));
-      const auto middle = near.begin() + std::ptrdiff_t(near.size() / 2);  // an odd number
-      std::nth_element(near.begin(), middle, near.end());
-      out.values[std::size_t(j) * std::size_t(raw.across) + std::size_t(i)] = *middle;
+      out.values[std::size_t(j) * std::size_t(raw.across) + std::size_t(i)] =
+          value_of_rank(near, near.size() / 2);  // an odd number
     }
   return out;
 }

@@ -8,7 +8,6 @@ namespace dmise {
 /// extrapolated to the frame's edges.
 class CellMesh {
  public:
-  CellMesh() = default;
   /// `columns` and `rows` of the frame, `across` and `down` of the mesh; at least 1.
   CellMesh(int columns, int rows, int across, int down);
 
@@ -21,8 +20,7 @@ class CellMesh {
     const float next = above[right] + v.next * (below[right] - above[right]);
     return one + u.next * (next - one);
   }
-  /// The values along row `y` of the frame: all its columns, or those from `begin` to before `end`.
-  void row(int y, float* out) const { row(y, 0, columns_, out); }
+  /// The values along row `y` of the frame, of the columns from `begin` to before `end`.
   void row(int y, int begin, int end, float* out) const;
   /// A cell's value; that of the nearest cell beside the mesh.
   float cell(int i, int j) const;

@@ -61,7 +61,7 @@ class Band {
       }
       weigh_rows_(before.data(), after.data(), kernel_.data(), std::size_t(radius_), width_,
                   filtered_.data());
-      background_.sigma_row(y, sigma_.data());
+      background_.sigma_row(y, 0, counts_.columns, sigma_.data());
       append_runs(y, low, unit, out);
       if (keep) steps_of_(filtered_.data(), sigma_.data(), unit, width_, y % 2 != 0, keep->row(y));
     }
@@ -80,7 +80,7 @@ class Band {
       std::fill(smoothed(y), smoothed(y) + width_, 0.0f);
       return;
     }
-    background_.level_row(y, level_.data());
+    background_.level_row(y, 0, counts_.columns, level_.data());
     float* middle = line_.data() + radius_;
     above_level_(counts_.row(y), level_.data(), width_, middle);
     std::vector<const float*> before, after;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
+#include "core/base/quantile.h"
 #include "core/base/units.h"
 
 namespace dmise {
@@ -13,12 +15,6 @@ constexpr int least_neighbours = 12;
 constexpr double dark_odds = 25.0;   // logarithm, of a gap without light against light
 constexpr double dark_share = 0.25;  // of a streak's light that a gap may have
 constexpr double dark_sigmas = 5.0;  // of the PSF: length of a gap that is none of the detector's
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -63,10 +59,7 @@ std::vector<Slice> slices(const Scene& scene, const Line& line, int from, int to
 double median_level(const std::vector<Slice>& s) {
   std::vector<double> levels;
   for (const Slice& slice : s) levels.push_back(slice.e_per_px);
-  if (levels.empty()) return 0.0;
-  const auto middle = levels.begin() + std::ptrdiff_t(levels.size() / 2);
-  std::nth_element(levels.begin(), middle, levels.end());
-  return *middle;
+  return levels.empty() ? 0.0 : middle_of(std::move(levels));
 }
 
 std::array<double, 2> clipped_mean(const std::vector<Slice>& s, double level) {
@@ -135,12 +128,10 @@ double rise_above_neighbours(const Scene& scene, const Trail& trail) {
   }
   if (beside.size() < least_neighbours) return std::numeric_limits<double>::infinity();
   // Stars only add light, so upward scatter counts if it is larger.
-  const double middle = median(beside);
-  const auto high = beside.begin() + std::ptrdiff_t(beside.size() * 9 / 10);
-  std::nth_element(beside.begin(), high, beside.end());
-  const double upwards = (*high - middle) / 1.2816;
+  const double middle = middle_of(beside);
+  const double upwards = (value_of_rank(beside, beside.size() * 9 / 10) - middle) / 1.2816;
   for (double& value : beside) value = std::abs(value - middle);
-  const double scatter = std::max(1.4826 * median(beside), upwards);
+  const double scatter = std::max(1.4826 * middle_of(std::move(beside)), upwards);
   return (clipped_mean(own, level)[0] - middle) / std::max(scatter, 1e-12);
 }
 

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <optional>
 
-#include "core/base/units.h"
+#include "core/base/quantile.h"
 #include "core/detection/evenness.h"
 #include "core/detection/line_profile.h"
 #include "core/detection/source_fit.h"
@@ -252,9 +252,8 @@ std::vector<Point> free_points(const Scene& scene, const Component& component, d
       lights.push_back(points.back().weight);
     }
   if (points.empty()) return points;
-  const auto cap = lights.begin() + std::ptrdiff_t(lights.size() * 4 / 5);
-  std::nth_element(lights.begin(), cap, lights.end());
-  for (Point& p : points) p.weight = std::min(p.weight, *cap) / *cap;
+  const double cap = value_of_rank(lights, lights.size() * 4 / 5);
+  for (Point& p : points) p.weight = std::min(p.weight, cap) / cap;
   return points;
 }
 

@@ -142,8 +142,8 @@ TEST(Background, RowAndPixelAgree) {
   Threads threads;
   const Background b(noise(200, 150, 1000, 0.7, 10, 4), 64, threads);
   std::vector<float> level(200), sigma(200);
-  b.level_row(77, level.data());
-  b.sigma_row(77, sigma.data());
+  b.level_row(77, 0, 200, level.data());
+  b.sigma_row(77, 0, 200, sigma.data());
   for (int x = 0; x < 200; ++x) {
     EXPECT_FLOAT_EQ(level[std::size_t(x)], b.level_dn(x, 77));
     EXPECT_FLOAT_EQ(sigma[std::size_t(x)], b.sigma_dn(x, 77));
