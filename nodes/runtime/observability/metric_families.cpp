@@ -123,7 +123,7 @@ MetricFamilies families_of(const FrameFigures& f, const std::string& node) {
   return b.take();
 }
 
-MetricFamilies families_of(const BrokerFigures& f) {
+MetricFamilies families_of(const BrokerFigures& f, const std::string&) {
   Builder b;
   b.counter("dmise_broker_messages_total", "Messages forwarded.", double(f.messages));
   b.counter("dmise_broker_refused_messages_total",
@@ -131,7 +131,7 @@ MetricFamilies families_of(const BrokerFigures& f) {
   return b.take();
 }
 
-MetricFamilies families_of(const RunStatus& s) {
+MetricFamilies families_of(const RunStatus& s, const std::string&) {
   Builder b;
   for (const Phase phase :
        {Phase::gathering, Phase::connecting, Phase::running, Phase::ended, Phase::failed})

@@ -5,8 +5,8 @@
 #include <atomic>
 #include <charconv>
 #include <chrono>
+#include <map>
 #include <mutex>
-#include <optional>
 
 #include "core/base/error.h"
 #include "nodes/runtime/observability/metric_families.h"
@@ -53,21 +53,16 @@ struct Metrics::Board {
     append(&all, families_of(process_figures(), started_s));
     {
       const std::lock_guard lock(mutex);
-      if (of_node) append(&all, families_of(*of_node, node));
-      if (of_frames) append(&all, families_of(*of_frames, node));
-      if (of_broker) append(&all, families_of(*of_broker));
-      if (of_run) append(&all, families_of(*of_run));
+      for (const auto& [kind, figures] : latest)
+        append(&all, std::visit([&](const auto& f) { return families_of(f, node); }, figures));
     }
     return prometheus::TextSerializer().Serialize(all);
   }
 
   const std::string program, node;
   const double started_s = seconds_since_1970();
-  mutable std::mutex mutex;  // guards what follows
-  std::optional<NodeFigures> of_node;
-  std::optional<FrameFigures> of_frames;
-  std::optional<BrokerFigures> of_broker;
-  std::optional<RunStatus> of_run;
+  mutable std::mutex mutex;               // guards what follows
+  std::map<std::size_t, Figures> latest;  // by kind
 };
 
 Metrics::Metrics(const std::string& where, const std::string& program, const std::string& node)
@@ -89,24 +84,10 @@ Metrics::~Metrics() { metrics_of_process = nullptr; }
 
 Metrics* Metrics::of_process() { return metrics_of_process.load(std::memory_order_relaxed); }
 
-void Metrics::set(const NodeFigures& figures) {
+void Metrics::set(Figures figures) {
   const std::lock_guard lock(board_->mutex);
-  board_->of_node = figures;
-}
-
-void Metrics::set(const FrameFigures& figures) {
-  const std::lock_guard lock(board_->mutex);
-  board_->of_frames = figures;
-}
-
-void Metrics::set(const BrokerFigures& figures) {
-  const std::lock_guard lock(board_->mutex);
-  board_->of_broker = figures;
-}
-
-void Metrics::set(const RunStatus& status) {
-  const std::lock_guard lock(board_->mutex);
-  board_->of_run = status;
+  const std::size_t kind = figures.index();
+  board_->latest.insert_or_assign(kind, std::move(figures));
 }
 
 }  // namespace dmise

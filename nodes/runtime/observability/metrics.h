@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <variant>
 
 #include "nodes/runtime/observability/figures.h"
 #include "nodes/runtime/observability/status.h"
@@ -8,6 +9,9 @@
 namespace dmise {
 
 class MetricsServer;
+
+/// What a process tells of itself; the state of the run is told by the time-master.
+using Figures = std::variant<NodeFigures, FrameFigures, BrokerFigures, RunStatus>;
 
 struct MetricsAddress {
   std::string host = "127.0.0.1";
@@ -32,11 +36,7 @@ class Metrics {
 
   const std::string& url() const { return url_; }
 
-  void set(const NodeFigures& figures);
-  void set(const FrameFigures& figures);
-  void set(const BrokerFigures& figures);
-  /// State of the run, of the time-master.
-  void set(const RunStatus& status);
+  void set(Figures figures);
 
  private:
   struct Board;

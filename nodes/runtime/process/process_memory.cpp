@@ -17,8 +17,9 @@ ProcessMemory process_memory() {
   memory.peak_resident_bytes = std::uint64_t(usage.ru_maxrss) * 1024;
   std::uint64_t pages = 0, resident = 0, of_files = 0;
   std::ifstream("/proc/self/statm") >> pages >> resident >> of_files;
-  if (resident > of_files)
-    memory.private_bytes = (resident - of_files) * std::uint64_t(sysconf(_SC_PAGESIZE));
+  const auto page_bytes = std::uint64_t(sysconf(_SC_PAGESIZE));
+  memory.resident_bytes = resident * page_bytes;
+  if (resident > of_files) memory.private_bytes = (resident - of_files) * page_bytes;
   return memory;
 }
 

@@ -5,6 +5,7 @@ namespace dmise {
 
 struct ProcessMemory {
   std::uint64_t peak_resident_bytes = 0;
+  std::uint64_t resident_bytes = 0;
   std::uint64_t private_bytes = 0;  // resident and of no file
 };
 
