@@ -196,24 +196,11 @@ void HostAgentProcess::report_to_master() {
     link_.ready();
     said_ready_ = true;
   }
-  while (const auto tally = barrier_->take_done(link_.granted())) tell_done(*tally);
-}
-
-void HostAgentProcess::tell_done(const TickTally& tally) {
-  v1::NodeMessage message;
-  auto* done = message.mutable_done();
-  done->set_tick(tally.tick);
-  done->set_digest(tally.digest);
-  for (const TopicTally& topic : tally.topics) {
-    if (!reported_.contains(topic.topic)) continue;
-    auto* published = done->add_published();
-    published->set_topic(topic.topic);
-    published->set_messages(topic.messages);
-    published->set_last_sequence(topic.last_sequence);
-    published->set_digest(topic.digest);
-    published->set_incarnation(topic.incarnation);
+  while (auto tally = barrier_->take_done(link_.granted())) {
+    std::erase_if(tally->topics,
+                  [this](const TopicTally& topic) { return !reported_.contains(topic.topic); });
+    link_.done(*tally);
   }
-  link_.send(std::move(message));
 }
 
 void HostAgentProcess::collect_beats() {

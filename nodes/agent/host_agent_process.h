@@ -41,7 +41,6 @@ class HostAgentProcess {
 
   /// Reports this host's state to the master.
   void report_to_master();
-  void tell_done(const TickTally& tally);
 
   /// Collects nodes' beats for the next heartbeat.
   void collect_beats();

@@ -30,7 +30,7 @@ v1::Welcome MasterLink::join(const v1::Join& request, nanoseconds within) {
   name_ = request.name();
   v1::NodeMessage message;
   *message.mutable_join() = request;
-  sign_and_send(message);
+  send(std::move(message));
   const auto deadline = now() + within;
   while (!answer_ && now() < deadline && !stopped()) wait({}, deadline - now());
   if (stopped()) throw Error("interrupted");
@@ -63,20 +63,23 @@ void MasterLink::keep(HeartbeatOptions options, std::optional<zmq::socket_t> res
 void MasterLink::ready() {
   v1::NodeMessage message;
   message.mutable_ready();
-  sign_and_send(message);
+  send(std::move(message));
 }
 
 void MasterLink::done(const TickTally& tally) {
   v1::NodeMessage message;
-  message.mutable_done()->set_tick(tally.tick);
+  auto* done = message.mutable_done();
+  done->set_tick(tally.tick);
+  done->set_digest(tally.digest);
   for (const TopicTally& topic : tally.topics) {
-    auto* published = message.mutable_done()->add_published();
+    auto* published = done->add_published();
     published->set_topic(topic.topic);
     published->set_messages(topic.messages);
     published->set_last_sequence(topic.last_sequence);
     published->set_digest(topic.digest);
+    published->set_incarnation(topic.incarnation);
   }
-  sign_and_send(message);
+  send(std::move(message));
 }
 
 void MasterLink::leave(bool interrupted, const TimeSplit& times) {
@@ -85,18 +88,16 @@ void MasterLink::leave(bool interrupted, const TimeSplit& times) {
   leave->set_interrupted(interrupted);
   put(leave->mutable_times(), times);
   put(leave->mutable_times(), process_memory());
-  sign_and_send(message);
+  send(std::move(message));
 }
 
 void MasterLink::failed(const std::string& reason) {
   v1::NodeMessage message;
   message.mutable_failed()->set_reason(reason);
-  sign_and_send(message);
+  send(std::move(message));
 }
 
-void MasterLink::send(v1::NodeMessage message) { sign_and_send(message); }
-
-void MasterLink::sign_and_send(v1::NodeMessage& message) {
+void MasterLink::send(v1::NodeMessage message) {
   message.set_run_id(welcome_.run_id());
   control_.send(to_frame(message), zmq::send_flags::none);
 }

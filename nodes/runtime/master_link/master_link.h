@@ -32,7 +32,7 @@ class MasterLink {
   void done(const TickTally& tally);
   void leave(bool interrupted, const TimeSplit& times);
   void failed(const std::string& reason);
-  /// Sends any other message, over the connection that identifies the process.
+  /// Sends any message, over the connection that identifies the process.
   void send(v1::NodeMessage message);
 
   /// Waits until a message of the master arrives, one of `sockets` is readable, the process is
@@ -59,7 +59,6 @@ class MasterLink {
   const v1::Welcome& welcome() const { return welcome_; }
 
  private:
-  void sign_and_send(v1::NodeMessage& message);
   void handle_control();
   void handle_ticks();
   void take(const v1::Grant& grant);

@@ -1,17 +1,32 @@
 #include "nodes/runtime/program/program.h"
 
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 
 #include "core/base/error.h"
 #include "nodes/runtime/observability/metrics.h"
-#include "nodes/runtime/process/file_limit.h"
 #include "nodes/runtime/process/log.h"
 #include "nodes/runtime/program/command_line.h"
 #include "nodes/runtime/program/manual.h"
 #include "nodes/runtime/program/version_text.h"
 
 namespace dmise {
+namespace {
+
+/// Raises the limit of open files as far as the system permits, to at most 65,536: each connection
+/// is one, and the usual soft limit is 1,024.
+void raise_file_limit() {
+  constexpr rlim_t enough = 65536;
+  rlimit files{};
+  if (getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur >= enough) return;
+  files.rlim_cur = std::min(files.rlim_max, enough);  // RLIM_INFINITY is the largest
+  setrlimit(RLIMIT_NOFILE, &files);
+}
+
+}  // namespace
 
 void add_common_flags(CLI::App& app, CommonFlags& flags) {
   app.add_option("--name", flags.name, "name of this node in the run")->capture_default_str();

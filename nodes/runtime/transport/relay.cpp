@@ -25,15 +25,11 @@ bool is_allowed(std::vector<zmq::message_t>& message, MayPublish may_publish) {
 int relay_messages(zmq::socket_t& from, zmq::socket_t& to) {
   int messages = 0;
   zmq::message_t frame;
-  while (messages < relay_burst && from.recv(frame, zmq::recv_flags::dontwait)) {
-    bool more = frame.more();
+  for (bool more = false; more || messages < relay_burst;) {
+    if (!from.recv(frame, more ? zmq::recv_flags::none : zmq::recv_flags::dontwait)) break;
+    messages += !more;
+    more = frame.more();
     to.send(frame, more ? zmq::send_flags::sndmore : zmq::send_flags::none);
-    while (more) {
-      if (!from.recv(frame, zmq::recv_flags::none)) break;
-      more = frame.more();
-      to.send(frame, more ? zmq::send_flags::sndmore : zmq::send_flags::none);
-    }
-    ++messages;
   }
   return messages;
 }
