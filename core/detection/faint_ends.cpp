@@ -79,13 +79,12 @@ double gain_over(const Scene& scene, const Source& better, const Source& than) {
   for (const FitPixel& p : pixels_near(scene, than.trail(), margin_px))
     if (!covered.has(p.x, p.y)) pixels.push_back(p);
   const auto deviance = [&](const Source& source) {
-    const TrailLight light(source.trail(),
-                           scene.psf.at({source.trail().x_px, source.trail().y_px}));
-    const std::vector<double> all = light_in(pixels, {&light, 1});
+    const Trail& t = source.trail();
+    const auto light = light_in(pixels, {&t, 1}, scene.psf.at({t.x_px, t.y_px}));
     double sum = 0.0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const FitPixel& p = pixels[i];
-      const double model = all[i];
+      const double model = light[i];
       const double variance = p.variance_e2 + std::max(model, 0.0);
       const double residual = p.signal_e - model - source.fit.background_e;
       sum += std::min(residual * residual / variance, most_residual2) + std::log(variance);

@@ -101,16 +101,10 @@ bool are_same(const std::vector<FitPixel>& a, const std::vector<FitPixel>& b) {
 
 }  // namespace
 
-std::vector<TrailLight> lights_of(std::span<const Trail> trails, const Psf& psf) {
-  std::vector<TrailLight> out;
-  for (const Trail& trail : trails) out.emplace_back(trail, psf);
-  return out;
-}
-
 std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels,
                                        std::span<const Trail> trails, double background_e,
                                        double tolerance, const Psf& psf) {
-  const std::vector<double> light = light_in(pixels, lights_of(trails, psf));
+  const std::vector<double> light = light_in(pixels, trails, psf);
   std::vector<const FitPixel*> outliers;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const FitPixel& p = pixels[i];

@@ -37,9 +37,6 @@ bool lies_on(const Trail& trail, double x_px, double y_px, double margin_px);
 /// Unsaturated pixels on the trail.
 std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double margin_px);
 
-/// Trails prepared for evaluation.
-std::vector<TrailLight> lights_of(std::span<const Trail> trails, const Psf& psf);
-
 /// Pixels without those far above or below the trails' light, and their neighbours. `tolerance`:
 /// relative error of the model.
 std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels,

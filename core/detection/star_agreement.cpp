@@ -109,9 +109,8 @@ void StarAgreement::measure_light(const Scene& scene, const FilteredFrame& frame
     const double peak = peak_snr(scene, frame, unit, trail, star.signal_e);
     if (peak < measured_snr || peak > crowded_snr) continue;
     trail.flux_e = 1.0;
-    const TrailLight light(trail, scene.psf.at(at));
     const auto pixels = pixels_near(scene, trail, 2 * scene.sigma_px + 0.5);
-    const std::vector<double> shape = light_in(pixels, {&light, 1});
+    const std::vector<double> shape = light_in(pixels, {&trail, 1}, scene.psf.at(at));
     double sum = 0.0, squares = 0.0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       sum += shape[i] * pixels[i].signal_e;

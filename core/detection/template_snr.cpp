@@ -27,9 +27,9 @@ struct Sky {
 
 double snr_of(const Scene& scene, const std::vector<FitPixel>& pixels, Trail trail) {
   trail.flux_e = 1.0;
-  const TrailLight light(trail, scene.psf.at({trail.x_px, trail.y_px}));
   const Sky sky(scene, trail);
-  const std::vector<double> shape = light_in(pixels, {&light, 1});
+  const std::vector<double> shape =
+      light_in(pixels, {&trail, 1}, scene.psf.at({trail.x_px, trail.y_px}));
   double sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const FitPixel& p = pixels[i];

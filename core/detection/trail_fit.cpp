@@ -13,8 +13,12 @@
 namespace dmise {
 namespace {
 
-using Vector = SmallVector;
-using Matrix = SmallMatrix;
+std::vector<TrailLight> lights_of(std::span<const Trail> trails, const Psf& psf) {
+  std::vector<TrailLight> out;
+  out.reserve(trails.size());
+  for (const Trail& trail : trails) out.emplace_back(trail, psf);
+  return out;
+}
 
 struct State {
   std::vector<Trail> trails;
@@ -52,8 +56,8 @@ class Problem {
   /// chi2 with the weights of the previous state, which a step must reduce.
   struct Linear {
     State state;
-    Matrix matrix{};
-    Vector right{};
+    SmallMatrix matrix{};
+    SmallVector right{};
     std::vector<double> variance;
     double chi2 = 0.0, deviance = 0.0, merit = 0.0;
   };
@@ -65,9 +69,7 @@ class Problem {
         kernel_of(best_simd_level(), sse2::add_block, avx2::add_block, avx512::add_block);
     Linear out;
     out.variance.resize(x_.size());
-    std::vector<TrailLight> lights;
-    lights.reserve(state.trails.size());
-    for (const Trail& trail : state.trails) lights.emplace_back(trail, settings_.psf);
+    const std::vector<TrailLight> lights = lights_of(state.trails, settings_.psf);
     std::vector<double> derivatives(trail_parameters * trail_block * lights.size());
     const auto of = [&](std::size_t t) {
       return reinterpret_cast<double(*)[trail_block]>(derivatives.data() +
@@ -117,11 +119,11 @@ class Problem {
 
   /// The step from a state by its damped equations. A slope at its bound that would go beyond
   /// stays.
-  std::optional<Vector> step_from(const Linear& now, double damping) const {
+  std::optional<SmallVector> step_from(const Linear& now, double damping) const {
     std::vector<std::size_t> held;
     while (true) {
-      Matrix damped = now.matrix;
-      Vector right = now.right;
+      SmallMatrix damped = now.matrix;
+      SmallVector right = now.right;
       for (std::size_t i = 0; i < size_; ++i) damped[i][i] *= 1 + damping;
       for (const std::size_t k : held) {
         for (std::size_t i = 0; i < size_; ++i) damped[std::max(i, k)][std::min(i, k)] = 0.0;
@@ -129,14 +131,14 @@ class Problem {
         right[k] = 0.0;
       }
       if (!cholesky(damped, size_)) return std::nullopt;
-      const Vector step = solve(damped, right, size_);
+      const SmallVector step = solve(damped, right, size_);
       const auto beyond = slope_beyond(now.state, step);
       if (!beyond) return step;
       held.push_back(*beyond);
     }
   }
 
-  State moved(const State& from, const Vector& step) const {
+  State moved(const State& from, const SmallVector& step) const {
     State to = from;
     std::size_t k = 0;
     for (std::size_t t = 0; t < to.trails.size(); ++t) {
@@ -168,7 +170,7 @@ class Problem {
   }
 
   /// The number of a slope that is 1 or -1 and that a step takes further.
-  std::optional<std::size_t> slope_beyond(const State& from, const Vector& step) const {
+  std::optional<std::size_t> slope_beyond(const State& from, const SmallVector& step) const {
     std::size_t k = 0;
     for (std::size_t t = 0; t < from.trails.size(); ++t)
       for (unsigned bit = 0; bit < trail_parameters; ++bit) {
@@ -191,7 +193,7 @@ class Problem {
 /// How much of a step to take after the one before: weights change with the model, so that an end
 /// swings about its place, each step `-back` of the last one; all that remains is the step over 1 +
 /// back.
-double share_of_step(const Matrix& matrix, const Vector& step, const Vector& before,
+double share_of_step(const SmallMatrix& matrix, const SmallVector& step, const SmallVector& before,
                      std::size_t n) {
   constexpr double least_back = 0.2;
   double along = 0.0, size = 0.0;
@@ -204,10 +206,6 @@ double share_of_step(const Matrix& matrix, const Vector& step, const Vector& bef
   const double back = -along / size;
   return back > least_back ? 1 / (1 + back) : 1.0;
 }
-
-}  // namespace
-
-namespace {
 
 /// Calls visit(first pixel, count, x, y) for blocks of pixels.
 template <class Visit>
@@ -225,9 +223,11 @@ void for_blocks(std::span<const FitPixel> pixels, const Visit& visit) {
 
 }  // namespace
 
-std::vector<double> light_in(std::span<const FitPixel> pixels, std::span<const TrailLight> lights) {
+std::vector<double> light_in(std::span<const FitPixel> pixels, std::span<const Trail> trails,
+                             const Psf& psf) {
   static const auto trail_values =
       kernel_of(best_simd_level(), sse2::trail_values, avx2::trail_values, avx512::trail_values);
+  const std::vector<TrailLight> lights = lights_of(trails, psf);
   std::vector<double> out((pixels.size() + trail_block - 1) / trail_block * trail_block, 0.0);
   for_blocks(pixels, [&](std::size_t begin, std::size_t, const double* x, const double* y) {
     for (const TrailLight& light : lights)
@@ -263,14 +263,14 @@ TrailFit fit_trails(const std::vector<FitPixel>& pixels, std::vector<Trail> star
   constexpr double near_chi2 = 1.0;
   TrailFit fit;
   double damping = 1e-3;
-  Vector before{};
+  SmallVector before{};
   bool swings = false;  // whether the step may be one about the place
   Problem::Linear now = problem.linearise({std::move(start), 0.0}, nullptr);
   fit.degrees = int(pixels.size()) - int(n) + (settings.background_sigma_e > 0 ? 1 : 0);
   for (int step = 0; step < settings.most_steps && !fit.converged; ++step) {
     fit.chi2 = now.chi2;
     if (settings.good_enough_sigmas && fit.good(*settings.good_enough_sigmas)) break;
-    std::optional<Vector> by = problem.step_from(now, damping);
+    std::optional<SmallVector> by = problem.step_from(now, damping);
     if (!by) break;
     const double share = swings ? share_of_step(now.matrix, *by, before, n) : 1.0;
     for (std::size_t i = 0; i < n; ++i) (*by)[i] *= share;
@@ -288,7 +288,7 @@ TrailFit fit_trails(const std::vector<FitPixel>& pixels, std::vector<Trail> star
     damping *= 0.1;
   }
   State& state = now.state;
-  Matrix& matrix = now.matrix;
+  SmallMatrix& matrix = now.matrix;
   fit.chi2 = now.chi2;
   fit.deviance = now.deviance;
   fit.trails = std::move(state.trails);
@@ -297,9 +297,9 @@ TrailFit fit_trails(const std::vector<FitPixel>& pixels, std::vector<Trail> star
   fit.covariance.assign(n * n, 0.0);
   if (cholesky(matrix, n)) {
     for (std::size_t i = 0; i < n; ++i) {
-      Vector one{};
+      SmallVector one{};
       one[i] = 1.0;
-      const Vector column = solve(matrix, one, n);
+      const SmallVector column = solve(matrix, one, n);
       for (std::size_t j = 0; j < n; ++j) fit.covariance[j * n + i] = column[j];
     }
   } else {

@@ -16,7 +16,8 @@ struct FitPixel {
 };
 
 /// Electrons of trails in each of some pixels, the sums over all trails.
-std::vector<double> light_in(std::span<const FitPixel> pixels, std::span<const TrailLight> lights);
+std::vector<double> light_in(std::span<const FitPixel> pixels, std::span<const Trail> trails,
+                             const Psf& psf);
 
 /// The same of one trail, with the derivatives by its place.
 struct PlacedLight {
