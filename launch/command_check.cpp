@@ -17,9 +17,9 @@
 #include "core/config/node_kinds.h"
 #include "core/orbit/interpolation_error.h"
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/host_names.h"
 #include "launch/scenario_outlook.h"
-#include "nodes/runtime/program/command_line.h"
 #include "nodes/runtime/security/security.h"
 #include "sensors/outlook/outlook_text.h"
 #include "sensors/pipeline/make_sensor.h"
@@ -232,11 +232,8 @@ void add_check_command(CLI::App& app) {
                    "with --keys: also of this number of agents, as in a launch")
       ->default_val(0)
       ->check(CLI::Range(0, 10000));
-  command
-      ->add_option("--limb-deg", options->limb_deg,
-                   "warn of cameras in orbit that point nearer to the Earth's limb")
-      ->default_val(0)
-      ->check(number_between(0.0, 180.0));
+  add_number_option(*command, "--limb-deg", options->limb_deg, 0.0, 180.0,
+                    "warn of cameras in orbit that point nearer to the Earth's limb");
   command->callback([options] { check(*options); });
 }
 

@@ -7,6 +7,7 @@
 #include "core/detection/detect_file.h"
 #include "core/ingest/star_trails.h"
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/frame_options.h"
 #include "launch/star_catalogue_option.h"
 
@@ -70,9 +71,7 @@ void add_detect_command(CLI::App& app) {
   add_star_catalogue_option(*command, o->catalogue, true);
   command->add_flag("--blind", o->blind,
                     "find where the frame points by its stars alone, before detection");
-  command->add_option("--threads", o->threads, "number of threads")
-      ->default_val(1)
-      ->check(CLI::Range(1, 256));
+  add_threads_option(*command, o->threads);
   command->callback([o] { print_detections(*o); });
 }
 

@@ -11,8 +11,8 @@
 #include "core/config/scenario.h"
 #include "core/discrimination/discrimination_text.h"
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/progress.h"
-#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 namespace {
@@ -149,30 +149,22 @@ void add_discriminate_command(CLI::App& app) {
       ->delimiter(',');
   command->add_option("--is", options->known,
                       "OBJECT=MATERIAL: what an object is known to be, for the confusion matrix");
-  command->add_option("--radius-px", options->aperture.radius_px, "of the aperture")
-      ->capture_default_str()
-      ->check(number_between(0.5, 500.0));
-  command->add_option("--inner-px", options->aperture.inner_px, "of the ring of background")
-      ->capture_default_str()
-      ->check(number_between(0.5, 500.0));
-  command->add_option("--outer-px", options->aperture.outer_px, "of the ring of background")
-      ->capture_default_str()
-      ->check(number_between(1.0, 500.0));
-  for (auto* option :
-       {command->add_option("--range-km", options->range_km, "distance of the object of a design")
-            ->check(number_between(1e-3, 1e7)),
-        command
-            ->add_option("--area-m2", options->area_m2,
-                         "of a design's object, times its phase function")
-            ->check(number_between(1e-9, 1e9)),
-        command
-            ->add_option("--right", options->right,
-                         "probability of the right material that a design is for")
-            ->check(number_between(0.5001, 0.999999))})
-    option->capture_default_str()->needs(design);
-  command->add_option("--threads", options->threads, "number of threads")
-      ->default_val(1)
-      ->check(CLI::Range(1, 256));
+  Aperture& aperture = options->aperture;
+  add_number_option(*command, "--radius-px", aperture.radius_px, 0.5, 500.0, "of the aperture");
+  add_number_option(*command, "--inner-px", aperture.inner_px, 0.5, 500.0,
+                    "of the ring of background");
+  add_number_option(*command, "--outer-px", aperture.outer_px, 1.0, 500.0,
+                    "of the ring of background");
+  add_number_option(*command, "--range-km", options->range_km, 1e-3, 1e7,
+                    "distance of the object of a design")
+      ->needs(design);
+  add_number_option(*command, "--area-m2", options->area_m2, 1e-9, 1e9,
+                    "of a design's object, times its phase function")
+      ->needs(design);
+  add_number_option(*command, "--right", options->right, 0.5001, 0.999999,
+                    "probability of the right material that a design is for")
+      ->needs(design);
+  add_threads_option(*command, options->threads);
   command->add_flag("--json", options->json, "print JSON");
   command
       ->add_option("--plots", options->plots,

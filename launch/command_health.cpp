@@ -4,8 +4,8 @@
 
 #include "core/base/error.h"
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/node_health.h"
-#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 namespace {
@@ -41,9 +41,7 @@ void add_health_command(CLI::App& app) {
           "name", options->name,
           "name of the node (whose key is used, with --keys), or time-master: the whole run")
       ->required();
-  command->add_option("--master", options->master, "address of the time-master, tcp://HOST:PORT")
-      ->envname("DMISE_MASTER")
-      ->check(transport_address());
+  add_master_option(*command, "--master", options->master)->envname("DMISE_MASTER");
   command->add_option("--keys", options->keys, "directory with NAME.key")->envname("DMISE_KEYS");
   command->callback([options] { check_health(*options); });
 }

@@ -1,9 +1,7 @@
 #include <poll.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <chrono>
 #include <csignal>
@@ -18,13 +16,13 @@
 #include "core/config/node_kinds.h"
 #include "core/config/scenario.h"
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/file_lock.h"
 #include "launch/own_address.h"
 #include "launch/run_directory.h"
 #include "launch/supervisor.h"
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/process/event.h"
-#include "nodes/runtime/program/command_line.h"
 #include "sensors/pipeline/recorded_plans.h"
 #include "time-master/master.h"
 
@@ -62,14 +60,14 @@ class Join {
     const bool not_needed = kind && !kind->wanted(scenario_);
     if (const auto name = fixed_name()) {
       wait_for_master(*name);
-      not_needed ? stand_by(*name) : become(*name);
+      not_needed ? stand_by(*name) : become_node(*name);
     } else if (take_free_sensor()) {
       wait_for_master(lock_name_);
-      become(lock_name_);
+      become_node(lock_name_);
     } else {
       wait_for_master(scenario_.sensors.front().name);
       stand_by(scenario_.sensors.front().name);
-      if (!lock_name_.empty()) become(lock_name_);
+      if (!lock_name_.empty()) become_node(lock_name_);
     }
   }
 
@@ -196,20 +194,16 @@ class Join {
     }
   }
 
-  [[noreturn]] void become(const std::string& name) {
+  [[noreturn]] void become_node(const std::string& name) {
     if (writes_products(name)) enter_directory();
-    std::vector<std::string> texts = arguments(name);
-    std::vector<char*> words;
-    for (auto& text : texts) words.push_back(text.data());
-    words.push_back(nullptr);
+    const std::vector<std::string> command = arguments(name);
     std::fprintf(stderr, "joining %s as %s\n", master_.c_str(), name.c_str());
     // From here on signals end the process, or belong to the node.
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
     if (stop_.is_set()) throw ExitWith{130};
     if (directory_lock_) directory_lock_->release_to_exec();
-    execv(words[0], words.data());
-    throw Error(texts[0] + ": " + std::strerror(errno));
+    become(command);
   }
 
   const JoinOptions& options_;
@@ -263,9 +257,7 @@ void add_join_command(CLI::App& app) {
       ->add_option("node", options->node,
                    nodes_to_be() + ": the first free one; a surplus process stands by")
       ->required();
-  command->add_option("--master", options->master, "address of the time-master, tcp://HOST:PORT")
-      ->required()
-      ->check(transport_address());
+  add_master_option(*command, "--master", options->master)->required();
   command->add_option("--out", options->out, "directory of the run, shared by its nodes")
       ->default_val("out/launch");
   command->add_option(

@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/launched_run.h"
-#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 
@@ -17,11 +17,8 @@ void add_launch_command(CLI::App& app) {
   command->add_option("--bind", options->bind, "address of the time-master; port 0: any free port")
       ->capture_default_str()
       ->check(transport_address());
-  command
-      ->add_option("--threads", options->threads,
-                   "threads of each node; the products do not depend on it")
-      ->default_val(1)
-      ->check(CLI::Range(1, 256));
+  add_threads_option(*command, options->threads,
+                     "threads of each node; the products do not depend on it");
   command
       ->add_option("--hosts", options->hosts,
                    "number of agents that the sensors join, one per host; 0: none")

@@ -15,6 +15,7 @@
 #include "core/config/node_kinds.h"
 #include "core/sim/controller.h"
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/node_makers.h"
 #include "launch/notes.h"
 #include "launch/prepare_run.h"
@@ -197,11 +198,8 @@ void add_run_command(CLI::App& app) {
   auto* command = app.add_subcommand("run", "Runs a scenario in this process, without a network");
   command->add_option("scenario", options->scenario, "scenario (YAML)")->required();
   command->add_option("--out", options->out, "directory of the products")->default_val("out/run");
-  command
-      ->add_option("--threads", options->threads,
-                   "number of threads; the products do not depend on it")
-      ->default_val(1)
-      ->check(CLI::Range(1, 256));
+  add_threads_option(*command, options->threads,
+                     "number of threads; the products do not depend on it");
   command->add_option("--seed", options->seed,
                       "seed of the random numbers, instead of the scenario's");
   command->add_option("--plan", options->plan,

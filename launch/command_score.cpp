@@ -11,9 +11,9 @@
 #include "core/score/score_charts.h"
 #include "core/score/score_text.h"
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/progress.h"
 #include "launch/star_catalogue_option.h"
-#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 namespace {
@@ -73,20 +73,13 @@ void add_score_command(CLI::App& app) {
   frames->needs(truth)->excludes(run);
   truth->needs(frames);
   add_star_catalogue_option(*command, options->catalogue, true);
-  command->add_option("--threads", options->threads, "number of threads that detect in --frames")
-      ->default_val(1)
-      ->check(CLI::Range(1, 256));
-  command
-      ->add_option("--gate-px", options->settings.gate_px,
-                   "greatest distance of a detection from its truth's trail")
-      ->capture_default_str()
-      ->check(number_between(0.1, 1000.0));
-  command
-      ->add_option("--threshold", options->settings.threshold_snr,
-                   "SNR at which the detector finds half; sources of a lower expected SNR that are "
-                   "not found count as faint, not as missed")
-      ->capture_default_str()
-      ->check(number_between(0.0, 1000.0));
+  add_threads_option(*command, options->threads, "number of threads that detect in --frames");
+  add_number_option(*command, "--gate-px", options->settings.gate_px, 0.1, 1000.0,
+                    "greatest distance of a detection from its truth's trail");
+  add_number_option(
+      *command, "--threshold", options->settings.threshold_snr, 0.0, 1000.0,
+      "SNR at which the detector finds half; sources of a lower expected SNR that are "
+      "not found count as faint, not as missed");
   command->add_flag("--json", options->json, "print JSON");
   command->add_option("--csv", options->csv, "file: a row per truth and per false alarm");
   command->add_option("--plots", options->plots,

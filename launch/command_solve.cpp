@@ -7,9 +7,9 @@
 #include "core/calibration/solve_frame.h"
 #include "core/ingest/star_trails.h"
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/frame_options.h"
 #include "launch/star_catalogue_option.h"
-#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 namespace {
@@ -115,9 +115,7 @@ void add_solve_command(CLI::App& app) {
   add_star_catalogue_option(*command, o->catalogue, false);
   command->add_option("--out", o->out, "FITS file of the frame with the solved header");
   command->add_flag("--json", o->json, "print one line of JSON");
-  command->add_option("--threads", o->threads, "number of threads")
-      ->default_val(1)
-      ->check(CLI::Range(1, 256));
+  add_threads_option(*command, o->threads);
   command->callback([o, field] {
     if (!o->blind && (field->count() || o->scale_low_arcsec > 0 || o->scale_high_arcsec > 0))
       throw ConfigError("--field and --scale-*: take --blind");

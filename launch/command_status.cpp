@@ -15,10 +15,10 @@
 #include "core/base/printable.h"
 #include "core/sim/run_phase.h"
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/status_watch.h"
 #include "nodes/runtime/observability/status.h"
 #include "nodes/runtime/process/event.h"
-#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 namespace {
@@ -177,9 +177,7 @@ void add_pace_verb(CLI::App& clock) {
   };
   auto options = std::make_shared<PaceCommand>();
   auto* verb = clock.add_subcommand("pace", "sets how fast simulated time passes");
-  verb->add_option("master", options->master, "address of the time-master, tcp://HOST:PORT")
-      ->required()
-      ->check(transport_address());
+  add_master_option(*verb, "master", options->master)->required();
   verb->add_option("factor", options->factor,
                    "simulated seconds per second, 0 to 1e6; 0: as fast as possible")
       ->required()
@@ -198,9 +196,7 @@ void add_status_command(CLI::App& app) {
   auto options = std::make_shared<StatusOptions>();
   auto* command =
       app.add_subcommand("status", "Shows the clock and nodes of a run; live on a terminal");
-  command->add_option("master", options->master, "address of the time-master, tcp://HOST:PORT")
-      ->required()
-      ->check(transport_address());
+  add_master_option(*command, "master", options->master)->required();
   command->add_option("--keys", options->keys, "directory with operator.key");
   auto* once = command->add_flag("--once", options->once, "print once, also on a terminal");
   command
@@ -226,9 +222,7 @@ void add_clock_command(CLI::App& app) {
     auto options = std::make_shared<StatusOptions>();
     options->tick = action.first == ClockAction::step ? 1 : 0;
     auto* verb = command->add_subcommand(name, action.second);
-    verb->add_option("master", options->master, "address of the time-master, tcp://HOST:PORT")
-        ->required()
-        ->check(transport_address());
+    add_master_option(*verb, "master", options->master)->required();
     verb->add_option("--keys", options->keys, "directory with operator.key");
     verb->add_option("--tick", options->tick, "tick, or number of ticks");
     verb->add_option("--reason", options->reason, "cause to record");

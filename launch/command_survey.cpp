@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/survey_run.h"
-#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
 
@@ -16,11 +16,8 @@ void add_survey_command(CLI::App& app) {
   command->add_option("scenario", o->scenario, "scenario (YAML)")->required();
   command->add_option("--out", o->out, "directory of survey.json, the map and a directory a sensor")
       ->capture_default_str();
-  command
-      ->add_option("--night", o->night_deg,
-                   "sensors on the ground expose while the Sun is below this elevation [deg]")
-      ->capture_default_str()
-      ->check(number_between(-90.0, 90.0));
+  add_number_option(*command, "--night", o->night_deg, -90.0, 90.0,
+                    "sensors on the ground expose while the Sun is below this elevation [deg]");
   command
       ->add_option("--shells", o->shells_km,
                    "limits of mean altitude between the shells of low orbits [km]")
@@ -40,10 +37,7 @@ void add_survey_command(CLI::App& app) {
                    "from them")
       ->check(CLI::Range(std::size_t(1), std::size_t(100000)));
   command->add_flag("--json", o->json, "print survey.json instead of tables");
-  command
-      ->add_option("--threads", o->threads, "number of threads; the products do not depend on it")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 256));
+  add_threads_option(*command, o->threads, "number of threads; the products do not depend on it");
   command->footer("docs/models/survey.md tells how, and how well");
   command->callback([o] { run_survey(*o); });
 }

@@ -1,37 +1,18 @@
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
-#include <cerrno>
-#include <cstring>
 #include <memory>
 
-#include "core/base/error.h"
 #include "launch/commands.h"
+#include "launch/common_options.h"
+#include "launch/supervisor.h"
 #include "launch/view_process.h"
-#include "nodes/runtime/program/command_line.h"
 
 namespace dmise {
-namespace {
-
-/// Becomes the gateway.
-void view(const ViewOptions& options) {
-  const auto command = gateway_command(options);
-  std::vector<char*> arguments;
-  for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
-  arguments.push_back(nullptr);
-  execv(arguments[0], arguments.data());
-  throw Error(command[0] + ": " + std::strerror(errno));
-}
-
-}  // namespace
 
 void add_view_command(CLI::App& app) {
   auto options = std::make_shared<ViewOptions>();
   auto* command = app.add_subcommand(
       "view", "Shows a run, or a replayed recording, in browsers; prints the URL; ends by Ctrl-C");
-  command->add_option("master", options->master, "address of the time-master, tcp://HOST:PORT")
-      ->required()
-      ->check(transport_address());
+  add_master_option(*command, "master", options->master)->required();
   command->add_option("--products", options->products,
                       "directory of the run: previews of frames that no sensor serves any more");
   command
@@ -48,7 +29,7 @@ void add_view_command(CLI::App& app) {
       "show truth beside detections to whoever may see it; with keys gateway.key must "
       "be one of `dmise keygen --truth`");
   command->add_flag("--no-control", options->no_control, "nobody controls the clock from here");
-  command->callback([options] { view(*options); });
+  command->callback([options] { become(gateway_command(*options)); });
 }
 
 }  // namespace dmise

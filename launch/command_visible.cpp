@@ -13,12 +13,12 @@
 #include "core/pictures/picture_file.h"
 #include "core/time/iso8601.h"
 #include "launch/commands.h"
+#include "launch/common_options.h"
 #include "launch/notes.h"
 #include "launch/pass_list.h"
 #include "launch/progress.h"
 #include "launch/range_figure.h"
 #include "launch/run_lock.h"
-#include "nodes/runtime/program/command_line.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/world.h"
 
@@ -213,13 +213,9 @@ void add_visible_command(CLI::App& app) {
   command->add_option("--from", o->from, "UTC (ISO 8601); default: the scenario's start");
   command->add_option("--duration", o->duration_s, "seconds; default: the scenario's")
       ->check(number_between(1e-3, 3.2e8));
-  command
-      ->add_option(
-          "--step", o->step_s,
-          "seconds between the instants of the figure, the last of them the span's end; passes do "
-          "not depend on it")
-      ->capture_default_str()
-      ->check(number_between(1e-3, 3600.0));
+  add_number_option(*command, "--step", o->step_s, 1e-3, 3600.0,
+                    "seconds between the instants of the figure, the last of them the span's end; "
+                    "passes do not depend on it");
   auto* sunlit = command->add_flag("--sunlit", o->sunlit, "only passes that are partly sunlit");
   command
       ->add_flag("--dark", o->dark,
@@ -242,10 +238,7 @@ void add_visible_command(CLI::App& app) {
                    "directory of passes.csv, passes.jsonl, counts.csv, figure.svg and .png")
       ->capture_default_str();
   command->add_flag("--print-only", o->print_only, "write no files");
-  command
-      ->add_option("--threads", o->threads, "number of threads; the products do not depend on it")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 256));
+  add_threads_option(*command, o->threads, "number of threads; the products do not depend on it");
   command->footer(
       "An object is visible if it is in the camera's frame, above the sensor's mask_deg and "
       "not behind\nthe Earth, and the shutter is open; '<' and '>' mark passes cut by the span. "

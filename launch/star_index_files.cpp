@@ -23,6 +23,7 @@
 #include "core/sky/star_map_file.h"
 #include "core/sky/star_merge.h"
 #include "launch/notes.h"
+#include "launch/supervisor.h"
 
 namespace dmise {
 namespace {
@@ -41,12 +42,9 @@ std::string failure_of(std::vector<std::string> command) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-  std::vector<char*> arguments;
-  for (std::string& argument : command) arguments.push_back(argument.data());
-  arguments.push_back(nullptr);
   pid_t child = 0;
-  const int refused =
-      posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  const int refused = posix_spawn(&child, command[0].c_str(), &actions, nullptr,
+                                  pointers_to(command).data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
   std::string said;

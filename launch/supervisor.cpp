@@ -22,8 +22,8 @@ namespace {
 using Milliseconds = std::chrono::milliseconds;
 
 /// In the child: executes the program, or writes the error to `report`.
-[[noreturn]] void become(const std::vector<std::string>& arguments, const std::string& log_path,
-                         bool keep_log, pid_t parent, int report) {
+[[noreturn]] void become_child(std::vector<std::string> arguments, const std::string& log_path,
+                               bool keep_log, pid_t parent, int report) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(1);
   const int log =
@@ -33,10 +33,7 @@ using Milliseconds = std::chrono::milliseconds;
     dup2(in, STDIN_FILENO);
     dup2(log, STDOUT_FILENO);
     dup2(log, STDERR_FILENO);
-    std::vector<char*> argv;
-    for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-    argv.push_back(nullptr);
-    execv(argv[0], argv.data());
+    execv(arguments[0].c_str(), pointers_to(arguments).data());
   }
   const int reason = errno;
   if (write(report, &reason, sizeof reason) < 0) _exit(126);
@@ -89,7 +86,7 @@ pid_t Supervisor::spawn(const std::string& name, const std::vector<std::string>&
     close(report[1]);
     throw Error(name + ": can't start a process: " + std::strerror(reason));
   }
-  if (pid == 0) become(arguments, log_path, keep_log, parent, report[1]);
+  if (pid == 0) become_child(arguments, log_path, keep_log, parent, report[1]);
   close(report[1]);
   int reason = 0;
   ssize_t got = 0;
@@ -162,14 +159,21 @@ std::string program_directory() {
   return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path().string();
 }
 
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+void become(std::vector<std::string> command) {
+  execv(command[0].c_str(), pointers_to(command).data());
+  throw Error(command[0] + ": " + std::strerror(errno));
+}
+
 void become_program(const std::string& name, std::vector<std::string> arguments) {
-  const std::string program = program_directory() + "/" + name;
-  arguments.insert(arguments.begin(), program);
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  execv(program.c_str(), argv.data());
-  throw Error(program + ": " + std::strerror(errno));
+  arguments.insert(arguments.begin(), program_directory() + "/" + name);
+  become(std::move(arguments));
 }
 
 }  // namespace dmise

@@ -64,7 +64,12 @@ std::string last_line(const std::string& path);
 /// Directory of the running program.
 std::string program_directory();
 
-/// Replaces this process by a program of that directory. Throws `Error` if it cannot be started.
+/// Pointers to words for execv, ended by null, as long as the words live.
+std::vector<char*> pointers_to(std::vector<std::string>& words);
+
+/// Replaces this process by the program `command[0]`. Throws `Error` if it cannot be started.
+[[noreturn]] void become(std::vector<std::string> command);
+/// The same with a program of `program_directory`.
 [[noreturn]] void become_program(const std::string& name, std::vector<std::string> arguments);
 
 }  // namespace dmise

@@ -1,0 +1,33 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "nodes/runtime/program/command_line.h"
+
+// Options that several commands have. What the variable holds is the default.
+namespace dmise {
+
+/// Adds `name`, a number from `low` to `high`.
+inline CLI::Option* add_number_option(CLI::App& command, const std::string& name, double& number,
+                                      double low, double high, const std::string& what) {
+  return command.add_option(name, number, what)
+      ->capture_default_str()
+      ->check(number_between(low, high));
+}
+
+/// Adds `--threads`, 1 to 256.
+inline CLI::Option* add_threads_option(CLI::App& command, int& threads,
+                                       const std::string& what = "number of threads") {
+  return command.add_option("--threads", threads, what)
+      ->capture_default_str()
+      ->check(CLI::Range(1, 256));
+}
+
+/// Adds `name`, the address of the time-master.
+inline CLI::Option* add_master_option(CLI::App& command, const std::string& name,
+                                      std::string& master) {
+  return command.add_option(name, master, "address of the time-master, tcp://HOST:PORT")
+      ->check(transport_address());
+}
+
+}  // namespace dmise
