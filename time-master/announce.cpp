@@ -1,20 +1,19 @@
-#include <spdlog/spdlog.h>
+#include "time-master/announce.h"
+
 #include <unistd.h>
 
 #include "core/base/error.h"
 #include "core/base/whole_file.h"
-#include "time-master/master.h"
 
 namespace dmise {
 
-void announce(const MasterOptions& options, const std::string& address) {
-  spdlog::debug("listens on {}", address);
+void announce(const std::string& address, const std::string& file, int descriptor,
+              const std::function<void(const std::string& address)>& on_bound) {
   const std::string line = address + "\n";
-  if (!options.announce_file.empty()) write_file_whole(options.announce_file, line);
-  if (options.announce_fd >= 0 &&
-      write(options.announce_fd, line.data(), line.size()) != ssize_t(line.size()))
+  if (!file.empty()) write_file_whole(file, line);
+  if (descriptor >= 0 && write(descriptor, line.data(), line.size()) != ssize_t(line.size()))
     throw Error("announce-fd: can't write");
-  if (options.on_bound) options.on_bound(address);
+  if (on_bound) on_bound(address);
 }
 
 }  // namespace dmise

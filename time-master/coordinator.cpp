@@ -55,8 +55,7 @@ void Coordinator::done(const std::string& name, TickTally tally, Instant now) {
 bool Coordinator::notes(Member& member, TickTally tally) {
   if (!member.agent)
     for (TopicTally& topic : tally.topics) topic.incarnation = member.incarnation;
-  const auto at = std::lower_bound(member.manifests.begin(), member.manifests.end(), tally.tick,
-                                   [](const TickTally& t, Tick tick) { return t.tick < tick; });
+  const auto at = std::ranges::lower_bound(member.manifests, tally.tick, {}, &TickTally::tick);
   if (at == member.manifests.end() || at->tick != tally.tick) {
     member.manifests.insert(at, std::move(tally));
     return true;

@@ -49,13 +49,8 @@ class Coordinator {
     bool agent = false;      // represents the nodes of a host
     std::string host;        // its agent; empty: none
   };
-  struct Member {
-    NodeTopics node;
-    bool keeps_time = true;
-    bool observer = false;
-    bool agent = false;
+  struct Member : Request {
     bool idle = false;  // an agent without nodes after the start: not waited for
-    std::string host;   // as in Request
     bool ready = false;
     bool silent = false;  // under SilentPolicy::wait
     bool left = false;    // has left, or was dropped

@@ -135,8 +135,7 @@ void Coordinator::wait_or_fail(Member& member, const std::string& how, Instant n
         member.agent ? ", and with it " + joined(nodes_behind(member.node.name)) : "";
     return fail_run(member.node.name + " " + how + after_tick(member) + with_it);
   }
-  if (options_.max_rejoins >= 0 && member.incarnation > std::uint64_t(options_.max_rejoins) &&
-      options_.max_rejoins > 0)
+  if (options_.max_rejoins > 0 && member.incarnation > std::uint64_t(options_.max_rejoins))
     return fail_run(member.node.name + " " + how + ", after " +
                     std::to_string(options_.max_rejoins) + " restarts" + after_tick(member));
   silence(member, now);

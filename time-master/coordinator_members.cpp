@@ -40,12 +40,8 @@ std::string Coordinator::not_expected(const std::string& name) const {
 }
 
 Coordinator::Member Coordinator::fresh(const Request& request, Instant now) {
-  Member member;
-  member.node = request.node;
-  member.agent = request.agent;
-  member.host = request.host;
+  Member member{request};
   member.keeps_time = request.keeps_time && !request.observer;
-  member.observer = request.observer;
   member.ready = !member.keeps_time;
   member.incarnation = ++incarnations_[request.node.name];
   member.resumes_at = settled_ + 1;

@@ -12,6 +12,7 @@
 #include "nodes/runtime/process/monotonic_clock.h"
 #include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/protocol/time_split_codec.h"
+#include "time-master/announce.h"
 #include "time-master/master_messages.h"
 #include "time-master/master_process.h"
 
@@ -31,10 +32,8 @@ constexpr milliseconds farewell{1500};  // longest wait for nodes to leave after
 constexpr milliseconds longest_unheard{250};   // between a connection's end and its last messages
 constexpr milliseconds guard_interval{20};     // between checks of connection limits
 constexpr int most_control_messages = 1000;    // of one connection, waiting to be read
-constexpr int most_unread_grants = 4096;       // of one subscriber; heartbeats repeat lost ones
 constexpr int most_waiting_subscriptions = 8;  // of one connection; others wait at the peer, so
                                                // that little is queued between two checks
-constexpr std::int64_t longest_subscription = 1024;  // needed by the CURVE handshake
 
 CoordinatorOptions with_broker(const MasterOptions& options) {
   CoordinatorOptions run = options.run;
@@ -62,8 +61,8 @@ zmq::socket_t control_router(zmq::context_t& context) {
 }
 
 zmq::socket_t grant_publisher(zmq::context_t& context) {
-  zmq::socket_t ticks = make_socket(context, zmq::socket_type::pub, longest_subscription);
-  ticks.set(zmq::sockopt::sndhwm, most_unread_grants);
+  zmq::socket_t ticks = make_socket(context, zmq::socket_type::pub, max_control_bytes);
+  ticks.set(zmq::sockopt::sndhwm, max_unread);  // heartbeats repeat lost grants
   ticks.set(zmq::sockopt::rcvhwm, most_waiting_subscriptions);
   ticks.set(zmq::sockopt::linger, 500);
   return ticks;
@@ -93,7 +92,8 @@ MasterProcess::MasterProcess(const MasterOptions& options)
       publisher_(router_, ticks_, run_id_, coordinator_, directory_) {
   address_ = bind_to(router_, options.address, security_);
   tick_endpoint_ = bind_to(ticks_, any_port(options.address), security_);
-  announce(options, address_);
+  spdlog::debug("listens on {}", address_);
+  announce(address_, options.announce_file, options.announce_fd, options.on_bound);
 }
 
 MasterResult MasterProcess::run() {

@@ -24,9 +24,6 @@ struct MasterOptions {
   std::function<void(const std::string& address)> on_bound;
 };
 
-/// Announces the address of a master in all the ways that `options` name. Throws `Error`.
-void announce(const MasterOptions& options, const std::string& address);
-
 /// Runs the clock of one run until every tick is done or the run fails. Throws `ConfigError` for
 /// invalid options and `Error` if the address cannot be bound.
 MasterResult run_master(const MasterOptions& options);

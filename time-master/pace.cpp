@@ -12,13 +12,11 @@ namespace {
 constexpr double longest_wait_ns = 4e18;  // two of them after any present fit into an Instant
 
 void check(double factor) {
-  if (!is_pace_factor(factor))
+  if (!(factor >= 0.0 && factor <= max_pace_factor))
     throw ConfigError("real_time: must be a factor from 0 to 1e6, got " + std::to_string(factor));
 }
 
 }  // namespace
-
-bool is_pace_factor(double factor) { return factor >= 0.0 && factor <= max_pace_factor; }
 
 Pace::Pace(PaceOptions options, Tick first_tick) : options_(options), anchor_tick_(first_tick) {
   check(options_.factor);

@@ -12,14 +12,11 @@ struct PaceOptions {
   double factor = 0.0;  // simulated seconds per second; 0: as fast as possible
 };
 
-/// Whether a clock can run at `factor`: 0 to max_pace_factor.
-bool is_pace_factor(double factor);
-
 /// Limits how far the clock may advance, independent of nodes: real time times a factor, pauses,
 /// single steps. Late ticks are never skipped: the clock catches up, and the overrun is counted.
 class Pace {
  public:
-  /// Throws `ConfigError` for what is no pace factor.
+  /// Throws `ConfigError` for a factor that is not 0 to max_pace_factor.
   explicit Pace(PaceOptions options = {}, Tick first_tick = 0);
 
   /// `first_tick` is due now.
@@ -32,7 +29,7 @@ class Pace {
   /// pause: at most a tick from now. Ticks that were late are due from now on; no overrun.
   void go_on(Tick next, Instant now);
   /// Simulated time passes at another factor from now on, also what is left of a tick until `next`
-  /// is due; otherwise as `go_on`. A pause stays. Throws `ConfigError` for what is no pace factor.
+  /// is due; otherwise as `go_on`. A pause stays. Throws `ConfigError` as the constructor.
   void change(double factor, Tick next, Instant now);
   /// All nodes have done `tick`.
   void finished(Tick tick, Instant now);

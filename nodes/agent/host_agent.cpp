@@ -1,16 +1,15 @@
 #include "nodes/agent/host_agent.h"
 
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include "core/base/error.h"
-#include "core/base/whole_file.h"
 #include "nodes/agent/host_agent_process.h"
 #include "nodes/runtime/master_link/run_result.h"
 #include "nodes/runtime/process/cpu_time.h"
 #include "nodes/runtime/process/monotonic_clock.h"
 #include "nodes/runtime/process/seconds.h"
 #include "nodes/runtime/transport/relay.h"
+#include "time-master/announce.h"
 
 namespace dmise {
 namespace {
@@ -122,13 +121,7 @@ void HostAgentProcess::join() {
   };
   link_.keep(std::move(heartbeat), std::nullopt);
   spdlog::debug("joined {}, listens on {}", options_.master, address_);
-  if (!options_.announce_file.empty()) write_file_whole(options_.announce_file, address_ + "\n");
-  if (options_.announce_fd >= 0) {
-    const std::string line = address_ + "\n";
-    if (write(options_.announce_fd, line.data(), line.size()) != ssize_t(line.size()))
-      throw Error("announce-fd: can't write");
-  }
-  if (options_.on_bound) options_.on_bound(address_);
+  announce(address_, options_.announce_file, options_.announce_fd, options_.on_bound);
 }
 
 void HostAgentProcess::suspect(const std::vector<std::string>& names) {

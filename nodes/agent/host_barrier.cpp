@@ -8,12 +8,6 @@ namespace {
 
 constexpr Tick no_tick = std::numeric_limits<Tick>::max();
 
-/// Position of a tick's manifest, existing or not.
-std::deque<TickTally>::iterator place_of(Tick tick, std::deque<TickTally>& manifests) {
-  return std::lower_bound(manifests.begin(), manifests.end(), tick,
-                          [](const TickTally& t, Tick wanted) { return t.tick < wanted; });
-}
-
 }  // namespace
 
 void HostBarrier::join(const std::string& name, Schedule schedule, std::uint64_t incarnation,
@@ -88,7 +82,7 @@ void HostBarrier::done(const std::string& name, TickTally tally, Instant now) {
 
 bool HostBarrier::notes(const std::string& name, Node& node, TickTally tally) {
   tally.digest = content_digest(name, tally);
-  const auto at = place_of(tally.tick, node.manifests);
+  const auto at = std::ranges::lower_bound(node.manifests, tally.tick, {}, &TickTally::tick);
   if (at == node.manifests.end() || at->tick != tally.tick) {
     node.manifests.insert(at, std::move(tally));
     return true;
@@ -144,7 +138,7 @@ std::optional<TickTally> HostBarrier::take_done(Tick granted) {
     return std::nullopt;
   TickTally all{++taken_, {}, 0};
   for (auto& [name, node] : nodes_) {
-    const auto at = place_of(taken_, node.manifests);
+    const auto at = std::ranges::lower_bound(node.manifests, taken_, {}, &TickTally::tick);
     if (at == node.manifests.end() || at->tick != taken_) continue;
     all.topics.insert(all.topics.end(), at->topics.begin(), at->topics.end());
     all.digest += at->digest;
