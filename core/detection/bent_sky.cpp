@@ -42,17 +42,13 @@ Around around(const CellMesh& raw, float sigma, int i, int j) {
                                      double(u * u), double(u * v), double(v * v)};
   };
   for (int round = 0; round < rounds; ++round) {
-    SmallMatrix matrix{};
-    SmallVector right{};
+    NormalEquations equations;
+    auto& [matrix, right] = equations;
     std::size_t k = 0;
     for (int v = -reach; v <= reach; ++v)
       for (int u = -reach; u <= reach; ++u, ++k) {
         if (i + u < 0 || j + v < 0 || i + u >= raw.across || j + v >= raw.down) continue;
-        const auto p = powers(u, v);
-        for (std::size_t a = 0; a < terms; ++a) {
-          right[a] += weight[k] * p[a] * raw.cell(i + u, j + v);
-          for (std::size_t b = 0; b <= a; ++b) matrix[a][b] += weight[k] * p[a] * p[b];
-        }
+        equations.add(weight[k], powers(u, v), raw.cell(i + u, j + v));
       }
     for (std::size_t a = 0; a < terms; ++a) matrix[a][a] += 1e-9;
     if (!cholesky(matrix, terms)) break;

@@ -7,11 +7,11 @@
 namespace dmise {
 namespace {
 
-double with_pixel(double sigma_px) { return std::sqrt(sigma_px * sigma_px + pixel_variance_px2); }
-
 const double fwhm_of_sigma = std::sqrt(8 * std::log(2.0));
 
 }  // namespace
+
+double with_pixel(double sigma_px) { return std::sqrt(sigma_px * sigma_px + pixel_variance_px2); }
 
 double sigma_with_pixel(double fwhm_px) { return with_pixel(fwhm_px / fwhm_of_sigma); }
 

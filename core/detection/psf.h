@@ -29,7 +29,9 @@ struct Psf {
 /// Variance that pixels add to a Gaussian [px^2].
 inline constexpr double pixel_variance_px2 = 1.0 / 12;
 
-/// Standard deviation of a Gaussian of `fwhm_px` and pixels together.
+/// Standard deviation of a Gaussian of `sigma_px` and pixels together.
+double with_pixel(double sigma_px);
+/// The same of a Gaussian of `fwhm_px`.
 double sigma_with_pixel(double fwhm_px);
 /// FWHM [px] of a Gaussian before pixels widened it to `sigma_px`; 0 if it is no wider than they.
 double fwhm_before_pixel(double sigma_px);

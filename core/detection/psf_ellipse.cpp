@@ -37,8 +37,8 @@ void add(const ShapeStar& star, const PsfField& field, Sum& sum) {
       TrailLight(star.trail, gaussian), TrailLight(star.trail, wider),
       TrailLight(star.trail, along_x), TrailLight(star.trail, along_diagonal)};
   const double reach_px = reach_widths * gaussian.parts[0].sigma_px;
-  SmallMatrix matrix{};
-  SmallVector right{};
+  NormalEquations equations;
+  auto& [matrix, right] = equations;
   TrailDerivatives by{}, unused{};
   const Around around(star.trail, reach_px);
   for (const FitPixel& p : star.pixels) {
@@ -50,10 +50,7 @@ void add(const ShapeStar& star, const PsfField& field, Sum& sum) {
     const double error = model_error * model;
     const double weight = 1 / (p.variance_e2 + std::max(model, 0.0) + error * error);
     const double residual = p.signal_e - model - star.background_e;
-    for (std::size_t i = 0; i < all; ++i) {
-      right[i] += weight * gradient[i] * residual;
-      for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += weight * gradient[i] * gradient[j];
-    }
+    equations.add(weight, gradient, residual);
   }
   matrix[3][3] += 1 / (star.background_sigma_e * star.background_sigma_e);
   SmallMatrix factor = matrix;

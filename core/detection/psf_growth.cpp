@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "core/base/units.h"
 #include "core/detection/aperture_light.h"
@@ -94,15 +95,12 @@ Extrapolation extrapolated(const MeasuredGrowth& measured, const Growth& shape,
                            const Growth* fall) {
   const std::size_t n = fall ? 3 : 2;
   constexpr double weight = 1 / (growth_error * growth_error);
-  SmallMatrix matrix{};
-  SmallVector right{};
+  NormalEquations equations;
+  auto& [matrix, right] = equations;
   double squares = 0.0;
   for (std::size_t k = 0; k < zones; ++k) {
     const std::array<double, 3> by{shape[k], measured.by_sky[k], fall ? -(*fall)[k] : 0.0};
-    for (std::size_t i = 0; i < n; ++i) {
-      right[i] += weight * by[i] * measured.light[k];
-      for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += weight * by[i] * by[j];
-    }
+    equations.add(weight, std::span(by).first(n), measured.light[k]);
     squares += weight * measured.light[k] * measured.light[k];
   }
   matrix[1][1] += 1.0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/base/quantile.h"
 #include "core/detection/psf_ellipse.h"
@@ -118,21 +119,17 @@ PsfField::Polynomial powers_of(const Star& star, const PsfField& field) {
 }
 
 WidthFit fit_widths(const std::vector<Star>& stars, const PsfField& field, std::size_t terms) {
-  SmallMatrix matrix{};
-  SmallVector right{};
+  NormalEquations equations;
   const auto weight_of = [](const Star& star) {
     return 1 / (star.fit.error * star.fit.error + width_floor * width_floor);
   };
   for (const Star& star : stars) {
     const auto by = powers_of(star, field);
-    for (std::size_t i = 0; i < terms; ++i) {
-      right[i] += weight_of(star) * by[i] * star.fit.log_width;
-      for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += weight_of(star) * by[i] * by[j];
-    }
+    equations.add(weight_of(star), std::span(by).first(terms), star.fit.log_width);
   }
   WidthFit fit;
-  if (!cholesky(matrix, terms)) return {.chi2 = HUGE_VAL};
-  const SmallVector solution = solve(matrix, right, terms);
+  if (!cholesky(equations.matrix, terms)) return {.chi2 = HUGE_VAL};
+  const SmallVector solution = solve(equations.matrix, equations.right, terms);
   std::copy_n(solution.begin(), terms, fit.polynomial.begin());
   for (const Star& star : stars) {
     const double off = star.fit.log_width - fit.at(powers_of(star, field));

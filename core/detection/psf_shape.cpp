@@ -33,14 +33,9 @@ using Weights = std::array<double, parts>;
 constexpr Weights gaussian = {0.0, 0.0, 1.0};
 static_assert(ratios[nearest] == 1.0);
 
-struct Equations {
-  SmallMatrix matrix{};  // lower triangle
-  SmallVector right{};
-};
-
 /// Normal equations of one star: its own parameters, then the weights.
-Equations equations_of(const ShapeStar& star, const PsfField& field, const Weights& weights,
-                       bool rejects) {
+NormalEquations equations_of(const ShapeStar& star, const PsfField& field, const Weights& weights,
+                             bool rejects) {
   Psf psf = field.at({star.trail.x_px, star.trail.y_px});
   std::vector<TrailLight> lights;
   lights.reserve(parts);
@@ -50,8 +45,8 @@ Equations equations_of(const ShapeStar& star, const PsfField& field, const Weigh
     part.along_diagonal = psf.along_diagonal;
     lights.emplace_back(star.trail, part);
   }
-  Equations out;
-  SmallVector gradient{};
+  NormalEquations out;
+  std::array<double, all> gradient{};
   std::array<std::vector<PlacedLight>, parts> of_part;
   for (std::size_t k = 0; k < parts; ++k) of_part[k] = placed_light_in(star.pixels, lights[k]);
   for (std::size_t n = 0; n < star.pixels.size(); ++n) {
@@ -75,11 +70,7 @@ Equations equations_of(const ShapeStar& star, const PsfField& field, const Weigh
         residual * residual > outlier_sigmas * outlier_sigmas * (noise2 + tolerated * tolerated))
       continue;
     const double weight = 1 / (noise2 + model_error * model * model_error * model);
-    for (std::size_t i = 0; i < all; ++i) {
-      const double wg = weight * gradient[i];
-      out.right[i] += wg * residual;
-      for (std::size_t j = 0; j <= i; ++j) out.matrix[i][j] += wg * gradient[j];
-    }
+    out.add(weight, gradient, residual);
   }
   const double prior = 1 / (star.background_sigma_e * star.background_sigma_e);
   out.matrix[3][3] += prior;
@@ -95,7 +86,7 @@ struct OwnStep {
 };
 
 /// Takes a star's own parameters out of its equations and adds the rest to `shared`.
-OwnStep eliminate(Equations star, Equations& shared) {
+OwnStep eliminate(NormalEquations star, NormalEquations& shared) {
   OwnStep step;
   if (!cholesky(star.matrix, own)) return step;  // only the first `own` rows change
   step.at_rest = solve(star.matrix, star.right, own);
@@ -128,7 +119,7 @@ void move(ShapeStar& star, const OwnStep& own_step, const SmallVector& weights_s
 
 /// Adds what is known of the weights: near a Gaussian's, and with the sum 1, so that a star's flux
 /// is all its light.
-void add_priors(Equations& shared, const Weights& weights) {
+void add_priors(NormalEquations& shared, const Weights& weights) {
   constexpr double by_prior = 1 / (weight_prior * weight_prior);
   double by_sum = 0.0, sum = 0.0;
   for (std::size_t k = 0; k < parts; ++k) {
@@ -149,7 +140,7 @@ struct Solution {
 };
 
 /// `total`: right side of the equations for the weights, not for a step of them.
-std::optional<Solution> solved(const Equations& total, const std::vector<std::size_t>& used) {
+std::optional<Solution> solved(const NormalEquations& total, const std::vector<std::size_t>& used) {
   SmallMatrix matrix{};
   SmallVector right{};
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -167,7 +158,7 @@ std::optional<Solution> solved(const Equations& total, const std::vector<std::si
 }
 
 /// Drops one part after the other without which the stars fit as well.
-void simplify(const Equations& total, std::vector<std::size_t>& used, Solution& solution) {
+void simplify(const NormalEquations& total, std::vector<std::size_t>& used, Solution& solution) {
   const double full = solution.gain;
   while (used.size() > 1) {
     std::optional<Solution> best;
@@ -197,7 +188,7 @@ bool fit_psf_shape(std::vector<ShapeStar> stars, PsfField& field) {
   std::vector<std::size_t> used(parts);
   std::iota(used.begin(), used.end(), std::size_t(0));
   for (int round = 0; round < rounds; ++round) {
-    Equations total;
+    NormalEquations total;
     std::vector<OwnStep> steps;
     for (const ShapeStar& star : stars)
       steps.push_back(eliminate(equations_of(star, mixture, now.weights, round > 0), total));

@@ -16,17 +16,13 @@ constexpr double settled = 1e-3;    // convergence: step of the log of the width
 constexpr double log_step = 0.01;   // of the derivative by it
 constexpr double most_step = 0.35;  // of the log of the width
 
-double with_pixel(double width_px) { return std::sqrt(width_px * width_px + pixel_variance_px2); }
-
-struct Normal {
-  SmallMatrix matrix{};
-  SmallVector right{};
+struct Linearised : NormalEquations {
   double chi2 = 0.0;
 };
 
-Normal linearise(const std::vector<FitPixel>& pixels, const StarWidth& at,
-                 double background_sigma_e) {
-  Normal out;
+Linearised linearise(const std::vector<FitPixel>& pixels, const StarWidth& at,
+                     double background_sigma_e) {
+  Linearised out;
   const TrailLight light(at.trail, with_pixel(std::exp(at.log_width)));
   const TrailLight wider(at.trail, with_pixel(std::exp(at.log_width + log_step)));
   TrailDerivatives by{}, unused{};
@@ -38,10 +34,7 @@ Normal linearise(const std::vector<FitPixel>& pixels, const StarWidth& at,
     const double weight = 1 / (p.variance_e2 + std::max(model, 0.0) + error * error);
     const double residual = p.signal_e - model - at.background_e;
     out.chi2 += weight * residual * residual;
-    for (std::size_t i = 0; i < parameters; ++i) {
-      out.right[i] += weight * gradient[i] * residual;
-      for (std::size_t j = 0; j <= i; ++j) out.matrix[i][j] += weight * gradient[i] * gradient[j];
-    }
+    out.add(weight, gradient, residual);
   }
   const double prior = 1 / (background_sigma_e * background_sigma_e);
   out.matrix[3][3] += prior;
@@ -56,7 +49,7 @@ std::optional<StarWidth> fit_star_width(const std::vector<FitPixel>& pixels, con
   if (pixels.size() < 2 * parameters) return std::nullopt;
   StarWidth fit{.trail = start, .log_width = std::log(width_px)};
   for (int step = 0; step < most_steps; ++step) {
-    Normal normal = linearise(pixels, fit, background_sigma_e);
+    Linearised normal = linearise(pixels, fit, background_sigma_e);
     if (!cholesky(normal.matrix, parameters)) return std::nullopt;
     const SmallVector move = solve(normal.matrix, normal.right, parameters);
     const double by_width = std::clamp(move[4], -most_step, most_step);
@@ -71,9 +64,7 @@ std::optional<StarWidth> fit_star_width(const std::vector<FitPixel>& pixels, con
           2 + 2 * width + start.length_px / 2))
       return std::nullopt;
     if (std::abs(by_width) > settled || std::hypot(move[1], move[2]) > settled * width) continue;
-    SmallVector one{};
-    one[4] = 1.0;
-    fit.error = std::sqrt(solve(normal.matrix, one, parameters)[4]);
+    fit.error = std::sqrt(inverse_column(normal.matrix, 4, parameters)[4]);
     fit.chi2 = normal.chi2;
     fit.reduced_chi2 = normal.chi2 / double(pixels.size() - parameters + 1);
     return fit;

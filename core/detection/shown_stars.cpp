@@ -127,10 +127,8 @@ class StarFitter {
     if (!cholesky(matrix, parameters)) return;
     const SmallVector step = solve(matrix, right, parameters);
     if (std::hypot(step[1], step[2]) > most_step_px || !(step[0] > -0.9)) return;
-    SmallVector one{};
-    one[0] = 1.0;
     star.light_error =
-        std::hypot(std::sqrt(solve(matrix, one, parameters)[0]), double(model_error));
+        std::hypot(std::sqrt(inverse_column(matrix, 0, parameters)[0]), double(model_error));
     star.flux_e *= 1 + step[0];
     star.trail.x_px += step[1];
     star.trail.y_px += step[2];

@@ -24,6 +24,21 @@ inline bool cholesky(SmallMatrix& m, std::size_t n) {
   return true;
 }
 
+/// Normal equations of a fit by linear least squares.
+struct NormalEquations {
+  SmallMatrix matrix{};  // lower triangle
+  SmallVector right{};
+
+  /// Adds a value with its weight and its derivatives by the first parameters.
+  template <class Gradient>
+  void add(double weight, const Gradient& gradient, double value) {
+    for (std::size_t i = 0; i < gradient.size(); ++i) {
+      right[i] += weight * gradient[i] * value;
+      for (std::size_t j = 0; j <= i; ++j) matrix[i][j] += weight * gradient[i] * gradient[j];
+    }
+  }
+};
+
 /// Solution of the system whose matrix has this Cholesky factor.
 inline SmallVector solve(const SmallMatrix& factor, SmallVector v, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) {
@@ -35,6 +50,13 @@ inline SmallVector solve(const SmallMatrix& factor, SmallVector v, std::size_t n
     v[i] /= factor[i][i];
   }
   return v;
+}
+
+/// Column `i` of the inverse of the matrix that has this Cholesky factor.
+inline SmallVector inverse_column(const SmallMatrix& factor, std::size_t i, std::size_t n) {
+  SmallVector one{};
+  one[i] = 1.0;
+  return solve(factor, one, n);
 }
 
 }  // namespace dmise

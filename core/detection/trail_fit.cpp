@@ -297,9 +297,7 @@ TrailFit fit_trails(const std::vector<FitPixel>& pixels, std::vector<Trail> star
   fit.covariance.assign(n * n, 0.0);
   if (cholesky(matrix, n)) {
     for (std::size_t i = 0; i < n; ++i) {
-      SmallVector one{};
-      one[i] = 1.0;
-      const SmallVector column = solve(matrix, one, n);
+      const SmallVector column = inverse_column(matrix, i, n);
       for (std::size_t j = 0; j < n; ++j) fit.covariance[j * n + i] = column[j];
     }
   } else {
