@@ -13,7 +13,7 @@ Cn2Table parse_cn2(std::string_view text, const std::string& name) {
   bool header_read = false;
   std::vector<std::string_view> fields;
   star_text::for_lines(text, [&](std::string_view line, std::size_t number) {
-    line = star_text::trim(line.substr(0, line.find('#')));
+    line = trimmed(line.substr(0, line.find('#')));
     if (line.empty()) return;
     const auto fail = [&](const char* reason) {
       throw ConfigError(star_text::problem(name, number, reason) + ", got " + std::string(line));
@@ -26,7 +26,7 @@ Cn2Table parse_cn2(std::string_view text, const std::string& name) {
       return;
     }
     if (fields.size() < 2) fail("must be a height and a Cn2");
-    const auto height = star_text::number(fields[0]), cn2 = star_text::number(fields[1]);
+    const auto height = parse_real(fields[0]), cn2 = parse_real(fields[1]);
     if (!height || !(*height >= 0) || (!table.height_m.empty() && *height <= table.height_m.back()))
       fail("heights must be >= 0 and ascend");
     if (!cn2 || !(*cn2 > 0)) fail("Cn2 must be > 0");

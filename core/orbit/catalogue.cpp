@@ -3,10 +3,10 @@
 #include <unordered_map>
 
 #include "core/base/error.h"
+#include "core/base/text_fields.h"
 #include "core/base/text_file.h"
 #include "core/orbit/epoch.h"
 #include "core/orbit/omm.h"
-#include "core/orbit/text_fields.h"
 #include "core/orbit/tle.h"
 
 namespace dmise {

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "core/base/formatted.h"
-#include "core/orbit/text_fields.h"
+#include "core/base/text_fields.h"
 
 namespace dmise {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/text_fields.h"
 #include "core/base/text_file.h"
 #include "core/frames/geodesy.h"
-#include "core/orbit/text_fields.h"
 #include "core/orbit/time_table.h"
 
 namespace dmise {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/text_fields.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/orbit/record.h"
-#include "core/orbit/text_fields.h"
 
 namespace dmise {
 

@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/text_fields.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/orbit/epoch.h"
-#include "core/orbit/text_fields.h"
 
 namespace dmise {
 

@@ -1,7 +1,7 @@
 #include "core/orbit/omm.h"
 
+#include "core/base/text_fields.h"
 #include "core/orbit/epoch.h"
-#include "core/orbit/text_fields.h"
 
 namespace dmise {
 

@@ -1,8 +1,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "core/base/text_fields.h"
 #include "core/orbit/omm.h"
-#include "core/orbit/text_fields.h"
 
 namespace dmise {
 

@@ -1,5 +1,5 @@
+#include "core/base/text_fields.h"
 #include "core/orbit/omm.h"
-#include "core/orbit/text_fields.h"
 
 namespace dmise {
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <pugixml.hpp>
 
+#include "core/base/text_fields.h"
 #include "core/orbit/omm.h"
-#include "core/orbit/text_fields.h"
 
 namespace dmise {
 

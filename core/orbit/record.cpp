@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "core/base/text_fields.h"
 #include "core/base/units.h"
-#include "core/orbit/text_fields.h"
 
 namespace dmise {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/orbit/text_fields.h"
+#include "core/base/text_fields.h"
 
 namespace dmise {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/text_fields.h"
 #include "core/orbit/epoch.h"
-#include "core/orbit/text_fields.h"
 
 namespace dmise {
 

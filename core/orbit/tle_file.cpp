@@ -1,6 +1,6 @@
 #include <optional>
 
-#include "core/orbit/text_fields.h"
+#include "core/base/text_fields.h"
 #include "core/orbit/tle.h"
 
 namespace dmise {

@@ -1,5 +1,7 @@
 #pragma once
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -18,6 +20,24 @@ struct GaiaRow {
   double ref_epoch_jyear = 2016.0;
   double g_mag = missing, bp_rp = missing;
 };
+
+/// A column of gaia_source, and where its value goes.
+struct GaiaColumn {
+  const char* name;
+  double GaiaRow::*value;
+};
+
+/// The columns that are read; a table must have the first `needed_gaia_columns` of them.
+inline constexpr std::array<GaiaColumn, 8> gaia_columns = {
+    {{"ra", &GaiaRow::ra_deg},
+     {"dec", &GaiaRow::dec_deg},
+     {"phot_g_mean_mag", &GaiaRow::g_mag},
+     {"bp_rp", &GaiaRow::bp_rp},
+     {"pmra", &GaiaRow::pmra_mas_per_yr},
+     {"pmdec", &GaiaRow::pmdec_mas_per_yr},
+     {"parallax", &GaiaRow::parallax_mas},
+     {"ref_epoch", &GaiaRow::ref_epoch_jyear}}};
+inline constexpr std::size_t needed_gaia_columns = 3;
 
 /// Johnson V and B-V of Gaia's G and BP - RP.
 struct JohnsonLight {

@@ -7,64 +7,45 @@ namespace dmise {
 
 using namespace star_text;
 
-std::optional<StarFormat> guess_star_format(std::string_view text) {
-  if (text.starts_with("KStars Star Data")) return StarFormat::deep;
-  if (text.starts_with("SIMPLE  =")) return StarFormat::fits;
-  std::optional<StarFormat> format;
+namespace {
+
+using Reader = StarReading (*)(std::string_view text, const std::string& name);
+
+/// Returns the reader of a catalogue by its first lines; null if no format looks like them.
+Reader reader_of(std::string_view text) {
+  if (text.starts_with("KStars Star Data")) return parse_deep_stars;
+  if (text.starts_with("SIMPLE  =")) return parse_gaia_fits;
   std::vector<std::string_view> fields;
-  bool decided = false;
-  std::size_t looked = 0;
-  for_lines(text.substr(0, 1 << 20), [&](std::string_view line, std::size_t) {
-    if (decided || trim(line).empty() || line.front() == '#') return;
+  LineReader lines(text.substr(0, 1 << 20));
+  for (int looked = 0; looked < 20;) {
+    const auto next = lines.next();
+    if (!next) break;
+    const std::string_view line = *next;
+    if (trimmed(line).empty() || line.front() == '#') continue;
+    ++looked;
     split_csv(line, fields);
     const std::vector<int> at =
         find_columns(fields, {"ra_deg", "mag_v", "ra", "dec", "mag", "phot_g_mean_mag"});
-    if (at[0] >= 0 && at[1] >= 0)
-      format = StarFormat::csv;
-    else if (at[2] >= 0 && at[3] >= 0 && at[5] >= 0)
-      format = StarFormat::gaia;
-    else if (at[2] >= 0 && at[3] >= 0 && at[4] >= 0)
-      format = StarFormat::hyg;
-    else if (line.size() > 50 && number(columns(line, 1, 9)) && number(columns(line, 11, 19)) &&
-             (line[10] == '+' || line[10] == '-'))
-      format = StarFormat::kstars;
-    else if (line.size() > 106 && number(columns(line, 1, 4)) && number(columns(line, 103, 107)))
-      format = StarFormat::bsc5;
-    decided = format.has_value() || ++looked == 20;
-  });
-  return format;
+    if (at[0] >= 0 && at[1] >= 0) return parse_star_csv;
+    if (at[2] >= 0 && at[3] >= 0 && at[5] >= 0) return parse_gaia_csv;
+    if (at[2] >= 0 && at[3] >= 0 && at[4] >= 0) return parse_hyg;
+    if (line.size() > 50 && parse_real(columns(line, 1, 9)) && parse_real(columns(line, 11, 19)) &&
+        (line[10] == '+' || line[10] == '-'))
+      return parse_kstars;
+    if (line.size() > 106 && parse_real(columns(line, 1, 4)) && parse_real(columns(line, 103, 107)))
+      return parse_bsc5;
+  }
+  return nullptr;
 }
 
-StarReading parse_stars(std::string_view text, const std::string& name,
-                        std::optional<StarFormat> format) {
-  if (!format) format = guess_star_format(text);
-  if (!format)
+}  // namespace
+
+StarReading parse_stars(std::string_view text, const std::string& name) {
+  const Reader read = reader_of(text);
+  if (!read)
     throw ConfigError(
         name + ": not a star catalogue that is known (kstars, HYG, BSC5, Gaia, CSV with a header)");
-  StarReading reading;
-  switch (*format) {
-    case StarFormat::kstars:
-      reading = parse_kstars(text, name);
-      break;
-    case StarFormat::hyg:
-      reading = parse_hyg(text, name);
-      break;
-    case StarFormat::bsc5:
-      reading = parse_bsc5(text, name);
-      break;
-    case StarFormat::deep:
-      reading = parse_deep_stars(text, name);
-      break;
-    case StarFormat::gaia:
-      reading = parse_gaia_csv(text, name);
-      break;
-    case StarFormat::fits:
-      reading = parse_gaia_fits(text, name);
-      break;
-    case StarFormat::csv:
-      reading = parse_star_csv(text, name);
-      break;
-  }
+  StarReading reading = read(text, name);
   if (reading.catalogue.size() == 0)
     throw ConfigError(reading.problems.empty() ? name + ": holds no star"
                                                : reading.problems.front());

@@ -23,7 +23,7 @@ struct Row {
     return at >= 0 && std::size_t(at) < fields.size() ? fields[std::size_t(at)]
                                                       : std::string_view{};
   }
-  std::optional<double> value(std::size_t column) const { return number(text(column)); }
+  std::optional<double> value(std::size_t column) const { return parse_real(text(column)); }
   /// Something stands there that is not a number.
   bool garbled(std::size_t column) const { return !text(column).empty() && !value(column); }
 };
@@ -39,7 +39,7 @@ void for_rows(std::string_view text, const std::string& name,
   std::vector<int> places;
   std::uint32_t count = 0;
   for_lines(text, [&](std::string_view line, std::size_t at) {
-    if (trim(line).empty() || line.front() == '#') return;
+    if (trimmed(line).empty() || line.front() == '#') return;
     split_csv(line, fields);
     if (places.empty()) {
       places = find_columns(fields, names);
@@ -97,27 +97,23 @@ StarReading parse_hyg(std::string_view text, const std::string& name) {
 // Missing values are empty, "null" or "nan". The place of a row in its file is the star's number:
 // Gaia's own have 64 bits.
 StarReading parse_gaia_csv(std::string_view text, const std::string& name) {
-  constexpr std::array<double GaiaRow::*, 8> value = {
-      &GaiaRow::ra_deg,       &GaiaRow::dec_deg,         &GaiaRow::g_mag,
-      &GaiaRow::bp_rp,        &GaiaRow::pmra_mas_per_yr, &GaiaRow::pmdec_mas_per_yr,
-      &GaiaRow::parallax_mas, &GaiaRow::ref_epoch_jyear};
-  const std::vector<std::string_view> columns = {"ra",   "dec",   "phot_g_mean_mag", "bp_rp",
-                                                 "pmra", "pmdec", "parallax",        "ref_epoch"};
+  std::vector<std::string_view> names;
+  for (const GaiaColumn& column : gaia_columns) names.emplace_back(column.name);
   StarReading reading;
   std::string why;
-  for_rows(text, name, columns, 3, 0, reading.problems,
+  for_rows(text, name, names, needed_gaia_columns, 0, reading.problems,
            [&](const Row& row, std::uint32_t count) -> const char* {
              GaiaRow star;
-             for (std::size_t i = 0; i < columns.size(); ++i) {
+             for (std::size_t i = 0; i < names.size(); ++i) {
                const std::string_view field = row.text(i);
                if (field.empty() || field == "null" || field == "nan" || field == "NaN") continue;
                const auto number = row.value(i);
                if (!number) {
-                 why = std::string(columns[i]) + ": must be a number, got '" + std::string(field) +
-                       "'";
+                 why =
+                     std::string(names[i]) + ": must be a number, got '" + std::string(field) + "'";
                  return why.c_str();
                }
-               star.*value[i] = *number;
+               star.*gaia_columns[i].value = *number;
              }
              return append_gaia_star(reading.catalogue, count, star);
            });

@@ -13,20 +13,6 @@
 namespace dmise {
 namespace {
 
-struct GaiaColumn {
-  const char* name;
-  double GaiaRow::*value;
-  bool needed = false;
-};
-constexpr std::array<GaiaColumn, 8> gaia_columns = {{{"ra", &GaiaRow::ra_deg, true},
-                                                     {"dec", &GaiaRow::dec_deg, true},
-                                                     {"phot_g_mean_mag", &GaiaRow::g_mag, true},
-                                                     {"bp_rp", &GaiaRow::bp_rp},
-                                                     {"pmra", &GaiaRow::pmra_mas_per_yr},
-                                                     {"pmdec", &GaiaRow::pmdec_mas_per_yr},
-                                                     {"parallax", &GaiaRow::parallax_mas},
-                                                     {"ref_epoch", &GaiaRow::ref_epoch_jyear}}};
-
 /// A FITS file in memory.
 class FitsTable {
  public:
@@ -62,14 +48,13 @@ class FitsTable {
     return rows;
   }
   /// Number of a column, 0 if there is none.
-  int column(const GaiaColumn& wanted) {
+  int column(std::string name, bool is_needed) {
     int number = 0, type = 0;
     long repeat = 0, width = 0;
-    std::string name = wanted.name;
     if (fits_get_colnum(file_, CASEINSEN, name.data(), &number, &status_) != 0) {
       status_ = 0;
       fits_clear_errmsg();
-      if (wanted.needed) throw ConfigError(name_ + ": the table has no column " + name);
+      if (is_needed) throw ConfigError(name_ + ": the table has no column " + name);
       return 0;
     }
     fits_get_coltype(file_, number, &type, &repeat, &width, &status_);
@@ -110,7 +95,8 @@ class FitsTable {
 StarReading parse_gaia_fits(std::string_view bytes, const std::string& name) {
   FitsTable table(bytes, name);
   std::array<int, gaia_columns.size()> number{};
-  for (std::size_t c = 0; c < gaia_columns.size(); ++c) number[c] = table.column(gaia_columns[c]);
+  for (std::size_t c = 0; c < gaia_columns.size(); ++c)
+    number[c] = table.column(gaia_columns[c].name, c < needed_gaia_columns);
   constexpr long most_at_once = 1 << 16;
   const long rows = table.rows();
   StarReading reading;

@@ -16,7 +16,7 @@ StarReading parse_kstars(std::string_view text, const std::string& name) {
   StarReading reading;
   std::uint32_t count = 0;
   for_lines(text, [&](std::string_view line, std::size_t at) {
-    if (trim(line).empty() || line.front() == '#') return;
+    if (trimmed(line).empty() || line.front() == '#') return;
     StarRecord star{.id = ++count};
     const auto refuse = [&](std::string_view why) {
       reading.problems.push_back(problem(name, at, why));
@@ -28,9 +28,10 @@ StarReading parse_kstars(std::string_view text, const std::string& name) {
       return refuse("columns 1-19: no right ascension and declination (hhmmss.ss sddmmss.s)");
     star.ra_rad = *ra_h * 15 * deg;
     star.dec_rad = (line[10] == '-' ? -*dec : *dec) * deg;
-    const auto pm_ra = number(columns(line, 21, 29)), pm_dec = number(columns(line, 30, 38));
-    const auto parallax = number(columns(line, 39, 45));
-    const auto v = number(columns(line, 47, 51)), bv = number(columns(line, 52, 56));
+    const auto pm_ra = parse_real(columns(line, 21, 29)),
+               pm_dec = parse_real(columns(line, 30, 38));
+    const auto parallax = parse_real(columns(line, 39, 45));
+    const auto v = parse_real(columns(line, 47, 51)), bv = parse_real(columns(line, 52, 56));
     if (!pm_ra || !pm_dec || !parallax)
       return refuse("columns 21-45: no proper motion and parallax");
     if (!v || !bv || line.size() < 56) return refuse("columns 47-56: no magnitude and colour");
@@ -54,11 +55,11 @@ StarReading parse_kstars(std::string_view text, const std::string& name) {
 StarReading parse_bsc5(std::string_view text, const std::string& name) {
   StarReading reading;
   for_lines(text, [&](std::string_view line, std::size_t at) {
-    if (trim(line).empty() || line.front() == '#') return;
+    if (trimmed(line).empty() || line.front() == '#') return;
     const auto refuse = [&](std::string_view why) {
       reading.problems.push_back(problem(name, at, why));
     };
-    const auto hr = number(columns(line, 1, 4));
+    const auto hr = parse_real(columns(line, 1, 4));
     if (!hr || *hr < 1 || *hr > 9999) return refuse("columns 1-4: no HR number");
     if (columns(line, 76, 90).empty()) return;
     StarRecord star{.id = std::uint32_t(*hr)};
@@ -71,17 +72,18 @@ StarReading parse_bsc5(std::string_view text, const std::string& name) {
       return refuse("columns 76-90: no right ascension and declination");
     star.ra_rad = *ra_h * 15 * deg;
     star.dec_rad = (sign == "-" ? -*dec : *dec) * deg;
-    const auto v = number(columns(line, 103, 107));
+    const auto v = parse_real(columns(line, 103, 107));
     if (!v) return refuse("columns 103-107: no magnitude");
     star.v_mag = *v;
-    star.bv = number(columns(line, 110, 114));
+    star.bv = parse_real(columns(line, 110, 114));
     star.spectral_type = columns(line, 128, 147);
-    const auto pm_ra = number(columns(line, 149, 154)), pm_dec = number(columns(line, 155, 160));
+    const auto pm_ra = parse_real(columns(line, 149, 154)),
+               pm_dec = parse_real(columns(line, 155, 160));
     if (pm_ra && pm_dec) {
       star.pm_ra_cosdec_rad_per_yr = *pm_ra * arcsec;
       star.pm_dec_rad_per_yr = *pm_dec * arcsec;
     }
-    const auto parallax = number(columns(line, 162, 166));
+    const auto parallax = parse_real(columns(line, 162, 166));
     if (parallax && *parallax > 0) star.parallax_rad = *parallax * arcsec;
     if (const char* why = append_star(reading.catalogue, star)) refuse(why);
   });

@@ -1,30 +1,12 @@
 #include "core/sky/star_text.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 namespace dmise::star_text {
 
-std::string_view trim(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
 std::string_view columns(std::string_view line, std::size_t first, std::size_t last) {
   if (first > line.size()) return {};
-  return trim(line.substr(first - 1, last - first + 1));
-}
-
-std::optional<double> number(std::string_view field) {
-  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
-  double value = 0.0;
-  const char* end = field.data() + field.size();
-  const auto [stop, error] = std::from_chars(field.data(), end, value);
-  if (field.empty() || error != std::errc{} || stop != end || !std::isfinite(value))
-    return std::nullopt;
-  return value;
+  return trimmed(line.substr(first - 1, last - first + 1));
 }
 
 void split_csv(std::string_view line, std::vector<std::string_view>& fields) {
@@ -34,9 +16,9 @@ void split_csv(std::string_view line, std::vector<std::string_view>& fields) {
   for (std::size_t i = 0; i <= line.size(); ++i) {
     if (i < line.size() && line[i] == '"') quoted = !quoted;
     if (i < line.size() && (line[i] != ',' || quoted)) continue;
-    std::string_view field = trim(line.substr(begin, i - begin));
+    std::string_view field = trimmed(line.substr(begin, i - begin));
     if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
-      field = trim(field.substr(1, field.size() - 2));
+      field = trimmed(field.substr(1, field.size() - 2));
     fields.push_back(field);
     begin = i + 1;
   }
@@ -54,7 +36,7 @@ std::vector<int> find_columns(const std::vector<std::string_view>& header,
 
 std::optional<double> sexagesimal(std::string_view whole, std::string_view minutes,
                                   std::string_view seconds) {
-  const auto w = number(whole), m = number(minutes), s = number(seconds);
+  const auto w = parse_real(whole), m = parse_real(minutes), s = parse_real(seconds);
   if (!w || !m || !s || *w < 0 || *m < 0 || *m >= 60 || *s < 0 || *s > 60) return std::nullopt;
   return *w + *m / 60 + *s / 3600;
 }

@@ -5,28 +5,20 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/text_fields.h"
+
 // Pieces that the readers of star catalogues share.
 namespace dmise::star_text {
-
-std::string_view trim(std::string_view text);
 
 /// Columns `first`..`last` of a fixed-width line, counted from 1 as in the catalogues' own
 /// descriptions, trimmed; what lies beyond the line's end is empty.
 std::string_view columns(std::string_view line, std::size_t first, std::size_t last);
 
-/// A whole field as a number; a leading '+' is allowed. None when empty or anything else.
-std::optional<double> number(std::string_view field);
-
 /// Calls `use(line, number from 1)` for every line, without its end (LF or CRLF).
 template <class Use>
 void for_lines(std::string_view text, Use&& use) {
-  for (std::size_t line = 1; !text.empty(); ++line) {
-    const std::size_t end = text.find('\n');
-    std::string_view one = text.substr(0, end);
-    if (!one.empty() && one.back() == '\r') one.remove_suffix(1);
-    use(one, line);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  }
+  LineReader lines(text);
+  while (const auto line = lines.next()) use(*line, std::size_t(lines.line()));
 }
 
 /// Splits a CSV line (RFC 4180, no line ends inside quotes) into trimmed fields; quotes are taken

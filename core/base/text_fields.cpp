@@ -1,4 +1,4 @@
-#include "core/orbit/text_fields.h"
+#include "core/base/text_fields.h"
 
 #include <charconv>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-// Strict parsers of text fields, shared by the catalogue formats.
+// Strict parsers of text fields, shared by the readers of catalogues and tables.
 namespace dmise {
 
 /// Returns `text` without leading and trailing blanks, tabs and carriage returns.
