@@ -71,24 +71,24 @@ TEST_F(KeyFiles, ThatAreNoFilesAreSaidAtOnce) {
     const bool was_there = std::filesystem::exists(path(name));
     if (was_there) std::filesystem::rename(path(name), kept);
     ASSERT_EQ(mkfifo(path(name).c_str(), 0600), 0);
-    EXPECT_EQ(fault_of(keys.directory), path(name) + ": must be a regular file");
+    EXPECT_EQ(fault_of(keys.directory), path(name) + ": is a FIFO, not a regular file");
     std::filesystem::remove(path(name));
     if (was_there) std::filesystem::rename(kept, path(name));
   }
   std::filesystem::create_directory(path("b.pub"));
-  EXPECT_EQ(fault_of(keys.directory), path("b.pub") + ": must be a regular file");
+  EXPECT_EQ(fault_of(keys.directory), path("b.pub") + ": is a directory");
   std::filesystem::remove(path("b.pub"));
   std::filesystem::create_symlink("nowhere", path("b.pub"));
-  EXPECT_EQ(fault_of(keys.directory), path("b.pub") + ": can't be read: No such file or directory");
+  EXPECT_EQ(fault_of(keys.directory), path("b.pub") + ": No such file or directory");
 }
 
 TEST_F(KeyFiles, WithoutEndAreSaid) {
   std::filesystem::create_symlink("/dev/zero", path("b.pub"));
-  EXPECT_EQ(fault_of(keys.directory), path("b.pub") + ": must be a regular file");
+  EXPECT_EQ(fault_of(keys.directory), path("b.pub") + ": is a device, not a regular file");
   std::filesystem::remove(path("b.pub"));
   std::ofstream(path("b.pub")).close();
   std::filesystem::resize_file(path("b.pub"), std::uintmax_t(1) << 40);  // sparse
-  EXPECT_EQ(fault_of(keys.directory), path("b.pub") + ": is too long for a key file");
+  EXPECT_EQ(fault_of(keys.directory), path("b.pub") + ": larger than 16777216 bytes");
 }
 
 // A run that has begun goes on: whoever has no good file is refused.

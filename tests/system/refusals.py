@@ -59,7 +59,7 @@ def test(binary, directory):
     (keys / "alpha.pub").unlink()
     os.mkfifo(keys / "alpha.pub")
     with Run(binary, "launch", good, "--out", directory / "f", "--keys", keys) as run:
-        refused(run, "FIFO for a key", 1, f"{keys}/alpha.pub: must be a regular file")
+        refused(run, "FIFO for a key", 1, f"{keys}/alpha.pub: is a FIFO, not a regular file")
 
 
 if __name__ == "__main__":

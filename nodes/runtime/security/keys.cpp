@@ -15,6 +15,7 @@
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
+#include "core/base/text_file.h"
 
 namespace dmise {
 namespace {
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t key_characters = 40;
-constexpr off_t longest_file = 16 << 20;  // a ring of 100,000 keys
+constexpr std::size_t longest_file = 16 << 20;  // a ring of 100,000 keys
 
 std::string path_of(const std::string& directory, const std::string& name, const char* ending) {
   if (name.empty() || name.find('/') != std::string::npos)
@@ -58,31 +59,6 @@ struct Entry {
   std::set<std::string> nodes;
 };
 
-/// Reads a key file. Throws `ConfigError`; never blocks on a writer.
-std::string text_of_file(const std::string& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-  if (file < 0) throw ConfigError(path + ": can't be read: " + std::strerror(errno));
-  struct stat status {};
-  std::string text;
-  std::string fault;
-  if (fstat(file, &status) != 0 || !S_ISREG(status.st_mode))
-    fault = "must be a regular file";
-  else if (status.st_size > longest_file)
-    fault = "is too long for a key file";
-  char buffer[4096];
-  while (fault.empty()) {
-    const ssize_t size = read(file, buffer, sizeof buffer);
-    if (size < 0 && errno == EINTR) continue;
-    if (size < 0) fault = std::string("can't be read: ") + std::strerror(errno);
-    if (size <= 0) break;
-    text.append(buffer, std::size_t(size));
-    if (off_t(text.size()) > longest_file) fault = "is too long for a key file";
-  }
-  close(file);
-  if (!fault.empty()) throw ConfigError(path + ": " + fault);
-  return text;
-}
-
 void require_key(const std::string& path, const char* half, const std::string& key) {
   if (!is_key(key))
     throw ConfigError(path + ": not a key of dmise keygen: its " + half + " key has " +
@@ -94,7 +70,7 @@ void require_key(const std::string& path, const char* half, const std::string& k
 /// invalid or incomplete file.
 std::vector<Entry> read_entries(const fs::path& path) {
   std::vector<Entry> entries{{path.stem().string(), {}, false, {}}};
-  std::istringstream file(text_of_file(path));
+  std::istringstream file(read_text_file(path, longest_file));
   std::string word, value;
   bool is_ring = false;
   while (file >> word) {
@@ -132,6 +108,12 @@ std::string text_of(const KeyPair& key) {
   return "public " + key.public_key + "\nsecret " + key.secret_key + "\n";
 }
 
+/// Creates a directory for its owner alone, if it is not there.
+void make_directory(const std::string& directory) {
+  if (mkdir(directory.c_str(), 0700) != 0 && errno != EEXIST)
+    throw Error(directory + ": can't be created: " + std::strerror(errno));
+}
+
 /// Text of a public key with its grants.
 std::string text_of(const AllowedKey& allowed) {
   std::string text = "public " + allowed.public_key + "\n";
@@ -140,7 +122,8 @@ std::string text_of(const AllowedKey& allowed) {
   return text;
 }
 
-/// Throws `ConfigError` for the clock, its broker and its operator, for which no agent may speak.
+/// Throws `ConfigError` for what cannot be the name of a node, and for the clock, its broker and
+/// its operator, for which no agent may speak.
 void require_node(const std::string& name) {
   const bool word = !name.empty() && std::none_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isspace(c) || std::iscntrl(c);
@@ -156,8 +139,8 @@ mode_t mode_of(const std::string& path) {
   return stat(path.c_str(), &status) == 0 ? status.st_mode : 0;
 }
 
-/// Finds the ring that contains a key of `name`, which is stored in `key`. Throws `ConfigError` if
-/// none has it and one could not be read.
+/// Returns the ring that contains a key of `name`, and stores the key in `key` unless that is null.
+/// Throws `ConfigError` if none has it and one could not be read.
 std::optional<std::string> ring_of(const std::string& directory, const std::string& ending,
                                    const std::string& name, KeyPair* key) {
   std::optional<ConfigError> fault;
@@ -186,8 +169,7 @@ std::optional<std::string> file_of_key(const std::string& directory, const std::
 void make_key(const std::string& directory, const std::string& name, bool truth,
               const std::set<std::string>& nodes) {
   for (const auto& node : nodes) require_node(node);
-  if (mkdir(directory.c_str(), 0700) != 0 && errno != EEXIST)
-    throw Error(directory + ": can't be created: " + std::strerror(errno));
+  make_directory(directory);
   char public_key[key_characters + 1], secret_key[key_characters + 1];
   if (zmq_curve_keypair(public_key, secret_key) != 0)
     throw Error("this build of ZeroMQ has no CURVE");
@@ -206,8 +188,7 @@ void make_rings(const std::string& directory,
   for (const auto& [key, owner] : read_allowed(directory))
     open_halves += "name " + owner.name + "\n" + text_of(owner);
   const std::string below = directory + "/rings";
-  if (mkdir(below.c_str(), 0700) != 0 && errno != EEXIST)
-    throw Error(below + ": can't be created: " + std::strerror(errno));
+  make_directory(below);
   for (const auto& [ring, text] : pairs) write_new(path_of(below, ring, ".keys"), 0600, text);
   write_new(path_of(below, "everybody", ".pubs"), 0644, open_halves);
 }
