@@ -159,12 +159,6 @@ void RealFft2::multiply(float* w, std::size_t group, const Spectrum& spectrum) c
   }
 }
 
-RealFft2::Spectrum RealFft2::spectrum(FftBuffer& image, Threads& threads) const {
-  Spectrum result;
-  spectrum(image, threads, result);
-  return result;
-}
-
 void RealFft2::spectrum(FftBuffer& image, Threads& threads, Spectrum& result) const {
   const std::vector<char> lit(std::size_t(rows_), 1);
   forward_rows(image, lit, threads);

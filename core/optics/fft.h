@@ -21,9 +21,6 @@ class FftBuffer {
   explicit FftBuffer(std::size_t floats);
   float* data() const { return data_.get(); }
   std::size_t size() const { return size_; }
-  std::complex<float>* complex_data() const {
-    return reinterpret_cast<std::complex<float>*>(data_.get());
-  }
 
  private:
   struct Free {
@@ -51,7 +48,6 @@ class RealFft2 {
   /// Half spectrum of the image for `convolve`: columns in groups, scaled so that convolving with
   /// the spectrum of a unit impulse at (0, 0) is the identity. Overwrites the image.
   using Spectrum = std::vector<std::complex<float>>;
-  Spectrum spectrum(FftBuffer& image, Threads& threads) const;
   void spectrum(FftBuffer& image, Threads& threads, Spectrum& result) const;
 
   /// In-place circular convolution with the image of the given spectrum. Rows that are not `lit`

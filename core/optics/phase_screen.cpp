@@ -109,27 +109,6 @@ KolmogorovScreens::Tilt KolmogorovScreens::tilt(const RngKey& key, std::uint32_t
   return {along(0), along(1)};
 }
 
-std::array<PhaseScreen, 2> KolmogorovScreens::draw(const RngKey& key, std::uint32_t draw,
-                                                   double r0_samples) {
-  transform_noise(key, draw);
-  const auto torus = std::size_t(torus_);
-  const double scale = std::sqrt(0.5 * kolmogorov_structure(unit_, r0_samples));
-  std::array<PhaseScreen, 2> screens;
-  for (std::size_t part = 0; part < 2; ++part) {
-    const Tilt slope = tilt(key, draw, std::uint32_t(part));
-    PhaseScreen& screen = screens[part];
-    screen.side = side_;
-    screen.phase_rad.resize(std::size_t(side_) * std::size_t(side_));
-    for (int y = 0; y < side_; ++y)
-      for (int x = 0; x < side_; ++x) {
-        const double field = field_.data()[2 * (std::size_t(y) * torus + std::size_t(x)) + part];
-        screen.phase_rad[std::size_t(y) * std::size_t(side_) + std::size_t(x)] =
-            float(scale * (field + slope.x * x + slope.y * y));
-      }
-  }
-  return screens;
-}
-
 std::array<KolmogorovScreens::Tilt, 2> KolmogorovScreens::draw_fields(const RngKey& key,
                                                                       std::uint32_t draw,
                                                                       std::vector<float>& first,

@@ -38,18 +38,15 @@ class KolmogorovScreens {
 
   /// Draws two independent fields of the whole torus (torus x torus, periodic) without their tilt,
   /// for r0 of one sample, into `first` and `second`, and returns the tilts in radians per sample
-  /// along x and y.
+  /// along x and y. `draw` counts the pairs of one key, from 0.
   struct Tilt {
     double x = 0.0, y = 0.0;
   };
   std::array<Tilt, 2> draw_fields(const RngKey& key, std::uint32_t draw, std::vector<float>& first,
                                   std::vector<float>& second);
 
-  /// Draws two independent screens. `draw` counts the pairs of one key, from 0; r0 in samples.
-  std::array<PhaseScreen, 2> draw(const RngKey& key, std::uint32_t draw, double r0_samples);
-
-  /// The expected structure function of `draw`, computed from its amplitudes, at a separation of
-  /// dx, dy samples (|dx|, |dy| < side) for r0 of one sample [rad2].
+  /// The expected structure function of fields with their tilt, computed from the amplitudes, at a
+  /// separation of dx, dy samples (|dx|, |dy| < side) for r0 of one sample [rad2].
   double expected_structure(int dx, int dy) const;
 
  private:

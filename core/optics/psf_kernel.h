@@ -8,7 +8,7 @@
 namespace dmise {
 
 /// A point spread function on a grid of cells, centred on the central cell: the fraction of the
-/// light that each cell receives. Not negative, sums to 1.
+/// light that each cell receives. Sums to 1.
 struct PsfKernel {
   int half = 0;               // cells on each side of the central one
   std::vector<float> values;  // side x side, row-major
@@ -17,30 +17,24 @@ struct PsfKernel {
   float at(int dx, int dy) const { return values[std::size_t((dy + half) * side() + dx + half)]; }
 };
 
-/// Transfer function by frequencies along x and y [cycles/rad]; real and even along each axis.
+/// Real transfer function by frequencies along x and y [cycles/rad].
 using TransferFunction = std::function<double(double nu_x, double nu_y)>;
 
-/// Kernel of a transfer function, integrated over cells of angular size `cell_rad` and truncated
+/// How a transfer function is symmetric.
+enum class OtfSymmetry {
+  axes,   // even along each axis
+  point,  // f(-x, -y) = f(x, y) alone
+};
+
+/// Kernel of a transfer function at the centres of cells of angular size `cell_rad`, truncated
 /// `half` cells from the centre; truncated light (returned in `lost`) is redistributed by scaling.
-/// `cutoff` is the frequency above which the function is zero [cycles/rad]; cells may be larger or
-/// smaller than its resolution. Values that rounding makes negative are set to 0.
-PsfKernel kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad, int half,
-                    double* lost = nullptr);
+/// Values may be negative. `cutoff` is the frequency above which the function is zero [cycles/rad];
+/// cells may be larger or smaller than its resolution.
+PsfKernel signed_kernel_of(const TransferFunction& otf, OtfSymmetry symmetry, double cutoff_per_rad,
+                           double cell_rad, int half, double* lost = nullptr);
 
-/// The same without integration over cells and with negative values kept, for functions that are
-/// not point spreads.
-PsfKernel signed_kernel_of(const TransferFunction& otf, double cutoff_per_rad, double cell_rad,
-                           int half, double* lost = nullptr);
-
-/// The same of a function that is point-symmetric alone: f(-x, -y) = f(x, y).
-PsfKernel point_symmetric_signed_kernel_of(const TransferFunction& otf, double cutoff_per_rad,
-                                           double cell_rad, int half, double* lost = nullptr);
-
-/// Kernel of the optics: diffraction, long exposure, jitter, defocus, cell integration.
-PsfKernel optical_kernel(const Blur& blur, double cell_rad, int half, double* lost = nullptr);
-
-/// Fraction of the light within `radius` cells of the centre; cells cut by the circle count by the
-/// fraction of 16 x 16 points inside.
-double encircled_energy(const PsfKernel& kernel, double radius);
+/// The kernel in the first real numbers of `field`, side x side complex ones, `fine` a cell along
+/// each axis, with its centre at (0, 0), wrapped around. Truncated and scaled as above.
+PsfKernel kernel_in(const FftBuffer& field, int side, int fine, int half, double* lost = nullptr);
 
 }  // namespace dmise

@@ -35,12 +35,8 @@ PsfKernel tapered(const PsfKernel& kernel) { return tapered(kernel.values, kerne
 
 constexpr std::size_t most_places = 256;  // with cached centring
 
-/// Noll's terms that are odd about the centre.
-bool has_odd_order(int noll) {
-  int n = 0;
-  for (int first = 1; noll >= first + n + 1;) first += ++n;
-  return n % 2 == 1;
-}
+/// Whether Noll's term is odd about the centre.
+bool has_odd_order(int noll) { return noll_orders(noll)[0] % 2 == 1; }
 
 }  // namespace
 
@@ -124,8 +120,8 @@ PsfKernel PsfModel::gaussian_kernel(const FieldPlace& place, double wavelength_m
     if (extra == 0.0) return 0.0;
     return std::exp(-scale * square) * disc_otf(std::hypot(nu_x, nu_y)) * extra;
   };
-  return point_symmetric_signed_kernel_of(otf, 0.5 / cell_rad_, cell_rad_, plan_.half_cells,
-                                          &lost_);
+  return signed_kernel_of(otf, OtfSymmetry::point, 0.5 / cell_rad_, cell_rad_, plan_.half_cells,
+                          &lost_);
 }
 
 double PsfModel::air_otf(double nu, double wavelength_m) const {
@@ -167,7 +163,8 @@ PsfKernel PsfModel::round_kernel(double wavelength_m) {
                  : diffraction_otf(nu, wavelength_m, optics_.aperture_m, optics_.obscuration);
     return blur == 0.0 ? 0.0 : blur * extra_otf(nu_x, nu_y, wavelength_m);
   };
-  return signed_kernel_of(otf, 0.5 / cell_rad_, cell_rad_, plan_.half_cells, &lost_);
+  return signed_kernel_of(otf, OtfSymmetry::axes, 0.5 / cell_rad_, cell_rad_, plan_.half_cells,
+                          &lost_);
 }
 
 PsfKernel PsfModel::pupil_kernel_at(const FieldPlace& place, std::size_t wavelength,

@@ -113,30 +113,6 @@ int aperture_samples(const Pupil& pupil, const PupilGrid& grid) {
   return int(std::ceil(pupil.aperture_m / grid.step_m)) + 2;
 }
 
-PsfKernel short_exposure_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
-                                const PhaseScreen* screen, int first_x, int first_y) {
-  const int across = aperture_samples(pupil, grid);
-  if (screen && (first_x < 0 || first_y < 0 || first_x + across > screen->side ||
-                 first_y + across > screen->side))
-    throw Error("pupil: the screen does not cover the aperture");
-  PhaseScreen window;
-  if (screen) {
-    window = {across, {}};
-    for (int y = 0; y < across; ++y)
-      for (int x = 0; x < across; ++x)
-        window.phase_rad.push_back(screen->at(first_x + x, first_y + y));
-  }
-  PsfKernel kernel =
-      pupil_kernel(pupil, grid, half, {screen ? &window : nullptr, grid.step_m},
-                   SampledOtf(grid, [&](double nu_x, double nu_y) {
-                     return pixel_otf(nu_x, grid.cell_rad) * pixel_otf(nu_y, grid.cell_rad);
-                   }));
-  double sum = 0.0;
-  for (float& share : kernel.values) sum += share = std::max(0.0f, share);
-  for (float& share : kernel.values) share = float(share / sum);
-  return kernel;
-}
-
 namespace {
 
 // Phase at sample (i, j) of the pupil's grid, steps of `ratio` screen samples.
@@ -214,18 +190,7 @@ PsfKernel pupil_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
     }
   fft.transform(field);
 
-  PsfKernel kernel{half, std::vector<float>(std::size_t(2 * half + 1) * std::size_t(2 * half + 1))};
-  double sum = 0.0;
-  for (int dy = -half; dy <= half; ++dy)
-    for (int dx = -half; dx <= half; ++dx) {
-      const auto v = std::size_t((dy * grid.fine + n) % n),
-                 u = std::size_t((dx * grid.fine + n) % n);
-      const float share = field.data()[2 * (v * std::size_t(n) + u)];
-      kernel.values[std::size_t((dy + half) * kernel.side() + dx + half)] = share;
-      sum += share;
-    }
-  for (float& share : kernel.values) share = float(share / sum);
-  return kernel;
+  return kernel_in(field, n, grid.fine, half);
 }
 
 std::array<ZernikeTerm, 2> centring_tilt(const Pupil& pupil) {
@@ -242,17 +207,6 @@ std::array<ZernikeTerm, 2> centring_tilt(const Pupil& pupil) {
     tilt[m > 0 ? 0 : 1].rms_rad -= 0.5 * t.rms_rad * slope;
   }
   return tilt;
-}
-
-PsfKernel mean_of(const std::vector<PsfKernel>& kernels) {
-  if (kernels.empty()) throw Error("psf kernel: mean of none");
-  PsfKernel mean{kernels[0].half, std::vector<float>(kernels[0].values.size())};
-  for (std::size_t i = 0; i < mean.values.size(); ++i) {
-    double sum = 0.0;
-    for (const PsfKernel& k : kernels) sum += k.values.at(i);
-    mean.values[i] = float(sum / double(kernels.size()));
-  }
-  return mean;
 }
 
 }  // namespace dmise

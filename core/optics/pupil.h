@@ -45,13 +45,6 @@ struct PupilGrid {
 PupilGrid pupil_grid(const Pupil& pupil, double wavelength_m, double cell_rad, int half,
                      double r0_m, int samples = 32);
 
-/// Instantaneous kernel |F{A exp(i phi)}|^2 through a screen sampled at the grid's step, integrated
-/// over cells. `screen` may be smaller than the grid if it covers the aperture; null: no
-/// turbulence. `first_x`, `first_y`: sample of the screen at the aperture's first sample (frozen
-/// flow).
-PsfKernel short_exposure_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
-                                const PhaseScreen* screen, int first_x = 0, int first_y = 0);
-
 /// A screen in front of the aperture, with its sample (0, 0) at the aperture's first corner; phase
 /// is linear between samples.
 struct ScreenAhead {
@@ -88,8 +81,5 @@ std::array<ZernikeTerm, 2> centring_tilt(const Pupil& pupil);
 
 /// Number of samples across the aperture, which a screen must cover.
 int aperture_samples(const Pupil& pupil, const PupilGrid& grid);
-
-/// Mean of kernels of one size.
-PsfKernel mean_of(const std::vector<PsfKernel>& kernels);
 
 }  // namespace dmise

@@ -7,6 +7,7 @@
 #include "core/base/units.h"
 #include "core/optics/blur_grid.h"
 #include "core/optics/deposit.h"
+#include "tests/optics/kernels.h"
 
 namespace dmise {
 namespace {
@@ -31,6 +32,25 @@ void blur(ExpectedElectronImage& image, const PsfKernel& kernel, Threads& thread
 void blur(ExpectedElectronImage& image, const PsfKernel& kernel, Threads& threads) {
   BlurGrid grid(image.columns, image.rows, 1, kernel.half);
   blur(image, kernel, threads, grid);
+}
+
+/// Fraction of the light within `radius` cells of the centre; cells cut by the circle count by the
+/// fraction of 16 x 16 points inside.
+double encircled_energy(const PsfKernel& kernel, double radius) {
+  constexpr int points = 16;
+  double sum = 0.0;
+  for (int dy = -kernel.half; dy <= kernel.half; ++dy)
+    for (int dx = -kernel.half; dx <= kernel.half; ++dx) {
+      const double r = std::hypot(dx, dy);
+      int inside = r + 0.75 <= radius ? points * points : 0;
+      if (inside == 0 && r - 0.75 <= radius)
+        for (int j = 0; j < points; ++j)
+          for (int i = 0; i < points; ++i)
+            inside +=
+                std::hypot(dx + (i + 0.5) / points - 0.5, dy + (j + 0.5) / points - 0.5) <= radius;
+      sum += kernel.at(dx, dy) * double(inside) / (points * points);
+    }
+  return sum;
 }
 
 // Born & Wolf: first zero at 1.2197 lambda/D with 83.8 % of the light inside, 91.0 % within the

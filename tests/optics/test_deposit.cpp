@@ -115,21 +115,6 @@ TEST(Deposit, SmallFramesKeepTheirLight) {
 }
 
 // Reference: elementary integrals of a brightness that falls to nothing at 60 % of the exposure.
-TEST(Deposit, ABrightnessProfileMovesTheCentroidAsItShould) {
-  const Arc whole = straight({20.0, 30.0}, {120.0, 30.0}, 1e5);
-  const std::vector<double> brightness = {1, 1, 1, 0, 0, 0};  // equal steps of 0.2
-  const auto arcs = with_brightness(whole, brightness);
-  ASSERT_EQ(arcs.size(), 3u);
-  ExpectedElectronImage image(160, 60);
-  Threads one(1);
-  Deposited sum;
-  for (const Deposited& d : deposit(arcs, make_psf_table(0.6), image, one)) sum = sum + d;
-  EXPECT_NEAR(sum.signal_e, 1e5 * 0.5, 0.1);
-  // Light: 0.4 at mean tau 0.2, 0.1 at mean tau 0.4 + 0.2 / 3.
-  EXPECT_NEAR(sum.x_px, 20.0 + 100.0 * (0.4 * 0.2 + 0.1 * (0.4 + 0.2 / 3)) / 0.5, 1e-3);
-  EXPECT_NEAR(measured(image).x_px, sum.x_px, 1e-4);
-}
-
 std::vector<Arc> star_field(int count) {
   std::vector<Arc> arcs;
   const RngKey key = rng_key(1, "sensor", 1, "stars");

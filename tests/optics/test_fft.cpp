@@ -51,7 +51,8 @@ std::vector<float> convolved(const std::vector<float>& image, const std::vector<
   Threads threads(1);
   const RealFft2 fft(columns, rows);
   FftBuffer kernel_buffer = as_buffer(fft, kernel), buffer = as_buffer(fft, image);
-  const auto spectrum = fft.spectrum(kernel_buffer, threads);
+  RealFft2::Spectrum spectrum;
+  fft.spectrum(kernel_buffer, threads, spectrum);
   fft.convolve(buffer, std::vector<char>(rows, 1), 0, rows, spectrum, threads);
   std::vector<float> out(image.size());
   for (int y = 0; y < rows; ++y)

@@ -4,13 +4,42 @@
 #include <numeric>
 
 #include "core/base/units.h"
-#include "core/optics/otf.h"
 #include "core/optics/pupil.h"
+#include "tests/optics/kernels.h"
 
 namespace dmise {
 namespace {
 
 constexpr double lambda = 0.55e-6;
+
+/// Two independent screens of the fields and tilts of one draw.
+std::array<PhaseScreen, 2> drawn(KolmogorovScreens& screens, const RngKey& key, std::uint32_t draw,
+                                 double r0_samples) {
+  std::array<std::vector<float>, 2> fields;
+  const auto tilts = screens.draw_fields(key, draw, fields[0], fields[1]);
+  const double scale = std::pow(r0_samples, -5.0 / 6);  // of the phase: D goes as r0^(-5/3)
+  std::array<PhaseScreen, 2> pair;
+  for (std::size_t part = 0; part < 2; ++part) {
+    pair[part].side = screens.side();
+    for (int y = 0; y < screens.side(); ++y)
+      for (int x = 0; x < screens.side(); ++x) {
+        const auto at = std::size_t(y) * std::size_t(screens.torus()) + std::size_t(x);
+        pair[part].phase_rad.push_back(
+            float(scale * (fields[part][at] + tilts[part].x * x + tilts[part].y * y)));
+      }
+  }
+  return pair;
+}
+
+/// Instantaneous kernel |F{A exp(i phi)}|^2 through a screen sampled at the grid's step, integrated
+/// over cells; null: no turbulence.
+PsfKernel short_exposure_kernel(const Pupil& pupil, const PupilGrid& grid, int half,
+                                const PhaseScreen* screen) {
+  const SampledOtf cells(grid, [&](double nu_x, double nu_y) {
+    return pixel_otf(nu_x, grid.cell_rad) * pixel_otf(nu_y, grid.cell_rad);
+  });
+  return without_negatives(pupil_kernel(pupil, grid, half, {screen, grid.step_m}, cells));
+}
 
 // Kolmogorov's 6.88 (r / r0)^(5/3), from the amplitudes that screens are made with.
 TEST(PhaseScreen, ExpectedStructureFunctionIsKolmogorovsFromOneSampleToTheWholeScreen) {
@@ -39,7 +68,7 @@ TEST(PhaseScreen, DrawnScreensHaveIt) {
     double sum = 0, sum2 = 0;
     int count = 0;
     for (int k = 0; k < pairs; ++k)
-      for (const PhaseScreen& s : screens.draw(key, std::uint32_t(k), 5.0)) {
+      for (const PhaseScreen& s : drawn(screens, key, std::uint32_t(k), 5.0)) {
         double d = 0;
         int n = 0;
         for (int y = 0; y < 48; y += 4)
@@ -73,11 +102,14 @@ TEST(Turbulence, MeanOfShortExposuresIsTheLongExposure) {
   const PupilGrid grid = pupil_grid(pupil, lambda, cell, half, r0);
   KolmogorovScreens screens(aperture_samples(pupil, grid));
   const RngKey key = rng_key(5, "s", 1, "turbulence");
-  std::vector<PsfKernel> kernels;
-  for (std::uint32_t k = 0; k < 80; ++k)
-    for (const PhaseScreen& s : screens.draw(key, k, r0 / grid.step_m))
-      kernels.push_back(short_exposure_kernel(pupil, grid, half, &s));
-  const PsfKernel mean = mean_of(kernels);
+  PsfKernel mean{half, std::vector<float>(std::size_t(2 * half + 1) * std::size_t(2 * half + 1))};
+  constexpr std::uint32_t pairs = 80;
+  for (std::uint32_t k = 0; k < pairs; ++k)
+    for (const PhaseScreen& s : drawn(screens, key, k, r0 / grid.step_m)) {
+      const PsfKernel kernel = short_exposure_kernel(pupil, grid, half, &s);
+      for (std::size_t i = 0; i < mean.values.size(); ++i)
+        mean.values[i] += kernel.values[i] / float(2 * pairs);
+    }
   for (double share : {0.05, 0.1, 0.2, 0.3, 0.5, 0.7}) {
     const double nu = share * pupil.aperture_m / lambda;
     double h = 0;
@@ -97,7 +129,7 @@ TEST(Pupil, AShortExposureKeepsItsLightFromWeakToStrongTurbulence) {
     const double cell = 0.5 * lambda / std::min(0.4, r0);
     const PupilGrid grid = pupil_grid(pupil, lambda, cell, 8, r0);
     KolmogorovScreens screens(aperture_samples(pupil, grid));
-    const auto pair = screens.draw(rng_key(1, "s", 1, "t"), 0, r0 / grid.step_m);
+    const auto pair = drawn(screens, rng_key(1, "s", 1, "t"), 0, r0 / grid.step_m);
     const PsfKernel k = short_exposure_kernel(pupil, grid, 8, &pair[1]);
     EXPECT_NEAR(std::accumulate(k.values.begin(), k.values.end(), 0.0), 1.0, 1e-6);
     for (float v : k.values) ASSERT_GE(v, 0.0f);
