@@ -19,6 +19,13 @@ float hat(int node, int count, double at, double length) {
   return float(std::max(0.0, 1.0 - std::abs(x - node)));
 }
 
+void set_to_zero(FftBuffer& image, const RealFft2& fft, Threads& threads) {
+  const auto stride = std::size_t(fft.stride());
+  threads.for_ranges(std::size_t(fft.rows()), row_grain, [&](std::size_t begin, std::size_t end) {
+    std::fill(image.data() + begin * stride, image.data() + end * stride, 0.0f);
+  });
+}
+
 }  // namespace
 
 BlurGrid::BlurGrid(int columns, int rows, int oversampling, int half_cells, int field_columns,
@@ -64,31 +71,20 @@ BlurGrid::Range BlurGrid::tile_along(int node, int count, int length, int cells)
 
 void BlurGrid::set_kernels(const std::vector<PsfKernel>& kernels, Threads& threads) {
   if (int(kernels.size()) != field_columns_ * field_rows_) throw Error("blur: number of kernels");
+  const RealFft2& fft = tile_ ? *tile_ : fft_;
+  FftBuffer& image = tile_ ? part_ : cells_;
   spectra_.resize(kernels.size());
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     const PsfKernel& kernel = kernels[i];
     if (kernel.half != half_) throw Error("blur: size of a kernel");
-    if (tile_) {
-      std::fill(part_.data(), part_.data() + part_.size(), 0.0f);
-      for (int dy = -half_; dy <= half_; ++dy)
-        for (int dx = -half_; dx <= half_; ++dx) {
-          const int y = (dy + tile_->rows()) % tile_->rows(),
-                    x = (dx + tile_->columns()) % tile_->columns();
-          part_.data()[std::size_t(y) * std::size_t(tile_->stride()) + std::size_t(x)] =
-              kernel.at(dx, dy);
-        }
-      tile_->spectrum(part_, threads, spectra_[i]);
-      continue;
-    }
-    empty_ = false;
-    clear(threads);
+    set_to_zero(image, fft, threads);
     for (int dy = -half_; dy <= half_; ++dy)
       for (int dx = -half_; dx <= half_; ++dx) {
-        const int y = (dy + fft_.rows()) % fft_.rows(), x = (dx + fft_.columns()) % fft_.columns();
-        cells_.data()[std::size_t(y) * std::size_t(fft_.stride()) + std::size_t(x)] =
+        const int y = (dy + fft.rows()) % fft.rows(), x = (dx + fft.columns()) % fft.columns();
+        image.data()[std::size_t(y) * std::size_t(fft.stride()) + std::size_t(x)] =
             kernel.at(dx, dy);
       }
-    fft_.spectrum(cells_, threads, spectra_[i]);
+    fft.spectrum(image, threads, spectra_[i]);
   }
   if (kernels.size() > 1 && !part_.data()) {
     part_ = FftBuffer(fft_.floats());
@@ -100,10 +96,7 @@ void BlurGrid::set_kernels(const std::vector<PsfKernel>& kernels, Threads& threa
 
 void BlurGrid::clear(Threads& threads) {
   if (empty_) return;
-  const auto stride = std::size_t(fft_.stride());
-  threads.for_ranges(std::size_t(fft_.rows()), row_grain, [&](std::size_t begin, std::size_t end) {
-    std::fill(cells_.data() + begin * stride, cells_.data() + end * stride, 0.0f);
-  });
+  set_to_zero(cells_, fft_, threads);
   empty_ = true;
 }
 
@@ -291,12 +284,6 @@ void BlurGrid::blur_into(ExpectedElectronImage& light, PointSpread::Resampling r
   resample(blurred, resampling, threads);
   add_positive(blurred, light, threads);
   empty_ = false;
-}
-
-std::size_t BlurGrid::memory_bytes() const {
-  std::size_t bytes = (cells_.size() + part_.size() + sum_.size()) * sizeof(float);
-  for (const auto& s : spectra_) bytes += s.size() * sizeof(s[0]);
-  return bytes;
 }
 
 }  // namespace dmise

@@ -28,7 +28,6 @@ class BlurGrid {
 
   /// Sets all cells to 0.
   void clear(Threads& threads);
-  bool is_empty() const { return empty_; }
 
   /// View of the cells for depositing light; `Deposited` reports the part inside the frame.
   DepositView cells();
@@ -43,11 +42,6 @@ class BlurGrid {
   /// Blurs the cells and adds the result, resampled, to the frame. Overwrites the cells.
   void blur_into(ExpectedElectronImage& light, PointSpread::Resampling resampling,
                  Threads& threads);
-
-  /// Size of one transform in floats, along columns and rows.
-  int transform_columns() const { return fft_.columns(); }
-  int transform_rows() const { return fft_.rows(); }
-  std::size_t memory_bytes() const;
 
  private:
   void find_lit_rows(Threads& threads);

@@ -36,16 +36,8 @@ struct Motion {
   }
 };
 
-struct Box {
-  double left, top, right, bottom;
-
-  bool meets(const Box& b) const {
-    return left <= b.right && b.left <= right && top <= b.bottom && b.top <= bottom;
-  }
-};
-
 // Bounding box of the parabola between two times: the hull of its Bezier points.
-Box bounds(const Motion& m, double tau0, double tau1) {
+ArcExtent bounds(const Motion& m, double tau0, double tau1) {
   const PixelPosition a = m.at(tau0), c = m.at(tau1);
   const PixelPosition b = a + (m.slope + m.curve * (2.0 * tau0)) * (0.5 * (tau1 - tau0));
   return {std::min({a.x_px, b.x_px, c.x_px}), std::min({a.y_px, b.y_px, c.y_px}),
@@ -53,7 +45,7 @@ Box bounds(const Motion& m, double tau0, double tau1) {
 }
 
 // The part of the image plane whose light reaches rows [begin, end).
-Box reach(const PsfTable& psf, const DepositView& view, int begin, int end) {
+ArcExtent reach(const PsfTable& psf, const DepositView& view, int begin, int end) {
   const double r = psf.size;
   return {-r, begin - r, view.columns + r, end + r};
 }
@@ -71,7 +63,7 @@ bool is_one_panel(const Arc& arc, const PsfTable& psf, double length) {
 
 // Calls `use(panel)` for the panels of an arc that meet `box`, in the order of time.
 template <class Use>
-void for_panels(const Arc& arc, const PsfTable& psf, const Box& box, const Use& use) {
+void for_panels(const Arc& arc, const PsfTable& psf, const ArcExtent& box, const Use& use) {
   const Motion motion(arc);
   const double length = motion.greatest_speed();
   PanelView panel;
@@ -166,7 +158,7 @@ Deposited inside(const Arc& arc, const PsfTable& psf, const DepositView& view) {
 }
 
 /// The short arc of one that may miss some light, where a kernel takes it; else without nodes.
-ShortArc short_arc(const Arc& arc, const Motion& m, const Box& box, const ShortArcRule& rule,
+ShortArc short_arc(const Arc& arc, const Motion& m, const ArcExtent& box, const ShortArcRule& rule,
                    const PsfTable& psf, const DepositView& view) {
   ShortArc a{m.start.x_px, m.start.y_px, m.slope.x_px,       m.slope.y_px,
              m.curve.x_px, m.curve.y_px, float(arc.signal_e)};
@@ -196,7 +188,7 @@ ShortArc short_arc(const Arc& arc, const Motion& m, const Box& box, const ShortA
 }
 
 /// Whether all light of what is within a box falls into the frame.
-bool is_whole(const Box& box, const PsfTable& psf, const DepositView& view) {
+bool is_whole(const ArcExtent& box, const PsfTable& psf, const DepositView& view) {
   return box.left + psf.first >= view.left && box.top + psf.first >= view.top &&
          box.right + psf.first + psf.size <= view.left + view.frame_columns &&
          box.bottom + psf.first + psf.size <= view.top + view.frame_rows;
@@ -206,13 +198,7 @@ void check(const Arc& arc, std::size_t index) {
   const double sum = std::abs(arc.start.x_px) + std::abs(arc.start.y_px) +
                      std::abs(arc.middle.x_px) + std::abs(arc.middle.y_px) +
                      std::abs(arc.end.x_px) + std::abs(arc.end.y_px) + arc.signal_e;
-  if (sum < 1e15 && arc.signal_e >= 0.0 && std::abs(arc.tilt) <= 1.0 && arc.may_miss_e >= 0.0)
-    return;
-  const double all[] = {arc.start.x_px, arc.start.y_px, arc.middle.x_px, arc.middle.y_px,
-                        arc.end.x_px,   arc.end.y_px,   arc.signal_e,    arc.tilt};
-  bool fine = arc.signal_e >= 0.0 && std::abs(arc.tilt) <= 1.0 && arc.may_miss_e >= 0.0;
-  for (double v : all) fine = fine && std::abs(v) < 1e15;
-  if (!fine)
+  if (!(sum < 1e16 && arc.signal_e >= 0.0 && std::abs(arc.tilt) <= 1.0 && arc.may_miss_e >= 0.0))
     throw Error("deposit: arc " + std::to_string(index) + " is not finite or has negative light");
 }
 
@@ -225,17 +211,19 @@ Deposited operator+(const Deposited& a, const Deposited& b) {
           (a.y_px * a.signal_e + b.y_px * b.signal_e) / sum};
 }
 
+DepositView view_of(ExpectedElectronImage& image) {
+  return {.pixels = image.pixels.data(),
+          .columns = image.columns,
+          .rows = image.rows,
+          .stride = image.columns,
+          .frame_columns = image.columns,
+          .frame_rows = image.rows};
+}
+
 std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
                                ExpectedElectronImage& image, Threads& threads, SimdLevel level,
                                DepositSums sums) {
-  return deposit(arcs, psf,
-                 DepositView{.pixels = image.pixels.data(),
-                             .columns = image.columns,
-                             .rows = image.rows,
-                             .stride = image.columns,
-                             .frame_columns = image.columns,
-                             .frame_rows = image.rows},
-                 threads, level, sums);
+  return deposit(arcs, psf, view_of(image), threads, level, sums);
 }
 
 Deposited deposited_in_frame(const Arc& arc, const PsfTable& psf, const DepositView& view) {
@@ -251,10 +239,7 @@ Arc part_of(const Arc& arc, double tau_begin, double tau_end) {
           brightness > 0.0 ? std::clamp(arc.tilt * length / brightness, -1.0, 1.0) : 0.0};
 }
 
-ArcExtent extent(const Arc& arc) {
-  const Box b = bounds(Motion(arc), 0.0, 1.0);
-  return {b.left, b.top, b.right, b.bottom};
-}
+ArcExtent extent(const Arc& arc) { return bounds(Motion(arc), 0.0, 1.0); }
 
 namespace {
 
@@ -263,22 +248,22 @@ struct Bands {
   std::vector<std::vector<std::uint32_t>> of_band;
   std::vector<std::uint32_t> in_many;  // that are in more than one band
   std::vector<ShortArc> short_arc;     // of each arc
-  std::vector<bool> told;              // which arcs need no sums
+  std::vector<bool> all_inside;        // which arcs need no sums, as all of their light is
 
   Bands(std::span<const Arc> arcs, const PsfTable& psf, const DepositView& image, DepositSums sums,
         std::vector<Deposited>& result)
       : of_band(std::size_t((image.rows + band_rows - 1) / band_rows)),
         short_arc(arcs.size()),
-        told(arcs.size(), false) {
+        all_inside(arcs.size(), false) {
     const ShortArcRule rule(psf);
     for (std::size_t i = 0; i < arcs.size(); ++i) {
       check(arcs[i], i);
       const Motion motion(arcs[i]);
-      const Box box = bounds(motion, 0.0, 1.0);
+      const ArcExtent box = bounds(motion, 0.0, 1.0);
       if (!box.meets(reach(psf, image, 0, image.rows))) continue;
       short_arc[i] = dmise::short_arc(arcs[i], motion, box, rule, psf, image);
       if (sums == DepositSums::cut && is_whole(box, psf, image)) {
-        told[i] = true;
+        all_inside[i] = true;
         if (arcs[i].signal_e > 0.0)
           result[i] = {arcs[i].signal_e, arcs[i].middle.x_px, arcs[i].middle.y_px};
       }
@@ -313,7 +298,7 @@ std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
       const int row_begin = int(b) * band_rows,
                 row_end = std::min(image.rows, row_begin + band_rows);
       const BandView band{image.pixels, image.columns, row_begin, row_end, image.stride};
-      const Box box = reach(psf, image, row_begin, row_end);
+      const ArcExtent box = reach(psf, image, row_begin, row_end);
       auto many = std::lower_bound(bands.in_many.begin(), bands.in_many.end(), of_band.front());
       for (std::size_t k = 0; k < of_band.size(); ++k) {
         const std::uint32_t i = of_band[k];
@@ -322,7 +307,7 @@ std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
         while (many != bands.in_many.end() && *many < i) ++many;
         // All of its panels that reach the frame reach this band.
         const bool is_here = many == bands.in_many.end() || *many != i;
-        const bool sums_here = is_here && !bands.told[i];
+        const bool sums_here = is_here && !bands.all_inside[i];
         if (bands.short_arc[i].nodes > 0) {
           add_short(bands.short_arc[i], table, band);
           if (sums_here) result[i] = inside(arcs[i], psf, image);
@@ -341,26 +326,10 @@ std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
   threads.for_ranges(bands.in_many.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t i = bands.in_many[k];
-      if (!bands.told[i]) result[i] = inside(arcs[i], psf, image);
+      if (!bands.all_inside[i]) result[i] = inside(arcs[i], psf, image);
     }
   });
   return result;
-}
-
-std::vector<Arc> with_brightness(const Arc& whole, std::span<const double> brightness) {
-  if (brightness.size() < 2) throw Error("with_brightness: at least two values");
-  const std::size_t count = brightness.size() - 1;
-  std::vector<Arc> arcs;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double sum = brightness[i] + brightness[i + 1];
-    if (!(sum > 0.0)) continue;
-    const auto at = [&](double step) { return place(whole, step / double(count)); };
-    const double begin = double(i);
-    arcs.push_back({at(begin), at(begin + 0.5), at(begin + 1.0),
-                    whole.signal_e * 0.5 * sum / double(count),
-                    (brightness[i + 1] - brightness[i]) / sum});
-  }
-  return arcs;
 }
 
 PixelPosition place(const Arc& arc, double tau) { return Motion(arc).at(tau); }

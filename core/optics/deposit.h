@@ -48,8 +48,11 @@ struct DepositView {
   int left = 0, top = 0, frame_columns = 0, frame_rows = 0;
 };
 
-/// Of which arcs what fell into the frame is summed: of each, or of those that the frame's rim
-/// cuts. Others are then told as all of their light at their middle.
+/// Returns all pixels of an image, which are the frame.
+DepositView view_of(ExpectedElectronImage& image);
+
+/// Whose light inside the frame is summed: that of all arcs, or of those that the frame's rim cuts.
+/// For the others the sum is then all of their light, and the centroid their middle.
 enum class DepositSums { all, cut };
 
 /// Adds arcs to `image` [e-] and returns what is inside the frame for each. Light per pixel is
@@ -74,16 +77,16 @@ Deposited deposited_in_frame(const Arc& arc, const PsfTable& psf, const DepositV
 /// The part of an arc between two times in 0..1.
 Arc part_of(const Arc& arc, double tau_begin, double tau_end);
 
-/// Bounding rectangle of the arc's path [px].
+/// A rectangle in the image plane [px].
 struct ArcExtent {
   double left, top, right, bottom;
-};
-ArcExtent extent(const Arc& arc);
 
-/// Splits a source's arc into one per interval of `brightness`: relative values at equally spaced
-/// times from start to end (at least 2, each >= 0), linear in between. The signals sum to
-/// `whole.signal_e` times the mean brightness; the tilt of `whole` is ignored.
-std::vector<Arc> with_brightness(const Arc& whole, std::span<const double> brightness);
+  bool meets(const ArcExtent& b) const {
+    return left <= b.right && b.left <= right && top <= b.bottom && b.top <= bottom;
+  }
+};
+/// Bounding rectangle of the arc's path.
+ArcExtent extent(const Arc& arc);
 
 /// Position on the arc at time `tau`, 0 at the start, 1 at the end.
 PixelPosition place(const Arc& arc, double tau);

@@ -38,7 +38,8 @@ struct BandView {
 
 #define DMISE_DEPOSIT_KERNELS(level)                                                      \
   namespace level {                                                                       \
-  /* Adds the panel to the band; `work` has room for panel_work_floats(table). */         \
+  /* Adds the panel to the band; `work` has room for the weights of its nodes along both  \
+     axes, and for a row of their sum. */                                                 \
   void add_panel(const PanelView& panel, const PsfTableView& table, const BandView& band, \
                  float* work);                                                            \
   /* Adds a short arc to the band. The table's stride is 8; the 16 columns from the arc's \

@@ -13,10 +13,6 @@ namespace {
 constexpr int band_rows = 128;
 constexpr double piece_px = 16.0;
 
-bool meet(const ArcExtent& a, const ArcExtent& b) {
-  return a.left <= b.right && b.left <= a.right && a.top <= b.bottom && b.top <= a.bottom;
-}
-
 double size_of(const ArcExtent& e) { return std::max(e.right - e.left, e.bottom - e.top); }
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
@@ -70,7 +66,7 @@ void DirectBlur::for_pieces(const Arc& arc, const ArcExtent& reach, const Use& u
   const auto visit = [&](const auto& self, double begin, double end, int depth) -> void {
     const Arc piece = part_of(arc, begin, end);
     const ArcExtent e = extent(piece);
-    if (!meet(e, reach)) return;
+    if (!e.meets(reach)) return;
     if (size_of(e) <= piece_px || depth > 60) return use(piece);
     const double middle = 0.5 * (begin + end);
     self(self, begin, middle, depth + 1);
@@ -140,7 +136,7 @@ std::vector<Deposited> DirectBlur::deposit(std::span<const Arc> arcs, ExpectedEl
       const int first = int(b) * band_rows, last = std::min(light.rows, first + band_rows);
       const ArcExtent near{-reach, first - reach, light.columns + reach, last + reach};
       for (const Arc& arc : arcs) {
-        if (!meet(extent(arc), near)) continue;
+        if (!extent(arc).meets(near)) continue;
         for_pieces(arc, near, [&](const Arc& piece) { add(piece, first, last, light); });
       }
     }

@@ -24,7 +24,6 @@ class DirectBlur {
                                  Threads& threads);
 
  private:
-  struct Patch;
   template <class Use>
   void for_pieces(const Arc& arc, const ArcExtent& reach, const Use& use) const;
   void add(const Arc& piece, int row_begin, int row_end, ExpectedElectronImage& light) const;

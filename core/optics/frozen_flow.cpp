@@ -8,9 +8,7 @@
 namespace dmise {
 
 FrozenFlow::FrozenFlow(int side, double outer_scale, const RngKey& key)
-    : screens_(side, outer_scale), length_((screens_.torus() - side) / 2), key_(key) {
-  for (Field& f : kept_) f.block = std::numeric_limits<std::int64_t>::min();
-}
+    : screens_(side, outer_scale), length_((screens_.torus() - side) / 2), key_(key) {}
 
 // Tori are drawn in pairs; four are cached: the two that a window blends and the other halves of
 // their pairs.

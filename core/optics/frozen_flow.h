@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 
 #include "core/optics/phase_screen.h"
 
@@ -30,7 +31,7 @@ class FrozenFlow {
 
  private:
   struct Field {
-    std::int64_t block = -1;
+    std::int64_t block = std::numeric_limits<std::int64_t>::min();
     std::vector<float> phase;  // torus x torus, for r0 of one sample
     KolmogorovScreens::Tilt tilt;
   };

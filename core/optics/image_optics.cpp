@@ -1,6 +1,6 @@
 #include "core/optics/image_optics.h"
 
-#include <chrono>
+#include "core/base/stopwatch.h"
 
 namespace dmise {
 
@@ -26,13 +26,11 @@ ImageOptics acting_optics(const ImageOptics& optics, const EffectSet& effects) {
 
 void apply_image_optics(const ImageOptics& acting, ExpectedElectronImage& image, Threads& threads,
                         EffectTimes& times) {
-  using Clock = std::chrono::steady_clock;
   ImageEffects::for_each([&]<class Effect>() {
     const Effect& effect = acting;
     if (!effect.applies()) return;
-    const auto start = Clock::now();
+    Stopwatch timing(times[Effect::facts]);
     effect.apply(image, threads);
-    times[Effect::facts] += std::chrono::duration<double>(Clock::now() - start).count();
   });
 }
 

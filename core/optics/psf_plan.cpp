@@ -88,17 +88,8 @@ int screens_of(const PointSpread& s, double wavelength_m, const SensorSeeing* ai
 }  // namespace
 
 const char* name(Method method) {
-  switch (method) {
-    case Method::automatic:
-      return "auto";
-    case Method::deposit:
-      return "deposit";
-    case Method::direct:
-      return "direct";
-    case Method::transform:
-      return "transform";
-  }
-  return "?";
+  constexpr const char* names[] = {"auto", "deposit", "direct", "transform"};
+  return names[std::size_t(method)];
 }
 
 PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<SensorSeeing>& seeing,
@@ -159,16 +150,13 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
   // The defocus disc must be within the inner half, which does not taper.
   const double disc_px = even ? m.defocus_px : m.widest_px;
   const double disc_cells = s.support_px > 0 ? 0.0 : 1.05 * disc_px * plan.oversampling;
-  if (disc_cells > widest_half_cells && !even)
-    refuse(s.drift.any() ? "focus_drift" : "psf_field",
-           "its blur of " + std::to_string(std::lround(disc_px)) +
+  if (disc_cells > widest_half_cells)
+    refuse(even            ? "defocus_m"
+           : s.drift.any() ? "focus_drift"
+                           : "psf_field",
+           (even ? "its disc of " : "its blur of ") + std::to_string(std::lround(disc_px)) +
                " px is wider than a kernel holds, " +
                std::to_string(int(widest_half_cells / 1.05 / plan.oversampling)) + " px");
-  if (disc_cells > widest_half_cells)
-    refuse("defocus_m", "its disc of " + std::to_string(std::lround(m.defocus_px)) +
-                            " px is wider than a kernel holds, " +
-                            std::to_string(int(widest_half_cells / 1.05 / plan.oversampling)) +
-                            " px");
   const int half = std::clamp(int(std::ceil(support_px * plan.oversampling)), 8, usual_half_cells);
   plan.half_cells = std::max(half, int(std::ceil(disc_cells)));
   // Beyond r: 0.2 (lambda / D) / r of an Airy pattern, more with an obscuration; the kernel tapers

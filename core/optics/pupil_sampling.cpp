@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/units.h"
@@ -57,22 +58,25 @@ std::string steepest_key(const Optics& optics, double wavelength_m) {
   plain.spread.varying = {};
   plain.spread.drift = {};
   plain.spread.defocus_m = 0.0;
-  Optics wavefront = plain, field = plain, defocus = plain, varying = plain, drift = plain;
+  Optics wavefront = plain, field = plain, defocus = plain, drift = plain, varying = plain;
   wavefront.spread.wavefront = optics.spread.wavefront;
   field.spread.field = optics.spread.field;
   defocus.spread.defocus_m = optics.spread.defocus_m;
-  varying.spread.varying = optics.spread.varying;
   drift.spread.drift = optics.spread.drift;
-  const double of_wavefront = steepest_in_field(wavefront, wavelength_m),
-               of_field = steepest_in_field(field, wavelength_m),
-               of_defocus = steepest_in_field(defocus, wavelength_m),
-               of_varying = steepest_in_field(varying, wavelength_m),
-               of_drift = steepest_in_field(drift, wavelength_m);
-  if (of_varying > std::max({of_wavefront, of_field, of_defocus, of_drift}))
-    return "optics.psf_field";
-  if (of_drift > std::max({of_wavefront, of_field, of_defocus})) return "optics.focus_drift";
-  if (of_wavefront >= std::max(of_field, of_defocus)) return "optics.zernike_nm";
-  return of_field >= of_defocus ? "optics.field_nm" : "optics.defocus_m";
+  varying.spread.varying = optics.spread.varying;
+  const std::pair<const char*, const Optics*> parts[] = {{"zernike_nm", &wavefront},
+                                                         {"field_nm", &field},
+                                                         {"defocus_m", &defocus},
+                                                         {"focus_drift", &drift},
+                                                         {"psf_field", &varying}};
+  std::string largest;
+  double steepest = -1.0;
+  for (const auto& [key, part] : parts)
+    if (const double slope = steepest_in_field(*part, wavelength_m); slope > steepest) {
+      steepest = slope;
+      largest = key;
+    }
+  return "optics." + largest;
 }
 
 }  // namespace

@@ -21,8 +21,7 @@ double relative_illumination(const Optics& optics, PixelPosition pixel) {
   }
   if (v.corner < 1.0) {
     const PixelPosition d = pixel - principal_point(optics);
-    const double corner_px = 0.5 * std::hypot(optics.columns, optics.rows);
-    const double r = std::min(1.0, std::hypot(d.x_px, d.y_px) / corner_px);
+    const double r = std::min(1.0, std::hypot(d.x_px, d.y_px) / corner_px(optics));
     share *= 1.0 - (1.0 - v.corner) * std::pow(r, v.power);
   }
   return share;

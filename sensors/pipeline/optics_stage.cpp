@@ -35,8 +35,7 @@ Optics acting_blur(const SensorConfig& sensor) {
 
 FieldPlace field_place(const Optics& o, PixelPosition pixel) {
   const PixelPosition d = pixel - principal_point(o);
-  return {std::hypot(d.x_px, d.y_px) / (0.5 * std::hypot(o.columns, o.rows)),
-          std::atan2(d.y_px, d.x_px)};
+  return {std::hypot(d.x_px, d.y_px) / corner_px(o), std::atan2(d.y_px, d.x_px)};
 }
 
 /// Places of the kernels over the field, row by row.
@@ -162,18 +161,10 @@ std::vector<Deposited> OpticsStage::put(std::span<const Arc> arcs, const Deposit
 
 std::vector<Deposited> OpticsStage::add(std::span<const Arc> arcs, ExpectedElectronImage& light,
                                         DepositSums sums) {
-  if (!model_)
-    return put(arcs,
-               DepositView{.pixels = light.pixels.data(),
-                           .columns = light.columns,
-                           .rows = light.rows,
-                           .stride = light.columns,
-                           .frame_columns = light.columns,
-                           .frame_rows = light.rows},
-               sums);
-  const auto is_bright = [&](const Arc& arc) { return !grid_ || arc.signal_e > bright_e_; };
+  if (!model_) return put(arcs, view_of(light), sums);
   if (!grid_) return sum_directly(arcs, light);
 
+  const auto is_bright = [&](const Arc& arc) { return arc.signal_e > bright_e_; };
   std::vector<Arc> bright, others;
   for (const Arc& arc : arcs) (is_bright(arc) ? bright : others).push_back(arc);
   for (Arc& arc : others) arc = grid_->on_cells(arc);
