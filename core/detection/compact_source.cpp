@@ -124,11 +124,7 @@ class Candidate {
 
   TrailFit fit(const Psf& psf, Trail start, unsigned free, int most_steps,
                std::optional<double> good_enough_sigmas = std::nullopt) const {
-    FitSettings fit_settings;
-    fit_settings.psf = psf;
-    fit_settings.model_error = model_error_;
-    fit_settings.settled_chi2 = 0.05;  // small compared to every margin
-    fit_settings.most_steps = most_steps;
+    FitSettings fit_settings = comparison(psf, most_steps);
     fit_settings.good_enough_sigmas = good_enough_sigmas;
     return fit_trails(around_.usable, {std::move(start)}, {free}, fit_settings);
   }
@@ -139,12 +135,7 @@ class Candidate {
   }
   TrailFit as_line() const { return fit(psf(), light_, trail_line, 15); }
   double deviance_as_two(const Trail& star) const {
-    FitSettings fit_settings;
-    fit_settings.psf = psf();
-    fit_settings.model_error = model_error_;
-    fit_settings.settled_chi2 = 0.05;
-    fit_settings.most_steps = 15;
-    return deviance_of_stars(around_.usable, light_, star, 2, fit_settings);
+    return deviance_of_stars(around_.usable, light_, star, 2, comparison(psf(), 15));
   }
 
   /// The final fit; empty if it fails or does not explain what is saturated.
@@ -187,6 +178,13 @@ class Candidate {
   Psf nearest_gaussian() const { return scene_.psf.sigma_at({light_.x_px, light_.y_px}); }
 
  private:
+  FitSettings comparison(const Psf& psf, int most_steps) const {
+    return {.psf = psf,
+            .model_error = model_error_,
+            .most_steps = most_steps,
+            .settled_chi2 = comparison_settled_chi2};
+  }
+
   const Scene& scene_;
   const DetectorSettings& settings_;
   Light around_;

@@ -172,20 +172,6 @@ Trail best_line_through(const FilteredFrame& frame, const Trail& place, double s
   return best;
 }
 
-}  // namespace
-
-double crowding(const FilteredFrame& frame, const Trail& trail) {
-  const FilteredFrame::Cell cell = frame.cell_at(trail.x_px, trail.y_px);
-  const double scatter = std::max(1.0, double(cell.scatter) - 0.05);
-  return scatter * (1.0 + std::max(0.0, double(cell.hidden) - 0.1));
-}
-
-double least_streak_snr(double length_px) {
-  return 6.5 + 0.5 * std::clamp(std::log2(length_px / 16), 0.0, 2.0);
-}
-
-namespace {
-
 /// The fit of a longer line, if it has more of a source's light.
 std::optional<Source> fitted_longer(const Scene& scene, const FilteredFrame& frame,
                                     const Source& source, Trail start, bool turned,
@@ -227,6 +213,16 @@ std::optional<Source> longer(const Scene& scene, const FilteredFrame& frame, con
 }
 
 }  // namespace
+
+double crowding(const FilteredFrame& frame, const Trail& trail) {
+  const FilteredFrame::Cell cell = frame.cell_at(trail.x_px, trail.y_px);
+  const double scatter = std::max(1.0, double(cell.scatter) - 0.05);
+  return scatter * (1.0 + std::max(0.0, double(cell.hidden) - 0.1));
+}
+
+double least_streak_snr(double length_px) {
+  return 6.5 + 0.5 * std::clamp(std::log2(length_px / 16), 0.0, 2.0);
+}
 
 void extend(const Scene& scene, const FilteredFrame& frame, Source& source) {
   constexpr int most_rounds = 4;
@@ -277,12 +273,8 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
       snr = match.snr;
     }
     const double per_px = line.sum / line.samples / FilteredFrame::steps;
-    trail.flux_e = per_px *
-                   std::sqrt(scene
-                                 .pixel(std::clamp(int(trail.x_px), 0, frame.columns - 1),
-                                        std::clamp(int(trail.y_px), 0, frame.rows - 1))
-                                 .variance_e2) *
-                   trail.length_px;
+    const float noise_e = std::sqrt(scene.pixel_around(trail.x_px, trail.y_px).variance_e2);
+    trail.flux_e = per_px * noise_e * trail.length_px;
     const Beside near = beside(frame, turned, trail, band);
     if (snr <
         near.middle + least_streak_snr(trail.length_px) * near.scatter * crowding(frame, trail))

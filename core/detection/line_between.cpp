@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include "core/base/units.h"
-#include "core/detection/components.h"
 #include "core/detection/line_profile.h"
+#include "core/detection/template_snr.h"
 
 namespace dmise {
 namespace {
@@ -21,28 +20,14 @@ struct Sample {
   double along_px, light, weight;
 };
 
-/// What faint stars add to the sky, and to the variance of sums of its noise, around a trail.
-struct StarlitSky {
-  double level_e = 0.0, scatter2 = 1.0;
-};
-
-StarlitSky starlit_sky(const Scene& scene, const Trail& t) {
-  if (!scene.flat) return {};
-  const FilteredFrame::Cell cell = scene.flat->cell_at(t.x_px, t.y_px);
-  const int x = std::clamp(int(t.x_px), 0, scene.counts.columns - 1);
-  const int y = std::clamp(int(t.y_px), 0, scene.counts.rows - 1);
-  const double noise_e = std::sqrt(double(scene.pixel(x, y).variance_e2));
-  return {double(cell.middle) / FilteredFrame::steps *
-              std::sqrt(kernel_square_sum(scene.flat->sigma_px)) * noise_e,
-          double(cell.scatter) * double(cell.scatter)};
-}
-
 /// Usable pixels on a trail's line and beyond its ends, without outliers, by rising place.
 std::vector<Sample> samples_along(const Scene& scene, const Trail& t, double sigma_px,
                                   double beyond_px) {
   const Line line = line_of(t);
   const Extent extent = extent_of(line, t.length_px / 2 + beyond_px);
   const StarlitSky sky = starlit_sky(scene, t);
+  const double noise_e = std::sqrt(double(scene.pixel_around(t.x_px, t.y_px).variance_e2));
+  const double sky_e = sky.level * noise_e, scatter2 = sky.scatter * sky.scatter;
   const double level = t.flux_e / std::max(t.length_px, 1.0);
   const int reach = int(std::ceil(across_sigmas * sigma_px * line.slice_px()));
   std::vector<Sample> out;
@@ -58,9 +43,9 @@ std::vector<Sample> samples_along(const Scene& scene, const Trail& t, double sig
       const double profile = normal_density(across / sigma_px) / sigma_px;
       const FitPixel pixel = scene.pixel(x, y);
       const double own_e = std::abs(r) < 1 ? level * profile : 0.0;
-      const double variance = pixel.variance_e2 + own_e, signal = pixel.signal_e - sky.level_e;
+      const double variance = pixel.variance_e2 + own_e, signal = pixel.signal_e - sky_e;
       if (signal > level * profile + outlier * std::sqrt(variance)) continue;
-      const double weight = profile / (variance * sky.scatter2);
+      const double weight = profile / (variance * scatter2);
       out.push_back({along, signal * weight, profile * weight});
     }
   }

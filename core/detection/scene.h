@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -25,8 +26,8 @@ struct Scene {
   const PixelMask* unusable = nullptr;    // pixels without a value; null: all have one
   const FilteredFrame* hidden = nullptr;  // whose hidden pixels are not used; null: none are
   const KnownStars* known = nullptr;      // whose pixels are not used; null: none are known
-  const FilteredFrame* flat =
-      nullptr;  // of which the scatter of the sky is known; null: noise alone
+  // Of which the scatter of the sky is known; null: it is noise alone.
+  const FilteredFrame* flat = nullptr;
 
   /// Takes a PSF that was measured.
   void use(const PsfField& measured) {
@@ -66,6 +67,17 @@ struct Scene {
     const double noise_e = sigma_dn * gain_e_per_dn;
     return {x, y, float((counts.at(x, y) - level_dn) * gain_e_per_dn), float(noise_e * noise_e)};
   }
+  /// The pixel around a place, or the nearest to it in the frame.
+  FitPixel pixel_around(double x_px, double y_px) const {
+    return pixel(std::clamp(int(x_px), 0, counts.columns - 1),
+                 std::clamp(int(y_px), 0, counts.rows - 1));
+  }
+  /// Noise of a pixel without sources at a place, or at the nearest in the frame.
+  double noise_e_at(double x_px, double y_px) const {
+    const int x = std::clamp(int(std::lround(x_px)), 0, counts.columns - 1);
+    const int y = std::clamp(int(std::lround(y_px)), 0, counts.rows - 1);
+    return background.sigma_dn(x, y) * gain_e_per_dn;
+  }
   /// Trail of a star at a position, without flux.
   Trail star_trail(double x_px, double y_px) const {
     const PixelPosition d = stars.trail_at({x_px, y_px});
@@ -91,12 +103,5 @@ struct Source {
   const Trail& trail() const { return fit.trails[0]; }
   double snr() const { return trail().flux_e / std::sqrt(fit.cov(2, 2)); }
 };
-
-/// Length of the smallest difference between two trails, up to their sign [px].
-inline double trail_difference_px(const Trail& a, const Trail& b) {
-  const double ax = a.length_px * std::cos(a.angle_rad), ay = a.length_px * std::sin(a.angle_rad);
-  const double bx = b.length_px * std::cos(b.angle_rad), by = b.length_px * std::sin(b.angle_rad);
-  return std::fmin(std::hypot(ax - bx, ay - by), std::hypot(ax + bx, ay + by));
-}
 
 }  // namespace dmise

@@ -146,14 +146,10 @@ std::vector<ShownStar> shown_stars(const Scene& scene, const StarAgreement& agre
                                    const std::vector<ExpectedStar>& expected) {
   std::vector<ShownStar> stars;
   stars.reserve(expected.size());
-  const CountImage& counts = scene.counts;
   for (const ExpectedStar& star : expected) {
     const PixelPosition at = star.place + agreement.seen().shift;
     const StarLightRatio& light = agreement.light_at(at);
-    const int x = std::clamp(int(std::lround(at.x_px)), 0, counts.columns - 1);
-    const int y = std::clamp(int(std::lround(at.y_px)), 0, counts.rows - 1);
-    stars.push_back({scene.star_trail(at.x_px, at.y_px),
-                     scene.background.sigma_dn(x, y) * scene.gain_e_per_dn,
+    stars.push_back({scene.star_trail(at.x_px, at.y_px), scene.noise_e_at(at.x_px, at.y_px),
                      light.middle * star.signal_e, light.scatter});
   }
   Rows rows;

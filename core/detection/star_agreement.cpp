@@ -50,9 +50,7 @@ double peak_snr(const Scene& scene, const FilteredFrame& frame, double unit, con
                 double signal_e) {
   Trail lit = trail;
   lit.flux_e = signal_e;
-  const int x = std::clamp(int(std::lround(trail.x_px)), 0, scene.counts.columns - 1);
-  const int y = std::clamp(int(std::lround(trail.y_px)), 0, scene.counts.rows - 1);
-  const double noise_e = scene.background.sigma_dn(x, y) * scene.gain_e_per_dn;
+  const double noise_e = scene.noise_e_at(trail.x_px, trail.y_px);
   const double sigma_px = std::hypot(scene.sigma_px, frame.sigma_px);
   return trail_value(lit, sigma_px, trail.x_px, trail.y_px) / (unit * noise_e);
 }

@@ -24,9 +24,26 @@ std::vector<Trail> stars_along(const Trail& line, const Trail& star, int count) 
   return out;
 }
 
+/// Length of the smallest difference between two trails, up to their sign.
+double difference_px(const Trail& a, const Trail& b) {
+  const double ax = a.length_px * std::cos(a.angle_rad), ay = a.length_px * std::sin(a.angle_rad);
+  const double bx = b.length_px * std::cos(b.angle_rad), by = b.length_px * std::sin(b.angle_rad);
+  return std::min(std::hypot(ax - bx, ay - by), std::hypot(ax + bx, ay + by));
+}
+
 /// Length of the trail perpendicular to another.
 double across_px(const Trail& trail, const Trail& other) {
   return trail.length_px * std::abs(std::sin(trail.angle_rad - other.angle_rad));
+}
+
+/// Fits that are compared with that of a source.
+FitSettings comparison_of(const Scene& scene, const Source& source,
+                          const DetectorSettings& settings) {
+  const Trail& t = source.trail();
+  return {.psf = scene.psf.at({t.x_px, t.y_px}),
+          .model_error = std::max(source.model_error, settings.model_error),
+          .most_steps = 15,
+          .settled_chi2 = comparison_settled_chi2};
 }
 
 /// Whether the line may be a noisy piece of one star's trail.
@@ -59,7 +76,7 @@ bool moves_like_star(const Scene& scene, const Source& source, const Trail& star
                      double tolerance_px) {
   const Trail& t = source.trail();
   if (scene.would_be_known(t.x_px, t.y_px, t.flux_e)) return false;
-  if (trail_difference_px(t, star) < tolerance_px) return true;
+  if (difference_px(t, star) < tolerance_px) return true;
   return source.at_edge && across_px(t, star) < tolerance_px &&
          t.length_px < star.length_px + tolerance_px;
 }
@@ -69,11 +86,7 @@ bool point_beats_star(const Scene& scene, const Source& source, const DetectorSe
   Trail star = scene.star_trail(point.x_px, point.y_px);
   star.flux_e = point.flux_e;
   const auto pixels = pixels_near(scene, star, 2.5 * scene.sigma_px + 0.5);
-  FitSettings fit_settings;
-  fit_settings.psf = scene.psf.at({point.x_px, point.y_px});
-  fit_settings.model_error = std::max(source.model_error, settings.model_error);
-  fit_settings.settled_chi2 = 0.05;  // small against every margin
-  fit_settings.most_steps = 15;
+  const FitSettings fit_settings = comparison_of(scene, source, settings);
   const double as_star = fit_trails(pixels, {star}, {trail_place}, fit_settings).deviance;
   const double as_point = fit_trails(pixels, {point}, {trail_place}, fit_settings).deviance;
   return as_point < as_star - settings.blend_margin;
@@ -85,11 +98,7 @@ bool beats_stars(const Scene& scene, const Source& source, const DetectorSetting
   const Trail star = scene.star_trail(line.x_px, line.y_px);
   const double margin_px = 2.5 * scene.sigma_px + 0.5;
   const auto pixels = pixels_near(scene, line, margin_px);
-  FitSettings fit_settings;
-  fit_settings.psf = scene.psf.at({line.x_px, line.y_px});
-  fit_settings.model_error = std::max(source.model_error, settings.model_error);
-  fit_settings.settled_chi2 = 0.05;  // small against every margin
-  fit_settings.most_steps = 15;
+  const FitSettings fit_settings = comparison_of(scene, source, settings);
   if (is_piece_of_star(scene, line, star, margin_px, settings, fit_settings)) return false;
   const double as_line = fit_trails(pixels, {line}, {trail_line}, fit_settings).deviance;
   // More stars fit better by chance, by about one per additional parameter.

@@ -8,6 +8,9 @@ namespace dmise {
 
 // Tests of alternative explanations by stars that a streak must pass.
 
+/// Convergence of fits that are compared: small against every margin.
+inline constexpr double comparison_settled_chi2 = 0.05;
+
 /// Deviance of the pixels for a fit of `count` stars in a row along the line.
 double deviance_of_stars(const std::vector<FitPixel>& pixels, const Trail& line, const Trail& star,
                          int count, const FitSettings& settings);

@@ -1,6 +1,7 @@
 #include "core/detection/template_snr.h"
 
 #include <cmath>
+#include <vector>
 
 #include "core/detection/components.h"
 #include "core/detection/line_search.h"
@@ -12,22 +13,9 @@ namespace {
 constexpr double margin_in_sigmas = 2.5;
 constexpr double spare_px = 3.0;  // by which a trail may move while it is matched
 
-/// The sky around a place.
-struct Sky {
-  double level = 0.0, scatter = 1.0;  // in a pixel's noise
-
-  Sky(const Scene& scene, const Trail& trail) {
-    if (!scene.flat) return;
-    const FilteredFrame::Cell cell = scene.flat->cell_at(trail.x_px, trail.y_px);
-    level = double(cell.middle) / FilteredFrame::steps *
-            std::sqrt(kernel_square_sum(scene.flat->sigma_px));
-    scatter = double(cell.scatter);
-  }
-};
-
 double snr_of(const Scene& scene, const std::vector<FitPixel>& pixels, Trail trail) {
   trail.flux_e = 1.0;
-  const Sky sky(scene, trail);
+  const StarlitSky sky = starlit_sky(scene, trail);
   const std::vector<double> shape =
       light_in(pixels, {&trail, 1}, scene.psf.at({trail.x_px, trail.y_px}));
   double sum = 0.0, squares = 0.0;
@@ -42,6 +30,14 @@ double snr_of(const Scene& scene, const std::vector<FitPixel>& pixels, Trail tra
 }
 
 }  // namespace
+
+StarlitSky starlit_sky(const Scene& scene, const Trail& trail) {
+  if (!scene.flat) return {};
+  const FilteredFrame::Cell cell = scene.flat->cell_at(trail.x_px, trail.y_px);
+  return {double(cell.middle) / FilteredFrame::steps *
+              std::sqrt(kernel_square_sum(scene.flat->sigma_px)),
+          double(cell.scatter)};
+}
 
 double template_snr(const Scene& scene, const Trail& trail) {
   return snr_of(scene, pixels_near(scene, trail, margin_in_sigmas * scene.sigma_px + 0.5), trail);
