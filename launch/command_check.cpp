@@ -128,17 +128,6 @@ void print_effects(const Scenario& scenario, bool has_stars) {
     std::printf("effects of %s:\n%s", names.c_str(), text.c_str());
 }
 
-/// A number, or a list of them.
-void write_numbers(JsonWriter& json, const std::vector<double>& numbers) {
-  if (numbers.size() == 1) {
-    json.value(numbers[0]);
-    return;
-  }
-  json.begin_array();
-  for (const double number : numbers) json.value(number);
-  json.end_array();
-}
-
 void write_effects(JsonWriter& json, const Scenario& scenario, bool has_stars) {
   json.key("effects").begin_object();
   for (const auto& sensor : scenario.sensors) {
@@ -147,7 +136,7 @@ void write_effects(JsonWriter& json, const Scenario& scenario, bool has_stars) {
       json.begin_object().field("name", effect->name).field("what", effect->what);
       json.key("parameters").begin_object();
       for (const auto& [key, numbers] : parameters_in(sensor, *effect))
-        write_numbers(json.key(key), numbers);
+        numbers.size() == 1 ? json.field(key, numbers[0]) : json.list(key, numbers);
       json.end_object().end_object();
     }
     json.end_array();
@@ -187,7 +176,7 @@ void print_json(const Scenario& scenario, const ScenarioOutlook& outlook, const 
   json.begin_object().field("scenario", printable(scenario.path));
   json.field("start_utc", scenario.start_utc).field("duration_s", scenario.duration.seconds());
   json.field("tick_s", scenario.tick.seconds());
-  json.field("objects", std::int64_t(outlook.objects));
+  json.field("objects", outlook.objects);
   json.key("sensors").begin_array();
   for (const auto& sensor : outlook.sensors) write_json(json, sensor, clock);
   json.end_array();

@@ -1,6 +1,6 @@
 #include "launch/dataset_directory.h"
 
-#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -33,8 +33,8 @@ void remove(const std::string& path) {
 std::string head(const DatasetPlan& plan) {
   JsonWriter json;
   json.begin_object().field("software", software_name()).field("digest", plan.digest);
-  json.field("scenario", "scenario.yaml").key("seeds").begin_array();
-  json.value(plan.first_seed).value(plan.last_seed).end_array();
+  json.field("scenario", "scenario.yaml")
+      .list("seeds", std::array{plan.first_seed, plan.last_seed});
   return json.field("seeds_per_shard", plan.seeds_per_shard).take();
 }
 
@@ -165,8 +165,8 @@ void DatasetDirectory::assemble(std::size_t shard) const {
   };
   write_file_whole(part(shard_name(shard, ".coco")), lines);
   JsonWriter json;
-  json.begin_object().field("name", name).key("seeds").begin_array().value(first).value(last);
-  json.end_array().field("frames", count(image_mark)).field("objects", count(annotation_mark));
+  json.begin_object().field("name", name).list("seeds", std::array{first, last});
+  json.field("frames", count(image_mark)).field("objects", count(annotation_mark));
   archive.finish(json);
   write_file_whole(part(shard_name(shard, ".json")), json.end_object().take());
   for (std::uint64_t seed = first; seed <= last; ++seed)

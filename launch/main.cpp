@@ -8,37 +8,28 @@
 #include "nodes/runtime/program/command_line.h"
 #include "nodes/runtime/program/version_text.h"
 
+namespace dmise {
+namespace {
+
+/// In the order of the help.
+constexpr void (*commands[])(CLI::App&) = {
+    add_demo_command,   add_check_command,   add_explain_command,      add_run_command,
+    add_launch_command, add_join_command,    add_dataset_command,      add_detect_command,
+    add_score_command,  add_report_command,  add_discriminate_command, add_export_command,
+    add_solve_command,  add_visible_command, add_view_command,         add_catalogue_command,
+    add_list_command,   add_schema_command,  add_keygen_command,       add_status_command,
+    add_health_command, add_clock_command,   add_survey_command,       add_tradeoff_command,
+    add_bench_command,  add_manual_commands};
+
+}  // namespace
+}  // namespace dmise
+
 int main(int argc, char** argv) {
   dmise::return_large_blocks();
   CLI::App app{"Simulates a network of optical sensors that watch near-Earth space.", "dmise"};
   app.set_version_flag("--version", dmise::version_text("dmise"));
   app.require_subcommand(1);
-  dmise::add_demo_command(app);
-  dmise::add_check_command(app);
-  dmise::add_explain_command(app);
-  dmise::add_run_command(app);
-  dmise::add_launch_command(app);
-  dmise::add_join_command(app);
-  dmise::add_dataset_command(app);
-  dmise::add_detect_command(app);
-  dmise::add_score_command(app);
-  dmise::add_report_command(app);
-  dmise::add_discriminate_command(app);
-  dmise::add_export_command(app);
-  dmise::add_solve_command(app);
-  dmise::add_visible_command(app);
-  dmise::add_view_command(app);
-  dmise::add_catalogue_command(app);
-  dmise::add_list_command(app);
-  dmise::add_schema_command(app);
-  dmise::add_keygen_command(app);
-  dmise::add_status_command(app);
-  dmise::add_health_command(app);
-  dmise::add_clock_command(app);
-  dmise::add_survey_command(app);
-  dmise::add_tradeoff_command(app);
-  dmise::add_bench_command(app);
-  dmise::add_manual_commands(app);
+  for (const auto add_command : dmise::commands) add_command(app);
   constexpr std::size_t longest = 4000;  // of an error message [bytes]
   try {
     app.parse(argc, argv);
@@ -47,11 +38,8 @@ int main(int argc, char** argv) {
     return dmise::end_of_command_line(app, e);
   } catch (const dmise::ExitWith& e) {
     return e.code;
-  } catch (const dmise::ConfigError& e) {
-    std::fprintf(stderr, "dmise: %s\n", dmise::printable(e.what(), longest).c_str());
-    return 2;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "dmise: %s\n", dmise::printable(e.what(), longest).c_str());
-    return 1;
+    return dynamic_cast<const dmise::ConfigError*>(&e) ? 2 : 1;
   }
 }

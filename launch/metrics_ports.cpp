@@ -1,5 +1,7 @@
 #include "launch/metrics_ports.h"
 
+#include <array>
+
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/whole_file.h"
@@ -24,7 +26,7 @@ void MetricsPorts::write_targets(const std::string& path) const {
   JsonWriter json;
   json.begin_array();
   for (const auto& [name, target] : targets_) {
-    json.begin_object().key("targets").begin_array().value(target).end_array();
+    json.begin_object().list("targets", std::array{target});
     json.key("labels").begin_object().field("process", name).end_object().end_object();
   }
   json.end_array();

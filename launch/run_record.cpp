@@ -48,9 +48,7 @@ void write_run_record(const RunDirectory& directory, const Scenario& scenario,
     json.begin_object().field("name", node.name).field("compute_s", node.compute_s);
     json.field("messaging_s", node.messaging_s).field("waiting_s", node.waiting_s);
     json.field("start_s", node.start_s).field("peak_resident_bytes", node.peak_resident_bytes);
-    json.field("private_bytes", node.private_bytes).key("topics").begin_array();
-    for (const std::string& topic : node.topics) json.value(topic);
-    json.end_array().end_object();
+    json.field("private_bytes", node.private_bytes).list("topics", node.topics).end_object();
   }
   json.end_array().key("frames").begin_array();
   for (const auto& sensor : scenario.sensors) {

@@ -85,19 +85,14 @@ std::string choice_text(const SurveyReport& report) {
 
 void write_shell(JsonWriter& json, const std::string& name, const ShellSummary& s) {
   json.begin_object().field("shell", name);
-  json.field("objects", std::uint64_t(s.objects)).field("covered", std::uint64_t(s.covered));
+  json.field("objects", s.objects).field("covered", s.covered);
   json.field("detected", s.detected).field("detections", s.detections);
-  json.field("visits", std::uint64_t(s.visits));
-  json.field("revisits", std::uint64_t(s.revisits.count));
-  for (const auto& [key, value] : {std::pair{"revisit_median_s", s.revisits.median_s},
-                                   std::pair{"revisit_90_s", s.revisits.most_of_90_s}}) {
-    json.key(key);
-    if (s.revisits.count > 0)
-      json.value(value);
-    else
-      json.null();
-  }
-  json.end_object();
+  json.field("visits", s.visits).field("revisits", s.revisits.count);
+  const auto if_any = [&](double seconds) {
+    return s.revisits.count > 0 ? std::optional(seconds) : std::nullopt;
+  };
+  json.field("revisit_median_s", if_any(s.revisits.median_s));
+  json.field("revisit_90_s", if_any(s.revisits.most_of_90_s)).end_object();
 }
 
 void write_shells(JsonWriter& json, const Shells& shells, const NightSummary& night) {
@@ -113,8 +108,8 @@ void write_sensors(JsonWriter& json, const SurveyReport& report, const NightSumm
   for (std::size_t k = 0; k < report.surveys.size(); ++k) {
     const SensorTotals& t = night.sensors[k];
     json.begin_object().field("name", report.surveys[k].sensor);
-    json.field("exposures", std::uint64_t(t.exposures)).field("hours", t.hours);
-    json.field("covered", std::uint64_t(t.covered)).field("detected", t.detected);
+    json.field("exposures", t.exposures).field("hours", t.hours);
+    json.field("covered", t.covered).field("detected", t.detected);
     json.field("detections", t.detections).end_object();
   }
   json.end_array();
@@ -142,12 +137,10 @@ void write_model(JsonWriter& json, const DetectionModel& model) {
 void write_choice(JsonWriter& json, const SurveyReport& report) {
   const ChosenNetwork& c = *report.chosen;
   json.key("optimised").begin_object();
-  json.field("candidates", std::uint64_t(c.candidates.size()));
+  json.field("candidates", c.candidates.size());
   json.key("sites").begin_array();
   for (const std::size_t s : c.choice.sites) json.value(c.candidates[s].name);
-  json.end_array().key("greedy_detected").begin_array();
-  for (const double detected : c.choice.detected) json.value(detected);
-  json.end_array();
+  json.end_array().list("greedy_detected", c.choice.detected);
   json.field("detected_per_night", c.choice.best).field("detected_by_greedy", c.choice.greedy);
   json.field("detected_without_sites", c.choice.none).field("moves", c.choice.moves);
   json.field("bound", c.choice.bound).field("greedy_guarantee", greedy_guarantee);
@@ -180,7 +173,7 @@ std::string survey_json(const SurveyReport& report) {
   JsonWriter json;
   json.begin_object().field("scenario", report.scenario.path);
   json.field("start_utc", utc(report, {0})).field("end_utc", utc(report, report.scenario.duration));
-  json.field("objects", std::uint64_t(report.shells.of_object.size()));
+  json.field("objects", report.shells.of_object.size());
   json.field("night_deg", report.night_below_rad / deg);
   write_model(json, report.model);
   json.key("nights").begin_array();
@@ -196,9 +189,9 @@ std::string survey_json(const SurveyReport& report) {
   json.end_object();
   if (report.chosen) write_choice(json, report);
   if (report.check) {
-    json.key("check").begin_object().field("frames", std::uint64_t(report.check->frames));
+    json.key("check").begin_object().field("frames", report.check->frames);
     json.field("expected", report.check->expected());
-    json.field("found", std::uint64_t(report.check->found()));
+    json.field("found", report.check->found());
     json.field("sigma", report.check->sigma());
     json.field("deviation_sigma", report.check->deviation_sigma()).end_object();
   }

@@ -134,8 +134,8 @@ std::string tradeoff_json(const std::string& digest, const std::vector<TradeoffR
     for (const auto& [key, error] : {std::pair{"bound", row.bound}, {"measured", row.measured}}) {
       json.key(key).begin_object();
       for (const auto& kind : error_kinds) {
-        json.key(kind.key);
-        std::isfinite(error.*kind.value) ? json.value(error.*kind.value) : json.null();
+        const double value = error.*kind.value;
+        json.field(kind.key, std::isfinite(value) ? std::optional(value) : std::nullopt);
       }
       json.end_object();
     }

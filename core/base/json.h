@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -25,6 +26,10 @@ class JsonWriter {
   JsonWriter& value(std::string_view text);
   JsonWriter& value(const char* text) { return value(std::string_view(text)); }
   JsonWriter& null();
+  /// Writes null where there is none.
+  JsonWriter& value(const std::optional<double>& number) {
+    return number ? value(*number) : null();
+  }
   /// Inserts `text`, which must be valid JSON.
   JsonWriter& raw(std::string_view text);
 

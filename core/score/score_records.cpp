@@ -9,19 +9,11 @@
 namespace dmise {
 namespace {
 
-void optional_field(JsonWriter& json, const char* key, const std::optional<double>& value) {
-  json.key(key);
-  value ? json.value(*value) : json.null();
-}
-
 void write_bin(JsonWriter& json, const Bin& bin) {
-  json.begin_object();
-  optional_field(json, "from", bin.from);
-  optional_field(json, "to", bin.to);
-  json.field("truths", std::uint64_t(bin.truths)).field("found", std::uint64_t(bin.found));
+  json.begin_object().field("from", bin.from).field("to", bin.to);
+  json.field("truths", bin.truths).field("found", bin.found);
   json.field("low", bin.probability.low).field("high", bin.probability.high);
-  optional_field(json, "theory", bin.theory);
-  json.end_object();
+  json.field("theory", bin.theory).end_object();
 }
 
 void write_bins(JsonWriter& json, const char* key, const std::vector<Bin>& bins) {
@@ -34,13 +26,13 @@ void write_errors(JsonWriter& json, const std::array<ErrorFigure, error_keys.siz
   json.begin_object();
   for (std::size_t k = 0; k < error_keys.size(); ++k) {
     const ErrorFigure& f = figures[k];
-    json.key(error_keys[k].key).begin_object().field("count", std::uint64_t(f.count));
-    optional_field(json, "mean", f.count > 0 ? std::optional(f.mean) : std::nullopt);
-    optional_field(json, "rms", f.count > 0 ? std::optional(f.rms) : std::nullopt);
+    json.key(error_keys[k].key).begin_object().field("count", f.count);
+    json.field("mean", f.count > 0 ? std::optional(f.mean) : std::nullopt);
+    json.field("rms", f.count > 0 ? std::optional(f.rms) : std::nullopt);
     const bool nees = std::string_view(error_keys[k].key).starts_with("nees");
     if (nees && f.count > 0) {
       const Interval i = nees_interval(f.count);
-      json.key("honest").begin_array().value(i.low).value(i.high).end_array();
+      json.list("honest", {i.low, i.high});
     }
     if (std::string_view(error_keys[k].key).ends_with("over_sigma") && f.count > 0)
       json.field("reduced_chi_square", f.rms * f.rms);
@@ -50,28 +42,23 @@ void write_errors(JsonWriter& json, const std::array<ErrorFigure, error_keys.siz
 }
 
 void write_sensor(JsonWriter& json, const SensorScore& s) {
-  const auto count = [&](const char* key, std::size_t n) { json.field(key, std::uint64_t(n)); };
   json.begin_object();
   if (!s.sensor.empty()) json.field("sensor", s.sensor);
-  count("frames", s.frames);
-  count("frames_not_searched", s.unsearched_frames);
-  json.field("megapixels", s.megapixels);
-  count("truths", s.truths);
-  for (std::size_t k = 0; k < fate_names.size(); ++k) count(fate_names[k], s.fates[k]);
-  count("in_pieces", s.in_pieces);
-  count("detections", s.detections);
-  count("further_pieces", s.further_pieces);
-  count("false_alarms", s.false_alarms);
-  count("unscored_detections", s.unscored_detections);
+  json.field("frames", s.frames).field("frames_not_searched", s.unsearched_frames);
+  json.field("megapixels", s.megapixels).field("truths", s.truths);
+  for (std::size_t k = 0; k < fate_names.size(); ++k) json.field(fate_names[k], s.fates[k]);
+  json.field("in_pieces", s.in_pieces).field("detections", s.detections);
+  json.field("further_pieces", s.further_pieces).field("false_alarms", s.false_alarms);
+  json.field("unscored_detections", s.unscored_detections);
   const auto searched = double(s.frames - s.unsearched_frames);
   const auto per = [&](double of) {
     return of > 0.0 ? std::optional(double(s.false_alarms) / of) : std::nullopt;
   };
-  optional_field(json, "false_alarms_per_frame", per(searched));
-  optional_field(json, "false_alarms_per_megapixel", per(s.megapixels));
+  json.field("false_alarms_per_frame", per(searched));
+  json.field("false_alarms_per_megapixel", per(s.megapixels));
   write_bin(json.key("detection"), s.detection);
-  optional_field(json, "points_threshold_snr", s.points_threshold);
-  optional_field(json, "streaks_threshold_snr", s.streaks_threshold);
+  json.field("points_threshold_snr", s.points_threshold);
+  json.field("streaks_threshold_snr", s.streaks_threshold);
   write_bins(json, "by_snr", s.by_snr);
   write_bins(json, "by_magnitude", s.by_magnitude);
   write_bins(json, "by_length_px", s.by_length_px);
@@ -114,8 +101,7 @@ std::string score_json(const Score& score) {
     json.begin_object().field("sensor", t.truth.sensor).field("frame", printable(t.truth.frame));
     json.field("id", printable(t.truth.id)).field("x_px", t.truth.light->x_px);
     json.field("y_px", t.truth.light->y_px).field("length_px", t.length_px);
-    optional_field(json, "snr", t.snr);
-    json.end_object();
+    json.field("snr", t.snr).end_object();
   }
   json.end_array().key("false").begin_array();
   for (const FoundSource& found : score.false_alarms) {

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,12 @@ TEST(JsonWriter, WritesLists) {
   JsonWriter json;
   json.begin_object().list("a", {1.5, 2}).list("b", std::vector<std::string>{"x"}).end_object();
   EXPECT_EQ(json.text(), R"({"a":[1.5,2],"b":["x"]})");
+}
+
+TEST(JsonWriter, WritesNullForNoNumber) {
+  JsonWriter json;
+  json.begin_object().field("a", std::optional(1.5)).field("b", std::optional<double>());
+  EXPECT_EQ(json.end_object().text(), R"({"a":1.5,"b":null})");
 }
 
 TEST(JsonWriter, EscapesWhatJsonCannotHold) {
