@@ -1,5 +1,6 @@
 #include "core/orbit/catalogue.h"
 
+#include <array>
 #include <unordered_map>
 
 #include "core/base/error.h"
@@ -66,21 +67,9 @@ void keep_newest(CatalogueFile& file) {
 }  // namespace
 
 const char* name_of(CatalogueFormat format) {
-  switch (format) {
-    case CatalogueFormat::tle:
-      return "TLE/3LE";
-    case CatalogueFormat::gpredict:
-      return "gpredict";
-    case CatalogueFormat::omm_json:
-      return "OMM (JSON)";
-    case CatalogueFormat::omm_csv:
-      return "OMM (CSV)";
-    case CatalogueFormat::omm_xml:
-      return "OMM (XML)";
-    case CatalogueFormat::omm_kvn:
-      return "OMM (KVN)";
-  }
-  return "";
+  constexpr std::array names = {"TLE/3LE",   "gpredict",  "OMM (JSON)",
+                                "OMM (CSV)", "OMM (XML)", "OMM (KVN)"};
+  return names[static_cast<std::size_t>(format)];
 }
 
 std::string CatalogueFile::describe(const CatalogueProblem& problem) const {

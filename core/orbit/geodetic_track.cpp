@@ -70,18 +70,17 @@ Trajectory parse_geodetic_track(std::string_view text, const std::string& source
                   });
 }
 
-Trajectory parse_enu_track(std::string_view text, const std::string& source, const Tai& start,
-                           const std::string& name, const Site& origin) {
+Trajectory read_enu_track(const std::string& path, const Tai& start, const std::string& name,
+                          const Site& origin) {
   const Vec<Itrs> origin_m = itrs_from_geodetic(origin);
   const auto itrs_from_enu = enu_from_itrs(origin).inverse();
-  return track_of(text, source, start, name, "time_s,east_m,north_m,up_m",
+  return track_of(read_text_file(path), path, start, name, "time_s,east_m,north_m,up_m",
                   [&](const TimeTableRow& row) {
                     const Vec<Enu> place{row.values[1], row.values[2], row.values[3]};
-                    if (!(norm(place) <= most_height_m))
-                      refuse(row, source, "must be within 1e9 m");
+                    if (!(norm(place) <= most_height_m)) refuse(row, path, "must be within 1e9 m");
                     const Vec<Itrs> p = origin_m + itrs_from_enu * place;
                     if (!(geodetic_from_itrs(p, origin.ellipsoid).height_m >= least_height_m))
-                      refuse(row, source, "must be 2 m above the ellipsoid or higher");
+                      refuse(row, path, "must be 2 m above the ellipsoid or higher");
                     return p;
                   });
 }
@@ -89,11 +88,6 @@ Trajectory parse_enu_track(std::string_view text, const std::string& source, con
 Trajectory read_geodetic_track(const std::string& path, const Tai& start, const std::string& name,
                                const Ellipsoid& ellipsoid) {
   return parse_geodetic_track(read_text_file(path), path, start, name, ellipsoid);
-}
-
-Trajectory read_enu_track(const std::string& path, const Tai& start, const std::string& name,
-                          const Site& origin) {
-  return parse_enu_track(read_text_file(path), path, start, name, origin);
 }
 
 }  // namespace dmise

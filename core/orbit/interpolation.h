@@ -3,9 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <span>
-#include <vector>
 
 #include "core/base/sim_time.h"
 #include "core/frames/vec.h"
@@ -56,13 +54,6 @@ constexpr HermiteOrder order_within(HermiteOrder order, Tick last_tick) {
 inline constexpr double slope_half_step_s = 0.125;
 inline constexpr std::int64_t slope_half_step_ns = 125'000'000;
 
-/// Derivative [m/s] from positions half a step before and after.
-template <class F>
-Vec<F> symmetric_slope(const Vec<F>& before_m, const Vec<F>& after_m,
-                       double half_step_s = slope_half_step_s) {
-  return (after_m - before_m) / (2.0 * half_step_s);
-}
-
 /// Weights of one time within an interval, common to all objects.
 struct HermiteWeights {
   int first = 0;  // tick of the first knot, relative to the tick that begins the interval
@@ -96,47 +87,6 @@ Vec<F> interpolate_cubic(double u, double tick_s, const Vec<F>& position0_m,
   const HermiteWeights w = hermite_weights(HermiteOrder::cubic, u, tick_s);
   return position0_m * w.position[0] + slope0_m_per_s * w.slope_s[0] + position1_m * w.position[1] +
          slope1_m_per_s * w.slope_s[1];
-}
-
-struct InterpolationError {
-  double max_m = 0.0;
-  double rms_m = 0.0;
-  double worst_time_s = 0.0;  // where the greatest was found
-};
-
-/// Measures the interpolation error of one object: compares `position_m(t_s)` with its
-/// interpolation at `samples` equidistant inner points of each of `intervals` ticks from `start_s`,
-/// with slopes from `symmetric_slope`. SGP4 has no analytic bound.
-template <class F>
-InterpolationError measure_interpolation(const std::function<Vec<F>(double)>& position_m,
-                                         HermiteOrder order, double start_s, double tick_s,
-                                         int intervals, int samples = 8) {
-  std::vector<Vec<F>> positions, slopes;
-  const int before = ticks_before(order);
-  for (int k = -before; k < intervals + ticks_behind(order); ++k) {
-    const double t = start_s + k * tick_s;
-    positions.push_back(position_m(t));
-    slopes.push_back(
-        symmetric_slope(position_m(t - slope_half_step_s), position_m(t + slope_half_step_s)));
-  }
-  InterpolationError error;
-  double sum = 0.0;
-  for (int k = 0; k < intervals; ++k) {
-    for (int s = 1; s <= samples; ++s) {
-      const double u = static_cast<double>(s) / (samples + 1);
-      const HermiteWeights w = hermite_weights(order, u, tick_s);
-      const std::size_t first = static_cast<std::size_t>(k + before + w.first);
-      const std::size_t count = static_cast<std::size_t>(w.count);
-      const Vec<F> interpolated =
-          interpolate<F>(w, {positions.data() + first, count}, {slopes.data() + first, count});
-      const double t = start_s + (k + u) * tick_s;
-      const double distance_m = norm(interpolated - position_m(t));
-      sum += distance_m * distance_m;
-      if (distance_m > error.max_m) error = {distance_m, 0.0, t};
-    }
-  }
-  error.rms_m = std::sqrt(sum / std::max(1, intervals * samples));
-  return error;
 }
 
 }  // namespace dmise
