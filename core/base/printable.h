@@ -11,6 +11,9 @@ namespace dmise {
 /// beyond `most_bytes` is replaced by "... (N bytes)".
 std::string printable(std::string_view text, std::size_t most_bytes = 1000);
 
+/// Whether `text` is UTF-8 (RFC 3629): without overlong forms and surrogates.
+bool is_utf8(std::string_view text);
+
 /// "a, b, c"
 std::string joined(const std::vector<std::string>& names, std::string_view separator = ", ");
 

@@ -8,14 +8,13 @@
 
 namespace dmise {
 
-/// Adds one message to the digest of its topic and tick: content only, independent of sender and
-/// time.
-inline std::uint64_t fold_content(std::uint64_t digest, MessageKind kind, std::string_view payload,
-                                  std::string_view arrays) {
+/// Digest of what a message says, independent of its sender and time.
+inline std::uint64_t content_digest(MessageKind kind, std::string_view payload,
+                                    std::string_view arrays) {
   const auto crc = [](std::string_view bytes) {
     return std::uint64_t(crc32c(bytes.data(), bytes.size())) << 32 ^ bytes.size();
   };
-  digest = fold_digest(digest, std::uint64_t(kind));
+  const std::uint64_t digest = fold_digest(0, std::uint64_t(kind));
   return fold_digest(fold_digest(digest, crc(payload)), crc(arrays));
 }
 

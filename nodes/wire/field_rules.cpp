@@ -1,9 +1,9 @@
 #include "nodes/wire/field_rules.h"
 
-#include <cstdint>
 #include <limits>
 
-#include "nodes/wire/envelope.h"
+#include "core/base/printable.h"
+#include "nodes/wire/refusal.h"
 
 namespace dmise::field_rules {
 
@@ -30,29 +30,27 @@ void direction(double ra_rad, double dec_rad, const char* field) {
   in_range(dec_rad, -latitude_limit_rad, latitude_limit_rad, field);
 }
 
+void all_within(std::span<const double> values, double limit, const char* field) {
+  for (const double value : values) in_range(value, -limit, limit, field);
+}
+
 void covariance(const std::array<double, 3>& c, const char* field) {
   for (const double value : c) finite(value, field);
   if (c[0] < 0 || c[2] < 0 || c[1] * c[1] > c[0] * c[2] * (1 + 1e-9))
     refuse(field, "must be positive semi-definite");
 }
 
+void covariance(const std::array<double, 21>& c, const char* field) {
+  for (std::size_t row = 0, k = 0; row < 6; ++row)
+    for (std::size_t column = 0; column <= row; ++column, ++k) {
+      finite(c[k], field);
+      if (row == column) not_negative(c[k], field);
+    }
+}
+
 void utf8(const std::string& text, std::size_t limit, const char* field) {
   if (text.size() > limit) refuse(field, "longer than " + std::to_string(limit) + " bytes");
-  const auto* p = reinterpret_cast<const unsigned char*>(text.data());
-  const auto* end = p + text.size();
-  while (p < end) {
-    const int more = *p < 0x80 ? 0 : *p >> 5 == 6 ? 1 : *p >> 4 == 14 ? 2 : *p >> 3 == 30 ? 3 : -1;
-    if (more < 0 || end - p <= more) refuse(field, "must be UTF-8");
-    std::uint32_t code = more == 0 ? *p : *p & (0x3fu >> more);
-    for (int i = 1; i <= more; ++i) {
-      if (p[i] >> 6 != 2) refuse(field, "must be UTF-8");
-      code = code << 6 | (p[i] & 0x3fu);
-    }
-    constexpr std::uint32_t smallest[] = {0, 0x80, 0x800, 0x10000};
-    if (code < smallest[more] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000))
-      refuse(field, "must be UTF-8");
-    p += more + 1;
-  }
+  if (!is_utf8(text)) refuse(field, "must be UTF-8");
 }
 
 void name_text(const std::string& text, const char* field) {

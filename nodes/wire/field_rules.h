@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <type_traits>
 
@@ -19,8 +20,12 @@ void finite(double value, const char* field);
 void in_range(double value, double low, double high, const char* field);
 void not_negative(double value, const char* field);
 void direction(double ra_rad, double dec_rad, const char* field);
+/// Each value in [-limit, limit].
+void all_within(std::span<const double> values, double limit, const char* field);
 /// A 2x2 covariance as variance, covariance, variance.
 void covariance(const std::array<double, 3>& c, const char* field);
+/// The lower triangle of a 6x6 covariance, row by row: finite, no negative variance.
+void covariance(const std::array<double, 21>& c, const char* field);
 /// `limit`: in bytes.
 void utf8(const std::string& text, std::size_t limit, const char* field);
 void name_text(const std::string& text, const char* field);
@@ -33,7 +38,7 @@ void finite_number(const T& value, const char* field) {
 
 template <class F>
 void vector_within(const Vec<F>& v, double limit, const char* field) {
-  for (const double component : {v.x, v.y, v.z}) in_range(component, -limit, limit, field);
+  all_within(std::array{v.x, v.y, v.z}, limit, field);
 }
 
 template <class To, class From>

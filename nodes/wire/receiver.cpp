@@ -51,7 +51,7 @@ Received Receiver::accept(std::span<const std::string_view> frames) const {
     throw Refused(Refusal::tick, "tick " + std::to_string(envelope.tick) + " at " +
                                      std::to_string(envelope.time.ns) + " ns");
   if (envelope.sequence == 0) throw Refused(Refusal::envelope, "sequence counts from 1");
-  message.content_digest = fold_content(0, envelope.kind, payload, arrays);
+  message.content_digest = content_digest(envelope.kind, payload, arrays);
   if (!stateless) {
     auto state = std::make_shared<const State>(decode(envelope.kind, payload, arrays));
     check_place(message.topic, envelope, *state);

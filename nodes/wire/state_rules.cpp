@@ -66,8 +66,7 @@ void check_attitudes(const ObjectStates& s) {
     if (!(std::abs(square - wanted) < 1e-9))
       refuse("gcrs_from_body", "must be unit quaternions, or 0 without a state");
   }
-  for (const double rate : s.attitude_rate_rad_per_s)
-    in_range(rate, -rate_limit_rad_per_s, rate_limit_rad_per_s, "attitude_rate_rad_per_s");
+  all_within(s.attitude_rate_rad_per_s, rate_limit_rad_per_s, "attitude_rate_rad_per_s");
 }
 
 void check(const ObjectStates& states) {
@@ -75,12 +74,9 @@ void check(const ObjectStates& states) {
       states.slope_m_per_s.size() != 3 * states.count ||
       states.velocity_m_per_s.size() != 3 * states.count || states.code.size() != states.count)
     refuse("count", "arrays have another size");
-  for (const double x : states.position_m)
-    in_range(x, -distance_limit_m, distance_limit_m, "position_m");
-  for (const double v : states.slope_m_per_s)
-    in_range(v, -speed_limit_m_per_s, speed_limit_m_per_s, "slope_m_per_s");
-  for (const double v : states.velocity_m_per_s)
-    in_range(v, -speed_limit_m_per_s, speed_limit_m_per_s, "velocity_m_per_s");
+  all_within(states.position_m, distance_limit_m, "position_m");
+  all_within(states.slope_m_per_s, speed_limit_m_per_s, "slope_m_per_s");
+  all_within(states.velocity_m_per_s, speed_limit_m_per_s, "velocity_m_per_s");
   check_attitudes(states);
 }
 
@@ -238,11 +234,7 @@ void check(const Track& t) {
   for (const std::string& id : t.associated) name_text(id, "associated");
   vector_within(t.position_m, distance_limit_m, "position_m");
   vector_within(t.velocity_m_per_s, speed_limit_m_per_s, "velocity_m_per_s");
-  for (std::size_t row = 0, k = 0; row < 6; ++row)
-    for (std::size_t column = 0; column <= row; ++column, ++k) {
-      finite(t.covariance[k], "covariance");
-      if (row == column) not_negative(t.covariance[k], "covariance");
-    }
+  covariance(t.covariance, "covariance");
   for (const double scale : {t.drag_m2_per_kg, t.srp_m2_per_kg}) finite(scale, "scales");
   not_negative(t.drag_sigma_m2_per_kg, "drag_sigma_m2_per_kg");
   not_negative(t.srp_sigma_m2_per_kg, "srp_sigma_m2_per_kg");
@@ -272,14 +264,9 @@ void check(const Task& t) {
     refuse("path_m", "must have 3 numbers of each of 2 points or more, as path_m_per_s");
   if (t.path_m.size() > most_path_numbers) refuse("path_m", "is too long");
   in_range(t.path_step_s, 1e-3, 1e6, "path_step_s");
-  for (const double x : t.path_m) in_range(x, -distance_limit_m, distance_limit_m, "path_m");
-  for (const double v : t.path_m_per_s)
-    in_range(v, -speed_limit_m_per_s, speed_limit_m_per_s, "path_m_per_s");
-  for (std::size_t row = 0, k = 0; row < 6; ++row)
-    for (std::size_t column = 0; column <= row; ++column, ++k) {
-      finite(t.covariance[k], "covariance");
-      if (row == column) not_negative(t.covariance[k], "covariance");
-    }
+  all_within(t.path_m, distance_limit_m, "path_m");
+  all_within(t.path_m_per_s, speed_limit_m_per_s, "path_m_per_s");
+  covariance(t.covariance, "covariance");
   in_range(t.in_field, 0, 1, "in_field");
   in_range(t.detection_probability, 0, 1, "detection_probability");
   not_negative(t.sigma_rad, "sigma_rad");

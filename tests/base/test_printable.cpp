@@ -52,5 +52,13 @@ TEST(Printable, OfAnyBytesHoldsNoControlAndNoNewLine) {
   }
 }
 
+TEST(Printable, KnowsUtf8) {
+  for (const char* text :
+       {"", "ISS (ZARYA)", "\xc3\xa9t\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x9b\xb0"})
+    EXPECT_TRUE(is_utf8(text)) << text;
+  for (const char* text : {"\xff", "a\xc3", "\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80"})
+    EXPECT_FALSE(is_utf8(text)) << text;
+}
+
 }  // namespace
 }  // namespace dmise

@@ -52,7 +52,7 @@ std::vector<SharedFrames> Outbox::pack(Tick tick, const std::vector<Message>& me
     tally.last_sequence = sequence;
     if (!once)
       tally.digest =
-          fold_digest(tally.digest, fold_content(0, body.kind, body.payload, body.arrays));
+          fold_digest(tally.digest, content_digest(body.kind, body.payload, body.arrays));
     const Envelope envelope{.run_id = run_.run_id,
                             .publisher = publisher_,
                             .incarnation = incarnation_,
