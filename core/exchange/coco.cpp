@@ -12,8 +12,7 @@ constexpr int satellite = 1;
 
 /// Images are numbered from 1 in the order of frames.jsonl.
 std::size_t image_id(const RunProducts& run, const std::string& sensor, std::uint32_t frame) {
-  run.frame(sensor, frame);
-  return run.frame_index.at({sensor, frame}) + 1;
+  return run.index_of(sensor, frame) + 1;
 }
 
 void write_box(JsonWriter& json, const PixelBox& box) {

@@ -86,8 +86,7 @@ std::string csv_of(const std::string& path, const RunProducts& run) {
     table.begin_row();
     put("", row, table);
   };
-  for_line_texts(
-      path, [](double, const std::string&) {}, add);
+  for_line_texts(path, quietly, add);
   return table.text();
 }
 

@@ -7,7 +7,7 @@
 
 #include "core/base/json.h"
 #include "core/base/units.h"
-#include "core/exchange/track_name.h"
+#include "core/exchange/oem.h"
 #include "core/wcs/wcs.h"
 
 namespace dmise {
@@ -17,10 +17,6 @@ constexpr double field_length_m = 1.5e6;  // of a pyramid's edges
 constexpr double longest_gap_s = 600.0;   // between states that one pass joins
 constexpr std::size_t most_fields = 200;  // of a sensor
 
-struct State {
-  SimTime time;
-  Vec<Gcrs> position_m, velocity_m_per_s;
-};
 using Colour = std::array<int, 3>;
 
 void write_colour(JsonWriter& json, Colour colour, int alpha) {
@@ -58,9 +54,9 @@ class Document {
   void end() { json_.end_object(); }
 
   /// Passes: states without longer gaps than `longest_gap_s`, a second longer at both ends.
-  void availability(const std::vector<State>& states) {
+  void availability(const std::vector<EphemerisState>& states) {
     std::vector<std::pair<SimTime, SimTime>> spans;
-    for (const State& s : states) {
+    for (const EphemerisState& s : states) {
       if (spans.empty() || (s.time - spans.back().second).seconds() > longest_gap_s)
         spans.emplace_back(s.time, s.time);
       spans.back().second = s.time;
@@ -71,14 +67,14 @@ class Document {
     json_.end_array();
   }
 
-  void inertial_position(const std::vector<State>& states) {
+  void inertial_position(const std::vector<EphemerisState>& states) {
     json_.key("position").begin_object();
     json_.field("interpolationAlgorithm", "HERMITE").field("interpolationDegree", 3);
     json_.field("referenceFrame", "INERTIAL").field("epoch", run_.utc({0}));
     json_.field("forwardExtrapolationType", "EXTRAPOLATE");
     json_.field("backwardExtrapolationType", "EXTRAPOLATE");
     json_.key("cartesianVelocity").begin_array();
-    for (const State& s : states) {
+    for (const EphemerisState& s : states) {
       json_.value(s.time.seconds());
       for (const double v : {s.position_m.x, s.position_m.y, s.position_m.z, s.velocity_m_per_s.x,
                              s.velocity_m_per_s.y, s.velocity_m_per_s.z})
@@ -106,8 +102,8 @@ class Document {
     json_.end_object().end_object().end_object();
   }
 
-  void object(const std::string& id, const std::string& name, const std::vector<State>& states,
-              Colour colour) {
+  void object(const std::string& id, const std::string& name,
+              const std::vector<EphemerisState>& states, Colour colour) {
     begin(id, name);
     availability(states);
     inertial_position(states);
@@ -116,7 +112,7 @@ class Document {
     end();
   }
 
-  void sensor(const RunSensor& sensor, const std::vector<State>& states) {
+  void sensor(const RunSensor& sensor, const std::vector<EphemerisState>& states) {
     constexpr Colour colour{240, 228, 66};
     begin("sensor/" + sensor.name, sensor.name);
     if (sensor.site) {
@@ -146,7 +142,7 @@ class Document {
       begin(end, "");
       json_.field("availability", interval(frame.start, until));
       const Vec<Gcrs>& velocity = frame.sensor_velocity_m_per_s;
-      std::vector<State> states;
+      std::vector<EphemerisState> states;
       for (const SimTime t : {frame.start, frame.middle, until})
         if (states.empty() || states.back().time < t)
           states.push_back({t, at + velocity * (t - frame.middle).seconds(), velocity});
@@ -183,37 +179,14 @@ class Document {
   JsonWriter json_;
 };
 
-std::vector<State> in_order(std::map<SimTime, State>&& states) {
-  std::vector<State> out;
-  for (const auto& [time, state] : states) out.push_back(state);
-  return out;
-}
-
 void write_truth(const RunProducts& run, Document& document) {
-  std::map<std::pair<std::uint32_t, std::string>, std::map<SimTime, State>> objects;
-  for (const Truth& t : run.truths)
-    if (t.true_position_m != Vec<Gcrs>{})
-      objects[{t.catalogue_number, t.name}].try_emplace(
-          t.middle, State{t.middle, t.true_position_m, t.true_velocity_m_per_s});
-  for (auto& [key, states] : objects) {
-    const auto& [number, name] = key;
-    document.object("object/" + (number > 0 ? std::to_string(number) : name),
-                    name.empty() ? std::to_string(number) : name, in_order(std::move(states)),
-                    {0, 201, 143});
-  }
+  for (const ObjectEphemeris& o : truth_ephemerides(run))
+    document.object("object/" + o.id, o.name.empty() ? o.id : o.name, o.states, {0, 201, 143});
 }
 
 void write_tracks(const RunProducts& run, Document& document) {
-  std::map<std::uint32_t, std::map<SimTime, State>> tracks;
-  std::map<std::uint32_t, std::string> names;
-  for (const Track& t : run.tracks) {
-    if (t.status != TrackStatus::confirmed) continue;
-    names[t.id] = t.name.empty() ? track_name(t) : t.name;
-    tracks[t.id].try_emplace(t.time, State{t.time, t.position_m, t.velocity_m_per_s});
-  }
-  for (auto& [id, states] : tracks)
-    document.object("track/" + std::to_string(id), names[id], in_order(std::move(states)),
-                    {230, 159, 0});
+  for (const auto& [id, o] : track_ephemerides(run))
+    document.object("track/" + std::to_string(id), o.name, o.states, {230, 159, 0});
 }
 
 }  // namespace
@@ -231,7 +204,7 @@ std::string czml_text(const ExportRequest& request) {
   document.head(from, to);
   for (const RunSensor& sensor : run.sensors) {
     const auto& own = frames[sensor.name];
-    std::vector<State> states;
+    std::vector<EphemerisState> states;
     for (const RunFrame* f : own)
       states.push_back({f->middle, f->sensor_position_m, f->sensor_velocity_m_per_s});
     if (!sensor.site && states.empty()) continue;

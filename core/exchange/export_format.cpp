@@ -79,15 +79,8 @@ const std::vector<ExportFormat>& export_formats() {
 }
 
 const char* name_of(ProductKind kind) {
-  switch (kind) {
-    case ProductKind::truth:
-      return "truth";
-    case ProductKind::tracks:
-      return "tracks";
-    case ProductKind::detections:
-      break;
-  }
-  return "detections";
+  constexpr const char* names[] = {"detections", "truth", "tracks"};
+  return names[std::size_t(kind)];
 }
 
 void fail_empty(const RunProducts& run, const char* message, ProductKind kind) {

@@ -2,9 +2,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 
 namespace dmise {
 namespace {
@@ -17,9 +17,7 @@ void require_finite(double value) {
 
 std::string fixed_text(double value, int decimals) {
   require_finite(value);
-  char text[400];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  const std::string digits = text;
+  const std::string digits = formatted("%.*f", decimals, value);
   return digits[0] == '-' && digits.find_first_not_of("-0.") == std::string::npos ? digits.substr(1)
                                                                                   : digits;
 }

@@ -1,12 +1,10 @@
 #include "core/exchange/oem.h"
 
-#include <map>
-
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 #include "core/exchange/export_format.h"
 #include "core/exchange/kvn_text.h"
-#include "core/exchange/track_name.h"
 #include "core/orbit/oem_file.h"
 
 namespace dmise {
@@ -22,12 +20,9 @@ void write_covariances(const RunProducts& run, const ObjectEphemeris& object, Kv
     std::size_t next = 0;
     for (int row = 0; row < 6; ++row) {
       std::string line;
-      for (int column = 0; column <= row; ++column) {
-        char text[40];
-        std::snprintf(text, sizeof text, "%s%.15e", column > 0 ? " " : "",
-                      (*state.covariance)[next++] / (km * km));
-        line += text;
-      }
+      for (int column = 0; column <= row; ++column)
+        line +=
+            formatted("%s%.15e", column > 0 ? " " : "", (*state.covariance)[next++] / (km * km));
       kvn.line(line);
     }
   }
@@ -50,39 +45,28 @@ void write(const RunProducts& run, const ObjectEphemeris& object, KvnText& kvn) 
 }  // namespace
 
 std::string oem_text(const RunProducts& run, const std::vector<ObjectEphemeris>& ephemerides) {
-  KvnText kvn;
-  kvn.key("CCSDS_OEM_VERS", "2.0");
-  kvn.comment(run.software + ", scenario " + run.digest + ", seed " + std::to_string(run.seed));
-  kvn.comment("CREATION_DATE is the start of the simulation");
-  kvn.key("CREATION_DATE", run.utc({0})).key("ORIGINATOR", "DMISE");
+  KvnText kvn(run, "CCSDS_OEM_VERS");
   for (const ObjectEphemeris& object : ephemerides)
     if (!object.states.empty()) write(run, object, kvn);
   return kvn.take();
 }
 
-std::string truth_oem_text(const ExportRequest& request) {
-  const RunProducts& run = request.run;
+std::vector<ObjectEphemeris> truth_ephemerides(const RunProducts& run) {
   std::map<std::pair<std::uint32_t, std::string>, std::map<SimTime, EphemerisState>> objects;
-  for (const Truth& t : run.truths) {
-    if (t.true_position_m == Vec<Gcrs>{})
-      throw ConfigError(run.directory +
-                        "/truth.jsonl: true_position_gcrs_m: is missing: the run was made by an "
-                        "earlier version");
-    objects[{t.catalogue_number, t.name}].try_emplace(
-        t.middle, EphemerisState{t.middle, t.true_position_m, t.true_velocity_m_per_s, {}});
-  }
+  for (const Truth& t : run.truths)
+    if (t.true_position_m != Vec<Gcrs>{})
+      objects[{t.catalogue_number, t.name}].try_emplace(
+          t.middle, EphemerisState{t.middle, t.true_position_m, t.true_velocity_m_per_s});
   std::vector<ObjectEphemeris> ephemerides;
   for (const auto& [key, states] : objects) {
     const auto& [number, name] = key;
     ephemerides.push_back({name, number > 0 ? std::to_string(number) : name, {}});
     for (const auto& [time, state] : states) ephemerides.back().states.push_back(state);
   }
-  if (ephemerides.empty()) fail_empty(run, "an OEM", ProductKind::truth);
-  return oem_text(run, ephemerides);
+  return ephemerides;
 }
 
-std::string track_oem_text(const ExportRequest& request) {
-  const RunProducts& run = request.run;
+std::map<std::uint32_t, ObjectEphemeris> track_ephemerides(const RunProducts& run) {
   std::map<std::uint32_t, ObjectEphemeris> objects;
   for (const Track& t : run.tracks) {
     if (t.status != TrackStatus::confirmed) continue;
@@ -92,14 +76,24 @@ std::string track_oem_text(const ExportRequest& request) {
     object.id = t.catalogue_number > 0 ? std::to_string(t.catalogue_number) : track;
     object.states.push_back({t.time, t.position_m, t.velocity_m_per_s, t.covariance});
   }
-  std::vector<ObjectEphemeris> ephemerides;
-  for (auto& [id, object] : objects) ephemerides.push_back(std::move(object));
-  if (ephemerides.empty()) fail_empty(run, "an OEM", ProductKind::tracks);
-  return oem_text(run, ephemerides);
+  return objects;
 }
 
 std::string run_oem_text(const ExportRequest& request) {
-  return request.kind == ProductKind::tracks ? track_oem_text(request) : truth_oem_text(request);
+  const RunProducts& run = request.run;
+  std::vector<ObjectEphemeris> ephemerides;
+  if (request.kind == ProductKind::tracks) {
+    for (auto& [id, object] : track_ephemerides(run)) ephemerides.push_back(std::move(object));
+  } else {
+    for (const Truth& t : run.truths)
+      if (t.true_position_m == Vec<Gcrs>{})
+        throw ConfigError(run.directory +
+                          "/truth.jsonl: true_position_gcrs_m: is missing: the run was made by an "
+                          "earlier version");
+    ephemerides = truth_ephemerides(run);
+  }
+  if (ephemerides.empty()) fail_empty(run, "an OEM", request.kind);
+  return oem_text(run, ephemerides);
 }
 
 }  // namespace dmise

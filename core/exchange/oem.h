@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ struct EphemerisState {
   SimTime time;
   Vec<Gcrs> position_m, velocity_m_per_s;
   /// Lower triangle by rows of x, y, z and their rates [m^2, m^2/s, m^2/s^2].
-  std::optional<std::array<double, 21>> covariance;
+  std::optional<std::array<double, 21>> covariance = {};
 };
 
 struct ObjectEphemeris {
@@ -27,14 +28,16 @@ struct ObjectEphemeris {
 /// No interpolation is recommended, for the states may lie far apart.
 std::string oem_text(const RunProducts& run, const std::vector<ObjectEphemeris>& ephemerides);
 
-/// True states of the objects in the sensors' frames at mid exposure. Throws `ConfigError` for a
-/// run of a version that did not write them.
-std::string truth_oem_text(const ExportRequest& request);
+/// True states of the objects in the sensors' frames at mid exposure, without those that a run of
+/// an earlier version did not write.
+std::vector<ObjectEphemeris> truth_ephemerides(const RunProducts& run);
 
-/// States of confirmed tracks, with covariances, at the ticks at which they took detections.
-std::string track_oem_text(const ExportRequest& request);
+/// States of confirmed tracks, with covariances, at the ticks at which they took detections, by the
+/// id of the track.
+std::map<std::uint32_t, ObjectEphemeris> track_ephemerides(const RunProducts& run);
 
-/// The one of these that is asked for.
+/// The message of the one of these that is asked for. Throws `ConfigError` if it is empty, and for
+/// truth without states.
 std::string run_oem_text(const ExportRequest& request);
 
 }  // namespace dmise

@@ -1,14 +1,12 @@
 #include "core/exchange/omm.h"
 
 #include <cmath>
-#include <cstdio>
-#include <map>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 #include "core/exchange/export_format.h"
 #include "core/exchange/number_text.h"
-#include "core/exchange/track_name.h"
 #include "core/orbit/element_text.h"
 #include "core/orbit/epoch.h"
 #include "core/tracking/mean_elements_fit.h"
@@ -36,9 +34,7 @@ std::string element(const char* tag, const std::string& value) {
 /// 14 significant digits: what a source of eight decimals says survives radians.
 std::string element(const char* tag, double value) {
   if (!std::isfinite(value)) throw Error(std::string("export: ") + tag + " is not finite");
-  char text[40];
-  std::snprintf(text, sizeof text, "%.14g", value);
-  return element(tag, std::string(text));
+  return element(tag, formatted("%.14g", value));
 }
 
 std::string message(const RunProducts& run, const MeanElements& e,
@@ -74,11 +70,8 @@ std::string message(const RunProducts& run, const MeanElements& e,
 
 /// The latest state of each confirmed track.
 std::string messages_of_tracks(const RunProducts& run) {
-  std::map<std::uint32_t, const Track*> latest;
-  for (const Track& t : run.tracks)
-    if (t.status == TrackStatus::confirmed) latest[t.id] = &t;
   std::string text, why;
-  for (const auto& [id, track] : latest) {
+  for (const auto& [id, track] : run.confirmed_tracks()) {
     const OrbitState state{track->time, track->position_m, track->velocity_m_per_s,
                            track->drag_m2_per_kg, track->srp_m2_per_kg};
     auto fit = fit_mean_elements(run.clock, ForceModel(run.clock, track->time), state);

@@ -1,9 +1,9 @@
 #include "core/exchange/regions.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <map>
 
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 #include "core/exchange/image_label.h"
 #include "core/products/frame_file.h"
@@ -21,41 +21,33 @@ std::string braced(const std::string& text) {
   return out + "}";
 }
 
-template <class... Values>
-std::string format(const char* text, Values... values) {
-  char line[256];
-  std::snprintf(line, sizeof line, text, values...);
-  return line;
-}
-
 /// One source: its trail, and how it is drawn.
 struct Region {
   PixelPosition start, middle, end;
   std::string text, style;
 };
 
+/// The shapes of a region in the coordinates that `place` writes; `radius` is the end of a circle.
+template <class Place>
+std::string shapes(const Region& r, const Place& place, const std::string& radius) {
+  const std::string text = " text=" + braced(r.text) + "\n";
+  if (r.start == r.end) return "circle(" + place(r.middle) + radius + " # " + r.style + text;
+  const std::string plain = " # line=0 0 " + r.style;
+  return "line(" + place(r.start) + "," + place(r.middle) + ")" + plain + "\nline(" +
+         place(r.middle) + "," + place(r.end) + ")" + plain + text;
+}
+
 std::string image_shapes(const Region& r, double radius_px) {
-  const auto place = [](PixelPosition p) { return format("%.3f,%.3f", p.x_px + 1, p.y_px + 1); };
-  const std::string tail = " # " + r.style + " text=" + braced(r.text) + "\n";
-  if (r.start == r.end) return "circle(" + place(r.middle) + format(",%.3f)", radius_px) + tail;
-  const std::string plain = " # line=0 0 " + r.style + "\n";
-  return "line(" + place(r.start) + "," + place(r.middle) + ")" + plain + "line(" +
-         place(r.middle) + "," + place(r.end) + ") # line=0 0 " + r.style +
-         " text=" + braced(r.text) + "\n";
+  const auto place = [](PixelPosition p) { return formatted("%.3f,%.3f", p.x_px + 1, p.y_px + 1); };
+  return shapes(r, place, formatted(",%.3f)", radius_px));
 }
 
 std::string sky_shapes(const Region& r, double radius_px, const Wcs& wcs) {
   const auto place = [&](PixelPosition p) {
     const auto [ra_rad, dec_rad] = to_spherical(wcs_direction(wcs, p));
-    return format("%.8f,%.8f", ra_rad / deg, dec_rad / deg);
+    return formatted("%.8f,%.8f", ra_rad / deg, dec_rad / deg);
   };
-  const std::string tail = " # " + r.style + " text=" + braced(r.text) + "\n";
-  if (r.start == r.end)
-    return "circle(" + place(r.middle) +
-           format(",%.3f\")", radius_px * wcs_scale_rad_per_px(wcs) / arcsec) + tail;
-  return "line(" + place(r.start) + "," + place(r.middle) + ") # line=0 0 " + r.style + "\n" +
-         "line(" + place(r.middle) + "," + place(r.end) + ") # line=0 0 " + r.style +
-         " text=" + braced(r.text) + "\n";
+  return shapes(r, place, formatted(",%.3f\")", radius_px * wcs_scale_rad_per_px(wcs) / arcsec));
 }
 
 Region region_of(const Truth& t) {
@@ -68,7 +60,7 @@ Region region_of(const Truth& t) {
 
 Region region_of(const Detection& d) {
   const PixelPosition middle{d.x_px, d.y_px};
-  Region r{middle, middle, middle, format("mag %.2f SNR %.1f", d.magnitude, d.snr),
+  Region r{middle, middle, middle, formatted("mag %.2f SNR %.1f", d.magnitude, d.snr),
            "color=cyan width=1 dash=1"};
   if (d.kind == DetectionKind::streak) {
     r.start = {d.end1_x_px, d.end1_y_px};
@@ -81,33 +73,27 @@ Region region_of(const Detection& d) {
 
 std::vector<ExportedFile> region_files(const ExportRequest& request) {
   const RunProducts& run = request.run;
-  std::map<std::pair<std::string, std::uint32_t>, std::vector<Region>> regions;
-  for (const RunFrame& f : run.frames) regions[{f.sensor, f.frame}];
+  std::vector<std::vector<Region>> regions(run.frames.size());
   if (request.kind == ProductKind::truth) {
     for (const Truth& t : run.truths)
-      if (t.in_frame) {
-        run.frame(t.sensor, t.frame);
-        regions[{t.sensor, t.frame}].push_back(region_of(t));
-      }
+      if (t.in_frame) regions[run.index_of(t.sensor, t.frame)].push_back(region_of(t));
   } else {
-    for (const Detection& d : run.detections) {
-      run.frame(d.sensor, d.frame);
-      regions[{d.sensor, d.frame}].push_back(region_of(d));
-    }
+    for (const Detection& d : run.detections)
+      regions[run.index_of(d.sensor, d.frame)].push_back(region_of(d));
   }
   const std::string head = "# Region file format: DS9 version 4.1\n# " + run.software +
                            ", scenario " + run.digest + "\nglobal font=\"helvetica 10 normal\"\n";
   std::vector<ExportedFile> files;
-  for (const auto& [key, list] : regions) {
-    const RunFrame& frame = run.frame(key.first, key.second);
+  for (std::size_t i = 0; i < run.frames.size(); ++i) {
+    const RunFrame& frame = run.frames[i];
     const double radius_px = std::max(4.0, 2.0 * frame.psf_fwhm_px);
     std::string image = head + "image\n", sky = head + "icrs\n";
-    for (const Region& r : list) {
+    for (const Region& r : regions[i]) {
       image += image_shapes(r, radius_px);
       if (frame.wcs) sky += sky_shapes(r, radius_px, *frame.wcs);
     }
     const std::string stem =
-        key.first + "/" + frame_file_name(key.second, "-") + name_of(request.kind);
+        frame.sensor + "/" + frame_file_name(frame.frame, "-") + name_of(request.kind);
     files.push_back({.path = stem + ".image.reg", .content = image, .copy_of = ""});
     if (frame.wcs) files.push_back({.path = stem + ".icrs.reg", .content = sky, .copy_of = ""});
   }

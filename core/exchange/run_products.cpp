@@ -1,16 +1,15 @@
 #include "core/exchange/run_products.h"
 
 #include <cmath>
-#include <filesystem>
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "core/base/printable.h"
+#include "core/base/regular_file.h"
 #include "core/base/text_file.h"
-#include "core/base/units.h"
-#include "core/frames/geodesy.h"
 #include "core/optics/psf_table.h"
 #include "core/score/json_record.h"
+#include "core/score/run_files.h"
 #include "core/score/wcs_record.h"
 #include "core/time/iso8601.h"
 
@@ -30,25 +29,15 @@ RunSensor sensor_of(const JsonRecord& record, const Ellipsoid& ellipsoid) {
   if (record.has("site")) {
     const JsonRecord site = record.object("site");
     sensor.site = {site.number("latitude_deg"), site.number("longitude_deg"),
-                   site.number("height_m")};
-    if (ellipsoid != wgs84) {
-      const auto& [latitude_deg, longitude_deg, height_m] = *sensor.site;
-      const Site on_wgs84 = geodetic_from_itrs(
-          itrs_from_geodetic({latitude_deg, longitude_deg, height_m, ellipsoid}));
-      sensor.site = {on_wgs84.latitude_deg, on_wgs84.longitude_deg, on_wgs84.height_m};
-    }
+                   site.number("height_m"), ellipsoid};
+    if (ellipsoid != wgs84) sensor.site = geodetic_from_itrs(itrs_from_geodetic(*sensor.site));
   } else {
     sensor.platform = record.get<std::string>("platform");
   }
-  const JsonRecord camera = record.object("camera");
-  sensor.columns = camera.get<int>("columns");
-  sensor.rows = camera.get<int>("rows");
-  const Optics optics{.focal_length_m = camera.number("focal_length_m"),
-                      .aperture_m = camera.number("aperture_m"),
-                      .pixel_pitch_m = camera.number("pixel_pitch_m"),
-                      .psf_fwhm_px = camera.number("psf_fwhm_px")};
-  sensor.psf_fwhm_px =
-      psf_sigma_px(optics, camera.number("band_centre_m")) * std::sqrt(8.0 * std::log(2.0));
+  const ScoredFrame camera = camera_of(record);
+  sensor.columns = camera.columns;
+  sensor.rows = camera.rows;
+  sensor.psf_fwhm_px = *camera.sigma_px * fwhm_per_sigma;
   return sensor;
 }
 
@@ -85,8 +74,7 @@ void read_catalogues(const JsonRecord& scenario, RunProducts& run) {
 
 std::string existing(const std::string& directory, const char* name, const char* without) {
   const std::string path = directory + "/" + name;
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) throw ConfigError(path + ": is missing: " + without);
+  if (!path_exists(path)) throw ConfigError(path + ": is missing: " + without);
   return path;
 }
 
@@ -99,31 +87,38 @@ const RunSensor& RunProducts::sensor(const std::string& wanted) const {
     if (s.name == wanted) return s;
   std::vector<std::string> names;
   for (const RunSensor& s : sensors) names.push_back(s.name);
-  const std::string hint = nearest_name(wanted, names);
   throw ConfigError(directory + "/run.json: no sensor is named " + printable(wanted) +
-                    (hint.empty() ? "" : ", did you mean " + hint + "?"));
+                    did_you_mean(wanted, names));
 }
 
-const RunFrame& RunProducts::frame(const std::string& of, std::uint32_t number) const {
+std::size_t RunProducts::index_of(const std::string& of, std::uint32_t number) const {
   const auto found = frame_index.find({of, number});
   if (found == frame_index.end())
     throw ConfigError(directory + "/frames.jsonl: has no frame " + std::to_string(number) + " of " +
                       printable(of));
-  return frames[found->second];
+  return found->second;
 }
+
+std::map<std::uint32_t, const Track*> RunProducts::confirmed_tracks() const {
+  std::map<std::uint32_t, const Track*> latest;
+  for (const Track& t : tracks)
+    if (t.status == TrackStatus::confirmed) latest[t.id] = &t;
+  return latest;
+}
+
+std::string track_name(const Track& track) { return "TRACK " + std::to_string(track.id); }
 
 RunProducts read_products(const std::string& directory, const WantedProducts& wanted,
                           const ReadProgress& progress) {
   const std::string path = existing(directory, "run.json", "no run, or one that has not ended");
   const JsonRecord record(read_text_file(path), path);
   const JsonRecord scenario = record.object("scenario");
-  const std::string start = scenario.object("simulation").get<std::string>("start");
-  RunProducts run{.directory = directory,
-                  .start_utc = start,
-                  .software = record.get<std::string>("software"),
-                  .digest = record.get<std::string>("digest"),
-                  .seed = record.get<std::uint64_t>("seed"),
-                  .clock = Clock(parse_utc(start))};
+  RunProducts run{
+      .directory = directory,
+      .software = record.get<std::string>("software"),
+      .digest = record.get<std::string>("digest"),
+      .seed = record.get<std::uint64_t>("seed"),
+      .clock = Clock(parse_utc(scenario.object("simulation").get<std::string>("start")))};
   const Ellipsoid ellipsoid = ellipsoid_of(scenario);
   for (const JsonRecord& sensor : scenario.objects("sensors"))
     run.sensors.push_back(sensor_of(sensor, ellipsoid));

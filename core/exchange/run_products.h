@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/frames/geodesy.h"
 #include "core/products/detection.h"
 #include "core/products/track.h"
 #include "core/products/truth.h"
@@ -17,13 +18,10 @@ namespace dmise {
 
 /// A sensor of a run, as run.json describes it.
 struct RunSensor {
-  /// Geodetic place on WGS 84, whatever the scenario's ellipsoid.
-  struct Site {
-    double latitude_deg = 0.0, longitude_deg = 0.0, height_m = 0.0;
-  };
   std::string name;
-  std::optional<Site> site;  // of a sensor on the ground
-  std::string platform;      // of one in orbit: the object that carries it
+  std::optional<Site>
+      site;              // of a sensor on the ground, on WGS 84 whatever the scenario's ellipsoid
+  std::string platform;  // of one in orbit: the object that carries it
   int columns = 0, rows = 0;
   double psf_fwhm_px = 0.0;  // of the camera; a frame may have measured another
 };
@@ -45,7 +43,7 @@ struct RunFrame {
 /// The products of a run that has ended, to be exported.
 struct RunProducts {
   std::string directory;
-  std::string start_utc, software, digest;
+  std::string software, digest;
   std::uint64_t seed = 0;
   Clock clock;
   std::vector<RunSensor> sensors;
@@ -60,10 +58,19 @@ struct RunProducts {
   std::string utc(SimTime t) const;
   /// Throw `ConfigError` for what the run does not have.
   const RunSensor& sensor(const std::string& name) const;
-  const RunFrame& frame(const std::string& sensor, std::uint32_t number) const;
+  std::size_t index_of(const std::string& sensor, std::uint32_t number) const;  // in `frames`
+  const RunFrame& frame(const std::string& sensor, std::uint32_t number) const {
+    return frames[index_of(sensor, number)];
+  }
+
+  /// The latest state of each confirmed track, by its id.
+  std::map<std::uint32_t, const Track*> confirmed_tracks() const;
 
   std::map<std::pair<std::string, std::uint32_t>, std::size_t> frame_index;
 };
+
+/// "TRACK 3", by which messages name a track.
+std::string track_name(const Track& track);
 
 /// What is read of a run.
 struct WantedProducts {

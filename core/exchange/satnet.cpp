@@ -1,10 +1,10 @@
 #include "core/exchange/satnet.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <filesystem>
 
+#include "core/base/formatted.h"
 #include "core/base/json.h"
+#include "core/base/regular_file.h"
 #include "core/base/units.h"
 #include "core/exchange/export_format.h"
 #include "core/exchange/image_label.h"
@@ -12,12 +12,6 @@
 
 namespace dmise {
 namespace {
-
-/// Smallest, greatest and box size of three fractions of the image.
-struct Extent {
-  double least, most;
-  double centre() const { return (least + most) / 2.0; }
-};
 
 void write_object(const Truth& t, const ImageLabel& label, const RunSensor& camera, int number,
                   double exposure_s, JsonWriter& json) {
@@ -27,8 +21,7 @@ void write_object(const Truth& t, const ImageLabel& label, const RunSensor& came
   const auto [top, bottom] = std::minmax({y(label.start), y(label.middle), y(label.end)});
   json.begin_object().field("class_name", "Satellite").field("class_id", 1);
   json.field("y_min", top).field("x_min", left).field("y_max", bottom).field("x_max", right);
-  json.field("y_center", Extent{top, bottom}.centre());
-  json.field("x_center", Extent{left, right}.centre());
+  json.field("y_center", (top + bottom) / 2.0).field("x_center", (left + right) / 2.0);
   json.field("bbox_height", bottom - top + 2.0 * label.margin_px / camera.rows);
   json.field("bbox_width", right - left + 2.0 * label.margin_px / camera.columns);
   json.field("source", "dmise").field("magnitude", t.true_magnitude);
@@ -70,21 +63,15 @@ std::string annotation(const RunProducts& run, const RunFrame& frame, const std:
 std::vector<ExportedFile> satnet_files(const ExportRequest& request) {
   const RunProducts& run = request.run;
   std::vector<std::vector<const Truth*>> truths(run.frames.size());
-  for (const Truth& t : run.truths) {
-    run.frame(t.sensor, t.frame);
-    truths[run.frame_index.at({t.sensor, t.frame})].push_back(&t);
-  }
+  for (const Truth& t : run.truths) truths[run.index_of(t.sensor, t.frame)].push_back(&t);
   std::vector<ExportedFile> files;
   for (std::size_t i = 0; i < run.frames.size(); ++i) {
     const RunFrame& f = run.frames[i];
-    char number[20];
-    std::snprintf(number, sizeof number, ".%04u", f.frame);
-    const std::string stem = f.sensor + number;
+    const std::string stem = f.sensor + formatted(".%04u", f.frame);
     const std::string source = run.directory + "/" + f.sensor + "/" + frame_file_name(f.frame);
     files.push_back({f.sensor + "/Annotations/" + stem + ".json",
                      annotation(run, f, stem + ".fits", truths[i]), ""});
-    std::error_code ignored;
-    if (std::filesystem::exists(source, ignored))
+    if (path_exists(source))
       files.push_back({f.sensor + "/ImageFiles/" + stem + ".fits", "", source});
   }
   return files;

@@ -9,7 +9,6 @@
 #include "core/exchange/export_format.h"
 #include "core/exchange/kvn_text.h"
 #include "core/exchange/number_text.h"
-#include "core/exchange/track_name.h"
 
 namespace dmise {
 namespace {
@@ -148,9 +147,7 @@ void write_detections(const RunProducts& run, KvnText& kvn) {
 void write_tracks(const RunProducts& run, KvnText& kvn) {
   std::map<std::string, const Detection*> by_id;
   for (const Detection& d : run.detections) by_id.emplace(d.id, &d);
-  std::map<std::uint32_t, const Track*> confirmed;  // the latest state
-  for (const Track& t : run.tracks)
-    if (t.status == TrackStatus::confirmed) confirmed[t.id] = &t;
+  const auto confirmed = run.confirmed_tracks();
   std::map<std::uint32_t, std::vector<const Detection*>> taken;
   for (const Track& t : run.tracks)
     for (const std::string& id : t.associated)
@@ -175,11 +172,7 @@ void write_tracks(const RunProducts& run, KvnText& kvn) {
 
 std::string tdm_text(const ExportRequest& request) {
   const RunProducts& run = request.run;
-  KvnText kvn;
-  kvn.key("CCSDS_TDM_VERS", "2.0");
-  kvn.comment(run.software + ", scenario " + run.digest + ", seed " + std::to_string(run.seed));
-  kvn.comment("CREATION_DATE is the start of the simulation");
-  kvn.key("CREATION_DATE", run.utc({0})).key("ORIGINATOR", "DMISE");
+  KvnText kvn(run, "CCSDS_TDM_VERS");
   if (request.kind == ProductKind::truth)
     write_truth(run, kvn);
   else if (request.kind == ProductKind::tracks)

@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const ReadProgress quietly = [](double, const std::string&) {};
-
 bool exists(const std::string& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);

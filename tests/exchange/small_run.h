@@ -12,7 +12,7 @@ namespace dmise {
 inline RunProducts small_run() {
   RunProducts run{.directory = "RUN", .clock = Clock(parse_utc("2018-01-21T00:15:00Z"))};
   run.sensors.push_back(
-      {.name = "eye", .site = RunSensor::Site{33.75, -84.4, 300.0}, .columns = 200, .rows = 100});
+      {.name = "eye", .site = Site{33.75, -84.4, 300.0}, .columns = 200, .rows = 100});
   run.frames.push_back({.sensor = "eye",
                         .frame = 7,
                         .start = {0},

@@ -131,8 +131,7 @@ TEST_F(ForeignFrames, DirectoryWithoutFramesIsRefused) {
   Threads threads(1);
   std::ofstream(table) << "file,id,x_px,y_px\n";
   const auto call = [&](const std::string& where) {
-    read_frames(
-        where, table, threads, [](double, const std::string&) {}, CalibratedDetector(nullptr));
+    read_frames(where, table, threads, quietly, CalibratedDetector(nullptr));
   };
   EXPECT_THROW(call(directory), ConfigError);
   EXPECT_THROW(call(directory + "/none"), ConfigError);
@@ -157,8 +156,8 @@ TEST_F(ForeignFrames, FramesOfAnotherCameraAreScoredByWhatIsKnown) {
       << "a.fits,1,230,175," << 230 - dx << "," << 175 - dy << "," << 230 + dx << "," << 175 + dy
       << ",9,0,34\n";
   Threads threads(1);
-  const ScoreInput in = read_frames(
-      directory, table, threads, [](double, const std::string&) {}, CalibratedDetector(nullptr));
+  const ScoreInput in =
+      read_frames(directory, table, threads, quietly, CalibratedDetector(nullptr));
   ASSERT_EQ(in.truths.size(), 1u);
   EXPECT_FALSE(in.truths[0].magnitude || in.truths[0].ra_rad);
   EXPECT_EQ(in.frames[0].scale_rad_per_px, 0.0);

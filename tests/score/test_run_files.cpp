@@ -76,9 +76,7 @@ struct RunFiles : testing::Test {
     write("truth.jsonl", to_json(truth, utc) + "\n");
     write("detections.jsonl", to_json(detection, utc) + "\n");
   }
-  ScoreInput read() const {
-    return read_run(directory, [](double, const std::string&) {});
-  }
+  ScoreInput read() const { return read_run(directory, quietly); }
   std::string refusal() const {
     try {
       read();
