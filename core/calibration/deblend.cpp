@@ -1,6 +1,8 @@
 #include "core/calibration/deblend.h"
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 namespace dmise {
 namespace {
@@ -19,9 +21,7 @@ Component component_of(std::vector<BlendPixel> pixels, float peak_snr) {
               .peak_snr = peak_snr,
               .peak_x = pixels[0].x,  // the highest comes first
               .peak_y = pixels[0].y};
-  std::sort(pixels.begin(), pixels.end(), [](const BlendPixel& a, const BlendPixel& b) {
-    return a.y != b.y ? a.y < b.y : a.x < b.x;
-  });
+  std::ranges::sort(pixels, {}, [](const BlendPixel& p) { return std::pair(p.y, p.x); });
   c.min_y = pixels.front().y;
   c.max_y = pixels.back().y;
   for (const BlendPixel& p : pixels) {
@@ -56,8 +56,7 @@ std::vector<Component> deblend(const Component& component, const DeblendSettings
     for (int x = run.first_x; x <= run.last_x; ++x)
       if (const double v = value(x, run.y); v > 0) pixels.push_back({x, run.y, v});
   if (pixels.size() < 2 * least_pixels) return {component};
-  std::stable_sort(pixels.begin(), pixels.end(),
-                   [](const BlendPixel& a, const BlendPixel& b) { return a.value > b.value; });
+  std::ranges::stable_sort(pixels, std::greater(), &BlendPixel::value);
   const int wide = component.max_x - component.min_x + 3;
   std::vector<int> peak_at(std::size_t(wide) * std::size_t(component.max_y - component.min_y + 3),
                            -1);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -85,8 +86,7 @@ void StarImages::find(const CountImage& counts, double filter_px,
       bright_.emplace_back(light_e, std::move(part));
     }
   }
-  std::stable_sort(bright_.begin(), bright_.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::ranges::stable_sort(bright_, std::greater(), [](const auto& b) { return b.first; });
 }
 
 /// The brightest, and as many of the next that are not saturated.
@@ -140,8 +140,7 @@ std::vector<PlateSource> find_star_sources(const CountImage& counts,
   std::vector<PlateSource> sources;
   for (const auto& source : found)
     if (source) sources.push_back(*source);
-  std::stable_sort(sources.begin(), sources.end(),
-                   [](const PlateSource& a, const PlateSource& b) { return a.flux > b.flux; });
+  std::ranges::stable_sort(sources, std::greater(), &PlateSource::flux);
   return sources;
 }
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <span>
 #include <utility>
 
 #include "core/detection/beamlet_kernels.h"
-#include "core/detection/turned_frame.h"
 
 namespace dmise {
 namespace {
@@ -102,8 +102,7 @@ class Block {
 
   void find(std::vector<Beamlet>& found) {
     sum(0, size_, false);
-    std::stable_sort(kept_.begin(), kept_.end(),
-                     [](const Kept& a, const Kept& b) { return a.cell < b.cell; });
+    std::ranges::stable_sort(kept_, {}, &Kept::cell);
     for (std::size_t i = 0; i < kept_.size();) {
       Beamlet best = kept_[i].beamlet;
       const std::uint64_t cell = kept_[i].cell;
@@ -137,8 +136,8 @@ class Block {
 
   /// Rows of a strip that are in the frame.
   int used(int first, int length) const {
-    return std::max(0,
-                    std::min(first_ + first + length, lines_.major) - std::max(first_ + first, 0));
+    const int begin = first_ + first;
+    return std::max(0, std::min(begin + length, lines_.major) - std::max(begin, 0));
   }
 
   const Level& level_of_length(int length) const {
@@ -254,11 +253,6 @@ class SumsPool {
 
 }  // namespace
 
-std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, double least_snr, SimdLevel level,
-                                   Threads& threads) {
-  return find_beamlets(frame, TurnedFrame(frame), least_snr, level, threads);
-}
-
 std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, const TurnedFrame& turned,
                                    double least_snr, SimdLevel level, Threads& threads) {
   struct Task {
@@ -294,8 +288,7 @@ std::vector<Beamlet> find_beamlets(const FilteredFrame& frame, const TurnedFrame
   });
   std::vector<Beamlet> all;
   for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Beamlet& a, const Beamlet& b) { return a.snr > b.snr; });
+  std::ranges::stable_sort(all, std::greater(), &Beamlet::snr);
   return all;
 }
 

@@ -51,8 +51,7 @@ bool may_leave(const CountImage& counts, const Source& source) {
   const double snr2_per_px = source.snr() * source.snr() / std::max(t.length_px, 1.0);
   const double error_px = std::min(2 * end_error_px(snr2_per_px), t.length_px / 4);
   for (const double half : {-t.length_px / 2, t.length_px / 2}) {
-    const double x = t.x_px + half * std::cos(t.angle_rad);
-    const double y = t.y_px + half * std::sin(t.angle_rad);
+    const auto [x, y] = t.at(half);
     if (std::min({x, y, counts.columns - 1 - x, counts.rows - 1 - y}) < error_px) return true;
   }
   return false;
@@ -70,14 +69,14 @@ std::vector<Source> distinct(std::vector<Source> all, double sigma_px) {
   std::sort(all.begin(), all.end(), before);
   for (Source& source : all) {
     const Trail& t = source.trail();
-    const double ex = t.length_px / 2 * std::cos(t.angle_rad);
-    const double ey = t.length_px / 2 * std::sin(t.angle_rad);
     const double margin_px = source.beside ? 1.5 * sigma_px : 3 * sigma_px + 1.5;
-    const bool piece = std::any_of(out.begin(), out.end(), [&](const Source& stronger) {
-      const Trail& of = stronger.trail();
-      if (!lies_on(of, t.x_px, t.y_px, margin_px)) return false;
-      return !source.streak || (lies_on(of, t.x_px - ex / 2, t.y_px - ey / 2, margin_px) &&
-                                lies_on(of, t.x_px + ex / 2, t.y_px + ey / 2, margin_px));
+    const bool piece = std::ranges::any_of(out, [&](const Source& stronger) {
+      const Around of(stronger.trail(), margin_px);
+      const auto has = [&](double along_px) {
+        const PixelPosition at = t.at(along_px);
+        return of.has(at.x_px, at.y_px);
+      };
+      return has(0.0) && (!source.streak || (has(-t.length_px / 4) && has(t.length_px / 4)));
     });
     if (!piece) out.push_back(std::move(source));
   }

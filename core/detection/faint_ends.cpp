@@ -110,10 +110,11 @@ double least_gain_of(const Source& other, const Source& than) {
 bool reaches_another(const Scene& scene, const Source& now, const Source& before,
                      std::span<const Source> others) {
   const double margin_px = 3 * scene.sigma_px + 1.5, piece_px = before.trail().length_px / 2;
-  return std::any_of(others.begin(), others.end(), [&](const Source& other) {
+  const Around around_now(now.trail(), margin_px), around_before(before.trail(), margin_px);
+  return std::ranges::any_of(others, [&](const Source& other) {
     const Trail& t = other.trail();
-    return t.length_px >= piece_px && !lies_on(before.trail(), t.x_px, t.y_px, margin_px) &&
-           lies_on(now.trail(), t.x_px, t.y_px, margin_px);
+    return t.length_px >= piece_px && !around_before.has(t.x_px, t.y_px) &&
+           around_now.has(t.x_px, t.y_px);
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/detection/compact_source.h"
 #include "core/detection/long_streak.h"
@@ -76,8 +77,7 @@ Judged judge_components(const Scene& scene, const FilteredFrame& filtered,
       (lengthy ? longs : compacts).push_back(&c);
     }
   }
-  std::stable_sort(longs.begin(), longs.end(),
-                   [](const Component* a, const Component* b) { return a->pixels > b->pixels; });
+  std::ranges::stable_sort(longs, std::greater(), &Component::pixels);
   std::vector<CompactJudgement> found(compacts.size());
   threads.for_ranges(compacts.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)

@@ -4,12 +4,16 @@
 #include <cmath>
 
 namespace dmise {
+namespace {
+
+double row_of(const KnownStars::Star& star) { return star.place.y_px; }
+
+}  // namespace
 
 KnownStars::KnownStars(const CatalogueSky& sky, const FrameHeader& header, std::vector<Star> stars,
                        BitMask lit)
     : sky_(&sky), header_(&header), stars_(std::move(stars)), lit_(std::move(lit)) {
-  std::sort(stars_.begin(), stars_.end(),
-            [](const Star& a, const Star& b) { return a.place.y_px < b.place.y_px; });
+  std::ranges::sort(stars_, {}, row_of);
 }
 
 bool KnownStars::would_know(PixelPosition place, double flux_e) const {
@@ -17,11 +21,8 @@ bool KnownStars::would_know(PixelPosition place, double flux_e) const {
 }
 
 bool KnownStars::may_be_at(PixelPosition place, double within_px, double flux_e) const {
-  const auto first =
-      std::lower_bound(stars_.begin(), stars_.end(), place.y_px - within_px,
-                       [](const Star& star, double y_px) { return star.place.y_px < y_px; });
-  for (auto star = first; star != stars_.end() && star->place.y_px <= place.y_px + within_px;
-       ++star)
+  auto star = std::ranges::lower_bound(stars_, place.y_px - within_px, {}, row_of);
+  for (; star != stars_.end() && star->place.y_px <= place.y_px + within_px; ++star)
     if (star->most_e >= flux_e &&
         std::hypot(star->place.x_px - place.x_px, star->place.y_px - place.y_px) <= within_px)
       return true;

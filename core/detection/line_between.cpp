@@ -49,8 +49,7 @@ std::vector<Sample> samples_along(const Scene& scene, const Trail& t, double sig
       out.push_back({along, signal * weight, profile * weight});
     }
   }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const Sample& a, const Sample& b) { return a.along_px < b.along_px; });
+  std::ranges::stable_sort(out, {}, &Sample::along_px);
   return out;
 }
 

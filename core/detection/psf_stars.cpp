@@ -49,8 +49,7 @@ std::vector<const Component*> psf_candidates(const Scene& scene,
     const int zone_y = c->peak_y * zones_down / scene.counts.rows;
     ranked.emplace_back(in_zone[std::size_t(zone_y * zones_across + zone_x)]++, c);
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::ranges::stable_sort(ranked, {}, [](const auto& star) { return star.first; });
   std::vector<const Component*> out;
   for (const auto& [rank, c] : ranked) out.push_back(c);
   return out;

@@ -37,8 +37,7 @@ template <class Visit>
 void for_neighbours(const std::vector<ShownStar>& stars, const Rows& rows, const StarImage& image,
                     float reach_px, std::size_t own, const Visit& visit) {
   const float left = float(image.x0) - reach_px, right = float(image.x1) + reach_px;
-  auto row = std::lower_bound(rows.begin(), rows.end(), float(image.y0) - reach_px,
-                              [](const Expected& star, float y_px) { return star.y_px < y_px; });
+  auto row = std::ranges::lower_bound(rows, float(image.y0) - reach_px, {}, &Expected::y_px);
   for (; row != rows.end() && row->y_px <= float(image.y1) + reach_px; ++row)
     if (row->x_px >= left && row->x_px <= right && row->star != own) visit(stars[row->star]);
 }

@@ -34,15 +34,12 @@ bool is_saturated(const Scene& scene, const Trail& trail) {
 /// Moves `trail` to `target`, but neither end by more than `limit_px`: light beyond was not
 /// examined. Returns the requested distance of the farther end.
 double move_ends(Trail& trail, const Trail& target, double limit_px) {
-  const auto end = [](const Trail& t, double side) {
-    return PixelPosition{t.x_px + side * t.length_px / 2 * std::cos(t.angle_rad),
-                         t.y_px + side * t.length_px / 2 * std::sin(t.angle_rad)};
-  };
   double farthest = 0.0;
   std::array<PixelPosition, 2> ends;
   for (std::size_t i = 0; i < 2; ++i) {
     const double side = i == 0 ? -1 : 1;
-    const PixelPosition from = end(trail, side), way = end(target, side) - from;
+    const PixelPosition from = trail.at(side * trail.length_px / 2);
+    const PixelPosition way = target.at(side * target.length_px / 2) - from;
     const double distance = std::hypot(way.x_px, way.y_px);
     farthest = std::max(farthest, distance);
     ends[i] = from + way * (distance > limit_px ? limit_px / distance : 1.0);
@@ -172,10 +169,6 @@ std::pair<int, int> Around::columns(int y) const {
   return {int(std::clamp(middle - half, -most, most)), int(std::clamp(middle + half, -most, most))};
 }
 
-bool lies_on(const Trail& trail, double x_px, double y_px, double margin_px) {
-  return Around(trail, margin_px).has(x_px, y_px);
-}
-
 std::optional<Source> fit_source(const Scene& scene, const Trail& start, bool streak,
                                  double model_error, bool draft, unsigned free) {
   Source source;
@@ -233,10 +226,9 @@ void hold_ends_at_edge(const Scene& scene, Source& source) {
 }
 
 void set_flags(const Scene& scene, const Trail& trail, Source& source) {
-  const double c = std::cos(trail.angle_rad), s = std::sin(trail.angle_rad);
   const double edge = 2 * scene.psf.sigma_at({trail.x_px, trail.y_px});
   for (const double half : {-trail.length_px / 2, trail.length_px / 2}) {
-    const double x = trail.x_px + half * c, y = trail.y_px + half * s;
+    const auto [x, y] = trail.at(half);
     if (x < edge || y < edge || x > scene.counts.columns - 1 - edge ||
         y > scene.counts.rows - 1 - edge)
       source.at_edge = true;

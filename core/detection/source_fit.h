@@ -31,9 +31,6 @@ class Around {
   double margin_px_, cos_, sin_;
 };
 
-/// Whether a position is within `margin_px` of the line from end to end.
-bool lies_on(const Trail& trail, double x_px, double y_px, double margin_px);
-
 /// Unsaturated pixels on the trail.
 std::vector<FitPixel> pixels_near(const Scene& scene, const Trail& trail, double margin_px);
 

@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 
+#include "core/base/pixel.h"
 #include "core/detection/psf.h"
 #include "core/detection/trail_shape.h"
 
@@ -17,6 +19,11 @@ struct Trail {
   double angle_rad = 0.0;  // from +x towards +y
   double slope = 0.0;
   double sagitta_px = 0.0;
+
+  /// A place on the straight line through its middle.
+  PixelPosition at(double along_px) const {
+    return {x_px + along_px * std::cos(angle_rad), y_px + along_px * std::sin(angle_rad)};
+  }
 };
 
 /// Parameters of a trail that a fit may vary, in the order of the result's covariance.

@@ -64,8 +64,7 @@ CosmicRays::Prepared CosmicRays::charges(int columns, int rows, double exposure_
           {std::uint32_t(py * columns + px), float(charge * (cuts[i + 1] - cuts[i])), time});
     }
   }
-  std::stable_sort(charges.begin(), charges.end(),
-                   [](const CosmicCharge& a, const CosmicCharge& b) { return a.pixel < b.pixel; });
+  std::ranges::stable_sort(charges, {}, &CosmicCharge::pixel);
   return charges;
 }
 
@@ -79,8 +78,7 @@ CosmicRays::Prepared CosmicRays::prepare(const ExposureFacts& exposed) const {
 }
 
 void CosmicRays::apply(const ExposureFacts&, const Prepared& charges, Piece& piece) const {
-  auto it = std::lower_bound(charges.begin(), charges.end(), piece.first,
-                             [](const CosmicCharge& c, std::size_t p) { return c.pixel < p; });
+  auto it = std::ranges::lower_bound(charges, piece.first, {}, &CosmicCharge::pixel);
   for (; it != charges.end() && it->pixel - piece.first < piece.electrons.size(); ++it) {
     piece.electrons[it->pixel - piece.first] += it->electrons;
     if (!piece.flags.empty()) piece.flags[it->pixel - piece.first] |= flag_cosmic_ray;

@@ -32,8 +32,7 @@ HotPixels::Prepared HotPixels::among(std::size_t pixels, const RngKey& fixed_key
 }
 
 void HotPixels::apply(const ExposureFacts& exposed, const Prepared& hot, Piece& piece) const {
-  auto it = std::lower_bound(hot.begin(), hot.end(), piece.first,
-                             [](const HotPixel& h, std::size_t p) { return h.pixel < p; });
+  auto it = std::ranges::lower_bound(hot, piece.first, {}, &HotPixel::pixel);
   for (; it != hot.end() && it->pixel - piece.first < piece.electrons.size(); ++it) {
     const auto mean = float(it->dark_e_per_s * exposed.exposure.exposure_s);
     float deviate;

@@ -97,8 +97,7 @@ Ramp::Prepared Ramp::prepare(const ExposureFacts& exposed) const {
 void Ramp::apply(const ExposureFacts& exposed, const Prepared& fit, Piece& piece) const {
   if (fit.weights.empty()) return;
   const auto first = std::uint32_t(piece.first);
-  auto jump = std::lower_bound(fit.jumps.begin(), fit.jumps.end(), piece.first,
-                               [](const CosmicCharge& c, std::size_t p) { return c.pixel < p; });
+  auto jump = std::ranges::lower_bound(fit.jumps, piece.first, {}, &CosmicCharge::pixel);
   for (std::size_t i = 0; i < piece.electrons.size(); ++i) {
     const std::uint32_t pixel = first + std::uint32_t(i);
     double charge = std::max(0.0f, piece.electrons[i]), signal = 0.0;

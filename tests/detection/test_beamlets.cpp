@@ -71,7 +71,7 @@ TEST(Beamlets, ALineOfAnyDirectionIsFoundWithMostOfItsSignal) {
                                                  (x + y) % 2 != 0);
       }
     Threads threads;
-    const auto beamlets = find_beamlets(frame, 4, SimdLevel::sse2, threads);
+    const auto beamlets = find_beamlets(frame, TurnedFrame(frame), 4, SimdLevel::sse2, threads);
     ASSERT_FALSE(beamlets.empty()) << degrees;
     const double whole = snr_along(frame, t);
     EXPECT_GT(beamlets.front().snr, 0.7 * whole) << degrees;
@@ -89,11 +89,11 @@ TEST(Beamlets, ALineOfAnyDirectionIsFoundWithMostOfItsSignal) {
 TEST(Beamlets, AreTheSameOnEveryInstructionSetAndNumberOfThreads) {
   const FilteredFrame frame = filtered_noise(700, 530, 9);
   Threads one, three(3);
-  const auto expected = find_beamlets(frame, 3.5, SimdLevel::sse2, one);
+  const auto expected = find_beamlets(frame, TurnedFrame(frame), 3.5, SimdLevel::sse2, one);
   ASSERT_GT(expected.size(), 20u);
   for (const SimdLevel level : {SimdLevel::sse2, SimdLevel::avx2, SimdLevel::avx512}) {
     if (level > best_simd_level()) continue;
-    const auto other = find_beamlets(frame, 3.5, level, three);
+    const auto other = find_beamlets(frame, TurnedFrame(frame), 3.5, level, three);
     ASSERT_EQ(other.size(), expected.size());
     for (std::size_t i = 0; i < other.size(); ++i) {
       EXPECT_EQ(other[i].snr, expected[i].snr);
@@ -157,10 +157,10 @@ TEST(Beamlets, FramesOfAnySizeAreSearched) {
                                       std::array{7, 7}, std::array{8, 9}, std::array{1025, 17}}) {
     FilteredFrame frame(columns, rows, 0.8);
     std::fill(frame.snr.begin(), frame.snr.end(), std::int8_t(FilteredFrame::most));
-    const auto beamlets = find_beamlets(frame, 4, best_simd_level(), threads);
+    const auto beamlets = find_beamlets(frame, TurnedFrame(frame), 4, best_simd_level(), threads);
     for (const Beamlet& b : beamlets) EXPECT_TRUE(std::isfinite(b.snr));
     std::fill(frame.snr.begin(), frame.snr.end(), std::int8_t(0));
-    EXPECT_TRUE(find_beamlets(frame, 4, best_simd_level(), threads).empty());
+    EXPECT_TRUE(find_beamlets(frame, TurnedFrame(frame), 4, best_simd_level(), threads).empty());
   }
 }
 
