@@ -11,6 +11,12 @@ PixelPosition principal_point(const Optics& o) {
   return {0.5 * (o.columns - 1), 0.5 * (o.rows - 1)};
 }
 
+bool in_frame(const Optics& o, PixelPosition at, double margin_px) {
+  const double edge_px = 0.5 + margin_px;
+  return at.x_px > -edge_px && at.y_px > -edge_px && at.x_px < o.columns - 1 + edge_px &&
+         at.y_px < o.rows - 1 + edge_px;
+}
+
 std::optional<PixelPosition> project(const Optics& o, const Vec<CameraFrame>& direction) {
   const Vec<CameraFrame> v = unit(direction);
   const auto image = o.projection.image_of(v.x, v.y, v.z);

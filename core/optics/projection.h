@@ -11,6 +11,9 @@ namespace dmise {
 
 PixelPosition principal_point(const Optics& optics);
 
+/// Whether a place is on a pixel of the frame, or less than `margin_px` beside it.
+bool in_frame(const Optics& optics, PixelPosition at, double margin_px = 0.0);
+
 /// Pixel of a direction (any length > 0), also outside the frame. Empty where the projection has no
 /// image: 90 deg and more from the boresight for the gnomonic, exactly behind for a fisheye.
 std::optional<PixelPosition> project(const Optics& optics, const Vec<CameraFrame>& direction);

@@ -8,6 +8,7 @@
 #include "core/effects/frame_effects.h"
 #include "core/optics/projection.h"
 #include "core/photometry/magnitude.h"
+#include "core/sky/air_exposure.h"
 #include "core/sky/earth_limb.h"
 #include "core/visibility/field_of_view.h"
 #include "sensors/pipeline/object_sampler.h"
@@ -16,19 +17,6 @@
 #include "sensors/pipeline/throughput.h"
 
 namespace dmise {
-namespace {
-
-bool inside(const PixelPosition& p, const Optics& optics, double margin_px) {
-  const double edge_px = 0.5 + margin_px;
-  return p.x_px > -edge_px && p.y_px > -edge_px && p.x_px < optics.columns - 1 + edge_px &&
-         p.y_px < optics.rows - 1 + edge_px;
-}
-
-double elevation_rad(const Vec<Gcrs>& up, const Vec<Gcrs>& line) {
-  return std::asin(std::clamp(dot(up, unit(line)), -1.0, 1.0));
-}
-
-}  // namespace
 
 std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes, double margin_px) {
   const auto& optics = view.sensor().camera.optics;
@@ -41,7 +29,7 @@ std::uint32_t objects_with_light(const View& view, const ObjectShapes* shapes, d
   for (const std::size_t object : objects_in_field(view, shapes)) {
     const bool lit = std::any_of(instants.begin(), instants.end(), [&](const auto& at) {
       const ObjectSample s = sampler.sample(object, at);
-      return s.pixel && s.electrons_per_s > 0.0 && inside(*s.pixel, optics, margin_px);
+      return s.pixel && s.electrons_per_s > 0.0 && in_frame(optics, *s.pixel, margin_px);
     });
     count += lit;
   }
@@ -62,9 +50,9 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
   };
   FrameOutlook out{.frame = view.times().frame, .middle = middle};
   if (view.on_ground()) {
-    out.boresight_elevation_rad = elevation_rad(up, boresight);
-    out.sun_elevation_rad = elevation_rad(up, to_sun_m);
-    out.moon_elevation_rad = elevation_rad(up, view.environment().moon_m - here_m);
+    out.boresight_elevation_rad = elevation_over(up, unit(boresight));
+    out.sun_elevation_rad = elevation_over(up, unit(to_sun_m));
+    out.moon_elevation_rad = elevation_over(up, unit(view.environment().moon_m - here_m));
   }
   if (!view.on_ground()) out.limb_angle_rad = above_limb_rad(here_m, boresight, view.surface());
   out.boresight_hidden =
@@ -73,7 +61,7 @@ FrameOutlook frame_outlook(const View& view, const OutlookScene& scene) {
     const auto index = object_index(view.world().roster(), target->object, target->where);
     const Vec<Gcrs> position_m = view.world().motion(index, middle).position_m;
     const Vec<Gcrs> line = position_m - here_m;
-    if (view.on_ground()) out.target_elevation_rad = elevation_rad(up, line);
+    if (view.on_ground()) out.target_elevation_rad = elevation_over(up, unit(line));
     out.target_hidden = view.on_ground() ? *out.target_elevation_rad < 0.0
                                          : earth && earth->hides_object(position_m, unit(line));
   }

@@ -57,9 +57,8 @@ SeenBody moon(const View& view, const ApparentPlaces& places, SimTime t) {
 /// A quick bound: false for nearly all fields.
 bool may_be_near(const View& view, const Vec<Gcrs>& direction, double radius_rad, SimTime t) {
   const Optics& optics = view.sensor().camera.optics;
-  const Vec<Gcrs> boresight = view.camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1};
   const double margin_rad = 3.0 * disc_margin_px * optics.pixel_angle_rad();
-  return angle_rad(boresight, direction) <
+  return angle_rad(view.boresight(t), direction) <
          half_diagonal_rad(optics) + beyond_limb * radius_rad + margin_rad;
 }
 

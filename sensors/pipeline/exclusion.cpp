@@ -20,10 +20,6 @@ constexpr double step_rad = 2.0 * deg;  // that the axis turns between two times
 constexpr int fewest_steps = 4, most_steps = 4096;
 constexpr double found_within = 1e-5;  // of two steps
 
-Vec<Gcrs> axis_of(const View& view, SimTime t) {
-  return view.camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1};
-}
-
 /// Whether no part of a disc is seen past the Earth.
 bool is_hidden(const View& view, const SeenBody& body, SimTime t) {
   if (view.on_ground()) return dot(view.up(t), body.apparent) < -std::sin(body.radius_rad);
@@ -53,7 +49,7 @@ Looks looks_of(const View& view) {
   const SimTime moment{std::clamp<std::int64_t>((all.end - all.start).ns / 1000, 1, 1'000'000)};
   double fastest_rad = 0.0;
   for (const SimTime t : {all.start, all.at(0.5), all.end - moment})
-    fastest_rad = std::max(fastest_rad, angle_rad(axis_of(view, t), axis_of(view, t + moment)));
+    fastest_rad = std::max(fastest_rad, angle_rad(view.boresight(t), view.boresight(t + moment)));
   const double steps = fastest_rad / moment.seconds() * all.seconds() / step_rad;
   Looks looks{.times = {}, .reach = {}, .many_turns = steps > most_steps};
   const int count =
@@ -91,7 +87,7 @@ std::optional<double> least_from(const View& view, const Looks& looks,
                           [&](SimTime t) { return is_hidden(view, seen(view, t), t); }))
     return std::nullopt;
   return least_of(looks,
-                  [&](SimTime t) { return angle_rad(axis_of(view, t), seen(view, t).apparent); });
+                  [&](SimTime t) { return angle_rad(view.boresight(t), seen(view, t).apparent); });
 }
 
 }  // namespace
@@ -105,7 +101,7 @@ BodyAngles body_angles(const View& view) {
   if (limits.moon_deg) angles.moon_rad = least_from(view, looks, truly_seen_moon);
   if (limits.earth_limb_deg && !view.on_ground())
     angles.earth_limb_rad = least_of(looks, [&](SimTime t) {
-      return from_limb_rad(view.observer(t).position_m, axis_of(view, t), view.surface());
+      return from_limb_rad(view.observer(t).position_m, view.boresight(t), view.surface());
     });
   return angles;
 }

@@ -81,24 +81,10 @@ struct StrayLightStage : StrayLight {
   }
 };
 
-struct SunStage : SunDisc {
-  static void apply(LightFrame& f) { f.add_disc(draw_sun); }
-};
-
-struct MoonStage : MoonDisc {
-  static void apply(LightFrame& f) { f.add_disc(draw_moon); }
-};
-
-struct EarthStage : EarthDisc {
-  static void apply(LightFrame& f) { f.add_disc(draw_earth); }
-};
-
-struct LimbAirStage : LimbAir {
-  static void apply(LightFrame& f) { f.add_disc(draw_limb_air); }
-};
-
-struct LimbAirglowStage : LimbAirglow {
-  static void apply(LightFrame& f) { f.add_disc(draw_limb_airglow); }
+/// A disc in the field, or the air around one.
+template <class Effect, auto draw>
+struct DiscStage : Effect {
+  static void apply(LightFrame& f) { f.add_disc(draw); }
 };
 
 struct ObjectStage : SpaceObjects {
@@ -140,8 +126,10 @@ struct BlurStage {
 ///   static void apply(LightFrame&);
 ///   static void leave_out(LightFrame&);   where there is something to do when the effect is off
 using LightStages =
-    EffectList<SkyStage, StrayLightStage, KernelStage, SunStage, MoonStage, EarthStage,
-               LimbAirStage, LimbAirglowStage, ObjectStage, OcclusionStage, StarStage, BlurStage>;
+    EffectList<SkyStage, StrayLightStage, KernelStage, DiscStage<SunDisc, draw_sun>,
+               DiscStage<MoonDisc, draw_moon>, DiscStage<EarthDisc, draw_earth>,
+               DiscStage<LimbAir, draw_limb_air>, DiscStage<LimbAirglow, draw_limb_airglow>,
+               ObjectStage, OcclusionStage, StarStage, BlurStage>;
 
 /// Runs a stage. Its effect is charged what the stage does not charge to others.
 template <class Stage>

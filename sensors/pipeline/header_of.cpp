@@ -108,8 +108,7 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
   const SimTime at[3] = {times.start, times.middle, times.end};
   for (int k = 0; k < 3; ++k) h.camera_from_gcrs[k] = quaternion_of(view.camera_from_gcrs(at[k]));
 
-  const Vec<Gcrs> axis =
-      view.camera_from_gcrs(times.middle).inverse() * Vec<CameraFrame>{0.0, 0.0, 1.0};
+  const Vec<Gcrs> axis = view.boresight(times.middle);
   h.observation = observation_of(view, settings, view.places(times.middle).star_seen_at(axis));
   h.wcs = wcs_of(view);
   return h;

@@ -76,8 +76,7 @@ bool limb_is_seen(const View& view, SimTime t) {
       (view.sensor().ellipsoid.equatorial_radius_m + zone_top_m) / std::max(norm(here_m), 1.0);
   const double radius_rad = sine < 1.0 ? std::asin(sine) : pi;
   const SeenBody centre{.apparent = -unit(here_m), .radius_rad = radius_rad};
-  const Vec<Gcrs> boresight = view.camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1};
-  if (angle_rad(boresight, centre.apparent) >
+  if (angle_rad(view.boresight(t), centre.apparent) >
       half_diagonal_rad(optics) + radius_rad + 3.0 * disc_margin_px * optics.pixel_angle_rad())
     return false;
   constexpr double small_rad = 5.0 * deg;

@@ -18,8 +18,7 @@ namespace dmise {
 namespace {
 
 bool inside(const std::optional<PixelPosition>& p, const Optics& optics) {
-  return p && p->x_px > -0.5 && p->y_px > -0.5 && p->x_px < optics.columns - 0.5 &&
-         p->y_px < optics.rows - 0.5;
+  return p && in_frame(optics, *p);
 }
 
 /// A path this long [px] is cut into arcs; shorter ones are one parabola to 1e-3 px.
@@ -192,8 +191,8 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
                          inside(end.pixel, optics),
                 .resolved = resolved};
     if (view.on_ground())
-      truth.true_elevation_rad = std::asin(std::clamp(
-          dot(view.up(mid.time), unit(motion.position_m - mid.observer.position_m)), -1.0, 1.0));
+      truth.true_elevation_rad =
+          elevation_over(view.up(mid.time), unit(motion.position_m - mid.observer.position_m));
     const auto put = [](const ObjectSample& s, double& x, double& y) {
       if (s.pixel) {
         x = s.pixel->x_px;

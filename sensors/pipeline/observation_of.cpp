@@ -4,16 +4,9 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/sky/airmass.h"
+#include "core/sky/air_exposure.h"
 
 namespace dmise {
-namespace {
-
-double altitude_rad(const Vec<Gcrs>& up, const Vec<Gcrs>& direction) {
-  return std::asin(std::clamp(dot(up, unit(direction)), -1.0, 1.0));
-}
-
-}  // namespace
 
 Observation observation_of(const View& view, const PipelineSettings& settings,
                            const std::optional<Vec<Gcrs>>& centre) {
@@ -31,18 +24,16 @@ Observation observation_of(const View& view, const PipelineSettings& settings,
   }
   if (!view.on_ground()) return o;
   const Vec<Gcrs> up = view.up(middle);
-  const Vec<Gcrs> boresight =
-      view.camera_from_gcrs(middle).inverse() * Vec<CameraFrame>{0.0, 0.0, 1.0};
   // The camera sees apparent places: this altitude has the refraction in it.
-  if (const double altitude = altitude_rad(up, boresight); altitude >= 0.0)
+  if (const double altitude = elevation_over(up, unit(view.boresight(middle))); altitude >= 0.0)
     o.airmass = airmass(altitude);
   const auto& environment = view.environment();
   const Vec<Gcrs> here_m = view.observer(middle).position_m;
   // The Sun's light time and the Earth's aberration together: 20 arcsec.
   o.sun_altitude_rad =
-      altitude_rad(up, unit(environment.sun_m - here_m) +
-                           environment.earth_velocity_m_per_s / speed_of_light_m_per_s);
-  o.moon_altitude_rad = altitude_rad(up, environment.moon_m - here_m);
+      elevation_over(up, unit(unit(environment.sun_m - here_m) +
+                              environment.earth_velocity_m_per_s / speed_of_light_m_per_s));
+  o.moon_altitude_rad = elevation_over(up, unit(environment.moon_m - here_m));
   return o;
 }
 

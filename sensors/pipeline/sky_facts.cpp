@@ -95,7 +95,7 @@ bool sees_limb(const View& view, SimTime t) {
   const Vec<Gcrs> here_m = view.observer(t).position_m;
   const double earth_rad = std::asin(
       std::min(1.0, view.sensor().ellipsoid.equatorial_radius_m / std::max(norm(here_m), 1.0)));
-  return angle_rad(boresight(view, t), -here_m) <
+  return angle_rad(view.boresight(t), -here_m) <
          earth_rad + half_diagonal_rad(view.sensor().camera.optics) + near_horizon_rad;
 }
 
@@ -111,7 +111,7 @@ double cloud_detail_px(const View& view, double lowest_rad, double pixel_rad) {
 
 /// How far the field of a sensor on the ground moves over its sky from mid exposure on.
 double moves_rad(const View& view) {
-  const auto seen = [&](SimTime t) { return view.enu_from_gcrs(t) * boresight(view, t); };
+  const auto seen = [&](SimTime t) { return view.enu_from_gcrs(t) * view.boresight(t); };
   const Vec<Enu> middle = seen(view.times().middle);
   return std::max(angle_rad(middle, seen(view.times().start)),
                   angle_rad(middle, seen(view.times().end)));
@@ -131,10 +131,6 @@ double from_moon_rad(const View& view, const Vec<Gcrs>& moon) {
 }
 
 }  // namespace
-
-Vec<Gcrs> boresight(const View& view, SimTime t) {
-  return view.camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1};
-}
 
 void add_sky_facts(const View& view, const DrawnStars& drawn, PlanFacts& f) {
   const SensorConfig& sensor = view.sensor();
@@ -194,7 +190,7 @@ void add_sky_facts(const View& view, const DrawnStars& drawn, PlanFacts& f) {
                                         view.site()->height_m);
   f.refraction_rad = view.refraction().at_apparent_rad(lowest_rad);
   f.dispersion_rad = dispersion_rad(sensor.camera.band, view.refraction(), lowest_rad);
-  const double moon_up_rad = std::asin(std::clamp(dot(view.up(middle), moon), -1.0, 1.0));
+  const double moon_up_rad = elevation_over(view.up(middle), moon);
   f.moon_refraction_rad = view.refraction().apparent_from_true_rad(moon_up_rad) - moon_up_rad;
   f.moon_is_down = moon_up_rad < 0.0;
   f.nearest_moon_rad = from_moon_rad(view, moon) - f.moon_refraction_rad;

@@ -22,9 +22,6 @@ void look_over(const Optics& optics, double margin_px, Visit&& visit) {
     }
 }
 
-/// Returns where the sensor points at `t`.
-Vec<Gcrs> boresight(const View& view, SimTime t);
-
 /// How much brighter a source may be than without scintillation: three deviations of a log-normal
 /// factor of mean 1, exp(3 s - s^2 / 2), which is largest at s = 3. The sky's facts must be there.
 inline double most_by_scintillation(const PlanFacts& facts) {

@@ -127,7 +127,7 @@ StarFacts::ByLimit StarFacts::counted(const View& view, const PlanFacts& f,
       (places_rad + f.refraction_rad + f.star_shift_rad + f.star_parallax_rad) / f.pixel_rad;
   const StarTable& table = stars_->stars;
   std::vector<std::uint32_t> found;
-  query_cone(*stars_, boresight(view, times.middle), radius_rad, faintest_v_mag_, found);
+  query_cone(*stars_, view.boresight(times.middle), radius_rad, faintest_v_mag_, found);
   ByLimit stars;
   for (const std::uint32_t star : found) {
     const Vec<Gcrs> direction = unit(stars_->index.direction[star] + aberration);
@@ -150,9 +150,9 @@ StarFacts::ByLimit StarFacts::counted(const View& view, const PlanFacts& f,
 
 void StarFacts::add_stars(const View& view, PlanFacts& f) const {
   const SimTime middle = view.times().middle;
-  const Vec<Gcrs> axis = boresight(view, middle);
-  const double turned_rad = std::max(angle_rad(axis, boresight(view, view.times().start)),
-                                     angle_rad(axis, boresight(view, view.times().end)));
+  const Vec<Gcrs> axis = view.boresight(middle);
+  const double turned_rad = std::max(angle_rad(axis, view.boresight(view.times().start)),
+                                     angle_rad(axis, view.boresight(view.times().end)));
   const double seen_rad =
       half_diagonal_rad(view.sensor().camera.optics) + turned_rad + displaced_rad;
   const bool is_counted = seen_rad + f.refraction_rad < widest_counted_rad;
@@ -199,7 +199,7 @@ void StarFacts::add_synthetic(const Vec<Gcrs>& axis, double seen_rad, double ele
 void StarFacts::add(const View& view, PlanFacts& f) const {
   const auto& environment = view.environment();
   const SimTime middle = view.times().middle;
-  const Vec<Gcrs> axis = boresight(view, middle);
+  const Vec<Gcrs> axis = view.boresight(middle);
   const double half_rad = half_diagonal_rad(view.sensor().camera.optics);
   f.nearest_sun_rad = std::max(
       0.0, angle_rad(axis, environment.sun_m - view.observer(middle).position_m) - half_rad);

@@ -87,20 +87,12 @@ std::vector<Deposited> add_snapshots(const View& view, std::span<const Arc> arcs
   return deposited;
 }
 
-}  // namespace
-
-namespace {
-
-Vec<Gcrs> boresight(const View& view, SimTime t) {
-  return view.camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1};
-}
-
 /// How far the boresight turns from where it is in mid exposure.
 double turned_rad(const View& view) {
-  const Vec<Gcrs> middle = boresight(view, view.times().middle);
+  const Vec<Gcrs> middle = view.boresight(view.times().middle);
   const FrameTimes times = view.times_of_all_rows();
-  return std::max(angle_rad(middle, boresight(view, times.start)),
-                  angle_rad(middle, boresight(view, times.end)));
+  return std::max(angle_rad(middle, view.boresight(times.start)),
+                  angle_rad(middle, view.boresight(times.end)));
 }
 
 }  // namespace
@@ -108,7 +100,7 @@ double turned_rad(const View& view) {
 /// Stars around the boresight of mid exposure, wide enough for the field to have turned.
 std::vector<std::uint32_t> StarLayer::candidates(const View& view, double faintest_v_mag) const {
   std::vector<std::uint32_t> found;
-  query_cone(*map_, boresight(view, view.times().middle),
+  query_cone(*map_, view.boresight(view.times().middle),
              half_diagonal_rad(view.sensor().camera.optics) + turned_rad(view) + widest_shift_rad,
              faintest_v_mag, found);
   return found;

@@ -67,6 +67,10 @@ class View {
   /// Of a ground sensor, whether its effects have it or not.
   const Refraction& refraction() const { return refraction_; }
   Rotation<CameraFrame, Gcrs> camera_from_gcrs(SimTime t) const;
+  /// Returns where the camera's axis points.
+  Vec<Gcrs> boresight(SimTime t) const {
+    return camera_from_gcrs(t).inverse() * Vec<CameraFrame>{0, 0, 1};
+  }
   /// Where light seems to come from, at `t`, with the sensor's effects.
   ApparentPlaces places(SimTime t) const { return places(t, sensor_.effects); }
   ApparentPlaces places(SimTime t, const EffectSet& effects) const;

@@ -51,11 +51,6 @@ void compare_with_star(Look& look, const std::vector<ObjectSample>& samples, con
   look.unlike_px = std::min(std::hypot(x - star_x, y - star_y), std::hypot(x + star_x, y + star_y));
 }
 
-bool inside(const std::optional<PixelPosition>& p, const Optics& optics) {
-  return p && p->x_px > -0.5 && p->y_px > -0.5 && p->x_px < optics.columns - 0.5 &&
-         p->y_px < optics.rows - 0.5;
-}
-
 }  // namespace
 
 SensorLooks::SensorLooks(const SurveyScene& scene, const SensorConfig& sensor)
@@ -142,7 +137,7 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
   // Light above which the catalogue knows every star, in the direction of `line`.
   const auto complete_e = [&](const Vec<Gcrs>& line) {
     const double dimmed_mag =
-        view.on_ground() ? extinction_mag * airmass(std::asin(dot(up, unit(line)))) : 0.0;
+        view.on_ground() ? extinction_mag * airmass(elevation_over(up, unit(line))) : 0.0;
     return times.seconds() *
            std::pow(10.0, 0.4 * (zero_point_mag - dimmed_mag - complete_to_v_mag_));
   };
@@ -159,7 +154,7 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
     if (!(dot(line, line) > 1.0) || dot(up, line) < mask_sine_ * norm(line)) continue;
     samples.assign({sampler.sample(object, start), sampler.sample(object, middle),
                     sampler.sample(object, end)});
-    if (inside(samples[1].pixel, optics) &&
+    if (samples[1].pixel && in_frame(optics, *samples[1].pixel) &&
         !(middle.earth && middle.earth->hides_object(motion.position_m, unit(line)))) {
       ++out.in_field;
       out.sunlit += shadow.sunlit_fraction(motion.position_m) >= lit_fraction;

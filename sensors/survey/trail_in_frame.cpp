@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/optics/projection.h"
+
 namespace dmise {
 namespace {
 
@@ -33,9 +35,7 @@ TrailInFrame trail_in_frame(std::span<const ObjectSample> samples, double second
       const PixelPosition middle = place((i + 0.5) / pieces);
       const double rate = std::max(0.0, on_parabola(a.electrons_per_s, m.electrons_per_s,
                                                     b.electrons_per_s, (i + 0.5) / pieces));
-      const bool inside = middle.x_px > -0.5 && middle.y_px > -0.5 &&
-                          middle.x_px < optics.columns - 0.5 && middle.y_px < optics.rows - 0.5;
-      if (inside && rate > 0.0) {
+      if (in_frame(optics, middle) && rate > 0.0) {
         const double light_e = rate * piece_s;
         trail.signal_e += light_e;
         sum_x += light_e * middle.x_px;
