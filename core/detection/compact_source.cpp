@@ -91,15 +91,14 @@ std::optional<Source> from_wings(const Scene& scene, const Trail& start, bool st
     excess = std::max(excess, trail_value(source->trail(), scene.sigma_px, p.x, p.y) /
                                   std::max(double(p.signal_e), 1.0));
   const double flux_error_e = 0.02 * std::log(excess) * source->trail().flux_e;
-  source->fit.covariance[2 * std::size_t(source->fit.parameters) + 2] +=
-      flux_error_e * flux_error_e;
+  source->fit.add_cov(2, 2, flux_error_e * flux_error_e);
   return source;
 }
 
 /// Whether the source would clip a pixel that is clipped; wings alone are ambiguous.
 bool explains_saturation(const Scene& scene, const Source& source,
                          const std::vector<FitPixel>& clipped) {
-  return std::any_of(clipped.begin(), clipped.end(), [&](const FitPixel& p) {
+  return std::ranges::any_of(clipped, [&](const FitPixel& p) {
     return trail_value(source.trail(), scene.sigma_px, p.x, p.y) > 0.7 * p.signal_e;
   });
 }

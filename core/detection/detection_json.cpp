@@ -1,5 +1,7 @@
 #include "core/detection/detection_json.h"
 
+#include <array>
+#include <initializer_list>
 #include <string_view>
 
 #include "core/base/json.h"
@@ -41,7 +43,7 @@ class Line {
     return is_unknown(name + "_utc", unknown_) ? null(name + "_utc")
                                                : known_field(name + "_utc", utc_(value));
   }
-  template <class Values>
+  template <class Values = std::initializer_list<double>>
   Line& array(std::string_view name, const Values& values, double unit = 1.0) {
     if (is_unknown(name, unknown_)) return null(name);
     json_.key(name).begin_array();
@@ -49,12 +51,10 @@ class Line {
     json_.end_array();
     return *this;
   }
-  Line& vector(std::string_view name, const Vec<Gcrs>& v) {
-    return array(name, std::array<double, 3>{v.x, v.y, v.z});
-  }
+  Line& vector(std::string_view name, const Vec<Gcrs>& v) { return array(name, {v.x, v.y, v.z}); }
   Line& notes(const FrameNotes& n) {
-    texts("missing", n.missing);
-    texts("assumed", n.assumed);
+    if (!n.missing.empty()) json_.list("missing", n.missing);
+    if (!n.assumed.empty()) json_.list("assumed", n.assumed);
     return *this;
   }
   Line& wcs(const Wcs& w) {
@@ -63,8 +63,8 @@ class Line {
     json_.field("projection",
                 w.projection.row().fits_code + std::string(w.order > 0 ? "-SIP" : ""));
     coefficients(w.projection);
-    array("crpix_px", std::array<double, 2>{w.crpix_x, w.crpix_y});
-    array("crval_deg", std::array<double, 2>{w.ra_rad / deg, w.dec_rad / deg});
+    array("crpix_px", {w.crpix_x, w.crpix_y});
+    array("crval_deg", {w.ra_rad / deg, w.dec_rad / deg});
     array("cd_deg_per_px", w.cd_deg);
     json_.field("order", w.order);
     if (w.order > 0) {
@@ -76,7 +76,7 @@ class Line {
     if (w.refraction) {
       const WcsRefraction& air = *w.refraction;
       json_.key("refraction").begin_object();
-      array("zenith", std::array<double, 3>{air.zenith.x, air.zenith.y, air.zenith.z});
+      array("zenith", {air.zenith.x, air.zenith.y, air.zenith.z});
       json_.field("focal_length_px", air.focal_length_px);
       if (air.lens) {
         json_.field("lens", air.lens->name());
@@ -86,7 +86,7 @@ class Line {
       json_.field("temperature_c", air.temperature_c);
       json_.field("humidity", air.humidity);
       json_.field("wavelength_um", air.wavelength_um);
-      array("offset_px", std::array<double, 2>{air.offset_x_px, air.offset_y_px});
+      array("offset_px", {air.offset_x_px, air.offset_y_px});
       json_.field("cell_px", air.cell_px);
       json_.end_object();
     }
@@ -107,13 +107,6 @@ class Line {
     json_.key(name).null();
     return *this;
   }
-  /// An array of texts, if there are any.
-  void texts(std::string_view name, const std::vector<std::string>& values) {
-    if (values.empty()) return;
-    json_.key(name).begin_array();
-    for (const std::string& text : values) json_.value(text);
-    json_.end_array();
-  }
   void coefficients(const Projection& projection) {
     const auto names = projection.row().coefficients;
     for (std::size_t i = 0; i < names.size(); ++i)
@@ -132,15 +125,8 @@ const char* detection_kind_name(DetectionKind kind) {
 }
 
 const char* exposure_epoch_name(ExposureEpoch epoch) {
-  switch (epoch) {
-    case ExposureEpoch::start:
-      return "start";
-    case ExposureEpoch::middle:
-      return "middle";
-    case ExposureEpoch::end:
-      return "end";
-  }
-  return "middle";
+  constexpr const char* names[] = {"start", "middle", "end"};
+  return names[std::size_t(epoch)];
 }
 
 std::string to_json(const Detection& d, const UtcText& utc, const UnknownFacts& unknown) {
@@ -150,7 +136,7 @@ std::string to_json(const Detection& d, const UtcText& utc, const UnknownFacts& 
 #define DMISE_NAME(field_, key, Enum) line.field(key, name_of(d.field_));
 #define DMISE_LIST(field_, key, unit) line.array(key, d.field_, unit);
 #define DMISE_VECTOR(field_, key) line.vector(key, d.field_);
-#define DMISE_PAIR(x, y, key) line.array(key, std::array<double, 2>{d.x, d.y});
+#define DMISE_PAIR(x, y, key) line.array(key, {d.x, d.y});
 #define DMISE_TEXT(key, value) line.field(key, value);
 #define DMISE_WHERE(field_, key) \
   if (d.field_) line.field(key, true);
@@ -211,12 +197,11 @@ std::string to_json(const Truth& t, const UtcText& utc) {
   const std::array<double, 2> rendered_px{t.rendered_x_px, t.rendered_y_px};
   t.rendered_signal_e > 0.0 ? line.array("rendered_px", rendered_px)
                             : line.measured("rendered_px", 0.0, false);
-  line.array("start_px", std::array<double, 2>{t.start_x_px, t.start_y_px});
-  line.array("middle_px", std::array<double, 2>{t.middle_x_px, t.middle_y_px});
-  line.array("end_px", std::array<double, 2>{t.end_x_px, t.end_y_px});
+  line.array("start_px", {t.start_x_px, t.start_y_px});
+  line.array("middle_px", {t.middle_x_px, t.middle_y_px});
+  line.array("end_px", {t.end_x_px, t.end_y_px});
   line.field("in_frame", t.in_frame).field("whole", t.whole).field("resolved", t.resolved);
-  if (const auto& q = t.camera_from_gcrs)
-    line.array("camera_from_gcrs", std::array<double, 4>{q->w, q->x, q->y, q->z});
+  if (const auto& q = t.camera_from_gcrs) line.array("camera_from_gcrs", {q->w, q->x, q->y, q->z});
   return line.end();
 }
 

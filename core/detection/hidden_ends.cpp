@@ -1,14 +1,10 @@
 #include "core/detection/hidden_ends.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dmise {
 namespace {
-
-/// Of the sum of squares of two uniform errors.
-double square_of_two(const HiddenEnds& gaps) {
-  return (gaps.first_px * gaps.first_px + gaps.last_px * gaps.last_px) / 3;
-}
 
 /// Length of the gap behind an end, side -1 or 1.
 double gap_px(const Scene& scene, const Trail& t, double side) {
@@ -38,21 +34,18 @@ HiddenEnds hidden_ends(const Scene& scene, const Trail& trail) {
 void add_errors_of_hidden_ends(const Scene& scene, Source& source) {
   if (!source.streak || !(source.free & trail_length)) return;
   const Trail& t = source.trail();
-  const double ends_px2 = square_of_two(hidden_ends(scene, t));  // of the length
+  const HiddenEnds gaps = hidden_ends(scene, t);
+  // Of the length, by two uniform errors.
+  const double ends_px2 = (gaps.first_px * gaps.first_px + gaps.last_px * gaps.last_px) / 3;
   if (!(ends_px2 > 0)) return;
-  const auto n = std::size_t(source.fit.parameters);
-  const auto add = [&](std::size_t i, std::size_t j, double value) {
-    source.fit.covariance[i * n + j] += value;
-    if (i != j) source.fit.covariance[j * n + i] += value;
-  };
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
-  const double e_per_px = t.flux_e / std::fmax(t.length_px, 1.0);
-  add(0, 0, ends_px2 / 4 * c * c);
-  add(0, 1, ends_px2 / 4 * c * s);
-  add(1, 1, ends_px2 / 4 * s * s);
-  add(2, 2, ends_px2 * e_per_px * e_per_px);
-  add(2, 3, ends_px2 * e_per_px);
-  add(3, 3, ends_px2);
+  const double e_per_px = t.flux_e / std::max(t.length_px, 1.0);
+  source.fit.add_cov(0, 0, ends_px2 / 4 * c * c);
+  source.fit.add_cov(0, 1, ends_px2 / 4 * c * s);
+  source.fit.add_cov(1, 1, ends_px2 / 4 * s * s);
+  source.fit.add_cov(2, 2, ends_px2 * e_per_px * e_per_px);
+  source.fit.add_cov(2, 3, ends_px2 * e_per_px);
+  source.fit.add_cov(3, 3, ends_px2);
 }
 
 }  // namespace dmise

@@ -65,9 +65,9 @@ void replace_along(Source& source, const EndErrors& ends) {
 double end_error_px(double snr2_per_px) { return std::sqrt(26.0) / snr2_per_px; }
 
 void add_neglected_errors(Source& source, const EndErrors* ends) {
-  const auto n = std::size_t(source.fit.parameters);
   const Trail& t = source.trail();
   if (source.streak) {
+    const auto n = std::size_t(source.fit.parameters);
     const double faint = std::sqrt(1 + next_order / (source.snr() * source.snr()));
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j)
@@ -78,10 +78,9 @@ void add_neglected_errors(Source& source, const EndErrors* ends) {
       source.streak && !(source.free & trail_slope) ? uneven * t.length_px / 6 : 0.0;
   const double along_px2 = uneven_px * uneven_px;
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
-  source.fit.covariance[0] += model_px * model_px + along_px2 * c * c;
-  source.fit.covariance[1] += along_px2 * c * s;
-  source.fit.covariance[n] += along_px2 * c * s;
-  source.fit.covariance[n + 1] += model_px * model_px + along_px2 * s * s;
+  source.fit.add_cov(0, 0, model_px * model_px + along_px2 * c * c);
+  source.fit.add_cov(0, 1, along_px2 * c * s);
+  source.fit.add_cov(1, 1, model_px * model_px + along_px2 * s * s);
 }
 
 void add_steps_at_ends(Source& source, double sigma_px) {
@@ -92,8 +91,7 @@ void add_steps_at_ends(Source& source, double sigma_px) {
   const double end_px = end_error_px(snr2_per_px);
   const double end_px2 = std::min(end_px * end_px * std::exp(-0.5 * snr2_per_px * sigma_px),
                                   t.length_px * t.length_px / 12);
-  const auto n = std::size_t(source.fit.parameters);
-  source.fit.covariance[2 * n + 2] += 2 * end_px2 * std::pow(t.flux_e / length_px, 2);
+  source.fit.add_cov(2, 2, 2 * end_px2 * std::pow(t.flux_e / length_px, 2));
 }
 
 }  // namespace dmise

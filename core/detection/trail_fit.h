@@ -46,6 +46,11 @@ struct TrailFit {
   std::vector<double> covariance;  // parameters x parameters
 
   double cov(int i, int j) const { return covariance[std::size_t(i * parameters + j)]; }
+  /// Adds to a covariance.
+  void add_cov(int i, int j, double value) {
+    covariance[std::size_t(i * parameters + j)] += value;
+    if (i != j) covariance[std::size_t(j * parameters + i)] += value;
+  }
   double reduced_chi2() const { return degrees > 0 ? chi2 / degrees : 0.0; }
   /// Whether the chi2 is within `sigmas` of its expectation.
   bool good(double sigmas) const;
