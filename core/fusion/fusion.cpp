@@ -84,7 +84,7 @@ FusionTick FusionBody::step(SimTime time, std::vector<SensorFrame> frames) {
 
 LiveTrack* FusionBody::begin_catalogued(std::size_t object, SimTime seen) {
   auto prior = propagate(forces_, catalogue_.estimate(object), seen - sim_seconds(prior_before_s),
-                         0.0, {.position_tolerance_m = 1e-2});
+                         {.position_tolerance_m = 1e-2});
   if (!prior || !is_sane(*prior)) return nullptr;
   tracks_.push_back(
       std::make_unique<LiveTrack>(next_id_++, OrbitFilter(forces_, *prior, filter_), object));
@@ -98,7 +98,7 @@ bool FusionBody::is_known(const OrbitEstimate& estimate) const {
         track->filter.estimate_at(std::max(estimate.state.time, track->filter.time()));
     if (!other) continue;
     const auto here =
-        propagate(forces_, estimate, other->state.time, 0.0, {.position_tolerance_m = 1e-2});
+        propagate(forces_, estimate, other->state.time, {.position_tolerance_m = 1e-2});
     if (!here) continue;
     const Eigen::Vector3d apart = eigen_of(here->state.position_m - other->state.position_m);
     const Eigen::Matrix3d both =

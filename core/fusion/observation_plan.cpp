@@ -140,7 +140,7 @@ std::optional<ObservationPlan> plan_by(std::size_t way, const ForceModel& forces
   plan.first_frame = sensor.first_frame_from(plan.on_target);
   const SimTime exposure = sim_seconds(sensor.exposure_s), half{exposure.ns / 2};
 
-  auto at = propagate(forces, target.estimate, plan.on_target, 0.0, propagation);
+  auto at = propagate(forces, target.estimate, plan.on_target, propagation);
   if (!at || !is_sane(*at)) return std::nullopt;
   plan.at = *at;
   Matrix6 transition = Matrix6::Identity();

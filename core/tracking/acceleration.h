@@ -28,7 +28,8 @@ struct Triple {
   T x, y, z;
 };
 
-/// The row of the density table for a height: rho = density exp(-(height - base) / scale).
+/// The row of the density table (Vallado's table 8-4) for a height above the ellipsoid [m]: rho =
+/// density exp(-(height - base) / scale). Below 0 the density is that of 0, above the air 0.
 struct AirLayer {
   double base_m = 0.0, density_kg_per_m3 = 0.0, scale_m = 0.0;
 };

@@ -66,39 +66,6 @@ Outcome<Tracklet> tracklet_of(std::span<const AngleObservation> observations) {
   out.rate_rad_per_s = gcrs_of((rate - direction * direction.dot(rate)) / place.norm());
   out.sensor_m = gcrs_of(fit.row(0).tail<3>().transpose());
   out.sensor_m_per_s = gcrs_of(fit.row(1).tail<3>().transpose() / span_s);
-  // Place and rate along both tangents.
-  const Eigen::Vector2d units{1, 1 / span_s};
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j)
-      for (int k = 0; k < 2; ++k)
-        out.covariance(2 * i + k, 2 * j + k) = inverse(i, j) * units[i] * units[j];
-  return out;
-}
-
-Outcome<Tracklet> tracklet_of(const Detection& streak, bool backwards) {
-  using Result = Outcome<Tracklet>;
-  if (streak.kind != DetectionKind::streak) return Result::refused("a point has no rate");
-  const auto middle = angle_observation(streak);
-  if (!middle) return Result::refused(middle.reason);
-  const double span_s = 1e-9 * std::fabs(double(streak.end2_time.ns) - double(streak.end1_time.ns));
-  if (!(span_s > 0)) return Result::refused("both ends are of one time");
-  Tracklet out;
-  out.time = middle->time;
-  out.sensor_m = middle->sensor_m;
-  out.sensor_m_per_s = streak.sensor_velocity_m_per_s;
-  out.direction = middle->direction;
-  const SkyTangents tangents = sky_tangents(out.direction);
-  const double rate = (backwards ? -1 : 1) * streak.rate_rad_per_s;
-  out.rate_rad_per_s = rate * (std::sin(streak.position_angle_rad) * tangents.east +
-                               std::cos(streak.position_angle_rad) * tangents.north);
-  out.covariance.topLeftCorner<2, 2>() = covariance_of(*middle);
-  const auto &a = streak.end1_covariance_rad2, &b = streak.end2_covariance_rad2;
-  const double s2 = span_s * span_s;
-  out.covariance.bottomRightCorner<2, 2>() << (a[0] + b[0]) / s2, (a[1] + b[1]) / s2,
-      (a[1] + b[1]) / s2, (a[2] + b[2]) / s2;
-  if (!std::isfinite(norm(out.rate_rad_per_s)) || !std::isfinite(norm(out.sensor_m_per_s)) ||
-      !out.covariance.allFinite())
-    return Result::refused("the rate is not finite");
   return out;
 }
 
@@ -113,13 +80,13 @@ RangeRates bound_range_rates(const Tracklet& tracklet, double range_m) {
   return {-b - std::sqrt(root2), -b + std::sqrt(root2)};
 }
 
-Outcome<std::vector<AdmissiblePoint>> admissible_region(const Tracklet& tracklet,
-                                                        const AdmissibleSettings& settings) {
-  using Result = Outcome<std::vector<AdmissiblePoint>>;
+Outcome<std::vector<OrbitState>> admissible_region(const Tracklet& tracklet,
+                                                   const AdmissibleSettings& settings) {
+  using Result = Outcome<std::vector<OrbitState>>;
   if (!(settings.least_range_m > 0) || !(settings.largest_range_m > settings.least_range_m) ||
       !(settings.largest_range_m < 1e12) || settings.ranges < 2 || settings.range_rates < 2)
     return Result::refused("ranges must rise from above 0, with two samples at least");
-  std::vector<AdmissiblePoint> out;
+  std::vector<OrbitState> out;
   const double step =
       std::log(settings.largest_range_m / settings.least_range_m) / (settings.ranges - 1);
   for (int i = 0; i < settings.ranges; ++i) {
@@ -130,12 +97,11 @@ Outcome<std::vector<AdmissiblePoint>> admissible_region(const Tracklet& tracklet
       const double share = (k + 0.5) / settings.range_rates;
       const double rate =
           bounds.least_m_per_s + share * (bounds.largest_m_per_s - bounds.least_m_per_s);
-      AdmissiblePoint point{range_m, rate, {}};
-      point.state.time = tracklet.time - sim_seconds(range_m / speed_of_light_m_per_s);
-      point.state.position_m = tracklet.sensor_m + range_m * tracklet.direction;
-      point.state.velocity_m_per_s =
-          tracklet.sensor_m_per_s + rate * tracklet.direction + range_m * tracklet.rate_rad_per_s;
-      if (within(settings.limits, point.state)) out.push_back(point);
+      const OrbitState state{
+          tracklet.time - sim_seconds(range_m / speed_of_light_m_per_s),
+          tracklet.sensor_m + range_m * tracklet.direction,
+          tracklet.sensor_m_per_s + rate * tracklet.direction + range_m * tracklet.rate_rad_per_s};
+      if (within(settings.limits, state)) out.push_back(state);
     }
   }
   if (out.empty())

@@ -1,5 +1,6 @@
 #include "core/tracking/angle_observation.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dmise {
@@ -24,6 +25,16 @@ Eigen::Matrix2d covariance_of(const AngleObservation& observation) {
   Eigen::Matrix2d out;
   out << c[0], c[1], c[1], c[2];
   return out;
+}
+
+double sigma_rad(const AngleObservation& observation) {
+  return std::sqrt(std::max(observation.covariance_rad2[0], observation.covariance_rad2[2]));
+}
+
+double largest_sigma_rad(std::span<const AngleObservation> observations) {
+  double largest = 0;
+  for (const AngleObservation& o : observations) largest = std::max(largest, sigma_rad(o));
+  return largest;
 }
 
 Eigen::Vector2d angles_between(const Vec<Gcrs>& from, const Vec<Gcrs>& to) {

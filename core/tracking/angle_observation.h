@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <span>
 #include <string>
 
 #include <Eigen/Core>
@@ -35,6 +36,11 @@ struct SkyTangents {
 SkyTangents sky_tangents(const Vec<Gcrs>& direction);
 
 Eigen::Matrix2d covariance_of(const AngleObservation& observation);
+
+/// Larger standard deviation of the direction, along east or along north [rad].
+double sigma_rad(const AngleObservation& observation);
+/// The largest of several observations; 0 of none.
+double largest_sigma_rad(std::span<const AngleObservation> observations);
 
 /// Angles from `from` to `to` along east and north at `from` [rad]: the length is the angle
 /// between both, also if it is large.

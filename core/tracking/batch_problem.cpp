@@ -98,21 +98,13 @@ void BatchProblem::observe(std::size_t i, const StateTransition& at, bool with_d
 }
 
 void BatchProblem::weigh_prior() {
-  // Of unit variances, so that units do not matter; unused rows stand alone.
-  const OrbitMatrix& covariance = settings_.prior->covariance;
-  const int n = unknowns();
-  OrbitVector sigma = OrbitVector::Ones();
-  OrbitMatrix scaled = OrbitMatrix::Identity();
-  const auto row = [&](int i) { return unknowns_[std::size_t(i)]; };
-  for (int i = 0; i < n; ++i) sigma[i] = std::sqrt(covariance(row(i), row(i)));
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) scaled(i, j) = covariance(row(i), row(j)) / (sigma[i] * sigma[j]);
+  const auto [scaled, sigma] = unit_variances(settings_.prior->covariance, unknowns_);
   if (!scaled.allFinite()) return;
   const Eigen::LLT<OrbitMatrix> root(scaled);
   if (root.info() != Eigen::Success) return;
   prior_weight_ = root.matrixL().solve(OrbitMatrix::Identity());
   prior_weight_ = (prior_weight_ * sigma.cwiseInverse().asDiagonal()).eval();
-  for (int i = n; i < orbit_size; ++i) prior_weight_(i, i) = 0;
+  for (int i = unknowns(); i < orbit_size; ++i) prior_weight_(i, i) = 0;
   has_prior_ = true;
 }
 

@@ -23,7 +23,7 @@ using BatchTriangle = Eigen::Matrix<double, orbit_size, orbit_size + 1>;
 void fold(BatchTriangle& triangle, const Eigen::Matrix<double, 1, orbit_size>& row, double white);
 
 /// What stays the same while an orbit is fitted: observations in order, their weights, unknowns and
-/// prior. All but the forces is copied or must live as long.
+/// prior. Forces, observations and settings must outlive it.
 class BatchProblem {
  public:
   BatchProblem(const ForceModel& forces, std::span<const AngleObservation> observations,

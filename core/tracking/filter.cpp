@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <type_traits>
 #include <utility>
-#include <variant>
 
 #include "core/base/error.h"
 #include "core/tracking/sigma_points.h"
@@ -14,21 +14,39 @@ namespace dmise {
 
 namespace {
 
-/// An observation or a miss, and what is believed after it.
+/// An observation, and what is believed after it. The first has only the time of the start.
 struct Event {
-  SimTime time;
-  bool seen = false;             // else a miss
-  AngleObservation observation;  // if seen
-  double detection_probability = 0.0;
+  AngleObservation observation;
   RootGaussian belief;
-  double existence = 0.0;
-  Innovation innovation;
 };
 
 /// Order in time; of one time by name, so that the order of arrival does not matter.
-bool before(const Event& a, const Event& b) {
-  return std::tie(a.time, a.seen, a.observation.sensor, a.observation.detection_id) <
-         std::tie(b.time, b.seen, b.observation.sensor, b.observation.detection_id);
+bool before(const AngleObservation& a, const AngleObservation& b) {
+  return std::tie(a.time, a.sensor, a.detection_id) < std::tie(b.time, b.sensor, b.detection_id);
+}
+
+/// Longest time over which noise is added as if the object moved without forces [s]: in a low
+/// orbit it turns by 7 deg.
+constexpr double noise_span_s = 120.0;
+
+/// The end of the next part of the way from `from` to `to`.
+SimTime next_noise_time(SimTime from, SimTime to, bool noise) {
+  const SimTime span = sim_seconds(noise_span_s);
+  if (!noise || (to - from <= span && from - to <= span)) return to;
+  return to > from ? from + span : from - span;
+}
+
+/// Root L of the covariance L L' that white noise of the acceleration, of this spectral density
+/// along each axis, adds in `dt_s` >= 0.
+OrbitMatrix process_noise_root(double density_m2_per_s3, double dt_s) {
+  OrbitMatrix root = OrbitMatrix::Zero();
+  const double t = std::sqrt(density_m2_per_s3 * dt_s);
+  for (int axis = 0; axis < 3; ++axis) {
+    root(axis, axis) = t * dt_s / std::sqrt(3.0);
+    root(axis + 3, axis) = t * std::sqrt(3.0) / 2;
+    root(axis + 3, axis + 3) = t / 2;
+  }
+  return root;
 }
 
 void check(bool good, const char* what) {
@@ -43,17 +61,11 @@ struct OrbitFilter::Body {
   EstimatedRows rows;
   std::vector<Event> events;  // a ring; the oldest is what all others follow from
   std::size_t oldest = 0, held = 1;
-  int observations = 0;
   mutable std::vector<double> steps;
 
   Event& event(std::size_t i) { return events[(oldest + i) % events.size()]; }
   const Event& event(std::size_t i) const { return events[(oldest + i) % events.size()]; }
   const Event& last() const { return event(held - 1); }
-
-  OrbitMatrix noise(double dt_s) const {
-    return process_noise_root(settings.acceleration_noise_m2_per_s3, settings.drag_noise,
-                              settings.srp_noise, dt_s);
-  }
 
   template <class Work>
   auto with_rows(Work&& work) const {
@@ -80,55 +92,45 @@ struct OrbitFilter::Body {
         SigmaPoints<n> points(rows, belief);
         const auto reason = points.move(*forces, next, propagation, steps);
         if (!reason.empty()) return reason;
-        belief = points.gaussian(noise(dt_s));
+        belief = points.gaussian(process_noise_root(settings.acceleration_noise_m2_per_s3, dt_s));
       }
       return {};
     });
   }
 
-  /// Puts the belief after `previous` and this event's own evidence into the event.
-  std::string_view follow(const Event& previous, Event& next) const {
+  /// Puts the belief after `previous` and this event's own observation into the event. Returns the
+  /// innovation of the observation.
+  Outcome<Innovation> follow(const Event& previous, Event& next) const {
+    using Result = Outcome<Innovation>;
     RootGaussian belief = previous.belief;
-    if (!next.seen) {
-      // The orbit stays: only a later observation moves it.
-      next.belief = std::move(belief);
-      const double p = next.detection_probability, e = previous.existence;
-      next.existence = e * (1 - p) / (1 - e * p);
-      return {};
-    }
-    if (const auto reason = move(belief, next.time); !reason.empty()) return reason;
+    if (const auto reason = move(belief, next.observation.time); !reason.empty())
+      return Result::refused(reason);
+    Innovation found;
     with_rows([&](auto n) {
       const SigmaPoints<n> points(rows, belief);
       const auto seen = points.see(next.observation.sensor_m);
-      next.innovation = innovation_of(seen.direction, next.observation);
-      next.belief = points.updated(seen, next.observation, next.innovation.residual_rad);
+      found = innovation_of(seen.direction, next.observation);
+      next.belief = points.updated(seen, next.observation, found.residual_rad);
     });
     if (!is_sane(next.belief.mean) || !next.belief.root.allFinite())
-      return "the observation leads to a state out of range";
-    // Integrated probabilistic data association (Musicki, Evans & Stankovic 1994), one candidate.
-    const double p = settings.detection_probability, e = previous.existence;
-    const double ratio =
-        1 - p + p * std::exp(next.innovation.log_likelihood) / settings.false_alarms_per_sr;
-    next.existence = e > 0 ? e / (e + (1 - e) / ratio) : 0;
-    return {};
+      return Result::refused("the observation leads to a state out of range");
+    return found;
   }
 
-  /// Puts an event where it belongs and does those after it again.
-  std::string_view insert(Event&& added, Innovation* found = nullptr) {
+  /// Inserts an observation at its place in time and processes those after it again.
+  Outcome<Innovation> insert(const AngleObservation& observation) {
     std::size_t place = held;
-    while (place > 0 && before(added, event(place - 1))) --place;
-    if (place == 0) return "older than what is kept";
+    while (place > 0 && before(observation, event(place - 1).observation)) --place;
+    if (place == 0) return Outcome<Innovation>::refused("older than what is kept");
     // The kept ones are replaced only once all is well.
-    std::string_view reason = follow(event(place - 1), added);
-    if (!reason.empty()) return reason;
-    if (added.seen && settings.gate_d2 > 0 && added.innovation.d2 > settings.gate_d2)
-      return "the observation lies beyond the gate";
-    if (found) *found = added.innovation;
+    Event added{observation, {}};
+    const auto found = follow(event(place - 1), added);
+    if (!found) return found;
     std::vector<Event> redone;
     for (std::size_t i = place; i < held; ++i) {
       redone.push_back(event(i));
-      reason = follow(i == place ? added : redone[redone.size() - 2], redone.back());
-      if (!reason.empty()) return reason;
+      const auto again = follow(i == place ? added : redone[redone.size() - 2], redone.back());
+      if (!again) return again;
     }
     if (held == events.size()) {
       oldest = (oldest + 1) % events.size();
@@ -138,7 +140,7 @@ struct OrbitFilter::Body {
     ++held;
     event(place) = std::move(added);
     for (std::size_t i = 0; i < redone.size(); ++i) event(place + 1 + i) = std::move(redone[i]);
-    return {};
+    return found;
   }
 
   OrbitEstimate estimate_of(const RootGaussian& belief) const {
@@ -153,7 +155,7 @@ struct OrbitFilter::Body {
   /// The belief of the last event that is not after `time`, moved there.
   std::string_view belief_at(SimTime time, RootGaussian& out) const {
     std::size_t i = held;
-    while (i > 0 && event(i - 1).time > time) --i;
+    while (i > 0 && event(i - 1).observation.time > time) --i;
     if (i == 0) return "older than what is kept";
     out = event(i - 1).belief;
     return move(out, time);
@@ -164,16 +166,9 @@ OrbitFilter::OrbitFilter(const ForceModel& forces, const OrbitEstimate& start,
                          const FilterSettings& s)
     : body_(std::make_unique<Body>()) {
   const auto good = [](double x) { return std::isfinite(x) && x >= 0; };
-  check(good(s.acceleration_noise_m2_per_s3) && good(s.drag_noise) && good(s.srp_noise),
-        "noise must be >= 0");
-  check(good(s.gate_d2), "gate_d2 must be >= 0");
+  check(good(s.acceleration_noise_m2_per_s3), "noise must be >= 0");
   check(good(s.longest_s) && s.longest_s > 0, "longest_s must be > 0");
   check(s.kept >= 1, "kept must be >= 1");
-  check(s.existence > 0 && s.existence < 1, "existence must be within 0 and 1");
-  check(s.detection_probability > 0 && s.detection_probability < 1,
-        "detection_probability must be within 0 and 1");
-  check(good(s.false_alarms_per_sr) && s.false_alarms_per_sr > 0,
-        "false_alarms_per_sr must be > 0");
   check(is_sane(start), "the estimate is not finite or out of range");
   body_->forces = &forces;
   body_->settings = s;
@@ -181,26 +176,17 @@ OrbitFilter::OrbitFilter(const ForceModel& forces, const OrbitEstimate& start,
   for (const int row : {drag_row, srp_row})
     if (start.covariance(row, row) > 0) rows.rows[std::size_t(rows.count++)] = row;
 
-  // Root of the covariance with a unit diagonal: units differ by powers of ten.
   const int n = rows.count;
-  OrbitMatrix scaled = OrbitMatrix::Identity();
-  OrbitVector sigma = OrbitVector::Ones();
-  const auto row = [&](int i) { return rows.rows[std::size_t(i)]; };
-  for (int i = 0; i < n; ++i) {
-    sigma[i] = std::sqrt(start.covariance(row(i), row(i)));
-    check(sigma[i] > 0, "the covariance is not positive definite");
-  }
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j)
-      scaled(i, j) = start.covariance(row(i), row(j)) / (sigma[i] * sigma[j]);
+  const auto [scaled, sigma] =
+      unit_variances(start.covariance, std::span(rows.rows).first(std::size_t(n)));
+  check((sigma.array() > 0).all(), "the covariance is not positive definite");
   const Eigen::LLT<OrbitMatrix> root(scaled);
   check(root.info() == Eigen::Success, "the covariance is not positive definite");
   Event first;
-  first.time = start.state.time;
+  first.observation.time = start.state.time;
   first.belief.mean = start.state;
   const OrbitMatrix lower = root.matrixL();
   for (int i = 0; i < n; ++i) first.belief.root.row(i).head(n) = sigma[i] * lower.row(i).head(n);
-  first.existence = s.existence;
   body_->events.resize(std::size_t(s.kept) + 1);
   body_->events[0] = std::move(first);
 }
@@ -216,8 +202,6 @@ OrbitFilter& OrbitFilter::operator=(const OrbitFilter& other) {
 
 SimTime OrbitFilter::time() const { return body_->last().belief.mean.time; }
 OrbitEstimate OrbitFilter::estimate() const { return body_->estimate_of(body_->last().belief); }
-double OrbitFilter::existence() const { return body_->last().existence; }
-int OrbitFilter::observations() const { return body_->observations; }
 
 Outcome<OrbitEstimate> OrbitFilter::estimate_at(SimTime time) const {
   RootGaussian belief;
@@ -244,25 +228,9 @@ Outcome<Innovation> OrbitFilter::innovation(const AngleObservation& observation)
 }
 
 Outcome<Innovation> OrbitFilter::update(const AngleObservation& observation) {
-  using Result = Outcome<Innovation>;
-  if (const auto fault = fault_of(observation); !fault.empty()) return Result::refused(fault);
-  Event event;
-  event.time = observation.time;
-  event.seen = true;
-  event.observation = observation;
-  Innovation found;
-  const auto reason = body_->insert(std::move(event), &found);
-  if (!reason.empty()) return Result::refused(reason);
-  ++body_->observations;
-  return found;
-}
-
-bool OrbitFilter::miss(const Miss& miss) {
-  if (!(miss.detection_probability >= 0 && miss.detection_probability <= 1)) return false;
-  Event event;
-  event.time = miss.time;
-  event.detection_probability = std::min(miss.detection_probability, 1 - 1e-9);
-  return body_->insert(std::move(event)).empty();
+  if (const auto fault = fault_of(observation); !fault.empty())
+    return Outcome<Innovation>::refused(fault);
+  return body_->insert(observation);
 }
 
 }  // namespace dmise

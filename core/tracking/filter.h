@@ -12,28 +12,14 @@ namespace dmise {
 struct FilterSettings {
   // Spectral density of white noise in the acceleration, along each axis [m^2/s^3]; >= 0.
   double acceleration_noise_m2_per_s3 = 1e-9;
-  // Random walks of the scales [(m^2/kg)^2/s]; >= 0.
-  double drag_noise = 0.0, srp_noise = 0.0;
-  double gate_d2 = 0.0;            // observations beyond are refused; 0: all are taken
   double longest_s = 3 * 86400.0;  // farthest that an estimate is moved to an observation, > 0
-  int kept = 64;           // observations and misses that a late one may still be put before, >= 1
-  double existence = 0.5;  // probability that the object exists, before the first observation
-  double detection_probability = 0.9;  // of an object that exists, (0, 1)
-  // Expected false detections per steradian in one frame: what an observation is weighed against.
-  double false_alarms_per_sr = 1e3;
-};
-
-/// A frame in which the object would have been found with `detection_probability` [0, 1] and was
-/// not. It lowers the probability of existence; the orbit stays as it is.
-struct Miss {
-  SimTime time;
-  double detection_probability = 0.0;
+  int kept = 64;                   // observations that a late one may still precede, >= 1
 };
 
 /// Square-root unscented Kalman filter of one object's orbit (van der Merwe & Wan 2001) with light
-/// time inside the observation. Observations and misses may come late: those after them are kept
-/// and done again, so that the result is that of their order in time, whatever the order of
-/// arrival, as long as not more than `kept` lie between. The gate judges each once, as it arrives.
+/// time inside the observation. Observations may come late: those after them are kept and processed
+/// again, so that the result is that of their order in time, whatever the order of arrival, as long
+/// as not more than `kept` lie between.
 class OrbitFilter {
  public:
   /// Throws `Error` for an estimate that is not sane, a covariance that is not positive definite in
@@ -49,10 +35,6 @@ class OrbitFilter {
   /// Of the last observation that was taken.
   SimTime time() const;
   OrbitEstimate estimate() const;
-  /// [0, 1].
-  double existence() const;
-  /// Observations that were taken.
-  int observations() const;
 
   /// The estimate at another time, at or after the oldest that is kept; the filter stays as it is.
   Outcome<OrbitEstimate> estimate_at(SimTime time) const;
@@ -64,14 +46,9 @@ class OrbitFilter {
   Outcome<Innovation> innovation(const AngleObservation& observation) const;
 
   /// Takes an observation, of any time that is not before the oldest kept. Returns its innovation.
-  /// Refuses, and stays as it was, if the observation has a fault, lies beyond the gate, is older
-  /// than what is kept, more than `longest_s` after what is known, or the path of a sigma point
-  /// enters the Earth.
+  /// Refuses, and stays as it was, if the observation has a fault, is older than what is kept, more
+  /// than `longest_s` after what is known, or the path of a sigma point enters the Earth.
   Outcome<Innovation> update(const AngleObservation& observation);
-
-  /// Takes a miss; late ones as late observations. False if it is older than what is kept or its
-  /// probability is out of range.
-  bool miss(const Miss& miss);
 
  private:
   struct Body;

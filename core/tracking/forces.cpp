@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/table_place.h"
 #include "core/frames/earth_orientation.h"
 #include "core/sky/sun_moon.h"
 #include "core/tracking/acceleration.h"
@@ -68,12 +69,6 @@ AirLayer air_layer(double height_m) {
   return *std::prev(above);
 }
 
-double air_density_kg_per_m3(double height_m) {
-  const AirLayer air = air_layer(height_m);
-  if (air.density_kg_per_m3 == 0) return 0;
-  return air.density_kg_per_m3 * std::exp((air.base_m - height_m) / air.scale_m);
-}
-
 ForceModel::ForceModel(const ForceSettings& settings) : settings_(settings) {
   check(settings_);
   settings_.sun_moon = settings_.radiation = false;
@@ -91,7 +86,7 @@ ForceModel::ForceModel(const Clock& clock, SimTime reference, const ForceSetting
       node.pole = earth_orientation(clock, time, Nutation::iau2000b).cirs_from_gcrs.inverse() *
                   Vec<Cirs>{0, 0, 1};
     if (settings_.radiation || settings_.sun_moon) {
-      const SimTime half{sim_seconds(1800).ns};
+      const SimTime half = sim_seconds(1800);
       node.sun_m = sun_by_almanac_m(clock.tt(time));
       node.sun_m_per_s =
           (sun_by_almanac_m(clock.tt(time + half)) - sun_by_almanac_m(clock.tt(time - half))) /
@@ -107,10 +102,7 @@ ForceModel::ForceModel(const Clock& clock, SimTime reference, const ForceSetting
 
 ForceInputs ForceModel::surroundings(SimTime time) const {
   if (nodes_.empty()) return {};
-  const double place =
-      std::clamp((time - first_).seconds() / node_s, 0.0, double(nodes_.size() - 1));
-  const auto i = std::min(std::size_t(place), nodes_.size() - 2);
-  const double u = place - double(i);
+  const auto [i, u] = table_place((time - first_).seconds() / node_s, nodes_.size());
   const Node &a = nodes_[i], &b = nodes_[i + 1];
   ForceInputs out;
   out.pole = a.pole * (1 - u) + b.pole * u;  // shorter than 1 by less than 1e-14
@@ -119,17 +111,6 @@ ForceInputs ForceModel::surroundings(SimTime time) const {
   if (settings_.sun_moon)
     out.moon_m = hermite(a.moon_m, a.moon_m_per_s, b.moon_m, b.moon_m_per_s, node_s, u);
   return out;
-}
-
-Vec<Gcrs> ForceModel::acceleration_m_per_s2(const OrbitState& state) const {
-  const Vec<Gcrs>&r = state.position_m, &v = state.velocity_m_per_s;
-  ForceSettings acting = settings_;
-  acting.drag &= state.drag_m2_per_kg != 0;
-  acting.radiation &= state.srp_m2_per_kg != 0;
-  const Triple<double> a =
-      acceleration<double>(acting, surroundings(state.time), {r.x, r.y, r.z}, {v.x, v.y, v.z},
-                           state.drag_m2_per_kg, state.srp_m2_per_kg);
-  return {a.x, a.y, a.z};
 }
 
 }  // namespace dmise

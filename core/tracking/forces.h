@@ -41,9 +41,6 @@ class ForceModel {
   const ForceSettings& settings() const { return settings_; }
   ForceInputs surroundings(SimTime time) const;
 
-  /// [m/s^2] of a state.
-  Vec<Gcrs> acceleration_m_per_s2(const OrbitState& state) const;
-
  private:
   static constexpr double reach_s = 10 * 86400.0, node_s = 6 * 3600.0;
   struct Node {
@@ -55,9 +52,5 @@ class ForceModel {
   SimTime first_;            // of nodes_
   std::vector<Node> nodes_;  // every node_s
 };
-
-/// Density of the atmosphere [kg/m^3] at a height above the ellipsoid [m]:
-/// rows of Vallado's table 8-4, exponential between them. Below 0 that of 0.
-double air_density_kg_per_m3(double height_m);
 
 }  // namespace dmise

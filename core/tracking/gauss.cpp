@@ -128,9 +128,7 @@ Outcome<std::vector<OrbitState>> gauss_orbit(std::span<const AngleObservation> t
   const double sines = norm(cross(three[0].direction, three[1].direction)) *
                        norm(cross(three[1].direction, three[2].direction));
   // The volume is that of errors if the lines lie in one plane.
-  double sigma = 0;
-  for (const AngleObservation& o : three)
-    sigma = std::max(sigma, std::sqrt(std::max(o.covariance_rad2[0], o.covariance_rad2[2])));
+  const double sigma = largest_sigma_rad(three);
   const double widest = angle_rad(three[0].direction, three[2].direction);
   if (!(std::fabs(lines.d0) > std::max(1e-14, 3 * sigma * std::min(widest, sines / widest))))
     return Result::refused("the three lines of sight lie in one plane: ranges are not determined");

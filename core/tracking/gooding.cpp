@@ -125,10 +125,7 @@ Outcome<std::vector<OrbitState>> gooding_orbit(std::span<const AngleObservation>
   if (ranges.empty()) ranges.assign(default_ranges_m.begin(), default_ranges_m.end());
   for (const double range : ranges)
     if (!(range > 0 && range < 1e12)) return Result::refused("a guessed range is not above 0");
-  double sigma_rad = 0;
-  for (const AngleObservation& o : three)
-    sigma_rad =
-        std::max(sigma_rad, std::sqrt(std::max(o.covariance_rad2[0], o.covariance_rad2[2])));
+  const double sigma_rad = largest_sigma_rad(three);
   bool undetermined = false;
   std::vector<OrbitState> out;
   for (int half_turns = 0; half_turns <= settings.most_half_turns; ++half_turns) {

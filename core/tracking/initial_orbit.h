@@ -6,7 +6,6 @@
 #include "core/tracking/angle_observation.h"
 #include "core/tracking/batch.h"
 #include "core/tracking/forces.h"
-#include "core/tracking/orbit_limits.h"
 #include "core/tracking/orbit_state.h"
 #include "core/tracking/outcome.h"
 #include "core/tracking/triangulate.h"
@@ -21,7 +20,7 @@ Outcome<std::vector<OrbitState>> gauss_orbit(std::span<const AngleObservation> t
                                              const OrbitLimits& limits = {});
 
 struct GoodingSettings {
-  std::vector<double> ranges_m;  // guesses of first and last range; empty: from 200 km to GEO
+  std::vector<double> ranges_m;  // guesses of first and last range; empty: from 300 km to GEO
   int most_half_turns = 1;       // between first and last observation
   OrbitLimits limits;
 };
@@ -47,8 +46,8 @@ Outcome<BatchFit> one_arc_orbit(const ForceModel& forces,
                                 std::span<const AngleObservation> observations,
                                 const BatchSettings& batch = {}, const OrbitLimits& limits = {});
 
-/// The same, all orbits within the limits that candidates lead to, by growing chi-square; one may
-/// be there several times. Residuals are in order of time.
+/// The same, but returns all orbits within the limits to which the candidates lead, by growing
+/// chi-square; one may be there several times. Residuals are in order of time.
 Outcome<std::vector<BatchFit>> one_arc_orbits(const ForceModel& forces,
                                               std::span<const AngleObservation> observations,
                                               const BatchSettings& batch = {},

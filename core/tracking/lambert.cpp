@@ -163,53 +163,45 @@ Outcome<std::vector<LambertPath>> lambert(const Vec<Gcrs>& start_m, const Vec<Gc
   const double size = std::sqrt(r1 * r2) * std::fabs(std::cos(half)) / s;
   const double unit_time = std::sqrt(s * s * s / (2 * settings.gm_m3_per_s2));
   const double t = duration_s / unit_time;
-  const bool with_normal = dot(across, settings.normal) >= 0;
+  // The shorter way turns from the first to the second place by less than half a turn.
+  const bool shorter = dot(across, settings.normal) >= 0;
+  const double lambda = shorter ? size : -size;
+  const TimeOfFlight flight{lambda};
 
   std::vector<LambertPath> out;
-  const auto add = [&](double x, double lambda, bool retrograde, int turns, bool long_period) {
-    const TimeOfFlight flight{lambda};
+  const auto add = [&](double x, int turns, bool long_period) {
     const double gamma = std::sqrt(settings.gm_m3_per_s2 * s / 2);
     const double rho = (r1 - r2) / chord, sigma = 2 * std::sqrt(r1 * r2) * std::sin(half) / chord;
     const double y = flight.y(x);
-    const double radial1 = gamma * ((lambda * y - x) - rho * (lambda * y + x)) / r1;
-    const double radial2 = -gamma * ((lambda * y - x) + rho * (lambda * y + x)) / r2;
+    const double radial = gamma * ((lambda * y - x) - rho * (lambda * y + x)) / r1;
     const double transverse = gamma * sigma * (y + lambda * x);
-    // The shorter way turns from the first to the second place by less than half a turn.
     const Vec<Gcrs> normal = unit(across) * (lambda < 0 ? -1.0 : 1.0);
-    LambertPath path{radial1 * u1 + (transverse / r1) * cross(normal, u1),
-                     radial2 * u2 + (transverse / r2) * cross(normal, u2), turns, retrograde,
-                     long_period};
-    if (std::isfinite(norm(path.start_velocity_m_per_s)) &&
-        std::isfinite(norm(path.end_velocity_m_per_s)))
-      out.push_back(path);
+    const Vec<Gcrs> velocity = radial * u1 + (transverse / r1) * cross(normal, u1);
+    if (std::isfinite(norm(velocity))) out.push_back({velocity, turns, long_period});
   };
-  for (int turns = 0; turns <= settings.most_turns; ++turns)
-    for (const bool retrograde : {false, true}) {
-      if (retrograde && !settings.both_senses) continue;
-      const double lambda = (with_normal != retrograde) ? size : -size;
-      const TimeOfFlight flight{lambda};
-      if (turns == 0) {
-        auto x = by_householder(flight, t, 0, first_guess(lambda, t));
-        if (!x) x = by_bisection(flight, t, 0, -1 + 1e-14, 1e7);
-        if (x) add(*x, lambda, retrograde, 0, false);
-        continue;
-      }
-      const double t0 = std::acos(std::clamp(lambda, -1.0, 1.0)) +
-                        lambda * std::sqrt(1 - lambda * lambda) + turns * pi;
-      const LeastTime least = least_time(flight, turns, t0);
-      if (t < least.time) continue;
-      // One root on each side of the least time.
-      const double left = std::pow((turns + 1) * pi / (8 * t), 2.0 / 3);
-      const double right = std::pow(8 * t / (turns * pi), 2.0 / 3);
-      auto low = by_householder(flight, t, turns, (left - 1) / (left + 1));
-      if (!low || *low > least.x) low = by_bisection(flight, t, turns, -1 + 1e-14, least.x);
-      auto high = by_householder(flight, t, turns, (right - 1) / (right + 1));
-      if (!high || *high < least.x) high = by_bisection(flight, t, turns, least.x, 1 - 1e-14);
-      // The semi-major axis is that of least energy over 1 - x^2.
-      const bool low_longer = low && high && std::fabs(*low) > std::fabs(*high);
-      if (high) add(*high, lambda, retrograde, turns, !low_longer);
-      if (low) add(*low, lambda, retrograde, turns, low_longer);
+  for (int turns = 0; turns <= settings.most_turns; ++turns) {
+    if (turns == 0) {
+      auto x = by_householder(flight, t, 0, first_guess(lambda, t));
+      if (!x) x = by_bisection(flight, t, 0, -1 + 1e-14, 1e7);
+      if (x) add(*x, 0, false);
+      continue;
     }
+    const double t0 = std::acos(std::clamp(lambda, -1.0, 1.0)) +
+                      lambda * std::sqrt(1 - lambda * lambda) + turns * pi;
+    const LeastTime least = least_time(flight, turns, t0);
+    if (t < least.time) continue;
+    // One root on each side of the least time.
+    const double left = std::pow((turns + 1) * pi / (8 * t), 2.0 / 3);
+    const double right = std::pow(8 * t / (turns * pi), 2.0 / 3);
+    auto low = by_householder(flight, t, turns, (left - 1) / (left + 1));
+    if (!low || *low > least.x) low = by_bisection(flight, t, turns, -1 + 1e-14, least.x);
+    auto high = by_householder(flight, t, turns, (right - 1) / (right + 1));
+    if (!high || *high < least.x) high = by_bisection(flight, t, turns, least.x, 1 - 1e-14);
+    // The semi-major axis is that of least energy over 1 - x^2.
+    const bool low_longer = low && high && std::fabs(*low) > std::fabs(*high);
+    if (high) add(*high, turns, !low_longer);
+    if (low) add(*low, turns, low_longer);
+  }
   if (out.empty()) return Result::refused("no path was found");
   return out;
 }

@@ -9,16 +9,14 @@ namespace dmise {
 
 /// A conic from one place to another.
 struct LambertPath {
-  Vec<Gcrs> start_velocity_m_per_s, end_velocity_m_per_s;
+  Vec<Gcrs> start_velocity_m_per_s;
   int turns = 0;             // whole turns on the way
-  bool retrograde = false;   // against the sense of `normal`
   bool long_period = false;  // of the two paths with the same number of turns, turns >= 1
 };
 
 struct LambertSettings {
   int most_turns = 0;         // >= 0
   Vec<Gcrs> normal{0, 0, 1};  // paths turn about it in the right-hand sense
-  bool both_senses = false;   // also those that turn the other way
   double gm_m3_per_s2 = earth_gm_m3_per_s2;
 };
 

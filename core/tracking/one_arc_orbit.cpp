@@ -61,20 +61,18 @@ void add_region(const std::vector<AngleObservation>& sorted, const OrbitLimits& 
       one.push_back(o);
   const auto tracklet = tracklet_of(one);
   if (!tracklet) return;
-  AdmissibleSettings settings;
-  settings.limits = limits;
-  settings.ranges = 25;
-  settings.range_rates = 11;
-  const auto region = admissible_region(*tracklet, settings);
-  if (!region) return;
-  for (const AdmissiblePoint& point : *region) out.push_back(point.state);
+  if (const auto region =
+          admissible_region(*tracklet, {.limits = limits, .ranges = 25, .range_rates = 11}))
+    out.insert(out.end(), region->begin(), region->end());
 }
 
-/// Fits of the candidates, within the limits; none: the reason. Residuals are in order of time.
+/// Fits of the candidates without a prior, within the limits; none: the reason. Residuals are in
+/// order of time.
 Outcome<std::vector<BatchFit>> fits_of(const ForceModel& forces,
                                        std::span<const AngleObservation> observations,
-                                       const BatchSettings& settings, const OrbitLimits& limits) {
+                                       BatchSettings settings, const OrbitLimits& limits) {
   using Result = Outcome<std::vector<BatchFit>>;
+  settings.prior.reset();
   if (observations.size() < 3) return Result::refused("fewer than three observations");
   std::vector<AngleObservation> sorted(observations.begin(), observations.end());
   for (const AngleObservation& o : sorted)
@@ -84,9 +82,9 @@ Outcome<std::vector<BatchFit>> fits_of(const ForceModel& forces,
   std::vector<OrbitState> found;
   std::string_view reason = "the three times do not rise";
   for (const auto& three : triples(sorted)) {
-    GoodingSettings settings;
-    settings.limits = limits;
-    if (const auto orbits = gooding_orbit(three, settings))
+    GoodingSettings gooding;
+    gooding.limits = limits;
+    if (const auto orbits = gooding_orbit(three, gooding))
       found.insert(found.end(), orbits->begin(), orbits->end());
     else
       reason = orbits.reason;
@@ -122,9 +120,7 @@ Outcome<std::vector<BatchFit>> one_arc_orbits(const ForceModel& forces,
                                               std::span<const AngleObservation> observations,
                                               const BatchSettings& batch,
                                               const OrbitLimits& limits) {
-  BatchSettings settings = batch;
-  settings.prior.reset();
-  auto fits = fits_of(forces, observations, settings, limits);
+  auto fits = fits_of(forces, observations, batch, limits);
   if (fits) std::ranges::stable_sort(*fits, {}, &BatchFit::chi2);
   return fits;
 }
@@ -133,9 +129,7 @@ Outcome<BatchFit> one_arc_orbit(const ForceModel& forces,
                                 std::span<const AngleObservation> observations,
                                 const BatchSettings& batch, const OrbitLimits& limits) {
   using Result = Outcome<BatchFit>;
-  BatchSettings settings = batch;
-  settings.prior.reset();
-  const auto fits = fits_of(forces, observations, settings, limits);
+  const auto fits = fits_of(forces, observations, batch, limits);
   if (!fits) return Result::refused(fits.reason);
   const BatchFit* best = nullptr;
   for (const BatchFit& fit : *fits) {
@@ -149,6 +143,8 @@ Outcome<BatchFit> one_arc_orbit(const ForceModel& forces,
   if (!(batch.huber_sigma > 0) && best->chi2 > degrees + 6 * std::sqrt(2 * degrees) + 12)
     return Result::refused("no orbit fits the observations: they are of several objects");
   // Residuals in the order of the input.
+  BatchSettings settings = batch;
+  settings.prior.reset();
   return fit_orbit(forces, observations, best->estimate.state, settings);
 }
 

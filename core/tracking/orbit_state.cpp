@@ -1,11 +1,11 @@
 #include "core/tracking/orbit_state.h"
 
 #include <Eigen/Cholesky>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "core/orbit/two_body.h"
-#include "core/tracking/orbit_limits.h"
 
 namespace dmise {
 
@@ -64,17 +64,24 @@ bool within(const OrbitLimits& limits, const OrbitState& state) {
   return apogee <= limits.largest_apogee_m || (limits.open && std::isinf(apogee));
 }
 
+UnitVariances unit_variances(const OrbitMatrix& covariance, std::span<const int> rows) {
+  UnitVariances out;
+  const auto row = [&](int i) { return rows[std::size_t(i)]; };
+  const int n = int(rows.size());
+  for (int i = 0; i < n; ++i) out.sigma[i] = std::sqrt(covariance(row(i), row(i)));
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      out.scaled(i, j) = covariance(row(i), row(j)) / (out.sigma[i] * out.sigma[j]);
+  return out;
+}
+
 double nees(const OrbitEstimate& estimate, const OrbitState& truth, int rows) {
   const OrbitVector error = vector_of(truth) - vector_of(estimate.state);
-  // Scaled to a unit diagonal, for metres and metres per second differ by powers of ten; rows that
-  // are not asked for stand alone.
-  OrbitMatrix scaled = OrbitMatrix::Identity();
+  constexpr std::array all{0, 1, 2, 3, 4, 5, drag_row, srp_row};
+  const auto [scaled, sigma] =
+      unit_variances(estimate.covariance, std::span(all).first(std::size_t(rows)));
   OrbitVector right = OrbitVector::Zero();
-  const auto sigma = [&](int i) { return std::sqrt(estimate.covariance(i, i)); };
-  for (int i = 0; i < rows; ++i) {
-    right[i] = error[i] / sigma(i);
-    for (int j = 0; j < rows; ++j) scaled(i, j) = estimate.covariance(i, j) / (sigma(i) * sigma(j));
-  }
+  right.head(rows) = error.head(rows).cwiseQuotient(sigma.head(rows));
   const Eigen::LLT<OrbitMatrix> root(scaled);
   if (!scaled.allFinite() || root.info() != Eigen::Success)
     return std::numeric_limits<double>::infinity();

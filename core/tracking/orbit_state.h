@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <span>
 
 #include "core/base/sim_time.h"
 #include "core/frames/vec.h"
@@ -40,10 +41,26 @@ inline Vec<Gcrs> gcrs_of(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()
 bool is_sane(const OrbitState& state);
 bool is_sane(const OrbitEstimate& estimate);
 
-/// Largest and smallest distance from the Earth's centre on the osculating conic [m]; the apogee
+/// Smallest and largest distance from the Earth's centre on the osculating conic [m]; the apogee
 /// of an orbit that does not return is infinite.
 double perigee_m(const OrbitState& state);
 double apogee_m(const OrbitState& state);
+
+/// What an orbit near the Earth may be; candidates beyond are left out.
+struct OrbitLimits {
+  double least_perigee_m = 6.478e6;  // from the Earth's centre
+  double largest_apogee_m = 5e8;
+  bool open = false;  // parabolas and hyperbolas are taken
+};
+bool within(const OrbitLimits& limits, const OrbitState& state);
+
+/// Some rows of a covariance with unit variances, since metres and metres per second differ by
+/// powers of ten, and their standard deviations. Rows of `scaled` beyond `rows` are the identity's.
+struct UnitVariances {
+  OrbitMatrix scaled = OrbitMatrix::Identity();
+  OrbitVector sigma = OrbitVector::Ones();
+};
+UnitVariances unit_variances(const OrbitMatrix& covariance, std::span<const int> rows);
 
 /// Normalised estimation error squared of the first `rows` rows: (truth - state)' P^-1 (truth -
 /// state), of mean `rows`. `truth` must be at the same time. Infinite if P is not positive

@@ -46,9 +46,4 @@ Innovation innovation_of(const PredictedDirection& predicted, const AngleObserva
   return out;
 }
 
-double gate_d2(double miss) {
-  if (!(miss > 0 && miss < 1)) throw Error("gate: probability must be within 0 and 1");
-  return -2 * std::log(miss);
-}
-
 }  // namespace dmise

@@ -31,7 +31,4 @@ struct Innovation {
 
 Innovation innovation_of(const PredictedDirection& predicted, const AngleObservation& observed);
 
-/// d2 that a true pair exceeds with probability `miss`, (0, 1): -2 ln(miss). 1e-4: 18.4.
-double gate_d2(double miss);
-
 }  // namespace dmise

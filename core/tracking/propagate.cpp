@@ -3,7 +3,6 @@
 #include <unsupported/Eigen/AutoDiff>
 
 #include "core/tracking/integrate.h"
-#include "core/tracking/process_noise.h"
 
 namespace dmise {
 
@@ -64,23 +63,14 @@ Outcome<StateTransition> propagate_with_transition(const ForceModel& forces,
 }
 
 Outcome<OrbitEstimate> propagate(const ForceModel& forces, const OrbitEstimate& estimate,
-                                 SimTime to, double acceleration_noise_m2_per_s3,
-                                 const PropagationSettings& settings) {
+                                 SimTime to, const PropagationSettings& settings) {
   using Result = Outcome<OrbitEstimate>;
   if (!is_sane(estimate)) return Result::refused("the estimate is not finite or out of range");
-  OrbitEstimate out = estimate;
-  while (out.state.time != to) {
-    const SimTime next = next_noise_time(out.state.time, to, acceleration_noise_m2_per_s3 > 0);
-    const auto moved = propagate_with_transition(forces, out.state, next, settings);
-    if (!moved) return Result::refused(moved.reason);
-    const double dt_s = std::fabs((next - out.state.time).seconds());
-    const OrbitMatrix root = process_noise_root(acceleration_noise_m2_per_s3, 0, 0, dt_s);
-    out.covariance = moved->transition * out.covariance * moved->transition.transpose() +
-                     root * root.transpose();
-    out.covariance = 0.5 * (out.covariance + out.covariance.transpose()).eval();
-    out.state = moved->state;
-  }
-  return out;
+  if (to == estimate.state.time) return estimate;
+  const auto moved = propagate_with_transition(forces, estimate.state, to, settings);
+  if (!moved) return Result::refused(moved.reason);
+  const OrbitMatrix there = moved->transition * estimate.covariance * moved->transition.transpose();
+  return OrbitEstimate{moved->state, 0.5 * (there + there.transpose())};
 }
 
 }  // namespace dmise

@@ -15,7 +15,7 @@ struct PropagationSettings {
 
 /// The state at `to`, earlier or later. Error against the forces' exact solution: below 0.1 m
 /// after a day near the Earth with the default tolerance. Refuses a state that is not sane, a path
-/// that enters the Earth (below 6,358 km from the centre) and more than `most_steps` steps.
+/// that enters the Earth (below 6,356 km from the centre) and more than `most_steps` steps.
 Outcome<OrbitState> propagate(const ForceModel& forces, const OrbitState& state, SimTime to,
                               const PropagationSettings& settings = {});
 
@@ -31,10 +31,8 @@ Outcome<StateTransition> propagate_with_transition(const ForceModel& forces,
                                                    const OrbitState& state, SimTime to,
                                                    const PropagationSettings& settings = {});
 
-/// State and covariance at `to`, to first order: P <- F P F' + Q with the noise of an acceleration
-/// that is white, of spectral density `acceleration_noise_m2_per_s3` on each axis.
+/// State and covariance at `to`, to first order: P <- F P F'.
 Outcome<OrbitEstimate> propagate(const ForceModel& forces, const OrbitEstimate& estimate,
-                                 SimTime to, double acceleration_noise_m2_per_s3 = 0.0,
-                                 const PropagationSettings& settings = {});
+                                 SimTime to, const PropagationSettings& settings = {});
 
 }  // namespace dmise

@@ -9,7 +9,6 @@
 #include "core/tracking/line_of_light.h"
 #include "core/tracking/orbit_state.h"
 #include "core/tracking/predict.h"
-#include "core/tracking/process_noise.h"
 #include "core/tracking/triangle.h"
 
 namespace dmise {

@@ -21,12 +21,9 @@ inline std::string_view fault_of_three(std::span<const AngleObservation> three) 
   if (!(three[0].time < three[1].time && three[1].time < three[2].time))
     return "the three times do not rise";
   // An arc as short as its errors tells no curvature, and so no range.
-  const auto sigma = [](const AngleObservation& o) {
-    return std::sqrt(std::max(o.covariance_rad2[0], o.covariance_rad2[2]));
-  };
   const double arc = angle_rad(three[0].direction, three[2].direction);
   if (norm(three[0].sensor_m - three[2].sensor_m) < 1e6 &&
-      !(arc > std::max(1e-7, 3 * std::max(sigma(three[0]), sigma(three[2])))))
+      !(arc > std::max(1e-7, 3 * std::max(sigma_rad(three[0]), sigma_rad(three[2])))))
     return "the arc vanishes: the lines of sight are the same";
   return {};
 }

@@ -41,8 +41,8 @@ double widest_angle(std::span<const AngleObservation> lines) {
   return widest;
 }
 
-/// Variances of the velocity of what moves at `position_m`, if nothing is known of it: of a
-/// circular orbit in any direction across, and a fifth of its speed along the radius.
+/// Inverse covariance of the velocity of what moves at `position_m`, if nothing is known of it:
+/// that of a circular orbit in any direction across the radius, a fifth of its speed along it.
 Eigen::Matrix3d velocity_weight(const Eigen::Vector3d& position_m) {
   const double v2 = earth_gm_m3_per_s2 / position_m.norm();
   const Eigen::Vector3d up = position_m.normalized();
@@ -130,7 +130,7 @@ Outcome<TriangulatedPosition> triangulate(std::span<const AngleObservation> line
   if (!in_range()) return Result::refused("the lines of sight meet at no height of an orbit");
   Matrix6 covariance = Matrix6::Zero();
   for (int i = 0; i < 20; ++i) {
-    Normal normal = normal_of(lines, SimTime{middle.ns}, light_s, r, v);
+    Normal normal = normal_of(lines, middle, light_s, r, v);
     const Eigen::Vector3d before = r;
     if (known) {
       const Eigen::LDLT<Eigen::Matrix3d> root(normal.matrix.topLeftCorner<3, 3>());
@@ -157,7 +157,7 @@ Outcome<TriangulatedPosition> triangulate(std::span<const AngleObservation> line
   for (const AngleObservation& line : lines)
     if (!((r - eigen_of(line.sensor_m)).dot(eigen_of(line.direction)) > 0))
       return Result::refused("the lines of sight meet behind a sensor");
-  out.time = SimTime{middle.ns - sim_seconds(light_s).ns};
+  out.time = middle - sim_seconds(light_s);
   out.position_m = gcrs_of(r);
   out.covariance_m2 = covariance.topLeftCorner<3, 3>();
   out.degrees_of_freedom = 2 * int(lines.size()) - 3;

@@ -26,10 +26,11 @@ struct TriangulatedPosition {
 };
 
 /// Weighted least squares over lines of sight at about one time. `velocity_m_per_s`: the object's,
-/// if known; it carries each line's place to the common time, also by light time. Unknown (0), a
-/// velocity of 0 +- 8 km/s in each axis goes into the covariance. Refuses fewer than two lines,
-/// lines that are nearly parallel, meet behind a sensor or miss each other, and a position out of
-/// range.
+/// if known; it carries each line's place to the common time, also by light time. Unknown (0), it
+/// is fitted with the prior of a circular orbit: 0 +- sqrt(gm / 2 r) along both axes across the
+/// radius,
+/// +- 0.2 sqrt(gm / r) along it. Refuses fewer than two lines, lines that are nearly parallel, meet
+/// behind a sensor or miss each other, and a position out of range.
 Outcome<TriangulatedPosition> triangulate(std::span<const AngleObservation> observations,
                                           const Vec<Gcrs>& velocity_m_per_s = {},
                                           const TriangulationSettings& settings = {});

@@ -48,38 +48,6 @@ TEST(Tracklet, RefusesWhatHasNoRate) {
   EXPECT_EQ(tracklet_of(arc).reason, "the observations are of several sensors");
 }
 
-// A streak that is drawn by the object's motion has the rate of several exposures in its span.
-TEST(Tracklet, OfAStreakIsThatOfItsMotion) {
-  const auto arc = short_arc(3, 2.0, low_orbit());
-  Detection streak;
-  streak.kind = DetectionKind::streak;
-  streak.time = arc[1].time;
-  streak.end1_time = arc[0].time;
-  streak.end2_time = arc[2].time;
-  streak.corrected_ra_rad = arc[1].ra_rad();
-  streak.corrected_dec_rad = arc[1].dec_rad();
-  streak.covariance_rad2 = streak.end1_covariance_rad2 =
-      streak.end2_covariance_rad2 = {1e-10, 0, 1e-10};
-  streak.sensor_position_m = arc[1].sensor_m;
-  streak.sensor_velocity_m_per_s = (arc[2].sensor_m - arc[0].sensor_m) / 4.0;
-  const Eigen::Vector2d way = angles_between(arc[1].direction, arc[2].direction) -
-                              angles_between(arc[1].direction, arc[0].direction);
-  streak.rate_rad_per_s = way.norm() / 4.0;
-  streak.position_angle_rad = std::atan2(way[0], way[1]);
-  const auto expected = tracklet_of(arc);
-  const auto found = tracklet_of(streak, false);
-  ASSERT_TRUE(found) << found.reason;
-  EXPECT_LT(norm(found->rate_rad_per_s - expected->rate_rad_per_s),
-            2e-3 * norm(expected->rate_rad_per_s));
-  EXPECT_LT(norm(found->sensor_m_per_s - expected->sensor_m_per_s), 0.1);
-  EXPECT_NEAR(std::sqrt(found->covariance(2, 2)), std::sqrt(2e-10) / 4, 1e-9);
-  EXPECT_EQ(tracklet_of(streak, true)->rate_rad_per_s, -found->rate_rad_per_s);
-  streak.end2_time = streak.end1_time;
-  EXPECT_EQ(tracklet_of(streak, false).reason, "both ends are of one time");
-  streak.kind = DetectionKind::point;
-  EXPECT_EQ(tracklet_of(streak, false).reason, "a point has no rate");
-}
-
 TEST(AdmissibleRegion, HoldsTheTruth) {
   const OrbitState truth = low_orbit();
   const auto tracklet = tracklet_of(short_arc(5, 2.0, truth));
@@ -88,12 +56,12 @@ TEST(AdmissibleRegion, HoldsTheTruth) {
   const TwoBodyState now =
       propagate_two_body({truth.position_m, truth.velocity_m_per_s}, tracklet->time.seconds());
   double nearest_m = 1e12;
-  for (const AdmissiblePoint& point : *region) {
-    nearest_m = std::min(nearest_m, norm(point.state.position_m - now.position_m));
-    const double v2 = dot(point.state.velocity_m_per_s, point.state.velocity_m_per_s);
-    EXPECT_LT(v2 / 2, earth_gm_m3_per_s2 / norm(point.state.position_m));
-    EXPECT_GE(perigee_m(point.state), 6.478e6);
-    EXPECT_LE(apogee_m(point.state), 5e7);
+  for (const OrbitState& state : *region) {
+    nearest_m = std::min(nearest_m, norm(state.position_m - now.position_m));
+    const double v2 = dot(state.velocity_m_per_s, state.velocity_m_per_s);
+    EXPECT_LT(v2 / 2, earth_gm_m3_per_s2 / norm(state.position_m));
+    EXPECT_GE(perigee_m(state), 6.478e6);
+    EXPECT_LE(apogee_m(state), 5e7);
   }
   EXPECT_LT(nearest_m, 0.1 * norm(now.position_m - tracklet->sensor_m));
 }

@@ -21,7 +21,6 @@ TEST(Lambert, AgreesWithCurtis) {
   ASSERT_TRUE(paths) << paths.reason;
   ASSERT_EQ(paths->size(), 1u);
   EXPECT_LT(difference(paths->front().start_velocity_m_per_s, {-5992.5, 1925.4, 3245.6}), 0.2);
-  EXPECT_LT(difference(paths->front().end_velocity_m_per_s, {-3312.5, -4196.6, -385.29}), 0.2);
 }
 
 // Vallado, Fundamentals of Astrodynamics and Applications, example 7-5.
@@ -29,7 +28,6 @@ TEST(Lambert, AgreesWithVallado) {
   const auto paths = lambert({15945.34e3, 0, 0}, {12214.83899e3, 10249.46731e3, 0}, 76 * 60.0);
   ASSERT_TRUE(paths) << paths.reason;
   EXPECT_LT(difference(paths->front().start_velocity_m_per_s, {2058.913, 2915.965, 0}), 0.01);
-  EXPECT_LT(difference(paths->front().end_velocity_m_per_s, {-3451.565, 910.315, 0}), 0.01);
 }
 
 // The path must end where it is said to, by the two-body motion of core/orbit.
@@ -47,20 +45,20 @@ TEST(Lambert, PathsEndAtTheSecondPlace) {
     const double duration_s = 60 * std::pow(2000.0, dice());
     LambertSettings settings;
     settings.most_turns = 3;
-    settings.both_senses = true;
-    const auto paths = lambert(start, end, duration_s, settings);
-    ASSERT_TRUE(paths) << paths.reason;
-    EXPECT_GE(paths->size(), 2u);
-    for (const LambertPath& path : *paths) {
-      with_turns += path.turns > 0;
-      const TwoBodyState there =
-          propagate_two_body({start, path.start_velocity_m_per_s}, duration_s);
-      // Speeds of paths through the centre's neighbourhood are large.
-      const double speed = norm(path.start_velocity_m_per_s);
-      EXPECT_LT(difference(there.position_m, end), 1e-3 + 1e-7 * (norm(end) + speed * duration_s))
-          << i << " turns " << path.turns << " retrograde " << path.retrograde;
-      const double sense = dot(cross(start, path.start_velocity_m_per_s), settings.normal);
-      EXPECT_EQ(sense < 0, path.retrograde) << i;
+    for (const double sense : {1.0, -1.0}) {
+      settings.normal = {0, 0, sense};
+      const auto paths = lambert(start, end, duration_s, settings);
+      ASSERT_TRUE(paths) << paths.reason;
+      for (const LambertPath& path : *paths) {
+        with_turns += path.turns > 0;
+        const TwoBodyState there =
+            propagate_two_body({start, path.start_velocity_m_per_s}, duration_s);
+        // Speeds of paths through the centre's neighbourhood are large.
+        const double speed = norm(path.start_velocity_m_per_s);
+        EXPECT_LT(difference(there.position_m, end), 1e-3 + 1e-7 * (norm(end) + speed * duration_s))
+            << i << " turns " << path.turns << " sense " << sense;
+        EXPECT_GE(dot(cross(start, path.start_velocity_m_per_s), settings.normal), 0) << i;
+      }
     }
   }
   EXPECT_GT(with_turns, 1000);
@@ -86,11 +84,8 @@ TEST(Lambert, HardCasesGiveAPathOrAReason) {
       const Vec<Gcrs> end{7e6 * std::cos(angle), 7e6 * std::sin(angle), 0};
       const auto paths = lambert(r, end, duration_s);
       ASSERT_TRUE(paths) << angle << " " << duration_s << " " << paths.reason;
-      for (const LambertPath& path : *paths) {
+      for (const LambertPath& path : *paths)
         EXPECT_TRUE(std::isfinite(norm(path.start_velocity_m_per_s)));
-        EXPECT_TRUE(std::isfinite(norm(path.end_velocity_m_per_s)));
-        EXPECT_FALSE(path.retrograde);
-      }
     }
 }
 

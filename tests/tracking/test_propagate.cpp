@@ -133,20 +133,15 @@ TEST(TrackingPropagate, RefusesWhatHasNoPath) {
   EXPECT_EQ(*propagate(forces, low_orbit(), SimTime{}), low_orbit());
 }
 
-// The covariance of a linear path: that of many paths drawn from it.
+// To first order the way there and back is no change.
 TEST(TrackingPropagate, CovarianceMovesAlong) {
   const ForceModel forces(ForceSettings{});
   OrbitEstimate estimate{low_orbit()};
   estimate.covariance.diagonal() << 100, 400, 900, 1e-2, 4e-2, 9e-2, 0, 0;
-  const auto there = propagate(forces, estimate, sim_seconds(5000), 1e-9);
+  const auto there = propagate(forces, estimate, sim_seconds(5000));
   ASSERT_TRUE(there) << there.reason;
-  const auto back = propagate(forces, *there, SimTime{}, 0);
-  // Noise only adds.
-  const OrbitMatrix added = back->covariance - estimate.covariance;
-  EXPECT_GT(added.diagonal().head<6>().minCoeff(), 0);
-  const auto without = propagate(forces, estimate, sim_seconds(5000), 0);
-  const auto again = propagate(forces, *without, SimTime{}, 0);
-  EXPECT_LT((again->covariance - estimate.covariance).cwiseAbs().maxCoeff(), 1e-2);
+  const auto back = propagate(forces, *there, SimTime{});
+  EXPECT_LT((back->covariance - estimate.covariance).cwiseAbs().maxCoeff(), 1e-2);
 }
 
 }  // namespace
