@@ -1,5 +1,7 @@
 #include "nodes/gateway/live_view.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -152,14 +154,14 @@ void LiveView::take(const TaskSet& set) {
   changed_.insert(MessageSlot::tasks);
 }
 
-Tick LiveView::Progress::advance(Tick tick) {
+void LiveView::Progress::advance(Tick tick) {
   const double at = double(now().count()) * 1e-9;
   if (at_s > 0.0 && at > at_s) {
     const double rate = double(tick - done) / (at - at_s);
     ticks_per_s = std::max(0.0, 0.5 * ticks_per_s + 0.5 * rate);
   }
-  done = tick, at_s = at;
-  return tick;
+  done = tick;
+  at_s = at;
 }
 
 void LiveView::take(const RunStatus& status, const std::map<std::string, std::uint64_t>& gaps) {
@@ -168,10 +170,9 @@ void LiveView::take(const RunStatus& status, const std::map<std::string, std::ui
   Progress& clock = progress_[""];
   clock.advance(status.settled);
   const auto span = history_.span();
-  char run_id[20];
-  std::snprintf(run_id, sizeof run_id, "%016llx", static_cast<unsigned long long>(status.run_id));
   JsonWriter json;
-  json.begin_object().field("type", "status").field("run_id", run_id);
+  json.begin_object().field("type", "status");
+  json.field("run_id", fmt::format("{:016x}", status.run_id));
   json.field("phase", phase_name(status.phase)).field("paused", status.paused);
   json.field("pace", status.pace);
   json.field("cause", status.cause).field("settled_tick", status.settled);
@@ -219,8 +220,7 @@ void LiveView::encode_run(const RunStatus& status) {
     }
   JsonWriter json;
   json.begin_object().field("type", "run").field("start_utc", status.start_utc);
-  json.key("start_utc_ms");
-  start_utc_ms_ ? json.value(*start_utc_ms_) : json.null();
+  json.field("start_utc_ms", start_utc_ms_);
   json.field("tick_s", status.tick_length.seconds()).field("last_tick", status.last_tick);
   latest_.set(MessageSlot::run, {json.end_object().take()});
 }
@@ -361,8 +361,7 @@ void LiveView::publish() {
 
 void LiveView::remember() {
   ViewSnapshot snapshot{time_s_, {}};
-  for (const MessageSlot slot : {MessageSlot::objects, MessageSlot::sensors,
-                                 MessageSlot::detections, MessageSlot::tracks, MessageSlot::tasks})
+  for (const MessageSlot slot : slots_of_history)
     if (auto message = latest_.of(slot)) snapshot.messages.push_back(std::move(message));
   history_.add(std::move(snapshot));
 }

@@ -92,7 +92,7 @@ class LiveView {
   struct Progress {
     Tick done = -1;
     double at_s = 0.0, ticks_per_s = 0.0;
-    Tick advance(Tick tick);
+    void advance(Tick tick);
   };
   std::map<std::string, Progress> progress_;
 };

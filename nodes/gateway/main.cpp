@@ -1,7 +1,6 @@
 // dmise-gateway: shows a run to browsers.
 #include <spdlog/spdlog.h>
 
-#include <cstdio>
 #include <filesystem>
 
 #include "core/base/error.h"

@@ -135,8 +135,8 @@ AccessTokens read_access_tokens(const std::string& path) {
   return tokens;
 }
 
-Access access_of(const AccessTokens& tokens, std::string_view presented, Access without_tokens) {
-  if (!tokens.any()) return without_tokens;
+Access access_of(const AccessTokens& tokens, std::string_view presented) {
+  if (!tokens.any()) return Access::control;
   // All are always compared. An unset token is equal to nothing that is_token lets through.
   const bool is_control = same_token(tokens.control, presented) && !tokens.control.empty();
   const bool is_view = same_token(tokens.view, presented) && !tokens.view.empty();

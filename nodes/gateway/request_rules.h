@@ -11,7 +11,7 @@ namespace dmise {
 /// What a viewer may do; each includes those before it.
 enum class Access { none, view, truth, control };
 
-/// Tokens that viewers present. Both empty: every client on this machine may view.
+/// Tokens that viewers present. All empty: every client on this machine has full access.
 struct AccessTokens {
   std::string view, control, truth;  // empty: nobody gets this access by a token
 
@@ -23,9 +23,8 @@ struct AccessTokens {
 /// owner may read the file.
 AccessTokens read_access_tokens(const std::string& path);
 
-/// Access of a presented token. `without_tokens`: that of everybody if no tokens are set. Compares
-/// in constant time.
-Access access_of(const AccessTokens& tokens, std::string_view presented, Access without_tokens);
+/// Access of a presented token; full access if no tokens are set. Compares in constant time.
+Access access_of(const AccessTokens& tokens, std::string_view presented);
 
 /// Whether `host`, the value of a Host header, names this machine's loopback: of another name a
 /// page of a foreign site could make its own (DNS rebinding).

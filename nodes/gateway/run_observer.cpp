@@ -71,11 +71,9 @@ class RunObserver::Connections {
     hear_master(*master_);
     if (control_) hear_master(*control_);
     if (roster_)
-      while (true) {
-        const RawMessage message = dmise::receive(*roster_);
-        if (message.empty()) break;
+      for (auto message = dmise::receive(*roster_); !message.empty();
+           message = dmise::receive(*roster_))
         take(message);
-      }
     const Instant until = now() + receive_at_most;
     while (now() < until) {
       RawMessage message = dmise::receive(subscription_);
@@ -133,7 +131,6 @@ class RunObserver::Connections {
 
  private:
   void call_master() {
-    master_.reset();
     master_.emplace(make_socket(context_, zmq::socket_type::dealer, max_control_bytes));
     connect_to(*master_, options_.master, security_, master_name);
   }
@@ -241,7 +238,6 @@ class RunObserver::Connections {
     if (!orbit_ || orbit_->resend_endpoint().empty() || now() - roster_asked_ < roster_interval)
       return;
     roster_asked_ = now();
-    roster_.reset();
     try {
       roster_.emplace(make_socket(context_, zmq::socket_type::dealer, max_data_bytes));
       connect_to(*roster_, orbit_->resend_endpoint(), security_, orbit_->name());

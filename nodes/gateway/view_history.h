@@ -9,11 +9,15 @@
 
 namespace dmise {
 
+/// Kinds of messages whose past is kept.
+inline constexpr MessageSlot slots_of_history[] = {MessageSlot::objects, MessageSlot::sensors,
+                                                   MessageSlot::detections, MessageSlot::tracks,
+                                                   MessageSlot::tasks};
+
 /// What viewers saw at one time of the simulation.
 struct ViewSnapshot {
   double time_s = 0.0;
-  std::vector<SharedMessage>
-      messages;  // objects, sensors, detections, tracks, tasks: those there are
+  std::vector<SharedMessage> messages;  // of `slots_of_history`, those there are
 };
 
 /// The past of a run, for viewers that look back. Covers the whole run within a bound of memory:

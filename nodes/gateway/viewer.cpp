@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <boost/beast/websocket.hpp>
 
 #include "core/base/json.h"
@@ -55,10 +56,7 @@ class Viewer : public Connection, public std::enable_shared_from_this<Viewer> {
     if (!next) next = newest();
     if (!next) return;
     sending_ = next;
-    if (next->binary)
-      socket_.binary(true);
-    else
-      socket_.text(true);
+    socket_.binary(next->binary);
     socket_.async_write(boost::asio::buffer(next->bytes),
                         [self = shared_from_this()](error_code error, std::size_t) {
                           self->sending_.reset();
@@ -89,8 +87,7 @@ class Viewer : public Connection, public std::enable_shared_from_this<Viewer> {
   bool sees_truth() const { return access_ >= Access::truth && hub_.options.shows_truth; }
 
   static bool is_in_history(MessageSlot slot) {
-    return slot != MessageSlot::run && slot != MessageSlot::status && slot != MessageSlot::roster &&
-           slot != MessageSlot::truth && slot != MessageSlot::notice;
+    return std::ranges::find(slots_of_history, slot) != std::end(slots_of_history);
   }
 
   void read() {
@@ -123,8 +120,7 @@ class Viewer : public Connection, public std::enable_shared_from_this<Viewer> {
   void obey(const LiveCommand&) {
     in_past_ = false;
     past_.clear();
-    for (std::size_t slot = 0; slot < slot_count; ++slot)
-      if (is_in_history(MessageSlot(slot))) sent_[slot] = 0;
+    for (const MessageSlot slot : slots_of_history) sent_[std::size_t(slot)] = 0;
   }
   void obey(const PastCommand& command) {
     const auto snapshot = hub_.content.history.at(command.time_s);

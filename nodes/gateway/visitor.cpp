@@ -55,7 +55,7 @@ class Visitor : public Connection, public std::enable_shared_from_this<Visitor> 
     const std::string presented =
         target->token.empty() ? cookie_value(view_of(request[http::field::cookie]), cookie_name)
                               : target->token;
-    const Access access = access_of(hub_.options.tokens, presented, Access::control);
+    const Access access = access_of(hub_.options.tokens, presented);
     if (access == Access::none)
       return refuse(http::status::unauthorized, "open the address with its token: /?token=...");
     if (std::holds_alternative<LiveRequest>(target->path)) return become_viewer(request, access);

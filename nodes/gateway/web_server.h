@@ -16,9 +16,7 @@ struct WebServerOptions {
   std::string host = "127.0.0.1";
   unsigned short port = 0;  // 0: any free port
   AccessTokens tokens;
-  bool may_control =
-      false;  // whether viewers may control the clock, with their token if there is one
-
+  bool may_control = false;  // the clock, with the operator's token if there are tokens
   bool shows_truth = false;  // to viewers who may see it
 
   // Limits.

@@ -65,7 +65,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     default: {
       const AccessTokens tokens{"viewerviewerviewer", "operatoroperator", "truthtruthtruthtruth"};
       const std::string cookie = cookie_value(text, "dmise_token");
-      const Access access = access_of(tokens, cookie, Access::control);
+      const Access access = access_of(tokens, cookie);
       require((access == Access::view) == (cookie == tokens.view));
       require((access == Access::control) == (cookie == tokens.control));
     }

@@ -41,14 +41,14 @@ TEST(AccessTokens, AreReadFromAFileOfTheirOwner) {
 TEST(Access, IsThatOfTheToken) {
   const AccessTokens all{viewer, operator_, referee}, view_alone{viewer, "", ""},
       control_alone{"", operator_, ""};
-  EXPECT_EQ(access_of(all, viewer, Access::control), Access::view);
-  EXPECT_EQ(access_of(all, operator_, Access::none), Access::control);
-  EXPECT_EQ(access_of(all, referee, Access::none), Access::truth);
-  EXPECT_EQ(access_of(view_alone, referee, Access::control), Access::none);
+  EXPECT_EQ(access_of(all, viewer), Access::view);
+  EXPECT_EQ(access_of(all, operator_), Access::control);
+  EXPECT_EQ(access_of(all, referee), Access::truth);
+  EXPECT_EQ(access_of(view_alone, referee), Access::none);
   for (const std::string& wrong : {std::string(), viewer.substr(1), viewer + "v", std::string("x")})
     for (const AccessTokens& tokens : {all, view_alone, control_alone})
-      EXPECT_EQ(access_of(tokens, wrong, Access::control), Access::none) << wrong;
-  EXPECT_EQ(access_of({}, "", Access::control), Access::control);
+      EXPECT_EQ(access_of(tokens, wrong), Access::none) << wrong;
+  EXPECT_EQ(access_of({}, ""), Access::control);
 }
 
 TEST(Hosts, OfLoopbackAreKnown) {
