@@ -29,4 +29,7 @@ T median_of(std::vector<T> values) {
   return quantile_of(std::move(values), 0.5);
 }
 
+/// Standard deviation of a normal distribution over the median of its absolute values.
+inline constexpr double sigma_of_median = 1.4826;
+
 }  // namespace dmise

@@ -38,10 +38,10 @@ Frame own_frame(std::string_view bytes, const std::string& name, const FrameChoi
   return frame;
 }
 
-/// What the planes of a file are.
+/// The planes of a file that are read, from 0.
 struct Planes {
   int first = 0, last = 0;
-  bool added = false;  // they are colours of one frame
+  int together = 1;  // that are added for one frame, as its colours
 };
 
 Planes planes_of(const FitsImage& image, const StandardCards& cards, const FrameChoice& choice,
@@ -52,19 +52,19 @@ Planes planes_of(const FitsImage& image, const StandardCards& cards, const Frame
     if (plane < 1 || plane > count)
       throw ConfigError(name + ": plane: must be in 1.." + std::to_string(count) + ", got " +
                         std::to_string(plane));
-    return {plane - 1, plane - 1, false};
+    return {plane - 1, plane - 1};
   }
   const std::string type = cards.text("CTYPE3");
   const bool colours = count == 3 && (type.empty() || type.starts_with("RGB") ||
                                       type.starts_with("COLO") || type.starts_with("BAND"));
-  return {0, count - 1, colours};
+  return {0, count - 1, colours ? count : 1};
 }
 
-/// The values of some planes, NaN where there is none.
-std::vector<double> values_of(FitsImage& image, const Planes& planes, const StandardCards& cards,
+/// The sum of some planes, NaN where it has no value.
+std::vector<double> values_of(FitsImage& image, int first, int together, const StandardCards& cards,
                               const std::string& name) {
   std::vector<double> values;
-  for (int plane = planes.first; plane <= planes.last; ++plane) image.add_plane(plane, values);
+  for (int plane = first; plane < first + together; ++plane) image.add_plane(plane, values);
   std::size_t without = 0;
   for (double& v : values)
     if (!(std::abs(v) <= largest_value)) {
@@ -74,20 +74,20 @@ std::vector<double> values_of(FitsImage& image, const Planes& planes, const Stan
   if (without == values.size()) throw ConfigError(name + ": no pixel has a value");
   if (without > 0)
     cards.missing("pixels: " + std::to_string(without) + " have no value, and are not used");
-  if (planes.last > planes.first)
+  if (together > 1)
     cards.assumed("planes: three are taken for colours, and added; --plane takes one");
   return values;
 }
 
-Frame foreign_frame(FitsImage& image, const FitsValues& values, const Planes& planes,
-                    const PlanePlace& place, const std::string& name, Threads& threads) {
+Frame foreign_frame(FitsImage& image, const FitsValues& values, const PlanePlace& place,
+                    int together, const std::string& name, Threads& threads) {
   Frame frame;
   const StandardCards cards(values, frame.notes);
-  const auto pixels = values_of(image, planes, cards, name);
+  const auto pixels = values_of(image, place.plane, together, cards, name);
   const CountMap map = choose_count_map(pixels, image.columns());
   frame.counts = to_counts(pixels, image.columns(), map, frame.unusable);
   set_facts(cards, place, image.columns(), image.rows(), frame.header);
-  const CountSource source{pixels, map, planes.last - planes.first + 1};
+  const CountSource source{pixels, map, together};
   set_detector(cards, source, frame.counts, threads, frame.header);
   set_star_images(cards, frame.counts, threads, frame.header);
   return frame;
@@ -106,12 +106,9 @@ void decode_frames(std::string_view bytes, const std::string& name, const FrameC
   for (const auto& [key, value] : choice.stated) values[key] = value;
   FrameNotes unused;
   const Planes planes = planes_of(image, StandardCards(values, unused), choice, name);
-  const int frames = planes.added ? 1 : image.planes();
-  for (int plane = planes.first; plane <= (planes.added ? planes.first : planes.last); ++plane) {
-    const Planes own = planes.added ? planes : Planes{plane, plane, false};
-    const PlanePlace place{planes.added ? 0 : plane, frames};
-    take(foreign_frame(image, values, own, place, name, threads));
-  }
+  for (int plane = planes.first; plane <= planes.last; plane += planes.together)
+    take(foreign_frame(image, values, {plane, image.planes() / planes.together}, planes.together,
+                       name, threads));
 }
 
 void read_frames_of(const std::string& path, const FrameChoice& choice, Threads& threads,

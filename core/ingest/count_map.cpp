@@ -13,7 +13,6 @@ namespace {
 
 constexpr double most_count = 65535.0;
 constexpr double sigma_of_quartiles = 0.7413;  // of a normal distribution, over their distance
-constexpr double sigma_of_median = 1.4826;     // likewise, over the median of absolute values
 
 /// At most about `most` of the values that are finite, evenly spread.
 std::vector<double> sample(std::span<const double> values, std::size_t most) {

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/formatted.h"
 #include "core/base/quantile.h"
+#include "core/detection/background.h"
 
 namespace dmise {
 namespace {
@@ -12,12 +13,6 @@ namespace {
 constexpr double most_gain = 20.0;     // of GAIN [e-/count]; more is a camera's setting
 constexpr double least_noise_e = 0.1;  // of a camera
 constexpr int mesh_px = 64;
-
-std::string figures(const char* format, double a, double b = 0.0) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, a, b);
-  return text;
-}
 
 /// A gain by which the sky's noise is one that a camera can have.
 std::optional<double> stated_gain(const StandardCards& cards, double noise) {
@@ -34,6 +29,52 @@ std::optional<double> stated_gain(const StandardCards& cards, double noise) {
   return std::nullopt;
 }
 
+/// Electrons per count by the noise of the sky: the slope of variance against level over a mesh.
+struct MeasuredGain {
+  double e_per_dn = 0.0, sigma = 0.0;
+};
+
+/// Empty where levels span too little: the slope must be known to 10 %. Frames whose pixels were
+/// averaged or resampled have less noise than light, and so too high a gain.
+std::optional<MeasuredGain> measure_gain(const CountImage& counts, const Background& background) {
+  struct Cell {
+    double level, variance;
+  };
+  std::vector<Cell> cells;
+  for (int y = mesh_px / 2; y < counts.rows; y += mesh_px)
+    for (int x = mesh_px / 2; x < counts.columns; x += mesh_px) {
+      const double sigma = background.sigma_dn(x, y), level = background.level_dn(x, y);
+      if (sigma > 0.5) cells.push_back({level, sigma * sigma - 1.0 / 12});
+    }
+  if (cells.size() < 50) return std::nullopt;
+  // A cell's variance scatters with its square; a cell with stars is an outlier above.
+  double slope = 0.0, offset = 0.0, slope_sigma = 0.0;
+  std::vector<char> used(cells.size(), 1);
+  for (int pass = 0; pass < 6; ++pass) {
+    double n = 0, l = 0, v = 0, ll = 0, lv = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (!used[i]) continue;
+      const double w = 1 / (cells[i].variance * cells[i].variance);
+      n += w, l += w * cells[i].level, v += w * cells[i].variance;
+      ll += w * cells[i].level * cells[i].level, lv += w * cells[i].level * cells[i].variance;
+    }
+    const double det = n * ll - l * l;
+    if (!(det > 1e-9 * n * ll)) return std::nullopt;
+    slope = (n * lv - l * v) / det;
+    offset = (ll * v - l * lv) / det;
+    std::vector<double> off;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      off.push_back(std::abs(cells[i].variance - offset - slope * cells[i].level) /
+                    cells[i].variance);
+    const double scatter = std::max(sigma_of_median * median_of(off), 1e-6);
+    slope_sigma = scatter * std::sqrt(n / det);
+    for (std::size_t i = 0; i < cells.size(); ++i) used[i] = off[i] < 3 * scatter;
+  }
+  if (!(slope > 10 * slope_sigma) || !(slope_sigma > 0)) return std::nullopt;
+  const double gain = 1 / slope;
+  return MeasuredGain{gain, gain * slope_sigma / slope};
+}
+
 void set_gain(const StandardCards& cards, const CountMap& map, const CountImage& counts,
               const Background& background, FrameHeader& header) {
   if (const auto gain = stated_gain(cards, background.median_sigma_dn() * map.step)) {
@@ -42,15 +83,15 @@ void set_gain(const StandardCards& cards, const CountMap& map, const CountImage&
   }
   if (const auto gain = measure_gain(counts, background)) {
     header.gain_e_per_dn = gain->e_per_dn;
-    cards.assumed(figures("gain: %.4g +- %.2g electrons per count, measured from the sky's noise",
-                          gain->e_per_dn / map.step, gain->sigma / map.step));
+    cards.assumed(formatted("gain: %.4g +- %.2g electrons per count, measured from the sky's noise",
+                            gain->e_per_dn / map.step, gain->sigma / map.step));
     return;
   }
   header.gain_e_per_dn = 1.0;
   header.unknown.add(FrameFact::gain);
   cards.missing(map.step == 1.0
                     ? "gain: no EGAIN or GAIN: electrons are counts"
-                    : figures("gain: no EGAIN or GAIN: electrons are steps of %.4g", map.step));
+                    : formatted("gain: no EGAIN or GAIN: electrons are steps of %.4g", map.step));
 }
 
 /// `planes` were added.
@@ -98,51 +139,11 @@ void set_saturation(const StandardCards& cards, const CountSource& source, doubl
     return;
   }
   header.saturation_dn = std::min(highest, std::max(1.0, map.count(top.value)));
-  cards.assumed(figures("saturation: %.10g, the greatest value, which %.0f pixels have", top.value,
-                        double(top.pixels)));
+  cards.assumed(formatted("saturation: %.10g, the greatest value, which %.0f pixels have",
+                          top.value, double(top.pixels)));
 }
 
 }  // namespace
-
-std::optional<MeasuredGain> measure_gain(const CountImage& counts, const Background& background) {
-  struct Cell {
-    double level, variance;
-  };
-  std::vector<Cell> cells;
-  for (int y = mesh_px / 2; y < counts.rows; y += mesh_px)
-    for (int x = mesh_px / 2; x < counts.columns; x += mesh_px) {
-      const double sigma = background.sigma_dn(x, y), level = background.level_dn(x, y);
-      if (sigma > 0.5) cells.push_back({level, sigma * sigma - 1.0 / 12});
-    }
-  if (cells.size() < 50) return std::nullopt;
-  // A cell's variance scatters with its square; a cell with stars is an outlier above.
-  double slope = 0.0, offset = 0.0, slope_sigma = 0.0;
-  std::vector<char> used(cells.size(), 1);
-  for (int pass = 0; pass < 6; ++pass) {
-    double n = 0, l = 0, v = 0, ll = 0, lv = 0;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (!used[i]) continue;
-      const double w = 1 / (cells[i].variance * cells[i].variance);
-      n += w, l += w * cells[i].level, v += w * cells[i].variance;
-      ll += w * cells[i].level * cells[i].level, lv += w * cells[i].level * cells[i].variance;
-    }
-    const double det = n * ll - l * l;
-    if (!(det > 1e-9 * n * ll)) return std::nullopt;
-    slope = (n * lv - l * v) / det;
-    offset = (ll * v - l * lv) / det;
-    std::vector<double> off;
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      off.push_back(std::abs(cells[i].variance - offset - slope * cells[i].level) /
-                    cells[i].variance);
-    const double scatter = std::max(1.4826 * median_of(off), 1e-6);
-    slope_sigma = scatter * std::sqrt(n / det);
-    for (std::size_t i = 0; i < cells.size(); ++i) used[i] = off[i] < 3 * scatter;
-  }
-  if (!(slope > 10 * slope_sigma) || !(slope_sigma > 0)) return std::nullopt;
-  const double gain = 1 / slope;
-  return MeasuredGain{gain, gain * slope_sigma / slope,
-                      int(std::count(used.begin(), used.end(), 1))};
-}
 
 void set_detector(const StandardCards& cards, const CountSource& source, const CountImage& counts,
                   Threads& threads, FrameHeader& header) {
@@ -153,8 +154,8 @@ void set_detector(const StandardCards& cards, const CountSource& source, const C
   set_read_noise(cards, background.median_sigma_dn(), source.planes, header);
   set_saturation(cards, source, background.median_level_dn(), header);
   if (!map.is_identity())
-    cards.assumed(
-        figures("pixels: brought onto 16 bits in steps of %.4g from %.6g on", map.step, map.zero));
+    cards.assumed(formatted("pixels: brought onto 16 bits in steps of %.4g from %.6g on", map.step,
+                            map.zero));
 }
 
 }  // namespace dmise

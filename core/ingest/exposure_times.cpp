@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/text_fields.h"
 #include "core/base/units.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
@@ -26,9 +27,8 @@ struct Scale {
 };
 
 Scale scale_of(const StandardCards& cards) {
-  std::string name = cards.text("TIMESYS");
-  name = name.substr(0, name.find('('));
-  for (char& c : name) c = c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c;
+  const std::string said = cards.text("TIMESYS");
+  const std::string name = upper_case(said.substr(0, said.find('(')));
   if (name.empty() || name == "UTC" || name == "UT" || name == "GMT" || name == "UT1") return {};
   if (name == "TAI" || name == "IAT") return {0.0};
   if (name == "TT" || name == "TDT" || name == "ET" || name == "TDB") return {32.184};

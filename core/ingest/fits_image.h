@@ -21,7 +21,6 @@ class FitsImage {
   int columns() const { return columns_; }
   int rows() const { return rows_; }
   int planes() const { return planes_; }
-  int bitpix() const { return bitpix_; }
   /// Cards of the image's header, then those of the primary header that it lacks.
   const FitsValues& values() const { return values_; }
 

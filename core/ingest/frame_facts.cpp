@@ -73,12 +73,11 @@ void set_site(const StandardCards& cards, FrameHeader& header) {
 }
 
 void set_photometry(const StandardCards& cards, FrameHeader& header) {
-  header.band = {"", 0.55e-6, 0.128e-6, {}};
-  if (const std::string filter = cards.text("FILTER"); !filter.empty())
-    header.band.name = filter;
-  else
+  header.band = {cards.text("FILTER"), 0.55e-6, 0.128e-6, {}};
+  if (header.band.name.empty()) {
     header.unknown.add(FrameFact::band);
-  if (header.unknown.has(FrameFact::band)) cards.missing("band: no FILTER");
+    cards.missing("band: no FILTER");
+  }
   header.unknown.add(FrameFact::zero_point);
   header.unknown.add(FrameFact::extinction);
   cards.missing("zero point: no magnitudes; dmise solve finds it");

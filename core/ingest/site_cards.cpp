@@ -19,22 +19,25 @@ std::optional<Site> by_position(const StandardCards& cards) {
   return geodetic_from_itrs({*x, *y, *z});
 }
 
-std::optional<Site> by_angles(const StandardCards& cards, const char* latitude_key,
-                              const char* longitude_key, const char* height_key) {
-  const auto latitude = cards.angle_deg(latitude_key, false);
-  const auto longitude = cards.angle_deg(longitude_key, false);
+struct Keys {
+  const char *latitude, *longitude, *height;
+};
+
+std::optional<Site> by_angles(const StandardCards& cards, const Keys& keys) {
+  const auto latitude = cards.angle_deg(keys.latitude, false);
+  const auto longitude = cards.angle_deg(keys.longitude, false);
   if (!latitude || !longitude) return std::nullopt;
   if (!(std::abs(*latitude) <= 90)) {
-    cards.reject(latitude_key, "site: must be in -90..90 deg");
+    cards.reject(keys.latitude, "site: must be in -90..90 deg");
     return std::nullopt;
   }
   if (!(*longitude >= -180 && *longitude <= 360)) {
-    cards.reject(longitude_key, "site: must be in -180..360 deg");
+    cards.reject(keys.longitude, "site: must be in -180..360 deg");
     return std::nullopt;
   }
-  auto height_m = cards.number(height_key);
+  auto height_m = cards.number(keys.height);
   if (height_m && !(*height_m >= lowest_m && *height_m <= highest_m)) {
-    cards.reject(height_key, "site: must be in -1000..100000 m");
+    cards.reject(keys.height, "site: must be in -1000..100000 m");
     height_m.reset();
   }
   if (!height_m) cards.assumed("site: its height is taken for 0 m");
@@ -45,14 +48,11 @@ std::optional<Site> by_angles(const StandardCards& cards, const char* latitude_k
 
 std::optional<Site> site_of(const StandardCards& cards) {
   if (const auto site = by_position(cards)) return site;
-  if (const auto site = by_angles(cards, "OBSGEO-B", "OBSGEO-L", "OBSGEO-H")) return site;
-  struct Keys {
-    const char *latitude, *longitude, *height;
-  };
+  if (const auto site = by_angles(cards, {"OBSGEO-B", "OBSGEO-L", "OBSGEO-H"})) return site;
   for (const Keys& keys :
        {Keys{"SITELAT", "SITELONG", "SITEELEV"}, Keys{"LAT-OBS", "LONG-OBS", "ALT-OBS"},
         Keys{"OBS-LAT", "OBS-LONG", "OBS-ELEV"}})
-    if (const auto site = by_angles(cards, keys.latitude, keys.longitude, keys.height)) {
+    if (const auto site = by_angles(cards, keys)) {
       cards.assumed(std::string("site: ") + keys.longitude + " is taken as east positive");
       return site;
     }

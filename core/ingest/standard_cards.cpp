@@ -1,9 +1,9 @@
 #include "core/ingest/standard_cards.h"
 
-#include <charconv>
 #include <cmath>
 #include <vector>
 
+#include "core/base/text_fields.h"
 #include "core/products/observation.h"
 
 namespace dmise {
@@ -12,12 +12,7 @@ namespace {
 std::optional<double> parsed(std::string text) {
   for (char& c : text)
     if (c == 'D' || c == 'd') c = 'E';  // FITS allows the exponent of a double to be marked D
-  if (text.starts_with('+')) text.erase(0, 1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
+  return parse_real(text);
 }
 
 /// Parts between blanks and colons.

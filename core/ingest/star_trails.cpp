@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
-#include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/quantile.h"
 #include "core/base/units.h"
 #include "core/calibration/star_sources.h"
@@ -62,16 +61,14 @@ PixelPosition trail_in_the_middle(const FrameHeader& header, int columns, int ro
 
 void set_width(const StandardCards& cards, const std::optional<StarShape>& shape,
                FrameHeader& header) {
-  char text[120];
   if (const auto stated = cards.number("PSFFWHM");
       stated && *stated >= least_fwhm_px && *stated <= most_fwhm_px) {
     header.psf_fwhm_px = *stated;
   } else if (shape) {
     const double sigma_px = std::sqrt(std::max(shape->sigma_px * shape->sigma_px - 1.0 / 12, 0.0));
     header.psf_fwhm_px = std::clamp(fwhm_of_sigma * sigma_px, least_fwhm_px, most_fwhm_px);
-    std::snprintf(text, sizeof text, "PSF: %.3g px wide (FWHM), measured in %d stars",
-                  header.psf_fwhm_px, shape->stars);
-    cards.assumed(text);
+    cards.assumed(formatted("PSF: %.3g px wide (FWHM), measured in %d stars", header.psf_fwhm_px,
+                            shape->stars));
   } else {
     header.psf_fwhm_px = otherwise_fwhm_px;
     cards.assumed("PSF: taken for 2 px wide (FWHM): too few stars to measure it");
@@ -87,7 +84,7 @@ MedianOf median_and_error(const std::vector<double>& values) {
   const double middle = median_of(values);
   std::vector<double> off;
   for (const double v : values) off.push_back(std::abs(v - middle));
-  return {middle, 1.25 * 1.4826 * median_of(off) / std::sqrt(double(values.size()))};
+  return {middle, 1.25 * sigma_of_median * median_of(off) / std::sqrt(double(values.size()))};
 }
 
 /// Measured elongation over that of a mount at rest: 1 for it, up to 1.6 for long trails, and 0 for
@@ -128,10 +125,8 @@ std::optional<PixelPosition> measured_trail(const StarShape& shape) {
 }
 
 std::string trail_text(const PixelPosition& trail) {
-  char text[120];
-  std::snprintf(text, sizeof text, "stars trail by %.3g px at %.1f deg to the rows",
-                std::hypot(trail.x_px, trail.y_px), std::atan2(trail.y_px, trail.x_px) / deg);
-  return text;
+  return formatted("stars trail by %.3g px at %.1f deg to the rows",
+                   std::hypot(trail.x_px, trail.y_px), std::atan2(trail.y_px, trail.x_px) / deg);
 }
 
 /// By the stars: the mount at rest, an even drift, or none.
