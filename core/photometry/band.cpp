@@ -33,8 +33,7 @@ std::optional<Band> filter_named(std::string_view name) {
     if (filter.name != name) continue;
     Curve curve;
     for (const Sample& sample : filter.samples) {
-      curve.wavelength_m.push_back(sample.wavelength_nm * nm);
-      curve.value.push_back(sample.value);
+      curve.add(sample.wavelength_nm * nm, sample.value);
     }
     return band_of(std::string(name), std::move(curve));
   }
@@ -78,8 +77,7 @@ Band through(const Band& band, const Curve& transmission) {
   constexpr double step_m = 2 * nm;
   Curve product;
   const auto add = [&](double x) {
-    product.wavelength_m.push_back(x);
-    product.value.push_back(band.response.at_or_zero(x) * transmission.at_or_end(x));
+    product.add(x, band.response.at_or_zero(x) * transmission.at_or_end(x));
   };
   add(at[0]);
   for (std::size_t i = 1; i < at.size(); ++i) {

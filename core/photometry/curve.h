@@ -9,6 +9,10 @@ struct Curve {
   std::vector<double> value;
 
   bool empty() const { return wavelength_m.empty(); }
+  void add(double at_m, double value_there) {
+    wavelength_m.push_back(at_m);
+    value.push_back(value_there);
+  }
   /// Linear between samples, the end values outside of them; 1 when empty.
   double at_or_end(double wavelength_m) const;
   /// Linear between samples, 0 outside of them; 1 when empty.

@@ -71,8 +71,7 @@ Curve parse_curve(std::string_view text, const std::string& name) {
     const double at_m = *wavelength * unit_m;
     if (!curve.empty() && at_m <= curve.wavelength_m.back())
       fail("wavelengths must ascend", fields[0]);
-    curve.wavelength_m.push_back(at_m);
-    curve.value.push_back(*value * scale);
+    curve.add(at_m, *value * scale);
   }
   if (curve.wavelength_m.size() < 2)
     throw ConfigError(name + ": a curve needs a header and two lines or more");

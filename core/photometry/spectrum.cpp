@@ -18,8 +18,7 @@ struct Sample {
 Spectrum from_samples(std::span<const Sample> samples, double unit_w_per_m2_m) {
   Spectrum spectrum;
   for (const Sample& sample : samples) {
-    spectrum.irradiance.wavelength_m.push_back(sample.wavelength_nm * nm);
-    spectrum.irradiance.value.push_back(sample.value * unit_w_per_m2_m);
+    spectrum.irradiance.add(sample.wavelength_nm * nm, sample.value * unit_w_per_m2_m);
   }
   return spectrum;
 }

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+
 #include "core/photometry/band.h"
 #include "core/photometry/curve.h"
 
@@ -8,6 +10,15 @@ namespace dmise {
 struct Spectrum {
   Curve irradiance;
 };
+
+/// Returns a spectrum times `factor(wavelength_m)` at each of its wavelengths.
+template <class Factor>
+Spectrum times(Spectrum spectrum, const Factor& factor) {
+  Curve& curve = spectrum.irradiance;
+  for (std::size_t i = 0; i < curve.value.size(); ++i)
+    curve.value[i] *= factor(curve.wavelength_m[i]);
+  return spectrum;
+}
 
 /// The Sun at 1 au above the atmosphere, 0.2-5 um. Source: ASTM E490-00a, averaged with triangular
 /// weights every 5 nm up to 1.1 um.

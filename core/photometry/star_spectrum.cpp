@@ -47,8 +47,8 @@ StarSpectrum star_spectrum(const StarColour& colour) {
   const std::size_t row = std::min(std::size_t(at), table.size() - 2);
   StarSpectrum star{.kelvin = kelvin, .factors = {}};
   for (std::size_t i = 0; i < std::size(nodes_nm); ++i) {
-    star.factors.wavelength_m.push_back(nodes_nm[i] * nm);
-    star.factors.value.push_back(std::lerp(table[row][i], table[row + 1][i], at - double(row)));
+    star.factors.add(nodes_nm[i] * nm,
+                     std::lerp(table[row][i], table[row + 1][i], at - double(row)));
   }
   return star;
 }

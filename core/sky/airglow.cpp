@@ -18,16 +18,15 @@ double van_rhijn(double sin_altitude, double layer_height_m) {
 }
 
 double airglow_s10(const Airglow& airglow, double sin_altitude, double diffuse_extinction_mag) {
-  const double by_sun =
-      airglow.solar_flux_sfu ? airglow_by_solar_flux(*airglow.solar_flux_sfu) : 1.0;
-  return by_sun * s10_of_mag_per_arcsec2(airglow.zenith_v_mag_per_arcsec2) *
+  return airglow_by_solar_flux(airglow.solar_flux_sfu) *
+         s10_of_mag_per_arcsec2(airglow.zenith_v_mag_per_arcsec2) *
          van_rhijn(sin_altitude, airglow.layer_height_m) *
          light_of_magnitude(diffuse_extinction_mag * (scattering_airmass(sin_altitude) - 1.0));
 }
 
-double airglow_by_solar_flux(double solar_flux_sfu) {
+double airglow_by_solar_flux(const std::optional<double>& solar_flux_sfu) {
   const auto light = [](double sfu) { return 0.2068 + 0.006139 * sfu; };
-  return light(solar_flux_sfu) / light(130.0);
+  return solar_flux_sfu ? light(*solar_flux_sfu) / light(130.0) : 1.0;
 }
 
 namespace {
@@ -54,13 +53,11 @@ const Spectrum& usual_spectrum() {
     Curve curve{{200 * nm, 300 * nm}, {0.0, herzberg_scale * 0.23}};
     double at_nm = 350;
     for (const double flux : visible) {
-      curve.wavelength_m.push_back(at_nm * nm);
-      curve.value.push_back(flux * (at_nm < 400 ? herzberg_scale : at_nm < 700 ? 1.0 : oh_scale));
+      curve.add(at_nm * nm, flux * (at_nm < 400 ? herzberg_scale : at_nm < 700 ? 1.0 : oh_scale));
       at_nm += 10;
     }
     for (const auto& [wavelength_nm, flux] : infrared) {
-      curve.wavelength_m.push_back(wavelength_nm * nm);
-      curve.value.push_back(flux);
+      curve.add(wavelength_nm * nm, flux);
     }
     return Spectrum{curve};
   }();

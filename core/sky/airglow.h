@@ -23,9 +23,10 @@ struct Airglow {
   std::optional<double> solar_flux_sfu;
 };
 
-/// Light of lines and continuum but for OH at a solar flux over that at 130 sfu: (0.2068 + 0.006139
-/// S) / 1.0049. Source: Noll et al. 2012, A&A 543, A92, for the continuum.
-double airglow_by_solar_flux(double solar_flux_sfu);
+/// Light of lines and continuum, without OH, at a solar flux S over that at 130 sfu: (0.2068 +
+/// 0.006139 S) / 1.0049; 1 without a flux. Source: Noll et al. 2012, A&A 543, A92, for the
+/// continuum.
+double airglow_by_solar_flux(const std::optional<double>& solar_flux_sfu);
 
 /// Path through a thin layer at `layer_height_m` relative to the zenith's; `sin_altitude` is held
 /// at 0 below it. Source: van Rhijn 1921, Publ. Astr. Lab. Groningen 31.

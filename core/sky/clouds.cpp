@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/quantile.h"
 #include "core/base/units.h"
 #include "core/sky/airmass.h"
 
@@ -76,9 +78,7 @@ CloudMap::CloudMap(const Clouds& clouds) : clouds_(clouds) {
   for (int i = 0; i < side; ++i)
     for (int j = 0; j < side; ++j)
       levels.push_back(pattern(patches.seed, i / 3.0 - 20 + 0.17, j / 3.0 - 20 + 0.17));
-  std::sort(levels.begin(), levels.end());
-  const double at = (1.0 - patches.cover) * double(levels.size() - 1);
-  threshold_ = levels[std::size_t(at)];
+  threshold_ = quantile_of(std::move(levels), 1.0 - patches.cover);
   // Wholly clear or covered, edges included.
   if (patches.cover == 0) threshold_ = 1.0 + edge;
   if (patches.cover == 1) threshold_ = -edge;

@@ -40,8 +40,7 @@ std::optional<Curve> extinction_of_site(std::string_view name) {
     if (site.name != name) continue;
     Curve curve;
     for (const Sample& sample : site.samples) {
-      curve.wavelength_m.push_back(sample.wavelength_nm * nm);
-      curve.value.push_back(sample.mag_per_airmass);
+      curve.add(sample.wavelength_nm * nm, sample.mag_per_airmass);
     }
     return curve;
   }
@@ -67,10 +66,7 @@ Curve air_transmission(const Curve& extinction_mag_per_airmass, double airmass) 
   constexpr double step_m = 5 * nm;  // linear in k is not linear in the transmission
   const Curve& k = extinction_mag_per_airmass;
   Curve curve;
-  const auto add = [&](double x) {
-    curve.wavelength_m.push_back(x);
-    curve.value.push_back(std::pow(10.0, -0.4 * k.at_or_end(x) * airmass));
-  };
+  const auto add = [&](double x) { curve.add(x, std::pow(10.0, -0.4 * k.at_or_end(x) * airmass)); };
   for (std::size_t i = 0; i < k.wavelength_m.size(); ++i) {
     const double from = k.wavelength_m[i];
     add(from);

@@ -39,9 +39,8 @@ Curve gas_transmission(const AirGases& air, double airmass) {
   Curve curve;
   for (const Gas& gas : gases) {
     const double w = gas.water * water_cm, u = gas.mixed * mixed_airmass;
-    curve.wavelength_m.push_back(gas.wavelength_nm * nm);
-    curve.value.push_back(std::exp(-0.2385 * w / std::pow(1.0 + 20.07 * w, 0.45) -
-                                   1.41 * u / std::pow(1.0 + 118.3 * u, 0.45)));
+    curve.add(gas.wavelength_nm * nm, std::exp(-0.2385 * w / std::pow(1.0 + 20.07 * w, 0.45) -
+                                               1.41 * u / std::pow(1.0 + 118.3 * u, 0.45)));
   }
   return curve;
 }
@@ -51,8 +50,7 @@ Curve with_haze_beyond(const Curve& extinction) {
   if (curve.empty()) return curve;
   const double last_m = curve.wavelength_m.back(), last = curve.value.back();
   for (double x = last_m + 100 * nm; x < 4.05 * um; x += 100 * nm) {
-    curve.wavelength_m.push_back(x);
-    curve.value.push_back(last * std::pow(x / last_m, -1.3));
+    curve.add(x, last * std::pow(x / last_m, -1.3));
   }
   return curve;
 }

@@ -6,7 +6,6 @@
 
 #include "core/base/units.h"
 #include "core/photometry/spectrum.h"
-#include "core/sky/refraction.h"
 #include "core/sky/standard_air.h"
 
 namespace dmise {
@@ -22,11 +21,6 @@ constexpr double height_of_node(int i) {
 int node_of_height(double height_m) {
   const double at = height_m < 40e3 ? height_m / 250.0 : fine_heights + (height_m - 40e3) / 1e3;
   return std::clamp(int(std::lround(at)), 0, heights - 1);
-}
-
-/// Refractivity at the sea, 15 C.
-double refractivity_at_sea(double wavelength_m) {
-  return 1e-6 * dry_air_refractivity(wavelength_m) * 1013.25 / 288.15;
 }
 
 double density_slope(double height_m) {

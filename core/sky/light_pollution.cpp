@@ -31,8 +31,7 @@ Spectrum spectrum_of(std::span<const Line> lines) {
       const double t = (at_nm - centre_nm) / sigma_nm;
       flux += power / sigma_nm * std::exp(-0.5 * t * t);
     }
-    spectrum.irradiance.wavelength_m.push_back(at_nm * nm);
-    spectrum.irradiance.value.push_back(flux);
+    spectrum.irradiance.add(at_nm * nm, flux);
   };
   add(200);
   for (int at_nm = 380; at_nm <= 880; ++at_nm) add(at_nm);

@@ -26,13 +26,10 @@ Spectrum part_of(const Spectrum& whole, bool oh) {
   const Curve& from = whole.irradiance;
   Curve part{{1 * nm, from.wavelength_m.front() * 0.9999}, {0.0, 0.0}};
   for (std::size_t i = 0; i < from.value.size(); ++i) {
-    part.wavelength_m.push_back(from.wavelength_m[i]);
-    part.value.push_back((from.wavelength_m[i] > oh_from_m) == oh ? from.value[i] : 0.0);
+    part.add(from.wavelength_m[i], (from.wavelength_m[i] > oh_from_m) == oh ? from.value[i] : 0.0);
   }
-  part.wavelength_m.push_back(from.wavelength_m.back() * 1.0001);
-  part.value.push_back(0.0);
-  part.wavelength_m.push_back(1.0);
-  part.value.push_back(0.0);
+  part.add(from.wavelength_m.back() * 1.0001, 0.0);
+  part.add(1.0, 0.0);
   return {part};
 }
 
@@ -85,8 +82,7 @@ double whole_m(const AirglowShells::Shell& shell) {
 }  // namespace
 
 AirglowShells::AirglowShells(const Airglow& airglow, const Band& band) {
-  const double by_sun =
-      airglow.solar_flux_sfu ? airglow_by_solar_flux(*airglow.solar_flux_sfu) : 1.0;
+  const double by_sun = airglow_by_solar_flux(airglow.solar_flux_sfu);
   const double s10 = by_sun * s10_of_mag_per_arcsec2(airglow.zenith_v_mag_per_arcsec2);
   const Spectrum spectrum = airglow_spectrum(by_sun);
   // Of a whole in V, as `photons_per_s_m2_sr_of_s10` has it.

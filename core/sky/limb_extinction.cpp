@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/table_place.h"
 #include "core/sky/grazing_air.h"
 #include "core/sky/kept_tables.h"
-#include "core/sky/refraction.h"
 #include "core/sky/standard_air.h"
 
 namespace dmise {
@@ -28,8 +28,7 @@ struct LimbRays {
 
   LimbRays(const Band& band, double radius_m) {
     const GrazingAir air(band);
-    // 1e6 (n - 1) T / P, at 15 C and 1013.25 hPa.
-    const double refractivity = 1e-6 * dry_air_refractivity(band.centre_m) * 1013.25 / 288.15;
+    const double refractivity = refractivity_at_sea(band.centre_m);
     for (std::size_t i = 0; i < count; ++i) {
       const double height_m = step_m * double(i);
       rays.push_back({air.bending_rad(height_m),
@@ -45,8 +44,9 @@ struct LimbRays {
     }
   }
 
-  double transmission(std::size_t ray, double part) const {
-    const double log = std::lerp(rays[ray].log_transmission, rays[ray + 1].log_transmission, part);
+  double transmission(const TablePlace& at) const {
+    const double log =
+        std::lerp(rays[at.node].log_transmission, rays[at.node + 1].log_transmission, at.part);
     return log > darkest ? std::exp(log) : 0.0;
   }
 };
@@ -60,9 +60,7 @@ LimbExtinction::LimbExtinction(const Band& band, const LimbSight& sight) : sight
 double LimbExtinction::of_surface(const LimbLine& line) const {
   const double height_m = line.tangent_height_m();
   if (line.from_m >= 0.0 || height_m >= top_m) return 1.0;
-  const double at = std::max(0.0, height_m) / step_m;
-  const auto ray = std::min(std::size_t(at), count - 2);
-  return rays_->transmission(ray, at - double(ray));
+  return rays_->transmission(table_place(height_m / step_m, count));
 }
 
 double LimbExtinction::of_point(const Vec<Gcrs>& direction, double distance_m) const {
@@ -89,7 +87,7 @@ double LimbExtinction::of_point(const Vec<Gcrs>& direction, double distance_m) c
   const std::size_t below = low > 0 ? low - 1 : 0, above = std::min(high + 1, count - 1);
   const double spread =
       step_m * double(above - below) / std::max(1.0, straight_m(above) - straight_m(below));
-  return rays_->transmission(low, part) * std::min(1.0, spread);
+  return rays_->transmission({low, part}) * std::min(1.0, spread);
 }
 
 }  // namespace dmise

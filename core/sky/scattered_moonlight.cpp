@@ -26,10 +26,7 @@ const Spectrum& moonlight_spectrum() {
     const Curve reflectance{{350 * nm, 400 * nm, 450 * nm, 550 * nm, 650 * nm, 800 * nm, 1000 * nm,
                              1300 * nm, 1700 * nm, 2400 * nm},
                             {0.577, 0.703, 0.815, 1.0, 1.143, 1.308, 1.480, 1.710, 2.047, 2.866}};
-    Spectrum moon = sunlight_spectrum();
-    for (std::size_t i = 0; i < moon.irradiance.value.size(); ++i)
-      moon.irradiance.value[i] *= reflectance.at_or_end(moon.irradiance.wavelength_m[i]);
-    return moon;
+    return times(sunlight_spectrum(), [&](double x_m) { return reflectance.at_or_end(x_m); });
   }();
   return spectrum;
 }
@@ -37,10 +34,8 @@ const Spectrum& moonlight_spectrum() {
 MoonlitAir moonlit_air(const Band& band, double k_v, double k) {
   if (!(k > 0.0 && k_v > 0.0)) return {k, 1.0, 1.0};
   const auto over_v = [&](double power) {
-    Spectrum scattered = moonlight_spectrum();
-    for (std::size_t i = 0; i < scattered.irradiance.value.size(); ++i)
-      scattered.irradiance.value[i] *=
-          std::pow(scattered.irradiance.wavelength_m[i] / (550 * nm), -power);
+    const Spectrum scattered =
+        times(moonlight_spectrum(), [&](double x_m) { return std::pow(x_m / (550 * nm), -power); });
     const auto mean = [&](const Band& in) {
       return photon_rate_per_m2(scattered, in) / photon_rate_per_m2(moonlight_spectrum(), in);
     };

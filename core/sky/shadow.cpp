@@ -7,11 +7,10 @@
 #include "core/base/formatted.h"
 #include "core/base/units.h"
 #include "core/sky/kept_tables.h"
+#include "core/sky/sun_disc.h"
 
 namespace dmise {
 namespace {
-
-constexpr double sun_radius_m = 6.957e8;  // IAU 2015 Resolution B3, nominal
 
 // The cheap tests hold for any Sun from 0.98 au on and any object out to 2e8 m.
 constexpr double margin_m = 110e3;

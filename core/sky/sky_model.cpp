@@ -85,10 +85,7 @@ SkyModel::SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& ban
   if (parts_.zodiacal_light) zodiacal_redness_ = zodiacal_redness(above);
   if (parts_.airglow)
     photons_of(SkyPart::airglow,
-               airglow_spectrum(parts_.airglow->solar_flux_sfu
-                                    ? airglow_by_solar_flux(*parts_.airglow->solar_flux_sfu)
-                                    : 1.0),
-               band);
+               airglow_spectrum(airglow_by_solar_flux(parts_.airglow->solar_flux_sfu)), band);
   if (parts_.scattered_moonlight)
     photons_of(SkyPart::scattered_moonlight, moonlight_spectrum(), above);
   if (parts_.twilight) photons_of(SkyPart::twilight, twilight_spectrum(sun_altitude_rad), above);

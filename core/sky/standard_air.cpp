@@ -6,6 +6,7 @@
 
 #include "core/base/units.h"
 #include "core/photometry/curve.h"
+#include "core/sky/refraction.h"
 
 namespace dmise {
 namespace {
@@ -44,6 +45,10 @@ double relative_density(double height_m) {
   const double kelvin = std::max(
       150.0, layers[i].kelvin + layers[i].kelvin_per_m * (geopotential_m - layers[i].from_m));
   return layers[i].pressure * falls(layers[i], geopotential_m) * 288.15 / kelvin;
+}
+
+double refractivity_at_sea(double wavelength_m) {
+  return 1e-6 * dry_air_refractivity(wavelength_m) * 1013.25 / 288.15;
 }
 
 double ozone_density(double height_m) {

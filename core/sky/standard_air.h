@@ -7,6 +7,9 @@ namespace dmise {
 /// Standard Atmosphere 1976.
 double relative_density(double height_m);
 
+/// Refractivity n - 1 at the sea: 15 C and 1013.25 hPa.
+double refractivity_at_sea(double wavelength_m);
+
 /// Ozone [atm-cm/m]: 300 DU in a Gaussian layer at 22 +- 5 km.
 double ozone_density(double height_m);
 

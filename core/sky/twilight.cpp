@@ -86,8 +86,7 @@ Spectrum twilight_spectrum(double sun_altitude_rad) {
   };
   Curve factors;
   const auto add = [&](double wavelength_nm, double factor) {
-    factors.wavelength_m.push_back(wavelength_nm * nm);
-    factors.value.push_back(factor);
+    factors.add(wavelength_nm * nm, factor);
   };
   for (const BandOfPatat& band : bands) {
     const double factor =
@@ -96,10 +95,7 @@ Spectrum twilight_spectrum(double sun_altitude_rad) {
     add(band.wavelength_nm, factor);
   }
   add(1000, factors.value.back());
-  Spectrum sun = solar_spectrum();
-  for (std::size_t i = 0; i < sun.irradiance.value.size(); ++i)
-    sun.irradiance.value[i] *= factors.at_or_end(sun.irradiance.wavelength_m[i]);
-  return sun;
+  return times(solar_spectrum(), [&](double x_m) { return factors.at_or_end(x_m); });
 }
 
 }  // namespace dmise

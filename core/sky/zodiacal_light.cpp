@@ -68,10 +68,7 @@ double zodiacal_redness(const Band& band) {
     const double decades = std::log10(std::clamp(wavelength_m, 220 * nm, 2500 * nm) / (500 * nm));
     return decades < 0.0 ? 1.5 * decades : decades;
   };
-  Spectrum reddened = solar_spectrum();
-  Curve& curve = reddened.irradiance;
-  for (std::size_t i = 0; i < curve.value.size(); ++i)
-    curve.value[i] *= 1.0 + redness(curve.wavelength_m[i]);
+  const Spectrum reddened = times(solar_spectrum(), [&](double x_m) { return 1.0 + redness(x_m); });
   return photon_rate_per_m2(reddened, band) / photon_rate_per_m2(solar_spectrum(), band) - 1.0;
 }
 

@@ -75,8 +75,8 @@ TEST(LimbAirglow, FromTheGroundItIsAsBrightAsTheSkysPart) {
       Airglow airglow;
       airglow.solar_flux_sfu = sfu;
       const AirglowShells shells(airglow, band);
-      const double per_s10 = photons_per_s_m2_sr_of_s10(
-          band, airglow_spectrum(sfu ? airglow_by_solar_flux(*sfu) : 1.0));
+      const double per_s10 =
+          photons_per_s_m2_sr_of_s10(band, airglow_spectrum(airglow_by_solar_flux(sfu)));
       for (const double altitude_deg : {90.0, 30.0, 15.0, 0.0}) {
         const double here = shells.photons_per_s_m2_sr(line_from(0.0, pi / 2 + altitude_deg * deg));
         const double there = per_s10 * airglow_s10(airglow, std::sin(altitude_deg * deg), 0.0);
