@@ -12,19 +12,9 @@ constexpr double most_e_per_s = 1e9;
 
 }  // namespace
 
-double dark_current_at(double temperature_k, double reference_e_per_s, double reference_k,
-                       double doubling_k) {
-  return reference_e_per_s * std::exp2((temperature_k - reference_k) / doubling_k);
-}
-
 double DarkCurrent::thermal_factor() const {
-  return dark_doubling_k > 0.0
-             ? dark_current_at(temperature_c, 1.0, dark_reference_c, dark_doubling_k)
-             : 1.0;
-}
-
-double dark_rate_e_per_s(const DarkCurrent& dark) {
-  return dark.dark_e_per_s * dark.thermal_factor();
+  return dark_doubling_k > 0.0 ? std::exp2((temperature_c - dark_reference_c) / dark_doubling_k)
+                               : 1.0;
 }
 
 std::span<const DetectorParameter> DarkCurrent::parameters() {

@@ -4,11 +4,6 @@
 
 namespace dmise {
 
-/// Dark current at a temperature, doubling every `doubling_k` kelvin from a reference [e-/s].
-/// Temperatures may be on any scale of kelvins.
-double dark_current_at(double temperature_k, double reference_e_per_s, double reference_k,
-                       double doubling_k);
-
 /// Thermally generated electrons: a Poisson deviate in every pixel (its sum with the
 /// photo-electrons is distributed as one draw of the summed means).
 struct DarkCurrent {
@@ -34,8 +29,5 @@ struct DarkCurrent {
   /// Factor of the dark current from the reference to the detector's temperature.
   double thermal_factor() const;
 };
-
-/// Dark current of an ordinary pixel at the detector's temperature.
-double dark_rate_e_per_s(const DarkCurrent& dark);
 
 }  // namespace dmise

@@ -40,7 +40,7 @@ constexpr std::string_view in_headers[] = {"quantum_efficiency",
                                            "blooming"};
 
 std::ptrdiff_t place_in_headers(const DetectorParameter& parameter) {
-  return std::find(std::begin(in_headers), std::end(in_headers), parameter.key) - in_headers;
+  return std::ranges::find(in_headers, parameter.key) - in_headers;
 }
 
 constexpr DetectorParameter quantum_efficiency{"quantum_efficiency",
@@ -57,9 +57,7 @@ std::vector<DetectorParameter> all_parameters() {
     const auto own = Effect::parameters();
     all.insert(all.end(), own.begin(), own.end());
   });
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
-    return place_in_headers(a) < place_in_headers(b);
-  });
+  std::ranges::stable_sort(all, {}, place_in_headers);
   return all;
 }
 
@@ -142,14 +140,6 @@ Detector drawn_together(const Detector& acting, const EffectSet& effects) {
   std::swap(d.drawn_dark_e_per_s, d.dark_e_per_s);
   if (!reads_after_others(d)) std::swap(d.drawn_read_noise_e, d.read_noise_e);
   return d;
-}
-
-std::vector<const EffectFacts*> applying_effects(const Detector& acting) {
-  std::vector<const EffectFacts*> applying;
-  DetectorEffects::for_each([&]<class Effect>() {
-    if (static_cast<const Effect&>(acting).applies(acting)) applying.push_back(&Effect::facts);
-  });
-  return applying;
 }
 
 }  // namespace dmise

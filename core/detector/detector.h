@@ -64,7 +64,4 @@ bool reads_after_others(const Detector& acting);
 /// it; not the read noise of a detector that reads after others.
 Detector drawn_together(const Detector& acting, const EffectSet& effects);
 
-/// Effects that change anything in a frame of `acting`, in running order.
-std::vector<const EffectFacts*> applying_effects(const Detector& acting);
-
 }  // namespace dmise

@@ -9,12 +9,9 @@
 // rng_group.
 namespace dmise {
 
-inline constexpr int poisson_most_steps = 128;
-
 #define DMISE_DETECTOR_KERNELS(level)                                                              \
   namespace level {                                                                                \
-  /* Stops before a group of pixels in which a mean is not in 0..largest; returns how far it came. \
-   */                                                                                              \
+  /* Stops before a group of pixels in which a mean is not in 0..1e12; returns how far it came. */ \
   std::size_t poisson(const RngKey& key, std::uint32_t first, const float* mean,                   \
                       std::size_t count, float* out);                                              \
   /* P(N <= k) for k = 0, 1, ... until it rounds to 1 for 52 bits; returns how many. */            \

@@ -10,19 +10,10 @@
 #include "core/detector/poisson.h"
 
 namespace dmise {
+namespace {
 
-std::uint32_t persistence_window(double persistence_s, double cadence_s) {
-  const double frames = -std::log(persistence_forgotten) * persistence_s / cadence_s;
-  return static_cast<std::uint32_t>(std::clamp(std::ceil(frames), 1.0, 4e9));
-}
-
-std::uint32_t persistence_first_frame(const Persistence& p, double cadence_s, std::uint32_t frame) {
-  if (!(p.persistence_fraction > 0.0) || frame == 0) return frame;
-  const std::uint32_t window = persistence_window(p.persistence_s, cadence_s);
-  const std::uint32_t windows = (frame - 1) / window;
-  return windows == 0 ? 1 : 1 + (windows - 1) * window;
-}
-
+/// Prepares the memory of `pixels` pixels for exposure `frame`. Throws `Error` if it is at another
+/// frame.
 void begin_frame(PersistenceMemory& memory, std::uint32_t frame, std::uint32_t window,
                  std::size_t pixels) {
   if (memory.next_frame == 0) {
@@ -37,6 +28,20 @@ void begin_frame(PersistenceMemory& memory, std::uint32_t frame, std::uint32_t w
     memory.younger_e.assign(pixels, 0.0f);
   }
   memory.next_frame = frame + 1;
+}
+
+}  // namespace
+
+std::uint32_t persistence_window(double persistence_s, double cadence_s) {
+  const double frames = -std::log(persistence_forgotten) * persistence_s / cadence_s;
+  return static_cast<std::uint32_t>(std::clamp(std::ceil(frames), 1.0, 4e9));
+}
+
+std::uint32_t persistence_first_frame(const Persistence& p, double cadence_s, std::uint32_t frame) {
+  if (!(p.persistence_fraction > 0.0) || frame == 0) return frame;
+  const std::uint32_t window = persistence_window(p.persistence_s, cadence_s);
+  const std::uint32_t windows = (frame - 1) / window;
+  return windows == 0 ? 1 : 1 + (windows - 1) * window;
 }
 
 Release::Release(double tau_s, double idle_s, double exposure_s)

@@ -62,11 +62,6 @@ std::uint32_t persistence_window(double persistence_s, double cadence_s);
 std::uint32_t persistence_first_frame(const Persistence& persistence, double cadence_s,
                                       std::uint32_t frame);
 
-/// Prepares the memory of `pixels` pixels for exposure `frame`. Throws `Error` if it is at another
-/// frame.
-void begin_frame(PersistenceMemory& memory, std::uint32_t frame, std::uint32_t window,
-                 std::size_t pixels);
-
 /// Charge that goes into the traps: `fraction` of the collected, up to the full well.
 void caught(double fraction, double full_well_e, std::span<const float> collected_e,
             std::span<float> caught_e);

@@ -43,8 +43,7 @@ void poisson(const RngKey& key, std::uint32_t first, const float* mean, std::siz
 ConstantPoisson::ConstantPoisson(float mean) : mean_(mean) {
   if (!is_mean(mean)) refuse(0, mean);
   if (!(mean < poisson_switch_mean)) return;
-  static_assert(most_steps == poisson_most_steps);
-  double cumulative[most_steps];
+  double cumulative[poisson_most_steps];
   steps_ = sse2::poisson_cumulative(mean, cumulative);
   for (int k = 0; k < steps_; ++k)
     thresholds_[k] = std::uint32_t(std::min(std::floor(cumulative[k] * 0x1p32), 0x1p32 - 1));

@@ -15,10 +15,10 @@
 //             w^2 B(s) + C0(s) + C1(s) / mean with B, C0, C1 fitted as polynomials, in single
 //             precision with 32 random bits. Against exact Poisson deviates, the non-centrality of
 //             a chi-square over n draws is below 4e-11 n at 24 and decreases from there.
-//             there.
 namespace dmise {
 
 inline constexpr float poisson_switch_mean = 24.0f;
+inline constexpr int poisson_most_steps = 128;  // of the sum upwards
 inline constexpr float poisson_largest_mean = 1e12f;
 
 /// out[i] = deviate of mean[i] for pixel first + i; in place when `out` is `mean`. Deviates are
@@ -37,10 +37,9 @@ class ConstantPoisson {
            SimdLevel level = best_simd_level()) const;
 
  private:
-  static constexpr int most_steps = 128;
   float mean_;
-  int steps_ = 0;                         // 0: by the general way
-  std::uint32_t thresholds_[most_steps];  // floor(2^32 P(N <= k))
+  int steps_ = 0;                                 // 0: by the general way
+  std::uint32_t thresholds_[poisson_most_steps];  // floor(2^32 P(N <= k))
 };
 
 }  // namespace dmise

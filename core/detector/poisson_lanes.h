@@ -1,6 +1,7 @@
 #pragma once
 #include "core/base/lane_functions.h"
 #include "core/base/random_lanes.h"
+#include "core/detector/poisson.h"
 
 // Vectorised core/detector/poisson.h.
 namespace dmise::DMISE_SIMD {
@@ -16,9 +17,9 @@ DMISE_INLINE F64 uniform_of(U64 high, U64 low) {
 
 /// 1 / i, for the recurrence of the probabilities.
 struct Reciprocals {
-  double of[129];
+  double of[poisson_most_steps + 1];
   constexpr Reciprocals() : of{} {
-    for (int i = 1; i < 129; ++i) of[i] = 1.0 / i;
+    for (int i = 1; i <= poisson_most_steps; ++i) of[i] = 1.0 / i;
   }
 };
 inline constexpr Reciprocals reciprocals;
@@ -26,7 +27,7 @@ inline constexpr Reciprocals reciprocals;
 /// Number of k with u > P(N <= k), for means below 24 (for others undefined, but it terminates).
 DMISE_INLINE F64 poisson_small(F64 mean, F64 u) {
   F64 p = exp_of_lanes(-mean), cumulative = p, k{};
-  for (int i = 1; i < 129; ++i) {
+  for (int i = 1; i <= poisson_most_steps; ++i) {
     const I64 above = u > cumulative;
     if (!any(above)) break;
     k = above ? k + 1.0 : k;

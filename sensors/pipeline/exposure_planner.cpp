@@ -151,7 +151,7 @@ void ExposurePlanner::look_at_sensor() {
   f.read_noise_e = detector.fitted_noise_e(detector.read_noise_e);
   f.read_later = reads_after_others(detector);
   f.saturated_e = saturated_e(sensor_);
-  f.dark_e = dark_rate_e_per_s(detector) * sensor_.exposure_s;
+  f.dark_e = detector.dark_e_per_s * detector.thermal_factor() * sensor_.exposure_s;
   if (blur.method != PointSpread::Method::deposit) {
     f.screens = blur.screens;
     constexpr double cell_s = 200e-9;

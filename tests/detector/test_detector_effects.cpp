@@ -174,10 +174,6 @@ TEST(ReferencePixels, SeeNeitherLightNorDarkCurrent) {
   EXPECT_GT(image.at(4, 4), 5000);
 }
 
-TEST(DarkCurrent, DoublesAsOftenAsStated) {
-  EXPECT_NEAR(dark_current_at(273.15 - 10, 0.4, 273.15, 5.0), 0.1, 1e-12);
-}
-
 TEST(Detector, AllItsEffectsTogetherGiveTheSameBytesOnAnyNumberOfThreads) {
   const Detector d = detector_of({.dark_e_per_s = 0.1,
                                   .read_noise_e = 5,

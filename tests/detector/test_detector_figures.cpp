@@ -76,11 +76,11 @@ TEST(DarkCurrent, FollowsTheDetectorsTemperature) {
                                   .temperature_c = 2,
                                   .dark_doubling_k = 6,
                                   .hot_pixel_e_per_s = 80});
-  EXPECT_NEAR(dark_rate_e_per_s(d), 1.0, 1e-12);
+  EXPECT_NEAR(d.thermal_factor(), 1.0 / 8, 1e-12);
   const Detector acting = acting_detector(d, {});
   EXPECT_NEAR(acting.dark_e_per_s, 1.0, 1e-12);
   EXPECT_NEAR(acting.hot_pixel_e_per_s, 10.0, 1e-12);
-  EXPECT_NEAR(dark_rate_e_per_s(acting), 1.0, 1e-12);  // not cooled twice
+  EXPECT_NEAR(acting.thermal_factor(), 1.0, 1e-12);  // not cooled twice
 }
 
 TEST(DetectorFigures, OfEffectsThatAreOffAreZero) {

@@ -1,6 +1,4 @@
 #pragma once
-#include <algorithm>
-
 #include "core/detector/detector.h"
 
 namespace dmise {
@@ -61,9 +59,12 @@ constexpr Detector detector_of(const DetectorNumbers& n) {
 }
 
 inline bool applies(const Detector& detector, const EffectFacts& effect) {
-  const auto applying = applying_effects(detector);
-  return std::any_of(applying.begin(), applying.end(),
-                     [&](const EffectFacts* e) { return e->name == effect.name; });
+  bool found = false;
+  DetectorEffects::for_each([&]<class Effect>() {
+    if (Effect::facts.name == effect.name)
+      found = static_cast<const Effect&>(detector).applies(detector);
+  });
+  return found;
 }
 
 }  // namespace dmise
