@@ -17,23 +17,17 @@ namespace dmise {
 namespace {
 
 bool wanted(const ObjectSource& source, const MeanElements& elements) {
-  if (source.only.empty()) return true;
-  const std::string number = std::to_string(elements.catalogue_number);
-  for (const auto& name : source.only)
-    if (name == number || name == elements.name) return true;
-  return false;
+  return source.only.empty() || std::ranges::any_of(source.only, [&](const std::string& name) {
+           return is_called(elements, name);
+         });
 }
 
 void require_all_found(const ObjectSource& source, const std::vector<MeanElements>& elements) {
   for (std::size_t k = 0; k < source.only.size(); ++k) {
     const std::string& name = source.only[k];
-    bool found = false;
+    if (std::ranges::any_of(elements, [&](const auto& e) { return is_called(e, name); })) continue;
     std::vector<std::string> names;
-    for (const auto& e : elements) {
-      found = found || name == e.name || name == std::to_string(e.catalogue_number);
-      names.push_back(e.name);
-    }
-    if (found) continue;
+    for (const auto& e : elements) names.push_back(e.name);
     const std::string hint = nearest_object(name, names);
     const std::string where = k < source.only_where.size() ? source.only_where[k] : source.path;
     throw ConfigError(where + ": no object of " + source.path + " has this name or number" +
@@ -175,12 +169,10 @@ class Loader {
   }
 
   static bool depends_on(const SensorConfig& sensor, const OwnObject& object) {
-    const auto is_it = [&](const std::string& name) {
-      return name == object.name || name == std::to_string(object.catalogue_number);
-    };
     const auto* platform = std::get_if<PlatformConfig>(&sensor.place);
     const auto* target = std::get_if<PointTarget>(&sensor.pointing);
-    return (platform && is_it(platform->object)) || (target && is_it(target->object));
+    return (platform && is_called(object, platform->object)) ||
+           (target && is_called(object, target->object));
   }
 
   const Scenario& scenario_;

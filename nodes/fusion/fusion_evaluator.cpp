@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/base/whole_file.h"
+#include "core/config/object_names.h"
 #include "core/optics/projection.h"
 #include "core/products/task_json.h"
 #include "core/products/track_json.h"
@@ -79,22 +79,16 @@ std::vector<std::string> FusionEvaluator::consumes() const {
 
 void FusionEvaluator::meet(const ObjectRoster& roster) {
   const FusionConfig& config = *scenario_.fusion;
-  const auto is_called = [&](std::size_t i, const std::string& name) {
-    const ObjectInfo& object = roster.objects[i];
-    return object.name == name || std::to_string(object.catalogue_number) == name;
-  };
   for (std::size_t k = 0; k < config.not_in_catalogue.size(); ++k) {
-    bool found = false;
-    for (std::size_t i = 0; i < roster.objects.size() && !found; ++i)
-      found = is_called(i, config.not_in_catalogue[k]);
-    if (!found)
+    const std::string& name = config.not_in_catalogue[k];
+    if (std::ranges::none_of(roster.objects, [&](const auto& o) { return is_called(o, name); }))
       throw ConfigError(config.not_in_catalogue_where[k] +
-                        ": no object has this name or number, got " + config.not_in_catalogue[k]);
+                        ": no object has this name or number, got " + name);
   }
   std::vector<MeanElements> catalogue;
   for (std::size_t i = 0; i < roster.elements.size(); ++i) {
     if (std::ranges::any_of(config.not_in_catalogue,
-                            [&](const auto& name) { return is_called(i, name); }))
+                            [&](const auto& name) { return is_called(roster.objects[i], name); }))
       continue;
     catalogue.push_back(roster.elements[i]);
     catalogue.back().catalogue_number = roster.objects[i].catalogue_number;

@@ -46,6 +46,12 @@ bool read(std::ifstream& file, Record& record) {
   return record.crc() == h.crc;
 }
 
+bool write(std::FILE* file, Record& record) {
+  record.head.crc = record.crc();
+  return std::fwrite(&record.head, sizeof record.head, 1, file) == 1 &&
+         std::fwrite(record.texts.data(), 1, record.texts.size(), file) == record.texts.size();
+}
+
 Message message_of(const Record& record) {
   const Head& h = record.head;
   const std::string_view texts = record.texts;
@@ -110,18 +116,14 @@ void FusionJournal::add(std::span<const Message> inputs) {
                    .payload = std::uint32_t(encoded.payload.size()),
                    .arrays = std::uint32_t(encoded.arrays.size())};
     record.texts = message.topic + encoded.payload + encoded.arrays;
-    record.head.crc = record.crc();
-    if (std::fwrite(&record.head, sizeof record.head, 1, file_) != 1 ||
-        std::fwrite(record.texts.data(), 1, record.texts.size(), file_) != record.texts.size())
-      fail(std::string("can't be written: ") + std::strerror(errno));
+    if (!write(file_, record)) fail(std::string("can't be written: ") + std::strerror(errno));
   }
 }
 
 void FusionJournal::end(Tick tick) {
   Record record;
   record.head.tick = tick;
-  record.head.crc = record.crc();
-  if (std::fwrite(&record.head, sizeof record.head, 1, file_) != 1 || std::fflush(file_) != 0)
+  if (!write(file_, record) || std::fflush(file_) != 0)
     fail(std::string("can't be written: ") + std::strerror(errno));
 }
 
