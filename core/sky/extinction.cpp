@@ -10,6 +10,7 @@
 #include "core/photometry/magnitude.h"
 #include "core/photometry/spectrum.h"
 #include "core/photometry/star_spectrum.h"
+#include "core/sky/air_exposure.h"
 #include "core/sky/colour_airmass.h"
 
 namespace dmise {
@@ -31,8 +32,6 @@ constexpr Site sites[] = {{"lick", lick},           {"ctio", ctio},
 constexpr int colours = 49;  // every 0.05 of B-V, as spectra of stars are tabulated
 constexpr int airmasses = 33;
 constexpr ColourAirmassNodes nodes{colours, airmasses};
-constexpr double sun_bv = 0.65;
-
 }  // namespace
 
 std::optional<Curve> extinction_of_site(std::string_view name) {

@@ -27,8 +27,4 @@ bool FreeSight::clear_direction(const Vec<Gcrs>& direction) const {
   return passes(line, dot(line, from_));
 }
 
-bool line_of_sight_clear(const Vec<Gcrs>& from_m, const Vec<Gcrs>& to_m, const OblateEarth& earth) {
-  return FreeSight(from_m, earth).clear(to_m);
-}
-
 }  // namespace dmise

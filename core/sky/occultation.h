@@ -30,8 +30,6 @@ class FreeSight {
   double radius_squared_ = 0;
 };
 
-bool line_of_sight_clear(const Vec<Gcrs>& from_m, const Vec<Gcrs>& to_m, const OblateEarth& earth);
-
 /// The Earth hides what is behind it: below the apparent horizon on the ground, behind the
 /// ellipsoid in orbit.
 class EarthOccultation {

@@ -118,9 +118,4 @@ std::size_t EarthShadow::sunlit_fractions(std::span<const double> position_m,
   return inside;
 }
 
-double sunlit_fraction(const Vec<Gcrs>& object_m, const Vec<Gcrs>& sun_m,
-                       const OblateEarth& earth) {
-  return EarthShadow(sun_m, earth).sunlit_fraction(object_m);
-}
-
 }  // namespace dmise

@@ -69,7 +69,4 @@ class EarthShadow {
   OblateEarth earth_;
 };
 
-/// One object; see `EarthShadow`.
-double sunlit_fraction(const Vec<Gcrs>& object_m, const Vec<Gcrs>& sun_m, const OblateEarth& earth);
-
 }  // namespace dmise

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace dmise {
@@ -100,11 +101,11 @@ struct Grid {
 /// The cells of some rows: what each thread counts is its own.
 struct Piece {
   const Grid& grid;
-  SkyGridReport report;
+  std::size_t evaluations = 0;
   std::vector<SkyPatch> patches;
 
   double evaluate(double x, double y) {
-    ++report.evaluations;
+    ++evaluations;
     return grid.f(x, y);
   }
 
@@ -122,7 +123,6 @@ struct Piece {
     const double middle = evaluate(std::min((i + 0.5) * across.width, grid.columns - 1.0),
                                    std::min((j + 0.5) * down.width, grid.rows - 1.0));
     if (!grid.agrees(at(cubic_at(0.5), 0.5), middle) || !grid.smooth(i, j)) {
-      ++report.refined_cells;
       const double a = evaluate(x0, y0), b = evaluate(x1 - 1, y0);
       refine(x0, y0, x1 - 1, y1 - 1, a, b, evaluate(x0, y1 - 1), evaluate(x1 - 1, y1 - 1));
       return;
@@ -202,45 +202,40 @@ struct Piece {
   }
 };
 
-SkyGridReport visit_cells(Grid& grid, Threads& threads, std::vector<SkyPatch>* patches) {
+std::size_t visit_cells(Grid& grid, Threads& threads, std::vector<SkyPatch>* patches) {
   grid.make_nodes(threads);
   const auto cell_rows = std::size_t(grid.down.cells);
-  std::vector<SkyGridReport> reports(cell_rows);
+  std::vector<std::size_t> evaluations(cell_rows);
   std::vector<std::vector<SkyPatch>> patches_of_row(cell_rows);
   threads.for_ranges(cell_rows, 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t j = first; j < last; ++j) {
       Piece piece{grid};
       for (int i = 0; i < grid.across.cells; ++i) piece.fill_cell(i, int(j));
-      reports[j] = piece.report;
+      evaluations[j] = piece.evaluations;
       patches_of_row[j] = std::move(piece.patches);
     }
   });
-  SkyGridReport sum{.evaluations = std::size_t(grid.across.cells + 1) * (cell_rows + 1)};
-  for (const SkyGridReport& report : reports) {
-    sum.evaluations += report.evaluations;
-    sum.refined_cells += report.refined_cells;
-  }
   if (patches)
     for (const auto& row : patches_of_row) patches->insert(patches->end(), row.begin(), row.end());
-  return sum;
+  const std::size_t nodes = std::size_t(grid.across.cells + 1) * (cell_rows + 1);
+  return std::accumulate(evaluations.begin(), evaluations.end(), nodes);
 }
 
 }  // namespace
 
-SkyGridReport fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
-                             float* out, Threads& threads) {
-  if (columns <= 0 || rows <= 0) return {};
+std::size_t fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
+                           float* out, Threads& threads) {
+  if (columns <= 0 || rows <= 0) return 0;
   Grid grid{columns, rows, f, tolerance, out};
   return visit_cells(grid, threads, nullptr);
 }
 
 std::vector<SkyPatch> patches_of_grid(int columns, int rows, const PixelFunction& f,
-                                      double tolerance, Threads& threads, SkyGridReport* report) {
+                                      double tolerance, Threads& threads) {
   std::vector<SkyPatch> patches;
   if (columns <= 0 || rows <= 0) return patches;
   Grid grid{columns, rows, f, tolerance, nullptr};
-  const SkyGridReport done = visit_cells(grid, threads, &patches);
-  if (report) *report = done;
+  visit_cells(grid, threads, &patches);
   return patches;
 }
 

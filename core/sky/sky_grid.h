@@ -11,18 +11,14 @@ namespace dmise {
 /// A smooth function of pixel position, >= 0: the sky's radiance seen by a camera.
 using PixelFunction = std::function<double(double x, double y)>;
 
-struct SkyGridReport {
-  std::size_t evaluations = 0;    // of the function
-  std::size_t refined_cells = 0;  // that the coarse grid could not hold
-};
-
 /// Fills `out` (columns x rows, row-major) with `f` at every pixel's centre, from a coarse grid:
 /// bicubic between nodes some 32 px apart, checked against `f` at the middle of every cell and by
 /// the nodes' fourth differences. Where the error may exceed `tolerance` (relative) the cell is cut
 /// in four, and so on down to single pixels. `f` is called inside the image only, by any of
-/// `threads`. The same bytes for the same input, on any number of them.
-SkyGridReport fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
-                             float* out, Threads& threads);
+/// `threads`. The same bytes for the same input, on any number of them. Returns how often `f` was
+/// called.
+std::size_t fill_from_grid(int columns, int rows, const PixelFunction& f, double tolerance,
+                           float* out, Threads& threads);
 
 /// The same without a grid: `f` at every pixel's centre.
 void fill_every_pixel(int columns, int rows, const PixelFunction& f, float* out, Threads& threads);
@@ -30,7 +26,6 @@ void fill_every_pixel(int columns, int rows, const PixelFunction& f, float* out,
 /// The same grid as the patches from which those pixels come, for who draws them otherwise. Later
 /// ones cover earlier ones.
 std::vector<SkyPatch> patches_of_grid(int columns, int rows, const PixelFunction& f,
-                                      double tolerance, Threads& threads,
-                                      SkyGridReport* report = nullptr);
+                                      double tolerance, Threads& threads);
 
 }  // namespace dmise

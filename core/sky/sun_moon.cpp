@@ -14,8 +14,6 @@ namespace {
 Vec<Gcrs> from_au(const double (&v)[3]) { return Vec<Gcrs>{v[0], v[1], v[2]} * au_m; }
 Vec<Gcrs> from_au_per_day(const double (&v)[3]) { return from_au(v) / day_s; }
 
-Tt later(const Tt& tt, double days) { return {tt.jd1, tt.jd2 + days}; }
-
 }  // namespace
 
 Vec<Gcrs> sun_by_almanac_m(const Tt& tt) {
@@ -50,27 +48,18 @@ Vec<Gcrs> moon_velocity_m_per_s(const Tt& tt) {
   return from_au_per_day(pv[1]);
 }
 
-SolarSystem solar_system(const Tt& tt, Ephemeris ephemeris) {
+SolarSystem solar_system(const Tt& tt) {
   if (!ephemeris_covers(tt))
     throw Error("the Sun's ephemeris covers 1900 to 2100, got " +
                 std::to_string(2000 + julian_years_since_j2000(tt)));
 
-  SolarSystem s{.moon_m = moon_m(tt), .moon_velocity_m_per_s = moon_velocity_m_per_s(tt)};
-  if (ephemeris == Ephemeris::almanac) {
-    s.sun_m = sun_by_almanac_m(tt);
-    s.earth_barycentric_m = -s.sun_m;
-    const double half_days = 0.5;
-    s.earth_velocity_m_per_s =
-        (sun_by_almanac_m(later(tt, -half_days)) - sun_by_almanac_m(later(tt, half_days))) /
-        (2 * half_days * day_s);
-  } else {
-    double heliocentric[2][3], barycentric[2][3];
-    eraEpv00(tt.jd1, tt.jd2, heliocentric, barycentric);
-    s.sun_m = -from_au(heliocentric[0]);
-    s.earth_barycentric_m = from_au(barycentric[0]);
-    s.earth_velocity_m_per_s = from_au_per_day(barycentric[1]);
-  }
-  return s;
+  double heliocentric[2][3], barycentric[2][3];
+  eraEpv00(tt.jd1, tt.jd2, heliocentric, barycentric);
+  return {.sun_m = -from_au(heliocentric[0]),
+          .moon_m = moon_m(tt),
+          .earth_barycentric_m = from_au(barycentric[0]),
+          .earth_velocity_m_per_s = from_au_per_day(barycentric[1]),
+          .moon_velocity_m_per_s = moon_velocity_m_per_s(tt)};
 }
 
 SolarSystem advance(SolarSystem s, double dt_s) {

@@ -21,13 +21,8 @@ inline bool ephemeris_covers(const Tt& tt) {
   return year >= ephemeris_first_year && year <= ephemeris_last_year;
 }
 
-/// Rungs of a ladder: accuracy against time.
-enum class Ephemeris {
-  almanac,  // Astronomical Almanac, page C5: 0.01 deg, 1950 to 2050
-  epv00,    // ERFA eraEpv00: within 13 km (0.02 arcsec of the Sun) and 5 mm/s, 1900 to 2100
-};
-
-/// Geometric Sun by the low-precision formulae of the Astronomical Almanac.
+/// Geometric Sun by the low-precision formulae of the Astronomical Almanac, page C5: 0.01 deg, 1950
+/// to 2050.
 Vec<Gcrs> sun_by_almanac_m(const Tt& tt);
 
 /// Moon by ERFA eraMoon98 (Meeus after ELP 2000-82): 10 arcsec of longitude, 4 of latitude.
@@ -35,9 +30,9 @@ Vec<Gcrs> moon_m(const Tt& tt);
 /// Its derivative, by the same.
 Vec<Gcrs> moon_velocity_m_per_s(const Tt& tt);
 
-/// Throws `Error` outside 1900 to 2100. The almanac's rung takes the barycentre for the Sun's
-/// centre: its velocity is good to 30 m/s (20 mas of aberration).
-SolarSystem solar_system(const Tt& tt, Ephemeris ephemeris = Ephemeris::epv00);
+/// Sun and Earth by ERFA eraEpv00: within 13 km (0.02 arcsec of the Sun) and 5 mm/s. Throws `Error`
+/// outside 1900 to 2100.
+SolarSystem solar_system(const Tt& tt);
 
 /// The same `dt_s` later, up to an hour: the bodies go on with their velocities and the pull of
 /// Sun, Earth and Moon. After an hour the Sun is within 0.1 arcsec, the Moon within 1 arcsec, the

@@ -41,9 +41,4 @@ std::optional<double> zenith_brightness_named(std::string_view preset) {
   return std::nullopt;
 }
 
-double sky_photons_per_s_m2_sr(double v_mag_per_arcsec2, const Band& band,
-                               const Spectrum& spectrum) {
-  return s10_of_mag_per_arcsec2(v_mag_per_arcsec2) * photons_per_s_m2_sr_of_s10(band, spectrum);
-}
-
 }  // namespace dmise

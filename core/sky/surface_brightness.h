@@ -25,8 +25,4 @@ double photons_per_s_m2_sr_of_s10(const Band& band, const Spectrum& spectrum = s
 /// elongation: 516 S10).
 std::optional<double> zenith_brightness_named(std::string_view preset);
 
-/// Photons/s/m2/sr in `band` of a sky of that V brightness, of the Sun's colour unless stated.
-double sky_photons_per_s_m2_sr(double v_mag_per_arcsec2, const Band& band,
-                               const Spectrum& spectrum = solar_spectrum());
-
 }  // namespace dmise

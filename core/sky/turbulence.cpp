@@ -92,8 +92,6 @@ Turbulence turbulence(const TurbulenceProfile& profile, double wavelength_m, dou
       std::pow(2.914 * k2 * std::pow(airmass, 8.0 / 3.0) * by_height, -0.6);
   result.wind_m_per_s = std::pow(by_speed / whole, 0.6);
   result.tau0_s = result.r0_m / result.wind_m_per_s;
-  result.greenwood_tau0_s = 0.314 * result.tau0_s;
-  result.fwhm_rad = 0.98 * wavelength_m / result.r0_m;
   return result;
 }
 
@@ -109,12 +107,6 @@ double scintillation_time_m_s(const BlownTurbulence& turbulence, double airmass)
                                      least_m_per_s);
                    }) /
          whole;
-}
-
-double scale_r0(double r0_m, double from_wavelength_m, double to_wavelength_m, double from_airmass,
-                double to_airmass) {
-  return r0_m * std::pow(to_wavelength_m / from_wavelength_m, 1.2) *
-         std::pow(to_airmass / from_airmass, -0.6);
 }
 
 }  // namespace dmise

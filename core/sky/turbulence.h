@@ -52,11 +52,8 @@ double layer_speed_m_per_s(const TurbulenceWind& wind, double height_m, double a
 struct Turbulence {
   double r0_m = 0.0;  // Fried's parameter
   double isoplanatic_angle_rad = 0.0;
-  double wind_m_per_s = 0.0;      // speed of the turbulence, its mean by the power 5/3
-  double tau0_s = 0.0;            // r0 / wind, the convention of this project's sensors
-  double greenwood_tau0_s = 0.0;  // 0.314 r0 / wind
-  /// Width of a long exposure in a large telescope: 0.98 wavelength / r0.
-  double fwhm_rad = 0.0;
+  double wind_m_per_s = 0.0;  // speed of the turbulence, its mean by the power 5/3
+  double tau0_s = 0.0;        // coherence time r0 / wind; Greenwood's is 0.314 of it
 };
 
 /// r0 = (0.423 k^2 X Int Cn2 dz)^(-3/5), theta0 = (2.914 k^2 X^(8/3) Int Cn2 z^(5/3) dz)^(-3/5), k
@@ -70,9 +67,5 @@ Turbulence turbulence(const TurbulenceProfile& profile, double wavelength_m, dou
 /// The mean of h^2 / speed over the turbulence, to which the variance of scintillation in a long
 /// exposure is proportional [m s]; 0 for a profile without turbulence.
 double scintillation_time_m_s(const BlownTurbulence& turbulence, double airmass = 1.0);
-
-/// r0 known at one wavelength and airmass, at another: it goes as wavelength^(6/5) airmass^(-3/5).
-double scale_r0(double r0_m, double from_wavelength_m, double to_wavelength_m,
-                double from_airmass = 1.0, double to_airmass = 1.0);
 
 }  // namespace dmise

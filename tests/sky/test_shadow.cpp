@@ -13,6 +13,11 @@ namespace {
 const OblateEarth earth;
 const Vec<Gcrs> sun_m{au_m, 0, 0};
 
+double sunlit_fraction(const Vec<Gcrs>& object_m, const Vec<Gcrs>& to_sun_m,
+                       const OblateEarth& of) {
+  return EarthShadow(to_sun_m, of).sunlit_fraction(object_m);
+}
+
 // Reference: rays to 400,000 points of the solar disc, tests/reference/shadow.py.
 TEST(Shadow, AgreesWithRaysToTheSolarDisc) {
   const struct {

@@ -18,8 +18,9 @@ TEST(SurfaceBrightness, Units) {
 
 // 22 mag/arcsec2 over the sky's 1 arcsec2 is a star of V = 22.
 TEST(SurfaceBrightness, PhotonsOfOneSquareArcsecond) {
-  EXPECT_NEAR(sky_photons_per_s_m2_sr(22.0, johnson_v()) * arcsec * arcsec,
-              8.748e9 * light_of_magnitude(22.0), 0.005 * 8.748e9 * light_of_magnitude(22.0));
+  const double radiance = s10_of_mag_per_arcsec2(22.0) * photons_per_s_m2_sr_of_s10(johnson_v());
+  EXPECT_NEAR(radiance * arcsec * arcsec, 8.748e9 * light_of_magnitude(22.0),
+              0.005 * 8.748e9 * light_of_magnitude(22.0));
 }
 
 TEST(SurfaceBrightness, Presets) {
