@@ -45,7 +45,7 @@ class Nodes {
     for (const auto axis : {&Vec<Gcrs>::x, &Vec<Gcrs>::y, &Vec<Gcrs>::z})
       for (const Vec<Gcrs>& v : at_)
         numbers.push_back(std::int32_t(std::lround(v.*axis / unit_of_nodes)));
-    return compact(byte_planes(std::span<const std::int32_t>(numbers)));
+    return compact(byte_planes(numbers));
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/quantile.h"
 #include "core/report/compact_bytes.h"
 
 namespace dmise {
@@ -43,9 +44,7 @@ double noise_of(const std::vector<float>& pixels) {
   for (std::size_t i = 0; i + 1 < pixels.size(); i += step)
     differences.push_back(std::abs(pixels[i + 1] - pixels[i]));
   if (differences.empty()) return 0.0;
-  const auto middle = differences.begin() + std::ptrdiff_t(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return double(*middle) * 1.4826 / std::sqrt(2.0);
+  return double(middle_of(std::move(differences))) * sigma_of_median / std::sqrt(2.0);
 }
 
 }  // namespace
@@ -76,7 +75,7 @@ EmbeddedImage embed(const CountImage& counts, std::size_t most_pixels) {
       if (x == 0) above = number;
     }
   }
-  out.pixels = compact(byte_planes(std::span<const std::uint16_t>(differences)));
+  out.pixels = compact(byte_planes(differences));
   return out;
 }
 

@@ -17,7 +17,7 @@ struct ReportSettings {
 /// Which frames the page draws, and which of them can be opened with their pixels.
 struct DrawnFrames {
   std::size_t every = 1;            // of a sensor's frames
-  std::vector<std::size_t> row_of;  // of each frame of the run; npos: not in the page
+  std::vector<std::size_t> row_of;  // of each frame of the run; none: not in the page
   std::vector<std::size_t> frames;  // of each row
   std::vector<std::size_t> viewed;  // rows
   std::vector<bool> with_sources;   // of each frame: its truth and detections are in the page

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
-#include <set>
+#include <span>
 
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/base/quantile.h"
 #include "core/base/units.h"
 #include "core/image/fits_file.h"
 #include "core/report/compact_bytes.h"
@@ -33,6 +35,11 @@ void number(JsonWriter& json, std::optional<double> value, int digits) {
     json.value(rounded(*value, digits));
   else
     json.null();
+}
+
+void number(JsonWriter& json, const char* name, std::optional<double> value, int digits) {
+  json.key(name);
+  number(json, value, digits);
 }
 
 void pixel(JsonWriter& json, PixelPosition p) {
@@ -81,18 +88,16 @@ std::string view_of(const RunContents& run, const ReportFrame& row, const StarMa
     json.field("least_dn", image.least_dn).field("step_dn", image.step_dn);
     json.field("pixels", image.pixels);
     json.field("band", h.band.name).field("exposure_s", h.exposure_s);
-    if (h.unknown.has(FrameFact::pointing)) {
-      json.end_object();
-      return json.take();
-    }
+    if (h.unknown.has(FrameFact::pointing)) return json.end_object().take();
     json.field("arcsec_per_px", wcs_scale_rad_per_px(h.wcs) / arcsec);
     const DirectionGrid grid = direction_grid(h.wcs, columns, rows);
     json.key("grid").begin_object();
     json.field("across", grid.across).field("down", grid.down);
     json.field("error_px", rounded(grid.error_px, 4)).field("nodes", grid.nodes);
-    if (grid.sky_across > 0)
+    if (grid.sky_across > 0) {
       json.field("sky_across", grid.sky_across).field("sky_down", grid.sky_down);
-    if (grid.sky_across > 0) json.field("sky", grid.sky);
+      json.field("sky", grid.sky);
+    }
     json.end_object();
     const SkyPlace place(run.sensors[row.sensor], row.sensor_position_m);
     json.key("outline").begin_array();
@@ -121,12 +126,9 @@ std::string view_of(const RunContents& run, const ReportFrame& row, const StarMa
       json.end_array();
     }
   } catch (const Error& error) {
-    JsonWriter why;
-    why.begin_object().field("problem", error.what()).end_object();
-    return why.take();
+    return JsonWriter().begin_object().field("problem", error.what()).end_object().take();
   }
-  json.end_object();
-  return json.take();
+  return json.end_object().take();
 }
 
 void write_sensors(const RunContents& run, JsonWriter& json) {
@@ -137,38 +139,27 @@ void write_sensors(const RunContents& run, JsonWriter& json) {
   for (std::size_t s = 0; s < run.sensors.size(); ++s) {
     const ReportSensor& sensor = run.sensors[s];
     json.begin_object().field("name", sensor.name).field("camera", sensor.camera);
-    if (sensor.site) {
-      json.key("site").begin_array();
-      json.value(sensor.site->latitude_deg).value(sensor.site->longitude_deg);
-      json.value(sensor.site->height_m).end_array();
-    }
+    if (const auto& site = sensor.site)
+      json.list("site", {site->latitude_deg, site->longitude_deg, site->height_m});
     if (!sensor.platform.empty()) json.field("platform", sensor.platform);
     json.field("columns", sensor.camera_facts.columns).field("rows", sensor.camera_facts.rows);
     json.field("exposure_s", sensor.exposure_s).field("cadence_s", sensor.cadence_s);
-    json.field("frames", std::uint64_t(sensor.frames));
-    json.field("detections", std::uint64_t(sensor.detections));
+    json.field("frames", sensor.frames);
+    json.field("detections", sensor.detections);
     if (!sensor.log.empty()) json.field("log", sensor.log);
-    json.key("seconds_per_frame");
-    number(json, sensor.costs > 0 ? std::optional(sensor.seconds_per_frame) : std::nullopt, 3);
-    json.key("memory_mb");
-    number(json, sensor.memory_mb > 0 ? std::optional(sensor.memory_mb) : std::nullopt, 0);
-    auto& of_frames = limits[s];
-    json.key("limiting_magnitude");
-    if (of_frames.empty()) {
-      json.null();
-    } else {
-      std::ranges::nth_element(of_frames, of_frames.begin() + std::ptrdiff_t(of_frames.size() / 2));
-      number(json, of_frames[of_frames.size() / 2], 2);
-    }
+    number(json, "seconds_per_frame",
+           sensor.costs > 0 ? std::optional(sensor.seconds_per_frame) : std::nullopt, 3);
+    number(json, "memory_mb", sensor.memory_mb > 0 ? std::optional(sensor.memory_mb) : std::nullopt,
+           0);
+    number(json, "limiting_magnitude",
+           limits[s].empty() ? std::nullopt : std::optional(middle_of(limits[s])), 2);
     for (const SensorScore& score : run.score.sensors) {
       if (score.sensor != sensor.name || !run.has_truth) continue;
       json.key("fates").begin_object();
-      for (std::size_t k = 0; k < fate_names.size(); ++k)
-        json.field(fate_names[k], std::uint64_t(score.fates[k]));
+      for (std::size_t k = 0; k < fate_names.size(); ++k) json.field(fate_names[k], score.fates[k]);
       json.end_object();
-      json.field("false_alarms", std::uint64_t(score.false_alarms));
-      json.key("pd");
-      number(json,
+      json.field("false_alarms", score.false_alarms);
+      number(json, "pd",
              score.detection.truths > 0
                  ? std::optional(double(score.detection.found) / double(score.detection.truths))
                  : std::nullopt,
@@ -185,24 +176,19 @@ void write_frames(const RunContents& run, const DrawnFrames& choice, JsonWriter&
   json.key("frames").begin_array();
   for (std::size_t row = 0; row < choice.frames.size(); ++row) {
     const ReportFrame& f = run.frames[choice.frames[row]];
-    json.begin_object().field("sensor", std::uint64_t(f.sensor)).field("number", f.number);
+    json.begin_object().field("sensor", f.sensor).field("number", f.number);
     json.field("time_s", rounded(f.middle.seconds(), 3)).field("utc", f.middle_utc);
     const auto [angle, height] =
         SkyPlace(run.sensors[f.sensor], f.sensor_position_m)
             .of(from_spherical<Gcrs>(f.boresight_ra_rad, f.boresight_dec_rad));
-    json.key("pointing").begin_array().value(angle).value(height).end_array();
-    json.key("limit");
-    number(json, f.limiting_magnitude, 2);
-    json.key("noise_e");
-    number(json, f.noise_e, 2);
-    json.key("background_e");
-    number(json, f.background_e, 1);
-    json.field("stars_found", std::uint64_t(f.stars_found));
-    json.field("stars_expected", std::uint64_t(f.stars_expected));
-    json.key("seconds");
-    number(json, f.total_s, 3);
-    json.key("predicted");
-    number(json, f.predicted_s, 3);
+    json.list("pointing", {angle, height});
+    number(json, "limit", f.limiting_magnitude, 2);
+    number(json, "noise_e", f.noise_e, 2);
+    number(json, "background_e", f.background_e, 1);
+    json.field("stars_found", f.stars_found);
+    json.field("stars_expected", f.stars_expected);
+    number(json, "seconds", f.total_s, 3);
+    number(json, "predicted", f.predicted_s, 3);
     if (!f.fits.empty()) json.field("fits", f.fits);
     if (!f.picture.empty()) json.field("picture", f.picture);
     if (!f.marked.empty()) json.field("marked", f.marked);
@@ -225,8 +211,8 @@ void write_truths(const RunContents& run, const DrawnFrames& choice, JsonWriter&
     const ReportFrame& f = run.frames[t.frame];
     const auto [found, is_new] = place_of.emplace(scored.truth.id, objects.size());
     if (is_new) objects.push_back(scored.truth.id);
-    json.begin_array().value(std::uint64_t(choice.row_of[t.frame]));
-    json.value(std::uint64_t(found->second)).value(int(scored.fate));
+    json.begin_array().value(choice.row_of[t.frame]);
+    json.value(found->second).value(int(scored.fate));
     pixel(json, scored.truth.start);
     pixel(json, scored.truth.middle);
     pixel(json, scored.truth.end);
@@ -239,11 +225,7 @@ void write_truths(const RunContents& run, const DrawnFrames& choice, JsonWriter&
             .of(from_spherical<Gcrs>(t.truth.apparent_ra_rad, t.truth.apparent_dec_rad));
     json.value(angle).value(height).end_array();
   }
-  json.end_array().key("objects").begin_array();
-  for (const std::string& name : objects) json.value(name);
-  json.end_array().key("fate_names").begin_array();
-  for (const char* name : fate_names) json.value(name);
-  json.end_array();
+  json.end_array().list("objects", objects).list("fate_names", fate_names);
 }
 
 /// Rows: frame, 1 if it is a streak, 1 if it is of a truth, centroid and both ends [px], RA and Dec
@@ -253,7 +235,7 @@ void write_detections(const RunContents& run, const DrawnFrames& choice, JsonWri
   for (const ReportDetection& found : run.detections) {
     if (!choice.with_sources[found.frame]) continue;
     const Detection& d = found.detection;
-    json.begin_array().value(std::uint64_t(choice.row_of[found.frame]));
+    json.begin_array().value(choice.row_of[found.frame]);
     json.value(int(d.kind == DetectionKind::streak)).value(int(found.of_truth));
     pixel(json, {d.x_px, d.y_px});
     pixel(json, {d.end1_x_px, d.end1_y_px});
@@ -271,9 +253,8 @@ void write_bins(JsonWriter& json, const char* key, const std::vector<Bin>& bins)
   for (const Bin& bin : bins) {
     json.begin_object().key("from");
     number(json, bin.from, 3);
-    json.key("to");
-    number(json, bin.to, 3);
-    json.field("truths", std::uint64_t(bin.truths)).field("found", std::uint64_t(bin.found));
+    number(json, "to", bin.to, 3);
+    json.field("truths", bin.truths).field("found", bin.found);
     json.field("low", rounded(bin.probability.low, 4));
     json.field("high", rounded(bin.probability.high, 4)).key("theory");
     number(json, bin.theory, 4);
@@ -300,9 +281,9 @@ void write_plan(const RunContents& run, JsonWriter& json) {
     for (const auto& [effect, cost] : run.sensors[s].effects) {
       if (cost.levels.empty() && cost.measured_s == 0.0) continue;
       const double costs = double(std::max<std::size_t>(1, run.sensors[s].costs));
-      json.begin_object().field("sensor", std::uint64_t(s)).field("effect", effect);
+      json.begin_object().field("sensor", s).field("effect", effect);
       json.key("levels").begin_object();
-      for (const auto& [level, frames] : cost.levels) json.field(level, std::uint64_t(frames));
+      for (const auto& [level, frames] : cost.levels) json.field(level, frames);
       json.end_object().field("why", cost.why).key("predicted_s");
       number(json,
              cost.planned_frames > 0 ? std::optional(cost.predicted_s / double(cost.planned_frames))
@@ -320,9 +301,8 @@ void write_tracks(const RunContents& run, JsonWriter& json) {
     return (t->last.catalogue_number == 0 ? 1'000'000'000ull : 0ull) + 1'000'000ull * t->cues +
            t->last.detections;
   };
-  std::ranges::stable_sort(
-      tracks, [&](const ReportTrack* a, const ReportTrack* b) { return rank(a) > rank(b); });
-  json.field("track_count", std::uint64_t(tracks.size()));
+  std::ranges::stable_sort(tracks, std::ranges::greater(), rank);
+  json.field("track_count", tracks.size());
   if (tracks.size() > most_tracks) tracks.resize(most_tracks);
   json.key("tracks").begin_array();
   std::size_t curves = 0;
@@ -330,22 +310,21 @@ void write_tracks(const RunContents& run, JsonWriter& json) {
     json.begin_object().field("id", t->last.id).field("name", t->last.name);
     json.field("number", t->last.catalogue_number);
     json.field("status", track_status_name(t->last.status));
-    json.field("detections", t->last.detections).field("cues", std::uint64_t(t->cues));
+    json.field("detections", t->last.detections).field("cues", t->cues);
     json.field("first_s", rounded(t->first_s, 3));
     json.field("last_s", rounded(t->last.time.seconds(), 3));
     json.field("altitude_km", rounded((norm(t->last.position_m) - 6371000.0) / 1e3, 0));
-    json.key("sigma_m");
-    number(json, t->sigma_m.empty() ? std::nullopt : std::optional(t->sigma_m.back().second), 1);
+    number(json, "sigma_m",
+           t->sigma_m.empty() ? std::nullopt : std::optional(t->sigma_m.back().second), 1);
     if (t->sigma_m.size() > 1 && curves++ < 40) {
       json.key("curve").begin_array();
-      for (const auto& [time_s, sigma_m] : t->sigma_m) {
+      for (const auto& [time_s, sigma_m] : t->sigma_m)
         json.begin_array().value(rounded(time_s, 2)).value(rounded(sigma_m, 2)).end_array();
-      }
       json.end_array();
     }
     json.end_object();
   }
-  json.end_array().field("cue_count", std::uint64_t(run.cues.size())).key("cues").begin_array();
+  json.end_array().field("cue_count", run.cues.size()).key("cues").begin_array();
   for (std::size_t k = 0; k < std::min(most_cues, run.cues.size()); ++k) {
     const Task& cue = run.cues[k];
     json.begin_object().field("sensor", cue.sensor).field("track", cue.track);
@@ -365,7 +344,7 @@ void write_clock(const RunContents& run, JsonWriter& json) {
     json.field("waiting_s", rounded(n.waiting_s, 3)).field("start_s", rounded(n.start_s, 3));
     json.end_object();
   }
-  json.end_array().field("tick_count", std::uint64_t(run.ticks.size()));
+  json.end_array().field("tick_count", run.ticks.size());
   json.key("ticks").begin_array();
   const std::size_t first = run.ticks.size() > most_ticks ? run.ticks.size() - most_ticks : 0;
   for (std::size_t k = first; k < run.ticks.size(); ++k) {
@@ -387,9 +366,9 @@ std::string report_json(const RunContents& run, const StarMap* stars, Threads& t
   json.field("digest", run.digest).field("seed", run.seed).field("start_utc", run.start_utc);
   json.field("duration_s", run.duration_s).field("tick_s", run.tick_s).key("wall_s");
   number(json, run.wall_s, 2);
-  json.field("every", std::uint64_t(choice.every));
-  json.field("source_every", std::uint64_t(choice.source_every));
-  json.field("frame_count", std::uint64_t(run.frames.size()));
+  json.field("every", choice.every);
+  json.field("source_every", choice.source_every);
+  json.field("frame_count", run.frames.size());
   json.field("has_truth", run.has_truth);
   write_sensors(run, json);
   write_frames(run, choice, json);
@@ -399,9 +378,7 @@ std::string report_json(const RunContents& run, const StarMap* stars, Threads& t
   write_plan(run, json);
   write_tracks(run, json);
   write_clock(run, json);
-  json.key("files").begin_array();
-  for (std::size_t k = 0; k < std::min(most_files, run.files.size()); ++k) json.value(run.files[k]);
-  json.end_array();
+  json.list("files", std::span(run.files).first(std::min(most_files, run.files.size())));
   // Differences of noise in thirds of it take 4.6 bits a pixel.
   const std::size_t most_pixels =
       std::clamp<std::size_t>(std::size_t(double(settings.most_pixel_bytes) * 0.75 * 8 / 4.6) /

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
+#include "core/base/regular_file.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/image/fits_file.h"
@@ -18,11 +19,6 @@ namespace dmise {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool exists(const std::string& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
 
 double number_or(const JsonRecord& record, const char* key, double otherwise) {
   return record.has(key) ? record.number(key) : otherwise;
@@ -54,7 +50,7 @@ ReportSensor sensor_of(const JsonRecord& record) {
 /// run.json, which a run that was killed leaves as it began it: with its digest alone.
 void read_record(RunContents& run) {
   const std::string path = run.directory + "/run.json";
-  if (!exists(path)) return;
+  if (!path_exists(path)) return;
   const JsonRecord record(read_text_file(path), path);
   run.status = record.get<std::string>("status");
   run.how = text_or_empty(record, "how");
@@ -90,7 +86,7 @@ void find_sensors(RunContents& run) {
   for (const ReportSensor& s : run.sensors) known.insert(s.name);
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(run.directory, error))
-    if (entry.is_directory(error) && exists((entry.path() / "frames.jsonl").string()) &&
+    if (entry.is_directory(error) && path_exists((entry.path() / "frames.jsonl").string()) &&
         !known.contains(entry.path().filename().string()))
       more.insert(entry.path().filename().string());
   if (error) throw ConfigError(run.directory + ": can't be read: " + error.message());
@@ -100,9 +96,7 @@ void find_sensors(RunContents& run) {
 ReportFrame frame_of(const JsonRecord& line, std::size_t sensor) {
   ReportFrame f{.sensor = sensor,
                 .number = line.get<std::uint32_t>("frame"),
-                .start = line.time("start_ns"),
                 .middle = line.time("middle_ns"),
-                .end = line.time("end_ns"),
                 .middle_utc = text_or_empty(line, "middle_utc"),
                 .boresight_ra_rad = number_or(line, "boresight_ra_deg", 0.0) * deg,
                 .boresight_dec_rad = number_or(line, "boresight_dec_deg", 0.0) * deg,
@@ -171,7 +165,7 @@ void read_sensor(RunContents& run, std::size_t index, ScoreInput& input) {
   ReportSensor& sensor = run.sensors[index];
   const std::string directory = run.directory + "/" + sensor.name + "/";
   std::map<std::uint32_t, std::size_t> places;
-  if (!exists(directory + "frames.jsonl")) return;
+  if (!path_exists(directory + "frames.jsonl")) return;
   if (sensor.camera_facts.columns == 0) read_camera(directory, sensor);
   for_lines(directory + "frames.jsonl", quietly, [&](const JsonRecord& line) {
     ReportFrame f = frame_of(line, index);
@@ -179,7 +173,7 @@ void read_sensor(RunContents& run, std::size_t index, ScoreInput& input) {
          {std::pair(".fits", &ReportFrame::fits), std::pair(".png", &ReportFrame::picture),
           std::pair("-marked.png", &ReportFrame::marked)})
       if (const std::string file = sensor.name + "/" + frame_file_name(f.number, ending);
-          exists(run.directory + "/" + file))
+          path_exists(run.directory + "/" + file))
         f.*member = file;
     if (!places.emplace(f.number, run.frames.size()).second)
       line.fail("frame", "is there twice: " + std::to_string(f.number));
@@ -197,7 +191,7 @@ void read_sensor(RunContents& run, std::size_t index, ScoreInput& input) {
     const auto found = places.find(frame);
     return found == places.end() ? std::nullopt : std::optional(found->second);
   };
-  if (exists(directory + "truth.jsonl")) {
+  if (path_exists(directory + "truth.jsonl")) {
     run.has_truth = true;
     for_lines(directory + "truth.jsonl", quietly, [&](const JsonRecord& line) {
       Truth truth = truth_of(line);
@@ -208,7 +202,7 @@ void read_sensor(RunContents& run, std::size_t index, ScoreInput& input) {
       run.truths.push_back({*frame, std::move(truth)});
     });
   }
-  if (exists(directory + "detections.jsonl"))
+  if (path_exists(directory + "detections.jsonl"))
     for_lines(directory + "detections.jsonl", quietly, [&](const JsonRecord& line) {
       Detection d = detection_of(line);
       const auto frame = place_of(d.frame);
@@ -219,13 +213,13 @@ void read_sensor(RunContents& run, std::size_t index, ScoreInput& input) {
           {.sensor = sensor.name, .frame = std::to_string(d.frame), .detection = d});
       run.detections.push_back({*frame, std::move(d)});
     });
-  if (exists(directory + "cost.jsonl"))
+  if (path_exists(directory + "cost.jsonl"))
     for_lines(directory + "cost.jsonl", quietly, [&](const JsonRecord& line) {
       const auto frame = place_of(line.get<std::uint32_t>("frame"));
       add_cost(line, sensor, frame ? &run.frames[*frame] : nullptr);
     });
   if (sensor.costs > 0) sensor.seconds_per_frame /= double(sensor.costs);
-  if (exists(run.directory + "/logs/" + sensor.name + ".log"))
+  if (path_exists(run.directory + "/logs/" + sensor.name + ".log"))
     sensor.log = "logs/" + sensor.name + ".log";
 }
 
@@ -252,7 +246,7 @@ void judge(RunContents& run, ScoreInput input) {
 
 std::string first_of(const std::string& directory, const char* name) {
   for (const std::string& path : {directory + "/" + name, directory + "/fusion-node/" + name})
-    if (exists(path)) return path;
+    if (path_exists(path)) return path;
   return "";
 }
 
@@ -298,7 +292,7 @@ void read_tracks(RunContents& run) {
 /// What the time-master of `dmise launch` reports of its ticks.
 void read_ticks(RunContents& run) {
   const std::string path = run.directory + "/logs/master.json";
-  if (!exists(path)) return;
+  if (!path_exists(path)) return;
   const JsonRecord record(read_text_file(path), path);
   if (!record.has("ticks")) return;
   for (const JsonRecord& tick : record.objects("ticks"))
@@ -309,7 +303,7 @@ void read_ticks(RunContents& run) {
 void find_files(RunContents& run) {
   for (const char* name : {"run.json", "frames.jsonl", "detections.jsonl", "truth.jsonl",
                            "tracks.jsonl", "tasks.jsonl", "positions.csv", "positions.jsonl"})
-    if (exists(run.directory + "/" + name)) run.files.push_back(name);
+    if (path_exists(run.directory + "/" + name)) run.files.push_back(name);
   std::vector<std::string> logs;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(run.directory + "/logs", ignored))

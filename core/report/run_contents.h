@@ -41,7 +41,7 @@ struct ReportSensor {
 struct ReportFrame {
   std::size_t sensor = 0;
   std::uint32_t number = 0;
-  SimTime start, middle, end;
+  SimTime middle;  // of the exposure
   std::string middle_utc;
   double boresight_ra_rad = 0.0, boresight_dec_rad = 0.0;
   Vec<Gcrs> sensor_position_m;
