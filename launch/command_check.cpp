@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/json.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
@@ -81,11 +82,7 @@ std::string evaluator_of(const EffectSet& effects) {
 /// "1.5", or "[1.5, 2, 0]".
 std::string text_of(const std::vector<double>& numbers) {
   std::string text;
-  for (const double number : numbers) {
-    char digits[32];
-    std::snprintf(digits, sizeof digits, "%s%g", text.empty() ? "" : ", ", number);
-    text += digits;
-  }
+  for (const double number : numbers) text += formatted("%s%g", text.empty() ? "" : ", ", number);
   return numbers.size() == 1 ? text : "[" + text + "]";
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/base/digest.h"
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/base/version.h"
@@ -182,9 +183,7 @@ int processors() {
 
 std::string left_text(double elapsed_s, std::size_t done, std::size_t all) {
   if (done == 0) return "";
-  char text[64];
-  std::snprintf(text, sizeof text, ", %.0f s left", elapsed_s / double(done) * double(all - done));
-  return text;
+  return formatted(", %.0f s left", elapsed_s / double(done) * double(all - done));
 }
 
 void make_samples(TaskWork& work, const ScenarioDraws& draws, SampleMaker& maker,

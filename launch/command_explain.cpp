@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/json.h"
 #include "core/base/printable.h"
 #include "core/config/make_clock.h"
@@ -28,11 +29,9 @@ std::string error_text(const ErrorBound& error) {
   for (const auto& kind : error_kinds) {
     const double value = error.*kind.value;
     if (value == 0.0) continue;
-    char part[64];
     if (std::isinf(value)) return "unbounded";
-    std::snprintf(part, sizeof part, "%s%.2g %s", text.empty() ? "" : ", ", value,
-                  &kind == &error_kinds[3] ? "noise" : kind.unit);
-    text += part;
+    text += formatted("%s%.2g %s", text.empty() ? "" : ", ", value,
+                      &kind == &error_kinds[3] ? "noise" : kind.unit);
   }
   return text.empty() ? "none" : text;
 }

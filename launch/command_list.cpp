@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/formatted.h"
 #include "core/config/camera_config.h"
 #include "core/config/effect_list.h"
 #include "core/config/material_config.h"
@@ -15,13 +16,6 @@
 
 namespace dmise {
 namespace {
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char line[256];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
 
 void print(const std::string& name, const std::string& what) {
   std::printf("%-18s %s\n", name.c_str(), what.c_str());
@@ -34,10 +28,10 @@ YamlValue preset(const char* kind, const std::string& name) {
 void list_cameras() {
   for (const auto& name : preset_names("cameras")) {
     const Camera camera = read_camera(preset("cameras", name));
-    print(name,
-          text("%d x %d px of %.3g um, focal length %.4g m, aperture %.3g m, %s",
-               camera.optics.columns, camera.optics.rows, camera.optics.pixel_pitch_m * 1e6,
-               camera.optics.focal_length_m, camera.optics.aperture_m, camera.band.name.c_str()));
+    print(name, formatted("%d x %d px of %.3g um, focal length %.4g m, aperture %.3g m, %s",
+                          camera.optics.columns, camera.optics.rows,
+                          camera.optics.pixel_pitch_m * 1e6, camera.optics.focal_length_m,
+                          camera.optics.aperture_m, camera.band.name.c_str()));
   }
 }
 
@@ -46,16 +40,17 @@ void list_sites() {
     YamlMap site(preset("sites", name));
     const double latitude_deg = site.number("latitude_deg"),
                  longitude_deg = site.number("longitude_deg");
-    print(name, text("%.3f deg %c, %.3f deg %c, %.0f m", std::abs(latitude_deg),
-                     latitude_deg < 0 ? 'S' : 'N', std::abs(longitude_deg),
-                     longitude_deg < 0 ? 'W' : 'E', site.number_or("height_m", 0.0)));
+    print(name, formatted("%.3f deg %c, %.3f deg %c, %.0f m", std::abs(latitude_deg),
+                          latitude_deg < 0 ? 'S' : 'N', std::abs(longitude_deg),
+                          longitude_deg < 0 ? 'W' : 'E', site.number_or("height_m", 0.0)));
   }
 }
 
 void list_filters() {
   for (const auto& name : filter_names()) {
     const Band band = *filter_named(name);
-    print(name, text("centre %.4g um, width %.3g um", band.centre_m * 1e6, band.width_m * 1e6));
+    print(name,
+          formatted("centre %.4g um, width %.3g um", band.centre_m * 1e6, band.width_m * 1e6));
   }
 }
 
@@ -68,7 +63,7 @@ void list_catalogues() {
   const auto show = [](const char* name, const char* use, const char* what, const char* file,
                        const char* remedy = "./dmise setup fetches it") {
     const std::string path = find_catalogue(file);
-    print(name, text("%s (%s): ", what, use) +
+    print(name, formatted("%s (%s): ", what, use) +
                     (path.empty() ? std::string("not installed; ") + remedy : path));
   };
   show("gpredict", "objects: [{catalogue: gpredict}]", "objects in orbit of Debian's gpredict",

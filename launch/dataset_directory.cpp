@@ -1,14 +1,14 @@
 #include "launch/dataset_directory.h"
 
 #include <array>
-#include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <sstream>
 
 #include "core/base/digest.h"
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/json.h"
+#include "core/base/regular_file.h"
 #include "core/base/text_file.h"
 #include "core/base/version.h"
 #include "core/base/whole_file.h"
@@ -19,11 +19,6 @@ namespace dmise {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool exists(const std::string& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
 
 void remove(const std::string& path) {
   std::error_code ignored;
@@ -38,13 +33,8 @@ std::string head(const DatasetPlan& plan) {
   return json.field("seeds_per_shard", plan.seeds_per_shard).take();
 }
 
+constexpr std::size_t any_size = std::size_t(1) << 40;  // of a file
 constexpr std::string_view image_mark = "image ", annotation_mark = "annotation ";
-
-void for_lines(const std::string& path, const std::function<void(std::string_view line)>& take) {
-  std::istringstream lines(read_text_file(path, std::size_t(1) << 40));
-  std::string line;
-  while (std::getline(lines, line)) take(line);
-}
 
 /// A file that is written whole, its digest and its size.
 class DigestedFile {
@@ -70,9 +60,7 @@ class DigestedFile {
 }  // namespace
 
 std::string shard_name(std::size_t shard, const char* ending) {
-  char name[64];
-  std::snprintf(name, sizeof name, "dataset-%06zu%s", shard, ending);
-  return name;
+  return formatted("dataset-%06zu%s", shard, ending);
 }
 
 DatasetDirectory::DatasetDirectory(std::string path, DatasetPlan plan)
@@ -84,11 +72,11 @@ DatasetDirectory::DatasetDirectory(std::string path, DatasetPlan plan)
 
 DatasetDirectory::Content DatasetDirectory::content() const {
   const std::string mark = "\"digest\":\"" + plan_.digest + "\"";
-  if (exists(path_ + "/dataset.json"))
+  if (path_exists(path_ + "/dataset.json"))
     return read_text_file(path_ + "/dataset.json").find(mark) != std::string::npos
                ? Content::same_complete
                : Content::another;
-  if (!exists(part("plan.json"))) return Content::nothing;
+  if (!path_exists(part("plan.json"))) return Content::nothing;
   return read_text_file(part("plan.json")).find(mark) != std::string::npos
              ? Content::same_unfinished
              : Content::another;
@@ -109,7 +97,7 @@ void DatasetDirectory::begin() const {
   fs::create_directories(path_ + "/parts", code);
   if (code) throw Error(path_ + "/parts: can't be made: " + code.message());
   const auto starting = lock("start");  // tasks of an array begin together
-  if (!starting || exists(part("plan.json"))) return;
+  if (!starting || path_exists(part("plan.json"))) return;
   write_file_whole(path_ + "/scenario.yaml", plan_.scenario_text);
   write_file_whole(part("plan.json"), head(plan_) + "}\n");
 }
@@ -125,11 +113,11 @@ std::string DatasetDirectory::sample_part(std::uint64_t seed, const char* ending
 }
 
 bool DatasetDirectory::has_shard(std::size_t shard) const {
-  return exists(part(shard_name(shard, ".json")));
+  return path_exists(part(shard_name(shard, ".json")));
 }
 
 bool DatasetDirectory::has_sample(std::uint64_t seed) const {
-  return exists(sample_part(seed, ".tar"));
+  return path_exists(sample_part(seed, ".tar"));
 }
 
 void DatasetDirectory::write_sample(std::uint64_t seed,
@@ -151,8 +139,8 @@ void DatasetDirectory::assemble(std::size_t shard) const {
   DigestedFile archive(path_ + "/" + name);
   std::string lines;
   for (std::uint64_t seed = first; seed <= last; ++seed) {
-    archive.append(read_text_file(sample_part(seed, ".tar"), std::size_t(1) << 40));
-    lines += read_text_file(sample_part(seed, ".coco"), std::size_t(1) << 40);
+    archive.append(read_text_file(sample_part(seed, ".tar"), any_size));
+    lines += read_text_file(sample_part(seed, ".coco"), any_size);
   }
   archive.append(tar_end());
   const auto count = [&](std::string_view mark) {
@@ -183,19 +171,21 @@ std::string DatasetDirectory::write_coco() const {
   for (const bool images : {true, false}) {
     file.append(images ? ",\"images\":[" : ",\"annotations\":[");
     std::uint64_t image = 0, annotation = 0;
-    for (std::size_t shard = 0; shard < plan_.shards(); ++shard)
-      for_lines(part(shard_name(shard, ".coco")), [&](std::string_view line) {
+    for (std::size_t shard = 0; shard < plan_.shards(); ++shard) {
+      std::istringstream lines(read_text_file(part(shard_name(shard, ".coco")), any_size));
+      for (std::string line; std::getline(lines, line);) {
         const bool is_image = line.starts_with(image_mark);
         std::uint64_t& id = is_image ? image : annotation;
         ++id;
-        if (is_image != images) return;
+        if (is_image != images) continue;
         std::string text = id > 1 ? ",\n{\"id\":" : "\n{\"id\":";
         text += std::to_string(id);
         if (is_image) text += ",\"shard\":\"" + shard_name(shard) + "\",";
         if (!is_image) text += ",\"image_id\":" + std::to_string(image) + ",";
         const std::size_t mark = is_image ? image_mark.size() : annotation_mark.size();
-        file.append(text + std::string(line.substr(mark + 1)));
-      });
+        file.append(text + line.substr(mark + 1));
+      }
+    }
     file.append("\n]");
   }
   file.append("}\n");
@@ -212,9 +202,7 @@ std::size_t DatasetDirectory::finish() const {
   if (missing > 0) return missing;
   const auto finishing = lock("finish");
   if (!finishing || content() == Content::same_complete) return 0;
-  JsonWriter json;
-  json.raw(write_coco());
-  std::string text = head(plan_) + ",\"coco\":" + json.take() + ",\"shards\":[";
+  std::string text = head(plan_) + ",\"coco\":" + write_coco() + ",\"shards\":[";
   for (std::size_t shard = 0; shard < plan_.shards(); ++shard)
     text += (shard > 0 ? ",\n" : "\n") + read_text_file(part(shard_name(shard, ".json")));
   write_file_whole(path_ + "/dataset.json", text + "\n]}\n");

@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
+#include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/config/make_clock.h"
 #include "core/config/node_kinds.h"
@@ -41,11 +42,7 @@ namespace {
 using Clock_ = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", x);
-  return text;
-}
+std::string number(double x) { return formatted("%.9g", x); }
 
 /// One launch of a scenario as a process per node.
 class Launch {
@@ -95,8 +92,6 @@ class Launch {
   void start_master() {
     std::error_code ignored;
     std::filesystem::remove(announcement(), ignored);
-    std::string expected;
-    for (const auto& name : nodes_of(scenario_)) expected += (expected.empty() ? "" : ",") + name;
     const auto& network = scenario_.network;
     const bool restart = network.on_silent_node == OnSilentNode::restart;
     const char* policy = network.on_silent_node == OnSilentNode::fail   ? "fail"
@@ -110,7 +105,7 @@ class Launch {
            "--report",        report(),
            "--bind",          numeric_address(options_.bind),
            "--announce",      announcement(),
-           "--expect",        expected,
+           "--expect",        joined(nodes_of(scenario_), ","),
            "--ticks",         std::to_string(scenario_.last_tick() + 1),
            "--tick-ns",       std::to_string(scenario_.tick.ns),
            "--start",         format_utc(parse_utc(scenario_.start_utc), 6),
@@ -299,8 +294,7 @@ class Launch {
       state.frames += int(count_lines(lines + "/frames.jsonl"));
       state.detections += count_lines(lines + "/detections.jsonl");
     }
-    for (const auto& name : status.missing.empty() ? status.holding : status.missing)
-      state.waiting_for += (state.waiting_for.empty() ? "" : ", ") + name;
+    state.waiting_for = joined(status.missing.empty() ? status.holding : status.missing);
     return state;
   }
 

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
+
+#include "core/base/formatted.h"
 
 namespace dmise {
 namespace {
@@ -58,13 +59,6 @@ bool process_has_ended(const LockHolder& holder, LockSight::KernelLock kernel_lo
   return holder.kernel_lock && kernel_lock == LockSight::KernelLock::free;
 }
 
-std::string random_token() {
-  std::random_device random;
-  char text[33];
-  std::snprintf(text, sizeof text, "%08x%08x%08x%08x", random(), random(), random(), random());
-  return text;
-}
-
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
@@ -87,6 +81,11 @@ std::string own_command() {
 
 }  // namespace
 
+std::string random_token() {
+  std::random_device random;
+  return formatted("%08x%08x%08x%08x", random(), random(), random(), random());
+}
+
 LockHolder this_process() {
   LockHolder self;
   char host[256] = "";
@@ -104,8 +103,7 @@ LockHolder this_process() {
 }
 
 std::string lock_text(const LockHolder& h) {
-  char run[17];
-  std::snprintf(run, sizeof run, "%016llx", static_cast<unsigned long long>(h.run_id));
+  const std::string run = formatted("%016llx", static_cast<unsigned long long>(h.run_id));
   const nlohmann::ordered_json json{{"host", h.host},
                                     {"machine", h.machine},
                                     {"boot", h.boot},

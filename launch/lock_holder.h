@@ -22,6 +22,9 @@ struct LockHolder {
 /// This process.
 LockHolder this_process();
 
+/// 32 hexadecimal digits from the kernel's random numbers.
+std::string random_token();
+
 /// One line of JSON with a length independent of `run_id`.
 std::string lock_text(const LockHolder& holder);
 /// Parses a lock file; empty if it is incomplete.

@@ -1,8 +1,8 @@
 #include "launch/pass_list.h"
 
-#include <cstdio>
 #include <functional>
 
+#include "core/base/formatted.h"
 #include "core/base/json.h"
 #include "core/base/units.h"
 #include "core/orbit/catalogue_report.h"
@@ -11,20 +11,14 @@
 namespace dmise {
 namespace {
 
-std::string printed(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-/// A value of a pass: text, number with decimals, flag, or empty.
+/// A value of a pass: a text, a number or a flag; empty if there is none.
 struct Value {
-  enum class Kind { none, text, number, flag } kind = Kind::none;
-  std::string text;  // as in CSV, without quotes
+  std::string text;     // as in CSV, without quotes
+  bool quoted = false;  // in JSON
 };
-Value of(const std::string& text) { return {Value::Kind::text, text}; }
-Value of(bool flag) { return {Value::Kind::flag, flag ? "true" : "false"}; }
-Value of(double value, const char* format) { return {Value::Kind::number, printed(format, value)}; }
+Value of(const std::string& text) { return {text, true}; }
+Value of(bool flag) { return {flag ? "true" : "false"}; }
+Value of(double value, int decimals) { return {formatted("%.*f", decimals, value)}; }
 
 struct Column {
   const char* name;
@@ -35,10 +29,10 @@ Value utc(const PassList& list, const std::optional<SimTime>& t) {
   return t ? of(format_utc(list.clock.utc(*t), 2)) : Value{};
 }
 Value azimuth(const PassMoment& m) {
-  return m.horizontal ? of(m.horizontal->azimuth_rad / deg, "%.3f") : Value{};
+  return m.horizontal ? of(m.horizontal->azimuth_rad / deg, 3) : Value{};
 }
 Value elevation(const PassMoment& m) {
-  return m.horizontal ? of(m.horizontal->elevation_rad / deg, "%.3f") : Value{};
+  return m.horizontal ? of(m.horizontal->elevation_rad / deg, 3) : Value{};
 }
 
 std::vector<Column> columns_of(const PassList& list) {
@@ -47,7 +41,7 @@ std::vector<Column> columns_of(const PassList& list) {
   std::vector<Column> all = {
       {"sensor", [](L l, P) { return of(l.sensor.name); }},
       {"catalogue_number",
-       [](L l, P p) { return of(double(l.elements[p.object].catalogue_number), "%.0f"); }},
+       [](L l, P p) { return of(double(l.elements[p.object].catalogue_number), 0); }},
       {"name", [](L l, P p) { return of(l.elements[p.object].name); }},
       {"orbit", [](L l, P p) { return of(std::string(orbit_class(l.elements[p.object]))); }},
       {"rise_utc", [](L l, P p) { return utc(l, p.rise.time); }},
@@ -61,15 +55,15 @@ std::vector<Column> columns_of(const PassList& list) {
       {"top_elevation_deg", [](L, P p) { return elevation(p.top); }},
       {"set_azimuth_deg", [](L, P p) { return azimuth(p.set); }},
       {"set_elevation_deg", [](L, P p) { return elevation(p.set); }},
-      {"least_range_km", [](L, P p) { return of(p.least_range_m / 1e3, "%.3f"); }},
-      {"top_rate_deg_per_s", [](L, P p) { return of(p.top.rate_rad_per_s / deg, "%.6f"); }},
-      {"top_sunlit", [](L, P p) { return of(p.top.sunlit, "%.3f"); }},
+      {"least_range_km", [](L, P p) { return of(p.least_range_m / 1e3, 3); }},
+      {"top_rate_deg_per_s", [](L, P p) { return of(p.top.rate_rad_per_s / deg, 6); }},
+      {"top_sunlit", [](L, P p) { return of(p.top.sunlit, 3); }},
       {"lit_from_utc", [](L l, P p) { return utc(l, p.lit_from); }},
       {"lit_to_utc", [](L l, P p) { return utc(l, p.lit_to); }},
-      {"lit_s", [](L, P p) { return of(p.lit_s, "%.2f"); }},
+      {"lit_s", [](L, P p) { return of(p.lit_s, 2); }},
       {"top_sun_elevation_deg",
        [](L, P p) {
-         return p.top.sun_elevation_rad ? of(*p.top.sun_elevation_rad / deg, "%.2f") : Value{};
+         return p.top.sun_elevation_rad ? of(*p.top.sun_elevation_rad / deg, 2) : Value{};
        }},
   };
   if (list.tells_excluded) all.push_back({"excluded", [](L, P p) { return of(p.excluded); }});
@@ -128,24 +122,17 @@ std::string pass_table(const PassList& list, std::size_t rows) {
   for (const Pass& p : list.passes) {
     if (rows && rows_done++ == rows) break;
     const MeanElements& e = list.elements[p.object];
-    char row[320];
-    int used =
-        std::snprintf(row, sizeof row, "%9u  %-24.24s  %-5s %c%s  %s  %s%c", e.catalogue_number,
-                      e.name.c_str(), orbit_class(e), p.open_start ? '<' : ' ',
+    text += formatted("%9u  %-24.24s  %-5s %c%s  %s  %s%c", e.catalogue_number, e.name.c_str(),
+                      orbit_class(e), p.open_start ? '<' : ' ',
                       format_utc(list.clock.utc(p.rise.time), 1).substr(0, 21).c_str(),
                       of_day(list.clock, p.top.time).c_str(),
                       of_day(list.clock, p.set.time).c_str(), p.open_end ? '>' : ' ');
-    text.append(row, std::size_t(used));
-    if (p.top.horizontal) {
-      used =
-          std::snprintf(row, sizeof row, "  %5.1f deg  %5.1f deg",
-                        p.top.horizontal->elevation_rad / deg, p.top.horizontal->azimuth_rad / deg);
-      text.append(row, std::size_t(used));
-    }
-    used = std::snprintf(row, sizeof row, "  %7.0f km  %5.3f d/s  %-17s", p.least_range_m / 1e3,
-                         p.top.rate_rad_per_s / deg, light(list, p).c_str());
-    text.append(row, std::size_t(used));
-    if (p.top.sun_elevation_rad) text += printed("  %5.1f", *p.top.sun_elevation_rad / deg);
+    if (p.top.horizontal)
+      text += formatted("  %5.1f deg  %5.1f deg", p.top.horizontal->elevation_rad / deg,
+                        p.top.horizontal->azimuth_rad / deg);
+    text += formatted("  %7.0f km  %5.3f d/s  %-17s", p.least_range_m / 1e3,
+                      p.top.rate_rad_per_s / deg, light(list, p).c_str());
+    if (p.top.sun_elevation_rad) text += formatted("  %5.1f", *p.top.sun_elevation_rad / deg);
     if (p.excluded) text += "  excluded";
     text += '\n';
   }
@@ -182,21 +169,9 @@ std::string pass_jsonl(const PassList& list) {
     for (const Column& c : columns) {
       const Value v = c.value(list, p);
       w.key(c.name);
-      switch (v.kind) {
-        case Value::Kind::none:
-          w.null();
-          break;
-        case Value::Kind::text:
-          w.value(v.text);
-          break;
-        case Value::Kind::number:
-        case Value::Kind::flag:
-          w.raw(v.text);
-          break;
-      }
+      v.quoted ? w.value(v.text) : w.raw(v.text.empty() ? "null" : v.text);
     }
-    w.end_object();
-    text += w.text() + '\n';
+    text += w.end_object().take() + '\n';
   }
   return text;
 }

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/base/formatted.h"
+#include "core/base/printable.h"
+
 namespace dmise {
 
 using Seconds = std::chrono::duration<double>;
@@ -39,36 +42,31 @@ void Progress::show_share(double share, const std::string& what) {
   if (!terminal_ && Seconds(std::chrono::steady_clock::now() - start_).count() < interval_s_)
     return;
   if (!due(false)) return;
-  char line[256];
-  std::snprintf(line, sizeof line, "%s: %.0f %%, %.0f s elapsed", what.c_str(), 100.0 * share,
-                Seconds(shown_ - start_).count());
-  draw(share, line, false);
+  draw(share,
+       formatted("%s: %.0f %%, %.0f s elapsed", what.c_str(), 100.0 * share,
+                 Seconds(shown_ - start_).count()),
+       false);
 }
 
 void Progress::show(const ProgressState& s, bool last) {
   if (!due(last)) return;
-  char line[512];
-  const double wall_s = Seconds(shown_ - start_).count();
-  int used =
-      std::snprintf(line, sizeof line,
-                    "simulated %.0f of %.0f s, frames %d of %d, detections %ld, %.0f s elapsed",
-                    s.simulated_s, s.duration_s, s.frames, s.frames_total, s.detections, wall_s);
-  if (!s.waiting_for.empty())
-    std::snprintf(line + used, sizeof line - std::size_t(used), ", waiting for %s",
-                  s.waiting_for.c_str());
+  std::string line = formatted(
+      "simulated %.0f of %.0f s, frames %d of %d, detections %ld, %.0f s elapsed", s.simulated_s,
+      s.duration_s, s.frames, s.frames_total, s.detections, Seconds(shown_ - start_).count());
+  if (!s.waiting_for.empty()) line += ", waiting for " + printable(s.waiting_for, 400);
   draw(s.duration_s > 0 ? s.simulated_s / s.duration_s : 0.0, line, last);
 }
 
-void Progress::draw(double share, const char* line, bool last) {
+void Progress::draw(double share, const std::string& line, bool last) {
   if (terminal_) {
     constexpr int width = 20;
     const int full = std::clamp(static_cast<int>(share * width), 0, width);
     std::fprintf(stderr, "\r\033[K[%.*s%.*s] %s", full, "####################", width - full,
-                 "....................", line);
+                 "....................", line.c_str());
     open_line_ = true;
     if (last) clear_line();
   } else {
-    std::fprintf(stderr, "%s\n", line);
+    std::fprintf(stderr, "%s\n", line.c_str());
   }
   std::fflush(stderr);
 }

@@ -28,7 +28,7 @@ class Progress {
 
  private:
   bool due(bool last);
-  void draw(double share, const char* line, bool last);
+  void draw(double share, const std::string& line, bool last);
 
   std::chrono::steady_clock::time_point start_, shown_;
   double interval_s_;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 #include "core/orbit/catalogue_report.h"
 #include "core/time/iso8601.h"
@@ -65,28 +65,17 @@ std::vector<ChartTick> time_ticks(const Clock& clock, const TimeGrid& grid) {
   return ticks;
 }
 
-std::string seconds(SimTime step) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", step.seconds());
-  return text;
-}
-
 std::string where(const SensorTrack& track) {
   const auto& site = track.site();
   if (!site) return "aboard " + std::get<PlatformConfig>(track.sensor().place).object;
-  char text[96];
-  std::snprintf(text, sizeof text, "%.3f deg %c, %.3f deg %c", std::abs(site->latitude_deg),
-                site->latitude_deg < 0 ? 'S' : 'N', std::abs(site->longitude_deg),
-                site->longitude_deg < 0 ? 'W' : 'E');
-  return text;
+  return formatted("%.3f deg %c, %.3f deg %c", std::abs(site->latitude_deg),
+                   site->latitude_deg < 0 ? 'S' : 'N', std::abs(site->longitude_deg),
+                   site->longitude_deg < 0 ? 'W' : 'E');
 }
 
 std::string field(const Optics& optics) {
   const CameraFigures figures = camera_figures(optics);
-  char text[64];
-  std::snprintf(text, sizeof text, "field %.4g x %.4g deg", figures.width_rad / deg,
-                figures.height_rad / deg);
-  return text;
+  return formatted("field %.4g x %.4g deg", figures.width_rad / deg, figures.height_rad / deg);
 }
 
 }  // namespace
@@ -139,9 +128,9 @@ Chart range_figure(const SensorTrack& track, const TimeGrid& grid,
   chart.title = std::string("Objects in the field of ") + track.sensor().name +
                 (options.dark ? " and in the Earth's shadow" : " and sunlit");
   const std::string start = format_utc(clock.utc(grid.from), 0);
-  chart.subtitle = where(track) + "; " + field(track.sensor().camera.optics) + "; catalogue of " +
-                   std::to_string(elements.size()) + " objects, every " + seconds(grid.step) +
-                   " s; (n): number drawn";
+  chart.subtitle =
+      where(track) + "; " + field(track.sensor().camera.optics) + "; catalogue of " +
+      formatted("%zu objects, every %g s; (n): number drawn", elements.size(), grid.step.seconds());
   chart.x = {.label = "Time [UTC], from " + start,
              .least = 0.0,
              .most = std::max((grid.last() - grid.from).seconds(), 1e-3) / 3600.0,
@@ -159,11 +148,8 @@ Chart range_figure(const SensorTrack& track, const TimeGrid& grid,
     chart.series.push_back(std::move(series[k]));
   }
   chart.bands = night_bands(sun_rad, below_rad, grid);
-  if (!chart.bands.empty()) {
-    char text[64];
-    std::snprintf(text, sizeof text, "Sun below %.3g deg at the site", below_rad / deg);
-    chart.bands_label = text;
-  }
+  if (!chart.bands.empty())
+    chart.bands_label = formatted("Sun below %.3g deg at the site", below_rad / deg);
   return chart;
 }
 

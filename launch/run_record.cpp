@@ -1,10 +1,11 @@
 #include "launch/run_record.h"
 
-#include <filesystem>
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/json.h"
+#include "core/base/regular_file.h"
 #include "core/base/version.h"
 #include "core/base/whole_file.h"
 #include "core/orbit/interpolation_error.h"
@@ -14,13 +15,6 @@
 
 namespace dmise {
 namespace {
-
-namespace fs = std::filesystem;
-
-bool exists(const std::string& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
 
 /// Interpolation error of objects between ticks, as measured on a catalogue.
 void write_interpolation(JsonWriter& json, const Scenario& scenario) {
@@ -70,7 +64,7 @@ void write_index_page(const RunDirectory& directory, bool pixels) {
 }
 
 bool has_index_page(const RunDirectory& directory) {
-  return exists(directory.path() + "/index.html");
+  return path_exists(directory.path() + "/index.html");
 }
 
 std::string what_to_open(const RunDirectory& directory, const Scenario& scenario) {
@@ -78,7 +72,7 @@ std::string what_to_open(const RunDirectory& directory, const Scenario& scenario
   for (const auto& sensor : scenario.sensors) {
     const std::string marked =
         directory.path() + "/" + sensor.name + "/" + frame_file_name(1, "-marked.png");
-    if (text.empty() && exists(marked)) text = "open " + marked + "\n";
+    if (text.empty() && path_exists(marked)) text = "open " + marked + "\n";
   }
   if (has_index_page(directory))
     text += (text.empty() ? "open " : "or   ") + directory.path() + "/index.html\n";
@@ -87,18 +81,13 @@ std::string what_to_open(const RunDirectory& directory, const Scenario& scenario
 
 std::string summary_text(const RunDirectory& directory, const Scenario& scenario,
                          const RunOutcome& outcome) {
-  char row[256];
-  std::snprintf(row, sizeof row, "%-20s %7s %8s %11s %11s %10s\n", "sensor", "frames", "objects",
-                "detections", "s per frame", "memory, MB");
-  std::string text = row;
-  for (const auto& s : summarise(scenario, directory.path())) {
-    std::snprintf(row, sizeof row, "%-20s %7d %8d %11d %11.2f %10.0f\n", s.name.c_str(), s.frames,
-                  s.objects, s.detections, s.seconds_per_frame, s.memory_mb);
-    text += row;
-  }
-  std::snprintf(row, sizeof row, "%s in %.1f s (%s)\n", outcome.status.c_str(), outcome.wall_s,
-                outcome.how.c_str());
-  text += row;
+  std::string text = formatted("%-20s %7s %8s %11s %11s %10s\n", "sensor", "frames", "objects",
+                               "detections", "s per frame", "memory, MB");
+  for (const auto& s : summarise(scenario, directory.path()))
+    text += formatted("%-20s %7d %8d %11d %11.2f %10.0f\n", s.name.c_str(), s.frames, s.objects,
+                      s.detections, s.seconds_per_frame, s.memory_mb);
+  text +=
+      formatted("%s in %.1f s (%s)\n", outcome.status.c_str(), outcome.wall_s, outcome.how.c_str());
   return text + what_to_open(directory, scenario);
 }
 

@@ -1,10 +1,10 @@
 #include "launch/status_watch.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <string_view>
 #include <vector>
 
+#include "core/base/formatted.h"
 #include "core/base/printable.h"
 
 namespace dmise {
@@ -13,13 +13,6 @@ namespace {
 constexpr double rate_over_s = 5.0;
 constexpr std::string_view plain = "\x1b[0m", bold = "\x1b[1m", green = "\x1b[32m",
                            yellow = "\x1b[33m", red = "\x1b[31m";
-
-template <class... Values>
-std::string format(const char* text, Values... values) {
-  char line[512];
-  std::snprintf(line, sizeof line, text, values...);
-  return line;
-}
 
 /// `text` in so many characters; UTF-8 is cut between characters.
 std::string cut(const std::string& text, std::size_t columns) {
@@ -41,8 +34,8 @@ std::string padded(const std::string& text, std::size_t columns) {
 /// "1:02:03.5"
 std::string time_text(double seconds) {
   const auto tenths = static_cast<long long>(std::max(0.0, seconds) * 10.0 + 0.5);
-  return format("%lld:%02lld:%02lld.%lld", tenths / 36000, tenths / 600 % 60, tenths / 10 % 60,
-                tenths % 10);
+  return formatted("%lld:%02lld:%02lld.%lld", tenths / 36000, tenths / 600 % 60, tenths / 10 % 60,
+                   tenths % 10);
 }
 
 }  // namespace
@@ -100,21 +93,21 @@ std::string StatusWatch::table(const Layout& layout) const {
     lines.push_back(std::move(line));
   };
   const auto at_s = [&](Tick tick) { return double(std::max<Tick>(tick, 0)) * tick_s; };
-  add(format("run %016llx  %s%s  ", static_cast<unsigned long long>(status_.run_id),
-             phase_name(status_.phase), status_.paused ? ", paused" : "") +
+  add(formatted("run %016llx  %s%s  ", static_cast<unsigned long long>(status_.run_id),
+                phase_name(status_.phase), status_.paused ? ", paused" : "") +
           time_text(at_s(status_.settled)) + " of " + time_text(at_s(status_.last_tick)) +
-          format("  tick %ld of %ld", long(status_.settled), long(status_.last_tick)),
+          formatted("  tick %ld of %ld", long(status_.settled), long(status_.last_tick)),
       bold);
   if (!status_.start_utc.empty()) add("start: " + printable(status_.start_utc));
   if (silent_s_ > 0.0)
-    add(format("no answer for %.0f s: ", silent_s_) + printable(silence_), yellow);
+    add(formatted("no answer for %.0f s: ", silent_s_) + printable(silence_), yellow);
   if (!status_.cause.empty()) add("cause: " + printable(status_.cause), red);
   if (!status_.missing.empty()) add("missing: " + printable(joined(status_.missing)), yellow);
   if (!status_.holding.empty()) add("waiting for: " + printable(joined(status_.holding)));
-  if (status_.pace > 0.0) add(format("pace: %g times real time", status_.pace));
+  if (status_.pace > 0.0) add(formatted("pace: %g times real time", status_.pace));
   if (status_.overruns > 0)
-    add(format("overruns: %llu, at most %.2f s late",
-               static_cast<unsigned long long>(status_.overruns), status_.worst_lag_s),
+    add(formatted("overruns: %llu, at most %.2f s late",
+                  static_cast<unsigned long long>(status_.overruns), status_.worst_lag_s),
         yellow);
   const std::size_t name_columns = columns >= 100 ? 24 : 16;
   add(padded("node", name_columns) + " state         time     rate      lag  gaps  last error",
@@ -138,16 +131,17 @@ std::string StatusWatch::table(const Layout& layout) const {
                                         : "alive";
     const bool keeps_time = node.done >= 0 || !node.observer;
     const std::string lag =
-        keeps_time ? format("%.4g s", std::max(0.0, at_s(first) - at_s(node.done))) : "-";
+        keeps_time ? formatted("%.4g s", std::max(0.0, at_s(first) - at_s(node.done))) : "-";
     add(padded(printable(node.name, 64), name_columns) + " " + padded(state, 8) +
-            format(" %9s %8s %8s %5d  ", time_text(at_s(node.done)).c_str(),
-                   format("%.3gx", rate(h)).c_str(), lag.c_str(), h.gaps) +
+            formatted(" %9s %8s %8s %5d  ", time_text(at_s(node.done)).c_str(),
+                      formatted("%.3gx", rate(h)).c_str(), lag.c_str(), h.gaps) +
             h.last_error,
         !node.alive ? red
         : held      ? yellow
                     : green);
   }
-  if (shown < status_.nodes.size()) add(format("and %zu more nodes", status_.nodes.size() - shown));
+  if (shown < status_.nodes.size())
+    add(formatted("and %zu more nodes", status_.nodes.size() - shown));
   std::string text;
   for (const std::string& line : lines) text += line + "\n";
   return text;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/formatted.h"
 #include "core/image/chart_layout.h"
 
 namespace dmise {
@@ -82,10 +82,10 @@ void draw_cells(const SurveyMap& map, std::size_t shell, PagePoint corner, Chart
 
 void draw_panel(const SurveyMap& map, std::size_t shell, PagePoint corner, ChartPen& pen) {
   const ShellSummary& s = map.summaries[shell];
-  char text[160];
-  std::snprintf(text, sizeof text, "%s: %.0f of %zu objects detected, %zu covered",
-                map.shells[shell].name.c_str(), s.detected, s.objects, s.covered);
-  pen.text({corner.x_px, corner.y_px - 9}, text, {.size_px = 15, .colour = ink});
+  pen.text({corner.x_px, corner.y_px - 9},
+           formatted("%s: %.0f of %zu objects detected, %zu covered",
+                     map.shells[shell].name.c_str(), s.detected, s.objects, s.covered),
+           {.size_px = 15, .colour = ink});
   draw_cells(map, shell, corner, pen);
   std::vector<std::vector<PagePoint>> grid;
   for (int deg = -180; deg <= 180; deg += 60) {

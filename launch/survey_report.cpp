@@ -1,8 +1,8 @@
 #include "launch/survey_report.h"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "core/base/formatted.h"
 #include "core/base/json.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
@@ -11,35 +11,24 @@
 namespace dmise {
 namespace {
 
-template <class... Args>
-std::string line(const char* format, Args... args) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, args...);
-  return std::string(text) + "\n";
-}
-
 /// "95 s", "12 min", "3.4 h"; "-" without any.
 std::string duration(const Revisits& revisits, double seconds) {
-  char text[32];
   if (revisits.count == 0) return "-";
-  if (seconds < 120.0)
-    std::snprintf(text, sizeof text, "%.0f s", seconds);
-  else if (seconds < 7200.0)
-    std::snprintf(text, sizeof text, "%.0f min", seconds / 60.0);
-  else
-    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600.0);
-  return text;
+  if (seconds < 120.0) return formatted("%.0f s", seconds);
+  if (seconds < 7200.0) return formatted("%.0f min", seconds / 60.0);
+  return formatted("%.1f h", seconds / 3600.0);
 }
 
 std::string row(const std::string& name, const ShellSummary& s) {
-  return line("%-18s %8zu %8zu %10.1f %12.1f %8zu %10s %10s", name.c_str(), s.objects, s.covered,
-              s.detected, s.detections, s.visits, duration(s.revisits, s.revisits.median_s).c_str(),
-              duration(s.revisits, s.revisits.most_of_90_s).c_str());
+  return formatted("%-18s %8zu %8zu %10.1f %12.1f %8zu %10s %10s\n", name.c_str(), s.objects,
+                   s.covered, s.detected, s.detections, s.visits,
+                   duration(s.revisits, s.revisits.median_s).c_str(),
+                   duration(s.revisits, s.revisits.most_of_90_s).c_str());
 }
 
 std::string shell_table(const Shells& shells, const NightSummary& night) {
-  std::string text = line("%-18s %8s %8s %10s %12s %8s %10s %10s", "shell", "objects", "covered",
-                          "detected", "detections", "visits", "revisit", "of 90 %");
+  std::string text = formatted("%-18s %8s %8s %10s %12s %8s %10s %10s\n", "shell", "objects",
+                               "covered", "detected", "detections", "visits", "revisit", "of 90 %");
   for (std::size_t k = 0; k < shells.shells.size(); ++k)
     if (night.shells[k].objects > 0) text += row(shells.shells[k].name, night.shells[k]);
   return text + row("all", night.all);
@@ -52,26 +41,27 @@ std::string utc(const SurveyReport& report, SimTime t) {
 std::string sensor_table(const SurveyReport& report) {
   int width = 6;
   for (const auto& s : report.surveys) width = std::max(width, int(printable(s.sensor).size()));
-  std::string text = line("%-*s %9s %7s %8s %10s %12s", width, "sensor", "exposures", "hours",
-                          "covered", "detected", "detections");
+  std::string text = formatted("%-*s %9s %7s %8s %10s %12s\n", width, "sensor", "exposures",
+                               "hours", "covered", "detected", "detections");
   for (std::size_t k = 0; k < report.surveys.size(); ++k) {
     const SensorTotals& t = report.summary.run.sensors[k];
-    text += line("%-*s %9zu %7.1f %8zu %10.1f %12.1f", width,
-                 printable(report.surveys[k].sensor).c_str(), t.exposures, t.hours, t.covered,
-                 t.detected, t.detections);
+    text += formatted("%-*s %9zu %7.1f %8zu %10.1f %12.1f\n", width,
+                      printable(report.surveys[k].sensor).c_str(), t.exposures, t.hours, t.covered,
+                      t.detected, t.detections);
   }
   return text;
 }
 
 std::string choice_text(const SurveyReport& report) {
   const ChosenNetwork& c = *report.chosen;
-  std::string text = line("\n%zu of %zu sites, objects detected a night:", c.choice.sites.size(),
-                          c.candidates.size());
-  text += line("  greedy search %.1f, after %d moves of single sites %.1f; none of them: %.1f",
-               c.choice.greedy, c.choice.moves, c.choice.best, c.choice.none);
-  text += line(
+  std::string text = formatted("\n%zu of %zu sites, objects detected a night:\n",
+                               c.choice.sites.size(), c.candidates.size());
+  text +=
+      formatted("  greedy search %.1f, after %d moves of single sites %.1f; none of them: %.1f\n",
+                c.choice.greedy, c.choice.moves, c.choice.best, c.choice.none);
+  text += formatted(
       "  no choice of %zu has more than %.1f: this one has %.1f %% of that (greedy search "
-      "guarantees %.1f %% of what sites can add)",
+      "guarantees %.1f %% of what sites can add)\n",
       c.choice.sites.size(), c.choice.bound,
       c.choice.bound > 0.0 ? 100.0 * c.choice.best / c.choice.bound : 100.0,
       100.0 * greedy_guarantee);
@@ -151,21 +141,23 @@ void write_choice(JsonWriter& json, const SurveyReport& report) {
 }  // namespace
 
 std::string survey_text(const SurveyReport& report) {
-  std::string text = line("%s to %s, %zu objects, the Sun below %g deg", utc(report, {0}).c_str(),
-                          utc(report, report.scenario.duration).c_str(),
-                          report.shells.of_object.size(), report.night_below_rad / deg);
+  std::string text =
+      formatted("%s to %s, %zu objects, the Sun below %g deg\n", utc(report, {0}).c_str(),
+                utc(report, report.scenario.duration).c_str(), report.shells.of_object.size(),
+                report.night_below_rad / deg);
   text += sensor_table(report);
   const auto& nights = report.summary.nights;
   for (std::size_t k = 0; k < nights.size(); ++k) {
-    text += line("\nnight %zu, from %s", k + 1, utc(report, {std::int64_t(k) * night_ns}).c_str());
+    text += formatted("\nnight %zu, from %s\n", k + 1,
+                      utc(report, {std::int64_t(k) * night_ns}).c_str());
     text += shell_table(report.shells, nights[k]);
   }
   if (nights.size() > 1) text += "\nall nights\n" + shell_table(report.shells, report.summary.run);
   if (report.chosen) text += choice_text(report);
   if (report.check)
-    text += line("\n%zu rendered frames: %.1f detections expected, %zu found: %+.2f sigma",
-                 report.check->frames, report.check->expected(), report.check->found(),
-                 report.check->deviation_sigma());
+    text += formatted("\n%zu rendered frames: %.1f detections expected, %zu found: %+.2f sigma\n",
+                      report.check->frames, report.check->expected(), report.check->found(),
+                      report.check->deviation_sigma());
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
 #include "core/base/version.h"
@@ -59,11 +60,7 @@ std::string head_of(const Scenario& scenario, const SensorConfig& sensor,
   one.sensors = {sensor};
   one.fusion.reset();
   std::string head = software_name() + " survey " + scenario_digest(one);
-  const auto add = [&](double value) {
-    char text[40];
-    std::snprintf(text, sizeof text, " %.17g", value);
-    head += text;
-  };
+  const auto add = [&](double value) { head += formatted(" %.17g", value); };
   add(command.night_deg);
   add(sensor.mask_deg);
   for (const double km : command.shells_km) add(km);
@@ -183,13 +180,11 @@ class Survey {
   }
 
   void note_gaps(const SensorSurvey& survey, const SensorConfig& sensor) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%g", command_.night_deg);
     if (survey.exposures.empty() && survey.without_state == 0)
       notes_.push_back(sensor.name + ": no exposure" +
                        (std::holds_alternative<SiteConfig>(sensor.place) && survey.frames > 0
-                            ? std::string(" while the Sun is below ") + text + " deg"
-                            : std::string(" ends within the run")));
+                            ? formatted(" while the Sun is below %g deg", command_.night_deg)
+                            : " ends within the run"));
     if (survey.without_state > 0)
       notes_.push_back(sensor.name + ": in " + std::to_string(survey.without_state) + " of " +
                        std::to_string(survey.frames) +

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
+#include "core/base/formatted.h"
 #include "core/base/json.h"
 
 namespace dmise {
@@ -38,11 +38,7 @@ void add_mark(ChartSeries& series, ChartPoint at) {
   series.lines.push_back({{at.x, at.y * 0.9}, {at.x, at.y * 1.1}});
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string number(double value) { return formatted("%.3g", value); }
 
 }  // namespace
 

@@ -4,28 +4,13 @@
 
 #include <filesystem>
 #include <fstream>
-#include <random>
 
 #include "core/base/error.h"
 #include "core/base/text_file.h"
+#include "launch/lock_holder.h"
 #include "launch/supervisor.h"
 
 namespace dmise {
-namespace {
-
-std::string random_token() {
-  std::random_device source;  // the kernel's
-  std::string token;
-  for (int i = 0; i < 4; ++i) {
-    char word[9];
-    std::snprintf(word, sizeof word, "%08x", source());
-    token += word;
-  }
-  return token;
-}
-
-}  // namespace
-
 std::vector<std::string> gateway_command(const ViewOptions& options) {
   std::vector<std::string> command{program_directory() + "/dmise-gateway", "--master",
                                    options.master, "--listen", options.listen};
