@@ -29,7 +29,9 @@ struct Node {
                                      Tick(publisher.offset_ticks())});
           if (publisher.incarnation() > 1) inbox.restart(topic);
         }
-      if (!started) inbox.begin_at(message.topology().from_tick(), message.topology().running());
+      if (!started)
+        inbox.begin_at(message.topology().from_tick(), message.topology().resume_tick(),
+                       message.topology().running());
       started = true;
     } else if (message.has_grant()) {
       for (const auto& topic : message.grant().closed())

@@ -72,7 +72,7 @@ TEST(CatchUp, BringsTheRosterAndTheTicksAskedFor) {
   Publisher orbit;
   for (int i = 0; i < 10; ++i) orbit.step();  // ticks 7, 8, 9 are kept
   Inbox inbox({objects_topic});
-  inbox.begin_at(8, true);
+  inbox.begin_at(8, 8, true);
   EXPECT_FALSE(inbox.complete(7));
   orbit.answer(inbox, 8);
   EXPECT_TRUE(inbox.complete(9));
@@ -87,7 +87,7 @@ TEST(CatchUp, JoinsWithoutAGapOrADoubleToWhatIsPublishedMeanwhile) {
     Publisher orbit;
     for (int i = 0; i < 10; ++i) orbit.step();
     Inbox inbox({objects_topic});
-    inbox.begin_at(8, true);
+    inbox.begin_at(8, 8, true);
     const auto answer = orbit.outbox.catch_up(objects_topic, 8);
     if (!answer_first)
       for (const auto& m : orbit.step()) inbox.accept(m);  // tick 10 comes before the answer
@@ -101,7 +101,7 @@ TEST(CatchUp, JoinsWithoutAGapOrADoubleToWhatIsPublishedMeanwhile) {
 TEST(CatchUp, WithAPublisherThatIsJustBeginningAgain) {
   Publisher orbit(2, 6);
   Inbox inbox({objects_topic});
-  inbox.begin_at(8, true);
+  inbox.begin_at(8, 8, true);
   orbit.answer(inbox, 8);  // it has said nothing yet
   for (int i = 0; i < 4; ++i)
     for (const auto& m : orbit.step()) inbox.accept(m);
@@ -181,7 +181,7 @@ TEST(Restart, OfAPublisherThatNoLongerKeepsWhatIsKnown) {
 
 TEST(Restart, OfBothBringsTheRosterThatIsNoLongerKept) {
   Inbox inbox({objects_topic});
-  inbox.begin_at(8, true);
+  inbox.begin_at(8, 8, true);
   Publisher again(2, 6);
   lose_the_beginning(again, inbox, 8);
   EXPECT_THAT(ticks_of(inbox.take(9)), ElementsAre(6, 8, 9));  // the roster first

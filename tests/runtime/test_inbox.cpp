@@ -117,7 +117,7 @@ TEST(Inbox, HandsOverInTheOrderOfConsumption) {
 TEST(Inbox, ATopicWithADelayIsNeededAndTakenLater) {
   Pair p;
   p.inbox.set_delay(environment_topic, 2, 2);
-  p.inbox.begin_at(0, false);
+  p.inbox.begin_at(0, 0, false);
   EXPECT_TRUE(p.inbox.complete(1));
   EXPECT_FALSE(p.inbox.complete(2));
   EXPECT_TRUE(p.inbox.wanted(1).empty());

@@ -231,10 +231,6 @@ bool Inbox::probed() const {
   return std::all_of(topics_.begin(), topics_.end(), [](const Topic& t) { return t.probed; });
 }
 
-bool Inbox::positioned() const {
-  return std::all_of(topics_.begin(), topics_.end(), [](const Topic& t) { return t.positioned; });
-}
-
 bool Inbox::complete(Tick tick) const {
   return std::all_of(topics_.begin(), topics_.end(),
                      [&](const Topic& topic) { return topic.positioned && topic.covers(tick); });

@@ -43,7 +43,6 @@ class Inbox {
   /// nothing counts before a POSITION has given each topic's sequence number. `resumes_at`: where
   /// the run goes on, at or after `tick`.
   void begin_at(Tick tick, Tick resumes_at, bool catch_up);
-  void begin_at(Tick tick, bool catch_up) { begin_at(tick, tick, catch_up); }
   /// First tick of a topic that is needed.
   Tick begins_at(const std::string& topic) const;
   void set_schedule(const std::string& topic, Schedule schedule);
@@ -61,8 +60,6 @@ class Inbox {
 
   /// Whether a probe or later message was received on every topic.
   bool probed() const;
-  /// Whether the position of every topic is known.
-  bool positioned() const;
   /// Whether every topic is complete for `tick`.
   bool complete(Tick tick) const;
   /// Removes and returns the messages of all ticks up to a complete one, of topics with a delay up
