@@ -24,7 +24,8 @@ class CardReader {
   CardReader(const FitsValues& values, const std::string& name) : values_(values), name_(name) {}
 
   void number(const std::string& key, double& value, const char*) {
-    value = number_of(key, find(key));
+    const std::string& text = find(key);
+    if (!parse_number(text, value)) fail(key, "must be a finite number, got " + text);
   }
   void angle(const std::string& key, double& value_rad, const char*) {
     double degrees = 0.0;
@@ -188,11 +189,6 @@ class CardReader {
     if (text.starts_with('+')) text.erase(0, 1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-  }
-  double number_of(const std::string& key, const std::string& text) const {
-    double value = 0.0;
-    if (!parse_number(text, value)) fail(key, "must be a finite number, got " + text);
-    return value;
   }
 
   const FitsValues& values_;

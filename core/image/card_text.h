@@ -4,7 +4,6 @@
 
 namespace dmise {
 
-constexpr std::size_t card_size = 80;
 constexpr std::size_t longest_card_text = 64;  // limit of a sensor's name
 constexpr int highest_sip_order = 9;           // by the convention
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "core/base/monotone_cubic.h"
 #include "core/base/units.h"
 #include "core/image/card_text.h"
+#include "core/image/fits_block.h"
 #include "core/photometry/magnitude_system.h"
 #include "core/products/frame_header.h"
 #include "core/products/unknown_facts.h"
@@ -22,19 +24,18 @@ class CardWriter {
  public:
   std::vector<std::string> cards;
 
-  void number(const std::string& key, double& value, const char* comment) {
+  void number(const std::string& key, double value, const char* comment) {
     if (!std::isfinite(value)) throw Error("FITS header: " + key + ": not a finite number");
     add(key, number_text(value), comment);
   }
-  void angle(const std::string& key, double& value_rad, const char* comment) {
-    double degrees = value_rad / deg;
-    number(key, degrees, comment);
+  void angle(const std::string& key, double value_rad, const char* comment) {
+    number(key, value_rad / deg, comment);
   }
   template <class Integer>
-  void integer(const std::string& key, const Integer& value, const std::string& comment) {
+  void integer(const std::string& key, Integer value, const std::string& comment) {
     add(key, std::to_string(value), comment);
   }
-  void flag(const std::string& key, const bool& value, const std::string& comment) {
+  void flag(const std::string& key, bool value, const std::string& comment) {
     add(key, value ? "T" : "F", comment);
   }
   void text(const std::string& key, const std::string& value, const std::string& comment) {
@@ -53,20 +54,18 @@ class CardWriter {
   void facts(const char* key, const UnknownFacts& value, const char* comment) {
     text(key, value.text(), comment);
   }
-  void utc(const std::string& key, std::string& value, const char* comment) {
-    std::string without_z = value.ends_with('Z') ? value.substr(0, value.size() - 1) : value;
-    text(key, without_z, comment);
+  void utc(const std::string& key, const std::string& value, const char* comment) {
+    text(key, value.substr(0, value.size() - value.ends_with('Z')), comment);
   }
   void constant(const char* key, const char* value, const char* comment) {
-    std::string copy = value;
-    text(key, copy, comment);
+    text(key, value, comment);
   }
   void constant(const char* key, int value, const char* comment) { integer(key, value, comment); }
   void number_constant(const char* key, double value, const char* comment) {
     number(key, value, comment);
   }
   /// PHOTZP in the system that MAGSYS names.
-  void zero_point(double& zero_point_mag, MagnitudeScale& scale) {
+  void zero_point(double zero_point_mag, const MagnitudeScale& scale) {
     number("PHOTZP", zero_point_mag, "[mag] of 1 e-/s, without atmosphere");
     constexpr std::array<const char*, 3> meanings{"V of a source of the Sun's colour",
                                                   "Vega has 0.03 in every band",
@@ -76,34 +75,30 @@ class CardWriter {
     if (scale.system != MagnitudeSystem::v_solar)
       number("SUNCOL", scale.solar_colour_mag, "[mag] the Sun's in it, less its V");
   }
-  void projection(const char* key, Projection& value, const char* comment) {
+  void projection(const char* key, const Projection& value, const char* comment) {
     constant(key, value.name(), comment);
     const auto coefficients = value.row().coefficients;
-    for (std::size_t i = 0; i < coefficients.size(); ++i) {
-      double coefficient = value.coefficients()[i];
-      number(coefficients[i].card, coefficient, coefficients[i].comment);
-    }
+    for (std::size_t i = 0; i < coefficients.size(); ++i)
+      number(coefficients[i].card, value.coefficients()[i], coefficients[i].comment);
   }
-  void optional_text(const char* key, std::string& value, const char* comment) {
+  void optional_text(const char* key, const std::string& value, const char* comment) {
     if (!value.empty()) text(key, value, comment);
   }
-  void optional_number(const char* key, std::optional<double>& value, const char* comment) {
+  void optional_number(const char* key, std::optional<double> value, const char* comment) {
     if (value) number(key, *value, comment);
   }
-  void optional_angle(const char* key, std::optional<double>& value_rad, const char* comment) {
+  void optional_angle(const char* key, std::optional<double> value_rad, const char* comment) {
     if (value_rad) angle(key, *value_rad, comment);
   }
-  void wcs_projection(Wcs& wcs, bool sip) {
+  void wcs_projection(const Wcs& wcs, bool sip) {
     const Projection::Row& row = wcs.projection.row();
     const std::string tail = row.fits_code + std::string(sip ? "-SIP" : "");
     text("CTYPE1", "RA---" + tail, sip ? "with SIP distortion" : "");
     text("CTYPE2", "DEC--" + tail, "");
     if (row.coefficients.empty()) return;
     number_constant("PV2_1", 1.0, "image height: theta and more powers of it [rad]");
-    for (std::size_t i = 0; i < row.coefficients.size(); ++i) {
-      double coefficient = wcs.projection.coefficients()[i];
-      number("PV2_" + std::to_string(row.coefficients[i].pv), coefficient, "");
-    }
+    for (std::size_t i = 0; i < row.coefficients.size(); ++i)
+      number("PV2_" + std::to_string(row.coefficients[i].pv), wcs.projection.coefficients()[i], "");
   }
   /// Records of a distortion by table lookup, which share one keyword.
   void lookup(int axis) {
@@ -118,17 +113,16 @@ class CardWriter {
     constant(key, names[std::size_t(value)], comment);
   }
   /// The rows of a vignetting table.
-  void illumination(MonotoneCubic& table, FieldRadius& radius) {
+  void illumination(const MonotoneCubic& table, FieldRadius radius) {
     integer("VIGNROWS", table.at().size(), "rows of the relative illumination");
     text("VIGNUNIT", unit_text(radius), "of the distances VIGRn from the axis");
     for (std::size_t i = 0; i < table.at().size(); ++i) {
       const std::string row = std::to_string(i + 1);
-      number_constant(("VIGR" + row).c_str(), table.at()[i], "");
-      number_constant(("VIGT" + row).c_str(), table.value()[i],
-                      i == 0 ? "light there, relative to the axis" : "");
+      number("VIGR" + row, table.at()[i], "");
+      number("VIGT" + row, table.value()[i], i == 0 ? "light there, relative to the axis" : "");
     }
   }
-  void sip(Wcs& wcs) {
+  void sip(const Wcs& wcs) {
     if (wcs.order == 0) return;
     if (wcs.order < 0 || wcs.order > highest_sip_order)
       throw Error("FITS header: A_ORDER: not in 0..9");
@@ -139,7 +133,7 @@ class CardWriter {
       add(name + "_ORDER", std::to_string(wcs.order), "order of the SIP polynomial");
       for (std::size_t p = 0; p < side; ++p)
         for (std::size_t q = 0; p + q < side; ++q) {
-          double c = coefficients[p * side + q];
+          const double c = coefficients[p * side + q];
           if (c != 0.0) number(name + "_" + std::to_string(p) + "_" + std::to_string(q), c, "");
         }
     };
@@ -160,7 +154,7 @@ class CardWriter {
       if (card.size() < 30) card.resize(30, ' ');
       card += " / " + comment;
     }
-    card.resize(card_size, ' ');
+    card.resize(fits_card_bytes, ' ');
     cards.push_back(std::move(card));
   }
 };

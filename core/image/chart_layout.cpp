@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <utility>
+
+#include "core/base/formatted.h"
 
 namespace dmise {
 namespace {
@@ -11,11 +13,12 @@ constexpr Colour ink = {32, 36, 42}, dim = {96, 102, 110}, paper = {255, 255, 25
 constexpr Colour grid_colour = {222, 225, 229}, band_colour = {238, 240, 244};
 constexpr double simplified_px = 0.3;  // tolerance of line simplification
 
-/// Marks the points of `line` between a and b that keep it within `simplified_px` (Douglas and
-/// Peucker 1973).
-void keep_corners(const std::vector<PagePoint>& line, std::size_t first, std::size_t last,
-                  std::vector<bool>& kept) {
-  std::vector<std::pair<std::size_t, std::size_t>> open{{first, last}};
+/// The points of a line that keep it within `simplified_px` (Douglas and Peucker 1973).
+std::vector<PagePoint> simplified(const std::vector<PagePoint>& line) {
+  if (line.size() < 3) return line;
+  std::vector<bool> kept(line.size(), false);
+  kept.front() = kept.back() = true;
+  std::vector<std::pair<std::size_t, std::size_t>> open{{0, line.size() - 1}};
   while (!open.empty()) {
     const auto [a, b] = open.back();
     open.pop_back();
@@ -33,13 +36,6 @@ void keep_corners(const std::vector<PagePoint>& line, std::size_t first, std::si
     open.push_back({a, at});
     open.push_back({at, b});
   }
-}
-
-std::vector<PagePoint> simplified(const std::vector<PagePoint>& line) {
-  if (line.size() < 3) return line;
-  std::vector<bool> kept(line.size(), false);
-  kept.front() = kept.back() = true;
-  keep_corners(line, 0, line.size() - 1, kept);
   std::vector<PagePoint> out;
   for (std::size_t k = 0; k < line.size(); ++k)
     if (kept[k]) out.push_back(line[k]);
@@ -168,9 +164,7 @@ std::vector<ChartTick> logarithmic_ticks(double least, double most) {
       const double at = k * std::pow(10.0, power);
       if (at < least * (1 - 1e-9) || at > most * (1 + 1e-9)) continue;
       const bool named = k == 1 || k == 2 || k == 5;
-      char small[32];
-      std::snprintf(small, sizeof small, "%g", at);
-      ticks.push_back({at, !named ? "" : at >= 1 ? grouped(at) : small});
+      ticks.push_back({at, !named ? "" : at >= 1 ? grouped(at) : formatted("%g", at)});
     }
   return ticks;
 }

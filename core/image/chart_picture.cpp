@@ -39,11 +39,10 @@ class PicturePen : public ChartPen {
   Picture finish() { return std::move(picture_); }
 
   void rectangle(PagePoint corner, double width_px, double height_px, Colour fill) override {
-    const Window all{0, 0, picture_.columns, picture_.rows};
     const int x1 = std::max(0, int(std::lround(corner.x_px)));
     const int y1 = std::max(0, int(std::lround(corner.y_px)));
-    const int x2 = std::min(all.x2, int(std::lround(corner.x_px + width_px)));
-    const int y2 = std::min(all.y2, int(std::lround(corner.y_px + height_px)));
+    const int x2 = std::min(picture_.columns, int(std::lround(corner.x_px + width_px)));
+    const int y2 = std::min(picture_.rows, int(std::lround(corner.y_px + height_px)));
     for (int y = y1; y < y2; ++y)
       for (int x = x1; x < x2; ++x) blend(x, y, fill, 1.0f);
   }

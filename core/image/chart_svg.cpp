@@ -1,24 +1,18 @@
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/formatted.h"
 #include "core/image/chart_layout.h"
 
 namespace dmise {
 namespace {
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  std::string s = text;
-  if (s.size() > 2 && s.compare(s.size() - 2, 2, ".0") == 0) s.resize(s.size() - 2);
+  std::string s = formatted("%.1f", value);
+  if (s.ends_with(".0")) s.resize(s.size() - 2);
   return s == "-0" ? "0" : s;
 }
 
-std::string hex(Colour c) {
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", c.red, c.green, c.blue);
-  return text;
-}
+std::string hex(Colour c) { return formatted("#%02x%02x%02x", c.red, c.green, c.blue); }
 
 std::string escaped(const std::string& text) {
   std::string out;
@@ -64,11 +58,7 @@ class SvgPen : public ChartPen {
                number(height_px) + "\"/></clipPath>\n";
     text_ += "<g fill=\"none\" stroke=\"" + hex(stroke.colour) + "\" stroke-width=\"" +
              number(stroke.width_px) + "\" stroke-linejoin=\"round\"";
-    if (stroke.opacity < 1.0) {
-      char opacity[16];
-      std::snprintf(opacity, sizeof opacity, "%.2f", stroke.opacity);
-      text_ += std::string(" stroke-opacity=\"") + opacity + "\"";
-    }
+    if (stroke.opacity < 1.0) text_ += formatted(" stroke-opacity=\"%.2f\"", stroke.opacity);
     if (!whole) text_ += " clip-path=\"url(#" + id + ")\"";
     text_ += ">\n";
     // One path per line; otherwise the opacity of crossing lines would not add up.

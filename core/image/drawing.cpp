@@ -58,14 +58,14 @@ void draw_arc(Picture& picture, double x, double y, double radius, double from_r
 
 }  // namespace
 
-Picture to_rgb(const Picture& grey, int strip_rows) {
-  Picture out{grey.columns, grey.rows + strip_rows, 3, {}};
+Picture to_rgb(const Picture& picture, int strip_rows) {
+  Picture out{picture.columns, picture.rows + strip_rows, 3, {}};
   out.pixels.resize(std::size_t(out.columns) * std::size_t(out.rows) * 3, 0);
-  const std::size_t in_channels = std::size_t(grey.channels);
-  const std::size_t count = std::size_t(grey.columns) * std::size_t(grey.rows);
+  const std::size_t in_channels = std::size_t(picture.channels);
+  const std::size_t count = std::size_t(picture.columns) * std::size_t(picture.rows);
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      out.pixels[3 * i + c] = grey.pixels[in_channels * i + (in_channels == 3 ? c : 0)];
+      out.pixels[3 * i + c] = picture.pixels[in_channels * i + (in_channels == 3 ? c : 0)];
   return out;
 }
 

@@ -12,8 +12,8 @@ struct Colour {
 // Drawing on RGB pictures. (0, 0) is the centre of the first pixel; everything is clipped to the
 // picture.
 
-/// Converts a grey picture to three channels, with `strip_rows` black rows added below.
-Picture to_rgb(const Picture& grey, int strip_rows = 0);
+/// Returns a picture of one or three channels with three, and with `strip_rows` black rows below.
+Picture to_rgb(const Picture& picture, int strip_rows = 0);
 
 /// Draws a line one pixel wide.
 void draw_line(Picture& picture, double x1, double y1, double x2, double y2, Colour colour);

@@ -50,13 +50,6 @@ std::array<long, 2> image_shape(Fits& fits, std::size_t file_bytes, const std::s
   return shape;
 }
 
-FitsValues read_cards(Fits& fits, const std::string& name) {
-  FitsValues values;
-  add_cards(fits, values);
-  if (fits.status != 0) throw ConfigError(name + ": header can't be read: " + fits.reason());
-  return values;
-}
-
 int integer_of(const FitsValues& values, const std::string& key) {
   const auto at = values.find(key);
   return at == values.end() ? 0 : int(std::strtol(at->second.c_str(), nullptr, 10));
@@ -138,7 +131,7 @@ void put_shift_tables(const ByteSink& file, const CountImage& counts, const Wcs&
     std::vector<std::string> cards = {
         text_card("EXTNAME", "WCSDVARR", "WCS distortion array"),
         integer_card("EXTVER", axis, axis == 1 ? "[px] along x" : "[px] along y")};
-    for (const std::string& k : {std::string("1"), std::string("2")}) {
+    for (const std::string k : {"1", "2"}) {
       cards.push_back(text_card("CTYPE" + k, "LINEAR", "pixel of the frame"));
       cards.push_back(integer_card("CRPIX" + k, 0, "node; the first is 0"));
       cards.push_back(number_card("CRVAL" + k, ShiftTable::first_px, "its pixel; the first is 0"));
@@ -181,7 +174,9 @@ Frame decode_frame(std::string_view bytes, const std::string& name) {
   fits_get_hduaddrll(fits.file, nullptr, nullptr, &end, &fits.status);
   if (fits.status != 0) throw ConfigError(name + ": not a FITS file: " + fits.reason());
   require_bytes(bytes, std::size_t(end), name);
-  const FitsValues values = read_cards(fits, name);
+  FitsValues values;
+  add_cards(fits, values);
+  if (fits.status != 0) throw ConfigError(name + ": header can't be read: " + fits.reason());
   Frame frame;
   frame.header = header_from_values(values, name);
   require_unsigned_counts(values, name);

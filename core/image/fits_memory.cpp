@@ -1,6 +1,7 @@
 #include "core/image/fits_memory.h"
 
 namespace dmise {
+
 Fits::~Fits() {
   int ignored = 0;
   if (file) fits_close_file(file, &ignored);

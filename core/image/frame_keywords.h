@@ -2,12 +2,23 @@
 #include <string>
 
 #include "core/detector/detector.h"
-#include "core/image/observation_cards.h"
 #include "core/photometry/magnitude_system.h"
 #include "core/products/frame_header.h"
 
 // The keywords of a frame, listed once for writing (CardWriter) and reading (CardReader).
 namespace dmise {
+
+template <class Visitor>
+void visit_observation(Visitor& v, Observation& o) {
+  v.optional_text("OBJECT", o.object, "what is pointed at");
+  v.optional_text("TELESCOP", o.telescope, "camera and telescope");
+  v.optional_number("MJD-OBS", o.start_mjd, "[d] UTC, start of the exposure");
+  v.optional_angle("RA", o.ra_rad, "[deg] of the centre, ICRS, mid exposure");
+  v.optional_angle("DEC", o.dec_rad, "[deg] of the centre, ICRS, mid exposure");
+  v.optional_number("AIRMASS", o.airmass, "of the centre, mid exposure");
+  v.optional_angle("SUNALT", o.sun_altitude_rad, "[deg] altitude of the Sun, mid exposure");
+  v.optional_angle("MOONALT", o.moon_altitude_rad, "[deg] altitude of the Moon, mid exposure");
+}
 
 template <class Visitor>
 void visit_pixel_coordinate(Visitor& v, const char* key, double& zero_based, const char* comment) {

@@ -1,11 +1,12 @@
 #include "core/image/marked_picture.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
+#include <iterator>
 #include <string>
+#include <utility>
 
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 #include "core/image/drawing.h"
 #include "core/wcs/wcs.h"
@@ -19,25 +20,19 @@ constexpr Colour point_colour = {255, 220, 60};
 constexpr Colour text_colour = {225, 225, 225};
 constexpr Colour dim_colour = {150, 150, 150};
 
-std::string printed(const char* format, double value) {
-  char buffer[48];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
-
 void draw_truth(Picture& picture, const Preview& preview, const Truth& truth, int text_scale) {
   const double x1 = preview.place(truth.start_x_px), y1 = preview.place(truth.start_y_px);
   const double xm = preview.place(truth.middle_x_px), ym = preview.place(truth.middle_y_px);
   const double x2 = preview.place(truth.end_x_px), y2 = preview.place(truth.end_y_px);
-  if (std::hypot(x2 - x1, y2 - y1) < 8) {
+  const double length = std::hypot(x2 - x1, y2 - y1);
+  if (length < 8) {
     draw_circle(picture, xm, ym, 9, truth_colour);
   } else {  // beside the source, not over it
-    const double length = std::hypot(x2 - x1, y2 - y1);
     const double nx = -(y2 - y1) / length * 9, ny = (x2 - x1) / length * 9;
-    draw_line(picture, x1 + nx, y1 + ny, xm + nx, ym + ny, truth_colour);
-    draw_line(picture, xm + nx, ym + ny, x2 + nx, y2 + ny, truth_colour);
-    draw_line(picture, x1 - nx, y1 - ny, xm - nx, ym - ny, truth_colour);
-    draw_line(picture, xm - nx, ym - ny, x2 - nx, y2 - ny, truth_colour);
+    for (const auto& [x, y] : {std::pair{nx, ny}, {-nx, -ny}}) {
+      draw_line(picture, x1 + x, y1 + y, xm + x, ym + y, truth_colour);
+      draw_line(picture, xm + x, ym + y, x2 + x, y2 + y, truth_colour);
+    }
     draw_circle(picture, x1, y1, 9, truth_colour);  // start of the exposure
   }
   draw_text(picture, int(x1) + 14, int(y1) - 12, truth.name, truth_colour, text_scale);
@@ -52,28 +47,19 @@ void draw_detection(Picture& picture, const Preview& preview, const Detection& d
   else
     draw_circle(picture, x, y, 6, colour);
   draw_text(picture, int(x) + 14, int(y) + 4,
-            "#" + std::to_string(d.index) + " " + printed("%.1f", d.magnitude), colour, text_scale);
+            "#" + std::to_string(d.index) + " " + formatted("%.1f", d.magnitude), colour,
+            text_scale);
 }
 
-/// Largest of 1, 2, 5 x 10^n arcsec that is at most `room_px` picture pixels long.
+/// Draws the longest of some round lengths [arcsec] that takes at most `room_px` pixels of the
+/// picture.
 void draw_scale_bar(Picture& picture, int x, int y, double arcsec_per_px, double room_px,
                     int scale) {
-  constexpr std::array<std::pair<double, const char*>, 15> lengths = {{{0.1, "0.1\""},
-                                                                       {1, "1\""},
-                                                                       {5, "5\""},
-                                                                       {10, "10\""},
-                                                                       {30, "30\""},
-                                                                       {60, "1'"},
-                                                                       {120, "2'"},
-                                                                       {300, "5'"},
-                                                                       {600, "10'"},
-                                                                       {1800, "30'"},
-                                                                       {3600, "1 deg"},
-                                                                       {7200, "2 deg"},
-                                                                       {18000, "5 deg"},
-                                                                       {36000, "10 deg"},
-                                                                       {72000, "20 deg"}}};
-  const auto* best = &lengths.front();
+  constexpr std::pair<double, const char*> lengths[] = {
+      {0.1, "0.1\""},  {1, "1\""},      {5, "5\""},       {10, "10\""},      {30, "30\""},
+      {60, "1'"},      {120, "2'"},     {300, "5'"},      {600, "10'"},      {1800, "30'"},
+      {3600, "1 deg"}, {7200, "2 deg"}, {18000, "5 deg"}, {36000, "10 deg"}, {72000, "20 deg"}};
+  const auto* best = std::begin(lengths);
   for (const auto& length : lengths)
     if (length.first / arcsec_per_px <= room_px) best = &length;
   const double width = std::min(best->first / arcsec_per_px, room_px);
@@ -115,7 +101,7 @@ Picture marked_picture(const Preview& preview, const FrameHeader& header,
   const int scale = preview.picture.columns >= 1000 ? 2 : 1;
   const int line = 11 * scale;
   const int strip = 3 * line + 18 * scale, top = preview.picture.rows;
-  Picture picture = to_rgb(preview.picture, 0);
+  Picture picture = to_rgb(preview.picture);
   int shown = 0, streaks = 0;
   for (const Truth& truth : truths) {
     if (!truth.in_frame) continue;
@@ -136,8 +122,8 @@ Picture marked_picture(const Preview& preview, const FrameHeader& header,
   y += line;
   const double arcsec_per_px = wcs_scale_rad_per_px(header.wcs) / arcsec;
   draw_text(picture, x, y,
-            "exposure " + printed("%.4g", header.exposure_s) + " s  band " + header.band.name +
-                "  " + header.mount + "  " + printed("%.4g", arcsec_per_px) + "\"/px",
+            "exposure " + formatted("%.4g", header.exposure_s) + " s  band " + header.band.name +
+                "  " + header.mount + "  " + formatted("%.4g", arcsec_per_px) + "\"/px",
             dim_colour, scale);
   y += line;
   const auto legend = [&](const std::string& text, Colour colour) {

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/quantile.h"
+
 namespace dmise {
 namespace {
 
@@ -34,19 +36,13 @@ Sky sky_of(const std::vector<float>& pixels, const PictureSettings& settings) {
   std::vector<float> sample;
   const std::size_t step = pixels.size() / 65536 + 1;
   for (std::size_t i = 0; i < pixels.size(); i += step) sample.push_back(pixels[i]);
-  const auto quantile = [&](double q) {
-    const auto at = sample.begin() + std::ptrdiff_t(q * double(sample.size() - 1));
-    std::nth_element(sample.begin(), at, sample.end());
-    return *at;
-  };
-  const float low = quantile(0.1587), median = quantile(0.5);
+  const float low = quantile_of(sample, 0.1587), median = quantile_of(sample, 0.5);
   const float sigma = std::max(median - low, 1e-3f * std::max(1.0f, std::abs(median)));
   const float white = median + float(settings.white_sigma) * sigma;
-  const auto beyond =
-      std::count_if(sample.begin(), sample.end(), [&](float v) { return v > white; });
+  const auto beyond = std::ranges::count_if(sample, [&](float v) { return v > white; });
   if (double(beyond) <= settings.white_share * double(sample.size())) return {median, sigma};
   const double brightest = 0.01 * double(beyond) / double(sample.size());  // of these pixels
-  return {median, float((quantile(1.0 - brightest) - median) / settings.white_sigma)};
+  return {median, float((quantile_of(sample, 1.0 - brightest) - median) / settings.white_sigma)};
 }
 
 }  // namespace

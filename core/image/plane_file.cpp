@@ -9,7 +9,6 @@
 #include "core/image/plain_image.h"
 
 namespace dmise {
-
 namespace {
 
 std::size_t pixel_count(const Plane& plane) {
@@ -27,18 +26,7 @@ std::vector<std::string> plane_cards(const Plane& plane, const FrameHeader& head
   return cards;
 }
 
-void put_plane(const ByteSink& file, const Plane& plane, std::span<const std::string> cards) {
-  put_image(file, FitsPlace::primary, std::span(plane.pixels, pixel_count(plane)), plane.columns,
-            cards);
-}
-
 }  // namespace
-
-std::string encode_plane(const Plane& plane, const FrameHeader& header) {
-  std::string file;
-  put_plane([&](std::string_view piece) { file += piece; }, plane, plane_cards(plane, header));
-  return file;
-}
 
 void write_plane(const std::string& path, const Plane& plane, const FrameHeader& header) {
   std::vector<std::string> cards;
@@ -48,7 +36,8 @@ void write_plane(const std::string& path, const Plane& plane, const FrameHeader&
     throw Error(path + ": " + error.what());
   }
   WholeFile file(path);
-  put_plane([&](std::string_view piece) { file.append(piece); }, plane, cards);
+  put_image([&](std::string_view piece) { file.append(piece); }, FitsPlace::primary,
+            std::span(plane.pixels, pixel_count(plane)), plane.columns, cards);
   file.finish();
 }
 

@@ -15,11 +15,9 @@ struct Plane {
   int columns = 0, rows = 0;
 };
 
-/// Encodes a FITS image of 32-bit floats with the frame's header and world coordinates. Equal input
-/// gives equal bytes. Throws `Error`, also for a value that is not finite.
-std::string encode_plane(const Plane& plane, const FrameHeader& header);
-
-/// Writes it atomically; an `Error` names the file.
+/// Writes a FITS image of 32-bit floats with the frame's header and world coordinates, atomically.
+/// Equal input gives equal bytes. Throws `Error` with the file's name, also for a value that is not
+/// finite.
 void write_plane(const std::string& path, const Plane& plane, const FrameHeader& header);
 
 }  // namespace dmise
