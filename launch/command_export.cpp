@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
 #include "core/base/printable.h"
+#include "core/base/regular_file.h"
 #include "core/base/whole_file.h"
 #include "core/config/search_path.h"
 #include "core/exchange/export_format.h"
@@ -32,9 +33,8 @@ const ExportFormat& format_named(const std::string& name) {
     if (format.name == name) return format;
     names.push_back(format.name);
   }
-  const std::string hint = nearest_name(name, names);
   throw ConfigError("--to: must be one of " + joined(names) + ", got " + printable(name) +
-                    (hint.empty() ? "" : ", did you mean " + hint + "?"));
+                    did_you_mean(name, names));
 }
 
 ProductKind kind_of(const ExportOptions& options, const ExportFormat& format) {
@@ -51,8 +51,7 @@ ProductKind kind_of(const ExportOptions& options, const ExportFormat& format) {
 /// Path of a catalogue that a scenario names, seen from here.
 std::string path_of(const std::string& named) {
   const std::string path = named == "gpredict" ? find_catalogue("satellites.dat") : named;
-  std::error_code ignored;
-  if (path.empty() || !fs::exists(path, ignored))
+  if (path.empty() || !path_exists(path))
     throw ConfigError("--catalogue: the run's catalogue is not found from here, got " +
                       printable(named));
   return path;
@@ -120,9 +119,8 @@ void run_export(const ExportOptions& options) {
   const ExportFormat& format = format_named(options.to);
   fs::path out;
   if (format.all_kinds && !options.truth && !options.detections && !options.tracks) {
-    std::error_code ignored;
     for (const ProductKind kind : format.kinds)
-      if (kind != ProductKind::truth || fs::exists(options.run + "/truth.jsonl", ignored))
+      if (kind != ProductKind::truth || path_exists(options.run + "/truth.jsonl"))
         out = export_kind(options, format, kind);
   } else {
     out = export_kind(options, format, kind_of(options, format));

@@ -25,11 +25,8 @@ void print_page(const CLI::App& app, const std::string& name) {
         manual_page(*command, app.get_name() + "-" + name, version, {app.get_name()}).c_str());
     return;
   }
-  if (!name.empty()) {
-    const std::string hint = nearest_name(name, pages);
-    throw ConfigError("man: there is no command " + name +
-                      (hint.empty() ? "" : ", did you mean " + hint + "?"));
-  }
+  if (!name.empty())
+    throw ConfigError("man: there is no command " + name + did_you_mean(name, pages));
   for (auto& page : pages) page = app.get_name() + "-" + page;
   std::printf("%s", manual_page(app, app.get_name(), version, pages).c_str());
 }

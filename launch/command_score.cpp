@@ -64,8 +64,7 @@ void add_score_command(CLI::App& app) {
       "score",
       "Compares detections with truth: probability of detection, false alarms, errors of position, "
       "magnitude and ends, and whether their covariances are honest. Of a run, or of any FITS "
-      "frames "
-      "in which it detects itself");
+      "frames in which it detects itself");
   auto* run = command->add_option("run", options->run, "directory of a run that has ended");
   auto* frames = command->add_option("--frames", options->frames,
                                      "directory of FITS frames, instead of a run");

@@ -1,13 +1,14 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <sstream>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
+#include "core/base/regular_file.h"
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
 #include "core/pictures/picture_file.h"
@@ -28,8 +29,7 @@ struct TradeoffOptions {
 /// The rows of an earlier call with the same digest, which is in the file's first line.
 std::vector<TradeoffRow> known_rows(const std::string& path, const std::string& head) {
   std::vector<TradeoffRow> rows;
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return rows;
+  if (!path_exists(path)) return rows;
   std::istringstream lines(read_text_file(path, 1u << 26));
   std::string line;
   if (!std::getline(lines, line) || line != head) return rows;
@@ -65,10 +65,10 @@ void tradeoff(const TradeoffOptions& options) {
     const TradeoffRow& wanted = trade.rows()[i];
     progress.show_share(double(i) / double(trade.rows().size()),
                         "tradeoff: " + wanted.effect + " " + wanted.level);
-    bool known = false;
-    for (const auto& row : rows)
-      known = known || (row.effect == wanted.effect && row.level == wanted.level);
-    if (known) continue;
+    if (std::ranges::any_of(rows, [&](const TradeoffRow& row) {
+          return row.effect == wanted.effect && row.level == wanted.level;
+        }))
+      continue;
     rows.push_back(trade.measure(i));
     save();
   }

@@ -249,15 +249,7 @@ class Launch {
     const Child* clock = processes_.find("time-master");
     const bool clock_ended = clock->exit_code.has_value();
     processes_.stop(std::chrono::milliseconds(stop.is_set() ? 1300 : 500));
-    for (const auto& node : status.nodes)
-      outcome.nodes.push_back({.name = node.name,
-                               .compute_s = node.times.compute_s,
-                               .messaging_s = node.times.messaging_s,
-                               .waiting_s = node.times.waiting_s,
-                               .start_s = node.times.start_s,
-                               .peak_resident_bytes = node.times.peak_resident_bytes,
-                               .private_bytes = node.times.private_bytes,
-                               .topics = node.consumes});
+    outcome.nodes = status.nodes;
     if (clock->exit_code == 0) return;  // a signal after the end
     if (stop.is_set()) {
       outcome.status = "interrupted";

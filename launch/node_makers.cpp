@@ -1,7 +1,6 @@
 #include "launch/node_makers.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include "core/base/error.h"
 #include "core/config/make_clock.h"
@@ -89,11 +88,7 @@ const NodeMaker& maker_of(const NodeKind& kind) {
 }
 
 std::uint32_t frames_finished(const std::string& sensor, const std::string& directory) {
-  std::ifstream file(directory + "/" + sensor + "/frames.jsonl");
-  std::string line;
-  std::uint32_t frames = 0;
-  while (std::getline(file, line) && !file.eof()) ++frames;
-  return frames;
+  return std::uint32_t(count_lines(directory + "/" + sensor + "/frames.jsonl"));
 }
 
 }  // namespace dmise

@@ -33,7 +33,7 @@ struct NodeMaker {
 /// Throws `Error` for a kind without a maker.
 const NodeMaker& maker_of(const NodeKind& kind);
 
-/// Number of frames of a sensor up to the first without a complete line, which is written last.
+/// Number of frames of a sensor that are complete: their line in frames.jsonl is written last.
 std::uint32_t frames_finished(const std::string& sensor, const std::string& directory);
 
 }  // namespace dmise

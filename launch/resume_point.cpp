@@ -1,14 +1,15 @@
 #include "launch/resume_point.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "core/base/json.h"
+#include "core/base/regular_file.h"
 #include "core/base/whole_file.h"
 #include "core/config/node_kinds.h"
 #include "launch/node_makers.h"
 
 namespace dmise {
+
 void mark_begun(const RunDirectory& directory) {
   JsonWriter json;
   json.begin_object().field("status", "begun").field("digest", directory.digest()).end_object();
@@ -16,9 +17,8 @@ void mark_begun(const RunDirectory& directory) {
 }
 
 Tick resume_tick(const Scenario& scenario, const RunDirectory& directory) {
-  std::error_code ignored;
   // Without it the frames cannot be attributed to a run.
-  if (!std::filesystem::exists(directory.path() + "/run.json", ignored)) return 0;
+  if (!path_exists(directory.path() + "/run.json")) return 0;
   std::uint32_t finished = 0;
   for (const auto& sensor : scenario.sensors)
     finished += frames_finished(sensor.name, directory.path());

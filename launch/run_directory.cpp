@@ -9,6 +9,7 @@
 
 #include "core/base/digest.h"
 #include "core/base/error.h"
+#include "core/base/regular_file.h"
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
 #include "core/config/node_kinds.h"
@@ -19,19 +20,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Number after the first `"key":` of a JSON line written by JsonWriter; 0 if there is none.
+/// What follows the first `"key":` of a JSON line written by JsonWriter; "0" if there is none.
+const char* value_in(const std::string& line, const std::string& key) {
+  const auto at = line.find("\"" + key + "\":");
+  return at == std::string::npos ? "0" : line.c_str() + at + key.size() + 3;
+}
+
 double number_in(const std::string& line, const std::string& key) {
-  const auto at = line.find("\"" + key + "\":");
-  return at == std::string::npos ? 0.0 : std::strtod(line.c_str() + at + key.size() + 3, nullptr);
+  return std::strtod(value_in(line, key), nullptr);
 }
 
-std::int64_t integer_in(const std::string& line, const std::string& key) {
-  const auto at = line.find("\"" + key + "\":");
-  return at == std::string::npos ? 0
-                                 : std::strtoll(line.c_str() + at + key.size() + 3, nullptr, 10);
-}
+}  // namespace
 
-/// Complete lines of a file; one without its newline was interrupted and is dropped.
 std::vector<std::string> whole_lines(const std::string& path) {
   std::vector<std::string> lines;
   std::ifstream file(path);
@@ -40,8 +40,6 @@ std::vector<std::string> whole_lines(const std::string& path) {
     if (!file.eof()) lines.push_back(line);
   return lines;
 }
-
-}  // namespace
 
 std::string file_digest(const std::string& path) {
   return sha256_hex(is_star_map_file(path) ? star_map_fingerprint(path) : read_text_file(path));
@@ -63,10 +61,9 @@ RunDirectory::RunDirectory(std::string path, const Scenario& scenario, std::stri
       lock_(lock_directory(path_)) {}
 
 RunDirectory::Content RunDirectory::content() const {
-  std::error_code ignored;
-  if (!fs::exists(file("run.json"), ignored)) {
+  if (!path_exists(file("run.json"))) {
     for (const auto& sensor : scenario_.sensors)
-      if (fs::exists(file(sensor.name), ignored)) return Content::same_run_unfinished;
+      if (path_exists(file(sensor.name))) return Content::same_run_unfinished;
     return Content::empty;
   }
   const std::string text = read_text_file(file("run.json"));
@@ -79,7 +76,7 @@ void RunDirectory::clear() {
   std::error_code ignored;
   // A subdirectory with a frames.jsonl is a sensor's, of this run or another.
   for (const auto& entry : fs::directory_iterator(path_, ignored))
-    if (entry.is_directory(ignored) && fs::exists(entry.path() / "frames.jsonl", ignored))
+    if (entry.is_directory(ignored) && path_exists(entry.path() / "frames.jsonl"))
       fs::remove_all(entry.path(), ignored);
   for (const auto& sensor : scenario_.sensors) fs::remove_all(file(sensor.name), ignored);
   for (const char* name :
@@ -101,7 +98,8 @@ void RunDirectory::merge_lines() const {
       auto lines = whole_lines(file(sensor.name) + "/" + name);
       const char* time = name == "detections.jsonl" ? "time_ns" : "middle_ns";
       for (std::size_t i = 0; i < lines.size(); ++i)
-        rows.emplace_back(integer_in(lines[i], time), sensor.name, i, std::move(lines[i]));
+        rows.emplace_back(std::strtoll(value_in(lines[i], time), nullptr, 10), sensor.name, i,
+                          std::move(lines[i]));
     }
     std::sort(rows.begin(), rows.end());
     std::string text;
@@ -120,8 +118,8 @@ std::vector<SensorSummary> summarise(const Scenario& scenario, const std::string
   for (const auto& sensor : scenario.sensors) {
     SensorSummary s{.name = sensor.name};
     const std::string directory = run_path + "/" + sensor.name + "/";
-    s.frames = static_cast<int>(whole_lines(directory + "frames.jsonl").size());
-    s.detections = static_cast<int>(whole_lines(directory + "detections.jsonl").size());
+    s.frames = int(count_lines(directory + "frames.jsonl"));
+    s.detections = int(count_lines(directory + "detections.jsonl"));
     for (const auto& line : whole_lines(directory + "truth.jsonl"))
       s.objects += line.find("\"in_frame\":true") != std::string::npos;
     const auto costs = whole_lines(directory + "cost.jsonl");

@@ -27,7 +27,7 @@ class RunDirectory {
   void clear();
 
   /// Merges the sensors' lines into detections.jsonl, truth.jsonl and frames.jsonl, sorted by
-  /// (time, sensor, index). An incomplete last line is dropped.
+  /// (time, sensor, index). An incomplete last line is left out.
   void merge_lines() const;
 
  private:
@@ -56,7 +56,10 @@ struct SensorSummary {
 };
 std::vector<SensorSummary> summarise(const Scenario& scenario, const std::string& run_path);
 
-/// Number of complete lines of a file; 0 if it does not exist.
+/// Complete lines of a file; one without its newline was interrupted and is left out. None if the
+/// file does not exist.
+std::vector<std::string> whole_lines(const std::string& path);
+/// Their number.
 long count_lines(const std::string& path);
 
 }  // namespace dmise

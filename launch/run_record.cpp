@@ -1,7 +1,5 @@
 #include "launch/run_record.h"
 
-#include <fstream>
-
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/json.h"
@@ -39,18 +37,16 @@ void write_run_record(const RunDirectory& directory, const Scenario& scenario,
   json.key("scenario").raw(physics_json(scenario));
   json.key("nodes").begin_array();
   for (const auto& node : outcome.nodes) {
-    json.begin_object().field("name", node.name).field("compute_s", node.compute_s);
-    json.field("messaging_s", node.messaging_s).field("waiting_s", node.waiting_s);
-    json.field("start_s", node.start_s).field("peak_resident_bytes", node.peak_resident_bytes);
-    json.field("private_bytes", node.private_bytes).list("topics", node.topics).end_object();
+    const TimeSplit& times = node.times;
+    json.begin_object().field("name", node.name).field("compute_s", times.compute_s);
+    json.field("messaging_s", times.messaging_s).field("waiting_s", times.waiting_s);
+    json.field("start_s", times.start_s).field("peak_resident_bytes", times.peak_resident_bytes);
+    json.field("private_bytes", times.private_bytes).list("topics", node.consumes).end_object();
   }
   json.end_array().key("frames").begin_array();
-  for (const auto& sensor : scenario.sensors) {
-    std::ifstream costs(directory.path() + "/" + sensor.name + "/cost.jsonl");
-    std::string line;
-    while (std::getline(costs, line))
-      if (!costs.eof()) json.raw(line);
-  }
+  for (const auto& sensor : scenario.sensors)
+    for (const auto& line : whole_lines(directory.path() + "/" + sensor.name + "/cost.jsonl"))
+      json.raw(line);
   json.end_array().end_object();
   write_file_whole(directory.path() + "/run.json", json.take() + "\n");
 }

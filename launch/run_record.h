@@ -4,17 +4,9 @@
 
 #include "core/config/scenario.h"
 #include "launch/run_directory.h"
+#include "nodes/runtime/observability/status.h"
 
 namespace dmise {
-
-/// Wall-clock time of one node by activity [s], and what it needed.
-struct NodeTimes {
-  std::string name;
-  double compute_s = 0.0, messaging_s = 0.0, waiting_s = 0.0;
-  double start_s = 0.0;  // from the start of the process until it was ready
-  std::uint64_t peak_resident_bytes = 0, private_bytes = 0;
-  std::vector<std::string> topics;  // that it subscribed to
-};
 
 /// How a run ended.
 struct RunOutcome {
@@ -22,7 +14,7 @@ struct RunOutcome {
   std::string how;                  // "one process" or "a process per node"
   std::string reason;               // of a failure
   double wall_s = 0.0;
-  std::vector<NodeTimes> nodes;
+  std::vector<NodeStatus> nodes;  // of processes
 };
 
 /// Writes run.json: what ran, seed, digests, plan, time per effect and frame. The only product with

@@ -7,12 +7,14 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/nearest_name.h"
 #include "core/base/printable.h"
 #include "core/base/text_fields.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/ingest/any_frame.h"
+#include "core/optics/psf_table.h"
 #include "core/score/run_files.h"
 #include "core/score/trail.h"
 #include "core/wcs/wcs.h"
@@ -50,11 +52,8 @@ class Row {
     const auto field = fields_.find(column);
     if (field == fields_.end() || field->second.empty()) return {};
     const auto value = parse_real(field->second);
-    if (!value || !(*value >= least && *value <= most)) {
-      char reason[80];
-      std::snprintf(reason, sizeof reason, "must be a number in %g..%g", least, most);
-      fail(column, reason);
-    }
+    if (!value || !(*value >= least && *value <= most))
+      fail(column, formatted("must be a number in %g..%g", least, most));
     return value;
   }
   /// Two numbers that are given together.
@@ -77,9 +76,7 @@ std::vector<std::string> header_of(const std::string& line, const std::string& p
     if (std::ranges::count(header, name) > 1)
       throw ConfigError(place + ": " + printable(name, 80) + ": column is there twice");
     if (std::ranges::find(columns_known, name) != columns_known.end()) continue;
-    const std::string nearest = nearest_name(name, columns_known);
-    throw ConfigError(place + ": unknown column" + got(name) +
-                      (nearest.empty() ? "" : ", did you mean " + nearest + "?"));
+    throw ConfigError(place + ": unknown column" + got(name) + did_you_mean(name, columns_known));
   }
   for (const char* name : {"file", "id", "x_px", "y_px"})
     if (std::ranges::find(header, name) == header.end())
@@ -91,10 +88,10 @@ std::vector<std::string> fits_files(const std::string& directory) {
   std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
-    std::filesystem::path name = entry.path().filename();
-    if (name.extension() == ".gz" || name.extension() == ".fz") name = name.stem();
-    if (name.extension() == ".fits" || name.extension() == ".fit" || name.extension() == ".fts")
-      names.push_back(entry.path().filename().string());
+    const std::filesystem::path file = entry.path().filename();
+    const auto packed = file.extension() == ".gz" || file.extension() == ".fz";
+    const auto ending = (packed ? file.stem() : file).extension();
+    if (ending == ".fits" || ending == ".fit" || ending == ".fts") names.push_back(file.string());
   }
   if (error) throw ConfigError(printable(directory) + ": " + error.message());
   if (names.empty()) throw ConfigError(printable(directory) + ": has no FITS files");
@@ -193,7 +190,7 @@ ScoreInput read_frames(const std::string& directory, const std::string& truth_cs
     frame.columns = pixels.counts.columns;
     frame.rows = pixels.counts.rows;
     if (pixels.header.psf_fwhm_px > 0.0)
-      frame.sigma_px = pixels.header.psf_fwhm_px / std::sqrt(8.0 * std::log(2.0));
+      frame.sigma_px = pixels.header.psf_fwhm_px / fwhm_per_sigma;
     in.frames.push_back(std::move(frame));
     leave_unknown(files[i], unknown, in.truths);
     frame_of_file[files[i]] = &in.frames.back();

@@ -12,11 +12,10 @@ namespace dmise {
 inline constexpr const char* truth_csv_help =
     "CSV with the header file,id,x_px,y_px and, as far as known, "
     "end1_x_px,end1_y_px,end2_x_px,end2_y_px,magnitude,signal_e,ra_deg,dec_deg in any order; "
-    "fields "
-    "may be empty. Pixels: 0 is the centre of the first pixel (FITS counts it 1: subtract 1), y "
-    "along rows as stored. x_px, y_px: centroid of the light in the frame; ends: of the trail, "
-    "also "
-    "outside. signal_e: electrons in the frame. ra_deg, dec_deg: ICRS, astrometric, mid exposure";
+    "fields may be empty. Pixels: 0 is the centre of the first pixel (FITS counts it 1: subtract "
+    "1), y along rows as stored. x_px, y_px: centroid of the light in the frame; ends: of the "
+    "trail, also outside. signal_e: electrons in the frame. ra_deg, dec_deg: ICRS, astrometric, "
+    "mid exposure";
 
 /// Reads it; `files`: the names of frames. Throws `ConfigError` "FILE:LINE: COLUMN: reason".
 std::vector<TrueSource> read_truth_csv(const std::string& path,
