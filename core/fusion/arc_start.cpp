@@ -29,15 +29,9 @@ constexpr double largest_range_sigma = 0.1;  // of the range: a filter takes no 
 constexpr double as_likely = 9.2;            // chi-square by which another orbit must be worse
 constexpr OrbitLimits limits{.least_perigee_m = 6.45e6, .largest_apogee_m = 1e8};
 
-const AngleObservation& seen(const LooseSource& s) { return s.source.observation; }
-
 /// Of one sensor's sources. Those of an exposure have each its own time where rows are exposed one
 /// after the other.
 auto order(const LooseSource& s) { return std::tie(s.frame, seen(s).time, seen(s).detection_id); }
-
-double sigma_rad(const LooseSource& s) {
-  return std::sqrt(std::max(seen(s).covariance_rad2[0], seen(s).covariance_rad2[2]));
-}
 
 /// Where a path goes on to earlier times, and how far from there it may be.
 struct Continued {
@@ -54,7 +48,7 @@ Continued continued(const std::vector<const LooseSource*>& arc, SimTime time) {
   const double dt = (seen(a).time - time).seconds();  // > 0, beyond a
   const double ab = (seen(b).time - seen(a).time).seconds();
   const double rate = angle_rad(ua, ub) / ab;
-  const double noise = sigmas * std::max(sigma_rad(a), sigma_rad(b));
+  const double noise = sigmas * std::max(sigma_rad(seen(a)), sigma_rad(seen(b)));
   Continued out;
   if (n == 2) {
     const Vec<Gcrs> tangent = unit(ua - ub * dot(ua, ub));  // at b, towards a
@@ -153,30 +147,25 @@ std::vector<ArcStart::Arc> ArcStart::arcs_to(const LooseSource& last,
   return arcs;
 }
 
-std::vector<StartedOrbit> ArcStart::orbits_of(const Arc& arc) const {
+std::optional<StartedOrbit> ArcStart::orbit_of(const std::vector<LooseSource>& arc) const {
   std::vector<AngleObservation> lines;
-  StartedOrbit started;
-  for (auto s = arc.rbegin(); s != arc.rend(); ++s) {
-    lines.push_back(seen(**s));
-    started.sources.push_back(**s);
-  }
+  for (const LooseSource& s : arc) lines.push_back(seen(s));
   auto fits = one_arc_orbits(forces_, lines, {}, limits);
-  if (!fits) return {};
+  if (!fits) return std::nullopt;
   BatchFit& best = fits->front();
   if (best.chi2 > largest_chi2(best.degrees_of_freedom) || !is_sane(best.estimate) ||
       range_sigma(best.estimate, lines.front().sensor_m) > largest_range_sigma)
-    return {};
+    return std::nullopt;
   for (const BatchFit& other : *fits)
-    if (other.chi2 < best.chi2 + as_likely && !same_orbit(best, other)) return {};
-  started.fit = std::move(best);
-  return {started};
+    if (other.chi2 < best.chi2 + as_likely && !same_orbit(best, other)) return std::nullopt;
+  return StartedOrbit{std::move(best), arc};
 }
 
 std::vector<StartedOrbit> ArcStart::add(const std::vector<LooseSource>& sources) {
   std::map<std::string, std::vector<LooseSource>> fresh;
   for (const LooseSource& s : sources)
     if (!s.source.star_like) fresh[seen(s).sensor].push_back(s);
-  std::vector<std::vector<LooseSource>> arcs;  // copies, for what is kept moves
+  std::vector<std::vector<LooseSource>> arcs;  // by time; copies, for what is kept moves
   for (auto& [sensor, found] : fresh) {
     std::vector<LooseSource>& kept = loose_[sensor];
     std::ranges::sort(found, [](const auto& a, const auto& b) {
@@ -203,7 +192,7 @@ std::vector<StartedOrbit> ArcStart::add(const std::vector<LooseSource>& sources)
         while (wanted < int(arc.size())) wanted += std::max(1, wanted / 3);
         if (wanted != int(arc.size())) continue;
         std::vector<LooseSource> copy;
-        for (const LooseSource* part : arc) copy.push_back(*part);
+        for (auto part = arc.rbegin(); part != arc.rend(); ++part) copy.push_back(**part);
         arcs.push_back(std::move(copy));
       }
     }
@@ -218,11 +207,9 @@ std::vector<StartedOrbit> ArcStart::add(const std::vector<LooseSource>& sources)
                             [&](const auto& s) { return used.contains(seen(s).detection_id); }))
       continue;
     if (fits++ == most_fits) break;
-    Arc parts;
-    for (const LooseSource& s : arc) parts.push_back(&s);
-    for (StartedOrbit& orbit : orbits_of(parts)) {
-      for (const LooseSource& s : orbit.sources) used.insert(seen(s).detection_id);
-      orbits.push_back(std::move(orbit));
+    if (auto orbit = orbit_of(arc)) {
+      for (const LooseSource& s : arc) used.insert(seen(s).detection_id);
+      orbits.push_back(std::move(*orbit));
     }
   }
   return orbits;
@@ -232,12 +219,6 @@ void ArcStart::forget(const std::vector<std::string>& ids) {
   const std::set<std::string> gone(ids.begin(), ids.end());
   for (auto& [sensor, kept] : loose_)
     std::erase_if(kept, [&](const LooseSource& s) { return gone.contains(seen(s).detection_id); });
-}
-
-std::size_t ArcStart::loose() const {
-  std::size_t count = 0;
-  for (const auto& [sensor, kept] : loose_) count += kept.size();
-  return count;
 }
 
 }  // namespace dmise

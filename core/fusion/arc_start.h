@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,12 @@ class ArcStart {
   std::vector<StartedOrbit> add(const std::vector<LooseSource>& sources);
   /// What has been taken is not to begin another track.
   void forget(const std::vector<std::string>& detection_ids);
-  std::size_t loose() const;
 
  private:
   using Arc = std::vector<const LooseSource*>;  // by falling time
   std::vector<Arc> arcs_to(const LooseSource& last, const std::vector<LooseSource>& earlier) const;
-  std::vector<StartedOrbit> orbits_of(const Arc& arc) const;
+  /// Nothing if the sources, by time, leave the range open or fit no orbit.
+  std::optional<StartedOrbit> orbit_of(const std::vector<LooseSource>& arc) const;
 
   const ForceModel& forces_;
   FusionSettings settings_;

@@ -33,8 +33,8 @@ Vec<Gcrs> moved(const Vec<Gcrs>& r, const Vec<Gcrs>& v, double dt_s) {
 
 }  // namespace
 
-std::vector<FusionBody::Candidate> FusionBody::candidates(
-    Scene& scene, const SensorFrame& frame, std::span<const std::uint64_t> inside) const {
+std::vector<Fusion::Candidate> Fusion::candidates(Scene& scene, const SensorFrame& frame,
+                                                  std::span<const std::uint64_t> inside) const {
   std::vector<Candidate> out;
   const double dt_s = (frame.time - scene.time).seconds();
   double seen_sigma = 0;
@@ -81,18 +81,17 @@ std::vector<FusionBody::Candidate> FusionBody::candidates(
   return out;
 }
 
-PredictedDirection FusionBody::predicted(const Candidate& candidate, const SensorFrame& frame,
-                                         const AngleObservation& observation) const {
+PredictedDirection Fusion::predicted(const Candidate& candidate, const SensorFrame& frame,
+                                     const AngleObservation& observation) const {
   if (!candidate.track)
     return predict_direction(catalogue_.estimate(candidate.object), frame.sensor_m,
                              observation.time);
   const auto out = candidate.track->filter.predict(observation.time, frame.sensor_m);
-  if (out) return *out;
-  return {};  // of no range: nothing is there
+  return out ? *out : PredictedDirection{};  // range 0: no prediction
 }
 
-void FusionBody::associate(Scene& scene, const SensorFrame& frame,
-                           std::span<const std::uint64_t> inside) {
+void Fusion::associate(Scene& scene, const SensorFrame& frame,
+                       std::span<const std::uint64_t> inside) {
   std::vector<Candidate> all = candidates(scene, frame, inside);
   SkyCells cells(frame.axis, std::min(pi, frame.half_angle_rad + largest_radius_rad));
   for (std::size_t k = 0; k < all.size(); ++k)

@@ -23,10 +23,14 @@ FilterSettings filter_settings(const FusionSettings& s) {
   return out;
 }
 
+bool holds(const std::vector<std::string>& ids, const LooseSource& source) {
+  return std::ranges::find(ids, seen(source).detection_id) != ids.end();
+}
+
 }  // namespace
 
-FusionBody::FusionBody(std::vector<MeanElements> catalogue, const Clock& clock, SimTime reference,
-                       const FusionSettings& settings)
+Fusion::Fusion(std::vector<MeanElements> catalogue, const Clock& clock, SimTime reference,
+               const FusionSettings& settings)
     : clock_(clock),
       settings_(settings),
       forces_(clock, reference),
@@ -36,7 +40,7 @@ FusionBody::FusionBody(std::vector<MeanElements> catalogue, const Clock& clock, 
       arcs_(forces_, settings),
       track_of_(catalogue_.size(), nullptr) {}
 
-FusionTick FusionBody::step(SimTime time, std::vector<SensorFrame> frames) {
+FusionTick Fusion::step(SimTime time, std::vector<SensorFrame> frames) {
   std::ranges::sort(frames, [](const SensorFrame& a, const SensorFrame& b) {
     return std::tie(a.time, a.sensor, a.frame) < std::tie(b.time, b.sensor, b.frame);
   });
@@ -50,7 +54,7 @@ FusionTick FusionBody::step(SimTime time, std::vector<SensorFrame> frames) {
     for (const auto& track : tracks_)
       if (track->place_roughly(forces_, scene.time)) scene.placed.push_back(track.get());
     const std::size_t words = cone_words(catalogue_.size());
-    const auto inside = scene.objects_in(group, catalogue_, settings_);
+    const auto inside = scene.objects_in(group, catalogue_);
     for (std::size_t k = 0; k < group.size(); ++k)
       associate(scene, group[k], {inside.data() + k * words, words});
     loose.insert(loose.end(), scene.loose.begin(), scene.loose.end());
@@ -60,7 +64,6 @@ FusionTick FusionBody::step(SimTime time, std::vector<SensorFrame> frames) {
   age(time);
 
   FusionTick out;
-  std::uint32_t taken = 0;
   for (const auto& track : tracks_) {
     if (track->status != TrackStatus::lost) ++out.live;
     if (!track->changed) continue;
@@ -72,17 +75,14 @@ FusionTick FusionBody::step(SimTime time, std::vector<SensorFrame> frames) {
     track->associated.clear();
     track->changed = false;
   }
-  for (const LooseSource& s : loose)
-    taken += std::uint32_t(std::ranges::any_of(out.tracks, [&](const Track& t) {
-      return std::ranges::find(t.associated, s.source.observation.detection_id) !=
-             t.associated.end();
-    }));
-  out.unassociated = std::uint32_t(loose.size()) - taken;
+  out.unassociated = std::uint32_t(std::ranges::count_if(loose, [&](const LooseSource& s) {
+    return std::ranges::none_of(out.tracks, [&](const Track& t) { return holds(t.associated, s); });
+  }));
   std::erase_if(tracks_, [](const auto& t) { return t->status == TrackStatus::lost; });
   return out;
 }
 
-LiveTrack* FusionBody::begin_catalogued(std::size_t object, SimTime seen) {
+LiveTrack* Fusion::begin_catalogued(std::size_t object, SimTime seen) {
   auto prior = propagate(forces_, catalogue_.estimate(object), seen - sim_seconds(prior_before_s),
                          {.position_tolerance_m = 1e-2});
   if (!prior || !is_sane(*prior)) return nullptr;
@@ -92,7 +92,7 @@ LiveTrack* FusionBody::begin_catalogued(std::size_t object, SimTime seen) {
   return tracks_.back().get();
 }
 
-bool FusionBody::is_known(const OrbitEstimate& estimate) const {
+bool Fusion::is_known(const OrbitEstimate& estimate) const {
   for (const auto& track : tracks_) {
     const auto other =
         track->filter.estimate_at(std::max(estimate.state.time, track->filter.time()));
@@ -108,25 +108,24 @@ bool FusionBody::is_known(const OrbitEstimate& estimate) const {
   return false;
 }
 
-void FusionBody::take_rest(LiveTrack& track, const std::vector<LooseSource>& loose,
-                           std::vector<std::string>& taken) {
+void Fusion::take_rest(LiveTrack& track, const std::vector<LooseSource>& loose,
+                       std::vector<std::string>& taken) {
   for (const LooseSource& s : loose) {
-    const AngleObservation& seen = s.source.observation;
-    if (seen.time < track.filter.time() - sim_seconds(settings_.start_window_s) ||
-        std::ranges::find(taken, seen.detection_id) != taken.end())
+    if (seen(s).time < track.filter.time() - sim_seconds(settings_.start_window_s) ||
+        holds(taken, s))
       continue;
-    const auto found = track.filter.innovation(seen);
+    const auto found = track.filter.innovation(seen(s));
     if (!found || found->d2 > settings_.gate_d2) continue;
-    if (track.take(seen, s.source.magnitude, settings_.detection_probability, s.false_per_sr))
-      taken.push_back(seen.detection_id);
+    if (track.take(seen(s), s.source.magnitude, settings_.detection_probability, s.false_per_sr))
+      taken.push_back(seen(s).detection_id);
   }
 }
 
-void FusionBody::begin_unknown(const std::vector<LooseSource>& loose) {
+void Fusion::begin_unknown(const std::vector<LooseSource>& loose) {
   for (const StartedOrbit& orbit : start_.add(loose)) {
     const auto is_loose = [&](const LooseSource& s) {
       return std::ranges::any_of(start_.loose(), [&](const LooseSource& other) {
-        return other.source.observation.detection_id == s.source.observation.detection_id;
+        return seen(other).detection_id == seen(s).detection_id;
       });
     };
     if (!std::ranges::all_of(orbit.sources, is_loose)) continue;  // another took it
@@ -134,33 +133,24 @@ void FusionBody::begin_unknown(const std::vector<LooseSource>& loose) {
   }
 }
 
-void FusionBody::begin_from_arcs(const std::vector<LooseSource>& loose) {
+void Fusion::begin_from_arcs(const std::vector<LooseSource>& loose) {
   std::vector<LooseSource> left;
   for (const LooseSource& s : loose)
-    if (std::ranges::none_of(tracks_, [&](const auto& track) {
-          return std::ranges::find(track->associated, s.source.observation.detection_id) !=
-                 track->associated.end();
-        }))
+    if (std::ranges::none_of(tracks_, [&](const auto& t) { return holds(t->associated, s); }))
       left.push_back(s);
   for (const StartedOrbit& orbit : arcs_.add(left))
     if (!is_known(orbit.fit.estimate))
       begin(orbit, int(orbit.sources.size()) + settings_.confirm_arc);
 }
 
-void FusionBody::begin(const StartedOrbit& orbit, int least_detections) {
+void Fusion::begin(const StartedOrbit& orbit, int least_detections) {
   auto track = std::make_unique<LiveTrack>(
       next_id_, OrbitFilter(forces_, orbit.fit.estimate, filter_), std::nullopt);
   track->least_detections = least_detections;
   std::vector<std::string> taken;
   for (const LooseSource& s : orbit.sources) {
-    const AngleObservation& seen = s.source.observation;
-    taken.push_back(seen.detection_id);
-    track->associated.push_back(seen.detection_id);
-    track->last_seen = std::max(track->last_seen, seen.time);
-    track->brightness_sum +=
-        s.source.magnitude -
-        5 * std::log10(norm(orbit.fit.estimate.state.position_m - seen.sensor_m) / 1e6);
-    ++track->detections;
+    taken.push_back(seen(s).detection_id);
+    track->count(seen(s), s.source.magnitude, orbit.fit.estimate.state.position_m);
   }
   take_rest(*track, start_.loose(), taken);
   start_.forget(taken);
@@ -169,7 +159,7 @@ void FusionBody::begin(const StartedOrbit& orbit, int least_detections) {
   ++next_id_;
 }
 
-void FusionBody::age(SimTime time) {
+void Fusion::age(SimTime time) {
   for (const auto& track : tracks_) {
     const double unseen_s = (time - track->last_seen).seconds();
     const bool tentative = track->status == TrackStatus::tentative;
@@ -186,14 +176,12 @@ void FusionBody::age(SimTime time) {
   }
 }
 
-std::vector<CueTarget> FusionBody::targets(SimTime time) const {
+std::vector<CueTarget> Fusion::targets(SimTime time) const {
   std::vector<CueTarget> out;
   for (const auto& track : tracks_) {
     auto estimate = track->filter.estimate_at(time);
     if (!estimate || track->detections == 0) continue;
     CueTarget target{.track = track->id,
-                     .catalogue_number = 0,
-                     .name = {},
                      .existence = track->existence(),
                      .magnitude = track->magnitude(1e6),
                      .estimate = std::move(*estimate)};
@@ -203,24 +191,6 @@ std::vector<CueTarget> FusionBody::targets(SimTime time) const {
     }
     out.push_back(std::move(target));
   }
-  return out;
-}
-
-Fusion::Fusion(std::vector<MeanElements> catalogue, const Clock& clock, SimTime reference,
-               const FusionSettings& settings)
-    : body_(std::make_unique<FusionBody>(std::move(catalogue), clock, reference, settings)) {}
-
-Fusion::~Fusion() = default;
-
-FusionTick Fusion::step(SimTime time, std::vector<SensorFrame> frames) {
-  return body_->step(time, std::move(frames));
-}
-
-std::vector<CueTarget> Fusion::targets(SimTime time) const { return body_->targets(time); }
-
-std::vector<double> Fusion::existences() const {
-  std::vector<double> out;
-  for (const auto& track : body_->tracks()) out.push_back(track->existence());
   return out;
 }
 

@@ -1,10 +1,16 @@
 #pragma once
 #include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
+#include "core/fusion/arc_start.h"
+#include "core/fusion/catalogue_prediction.h"
 #include "core/fusion/fusion_settings.h"
+#include "core/fusion/live_track.h"
 #include "core/fusion/observation_plan.h"
 #include "core/fusion/sensor_frame.h"
+#include "core/fusion/track_start.h"
 #include "core/orbit/elements.h"
 #include "core/products/track.h"
 #include "core/time/clock.h"
@@ -18,8 +24,6 @@ struct FusionTick {
   std::uint32_t unassociated = 0;  // sources of the tick that no track took
 };
 
-class FusionBody;
-
 /// Tracks of objects from the frames of all sensors: global nearest neighbours with gates, one
 /// assignment per frame over tracks and catalogued objects; orbits of what is in no catalogue begin
 /// by triangulation; square-root unscented filters. docs/models/fusion.md says which and why.
@@ -30,7 +34,8 @@ class Fusion {
   /// `reference`: a time of the run, around which forces are tabulated.
   Fusion(std::vector<MeanElements> catalogue, const Clock& clock, SimTime reference,
          const FusionSettings& settings = {});
-  ~Fusion();
+  Fusion(const Fusion&) = delete;  // filters refer to its forces
+  Fusion& operator=(const Fusion&) = delete;
 
   /// The work of one tick. Frames may be of earlier exposures than those of the tick before.
   FusionTick step(SimTime time, std::vector<SensorFrame> frames);
@@ -39,11 +44,33 @@ class Fusion {
   /// among.
   std::vector<CueTarget> targets(SimTime time) const;
 
-  /// Probabilities of existence of the tracks that have not ended, by id.
-  std::vector<double> existences() const;
-
  private:
-  std::unique_ptr<FusionBody> body_;
+  struct Candidate;
+  struct Scene;
+  void associate(Scene& scene, const SensorFrame& frame, std::span<const std::uint64_t> inside);
+  std::vector<Candidate> candidates(Scene& scene, const SensorFrame& frame,
+                                    std::span<const std::uint64_t> inside) const;
+  PredictedDirection predicted(const Candidate& candidate, const SensorFrame& frame,
+                               const AngleObservation& observation) const;
+  LiveTrack* begin_catalogued(std::size_t object, SimTime seen);
+  void begin_unknown(const std::vector<LooseSource>& loose);
+  void begin_from_arcs(const std::vector<LooseSource>& loose);
+  void begin(const StartedOrbit& orbit, int least_detections);
+  bool is_known(const OrbitEstimate& estimate) const;
+  void take_rest(LiveTrack& track, const std::vector<LooseSource>& loose,
+                 std::vector<std::string>& taken);
+  void age(SimTime time);
+
+  Clock clock_;
+  FusionSettings settings_;
+  ForceModel forces_;
+  FilterSettings filter_;
+  CataloguePrediction catalogue_;
+  TrackStart start_;
+  ArcStart arcs_;
+  std::vector<std::unique_ptr<LiveTrack>> tracks_;  // by id
+  std::vector<LiveTrack*> track_of_;                // of each catalogued object, null: none
+  std::uint32_t next_id_ = 1;
 };
 
 }  // namespace dmise

@@ -15,21 +15,16 @@ constexpr double cone_margin_rad = 0.02;
 constexpr double largest_cone_rad = 3.1;
 constexpr double surface_m = 6.35e6;
 
-OblateEarth earth_at(const Clock& clock, SimTime time, const Ellipsoid& ellipsoid) {
-  return oblate_earth(earth_orientation(clock, time), ellipsoid);
-}
-
 }  // namespace
 
-FusionBody::Scene::Scene(const Clock& clock, const CataloguePrediction& catalogue,
-                         const Ellipsoid& ellipsoid)
+Fusion::Scene::Scene(const Clock& clock, const CataloguePrediction& catalogue,
+                     const Ellipsoid& ellipsoid)
     : time(catalogue.time()),
-      shadow(solar_system(clock.tt(catalogue.time())).sun_m,
-             earth_at(clock, catalogue.time(), ellipsoid)) {}
+      shadow(solar_system(clock.tt(time)).sun_m,
+             oblate_earth(earth_orientation(clock, time), ellipsoid)) {}
 
-std::vector<std::uint64_t> FusionBody::Scene::objects_in(std::span<const SensorFrame> frames,
-                                                         const CataloguePrediction& catalogue,
-                                                         const FusionSettings&) const {
+std::vector<std::uint64_t> Fusion::Scene::objects_in(std::span<const SensorFrame> frames,
+                                                     const CataloguePrediction& catalogue) const {
   const Rotation<Teme, Gcrs> teme_from_gcrs = catalogue.gcrs_from_teme().inverse();
   std::vector<Cone> cones;
   for (const SensorFrame& frame : frames) {
@@ -43,7 +38,7 @@ std::vector<std::uint64_t> FusionBody::Scene::objects_in(std::span<const SensorF
   return inside;
 }
 
-double FusionBody::Scene::sunlit(const Vec<Gcrs>& position_m) const {
+double Fusion::Scene::sunlit(const Vec<Gcrs>& position_m) const {
   return norm(position_m) < surface_m ? 0.0 : shadow.sunlit_fraction(position_m);
 }
 

@@ -2,14 +2,14 @@
 #include <span>
 #include <vector>
 
-#include "core/fusion/fusion_body.h"
+#include "core/fusion/fusion.h"
 #include "core/orbit/cone_test.h"
 #include "core/sky/shadow.h"
 
 namespace dmise {
 
 /// What may be seen by a frame: a track, or a catalogued object without one.
-struct FusionBody::Candidate {
+struct Fusion::Candidate {
   LiveTrack* track = nullptr;
   std::size_t object = 0;  // without a track
   Vec<Gcrs> direction;     // about, unit
@@ -19,13 +19,12 @@ struct FusionBody::Candidate {
 };
 
 /// What frames of about one time share.
-struct FusionBody::Scene {
+struct Fusion::Scene {
   Scene(const Clock& clock, const CataloguePrediction& catalogue, const Ellipsoid& ellipsoid);
 
   /// For each frame a row of bits: catalogued objects that may be in its field.
   std::vector<std::uint64_t> objects_in(std::span<const SensorFrame> frames,
-                                        const CataloguePrediction& catalogue,
-                                        const FusionSettings& settings) const;
+                                        const CataloguePrediction& catalogue) const;
   /// Fraction of the Sun's disc that shines on a place.
   double sunlit(const Vec<Gcrs>& position_m) const;
 

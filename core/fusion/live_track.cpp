@@ -38,6 +38,14 @@ double LiveTrack::rough_sigma_m(double noise) const {
   return sigma_m + sigma_m_per_s * age_s + std::sqrt(noise * age_s * age_s * age_s);
 }
 
+void LiveTrack::count(const AngleObservation& observation, double magnitude_seen,
+                      const Vec<Gcrs>& position_m) {
+  brightness_sum += magnitude_seen - brightness_offset(norm(position_m - observation.sensor_m));
+  ++detections;
+  last_seen = std::max(last_seen, observation.time);
+  associated.push_back(observation.detection_id);
+}
+
 bool LiveTrack::take(const AngleObservation& observation, double magnitude_seen,
                      double detection_probability, double false_per_sr) {
   const auto found = filter.update(observation);
@@ -47,11 +55,7 @@ bool LiveTrack::take(const AngleObservation& observation, double magnitude_seen,
       std::min(most_log_odds,
                log_odds + std::log(1 - p + p * std::exp(found->log_likelihood) / false_per_sr));
   innovation_d2 = found->d2;
-  const double range_m = norm(filter.estimate().state.position_m - observation.sensor_m);
-  brightness_sum += magnitude_seen - brightness_offset(range_m);
-  ++detections;
-  last_seen = std::max(last_seen, observation.time);
-  associated.push_back(observation.detection_id);
+  count(observation, magnitude_seen, filter.estimate().state.position_m);
   changed = true;
   return true;
 }

@@ -37,8 +37,10 @@ struct LiveTrack {
   /// Bound of the error of `rough` [m], one sigma.
   double rough_sigma_m(double acceleration_noise_m2_per_s3) const;
 
-  /// Takes a detection into the orbit. `false_per_sr` is the density of what else may have made it.
-  /// False, and nothing changed, if the filter refuses it.
+  /// Counts a detection, and its brightness if the object is at `position_m`.
+  void count(const AngleObservation& observation, double magnitude, const Vec<Gcrs>& position_m);
+  /// Takes a detection into the orbit, and counts it. `false_per_sr` is the density of what else
+  /// may have made it. False, and nothing changed, if the filter refuses it.
   bool take(const AngleObservation& observation, double magnitude, double detection_probability,
             double false_per_sr);
   /// A look with this probability of detection found nothing.

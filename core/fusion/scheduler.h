@@ -20,8 +20,8 @@ class Scheduler {
   Scheduler(const Clock& clock, SimTime reference, std::vector<CuedSensor> sensors, SimTime last,
             double best_detection_probability);
 
-  /// Whether a sensor is free between `begin`, the earliest start of a task, and `next`, that of
-  /// the next call.
+  /// Returns whether a sensor is free before `next`, the earliest start of a task of the next call;
+  /// `begin`: that of this one.
   bool is_asked(SimTime begin, SimTime next) const;
 
   /// Tasks that begin at `begin` or later, before `next`, by id. `now`: the time of the tick.

@@ -19,12 +19,6 @@ constexpr double sigmas = 4.0;           // of coarse tests
 constexpr double longest_miss_m = 50e3;  // of two lines
 constexpr double largest_chi2 = 13.8;    // of an orbit of 2 degrees of freedom: 1e-3
 
-double sigma_rad(const AngleObservation& o) {
-  return std::sqrt(std::max(o.covariance_rad2[0], o.covariance_rad2[2]));
-}
-
-const AngleObservation& seen(const LooseSource& s) { return s.source.observation; }
-
 auto order(const LooseSource& s) {
   return std::tie(seen(s).time, seen(s).sensor, seen(s).detection_id);
 }
@@ -51,14 +45,15 @@ bool may_meet(const AngleObservation& a, const AngleObservation& b) {
 TrackStart::TrackStart(const ForceModel& forces, const FusionSettings& settings)
     : forces_(forces), settings_(settings) {}
 
-std::vector<TrackStart::Place> TrackStart::meet(const LooseSource& a, const LooseSource& b) const {
-  if (seen(a).sensor == seen(b).sensor || !may_meet(seen(a), seen(b))) return {};
+std::optional<TrackStart::Place> TrackStart::meet(const LooseSource& a,
+                                                  const LooseSource& b) const {
+  if (seen(a).sensor == seen(b).sensor || !may_meet(seen(a), seen(b))) return std::nullopt;
   const AngleObservation lines[] = {seen(a), seen(b)};
   TriangulationSettings triangulation;
   triangulation.longest_s = settings_.simultaneous_s;
   const auto where = triangulate(lines, {}, triangulation);
-  if (!where) return {};
-  return {{*where, std::sqrt(where->covariance_m2.trace()), a, b}};
+  if (!where) return std::nullopt;
+  return Place{*where, std::sqrt(where->covariance_m2.trace()), a, b};
 }
 
 bool TrackStart::may_be_one(const Place& from, const Place& to) const {
@@ -94,7 +89,8 @@ std::vector<StartedOrbit> TrackStart::add(const std::vector<LooseSource>& source
   std::vector<Place> found;
   const auto pair_up = [&](const LooseSource& a, const LooseSource& b) {
     if (std::fabs((seen(a).time - seen(b).time).seconds()) > settings_.simultaneous_s) return;
-    for (Place& p : order(a) < order(b) ? meet(a, b) : meet(b, a)) found.push_back(std::move(p));
+    if (auto place = order(a) < order(b) ? meet(a, b) : meet(b, a))
+      found.push_back(std::move(*place));
   };
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     for (const LooseSource& old : loose_) pair_up(old, fresh[i]);
@@ -146,7 +142,5 @@ void TrackStart::forget(const std::vector<std::string>& ids) {
   std::erase_if(loose_, is_gone);
   std::erase_if(places_, [&](const Place& p) { return is_gone(p.a) || is_gone(p.b); });
 }
-
-std::vector<LooseSource> TrackStart::loose() const { return loose_; }
 
 }  // namespace dmise

@@ -1,5 +1,5 @@
 #pragma once
-#include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +16,8 @@ struct LooseSource {
   double false_per_sr = 0.0;  // of its frame
   std::uint32_t frame = 0;    // of its sensor
 };
+
+inline const AngleObservation& seen(const LooseSource& s) { return s.source.observation; }
 
 /// An orbit from two places, each seen by two sites.
 struct StartedOrbit {
@@ -35,8 +37,7 @@ class TrackStart {
   /// What has been taken is not to begin another track.
   void forget(const std::vector<std::string>& detection_ids);
   /// Loose sources of the window, by time.
-  std::vector<LooseSource> loose() const;
-  std::size_t places() const { return places_.size(); }
+  const std::vector<LooseSource>& loose() const { return loose_; }
 
  private:
   struct Place {
@@ -44,7 +45,7 @@ class TrackStart {
     double sigma_m = 0.0;
     LooseSource a, b;
   };
-  std::vector<Place> meet(const LooseSource& a, const LooseSource& b) const;
+  std::optional<Place> meet(const LooseSource& a, const LooseSource& b) const;
   bool may_be_one(const Place& from, const Place& to) const;
 
   const ForceModel& forces_;

@@ -90,7 +90,7 @@ TEST(Fusion, ADetectionBetweenTwoObjectsIsNoProof) {
     only[0].sources.resize(1);
     Fusion fusion(catalogue, evening, {});
     fusion.step(sim_seconds(0), only);
-    return fusion.existences().at(0);
+    return fusion.targets(sim_seconds(0)).at(0).existence;
   };
   EXPECT_GT(existence(), 0.99);
   MeanElements beside = catalogue[0];
@@ -225,7 +225,8 @@ TEST(Fusion, LooksThatSeeNothingEndATrack) {
       for (const Track& t : fusion.step(time, std::move(frames)).tracks)
         lost += t.status == TrackStatus::lost;
     }
-    for (const double existence : fusion.existences()) most = std::max(most, existence);
+    for (const CueTarget& target : fusion.targets(sim_seconds(8 * cadence_s)))
+      most = std::max(most, target.existence);
     if (look) {
       EXPECT_GT(lost, live / 2);
     } else {
