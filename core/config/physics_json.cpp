@@ -59,6 +59,7 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   json.field("first_exposure_s", s.first_exposure_s);
   write_instrument_json(json, s.instrument);
   write_surroundings(json, s);
+  if (s.seeing) write_seeing_json(json, *s.seeing);
   json.key("effects").begin_array();
   for (const auto& name : effects_in_digest(s.effects)) json.value(name);
   json.end_array();

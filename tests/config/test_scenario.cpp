@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/units.h"
@@ -126,6 +127,16 @@ TEST_F(ScenarioFile, RefusesARunBeyondTheEphemerisOrBeforeLeapSeconds) {
   EXPECT_EQ(complaint(good, "2018-01-21T00:30:00Z", "1971-12-31T00:30:00Z"),
             "1:21: simulation.start: must not be before 1972, when UTC was not yet whole seconds "
             "from TAI, got 1971-12-31T00:30:00Z");
+}
+
+TEST_F(ScenarioFile, SeeingIsInTheDigest) {
+  Scenario scenario = load(good);
+  std::set<std::string> texts{physics_json(scenario)};
+  for (const double r0_m : {0.1, 0.2}) {
+    scenario.sensors[0].seeing = SensorSeeing{.r0_m = r0_m};
+    texts.insert(physics_json(scenario));
+  }
+  EXPECT_EQ(texts.size(), 3u);
 }
 
 // 10 min of cubic put objects kilometres away: 2.5 km against ticks of 5 s.
