@@ -47,18 +47,10 @@ class FieldWatcher : public Evaluator {
  private:
   void take_in(const Message& message) {
     const auto& state = message.state;
-    if (const auto* roster = std::get_if<ObjectRoster>(state.get())) {
-      if (takes_states_) return world_.add(std::shared_ptr<const ObjectRoster>(state, roster));
-      const auto objects = propagated_objects(state, own_, clock_, wgs84);
-      world_.add(std::shared_ptr<const ObjectRoster>(objects, &objects->population.roster));
-      states_.emplace(objects, tick_);
-    }
-    if (const auto* states = std::get_if<ObjectStates>(state.get()))
-      world_.add(std::shared_ptr<const ObjectStates>(state, states));
-    if (const auto* environment = std::get_if<EnvironmentState>(state.get()))
-      world_.add(std::shared_ptr<const EnvironmentState>(state, environment));
-    if (const auto* site = std::get_if<SiteState>(state.get()))
-      world_.add(std::shared_ptr<const SiteState>(state, site));
+    if (takes_states_ || !std::holds_alternative<ObjectRoster>(*state)) return world_.add(state);
+    const auto objects = propagated_objects(state, own_, clock_, wgs84);
+    world_.add(std::shared_ptr<const ObjectRoster>(objects, &objects->population.roster));
+    states_.emplace(objects, tick_);
   }
 
   /// Places of the objects in the field at start, middle and end.

@@ -332,6 +332,11 @@ std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
   return result;
 }
 
+double length_px(const Arc& arc) {
+  const PixelPosition to = arc.middle - arc.start, from = arc.end - arc.middle;
+  return std::hypot(to.x_px, to.y_px) + std::hypot(from.x_px, from.y_px);
+}
+
 PixelPosition place(const Arc& arc, double tau) { return Motion(arc).at(tau); }
 
 }  // namespace dmise

@@ -88,6 +88,9 @@ struct ArcExtent {
 /// Bounding rectangle of the arc's path.
 ArcExtent extent(const Arc& arc);
 
+/// Length of the way by the arc's middle, straight to and from it.
+double length_px(const Arc& arc);
+
 /// Position on the arc at time `tau`, 0 at the start, 1 at the end.
 PixelPosition place(const Arc& arc, double tau);
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/optics/psf_table.h"
 
 namespace dmise {
@@ -174,10 +174,8 @@ PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<Senso
                             " million in this frame, more than " +
                             std::to_string(std::lround(1e-6 * largest_field_cells)) + " million");
   plan.error = 1e-4;
-  char text[160];
-  std::snprintf(text, sizeof text, "%.2f px wide, %d cells a pixel, %.1f million cells",
-                plan.fwhm_px, plan.oversampling, 1e-6 * cells);
-  plan.why = text;
+  plan.why = formatted("%.2f px wide, %d cells a pixel, %.1f million cells", plan.fwhm_px,
+                       plan.oversampling, 1e-6 * cells);
   return plan;
 }
 

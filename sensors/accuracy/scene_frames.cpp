@@ -27,23 +27,13 @@ World world_around(const Scenario& scenario, const SensorConfig& sensor, const F
   const Clock clock = make_clock(scenario);
   OrbitActor orbit(scenario, clock, threads);
   EnvironmentActor environment(scenario, clock);
-  const auto add = [&](const Message& message) {
-    std::visit(
-        [&]<class State>(const State& state) {
-          if constexpr (requires {
-                          world.add(std::shared_ptr<const State>(message.state, &state));
-                        })
-            world.add(std::shared_ptr<const State>(message.state, &state));
-        },
-        *message.state);
-  };
   const ExposureSpan span = exposure_span(sensor, times);
   const bool traps = sensor.camera.detector.persistence_fraction > 0.0;
   constexpr Tick knots = 3;  // that the highest order of interpolation takes beyond
   const Tick last = std::min(scenario.last_tick(), span.end.ns / scenario.tick.ns + 1 + knots);
   for (Tick tick = 0; tick <= last; ++tick) {
-    for (const auto& message : environment.step(tick, {})) add(message);
-    for (const auto& message : orbit.step(tick, {})) add(message);
+    for (const auto& message : environment.step(tick, {})) world.add(message.state);
+    for (const auto& message : orbit.step(tick, {})) world.add(message.state);
     if (!traps)
       world.forget_before(std::min(span.start, scenario.time_of(std::max<Tick>(0, tick - knots))));
   }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
+
+#include "core/base/formatted.h"
+#include "core/base/quantile.h"
 
 namespace dmise {
 namespace {
@@ -29,11 +31,6 @@ double seconds_of(FramePipeline& chain, const SceneFrames& scene) {
   return seconds;
 }
 
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
-
 /// Share of the objects in the frame near whose middle something was detected.
 double share_detected(const FrameProducts& frame) {
   const double near_px = 3.0 * std::hypot(1.0, frame.header.psf_fwhm_px);
@@ -46,12 +43,6 @@ double share_detected(const FrameProducts& frame) {
     });
   }
   return objects > 0 ? double(found) / objects : 0.0;
-}
-
-std::string budget_name(double scale) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g x standard", scale);
-  return text;
 }
 
 }  // namespace
@@ -103,8 +94,7 @@ Tradeoff::Tradeoff(const SceneFrames& scene, int repeats)
     : scene_(scene),
       repeats_(repeats),
       reference_(scene.make(planned_for(scene.sensor(), reference_accuracy()))),
-      comparison_(scene, reference_, reference_.plan.effects),
-      detected_(share_detected(reference_)) {
+      comparison_(scene, reference_, reference_.plan.effects) {
   for (const PlannedEffect& effect : reference_.plan.planned) {
     if (!effect.decided) continue;
     for (int level = 0; level < effect.facts->reference(); ++level) {
@@ -126,7 +116,7 @@ Tradeoff::Tradeoff(const SceneFrames& scene, int repeats)
     Accuracy accuracy{"budget"};
     for (const auto& kind : error_kinds)
       accuracy.budget.*kind.value = scale * standard_budget.*kind.value;
-    add(budget_name(scale), accuracy);
+    add(formatted("%g x standard", scale), accuracy);
   }
 }
 
@@ -155,8 +145,8 @@ TradeoffRow Tradeoff::measure(std::size_t index) const {
     reference_s.push_back(seconds_of(*reference, scene_));
     seconds.push_back(seconds_of(*other, scene_));
   }
-  row.seconds = median(seconds);
-  row.reference_s = median(reference_s);
+  row.seconds = middle_of(seconds);
+  row.reference_s = middle_of(reference_s);
   return row;
 }
 

@@ -31,14 +31,12 @@ class Tradeoff {
   /// The rows, yet without what is measured.
   const std::vector<TradeoffRow>& rows() const { return rows_; }
   TradeoffRow measure(std::size_t row) const;
-  double detected_in_reference() const { return detected_; }
 
  private:
   const SceneFrames& scene_;
   int repeats_;
   FrameProducts reference_;
   FrameComparison comparison_;
-  double detected_ = 0.0;
   std::vector<TradeoffRow> rows_;
   std::vector<SensorConfig> sensors_;  // of the rows
 };

@@ -1,8 +1,8 @@
 #include "sensors/dataset/sample_maker.h"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "core/base/formatted.h"
 #include "core/config/make_clock.h"
 #include "core/dataset/npy.h"
 #include "core/dataset/tar.h"
@@ -36,9 +36,8 @@ class SensorFrames {
 
   void finish(const FrameProducts& frame) {
     if (!objects_.empty() && objects_.front().truth.frame != frame.report.frame) clear();
-    char key[128];
-    std::snprintf(key, sizeof key, "%09llu-%s-%06u",
-                  static_cast<unsigned long long>(sample_.scenario.seed),
+    const std::string key =
+        formatted("%09llu-%s-%06u", static_cast<unsigned long long>(sample_.scenario.seed),
                   frame.report.sensor.c_str(), frame.report.frame);
     const LabelledFrame labelled{frame, objects_, sample_, clock_, digest_, key};
     SampleFrame made{.key = key};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/quantile.h"
 #include "core/base/units.h"
 #include "core/detection/components.h"
 #include "core/detection/detect.h"
@@ -101,16 +102,14 @@ double noise_over_sky_e(const SensorConfig& sensor, const FrameTimes& times, std
   ExpectedElectronImage light(side, side);
   std::fill(light.pixels.begin(), light.pixels.end(), float(sky_e));
   Threads threads(1);
-  auto noise = expected_noise(light, sensor.camera.detector,
-                              {.seed = seed,
-                               .sensor = sensor.name,
-                               .frame = times.frame,
-                               .exposure_s = times.seconds(),
-                               .idle_s = sensor.cadence_s - sensor.exposure_s},
-                              sensor.effects, threads);
-  std::nth_element(noise.pixels.begin(), noise.pixels.begin() + side * side / 2,
-                   noise.pixels.end());
-  return double(noise.pixels[std::size_t(side * side / 2)]);
+  const auto noise = expected_noise(light, sensor.camera.detector,
+                                    {.seed = seed,
+                                     .sensor = sensor.name,
+                                     .frame = times.frame,
+                                     .exposure_s = times.seconds(),
+                                     .idle_s = sensor.cadence_s - sensor.exposure_s},
+                                    sensor.effects, threads);
+  return double(middle_of(noise.pixels));
 }
 
 double saturation_e(const Detector& acting) {

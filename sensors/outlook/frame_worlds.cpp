@@ -52,12 +52,7 @@ World FrameWorlds::around(const FrameTimes& commanded, const ObjectPopulation& p
     if (!population.roster.objects.empty())
       world.add(std::make_shared<const ObjectStates>(source.at(tick, scenario_.time_of(tick))));
     if (scenario_.time_of(tick) > end) continue;
-    for (const auto& message : environment_.step(tick, {})) {
-      if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
-        world.add(std::shared_ptr<const EnvironmentState>(message.state, state));
-      if (const auto* state = std::get_if<SiteState>(message.state.get()))
-        world.add(std::shared_ptr<const SiteState>(message.state, state));
-    }
+    for (const auto& message : environment_.step(tick, {})) world.add(message.state);
   }
   return world;
 }

@@ -1,10 +1,9 @@
 #include "sensors/outlook/outlook_text.h"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <functional>
 
+#include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "core/base/units.h"
 #include "core/time/iso8601.h"
@@ -13,15 +12,6 @@ namespace dmise {
 namespace {
 
 using Frames = std::vector<FrameOutlook>;
-
-[[gnu::format(printf, 1, 2)]] std::string printed(const char* format, ...) {
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 /// Minimum and maximum of a quantity over frames.
 struct Range {
@@ -42,7 +32,7 @@ Range range_of(const Frames& frames, std::optional<T> FrameOutlook::*figure, dou
 }
 
 std::string text_of(const Range& range, const char* format) {
-  const std::string least = printed(format, range.least), most = printed(format, range.most);
+  const std::string least = formatted(format, range.least), most = formatted(format, range.most);
   return least == most ? least : least + " to " + most;
 }
 
@@ -51,12 +41,12 @@ std::string course_of(const Frames& frames, std::optional<double> FrameOutlook::
   const Range range = range_of(frames, figure, deg);
   const double first = (frames.front().*figure).value_or(0.0) / deg;
   const double last = (frames.back().*figure).value_or(0.0) / deg;
-  std::string text = printed("%.1f", first);
-  if (printed("%.1f", last) != text) text += " to " + printed("%.1f", last);
+  std::string text = formatted("%.1f", first);
+  if (formatted("%.1f", last) != text) text += " to " + formatted("%.1f", last);
   if (range.most > std::max(first, last) + 0.05)
-    text += " (highest " + printed("%.1f)", range.most);
+    text += " (highest " + formatted("%.1f)", range.most);
   if (range.least < std::min(first, last) - 0.05)
-    text += " (lowest " + printed("%.1f)", range.least);
+    text += " (lowest " + formatted("%.1f)", range.least);
   return text + " deg";
 }
 
@@ -75,7 +65,7 @@ const FrameOutlook& middle_of(const SensorOutlook& o) { return o.frames[o.frames
 std::string field_text(const SensorOutlook& o) {
   const auto& c = o.camera;
   const double scale_arcsec = c.pixel_rad / arcsec;
-  return printed(
+  return formatted(
       "field of view %.4g x %.4g deg, %.4g from corner to corner; %.4g arcsec/px; f/%.3g",
       c.width_rad / deg, c.height_rad / deg, c.diagonal_rad / deg, scale_arcsec, c.f_number);
 }
@@ -84,14 +74,14 @@ std::string limit_text(const SensorOutlook& o) {
   const FrameOutlook& f = middle_of(o);
   if (!f.point_limit_v_mag) return "";
   std::string text =
-      printed("a point of V = %.1f has SNR %g", *f.point_limit_v_mag, point_limit_snr);
+      formatted("a point of V = %.1f has SNR %g", *f.point_limit_v_mag, point_limit_snr);
   if (f.found_point_v_mag)
-    text += printed("; half are found of points of V = %.1f beside trails of stars of %.0f px",
-                    *f.found_point_v_mag, f.star_px);
+    text += formatted("; half are found of points of V = %.1f beside trails of stars of %.0f px",
+                      *f.found_point_v_mag, f.star_px);
   if (f.streak_limit_v_mag)
-    text += printed("%s of streaks of V = %.1f (%g deg/s, %.0f px, SNR %g in a pixel)",
-                    f.found_point_v_mag ? "," : "; half are found", *f.streak_limit_v_mag,
-                    f.streak_deg_per_s, f.streak_px, streak_limit_snr);
+    text += formatted("%s of streaks of V = %.1f (%g deg/s, %.0f px, SNR %g in a pixel)",
+                      f.found_point_v_mag ? "," : "; half are found", *f.streak_limit_v_mag,
+                      f.streak_deg_per_s, f.streak_px, streak_limit_snr);
   return text;
 }
 
@@ -108,13 +98,13 @@ std::string exclusion_text(const ExcludedFrames& of, const SensorOutlook& o) {
   if (!of.least_rad)
     return text + (o.on_ground ? " is below the horizon in " : " is behind the Earth in ") +
            frames_of(o.looked_for_exclusion, o);
-  const std::string nearest = printed("%.1f deg at the nearest", *of.least_rad / deg);
+  const std::string nearest = formatted("%.1f deg at the nearest", *of.least_rad / deg);
   if (of.count == 0)
-    return text + printed(" is beyond %g deg in ", of.limit_deg) +
+    return text + formatted(" is beyond %g deg in ", of.limit_deg) +
            frames_of(o.looked_for_exclusion, o) + ", " + nearest;
-  return text + printed(" is within %g deg in ", of.limit_deg) + frames_of(of.count, o) +
-         printed(", from frame %u (%.6g s after the start) to %u (%.6g s), ", of.first,
-                 of.first_middle.seconds(), of.last, of.last_middle.seconds()) +
+  return text + formatted(" is within %g deg in ", of.limit_deg) + frames_of(of.count, o) +
+         formatted(", from frame %u (%.6g s after the start) to %u (%.6g s), ", of.first,
+                   of.first_middle.seconds(), of.last, of.last_middle.seconds()) +
          nearest +
          (o.exclusion_action == ExclusionAction::close_shutter ? ": the shutter is closed"
                                                                : ": flagged");
@@ -146,9 +136,9 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
   };
   if (const auto n = count_if(o.frames, low)) {
     const Range limb = range_of(o.frames, &FrameOutlook::limb_angle_rad, deg);
-    warn(printed("the camera points to within %.1f deg of the Earth's limb, nearer than "
-                 "--limb-deg %g, ",
-                 limb.least, o.least_limb_angle_rad / deg) +
+    warn(formatted("the camera points to within %.1f deg of the Earth's limb, nearer than "
+                   "--limb-deg %g, ",
+                   limb.least, o.least_limb_angle_rad / deg) +
          of_frames(n));
   }
   if (const auto n = count_if(o.frames, [](auto& f) { return f.sun_in_field; }))
@@ -159,14 +149,15 @@ std::vector<std::string> warnings_of(const SensorOutlook& o, const std::string& 
   };
   if (const auto n = count_if(o.frames, day)) {
     const Range sun = range_of(o.frames, &FrameOutlook::sun_elevation_rad, deg);
-    warn(printed("it is day or civil twilight (the Sun up to %.1f deg) ", sun.most) + of_frames(n));
+    warn(formatted("it is day or civil twilight (the Sun up to %.1f deg) ", sun.most) +
+         of_frames(n));
   }
   const auto full = [](const FrameOutlook& f) { return f.background.electrons >= f.full_e; };
   if (const auto n = count_if(o.frames, full)) {
     double most_e = 0.0;
     for (const auto& f : o.frames) most_e = std::max(most_e, f.background.electrons);
-    warn(printed("sky and dark current alone saturate the pixels (%.3g of %.3g e-) ", most_e,
-                 middle_of(o).full_e) +
+    warn(formatted("sky and dark current alone saturate the pixels (%.3g of %.3g e-) ", most_e,
+                   middle_of(o).full_e) +
          of_frames(n));
   }
   const Range objects = range_of(o.frames, &FrameOutlook::objects);

@@ -5,7 +5,8 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/printable.h"
+#include "core/base/formatted.h"
+#include "core/base/quantile.h"
 #include "core/base/units.h"
 #include "core/detection/components.h"
 #include "core/effects/frame_effects.h"
@@ -129,16 +130,13 @@ std::vector<std::string> catalogue_warnings(const Scenario& scenario,
   for (std::size_t i = 0; i < population.elements.size(); ++i)
     age_days.push_back(std::abs(population.roster.objects[i].element_age_s) / day_s);
   if (age_days.empty()) return {};
-  const auto middle = age_days.begin() + std::ptrdiff_t(age_days.size() / 2);
-  std::nth_element(age_days.begin(), middle, age_days.end());
-  if (*middle < old_after_days) return {};
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "half of the %zu element sets are %.0f days or more from the start of the run: "
-                "positions are off by kilometres to tens of kilometres",
-                population.elements.size(), *middle);
+  const double middle = middle_of(age_days);
+  if (middle < old_after_days) return {};
   const std::string where = scenario.objects.empty() ? scenario.path : scenario.objects[0].where;
-  return {where + ": " + text};
+  return {where +
+          formatted(": half of the %zu element sets are %.0f days or more from the start of the "
+                    "run: positions are off by kilometres to tens of kilometres",
+                    population.elements.size(), middle)};
 }
 
 }  // namespace dmise

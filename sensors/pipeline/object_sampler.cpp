@@ -84,14 +84,8 @@ const ObjectShape* ObjectSampler::shape(std::size_t object) const {
 }
 
 double ObjectSampler::shape_photons(std::size_t object, const ObjectShape& shape, SimTime t,
-                                    const ObserverState& observer, double sunlit) const {
-  const auto pose = shape_pose(view_, object, t, observer.position_m);
-  return pose ? shape_photons_per_s_m2(*shapes_, shape, *pose, sunlit) : 0.0;
-}
-
-double ObjectSampler::quick_photons(std::size_t object, const ObjectShape& shape, SimTime t,
-                                    const ObserverState& observer, double sunlit) const {
-  const auto pose = shape_pose(view_, object, t, observer.position_m, 0);
+                                    const ObserverState& observer, double sunlit, int rings) const {
+  const auto pose = shape_pose(view_, object, t, observer.position_m, rings);
   return pose ? shape_photons_per_s_m2(*shapes_, shape, *pose, sunlit) : 0.0;
 }
 

@@ -57,12 +57,11 @@ class ObjectSampler {
   const ObjectShape* shape(std::size_t object) const;
   const ObjectShapes& shapes() const { return *shapes_; }
 
-  /// Photons/s/m2 above the atmosphere of an object with a shape.
+  /// Photons/s/m2 above the atmosphere of an object with a shape; without light of Earth and Moon,
+  /// which changes slowly and costs much, if `rings` of the Earth's face are 0.
   double shape_photons(std::size_t object, const ObjectShape& shape, SimTime t,
-                       const ObserverState& observer, double sunlit) const;
-  /// The same without light of Earth and Moon, which changes slowly and costs much.
-  double quick_photons(std::size_t object, const ObjectShape& shape, SimTime t,
-                       const ObserverState& observer, double sunlit) const;
+                       const ObserverState& observer, double sunlit,
+                       int rings = earthshine_flux_rings) const;
 
  private:
   double secondary_photons(std::size_t object, const Motion& motion,

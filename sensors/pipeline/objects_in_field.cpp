@@ -44,15 +44,14 @@ constexpr double longest_look_s = 10.0;
 /// Directions that may touch the frame, around a camera that moves and turns during an exposure.
 class FieldCone {
  public:
-  explicit FieldCone(const View& view) : view_(view), times_(view.times_of_all_rows()) {
-    const FrameTimes& exposure = times_;
+  explicit FieldCone(const View& view) : view_(view), exposure_(view.times_of_all_rows()) {
     const double half =
         std::min(pi, half_diagonal_rad(view.sensor().camera.optics) + widest_shift_rad);
     cos_ = std::cos(half);
     sin_ = std::sin(half);
-    for (const SimTime t : {exposure.start, exposure.middle, exposure.end})
+    for (const SimTime t : {exposure_.start, exposure_.middle, exposure_.end})
       moments_.emplace(t.ns, at(t));
-    half_s_ = 0.5 * exposure.seconds();
+    half_s_ = 0.5 * exposure_.seconds();
     // A quarter more than attitudes show: those at start, middle and end, and more in a long
     // exposure, in which the camera may turn there and back.
     const auto turned = [&](SimTime a, SimTime b) {
@@ -67,8 +66,7 @@ class FieldCone {
 
   /// Whether an object is where the sensor is: its own host, under whatever number.
   bool at_sensor(std::size_t object) {
-    const FrameTimes& exposure = times_;
-    for (const SimTime t : {exposure.start, exposure.middle, exposure.end})
+    for (const SimTime t : {exposure_.start, exposure_.middle, exposure_.end})
       if (norm(view_.world().motion(object, t).position_m - moment(t).observer.position_m) <
           Sight::nearest_m)
         return true;
@@ -81,27 +79,26 @@ class FieldCone {
   /// `radius_m`: of the sphere about the object that holds it.
   bool crossed_by(std::size_t object, double radius_m) {
     radius_m_ = radius_m;
-    const FrameTimes& exposure = times_;
-    const Motion motion = view_.world().motion(object, exposure.middle);
-    const ObserverState& observer = moment(exposure.middle).observer;
+    const Motion motion = view_.world().motion(object, exposure_.middle);
+    const ObserverState& observer = moment(exposure_.middle).observer;
     const double range_m = norm(motion.position_m - observer.position_m);
     const double speed =
         norm(motion.slope_m_per_s - observer.velocity_m_per_s) + greatest_pull_m_per_s2 * half_s_;
     const double speed_in_axes = speed + turn_rad_per_s_ * (range_m + speed * half_s_);
-    const double middle_m = outside_m(object, exposure.middle);
+    const double middle_m = outside_m(object, exposure_.middle);
     if (middle_m <= 0.0) return true;
     if (middle_m > speed_in_axes * half_s_) return false;
-    const double start_m = outside_m(object, exposure.start);
-    const double end_m = outside_m(object, exposure.end);
+    const double start_m = outside_m(object, exposure_.start);
+    const double end_m = outside_m(object, exposure_.end);
     if (start_m <= 0.0 || end_m <= 0.0) return true;
     const auto may_cross = [&](double a_m, double b_m, double s) {
       return a_m + b_m <= speed_in_axes * s;
     };
     const auto distance_m = [&](SimTime t) { return outside_m(object, t); };
-    const double shortest_s = std::min(shortest_crossing_s, shortest_share * exposure.seconds());
-    return crossing_between(exposure.start, start_m, exposure.middle, middle_m, shortest_s,
+    const double shortest_s = std::min(shortest_crossing_s, shortest_share * exposure_.seconds());
+    return crossing_between(exposure_.start, start_m, exposure_.middle, middle_m, shortest_s,
                             may_cross, distance_m) ||
-           crossing_between(exposure.middle, middle_m, exposure.end, end_m, shortest_s, may_cross,
+           crossing_between(exposure_.middle, middle_m, exposure_.end, end_m, shortest_s, may_cross,
                             distance_m);
   }
 
@@ -112,7 +109,7 @@ class FieldCone {
   };
   /// Instant `k` of 2 `halves`, evenly before and after the middle.
   SimTime looked_at(int k, int halves) const {
-    const auto& [frame, start, middle, end] = times_;
+    const auto& [frame, start, middle, end] = exposure_;
     if (k <= halves) return {start.ns + (middle.ns - start.ns) * k / halves};
     return {middle.ns + (end.ns - middle.ns) * (k - halves) / halves};
   }
@@ -139,7 +136,7 @@ class FieldCone {
   Shortlist shortlist_of(const RoughPlaces& rough, const Stance& sight) const;
 
   const View& view_;
-  const FrameTimes times_;
+  const FrameTimes exposure_;
   double cos_ = 1.0, sin_ = 0.0, half_s_ = 0.0, turn_rad_per_s_ = 0.0, radius_m_ = 0.0;
   std::map<std::int64_t, Moment> moments_;
 };
@@ -211,7 +208,7 @@ std::vector<std::uint32_t> FieldCone::candidates(RoughPlaces& rough) {
     std::iota(found.begin(), found.end(), 0u);
     return found;
   }
-  const SimTime middle = times_.middle;
+  const SimTime middle = exposure_.middle;
   const Moment& now = moment(middle);
   const double dt_s = (middle - rough.time).seconds();
   const double error_m = this->error_m(rough, dt_s), pull_m_per_s = this->pull_m_per_s(dt_s);

@@ -33,10 +33,7 @@ std::vector<Arc> OcclusionMask::past(std::span<const Arc> path) const {
       free.push_back(arc);
       continue;
     }
-    const double length_px =
-        std::hypot(arc.middle.x_px - arc.start.x_px, arc.middle.y_px - arc.start.y_px) +
-        std::hypot(arc.end.x_px - arc.middle.x_px, arc.end.y_px - arc.middle.y_px);
-    const int steps = int(std::clamp(std::ceil(2.0 * length_px), 1.0, double(most_steps)));
+    const int steps = int(std::clamp(std::ceil(2.0 * length_px(arc)), 1.0, double(most_steps)));
     const auto share_of = [&](int i) { return free_at(place(arc, (i + 0.5) / steps)); };
     for (int first = 0, next; first < steps; first = next) {
       const double share = share_of(first);

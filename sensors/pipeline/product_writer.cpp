@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/json.h"
 #include "core/base/whole_file.h"
 #include "core/config/effect_list.h"
@@ -22,7 +22,6 @@
 #include "core/time/iso8601.h"
 
 namespace dmise {
-
 namespace {
 
 template <class Carrier>
@@ -58,17 +57,15 @@ ExrImage radiance_exr(const FramePlanes& planes, const FrameHeader& h) {
                                 {"software", h.software}},
                  .taken_utc = exif_time(h.start_utc)};
   for (const auto& [band, part] : planes.radiance_parts) {
-    char name[32];
-    std::snprintf(name, sizeof name, "%08.2fnm", band.centre_m * 1e9);
+    const std::string name = formatted("%08.2fnm", band.centre_m * 1e9);
     image.more.push_back({name, part.pixels.data()});
-    image.attributes.push_back({std::string(name) + ".low_m", band.low_m()});
-    image.attributes.push_back({std::string(name) + ".high_m", band.high_m()});
+    image.attributes.push_back({name + ".low_m", band.low_m()});
+    image.attributes.push_back({name + ".high_m", band.high_m()});
   }
   return image;
 }
 
-}  // namespace
-
+/// Proportional set size of this process [MB]: its own memory and its share of what it shares.
 double pss_mb() {
   std::ifstream file("/proc/self/smaps_rollup");
   std::string word;
@@ -77,6 +74,8 @@ double pss_mb() {
     if (word == "Pss:" && file >> kb) return kb / 1e3;
   return 0.0;
 }
+
+}  // namespace
 
 ProductWriter::ProductWriter(std::string directory, const OutputConfig& output, Clock clock)
     : directory_(std::move(directory)), output_(output), clock_(std::move(clock)) {
@@ -128,12 +127,10 @@ void ProductWriter::write(const FrameProducts& f) {
   if (output_.star_truth) {
     std::string csv = "id,v_mag,bv,x_px,y_px,signal_e\n";
     for (const auto& star : f.stars) {
-      char row[160];
       const bool is_synthetic = star.id & synthetic_star_bit;
-      std::snprintf(row, sizeof row, "%s%llu,%.3f,%.3f,%.6f,%.6f,%.6g\n", is_synthetic ? "S" : "",
-                    static_cast<unsigned long long>(star.id & ~synthetic_star_bit), star.v_mag,
-                    star.bv, star.x_px, star.y_px, star.signal_e);
-      csv += row;
+      csv += formatted("%s%llu,%.3f,%.3f,%.6f,%.6f,%.6g\n", is_synthetic ? "S" : "",
+                       static_cast<unsigned long long>(star.id & ~synthetic_star_bit), star.v_mag,
+                       star.bv, star.x_px, star.y_px, star.signal_e);
     }
     write_file_whole(frame_path(number, ".stars.csv"), csv);
   }

@@ -32,7 +32,4 @@ class ProductWriter {
   Clock clock_;
 };
 
-/// Proportional set size of this process [MB]: its own memory and its share of what it shares.
-double pss_mb();
-
 }  // namespace dmise

@@ -72,23 +72,16 @@ void SensorEvaluator::take_tasks(const TaskSet& set) {
 
 void SensorEvaluator::take_in(std::span<const Message> inputs) {
   for (const auto& message : inputs) {
-    if (const auto* roster = std::get_if<ObjectRoster>(message.state.get())) {
-      if (propagates()) {
-        const auto objects =
-            propagated_objects(message.state, *propagated_, clock_, sensor_.ellipsoid);
-        world_.add(std::shared_ptr<const ObjectRoster>(objects, &objects->population.roster));
-        states_.emplace(objects, grid_.tick_length);
-      } else {
-        world_.add(std::shared_ptr<const ObjectRoster>(message.state, roster));
-      }
+    if (propagates() && std::holds_alternative<ObjectRoster>(*message.state)) {
+      const auto objects =
+          propagated_objects(message.state, *propagated_, clock_, sensor_.ellipsoid);
+      world_.add(std::shared_ptr<const ObjectRoster>(objects, &objects->population.roster));
+      states_.emplace(objects, grid_.tick_length);
+    } else if (const auto* set = std::get_if<TaskSet>(message.state.get())) {
+      take_tasks(*set);
+    } else {
+      world_.add(message.state);
     }
-    if (const auto* states = std::get_if<ObjectStates>(message.state.get()))
-      world_.add(std::shared_ptr<const ObjectStates>(message.state, states));
-    if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
-      world_.add(std::shared_ptr<const EnvironmentState>(message.state, state));
-    if (const auto* state = std::get_if<SiteState>(message.state.get()))
-      world_.add(std::shared_ptr<const SiteState>(message.state, state));
-    if (const auto* set = std::get_if<TaskSet>(message.state.get())) take_tasks(*set);
   }
 }
 

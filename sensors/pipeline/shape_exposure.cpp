@@ -27,7 +27,7 @@ ArcLight light_of_arc(const View& view, const ObjectSampler& sampler, std::size_
   for (int i = 0; i < halves; ++i) {
     const SimTime t = at((i + 0.5) / halves);
     half[2 * i / halves] +=
-        sampler.quick_photons(object, shape, t, view.observer(t), middle.sunlit);
+        sampler.shape_photons(object, shape, t, view.observer(t), middle.sunlit, 0);
   }
   double sum = half[0] + half[1];
   ArcLight light{.tilt = sum > 0.0 ? std::clamp(2 * (half[1] - half[0]) / sum, -1.0, 1.0) : 0.0};
@@ -66,18 +66,16 @@ Arc joined(std::span<const Arc> arcs) {
 /// Short ways of even light are one arc.
 std::vector<Arc> simplified(std::vector<Arc> arcs) {
   constexpr double short_px = 8.0, even = 0.5;
-  double length_px = 0.0, least_e = arcs[0].signal_e, most_e = least_e;
+  double way_px = 0.0, least_e = arcs[0].signal_e, most_e = least_e;
   for (const Arc& arc : arcs) {
-    const PixelPosition a = arc.middle - arc.start, b = arc.end - arc.middle;
-    length_px += std::hypot(a.x_px, a.y_px) + std::hypot(b.x_px, b.y_px);
+    way_px += length_px(arc);
     least_e = std::min(least_e, arc.signal_e);
     most_e = std::max(most_e, arc.signal_e);
   }
   constexpr double still_px = 1e-3;
-  if (length_px < still_px)
+  if (way_px < still_px)
     for (Arc& arc : arcs) arc.start = arc.end = arc.middle;
-  if (length_px < still_px || (length_px < short_px && least_e >= even * most_e))
-    return {joined(arcs)};
+  if (way_px < still_px || (way_px < short_px && least_e >= even * most_e)) return {joined(arcs)};
   return arcs;
 }
 
@@ -89,7 +87,7 @@ SimTime brightest(const View& view, const ObjectSampler& sampler, std::size_t ob
   if (turn_rad(view, object) * (end - begin) < still_enough_rad) return middle;
   constexpr int looks = 16;
   const auto light = [&](SimTime t) {
-    return sampler.quick_photons(object, *sampler.shape(object), t, view.observer(t), 1.0);
+    return sampler.shape_photons(object, *sampler.shape(object), t, view.observer(t), 1.0, 0);
   };
   SimTime best = middle;
   double most = 2.0 * light(middle);

@@ -14,11 +14,6 @@ constexpr int piece_px = 512;  // longest side of a tile
 constexpr std::size_t arcs_at_once = 1 << 16;
 constexpr int most_cover_steps = 1024;  // along one arc
 
-double length_px(const Arc& arc) {
-  return std::hypot(arc.middle.x_px - arc.start.x_px, arc.middle.y_px - arc.start.y_px) +
-         std::hypot(arc.end.x_px - arc.middle.x_px, arc.end.y_px - arc.middle.y_px);
-}
-
 /// Farthest that a sweep leads from its middle.
 double reach_px(const std::vector<Arc>& sweep) {
   double reach = 0.0;

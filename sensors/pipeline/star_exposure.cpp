@@ -92,12 +92,7 @@ std::vector<StarTrail> StarExposure::trails_by_grid(std::span<const std::uint32_
   for (std::size_t i = 0; i < which.size(); ++i) {
     if (!paths.is_there[i]) continue;
     const StarPath& at = paths.path[i];
-    const std::uint32_t star = which[i];
-    StarTrail& trail = trails.emplace_back();
-    trail.id = trail.number = stars.id[star];
-    trail.place = star;
-    trail.v_mag = stars.v_mag[star], trail.bv = stars.bv[star];
-    trail.kind = stars.colour(star).kind;
+    StarTrail& trail = trails.emplace_back(trail_of(which[i]));
     trail.astrometric = astrometric[i];
     trail.middle = at.middle, trail.pixel = at.pixel;
     trail.airmass = at.airmass, trail.illumination = at.illumination;

@@ -12,11 +12,6 @@ namespace {
 /// Time between propagations of whole catalogues; places in between are straight lines.
 constexpr std::int64_t rough_every_ns = 120'000'000'000;
 
-std::size_t count_from_catalogues(const ObjectPopulation& population,
-                                  const std::vector<OwnObject>& own) {
-  return population.roster.objects.size() - own.size();
-}
-
 /// Greatest error of cubic interpolation over a tick [m]: h^4 / 384 of the fourth derivative, which
 /// is below 1e-4 m/s^4 for whatever orbits the Earth.
 double interpolation_error_m(double tick_s) { return 1e-4 * std::pow(tick_s, 4) / 384.0; }
@@ -26,7 +21,7 @@ double interpolation_error_m(double tick_s) { return 1e-4 * std::pow(tick_s, 4) 
 PropagatedObjects::PropagatedObjects(const ObjectRoster& roster, const std::vector<OwnObject>& own,
                                      Clock clock, const Ellipsoid& ellipsoid)
     : population(population_of(roster, own, ellipsoid)),
-      from_catalogues(count_from_catalogues(population, own)),
+      from_catalogues(population.roster.objects.size() - own.size()),
       source(population, std::move(clock), threads) {}
 
 std::shared_ptr<const PropagatedObjects> propagated_objects(

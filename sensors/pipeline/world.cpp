@@ -11,6 +11,23 @@
 #include "core/sky/sun_moon.h"
 
 namespace dmise {
+
+Motion cubic_motion(double u, double tick_s, const Motion& before, const Motion& after) {
+  const auto& [p0, s0] = before;
+  const auto& [p1, s1] = after;
+  return {interpolate_cubic(u, tick_s, p0, s0, p1, s1), (p1 - p0) * (6 * u * (1 - u) / tick_s) +
+                                                            s0 * ((1 - u) * (1 - 3 * u)) +
+                                                            s1 * (u * (3 * u - 2))};
+}
+
+void World::add(const std::shared_ptr<const State>& state) {
+  const auto add_if_known = [&]<class One>(const One& one) {
+    if constexpr (requires { this->add(std::shared_ptr<const One>(state, &one)); })
+      this->add(std::shared_ptr<const One>(state, &one));
+  };
+  std::visit(add_if_known, *state);
+}
+
 void World::forget_before(SimTime t) {
   // Ticks before the last at or before `t`: a time on a tick belongs to the interval that ends
   // there.
@@ -107,12 +124,8 @@ Motion World::motion(std::size_t object, SimTime t) const {
     const KnotTicks knots = knot_ticks(order_, before->tick, last_tick_);
     if (has_states(i, interval, knots)) return of_higher_order(i, interval, knots, u);
   }
-  const auto p0 = before->position(i), p1 = after->position(i);
-  const auto s0 = before->slope(i), s1 = after->slope(i);
-  // The derivative of the cubic, so that a sensor's velocity agrees with its path.
-  const double a = 6 * u * (1 - u) / tick_s;
-  return {interpolate_cubic(u, tick_s, p0, s0, p1, s1),
-          (p1 - p0) * a + s0 * ((1 - u) * (1 - 3 * u)) + s1 * (u * (3 * u - 2))};
+  return cubic_motion(u, tick_s, {before->position(i), before->slope(i)},
+                      {after->position(i), after->slope(i)});
 }
 
 std::optional<Rotation<Gcrs, Body>> World::gcrs_from_body(std::size_t i, SimTime t) const {

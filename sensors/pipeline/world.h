@@ -6,6 +6,7 @@
 
 #include "core/orbit/interpolation.h"
 #include "core/products/task.h"
+#include "core/sim/message.h"
 #include "core/sim/state.h"
 
 namespace dmise {
@@ -15,6 +16,10 @@ struct Motion {
   Vec<Gcrs> position_m;
   Vec<Gcrs> slope_m_per_s;
 };
+
+/// The cubic between two ticks at the fraction `u` of the `tick_s` between them, and its
+/// derivative, so that a velocity agrees with its path.
+Motion cubic_motion(double u, double tick_s, const Motion& before, const Motion& after);
 
 /// The environment at `t`, up to an hour after `state`: Sun, Moon and Earth by `advance`; the
 /// orientation keeps its own time and runs on by its own rates.
@@ -37,6 +42,8 @@ class World {
     environment_.push_back(std::move(state));
   }
   void add(std::shared_ptr<const SiteState> state) { sites_.push_back(std::move(state)); }
+  /// Adds a state that is one of these; others change nothing.
+  void add(const std::shared_ptr<const State>& state);
   /// The task that a sensor that is cued does from now on; null: none, it is parked.
   void follow(std::shared_ptr<const Task> task) { task_ = std::move(task); }
   const Task* task() const { return task_.get(); }

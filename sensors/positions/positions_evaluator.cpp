@@ -56,18 +56,13 @@ void PositionsEvaluator::meet(const ObjectRoster& roster) {
 
 void PositionsEvaluator::take_in(const Message& message) {
   if (const auto* roster = std::get_if<ObjectRoster>(message.state.get())) {
-    keep_roster_ = message.state;
-    roster_ = roster;
+    roster_ = {message.state, roster};
     meet(*roster);
   }
-  if (const auto* states = std::get_if<ObjectStates>(message.state.get())) {
-    keep_states_ = message.state;
-    states_ = states;
-  }
-  if (const auto* state = std::get_if<EnvironmentState>(message.state.get())) {
-    keep_environment_ = message.state;
-    environment_ = state;
-  }
+  if (const auto* states = std::get_if<ObjectStates>(message.state.get()))
+    states_ = {message.state, states};
+  if (const auto* state = std::get_if<EnvironmentState>(message.state.get()))
+    environment_ = {message.state, state};
 }
 
 std::optional<PositionRow> PositionsEvaluator::camera(std::size_t index, Tick tick) const {

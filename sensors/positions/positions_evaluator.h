@@ -45,10 +45,9 @@ class PositionsEvaluator : public Evaluator {
   Scenario scenario_;
   Clock clock_;
   PositionFiles files_;
-  std::shared_ptr<const State> keep_roster_, keep_states_, keep_environment_;
-  const ObjectRoster* roster_ = nullptr;
-  const ObjectStates* states_ = nullptr;
-  const EnvironmentState* environment_ = nullptr;
+  std::shared_ptr<const ObjectRoster> roster_;
+  std::shared_ptr<const ObjectStates> states_;
+  std::shared_ptr<const EnvironmentState> environment_;
   std::vector<std::size_t> objects_;  // in the table, ascending
   std::vector<Mount> mounts_;         // by sensor
   bool begun_ = false;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/golden_section.h"
 #include "core/score/matched_filter.h"
 
 namespace dmise {
@@ -72,22 +73,10 @@ double badness(const DetectionModel& model, const DetectionModel& start,
          0.5 * square((model.share_round - start.share_round) / prior_share);
 }
 
-/// The least of `of` within [low, high], by golden sections.
+/// Where a function is least within [low, high].
 template <class Function>
 double least_of(double low, double high, const Function& of) {
-  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-  double a = high - golden * (high - low), b = low + golden * (high - low);
-  double at_a = of(a), at_b = of(b);
-  for (int i = 0; i < 16; ++i) {
-    if (at_a < at_b) {
-      high = b, b = a, at_b = at_a;
-      at_a = of(a = high - golden * (high - low));
-    } else {
-      low = a, a = b, at_a = at_b;
-      at_b = of(b = low + golden * (high - low));
-    }
-  }
-  return 0.5 * (low + high);
+  return golden_section(of, low, high, 5e-4 * (high - low)).at;
 }
 
 }  // namespace

@@ -2,21 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/formatted.h"
 #include "core/orbit/catalogue_report.h"
 #include "core/orbit/sgp4_terms.h"
 
 namespace dmise {
-namespace {
-
-std::string km_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 double mean_altitude_km(const MeanElements& elements) {
   return semi_major_axis_km(elements) - sgp4::earth_radius_km;
@@ -28,10 +20,10 @@ Shells shells_of(const ObjectPopulation& population, const std::vector<double>& 
   if (limits_km.empty()) {
     add("LEO");
   } else {
-    add("below " + km_text(limits_km.front()) + " km");
+    add(formatted("below %g km", limits_km.front()));
     for (std::size_t k = 1; k < limits_km.size(); ++k)
-      add(km_text(limits_km[k - 1]) + "-" + km_text(limits_km[k]) + " km");
-    add("LEO above " + km_text(limits_km.back()) + " km");
+      add(formatted("%g-%g km", limits_km[k - 1], limits_km[k]));
+    add(formatted("LEO above %g km", limits_km.back()));
   }
   const std::size_t low = out.shells.size();
   for (const char* name : {"MEO", "GEO", "HEO", "beyond GEO", "own motion"}) add(name);
