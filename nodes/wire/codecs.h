@@ -28,6 +28,17 @@ TruthSet decode_truths(std::string_view payload);
 TrackSet decode_tracks(std::string_view payload);
 TaskSet decode_tasks(std::string_view payload);
 
+/// What SGP4 takes of an element set, in the order of the array `elements` of a roster.
+inline constexpr double MeanElements::*element_rows[] = {&MeanElements::epoch_jd1,
+                                                         &MeanElements::epoch_jd2,
+                                                         &MeanElements::mean_motion_rad_per_min,
+                                                         &MeanElements::eccentricity,
+                                                         &MeanElements::inclination_rad,
+                                                         &MeanElements::raan_rad,
+                                                         &MeanElements::argument_of_perigee_rad,
+                                                         &MeanElements::mean_anomaly_rad,
+                                                         &MeanElements::bstar_per_earth_radius};
+
 /// Parses `payload` as a message of type `M`; throws `Refused`.
 template <class M>
 M parse(std::string_view payload) {

@@ -60,16 +60,6 @@ std::optional<SunTrackingPanel> decode_panel(const v1::SunTrackingPanel& p) {
                           .normal = {p.normal_x(), p.normal_y(), p.normal_z()}};
 }
 
-/// What SGP4 takes of an element set, in the order of the array.
-constexpr double MeanElements::*element_rows[] = {&MeanElements::epoch_jd1,
-                                                  &MeanElements::epoch_jd2,
-                                                  &MeanElements::mean_motion_rad_per_min,
-                                                  &MeanElements::eccentricity,
-                                                  &MeanElements::inclination_rad,
-                                                  &MeanElements::raan_rad,
-                                                  &MeanElements::argument_of_perigee_rad,
-                                                  &MeanElements::mean_anomaly_rad,
-                                                  &MeanElements::bstar_per_earth_radius};
 constexpr std::size_t rows_of_elements = std::size(element_rows);
 
 /// Number of objects with elements: the second extent of their array, 0 without one.

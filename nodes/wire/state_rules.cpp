@@ -5,6 +5,7 @@
 
 #include "core/base/units.h"
 #include "core/products/detection_fields.h"
+#include "nodes/wire/codecs.h"
 #include "nodes/wire/field_rules.h"
 
 namespace dmise {
@@ -46,10 +47,7 @@ void check(const ObjectRoster& roster) {
   }
   if (roster.elements.size() > roster.objects.size()) refuse("elements", "of more objects");
   for (const MeanElements& e : roster.elements)
-    for (const double value :
-         {e.epoch_jd1, e.epoch_jd2, e.mean_motion_rad_per_min, e.eccentricity, e.inclination_rad,
-          e.raan_rad, e.argument_of_perigee_rad, e.mean_anomaly_rad, e.bstar_per_earth_radius})
-      finite(value, "elements");
+    for (const auto row : element_rows) finite(e.*row, "elements");
 }
 
 void check_attitudes(const ObjectStates& s) {

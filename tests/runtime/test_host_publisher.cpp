@@ -17,7 +17,7 @@ struct Voice {
     EXPECT_EQ(receive(router).size(), 2u);
     v1::Join join;
     join.set_name("orbit");
-    directory.add("orbit-2", 2, join);
+    directory.add("orbit-2", 2, join, 0);
   }
   /// What the node hears of a topology in which this process of its name begins at `tick`.
   std::optional<v1::Topology> told(std::uint64_t incarnation, Tick tick) {

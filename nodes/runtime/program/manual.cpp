@@ -63,8 +63,7 @@ void write_command(const CLI::App& app, std::string& page) {
 }  // namespace
 
 std::vector<const CLI::App*> shown_commands(const CLI::App& app) {
-  auto all = app.get_subcommands([](const CLI::App* sub) { return !sub->get_group().empty(); });
-  return all;
+  return app.get_subcommands([](const CLI::App* sub) { return !sub->get_group().empty(); });
 }
 
 std::vector<const CLI::Option*> shown_options(const CLI::App& app) {

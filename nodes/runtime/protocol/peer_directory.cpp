@@ -18,20 +18,14 @@ void fill(v1::Publisher* publisher, const Peer& peer) {
   *publisher->mutable_schedules() = peer.join.schedules();
 }
 
-/// Publishes the addresses of a broker without its password.
-void set_addresses(v1::Broker* public_broker, const v1::Broker& broker) {
-  *public_broker = broker;
-  public_broker->clear_password();
-}
-
 }  // namespace
 
-const Peer& PeerDirectory::add(std::string_view routing_id, std::uint64_t incarnation,
-                               const v1::Join& join, std::uint64_t heartbeat_token) {
+void PeerDirectory::add(std::string_view routing_id, std::uint64_t incarnation,
+                        const v1::Join& join, std::uint64_t heartbeat_token) {
   if (const auto earlier = peers_.find(join.name()); earlier != peers_.end())
     names_.erase(earlier->second.routing_id);
   names_[std::string(routing_id)] = join.name();
-  return peers_[join.name()] = {std::string(routing_id), incarnation, join, heartbeat_token};
+  peers_[join.name()] = {std::string(routing_id), incarnation, join, heartbeat_token};
 }
 
 void PeerDirectory::remove(const std::string& name) {
@@ -44,9 +38,9 @@ void PeerDirectory::remove(const std::string& name) {
   peers_.erase(peer);
 }
 
-const Peer& PeerDirectory::add_behind(std::string_view agent, std::uint64_t incarnation,
-                                      const v1::Join& join) {
-  return peers_[join.name()] = {std::string(agent), incarnation, join};
+void PeerDirectory::add_behind(std::string_view agent, std::uint64_t incarnation,
+                               const v1::Join& join) {
+  peers_[join.name()] = {std::string(agent), incarnation, join};
 }
 
 std::set<std::string, std::less<>> PeerDirectory::consumed() const {
@@ -95,10 +89,12 @@ void PeerDirectory::describe(v1::Endpoints* endpoints) const {
   if (const auto broker = peers_.find("broker"); broker != peers_.end())
     endpoints->set_observe_endpoint(broker->second.join.broker().observe_endpoint());
   for (const auto& [name, peer] : peers_) {
-    if (peer.join.has_broker())
-      set_addresses(endpoints->mutable_broker(), peer.join.broker());
-    else if (!peer.join.agent() && !peer.join.observer())
+    if (peer.join.has_broker()) {
+      *endpoints->mutable_broker() = peer.join.broker();
+      endpoints->mutable_broker()->clear_password();
+    } else if (!peer.join.agent() && !peer.join.observer()) {
       fill(endpoints->add_publishers(), peer);
+    }
   }
 }
 

@@ -20,13 +20,13 @@ struct Peer {
 /// The processes of a run with their connections and addresses.
 class PeerDirectory {
  public:
-  /// A later process of the same name replaces the earlier one.
-  const Peer& add(std::string_view routing_id, std::uint64_t incarnation, const v1::Join& join,
-                  std::uint64_t heartbeat_token = 0);
+  /// Adds a process; it replaces an earlier one of its name.
+  void add(std::string_view routing_id, std::uint64_t incarnation, const v1::Join& join,
+           std::uint64_t heartbeat_token);
   /// The same for a node of a host, which shares the connection of its agent.
-  const Peer& add_behind(std::string_view agent, std::uint64_t incarnation, const v1::Join& join);
+  void add_behind(std::string_view agent, std::uint64_t incarnation, const v1::Join& join);
 
-  /// It has left, and its name is free.
+  /// Removes a process that has left; its name is free then.
   void remove(const std::string& name);
 
   /// The name of a connection; "" if there is none.
@@ -43,7 +43,7 @@ class PeerDirectory {
   void make_for_observer(v1::Topology* topology) const;
   /// Topics with consumers.
   std::set<std::string, std::less<>> consumed() const;
-  /// Sets `publishers`, `observe_endpoint` and `broker`.
+  /// Sets `publishers`, `observe_endpoint` and `broker`, without its password.
   void describe(v1::Endpoints* endpoints) const;
 
  private:

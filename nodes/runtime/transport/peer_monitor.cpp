@@ -93,13 +93,10 @@ void PeerMonitor::read_events() {
       broken_.push_back(open->second);
       at_.erase(open);
     }
-    if (what == ZMQ_EVENT_ACCEPTED) add(int(fd));
+    if (what != ZMQ_EVENT_ACCEPTED) continue;
+    connections_[++count_] = {.fd = int(fd), .since = now()};
+    at_[int(fd)] = count_;
   }
-}
-
-std::uint64_t PeerMonitor::add(int fd) {
-  connections_[++count_] = {.fd = fd, .since = now()};
-  return at_[fd] = count_;
 }
 
 PeerMonitor::Connection* PeerMonitor::connection_of(zmq::message_t& frame) {

@@ -70,7 +70,6 @@ class PeerMonitor {
     std::int64_t taken_bytes = 0;
   };
   void read_events();
-  std::uint64_t add(int fd);
   Connection* connection_of(zmq::message_t& frame);
   void look_at(Connection& connection, std::vector<std::string>* closed) const;
 
