@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/calibration/calibrated_detection.h"
-#include "core/detection/detect_file.h"
+#include "core/detection/detection_lines.h"
 #include "core/ingest/star_trails.h"
 #include "launch/commands.h"
 #include "launch/common_options.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/detection/detect_file.h"
 
 namespace dmise {
 namespace {
@@ -33,7 +32,8 @@ CalibratedDetector::CalibratedDetector(std::shared_ptr<const StarMap> map) : map
 CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame,
                                                       const DetectorSettings& settings,
                                                       Threads& threads, bool blind) const {
-  const DetectorSettings with_mask = settings_for(frame, settings);
+  DetectorSettings with_mask = settings;
+  if (!frame.unusable.pixels.empty()) with_mask.unusable = &frame.unusable;
   const UnknownFacts& unknown = frame.header.unknown;
   const auto detected_by = [&](const FrameHeader& header) {
     return dmise::detect(frame.counts, header, with_mask, threads, sky_ ? &*sky_ : nullptr);

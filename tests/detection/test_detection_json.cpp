@@ -9,9 +9,10 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
-#include "core/detection/detect_file.h"
+#include "core/detection/detection_lines.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
+#include "tests/support/detect_frame.h"
 
 namespace dmise {
 namespace {
@@ -74,7 +75,7 @@ TEST(DetectionJson, NoNanLeaves) {
   }
 }
 
-TEST(DetectFile, FileGivesTheSameBytesAsTheFrameInMemory) {
+TEST(DetectionLines, FileGivesTheSameBytesAsTheFrameInMemory) {
   const auto header = simulated::camera_header(500, 400, 1663, 34 * deg, 20, true);
   simulated::SimulatedFrame simulated(header, 500, 400, 1500, 3);
   simulated.add_stars(300, 500, 1e6);
@@ -85,7 +86,7 @@ TEST(DetectFile, FileGivesTheSameBytesAsTheFrameInMemory) {
   for (const auto compression : {FitsCompression::none, FitsCompression::rice}) {
     write_frame(path, counts, header, compression);
     Threads one(1), two(2);
-    const auto from_file = detect_file(path, {}, two);
+    const auto from_file = test::detect_frame(read_frame(path), two);
     const FrameHeader kept = as_in_file(header);
     const auto in_memory = detect(counts, kept, {}, one);
     const UtcText text = [&](SimTime time) { return utc_in_frame(kept, time); };
@@ -97,17 +98,16 @@ TEST(DetectFile, FileGivesTheSameBytesAsTheFrameInMemory) {
   }
 }
 
-TEST(DetectFile, NoFrameIsOneClearLine) {
+TEST(ReadFrame, NoFrameIsOneClearLine) {
   const std::string path = testing::TempDir() + "/not-a-frame.fits";
   write_file_whole(path, "hello");
-  Threads threads;
   try {
-    detect_file(path, {}, threads);
+    read_frame(path);
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_EQ(std::string(error.what()), path + ": SIMPLE: not a FITS file");
   }
-  EXPECT_THROW(detect_file("/nonexistent.fits", {}, threads), ConfigError);
+  EXPECT_THROW(read_frame("/nonexistent.fits"), ConfigError);
 }
 
 }  // namespace

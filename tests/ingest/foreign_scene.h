@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "bench/simulated_frame.h"
-#include "core/detection/detect_file.h"
 #include "core/image/card_text.h"
 #include "core/ingest/any_frame.h"
 #include "tests/ingest/foreign_file.h"
+#include "tests/support/detect_frame.h"
 
 // A simulated scene, and the same as a file of another camera.
 namespace dmise::test {
@@ -85,7 +85,7 @@ inline Frame read_one(const ForeignImage& image, const FrameChoice& choice = {})
 
 inline std::vector<Detection> detections_in(const Frame& frame) {
   Threads one(1);
-  return detect_frame(frame, {}, one).result.detections;
+  return detect_frame(frame, one).result.detections;
 }
 
 }  // namespace dmise::test

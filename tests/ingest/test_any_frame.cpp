@@ -125,7 +125,7 @@ TEST(AnyFrame, FieldsThatCannotBeKnownAreNull) {
   const Scene scene = draw(false, 4);
   const Frame bare = read_one(image_of(scene.counts, {}));
   Threads one(1);
-  const FileDetections found = detect_frame(bare, {}, one);
+  const DetectionLines found = test::detect_frame(bare, one);
   ASSERT_EQ(found.lines.size(), 2u);
   const auto line = nlohmann::json::parse(found.lines[0]);
   for (const char* key :

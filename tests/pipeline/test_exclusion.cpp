@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/detection/detect_file.h"
 #include "core/detection/detection_json.h"
 #include "core/image/fits_cards.h"
 #include "core/image/fits_file.h"
@@ -10,6 +9,7 @@
 #include "sensors/pipeline/bodies_in_field.h"
 #include "sensors/pipeline/exclusion.h"
 #include "tests/pipeline/body_scenes.h"
+#include "tests/support/detect_frame.h"
 
 // Angles of Sun, Moon and limb from a camera's axis, and what happens in frames within them.
 namespace dmise::test {
@@ -300,7 +300,7 @@ TEST(ClosedShutter, IsToldByReportHeaderAndDetection) {
   EXPECT_TRUE(read.header.shutter_closed());
   EXPECT_EQ(read.header.exclusion, closed.scenario.sensors[0].camera.exclusion);
   Threads threads(2);
-  const FileDetections found = detect_file(path, {}, threads);
+  const DetectionLines found = test::detect_frame(read, threads);
   EXPECT_TRUE(found.lines.empty());
   const JsonRecord report(found.report, "report");
   for (const char* key : {"shutter_closed", "sun_excludes", "detection_off"})

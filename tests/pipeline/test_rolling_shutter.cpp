@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
-#include "core/detection/detect_file.h"
+#include "core/detection/detection_lines.h"
 #include "core/wcs/wcs.h"
 #include "tests/pipeline/wiring.h"
 
