@@ -4,6 +4,7 @@
 
 #include "core/base/formatted.h"
 #include "core/base/json.h"
+#include "core/base/text_fields.h"
 #include "core/base/units.h"
 #include "core/orbit/catalogue_report.h"
 #include "core/time/iso8601.h"
@@ -68,13 +69,6 @@ std::vector<Column> columns_of(const PassList& list) {
   };
   if (list.tells_excluded) all.push_back({"excluded", [](L, P p) { return of(p.excluded); }});
   return all;
-}
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
 }
 
 /// hh:mm:ss.s
@@ -152,7 +146,7 @@ std::string pass_csv(const PassList& list, bool with_header) {
   for (const Pass& p : list.passes) {
     const char* comma = "";
     for (const Column& c : columns) {
-      text += comma + quoted(c.value(list, p).text);
+      text += comma + csv_field(c.value(list, p).text);
       comma = ",";
     }
     text += '\n';

@@ -29,6 +29,9 @@ std::string upper_case(std::string_view text);
 /// Splits one line of CSV (RFC 4180; a quoted field ends on its line).
 std::vector<std::string> csv_fields(std::string_view line);
 
+/// Returns a text as a field of CSV, in quotes if it needs them (RFC 4180).
+std::string csv_field(const std::string& text);
+
 /// `text` without the UTF-8 byte order mark, if it begins with one.
 std::string_view without_byte_order_mark(std::string_view text);
 

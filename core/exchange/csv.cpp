@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/base/text_fields.h"
 #include "core/exchange/export_format.h"
 #include "core/score/json_record.h"
 
@@ -29,7 +30,7 @@ class Table {
     std::string out;
     const auto line = [&](const std::vector<std::string>& cells) {
       for (std::size_t i = 0; i < columns_.size(); ++i)
-        out += (i > 0 ? "," : "") + (i < cells.size() ? quoted(cells[i]) : "");
+        out += (i > 0 ? "," : "") + (i < cells.size() ? csv_field(cells[i]) : "");
       out += "\r\n";
     };
     line(columns_);
@@ -38,12 +39,6 @@ class Table {
   }
 
  private:
-  static std::string quoted(const std::string& cell) {
-    if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
-    std::string out = "\"";
-    for (const char c : cell) out += c == '"' ? "\"\"" : std::string(1, c);
-    return out + "\"";
-  }
   std::vector<std::string> columns_;
   std::map<std::string, std::size_t> place_;
   std::vector<std::vector<std::string>> rows_;

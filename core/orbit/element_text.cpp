@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
+#include "core/base/text_fields.h"
 #include "core/base/units.h"
 #include "core/orbit/epoch.h"
 #include "core/orbit/tle.h"
@@ -62,13 +63,6 @@ std::string with_checksum(const std::string& line) {
   return line + static_cast<char>('0' + tle_checksum(line));
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? "\"\"" : std::string(1, c);
-  return result + "\"";
-}
-
 }  // namespace
 
 std::string omm_designator(const std::string& id) {
@@ -109,7 +103,7 @@ std::string format_omm_csv(std::span<const MeanElements> catalogue) {
       "ELEMENT_SET_NO,REV_AT_EPOCH,BSTAR,MEAN_MOTION_DOT,MEAN_MOTION_DDOT\n";
   text.reserve(catalogue.size() * 180);
   for (const MeanElements& e : catalogue) {
-    text += quoted(e.name) + "," + omm_designator(e.designator) + ",";
+    text += csv_field(e.name) + "," + omm_designator(e.designator) + ",";
     text += format_iso_epoch({e.epoch_jd1, e.epoch_jd2}, 6);
     text += formatted(",%.8f,%.8f,%.4f,%.4f", e.mean_motion_rad_per_min * rev_per_day,
                       e.eccentricity, e.inclination_rad / deg, e.raan_rad / deg);

@@ -1,30 +1,23 @@
 #include "core/plan/cost_factors.h"
 
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
 #include <sstream>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
+#include "core/base/regular_file.h"
 #include "core/base/text_file.h"
 #include "core/base/user_directories.h"
 
 namespace dmise {
-namespace {
-
-constexpr double largest_factor = 1e6;
-
-}  // namespace
-
 std::string cost_factors_path() {
   const std::string directory = cache_directory();
   return directory.empty() ? "" : directory + "/cost-factors.txt";
 }
 
 CostFactors load_cost_factors(const std::string& path) {
+  constexpr double largest_factor = 1e6;
   CostFactors factors;
-  std::error_code ignored;
-  if (path.empty() || !std::filesystem::exists(path, ignored)) return factors;
+  if (!path_exists(path)) return factors;
   std::istringstream lines(read_text_file(path, 1u << 20));
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
@@ -44,11 +37,7 @@ std::string cost_factors_text(const CostFactors& factors) {
   std::string text =
       "# Written by dmise bench calibrate: cost of effects on this machine over the shipped "
       "table.\n";
-  for (const auto& [name, factor] : factors) {
-    char line[128];
-    std::snprintf(line, sizeof line, "%s %.4g\n", name.c_str(), factor);
-    text += line;
-  }
+  for (const auto& [name, factor] : factors) text += formatted("%s %.4g\n", name.c_str(), factor);
   return text;
 }
 

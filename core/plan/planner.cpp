@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/plan/knapsack.h"
 
 namespace dmise {
@@ -150,14 +150,9 @@ std::string why(const PlannedEffect& planned, const EffectPlan& plan) {
   }
   if (!worst) return at_reference ? "nothing to save" : "no error here";
   const double value = error.*worst->value;
-  char text[96];
-  if (std::isinf(value))
-    std::snprintf(text, sizeof text, "must not be left out here");
-  else
-    std::snprintf(text, sizeof text, "%s%.2g %s of %.2g",
-                  at_reference ? "the next lower level would cost " : "", value, worst->unit,
-                  plan.budget.*worst->value);
-  return text;
+  if (std::isinf(value)) return "must not be left out here";
+  return formatted("%s%.2g %s of %.2g", at_reference ? "the next lower level would cost " : "",
+                   value, worst->unit, plan.budget.*worst->value);
 }
 
 }  // namespace dmise

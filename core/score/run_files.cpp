@@ -1,11 +1,11 @@
 #include "core/score/run_files.h"
 
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/regular_file.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/optics/psf_table.h"
@@ -56,7 +56,7 @@ ScoredFrame frame_of(const JsonRecord& report) {
                 .frame = std::to_string(report.get<std::uint32_t>("frame"))};
   if (report.has("noise_e") && report.number("noise_e") > 0.0) f.noise_e = report.number("noise_e");
   if (report.has("psf_fwhm_px") && report.number("psf_fwhm_px") > 0.0)
-    f.sigma_px = report.number("psf_fwhm_px") / std::sqrt(8.0 * std::log(2.0));
+    f.sigma_px = report.number("psf_fwhm_px") / fwhm_per_sigma;
   f.exposure_s = (report.time("end_ns") - report.time("start_ns")).seconds();
   f.searched = !report.has("detection_off") || !report.get<bool>("detection_off");
   if (report.has("solar_colour_mag")) f.solar_colour_mag = report.number("solar_colour_mag");
@@ -80,8 +80,7 @@ ScoredFrame camera_of(const JsonRecord& sensor) {
 ScoreInput read_run(const std::string& directory, const ReadProgress& progress) {
   ScoreInput in{.source = directory};
   const auto file = [&](const char* name) { return directory + "/" + name; };
-  std::error_code ignored;
-  if (!std::filesystem::exists(file("run.json"), ignored))
+  if (!path_exists(file("run.json")))
     throw ConfigError(file("run.json") + ": is missing: no run, or one that has not ended");
   const JsonRecord run(read_text_file(file("run.json")), file("run.json"));
   in.status = run.get<std::string>("status");
@@ -100,7 +99,7 @@ ScoreInput read_run(const std::string& directory, const ReadProgress& progress) 
     if (!f.sigma_px) f.sigma_px = camera->second.sigma_px;
     in.frames.push_back(std::move(f));
   });
-  if (!std::filesystem::exists(file("truth.jsonl"), ignored))
+  if (!path_exists(file("truth.jsonl")))
     throw ConfigError(file("truth.jsonl") +
                       ": is missing: the scenario says output: {truth: false}");
   for_lines(file("truth.jsonl"), progress, [&](const JsonRecord& record) {

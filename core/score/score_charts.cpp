@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/formatted.h"
 #include "core/score/matched_filter.h"
 
 namespace dmise {
@@ -25,11 +25,8 @@ ChartAxis snr_axis(const Score& score) {
 
 ChartAxis linear_axis(const char* label, double least, double most, double step) {
   ChartAxis axis{.label = label, .least = least, .most = most};
-  for (double at = least; at < most + 0.5 * step; at += step) {
-    char text[16];
-    std::snprintf(text, sizeof text, "%g", std::round(at / step) * step + 0.0);
-    axis.ticks.push_back({at, text});
-  }
+  for (double at = least; at < most + 0.5 * step; at += step)
+    axis.ticks.push_back({at, formatted("%g", std::round(at / step) * step + 0.0)});
   return axis;
 }
 
@@ -77,11 +74,11 @@ Chart error_chart(const Score& score, std::optional<double> MatchErrors::*error,
 }  // namespace
 
 Chart detection_chart(const Score& score) {
-  char subtitle[120];
-  std::snprintf(subtitle, sizeof subtitle,
-                "bins of SNR with 95 %% intervals (Wilson); theory: Q(%g - SNR)",
-                score.settings.threshold_snr);
-  Chart chart{.title = "Probability of detection", .subtitle = subtitle, .x = snr_axis(score)};
+  Chart chart{
+      .title = "Probability of detection",
+      .subtitle = formatted("bins of SNR with 95 %% intervals (Wilson); theory: Q(%g - SNR)",
+                            score.settings.threshold_snr),
+      .x = snr_axis(score)};
   chart.y = linear_axis("probability of detection", 0.0, 1.0, 0.2);
   chart.y.least = -0.04;
   chart.y.most = 1.04;

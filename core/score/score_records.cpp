@@ -1,7 +1,7 @@
-#include <cstdio>
-
+#include "core/base/formatted.h"
 #include "core/base/json.h"
 #include "core/base/printable.h"
+#include "core/base/text_fields.h"
 #include "core/base/units.h"
 #include "core/detection/unknown_fields.h"
 #include "core/score/score_text.h"
@@ -72,18 +72,8 @@ void write_sensor(JsonWriter& json, const SensorScore& s) {
   json.end_object();
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
-
 void cell(std::string& text, const std::optional<double>& value) {
-  char number[32] = "";
-  if (value) std::snprintf(number, sizeof number, "%.9g", *value);
-  text += ',';
-  text += number;
+  text += value ? formatted(",%.9g", *value) : ",";
 }
 
 }  // namespace
@@ -120,9 +110,9 @@ std::string score_csv(const Score& score) {
   for (const ErrorKey& error : error_keys) text += std::string(",error_") + error.key;
   text += '\n';
   for (const ScoredTruth& t : score.truths) {
-    text += quoted(t.truth.sensor) + "," + quoted(t.truth.frame) + "," +
-            fate_names[std::size_t(t.fate)] + "," + quoted(t.truth.id) + "," +
-            quoted(t.detection ? t.detection->id : "");
+    text += csv_field(t.truth.sensor) + "," + csv_field(t.truth.frame) + "," +
+            fate_names[std::size_t(t.fate)] + "," + csv_field(t.truth.id) + "," +
+            csv_field(t.detection ? t.detection->id : "");
     text += "," + std::to_string(t.pieces) + (t.clean ? ",1" : ",0");
     cell(text, t.snr);
     cell(text, t.detection ? std::optional(t.detection->snr) : std::nullopt);
@@ -137,7 +127,8 @@ std::string score_csv(const Score& score) {
   }
   for (const FoundSource& found : score.false_alarms) {
     const Detection& d = found.detection;
-    text += quoted(found.sensor) + "," + quoted(found.frame) + ",false,," + quoted(d.id) + ",1,0,";
+    text += csv_field(found.sensor) + "," + csv_field(found.frame) + ",false,," + csv_field(d.id) +
+            ",1,0,";
     cell(text, d.snr);
     cell(text, d.length_px);
     const auto known = [&](const char* key, double value) {

@@ -3,9 +3,9 @@
 #include <erfa.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/time/leap_seconds.h"
 
 namespace dmise {
@@ -98,13 +98,13 @@ std::string format_utc(const Utc& utc, int decimals) {
   eraJd2cal(mjd_zero_jd, static_cast<double>(instant.mjd), &year, &month, &day, &fraction);
   const std::int64_t second_of_day = instant.ns_of_day / ns_per_s;
   const std::int64_t minute_of_day = std::min<std::int64_t>(second_of_day / 60, 1439);
-  char head[64], tail[16];
-  std::snprintf(head, sizeof head, "%04d-%02d-%02dT%02d:%02d:%02d", year, month, day,
-                static_cast<int>(minute_of_day / 60), static_cast<int>(minute_of_day % 60),
-                static_cast<int>(second_of_day - 60 * minute_of_day));
-  std::snprintf(tail, sizeof tail, ".%09d", static_cast<int>(instant.ns_of_day % ns_per_s));
+  std::string text = formatted(
+      "%04d-%02d-%02dT%02d:%02d:%02d.%09d", year, month, day, static_cast<int>(minute_of_day / 60),
+      static_cast<int>(minute_of_day % 60), static_cast<int>(second_of_day - 60 * minute_of_day),
+      static_cast<int>(instant.ns_of_day % ns_per_s));
   decimals = std::clamp(decimals, 0, 9);
-  return head + std::string(tail, decimals > 0 ? decimals + 1 : 0) + "Z";
+  text.resize(text.size() - std::size_t(decimals > 0 ? 9 - decimals : 10));  // the point, too
+  return text + "Z";
 }
 
 }  // namespace dmise

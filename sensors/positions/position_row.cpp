@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "core/base/json.h"
+#include "core/base/text_fields.h"
 #include "core/base/units.h"
 
 namespace dmise {
@@ -13,14 +14,6 @@ constexpr std::string_view json_start = "{\"tick\":";
 std::string number(double x) {
   char text[64];
   return {text, std::to_chars(text, text + sizeof text, x).ptr};
-}
-
-/// Quoted as in RFC 4180.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
 }
 
 template <class F>
@@ -54,8 +47,8 @@ std::string csv_header(bool enu) {
 }
 
 std::string csv_line(const PositionRow& row) {
-  std::string line =
-      std::to_string(row.tick) + "," + row.time_utc + "," + row.kind + "," + field(row.name) + ",";
+  std::string line = std::to_string(row.tick) + "," + row.time_utc + "," + row.kind + "," +
+                     csv_field(row.name) + ",";
   if (row.catalogue_number > 0) line += std::to_string(row.catalogue_number);
   if (const auto& enu = row.enu)
     line += csv_vector(std::optional(enu->position_m)) + csv_vector(enu->velocity_m_per_s) +
