@@ -47,12 +47,12 @@ void Coordinator::done(const std::string& name, TickTally tally, Instant now) {
   member->done = tally.tick;
   member->pulse.progressed = now;
   member->pulse.stalled.reset();
-  if (notes(*member, std::move(tally))) grant(now);
+  if (record(*member, std::move(tally))) grant(now);
 }
 
 /// Compares a repeated tick with the first time; on a difference the run fails and false is
 /// returned.
-bool Coordinator::notes(Member& member, TickTally tally) {
+bool Coordinator::record(Member& member, TickTally tally) {
   if (!member.agent)
     for (TopicTally& topic : tally.topics) topic.incarnation = member.incarnation;
   const auto at = std::ranges::lower_bound(member.manifests, tally.tick, {}, &TickTally::tick);

@@ -186,7 +186,7 @@ class Coordinator {
   void fail_run(const std::string& cause);
   void connect_if_complete(Instant now);
   void start_if_ready(Instant now);
-  bool notes(Member& member, TickTally tally);
+  bool record(Member& member, TickTally tally);
   void settle(Tick last, Instant now);
   void grant(Instant now);
   Tick slowest_done() const;

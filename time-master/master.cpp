@@ -81,7 +81,7 @@ MasterProcess::MasterProcess(const MasterOptions& options)
     : options_(options),
       coordinator_(with_broker(options), now()),
       security_(options.keys, master_name),
-      door_(context_, security_),
+      authenticator_(context_, security_),
       router_(control_router(context_)),
       ticks_(grant_publisher(context_)),
       connections_(context_, router_, limits_for(options.run.expected.size(), 0.2)),

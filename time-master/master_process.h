@@ -76,7 +76,7 @@ class MasterProcess {
   Coordinator coordinator_;
   zmq::context_t context_{1};
   Security security_;
-  ZapAuthenticator door_;
+  ZapAuthenticator authenticator_;
   zmq::socket_t router_, ticks_;
   PeerMonitor connections_, listeners_;  // of the two
   std::vector<std::uint64_t> broken_;    // whose last messages may not have been handled

@@ -44,7 +44,7 @@ HostAgentProcess::HostAgentProcess(const HostAgentOptions& options, HostAgentRes
     : options_(options),
       result_(result),
       security_(serving(Security(options.keys, options.name))),
-      door_(context_, security_),
+      authenticator_(context_, security_),
       link_(context_, options.master, options.stop, security_),
       router_(make_socket(context_, zmq::socket_type::router, max_control_bytes)),
       ticks_(make_socket(context_, zmq::socket_type::pub, max_control_bytes)),

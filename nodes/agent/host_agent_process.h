@@ -7,7 +7,7 @@
 #include "nodes/agent/host_publisher.h"
 #include "nodes/runtime/master_link/master_link.h"
 #include "nodes/runtime/protocol/topic_owners.h"
-#include "nodes/runtime/transport/broker_place.h"
+#include "nodes/runtime/transport/broker_connection.h"
 #include "nodes/runtime/transport/peer_monitor.h"
 
 namespace dmise {
@@ -49,7 +49,7 @@ class HostAgentProcess {
   HostAgentResult* result_;
   zmq::context_t context_{1};
   Security security_;
-  ZapAuthenticator door_;
+  ZapAuthenticator authenticator_;
   std::mutex mutex_;     // guards beats_
   v1::Heartbeat beats_;  // used by the heartbeat thread, must outlive it
   MasterLink link_;
@@ -66,7 +66,7 @@ class HostAgentProcess {
   std::map<std::string, v1::TimeSplit> times_;
   std::set<std::string, std::less<>> reported_;  // topics whose tallies the master needs
   std::string address_, tick_endpoint_, publish_endpoint_, subscribe_endpoint_;
-  BrokerPlace at_subscribe_{from_broker_}, at_publish_{to_broker_};
+  BrokerConnection at_subscribe_{from_broker_}, at_publish_{to_broker_};
   std::uint64_t topology_version_ = 0;
   v1::NodeMessage heard_;
   Instant busy_{0};

@@ -75,12 +75,12 @@ void HostBarrier::done(const std::string& name, TickTally tally, Instant now) {
   node->pulse.progressed = now;
   for (TopicTally& topic : tally.topics) topic.incarnation = node->incarnation;
   const Tick tick = tally.tick;
-  if (!notes(name, *node, std::move(tally)))
+  if (!record(name, *node, std::move(tally)))
     fail(name, "tick " + std::to_string(tick) +
                    ", repeated after a restart, differs from the first time");
 }
 
-bool HostBarrier::notes(const std::string& name, Node& node, TickTally tally) {
+bool HostBarrier::record(const std::string& name, Node& node, TickTally tally) {
   tally.digest = content_digest(name, tally);
   const auto at = std::ranges::lower_bound(node.manifests, tally.tick, {}, &TickTally::tick);
   if (at == node.manifests.end() || at->tick != tally.tick) {

@@ -90,7 +90,7 @@ class HostBarrier {
   void hear(const std::string& name, Node& node, Instant now);
   void report(News::What what, const std::string& name, const Node& node,
               const std::string& reason);
-  bool notes(const std::string& name, Node& node, TickTally tally);
+  bool record(const std::string& name, Node& node, TickTally tally);
   Tick slowest() const;
   std::vector<std::string> missing() const;
 

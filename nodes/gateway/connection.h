@@ -65,7 +65,7 @@ inline std::chrono::milliseconds milliseconds_of(double seconds) {
 inline std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
 /// Begins to answer the requests of HTTP that come over a socket.
-void serve_visitor(Hub& hub, tcp::socket socket);
+void serve_http(Hub& hub, tcp::socket socket);
 
 /// Accepts the WebSocket that `request` asks for, and sends what there is to see.
 void serve_viewer(Hub& hub, beast::tcp_stream stream,

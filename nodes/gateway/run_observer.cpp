@@ -11,7 +11,7 @@
 #include "nodes/runtime/process/limited_log.h"
 #include "nodes/runtime/process/monotonic_clock.h"
 #include "nodes/runtime/protocol/control_rules.h"
-#include "nodes/runtime/transport/broker_place.h"
+#include "nodes/runtime/transport/broker_connection.h"
 #include "nodes/runtime/transport/socket.h"
 #include "nodes/wire/receiver.h"
 
@@ -258,7 +258,7 @@ class RunObserver::Connections {
   Security security_;
   zmq::context_t context_{1};
   zmq::socket_t subscription_;
-  BrokerPlace broker_;
+  BrokerConnection broker_;
   std::optional<zmq::socket_t> master_, control_, roster_, truth_;
   std::map<std::string, std::string> truth_endpoints_;  // by sensor
   LiveView view_;

@@ -52,7 +52,7 @@ struct WebServer::Work {
         error_code ignored;
         socket.set_option(tcp::no_delay(true), ignored);
         socket.set_option(boost::asio::socket_base::send_buffer_size(send_buffer_bytes), ignored);
-        serve_visitor(hub, std::move(socket));
+        serve_http(hub, std::move(socket));
       }  // else it is closed
       accept();
     });

@@ -44,7 +44,7 @@ std::string bind_again(zmq::socket_t& socket, const std::string& earlier,
 void serve(const BrokerOptions& options, BrokerResult* result) {
   const Security security = serving(Security(options.keys, broker_name));
   zmq::context_t context(1);
-  const ZapAuthenticator door(context, security);
+  const ZapAuthenticator authenticator(context, security);
   zmq::socket_t publishers = make_socket(context, zmq::socket_type::xsub, max_data_bytes);
   zmq::socket_t subscribers = make_socket(context, zmq::socket_type::xpub, max_data_bytes);
   subscribers.set(zmq::sockopt::linger, 500);

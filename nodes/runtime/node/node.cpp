@@ -15,7 +15,7 @@
 #include "nodes/runtime/process/monotonic_clock.h"
 #include "nodes/runtime/process/process_memory.h"
 #include "nodes/runtime/process/seconds.h"
-#include "nodes/runtime/transport/broker_place.h"
+#include "nodes/runtime/transport/broker_connection.h"
 #include "nodes/runtime/transport/peer_monitor.h"
 
 namespace dmise {
@@ -51,8 +51,8 @@ class Node {
         consumes_(participant.consumes()),
         name_(options.name.empty() ? participant.name() : options.name),
         security_(options.keys, name_, options.via),
-        control_door_(control_context_, security_),
-        data_door_(std::in_place, data_context_, security_),
+        control_authenticator_(control_context_, security_),
+        data_authenticator_(std::in_place, data_context_, security_),
         link_(control_context_, options.master, options.stop, security_),
         publish_(make_socket(data_context_, zmq::socket_type::pub, max_data_bytes)),
         direct_(make_socket(data_context_, zmq::socket_type::pub, max_data_bytes)),
@@ -322,7 +322,7 @@ class Node {
     listeners_.reset();
     direct_.close();
     inputs_.close();
-    data_door_.reset();
+    data_authenticator_.reset();
     data_context_.close();  // flushes everything published before the node leaves
     link_.leave(interrupted, result_->times);
     if (frames_) frames_->finish(interrupted ? nanoseconds(0) : last_answers);
@@ -338,15 +338,15 @@ class Node {
   std::string name_;
   Security security_;
   zmq::context_t control_context_{1}, data_context_{1};
-  ZapAuthenticator control_door_;
-  std::optional<ZapAuthenticator> data_door_;
+  ZapAuthenticator control_authenticator_;
+  std::optional<ZapAuthenticator> data_authenticator_;
   std::optional<Outbox> outbox_;  // used by the heartbeat thread, must outlive it
   MasterLink link_;
   zmq::socket_t publish_, direct_;
   std::optional<PeerMonitor> listeners_;  // of `direct_`
   nanoseconds next_look_{0};
   std::optional<FrameServer> frames_;
-  BrokerPlace broker_{publish_};
+  BrokerConnection broker_{publish_};
   NodeInputs inputs_;
   RunFacts run_;
   std::uint64_t incarnation_ = 1, topology_version_ = 0;

@@ -7,7 +7,7 @@
 #include "dmise/v1/time.pb.h"
 #include "nodes/runtime/observability/figures.h"
 #include "nodes/runtime/protocol/inbox.h"
-#include "nodes/runtime/transport/broker_place.h"
+#include "nodes/runtime/transport/broker_connection.h"
 #include "nodes/runtime/transport/socket.h"
 
 namespace dmise {
@@ -84,7 +84,7 @@ class NodeInputs {
   std::optional<Receiver> receiver_;
   Inbox inbox_;
   zmq::socket_t subscribe_;
-  BrokerPlace broker_;
+  BrokerConnection broker_;
   std::map<std::string, Source> sources_;            // by name of the publisher
   std::map<std::string, std::string> publisher_of_;  // each consumed topic
   std::vector<zmq::socket_t*> sockets_;              // all receiving sockets

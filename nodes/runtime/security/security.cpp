@@ -14,7 +14,7 @@
 namespace dmise {
 namespace {
 
-constexpr const char* door = "inproc://zeromq.zap.01";
+constexpr const char* zap_endpoint = "inproc://zeromq.zap.01";
 constexpr const char* truth_property = "X-Truth";
 constexpr const char* nodes_property = "X-Nodes";  // names, a line end before and after each
 
@@ -62,7 +62,7 @@ bool is_same(std::string_view a, std::string_view b) {
   return different == 0;
 }
 
-void say_password(zmq::socket_t& socket, const std::string& password) {
+void set_client_password(zmq::socket_t& socket, const std::string& password) {
   if (password.empty()) {
     zmq_setsockopt(socket.handle(), ZMQ_PLAIN_USERNAME, nullptr, 0);  // back to no mechanism
     return;
@@ -114,7 +114,7 @@ void Security::call(zmq::socket_t& socket, const std::string& address,
                     const std::string& peer) const {
   require_for(address);
   if (!on()) {
-    if (peer == broker_name) say_password(socket, password_);
+    if (peer == broker_name) set_client_password(socket, password_);
     return;
   }
   const bool at_agent = !via_.empty() && (peer == master_name || peer == broker_name);
@@ -129,7 +129,7 @@ struct ZapAuthenticator::Work {
         password(security.password()),
         requests(context, zmq::socket_type::rep) {
     requests.set(zmq::sockopt::linger, 0);
-    requests.bind(door);
+    requests.bind(zap_endpoint);
     thread = std::thread([this] { run(); });
   }
   ~Work() {

@@ -7,9 +7,9 @@
 namespace dmise {
 
 /// Connection of a socket to the broker of a run.
-class BrokerPlace {
+class BrokerConnection {
  public:
-  explicit BrokerPlace(zmq::socket_t& socket) : socket_(socket) {}
+  explicit BrokerConnection(zmq::socket_t& socket) : socket_(socket) {}
 
   bool known() const { return !endpoint_.empty(); }
 

@@ -21,12 +21,12 @@ constexpr const char* no_dashboard =
     "<code>./dmise dashboard</code> builds them: it needs npm.</p></html>";
 
 /// A connection of HTTP, until it becomes a viewer's.
-class Visitor : public Connection, public std::enable_shared_from_this<Visitor> {
+class HttpConnection : public Connection, public std::enable_shared_from_this<HttpConnection> {
  public:
-  Visitor(Hub& hub, tcp::socket socket) : hub_(hub), stream_(std::move(socket)) {
+  HttpConnection(Hub& hub, tcp::socket socket) : hub_(hub), stream_(std::move(socket)) {
     hub_.connections.insert(this);
   }
-  ~Visitor() override { hub_.connections.erase(this); }
+  ~HttpConnection() override { hub_.connections.erase(this); }
 
   void read() {
     parser_.emplace();
@@ -165,8 +165,8 @@ class Visitor : public Connection, public std::enable_shared_from_this<Visitor> 
 
 }  // namespace
 
-void serve_visitor(Hub& hub, tcp::socket socket) {
-  std::make_shared<Visitor>(hub, std::move(socket))->read();
+void serve_http(Hub& hub, tcp::socket socket) {
+  std::make_shared<HttpConnection>(hub, std::move(socket))->read();
 }
 
 }  // namespace dmise
