@@ -182,15 +182,12 @@ std::string to_json(const FrameSolution& solution, const FrameHeader& header,
   json.field("projection", model.projection.name());
   json.field("focal_length_px", model.focal_length_px);
   json.field("centre_x_px", model.centre.x_px).field("centre_y_px", model.centre.y_px);
-  json.field("distortion_order", model.order).key("distortion_px").begin_array();
-  for (const double c : model.distortion) json.value(c);
-  json.end_array().key("free").begin_array().value("attitude");
+  json.field("distortion_order", model.order).list("distortion_px", model.distortion);
+  json.key("free").begin_array().value("attitude");
   if (fit.free.focal_length) json.value("focal_length");
   if (fit.free.centre) json.value("centre");
   if (fit.free.order > 0) json.value("distortion");
-  json.end_array().key("covariance").begin_array();
-  for (const double c : fit.covariance) json.value(c);
-  json.end_array();
+  json.end_array().list("covariance", fit.covariance);
   json.field("wcs_rms_px", solution.wcs.rms_px).field("wcs_max_px", solution.wcs.max_px);
   json.key("zero_point");
   if (const auto& z = solution.zero_point) {
@@ -205,13 +202,8 @@ std::string to_json(const FrameSolution& solution, const FrameHeader& header,
   } else {
     json.null();
   }
-  for (const auto& [key, texts] :
-       {std::pair{"missing", &notes.missing}, {"assumed", &notes.assumed}}) {
-    if (texts->empty()) continue;
-    json.key(key).begin_array();
-    for (const std::string& text : *texts) json.value(text);
-    json.end_array();
-  }
+  if (!notes.missing.empty()) json.list("missing", notes.missing);
+  if (!notes.assumed.empty()) json.list("assumed", notes.assumed);
   json.end_object();
   return json.take();
 }

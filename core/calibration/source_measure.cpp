@@ -8,11 +8,6 @@
 #include "core/base/quantile.h"
 
 namespace dmise {
-namespace {
-
-constexpr double longest_trail_px = 200.0;
-
-}  // namespace
 
 double trail_length_px(const SourceMoments& m, double sigma_px) {
   const double major = m.major_sigma();
@@ -72,6 +67,7 @@ SourceMoments SourceMeasure::of_component(const Component& c, double sigma_px) c
 }
 
 bool SourceMeasure::improve(SourceMoments& m) const {
+  constexpr double longest_trail_px = 200.0;
   const double det = m.xx * m.yy - m.xy * m.xy;
   if (!(det > 1e-4) || m.mean() > longest_trail_px * longest_trail_px) return false;
   const double ixx = m.yy / det, ixy = -m.xy / det, iyy = m.xx / det;

@@ -10,7 +10,8 @@
 namespace dmise {
 
 /// A frame through the matched filter of a point source: SNR in steps of 1/5, clipped at +-6.2.
-/// 0 stands for pixels of which nothing is known, because they were hidden.
+/// 0 stands for pixels of which nothing is known, because they were hidden; what rounds to 0 is 1
+/// where column plus row is odd, else -1.
 struct FilteredFrame {
   static constexpr int steps = 5, most = 31;
 
@@ -31,14 +32,6 @@ struct FilteredFrame {
         sigma_px(sigma),
         snr(std::size_t(columns_) * std::size_t(rows_)) {}
 
-  /// `odd`: whether the pixel's column plus row is; it tells the sign of what rounds to 0.
-  static std::int8_t step_of(float value, bool odd) {
-    float scaled = value * float(steps);
-    scaled = scaled > float(most) ? float(most) : scaled;
-    scaled = scaled < -float(most) ? -float(most) : scaled;
-    const int step = int(scaled + (scaled < 0 ? -0.5f : 0.5f));
-    return std::int8_t(step != 0 ? step : odd ? 1 : -1);
-  }
   std::int8_t* row(int y) { return snr.data() + std::size_t(y) * std::size_t(columns); }
   const std::int8_t* row(int y) const { return snr.data() + std::size_t(y) * std::size_t(columns); }
   /// Hides pixels [first, last] of a row, as far as they are in the frame.

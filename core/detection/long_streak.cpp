@@ -216,11 +216,10 @@ std::optional<Source> streak_on(const Scene& scene, Line line, Extent extent, bo
   if (!source || source->snr() < settings.least_snr) return std::nullopt;
   const Trail& t = source->trail();
   const Trail star = scene.star_trail(t.x_px, t.y_px);
-  if (source->fit.reduced_chi2() > (t.length_px < chain_px + 3 * star.length_px ? 2.0 : 5.0) ||
-      !is_continuous(scene, t))
+  const bool may_be_chain = t.length_px < chain_px + 3 * star.length_px;
+  if (source->fit.reduced_chi2() > (may_be_chain ? 2.0 : 5.0) || !is_continuous(scene, t))
     return std::nullopt;
-  if (t.length_px < chain_px + 3 * star.length_px && !beats_stars(scene, *source, settings))
-    return std::nullopt;
+  if (may_be_chain && !beats_stars(scene, *source, settings)) return std::nullopt;
   if (moves_like_star(scene, *source, star, settings.least_difference_px + 1)) return std::nullopt;
   return source;
 }
@@ -230,24 +229,30 @@ Trail trail_on(const Scene& scene, const Line& line, const Extent& extent) {
   return trail_along(line, extent, median_level(slices(scene, line, extent.from, extent.to, 0.0)));
 }
 
-std::vector<Around> around(const std::vector<Source>& sources, double margin_px) {
-  std::vector<Around> out;
-  for (const Source& source : sources) out.emplace_back(source.trail(), margin_px);
-  return out;
-}
+/// What lies near any of several sources.
+class AroundAny {
+ public:
+  AroundAny(const std::vector<Source>& sources, double margin_px) {
+    for (const Source& source : sources) around_.emplace_back(source.trail(), margin_px);
+  }
+  bool has(double x_px, double y_px) const {
+    return std::ranges::any_of(around_, [&](const Around& one) { return one.has(x_px, y_px); });
+  }
+
+ private:
+  std::vector<Around> around_;
+};
 
 /// Points of the component off known streaks. Weights are the light, limited to the level of the
 /// brightest fifth: a star on a streak must not outweigh the streak.
 std::vector<Point> free_points(const Scene& scene, const Component& component, double skirt_px,
                                const std::vector<Source>& found) {
-  const std::vector<Around> streaks = around(found, skirt_px);
+  const AroundAny streaks(found, skirt_px);
   std::vector<Point> points;
   std::vector<double> lights;
   for (const Run& run : component.runs)
     for (int x = run.first_x; x <= run.last_x; ++x) {
-      const bool taken = std::any_of(streaks.begin(), streaks.end(),
-                                     [&](const Around& streak) { return streak.has(x, run.y); });
-      if (taken || scene.is_hidden(x, run.y)) continue;
+      if (streaks.has(x, run.y) || scene.is_hidden(x, run.y)) continue;
       points.push_back({double(x), double(run.y), std::max(1.0f, scene.pixel(x, run.y).signal_e)});
       lights.push_back(points.back().weight);
     }
@@ -286,11 +291,9 @@ void find_long_streaks(const Scene& scene, const Component& component,
     std::vector<Source> sources = streaks_beside(
         scene, source ? source->trail() : trail_on(scene, line, {int(*low), int(*high)}), settings);
     if (sources.empty() && source) sources.push_back(std::move(*source));
-    const std::vector<Around> streaks = around(sources, skirt_px);
+    const AroundAny streaks(sources, skirt_px);
     std::erase_if(points, [&](const Point& p) {
-      return std::abs(line.off(p)) < width_px ||
-             std::any_of(streaks.begin(), streaks.end(),
-                         [&](const Around& streak) { return streak.has(p.x, p.y); });
+      return std::abs(line.off(p)) < width_px || streaks.has(p.x, p.y);
     });
     if (!sources.empty()) {
       std::move(sources.begin(), sources.end(), std::back_inserter(found));

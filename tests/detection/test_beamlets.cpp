@@ -11,6 +11,7 @@
 #include "core/detection/beamlet_kernels.h"
 #include "core/detection/components.h"
 #include "core/detection/line_search.h"
+#include "tests/detection/filtered_step.h"
 
 // Sums of a filtered frame along lines.
 namespace dmise {
@@ -59,7 +60,7 @@ TEST(Beamlets, ALineOfAnyDirectionIsFoundWithMostOfItsSignal) {
   for (int degrees = 0; degrees < 180; degrees += 7) {
     FilteredFrame frame(600, 500, 0.8);
     for (int y = 0; y < 500; ++y)
-      for (int x = 0; x < 600; ++x) frame.row(y)[x] = FilteredFrame::step_of(0, (x + y) % 2 != 0);
+      for (int x = 0; x < 600; ++x) frame.row(y)[x] = test::step_of(0, (x + y) % 2 != 0);
     Trail t;
     t.x_px = 290.3, t.y_px = 255.7, t.length_px = 180, t.angle_rad = degrees * deg;
     for (int y = 0; y < 500; ++y)
@@ -67,8 +68,8 @@ TEST(Beamlets, ALineOfAnyDirectionIsFoundWithMostOfItsSignal) {
         const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
         const double dx = x - t.x_px, dy = y - t.y_px, across = dy * c - dx * s;
         if (std::abs(dx * c + dy * s) > 90 || std::abs(across) > 5) continue;
-        frame.row(y)[x] = FilteredFrame::step_of(float(1.5 * std::exp(-across * across / 2.56)),
-                                                 (x + y) % 2 != 0);
+        frame.row(y)[x] =
+            test::step_of(float(1.5 * std::exp(-across * across / 2.56)), (x + y) % 2 != 0);
       }
     Threads threads;
     const auto beamlets = find_beamlets(frame, TurnedFrame(frame), 4, SimdLevel::sse2, threads);
@@ -175,8 +176,8 @@ TEST(FilteredFrame, IsFlattenedToNoise) {
     for (int y = 0; y < 300; ++y)
       for (int x = 0; x < 500; ++x) {
         const float scatter = x < 250 ? 1.0f : 1.6f;
-        frame.row(y)[x] = FilteredFrame::step_of(
-            0.5f + 0.002f * float(x) + scatter * normal(random), (x + y) % 2 != 0);
+        frame.row(y)[x] =
+            test::step_of(0.5f + 0.002f * float(x) + scatter * normal(random), (x + y) % 2 != 0);
       }
     for (int y = 0; y < 300; y += 7) frame.hide(y, 100, 130);
     frame.flatten(pool);

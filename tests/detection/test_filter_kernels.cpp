@@ -9,6 +9,7 @@
 
 #include "core/base/simd_level.h"
 #include "core/detection/filtered_frame.h"
+#include "tests/detection/filtered_step.h"
 
 namespace dmise {
 namespace {
@@ -41,8 +42,8 @@ TEST(FilterKernels, GiveTheStepsOfTheFrameOnEveryInstructionSet) {
       std::vector<std::int8_t> steps(count);
       level.steps_of(value.data(), noise.data(), 0.7f, count, odd, steps.data());
       for (std::size_t i = 0; i < count; ++i)
-        ASSERT_EQ(steps[i], FilteredFrame::step_of(value[i] / (0.7f * noise[i]),
-                                                   (i + (odd ? 1 : 0)) % 2 != 0))
+        ASSERT_EQ(steps[i],
+                  test::step_of(value[i] / (0.7f * noise[i]), (i + (odd ? 1 : 0)) % 2 != 0))
             << i;
     }
 }

@@ -10,6 +10,7 @@
 #include "core/detection/bit_mask.h"
 #include "core/detection/filtered_frame.h"
 #include "core/detection/star_image.h"
+#include "tests/detection/filtered_step.h"
 
 namespace dmise {
 namespace {
@@ -88,7 +89,7 @@ TEST(StarKernels, SubtractAndMarkLightAlikeOnEveryInstructionSet) {
     for (std::size_t i = 0; i < count; ++i) {
       const float left = float(before[i]) / FilteredFrame::steps - light[i];
       const bool gone = before[i] == 0 || light[i] > hidden;
-      EXPECT_EQ(steps[i], gone ? 0 : FilteredFrame::step_of(left, i % 2 == 0)) << i;
+      EXPECT_EQ(steps[i], gone ? 0 : test::step_of(left, i % 2 == 0)) << i;
       EXPECT_EQ(bits >> i & 1, light[i] > lit ? 1u : 0u) << i;
     }
     EXPECT_EQ(bits >> count, 0u);
