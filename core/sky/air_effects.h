@@ -4,7 +4,7 @@
 #include "core/sky/gas_absorption.h"
 #include "core/sky/scintillation.h"
 
-// An effect of the air takes light of a source on its way down to a ground sensor. It is a struct
+// An effect of the air dims the light of a source on its way to a ground sensor. It is a struct
 // with
 //   static constexpr EffectFacts facts;
 //   static bool applies(const SceneFacts&);

@@ -16,13 +16,13 @@
 
 namespace dmise {
 
-/// What effects of the air may use of an exposure of a ground sensor.
+/// What effects of the air know of an exposure of a ground sensor.
 struct AirExposure {
   const Band& band;
   const Curve& extinction_mag_per_airmass;  // over wavelength
-  std::optional<AirGases> gases;            // none: in the curve, as far as it is measured
+  std::optional<AirGases> gases;            // none: only what the curve includes
   const std::optional<Clouds>& clouds;
-  std::optional<BlownTurbulence> turbulence;  // none: scintillation does not heed motion
+  std::optional<BlownTurbulence> turbulence;  // none: scintillation ignores motion
   double aperture_m, exposure_s, site_height_m;
   double time_s;  // of mid exposure, since the start of the run
   Vec<Gcrs> up;   // unit, at mid exposure
@@ -41,12 +41,12 @@ struct SightLine {
   Source source;
   std::uint32_t number;         // in its catalogue
   double rate_rad_per_s = 0.0;  // against the air
-  /// At its elevation; none: not known yet.
+  /// At its elevation, if it is known already.
   std::optional<double> known_airmass = std::nullopt;
   double distance_m = std::numeric_limits<double>::infinity();
 };
 
-/// Stars as a ground sensor sees them, with known airmasses: of one size each.
+/// Stars as a ground sensor sees them, with their airmasses. All spans have one size.
 struct SightLines {
   std::span<const Vec<Gcrs>> apparent;  // unit
   std::span<const double> airmass, bv, rate_rad_per_s;
@@ -58,14 +58,14 @@ struct SightLines {
   }
 };
 
-inline constexpr double sun_bv = 0.65;
+inline constexpr double sun_bv = 0.65;  // colour of the Sun [mag]
 
-/// Over the horizon whose zenith is `up` (unit) [rad].
+/// Elevation of a direction (unit) over the horizon whose zenith is `up` (unit) [rad].
 inline double elevation_over(const Vec<Gcrs>& up, const Vec<Gcrs>& direction) {
   return std::asin(std::clamp(dot(up, direction), -1.0, 1.0));
 }
 
-/// Of a source over the horizon whose zenith is `up` (unit).
+/// Airmass of a source over the horizon whose zenith is `up` (unit).
 inline double airmass_along(const Vec<Gcrs>& up, const SightLine& line) {
   return line.known_airmass ? *line.known_airmass : airmass(elevation_over(up, line.apparent));
 }

@@ -18,8 +18,8 @@ struct AirGases {
 /// mag of ASTM G173 (`GasAbsorption.BesideTheStandardSpectrumOfTheGround`).
 Curve gas_transmission(const AirGases& gases, double airmass);
 
-/// An extinction curve that goes on beyond its red end by the power -1.3 of the wavelength, as haze
-/// does, every 100 nm to 4 um. Source of the power: Patat et al. 2011, A&A 527, A91 (-1.38).
+/// Continues an extinction curve beyond its red end to 4 um, every 100 nm, by the power -1.3 of the
+/// wavelength, as haze does. Source of the power: Patat et al. 2011, A&A 527, A91 (-1.38).
 Curve with_haze_beyond(const Curve& extinction_mag_per_airmass);
 
 }  // namespace dmise

@@ -40,12 +40,12 @@ const Spectrum& usual_spectrum() {
         0.96, 1.29, 2.88, 1.36, 1.24, 1.06, 0.88, 1.29, 1.72, 1.35, 1.05, 1.91, 3.49,
         2.41, 2.34, 1.96, 4.10, 6.04, 6.24, 4.82, 2.15, 2.31, 7.36, 9.19, 4.84, 4.36,
         5.79, 12.5, 13.1, 6.62, 2.53, 2.62, 12.9, 18.4, 16.2, 9.20, 17.5};
-    // OH of an average night, by I = 19.8 mag/arcsec2 of the whole dark sky (Patat 2003, A&A 400,
-    // 1183).
+    // OH of an average night: the whole dark sky then has I = 19.8 mag/arcsec2 (Patat 2003, A&A
+    // 400, 1183).
     constexpr double oh_scale = 0.6;
-    // Herzberg's bands of O2, likewise by U = 22.1 (Patat 2003: 22.3; Benn & Ellison 1998: 22.0).
+    // Herzberg's bands of O2, likewise: U = 22.1 (Patat 2003: 22.3; Benn & Ellison 1998: 22.0).
     constexpr double herzberg_scale = 4.2;
-    // Means over 100 nm: OH to 2.2 um, then the air's warmth.
+    // Means over 100 nm: OH to 2.2 um, then thermal emission.
     static constexpr double infrared[][2] = {{1000, 9.0},  {1100, 10.0}, {1250, 13.0}, {1400, 15.0},
                                              {1500, 40.0}, {1600, 48.0}, {1700, 48.0}, {1800, 25.0},
                                              {1900, 8.0},  {2000, 11.0}, {2100, 9.0},  {2200, 4.0},

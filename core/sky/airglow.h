@@ -18,8 +18,8 @@ struct Airglow {
 
   double zenith_v_mag_per_arcsec2 = 22.4;  // at the ground; 21.9 to 22.6 over the solar cycle
   double layer_height_m = 90e3;
-  /// The Sun's flux at 10.7 cm, monthly mean [10^-22 W/m2/Hz]; none: as `zenith_v_mag_per_arcsec2`
-  /// says, else that is of 130.
+  /// The Sun's flux at 10.7 cm, monthly mean [sfu: 10^-22 W/m2/Hz]. If it is given,
+  /// `zenith_v_mag_per_arcsec2` is the brightness at 130 sfu.
   std::optional<double> solar_flux_sfu;
 };
 
@@ -32,14 +32,15 @@ double airglow_by_solar_flux(const std::optional<double>& solar_flux_sfu);
 /// at 0 below it. Source: van Rhijn 1921, Publ. Astr. Lab. Groningen 31.
 double van_rhijn(double sin_altitude, double layer_height_m);
 
-/// Brightness at the ground [S10 in V]; `diffuse_extinction_mag` is what the zenith takes from
-/// the light of a layer over the whole sky, by which Noll et al. give it.
+/// Brightness at the ground [S10 in V]; `diffuse_extinction_mag`: extinction towards the zenith of
+/// the light of a layer over the whole sky, as Noll et al. give it.
 double airglow_s10(const Airglow& airglow, double sin_altitude, double diffuse_extinction_mag);
 
 /// Its colour, 0.2-2.5 um: lines of oxygen, sodium and OH over a continuum. To 0.97 um the night
 /// sky of La Palma (Benn & Ellison 1998, ING technical note 115) every 10 nm, beyond it by Y, J, H
-/// and K of ESO's sky calculator: OH to 2.2 um, then the warmth of the air (of Paranal).
-/// `brighter`: light but for OH over that at 130 sfu; OH, from 0.7 um on, does not follow the Sun.
+/// and K of ESO's sky calculator: OH to 2.2 um, then thermal emission of the air (of Paranal).
+/// `brighter`: light without OH over that at 130 sfu; OH, from 0.7 um on, does not follow the Sun
+/// and is divided by it.
 Spectrum airglow_spectrum(double brighter = 1.0);
 
 }  // namespace dmise

@@ -8,11 +8,11 @@
 namespace dmise {
 namespace {
 
-/// The Sun's potential bends nothing over the distances of satellites: it is put far away.
+/// The Sun does not bend light over the distances of satellites: it is put far away.
 constexpr double no_sun_au = 1e9;
 
-/// Fetches what moves a star from the columns of its catalogue. Inline, as a function that only
-/// fetches is taken for one that does nothing.
+/// Prefetches the motion of a star. Always inlined: the compiler removes calls of a function that
+/// does nothing else.
 [[gnu::always_inline]] inline void prefetch(const StarColumns& c,
                                             std::span<const Vec<Gcrs>> directions,
                                             std::uint32_t star) {
@@ -120,7 +120,7 @@ Vec<Gcrs> ApparentPlaces::bent_and_aberrated(Vec<Gcrs> direction) const {
 Vec<Gcrs> ApparentPlaces::star_seen_at(const Vec<Gcrs>& apparent) const {
   const auto* refraction = effects_.find<AtmosphericRefraction>();
   const Vec<Gcrs> above_air = refraction ? refraction->undo(unit(apparent)) : unit(apparent);
-  // What is left falls by v/c each time.
+  // The rest falls by a factor v/c each time.
   Vec<Gcrs> star = above_air;
   for (int i = 0; i < 8; ++i) {
     const Vec<Gcrs> missed = above_air - bent_and_aberrated(star);

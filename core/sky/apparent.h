@@ -28,37 +28,36 @@ struct SatellitePlace {
 };
 
 /// Apparent directions at a camera, in GCRS axes: `PlaceEffects` in their order, those that are
-/// switched on. What an observer constant costs is paid once. Immutable after construction.
+/// switched on. Constants of the observer are computed once. Immutable after construction.
 class ApparentPlaces {
  public:
   ApparentPlaces(const Observer& observer, const EffectSet& effects);
 
-  /// Unit vector. As ERFA: eraPmpx with the Earth's place replaced by the observer's, eraLdsun,
-  /// eraAb.
+  /// Returns the apparent direction of a star (unit), as ERFA's eraPmpx, eraLdsun and eraAb with
+  /// the observer's place instead of the Earth's.
   Vec<Gcrs> star(const StarPlace& star) const;
 
-  /// The two halves of `star`: where a star stands at the observer's time, and in what direction
-  /// one is seen that stands there. Unit vectors.
+  /// The two halves of `star`: the place of a star at the observer's time, and the apparent
+  /// direction of a star at a place. Unit vectors.
   Vec<Gcrs> astrometric(const CataloguedStar& catalogued) const;
   Vec<Gcrs> seen(const Vec<Gcrs>& astrometric) const;
 
-  /// The first half of many: `places[i]` of star `which[i]` of a catalogue without radial
-  /// velocities whose directions at its epoch, of all stars, are known (unit). To 1e-15 rad of
-  /// each.
+  /// The first half for many stars: `places[i]` of star `which[i]` of a catalogue without radial
+  /// velocities. `directions`: of all its stars at its epoch (unit). Equal to 1e-15 rad.
   void astrometric(const StarColumns& catalogue, std::span<const std::uint32_t> which,
                    std::span<const Vec<Gcrs>> directions, std::span<Vec<Gcrs>> places,
                    SimdLevel level = best_simd_level()) const;
 
-  /// Where a star without parallax and proper motion stands that is seen at an apparent direction:
-  /// the inverse of `star`, to 1e-12 rad. A unit vector.
+  /// Returns the place of a star without parallax and proper motion that is seen in an apparent
+  /// direction: the inverse of `star`, to 1e-12 rad. Unit vector.
   Vec<Gcrs> star_seen_at(const Vec<Gcrs>& apparent) const;
 
   /// `directions[i]` of star `which[i]` of a catalogue.
   void stars(const StarColumns& catalogue, std::span<const std::uint32_t> which,
              std::span<Vec<Gcrs>> directions) const;
 
-  /// `position_at(dt_s)`: the satellite's GCRS position [m] at the observer's time + dt_s, asked
-  /// for 0 and for one light time before. It shares the Earth's motion: aberration is by the
+  /// `position_at(dt_s)`: the satellite's GCRS position [m] at the observer's time + dt_s, for dt_s
+  /// = 0 and about a light time before. A satellite shares the Earth's motion: aberration is by the
   /// observer's geocentric velocity alone. Throws `Error` for a satellite at the observer.
   template <class PositionAt>
   SatellitePlace satellite(PositionAt&& position_at) const {

@@ -5,7 +5,7 @@
 namespace dmise {
 namespace {
 
-/// From here to the zenith or nadir there is no side to bend to.
+/// Closer to the zenith or nadir there is no azimuth to bend along.
 constexpr double least_cosine = 1e-12;
 
 }  // namespace

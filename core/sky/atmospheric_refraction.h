@@ -13,12 +13,12 @@ class AtmosphericRefraction {
                                      "IAU SOFA, eraRefco; Bennett 1982, J. Navigation 35, 255"};
   static bool applies(const SceneFacts& scene) { return scene.on_ground; }
 
-  /// The sky is looked at where the air shows it: its parts change with direction, most of all near
-  /// the Moon and by the twilight.
+  /// Without it the sky is evaluated in a direction that is off by the refraction: its parts change
+  /// with direction, most near the Moon and in twilight.
   static ErrorBound error(int, const PlanFacts& f) {
     constexpr double usual_per_rad = 3.0, steep_per_rad = 10.0;
-    // Of the light of a Moon that is lower: 0.9 mag a degree below the horizon, above it by the
-    // air.
+    // Moonlight by the Moon's elevation: 0.9 mag a degree below the horizon, above it by
+    // extinction.
     constexpr double moon_down_per_rad = 48.0, moon_up_per_rad = 4.0;
     const double moonlight_per_rad = std::max(steep_per_rad, 2.0 / f.nearest_moon_rad);
     const double moon =

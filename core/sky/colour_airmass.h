@@ -7,7 +7,7 @@
 namespace dmise {
 
 /// Nodes of a table over a star's B-V and the airmass: even in B-V, and in sqrt(X), which follows
-/// the bend near X = 0. Values lie by colour, in it by airmass.
+/// the bend near X = 0. Values are stored by colour, then by airmass.
 struct ColourAirmassNodes {
   static constexpr double most_airmass = 40.0;
 
@@ -19,7 +19,8 @@ struct ColourAirmassNodes {
   }
   double bv(int i) const { return least_bv + i * (greatest_bv - least_bv) / (colours - 1); }
 
-  /// The nodes at or below a place, which is held within the table, and the shares of the next.
+  /// The nodes at or below a place, which is held within the table, and the weights of the next
+  /// ones.
   struct Place {
     int colour, airmass;
     double to_next_colour, to_next_airmass;

@@ -73,7 +73,8 @@ BandDispersion::BandDispersion(const Band& band, const Curve& extinction) {
   std::vector<double> k_mag(steps.size()), photons(steps.size());
   for (std::size_t s = 0; s < steps.size(); ++s)
     k_mag[s] = extinction.at_or_end(steps[s].wavelength_m);
-  // What all wavelengths lose changes nothing: taken off, so that something is left at the horizon.
+  // A loss common to all wavelengths changes nothing: it is left out, so that some light remains at
+  // the horizon.
   const double least_k = *std::min_element(k_mag.begin(), k_mag.end());
   std::vector<double> transmission(steps.size() * airmasses);
   for (int a = 0; a < airmasses; ++a)

@@ -17,8 +17,8 @@ struct SpectrumCell {
   double at, share;
 };
 
-/// How the light of stars in a band is spread over the band's refraction, by B-V and airmass: what
-/// the air takes from the blue moves the mean towards the red.
+/// Distribution of the light of stars over the range of refraction of a band, by B-V and airmass:
+/// extinction in the blue moves the mean towards the red.
 class BandDispersion {
  public:
   static constexpr int most_cells = 128;
@@ -66,15 +66,15 @@ class Dispersion {
     return (2e-6 + 0.4e-6 * cells(level, f.dispersion_rad / f.pixel_rad)) * f.stars;
   }
 
-  /// Into how many cells a level cuts a spectrum of this length.
+  /// Number of cells into which a level cuts a spectrum of this length.
   static int cells(int level, double length_px);
 
-  /// `air` refracts at the middle of the band, by which places are computed; `is_refracted`: they
-  /// are.
+  /// `air`: refraction at the middle of the band, by which places are computed; `is_refracted`:
+  /// whether it is switched on.
   Dispersion(const Band& band, const Curve& extinction, const Refraction& air, bool is_refracted);
 
-  /// How much higher than a source seen at an elevation its bluest and its reddest light is seen
-  /// [rad].
+  /// Elevation of the bluest and the reddest light of a source above the elevation at which it is
+  /// seen [rad].
   struct Ends {
     double blue_rad, red_rad;
   };

@@ -9,8 +9,8 @@ namespace dmise {
 double above_limb_rad(const Vec<Gcrs>& from_m, const Vec<Gcrs>& direction,
                       const OblateEarth& earth);
 
-/// The same from the limb's nearest point, wherever that is [rad]: that plane is not the nearest
-/// one by 1e-5 of the angle near the limb, by up to 0.5 deg from low orbit near the zenith.
+/// The same from the limb's nearest point [rad]. It is less than the angle in that plane by 1e-5 of
+/// it near the limb, by up to 0.5 deg near the zenith from low orbit.
 double from_limb_rad(const Vec<Gcrs>& from_m, const Vec<Gcrs>& direction, const OblateEarth& earth);
 
 }  // namespace dmise

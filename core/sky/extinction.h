@@ -23,12 +23,12 @@ Curve air_transmission(const Curve& extinction_mag_per_airmass, double airmass);
 /// Extinction of sunlight in a band at the zenith [mag]; the band within 0.2-5 um.
 double zenith_extinction_mag(const Band& band, const Curve& extinction_mag_per_airmass);
 
-/// Beer's law for a whole band: which share of a source's photons in the band arrive. It depends on
-/// the source's colour, and not quite exponentially on airmass: tables of both, within 0.1 % of the
-/// integral.
+/// Beer's law for a whole band: the share of a source's photons in the band that arrives. It
+/// depends on the source's colour, and not quite exponentially on airmass: tables of both, within
+/// 0.1 % of the integral.
 class BandExtinction {
  public:
-  /// `extinction` [mag/airmass]; beyond its ends their values.
+  /// `extinction` [mag/airmass]; the end values hold outside.
   BandExtinction(const Band& band, const Curve& extinction_mag_per_airmass);
 
   /// For a star of this B-V (`star_spectrum`); airmass in [0, 40], beyond it is clamped.
@@ -36,7 +36,7 @@ class BandExtinction {
   /// The same of many, to 1e-15 of it.
   void of_stars(std::span<const double> airmass, std::span<const double> bv,
                 std::span<double> share) const;
-  /// For sunlit things: as for a star of the Sun's colour.
+  /// For sunlit objects: as for a star of the Sun's colour.
   double of_sunlight(double airmass) const;
 
  private:

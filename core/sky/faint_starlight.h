@@ -24,7 +24,7 @@ struct FaintStarlight {
   static double cost_s(int level, const PlanFacts& f) { return level * 120e-9 * f.sky_looks(); }
 
   double brighter_limit_v_mag = 9.0;  // stars brighter than this are drawn one by one
-  bool by_counts = false;             // what is left is as `StarCounts` has it
+  bool by_counts = false;             // the rest is by `StarCounts`
 };
 
 /// Brightness [S10 in V] by the sine of the galactic latitude, without structure along the Milky
@@ -33,7 +33,7 @@ struct FaintStarlight {
 /// and 9: 4.0 + 7.5 exp(-|b| / 17 deg) S10 a magnitude, as counted in the Hipparcos and Tycho
 /// catalogues. Source of the sums over the sky: Leinert et al. 1998, A&AS 127, 1, section 10.
 double faint_starlight_s10(const FaintStarlight& starlight, double sin_galactic_latitude);
-/// The same in a direction (unit), and by counts where they are asked for.
+/// The same in a direction (unit); by `StarCounts` where `by_counts` is set.
 double faint_starlight_s10(const FaintStarlight& starlight, const Vec<Galactic>& direction);
 
 }  // namespace dmise

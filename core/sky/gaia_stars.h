@@ -49,8 +49,8 @@ struct JohnsonLight {
 /// et al. 2021, A&A 649, A3, appendix C; Gaia DR3 documentation, section 5.5.1.
 JohnsonLight johnson_of_gaia(double g_mag, double bp_rp);
 
-/// Appends the star of a row, moved to J2000.0. Stars without a colour are taken as like the Sun.
-/// Returns null, or what is wrong with the row, which is then left out.
+/// Appends the star of a row, moved to J2000.0. A star without a colour gets the V of one like the
+/// Sun. Returns null, or what is wrong with the row, which is then left out.
 const char* append_gaia_star(StarCatalogue& catalogue, std::uint32_t id, const GaiaRow& row);
 
 }  // namespace dmise

@@ -8,8 +8,8 @@
 
 namespace dmise {
 
-/// How much of a band's light gases leave of what the rest of the air leaves: a table over B-V and
-/// airmass, within 0.2 % of the integral.
+/// Share of a band's light that passes the gases, of what passes the rest of the air: a table over
+/// B-V and airmass, within 0.2 % of the integral.
 class BandGases {
  public:
   /// `extinction` [mag/airmass] of the rest of the air.

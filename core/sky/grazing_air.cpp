@@ -99,8 +99,8 @@ GrazingAir::GrazingAir(const Band& band) {
 }
 
 void GrazingAir::divide_disc(double alpha) {
-  // Chords of the disc along the limb, and places on them, by even steps of the angle whose cosine
-  // they are at: as Gauss and Chebyshev.
+  // Gauss-Chebyshev quadrature: chords of the disc along the limb and places on them, at the
+  // cosines of equidistant angles.
   constexpr int chords = 96, places = 4;
   double whole = 0.0;
   for (int i = 0; i < chords; ++i) {
@@ -113,7 +113,8 @@ void GrazingAir::divide_disc(double alpha) {
     }
   }
   for (Place& place : disc_) place.share /= whole;
-  // Brightness I is that of even discs with radii to sqrt(1 - I^(2 / alpha)).
+  // The brightness is that of uniform discs: the part above I has the radius sqrt(1 - I^(2 /
+  // alpha)).
   constexpr int levels = 32;
   whole = 0.0;
   for (int i = 0; i < levels; ++i) {
@@ -145,8 +146,8 @@ double GrazingAir::light_past_sharp_limb(const LowSun& sun) const {
 
 double GrazingAir::light(const LowSun& sun, double distance_m, double radius_m) const {
   // Where a ray of each height is seen over the limb: it leaves the air so that r sin(angle from
-  // the nadir + bending) is the distance of its line from the centre, and light is spread by how
-  // much farther rays are apart behind the air than before it.
+  // the nadir + bending) is the distance of its line from the centre, and light is dimmed as rays
+  // are farther apart behind the air than before it.
   std::array<double, heights> seen_rad, gain;
   const double limb_rad = std::asin(std::min(1.0, radius_m / distance_m));
   int nodes = 0;

@@ -23,13 +23,14 @@ class GrazingAir {
  public:
   explicit GrazingAir(const Band& band);
 
-  /// Light of the Sun that is left at `distance_m` from the centre of an Earth of `radius_m`, 0..1.
+  /// Share of the Sun's light that is left at `distance_m` from the centre of an Earth of
+  /// `radius_m`, 0..1.
   double light(const LowSun& sun, double distance_m, double radius_m) const;
   /// The same without air: a sharp limb before a Sun that darkens towards its own.
   double light_past_sharp_limb(const LowSun& sun) const;
 
-  /// By how much a ray of this lowest height is bent [rad], and how much of it is left, 0..1; of
-  /// the nearest node of the table.
+  /// Bending [rad] and transmission (0..1) of a ray by its lowest height, of the nearest node of
+  /// the table.
   double bending_rad(double height_m) const;
   double transmission(double height_m) const;
 
@@ -41,12 +42,12 @@ class GrazingAir {
     double up, across, share;
   };
   std::vector<Place> disc_;
-  /// The disc as a pile of even ones: radius and share.
+  /// The disc as a pile of uniform ones: radius and share.
   std::vector<std::array<double, 2>> pile_;
   std::vector<double> bending_rad_, transmission_;
 };
 
-/// Visible fraction of an even disc over a sharp limb, 0..1: continuous and monotone.
+/// Visible fraction of a uniform disc over a sharp limb, 0..1: continuous and monotone.
 double visible_fraction(const LowSun& sun);
 
 }  // namespace dmise

@@ -5,8 +5,8 @@
 
 namespace dmise {
 
-/// Tables that cost milliseconds, by what they are made of: those used last are kept. Safe to call
-/// from several threads.
+/// Cache of tables that take milliseconds to make, by what they are made of: the last 64 made are
+/// kept. Safe to call from several threads.
 template <class Key, class Table>
 class KeptTables {
  public:

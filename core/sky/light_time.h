@@ -11,8 +11,8 @@ struct LightTime {
                                      "objects are seen where they were when the light left",
                                      "up to 5.2 arcsec", "three iterations of range / c"};
 
-  // No plan saves it: it displaces an object along its way in every frame alike, which tracks do
-  // not average out as they do other errors of a budget. It costs a microsecond for each object.
+  // No plan leaves it out: it displaces an object along its path alike in every frame, which tracks
+  // do not average out as they do other errors. It costs a microsecond for each object.
   static ErrorBound error(int, const PlanFacts& f) { return f.shifted_objects(f.light_time_rad); }
 
   /// `line_m(dt_s)`: from the observer now to the object at now + dt_s. Returns the line along

@@ -21,7 +21,7 @@ struct LimbAir {
   }
 };
 
-/// How a line of sight that passes over the ground lies to the Sun at its lowest place.
+/// Geometry of a line of sight that passes over the ground: the Sun at its lowest place.
 struct LimbSun {
   double tangent_height_m = 0.0;
   double sun_zenith_rad = 0.0;
@@ -43,8 +43,9 @@ class LimbAirTable {
   ~LimbAirTable();
   LimbAirTable(LimbAirTable&&) noexcept;
 
-  /// Photons/s/m2/sr over the phase function at 1 au, 0 outside of 0..`top_m`: interpolated, by
-  /// nodes that are made when they are first needed, from any thread; and by the integral itself.
+  /// Photons/s/m2/sr over the phase function at 1 au; 0 outside of 0..`top_m`. `scattered`
+  /// interpolates between nodes that are computed when first needed, from any thread; `integrated`
+  /// is the integral itself.
   double scattered(const LimbSun& at) const;
   double integrated(const LimbSun& at) const;
 

@@ -12,11 +12,11 @@ namespace dmise {
 namespace {
 
 // Baker & Stair 1988 find OH at 87 km, 8.6 km wide at half its peak. The green line of oxygen has
-// its peak at 96 km, the continuum with it, sodium's at 90 km: 95 km for all of these. Both
-// against the one layer that the ground sees, 90 km.
+// its peak at 96 km, the continuum with it, sodium's at 90 km: 95 km for all of these. Here
+// relative to the one layer of `Airglow`, 90 km.
 constexpr double oh_above_layer_m = -3e3, rest_above_layer_m = 5e3;
 constexpr double width_at_half_m = 8.6e3;
-/// Half of the width over width at half of the peak, of (1 - x^2)^2.
+/// Half of the whole width of (1 - x^2)^2 over its width at half of the peak.
 const double half_of_width = 0.5 / std::sqrt(1.0 - std::sqrt(0.5));
 /// From here on OH alone shines, as `airglow_spectrum` has it.
 constexpr double oh_from_m = 695 * nm;

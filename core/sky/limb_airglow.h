@@ -26,7 +26,7 @@ struct LimbAirglow {
 
 /// Airglow in a band as a sum of shells, each of which shines at height h by (1 - x^2)^2, x = (h -
 /// middle) / half width. Along any line that is a polynomial, which is integrated exactly. Seen
-/// from the ground it is `Airglow` above the air: by day, too, and as bright everywhere.
+/// from the ground it is `Airglow` above the air, by day too and equally bright everywhere.
 class AirglowShells {
  public:
   /// A shell that shines from middle - half width to middle + half width.
@@ -35,8 +35,7 @@ class AirglowShells {
     double zenith_photons_per_s_m2_sr;  // seen from below
     double photons_per_s_m3_sr = 0.0;   // in its middle
   };
-  /// Light of `airglow_spectrum`, which begins at 0.2 and ends at 2.5 um; what of the band is
-  /// beyond has none.
+  /// Has the spectrum `airglow_spectrum`, 0.2-2.5 um; a band beyond it gets no light there.
   AirglowShells(const Airglow& airglow, const Band& band);
 
   /// OH; and lines of oxygen and sodium with the continuum.
@@ -44,8 +43,8 @@ class AirglowShells {
   /// Height above which nothing shines.
   double top_m() const;
   double zenith_photons_per_s_m2_sr() const;
-  /// Photons/s/m2/sr along a line to the ground or out of the shells. `behind`: what arrives of the
-  /// light from beyond the line's lowest place.
+  /// Photons/s/m2/sr along a line to the ground or out of the shells. `behind`: share of the light
+  /// from beyond the line's lowest place that arrives.
   double photons_per_s_m2_sr(const LimbLine& line, double behind = 1.0) const;
   /// The most that any line sees from outside.
   double most_photons_per_s_m2_sr(double earth_radius_m) const;

@@ -20,7 +20,7 @@ constexpr double darkest = -700.0;  // of logarithms
 struct LimbRays {
   struct Ray {
     double bending_rad;
-    /// By how much more than its lowest height its straight part passes over the ground.
+    /// How much higher than the lowest point of the ray its straight part passes over the ground.
     double lifted_m;
     double log_transmission;
   };
@@ -35,7 +35,7 @@ struct LimbRays {
                       refractivity * relative_density(height_m) * (radius_m + height_m),
                       std::max(darkest, std::log(std::max(1e-300, air.transmission(height_m))))});
     }
-    // All of it is left above.
+    // Above the last ray nothing is lost.
     const Ray last = rays.back();
     for (Ray& ray : rays) {
       ray.bending_rad = std::max(0.0, ray.bending_rad - last.bending_rad);
@@ -69,7 +69,7 @@ double LimbExtinction::of_point(const Vec<Gcrs>& direction, double distance_m) c
   if (line.from_m >= 0.0 || height_m >= top_m) return 1.0;
   const double to_m = -line.from_m, behind_m = distance_m * (1.0 / line.true_scale) - to_m;
   if (behind_m <= 0.0) return 1.0;
-  // A ray that is bent comes along a straight line that passes lower, or higher over the ground.
+  // Lowest height of the straight line between both ends of a ray that is bent.
   const double lever_m = std::isfinite(behind_m) ? to_m * behind_m / (to_m + behind_m) : to_m;
   const auto& rays = rays_->rays;
   const auto straight_m = [&](std::size_t i) {

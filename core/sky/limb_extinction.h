@@ -9,7 +9,7 @@
 
 namespace dmise {
 
-/// What one band loses in the air over the limb, by the lowest height of rays.
+/// Loss of one band in the air over the limb, by the lowest height of rays.
 struct LimbRays;
 
 /// From space: air over the Earth's limb dims what is behind it. Molecules and ozone, for sunlight
@@ -34,8 +34,8 @@ class LimbExtinction {
 
   LimbExtinction(const Band& band, const LimbSight& sight);
 
-  /// Share of a point's light that is left, [0, 1]; of one before the air all. `distance_m`: from
-  /// the observer.
+  /// Share of a point's light that is left, [0, 1]; 1 for a point before the air. `distance_m`:
+  /// from the observer.
   double of_point(const Vec<Gcrs>& direction,
                   double distance_m = std::numeric_limits<double>::infinity()) const;
   /// The same of the surface brightness of what is behind.

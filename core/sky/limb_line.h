@@ -14,10 +14,10 @@ struct LimbLine {
   double from_m = 0.0;      // where the observer is along it, from that place; < 0: it lies ahead
   double true_scale = 1.0;  // true length over length
   Vec<Gcrs> line;           // unit
-  Vec<Gcrs> nearest;        // that place
+  Vec<Gcrs> nearest;        // its nearest place to the centre
 
   double tangent_height_m() const { return nearest_m - radius_m; }
-  /// Of what lies ahead.
+  /// Lowest height of the part that lies ahead.
   double lowest_height_m() const {
     return (from_m < 0.0 ? nearest_m : std::hypot(nearest_m, from_m)) - radius_m;
   }

@@ -40,11 +40,11 @@ double moonlight_photons_per_s_m2(double v_mag, const Band& band);
 /// Irradiance by the Moon over that by the Sun in V, at a place from which they are `moon_m` and
 /// `sun_m` away.
 double moonlight_over_sunlight(const Vec<Gcrs>& moon_m, const Vec<Gcrs>& sun_m);
-/// By how much that is more in a band than in V.
+/// That ratio in a band over that in V.
 double moonlight_colour(const Band& band);
 
-/// The Moon's radiance in a band as seen from one place. Its face is taken as from afar, as phase
-/// angles and magnitudes are: all rays as along that to its centre.
+/// The Moon's radiance in a band as seen from one place. All rays are taken as parallel to that to
+/// its centre, as for phase angles and magnitudes.
 class MoonRadiance {
  public:
   /// `moon_m` and `sun_m`: from the observer, as they are seen.

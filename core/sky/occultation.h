@@ -6,9 +6,9 @@
 
 namespace dmise {
 
-/// What the Earth leaves free to see from one place: a point in space or a site on the ground, also
-/// one below the ellipsoid, which sees what stands above its tangent plane. Straight lines:
-/// refraction lifts a grazing ray by 1.1 deg, and no terrain. A few multiplications a line.
+/// Lines of sight past the Earth from one place: a point in space or a site on the ground, also one
+/// below the ellipsoid, which sees what is above its tangent plane. Straight lines: refraction
+/// lifts a grazing ray by 1.1 deg, and no terrain. A few multiplications a line.
 class FreeSight {
  public:
   FreeSight(const Vec<Gcrs>& from_m, const OblateEarth& earth);

@@ -6,8 +6,8 @@
 #include "core/sky/parallax.h"
 #include "core/sky/proper_motion.h"
 
-// An effect of place leads from where a thing is to the direction from which its light is seen. It
-// is a struct with
+// An effect of place is a step from the place of a star or satellite to the direction in which it
+// is seen. It is a struct with
 //   static constexpr EffectFacts facts;
 //   static bool applies(const SceneFacts&);   unless it always does
 //   a constructor from an Observer, where it has constants of one

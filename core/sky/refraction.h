@@ -33,12 +33,12 @@ class Refraction {
  public:
   static constexpr double star = std::numeric_limits<double>::infinity();  // as a distance
 
-  /// None: elevations pass unchanged.
+  /// No air: elevations pass unchanged.
   Refraction() = default;
   /// `wavelength_um`: [0.1, 100]. Throws `Error` for numbers that are not finite or out of range.
   explicit Refraction(const Weather& weather, double wavelength_um = 0.55);
 
-  /// How much higher than in truth a star stands at this apparent elevation [rad, >= 0].
+  /// Refraction of a star at this apparent elevation: apparent minus true [rad, >= 0].
   double at_apparent_rad(double apparent_elevation_rad) const;
 
   double apparent_from_true_rad(double true_elevation_rad, double distance_m = star) const;
@@ -50,9 +50,9 @@ class Refraction {
   Elevation apparent_from_true(const Elevation& truly, double distance_m = star) const;
   double true_from_apparent_rad(double apparent_elevation_rad, double distance_m = star) const;
 
-  /// How far aside of the observer the line passes along which light comes to the air that arrives
-  /// at this apparent elevation [m]: a body at `distance_m` is lifted by aside / distance less than
-  /// a star.
+  /// Distance from the observer [m] of the line along which light enters the air that arrives at
+  /// this apparent elevation: a body at `distance_m` is lifted less than a star by aside /
+  /// distance.
   double aside_m(double apparent_elevation_rad) const;
   /// What it was made of; pressure 0 for no air.
   const Weather& weather() const { return weather_; }

@@ -25,8 +25,8 @@ double moon_v_mag(double phase_rad);
 /// Radius of the Moon [deg]: nearer to its centre moonlight is that of its limb.
 inline constexpr double moonlight_held_within_deg = 0.25;
 
-/// By how much the Moon is brighter near opposition than that says [mag, < 0]: 35 % at full Moon,
-/// nothing from 7 deg on. Source: Krisciunas & Schaefer 1991; linear between in magnitudes.
+/// Correction of `moon_v_mag` near opposition [mag, <= 0]: 35 % brighter at full Moon, none from 7
+/// deg on. Source: Krisciunas & Schaefer 1991; linear between in magnitudes.
 double opposition_surge_mag(double phase_rad);
 
 /// Moonlight above the air, up to a factor: sunlight times the reflectance of the Moon's disc.
@@ -45,7 +45,7 @@ MoonlitAir moonlit_air(const Band& band, double k_v, double k);
 
 /// Scattering function f at an angle [rad] from the Moon, equations 16, 18 and 19 there. Where 18
 /// and 19 would jump (10 deg) the larger of both is taken, and the pole at 0 is held inside
-/// `moonlight_held_within_deg`. Its terms of molecules and of haze are for the air of a band.
+/// `moonlight_held_within_deg`. `air` scales the terms of molecules and of haze.
 double moonlight_scattering(double angle_from_moon_rad, const MoonlitAir& air = {});
 
 /// Brightness at the ground, equation 15 there [S10 of the Moon's colour above the air]. Below the

@@ -31,7 +31,7 @@ class MotionAveraging {
   std::vector<double> log_ratio_;  // by the logarithm of rate x airmass
 };
 
-/// Whether `Scintillation` heeds the motion of sources.
+/// Whether `Scintillation` takes the motion of sources into account.
 struct MovingScintillation {
   static constexpr EffectFacts facts{
       "moving_scintillation",

@@ -8,12 +8,12 @@
 
 namespace dmise {
 
-/// The shadow of the oblate Earth at one instant: umbra, penumbra and, beyond 1.38e6 km, the ring.
-/// The Sun has a radius of 695,700 km (IAU 2015 Resolution B3). Its disc is even and the Earth has
-/// no air; or it darkens towards its limb; or the air dims and refracts what grazes it, too.
+/// The shadow of the oblate Earth at one instant: umbra, penumbra and, beyond 1.38e6 km, antumbra.
+/// The Sun has a radius of 695,700 km (IAU 2015 Resolution B3).
 class EarthShadow {
  public:
-  /// Of the shadow, by level.
+  /// How the edge is computed. sharp: a uniform Sun, and an Earth without air; limb: the Sun
+  /// darkens towards its limb; air: the air dims and refracts grazing light, too.
   enum class Edge { sharp = 1, limb, air };
   static constexpr std::array<std::string_view, 4> levels{"off", "sharp", "limb", "air"};
   static constexpr EffectFacts facts{

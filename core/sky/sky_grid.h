@@ -23,8 +23,8 @@ std::size_t fill_from_grid(int columns, int rows, const PixelFunction& f, double
 /// The same without a grid: `f` at every pixel's centre.
 void fill_every_pixel(int columns, int rows, const PixelFunction& f, float* out, Threads& threads);
 
-/// The same grid as the patches from which those pixels come, for who draws them otherwise. Later
-/// ones cover earlier ones.
+/// The same grid as patches, of which the pixels are evaluations, to be drawn elsewhere. Later ones
+/// cover earlier ones.
 std::vector<SkyPatch> patches_of_grid(int columns, int rows, const PixelFunction& f,
                                       double tolerance, Threads& threads);
 

@@ -24,8 +24,8 @@ struct UniformSky {
   double v_mag_per_arcsec2 = 21.0;
 };
 
-/// The parts of the sky; each is on where it is given. To add one: write its file pair, list it
-/// here and in sky_model.cpp, test it in tests/sky.
+/// The parts of the sky; a part is on if it is given. To add one: write its file pair, list it here
+/// and in sky_model.cpp, test it in tests/sky.
 struct SkyParts {
   std::optional<UniformSky> uniform;
   std::optional<Airglow> airglow;
@@ -40,7 +40,7 @@ struct SkyParts {
 using SkyPartEffects = EffectList<Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight,
                                   Twilight, LightPollution>;
 
-/// Where such a part stands; null for other types.
+/// The member of `SkyParts` for such a part; null for other types.
 template <class Part>
 inline constexpr std::nullptr_t sky_part = nullptr;
 template <>
@@ -56,7 +56,7 @@ inline constexpr auto sky_part<Twilight> = &SkyParts::twilight;
 template <>
 inline constexpr auto sky_part<LightPollution> = &SkyParts::light_pollution;
 
-/// The parts that act: without those that are switched off or have no air to be in.
+/// The parts that act: without those that are switched off or do not apply to the scene.
 SkyParts acting_sky(const SkyParts& parts, const EffectSet& switched, const SceneFacts& scene);
 
 /// Names in the order of SkyPart, as in YAML.
@@ -79,10 +79,10 @@ struct SkyScene {
   double moon_distance_m = mean_moon_distance_m;
   Rotation<Gcrs, Enu> gcrs_from_enu;
   bool in_air = true;  // false: a camera in space, no extinction
-  /// Take light from above the air, by the path towards the zenith; none: they take nothing.
+  /// Gases that absorb light from above the air, by the path towards the zenith.
   std::optional<AirGases> gases;
-  /// Dim what comes from above them; null: none. Lamps below are neither dimmed nor mirrored, and a
-  /// `UniformSky` is as it is given.
+  /// Clouds dim light from above them; null: none. `LightPollution` and `UniformSky` are not
+  /// changed.
   std::shared_ptr<const CloudMap> clouds;
   double time_s = 0.0;  // for the clouds' drift
 };
@@ -94,14 +94,13 @@ class SkyModel {
   /// the band.
   SkyModel(const SkyParts& parts, const SkyScene& scene, const Band& band, const Curve& extinction);
 
-  /// Photons/s/m2/sr from a direction (unit) at the camera; below the horizon what is on it.
+  /// Photons/s/m2/sr from a direction (unit) at the camera; below the horizon that of the horizon.
   double photons_per_s_m2_sr(const Vec<Enu>& direction) const;
 
   /// The same of each part, in the order of `SkyPart`.
   std::array<double, sky_part_count> photons_of_parts(const Vec<Enu>& direction) const;
 
-  /// V brightness of one part [S10]; 0 where it is off. What the air does to light from above it is
-  /// that of the band.
+  /// V brightness of one part [S10]; 0 where it is off. Extinction is that of the band.
   double part_s10(SkyPart part, const Vec<Enu>& direction) const;
   /// The same of each part [S10], in the order of `SkyPart`.
   std::array<double, sky_part_count> parts_s10(const Vec<Enu>& direction) const;

@@ -8,8 +8,8 @@
 
 namespace dmise {
 
-// The sphere in bands of declination, each in cells of about equal area. Cells have numbers, by
-// band, in it by right ascension.
+// The sphere is cut into bands of declination, and these into cells of about equal area. Cells are
+// numbered by band, then by right ascension.
 
 /// Number of each band's first cell, and of all cells: bands + 1.
 std::vector<std::uint32_t> first_cells(int bands);
@@ -17,10 +17,11 @@ std::vector<std::uint32_t> first_cells(int bands);
 /// The cell of a place.
 std::uint32_t cell_at(std::span<const std::uint32_t> first_cell, double ra_rad, double dec_rad);
 
-/// Runs of cells one after another, first to last.
+/// A run of consecutive cells: first and last.
 using CellRun = std::pair<std::uint32_t, std::uint32_t>;
 
-/// All cells with a place within `radius_rad` of `axis` (unit), in order; some have none.
+/// All cells that have a place within `radius_rad` of `axis` (unit), in order, and a few that have
+/// none.
 std::vector<CellRun> cells_around(std::span<const std::uint32_t> first_cell, const Vec<Gcrs>& axis,
                                   double radius_rad);
 

@@ -17,8 +17,8 @@ double ozone_density(double height_m);
 /// Meteor. 25, 87.
 double ozone_absorption(double wavelength_m);
 
-/// Optical depth of Rayleigh scattering towards the zenith from the sea. Source: Hansen & Travis
-/// 1974, Space Sci. Rev. 16, 527.
+/// Optical depth of Rayleigh scattering from the sea to the zenith. Source: Hansen & Travis 1974,
+/// Space Sci. Rev. 16, 527.
 double rayleigh_depth(double wavelength_m);
 
 }  // namespace dmise

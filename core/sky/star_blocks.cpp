@@ -28,7 +28,8 @@ bool within(const Column<T>& values, Rows rows, double low, double high) {
   return all;
 }
 
-/// Values that `append_star` lets pass, a little wider: what moved to J2000.0 is not asked again.
+/// The ranges of `append_star`, a little wider, because values moved to J2000.0 are not checked
+/// there.
 bool plausible(const StarTable& s, const Column<Vec<Gcrs>>& direction, Rows rows) {
   bool all = within(s.ra_rad, rows, 0, 2 * pi) && within(s.dec_rad, rows, -pi / 2, pi / 2) &&
              within(s.pm_ra_cosdec_rad_per_yr, rows, -150 * arcsec, 150 * arcsec) &&

@@ -25,14 +25,14 @@ StarMap load_star_map(const std::string& path, const std::string& cache_dir) {
   const std::string cache_path = star_cache_path(cache_dir, *source);
   if (auto kept = map_star_cache(cache_path, *source)) return std::move(*kept);
   StarMap map = read_star_map(path);
-  if (star_source(path) != source) return map;  // changed meanwhile: it may be of either
+  if (star_source(path) != source) return map;  // changed meanwhile: may be of either version
   try {
     write_star_cache(cache_path, map, *source);
   } catch (const Error& error) {
     map.cache_problem = error.what();
     return map;
   }
-  // What all others use: this process's own copy goes.
+  // Maps the file, as other processes do, and drops this process's own copy.
   auto shared = map_star_cache(cache_path, *source);
   if (!shared) return map;
   shared->from_cache = false;

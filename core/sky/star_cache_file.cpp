@@ -54,7 +54,8 @@ std::string star_cache_path(const std::string& directory, const StarSource& sour
 }
 
 void write_star_cache(const std::string& path, const StarMap& map, const StarSource& source) {
-  // Several processes may be at it: each fills a file of its own and all use the first in place.
+  // Several processes may write at once: each fills a file of its own, and all use the first that
+  // is in place.
   const std::string own = own_name(path);
   write_star_map(own, map, source);
   if (renameat2(AT_FDCWD, own.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0) return;

@@ -6,7 +6,7 @@
 
 namespace dmise {
 
-/// None for what can't be read or is no regular file.
+/// Checksum and size of a file; none if it can't be read or is no regular file.
 std::optional<StarSource> star_source(const std::string& path);
 
 /// Where the map of a source is kept.

@@ -11,13 +11,13 @@
 
 namespace dmise {
 
-/// What a catalogue did not say of a star.
+/// What a catalogue does not give for a star.
 enum StarFlag : std::uint8_t {
   star_has_no_colour = 1,         // bv is by spectral class, else `default_star_bv`
-  star_has_no_parallax = 2,       // parallax_rad is 0: as far as it gets
+  star_has_no_parallax = 2,       // parallax_rad is 0: infinitely far
   star_has_no_proper_motion = 4,  // both motions are 0
 };
-inline constexpr int star_kind_shift = 4;  // what is above them is its `StarKind`
+inline constexpr int star_kind_shift = 4;  // the bits above the flags are its `StarKind`
 
 /// Colour of a star whose catalogue gives neither B-V nor spectral class: the Sun's [mag].
 inline constexpr float default_star_bv = 0.65F;
@@ -44,9 +44,9 @@ struct StarFields {
 template <class T>
 using StarVector = std::vector<T>;
 
-/// A catalogue while it is made.
+/// A catalogue that is being filled.
 using StarCatalogue = StarFields<StarVector>;
-/// One that is done.
+/// A finished one, which is shared and not changed.
 using StarTable = StarFields<Column>;
 
 /// The same stars in the same order.

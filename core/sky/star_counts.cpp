@@ -78,7 +78,7 @@ StarCounts::StarCounts(const Vec<Galactic>& direction) {
                 down * ((1 - along) * t[row + 1][column][m] + along * t[row + 1][column + 1][m]);
 }
 
-/// Of log10 N, in the step that begins at or before a magnitude.
+/// Slope of log10 N in the step that begins at or before a magnitude.
 double StarCounts::slope_at(double v_mag) const {
   const int step = std::clamp(int(std::floor(v_mag - first_v_mag)), 0, nodes - 2);
   return log_n_[step + 1] - log_n_[step];

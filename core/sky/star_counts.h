@@ -4,8 +4,8 @@
 
 namespace dmise {
 
-/// Stars per square degree by V magnitude in one direction of the Galaxy, to V = 21; linear in
-/// log N between whole magnitudes, steeper by nothing beyond the ends.
+/// Stars per square degree by V magnitude in one direction of the Galaxy, to V = 21; linear in log
+/// N between whole magnitudes and, with the slopes at the ends, beyond them.
 ///
 /// By galactic latitude: to V = 11 as counted in Tycho-2; from |b| = 20 deg on the fit of Bahcall &
 /// Soneira 1980, ApJS 44, 73, appendix B (V), which the counts of Tycho-2 join between V = 11 and
@@ -20,15 +20,15 @@ class StarCounts {
   /// `direction`: unit.
   explicit StarCounts(const Vec<Galactic>& direction);
 
-  /// Stars per square degree brighter than `v_mag`; beyond the table as its end goes on.
+  /// Stars per square degree brighter than `v_mag`.
   double brighter_than(double v_mag) const;
 
-  /// Light of the stars between two magnitudes, S10: stars of V = 10 per square degree. As stars
-  /// are drawn by `magnitude_of`.
+  /// Light of the stars between two magnitudes, S10: stars of V = 10 per square degree. Consistent
+  /// with stars drawn by `magnitude_of`.
   double light_s10(double from_v_mag, double to_v_mag) const;
 
-  /// Magnitude that `share` of the stars between two magnitudes that lie within a step of the table
-  /// are brighter than.
+  /// The magnitude than which a `share` of the stars between two magnitudes, both within one step
+  /// of the table, are brighter.
   double magnitude_of(double from_v_mag, double to_v_mag, double share) const;
 
  private:

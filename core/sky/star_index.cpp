@@ -18,8 +18,9 @@ constexpr int least_bands = 90;
 constexpr double first_limit = 9.0;
 constexpr float no_limit = std::numeric_limits<float>::infinity();
 
-/// So many tiers without stars: of V = 9 and brighter, of each magnitude, of all that is fainter.
-/// The sky has about twice as many stars a magnitude fainter; cells have some 100 stars to V = 16.
+/// Returns `count` tiers without stars: of V = 9 and brighter, of each magnitude, of all fainter
+/// ones. The sky has about twice as many stars a magnitude fainter; cells have some 100 stars to V
+/// = 16.
 std::vector<StarTier> empty_tiers(std::size_t count) {
   std::vector<StarTier> tiers;
   for (std::size_t t = 0; t < count; ++t) {

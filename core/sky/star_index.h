@@ -22,8 +22,7 @@ struct StarTier {
 };
 
 /// Finds the stars of a narrow field without touching the rest, and bright stars without touching
-/// faint ones. A tier's stars lie together in the catalogue, in it those of a cell, in it the
-/// brightest first.
+/// faint ones. The catalogue is sorted by tier, then by cell, then by magnitude.
 struct StarIndex {
   std::vector<StarTier> tiers;  // by rising magnitude; at least one
   Column<Vec<Gcrs>> direction;  // of each star at the catalogue's epoch, unit
@@ -34,12 +33,11 @@ struct StarIndex {
 
 inline constexpr std::size_t most_star_tiers = 16;
 
-/// Up to so many stars are one tier, checked as a whole when they are mapped, and may be gone
-/// through one by one.
+/// A catalogue of up to this many stars has one tier, is checked whole when it is mapped, and may
+/// be iterated over.
 inline constexpr std::size_t most_stars_at_once = 1'000'000;
 
-/// Puts the catalogue into the index's order (by tier, cell, magnitude, then as it was) and indexes
-/// it.
+/// Sorts the catalogue by tier, cell and magnitude (stable) and indexes it.
 StarIndex build_star_index(StarCatalogue& catalogue);
 
 /// Whether an index that was read is one of `stars` stars that `query_cone` can follow: with the
@@ -49,8 +47,7 @@ bool is_sound(const StarIndex& index, std::size_t stars);
 /// Appends to `found` the places in the catalogue of all stars not fainter than `faintest_v_mag`
 /// within `radius_rad` of `axis` (unit) at the catalogue's epoch, in catalogue order; all stars for
 /// radii from pi. For another epoch widen the radius by the years between times
-/// `fastest_motion_rad_per_yr`. `blocks`: what checks stars before they are looked at; null for
-/// none.
+/// `fastest_motion_rad_per_yr`. `blocks` checks stars before they are read; null for none.
 void query_cone(std::span<const float> v_mag, const StarIndex& index, const Vec<Gcrs>& axis,
                 double radius_rad, double faintest_v_mag, std::vector<std::uint32_t>& found,
                 const StarBlocks* blocks = nullptr);

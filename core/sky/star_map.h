@@ -20,9 +20,9 @@ struct StarMap {
   std::shared_ptr<const StarBlocks> blocks;  // null: all stars were checked
   std::shared_ptr<const MappedFile> file;    // that holds the columns; null: they are in memory
   bool from_cache = false;
-  std::string cache_problem;  // why nothing was kept for the next time; empty when all is well
+  std::string cache_problem;  // why no cache was written; empty if there was no problem
 
-  /// Whether all stars may be gone through: they are few, and were checked.
+  /// Whether all stars may be iterated over: they are few, and were checked.
   bool is_small() const { return stars.size() <= most_stars_at_once; }
 };
 

@@ -7,8 +7,8 @@
 
 namespace dmise {
 
-/// What tells a catalogue's file from others: of its bytes as they lie there, and of its name,
-/// because problems name it.
+/// Identifies a catalogue's file: checksum of its bytes and of its path, which problems contain,
+/// and its size.
 struct StarSource {
   std::uint32_t crc = 0;
   std::uint64_t bytes = 0;
@@ -16,7 +16,7 @@ struct StarSource {
   bool operator==(const StarSource&) const = default;
 };
 
-/// Raise it whenever a reader, the index or the layout of the file changes.
+/// Increase it whenever a reader, the index or the layout of the file changes.
 inline constexpr std::uint32_t star_map_version = 4;
 
 /// Whether a regular file begins like a map's; false where there is none.
@@ -37,8 +37,8 @@ struct OpenedStarMap {
 /// `ConfigError` "PATH: reason" for a file that is cut short, of another version, or wrong.
 OpenedStarMap open_star_map(const std::string& path);
 
-/// The bytes of a map's file that hold the checksums of all others: they tell it from every other
-/// without being gigabytes. Throws `ConfigError` as `open_star_map` does.
+/// The bytes of a map's file before its columns, with the checksums of all columns: they identify
+/// the file and are small. Throws `ConfigError` as `open_star_map` does.
 std::string star_map_fingerprint(const std::string& path);
 
 }  // namespace dmise

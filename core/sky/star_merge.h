@@ -3,7 +3,7 @@
 
 namespace dmise {
 
-/// Stars of `deeper` within so much of one of the others are that star.
+/// A star of `deeper` within this angle of another star is that star.
 inline constexpr double same_star_rad = 2.4240684e-5;  // 5 arcsec
 
 /// All stars of a catalogue, then those of a deeper one that are not in it. Both of one epoch.

@@ -3,8 +3,8 @@
 
 namespace dmise {
 
-/// What moves stars between a catalogue and an observer: years from the catalogue's epoch, and
-/// where the observer is from the barycentre as light takes years [yr] and in parallaxes [au].
+/// What moves stars between a catalogue and an observer: years from the catalogue's epoch, and the
+/// observer's position from the barycentre in light years and in au.
 struct CatalogueMotion {
   double years = 0.0, light_years[3] = {}, au[3] = {};
   double moves = 0.0;  // 1 with proper motion, else 0

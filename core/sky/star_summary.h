@@ -7,7 +7,7 @@
 
 namespace dmise {
 
-/// What is known of all stars of a catalogue without going through them.
+/// Summary of all stars of a catalogue, for use without iterating over them.
 struct StarSummary {
   static constexpr double first_v_mag = -2.0, step_mag = 0.1;
   static constexpr std::size_t bins = 320;

@@ -13,7 +13,7 @@ namespace dmise {
 namespace {
 
 // Columns by height, every 1 km, and by the zenith angle: even steps of c / (c + horizon), c its
-// cosine. Kept is the column times c + horizon over that towards the zenith, which is even.
+// cosine. Stored is the column times c + horizon over that towards the zenith, which varies little.
 constexpr double height_step_m = 1e3, horizon = 0.06;
 constexpr std::size_t heights = std::size_t(AirColumns::top_m / height_step_m) + 1, angles = 48;
 

@@ -17,10 +17,10 @@ class AirColumns {
  public:
   static constexpr double top_m = 130e3, earth_radius_m = 6371e3;
 
-  /// The one of this process.
+  /// The shared instance.
   static const AirColumns& standard();
 
-  /// Metres of the sea's density in a vertical column.
+  /// Length of a vertical column if it had the density at the sea [m].
   double column_m() const { return column_m_; }
   /// A height within the tables, for use with many angles.
   struct Level {
@@ -42,12 +42,13 @@ class AirColumns {
   std::vector<AirColumn> log_up_, stretched_;  // by height, and by height and zenith angle
 };
 
-/// Sunlight in a band that a vertical column of air scatters, after columns before and behind it.
+/// Sunlight in a band that air scatters once, dimmed by columns of air on its way.
 class ScatteredSunlight {
  public:
   explicit ScatteredSunlight(const Band& band);
-  /// Photons/s/m2/sr at 1 au, over the phase function and the metres of the sea's air; 0 where
-  /// columns let nothing through.
+  /// Photons/s/m2/sr at 1 au over the phase function, for each metre of air at the density at the
+  /// sea; 0 where columns let nothing through. `column`: all air on the way before and after
+  /// scattering.
   double behind(const AirColumn& column) const;
 
  private:

@@ -21,7 +21,7 @@ struct Tier {
 };
 constexpr std::array<Tier, 3> tiers = {Tier{14.0, 90}, Tier{17.0, 360}, Tier{25.0, 1440}};
 
-/// Of the key of all synthetic skies: no run's seed.
+/// Seed of all synthetic skies, whatever the run's seed is.
 constexpr std::uint64_t sky_seed = 0x73796e7468657469;
 
 const SphereCells& cells_of(std::size_t tier) {
@@ -46,8 +46,9 @@ std::uint32_t poisson(double mean, const std::array<std::uint32_t, 4>& words) {
   return k;
 }
 
-/// B-V of a star. Bahcall & Soneira 1980 have two heaps: stars that turn off the main sequence, and
-/// red dwarfs, which are the more the fainter; dust reddens those of the Milky Way.
+/// B-V of a star. Bahcall & Soneira 1980 have two peaks: stars at the turn-off of the main
+/// sequence, and red dwarfs, whose share grows with the magnitude; dust reddens those of the Milky
+/// Way.
 double draw_bv(double v_mag, double sin_latitude, std::uint32_t which, std::uint32_t deviate) {
   const double red_share = std::clamp(0.15 + 0.05 * (v_mag - 12.0), 0.15, 0.5);
   const double reddening =

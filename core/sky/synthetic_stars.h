@@ -11,9 +11,9 @@
 
 namespace dmise {
 
-/// Stars that no catalogue has, drawn from `StarCounts`: where a catalogue ends they go on. The sky
-/// is cut into cells, and a cell's stars are a function of the cell alone: every sensor, frame and
-/// run has the same, whatever its seed. They have no parallax and do not move.
+/// Stars fainter than those of a catalogue, drawn from `StarCounts`. The sky is cut into cells, and
+/// a cell's stars are a function of the cell alone: every sensor, frame and run has the same,
+/// whatever its seed. They have no parallax and do not move.
 class SyntheticStars {
  public:
   /// `catalogue`: whose stars to `catalogue_to_v_mag` are drawn already; null for none. From where
@@ -21,7 +21,7 @@ class SyntheticStars {
   SyntheticStars(std::shared_ptr<const StarMap> catalogue, double catalogue_to_v_mag,
                  double to_v_mag);
 
-  /// V from which on and to which there are synthetic stars; none where the first is not brighter.
+  /// Range of V of synthetic stars; empty unless the first is brighter.
   double from_v_mag() const { return from_v_mag_; }
   double to_v_mag() const { return to_v_mag_; }
 
@@ -37,10 +37,10 @@ class SyntheticStars {
   void visit(const Vec<Gcrs>& axis, double radius_rad, double faintest_v_mag,
              const std::function<void(const Stars&)>& use) const;
   static constexpr std::size_t stars_at_a_time = 512;
-  /// All of them.
+  /// The same in one piece.
   Stars around(const Vec<Gcrs>& axis, double radius_rad, double faintest_v_mag) const;
 
-  /// How many `around` gives, on the average of many skies, and without what a catalogue has.
+  /// Expected number of stars of `around`, without subtracting a catalogue's.
   double expected_around(const Vec<Gcrs>& axis, double radius_rad, double faintest_v_mag) const;
 
  private:

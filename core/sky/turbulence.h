@@ -58,7 +58,7 @@ struct Turbulence {
 
 /// r0 = (0.423 k^2 X Int Cn2 dz)^(-3/5), theta0 = (2.914 k^2 X^(8/3) Int Cn2 z^(5/3) dz)^(-3/5), k
 /// = 2 pi / wavelength, X the airmass (secant of the zenith angle). A profile without turbulence
-/// gives infinite r0. Throws `Error` for a table that doesn't ascend or holds nonsense, wavelength
+/// gives infinite r0. Throws `Error` for a table that doesn't ascend or has values <= 0, wavelength
 /// <= 0, airmass < 0.99. Source: Fried 1966, JOSA 56, 1372; Fried 1982, JOSA 72, 52; Greenwood
 /// 1977, JOSA 67, 390.
 Turbulence turbulence(const TurbulenceProfile& profile, double wavelength_m, double airmass = 1.0,

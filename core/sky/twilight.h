@@ -17,21 +17,21 @@ struct Twilight {
   double factor = 1.0;
 };
 
-/// Brightness of the zenith [S10 in V] by the Sun's altitude [rad]. Depression 5-14 deg: 11.84
-/// + 1.518 x - 0.057 x^2 mag/arcsec2, x = depression - 5 deg, the dark sky of 21.7 taken off.
+/// Brightness of the zenith [S10 in V] by the Sun's altitude [rad]. Depression 5-14 deg: 11.84 +
+/// 1.518 x - 0.057 x^2 mag/arcsec2, x = depression - 5 deg, the dark sky of 21.7 subtracted.
 /// Source: Patat, Ugolnikov & Postylyakov 2006, A&A 455, 385, table 1. Deeper, it goes on falling
 /// at the slope of 14 deg and by the square of the rest (it is gone, below 1 S10, at 18 deg);
 /// higher, it joins 7.2 mag/arcsec2 at sunset (+-0.5 mag) and is held at 4 by day.
 double twilight_zenith_s10(double sun_altitude_rad);
 
-/// Brightness of a direction up to a factor common to all: its ratio to that of the zenith is
-/// meant. More air near the horizon, brighter near the Sun. `k_v` in mag/airmass, held at 0.05 and
-/// more. Source: Schaefer 1993, Vistas in Astronomy 36, 311, twilight term.
+/// Relative brightness of a direction: only its ratio to that of the zenith has a meaning. More air
+/// near the horizon, brighter near the Sun. `k_v` in mag/airmass, held at 0.05 and more. Source:
+/// Schaefer 1993, Vistas in Astronomy 36, 311, twilight term.
 double twilight_pattern(double sin_altitude, double angle_from_sun_rad, double k_v);
 
 /// Colour by the Sun's altitude [rad], 0.2-2.5 um: sunlight times factors that give it the UBVRI of
-/// Patat et al. 2006, table 1, for depressions of 5 to 14 deg, the night sky of Patat 2003 taken
-/// off; held outside of them.
+/// Patat et al. 2006, table 1, for depressions of 5 to 14 deg, the night sky of Patat 2003
+/// subtracted; held outside of them.
 Spectrum twilight_spectrum(double sun_altitude_rad);
 
 }  // namespace dmise
