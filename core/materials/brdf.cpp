@@ -11,36 +11,6 @@
 namespace dmise {
 namespace {
 
-constexpr double pole_cos_out = 1e-6;  // f is finite down to here
-
-double per_sr(const Lambert& m, const Reflection&, double) { return m.reflectance / pi; }
-
-/// With 1/cos_out of the lobe limited to 1/`least_cos`.
-double per_sr(const SandfordRobertson& m, const Reflection& at, double least_cos) {
-  const double mean = sandford_robertson_mean(m.grazing);
-  const double falloff_in = sandford_robertson_falloff(at.cos_in, m.grazing);
-  const double falloff_out = sandford_robertson_falloff(at.cos_out, m.grazing);
-  const double diffuse = m.diffuse * falloff_in * falloff_out / (pi * mean * mean);
-  const double specular = 1.0 - (m.emissivity + m.diffuse) * falloff_in / mean;
-  // With unit vectors to source and viewer the half vector has length sqrt(2 + 2 cos_phase); it is
-  // 0 only where the surface cannot be seen lit.
-  const double sum = at.cos_in + at.cos_out;
-  const double cos2_half = std::min(1.0, sum * sum / std::max(2.0 + 2.0 * at.cos_phase, sum * sum));
-  const double e2 = m.lobe_width * m.lobe_width;
-  const double root = e2 * cos2_half + (1.0 - cos2_half);
-  const double lobe = 1.0 / (root * root);
-  const double norm = sandford_robertson_lobe_norm(at.cos_in, m.lobe_width);
-  return diffuse +
-         std::max(0.0, specular) * lobe / (4.0 * pi * norm * std::max(at.cos_out, least_cos));
-}
-
-double per_sr(const Phong& m, const Reflection& at, double) {
-  const double cos_mirror = std::clamp(2.0 * at.cos_in * at.cos_out - at.cos_phase, 0.0, 1.0);
-  return m.diffuse / pi + (cos_mirror > 0.0 ? m.specular * (m.exponent + 2.0) / (2.0 * pi) *
-                                                  std::pow(cos_mirror, m.exponent)
-                                            : 0.0);
-}
-
 double reflectance(const Lambert& m, double) { return m.reflectance; }
 
 double reflectance(const SandfordRobertson& m, double cos_in) {
@@ -105,17 +75,6 @@ void check(const Phong& m, std::string_view name) {
 }
 
 }  // namespace
-
-double brdf_per_sr(const Brdf& brdf, const Reflection& at) {
-  if (!(at.cos_in > 0.0 && at.cos_out > 0.0)) return 0.0;
-  return std::visit([&](const auto& model) { return per_sr(model, at, pole_cos_out); }, brdf);
-}
-
-double reflected_per_sr(const Brdf& brdf, const Reflection& at) {
-  if (!(at.cos_in > 0.0 && at.cos_out > 0.0)) return 0.0;
-  return std::visit([&](const auto& model) { return per_sr(model, at, least_cos_out); }, brdf) *
-         at.cos_in * at.cos_out;
-}
 
 double directional_reflectance(const Brdf& brdf, double cos_in) {
   const double c = std::clamp(cos_in, 0.0, 1.0);

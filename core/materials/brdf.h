@@ -6,14 +6,6 @@
 // wavelength or in one band.
 namespace dmise {
 
-/// Geometry of a reflection: cosines of the angles between the normal and the directions to source
-/// and viewer, and between these two (the phase angle).
-struct Reflection {
-  double cos_in = 1.0;
-  double cos_out = 1.0;
-  double cos_phase = 1.0;
-};
-
 /// Equal radiance in all directions.
 struct Lambert {
   double reflectance = 0.2;  // [0, 1]
@@ -44,8 +36,9 @@ struct Phong {
   bool operator==(const Phong&) const = default;
 };
 
-/// To add a model: write its struct here, its overloads in brdf.cpp and facet_light.cpp, its shader
-/// in sensors/render, read it in core/config/material_config.cpp, test it in tests/materials.
+/// To add a model: write its struct here, its overloads in brdf.cpp and facet_set.cpp, its shader
+/// in sensors/render, its f in tests/materials/brdf_value.h, read it in
+/// core/config/material_config.cpp.
 using Brdf = std::variant<Lambert, SandfordRobertson, Phong>;
 
 /// Below this cosine of the viewing angle (88.9 deg) the factor 1/cos_out of the Sandford-Robertson
@@ -53,14 +46,6 @@ using Brdf = std::variant<Lambert, SandfordRobertson, Phong>;
 /// turns edge-on. Costs 1 % of the light of a lobe as wide as the hemisphere at normal incidence,
 /// less for narrower ones. A choice of this implementation, not of the model.
 inline constexpr double least_cos_out = 0.02;
-
-/// f [1/sr] of the model; 0 below the surface on either side. Held constant only below a cosine of
-/// 1e-6.
-double brdf_per_sr(const Brdf& brdf, const Reflection& at);
-
-/// f cos_in cos_out: radiant intensity of a unit area in a unit irradiance [1/sr], with
-/// `least_cos_out`. Finite everywhere, continuous to 0 at grazing exit.
-double reflected_per_sr(const Brdf& brdf, const Reflection& at);
 
 /// Fraction of the light from one direction that is reflected, [0, 1]. Closed form for Lambert and
 /// Sandford-Robertson; quadrature to 1e-6 for Phong.

@@ -59,8 +59,8 @@ Brdf brdf_in_band(const Material& material, const Band& band) {
     double sum = 0.0, weights = 0.0;
     for (int i = 0; i < steps; ++i) {
       const double wavelength_m = low + (i + 0.5) * step;
-      const double response = band.response.empty() ? 1.0 : band.response.at_or_zero(wavelength_m);
-      const double weight = response * wavelength_m * sun.at_or_end(wavelength_m);
+      const double weight =
+          band.response.at_or_zero(wavelength_m) * wavelength_m * sun.at_or_end(wavelength_m);
       sum += weight * or_zero(curve, wavelength_m);
       weights += weight;
     }

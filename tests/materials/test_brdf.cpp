@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/rng.h"
 #include "core/base/units.h"
+#include "tests/materials/brdf_value.h"
 
 namespace dmise {
 namespace {

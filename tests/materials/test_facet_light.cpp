@@ -8,6 +8,7 @@
 #include "core/facets/earthshine.h"
 #include "core/materials/shapes.h"
 #include "core/photometry/diffuse_sphere.h"
+#include "tests/materials/brdf_value.h"
 #include "tests/support/directions.h"
 
 namespace dmise {
