@@ -67,13 +67,18 @@ std::vector<double> knots(const Band& band) {
   return band.response.wavelength_m;
 }
 
-Band through(const Band& band, const Curve& transmission) {
-  if (transmission.empty()) return band;
+std::vector<double> knots(const Band& band, const Curve& curve) {
   std::vector<double> at = knots(band);
-  for (const double x : transmission.wavelength_m)
+  for (const double x : curve.wavelength_m)
     if (x > band.low_m() && x < band.high_m()) at.push_back(x);
   std::sort(at.begin(), at.end());
   at.erase(std::unique(at.begin(), at.end()), at.end());
+  return at;
+}
+
+Band through(const Band& band, const Curve& transmission) {
+  if (transmission.empty()) return band;
+  const std::vector<double> at = knots(band, transmission);
   constexpr double step_m = 2 * nm;
   Curve product;
   const auto add = [&](double x) {

@@ -40,8 +40,10 @@ Band band_of(std::string name, Curve response);
 /// `transmission` keeps its end values.
 Band through(const Band& band, const Curve& transmission);
 
-/// Wavelengths [m] between which the band is linear; at least two.
+/// Wavelengths [m] between which the band is linear, ascending; at least two.
 std::vector<double> knots(const Band& band);
+/// The same where `curve` is linear, too: with those of its samples that lie in the band.
+std::vector<double> knots(const Band& band, const Curve& curve);
 
 /// Throws `Error` "band NAME: reason" unless the band is finite, positive and transmits light.
 void check_band(const Band& band);

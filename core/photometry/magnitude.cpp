@@ -39,11 +39,6 @@ double ab_zero_point_photons_per_s_m2(const Band& band) {
   return ab_w_per_m2_hz / planck_j_s * sum;
 }
 
-double sun_magnitude(const Band& band) {
-  return magnitude_of_light(photon_rate_per_m2(solar_spectrum(), band) /
-                            zero_point_photons_per_s_m2(band));
-}
-
 MagnitudeScale magnitude_scale(MagnitudeSystem system, const Band& band) {
   if (system == MagnitudeSystem::v_solar) return {};
   if (system == MagnitudeSystem::vega &&

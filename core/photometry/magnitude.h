@@ -5,7 +5,7 @@
 namespace dmise {
 
 /// V magnitude of the Sun at 1 au on which the brightness of objects is based. The reference
-/// spectra give it within 0.02 (`sun_magnitude`).
+/// spectra give it within 0.02.
 inline constexpr double sun_v_mag = -26.76;
 
 /// Photons/s/m2 of a source of magnitude 0 in `band`, above the atmosphere: Vega's rate with Vega's
@@ -15,9 +15,6 @@ double zero_point_photons_per_s_m2(const Band& band);
 
 /// The same in the AB system: 3631 Jy at every wavelength. Source: Oke & Gunn 1983, ApJ 266, 713.
 double ab_zero_point_photons_per_s_m2(const Band& band);
-
-/// Magnitude of the Sun at 1 au in `band`, from the reference spectra.
-double sun_magnitude(const Band& band);
 
 /// Photons/s/m2 in `band` of sunlight of magnitude `v_mag` (Johnson V): the Moon, a grey object,
 /// the zodiacal light.

@@ -76,20 +76,13 @@ double photon_rate_per_m2(const Spectrum& spectrum, const Band& band) {
     throw Error("band " + band.name + ": reaches beyond the spectrum of the source, " +
                 std::to_string(samples.front() / um) + " to " +
                 std::to_string(samples.back() / um) + " um");
-  std::vector<double> at = knots(band);
-  for (const double x : samples)
-    if (x > band.low_m() && x < band.high_m()) at.push_back(x);
-  std::sort(at.begin(), at.end());
-  const double energy =
-      integrate(band, at, [&](double x) { return spectrum.irradiance.at_or_zero(x) * x; });
+  const double energy = integrate(band, knots(band, spectrum.irradiance),
+                                  [&](double x) { return spectrum.irradiance.at_or_zero(x) * x; });
   return energy / (planck_j_s * speed_of_light_m_per_s);
 }
 
 double black_body_photon_rate(double temperature_k, const Band& band, const Curve& factors) {
-  std::vector<double> coarse = knots(band);
-  for (const double x : factors.wavelength_m)
-    if (x > band.low_m() && x < band.high_m()) coarse.push_back(x);
-  std::sort(coarse.begin(), coarse.end());
+  const std::vector<double> coarse = knots(band, factors);
   std::vector<double> at{coarse[0]};
   for (std::size_t i = 1; i < coarse.size(); ++i) {
     const double a = coarse[i - 1], b = coarse[i];

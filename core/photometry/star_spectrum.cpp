@@ -5,6 +5,7 @@
 #include <iterator>
 #include <span>
 
+#include "core/base/table_place.h"
 #include "core/base/units.h"
 #include "core/photometry/spectrum.h"
 
@@ -23,18 +24,18 @@ double clamped(double bv) {
 
 }  // namespace
 
-ColourTemperature colour_temperature(double bv) {
+double colour_temperature_k(double bv) {
   const double used = clamped(bv);
-  return {4600.0 * (1.0 / (0.92 * used + 1.7) + 1.0 / (0.92 * used + 0.62)), !(used == bv)};
+  return 4600.0 * (1.0 / (0.92 * used + 1.7) + 1.0 / (0.92 * used + 0.62));
 }
 
 StarSpectrum star_spectrum(const StarColour& colour) {
   std::span<const Factors> table = factors_of_colour;
-  double kelvin = colour_temperature(colour.bv).kelvin;
+  double kelvin = colour_temperature_k(colour.bv);
   double at = (clamped(colour.bv) - first_bv) / step_bv;
   if (colour.kind == StarKind::red_dwarf) {
     const double bv = std::max(clamped(colour.bv), first_dwarf_bv);
-    kelvin = colour_temperature(bv).kelvin;
+    kelvin = colour_temperature_k(bv);
     table = factors_of_red_dwarf, at = (bv - first_dwarf_bv) / step_bv;
   } else if (colour.kind >= StarKind::m0_dwarf) {
     kelvin = m_kelvin;
@@ -43,12 +44,10 @@ StarSpectrum star_spectrum(const StarColour& colour) {
     kelvin = m_kelvin;
     table = factors_of_m_giant, at = int(colour.kind) - int(StarKind::m0_giant);
   }
-  at = std::clamp(at, 0.0, double(table.size()) - 1.0);
-  const std::size_t row = std::min(std::size_t(at), table.size() - 2);
+  const auto [row, part] = table_place(at, table.size());
   StarSpectrum star{.kelvin = kelvin, .factors = {}};
   for (std::size_t i = 0; i < std::size(nodes_nm); ++i) {
-    star.factors.add(nodes_nm[i] * nm,
-                     std::lerp(table[row][i], table[row + 1][i], at - double(row)));
+    star.factors.add(nodes_nm[i] * nm, std::lerp(table[row][i], table[row + 1][i], part));
   }
   return star;
 }

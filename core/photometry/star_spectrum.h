@@ -10,14 +10,10 @@ namespace dmise {
 /// Range of B-V [mag] of the colour-temperature relation; values outside are clamped.
 inline constexpr double least_bv = -0.4, greatest_bv = 2.0;
 
-struct ColourTemperature {
-  double kelvin = 0.0;
-  bool clamped = false;  // B-V was outside the range, or NaN, which counts as least_bv
-};
-
-/// Black-body temperature of a star by its B-V, 3,168 K at 2.0 to 21,707 K at -0.4.
+/// Black-body temperature [K] of a star by its B-V, 3,168 K at 2.0 to 21,707 K at -0.4; NaN counts
+/// as `least_bv`.
 /// Source: Ballesteros 2012, EPL 97, 34008, equation 14. Its pole is at B-V = -0.674.
-ColourTemperature colour_temperature(double bv);
+double colour_temperature_k(double bv);
 
 /// Stars whose other colours are not those that most stars of their B-V have.
 enum class StarKind : std::uint8_t {
@@ -60,7 +56,7 @@ struct StarSpectrum {
   double photons_at(double wavelength_m) const;
 };
 
-/// B-V is clamped as by `colour_temperature`; red dwarfs have one of 0.95 or more.
+/// B-V is clamped as by `colour_temperature_k`; red dwarfs have one of 0.95 or more.
 StarSpectrum star_spectrum(const StarColour& colour);
 
 /// Photon rate of a star of one colour in `band`, up to a factor that depends on the colour alone.

@@ -77,7 +77,8 @@ TEST(DiffuseSphere, StandardMagnitudes) {
 // Sun and object differ by the same magnitudes in every band, that of the reference spectra's Sun
 // in V: it is grey.
 TEST(DiffuseSphere, HasTheColourOfTheSun) {
-  const double brighter = light_of_magnitude(sun_v_mag - sun_magnitude(johnson_v()));
+  const double brighter = light_of_magnitude(sun_v_mag) * zero_point_photons_per_s_m2(johnson_v()) /
+                          photon_rate_per_m2(solar_spectrum(), johnson_v());
   for (const char* name : {"bessell-B", "bessell-V", "bessell-I"}) {
     const Band band = *filter_named(name);
     const double expected = brighter * photon_rate_per_m2(solar_spectrum(), band);

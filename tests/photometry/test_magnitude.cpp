@@ -48,10 +48,15 @@ TEST(Magnitude, FluxOfMagnitudeZero) {
 // Willmer 2018, ApJS 236, 47: the Sun's Vega magnitudes B -26.13, V -26.76, R -27.15, I -27.47
 // (their V is -26.76 by definition, the others by other spectra of the Sun: 0.05 mag).
 TEST(Magnitude, TheSun) {
-  EXPECT_NEAR(sun_magnitude(*filter_named("bessell-V")), -26.76, 0.02);
-  EXPECT_NEAR(sun_magnitude(*filter_named("bessell-B")), -26.13, 0.05);
-  EXPECT_NEAR(sun_magnitude(*filter_named("bessell-R")), -27.15, 0.05);
-  EXPECT_NEAR(sun_magnitude(*filter_named("bessell-I")), -27.47, 0.05);
+  const auto sun_magnitude = [](const char* filter) {
+    const Band band = *filter_named(filter);
+    return magnitude_of_light(photon_rate_per_m2(solar_spectrum(), band) /
+                              zero_point_photons_per_s_m2(band));
+  };
+  EXPECT_NEAR(sun_magnitude("bessell-V"), -26.76, 0.02);
+  EXPECT_NEAR(sun_magnitude("bessell-B"), -26.13, 0.05);
+  EXPECT_NEAR(sun_magnitude("bessell-R"), -27.15, 0.05);
+  EXPECT_NEAR(sun_magnitude("bessell-I"), -27.47, 0.05);
 }
 
 // Blanton & Roweis 2007, AJ 133, 734, table 1: AB - Vega is 0.79, -0.09, 0.02, 0.21, 0.45 in UBVRI.

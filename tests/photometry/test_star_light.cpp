@@ -12,12 +12,10 @@
 namespace dmise {
 namespace {
 
-TEST(StarLight, ColoursOutsideTheFormulaAreClampedAndFlagged) {
+TEST(StarLight, ColoursOutsideTheFormulaAreClamped) {
   for (const double bv : {-0.674, -5.0, -0.41, 2.01, 5.46, double(NAN), double(INFINITY)}) {
-    const ColourTemperature t = colour_temperature(bv);
-    EXPECT_TRUE(t.clamped) << bv;
-    EXPECT_GT(t.kelvin, 3000) << bv;
-    EXPECT_LT(t.kelvin, 22000) << bv;
+    EXPECT_GT(colour_temperature_k(bv), 3000) << bv;
+    EXPECT_LT(colour_temperature_k(bv), 22000) << bv;
     EXPECT_TRUE(std::isfinite(StarLight(Band{}).photons_per_s_m2(3.0, bv))) << bv;
   }
 }

@@ -34,9 +34,8 @@ TEST(StarSpectrum, BlackBodyAgreesWithPlancksLaw) {
 
 // Ballesteros 2012: the Sun's B-V of 0.65 gives its effective temperature, 5772 K, to 10 K.
 TEST(StarSpectrum, ColourTemperature) {
-  EXPECT_NEAR(colour_temperature(0.65).kelvin, 5772, 10);
-  EXPECT_FALSE(colour_temperature(0.65).clamped);
-  EXPECT_NEAR(colour_temperature(0.0).kelvin, 10125, 1);
+  EXPECT_NEAR(colour_temperature_k(0.65), 5772, 10);
+  EXPECT_NEAR(colour_temperature_k(0.0), 10125, 1);
 }
 
 double magnitude(const char* filter, const StarColour& colour) {
