@@ -193,12 +193,6 @@ OrbitFilter::OrbitFilter(const ForceModel& forces, const OrbitEstimate& start,
 
 OrbitFilter::~OrbitFilter() = default;
 OrbitFilter::OrbitFilter(OrbitFilter&&) noexcept = default;
-OrbitFilter& OrbitFilter::operator=(OrbitFilter&&) noexcept = default;
-OrbitFilter::OrbitFilter(const OrbitFilter& other) : body_(std::make_unique<Body>(*other.body_)) {}
-OrbitFilter& OrbitFilter::operator=(const OrbitFilter& other) {
-  if (this != &other) body_ = std::make_unique<Body>(*other.body_);
-  return *this;
-}
 
 SimTime OrbitFilter::time() const { return body_->last().belief.mean.time; }
 OrbitEstimate OrbitFilter::estimate() const { return body_->estimate_of(body_->last().belief); }

@@ -28,9 +28,6 @@ class OrbitFilter {
               const FilterSettings& settings = {});
   ~OrbitFilter();
   OrbitFilter(OrbitFilter&&) noexcept;
-  OrbitFilter& operator=(OrbitFilter&&) noexcept;
-  OrbitFilter(const OrbitFilter& other);
-  OrbitFilter& operator=(const OrbitFilter& other);
 
   /// Of the last observation that was taken.
   SimTime time() const;

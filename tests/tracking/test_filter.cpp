@@ -74,7 +74,7 @@ TEST(Filter, AgreesWithLeastSquares) {
 TEST(Filter, OrderOfArrivalDoesNotMatter) {
   const ForceModel forces(ForceSettings{});
   const TrackingTrial trial = tracking_trial(forces, {}, 11);
-  OrbitFilter in_order = started(forces, trial, {}), shuffled = in_order;
+  OrbitFilter in_order = started(forces, trial, {}), shuffled = started(forces, trial, {});
   std::vector<AngleObservation> rest(trial.observations.begin() + 6, trial.observations.end());
   const auto feed = [](OrbitFilter& filter, const std::vector<AngleObservation>& all) {
     for (const AngleObservation& seen : all) ASSERT_TRUE(filter.update(seen));
