@@ -54,12 +54,13 @@ void measure_deposit(bool json) {
   ExpectedElectronImage image(columns, rows, 100.0f);
   const PsfTable psf = make_psf_table(1.5 / fwhm_per_sigma);
   const auto arcs = trails(columns, rows);
-  print_figure({"star_trails_15000_ms", 1e3 * seconds([&] { deposit(arcs, psf, image, one); }),
-                "ms", "", 0, 30, true},
-               json);
+  print_figure(
+      {"star_trails_15000_ms", 1e3 * seconds([&] { deposit(arcs, psf, view_of(image), one); }),
+       "ms", "", 0, 30, true},
+      json);
   const Arc streak{{100, 100}, {300, 250}, {500, 400}, 1e6};
   print_figure({"streak_500px_ms", 1e3 * seconds([&] {
-                                     deposit({&streak, 1}, psf, image, one);
+                                     deposit({&streak, 1}, psf, view_of(image), one);
                                    }),
                 "ms"},
                json);

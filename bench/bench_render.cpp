@@ -88,7 +88,7 @@ void measure_snapshots(SceneRenderer& renderer, bool json) {
   draw_all();
   Threads one(1);
   const PsfTable psf = make_psf_table(sigma_px);
-  const double path_s = median_seconds(5, [&] { deposit(trails, psf, image, one); });
+  const double path_s = median_seconds(5, [&] { deposit(trails, psf, view_of(image), one); });
   const double drawn_s = median_seconds(5, draw_all, process_seconds);
   print_figure({"snapshots_frame_s", drawn_s, "s", "path integral [s]", path_s}, json);
   print_figure({"snapshots_frame_ratio", drawn_s / path_s, "1"}, json);

@@ -220,12 +220,6 @@ DepositView view_of(ExpectedElectronImage& image) {
           .frame_rows = image.rows};
 }
 
-std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
-                               ExpectedElectronImage& image, Threads& threads, SimdLevel level,
-                               DepositSums sums) {
-  return deposit(arcs, psf, view_of(image), threads, level, sums);
-}
-
 Deposited deposited_in_frame(const Arc& arc, const PsfTable& psf, const DepositView& view) {
   return inside(arc, psf, view);
 }

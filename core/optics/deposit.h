@@ -55,17 +55,12 @@ DepositView view_of(ExpectedElectronImage& image);
 /// For the others the sum is then all of their light, and the centroid their middle.
 enum class DepositSums { all, cut };
 
-/// Adds arcs to `image` [e-] and returns what is inside the frame for each. Light per pixel is
+/// Adds arcs to `view` [e-] and returns what is inside the frame for each. Light per pixel is
 /// accurate to 2e-6 of the arc's brightest pixel, the sum over pixels to 1e-6, for lengths of 0 to
 /// 1e12 px: panels of 2 sigma along the path with five Gauss-Legendre nodes. A short arc that may
 /// miss some light is one panel of as few nodes as that allows (`ShortArcRule`). The bytes depend
 /// neither on the number of threads nor on the instruction set nor on `sums`. Throws `Error` naming
 /// the arc if a value is not finite or the signal is negative.
-std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
-                               ExpectedElectronImage& image, Threads& threads,
-                               SimdLevel level = best_simd_level(),
-                               DepositSums sums = DepositSums::all);
-
 std::vector<Deposited> deposit(std::span<const Arc> arcs, const PsfTable& psf,
                                const DepositView& view, Threads& threads,
                                SimdLevel level = best_simd_level(),

@@ -87,11 +87,6 @@ int screens_of(const PointSpread& s, double wavelength_m, const SensorSeeing* ai
 
 }  // namespace
 
-const char* name(Method method) {
-  constexpr const char* names[] = {"auto", "deposit", "direct", "transform"};
-  return names[std::size_t(method)];
-}
-
 PsfPlan plan_psf(const Optics& o, double wavelength_m, const std::optional<SensorSeeing>& seeing,
                  double exposure_s, AirTurbulence::Level turbulence) {
   const PointSpread& s = o.spread;

@@ -50,7 +50,4 @@ inline constexpr int largest_oversampling = 16;
 /// Gaussian width of deposits on the grid in cells; the kernel is divided by it.
 inline constexpr double grid_sigma_cells = 1.0;
 
-/// "deposit", ...
-const char* name(PointSpread::Method method);
-
 }  // namespace dmise

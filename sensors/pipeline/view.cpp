@@ -162,8 +162,4 @@ double View::turns_rad_per_s(const Vec<Gcrs>& direction) const {
   return earth_turn_rad_per_s * std::hypot(direction.x, direction.y);  // the pole is z to 0.1 deg
 }
 
-std::optional<PixelPosition> View::pixel(const Vec<Gcrs>& apparent, SimTime t) const {
-  return project(sensor_.camera.optics, camera_from_gcrs(t) * apparent);
-}
-
 }  // namespace dmise

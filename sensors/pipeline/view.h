@@ -101,10 +101,6 @@ class View {
   /// Of moonlight on objects, `moonlight_colour` of the band; 1 where the effect is off.
   double moonlight_colour() const { return moonlight_colour_; }
 
-  /// Pixel of an apparent direction (observed: aberration and refraction in it); nothing where the
-  /// projection has no image.
-  std::optional<PixelPosition> pixel(const Vec<Gcrs>& apparent, SimTime t) const;
-
  private:
   PointingScene pointing_scene(SimTime t) const;
   /// The attitude that the mount is told when its clock reads `reading`.

@@ -75,7 +75,7 @@ ExpectedElectronImage directly(const Optics& o, std::span<const Arc> arcs, Threa
 
 ExpectedElectronImage analytically(const Optics& o, std::span<const Arc> arcs, Threads& threads) {
   ExpectedElectronImage light(o.columns, o.rows);
-  deposit(arcs, make_psf_table(psf_sigma_px(o, lambda)), light, threads);
+  deposit(arcs, make_psf_table(psf_sigma_px(o, lambda)), view_of(light), threads);
   return light;
 }
 

@@ -172,7 +172,7 @@ TEST(BlurGrid, AnalyticDepositAgreesWithASixteenTimesFinerTransform) {
     ExpectedElectronImage direct(side, side);
     const PixelPosition at{(u + 0.5) / fine - 0.5, (v + 0.5) / fine - 0.5};
     const Arc point{at, at, at, 1.0};
-    deposit(std::span(&point, 1), make_psf_table(sigma_px), direct, one);
+    deposit(std::span(&point, 1), make_psf_table(sigma_px), view_of(direct), one);
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) {
         double s = 0;

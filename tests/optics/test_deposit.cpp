@@ -30,7 +30,7 @@ Arc straight(PixelPosition a, PixelPosition b, double e) { return {a, (a + b) * 
 Deposited draw(const Arc& arc, ExpectedElectronImage& image,
                double sigma = fwhm_px / fwhm_per_sigma) {
   Threads one(1);
-  return deposit(std::span(&arc, 1), make_psf_table(sigma), image, one)[0];
+  return deposit(std::span(&arc, 1), make_psf_table(sigma), view_of(image), one)[0];
 }
 
 // Reference: the Gaussian's integral over the pixel by the C library's erf, the path by Simpson's
@@ -136,13 +136,13 @@ TEST(Deposit, TheBytesDependOnNeitherThreadsNorInstructionSet) {
   const PsfTable psf = make_psf_table(fwhm_px / fwhm_per_sigma);
   ExpectedElectronImage reference(3326, 2504, 1000.0f);
   Threads one(1);
-  const auto told = deposit(arcs, psf, reference, one, SimdLevel::sse2);
+  const auto told = deposit(arcs, psf, view_of(reference), one, SimdLevel::sse2);
   for (int count : {1, 2, 4})
     for (SimdLevel level : {SimdLevel::sse2, SimdLevel::avx2, SimdLevel::avx512}) {
       if (level > best_simd_level()) continue;
       Threads threads(count);
       ExpectedElectronImage image(3326, 2504, 1000.0f);
-      const auto again = deposit(arcs, psf, image, threads, level);
+      const auto again = deposit(arcs, psf, view_of(image), threads, level);
       EXPECT_EQ(image.pixels, reference.pixels) << count << name(level);
       for (std::size_t i = 0; i < arcs.size(); ++i) ASSERT_EQ(again[i].x_px, told[i].x_px);
     }
@@ -221,9 +221,9 @@ TEST(Deposit, AShortArcMissesNoMoreThanItMayAnywhere) {
   ExpectedElectronImage exact(64, 136), rough(64, 136);
   Threads one(1);
   const PsfTable psf = make_psf_table(fwhm_px / fwhm_per_sigma);
-  deposit(arcs, psf, rough, one);
+  deposit(arcs, psf, view_of(rough), one);
   for (Arc& arc : arcs) arc.may_miss_e = 0.0;
-  deposit(arcs, psf, exact, one);
+  deposit(arcs, psf, view_of(exact), one);
   EXPECT_NE(exact.pixels, rough.pixels);
   // Some six arcs share a pixel.
   for (std::size_t i = 0; i < exact.pixels.size(); ++i)
@@ -237,8 +237,8 @@ TEST(Deposit, SumsOfCutArcsAloneAreTheSame) {
   const PsfTable psf = make_psf_table(fwhm_px / fwhm_per_sigma);
   ExpectedElectronImage all(3326, 2504), cut(3326, 2504);
   Threads one(1);
-  const auto of_all = deposit(arcs, psf, all, one);
-  const auto of_cut = deposit(arcs, psf, cut, one, best_simd_level(), DepositSums::cut);
+  const auto of_all = deposit(arcs, psf, view_of(all), one);
+  const auto of_cut = deposit(arcs, psf, view_of(cut), one, best_simd_level(), DepositSums::cut);
   EXPECT_EQ(all.pixels, cut.pixels);
   int at_the_rim = 0;
   for (std::size_t i = 0; i < arcs.size(); ++i) {

@@ -14,7 +14,7 @@ namespace {
 ExpectedElectronImage drawn(const std::vector<Arc>& arcs, const PsfTable& psf) {
   ExpectedElectronImage image(96, 48);
   Threads one;
-  deposit(arcs, psf, image, one);
+  deposit(arcs, psf, view_of(image), one);
   return image;
 }
 

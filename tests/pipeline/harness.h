@@ -6,13 +6,16 @@
 #include <fstream>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/config/make_clock.h"
 #include "core/config/scenario.h"
+#include "core/optics/projection.h"
 #include "nodes/environment/environment_actor.h"
 #include "orbit-node/orbit_actor.h"
 #include "sensors/pipeline/frame_pipeline.h"
+#include "sensors/pipeline/view.h"
 
 namespace dmise::test {
 
@@ -38,8 +41,8 @@ class Stage {
     OrbitActor orbit(scenario, clock, threads);
     EnvironmentActor environment(scenario, clock);
     for (Tick tick = 0; tick <= scenario.last_tick(); ++tick) {
-      for (const auto& message : orbit.step(tick, {})) add(message);
-      for (const auto& message : environment.step(tick, {})) add(message);
+      for (const auto& message : orbit.step(tick, {})) world.add(message.state);
+      for (const auto& message : environment.step(tick, {})) world.add(message.state);
     }
     if (!scenario.star_catalogue_path.empty())
       stars = std::make_shared<const StarMap>(load_star_map(scenario.star_catalogue_path));
@@ -68,16 +71,6 @@ class Stage {
 
  private:
   void write(const char* name, const std::string& text) { std::ofstream(directory / name) << text; }
-  void add(const Message& message) {
-    std::visit(
-        [&](const auto& state) {
-          using T = std::decay_t<decltype(state)>;
-          if constexpr (std::is_same_v<T, ObjectRoster> || std::is_same_v<T, ObjectStates> ||
-                        std::is_same_v<T, EnvironmentState> || std::is_same_v<T, SiteState>)
-            world.add(std::make_shared<const T>(state));
-        },
-        *message.state);
-  }
 };
 
 /// The first two frames of the first sensor are the same whichever comes first, by any of these
@@ -99,6 +92,13 @@ inline void expect_same_by_threads(Stage& stage, std::initializer_list<int> numb
     EXPECT_EQ(pipeline.run(frame_times(config, 1), stage.world).counts.pixels, first) << n;
     EXPECT_EQ(pipeline.run(frame_times(config, 2), stage.world).counts.pixels, second) << n;
   }
+}
+
+/// Pixel of an apparent direction (observed: aberration and refraction in it); nothing where the
+/// projection has no image.
+inline std::optional<PixelPosition> pixel_of(const View& view, const Vec<Gcrs>& apparent,
+                                             SimTime t) {
+  return project(view.sensor().camera.optics, view.camera_from_gcrs(t) * apparent);
 }
 
 /// Centroid of the counts within `radius_px` of a place; the frame must have no background.

@@ -98,7 +98,7 @@ TEST(RolledDisc, OfTheSunIsShearedByItsRateTimesTheRowTime) {
         << px_per_s;
     for (const int y : {70, 100, 130}) {
       const SimTime t = view.times().middle + sim_seconds(y * row_us * 1e-6);
-      const auto sun = view.pixel(seen_sun(view, t).apparent, t);
+      const auto sun = pixel_of(view, seen_sun(view, t).apparent, t);
       EXPECT_NEAR(moments_of(image, y, y).x, sun->x_px, 0.05) << px_per_s << " " << y;
     }
   }
@@ -144,8 +144,8 @@ TEST(RolledDisc, ThatMovesAlongColumnsIsHigherByOneOverOneLessItsSpeed) {
     const auto& sensor = stage.scenario.sensors[0];
     const View view(sensor, frame_times(sensor, 1), stage.world);
     const SimTime t = view.times().middle, later = t + sim_seconds(0.1);
-    const double speed_px_per_s = (view.pixel(seen_sun(view, later).apparent, later)->y_px -
-                                   view.pixel(seen_sun(view, t).apparent, t)->y_px) /
+    const double speed_px_per_s = (pixel_of(view, seen_sun(view, later).apparent, later)->y_px -
+                                   pixel_of(view, seen_sun(view, t).apparent, t)->y_px) /
                                   0.1;
     EXPECT_NEAR(std::abs(speed_px_per_s), std::abs(px_per_s), 0.5);
     turning.px_per_s = 0.0;
@@ -169,7 +169,7 @@ TEST(RolledDisc, ComesIntoTheFieldWhileLaterRowsAreExposed) {
   const View view(sensor, frame_times(sensor, 1), stage.world);
   const SimTime first = view.times().middle, last = first + sim_seconds(0.199);
   const auto from_middle_px = [&](SimTime t) {
-    return std::abs(view.pixel(seen_sun(view, t).apparent, t)->x_px - 0.5 * (side - 1));
+    return std::abs(pixel_of(view, seen_sun(view, t).apparent, t)->x_px - 0.5 * (side - 1));
   };
   EXPECT_GT(from_middle_px(first), 0.5 * side + 48 + disc_margin_px);
   EXPECT_LT(from_middle_px(last), 5.0);

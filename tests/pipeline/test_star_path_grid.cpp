@@ -41,7 +41,7 @@ double compare(const std::string& yaml) {
     StarPath path;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec<Gcrs> seen = view.places(times[k]).seen(astrometric);
-      const auto pixel = view.pixel(seen, times[k]);
+      const auto pixel = test::pixel_of(view, seen, times[k]);
       if (!pixel) return std::nullopt;
       path.pixel[k] = *pixel;
       if (k == 1) path.middle = seen;

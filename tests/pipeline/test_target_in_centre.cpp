@@ -105,7 +105,7 @@ double off_centre_px(const test::Stage& stage, const SensorConfig& sensor,
   const SimTime t = view.times().middle;
   const Motion motion = stage.world.motion(object_index(stage.world.roster(), object, "test"), t);
   const auto place = view.places(t).satellite(motion.position_m, motion.slope_m_per_s);
-  const auto pixel = view.pixel(place.direction, t);
+  const auto pixel = test::pixel_of(view, place.direction, t);
   const Optics& optics = sensor.camera.optics;
   return pixel ? std::hypot(pixel->x_px - (optics.columns - 1) / 2.0,
                             pixel->y_px - (optics.rows - 1) / 2.0)
@@ -270,7 +270,7 @@ TEST(TargetInCentre, FromTheFirstToTheLastInstantWhileItTracks) {
       const Motion motion =
           stage.world.motion(object_index(stage.world.roster(), target, "test"), t);
       const auto place = view.places(t).satellite(motion.position_m, motion.slope_m_per_s);
-      const auto pixel = view.pixel(place.direction, t);
+      const auto pixel = test::pixel_of(view, place.direction, t);
       ASSERT_TRUE(pixel);
       EXPECT_LT(std::hypot(pixel->x_px - 127.5, pixel->y_px - 127.5), tolerance_px) << target;
     }

@@ -73,7 +73,8 @@ TEST(Truth, HasItsLabelWhereTheCameraHasItsPlace) {
   const auto& sensor = stage.scenario.sensors[0];
   const View view(sensor, frame_times(sensor, 1), stage.world);
   // Skyfield's apparent place, in the fisheye: 0.001 px are 1.1 arcsec.
-  const auto at = view.pixel(from_spherical<Gcrs>(15.697105 * deg, 35.774321 * deg), truth.middle);
+  const auto at =
+      test::pixel_of(view, from_spherical<Gcrs>(15.697105 * deg, 35.774321 * deg), truth.middle);
   ASSERT_TRUE(at);
   EXPECT_NEAR(truth.middle_x_px, at->x_px, 0.001);
   EXPECT_NEAR(truth.middle_y_px, at->y_px, 0.001);
@@ -81,7 +82,7 @@ TEST(Truth, HasItsLabelWhereTheCameraHasItsPlace) {
     const auto motion = stage.world.motion(0, t);
     return view.places(t).satellite(motion.position_m, motion.slope_m_per_s).direction;
   };
-  const auto end = view.pixel(direction_at(truth.end), truth.end);
+  const auto end = test::pixel_of(view, direction_at(truth.end), truth.end);
   EXPECT_NEAR(truth.end_x_px, end->x_px, 1e-6);
   EXPECT_NEAR(truth.end_y_px, end->y_px, 1e-6);
   EXPECT_GT(std::hypot(truth.end_x_px - truth.middle_x_px, truth.end_y_px - truth.middle_y_px),

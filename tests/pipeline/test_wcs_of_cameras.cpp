@@ -85,7 +85,7 @@ Asked ask(const CameraCase& c) {
       const Vec<Gcrs> apparent =
           places.star({.ra_rad = ra, .dec_rad = dec, .epoch_jyear = 2018.06});
       if (view.on_ground() && dot(apparent, view.up(middle)) < 0.0) continue;
-      const auto pixel = view.pixel(apparent, middle);
+      const auto pixel = test::pixel_of(view, apparent, middle);
       if (!pixel || std::abs(pixel->x_px + 0.5 - 0.5 * c.columns) > 0.5 * c.columns ||
           std::abs(pixel->y_px + 0.5 - 0.5 * c.rows) > 0.5 * c.rows)
         continue;

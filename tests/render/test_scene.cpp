@@ -44,7 +44,7 @@ ExpectedElectronImage deposited(const std::vector<ScenePoint>& points, double si
     arcs.push_back({at, at, at, p.light, 0.0});
   }
   Threads one;
-  deposit(arcs, make_psf_table(sigma), image, one);
+  deposit(arcs, make_psf_table(sigma), view_of(image), one);
   return image;
 }
 
