@@ -60,13 +60,4 @@ double MonotoneCubic::operator()(double x) const {
          h * s * t * (s * slope_[i] - t * slope_[i + 1]);
 }
 
-double MonotoneCubic::slope(double x) const {
-  if (at_.size() < 2 || x < at_.front() || x > at_.back()) return 0.0;
-  const auto above = std::upper_bound(at_.begin(), at_.end() - 1, x);
-  const auto i = std::size_t(std::max(above - at_.begin(), std::ptrdiff_t(1)) - 1);
-  const double h = at_[i + 1] - at_[i], t = (x - at_[i]) / h, s = 1.0 - t;
-  return 6 * t * s * (value_[i + 1] - value_[i]) / h + s * (s - 2 * t) * slope_[i] +
-         t * (t - 2 * s) * slope_[i + 1];
-}
-
 }  // namespace dmise

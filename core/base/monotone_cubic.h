@@ -17,8 +17,6 @@ class MonotoneCubic {
   const std::vector<double>& at() const { return at_; }
   const std::vector<double>& value() const { return value_; }
   double operator()(double x) const;
-  /// Its derivative; 0 outside.
-  double slope(double x) const;
 
   bool operator==(const MonotoneCubic&) const = default;
 

@@ -1,7 +1,6 @@
 #pragma once
 #include "core/base/json.h"
 #include "core/plan/cost_factors.h"
-#include "core/plan/planner.h"
 
 namespace dmise {
 

@@ -119,12 +119,6 @@ EffectPlan plan_in_time(const std::vector<Levels>& levels, const PlanFacts& fact
 
 }  // namespace
 
-const PlannedEffect* EffectPlan::find(const EffectFacts& effect) const {
-  for (const auto& p : planned)
-    if (p.facts->name == effect.name) return &p;
-  return nullptr;
-}
-
 EffectPlan plan_effects(std::span<const PlannableEffect> effects, const PlanFacts& facts,
                         const EffectSet& asked, const Accuracy& accuracy) {
   for (const auto& kind : error_kinds) check(accuracy.budget.*kind.value, kind.key);

@@ -1,12 +1,9 @@
 #pragma once
-#include <map>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/effects/accuracy.h"
-#include "core/effects/effects.h"
 #include "core/effects/plan_facts.h"
 
 namespace dmise {
@@ -34,8 +31,6 @@ struct EffectPlan {
   double cost_s = 0.0;      // likewise
   double least_cost_s = 0;  // no plan within the budget costs less
   bool in_time = true;      // false: no plan is as fast as was asked; this is the fastest
-
-  const PlannedEffect* find(const EffectFacts& effect) const;
 };
 
 /// Chooses one level for each effect: the cheapest levels whose errors sum up to no more than the

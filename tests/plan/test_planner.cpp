@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -32,26 +33,32 @@ EffectPlan plan(const Accuracy& accuracy, const EffectSet& asked = {}, double po
   return plan_effects(effects, facts, asked, accuracy);
 }
 
+/// What a plan says of an effect.
+const PlannedEffect& of(const EffectPlan& plan, const EffectFacts& effect) {
+  return *std::ranges::find(plan.planned, effect.name,
+                            [](const PlannedEffect& p) { return p.facts->name; });
+}
+
 TEST(Planner, TakesTheCheapestLevelsWithinTheBudget) {
   const EffectPlan standard = plan(standard_accuracy());
-  EXPECT_EQ(standard.find(graded)->level_name(), "fine");  // 0.001 of 0.01 mag
-  EXPECT_EQ(standard.find(plain)->level_name(), "on");     // 0.2 of 0.05 px
+  EXPECT_EQ(of(standard, graded).level_name(), "fine");  // 0.001 of 0.01 mag
+  EXPECT_EQ(of(standard, plain).level_name(), "on");     // 0.2 of 0.05 px
   EXPECT_EQ(standard.effects.level(on_wish), 0);
   EXPECT_DOUBLE_EQ(standard.cost_s, 0.1 + 0.01 + 0.002);
   const EffectPlan draft = plan(draft_accuracy());
-  EXPECT_EQ(draft.find(graded)->level_name(), "coarse");
-  EXPECT_EQ(draft.find(plain)->level_name(), "off");
+  EXPECT_EQ(of(draft, graded).level_name(), "coarse");
+  EXPECT_EQ(of(draft, plain).level_name(), "off");
   EXPECT_TRUE(draft.error.within(draft_budget));
 }
 
 TEST(Planner, ReferenceTakesTheLastLevels) {
   const EffectPlan reference = plan(reference_accuracy());
-  EXPECT_EQ(reference.find(graded)->level_name(), "exact");
+  EXPECT_EQ(of(reference, graded).level_name(), "exact");
   EXPECT_EQ(reference.error, ErrorBound{});
 }
 
 TEST(Planner, WhatCostsNoErrorIsLeftOutOfTheReferenceToo) {
-  EXPECT_EQ(plan(reference_accuracy(), {}, 0.0).find(plain)->level_name(), "off");
+  EXPECT_EQ(of(plan(reference_accuracy(), {}, 0.0), plain).level_name(), "off");
 }
 
 TEST(Planner, LeavesForcedLevelsAndChargesThemToNobody) {
@@ -59,10 +66,10 @@ TEST(Planner, LeavesForcedLevelsAndChargesThemToNobody) {
   asked.force_level(graded, 0);
   asked.force(on_wish, true);
   const EffectPlan forced = plan(standard_accuracy(), asked);
-  EXPECT_EQ(forced.find(graded)->level_name(), "off");
+  EXPECT_EQ(of(forced, graded).level_name(), "off");
   EXPECT_EQ(forced.effects.level(on_wish), 1);
   EXPECT_EQ(forced.error.photometry_mag, 0.0);
-  EXPECT_EQ(why(*forced.find(graded), forced), "as the scenario says");
+  EXPECT_EQ(why(of(forced, graded), forced), "as the scenario says");
 }
 
 TEST(Planner, KeepsATimeWithTheSmallestError) {
@@ -70,11 +77,11 @@ TEST(Planner, KeepsATimeWithTheSmallestError) {
     return plan({.name = "seconds", .budget = {}, .seconds_per_frame = seconds});
   };
   EXPECT_EQ(in(2.0).error, ErrorBound{});
-  EXPECT_EQ(in(0.5).find(graded)->level_name(), "fine");
-  EXPECT_EQ(in(0.05).find(graded)->level_name(), "coarse");
+  EXPECT_EQ(of(in(0.5), graded).level_name(), "fine");
+  EXPECT_EQ(of(in(0.05), graded).level_name(), "coarse");
   EXPECT_LE(in(0.05).cost_s, 0.05);
   EXPECT_FALSE(in(1e-6).in_time);
-  EXPECT_EQ(in(1e-6).find(graded)->level_name(), "off");
+  EXPECT_EQ(of(in(1e-6), graded).level_name(), "off");
   EXPECT_TRUE(in(1.0).in_time);
 }
 
@@ -101,8 +108,8 @@ TEST(Planner, AnEffectThatStatesNoNumberIsNamed) {
 
 TEST(Planner, SaysWhichErrorDecided) {
   const EffectPlan standard = plan(standard_accuracy());
-  EXPECT_EQ(why(*standard.find(plain), standard), "the next lower level would cost 0.2 px of 0.05");
-  EXPECT_EQ(why(*standard.find(graded), standard), "0.001 mag of 0.01");
+  EXPECT_EQ(why(of(standard, plain), standard), "the next lower level would cost 0.2 px of 0.05");
+  EXPECT_EQ(why(of(standard, graded), standard), "0.001 mag of 0.01");
 }
 
 }  // namespace
