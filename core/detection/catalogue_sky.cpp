@@ -1,6 +1,7 @@
 #include "core/detection/catalogue_sky.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/units.h"
@@ -32,15 +33,6 @@ double reach_rad(const Wcs& wcs, const Vec<Gcrs>& axis, int columns, int rows, d
   return std::min(pi, std::acos(std::clamp(least, -1.0, 1.0)) * 1.02 + margin);
 }
 
-/// Direction of a star after its proper motion.
-Vec<Gcrs> moved(const StarTable& stars, const Vec<Gcrs>& catalogued, std::uint32_t i,
-                double years) {
-  const Vec<Gcrs> east{-std::sin(stars.ra_rad[i]), std::cos(stars.ra_rad[i]), 0.0};
-  const Vec<Gcrs> north = cross(catalogued, east);
-  return unit(catalogued + east * (years * stars.pm_ra_cosdec_rad_per_yr[i]) +
-              north * (years * stars.pm_dec_rad_per_yr[i]));
-}
-
 }  // namespace
 
 CatalogueSky::CatalogueSky(std::shared_ptr<const StarMap> map) : map_(std::move(map)) {
@@ -48,10 +40,9 @@ CatalogueSky::CatalogueSky(std::shared_ptr<const StarMap> map) : map_(std::move(
 }
 
 bool CatalogueSky::can_expect(const UnknownFacts& unknown) {
-  for (const FrameFact fact : {FrameFact::time, FrameFact::exposure, FrameFact::pointing,
-                               FrameFact::focal_length, FrameFact::zero_point})
-    if (unknown.has(fact)) return false;
-  return true;
+  using enum FrameFact;
+  return std::ranges::none_of(std::array{time, exposure, pointing, focal_length, zero_point},
+                              [&](FrameFact fact) { return unknown.has(fact); });
 }
 
 std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int columns, int rows,
@@ -76,7 +67,7 @@ std::vector<ExpectedStar> CatalogueSky::stars_in(const FrameHeader& header, int 
   const auto refraction = refraction_of(header);
   std::vector<ExpectedStar> out;
   for (const std::uint32_t i : candidates) {
-    const Vec<Gcrs> direction = moved(stars, map_->index.direction[i], i, years);
+    const Vec<Gcrs> direction = direction_after(*map_, i, years);
     double extinction_mag = 0.0;
     if (header.site) {
       double elevation_rad = std::asin(std::clamp(dot(direction, zenith), -1.0, 1.0));

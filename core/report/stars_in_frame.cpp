@@ -28,11 +28,7 @@ std::vector<StarInFrame> stars_in_frame(const StarMap& map, const Wcs& wcs, int 
     out.clear();
     query_cone(map, axis, radius_rad, faintest, found);
     for (const std::uint32_t i : found) {
-      const double ra = stars.ra_rad[i];
-      const Vec<Gcrs> then = from_spherical<Gcrs>(ra, stars.dec_rad[i]);
-      const Vec<Gcrs> east{-std::sin(ra), std::cos(ra), 0.0}, north = cross(then, east);
-      const Vec<Gcrs> now = unit(then + east * (years * stars.pm_ra_cosdec_rad_per_yr[i]) +
-                                 north * (years * stars.pm_dec_rad_per_yr[i]));
+      const Vec<Gcrs> now = direction_after(map, i, years);
       const auto pixel = wcs_pixel(wcs, now);
       if (!pixel || !(pixel->x_px > -0.5) || !(pixel->y_px > -0.5) ||
           !(pixel->x_px < columns - 0.5) || !(pixel->y_px < rows - 0.5) ||

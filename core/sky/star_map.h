@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -42,6 +43,17 @@ inline void query_cone(const StarMap& map, const Vec<Gcrs>& axis, double radius_
                        double faintest_v_mag, std::vector<std::uint32_t>& found) {
   query_cone({map.stars.v_mag.data(), map.stars.size()}, map.index, axis, radius_rad,
              faintest_v_mag, found, map.blocks.get());
+}
+
+/// Direction of a star by its proper motion, `years` after the catalogue's epoch; unit, without
+/// parallax and aberration.
+inline Vec<Gcrs> direction_after(const StarMap& map, std::size_t star, double years) {
+  const StarTable& stars = map.stars;
+  const Vec<Gcrs>& then = map.index.direction[star];
+  const double ra = stars.ra_rad[star];
+  const Vec<Gcrs> east{-std::sin(ra), std::cos(ra), 0.0}, north = cross(then, east);
+  return unit(then + east * (years * stars.pm_ra_cosdec_rad_per_yr[star]) +
+              north * (years * stars.pm_dec_rad_per_yr[star]));
 }
 
 }  // namespace dmise
