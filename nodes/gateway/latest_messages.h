@@ -37,7 +37,7 @@ using SharedMessage = std::shared_ptr<const ViewerMessage>;
 class LatestMessages {
  public:
   struct Slot {
-    SharedMessage message;      // null: none yet
+    SharedMessage message;      // null: there is none
     std::uint64_t version = 0;  // counts the messages of this kind
   };
 
@@ -47,6 +47,10 @@ class LatestMessages {
     auto& place = slots_[std::size_t(slot)];
     place.message = std::move(shared);
     ++place.version;
+  }
+  void forget(MessageSlot slot) {
+    const std::lock_guard lock(mutex_);
+    slots_[std::size_t(slot)].message.reset();
   }
   std::array<Slot, slot_count> all() const {
     const std::lock_guard lock(mutex_);

@@ -165,6 +165,7 @@ void LiveView::Progress::advance(Tick tick) {
 }
 
 void LiveView::take(const RunStatus& status, const std::map<std::string, std::uint64_t>& gaps) {
+  if (status_ && status_->run_id != status.run_id) forget_run();
   if (!status_ || status_->start_utc != status.start_utc) encode_run(status);
   status_ = status;
   Progress& clock = progress_[""];
@@ -208,6 +209,21 @@ void LiveView::take(const RunStatus& status, const std::map<std::string, std::ui
     json.field("gaps", missed == gaps.end() ? std::uint64_t(0) : missed->second).end_object();
   }
   latest_.set(MessageSlot::status, {json.end_array().end_object().take()});
+}
+
+void LiveView::forget_run() {
+  history_.clear();
+  for (const MessageSlot slot : {MessageSlot::objects, MessageSlot::roster}) latest_.forget(slot);
+  earth_.reset();
+  status_.reset();
+  sensors_.clear();
+  tracks_.clear();
+  progress_.clear();
+  has_roster_ = false;
+  time_s_ = 0.0;
+  changed_ = {MessageSlot::sensors, MessageSlot::detections, MessageSlot::tracks,
+              MessageSlot::tasks};
+  if (takes_truth_) changed_.insert(MessageSlot::truth);
 }
 
 void LiveView::encode_run(const RunStatus& status) {

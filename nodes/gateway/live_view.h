@@ -34,7 +34,8 @@ class LiveView {
 
   /// Takes the state of a message.
   void take(const State& state);
-  /// Takes what the time-master says. `gaps`: messages of each publisher that were missed.
+  /// Takes the state of the run; that of another run replaces all that was taken before. `gaps`:
+  /// messages of each publisher that were missed.
   void take(const RunStatus& status, const std::map<std::string, std::uint64_t>& gaps);
   /// Tells viewers that something they asked for failed, or was done.
   void notify(const std::string& text);
@@ -67,6 +68,7 @@ class LiveView {
   void take(const TrackSet& set);
   void take(const TaskSet& set);
 
+  void forget_run();
   void encode_run(const RunStatus& status);
   std::string sensors_json() const;
   std::string detections_json() const;

@@ -27,6 +27,13 @@ void ViewHistory::add(ViewSnapshot snapshot) {
     thin();
 }
 
+void ViewHistory::clear() {
+  const std::lock_guard lock(mutex_);
+  snapshots_.clear();
+  spacing_s_ = 0.0;
+  bytes_ = 0;
+}
+
 std::optional<ViewSnapshot> ViewHistory::at(double time_s) const {
   const std::lock_guard lock(mutex_);
   if (snapshots_.empty()) return std::nullopt;

@@ -30,6 +30,8 @@ class ViewHistory {
 
   /// Times must not decrease; snapshots nearer to the last than the present spacing are left out.
   void add(ViewSnapshot snapshot);
+  /// Forgets all snapshots.
+  void clear();
   /// The last snapshot at or before `time_s`, or the first; empty if there is none.
   std::optional<ViewSnapshot> at(double time_s) const;
 

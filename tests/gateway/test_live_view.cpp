@@ -161,6 +161,31 @@ TEST_F(LiveViewTest, KeepsTheNewestFrameAndItsDetections) {
   EXPECT_EQ(told(MessageSlot::detections)["detections"].size(), 2u);
 }
 
+// Frames of each run count from 1, and its time begins at 0.
+TEST_F(LiveViewTest, AnotherRunIsSeenFromItsBeginning) {
+  FrameReport report{.sensor = "alpha", .frame = 9, .end = sim_seconds(90)};
+  report.wcs.crpix_x = 255.5, report.wcs.crpix_y = 191.5;
+  report.wcs.cd_deg = {-0.01, 0, 0, 0.01};
+  const auto see = [&] {
+    turn_the_earth();
+    view.take(State(report));
+    view.publish();
+  };
+  view.take(RunStatus{.run_id = 1}, {});
+  view.take(State(ObjectRoster{}));
+  see();
+  EXPECT_EQ(history.span().to_s, 90.0);
+  view.take(RunStatus{.run_id = 2}, {});
+  view.publish();
+  EXPECT_TRUE(told(MessageSlot::sensors)["sensors"].empty());
+  EXPECT_FALSE(view.has_roster());
+  report.frame = 1;
+  report.end = sim_seconds(10);
+  see();
+  EXPECT_EQ(told(MessageSlot::sensors)["sensors"][0]["frame"], 1);
+  EXPECT_EQ(history.span().to_s, 10.0);
+}
+
 // Prints what a second of a large run costs: ten states of 20,000 objects as they come over the
 // wire, a frame with ten detections of each of 100 sensors, two answers of the time-master. Asserts
 // no time.
