@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <vector>
 
 #include "bench/timing.h"
@@ -45,7 +44,7 @@ void add_places(const View& view, const StarTable& stars, std::size_t places, Ef
 
 void add_sky_parts(const View& view, double sky_s, EffectTimes& times) {
   const auto& optics = view.sensor().camera.optics;
-  const SkyModel sky = sky_over(view, -std::numeric_limits<double>::infinity());
+  const SkyModel sky = sky_over(view, {});
   const auto enu_from_camera = view.enu_from_gcrs(view.times().middle) *
                                view.camera_from_gcrs(view.times().middle).inverse();
   constexpr int side = 16;

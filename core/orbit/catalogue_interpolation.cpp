@@ -14,12 +14,8 @@ struct Knot {
 
 class Measurement {
  public:
-  Measurement(const Sgp4Batch& batch, const Utc& start, Threads* threads)
-      : batch_(batch),
-        start_(start),
-        threads_(threads),
-        velocity_(3 * batch.size()),
-        code_(batch.size()) {
+  Measurement(const Sgp4Batch& batch, const Utc& start)
+      : batch_(batch), start_(start), velocity_(3 * batch.size()), code_(batch.size()) {
     error_.max_m.assign(batch.size(), 0.0);
     error_.code.assign(batch.size(), 0);
   }
@@ -45,7 +41,7 @@ class Measurement {
 
  private:
   void positions(double t_s, std::vector<double>& out_m) {
-    batch_.propagate(start_.jd1, start_.jd2 + t_s / 86400.0, out_m, velocity_, code_, threads_);
+    batch_.propagate(start_.jd1, start_.jd2 + t_s / 86400.0, out_m, velocity_, code_);
     for (std::size_t i = 0; i < code_.size(); ++i)
       if (error_.code[i] == 0) error_.code[i] = code_[i];
   }
@@ -79,7 +75,6 @@ class Measurement {
 
   const Sgp4Batch& batch_;
   Utc start_;
-  Threads* threads_;
   std::vector<double> velocity_;
   std::vector<std::uint8_t> code_;
   CatalogueInterpolationError error_;
@@ -88,9 +83,8 @@ class Measurement {
 }  // namespace
 
 CatalogueInterpolationError measure_catalogue_interpolation(
-    const Sgp4Batch& batch, const Utc& start, const CatalogueInterpolationOptions& options,
-    Threads* threads) {
-  return Measurement(batch, start, threads).run(options);
+    const Sgp4Batch& batch, const Utc& start, const CatalogueInterpolationOptions& options) {
+  return Measurement(batch, start).run(options);
 }
 
 }  // namespace dmise

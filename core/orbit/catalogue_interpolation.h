@@ -2,7 +2,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/base/parallel.h"
 #include "core/orbit/interpolation.h"
 #include "core/orbit/sgp4_batch.h"
 #include "core/time/julian_date.h"
@@ -25,7 +24,6 @@ struct CatalogueInterpolationError {
 /// Measures the error from `start` on, in TEME, with slopes from symmetric differences of the
 /// positions.
 CatalogueInterpolationError measure_catalogue_interpolation(
-    const Sgp4Batch& batch, const Utc& start, const CatalogueInterpolationOptions& options,
-    Threads* threads = nullptr);
+    const Sgp4Batch& batch, const Utc& start, const CatalogueInterpolationOptions& options);
 
 }  // namespace dmise

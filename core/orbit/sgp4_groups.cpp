@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <new>
+#include <ranges>
 
 namespace dmise::sgp4 {
 namespace {
@@ -64,15 +65,9 @@ void Group::make_memos() {
 }
 
 std::size_t Group::first_block_from(std::size_t object) const {
-  std::size_t low = 0, high = blocks();
-  while (low < high) {
-    const std::size_t middle = (low + high) / 2;
-    if (index[middle * block_lanes] < object)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
+  const auto numbers = std::views::iota(std::size_t{0}, blocks());
+  const auto is_before = [&](std::size_t block) { return index[block * block_lanes] < object; };
+  return std::size_t(std::ranges::partition_point(numbers, is_before) - numbers.begin());
 }
 
 DeepBlock Group::deep_block(std::size_t k, ResonanceNode* node) const {

@@ -8,9 +8,6 @@ namespace dmise {
 struct DrawnStars {
   double to_v_mag = -unbounded;
   bool by_counts = false;  // synthetic stars are among them: the rest is by the same counts
-
-  DrawnStars() = default;
-  DrawnStars(double to, bool counts = false) : to_v_mag(to), by_counts(counts) {}
 };
 
 /// Light of the stars below the catalogue's limit, above the atmosphere, smeared out.

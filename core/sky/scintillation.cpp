@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/rng_at.h"
+#include "core/base/table_place.h"
 #include "core/base/vector_math.h"
 #include "core/sky/airmass.h"
 #include "core/sky/kept_tables.h"
@@ -50,10 +51,8 @@ double MotionAveraging::operator()(double rate_rad_per_s, double airmass) const 
   const double rate = rate_rad_per_s * airmass;
   if (!(rate > least_rate)) return 1.0;
   static const double per_node = (rates - 1) / std::log(greatest_rate / least_rate);
-  const double at = std::min(std::log(rate / least_rate) * per_node, rates - 1.0);
-  const int low = std::min(int(at), rates - 2);
-  return std::exp(
-      std::lerp(log_ratio_[std::size_t(low)], log_ratio_[std::size_t(low) + 1], at - low));
+  const TablePlace at = table_place(std::log(rate / least_rate) * per_node, rates);
+  return std::exp(std::lerp(log_ratio_[at.node], log_ratio_[at.node + 1], at.part));
 }
 
 Scintillation::Scintillation(const AirExposure& exposure)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/table_place.h"
 #include "core/base/units.h"
 #include "core/photometry/magnitude.h"
 
@@ -70,8 +71,7 @@ StarCounts::StarCounts(const Vec<Galactic>& direction) {
   int row = 0;
   while (row < latitudes - 2 && b_deg > latitude_deg[row + 1]) ++row;
   const double down = (b_deg - latitude_deg[row]) / (latitude_deg[row + 1] - latitude_deg[row]);
-  const int column = std::min(int(l_deg / longitude_step_deg), longitudes - 2);
-  const double along = l_deg / longitude_step_deg - column;
+  const auto [column, along] = table_place(l_deg / longitude_step_deg, longitudes);
   const auto& t = table().log_n;
   for (int m = 0; m < nodes; ++m)
     log_n_[m] = (1 - down) * ((1 - along) * t[row][column][m] + along * t[row][column + 1][m]) +

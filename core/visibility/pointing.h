@@ -5,6 +5,7 @@
 #include "core/frames/earth_orientation.h"
 #include "core/frames/geodesy.h"
 #include "core/frames/vec.h"
+#include "core/orbit/motion_state.h"
 
 namespace dmise {
 
@@ -28,11 +29,8 @@ Rotation<CameraFrame, F> camera_at(double longitude_rad, double latitude_rad, do
   return r;
 }
 
-/// State of an observer at one instant.
-struct ObserverState {
-  Vec<Gcrs> position_m;
-  Vec<Gcrs> velocity_m_per_s;  // geocentric
-};
+/// Geocentric state of an observer at one instant.
+using ObserverState = MotionState<Gcrs>;
 
 /// Inputs of a camera's attitude at one instant.
 struct PointingScene {

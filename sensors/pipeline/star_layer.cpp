@@ -119,7 +119,7 @@ StarLayer::StarLayer(const SensorConfig& sensor, std::shared_ptr<const StarMap> 
 
 DrawnStars StarLayer::drawn(double limit_v_mag, const EffectSet& effects) const {
   const double complete = std::min(limit_v_mag, faintest_filled_v_mag_);
-  if (!synthetic_) return complete;
+  if (!synthetic_) return {complete};
   // Stars that are left out at the bright end are in the smooth starlight with all fainter ones.
   if (limit_v_mag < synthetic_->from_v_mag()) return {limit_v_mag, true};
   const double to =

@@ -106,7 +106,7 @@ std::pair<double, double> fall_at_30_deg(const std::string& effects) {
   const auto& sensor = stage.scenario.sensors[0];
   const View view(sensor, frame_times(sensor, 1), stage.world);
   ExpectedElectronImage image(441, 21);
-  fill_sky(view, 9.0, image, stage.threads);
+  fill_sky(view, {9.0}, image, stage.threads);
   const int x = int(std::lround(220 + 350 * std::tan(30 * deg)));
   return {image.at(x, 10) / image.at(220, 10), std::cos(std::atan((x - 220) / 350.0))};
 }
@@ -200,7 +200,7 @@ TEST(LightOfARun, MoonlightIsThatOfTheMoonOfTheDay) {
                                      ", sky: dark, atmosphere: {extinction: 0.17}"));
     const auto& sensor = stage.scenario.sensors[0];
     const View view(sensor, frame_times(sensor, 1), stage.world);
-    const double s10 = sky_over(view, 9.0).part_s10(SkyPart::scattered_moonlight, {0, 0, 1});
+    const double s10 = sky_over(view, {9.0}).part_s10(SkyPart::scattered_moonlight, {0, 0, 1});
     EXPECT_NEAR(mag_per_arcsec2_of_s10(s10), v_mag, 0.02) << start;
   }
 }

@@ -39,7 +39,7 @@ ExpectedElectronImage sky_of(test::Stage& stage, std::uint32_t frame, std::size_
   const auto& config = stage.scenario.sensors.at(sensor);
   const View view(config, frame_times(config, frame), stage.world);
   ExpectedElectronImage image(config.camera.optics.columns, config.camera.optics.rows);
-  fill_sky(view, drawn_to_v_mag, image, stage.threads);
+  fill_sky(view, {drawn_to_v_mag}, image, stage.threads);
   return image;
 }
 
@@ -165,7 +165,7 @@ TEST(SkyLayer, IsWithinItsToleranceInEveryProjection) {
         "ra_deg,dec_deg,mag_v\n0,90,6\n");
     const auto& config = stage.scenario.sensors[0];
     const View view(config, frame_times(config, 1), stage.world);
-    const SkyModel sky = sky_over(view, drawn_to_v_mag);
+    const SkyModel sky = sky_over(view, {drawn_to_v_mag});
     const ExpectedElectronImage image = sky_of(stage, 1);
     const SimTime t = view.times().middle;
     const auto enu_from_camera = view.enu_from_gcrs(t) * view.camera_from_gcrs(t).inverse();
