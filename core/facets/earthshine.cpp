@@ -14,8 +14,7 @@ std::vector<LightSource> earthshine_sources(const Earthshine& earthshine, const 
   const double distance_m = norm(earth_m);
   if (!(distance_m > radius_m)) throw Error("earthshine: object is inside the Earth");
   const Vec<Body> down = earth_m / distance_m;
-  const Vec<Body> away = std::abs(down.x) < 0.6 ? Vec<Body>{1, 0, 0} : Vec<Body>{0, 1, 0};
-  const Vec<Body> u = unit(cross(away, down)), v = cross(down, u);
+  const auto [u, v] = axes_across(down);
   // Rings of equal width in the squared sine of the angle from the nadir, the weight of light on a
   // plate that faces the Earth.
   const double limb2 = radius_m * radius_m / (distance_m * distance_m);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "core/base/units.h"
 #include "core/facets/facet_kernels.h"
 
 namespace dmise {
@@ -78,26 +78,23 @@ std::vector<double> FacetLight::free_area_m2(const FacetShadow* sun,
 
 double FacetLight::reflected_m2_per_sr(const Vec<Body>& to_sun, const Vec<Body>& to_viewer,
                                        SimdLevel level) const {
-  if (convex_) return sum_of(set_, set_.area_m2.data(), to_sun, to_viewer, level);
-  const FacetShadow sun(mesh_, to_sun), viewer(mesh_, to_viewer);
-  const auto area = free_area_m2(&sun, viewer);
-  return sum_of(set_, area.data(), to_sun, to_viewer, level);
+  const LightSource sun{to_sun};
+  return reflected_m2_per_sr(std::span(&sun, 1), to_viewer, level);
 }
 
 double FacetLight::reflected_m2_per_sr(std::span<const LightSource> sources,
-                                       const Vec<Body>& to_viewer) const {
+                                       const Vec<Body>& to_viewer, SimdLevel level) const {
+  std::optional<FacetShadow> viewer;
+  if (!convex_) viewer.emplace(mesh_, to_viewer);
+  std::vector<double> free_m2;
   double sum = 0.0;
-  if (convex_) {
-    for (const auto& source : sources)
-      sum += source.share *
-             sum_of(set_, set_.area_m2.data(), source.to_source, to_viewer, best_simd_level());
-    return sum;
-  }
-  const FacetShadow viewer(mesh_, to_viewer);
   for (const auto& source : sources) {
-    const FacetShadow sun(mesh_, source.to_source);
-    const auto area = free_area_m2(&sun, viewer);
-    sum += source.share * sum_of(set_, area.data(), source.to_source, to_viewer, best_simd_level());
+    if (viewer) {
+      const FacetShadow sun(mesh_, source.to_source);
+      free_m2 = free_area_m2(&sun, *viewer);
+    }
+    const auto& area = viewer ? free_m2 : set_.area_m2;
+    sum += source.share * sum_of(set_, area.data(), source.to_source, to_viewer, level);
   }
   return sum;
 }
@@ -112,20 +109,6 @@ double FacetLight::emitted_photons_per_s_sr(const Vec<Body>& to_viewer) const {
   for (std::size_t f = 0; f < set_.count; ++f)
     sum += set_.emitted[f] * area[f] * std::max(0.0, dot(set_.normal(f), to_viewer));
   return sum;
-}
-
-std::vector<LightSource> sun_disc(const Vec<Body>& to_sun, double angular_radius_rad) {
-  const Vec<Body> away = std::abs(to_sun.x) < 0.6 ? Vec<Body>{1, 0, 0} : Vec<Body>{0, 1, 0};
-  const Vec<Body> u = unit(cross(away, to_sun)), v = cross(to_sun, u);
-  // The mean square radius of a disc is half its squared radius; six of seven points carry it.
-  const double reach = std::tan(angular_radius_rad * std::sqrt(7.0 / 12.0));
-  std::vector<LightSource> sources{{to_sun, 1.0 / 7.0}};
-  for (int i = 0; i < 6; ++i) {
-    const double a = pi / 3 * i;
-    sources.push_back(
-        {unit(to_sun + u * (reach * std::cos(a)) + v * (reach * std::sin(a))), 1.0 / 7.0});
-  }
-  return sources;
 }
 
 }  // namespace dmise

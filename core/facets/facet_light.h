@@ -26,12 +26,12 @@ struct ThermalEmission {
   static bool applies(const SceneFacts& scene) { return scene.shapes; }
 };
 
-/// Light of an unresolved object: the sum over its facets in one band, each with the part that
-/// other facets leave visible from source and viewer. Facets are flat and light is parallel, so the
+/// Light of an unresolved object: the sum over its facets in one band, each with the part of it
+/// that no other facet hides from source or viewer. Facets are flat and light is parallel, so the
 /// sum is exact up to rounding (1e-9). Interreflection is neglected.
 class FacetLight {
  public:
-  /// Without `emits` its warmth radiates nothing.
+  /// Without `emits` the object has no thermal emission.
   FacetLight(Mesh mesh, const Band& band, bool emits = true);
 
   const Mesh& mesh() const { return mesh_; }
@@ -44,8 +44,8 @@ class FacetLight {
   double reflected_m2_per_sr(const Vec<Body>& to_sun, const Vec<Body>& to_viewer,
                              SimdLevel level = best_simd_level()) const;
   /// The same for several sources.
-  double reflected_m2_per_sr(std::span<const LightSource> sources,
-                             const Vec<Body>& to_viewer) const;
+  double reflected_m2_per_sr(std::span<const LightSource> sources, const Vec<Body>& to_viewer,
+                             SimdLevel level = best_simd_level()) const;
 
   /// Thermal emission [photons/s/sr].
   double emitted_photons_per_s_sr(const Vec<Body>& to_viewer) const;
@@ -58,9 +58,5 @@ class FacetLight {
   FacetSet set_;
   bool convex_ = false;
 };
-
-/// Directions of equal weight that represent the Sun's disc: its centre and six around it at
-/// sqrt(7/12) of `angular_radius_rad`, which have the disc's second moment.
-std::vector<LightSource> sun_disc(const Vec<Body>& to_sun, double angular_radius_rad);
 
 }  // namespace dmise

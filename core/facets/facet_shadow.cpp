@@ -6,21 +6,20 @@
 namespace dmise {
 namespace {
 
-/// Two unit vectors perpendicular to `d` and to each other.
-std::array<Vec<Body>, 2> across(const Vec<Body>& d) {
-  const Vec<Body> away = std::abs(d.x) < 0.6 ? Vec<Body>{1, 0, 0} : Vec<Body>{0, 1, 0};
-  const Vec<Body> u = unit(cross(away, d));
-  return {u, cross(d, u)};
-}
-
 /// Facets this close to edge-on cast no shadow.
 constexpr double least_cosine = 1e-9;
 
 }  // namespace
 
+std::array<Vec<Body>, 2> axes_across(const Vec<Body>& d) {
+  const Vec<Body> away = std::abs(d.x) < 0.6 ? Vec<Body>{1, 0, 0} : Vec<Body>{0, 1, 0};
+  const Vec<Body> u = unit(cross(away, d));
+  return {u, cross(d, u)};
+}
+
 FacetShadow::FacetShadow(const Mesh& mesh, const Vec<Body>& direction)
     : mesh_(mesh), direction_(direction) {
-  const auto [u, v] = across(direction);
+  const auto [u, v] = axes_across(direction);
   const std::size_t count = mesh.triangles.size();
   std::vector<Vec<Body>> place(mesh.vertex_m.size());  // two across the direction, one along it
   for (std::size_t i = 0; i < place.size(); ++i) {

@@ -11,6 +11,9 @@
 // metre behind the edge) is neglected.
 namespace dmise {
 
+/// Two unit vectors perpendicular to `direction` (unit) and to each other.
+std::array<Vec<Body>, 2> axes_across(const Vec<Body>& direction);
+
 /// A convex part of a facet in the facet's own coordinates: (0, 0), (1, 0), (0, 1) are its corners.
 struct FacetPiece {
   struct Point {

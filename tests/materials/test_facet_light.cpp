@@ -182,20 +182,6 @@ TEST(FacetLight, EmitsByTheAreaThatItShows) {
   EXPECT_EQ(sheet.emitted_photons_per_s_sr({0, 0, -1}), 0.0);
 }
 
-TEST(SunDisc, HasTheMiddleAndTheSpreadOfTheSun) {
-  const double radius = 0.266 * deg;
-  Vec<Body> mean;
-  double share = 0, square = 0;
-  for (const auto& s : sun_disc({0.6, 0, 0.8}, radius)) {
-    mean += s.to_source * s.share;
-    share += s.share;
-    square += s.share * std::pow(angle_rad(s.to_source, Vec<Body>{0.6, 0, 0.8}), 2);
-  }
-  EXPECT_NEAR(share, 1.0, 1e-15);
-  EXPECT_NEAR(square, radius * radius / 2, 1e-4 * radius * radius);
-  EXPECT_NEAR(angle_rad(mean, Vec<Body>{0.6, 0, 0.8}), 0.0, 1e-9);
-}
-
 // Far away the Earth is a point: a Lambert sphere of geometric albedo 2/3 of its reflectance.
 TEST(Earthshine, FarAwayIsTheClosedFormOfADiffuseSphere) {
   const double d = 1000 * 6371e3;
