@@ -1,5 +1,6 @@
 #include "sensors/dataset/frame_labels.h"
 
+#include <array>
 #include <charconv>
 
 #include "core/base/json.h"
@@ -14,14 +15,13 @@ namespace {
 constexpr int satellite = 1;  // category
 
 void write_box(JsonWriter& json, const ObjectMask& mask) {
-  json.key("bbox").begin_array().value(mask.left).value(mask.top);
-  json.value(mask.right - mask.left).value(mask.bottom - mask.top).end_array();
+  json.list("bbox",
+            std::array{mask.left, mask.top, mask.right - mask.left, mask.bottom - mask.top});
   json.field("area", std::uint64_t(mask.pixels.size()));
 }
 
 void write_mask(JsonWriter& json, const ObjectMask& mask) {
-  json.key("segmentation").begin_object().key("size").begin_array();
-  json.value(mask.rows).value(mask.columns).end_array();
+  json.key("segmentation").begin_object().list("size", std::array{mask.rows, mask.columns});
   json.field("counts", coco_counts(mask)).end_object();
 }
 

@@ -1,13 +1,19 @@
 // dmise-sensor-node: runs one sensor of a scenario: renders, detects, publishes.
 #include <spdlog/spdlog.h>
 
+#include <memory>
+
 #include "core/base/error.h"
+#include "core/base/mapped_file.h"
 #include "core/base/memory.h"
+#include "core/config/scenario.h"
+#include "core/image/fits_file.h"
 #include "core/plan/cost_factors.h"
+#include "core/products/frame_file.h"
 #include "nodes/runtime/node/node.h"
 #include "nodes/runtime/observability/metrics.h"
 #include "nodes/runtime/program/program.h"
-#include "sensors/node/kept_files.h"
+#include "nodes/runtime/protocol/kept_frames.h"
 #include "sensors/pipeline/make_sensor.h"
 #include "sensors/pipeline/recorded_plans.h"
 #include "sensors/pipeline/stage_times.h"
@@ -27,6 +33,35 @@ std::function<void(const dmise::FrameProducts&)> serve_times() {
     }
     metrics->set(figures);
   };
+}
+
+/// The file is whole from when it has its name on.
+dmise::FrameBytes mapped(const std::string& path) {
+  const auto file = std::make_shared<const dmise::MappedFile>(path);
+  const auto bytes = file->bytes();
+  return {file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
+}
+
+/// Adds a frame to those that are served: its FITS file in `directory` if there is one; else, while
+/// somebody is there to ask, the same bytes in memory.
+void keep_frame(const dmise::FrameProducts& frame, const dmise::OutputConfig& output,
+                const std::string& directory, dmise::KeptFrames& kept) {
+  if (output.fits) {
+    kept.add(frame.report, [path = directory + "/" + dmise::frame_file_name(frame.report.frame)] {
+      return mapped(path);
+    });
+  } else if (kept.wanted()) {
+    const auto bytes = std::make_shared<const std::string>(dmise::encode_frame(
+        frame.counts, frame.header, output.saturation ? &frame.flags : nullptr));
+    kept.add(
+        frame.report,
+        [bytes] {
+          return dmise::FrameBytes{bytes, *bytes};
+        },
+        bytes->size());
+  } else {
+    kept.add(frame.report, {});
+  }
 }
 
 }  // namespace
@@ -61,7 +96,7 @@ int main(int argc, char** argv) {
     dmise::KeptFrames kept(flags.name);
     sensor->when_made([&, times = serve_times()](const dmise::FrameProducts& frame) {
       times(frame);
-      dmise::keep_frame(frame, scenario.output, out + "/" + flags.name, kept);
+      keep_frame(frame, scenario.output, out + "/" + flags.name, kept);
     });
     const auto end = dmise::run_node(*sensor, {.master = flags.master,
                                                .host = flags.host,

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "core/base/units.h"
 #include "core/base/version.h"
 #include "core/optics/projection.h"
+#include "core/sky/air_exposure.h"
 #include "core/time/iso8601.h"
 #include "core/wcs/wcs_fit.h"
-#include "sensors/pipeline/observation_of.h"
 #include "sensors/pipeline/throughput.h"
 
 namespace dmise {
@@ -36,6 +37,36 @@ Wcs wcs_of(const View& view) {
   return best_wcs(optics, star_at, air);
 }
 
+/// What archives index of a frame. `centre`: ICRS direction of the stars in the frame's centre.
+Observation observation_of(const View& view, const PipelineSettings& settings,
+                           const std::optional<Vec<Gcrs>>& centre) {
+  const auto& sensor = settings.sensor;
+  const SimTime middle = view.times().middle;
+  Observation o{.telescope = header_text(sensor.camera.name)};
+  if (const auto target = view.target())
+    o.object = header_text(view.world().roster().objects[*target].name);
+  const Utc start = settings.clock.utc(view.times().start);
+  o.start_mjd = (start.jd1 - mjd_zero_jd) + start.jd2;
+  if (centre) {
+    const auto [ra, dec] = to_spherical(*centre);
+    o.ra_rad = ra < 2 * pi ? ra : 0.0;
+    o.dec_rad = dec;
+  }
+  if (!view.on_ground()) return o;
+  const Vec<Gcrs> up = view.up(middle);
+  // The camera sees apparent places: this altitude has the refraction in it.
+  if (const double altitude = elevation_over(up, unit(view.boresight(middle))); altitude >= 0.0)
+    o.airmass = airmass(altitude);
+  const auto& environment = view.environment();
+  const Vec<Gcrs> here_m = view.observer(middle).position_m;
+  // The Sun's light time and the Earth's aberration together: 20 arcsec.
+  o.sun_altitude_rad =
+      elevation_over(up, unit(unit(environment.sun_m - here_m) +
+                              environment.earth_velocity_m_per_s / speed_of_light_m_per_s));
+  o.moon_altitude_rad = elevation_over(up, unit(environment.moon_m - here_m));
+  return o;
+}
+
 }  // namespace
 
 FrameHeader header_of(const View& view, const PipelineSettings& settings, double psf_fwhm_px) {
@@ -46,36 +77,37 @@ FrameHeader header_of(const View& view, const PipelineSettings& settings, double
   const auto& times = view.times();
   const auto& environment = view.environment();
   const ObserverState observer = view.observer(times.middle);
+  const Throughput throughput(view);
   const auto utc = [&](SimTime t) { return format_utc(settings.clock.utc(t), 6); };
-  FrameHeader h{.sensor = sensor.name,
-                .frame = times.frame,
-                .start = times.start,
-                .middle = times.middle,
-                .end = times.end,
-                .start_utc = utc(times.start),
-                .middle_utc = utc(times.middle),
-                .end_utc = utc(times.end),
-                .exposure_s = times.seconds(),
-                .mount = tracking_name(sensor.tracking),
-                .software = software_name(),
-                .scenario_digest = settings.digest,
-                .seed = settings.seed,
-                .gain_e_per_dn = detector.gain_e_per_dn,
-                .bias_dn = detector.bias_dn,
-                .read_noise_e = detector.read_noise_e,
-                .dark_e_per_s = detector.dark_e_per_s,
-                .full_well_e = detector.full_well_e,
-                .detector = detector,
-                .psf_fwhm_px = psf_fwhm_px,
-                .band = sensor.camera.band,
-                .zero_point_mag =
-                    Throughput(view).zero_point_mag() + sensor.camera.magnitudes.solar_colour_mag,
-                .magnitudes = sensor.camera.magnitudes,
-                .extinction_mag_per_airmass = Throughput(view).extinction_mag_per_airmass(),
-                .projection = optics.projection,
-                .focal_length_px = optics.focal_length_px(),
-                .sensor_position_m = observer.position_m,
-                .sensor_velocity_m_per_s = observer.velocity_m_per_s};
+  FrameHeader h{
+      .sensor = sensor.name,
+      .frame = times.frame,
+      .start = times.start,
+      .middle = times.middle,
+      .end = times.end,
+      .start_utc = utc(times.start),
+      .middle_utc = utc(times.middle),
+      .end_utc = utc(times.end),
+      .exposure_s = times.seconds(),
+      .mount = tracking_name(sensor.tracking),
+      .software = software_name(),
+      .scenario_digest = settings.digest,
+      .seed = settings.seed,
+      .gain_e_per_dn = detector.gain_e_per_dn,
+      .bias_dn = detector.bias_dn,
+      .read_noise_e = detector.read_noise_e,
+      .dark_e_per_s = detector.dark_e_per_s,
+      .full_well_e = detector.full_well_e,
+      .detector = detector,
+      .psf_fwhm_px = psf_fwhm_px,
+      .band = sensor.camera.band,
+      .zero_point_mag = throughput.zero_point_mag() + sensor.camera.magnitudes.solar_colour_mag,
+      .magnitudes = sensor.camera.magnitudes,
+      .extinction_mag_per_airmass = throughput.extinction_mag_per_airmass(),
+      .projection = optics.projection,
+      .focal_length_px = optics.focal_length_px(),
+      .sensor_position_m = observer.position_m,
+      .sensor_velocity_m_per_s = observer.velocity_m_per_s};
   // Of a frame whose stars have no annual aberration none is put back.
   if (ran.has(AnnualAberration::facts))
     h.earth_velocity_m_per_s = environment.earth_velocity_m_per_s;

@@ -1,5 +1,3 @@
-#include "sensors/render/gl_scene_renderer.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +9,7 @@
 #include "sensors/render/gl.h"
 #include "sensors/render/gl_context.h"
 #include "sensors/render/gl_program.h"
+#include "sensors/render/gl_renderer.h"
 #include "sensors/render/scene_shaders.h"
 
 namespace dmise {

@@ -1,7 +1,6 @@
 #include <exception>
 
 #include "sensors/render/gl_renderer.h"
-#include "sensors/render/gl_scene_renderer.h"
 
 namespace {
 

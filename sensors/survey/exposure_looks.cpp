@@ -123,7 +123,8 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
   const auto gcrs_from_camera = middle.camera.inverse();
   const auto enu_from_gcrs = view.enu_from_gcrs(times.middle);
   const auto itrs_from_gcrs = view.earth().itrs_from_gcrs(times.middle);
-  const double electrons_per_photon = Throughput(view).electrons_per_photon_m2() * times.seconds();
+  const Throughput throughput(view);
+  const double electrons_per_photon = throughput.electrons_per_photon_m2() * times.seconds();
   const auto sky_at = [&](const PixelPosition& pixel) {
     const auto direction = unproject(optics, pixel);
     if (!direction || !has_sky) return 0.0;
@@ -131,7 +132,6 @@ std::optional<ExposureLooks> SensorLooks::of(const FrameTimes& commanded,
     return sky->photons_per_s_m2_sr(enu_from_gcrs * (gcrs_from_camera * *direction)) *
            electrons_per_photon * pixel_solid_angle_sr(optics, pixel) * view.illumination(pixel);
   };
-  const Throughput throughput(view);
   const double zero_point_mag = throughput.zero_point_mag();
   const double extinction_mag = throughput.extinction_mag_per_airmass();
   // Light above which the catalogue knows every star, in the direction of `line`.

@@ -98,21 +98,16 @@ std::vector<std::vector<std::uint32_t>> objects_by_frame(const SurveyScene& scen
   if (frames.empty()) return objects;
   const auto count = std::uint32_t(scene.population().roster.objects.size());
   const auto with_elements = std::uint32_t(scene.population().elements.size());
-  const auto index = [&](const std::string& name, const std::string& where) {
-    return std::optional<std::size_t>(object_index(*scene.roster(), name, where));
-  };
   std::optional<std::size_t> platform, target;
   if (const auto* p = std::get_if<PlatformConfig>(&sensor.place))
-    platform = index(p->object, p->where);
+    platform = object_index(*scene.roster(), p->object, p->where);
   if (const auto* p = std::get_if<PointTarget>(&sensor.pointing))
-    target = index(p->object, p->where);
+    target = object_index(*scene.roster(), p->object, p->where);
   const bool follows = (!platform || *platform < with_elements) &&
                        (!target || *target < with_elements) &&
                        !std::holds_alternative<PointBody>(sensor.pointing);
-  const SensorTrack* track = nullptr;
-  std::optional<SensorTrack> made;
-  if (follows)
-    track = &made.emplace(sensor, scene.hours(), scene.source().elements(), platform, target);
+  std::optional<SensorTrack> track;
+  if (follows) track.emplace(sensor, scene.hours(), scene.source().elements(), platform, target);
   for (std::size_t first = 0; first < frames.size();) {
     std::size_t end = first + 1;
     const auto span_of = [&](std::size_t k) { return exposure_span(sensor, frames[k]); };

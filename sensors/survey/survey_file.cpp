@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
@@ -22,12 +23,6 @@ constexpr const char* map_columns_line =
 constexpr const char* pass_columns =
     "object,catalogue_number,first_ns,last_ns,first_utc,exposures,expected_detections,log_miss,"
     "best_snr";
-
-/// The shortest text that reads back to the same bits.
-std::string exact(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
 
 /// A file of fields, line by line; turns bad at the first that does not fit.
 class Reader {
@@ -92,9 +87,9 @@ void write_survey(const std::string& directory, const std::string& head, const S
   std::string text = "# " + head + "\n" + totals + exposure_columns + "\n";
   for (const auto& e : survey.exposures)
     text += std::to_string(e.frame) + "," + std::to_string(e.middle.ns) + "," + utc(e.middle) +
-            "," + (e.sun_elevation_rad ? exact(*e.sun_elevation_rad) : "") + "," +
-            std::to_string(e.in_field) + "," + std::to_string(e.sunlit) + "," + exact(e.expected) +
-            "\n";
+            "," + (e.sun_elevation_rad ? shortest_text(*e.sun_elevation_rad) : "") + "," +
+            std::to_string(e.in_field) + "," + std::to_string(e.sunlit) + "," +
+            shortest_text(e.expected) + "\n";
   write_file_whole(directory + "/exposures.csv", text);
 
   text = "# " + head + "\n" + totals + map_columns_line + "\n";
@@ -110,8 +105,8 @@ void write_survey(const std::string& directory, const std::string& head, const S
     text += std::to_string(p.object) + "," +
             std::to_string(scene.roster()->objects[p.object].catalogue_number) + "," +
             std::to_string(p.first.ns) + "," + std::to_string(p.last.ns) + "," + utc(p.first) +
-            "," + std::to_string(p.exposures) + "," + exact(p.expected) + "," + exact(p.log_miss) +
-            "," + exact(p.best_snr) + "\n";
+            "," + std::to_string(p.exposures) + "," + shortest_text(p.expected) + "," +
+            shortest_text(p.log_miss) + "," + shortest_text(p.best_snr) + "\n";
   write_file_whole(directory + "/passes.csv", text);
 }
 
