@@ -1,6 +1,7 @@
 #include "core/base/formatted.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdarg>
 #include <cstdio>
 
@@ -18,6 +19,11 @@ std::string formatted(const char* format, ...) {
   va_end(again);
   va_end(values);
   return text;
+}
+
+std::string shortest_text(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 }  // namespace dmise

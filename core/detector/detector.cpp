@@ -1,19 +1,14 @@
 #include "core/detector/detector.h"
 
 #include <algorithm>
-#include <charconv>
 #include <string>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 
 namespace dmise {
 namespace {
-
-std::string text_of(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
 
 constexpr std::string_view in_headers[] = {"quantum_efficiency",
                                            "dark_e_per_s",
@@ -66,10 +61,10 @@ std::string complaint(const DetectorParameter& p, double number) {
   const bool above = p.least_open ? number > p.least : number >= p.least;
   if (above && number <= p.most) return "";
   if (std::holds_alternative<int Detector::*>(p.value))
-    return "must be " + text_of(p.least) + ".." + text_of(p.most) +
+    return "must be " + shortest_text(p.least) + ".." + shortest_text(p.most) +
            (p.reason.empty() ? "" : ": " + std::string(p.reason));
-  return (p.least_open ? "must be > " : "must be >= ") + text_of(p.least) +
-         " and <= " + text_of(p.most);
+  return (p.least_open ? "must be > " : "must be >= ") + shortest_text(p.least) +
+         " and <= " + shortest_text(p.most);
 }
 
 }  // namespace
@@ -111,7 +106,7 @@ std::optional<DetectorFault> fault_of(const Detector& detector) {
 void check(const Detector& detector) {
   if (const auto fault = fault_of(detector))
     throw ConfigError("detector." + fault->key + ": " + fault->reason + ", got " +
-                      text_of(fault->got));
+                      shortest_text(fault->got));
 }
 
 Detector acting_detector(const Detector& detector, const EffectSet& effects) {

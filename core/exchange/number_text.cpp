@@ -1,6 +1,5 @@
 #include "core/exchange/number_text.h"
 
-#include <charconv>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -24,8 +23,7 @@ std::string fixed_text(double value, int decimals) {
 
 std::string exact_text(double value) {
   require_finite(value);
-  char text[40];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+  return shortest_text(value);
 }
 
 }  // namespace dmise

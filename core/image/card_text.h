@@ -1,6 +1,7 @@
 #pragma once
-#include <charconv>
 #include <string>
+
+#include "core/base/formatted.h"
 
 namespace dmise {
 
@@ -9,8 +10,7 @@ constexpr int highest_sip_order = 9;           // by the convention
 
 /// The shortest text that reads back to the same bits, with a decimal point or an exponent.
 inline std::string number_text(double value) {
-  char buffer[40];
-  std::string text(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+  std::string text = shortest_text(value);
   for (char& c : text)
     if (c == 'e') c = 'E';
   if (text.find_first_of(".E") == std::string::npos) text += ".0";

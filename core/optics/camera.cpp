@@ -1,20 +1,17 @@
 #include "core/optics/camera.h"
 
-#include <charconv>
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 
 namespace dmise {
 namespace {
 
 void require(bool holds, const char* key, const char* reason, double got) {
-  if (holds) return;
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, got).ptr;
-  throw ConfigError(std::string("optics.") + key + ": " + reason + ", got " +
-                    std::string(text, end));
+  if (!holds)
+    throw ConfigError(std::string("optics.") + key + ": " + reason + ", got " + shortest_text(got));
 }
 
 }  // namespace

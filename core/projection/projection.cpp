@@ -1,12 +1,12 @@
 #include "core/projection/projection.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 
 namespace dmise {
 namespace {
@@ -43,12 +43,8 @@ Model model_of(std::size_t index, std::span<const double> values, std::index_seq
 
 void require(const ProjectionCoefficient& c, double value) {
   if (std::abs(value) <= c.most) return;
-  const auto text = [](double v) {
-    char buffer[32];
-    return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, v).ptr);
-  };
-  throw Error(std::string(c.key) + ": must be in " + text(-c.most) + ".." + text(c.most) +
-              ", got " + text(value));
+  throw Error(std::string(c.key) + ": must be in " + shortest_text(-c.most) + ".." +
+              shortest_text(c.most) + ", got " + shortest_text(value));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <charconv>
 
+#include "core/base/formatted.h"
 #include "core/base/json.h"
 #include "core/base/text_fields.h"
 #include "core/base/units.h"
@@ -11,20 +12,17 @@ namespace {
 
 constexpr std::string_view json_start = "{\"tick\":";
 
-std::string number(double x) {
-  char text[64];
-  return {text, std::to_chars(text, text + sizeof text, x).ptr};
-}
-
 template <class F>
 std::string csv_vector(const std::optional<Vec<F>>& v) {
   if (!v) return ",,,";
-  return "," + number(v->x / km) + "," + number(v->y / km) + "," + number(v->z / km);
+  return "," + shortest_text(v->x / km) + "," + shortest_text(v->y / km) + "," +
+         shortest_text(v->z / km);
 }
 
 std::string csv_quaternion(const std::optional<Quaternion>& q) {
   if (!q) return ",,,,";
-  return "," + number(q->w) + "," + number(q->x) + "," + number(q->y) + "," + number(q->z);
+  return "," + shortest_text(q->w) + "," + shortest_text(q->x) + "," + shortest_text(q->y) + "," +
+         shortest_text(q->z);
 }
 
 template <class F>
