@@ -5,23 +5,24 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/sim/retained.h"
 #include "core/sim/topic_graph.h"
 
 namespace dmise {
 namespace {
 
+NodeTopics topics_of(const Participant& p) {
+  NodeTopics node{p.name(), p.produces(), p.consumes(), p.look_back(), p.schedule()};
+  for (const auto& topic : node.consumes)
+    if (const Tick delay = p.delay(topic); delay > 0) node.delays[topic] = delay;
+  return node;
+}
+
 /// Orders participants so that producers precede consumers, otherwise as given.
 std::vector<std::unique_ptr<Participant>> in_running_order(
     std::vector<std::unique_ptr<Participant>> waiting) {
-  std::map<std::string, std::string> producer;
-  for (const auto& p : waiting)
-    for (const auto& topic : p->produces())
-      if (!producer.emplace(topic, p->name()).second)
-        throw Error(p->name() + " and " + producer[topic] + " both produce " + topic);
-  for (const auto& p : waiting)
-    for (const auto& topic : p->consumes())
-      if (!producer.contains(topic)) throw Error(p->name() + ": nobody produces " + topic);
+  std::vector<NodeTopics> nodes;
+  for (const auto& p : waiting) nodes.push_back(topics_of(*p));
+  if (const auto fault = topic_fault(nodes)) throw Error(*fault);
 
   std::vector<std::unique_ptr<Participant>> ordered;
   std::set<std::string> available;
@@ -29,11 +30,9 @@ std::vector<std::unique_ptr<Participant>> in_running_order(
     const auto next = std::find_if(waiting.begin(), waiting.end(), [&](const auto& p) {
       const auto topics = p->consumes();
       return std::all_of(topics.begin(), topics.end(), [&](const auto& topic) {
-        return available.contains(topic) || (*p).delay(topic) > 0;
+        return available.contains(topic) || p->delay(topic) > 0;
       });
     });
-    if (next == waiting.end())
-      throw Error(waiting.front()->name() + " is part of a dependency cycle between topics");
     for (auto& topic : (*next)->produces()) available.insert(std::move(topic));
     ordered.push_back(std::move(*next));
     waiting.erase(next);
@@ -48,11 +47,7 @@ SimulationController::SimulationController(std::vector<std::unique_ptr<Participa
 
 void SimulationController::run(Tick last, const std::function<bool(Tick)>& after_tick, Tick first) {
   std::vector<NodeTopics> nodes;
-  for (const auto& p : participants_) {
-    nodes.push_back({p->name(), p->produces(), p->consumes(), p->look_back(), p->schedule()});
-    for (const auto& topic : nodes.back().consumes)
-      if (const Tick delay = p->delay(topic); delay > 0) nodes.back().delays[topic] = delay;
-  }
+  for (const auto& p : participants_) nodes.push_back(topics_of(*p));
   const auto history = history_ticks(nodes);
   const auto starts_at = [&](const NodeTopics& node) {
     return std::max<Tick>(0, first - history.at(node.name));
@@ -65,7 +60,7 @@ void SimulationController::run(Tick last, const std::function<bool(Tick)>& after
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const NodeTopics& node = nodes[i];
       const Tick start = starts_at(node);
-      /// What was published up to a tick, of each topic as late as the node hears it.
+      // What was published up to a tick, of each topic as late as the node hears it.
       const auto take = [&](Tick to) {
         std::vector<Message> inputs;
         for (const auto& topic : node.consumes) {

@@ -64,6 +64,9 @@ struct Message {
   std::shared_ptr<const State> state;
 };
 
+/// Whether a message holds for the whole run, so that late subscribers need it as well.
+inline bool is_retained(const State& state) { return std::holds_alternative<ObjectRoster>(state); }
+
 // Topics. A sensor's own topics are `prefix + sensor name`.
 inline constexpr const char* roster_topic = "state/roster";    // at tick 0
 inline constexpr const char* objects_topic = "state/objects";  // roster (tick 0), then states

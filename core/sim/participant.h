@@ -21,27 +21,19 @@ class Participant {
 
   /// Whether it cannot work without this topic: it is then lost together with the publisher.
   /// Otherwise the topic falls silent if the run continues without the publisher.
-  virtual bool needs(const std::string& topic) const {
-    static_cast<void>(topic);
-    return true;
-  }
+  virtual bool needs(const std::string& /*topic*/) const { return true; }
 
   /// Ticks by which it hears a consumed topic late: at tick k it is given what was published up to
-  /// k - delay. A loop of topics needs one with a delay. Who goes on with a run is given again what
-  /// was published in the last `delay` ticks before; what is older it must have kept.
-  virtual Tick delay(const std::string& topic) const {
-    static_cast<void>(topic);
-    return 0;
-  }
+  /// k - delay. A loop of topics needs one with a delay. A participant that continues a run is
+  /// given what was published in the last `delay` ticks before again; what is older it must have
+  /// kept.
+  virtual Tick delay(const std::string& /*topic*/) const { return 0; }
 
   /// The ticks at which it works; `step` is called for no other tick.
   virtual Schedule schedule() const { return {}; }
   /// The ticks, of `schedule`, at which it may publish on one of its topics. Nobody waits for it at
   /// others. What holds between two must be in the look-back of whoever consumes it.
-  virtual Schedule schedule_of(const std::string& topic) const {
-    static_cast<void>(topic);
-    return schedule();
-  }
+  virtual Schedule schedule_of(const std::string& /*topic*/) const { return schedule(); }
 
   /// Performs the work of one tick. `inputs`: all messages of the consumed topics since the last
   /// step, ordered by (index of the topic in consumes(), order of publication). Returns the
@@ -55,8 +47,7 @@ class Participant {
   /// Continues the work of an earlier process: the next `step` is that of `tick` or the first of
   /// its schedule after. `past`: inputs of the look_back() ticks before, and retained messages.
   /// Returns its own retained messages (a roster), to be published again.
-  virtual std::vector<Message> resume(Tick tick, std::span<const Message> past) {
-    static_cast<void>(tick), static_cast<void>(past);
+  virtual std::vector<Message> resume(Tick /*tick*/, std::span<const Message> /*past*/) {
     return {};
   }
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/sim/retained.h"
+#include "core/sim/message.h"
 
 namespace dmise {
 namespace {

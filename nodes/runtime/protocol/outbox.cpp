@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/sim/retained.h"
+#include "core/sim/message.h"
 #include "nodes/wire/content_digest.h"
 #include "nodes/wire/state_codec.h"
 
