@@ -57,8 +57,7 @@ double wrong_of(const Pair& bands, const Signatures& signatures) {
   return worst;
 }
 
-Signatures signatures_of(const std::array<Material, 2>& materials,
-                         const std::array<Band, 2>& bands) {
+Signatures signatures_of(const std::array<Material, 2>& materials, std::span<const Band> bands) {
   return {signature_of(materials[0], bands), signature_of(materials[1], bands)};
 }
 
@@ -115,7 +114,7 @@ std::vector<BandPair> compare_band_pairs(const SpectralImager& imager,
     bands.push_back({.name = "", .centre_m = low_m + (i + 0.5) * width_m, .width_m = width_m});
     rates.push_back(rates_of(imager, target, bands.back()));
   }
-  const Signatures all{signature_of(materials[0], bands), signature_of(materials[1], bands)};
+  const Signatures all = signatures_of(materials, bands);
   std::vector<BandPair> pairs;
   for (std::size_t i = 0; i < bands.size(); ++i)
     for (std::size_t j = i + 1; j < bands.size(); ++j) {
@@ -135,14 +134,7 @@ DiscriminationDesign design(const SpectralImager& imager, const ReflectingTarget
                             const std::array<Material, 2>& materials, double right) {
   if (!(right > 0.5 && right < 1.0)) throw Error("design: probability: must be in (0.5, 1)");
   const double wrong = 1.0 - right;
-  DiscriminationDesign d{.bands = bands,
-                         .materials = materials,
-                         .right = right,
-                         .right_by_exposure = {},
-                         .by_range_m = {},
-                         .by_aperture_m = {},
-                         .by_photometric_radius_px = {},
-                         .pairs = {}};
+  DiscriminationDesign d{.bands = bands, .materials = materials, .right = right};
   for (const double s : logarithmic(1e-3, 10.0, 81))
     d.right_by_exposure.push_back(
         {s, 1.0 - wrong_probability(imager, target, bands, materials, s)});

@@ -27,8 +27,8 @@ std::string seconds_text(const std::optional<double>& seconds) {
   return text;
 }
 
-void write_measured(JsonWriter& json, const char* key, const Measured& m) {
-  json.key(key).begin_object().field("value", m.value).field("sigma", m.sigma).end_object();
+void write_measured(JsonWriter& json, const Measured& m) {
+  json.begin_object().field("value", m.value).field("sigma", m.sigma).end_object();
 }
 
 void write_seconds(JsonWriter& json, const std::optional<double>& seconds) {
@@ -69,19 +69,15 @@ RunDiscrimination discriminate(const RunSpectra& spectra,
       throw Error(object + ": no such material among those compared: " + material);
   RunDiscrimination run{.sensors = spectra.sensors,
                         .materials = materials,
-                        .objects = {},
                         .samples = spectra.samples,
                         .left_out = spectra.left_out,
                         .confusion = ConfusionMatrix(names)};
   const std::size_t bands = spectra.sensors.size();
   for (const std::string& name : objects_of(spectra)) {
     ObjectSignature object{.object = name,
-                           .samples = 0,
                            .summed = summed_light(spectra, name),
-                           .ratios = {},
                            .scatter = std::vector<double>(bands - 1),
-                           .sample_sigma = std::vector<double>(bands - 1),
-                           .fits = {}};
+                           .sample_sigma = std::vector<double>(bands - 1)};
     std::vector<double> sum(bands - 1), square(bands - 1);
     std::size_t with_ratio = 0;
     for (const SpectralSample& sample : spectra.samples) {
@@ -134,8 +130,8 @@ std::string discrimination_table(const RunDiscrimination& run) {
     }
     text += '\n';
   }
-  bool any = false;
   const auto& names = run.confusion.names();
+  bool any = false;
   for (std::size_t a = 0; a < names.size(); ++a) any = any || run.confusion.total(a) > 0;
   if (any) {
     text += "samples by what they are (rows) and what they are found to be\n";
@@ -175,13 +171,12 @@ std::string discrimination_json(const RunDiscrimination& run) {
     json.begin_object().field("object", o.object).field("samples", std::uint64_t(o.samples));
     json.key("ratios").begin_array();
     for (std::size_t i = 0; i < o.ratios.size(); ++i) {
-      json.begin_object();
-      write_measured(json, "of_all", o.ratios[i]);
+      json.begin_object().key("of_all");
+      write_measured(json, o.ratios[i]);
       json.field("scatter", o.scatter[i]).field("expected_scatter", o.sample_sigma[i]).end_object();
     }
     json.end_array().key("light").begin_array();
-    for (const Measured& m : o.summed)
-      json.begin_object().field("value", m.value).field("sigma", m.sigma).end_object();
+    for (const Measured& m : o.summed) write_measured(json, m);
     json.end_array().key("materials").begin_array();
     for (const MaterialFit& f : o.fits)
       json.begin_object()
@@ -277,9 +272,7 @@ Chart range_chart(const DiscriminationDesign& d) {
           .subtitle = "exposure that tells them apart",
           .x = logarithmic_axis("distance, km", 100.0, 10000.0),
           .y = logarithmic_axis("exposure, s", 0.8 * least, 1.3 * most),
-          .series = {series},
-          .bands = {},
-          .bands_label = ""};
+          .series = {series}};
 }
 
 Chart exposure_chart(const DiscriminationDesign& d) {
@@ -293,9 +286,7 @@ Chart exposure_chart(const DiscriminationDesign& d) {
           .subtitle = "one exposure of each band",
           .x = logarithmic_axis("exposure, s", 1e-3, 10.0),
           .y = y,
-          .series = {series},
-          .bands = {},
-          .bands_label = ""};
+          .series = {series}};
 }
 
 }  // namespace dmise

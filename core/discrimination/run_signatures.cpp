@@ -51,9 +51,7 @@ Band band_of(const JsonRecord& camera) {
 }
 
 /// The places of one sensor's objects, by frame.
-struct Places {
-  std::map<std::uint32_t, std::map<std::string, PixelPosition>> of_frame;
-};
+using Places = std::map<std::uint32_t, std::map<std::string, PixelPosition>>;
 
 /// Why an object of a frame can't be measured; empty: it can.
 std::string fault_of(const Truth& truth, const Aperture& aperture) {
@@ -129,9 +127,8 @@ void RunReader::read_sensors(std::vector<std::string> wanted) {
 }
 
 std::size_t RunReader::sensor_index(const std::string& name) const {
-  std::size_t i = 0;
-  while (i < spectra_.sensors.size() && spectra_.sensors[i].name != name) ++i;
-  return i;
+  const auto& sensors = spectra_.sensors;
+  return std::size_t(std::ranges::find(sensors, name, &SpectralSensor::name) - sensors.begin());
 }
 
 void RunReader::read_truth(const ReadProgress& progress) {
@@ -149,11 +146,11 @@ void RunReader::read_truth(const ReadProgress& progress) {
                                   truth.name + ": " + fault);
       return;
     }
-    places_[sensor].of_frame[truth.frame][truth.name] = {truth.rendered_x_px, truth.rendered_y_px};
+    places_[sensor][truth.frame][truth.name] = {truth.rendered_x_px, truth.rendered_y_px};
   });
   for (std::size_t sensor = 0; sensor < places_.size(); ++sensor)
-    for (const auto& [frame, objects] : places_[sensor].of_frame)
-      frames_.push_back({.sensor = sensor, .frame = frame, .measured = {}, .left_out = {}});
+    for (const auto& [frame, objects] : places_[sensor])
+      frames_.push_back({.sensor = sensor, .frame = frame});
 }
 
 void RunReader::measure_frame(std::size_t sensor, std::uint32_t number, std::size_t slot) {
@@ -162,7 +159,7 @@ void RunReader::measure_frame(std::size_t sensor, std::uint32_t number, std::siz
   const FrameHeader& h = frame.header;
   const CountScale scale{h.gain_e_per_dn, h.bias_dn, h.saturation_dn};
   const double sunlight_e = full_sunlight_e(h.v_solar_zero_point_mag(), h.exposure_s);
-  for (const auto& place : places_[sensor].of_frame[number]) {
+  for (const auto& place : places_[sensor][number]) {
     const auto& object = place.first;  // clang 14 captures no structured binding
     const auto& at = place.second;
     const auto leave_out = [&](const std::string& why) {
@@ -175,8 +172,7 @@ void RunReader::measure_frame(std::size_t sensor, std::uint32_t number, std::siz
       leave_out("is too near to the frame's edge");
       continue;
     }
-    BandMeasurement m{
-        .centre = at, .flux = aperture_flux(frame.counts, scale, at, aperture_), .light = {}};
+    BandMeasurement m{.centre = at, .flux = aperture_flux(frame.counts, scale, at, aperture_)};
     if (m.flux.saturated) {
       leave_out("is saturated");
       continue;
@@ -209,7 +205,7 @@ RunSpectra RunReader::take() {
     spectra_.left_out.insert(spectra_.left_out.end(), frame.left_out.begin(), frame.left_out.end());
   }
   for (const auto& [key, bands] : all) {
-    SpectralSample sample{.object = key.first, .frame = key.second, .bands = {}};
+    SpectralSample sample{.object = key.first, .frame = key.second};
     for (const auto& band : bands)
       if (band) sample.bands.push_back(*band);
     if (sample.bands.size() == bands.size()) spectra_.samples.push_back(std::move(sample));

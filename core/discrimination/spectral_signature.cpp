@@ -25,15 +25,4 @@ Measured flux_ratio(const Measured& numerator, const Measured& denominator) {
           std::hypot(numerator.sigma / denominator.value, ratio * spread)};
 }
 
-Measured weighted_mean(std::span<const Measured> values) {
-  double sum = 0.0, weights = 0.0;
-  for (const Measured& v : values) {
-    const double weight = 1.0 / (v.sigma * v.sigma);
-    sum += weight * v.value;
-    weights += weight;
-  }
-  if (!(weights > 0.0)) throw Error("weighted mean: of no values");
-  return {sum / weights, 1.0 / std::sqrt(weights)};
-}
-
 }  // namespace dmise

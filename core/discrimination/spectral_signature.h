@@ -1,7 +1,4 @@
 #pragma once
-#include <span>
-#include <vector>
-
 namespace dmise {
 
 /// A value with its standard deviation.
@@ -22,11 +19,8 @@ Measured reflected(const Measured& flux_e, double full_sunlight_e, double apertu
 
 /// Ratio of two independent measurements. The mean of a ratio is larger than the ratio of the means
 /// by (sigma / value)^2 + 3 (sigma / value)^4 of the denominator; both are taken off, which leaves
-/// 15 (sigma / value)^6.
-/// The standard deviation is that of the first order. Throws `Error` for a denominator <= 0.
+/// 15 (sigma / value)^6. The standard deviation is that of the first order. Throws `Error` for a
+/// denominator <= 0.
 Measured flux_ratio(const Measured& numerator, const Measured& denominator);
-
-/// Weighted by 1 / sigma^2; of none: throws `Error`.
-Measured weighted_mean(std::span<const Measured> values);
 
 }  // namespace dmise

@@ -62,13 +62,5 @@ TEST(FluxRatio, RefusesADenominatorWithoutLight) {
   EXPECT_THROW(flux_ratio({1.0, 0.1}, {-0.2, 0.1}), Error);
 }
 
-TEST(WeightedMean, IsThatOfEqualErrorsOverTheRootOfTheirNumber) {
-  const std::array<Measured, 4> values{{{1, 2}, {2, 2}, {3, 2}, {4, 2}}};
-  const Measured mean = weighted_mean(values);
-  EXPECT_DOUBLE_EQ(mean.value, 2.5);
-  EXPECT_DOUBLE_EQ(mean.sigma, 1.0);
-  EXPECT_THROW(weighted_mean({}), Error);
-}
-
 }  // namespace
 }  // namespace dmise
