@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
+#include "core/base/paths.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
@@ -58,7 +59,10 @@ class Reader {
   }
   template <class T>
   T number() {
-    const std::string_view field = text();
+    return number_of<T>(text());
+  }
+  template <class T>
+  T number_of(std::string_view field) {
     T value{};
     const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
     if (error != std::errc() || end != field.data() + field.size()) good_ = false;
@@ -76,9 +80,7 @@ class Reader {
 
 void write_survey(const std::string& directory, const std::string& head, const SensorSurvey& survey,
                   const SurveyScene& scene, const Shells& shells) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw Error(directory + ": " + error.message());
+  make_directories(directory);
   const auto utc = [&](SimTime t) { return format_utc(scene.clock().utc(t), 3); };
   const std::string totals = "# frames " + std::to_string(survey.frames) + " without state " +
                              std::to_string(survey.without_state) +
@@ -140,11 +142,8 @@ std::optional<SensorSurvey> read_survey(const std::string& directory, const std:
     e.frame = exposures.number<std::uint32_t>();
     e.middle.ns = exposures.number<std::int64_t>();
     exposures.text();
-    if (const std::string_view sun = exposures.text(); !sun.empty()) {
-      double value = 0.0;
-      std::from_chars(sun.data(), sun.data() + sun.size(), value);
-      e.sun_elevation_rad = value;
-    }
+    if (const std::string_view sun = exposures.text(); !sun.empty())
+      e.sun_elevation_rad = exposures.number_of<double>(sun);
     e.in_field = exposures.number<std::uint32_t>();
     e.sunlit = exposures.number<std::uint32_t>();
     e.expected = exposures.number<double>();

@@ -38,6 +38,10 @@ TEST(SurveyFile, WhatIsDamagedIsNotRead) {
     std::ofstream(path) << whole;
     EXPECT_TRUE(read_survey(directory, "head", "a", objects)) << name;
   }
+  std::string exposures = read_text_file(directory + "/exposures.csv");
+  exposures.replace(exposures.find(",-") + 2, 1, "x");  // in an elevation of the Sun
+  std::ofstream(directory + "/exposures.csv") << exposures;
+  EXPECT_FALSE(read_survey(directory, "head", "a", objects));
 }
 
 }  // namespace
