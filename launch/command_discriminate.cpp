@@ -1,10 +1,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/paths.h"
 #include "core/base/printable.h"
 #include "core/base/whole_file.h"
 #include "core/config/material_config.h"
@@ -56,9 +56,7 @@ std::map<std::string, std::string> known_of(const std::vector<std::string>& word
 }
 
 void write_chart(const std::string& directory, const char* name, const Chart& chart) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw ConfigError("--plots: " + directory + ": " + error.message());
+  make_directories(directory, "--plots");
   write_file_whole(directory + "/" + name, chart_svg(chart));
 }
 

@@ -7,8 +7,8 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
+#include "core/base/paths.h"
 #include "core/base/printable.h"
-#include "core/base/regular_file.h"
 #include "core/base/whole_file.h"
 #include "core/config/search_path.h"
 #include "core/exchange/export_format.h"
@@ -79,11 +79,10 @@ std::vector<MeanElements> elements_of(const RunProducts& run, const ExportOption
 }
 
 void write(const ExportedFile& file, const fs::path& path) {
-  std::error_code error;
-  if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-  if (error) throw ConfigError("--out: " + path.parent_path().string() + ": " + error.message());
+  if (path.has_parent_path()) make_directories(path.parent_path(), "--out");
   if (file.copy_of.empty()) return write_file_whole(path.string(), file.content);
   const std::string partial = WholeFile::partial_of(path.string());
+  std::error_code error;
   fs::copy_file(file.copy_of, partial, fs::copy_options::overwrite_existing, error);
   if (!error) fs::rename(partial, path, error);
   if (error) throw Error(path.string() + ": can't be written: " + error.message());

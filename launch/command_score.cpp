@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/paths.h"
 #include "core/base/printable.h"
 #include "core/base/whole_file.h"
 #include "core/score/foreign_frames.h"
@@ -45,9 +45,7 @@ void run_score(const ScoreOptions& options) {
   const Score result = score(input_of(options), options.settings);
   if (!options.csv.empty()) write_file_whole(options.csv, score_csv(result));
   if (!options.plots.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(options.plots, error);
-    if (error) throw ConfigError("--plots: " + options.plots + ": " + error.message());
+    make_directories(options.plots, "--plots");
     write_file_whole(options.plots + "/detection.svg", chart_svg(detection_chart(result)));
     write_file_whole(options.plots + "/position.svg", chart_svg(position_chart(result)));
     write_file_whole(options.plots + "/magnitude.svg", chart_svg(magnitude_chart(result)));

@@ -1,14 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <sstream>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/paths.h"
 #include "core/base/printable.h"
-#include "core/base/regular_file.h"
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
 #include "core/pictures/picture_file.h"
@@ -43,9 +42,7 @@ void tradeoff(const TradeoffOptions& options) {
   const std::string sensor =
       options.sensor.empty() ? scenario.sensors.front().name : options.sensor;
   sensor_named(scenario, sensor);
-  std::error_code error;
-  std::filesystem::create_directories(options.out, error);
-  if (error) throw ConfigError("--out: " + options.out + ": " + error.message());
+  make_directories(options.out, "--out");
   const std::string digest = scenario_digest(scenario);
   const std::string head = "# " + digest + " " + sensor + " frame " +
                            std::to_string(options.frame) + " repeats " +

@@ -1,12 +1,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/paths.h"
 #include "core/base/units.h"
 #include "core/base/whole_file.h"
 #include "core/config/make_clock.h"
@@ -109,9 +109,7 @@ std::string counts_csv(const Sightings& found, const TimeGrid& grid, const Clock
 
 void write_products(const std::string& directory, const PassList& list, const std::string& counts,
                     const Chart& chart) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw Error(directory + ": " + error.message());
+  make_directories(directory);
   write_file_whole(directory + "/passes.csv", pass_csv(list));
   write_file_whole(directory + "/passes.jsonl", pass_jsonl(list));
   write_file_whole(directory + "/counts.csv", counts);

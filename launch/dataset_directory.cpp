@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/json.h"
-#include "core/base/regular_file.h"
+#include "core/base/paths.h"
 #include "core/base/text_file.h"
 #include "core/base/version.h"
 #include "core/base/whole_file.h"
@@ -65,9 +65,7 @@ std::string shard_name(std::size_t shard, const char* ending) {
 
 DatasetDirectory::DatasetDirectory(std::string path, DatasetPlan plan)
     : path_(std::move(path)), plan_(std::move(plan)) {
-  std::error_code code;
-  fs::create_directories(path_, code);
-  if (code) throw Error(path_ + ": can't be made: " + code.message());
+  make_directories(path_);
 }
 
 DatasetDirectory::Content DatasetDirectory::content() const {
@@ -93,9 +91,7 @@ void DatasetDirectory::clear() const {
 }
 
 void DatasetDirectory::begin() const {
-  std::error_code code;
-  fs::create_directories(path_ + "/parts", code);
-  if (code) throw Error(path_ + "/parts: can't be made: " + code.message());
+  make_directories(path_ + "/parts");
   const auto starting = lock("start");  // tasks of an array begin together
   if (!starting || path_exists(part("plan.json"))) return;
   write_file_whole(path_ + "/scenario.yaml", plan_.scenario_text);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/json.h"
-#include "core/base/regular_file.h"
+#include "core/base/paths.h"
 #include "core/base/whole_file.h"
 #include "core/config/node_kinds.h"
 #include "launch/node_makers.h"

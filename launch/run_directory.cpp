@@ -9,7 +9,7 @@
 
 #include "core/base/digest.h"
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
+#include "core/base/paths.h"
 #include "core/base/text_file.h"
 #include "core/base/whole_file.h"
 #include "core/config/node_kinds.h"

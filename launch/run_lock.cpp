@@ -11,10 +11,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/paths.h"
 
 namespace dmise {
 namespace {
@@ -265,9 +265,7 @@ std::optional<LockHolder> RunLock::written_in(const std::string& directory) {
 }
 
 std::unique_ptr<RunLock> lock_directory(const std::string& directory) {
-  std::error_code code;
-  std::filesystem::create_directories(directory, code);
-  if (code) throw Error(directory + ": can't be created: " + code.message());
+  make_directories(directory);
   return std::make_unique<RunLock>(directory);
 }
 

@@ -3,7 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/json.h"
-#include "core/base/regular_file.h"
+#include "core/base/paths.h"
 #include "core/base/version.h"
 #include "core/base/whole_file.h"
 #include "core/orbit/interpolation_error.h"

@@ -15,6 +15,7 @@
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/mapped_file.h"
+#include "core/base/paths.h"
 #include "core/base/text_file.h"
 #include "core/base/user_directories.h"
 #include "core/config/search_path.h"
@@ -109,9 +110,7 @@ std::string fetch_tycho2(const std::string& from, const std::string& to) {
   const std::string bright_path = find_catalogue(star_catalogue_file("kstars"));
   if (bright_path.empty()) throw ConfigError(missing_star_catalogue("kstars"));
   const std::string directory = directory_for(to);
-  std::error_code failed;
-  fs::create_directories(directory, failed);
-  if (failed) throw ConfigError(directory + ": " + failed.message());
+  make_directories(directory, "--to");
   const std::string deep = deep_stars(directory, from);
   if (const std::string digest = sha256_hex(deep); digest != deep_stars_sha256)
     throw ConfigError(std::string(deep_stars_name) + ": its SHA-256 must be " +

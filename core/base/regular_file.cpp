@@ -8,7 +8,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
@@ -45,11 +44,6 @@ int open_regular_file(const std::string& path) {
     throw ConfigError(printable(path) + ": " + reason);
   }
   return file;
-}
-
-bool path_exists(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored);
 }
 
 }  // namespace dmise

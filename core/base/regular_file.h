@@ -8,7 +8,4 @@ namespace dmise {
 /// devices, which may never end, and files of /proc or /sys. Never waits for a writer.
 int open_regular_file(const std::string& path);
 
-/// Whether there is a file or directory at `path`; false also where that can't be known.
-bool path_exists(const std::string& path);
-
 }  // namespace dmise

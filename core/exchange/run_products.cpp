@@ -4,8 +4,8 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
+#include "core/base/paths.h"
 #include "core/base/printable.h"
-#include "core/base/regular_file.h"
 #include "core/base/text_file.h"
 #include "core/optics/psf_table.h"
 #include "core/score/json_record.h"

@@ -4,7 +4,7 @@
 
 #include "core/base/formatted.h"
 #include "core/base/json.h"
-#include "core/base/regular_file.h"
+#include "core/base/paths.h"
 #include "core/base/units.h"
 #include "core/exchange/export_format.h"
 #include "core/exchange/image_label.h"

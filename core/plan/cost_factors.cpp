@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/formatted.h"
-#include "core/base/regular_file.h"
+#include "core/base/paths.h"
 #include "core/base/text_file.h"
 #include "core/base/user_directories.h"
 

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/paths.h"
 #include "core/base/printable.h"
-#include "core/base/regular_file.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/image/fits_file.h"

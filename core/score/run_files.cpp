@@ -5,7 +5,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/regular_file.h"
+#include "core/base/paths.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/optics/psf_table.h"

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/formatted.h"
 #include "core/base/json.h"
+#include "core/base/paths.h"
 #include "core/base/whole_file.h"
 #include "core/config/effect_list.h"
 #include "core/detection/detection_json.h"
@@ -79,9 +80,7 @@ double pss_mb() {
 
 ProductWriter::ProductWriter(std::string directory, const OutputConfig& output, Clock clock)
     : directory_(std::move(directory)), output_(output), clock_(std::move(clock)) {
-  std::error_code code;
-  std::filesystem::create_directories(directory_, code);
-  if (code) throw Error(directory_ + ": can't be made: " + code.message());
+  make_directories(directory_);
 }
 
 std::string ProductWriter::frame_path(std::uint32_t frame, const char* ending) const {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/base/paths.h"
 #include "core/base/whole_file.h"
 
 namespace dmise {
@@ -33,10 +33,7 @@ PositionFiles::PositionFiles(std::string directory, const OutputConfig& output,
       in_enu_(output.positions_enu) {
   if (output.positions_csv) csv_.path = directory_ + "/positions.csv";
   if (output.positions_jsonl) json_.path = directory_ + "/positions.jsonl";
-  const std::string made = with_oem_ ? directory_ + "/positions" : directory_;
-  std::error_code code;
-  std::filesystem::create_directories(made, code);
-  if (code) throw Error(made + ": can't be created: " + code.message());
+  make_directories(with_oem_ ? directory_ + "/positions" : directory_);
 }
 
 PositionFiles::~PositionFiles() {
