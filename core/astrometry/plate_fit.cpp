@@ -23,17 +23,17 @@ class Equations {
  public:
   Equations(const PlateModel& model, const PlateFreedom& free) : model_(model), free_(free) {}
 
-  /// Whether the direction has an image.
+  /// Works out the row of a match. False if the direction has no image.
   bool row(const Vec<Gcrs>& direction, PixelPosition pixel, Row& row) {
     const Vec<CameraFrame> c = model_.camera_from_gcrs * direction;
-    const auto place = image(c);
+    const auto place = model_.focal_place(c);
     if (!place) return false;
     const PixelPosition at = pixel - model_.centre;
     row.by.clear();
     constexpr double step = 1e-6;
     for (const Vec<CameraFrame>& axis : {Vec<CameraFrame>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
-      const auto more = image(unit(c + cross(axis, c) * step));
-      const auto less = image(unit(c - cross(axis, c) * step));
+      const auto more = model_.focal_place(unit(c + cross(axis, c) * step));
+      const auto less = model_.focal_place(unit(c - cross(axis, c) * step));
       if (!more || !less) return false;
       row.by.push_back((*less - *more) * (0.5 / step / model_.focal_length_px));
     }
@@ -71,12 +71,6 @@ class Equations {
   }
 
  private:
-  std::optional<PixelPosition> image(const Vec<CameraFrame>& c) const {
-    const auto at = model_.projection.image_of(c.x, c.y, c.z);
-    if (!at) return std::nullopt;
-    return PixelPosition{(*at)[0], (*at)[1]} * model_.focal_length_px;
-  }
-
   const PlateModel& model_;
   PlateFreedom free_;
   std::vector<PixelPosition> moves_;

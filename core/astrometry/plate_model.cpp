@@ -50,9 +50,8 @@ PixelPosition PlateModel::undistorted(PixelPosition pixel) const {
   return out;
 }
 
-std::optional<PixelPosition> PlateModel::focal_place(const Vec<Gcrs>& direction) const {
-  const Vec<CameraFrame> c = camera_from_gcrs * direction;
-  const auto image = projection.image_of(c.x, c.y, c.z);
+std::optional<PixelPosition> PlateModel::focal_place(const Vec<CameraFrame>& direction) const {
+  const auto image = projection.image_of(direction.x, direction.y, direction.z);
   if (!image) return std::nullopt;
   return PixelPosition{(*image)[0] * focal_length_px, (*image)[1] * focal_length_px};
 }

@@ -32,7 +32,10 @@ struct PlateModel {
   /// Undistorted place of a pixel [px from the axis].
   PixelPosition undistorted(PixelPosition pixel) const;
   /// Undistorted place of an apparent direction (unit); empty where it has no image.
-  std::optional<PixelPosition> focal_place(const Vec<Gcrs>& direction) const;
+  std::optional<PixelPosition> focal_place(const Vec<CameraFrame>& direction) const;
+  std::optional<PixelPosition> focal_place(const Vec<Gcrs>& direction) const {
+    return focal_place(camera_from_gcrs * direction);
+  }
   /// Pixel of an apparent direction (unit); empty where it has none or where the distortion has no
   /// inverse.
   std::optional<PixelPosition> pixel(const Vec<Gcrs>& direction) const;

@@ -42,7 +42,7 @@ std::optional<ZeroPoint> fit_zero_point(std::span<const PhotometricStar> stars,
   };
   std::vector<double> sizes, r(stars.size());
   for (std::size_t i = 0; i < stars.size(); ++i) r[i] = residual(stars[i]);
-  z.zero_point_mag = quantile_of(r, 0.5);
+  z.zero_point_mag = median_of(r);
   const std::size_t n = free.size();
   for (int pass = 0; pass < 30; ++pass) {
     sizes.clear();
@@ -50,7 +50,7 @@ std::optional<ZeroPoint> fit_zero_point(std::span<const PhotometricStar> stars,
       r[i] = residual(stars[i]);
       sizes.push_back(std::abs(r[i]));
     }
-    const double scatter = std::max(least_scatter_mag, 1.4826 * quantile_of(sizes, 0.5));
+    const double scatter = std::max(least_scatter_mag, 1.4826 * median_of(sizes));
     std::vector<double> normal(n * n, 0.0), right(n, 0.0);
     double sum2 = 0.0;
     z.stars = 0;

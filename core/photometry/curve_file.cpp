@@ -1,11 +1,10 @@
 #include "core/photometry/curve_file.h"
 
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/text_fields.h"
 #include "core/base/units.h"
 
 namespace dmise {
@@ -31,30 +30,18 @@ std::optional<double> metres_of(std::string_view column) {
   return std::nullopt;
 }
 
-std::optional<double> number(std::string_view word) {
-  double x = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
-  if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(x))
-    return std::nullopt;
-  return x;
-}
-
 }  // namespace
 
 Curve parse_curve(std::string_view text, const std::string& name) {
   Curve curve;
   double unit_m = 0.0, scale = 1.0;
-  std::size_t line_number = 0;
-  const auto fail = [&](const std::string& reason, std::string_view got) {
-    throw ConfigError(name + ":" + std::to_string(line_number) + ": " + reason + ", got " +
-                      std::string(got.empty() ? "nothing" : got));
+  LineReader lines(text);
+  const auto fail = [&](const std::string& reason, std::string_view field) {
+    throw ConfigError(name + ":" + std::to_string(lines.line()) + ": " + reason + ", got " +
+                      std::string(field));
   };
-  while (!text.empty()) {
-    ++line_number;
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    const auto fields = words(line.substr(0, line.find('#')));
+  while (const auto line = lines.next()) {
+    const auto fields = words(line->substr(0, line->find('#')));
     if (fields.empty()) continue;
     if (fields.size() < 2) fail("needs a wavelength and a value", fields[0]);
     if (unit_m == 0.0) {
@@ -64,7 +51,7 @@ Curve parse_curve(std::string_view text, const std::string& name) {
       if (fields[1].ends_with("_percent")) scale = 0.01;
       continue;
     }
-    const auto wavelength = number(fields[0]), value = number(fields[1]);
+    const auto wavelength = parse_real(fields[0]), value = parse_real(fields[1]);
     if (!wavelength || !(*wavelength > 0)) fail("wavelength must be a number > 0", fields[0]);
     if (!value || *value * scale < 0 || *value * scale > 1)
       fail(scale == 1.0 ? "value must be in [0, 1]" : "value must be in [0, 100]", fields[1]);

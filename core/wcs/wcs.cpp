@@ -39,15 +39,6 @@ TangentBasis tangent_basis(const Wcs& wcs) {
   return {{ca * cd, sa * cd, sd}, {-sa, ca, 0.0}, {-ca * sd, -sa * sd, cd}};
 }
 
-PixelPosition polynomials(const Wcs& wcs, double u, double v) {
-  return {u + evaluate(wcs.a, wcs.order, u, v).value, v + evaluate(wcs.b, wcs.order, u, v).value};
-}
-
-PixelPosition focal_place(const Wcs& wcs, const RefractionShift* air, PixelPosition pixel) {
-  const PixelPosition place = polynomials(wcs, pixel.x_px - wcs.crpix_x, pixel.y_px - wcs.crpix_y);
-  return air ? place + air->at(pixel) : place;
-}
-
 std::optional<RefractionShift> air_of(const Wcs& wcs) {
   return wcs.refraction ? std::optional<RefractionShift>(wcs) : std::nullopt;
 }
@@ -61,8 +52,11 @@ std::array<double, 2> plane_of_focal(const Wcs& wcs, PixelPosition place) {
 }  // namespace
 
 PixelPosition wcs_focal_place(const Wcs& wcs, PixelPosition pixel) {
+  const double u = pixel.x_px - wcs.crpix_x, v = pixel.y_px - wcs.crpix_y;
+  const PixelPosition place{u + evaluate(wcs.a, wcs.order, u, v).value,
+                            v + evaluate(wcs.b, wcs.order, u, v).value};
   const auto air = air_of(wcs);
-  return focal_place(wcs, air ? &*air : nullptr, pixel);
+  return air ? place + air->at(pixel) : place;
 }
 
 std::optional<PixelPosition> wcs_focal_place(const Wcs& wcs, const Vec<Gcrs>& direction) {
@@ -77,7 +71,7 @@ std::optional<PixelPosition> wcs_focal_place(const Wcs& wcs, const Vec<Gcrs>& di
 }
 
 Vec<Gcrs> wcs_direction(const Wcs& wcs, PixelPosition pixel) {
-  auto [xi, eta] = plane_of_focal(wcs, wcs_focal_place(wcs, pixel));
+  const auto [xi, eta] = plane_of_focal(wcs, wcs_focal_place(wcs, pixel));
   auto local = wcs.projection.direction_of(xi, eta);
   if (!local) {  // at the rim
     const double shrink = wcs.projection.rim() * (1 - 1e-12) / std::hypot(xi, eta);

@@ -38,6 +38,7 @@ std::array<double, 2> half_sides_px(const Optics& o) {
   return {std::min(0.5 * o.columns, rim_px), std::min(0.5 * o.rows, rim_px)};
 }
 
+/// Samples `sky` on a grid of Chebyshev points.
 std::vector<Sample> look(const Optics& optics, const SkyOfPixel& sky, int points) {
   const PixelPosition centre = principal_point(optics);
   const auto half = half_sides_px(optics);
@@ -51,7 +52,7 @@ std::vector<Sample> look(const Optics& optics, const SkyOfPixel& sky, int points
   return all;
 }
 
-// Exponents of the terms u^p v^q with p + q <= order.
+/// Exponents of the terms u^p v^q with p + q <= order.
 std::vector<std::array<int, 2>> terms(int order) {
   std::vector<std::array<int, 2>> list;
   for (int total = 0; total <= order; ++total)
@@ -189,7 +190,7 @@ void Fit::fit_inverse(Wcs& w, const std::vector<PixelPosition>& shifts) const {
       const PixelPosition by = samples_[i].pixel - PixelPosition{w.crpix_x, w.crpix_y} - linear;
       polynomials.add(linear, {}, {by.x_px, by.y_px});
     }
-  const auto list = polynomials.list();
+  const auto& list = polynomials.list();
   const auto c = polynomials.solve();
   const auto side = std::size_t(w.order) + 1;
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -246,7 +247,8 @@ double Fit::table_error_px(const Wcs& w) const {
   return worst;
 }
 
-/// The error is proportional to the square of the step.
+/// Chooses the step of the lookup table, to whose square its error is proportional, and puts the
+/// error into `max_px`.
 void Fit::choose_table(Wcs& w) const {
   const double longer = std::max(optics_.columns, optics_.rows);
   double& cell = w.refraction->cell_px;

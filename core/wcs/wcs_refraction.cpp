@@ -74,9 +74,7 @@ ShiftTable shift_table(const Wcs& wcs, int columns, int rows) {
   const RefractionShift shift(wcs);
   ShiftTable table{.columns = shift_table_nodes(columns, wcs.refraction->cell_px),
                    .rows = shift_table_nodes(rows, wcs.refraction->cell_px),
-                   .cell_px = wcs.refraction->cell_px,
-                   .x_px = {},
-                   .y_px = {}};
+                   .cell_px = wcs.refraction->cell_px};
   const std::size_t nodes = std::size_t(table.columns) * std::size_t(table.rows);
   table.x_px.reserve(nodes);
   table.y_px.reserve(nodes);
