@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "core/base/quantile.h"
@@ -33,42 +34,34 @@ Around around(const CellMesh& raw, float sigma, int i, int j) {
   constexpr int reach = 2, rounds = 4;
   constexpr std::size_t terms = 6;
   constexpr double least_scatter = 0.05;  // in a pixel's noise
-  std::array<double, 25> weight;
-  weight.fill(1.0);
+  struct Cell {
+    std::array<double, terms> powers;
+    double value, weight = 1.0, off = 0.0;
+  };
+  std::vector<Cell> cells;
+  for (int v = std::max(-reach, -j); v <= std::min(reach, raw.down - 1 - j); ++v)
+    for (int u = std::max(-reach, -i); u <= std::min(reach, raw.across - 1 - i); ++u)
+      cells.push_back(
+          {.powers = {1.0, double(u), double(v), double(u * u), double(u * v), double(v * v)},
+           .value = raw.cell(i + u, j + v)});
   SmallVector parabola{};
   double scatter = 0.0;
-  const auto powers = [](int u, int v) {
-    return std::array<double, terms>{1.0,           double(u),     double(v),
-                                     double(u * u), double(u * v), double(v * v)};
-  };
   for (int round = 0; round < rounds; ++round) {
     NormalEquations equations;
+    for (const Cell& c : cells) equations.add(c.weight, c.powers, c.value);
     auto& [matrix, right] = equations;
-    std::size_t k = 0;
-    for (int v = -reach; v <= reach; ++v)
-      for (int u = -reach; u <= reach; ++u, ++k) {
-        if (i + u < 0 || j + v < 0 || i + u >= raw.across || j + v >= raw.down) continue;
-        equations.add(weight[k], powers(u, v), raw.cell(i + u, j + v));
-      }
     for (std::size_t a = 0; a < terms; ++a) matrix[a][a] += 1e-9;
     if (!cholesky(matrix, terms)) break;
     parabola = solve(matrix, right, terms);
-    std::vector<double> off;
-    std::array<double, 25> residual{};
-    k = 0;
-    for (int v = -reach; v <= reach; ++v)
-      for (int u = -reach; u <= reach; ++u, ++k) {
-        if (i + u < 0 || j + v < 0 || i + u >= raw.across || j + v >= raw.down) continue;
-        const auto p = powers(u, v);
-        double level = 0.0;
-        for (std::size_t a = 0; a < terms; ++a) level += parabola[a] * p[a];
-        residual[k] = raw.cell(i + u, j + v) - level;
-        off.push_back(std::abs(residual[k]));
-      }
-    scatter = std::max(1.4826 * middle_of(std::move(off)), least_scatter * double(sigma));
-    for (std::size_t n = 0; n < weight.size(); ++n) {
-      const double in_scatter = residual[n] / (3 * scatter);
-      weight[n] = 1 / (1 + in_scatter * in_scatter * in_scatter * in_scatter);
+    std::vector<double> sizes;
+    for (Cell& c : cells) {
+      c.off = c.value - std::inner_product(c.powers.begin(), c.powers.end(), parabola.begin(), 0.0);
+      sizes.push_back(std::abs(c.off));
+    }
+    scatter = std::max(1.4826 * middle_of(std::move(sizes)), least_scatter * double(sigma));
+    for (Cell& c : cells) {
+      const double in_scatter = c.off / (3 * scatter);
+      c.weight = 1 / (1 + in_scatter * in_scatter * in_scatter * in_scatter);
     }
   }
   return {float(parabola[0]), float(scatter)};

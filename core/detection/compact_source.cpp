@@ -62,14 +62,12 @@ Trail moments(const std::vector<FitPixel>& pixels, double sigma_px) {
     yy += w * dy * dy;
     total += p.signal_e;
   }
-  Trail trail;
-  trail.x_px = x;
-  trail.y_px = y;
-  trail.flux_e = std::max(total, 1.0);
-  trail.angle_rad = 0.5 * std::atan2(2 * xy, xx - yy);
   const double major = 0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy);
-  trail.length_px = std::sqrt(12 * std::max(major - sigma_px * sigma_px, 0.1));
-  return trail;
+  return {.x_px = x,
+          .y_px = y,
+          .flux_e = std::max(total, 1.0),
+          .length_px = std::sqrt(12 * std::max(major - sigma_px * sigma_px, 0.1)),
+          .angle_rad = 0.5 * std::atan2(2 * xy, xx - yy)};
 }
 
 /// Relative error of the PSF outside `clipped` pixels.

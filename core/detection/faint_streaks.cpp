@@ -27,12 +27,10 @@ constexpr double template_px = 130.0;   // longest streak whose ends count
 constexpr double sum_misses_snr = 1.6;  // of such a streak's SNR, at most
 
 Trail trail_of(const Beamlet& b) {
-  Trail t;
-  t.x_px = 0.5 * (b.x1 + b.x2);
-  t.y_px = 0.5 * (b.y1 + b.y2);
-  t.length_px = std::hypot(b.x2 - b.x1, b.y2 - b.y1);
-  t.angle_rad = std::atan2(b.y2 - b.y1, b.x2 - b.x1);
-  return t;
+  return {.x_px = 0.5 * (b.x1 + b.x2),
+          .y_px = 0.5 * (b.y1 + b.y2),
+          .length_px = std::hypot(b.x2 - b.x1, b.y2 - b.y1),
+          .angle_rad = std::atan2(b.y2 - b.y1, b.x2 - b.x1)};
 }
 
 /// Whether most of a trail lies on another.
@@ -201,15 +199,13 @@ std::optional<Source> longer(const Scene& scene, const FilteredFrame& frame, con
   const double known_snr = template_snr(scene, known);
   // Of a short one the direction may be that of noise.
   const bool is_short = known.length_px < short_in_sigmas * scene.sigma_px;
-  std::vector<Trail> starts;
-  if (source.streak) starts.push_back(climbed(frame, known, 3.0));
-  if (is_short) starts.push_back(best_line_through(frame, known, scene.sigma_px));
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    const bool turned = i > 0 || !source.streak;
-    auto fit = fitted_longer(scene, frame, source, starts[i], turned, known_snr);
-    if (fit) return fit;
-  }
-  return std::nullopt;
+  std::optional<Source> fit;
+  if (source.streak)
+    fit = fitted_longer(scene, frame, source, climbed(frame, known, 3.0), false, known_snr);
+  if (!fit && is_short)
+    fit = fitted_longer(scene, frame, source, best_line_through(frame, known, scene.sigma_px), true,
+                        known_snr);
+  return fit;
 }
 
 }  // namespace

@@ -110,10 +110,10 @@ struct Fit {
 Fit polished(const FilteredFrame& frame, Fit best) {
   for (double step_px = 1.0; step_px > 0.2;) {
     bool better = false;
-    for (const int parameter : {0, 1, 4}) {
-      if (parameter == 4 && best.trail.length_px < 40) continue;
+    for (const auto what : {TrailChange::offset, TrailChange::direction, TrailChange::curvature}) {
+      if (what == TrailChange::curvature && best.trail.length_px < 40) continue;
       for (const double side : {1.0, -1.0}) {
-        const Trail trial = changed(best.trail, parameter, side * step_px);
+        const Trail trial = changed(best.trail, what, side * step_px);
         const double snr = snr_along(frame, trial);
         if (!(snr > best.snr) || std::abs(trial.sagitta_px) > most_bend * trial.length_px) continue;
         best = {trial, snr};
@@ -190,25 +190,25 @@ Fit with_best_ends(const FilteredFrame& frame, const Fit& start) {
 
 }  // namespace
 
-Trail changed(Trail t, int parameter, double by_px) {
+Trail changed(Trail t, TrailChange what, double by_px) {
   const double c = std::cos(t.angle_rad), s = std::sin(t.angle_rad);
-  switch (parameter) {
-    case 0:
+  switch (what) {
+    case TrailChange::offset:
       t.x_px -= by_px * s, t.y_px += by_px * c;
       break;
-    case 1:
+    case TrailChange::direction:
       t.angle_rad += 2 * by_px / std::max(t.length_px, 1.0);
       break;
-    case 2:
-    case 3: {
-      const double way = parameter == 2 ? -1.0 : 1.0;
+    case TrailChange::first_end:
+    case TrailChange::last_end: {
+      const double way = what == TrailChange::first_end ? -1.0 : 1.0;
       const double length = std::max(t.length_px + by_px, 1.0), moved = length - t.length_px;
       t.x_px += 0.5 * way * moved * c, t.y_px += 0.5 * way * moved * s;
       t.sagitta_px *= std::pow(length / std::max(t.length_px, 1.0), 2);
       t.length_px = length;
       break;
     }
-    default:
+    case TrailChange::curvature:
       t.sagitta_px += by_px;
   }
   return t;

@@ -23,9 +23,11 @@ LineSum sum_along(const FilteredFrame& frame, const Trail& trail);
 /// The sum in units of its noise: the SNR of a streak of that shape.
 double snr_along(const FilteredFrame& frame, const Trail& trail);
 
-/// A trail with one of its five parameters changed by `by_px`: its offset, its direction, either
-/// end along it, its curvature.
-Trail changed(Trail trail, int parameter, double by_px);
+/// What of a trail is varied.
+enum class TrailChange : std::uint8_t { offset, direction, first_end, last_end, curvature };
+
+/// A trail with one of these changed by `by_px`: ends along it, the others across.
+Trail changed(Trail trail, TrailChange what, double by_px);
 
 /// The trail near `start` along which `snr_along` is largest, by steps of its offset, direction,
 /// ends and curvature; only by the first two where these find less than `least_snr`.

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <optional>
-#include <tuple>
 
 namespace dmise {
 namespace {
@@ -81,7 +80,7 @@ MidExposure mid_exposure(const FrameHeader& header, const Vec<Gcrs>& end1, const
   const auto onwards = mid(end1, end2, 0.0), back = mid(end2, end1, 0.0);
   const auto rising = mid(end1, end2, radial_speed_share);
   if (!onwards || !back || !rising) return even;
-  const auto [a, b, c] = std::tuple(onwards->direction, back->direction, rising->direction);
+  const Vec<Gcrs>&a = onwards->direction, &b = back->direction, &c = rising->direction;
   return {unit(a + b), std::hypot(norm(a - b) / 2, norm(c - a)),
           std::sqrt(onwards->start_range_over_end / back->start_range_over_end)};
 }

@@ -81,12 +81,10 @@ struct Scene {
   /// Trail of a star at a position, without flux.
   Trail star_trail(double x_px, double y_px) const {
     const PixelPosition d = stars.trail_at({x_px, y_px});
-    Trail trail;
-    trail.x_px = x_px;
-    trail.y_px = y_px;
-    trail.length_px = std::hypot(d.x_px, d.y_px);
-    trail.angle_rad = std::atan2(d.y_px, d.x_px);
-    return trail;
+    return {.x_px = x_px,
+            .y_px = y_px,
+            .length_px = std::hypot(d.x_px, d.y_px),
+            .angle_rad = std::atan2(d.y_px, d.x_px)};
   }
 };
 

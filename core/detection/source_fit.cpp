@@ -84,7 +84,7 @@ void end_at_edge(TrailFit& fit, const Scene& scene, double side) {
   for (std::size_t i = 0; i < n; ++i) variance += h[i] * gain[i];
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = 0; k < n; ++k) fit.covariance[i * n + k] -= gain[i] * gain[k] / variance;
-  const Trail part = changed(t, side < 0 ? 2 : 3, way_px);
+  const Trail part = changed(t, side < 0 ? TrailChange::first_end : TrailChange::last_end, way_px);
   const double share = part.length_px / t.length_px;
   t = part;
   t.flux_e *= share;

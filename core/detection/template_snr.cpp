@@ -49,9 +49,10 @@ TemplateMatch best_template(const Scene& scene, const Trail& start) {
   for (double step_px = 1.0; step_px > 0.2; step_px /= 2)
     for (bool better = true; better;) {
       better = false;
-      for (int parameter = 0; parameter < 4; ++parameter)
+      for (const auto what : {TrailChange::offset, TrailChange::direction, TrailChange::first_end,
+                              TrailChange::last_end})
         for (const double side : {1.0, -1.0}) {
-          const Trail trial = changed(best.trail, parameter, side * step_px);
+          const Trail trial = changed(best.trail, what, side * step_px);
           if (std::hypot(trial.x_px - start.x_px, trial.y_px - start.y_px) > spare_px ||
               std::abs(trial.length_px - start.length_px) > 2 * spare_px)
             continue;

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <variant>
 
 #include "core/detector/detector.h"
 #include "core/photometry/magnitude_system.h"
@@ -76,19 +77,6 @@ void visit_wcs(Visitor& v, const Projection& lens, Wcs& wcs) {
   v.number("WCSMAX", wcs.max_px, "[px] largest error of the WCS there");
 }
 
-template <class Visitor>
-void visit_field(Visitor& v, const std::string& key, double& value, const char* comment) {
-  v.number(key, value, comment);
-}
-template <class Visitor>
-void visit_field(Visitor& v, const std::string& key, int& value, const char* comment) {
-  v.integer(key, value, comment);
-}
-template <class Visitor>
-void visit_field(Visitor& v, const std::string& key, bool& value, const char* comment) {
-  v.flag(key, value, comment);
-}
-
 // Parameters that every frame's header has anyway are copied from there, not written twice.
 template <class Visitor>
 void visit_detector(Visitor& v, FrameHeader& h) {
@@ -98,9 +86,13 @@ void visit_detector(Visitor& v, FrameHeader& h) {
   for (const DetectorParameter& p : detector_parameters()) {
     const std::string keyword(p.keyword), comment(p.meaning);
     const bool unusual = p.number_of(d) != p.number_of({});
-    if (!keyword.empty() && (in_every_header(p) || v.present(keyword.c_str(), unusual)))
-      std::visit([&](auto member) { visit_field(v, keyword, d.*member, comment.c_str()); },
-                 p.value);
+    if (keyword.empty() || !(in_every_header(p) || v.present(keyword.c_str(), unusual))) continue;
+    if (const auto number = std::get_if<double Detector::*>(&p.value))
+      v.number(keyword, d.*(*number), comment.c_str());
+    else if (const auto integer = std::get_if<int Detector::*>(&p.value))
+      v.integer(keyword, d.*(*integer), comment.c_str());
+    else
+      v.flag(keyword, d.*std::get<bool Detector::*>(p.value), comment.c_str());
   }
   d.dark_e_per_s = h.dark_e_per_s;
   d.read_noise_e = h.read_noise_e;
