@@ -1,6 +1,6 @@
 #include "time-master/master_result.h"
 
-#include <cstdio>
+#include <spdlog/fmt/fmt.h>
 
 #include "core/base/json.h"
 #include "nodes/runtime/process/seconds.h"
@@ -31,13 +31,9 @@ std::string to_json(const MasterResult& result) {
   json.field("granted_tick", std::int64_t(result.granted));
   json.field("wall_s", result.wall_s);
   json.field("cpu_s", result.cpu_s).field("messages", result.messages);
-  char digest[17];
-  std::snprintf(digest, sizeof digest, "%016llx", static_cast<unsigned long long>(result.digest));
-  json.field("digest", digest);
+  json.field("digest", fmt::format("{:016x}", result.digest));
   json.field("overruns", result.overruns).field("worst_lag_s", result.worst_lag_s);
-  json.key("dropped").begin_array();
-  for (const std::string& name : result.dropped) json.value(name);
-  json.end_array();
+  json.list("dropped", result.dropped);
   json.key("restarts").begin_object();
   for (const auto& [name, count] : result.restarts) json.field(name, std::int64_t(count));
   json.end_object();

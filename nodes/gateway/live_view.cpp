@@ -182,13 +182,7 @@ void LiveView::take(const RunStatus& status, const std::map<std::string, std::ui
   json.field("rate", clock.ticks_per_s * status.tick_length.seconds());
   json.field("ticks_per_s", clock.ticks_per_s);
   json.field("overruns", status.overruns).field("worst_lag_s", status.worst_lag_s);
-  const auto names = [&](const char* key, const std::vector<std::string>& list) {
-    json.key(key).begin_array();
-    for (const auto& name : list) json.value(name);
-    json.end_array();
-  };
-  names("missing", status.missing);
-  names("holding", status.holding);
+  json.list("missing", status.missing).list("holding", status.holding);
   json.key("past").begin_object().field("from_s", span.from_s).field("to_s", span.to_s);
   json.field("states", std::uint64_t(span.snapshots)).end_object();
   json.key("nodes").begin_array();
@@ -289,9 +283,7 @@ std::string LiveView::detections_json() const {
       json.field("kind", d.kind == DetectionKind::streak ? "streak" : "point");
       json.field("x_px", d.x_px).field("y_px", d.y_px).field("magnitude", d.magnitude);
       json.field("snr", d.snr).field("ra_rad", d.ra_rad).field("dec_rad", d.dec_rad);
-      json.key("ends_px").begin_array();
-      for (const double x : {d.end1_x_px, d.end1_y_px, d.end2_x_px, d.end2_y_px}) json.value(x);
-      json.end_array();
+      json.list("ends_px", {d.end1_x_px, d.end1_y_px, d.end2_x_px, d.end2_y_px});
       if (earth_) {
         const auto itrs_from_gcrs = earth_->itrs_from_gcrs(d.time);
         put(json, "from_km", itrs_from_gcrs * d.sensor_position_m, km_per_m, 1e3);
@@ -354,11 +346,9 @@ std::string LiveView::truth_json() const {
       json.begin_object().field("sensor", name).field("frame", sensor.truths_frame);
       json.field("number", t.catalogue_number).field("name", t.name);
       json.field("magnitude", t.true_magnitude).field("signal_e", t.rendered_signal_e);
-      json.key("path_px").begin_array();
-      for (const double x :
-           {t.start_x_px, t.start_y_px, t.middle_x_px, t.middle_y_px, t.end_x_px, t.end_y_px})
-        json.value(x);
-      json.end_array().end_object();
+      json.list("path_px",
+                {t.start_x_px, t.start_y_px, t.middle_x_px, t.middle_y_px, t.end_x_px, t.end_y_px});
+      json.end_object();
     }
   return json.end_array().end_object().take();
 }

@@ -1,6 +1,7 @@
 // dmise-gateway: shows a run to browsers.
 #include <spdlog/spdlog.h>
 
+#include <charconv>
 #include <filesystem>
 
 #include "core/base/error.h"
@@ -34,12 +35,12 @@ std::string default_dashboard() {
 
 void set_address(const std::string& listen, WebServerOptions* options) {
   const auto colon = listen.rfind(':');
-  const std::string digits = colon == std::string::npos ? "" : listen.substr(colon + 1);
-  if (digits.empty() || digits.size() > 5 ||
-      digits.find_first_not_of("0123456789") != std::string::npos || std::stoi(digits) > 65535)
+  const char* const end = listen.data() + listen.size();
+  if (colon == std::string::npos ||
+      std::from_chars(listen.data() + colon + 1, end, options->port) !=
+          std::from_chars_result{end, std::errc{}})
     throw ConfigError("--listen: must be HOST:PORT, got " + listen);
   options->host = listen.substr(0, colon);
-  options->port = static_cast<unsigned short>(std::stoi(digits));
 }
 
 int serve(const CommonFlags& flags, const GatewayOptions& options) {

@@ -79,8 +79,7 @@ std::optional<FrameRequest> frame_of(std::string_view path) {
   const std::string_view digits = path.substr(slash + 1, path.size() - slash - 1 - ending.size());
   FrameRequest request{*sensor, 0};
   const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), request.frame);
-  if (digits.empty() || read.ec != std::errc{} || read.ptr != digits.data() + digits.size() ||
-      request.frame == 0)
+  if (read.ec != std::errc{} || read.ptr != digits.data() + digits.size() || request.frame == 0)
     return std::nullopt;
   return request;
 }

@@ -1,8 +1,9 @@
 #include "nodes/runtime/program/command_line.h"
 
 #include <algorithm>
-#include <cctype>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <vector>
 
@@ -14,11 +15,10 @@ namespace {
 constexpr std::string_view tcp = "tcp://";
 
 bool is_port(std::string_view text) {
-  if (text == "*") return true;
-  const bool digits =
-      !text.empty() && text.size() <= 5 &&
-      std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); });
-  return digits && std::stoi(std::string(text)) <= 65535;
+  std::uint16_t port = 0;
+  const char* const end = text.data() + text.size();
+  return text == "*" ||
+         std::from_chars(text.data(), end, port) == std::from_chars_result{end, std::errc{}};
 }
 
 /// HOST:PORT, [IPv6]:PORT.

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/base/sim_time.h"
+
 namespace dmise {
 namespace {
 
@@ -27,6 +29,7 @@ bool are_names(const Texts& texts) {
 }
 
 bool is_tick(std::int64_t tick) { return tick >= 0 && tick <= most_ticks; }
+bool is_tick_or_none(std::int64_t tick) { return tick >= -1 && tick <= most_ticks; }
 bool is_count(std::uint64_t ticks) { return ticks <= std::uint64_t(most_ticks); }
 bool is_duration(double s, double limit_s) { return s >= 0.0 && s <= limit_s; }  // false for NaN
 
@@ -39,36 +42,33 @@ bool good(const v1::TimeSplit& times) {
          is_duration(times.waiting_s(), a_lifetime_s) && is_duration(times.start_s(), a_lifetime_s);
 }
 
-template <class Tallies>
-bool good_tallies(const Tallies& tallies) {
-  return std::all_of(tallies.begin(), tallies.end(), [](const v1::TopicTally& tally) {
-    return is_name(tally.topic()) && is_tick(tally.tick());
-  });
+bool good(const v1::TopicTally& tally) { return is_name(tally.topic()) && is_tick(tally.tick()); }
+
+bool good(const v1::ClosedTopic& of) { return is_name(of.topic()) && is_tick(of.from_tick()); }
+
+bool good(const v1::TopicSchedule& of) {
+  return is_name(of.topic()) && of.period_ticks() >= 1 && is_count(of.period_ticks()) &&
+         is_count(of.offset_ticks());
 }
 
-template <class Schedules>
-bool good_schedules(const Schedules& schedules) {
-  return schedules.size() <= most_topics &&
-         std::all_of(schedules.begin(), schedules.end(), [](const v1::TopicSchedule& of) {
-           return is_name(of.topic()) && of.period_ticks() >= 1 && is_count(of.period_ticks()) &&
-                  is_count(of.offset_ticks());
-         });
+bool good(const v1::TopicDelay& of) {
+  return is_name(of.topic()) && of.delay_ticks() >= 1 && is_count(of.delay_ticks());
 }
 
-template <class Delays>
-bool good_delays(const Delays& delays) {
-  return delays.size() <= most_topics &&
-         std::all_of(delays.begin(), delays.end(), [](const v1::TopicDelay& of) {
-           return is_name(of.topic()) && of.delay_ticks() >= 1 && is_count(of.delay_ticks());
-         });
+bool good(const v1::NodeBeat& node) {
+  return is_name(node.name()) && is_tick_or_none(node.done_tick()) && good(node.times());
 }
 
-template <class Beats>
-bool good_beats(const Beats& beats) {
-  return std::all_of(beats.begin(), beats.end(), [](const v1::NodeBeat& node) {
-    return is_name(node.name()) && node.done_tick() >= -1 && node.done_tick() <= most_ticks &&
-           good(node.times());
-  });
+bool good(const v1::NodeStart& start) {
+  return is_name(start.name()) && is_tick(start.resume_tick()) && is_tick(start.from_tick()) &&
+         start.from_tick() <= start.resume_tick();
+}
+
+bool good(const v1::Publisher& publisher);
+
+template <class Items>
+bool all_good(const Items& items) {
+  return std::all_of(items.begin(), items.end(), [](const auto& item) { return good(item); });
 }
 
 bool good(const v1::Broker& broker) {
@@ -87,8 +87,9 @@ Fault fault_in(const v1::Join& join) {
       !is_text(join.frames_endpoint()) || !good(join.broker()))
     return "join: invalid address";
   return unless(is_count(join.look_back_ticks()) && is_count(join.period_ticks()) &&
-                    is_count(join.offset_ticks()) && good_schedules(join.schedules()) &&
-                    good_delays(join.delays()),
+                    is_count(join.offset_ticks()) && join.schedules_size() <= most_topics &&
+                    all_good(join.schedules()) && join.delays_size() <= most_topics &&
+                    all_good(join.delays()),
                 "join: period, offset, look-back and delays must be ticks of a run");
 }
 
@@ -97,7 +98,8 @@ bool good(const v1::Publisher& publisher) {
          are_names(publisher.direct_topics()) && is_text(publisher.direct_endpoint()) &&
          is_text(publisher.resend_endpoint()) && is_text(publisher.frames_endpoint()) &&
          is_count(publisher.keep_ticks()) && is_count(publisher.period_ticks()) &&
-         is_count(publisher.offset_ticks()) && good_schedules(publisher.schedules());
+         is_count(publisher.offset_ticks()) && publisher.schedules_size() <= most_topics &&
+         all_good(publisher.schedules());
 }
 
 Fault fault_in(const v1::Welcome& welcome) {
@@ -115,18 +117,8 @@ Fault fault_in(const v1::Welcome& welcome) {
 }
 
 Fault fault_in(const v1::Topology& topology) {
-  const auto& publishers = topology.publishers();
-  const auto& starts = topology.starts();
-  return unless(are_names(topology.reported()) &&
-                    std::all_of(starts.begin(), starts.end(),
-                                [](const v1::NodeStart& start) {
-                                  return is_name(start.name()) && is_tick(start.resume_tick()) &&
-                                         is_tick(start.from_tick()) &&
-                                         start.from_tick() <= start.resume_tick();
-                                }) &&
-                    std::all_of(publishers.begin(), publishers.end(),
-                                [](const v1::Publisher& publisher) { return good(publisher); }) &&
-                    is_text(topology.publish_endpoint()) &&
+  return unless(are_names(topology.reported()) && all_good(topology.starts()) &&
+                    all_good(topology.publishers()) && is_text(topology.publish_endpoint()) &&
                     is_text(topology.subscribe_endpoint()) && is_text(topology.broker_password()) &&
                     is_tick(topology.resume_tick()) && is_tick(topology.from_tick()) &&
                     topology.from_tick() <= topology.resume_tick(),
@@ -142,23 +134,23 @@ std::optional<std::string> fault_of(const v1::NodeMessage& message) {
     case v1::NodeMessage::kDone:
       return unless(is_tick(message.done().tick()) &&
                         message.done().published_size() <= most_topics &&
-                        good_tallies(message.done().published()),
+                        all_good(message.done().published()),
                     "done: invalid tick or topic");
     case v1::NodeMessage::kHeartbeat:
       return unless(is_name(message.heartbeat().name()) && good(message.heartbeat().times()) &&
-                        good_beats(message.heartbeat().nodes()) &&
+                        all_good(message.heartbeat().nodes()) &&
                         are_names(message.heartbeat().holding()),
                     "heartbeat: invalid name or time");
     case v1::NodeMessage::kLeave:
-      return unless(good(message.leave().times()) && good_beats(message.leave().nodes()),
+      return unless(good(message.leave().times()) && all_good(message.leave().nodes()),
                     "leave: invalid time");
     case v1::NodeMessage::kNodeNews:
-      return unless(is_name(message.node_news().name()) && message.node_news().done_tick() >= -1 &&
-                        message.node_news().done_tick() <= most_ticks,
-                    "node news: invalid name or tick");
+      return unless(
+          is_name(message.node_news().name()) && is_tick_or_none(message.node_news().done_tick()),
+          "node news: invalid name or tick");
     case v1::NodeMessage::kControl:
-      return unless(message.control().tick() >= -1 && message.control().tick() <= most_ticks &&
-                        is_duration(message.control().factor(), 1e6),
+      return unless(is_tick_or_none(message.control().tick()) &&
+                        is_duration(message.control().factor(), max_pace_factor),
                     "control: invalid tick or factor");
     case v1::NodeMessage::BODY_NOT_SET:
       return "says nothing";
@@ -168,14 +160,9 @@ std::optional<std::string> fault_of(const v1::NodeMessage& message) {
 }
 
 std::optional<std::string> fault_of(const v1::Grant& grant) {
-  const auto& closed = grant.closed();
-  return unless(grant.tick() >= -1 && grant.tick() <= most_ticks &&
-                    good_tallies(grant.published()) &&
-                    std::all_of(closed.begin(), closed.end(),
-                                [](const v1::ClosedTopic& topic) {
-                                  return is_name(topic.topic()) && is_tick(topic.from_tick());
-                                }),
-                "grant: invalid tick or topic");
+  return unless(
+      is_tick_or_none(grant.tick()) && all_good(grant.published()) && all_good(grant.closed()),
+      "grant: invalid tick or topic");
 }
 
 std::optional<std::string> fault_of(const v1::MasterMessage& message) {

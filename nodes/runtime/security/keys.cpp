@@ -52,11 +52,8 @@ bool is_key(const std::string& text) {
 constexpr const char* may_word = "may";
 constexpr const char* speaks_for_word = "speaks-for";
 
-struct Entry {
-  std::string name;
-  KeyPair key;
-  bool truth = false;
-  std::set<std::string> nodes;
+struct Entry : AllowedKey {
+  std::string secret_key;  // empty in NAME.pub
 };
 
 void require_key(const std::string& path, const char* half, const std::string& key) {
@@ -69,7 +66,8 @@ void require_key(const std::string& path, const char* half, const std::string& k
 /// Entries of a NAME.key or NAME.pub, or of each "name NAME" in a ring. Throws `ConfigError` for an
 /// invalid or incomplete file.
 std::vector<Entry> read_entries(const fs::path& path) {
-  std::vector<Entry> entries{{path.stem().string(), {}, false, {}}};
+  std::vector<Entry> entries(1);
+  entries[0].name = path.stem().string();
   std::istringstream file(read_text_file(path, longest_file));
   std::string word, value;
   bool is_ring = false;
@@ -80,16 +78,16 @@ std::vector<Entry> read_entries(const fs::path& path) {
     if (word == "name") {
       if (!is_ring) entries.clear();
       is_ring = true;
-      entries.push_back({value, {}, false, {}});
+      entries.emplace_back().name = value;
     }
-    if (word == "public") entries.back().key.public_key = value;
-    if (word == "secret") entries.back().key.secret_key = value;
+    if (word == "public") entries.back().public_key = value;
+    if (word == "secret") entries.back().secret_key = value;
     if (word == may_word) entries.back().truth = value == "truth";
     if (word == speaks_for_word) entries.back().nodes.insert(value);
   }
   for (const Entry& entry : entries) {
-    require_key(path, "public", entry.key.public_key);
-    if (!entry.key.secret_key.empty()) require_key(path, "secret", entry.key.secret_key);
+    require_key(path, "public", entry.public_key);
+    if (!entry.secret_key.empty()) require_key(path, "secret", entry.secret_key);
   }
   return entries;
 }
@@ -139,17 +137,15 @@ mode_t mode_of(const std::string& path) {
   return stat(path.c_str(), &status) == 0 ? status.st_mode : 0;
 }
 
-/// Returns the ring that contains a key of `name`, and stores the key in `key` unless that is null.
-/// Throws `ConfigError` if none has it and one could not be read.
-std::optional<std::string> ring_of(const std::string& directory, const std::string& ending,
-                                   const std::string& name, KeyPair* key) {
+/// Returns the ring that contains a key of `name`, and its entry there. Throws `ConfigError` if
+/// none has it and one could not be read.
+std::optional<std::pair<std::string, Entry>> ring_of(const std::string& directory,
+                                                     const std::string& ending,
+                                                     const std::string& name) {
   std::optional<ConfigError> fault;
   for (const auto& ring : files_in(directory, ending)) try {
-      for (const auto& entry : read_entries(ring)) {
-        if (entry.name != name) continue;
-        if (key) *key = entry.key;
-        return ring;
-      }
+      for (const auto& entry : read_entries(ring))
+        if (entry.name == name) return std::pair(ring, entry);
     } catch (const ConfigError& error) {
       if (!fault) fault = error;
     }
@@ -161,7 +157,8 @@ std::optional<std::string> ring_of(const std::string& directory, const std::stri
 std::optional<std::string> file_of_key(const std::string& directory, const std::string& name) {
   const std::string own = path_of(directory, name, ".key");
   if (mode_of(own)) return own;
-  return ring_of(directory, ".keys", name, nullptr);
+  if (auto ring = ring_of(directory, ".keys", name)) return ring->first;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -201,7 +198,7 @@ KeyPair read_key(const std::string& directory, const std::string& name) {
   if (mode_of(*path) & 077)
     throw ConfigError(*path + ": others may read this key; chmod 600 it and make a new one");
   for (const auto& entry : read_entries(*path))
-    if (entry.name == name && is_key(entry.key.secret_key)) return entry.key;
+    if (entry.name == name && is_key(entry.secret_key)) return {entry.public_key, entry.secret_key};
   throw ConfigError(*path + ": not a key of dmise keygen");
 }
 
@@ -210,9 +207,7 @@ std::map<std::string, AllowedKey> read_allowed(const std::string& directory,
   std::map<std::string, AllowedKey> allowed;
   for (const char* ending : {".pubs", ".pub"})
     for (const auto& path : files_in(directory, ending)) try {
-        for (const auto& entry : read_entries(path))
-          allowed[entry.key.public_key] = {entry.name, entry.key.public_key, entry.truth,
-                                           entry.nodes};
+        for (const auto& entry : read_entries(path)) allowed[entry.public_key] = entry;
       } catch (const ConfigError& error) {
         if (left_out) left_out->push_back(error.what());
       }
@@ -227,9 +222,8 @@ void check_keys(const std::string& directory) {
 std::string public_key_of(const std::string& directory, const std::string& name) {
   if (const std::string own = path_of(directory, name, ".pub"); mode_of(own))
     for (const auto& entry : read_entries(own))
-      if (entry.name == name) return entry.key.public_key;
-  KeyPair pair;
-  if (ring_of(directory, ".pubs", name, &pair)) return pair.public_key;
+      if (entry.name == name) return entry.public_key;
+  if (const auto ring = ring_of(directory, ".pubs", name)) return ring->second.public_key;
   throw ConfigError(path_of(directory, name, ".pub") + ": no public key of " + name);
 }
 
