@@ -30,14 +30,14 @@ double diffracted_beyond(const PlanFacts::Air& air, double radius_px) {
   return std::min(1.0, 0.2 * air.airy_px / radius_px);
 }
 
-/// What a source has beside itself in one pixel, at the end of its aperture, as a share of its
-/// light: the derivative of `scattered_beyond`.
+/// Share of a source's light in one pixel at the rim of its aperture: the derivative of
+/// `scattered_beyond`.
 double halo_share(const PlanFacts::Air& air, double radius_px) {
   return 0.031 * std::pow(seeing_px(air), 5.0 / 3.0) * std::pow(radius_px, -11.0 / 3.0);
 }
 
-/// What a brighter source beside one that counts puts into its aperture, of its light. One whose
-/// rim is a tenth as bright as it is does not count.
+/// Light that a brighter neighbour puts into the aperture of a source, over the source's own. A
+/// source with a tenth of its light or more at the rim does not count.
 double share_of_neighbour(const PlanFacts& f, double radius_px) {
   constexpr double rim_share = 0.1;
   const double area_px = std::numbers::pi * radius_px * radius_px;

@@ -12,7 +12,7 @@ enum class ExclusionAction {
 inline constexpr const char* exclusion_action_names[] = {"flag", "close_shutter"};
 
 /// Least angles of a camera's optical axis from bright bodies [deg, 0..180]: what is nearer is
-/// excluded. None: it does not matter.
+/// excluded. None: no limit.
 struct Exclusion {
   std::optional<double> sun_deg, moon_deg;  // from their centres
   std::optional<double> earth_limb_deg;     // from the nearest point of the limb; in orbit

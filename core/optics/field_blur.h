@@ -28,9 +28,9 @@ struct FieldTerm {
 };
 
 /// A point spread that changes with the distance from the axis, by tables of a lens's design or
-/// measurement, turned with the azimuth: theta of a term is from the radius outwards. Beyond their
-/// ends tables stay what they are there; on the axis itself, which has no direction, terms with one
-/// are left out and a width is the mean of both. A frame has kernels at N x N places, linear
+/// measurement, turned with the azimuth: theta of a term is from the radius outwards. Beyond
+/// its ends a table keeps its end values; on the axis itself, which has no direction, terms with
+/// one are left out and a width is the mean of both. A frame has kernels at N x N places, linear
 /// between.
 struct FieldBlur {
   static constexpr std::array<std::string_view, 4> levels{"off", "3x3", "5x5", "9x9"};

@@ -7,11 +7,11 @@
 
 namespace dmise {
 
-/// How many nodes of Gauss and Legendre an arc takes that may miss a little light in a pixel: as
-/// few as leave no more than that. The remainder of n nodes over a path of L pixels is L^(2n)
-/// (n!)^4 / ((2n+1) (2n)!^3) times the derivative of order 2n of the density of light, (2n-1)!!
-/// over width^(2n) of a Gaussian. A Gaussian narrower than 0.58 px that is integrated over a pixel
-/// has steeper edges than one as wide as both: its width is taken to be 1.12 times its own.
+/// Number of Gauss-Legendre nodes of an arc that may miss a little light in a pixel: the fewest
+/// that miss no more. The remainder of n nodes over a path of L pixels is L^(2n) (n!)^4 / ((2n+1)
+/// (2n)!^3) times the derivative of order 2n of the density of light, (2n-1)!! over width^(2n) of a
+/// Gaussian. A Gaussian narrower than 0.58 px that is integrated over a pixel has steeper edges
+/// than one as wide as both: its width is taken to be 1.12 times its own.
 class ShortArcRule {
  public:
   explicit ShortArcRule(const PsfTable& psf);

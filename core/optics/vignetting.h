@@ -47,7 +47,7 @@ struct Vignetting {
   double power = 2.0;  // 1..16
 
   /// Relative illumination, 0..1, by the distance from the axis, in place of all that: a measured
-  /// lens. Beyond its ends it stays what it is there; where no direction is imaged it is 0.
+  /// lens. Beyond its ends it keeps its end values; where no direction is imaged it is 0.
   MonotoneCubic table;
   FieldRadius table_radius = FieldRadius::angle_deg;
 

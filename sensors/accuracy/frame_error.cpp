@@ -153,8 +153,9 @@ void FrameComparison::measure(ReferenceSource source) {
   (source.snr >= PlanFacts::least_snr_of_source ? sources_ : faint_).push_back(std::move(source));
 }
 
-// Light of a neighbour that moves over the edge of a capsule would be taken for an error.
-void FrameComparison::see_who_counts() {
+// Sources with a bright neighbour do not count: its light that moves over the edge of their capsule
+// would be taken for an error.
+void FrameComparison::leave_out_crowded() {
   struct Owner {
     std::uint32_t brightest = 0;  // source + 1
     float light_e = 0.0f, next_e = 0.0f;
@@ -203,7 +204,7 @@ void FrameComparison::find_sources(const FrameProducts& reference) {
                                  {object.end_x_px, object.end_y_px}),
              .margin_px = margin_px + size_px});
   }
-  see_who_counts();
+  leave_out_crowded();
   // Light of sources beyond the frame may move in.
   const int rim_px = int(std::ceil(margin_px));
   for (int y = 0; y < light_.rows; ++y)

@@ -57,7 +57,7 @@ class FrameComparison {
   void find_rounding();
   void find_sources(const FrameProducts& reference);
   void measure(ReferenceSource source);
-  void see_who_counts();
+  void leave_out_crowded();
   double skewness_error(const EffectSet& effects) const;
 
   const SceneFrames& scene_;

@@ -76,12 +76,12 @@ std::string limit_text(const SensorOutlook& o) {
   std::string text =
       formatted("a point of V = %.1f has SNR %g", *f.point_limit_v_mag, point_limit_snr);
   if (f.found_point_v_mag)
-    text += formatted("; half are found of points of V = %.1f beside trails of stars of %.0f px",
+    text += formatted("; half of the points of V = %.1f are found beside star trails of %.0f px",
                       *f.found_point_v_mag, f.star_px);
   if (f.streak_limit_v_mag)
-    text += formatted("%s of streaks of V = %.1f (%g deg/s, %.0f px, SNR %g in a pixel)",
-                      f.found_point_v_mag ? "," : "; half are found", *f.streak_limit_v_mag,
-                      f.streak_deg_per_s, f.streak_px, streak_limit_snr);
+    text += formatted(
+        "; half of the streaks of V = %.1f are found (%g deg/s, %.0f px, SNR %g in a pixel)",
+        *f.streak_limit_v_mag, f.streak_deg_per_s, f.streak_px, streak_limit_snr);
   return text;
 }
 
@@ -176,7 +176,7 @@ std::string short_text(const SensorOutlook& o) {
   if (o.frames.front().target_elevation_rad)
     text += "; " + printable(o.target) + " at " +
             course_of(o.frames, &FrameOutlook::target_elevation_rad);
-  if (o.cued) text += "; cued: what is told is of its park";
+  if (o.cued) text += "; cued: figures are for its parked position";
   return text;
 }
 
@@ -184,8 +184,7 @@ std::vector<std::string> lines_of(const SensorOutlook& o) {
   std::vector<std::string> lines;
   const auto say = [&](const std::string& text) { lines.push_back(o.sensor + ": " + text); };
   say(field_text(o));
-  if (o.cued)
-    say("is cued: it exposes on what the fusion node tells it; what follows is of its park");
+  if (o.cued) say("is cued by the fusion node; what follows is for its parked position");
   if (o.frames.empty()) return lines;
   if (const std::string limit = limit_text(o); !limit.empty()) say(limit + " in mid run");
   if (o.on_ground) {

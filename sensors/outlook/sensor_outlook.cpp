@@ -40,7 +40,7 @@ std::optional<Loss> first_loss(const Scenario& scenario, const SensorConfig& sen
   return std::nullopt;
 }
 
-/// In all frames, or in so many.
+/// Examines all frames, or evenly spaced ones, for bodies that are too near to the axis.
 void look_for_exclusion(const Scenario& scenario, const SensorConfig& sensor,
                         const ObjectPopulation& needed, const StateSource& source,
                         std::uint32_t frames, FrameWorlds& worlds, SensorOutlook& out) {

@@ -30,8 +30,8 @@ struct SensorOutlook {
   double least_limb_angle_rad = 0.0;
   std::uint32_t frames_in_run = 0;
   ExclusionAction exclusion_action = ExclusionAction::flag;
-  std::uint32_t looked_for_exclusion = 0;  // frames: all, or so many evenly spaced ones
-  std::uint32_t excluded_frames = 0;       // in which a body is, or more
+  std::uint32_t looked_for_exclusion = 0;  // frames examined: all, or evenly spaced ones
+  std::uint32_t excluded_frames = 0;       // in which at least one body is too near
   std::vector<ExcludedFrames> excluded;    // of each body that the camera has a limit for
   bool objects_counted = true;             // false: too many objects
   std::vector<FrameOutlook> frames;        // examined: the first, the last, and evenly spaced ones

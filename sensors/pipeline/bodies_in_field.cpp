@@ -113,7 +113,7 @@ DiscBox box_of(const View& view, const SeenBody& body, SimTime t, int margin_px)
   for (const auto& at : limb(body.apparent, std::min(beyond_limb * body.radius_rad, pi))) {
     const auto pixel = project(optics, camera * at);
     if (!pixel && body.radius_rad > small_rad) return whole;
-    if (!pixel) continue;  // far beside the frame, as what is small is all about there
+    if (!pixel) continue;  // a small disc is all far beside the frame
     left = std::min(left, pixel->x_px);
     right = std::max(right, pixel->x_px);
     top = std::min(top, pixel->y_px);

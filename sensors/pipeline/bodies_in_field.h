@@ -29,7 +29,7 @@ SeenBody seen_moon(const View& view, SimTime t);
 SeenBody truly_seen_sun(const View& view, SimTime t);
 SeenBody truly_seen_moon(const View& view, SimTime t);
 
-/// Pixels from the first to before the last, also beside the frame.
+/// A rectangle of pixels, with exclusive ends, which may lie beside the frame.
 struct DiscBox {
   int left = 0, top = 0, right = 0, bottom = 0;
   bool empty() const { return left >= right || top >= bottom; }

@@ -24,7 +24,7 @@ void put(std::string& line, T value) {
   line.append(text, end);
 }
 
-/// Takes words of a line one by one; `good` turns false at one that is none.
+/// Reads the numbers of a line one by one; `good` is false after a word that is no number.
 struct Words {
   std::string_view rest;
   bool good = true;

@@ -19,9 +19,9 @@ class CueJournal {
   CueJournal(const CueJournal&) = delete;
   CueJournal& operator=(const CueJournal&) = delete;
 
-  /// Begins anew.
+  /// Starts an empty journal.
   void clear();
-  /// Goes on behind what is there. Returns the tasks, by id; of a task, what a sensor needs.
+  /// Continues an existing journal. Returns its tasks by id, with the fields that a sensor needs.
   std::vector<std::shared_ptr<const Task>> resume();
   void add(const Task& task);
   /// The products of the tick are written.

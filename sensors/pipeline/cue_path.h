@@ -10,7 +10,7 @@ Motion predicted_motion(const Task& task, SimTime t);
 
 /// The task that governs an exposure, of those that a sensor was given, in the order of their ids:
 /// it is on its target all the time from `start` to `end`, and no later one begins before `end`.
-/// Null: none does, the mount turns or stands.
+/// Null: there is none; the mount slews or stands still.
 const Task* task_during(const std::vector<std::shared_ptr<const Task>>& tasks, SimTime start,
                         SimTime end);
 

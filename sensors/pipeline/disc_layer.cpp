@@ -59,7 +59,7 @@ DiscBox both(const DiscBox& a, const DiscBox& b) {
           std::max(a.bottom, b.bottom)};
 }
 
-/// Times at which the disc is drawn, and how much of the exposure each stands for is the same.
+/// Times at which the disc is drawn; each stands for an equal share of the exposure.
 std::vector<SimTime> times_of(const View& view, const std::function<Vec<Gcrs>(SimTime)>& towards) {
   constexpr int most = 32;
   const FrameTimes& times = view.times();
@@ -80,7 +80,7 @@ void draw(const View& view, const Disc& disc, const std::vector<SimTime>& times,
   optics.add_extended(window.finish(), image);
 }
 
-/// Times at which the places of a disc enclose all that it takes in the exposure.
+/// Times whose boxes together hold the disc throughout the exposure.
 std::vector<SimTime> times_of_box(const View& view, const std::vector<SimTime>& drawn) {
   const FrameTimes all = view.times_of_all_rows();
   if (all.end == view.times().end) return drawn;

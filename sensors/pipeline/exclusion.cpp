@@ -37,7 +37,7 @@ double least_between(const AngleAt& angle, SimTime from, SimTime to, double leas
   return std::min(least, golden_section(at, 0.0, 1.0, found_within).value);
 }
 
-/// Where the angles of an exposure are looked at.
+/// Times at which the angles of an exposure are computed.
 struct Looks {
   std::vector<SimTime> times;
   SimTime reach;      // on either side of one, in which the axis turns little

@@ -16,7 +16,7 @@ struct BodyAngles {
   std::optional<double> earth_limb_rad;     // from its nearest point, in orbit; < 0: at the Earth
 };
 
-/// A body that may exclude, wherever one is told of.
+/// A body that may exclude, with its names and values.
 struct ExcludingBody {
   std::string_view key;
   const char* name;
@@ -30,12 +30,12 @@ inline constexpr std::array<ExcludingBody, 3> excluding_bodies{
      {"earth_limb", "the Earth's limb", &Exclusion::earth_limb_deg, &BodyAngles::earth_limb_rad,
       &Excluded::earth_limb}}};
 
-/// Those that the camera has a limit for. Of the axis as it is, with what the sensor does not know
-/// of its pointing, and of the places where the bodies are seen, with all effects of place that the
-/// scenario asks for. To 1e-6 rad, also of a camera that turns many times in an exposure.
+/// Returns the angles for which the camera has a limit: between the true axis, with errors of
+/// pointing, and the apparent places of the bodies, with all effects of place that the scenario
+/// asks for. Accurate to 1e-6 rad, also for a camera that turns many times in an exposure.
 BodyAngles body_angles(const View& view);
 
-/// Which of them are less than the camera's limits.
+/// Returns which angles are less than the camera's limits.
 Excluded excluded_by(const Exclusion& exclusion, const BodyAngles& angles);
 
 }  // namespace dmise

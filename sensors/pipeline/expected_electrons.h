@@ -43,8 +43,8 @@ struct LightTruth {
 
 /// Fills `image` with the electrons that the exposure of `view` expects of every pixel: the sky,
 /// objects from the nearest on, stars behind them, blurred by `optics`. The band is that of the
-/// view's camera: the whole or a part. Adds the seconds of each stage to
-/// `times`. Behind a closed shutter nothing is expected.
+/// view's camera: the whole or a part. Adds the seconds of each stage to `times`. Behind a closed
+/// shutter nothing is expected.
 LightTruth expected_electrons(const View& view, const LightSources& sources, OpticsStage& optics,
                               ExpectedElectronImage& image, Threads& threads, EffectTimes& times,
                               const LightOptions& options = {});

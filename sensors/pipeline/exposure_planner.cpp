@@ -21,7 +21,7 @@ namespace {
 
 /// In longer exposures an object may pass the shadow between the instants that are looked at.
 constexpr double short_exposure_s = 60.0;
-/// By how much light of an object may be more or less than it is taken for.
+/// Factors by which an object may be brighter or fainter than its estimate.
 constexpr double brighter = 1.5, fainter = 0.1;
 
 /// Share of a point's light in the pixel on which it is centred.
@@ -60,7 +60,7 @@ double kernel_end_share(const Optics& optics, double wavelength_m, const PsfPlan
   return of_rings + 1e-4 * peak_share(blur.fwhm_px) * std::pow(widths, -11.0 / 3.0);
 }
 
-/// Charge that pixels do not exceed; unbounded where what is over it goes elsewhere.
+/// Charge that pixels do not exceed; unbounded where blooming carries the excess to others.
 double saturated_e(const SensorConfig& sensor) {
   const Detector& detector = sensor.camera.detector;
   const bool limited = detector.well_is_limited && sensor.effects.has(FullWell::facts);

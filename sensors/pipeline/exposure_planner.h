@@ -21,9 +21,9 @@ class ExposurePlanner {
   /// `objects`: those in its field.
   PlanFacts facts(const View& view, const std::vector<std::size_t>& objects) const;
 
-  /// The same for the same arguments, on any machine.
-  /// That of a run that is replayed, if the sensor has one. Throws `Error` that names what of it
-  /// does not fit the sensor.
+  /// Returns the plan of an exposure, the same for the same arguments on any machine; that of the
+  /// run that is replayed, if the sensor has recorded plans. Throws `Error` naming what of a
+  /// recorded plan does not fit the sensor.
   EffectPlan plan(const View& view, const std::vector<std::size_t>& objects) const;
 
  private:

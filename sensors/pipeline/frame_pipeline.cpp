@@ -47,9 +47,8 @@ struct FramePipeline::Work {
   SensorConfig planned;                    // the sensor with the effects of the exposure at hand
   std::optional<ExposurePlanner> planner;  // none: effects run as they are asked for
   std::optional<OpticsStage> optics;
-  ExpectedElectronImage
-      light;               // kept between frames: memory that is new costs more than filling it
-  CountImage used_counts;  // of a frame that is done with, without the memory behind them
+  ExpectedElectronImage light;  // kept between frames: new memory costs more than filling it
+  CountImage used_counts;       // of an earlier frame: address space without memory behind it
   DetectorMemory detector_memory;
 
   Work(PipelineSettings s, std::shared_ptr<const StarMap> map, Threads& t)

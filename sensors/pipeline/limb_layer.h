@@ -11,9 +11,10 @@ namespace dmise {
 /// shines.
 bool limb_is_seen(const View& view, SimTime t);
 
-/// Adds its light to `image`, blurred by `optics`, which has begun the exposure: each pixel in
-/// which the height of lines over the ground differs by more than 1 km at 8 places or more, each
-/// row at its own time. Where the camera or the Earth moves, at up to 8 times of the exposure.
+/// Adds its light to `image`, blurred by `optics`, which has begun the exposure. A pixel across
+/// which the height of lines of sight over the ground differs by more than 1 km is sampled at 8
+/// places or more, each row at its own time; where the camera or the Earth moves, at up to 8 times
+/// of the exposure.
 void draw_limb_airglow(const View& view, OpticsStage& optics, ExpectedElectronImage& image,
                        Threads& threads);
 void draw_limb_air(const View& view, OpticsStage& optics, ExpectedElectronImage& image,

@@ -11,8 +11,8 @@
 namespace dmise {
 namespace {
 
-/// A pixel whose corners' lines are further apart over the ground is sampled, twice every so much
-/// at least.
+/// A pixel whose corners' lines differ by more than this in height over the ground is sampled, at
+/// least twice per this height.
 constexpr double fine_m = 1e3;
 /// Even lattices of so many places in a square, k / places and k x step / places: Fibonacci's, in
 /// which no two places share a row, a column or nearly any other line. Source: Niederreiter 1992,
@@ -22,6 +22,7 @@ struct Lattice {
 };
 constexpr std::array<Lattice, 7> lattices{
     {{8, 5}, {13, 8}, {21, 13}, {34, 21}, {55, 34}, {89, 55}, {144, 89}}};
+/// Fewest places in a pixel on the edge of the ground.
 constexpr double places_at_ground = 55.0;
 /// A tile over the ground whose lines differ by less may be even.
 constexpr double even_m = 4e3;

@@ -13,7 +13,7 @@ namespace dmise {
 std::shared_ptr<const StarMap> load_stars(const Scenario& scenario) {
   if (scenario.star_catalogue_path.empty()) return nullptr;
   const std::string cache = cache_directory();
-  std::error_code ignored;  // without the directory nothing is kept, that is all
+  std::error_code ignored;  // without the directory nothing is cached
   if (!cache.empty()) std::filesystem::create_directories(cache, ignored);
   try {
     return std::make_shared<const StarMap>(load_star_map(scenario.star_catalogue_path, cache));

@@ -111,7 +111,7 @@ std::vector<Truth> paint(const View& view, const ObjectSampler& sampler,
                          OcclusionMask& mask, ExpectedElectronImage& image) {
   const auto& exposure = view.times();
   const auto& optics = view.sensor().camera.optics;
-  // Instants of the finest division; coarser ones take every so manieth.
+  // Instants of the finest division; a coarser one uses some of them.
   std::vector<std::optional<ExposureInstant>> instants(2 * changing_arcs + 1);
   const auto instant = [&](std::size_t k) -> const ExposureInstant& {
     if (!instants[k])

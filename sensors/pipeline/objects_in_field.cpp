@@ -35,7 +35,8 @@ constexpr double greatest_slope_error_m_per_s = 20.0;
 /// Rounding, and frames that turn a little between two times.
 constexpr double rough_margin_m = 1000.0;
 
-/// Cones wider than this, and cameras that turn more during half the exposure, are not told apart.
+/// With a wider cone, or a camera that turns more during half the exposure, all objects are
+/// candidates.
 constexpr double widest_rough_cone_rad = 170.0 * deg, most_turning_rad = 0.1;
 
 /// The camera's turning is taken from attitudes no farther apart than this.

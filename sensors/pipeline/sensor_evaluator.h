@@ -38,7 +38,7 @@ class SensorEvaluator : public Evaluator {
   /// sensor or are its target; the air where an effect of it acts.
   std::vector<std::string> consumes() const override;
   Tick delay(const std::string& topic) const override;
-  /// Without who cues it a sensor stands still.
+  /// All but tasks: without them a sensor that is cued stands still.
   bool needs(const std::string& topic) const override { return !topic.starts_with(task_prefix); }
   std::vector<Message> step(Tick tick, std::span<const Message> inputs) override;
   /// The ticks around the exposure that is open when it resumes, those around the frames that must

@@ -155,7 +155,7 @@ std::uint32_t StarLayer::draw(const View& view, OpticsStage& optics, const Occlu
     order_for_drawing(found, map_->index.direction, exposure.camera[1], view.sensor().camera.optics,
                       widest_shift_rad + turned_rad(view));
   }
-  // OpenGL's pictures are read back whole, so that there all go at once.
+  // OpenGL may draw snapshots, and its pictures are read back whole: all stars go at once.
   const std::size_t at_a_time =
       snapshots ? std::max<std::size_t>(1, found.size()) : stars_at_a_time;
   std::uint32_t inside = 0;

@@ -28,7 +28,7 @@ struct StarPath {
 /// has none, nor has one at the horizon or beside the image of the sky.
 class StarPathGrid {
  public:
-  /// Shows the exact path of a star without motion and parallax; none: it has no image.
+  /// Returns the exact path of a star without motion and parallax; nothing if it has no image.
   using Exact = std::function<std::optional<StarPath>(const Vec<Gcrs>& astrometric)>;
 
   StarPathGrid(const View& view, const Exact& exact);

@@ -54,8 +54,7 @@ class Throughput {
   std::optional<LimbExtinction> limb_;            // null: on the ground, or there is none near
 };
 
-/// Gases over a ground sensor; none where nobody said how much water vapour there is, or where they
-/// are switched off.
+/// Gases over a ground sensor; none where the scenario gives no water vapour or the effect is off.
 std::optional<AirGases> gases_over(const View& view);
 
 /// Extinction over wavelength [mag/airmass] at a ground sensor, by its environment; beside gases

@@ -31,7 +31,7 @@ Tick PositionsEvaluator::look_back() const {
   return (environment_every.ns + scenario_.tick.ns - 1) / scenario_.tick.ns + 1;
 }
 
-void PositionsEvaluator::meet(const ObjectRoster& roster) {
+void PositionsEvaluator::take_roster(const ObjectRoster& roster) {
   if (!mounts_.empty()) return;
   const std::size_t count = roster.objects.size();
   std::set<std::size_t> all;
@@ -57,7 +57,7 @@ void PositionsEvaluator::meet(const ObjectRoster& roster) {
 void PositionsEvaluator::take_in(const Message& message) {
   if (const auto* roster = std::get_if<ObjectRoster>(message.state.get())) {
     roster_ = {message.state, roster};
-    meet(*roster);
+    take_roster(*roster);
   }
   if (const auto* states = std::get_if<ObjectStates>(message.state.get()))
     states_ = {message.state, states};

@@ -34,7 +34,7 @@ class PositionsEvaluator : public Evaluator {
     std::optional<std::size_t> platform, target;  // objects
   };
   void take_in(const Message& message);
-  void meet(const ObjectRoster& roster);
+  void take_roster(const ObjectRoster& roster);
   void write(Tick tick);
   std::vector<PositionRow> rows(Tick tick) const;
   std::optional<PositionRow> camera(std::size_t sensor, Tick tick) const;

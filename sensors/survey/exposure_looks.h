@@ -21,7 +21,8 @@ struct Look {
   double unlike_px = 0.0;    // difference of both trails
   bool star_known = false;   // the catalogue would have a star of its light
   PixelPosition centroid;    // of that light
-  // Of a pixel there, without the object's own; of the darkest sky for what no sky shows.
+  // Of a pixel there, without the object's own; of the darkest sky for what is too faint even
+  // there.
   double noise_e = 0.0;
   double snr = 0.0;                                // of the ideal matched filter
   double probability = 0.0;                        // of detection

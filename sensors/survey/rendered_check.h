@@ -28,7 +28,7 @@ struct RenderedCheck {
   double deviation_sigma() const;  // (found - expected) / sigma; 0 without a chance to differ
 };
 
-/// Frames by their numbers: what is fitted to the ones is checked with the others.
+/// Frames with odd or even numbers: a model fitted to one half is checked with the other.
 enum class FrameHalf { odd, even };
 
 /// Renders `count` of the surveyed frames of one half, evenly over the sensors that have any and
