@@ -12,13 +12,11 @@ namespace dmise {
 
 using Seconds = std::chrono::duration<double>;
 
-Progress::Progress(double interval_s)
+Progress::Progress()
     : start_(std::chrono::steady_clock::now()),
       shown_(start_ - std::chrono::hours(1)),
-      interval_s_(interval_s),
-      terminal_(isatty(STDERR_FILENO)) {
-  if (terminal_) interval_s_ = 0.1;
-}
+      terminal_(isatty(STDERR_FILENO)),
+      interval_s_(terminal_ ? 0.1 : 5.0) {}
 
 Progress::~Progress() { clear_line(); }
 

@@ -13,10 +13,10 @@ struct ProgressState {
   std::string waiting_for;  // nodes that the clock waits for, empty if unknown
 };
 
-/// A progress bar on a terminal; otherwise at most one line every `interval_s`.
+/// A progress bar on a terminal; otherwise at most one line every 5 s.
 class Progress {
  public:
-  explicit Progress(double interval_s = 5.0);
+  Progress();
   ~Progress();
   void show(const ProgressState& state, bool last = false);
   /// Whether `show` would print now.
@@ -31,8 +31,8 @@ class Progress {
   void draw(double share, const std::string& line, bool last);
 
   std::chrono::steady_clock::time_point start_, shown_;
+  bool terminal_;
   double interval_s_;
-  bool terminal_ = false;
   bool open_line_ = false;
 };
 

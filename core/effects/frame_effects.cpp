@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace dmise {
 namespace {
@@ -13,9 +12,9 @@ namespace {
 double of_fringe(int count, double phase_rad) {
   if (phase_rad < 1e-3) return 0.0;
   const double step_rad = phase_rad / count;
-  if (step_rad >= std::numbers::pi) return 1.0;
+  if (step_rad >= pi) return 1.0;
   const double left = 1.0 / (count * std::sin(step_rad)), smeared = 1.0 / phase_rad;
-  const double missed = step_rad < std::numbers::pi / 2 ? left - smeared : left + smeared;
+  const double missed = step_rad < pi / 2 ? left - smeared : left + smeared;
   return std::min(1.0, std::min(1.0, phase_rad) * missed);
 }
 
@@ -34,7 +33,7 @@ double rings_in_noise(int count, const PlanFacts& f, double source_e) {
   for (int i = 0; i < radii; ++i, r_px *= step) {
     const double ends = f.kernel_end_px / r_px,
                  light = std::min(half_noise, source * ends * ends * ends);
-    const double phase_rad = std::numbers::pi * f.relative_bandwidth * r_px / f.airy_px;
+    const double phase_rad = pi * f.relative_bandwidth * r_px / f.airy_px;
     largest = std::max(largest, 2.0 * light *
                                     (of_fringe(count, phase_rad) +
                                      of_fringe(PsfWavelengths::count.back(), phase_rad)));

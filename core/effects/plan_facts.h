@@ -3,10 +3,10 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <string_view>
 #include <vector>
 
+#include "core/base/units.h"
 #include "core/effects/accuracy.h"
 #include "core/effects/effects.h"
 
@@ -273,7 +273,7 @@ struct PlanFacts {
     const double end = in_noise(kernel_end_share * brightest_e());
     if (!(end > 0.0) || !std::isfinite(kernel_end_px)) return 0.0;
     constexpr double half = 0.5, pixel_px = 0.7;
-    const double per_px = std::numbers::pi / kernel_end_px;
+    const double per_px = pi / kernel_end_px;
     const double from_end_px =
         std::min(0.5 * kernel_end_px, std::sqrt(half / end) / per_px + pixel_px);
     return std::min(end, end * per_px * per_px * px * (2.0 * from_end_px + px));
@@ -281,7 +281,6 @@ struct PlanFacts {
   /// How far the centroid of pixels moves, at most, while a Gaussian of that deviation moves by 1:
   /// pixels that are too wide for it draw it to their middles, 1 + 2 sum_k exp(-2 (pi k sigma)^2).
   static double centroid_slope(double sigma_px) {
-    constexpr double pi = std::numbers::pi;
     if (sigma_px >= 0.4) return 1.0 + 2.0 * std::exp(-2.0 * pi * pi * sigma_px * sigma_px);
     const double sigma = std::max(sigma_px, 1e-3);
     return (1.0 + 2.0 * std::exp(-0.5 / (sigma * sigma))) / (sigma * std::sqrt(2.0 * pi));
@@ -302,8 +301,7 @@ struct PlanFacts {
     const double background_sigma =
         peak * std::min(1.0, steepest * px / width_px) +
         in_noise(ghost_pixel_share * brightest_e() * std::min(1.0, px)) + kernel_end_in_noise(px) +
-        in_noise(disc_e * std::min(1.0, px)) +
-        rings * 0.5 * std::min(1.0, std::numbers::pi * px / speckle_px);
+        in_noise(disc_e * std::min(1.0, px)) + rings * 0.5 * std::min(1.0, pi * px / speckle_px);
     return {.photometry_mag = of_light * px,
             .position_px = centroid_px,
             .background_sigma = background_sigma,

@@ -70,7 +70,7 @@ class Row {
   std::string place_;
 };
 
-std::vector<std::string> header_of(const std::string& line, const std::string& place) {
+std::vector<std::string> header_of(std::string_view line, const std::string& place) {
   auto header = csv_fields(line);
   for (const auto& name : header) {
     if (std::ranges::count(header, name) > 1)
@@ -111,14 +111,12 @@ std::vector<TrueSource> parse_truth_csv(const std::string& text, const std::stri
   LineReader lines(without_byte_order_mark(text));
   const auto first = lines.next();
   if (!first) throw ConfigError(name + ": is empty");
-  const auto header = header_of(std::string(*first), name + ":1");
+  const auto header = header_of(*first, name + ":1");
   std::vector<TrueSource> truths;
   std::set<std::pair<std::string, std::string>> seen;
-  int number = 1;
   while (const auto line = lines.next()) {
-    ++number;
     if (line->empty()) continue;
-    const Row row(header, csv_fields(*line), name + ":" + std::to_string(number));
+    const Row row(header, csv_fields(*line), name + ":" + std::to_string(lines.line()));
     constexpr double far = 1e7;
     TrueSource t{.sensor = sensor_name, .frame = row.text("file"), .id = row.text("id")};
     if (std::ranges::find(files, t.frame) == files.end())

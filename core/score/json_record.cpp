@@ -163,12 +163,10 @@ Truth truth_of(const JsonRecord& record) {
   t.start = record.time("start_ns");
   t.middle = record.time("middle_ns");
   t.end = record.time("end_ns");
-  const auto vector = [&](const char* key) {
-    const auto v = record.has(key) ? record.numbers<3>(key) : std::array<double, 3>{};
-    return Vec<Gcrs>{v[0], v[1], v[2]};
-  };
-  t.true_position_m = vector("true_position_gcrs_m");
-  t.true_velocity_m_per_s = vector("true_velocity_gcrs_m_per_s");
+  if (record.has("true_position_gcrs_m"))
+    t.true_position_m = vector_of(record, "true_position_gcrs_m");
+  if (record.has("true_velocity_gcrs_m_per_s"))
+    t.true_velocity_m_per_s = vector_of(record, "true_velocity_gcrs_m_per_s");
   t.true_range_m = record.number("true_range_m");
   t.true_ra_rad = record.number("true_ra_deg") * deg;
   t.true_dec_rad = record.number("true_dec_deg") * deg;
