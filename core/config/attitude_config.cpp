@@ -1,9 +1,7 @@
 #include "core/config/attitude_config.h"
 
-#include <cmath>
-
 #include "core/base/units.h"
-#include "core/config/search_path.h"
+#include "core/config/vector_values.h"
 #include "core/orbit/attitude_table.h"
 
 namespace dmise {
@@ -12,16 +10,11 @@ namespace {
 constexpr double most_rpm = 6000.0;
 constexpr double least_sine = 1e-6;  // between a panel's hinge and its normal
 
-constexpr double any_length = 1e9;  // of a direction
-
-Forms direction() { return form::numbers(3, -any_length, any_length); }
-Forms quaternion() { return form::numbers(4, -2.0, 2.0); }
-
 const Section& inertial_section() {
   static const Section section{
       "inertial",
       "An attitude fixed relative to the stars.",
-      {required("gcrs_from_body", quaternion(), "Unit quaternion [w, x, y, z].")}};
+      {required("gcrs_from_body", form::quaternion(), "Unit quaternion [w, x, y, z].")}};
   return section;
 }
 
@@ -29,34 +22,18 @@ const Section& spinning_section() {
   static const Section section{
       "spinning",
       "A body that turns about an axis of its own.",
-      {optional("axis", direction(), "Axis in body axes.", "[0, 0, 1]"),
+      {optional("axis", form::direction(), "Axis in body axes.", "[0, 0, 1]"),
        required("rate_rpm", form::number(-most_rpm, most_rpm), "Rate [turns per minute]."),
        optional("phase_deg", form::number(-360.0, 360.0),
                 "Rotation of the body at the start of the run [deg].", "0"),
-       optional("gcrs_from_body", quaternion(), "Unit quaternion [w, x, y, z] without the phase.",
-                "[1, 0, 0, 0]")}};
+       optional("gcrs_from_body", form::quaternion(),
+                "Unit quaternion [w, x, y, z] without the phase.", "[1, 0, 0, 0]")}};
   return section;
-}
-
-Vec<Body> read_direction(const YamlValue& value) {
-  const auto v = value.numbers();
-  const Vec<Body> direction{v[0], v[1], v[2]};
-  if (!(norm(direction) > 0)) value.fail("must not be zero", false);
-  return unit(direction);
-}
-
-Rotation<Gcrs, Body> read_quaternion(const YamlValue& value) {
-  const auto q = value.numbers();
-  const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
-  if (!(length > 0.5 && length < 2.0))
-    value.fail("must be a unit quaternion [w, x, y, z], its length is " + std::to_string(length),
-               false);
-  return rotation_of<Gcrs, Body>({q[0], q[1], q[2], q[3]});
 }
 
 InertialAttitude read_inertial(const YamlValue& value) {
   YamlMap map(value, inertial_section());
-  const InertialAttitude attitude{read_quaternion(map.require("gcrs_from_body"))};
+  const InertialAttitude attitude{rotation_in<Gcrs, Body>(map.require("gcrs_from_body"))};
   map.done();
   return attitude;
 }
@@ -64,10 +41,10 @@ InertialAttitude read_inertial(const YamlValue& value) {
 SpinningAttitude read_spinning(const YamlValue& value) {
   YamlMap map(value, spinning_section());
   SpinningAttitude attitude;
-  if (const auto axis = map.find("axis")) attitude.axis = read_direction(*axis);
+  if (const auto axis = map.find("axis")) attitude.axis = direction_of<Body>(*axis);
   attitude.rate_rad_per_s = map.number("rate_rpm") * 2 * pi / 60;
   if (const auto start = map.find("gcrs_from_body"))
-    attitude.gcrs_from_body = read_quaternion(*start);
+    attitude.gcrs_from_body = rotation_in<Gcrs, Body>(*start);
   const double phase_rad = map.number_or("phase_deg", 0.0) * deg;
   map.done();
   // The phase is the rotation of the body at the start.
@@ -99,8 +76,8 @@ const Section& panel_section() {
   static const Section section{
       "panel",
       "A panel that turns about its hinge to face the Sun.",
-      {optional("hinge", direction(), "The hinge in body axes.", "[0, 1, 0]"),
-       optional("normal", direction(), "The normal of the panel at rest, in body axes.",
+      {optional("hinge", form::direction(), "The hinge in body axes.", "[0, 1, 0]"),
+       optional("normal", form::direction(), "The normal of the panel at rest, in body axes.",
                 "[0, 0, 1]")}};
   return section;
 }
@@ -123,8 +100,7 @@ AttitudeConfig read_attitude(const YamlValue& value) {
   if (inertial) attitude.model = read_inertial(*inertial);
   if (spinning) attitude.model = read_spinning(*spinning);
   if (table) {
-    attitude.table_path = find_beside(table->text(), table->file());
-    if (attitude.table_path.empty()) table->fail("there is no such file");
+    attitude.table_path = table->existing_file();
     attitude.model = read_attitude_table(attitude.table_path);
   }
   return attitude;
@@ -133,9 +109,8 @@ AttitudeConfig read_attitude(const YamlValue& value) {
 SunTrackingPanel read_panel(const YamlValue& value) {
   YamlMap map(value, panel_section());
   SunTrackingPanel panel;
-  if (const auto hinge = map.find("hinge")) panel.hinge = read_direction(*hinge);
-  const auto normal = map.find("normal");
-  if (normal) panel.normal = read_direction(*normal);
+  if (const auto hinge = map.find("hinge")) panel.hinge = direction_of<Body>(*hinge);
+  if (const auto normal = map.find("normal")) panel.normal = direction_of<Body>(*normal);
   if (norm(cross(panel.hinge, panel.normal)) < least_sine)
     value.fail("hinge and normal must not be parallel", false);
   map.done();

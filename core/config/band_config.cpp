@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/config/search_path.h"
 #include "core/photometry/curve_file.h"
@@ -13,8 +14,7 @@ namespace {
 constexpr std::size_t most_bytes = 4u << 20;
 
 Curve curve_beside(const YamlValue& value) {
-  const std::string path = find_beside(value.text(), value.file());
-  if (path.empty()) value.fail("there is no such file");
+  const std::string path = value.existing_file();
   return parse_curve(read_text_file(path, most_bytes), path);
 }
 
@@ -33,11 +33,8 @@ Band read_filter(const YamlValue& value) {
       value.fail(e.what());
     }
   }
-  std::string all;
-  for (const auto& known : filter_names()) all += (all.empty() ? "" : ", ") + known;
-  const std::string hint = nearest_name(name, filter_names());
-  value.fail("no such filter" + (hint.empty() ? "" : ", did you mean " + hint + "?") +
-             " (a path to a CSV file, or one of " + all + ")");
+  value.fail("no such filter" + did_you_mean(name, filter_names()) +
+             " (a path to a CSV file, or one of " + joined(filter_names()) + ")");
 }
 
 }  // namespace

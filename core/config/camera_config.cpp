@@ -1,14 +1,11 @@
 #include "core/config/camera_config.h"
 
-#include <span>
-
 #include "core/base/error.h"
 #include "core/config/band_config.h"
 #include "core/config/detector_config.h"
 #include "core/config/exclusion_config.h"
 #include "core/config/optics_config.h"
 #include "core/config/proportion.h"
-#include "core/config/search_path.h"
 #include "core/photometry/magnitude.h"
 
 namespace dmise {
@@ -26,16 +23,9 @@ void apply_quantum_efficiency(const YamlValue& value, Camera& camera) {
   }
 }
 
-std::vector<std::string> words(std::span<const char* const> names) {
-  return {names.begin(), names.end()};
-}
-
 /// Of the band as the detector sees it.
 void read_magnitude_system(const YamlValue& value, Camera& camera) {
-  const auto system = magnitude_system_of(value.text());
-  if (!system)
-    value.fail(std::string("must be one of ") + magnitude_system_names[0] + ", " +
-               magnitude_system_names[1] + ", " + magnitude_system_names[2]);
+  const auto system = magnitude_system_of(value.choice());
   try {
     camera.magnitudes = magnitude_scale(*system, camera.band);
   } catch (const Error& e) {
@@ -56,7 +46,8 @@ const Section& camera_section() {
        required("band", band_forms(),
                 "The band: the name of a filter (`dmise list filters`), a CSV file of its "
                 "transmission, or a box."),
-       optional("magnitude_system", form::choice(words(magnitude_system_names)),
+       optional("magnitude_system",
+                form::choice({magnitude_system_names.begin(), magnitude_system_names.end()}),
                 "Of the magnitudes of detections and of the header's zero point: the V of a source "
                 "of the Sun's colour that is as bright in the band, or the band's own.",
                 magnitude_system_names[0]),
@@ -66,18 +57,7 @@ const Section& camera_section() {
 }
 
 Camera read_camera(const YamlValue& value) {
-  if (value.is_scalar()) {
-    const std::string path = find_preset("cameras", value.text(), value.file());
-    if (path.empty()) {
-      const auto names = preset_names("cameras");
-      const std::string hint = nearest_name(value.text(), names);
-      std::string all;
-      for (const auto& name : names) all += (all.empty() ? "" : ", ") + name;
-      value.fail("no such camera" + (hint.empty() ? "" : ", did you mean " + hint + "?") +
-                 " (a path to a YAML file, or one of " + all + ")");
-    }
-    return read_camera(YamlValue::load(path));
-  }
+  if (value.is_scalar()) return read_camera(load_preset("camera", value));
   YamlMap map(value, camera_section());
   Camera camera;
   camera.name = map.text_or("name", "camera");

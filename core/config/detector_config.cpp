@@ -1,7 +1,5 @@
 #include "core/config/detector_config.h"
 
-#include <charconv>
-
 namespace dmise {
 
 namespace {
@@ -21,8 +19,7 @@ std::string default_of(const DetectorParameter& p) {
   if (p.key == "temperature_c") return "dark_reference_c";
   const double number = p.number_of(Detector());
   if (std::holds_alternative<bool Detector::*>(p.value)) return number != 0.0 ? "on" : "off";
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+  return yaml_text(number);
 }
 
 }  // namespace

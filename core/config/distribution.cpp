@@ -1,11 +1,11 @@
 #include "core/config/distribution.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
+#include "core/base/text_fields.h"
 #include "core/time/clock.h"
 #include "core/time/iso8601.h"
 
@@ -39,12 +39,6 @@ std::vector<YamlValue> two_ends(const YamlValue& value) {
 }
 
 double share_below(double sigmas) { return 0.5 * std::erfc(-sigmas / std::sqrt(2.0)); }
-
-double number_in(const std::string& text) {
-  double x = 0.0;
-  std::from_chars(text.data(), text.data() + text.size(), x);
-  return x;
-}
 
 }  // namespace
 
@@ -113,11 +107,10 @@ std::vector<YamlValue> Distribution::choices() const {
 std::string Distribution::scalar(double x) const {
   if (kind_ == Kind::time) return format_utc(Clock(parse_utc(from_)).utc(sim_seconds(x)), 6);
   // 12 digits: what the last bits of a logarithm are differs between processors.
-  char text[40];
-  std::snprintf(text, sizeof text, kind_ == Kind::integers ? "%.0f" : "%.12g", x);
-  const double rounded = number_in(text);
+  const std::string text = formatted(kind_ == Kind::integers ? "%.0f" : "%.12g", x);
+  const double rounded = *parse_real(text);
   if (rounded >= least_ && rounded <= most_) return text;
-  return {text, std::to_chars(text, text + sizeof text, rounded < least_ ? least_ : most_).ptr};
+  return yaml_text(rounded < least_ ? least_ : most_);
 }
 
 Distribution::Value Distribution::at(double share) const {

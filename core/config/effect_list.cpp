@@ -300,14 +300,14 @@ std::string effects_markdown() {
     std::string keys;
     for (const auto& parameter : parameters_in({}, *effect))
       keys += (keys.empty() ? "`" : ", `") + std::string(parameter.key) + "`";
-    for (const auto cell : {effect->name, effect->what, effect->error_if_off, effect->source})
-      text +=
-          (cell == effect->name ? "| `" + std::string(cell) + "`" : "| " + std::string(cell)) + " ";
+    text += "| `" + std::string(effect->name) + "` | ";
+    for (const auto cell : {effect->what, effect->error_if_off, effect->source})
+      text += std::string(cell) + " | ";
     std::string levels;
     if (effect->levels.size() > 2)
       for (const auto level : effect->levels)
         levels += (levels.empty() ? "" : ", ") + std::string(level);
-    text += "| " + levels + " | " + keys + " |\n";
+    text += levels + " | " + keys + " |\n";
   }
   return text;
 }

@@ -1,7 +1,6 @@
 #include "core/config/effects_config.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <iterator>
 #include <utility>
 
@@ -86,12 +85,10 @@ const Section& accuracy_section() {
         {"noise", "Greatest error of the noise of a pixel"}};
     for (const auto& kind : error_kinds)
       for (const auto& [key, meaning] : meanings)
-        if (key == kind.key) {
-          char text[32];
-          std::snprintf(text, sizeof text, "%.6g", standard_budget.*kind.value);
+        if (key == kind.key)
           made.keys.push_back(optional(kind.key, form::number(0.0, 1e6),
-                                       std::string(meaning) + " [" + kind.unit + "].", text));
-        }
+                                       std::string(meaning) + " [" + kind.unit + "].",
+                                       yaml_text(standard_budget.*kind.value)));
     return made;
   }();
   return section;

@@ -1,10 +1,10 @@
 #include "core/config/field_tables_config.h"
 
-#include <charconv>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/base/text_fields.h"
 #include "core/optics/pupil.h"
 
 namespace dmise {
@@ -33,14 +33,8 @@ const Section& field_zernike_section() {
   return section;
 }
 
-std::vector<double> numbers_in(const YamlValue& list) {
-  std::vector<double> numbers;
-  for (const YamlValue& item : list.list()) numbers.push_back(item.number());
-  return numbers;
-}
-
 std::vector<double> rising_numbers_in(const YamlValue& list) {
-  std::vector<double> numbers = numbers_in(list);
+  std::vector<double> numbers = list.numbers();
   for (std::size_t i = 1; i < numbers.size(); ++i)
     if (!(numbers[i] > numbers[i - 1])) list.list()[i].fail("must rise");
   return numbers;
@@ -48,7 +42,7 @@ std::vector<double> rising_numbers_in(const YamlValue& list) {
 
 /// A column of a table, beside one of `rows` numbers that is named `beside`.
 std::vector<double> column_in(const YamlValue& list, std::size_t rows, const char* beside) {
-  std::vector<double> column = numbers_in(list);
+  std::vector<double> column = list.numbers();
   if (column.size() != rows)
     list.fail("must have a number for each of the " + std::to_string(rows) + " of " + beside +
                   ", has " + std::to_string(column.size()),
@@ -78,6 +72,16 @@ MonotoneCubic read_column(const YamlValue& list, const Radii& radii) {
 }
 
 }  // namespace
+
+int noll_index(const std::string& key, int least, const YamlValue& value) {
+  constexpr int most = 66;
+  const auto noll = parse_integer(key);
+  if (!noll || *noll < least || *noll > most)
+    value.fail("the key must be Noll's index of a Zernike term, " + std::to_string(least) + ".." +
+                   std::to_string(most),
+               false);
+  return *noll;
+}
 
 const Section& vignetting_section() {
   static const Section section = [] {
@@ -166,10 +170,7 @@ FieldBlur read_psf_field(const YamlValue& value, bool diffraction) {
     YamlMap terms(*zernike, field_zernike_section());
     for (const std::string& key : terms.keys()) {
       const YamlValue rms = terms.require(key);
-      int noll = 0;
-      const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), noll);
-      if (error != std::errc() || end != key.data() + key.size() || noll < 2 || noll > 66)
-        rms.fail("the key must be Noll's index of a Zernike term, 2..66", false);
+      const int noll = noll_index(key, 2, rms);
       const MonotoneCubic nm = read_column(rms, radii);
       if (on_axis && noll_orders(noll)[1] != 0 && nm.value()[0] != 0.0)
         rms.list()[0].fail("must be 0 on the axis, which has no direction");
@@ -258,11 +259,8 @@ void write_field_tables_json(JsonWriter& json, const Optics& optics) {
     json.end_array();
   }
   if (const StrayLight& stray = optics.stray_light; stray.any()) {
-    json.key("stray_light").begin_object().key("angle_deg").begin_array();
-    for (const double angle_deg : stray.angle_deg) json.value(angle_deg);
-    json.end_array().key("transmittance").begin_array();
-    for (const double share : stray.transmittance) json.value(share);
-    json.end_array().end_object();
+    json.key("stray_light").begin_object().list("angle_deg", stray.angle_deg);
+    json.list("transmittance", stray.transmittance).end_object();
   }
 }
 

@@ -18,6 +18,9 @@ FieldBlur read_psf_field(const YamlValue& value, bool diffraction);
 FocusDrift read_focus_drift(const YamlValue& value);
 StrayLight read_stray_light(const YamlValue& value);
 
+/// Noll's index of a Zernike term, `least` to 66, that is the key of `value`.
+int noll_index(const std::string& key, int least, const YamlValue& value);
+
 /// What stands in digests where it is not at its default.
 void write_field_tables_json(JsonWriter& json, const Optics& optics);
 

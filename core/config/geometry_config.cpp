@@ -148,10 +148,8 @@ GeometryConfig read_geometry(const YamlValue& value) {
   YamlMap map(value, geometry_section());
   GeometryConfig geometry;
   geometry.materials_path = find_preset("materials", "library", "");
-  if (const auto materials = map.find("materials")) {
-    geometry.materials_path = find_beside(materials->text(), value.file());
-    if (geometry.materials_path.empty()) materials->fail("there is no such file");
-  }
+  if (const auto materials = map.find("materials"))
+    geometry.materials_path = materials->existing_file();
   const MaterialLibrary library = geometry.materials_path.empty()
                                       ? MaterialLibrary()
                                       : MaterialLibrary(geometry.materials_path);
@@ -159,8 +157,7 @@ GeometryConfig read_geometry(const YamlValue& value) {
   if (bool(obj) == bool(model)) value.fail("needs either an obj file or a model", false);
   Mesh mesh;
   if (obj) {
-    geometry.obj_path = find_beside(obj->text(), value.file());
-    if (geometry.obj_path.empty()) obj->fail("there is no such file");
+    geometry.obj_path = obj->existing_file();
     auto read =
         load_obj(geometry.obj_path, [&](std::string_view name) { return library.find(name); });
     mesh = std::move(read.mesh);

@@ -1,8 +1,6 @@
 #include "core/config/instrument_config.h"
 
-#include <algorithm>
-#include <cstdio>
-
+#include "core/base/formatted.h"
 #include "core/base/json.h"
 
 namespace dmise {
@@ -57,7 +55,7 @@ void read_number(const YamlValue& value, const InstrumentParameter& p, Instrumen
     return;
   }
   if (const auto* list = std::get_if<std::vector<double> Instrument::*>(&p.value)) {
-    for (const auto& number : value.list()) (instrument.**list).push_back(number.number() * p.unit);
+    for (const double number : value.numbers()) (instrument.**list).push_back(number * p.unit);
     return;
   }
   ImageAxes& axes = instrument.*std::get<ImageAxes Instrument::*>(p.value);
@@ -115,13 +113,11 @@ void check_clock(YamlMap& map, const SensorConfig& sensor, SimTime duration) {
   if (!clock.applies()) return;
   const SimTime first = sim_seconds(sensor.first_exposure_s);
   const YamlValue value = map.require(ClockError::facts.name);
-  char text[160];
-  if (const SimTime begins = clock.earliest(first); begins < SimTime{}) {
-    std::snprintf(text, sizeof text,
-                  "the first exposure may begin before the run; first_exposure_s must be >= %.6g",
-                  sensor.first_exposure_s - begins.seconds());
-    value.fail(text, false);
-  }
+  if (const SimTime begins = clock.earliest(first); begins < SimTime{})
+    value.fail(formatted("the first exposure may begin before the run; first_exposure_s must be >= "
+                         "%.6g",
+                         sensor.first_exposure_s - begins.seconds()),
+               false);
   if (first + sim_seconds(sensor.exposure_s) > clock.surely_read_by(duration))
     value.fail("the first exposure may end after the run does", false);
 }
@@ -143,11 +139,7 @@ void write_instrument_json(JsonWriter& json, const Instrument& instrument) {
   InstrumentEffects::for_each([&]<class Effect>() {
     if (!static_cast<const Effect&>(instrument).applies()) return;
     json.key(Effect::facts.name).begin_object();
-    for (const auto& p : Effect::parameters()) {
-      json.key(p.key).begin_array();
-      for (const double number : numbers_of(p, instrument)) json.value(number);
-      json.end_array();
-    }
+    for (const auto& p : Effect::parameters()) json.list(p.key, numbers_of(p, instrument));
     json.end_object();
   });
 }

@@ -27,11 +27,8 @@ double most_error_m(const SensorConfig& sensor) {
 }  // namespace
 
 HermiteOrder choose_interpolation(const std::vector<SensorConfig>& sensors, double tick_s) {
-  const auto strictest = std::min_element(sensors.begin(), sensors.end(),
-                                          [](const SensorConfig& a, const SensorConfig& b) {
-                                            return most_error_m(a) < most_error_m(b);
-                                          });
-  const double most_m = strictest == sensors.end() ? unbounded : most_error_m(*strictest);
+  double most_m = unbounded;
+  for (const SensorConfig& sensor : sensors) most_m = std::min(most_m, most_error_m(sensor));
   HermiteOrder choice = HermiteOrder::cubic;
   double least_m = unbounded;
   for (const HermiteOrder order :

@@ -1,7 +1,5 @@
 #include "core/config/material_config.h"
 
-#include <cmath>
-
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/config/search_path.h"
@@ -30,8 +28,7 @@ const Section& material_section() {
        optional("grazing", form::number(0.0, 10.0),
                 "Growth towards grazing angles, of sandford-robertson."),
        optional("lobe_width", form::number(0.001, 1.0),
-                "Width of the lobe, of "
-                "sandford-robertson."),
+                "Width of the lobe, of sandford-robertson."),
        optional("temperature_k", form::number(0.0, 3000.0),
                 "Temperature of the surface [K]; 0 emits nothing.", "0"),
        optional("thermal_emissivity", share(), "Emissivity at thermal wavelengths.", "0")}};
@@ -47,16 +44,10 @@ const Section& material_list_section() {
   return section;
 }
 
-std::vector<double> numbers(const YamlValue& value) {
-  std::vector<double> all;
-  for (const auto& item : value.list()) all.push_back(item.number());
-  return all;
-}
-
 /// Reads a table over `wavelength_um`, or one number for all wavelengths.
 Curve read_curve(const YamlValue& value, const std::vector<double>& wavelength_m) {
   if (value.is_scalar()) return {{0.55e-6}, {value.number()}};
-  Curve curve{wavelength_m, numbers(value)};
+  Curve curve{wavelength_m, value.numbers()};
   if (curve.value.size() != wavelength_m.size())
     value.fail("must have as many numbers as wavelength_um (" +
                    std::to_string(wavelength_m.size()) + "), got " +
@@ -68,7 +59,7 @@ Curve read_curve(const YamlValue& value, const std::vector<double>& wavelength_m
 std::vector<double> read_wavelengths(YamlMap& map) {
   std::vector<double> wavelength_m;
   if (const auto value = map.find("wavelength_um")) {
-    for (const double w : numbers(*value)) {
+    for (const double w : value->numbers()) {
       if (!wavelength_m.empty() && w * um <= wavelength_m.back()) value->fail("must ascend", false);
       wavelength_m.push_back(w * um);
     }
@@ -154,8 +145,7 @@ Material MaterialLibrary::require(const YamlValue& value) const {
   if (auto material = find(value.text())) return *material;
   std::vector<std::string> names;
   for (const auto& [name, material] : materials_) names.push_back(name);
-  const std::string near = nearest_name(value.text(), names);
-  value.fail("no such material" + (near.empty() ? "" : ", did you mean " + near + "?"));
+  value.fail("no such material" + did_you_mean(value.text(), names));
 }
 
 }  // namespace dmise

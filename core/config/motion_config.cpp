@@ -6,14 +6,13 @@
 #include "core/base/error.h"
 #include "core/base/units.h"
 #include "core/config/proportion.h"
-#include "core/config/search_path.h"
+#include "core/config/vector_values.h"
 #include "core/frames/geodesy.h"
 #include "core/frames/oblate_earth.h"
 #include "core/orbit/geodetic_track.h"
 #include "core/orbit/kepler.h"
 #include "core/orbit/tle.h"
 #include "core/time/clock.h"
-#include "core/time/iso8601.h"
 
 namespace dmise {
 namespace {
@@ -80,12 +79,6 @@ const Section& sgp4_section() {
 }
 
 template <class F>
-Vec<F> read_vector(const YamlValue& value) {
-  const auto v = value.numbers();
-  return {v[0], v[1], v[2]};
-}
-
-template <class F>
 void require_outside_earth(const YamlValue& value, const Vec<F>& position_m,
                            const Ellipsoid& ellipsoid) {
   const OblateEarth body{.ellipsoid = ellipsoid};
@@ -128,20 +121,13 @@ TwoBodyMotion read_two_body(const YamlValue& value, const Utc& start, const Elli
                             std::vector<std::string>& warnings) {
   YamlMap map(value, two_body_section());
   TwoBodyMotion motion;
-  Utc epoch = start;
-  if (const auto text = map.find("epoch")) {
-    try {
-      epoch = parse_utc(text->text());
-    } catch (const Error&) {
-      text->fail("must be a UTC time such as 2018-01-21T00:30:00Z");
-    }
-  }
-  motion.epoch = Clock(epoch).tai({0});
+  const auto epoch = map.find("epoch");
+  motion.epoch = Clock(epoch ? epoch->time() : start).tai({0});
   motion.gm_m3_per_s2 = map.number_or("gm_m3_per_s2", earth_gm_m3_per_s2);
   const auto position = map.find("position_m"), velocity = map.find("velocity_m_per_s");
   if (position || velocity) {
-    motion.state.position_m = read_vector<Gcrs>(map.require("position_m"));
-    motion.state.velocity_m_per_s = read_vector<Gcrs>(map.require("velocity_m_per_s"));
+    motion.state.position_m = vector_of<Gcrs>(map.require("position_m"));
+    motion.state.velocity_m_per_s = vector_of<Gcrs>(map.require("velocity_m_per_s"));
     require_outside_earth(*position, motion.state.position_m, ellipsoid);
   } else {
     const KeplerElements k = read_elements(map);
@@ -163,11 +149,11 @@ MotionModel read_fixed(const YamlValue& value, const Ellipsoid& ellipsoid) {
     value.fail("give one of latitude_deg with longitude_deg and height_m, itrs_m, gcrs_m", false);
   MotionModel model;
   if (itrs) {
-    const auto place = read_vector<Itrs>(*itrs);
+    const auto place = vector_of<Itrs>(*itrs);
     require_outside_earth(*itrs, place, ellipsoid);
     model = ConstantPosition<Itrs>{place};
   } else if (gcrs) {
-    const auto place = read_vector<Gcrs>(*gcrs);
+    const auto place = vector_of<Gcrs>(*gcrs);
     require_outside_earth(*gcrs, place, ellipsoid);
     model = ConstantPosition<Gcrs>{place};
   } else {
@@ -191,12 +177,6 @@ MeanElements read_sgp4(const YamlValue& value) {
   }
 }
 
-std::string file_of(const YamlValue& value) {
-  std::string path = find_beside(value.text(), value.file());
-  if (path.empty()) value.fail("there is no such file");
-  return path;
-}
-
 /// A straight line from the start of the run, or a track; in east, north and up of the origin.
 MotionConfig read_enu(const YamlValue& value, const Utc& start, const std::string& name,
                       const EarthConfig& earth) {
@@ -211,17 +191,17 @@ MotionConfig read_enu(const YamlValue& value, const Utc& start, const std::strin
   const Tai begin = Clock(start).tai({0});
   if (track) {
     if (velocity) velocity->fail("goes with position_m", false);
-    motion.trajectory_path = file_of(*track);
+    motion.trajectory_path = track->existing_file();
     motion.model = MotionModel(read_enu_track(motion.trajectory_path, begin, name, *earth.origin));
     return motion;
   }
   const auto itrs_from_enu = enu_from_itrs(*earth.origin).inverse();
   const Vec<Itrs> place =
-      itrs_from_geodetic(*earth.origin) + itrs_from_enu * read_vector<Enu>(*position);
+      itrs_from_geodetic(*earth.origin) + itrs_from_enu * vector_of<Enu>(*position);
   require_outside_earth(*position, place, earth.ellipsoid);
   if (velocity)
     motion.model = MotionModel(
-        StraightMotion<Itrs>{begin, {place, itrs_from_enu * read_vector<Enu>(*velocity)}});
+        StraightMotion<Itrs>{begin, {place, itrs_from_enu * vector_of<Enu>(*velocity)}});
   else
     motion.model = MotionModel(ConstantPosition<Itrs>{place});
   return motion;
@@ -256,7 +236,7 @@ MotionConfig read_motion(const YamlValue& value, const Utc& start, const std::st
   if (enu) return read_enu(*enu, start, name, earth);
   if (two_body)
     motion.model = MotionModel(read_two_body(*two_body, start, earth.ellipsoid, motion.warnings));
-  if (oem || track) motion.trajectory_path = file_of(oem ? *oem : *track);
+  if (oem || track) motion.trajectory_path = (oem ? oem : track)->existing_file();
   if (oem) motion.model = MotionModel(read_oem(motion.trajectory_path));
   if (track)
     motion.model = MotionModel(

@@ -1,7 +1,7 @@
 #include "core/config/node_names.h"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <string_view>
 
 #include "core/config/node_kinds.h"
@@ -11,12 +11,12 @@ namespace {
 
 constexpr std::size_t longest = 64;
 
-// Names taken by other members of the network and by directories of runs and keys.
-constexpr std::array<std::string_view, 7> reserved = {
-    "time-master", "broker", "operator", "host-agent", "logs", "positions", "rings"};
+// Names of other members of the network, and of directories of runs and keys.
+constexpr std::string_view members[] = {"time-master", "broker", "operator", "host-agent"};
+constexpr std::string_view directories[] = {"logs", "positions", "rings"};
 
-bool is_reserved(const std::string& name) {
-  return std::ranges::find(reserved, name) != reserved.end() ||
+bool is_member(const std::string& name) {
+  return std::ranges::find(members, name) != std::end(members) ||
          std::ranges::any_of(node_kinds(), [&](const NodeKind& kind) {
            return !kind.each_sensor && name == kind.name;
          });
@@ -45,9 +45,9 @@ std::optional<std::string> fault_of_name(const std::string& name) {
 std::optional<std::string> SensorNames::fault_of(const std::string& name) {
   if (auto fault = fault_of_name(name)) return fault;
   const std::string lower = lower_case(name);
-  for (const std::string_view own : {"logs", "positions", "rings"})
-    if (lower == own) return "a directory of the run has this name";
-  if (is_reserved(lower)) return "another node has this name";
+  if (std::ranges::find(directories, lower) != std::end(directories))
+    return "a directory of the run has this name";
+  if (is_member(lower)) return "another node has this name";
   const auto [other, is_new] = taken_.emplace(lower, name);
   if (is_new) return std::nullopt;
   return "another node has this name" +

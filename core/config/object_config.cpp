@@ -12,30 +12,30 @@ namespace {
 
 constexpr std::size_t longest_name_bytes = 64;
 
-std::vector<Key> with_sphere(std::vector<Key> keys) {
-  keys.push_back(optional("radius_m", form::above(0.0, 1000.0),
-                          "Radius of the diffuse sphere that is seen without a shape [m].", "1"));
-  keys.push_back(optional("albedo", form::above(0.0, 1.0), "Its albedo.", "0.2"));
-  return keys;
+std::vector<Key> sphere_keys() {
+  return {optional("radius_m", form::above(0.0, 1000.0),
+                   "Radius of the diffuse sphere that is seen without a shape [m].", "1"),
+          optional("albedo", form::above(0.0, 1.0), "Its albedo.", "0.2")};
 }
 
 const Section& source_section() {
   static const Section section{
       "catalogue", "Objects of a catalogue.",
-      with_sphere(
+      with_keys(
           {required("catalogue", form::text({"gpredict"}),
                     "`gpredict`, or a file of TLE, 3LE, OMM or gpredict element sets beside the "
                     "scenario."),
            optional("facts", form::text(), "A CSV file of sizes and albedos of known objects."),
            optional("only", form::list(form::text()),
-                    "Numbers or names of the objects to take; without it all are taken.")})};
+                    "Numbers or names of the objects to take; without it all are taken.")},
+          sphere_keys())};
   return section;
 }
 
 const Section& own_section() {
   static const Section section{
       "object", "An object of the scenario's own.",
-      with_sphere(
+      with_keys(
           {required("name", form::text(), "A unique name of 1 to 64 characters."),
            optional("catalogue_number", form::integer(1, 999'999'999),
                     "Replaces the catalogue's object of this number. By default that of its "
@@ -44,7 +44,8 @@ const Section& own_section() {
            optional("attitude", attitude_forms(),
                     "How it is turned: towards the Earth, the Sun, or as given."),
            optional("panel", form::map(panel_section), "A panel that faces the Sun."),
-           optional("geometry", form::map(geometry_section), "Its shape; needs an attitude.")})};
+           optional("geometry", form::map(geometry_section), "Its shape; needs an attitude.")},
+          sphere_keys())};
   return section;
 }
 
@@ -59,17 +60,12 @@ ObjectSource read_object_source(const YamlValue& value) {
   const auto catalogue = map.require("catalogue");
   source.where = catalogue.place();
   source.named = catalogue.text();
-  source.path = source.named == "gpredict" ? find_catalogue("satellites.dat")
-                                           : find_beside(source.named, value.file());
+  source.path =
+      source.named == "gpredict" ? find_catalogue("satellites.dat") : catalogue.existing_file();
   if (source.path.empty())
-    catalogue.fail(source.named == "gpredict"
-                       ? "Debian's gpredict catalogue is missing; ./dmise setup fetches it"
-                       : "there is no such file");
+    catalogue.fail("Debian's gpredict catalogue is missing; ./dmise setup fetches it");
   read_sphere(map, source.radius_m, source.albedo);
-  if (const auto facts = map.find("facts")) {
-    source.facts_path = find_beside(facts->text(), value.file());
-    if (source.facts_path.empty()) facts->fail("there is no such file");
-  }
+  if (const auto facts = map.find("facts")) source.facts_path = facts->existing_file();
   if (const auto only = map.find("only")) {
     for (const auto& name : only->list()) {
       const std::string shown = printable(name.text());

@@ -6,7 +6,7 @@ namespace {
 
 template <class F>
 void write(JsonWriter& json, const char* key, const Vec<F>& v) {
-  json.key(key).begin_array().value(v.x).value(v.y).value(v.z).end_array();
+  json.list(key, {v.x, v.y, v.z});
 }
 
 template <class To, class From>
@@ -35,12 +35,9 @@ struct MotionWriter {
   void operator()(const Trajectory&) const { json.field("oem", true); }  // the file has a digest
   void operator()(const MotionModel& m) const { std::visit(*this, m); }
   void operator()(const MeanElements& e) const {
-    json.key("sgp4").begin_array();
-    for (const double x :
-         {e.epoch_jd1, e.epoch_jd2, e.mean_motion_rad_per_min, e.eccentricity, e.inclination_rad,
-          e.raan_rad, e.argument_of_perigee_rad, e.mean_anomaly_rad, e.bstar_per_earth_radius})
-      json.value(x);
-    json.end_array();
+    json.list("sgp4", {e.epoch_jd1, e.epoch_jd2, e.mean_motion_rad_per_min, e.eccentricity,
+                       e.inclination_rad, e.raan_rad, e.argument_of_perigee_rad, e.mean_anomaly_rad,
+                       e.bstar_per_earth_radius});
   }
 };
 
@@ -83,9 +80,7 @@ void write_objects(JsonWriter& json, const std::vector<ObjectSource>& catalogues
   json.key("objects").begin_array();
   for (const auto& source : catalogues) {
     json.begin_object().field("catalogue", source.named).field("radius_m", source.radius_m);
-    json.field("albedo", source.albedo).key("only").begin_array();
-    for (const auto& name : source.only) json.value(name);
-    json.end_array().end_object();
+    json.field("albedo", source.albedo).list("only", source.only).end_object();
   }
   for (const auto& object : own) write_own(json, object);
   json.end_array();

@@ -2,19 +2,10 @@
 
 #include <map>
 
-#include "core/config/yaml_reader.h"
+#include "core/base/nearest_name.h"
+#include "core/base/text_fields.h"
 
 namespace dmise {
-namespace {
-
-std::string upper_case(std::string_view text) {
-  std::string upper(text);
-  for (char& c : upper)
-    if (c >= 'a' && c <= 'z') c = char(c - 'a' + 'A');
-  return upper;
-}
-
-}  // namespace
 
 std::string nearest_object(std::string_view word, const std::vector<std::string>& names) {
   std::vector<std::string> ways;               // spellings

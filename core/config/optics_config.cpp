@@ -1,10 +1,10 @@
 #include "core/config/optics_config.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/formatted.h"
+#include "core/base/printable.h"
 #include "core/base/units.h"
 #include "core/config/field_tables_config.h"
 #include "core/config/sky_config.h"
@@ -82,15 +82,15 @@ std::vector<std::string> projection_names() {
 // projection: a row of the table; distortion: {COEFFICIENT: value, ...} of one that has some.
 Projection read_projection(YamlMap& map) {
   const auto named = map.find("projection"), distortion = map.find("distortion");
-  std::string distorted;
+  std::vector<std::string> distorted;
   for (const Projection::Row& row : Projection::rows())
-    if (!row.coefficients.empty())
-      distorted += (distorted.empty() ? "" : " or ") + std::string(row.name);
+    if (!row.coefficients.empty()) distorted.push_back(row.name);
   const std::size_t index = named ? *Projection::index_of_name(named->choice()) : 0;
   const auto wanted = Projection::rows()[index].coefficients;
   std::vector<double> values(wanted.size(), 0.0);
   if (distortion) {
-    if (wanted.empty()) distortion->fail("goes with projection: " + distorted, false);
+    if (wanted.empty())
+      distortion->fail("goes with projection: " + joined(distorted, " or "), false);
     YamlMap coefficients(*distortion, distortion_section());
     for (std::size_t i = 0; i < wanted.size(); ++i)
       values[i] = coefficients.number_or(wanted[i].key, 0.0,
@@ -106,11 +106,7 @@ std::vector<WavefrontTerm> read_wavefront(const YamlValue& value) {
   std::vector<WavefrontTerm> terms;
   for (const std::string& key : map.keys()) {
     const YamlValue rms = map.require(key);
-    int noll = 0;
-    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), noll);
-    if (error != std::errc() || end != key.data() + key.size() || noll < 4 || noll > 66)
-      rms.fail("the key must be Noll's index of a Zernike term, 4..66", false);
-    terms.push_back({noll, 1e-9 * rms.number()});
+    terms.push_back({noll_index(key, 4, rms), 1e-9 * rms.number()});
   }
   map.done();
   return terms;
@@ -188,10 +184,9 @@ PointSpread read_point_spread(YamlMap& map, Optics& optics) {
 }
 
 [[noreturn]] void fail_fold(const YamlValue& optics, double fold_rad) {
-  char at[32];
-  std::snprintf(at, sizeof at, "%.4g", fold_rad / deg);
-  optics.fail("distortion: the image folds back at " + std::string(at) +
-                  " deg from the boresight, within the frame",
+  optics.fail(formatted("distortion: the image folds back at %.4g deg from the boresight, within "
+                        "the frame",
+                        fold_rad / deg),
               false);
 }
 
@@ -264,12 +259,9 @@ const Section& optics_section() {
          optional("equivalent_aperture", form::flag(),
                   "Takes the aperture as a collecting area, which allows focal ratios below 0.5.",
                   "off")}};
-    for (const ImageParameter& p : image_parameters()) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%.12g", ImageOptics().*p.value);
+    for (const ImageParameter& p : image_parameters())
       made.keys.push_back(optional(std::string(p.key), form::number(p.least, p.most),
-                                   sentence_of(p.meaning), text));
-    }
+                                   sentence_of(p.meaning), yaml_text(ImageOptics().*p.value)));
     return made;
   }();
   return section;

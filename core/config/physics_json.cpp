@@ -25,11 +25,8 @@ void write_camera(JsonWriter& json, const Camera& camera) {
   const auto& d = camera.detector;
   json.key("camera").begin_object().field("name", camera.name);
   json.field("projection", o.projection.index());
-  if (const auto coefficients = o.projection.coefficients(); !coefficients.empty()) {
-    json.key("distortion").begin_array();
-    for (const double value : coefficients) json.value(value);
-    json.end_array();
-  }
+  if (const auto coefficients = o.projection.coefficients(); !coefficients.empty())
+    json.list("distortion", coefficients);
   json.field("focal_length_m", o.focal_length_m);
   json.field("aperture_m", o.aperture_m).field("obscuration", o.obscuration);
   json.field("pixel_pitch_m", o.pixel_pitch_m).field("columns", o.columns).field("rows", o.rows);
@@ -60,9 +57,7 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
   write_instrument_json(json, s.instrument);
   write_surroundings(json, s);
   if (s.seeing) write_seeing_json(json, *s.seeing);
-  json.key("effects").begin_array();
-  for (const auto& name : effects_in_digest(s.effects)) json.value(name);
-  json.end_array();
+  json.list("effects", effects_in_digest(s.effects));
   if (s.accuracy.is_planned()) {
     json.key("accuracy").begin_object();
     if (s.accuracy.name == "seconds")
@@ -89,13 +84,8 @@ void write_sensor(JsonWriter& json, const SensorConfig& s) {
 void write_fusion(JsonWriter& json, const FusionConfig& fusion) {
   const FusionSettings& s = fusion.settings;
   json.key("fusion").begin_object();
-  for (const auto& [key, sigmas] :
-       {std::pair("catalogue_sigma_m", s.catalogue_sigma_m),
-        std::pair("catalogue_sigma_m_per_day", s.catalogue_sigma_m_per_day)}) {
-    json.key(key).begin_array();
-    for (const double sigma : sigmas) json.value(sigma);
-    json.end_array();
-  }
+  json.list("catalogue_sigma_m", s.catalogue_sigma_m);
+  json.list("catalogue_sigma_m_per_day", s.catalogue_sigma_m_per_day);
   json.field("gate_d2", s.gate_d2).field("detection_probability", s.detection_probability);
   json.field("false_alarms_per_frame", s.false_alarms_per_frame);
   json.field("lost_after_s", s.lost_after_s).field("tentative_s", s.tentative_s);
@@ -105,9 +95,7 @@ void write_fusion(JsonWriter& json, const FusionConfig& fusion) {
     json.field("arc_exposures", std::int64_t(s.arc_exposures));
   json.field("acceleration_noise_m2_per_s3", s.acceleration_noise_m2_per_s3);
   json.field("cue_delay_ticks", std::int64_t(fusion.cue_delay_ticks));
-  json.key("not_in_catalogue").begin_array();
-  for (const std::string& name : fusion.not_in_catalogue) json.value(name);
-  json.end_array().end_object();
+  json.list("not_in_catalogue", fusion.not_in_catalogue).end_object();
 }
 
 }  // namespace
@@ -133,8 +121,7 @@ std::string physics_json(const Scenario& scenario) {
   for (const auto& sensor : scenario.sensors) write_sensor(json, sensor);
   json.end_array();
   if (scenario.fusion) write_fusion(json, *scenario.fusion);
-  json.end_object();
-  return json.take();
+  return json.end_object().take();
 }
 
 }  // namespace dmise

@@ -1,31 +1,34 @@
 #include "core/config/pointing_config.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/base/json.h"
 #include "core/base/printable.h"
+#include "core/config/vector_values.h"
 
 namespace dmise {
 namespace {
 
 constexpr double least_sine = 1e-6;       // between boresight and up
 constexpr double most_offset_deg = 80.0;  // of a target's image from the boresight
-constexpr double any_length = 1e9;        // of a direction
+
+constexpr const char* tracking_names[] = {"fixed", "sidereal", "target", "moving"};
 
 Forms any_angle() { return form::number(-360.0, 360.0); }
 Forms latitude() { return form::number(-90.0, 90.0); }
 Forms any_rate() { return form::number(-60.0, 60.0); }
-Forms axis() { return form::numbers(3, -any_length, any_length); }
 
 const Section& body_section() {
   static const Section section{
       "body",
       "A camera fixed to the body of its platform. Either `boresight` or `body_from_camera` is "
       "needed.",
-      {optional("boresight", axis(), "Direction in body axes."),
-       optional("up", axis(), "Direction in body axes that is up in the image.",
+      {optional("boresight", form::direction(), "Direction in body axes."),
+       optional("up", form::direction(), "Direction in body axes that is up in the image.",
                 "z, or y if the boresight is near z"),
-       optional("body_from_camera", form::numbers(4, -2.0, 2.0),
+       optional("body_from_camera", form::quaternion(),
                 "Unit quaternion [w, x, y, z] in place of both.")}};
   return section;
 }
@@ -39,7 +42,7 @@ const Section& scan_section() {
        optional("elevation_deg", latitude(), "Above the horizon [deg], on the ground."),
        optional("ra_deg", any_angle(), "Right ascension, ICRS [deg]."),
        optional("dec_deg", latitude(), "Declination, ICRS [deg]."),
-       required("axis", axis(),
+       required("axis", form::direction(),
                 "Axis of the turn: in GCRS, or east, north, up for a start by azimuth."),
        required("rate_deg_per_s", any_rate(), "Rate, right-handed about the axis [deg/s].")}};
   return section;
@@ -50,9 +53,9 @@ const Section& enu_section() {
       "enu",
       "A camera in east, north and up of `simulation.origin`, wherever the sensor is. Either "
       "`look` or `look_at_m` is needed.",
-      {optional("look", axis(), "Direction to look along."),
+      {optional("look", form::direction(), "Direction to look along."),
        optional("look_at_m", form::numbers(3, -1e12, 1e12), "Place to look at [m]."),
-       optional("up", axis(), "Direction that is up in the image.",
+       optional("up", form::direction(), "Direction that is up in the image.",
                 "[0, 0, 1], or north along the vertical")}};
   return section;
 }
@@ -110,14 +113,6 @@ const Section& cued_section() {
   return section;
 }
 
-template <class F = Body>
-Vec<F> read_axis(const YamlValue& value) {
-  const auto v = value.numbers(3, Bounds::between(-any_length, any_length));
-  const Vec<F> axis{v[0], v[1], v[2]};
-  if (!(norm(axis) > 0)) value.fail("must not be zero", false);
-  return unit(axis);
-}
-
 PointHorizon read_horizon(YamlMap& map) {
   return {.azimuth_deg = map.number("azimuth_deg"),
           .elevation_deg = map.number("elevation_deg"),
@@ -141,15 +136,11 @@ PointBody read_body(const YamlValue& value) {
     value.fail("give either boresight (and up) or body_from_camera", false);
   if (quaternion) {
     if (up) up->fail("goes with boresight", false);
-    const auto q = quaternion->numbers();
-    const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
-    if (!(length > 0.5 && length < 2.0))
-      quaternion->fail("must be a unit quaternion [w, x, y, z]", false);
-    return {rotation_of<Body, CameraFrame>({q[0], q[1], q[2], q[3]})};
+    return {rotation_in<Body, CameraFrame>(*quaternion)};
   }
-  const Vec<Body> z = read_axis(*boresight);
+  const Vec<Body> z = direction_of<Body>(*boresight);
   const Vec<Body> least = std::abs(z.z) < 0.9 ? Vec<Body>{0, 0, 1} : Vec<Body>{0, 1, 0};
-  const Vec<Body> upwards = up ? read_axis(*up) : least;
+  const Vec<Body> upwards = up ? direction_of<Body>(*up) : least;
   if (norm(cross(z, upwards)) < least_sine) up->fail("must not be along boresight", false);
   const Vec<Body> x = unit(cross(z, upwards)), y = cross(z, x);
   PointBody body;
@@ -164,13 +155,12 @@ PointEnu read_enu(const YamlValue& value, const std::optional<Site>& origin) {
   const auto look = map.find("look"), at = map.find("look_at_m"), up = map.find("up");
   map.done();
   if (bool(look) == bool(at)) value.fail("give either look or look_at_m (and up)", false);
-  if (up) enu.up = read_axis<Enu>(*up);
+  if (up) enu.up = direction_of<Enu>(*up);
   if (at) {
-    const auto place = at->numbers();
-    enu.at_m = Vec<Enu>{place[0], place[1], place[2]};
+    enu.at_m = vector_of<Enu>(*at);
     return enu;
   }
-  enu.look = read_axis<Enu>(*look);
+  enu.look = direction_of<Enu>(*look);
   if (norm(cross(enu.look, enu.up)) >= least_sine) return enu;
   if (up) up->fail("must not be along look", false);
   enu.up = {0, 1, 0};  // along the vertical north is up
@@ -189,7 +179,7 @@ PointScan read_scan(const YamlValue& value, bool on_ground) {
   else
     scan.start = PointSky{.ra_deg = map.number("ra_deg"), .dec_deg = map.number("dec_deg")};
   const auto axis = map.require("axis");
-  const Vec<Body> direction = read_axis(axis);
+  const Vec<Body> direction = direction_of<Body>(axis);
   scan.axis = {direction.x, direction.y, direction.z};
   scan.rate_deg_per_s = map.number("rate_deg_per_s");
   map.done();
@@ -237,19 +227,7 @@ PointCued read_cued(const YamlValue& value) {
 
 }  // namespace
 
-const char* tracking_name(Tracking tracking) {
-  switch (tracking) {
-    case Tracking::fixed:
-      return "fixed";
-    case Tracking::sidereal:
-      return "sidereal";
-    case Tracking::target:
-      return "target";
-    case Tracking::moving:
-      return "moving";
-  }
-  return "unknown";
-}
+const char* tracking_name(Tracking tracking) { return tracking_names[std::size_t(tracking)]; }
 
 double turn_rate_deg_per_s(const Pointing& pointing) {
   if (const auto* p = std::get_if<PointHorizon>(&pointing))
@@ -287,7 +265,7 @@ const Section& pointing_section() {
        optional("scan", form::map(scan_section), "Turns uniformly about an axis."),
        optional("cued", form::flag() | form::map(cued_section),
                 "Observes what the fusion node tells it to."),
-       optional("tracking", form::choice({"fixed", "sidereal", "target", "moving"}),
+       optional("tracking", form::choice({std::begin(tracking_names), std::end(tracking_names)}),
                 "What the camera follows during an exposure. By default what its pointing "
                 "suggests."),
        optional("roll_deg", any_angle(),
@@ -352,11 +330,8 @@ void read_pointing(const YamlValue& value, bool on_ground, SensorConfig& sensor,
   const bool moves = turn_rate_deg_per_s(sensor.pointing) > 0.0;
   sensor.tracking = moves || scan ? Tracking::moving : natural;
   if (const auto tracking = map.find("tracking")) {
-    const std::string name = tracking->choice();
-    sensor.tracking = name == "fixed"      ? Tracking::fixed
-                      : name == "sidereal" ? Tracking::sidereal
-                      : name == "target"   ? Tracking::target
-                                           : Tracking::moving;
+    const auto named = std::ranges::find(tracking_names, tracking->choice());
+    sensor.tracking = Tracking(named - std::begin(tracking_names));
     if (sensor.tracking == Tracking::target && !target && !cued)
       tracking->fail("there is no target to track", false);
     if (sensor.tracking == Tracking::moving && !moves && !scan)
@@ -397,10 +372,8 @@ struct PointingWriter {
   void operator()(const PointTarget& p) const {
     json.begin_object().field("target", p.object);
     json.field("place", p.geometric ? "geometric" : "apparent");
-    if (p.offset_x_deg != 0.0 || p.offset_y_deg != 0.0) {
-      json.key("offset_deg").begin_array().value(p.offset_x_deg).value(p.offset_y_deg);
-      json.end_array();
-    }
+    if (p.offset_x_deg != 0.0 || p.offset_y_deg != 0.0)
+      json.list("offset_deg", {p.offset_x_deg, p.offset_y_deg});
     json.end_object();
   }
   void operator()(const PointBody& p) const {
@@ -411,7 +384,7 @@ struct PointingWriter {
   }
   void operator()(const PointEnu& p) const {  // the origin is the scenario's
     const auto vector = [&](const char* key, const Vec<Enu>& v) {
-      json.key(key).begin_array().value(v.x).value(v.y).value(v.z).end_array();
+      json.list(key, {v.x, v.y, v.z});
     };
     json.begin_object().key("enu").begin_object();
     p.at_m ? vector("look_at_m", *p.at_m) : vector("look", p.look);
@@ -421,8 +394,7 @@ struct PointingWriter {
   void operator()(const PointScan& p) const {
     json.begin_object().key("scan");
     std::visit(*this, p.start);
-    json.key("axis").begin_array().value(p.axis[0]).value(p.axis[1]).value(p.axis[2]).end_array();
-    json.field("rate_deg_per_s", p.rate_deg_per_s).end_object();
+    json.list("axis", p.axis).field("rate_deg_per_s", p.rate_deg_per_s).end_object();
   }
   void operator()(const PointCued& p) const {
     const CueSettings& c = p.cue;
@@ -431,8 +403,8 @@ struct PointingWriter {
     json.field("slew_deg_per_s", c.slew_deg_per_s).field("slew_deg_per_s2", c.slew_deg_per_s2);
     if (c.mount == MountKind::altazimuth) {
       json.field("mount", "altazimuth").field("azimuth_deg_per_s", c.azimuth_deg_per_s);
-      json.field("azimuth_deg_per_s2", c.azimuth_deg_per_s2).key("azimuth_range_deg");
-      json.begin_array().value(c.azimuth_range_deg[0]).value(c.azimuth_range_deg[1]).end_array();
+      json.field("azimuth_deg_per_s2", c.azimuth_deg_per_s2);
+      json.list("azimuth_range_deg", c.azimuth_range_deg);
     }
     if (c.greatest_elevation_deg < 90)
       json.field("greatest_elevation_deg", c.greatest_elevation_deg);

@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 #include "core/frames/geodesy.h"
 
@@ -26,11 +26,7 @@ struct Unit {
 };
 constexpr std::array<Unit, 2> units = {{{"millimetres", 1e-3}, {"micrometres", 1e-6}}};
 
-std::string text_of(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", x);
-  return text;
-}
+std::string text_of(double x) { return formatted("%.4g", x); }
 
 std::string unusual(double value_m, const UsualLength& length) {
   std::string text =

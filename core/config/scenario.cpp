@@ -1,10 +1,10 @@
 #include "core/config/scenario.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/config/distribution.h"
 #include "core/config/effects_config.h"
 #include "core/config/fusion_config.h"
@@ -27,25 +27,23 @@ namespace {
 constexpr std::int64_t most_seed = std::numeric_limits<std::int64_t>::max();
 
 const Section& simulation_section() {
-  static const Section section = [] {
-    Section made{
-        "simulation",
-        "When the run begins, how long it lasts and in which steps.",
-        {required("start", form::time(), "UTC at which the run begins, not before 1972."),
-         required("duration_s", form::number(1e-3, 3.2e8),
-                  "Length of the run [s], a whole number of ticks."),
-         required("tick_s", form::number(1e-6, 3600.0),
-                  "Time between ticks [s], at which the state of the world is published."),
-         optional("seed", form::integer(0, most_seed), "Seed of all random numbers.", "1"),
-         optional("interpolation", form::choice({"3", "5", "7"}),
-                  "Order of the polynomials that join objects between ticks. By default the lowest "
-                  "that the sensors' accuracy allows."),
-         optional(
-             "earth_orientation", form::text(),
-             "An IERS finals2000A file of UT1 - UTC and polar motion. Without it they are 0.")}};
-    for (auto& key : earth_keys()) made.keys.push_back(std::move(key));
-    return made;
-  }();
+  static const Section section{
+      "simulation", "When the run begins, how long it lasts and in which steps.",
+      with_keys(
+          {required("start", form::time(), "UTC at which the run begins, not before 1972."),
+           required("duration_s", form::number(1e-3, 3.2e8),
+                    "Length of the run [s], a whole number of ticks."),
+           required("tick_s", form::number(1e-6, 3600.0),
+                    "Time between ticks [s], at which the state of the world is published."),
+           optional("seed", form::integer(0, most_seed), "Seed of all random numbers.", "1"),
+           optional(
+               "interpolation", form::choice({"3", "5", "7"}),
+               "Order of the polynomials that join objects between ticks. By default the lowest "
+               "that the sensors' accuracy allows."),
+           optional(
+               "earth_orientation", form::text(),
+               "An IERS finals2000A file of UT1 - UTC and polar motion. Without it they are 0.")},
+          earth_keys())};
   return section;
 }
 
@@ -120,9 +118,7 @@ void check_whole_ticks(const Scenario& scenario, const YamlValue& duration) {
   const std::int64_t tick_ns = scenario.tick.ns, whole = scenario.duration.ns / tick_ns;
   if (whole * tick_ns == scenario.duration.ns) return;
   const auto seconds_of = [&](std::int64_t ticks) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.12g", SimTime{ticks * tick_ns}.seconds());
-    return std::string(text);
+    return formatted("%.12g", SimTime{ticks * tick_ns}.seconds());
   };
   duration.fail("must be a whole number of ticks (tick_s: " + seconds_of(1) +
                 "): " + (whole > 0 ? seconds_of(whole) + " or " : "") + seconds_of(whole + 1));
@@ -132,21 +128,14 @@ void read_simulation(const YamlValue& value, Scenario& scenario) {
   YamlMap map(value, simulation_section());
   const auto start = map.require("start");
   scenario.start_utc = start.text();
-  try {
-    parse_utc(scenario.start_utc);
-  } catch (const BeforeLeapSeconds&) {
-    start.fail("must not be before 1972, when UTC was not yet whole seconds from TAI");
-  } catch (const Error&) {
-    start.fail("must be a UTC time such as 2018-01-21T00:30:00Z");
-  }
+  start.time();  // checks it
   scenario.duration = sim_seconds(map.number("duration_s"));
   scenario.tick = sim_seconds(map.number("tick_s"));
   check_whole_ticks(scenario, map.require("duration_s"));
   scenario.seed = static_cast<std::uint64_t>(map.integer_or("seed", 1));
   if (const auto order = map.find("interpolation")) order->choice();
   if (const auto eop = map.find("earth_orientation")) {
-    scenario.earth_orientation_path = find_beside(eop->text(), value.file());
-    if (scenario.earth_orientation_path.empty()) eop->fail("there is no such file");
+    scenario.earth_orientation_path = eop->existing_file();
     try {
       IersTable::read_finals2000a(scenario.earth_orientation_path);
     } catch (const Error& e) {
@@ -188,11 +177,9 @@ void read_stars(const YamlValue& value, Scenario& scenario) {
   scenario.star_catalogue_named = catalogue ? catalogue->text() : default_star_catalogue;
   scenario.star_catalogue_where = where.place();
   const char* file = star_catalogue_file(scenario.star_catalogue_named);
-  scenario.star_catalogue_path =
-      file ? find_catalogue(file) : find_beside(scenario.star_catalogue_named, value.file());
+  scenario.star_catalogue_path = file ? find_catalogue(file) : where.existing_file();
   if (scenario.star_catalogue_path.empty())
-    where.fail(file ? missing_star_catalogue(scenario.star_catalogue_named)
-                    : "there is no such file");
+    where.fail(missing_star_catalogue(scenario.star_catalogue_named));
   scenario.faintest_star_mag = map.number_or("faintest_mag", 9.5);
   if (const auto to = map.find("synthetic_to")) scenario.synthetic_stars_to_v_mag = to->number();
   map.done();
@@ -293,13 +280,12 @@ Scenario read_scenario(const YamlValue& root) {
     scenario.sensors.push_back(
         read_sensor(value, effects, accuracy, detect, scenario.duration, scenario.earth));
   }
-  for (auto& sensor : scenario.sensors)
+  for (auto& sensor : scenario.sensors) {
     sensor.synthetic_stars_to_v_mag = scenario.synthetic_stars_to_v_mag;
-  for (const auto& sensor : scenario.sensors)
     for (const auto& line : sensor.camera.warnings)
-      if (std::find(scenario.warnings.begin(), scenario.warnings.end(), line) ==
-          scenario.warnings.end())
+      if (std::ranges::find(scenario.warnings, line) == scenario.warnings.end())
         scenario.warnings.push_back(line);
+  }
   if (scenario.sensors.empty()) sensors.fail("needs at least one sensor", false);
   set_interpolation(scenario, YamlMap(map.require("simulation")));
   if (const auto environment = map.find("environment"))
@@ -331,9 +317,8 @@ const SensorConfig& sensor_named(const Scenario& scenario, const std::string& na
     if (sensor.name == name) return sensor;
     names.push_back(sensor.name);
   }
-  const std::string hint = nearest_name(name, names);
   throw ConfigError(scenario.path + ": sensors: no sensor is named " + name +
-                    (hint.empty() ? "" : ", did you mean " + hint + "?"));
+                    did_you_mean(name, names));
 }
 
 }  // namespace dmise

@@ -1,12 +1,12 @@
 #include "core/config/schema.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "core/base/json.h"
+#include "core/base/text_fields.h"
 #include "core/config/camera_config.h"
 #include "core/config/material_config.h"
 #include "core/config/sensor_config.h"
@@ -44,11 +44,7 @@ void find_within(const Section& section, std::vector<const Section*>& found) {
   if (section.any_other) find_within(section.any_other->forms, found);
 }
 
-bool is_number(const std::string& text) {
-  double x = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-  return error == std::errc{} && end == text.data() + text.size();
-}
+bool is_number(const std::string& text) { return parse_real(text).has_value(); }
 
 bool has(const Forms& forms, Kind kind) {
   return std::any_of(forms.begin(), forms.end(), [&](const Form& f) { return f.kind == kind; });
@@ -140,9 +136,7 @@ class SchemaWriter {
         if (!words) json_.value("number");
         json_.end_array().field("minLength", 1);
         if (form.words.empty()) return;
-        json_.key("examples").begin_array();
-        for (const auto& word : form.words) json_.value(word);
-        json_.end_array();
+        json_.list("examples", form.words);
         return;
       case Kind::time:
         json_.field("type", "string").field("pattern", "^[0-9]{4}-[0-9]{2}-[0-9]{2}");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <utility>
 
 namespace dmise {
@@ -21,7 +22,6 @@ namespace form {
 
 using Kind = Form::Kind;
 
-Forms number() { return {{.kind = Kind::number}}; }
 Forms number(double least, double most) {
   return {{.kind = Kind::number, .bounds = Bounds::between(least, most)}};
 }
@@ -29,7 +29,7 @@ Forms above(double least, double most) {
   return {{.kind = Kind::number, .bounds = Bounds::above(least, most)}};
 }
 Forms positive() { return {{.kind = Kind::number, .bounds = Bounds::positive()}}; }
-Forms not_negative() { return {{.kind = Kind::number, .bounds = Bounds::not_negative()}}; }
+Forms not_negative() { return {{.kind = Kind::number, .bounds = {.least = 0.0}}}; }
 Forms integer(std::int64_t least, std::int64_t most) {
   return {{.kind = Kind::integer, .least = least, .most = most}};
 }
@@ -77,6 +77,11 @@ Key required(std::string name, Forms forms, std::string what) {
 }
 Key optional(std::string name, Forms forms, std::string what, std::string otherwise) {
   return {std::move(name), std::move(forms), std::move(what), std::move(otherwise), false};
+}
+
+std::vector<Key> with_keys(std::vector<Key> keys, std::vector<Key> shared) {
+  std::ranges::move(shared, std::back_inserter(keys));
+  return keys;
 }
 
 }  // namespace dmise

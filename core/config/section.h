@@ -15,7 +15,6 @@ struct Bounds {
   bool least_open = false;  // `least` itself is refused
 
   static Bounds positive() { return {.least = 0.0, .least_open = true}; }
-  static Bounds not_negative() { return {.least = 0.0}; }
   static Bounds between(double least, double most) { return {.least = least, .most = most}; }
   static Bounds above(double least, double most) {
     return {.least = least, .most = most, .least_open = true};
@@ -65,7 +64,6 @@ Forms operator|(Forms a, const Forms& b);
 // Forms of values, for tables.
 namespace form {
 
-Forms number();
 Forms number(double least, double most);
 Forms above(double least, double most);  // `least` itself is refused
 Forms positive();
@@ -90,5 +88,8 @@ std::string sentence_of(std::string_view comment);
 
 Key required(std::string name, Forms forms, std::string what);
 Key optional(std::string name, Forms forms, std::string what, std::string otherwise = {});
+
+/// The keys of a section with those that it shares with others, after them.
+std::vector<Key> with_keys(std::vector<Key> keys, std::vector<Key> shared);
 
 }  // namespace dmise

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
@@ -27,14 +26,7 @@ namespace dmise {
 namespace {
 
 SiteConfig read_site(const YamlValue& value) {
-  if (value.is_scalar()) {
-    const std::string path = find_preset("sites", value.text(), value.file());
-    if (path.empty()) {
-      const std::string hint = nearest_name(value.text(), preset_names("sites"));
-      value.fail("no such site" + (hint.empty() ? "" : ", did you mean " + hint + "?"));
-    }
-    return read_site(YamlValue::load(path));
-  }
+  if (value.is_scalar()) return read_site(load_preset("site", value));
   YamlMap map(value, site_section());
   SiteConfig site;
   site.name = map.text_or("name", "");
@@ -143,58 +135,52 @@ void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
 }  // namespace
 
 const Section& site_section() {
-  static const Section section = [] {
-    Section made{"site",
-                 "A place on the ground, with what surrounds it.",
-                 {optional("name", form::text(), "Name of the site."),
-                  optional("source", form::text(), "Where the numbers come from. It is not used."),
-                  required("latitude_deg", form::number(-90.0, 90.0), "Geodetic latitude [deg]."),
-                  required("longitude_deg", form::number(-180.0, 360.0), "Longitude, east [deg]."),
-                  optional("height_m", form::number(-500.0, 9000.0),
-                           "Height above the ellipsoid [m].", "0")}};
-    for (auto& key : surroundings_keys()) made.keys.push_back(std::move(key));
-    return made;
-  }();
+  static const Section section{
+      "site", "A place on the ground, with what surrounds it.",
+      with_keys({optional("name", form::text(), "Name of the site."),
+                 optional("source", form::text(), "Where the numbers come from. It is not used."),
+                 required("latitude_deg", form::number(-90.0, 90.0), "Geodetic latitude [deg]."),
+                 required("longitude_deg", form::number(-180.0, 360.0), "Longitude, east [deg]."),
+                 optional("height_m", form::number(-500.0, 9000.0),
+                          "Height above the ellipsoid [m].", "0")},
+                surroundings_keys())};
   return section;
 }
 
 const Section& sensor_section() {
-  static const Section section = [] {
-    Section made{
-        "sensor",
-        "A camera at a site or aboard an object. Either `site` or `platform` is needed.",
-        {required("name", form::text(),
-                  "A unique name of 1 to 64 letters, digits, - and _. It names the directory of "
-                  "the sensor's products."),
-         optional("site", form::text(preset_names("sites")) | form::map(site_section),
-                  "The place on the ground: a name (`dmise list sites`), a file, or coordinates."),
-         optional("platform", form::text(),
-                  "Catalogue number or name of the object that carries the sensor."),
-         required("camera", form::text(preset_names("cameras")) | form::map(camera_section),
-                  "The camera: a name (`dmise list cameras`), a file, or its keys."),
-         required("pointing", pointing_forms(), "Where the camera points."),
-         required("exposure_s", form::number(1e-6, 3600.0),
-                  "Length of an exposure [s], at most the cadence."),
-         required("cadence_s", form::number(1e-3, 86400.0),
-                  "Time from the beginning of an exposure to that of the next [s]."),
-         optional("first_exposure_s", form::not_negative(),
-                  "Beginning of the first exposure after the start of the run [s].", "0"),
-         optional("detection", form::flag(),
-                  "Whether moving objects are detected in the frames. By default as the scenario "
-                  "says."),
-         optional("accuracy", accuracy_forms(),
-                  "How accurate frames must be. By default as the scenario says."),
-         optional("effects", effects_forms(), "Effects of this sensor, after the scenario's."),
-         optional("seeing", form::map(seeing_section),
-                  "Turbulence, for a camera with `psf: diffraction`."),
-         optional("mask_deg", form::number(0.0, 89.0),
-                  "Lowest elevation for `dmise visible` [deg], on the ground.", "0"),
-         optional("extinction_mag_per_airmass", form::number(0.0, 5.0),
-                  "Extinction at 550 nm: a short form of `atmosphere: {extinction: ..}`.")}};
-    for (auto& key : surroundings_keys()) made.keys.push_back(std::move(key));
-    for (auto& key : instrument_keys()) made.keys.push_back(std::move(key));
-    return made;
-  }();
+  static const Section section{
+      "sensor", "A camera at a site or aboard an object. Either `site` or `platform` is needed.",
+      with_keys(
+          {required("name", form::text(),
+                    "A unique name of 1 to 64 letters, digits, - and _. It names the directory of "
+                    "the sensor's products."),
+           optional(
+               "site", form::text(preset_names("sites")) | form::map(site_section),
+               "The place on the ground: a name (`dmise list sites`), a file, or coordinates."),
+           optional("platform", form::text(),
+                    "Catalogue number or name of the object that carries the sensor."),
+           required("camera", form::text(preset_names("cameras")) | form::map(camera_section),
+                    "The camera: a name (`dmise list cameras`), a file, or its keys."),
+           required("pointing", pointing_forms(), "Where the camera points."),
+           required("exposure_s", form::number(1e-6, 3600.0),
+                    "Length of an exposure [s], at most the cadence."),
+           required("cadence_s", form::number(1e-3, 86400.0),
+                    "Time from the beginning of an exposure to that of the next [s]."),
+           optional("first_exposure_s", form::not_negative(),
+                    "Beginning of the first exposure after the start of the run [s].", "0"),
+           optional("detection", form::flag(),
+                    "Whether moving objects are detected in the frames. By default as the scenario "
+                    "says."),
+           optional("accuracy", accuracy_forms(),
+                    "How accurate frames must be. By default as the scenario says."),
+           optional("effects", effects_forms(), "Effects of this sensor, after the scenario's."),
+           optional("seeing", form::map(seeing_section),
+                    "Turbulence, for a camera with `psf: diffraction`."),
+           optional("mask_deg", form::number(0.0, 89.0),
+                    "Lowest elevation for `dmise visible` [deg], on the ground.", "0"),
+           optional("extinction_mag_per_airmass", form::number(0.0, 5.0),
+                    "Extinction at 550 nm: a short form of `atmosphere: {extinction: ..}`.")},
+          with_keys(surroundings_keys(), instrument_keys()))};
   return section;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/printable.h"
 #include "core/base/text_file.h"
 #include "core/base/units.h"
 #include "core/config/cn2_file.h"
@@ -202,12 +203,8 @@ void read_parts(const YamlValue& value, SkyParts& parts) {
     }
   };
   switch_part("uniform", parts.uniform);
-  switch_part("airglow", parts.airglow);
-  switch_part("zodiacal_light", parts.zodiacal_light);
-  switch_part("faint_starlight", parts.faint_starlight);
-  switch_part("scattered_moonlight", parts.scattered_moonlight);
-  switch_part("twilight", parts.twilight);
-  switch_part("light_pollution", parts.light_pollution);
+  SkyPartEffects::for_each(
+      [&]<class Part>() { switch_part(Part::facts.name, parts.*sky_part<Part>); });
   map.done();
 }
 
@@ -283,11 +280,9 @@ AtmosphereConfig read_atmosphere(const YamlValue& value, AtmosphereConfig known)
       known.extinction = extinction->text();
       known.extinction_mag_per_airmass = std::move(*curve);
     } else {
-      std::string all;
-      for (const auto& name : extinction_site_names()) all += name + ", ";
-      const std::string hint = nearest_name(extinction->text(), extinction_site_names());
-      extinction->fail("must be one of " + all + "or k at 550 nm [mag/airmass]" +
-                       (hint.empty() ? "" : "; did you mean " + hint + "?"));
+      const auto& names = extinction_site_names();
+      extinction->fail("must be one of " + joined(names) + " or k at 550 nm [mag/airmass]" +
+                       did_you_mean(extinction->text(), names));
     }
   }
   if (const auto refraction = map.find("refraction")) known.refraction = refraction->flag();
@@ -371,22 +366,21 @@ void read_surroundings(YamlMap& map, Surroundings& known) {
 }
 
 const Section& seeing_section() {
-  static const Section section = [] {
-    Section made{
-        "seeing",
-        "Turbulence as a camera with `psf: diffraction` sees it: `r0_m`, or a profile over "
-        "height.",
-        {optional("r0_m", form::number(1e-3, 1e6),
-                  "Fried's parameter at 500 nm in the direction of the camera [m]; needed without "
-                  "a profile."),
-         optional("outer_scale_m", form::number(0.1, 1e6), "Outer scale [m].", "infinite"),
-         optional("wind_m_per_s", form::number(0.0, 1e4),
-                  "Wind that carries the turbulence past the pupil [m/s].", "10"),
-         optional("wind_direction_deg", form::number(-360.0, 360.0),
-                  "Direction of the wind across the image [deg].", "0")}};
-    for (auto& key : turbulence_keys()) made.keys.push_back(std::move(key));
-    return made;
-  }();
+  static const Section section{
+      "seeing",
+      "Turbulence as a camera with `psf: diffraction` sees it: `r0_m`, or a profile over "
+      "height.",
+      with_keys(
+          {optional(
+               "r0_m", form::number(1e-3, 1e6),
+               "Fried's parameter at 500 nm in the direction of the camera [m]; needed without "
+               "a profile."),
+           optional("outer_scale_m", form::number(0.1, 1e6), "Outer scale [m].", "infinite"),
+           optional("wind_m_per_s", form::number(0.0, 1e4),
+                    "Wind that carries the turbulence past the pupil [m/s].", "10"),
+           optional("wind_direction_deg", form::number(-360.0, 360.0),
+                    "Direction of the wind across the image [deg].", "0")},
+          turbulence_keys())};
   return section;
 }
 

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "core/config/yaml_reader.h"
-#include "core/effects/effects.h"
 #include "core/optics/seeing.h"
 #include "core/photometry/curve.h"
 #include "core/sky/clouds.h"

@@ -3,27 +3,16 @@
 namespace dmise {
 namespace {
 
-void write_numbers(JsonWriter& json, std::string_view key, const std::vector<double>& numbers) {
-  json.key(key).begin_array();
-  for (const double number : numbers) json.value(number);
-  json.end_array();
-}
-
 void write_sky(JsonWriter& json, const SkyConfig& sky) {
   json.key("sky").begin_object().field("preset", sky.preset);
   json.field("zenith_mag_per_arcsec2", sky.zenith_mag_per_arcsec2);
   const SkyParts& p = sky.parts;
-  const bool on[] = {p.uniform.has_value(),
-                     p.airglow.has_value(),
-                     p.zodiacal_light.has_value(),
-                     p.faint_starlight.has_value(),
-                     p.scattered_moonlight.has_value(),
-                     p.twilight.has_value(),
-                     p.light_pollution.has_value()};
-  json.key("parts").begin_array();
-  for (std::size_t i = 0; i < sky_part_count; ++i)
-    if (on[i]) json.value(sky_part_names[i]);
-  json.end_array();
+  std::vector<std::string_view> parts;
+  if (p.uniform) parts.push_back("uniform");
+  SkyPartEffects::for_each([&]<class Part>() {
+    if (p.*sky_part<Part>) parts.push_back(Part::facts.name);
+  });
+  json.list("parts", parts);
   if (p.airglow) json.field("airglow", p.airglow->zenith_v_mag_per_arcsec2);
   if (p.airglow && p.airglow->solar_flux_sfu)
     json.field("solar_flux_sfu", *p.airglow->solar_flux_sfu);
@@ -31,12 +20,11 @@ void write_sky(JsonWriter& json, const SkyConfig& sky) {
     const LightPollution& l = *p.light_pollution;
     json.key("light_pollution").begin_object();
     json.field("zenith_mag_per_arcsec2", l.zenith_v_mag_per_arcsec2);
-    write_numbers(json, "lamps", {l.lamps.lps, l.lamps.hps, l.lamps.led});
+    json.list("lamps", {l.lamps.lps, l.lamps.hps, l.lamps.led});
     json.key("cities").begin_array();
     for (const CityGlow& c : l.cities) {
       json.begin_object();
-      write_numbers(json, "glow",
-                    {c.azimuth_rad, c.half_width_rad, c.height_rad, c.horizon_over_zenith});
+      json.list("glow", {c.azimuth_rad, c.half_width_rad, c.height_rad, c.horizon_over_zenith});
       json.end_object();
     }
     json.end_array().end_object();
@@ -49,9 +37,8 @@ struct CloudWriter {
   void operator()(const UniformCloud& veil) const { json.field("clouds", veil.transmission); }
   void operator()(const PatchyClouds& p) const {
     json.key("clouds").begin_object().field("seed", p.seed);
-    write_numbers(json, "pattern",
-                  {p.cover, p.transmission, p.patch_m, p.height_m, p.wind_east_m_per_s,
-                   p.wind_north_m_per_s});
+    json.list("pattern", {p.cover, p.transmission, p.patch_m, p.height_m, p.wind_east_m_per_s,
+                          p.wind_north_m_per_s});
     json.end_object();
   }
 };
@@ -59,11 +46,11 @@ struct CloudWriter {
 struct ProfileWriter {
   JsonWriter& json;
   void operator()(const HufnagelValley& p) const {
-    write_numbers(json, "hufnagel_valley", {p.high_wind_m_per_s, p.ground_cn2});
+    json.list("hufnagel_valley", {p.high_wind_m_per_s, p.ground_cn2});
   }
   void operator()(const Cn2Table& table) const {
-    write_numbers(json, "height_m", table.height_m);
-    write_numbers(json, "cn2", table.cn2);
+    json.list("height_m", table.height_m);
+    json.list("cn2", table.cn2);
   }
 };
 
@@ -72,8 +59,8 @@ struct ProfileWriter {
 void write_curve(JsonWriter& json, std::string_view key, const Curve& curve) {
   if (curve.empty()) return;
   json.key(key).begin_object();
-  write_numbers(json, "wavelength_m", curve.wavelength_m);
-  write_numbers(json, "value", curve.value);
+  json.list("wavelength_m", curve.wavelength_m);
+  json.list("value", curve.value);
   json.end_object();
 }
 
@@ -87,14 +74,13 @@ void write_surroundings(JsonWriter& json, const SensorConfig& sensor) {
     json.key("turbulence").begin_object();
     std::visit(ProfileWriter{json}, a.turbulence->profile);
     const TurbulenceWind& wind = a.turbulence->wind;
-    write_numbers(json, "wind_m_per_s", {wind.ground_m_per_s, wind.jet_m_per_s});
+    json.list("wind_m_per_s", {wind.ground_m_per_s, wind.jet_m_per_s});
     json.end_object();
   }
   json.end_object();
   const WeatherConfig& w = sensor.weather;
   json.key("weather").begin_object();
-  if (w.air)
-    write_numbers(json, "air", {w.air->pressure_hpa, w.air->temperature_c, w.air->humidity});
+  if (w.air) json.list("air", {w.air->pressure_hpa, w.air->temperature_c, w.air->humidity});
   if (w.pwv_mm) json.field("pwv_mm", *w.pwv_mm);
   if (w.clouds) std::visit(CloudWriter{json}, *w.clouds);
   json.end_object();

@@ -5,9 +5,8 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
-#include <istream>
 #include <map>
-#include <streambuf>
+#include <sstream>
 #include <vector>
 
 #include "core/base/error.h"
@@ -17,10 +16,7 @@ namespace dmise {
 namespace {
 
 [[noreturn]] void refuse(const std::string& file, const YAML::Mark& mark, const std::string& why) {
-  const std::string place =
-      mark.is_null() ? ""
-                     : ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
-  throw ConfigError(printable(file) + place + ": " + why);
+  throw ConfigError(place_of(file, mark) + ": " + why);
 }
 
 /// Counts the size of a document with expanded aliases.
@@ -102,23 +98,19 @@ class Counter : public YAML::EventHandler {
   std::map<YAML::anchor_t, Size> anchored_;  // size of each closed anchor
 };
 
-/// A stream over text without copying it.
-class TextBuffer : public std::streambuf {
- public:
-  explicit TextBuffer(const std::string& text) {
-    char* first = const_cast<char*>(text.data());  // only ever read
-    setg(first, first, first + text.size());
-  }
-};
-
 }  // namespace
+
+std::string place_of(const std::string& file, const YAML::Mark& mark) {
+  if (mark.is_null()) return printable(file);
+  return printable(file) + ":" + std::to_string(mark.line + 1) + ":" +
+         std::to_string(mark.column + 1);
+}
 
 void check_yaml_limits(const std::string& text, const std::string& file, const YamlLimits& limits) {
   if (text.size() > limits.bytes)
     throw ConfigError(printable(file) + ": larger than " + std::to_string(limits.bytes) + " bytes");
   try {
-    TextBuffer buffer(text);
-    std::istream stream(&buffer);
+    std::istringstream stream(text);
     YAML::Parser parser(stream);
     Counter counter(file, limits);
     while (parser.HandleNextDocument(counter)) {

@@ -1,4 +1,6 @@
 #pragma once
+#include <yaml-cpp/mark.h>
+
 #include <cstddef>
 #include <string>
 
@@ -11,6 +13,9 @@ struct YamlLimits {
   std::size_t values = 500'000;  // keys, values, lists and mappings, aliases expanded
   std::size_t depth = 64;        // nesting of lists and mappings
 };
+
+/// "FILE:LINE:COLUMN", or "FILE" without a mark.
+std::string place_of(const std::string& file, const YAML::Mark& mark);
 
 /// Parses `text` without building a tree and throws `ConfigError` "file:line:column: reason" if it
 /// is not YAML, exceeds the limits, contains itself by an alias or has a second document. Text that

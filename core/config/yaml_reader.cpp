@@ -3,22 +3,18 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <stdexcept>
 
 #include "core/base/error.h"
 #include "core/base/printable.h"
+#include "core/base/text_fields.h"
 #include "core/base/text_file.h"
+#include "core/config/search_path.h"
 #include "core/config/yaml_limits.h"
+#include "core/time/iso8601.h"
 
 namespace dmise {
 namespace {
-
-std::string place_of(const std::string& file, const YAML::Mark& mark) {
-  if (mark.is_null()) return printable(file);
-  return printable(file) + ":" + std::to_string(mark.line + 1) + ":" +
-         std::to_string(mark.column + 1);
-}
 
 [[noreturn]] void section_lacks(const std::string& what) {
   throw std::logic_error("core/config: the section says nothing of " + what);
@@ -101,27 +97,23 @@ void YamlValue::fail(const std::string& reason, bool show_value) const {
   throw ConfigError(complaint(reason, show_value));
 }
 
-const Form* YamlValue::form(std::initializer_list<Form::Kind> kinds) const {
+const Form* YamlValue::form(Form::Kind kind) const {
   if (!forms_) return nullptr;
   for (const Form& form : *forms_)
-    if (std::find(kinds.begin(), kinds.end(), form.kind) != kinds.end()) return &form;
+    if (form.kind == kind) return &form;
   section_lacks("a form that is read of " + path_);
 }
 
 double YamlValue::number() const {
-  const Form* is = form({Form::Kind::number});
+  const Form* is = form(Form::Kind::number);
   return number(is ? is->bounds : Bounds{});
 }
 
 double YamlValue::number(Bounds bounds) const {
-  form({Form::Kind::number});
-  if (!is_scalar()) fail("must be a number");
-  const std::string& s = node_.Scalar();
-  double x = 0.0;
-  const char* first = s.data() + (s.starts_with('+') ? 1 : 0);
-  const auto [end, error] = std::from_chars(first, s.data() + s.size(), x);
-  if (error != std::errc{} || end != s.data() + s.size() || !std::isfinite(x))
-    fail("must be a number");
+  form(Form::Kind::number);
+  const auto parsed = is_scalar() ? parse_real(node_.Scalar()) : std::nullopt;
+  if (!parsed) fail("must be a number");
+  const double x = *parsed;
   if (bounds.least_open ? x <= bounds.least : x < bounds.least)
     fail("must be " + std::string(bounds.least_open ? "> " : ">= ") + yaml_text(bounds.least));
   if (x > bounds.most) fail("must be <= " + yaml_text(bounds.most));
@@ -129,13 +121,13 @@ double YamlValue::number(Bounds bounds) const {
 }
 
 std::int64_t YamlValue::integer() const {
-  const Form* is = form({Form::Kind::integer});
+  const Form* is = form(Form::Kind::integer);
   if (!is) section_lacks("the range of " + path_);
   return integer(is->least, is->most);
 }
 
 std::int64_t YamlValue::integer(std::int64_t least, std::int64_t most) const {
-  form({Form::Kind::integer});
+  form(Form::Kind::integer);
   if (!is_scalar()) fail("must be a whole number");
   const std::string& s = node_.Scalar();
   std::int64_t x = 0;
@@ -151,8 +143,26 @@ std::string YamlValue::text() const {
   return node_.Scalar();
 }
 
+std::string YamlValue::existing_file() const {
+  std::string path = find_beside(text(), file());
+  if (path.empty()) fail("there is no such file");
+  return path;
+}
+
+Utc YamlValue::time() const {
+  form(Form::Kind::time);
+  const std::string said = text();
+  try {
+    return parse_utc(said);
+  } catch (const BeforeLeapSeconds&) {
+    fail("must not be before 1972, when UTC was not yet whole seconds from TAI");
+  } catch (const Error&) {
+    fail("must be a UTC time such as 2018-01-21T00:30:00Z");
+  }
+}
+
 bool YamlValue::flag() const {
-  form({Form::Kind::flag});
+  form(Form::Kind::flag);
   if (is_scalar()) {
     const std::string& s = node_.Scalar();
     if (s == "on" || s == "true" || s == "yes") return true;
@@ -162,23 +172,21 @@ bool YamlValue::flag() const {
 }
 
 std::string YamlValue::choice() const {
-  const Form* is = form({Form::Kind::choice});
+  const Form* is = form(Form::Kind::choice);
   if (!is) section_lacks("the choices of " + path_);
   return choice(std::vector<std::string_view>(is->words.begin(), is->words.end()));
 }
 
 std::string YamlValue::choice(std::span<const std::string_view> choices) const {
-  form({Form::Kind::choice});
-  std::vector<std::string> names(choices.begin(), choices.end());
+  form(Form::Kind::choice);
+  const std::vector<std::string> names(choices.begin(), choices.end());
   const std::string word = is_scalar() ? node_.Scalar() : "";
-  if (std::find(names.begin(), names.end(), word) != names.end()) return word;
-  std::string all;
-  for (const auto& name : names) all += (all.empty() ? "" : ", ") + name;
-  fail("must be one of " + all);
+  if (std::ranges::find(names, word) == names.end()) fail("must be one of " + joined(names));
+  return word;
 }
 
 std::vector<YamlValue> YamlValue::list() const {
-  const Form* is = form({Form::Kind::list});
+  const Form* is = form(Form::Kind::list);
   if (!is_list()) fail("must be a list");
   std::vector<YamlValue> values;
   for (std::size_t i = 0; i < node_.size(); ++i)
@@ -188,17 +196,22 @@ std::vector<YamlValue> YamlValue::list() const {
 }
 
 std::vector<double> YamlValue::numbers() const {
-  const Form* is = form({Form::Kind::list});
-  if (!is || is->items.empty()) section_lacks("the range of " + path_);
-  return numbers(is->fewest, is->items.front().bounds);
+  const Form* is = form(Form::Kind::list);
+  if (!is) section_lacks("the range of " + path_);
+  std::vector<double> values;
+  if (is_list() || is->greatest == 0)
+    for (const auto& value : list()) values.push_back(value.number());
+  if (is->greatest > 0 && values.size() != is->greatest)
+    fail("must be a list of " + std::to_string(is->greatest) + " numbers");
+  return values;
 }
 
-std::vector<double> YamlValue::numbers(std::size_t count, Bounds bounds) const {
-  std::vector<double> values;
-  if (is_list())
-    for (const auto& value : list()) values.push_back(value.number(bounds));
-  if (values.size() != count) fail("must be a list of " + std::to_string(count) + " numbers");
-  return values;
+YamlValue load_preset(const std::string& kind, const YamlValue& value) {
+  const std::string name = value.text(), path = find_preset(kind + "s", name, value.file());
+  if (!path.empty()) return YamlValue::load(path);
+  const auto names = preset_names(kind + "s");
+  value.fail("no such " + kind + did_you_mean(name, names) + " (a path to a YAML file, or one of " +
+             joined(names) + ")");
 }
 
 YamlMap::YamlMap(const YamlValue& value) : value_(value) {
@@ -266,12 +279,9 @@ void YamlMap::check_default(std::string_view key, const std::string& otherwise) 
 void YamlMap::check_default(std::string_view key, double otherwise) const {
   const Key* is = section_ ? section_->find(key) : nullptr;
   if (!is) return;
-  const std::string& said = is->otherwise;
-  double x = 0.0;
-  const auto [end, error] = std::from_chars(said.data(), said.data() + said.size(), x);
+  const auto said = parse_real(is->otherwise);
   // Angles are kept in radians, which changes their last digit.
-  const bool same = error == std::errc{} && end == said.data() + said.size() &&
-                    std::abs(x - otherwise) <= 1e-12 * std::abs(otherwise);
+  const bool same = said && std::abs(*said - otherwise) <= 1e-12 * std::abs(otherwise);
   if (!same) check_default(key, yaml_text(otherwise));
 }
 
@@ -308,10 +318,8 @@ void YamlMap::done() const {
   for (const auto& entry : value_.node_) {
     const std::string name = entry.first.Scalar();
     if (known_.contains(name)) continue;
-    const std::string hint = nearest_name(name, {known_.begin(), known_.end()});
-    std::string reason = "unknown key";
-    if (!hint.empty()) reason += ", did you mean " + hint + "?";
-    YamlValue(entry.first, value_.file_, child_path(name)).fail(reason, false);
+    const std::string hint = did_you_mean(name, {known_.begin(), known_.end()});
+    YamlValue(entry.first, value_.file_, child_path(name)).fail("unknown key" + hint, false);
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/base/nearest_name.h"
 #include "core/config/section.h"
+#include "core/time/julian_date.h"
 
 namespace dmise {
 
@@ -37,6 +38,9 @@ class YamlValue {
   std::int64_t integer() const;
   std::int64_t integer(std::int64_t least, std::int64_t most) const;
   std::string text() const;
+  /// Path of the file that a text names, beside the value's own file or as given.
+  std::string existing_file() const;
+  Utc time() const;
   bool flag() const;  // on/off, true/false, yes/no
   /// One of the choices of the value's section.
   std::string choice() const;
@@ -46,9 +50,8 @@ class YamlValue {
     return choice(std::span(choices.begin(), choices.size()));
   }
   std::vector<YamlValue> list() const;
-  /// A list of `count` numbers; without a range, as the value's section says.
+  /// A list of numbers, with ranges and, if it has one, the length of the value's section.
   std::vector<double> numbers() const;
-  std::vector<double> numbers(std::size_t count, Bounds bounds = {}) const;
 
   /// Replaces the value wherever it stands, also by aliases. Its place in the file stays.
   void become(const std::string& scalar) { node_ = scalar; }
@@ -67,13 +70,17 @@ class YamlValue {
       : node_(std::move(node)), file_(std::move(file)), path_(std::move(path)), forms_(forms) {}
   /// Returns the form of its section that a reader asks for. Throws `std::logic_error` if the
   /// section has none; null for a value of no section.
-  const Form* form(std::initializer_list<Form::Kind> kinds) const;
+  const Form* form(Form::Kind kind) const;
 
   YAML::Node node_;
   std::shared_ptr<const std::string> file_;
   std::string path_;
   const Forms* forms_ = nullptr;  // of its section
 };
+
+/// Reads the file that `value` names, or the preset of this name among launch/KINDs ("camera",
+/// "site"). Throws `ConfigError` that names the presets.
+YamlValue load_preset(const std::string& kind, const YamlValue& value);
 
 /// The keys of a YAML mapping. Each model reads its own; `done()` refuses keys that were not read
 /// and suggests the nearest known one. With a section, keys, types, ranges and defaults are those
@@ -94,7 +101,6 @@ class YamlMap {
   double number_or(std::string_view key, double otherwise);
   double number_or(std::string_view key, double otherwise, Bounds bounds);
   std::int64_t integer_or(std::string_view key, std::int64_t otherwise);
-  std::string text(std::string_view key) { return require(key).text(); }
   std::string text_or(std::string_view key, std::string otherwise);
   bool flag_or(std::string_view key, bool otherwise);
 

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 
 #include "core/base/json.h"
-#include "core/base/units.h"
 #include "core/exchange/oem.h"
 #include "core/wcs/wcs.h"
 

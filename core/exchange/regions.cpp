@@ -5,7 +5,6 @@
 
 #include "core/base/formatted.h"
 #include "core/base/units.h"
-#include "core/exchange/image_label.h"
 #include "core/products/frame_file.h"
 #include "core/score/trail.h"
 #include "core/wcs/wcs.h"

@@ -11,7 +11,6 @@
 #include "core/base/quantile.h"
 #include "core/base/units.h"
 #include "core/image/fits_file.h"
-#include "core/report/compact_bytes.h"
 #include "core/report/direction_grid.h"
 #include "core/report/embedded_image.h"
 #include "core/report/stars_in_frame.h"
