@@ -1,7 +1,6 @@
 #include "core/orbit/cone_test.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -62,17 +61,6 @@ void cone_test(std::span<const double> position_m, std::span<const Cone> cones,
     threads->for_ranges(words, chunk_words * 8, work);
   else
     work(0, words);
-}
-
-std::size_t objects_in(std::span<const std::uint64_t> row, std::span<std::uint32_t> objects) {
-  std::size_t found = 0;
-  for (std::size_t w = 0; w < row.size(); ++w) {
-    for (std::uint64_t left = row[w]; left != 0; left &= left - 1, ++found) {
-      if (found < objects.size())
-        objects[found] = static_cast<std::uint32_t>(64 * w + std::size_t(std::countr_zero(left)));
-    }
-  }
-  return found;
 }
 
 }  // namespace dmise

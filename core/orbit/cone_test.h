@@ -29,8 +29,4 @@ void cone_test(std::span<const double> position_m, std::span<const Cone> cones,
                std::span<std::uint64_t> inside, Threads* threads = nullptr,
                SimdLevel simd = best_simd_level());
 
-/// Indices of the set bits of one row of `cone_words(n)` words, ascending, into `objects`; returns
-/// how many there are. Writes no more than `objects` holds.
-std::size_t objects_in(std::span<const std::uint64_t> row, std::span<std::uint32_t> objects);
-
 }  // namespace dmise

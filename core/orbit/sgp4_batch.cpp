@@ -40,7 +40,6 @@ struct Sgp4Batch::State {
     std::uint8_t group = 0, code = 0;
     std::uint32_t slot = 0;
   };
-  SimdLevel simd = SimdLevel::sse2;
   const Kernels* kernels = nullptr;
   std::vector<Group> groups{group_count};
   std::vector<Place> places;
@@ -146,7 +145,6 @@ std::string_view describe(Sgp4Code code) {
 }
 
 Sgp4Batch::Sgp4Batch(SimdLevel simd) : state_(std::make_unique<State>()) {
-  state_->simd = simd;
   state_->kernels = kernel_of(simd, &kernels_sse2, &kernels_avx2, &kernels_avx512);
 }
 
@@ -174,11 +172,8 @@ void Sgp4Batch::append(std::span<const MeanElements> elements, Threads* threads)
 }
 
 Sgp4Batch::~Sgp4Batch() = default;
-Sgp4Batch::Sgp4Batch(Sgp4Batch&&) noexcept = default;
-Sgp4Batch& Sgp4Batch::operator=(Sgp4Batch&&) noexcept = default;
 
 std::size_t Sgp4Batch::size() const { return state_->places.size(); }
-SimdLevel Sgp4Batch::simd() const { return state_->simd; }
 
 void Sgp4Batch::propagate(double jd1, double jd2, std::span<double> position_m,
                           std::span<double> velocity_m_per_s, std::span<std::uint8_t> code,

@@ -48,15 +48,12 @@ class Sgp4Batch {
   /// Empty batch.
   explicit Sgp4Batch(SimdLevel simd);
   ~Sgp4Batch();
-  Sgp4Batch(Sgp4Batch&&) noexcept;
-  Sgp4Batch& operator=(Sgp4Batch&&) noexcept;
 
   /// Appends objects, so that a large catalogue need not be in memory beside its terms. The only
   /// call that must not run concurrently with others.
   void append(std::span<const MeanElements> elements, Threads* threads = nullptr);
 
   std::size_t size() const;
-  SimdLevel simd() const;
 
   /// States of all objects at one instant, UTC two-part Julian date `jd1 + jd2` [d], in the order
   /// given to the constructor. `position_m` and `velocity_m_per_s` hold 3 x size(): all x, all y,

@@ -197,13 +197,4 @@ double LimbAirRadiance::photons_per_s_m2_sr(const LimbLine& line,
          line.true_scale;
 }
 
-double LimbAirRadiance::most_photons_per_s_m2_sr() const {
-  double most = 0.0;
-  for (double height_m = 0.0; height_m < 60e3; height_m += 1e3)
-    for (const double sun_deg : {0.0, 60.0, 80.0, 90.0})
-      for (const double towards_sun : {-1.0, 0.0, 1.0})
-        most = std::max(most, table_->scattered({height_m, sun_deg * deg, towards_sun}));
-  return 1.5 * 1.1 * at_distance_ * most;
-}
-
 }  // namespace dmise

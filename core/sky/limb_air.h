@@ -65,8 +65,6 @@ class LimbAirRadiance {
   /// Photons/s/m2/sr along a line in a direction (unit); 0 before the ground. From within the air
   /// about that of the air ahead.
   double photons_per_s_m2_sr(const LimbLine& line, const Vec<Gcrs>& direction) const;
-  /// The most that any line sees.
-  double most_photons_per_s_m2_sr() const;
 
  private:
   std::shared_ptr<const LimbAirTable> table_;

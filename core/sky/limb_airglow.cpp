@@ -125,13 +125,4 @@ double AirglowShells::photons_per_s_m2_sr(const LimbLine& line, double behind) c
   return light * line.true_scale;
 }
 
-double AirglowShells::most_photons_per_s_m2_sr(double earth_radius_m) const {
-  double most = 0.0;
-  for (double height_m = 0.0; height_m < top_m(); height_m += 500.0)
-    most = std::max(most, photons_per_s_m2_sr({.radius_m = earth_radius_m,
-                                               .nearest_m = earth_radius_m + height_m,
-                                               .from_m = -10.0 * earth_radius_m}));
-  return most;
-}
-
 }  // namespace dmise

@@ -46,8 +46,6 @@ class AirglowShells {
   /// Photons/s/m2/sr along a line to the ground or out of the shells. `behind`: share of the light
   /// from beyond the line's lowest place that arrives.
   double photons_per_s_m2_sr(const LimbLine& line, double behind = 1.0) const;
-  /// The most that any line sees from outside.
-  double most_photons_per_s_m2_sr(double earth_radius_m) const;
 
  private:
   std::array<Shell, 2> shells_;

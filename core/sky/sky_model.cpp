@@ -173,10 +173,4 @@ double SkyModel::photons_per_s_m2_sr(const Vec<Enu>& direction) const {
   return sum;
 }
 
-double SkyModel::v_mag_per_arcsec2(const Vec<Enu>& direction) const {
-  double sum = 0.0;
-  for (const double s10 : parts_s10(direction)) sum += s10;
-  return sum > 0 ? mag_per_arcsec2_of_s10(sum) : 99.0;
-}
-
 }  // namespace dmise

@@ -105,9 +105,6 @@ class SkyModel {
   /// The same of each part [S10], in the order of `SkyPart`.
   std::array<double, sky_part_count> parts_s10(const Vec<Enu>& direction) const;
 
-  /// V brightness of the whole [mag/arcsec2]; 99 where there is none.
-  double v_mag_per_arcsec2(const Vec<Enu>& direction) const;
-
  private:
   double above_air_s10(SkyPart part, const Vec<Enu>& direction) const;
   double above_clouds_s10(SkyPart part, const Vec<Enu>& direction) const;

@@ -62,14 +62,5 @@ TEST_P(ConeTest, LeavesOutTheHostItselfAndObjectsWithoutAState) {
   EXPECT_EQ(inside, (std::vector<std::uint64_t>{4, 0, 4}));
 }
 
-TEST(ObjectsIn, ListsTheSetBitsAscending) {
-  const std::uint64_t row[] = {0x8000000000000005u, 0x2u};
-  std::uint32_t objects[8];
-  EXPECT_EQ(objects_in(row, objects), 4u);
-  EXPECT_EQ(std::vector<std::uint32_t>(objects, objects + 4),
-            (std::vector<std::uint32_t>{0, 2, 63, 65}));
-  EXPECT_EQ(objects_in(row, std::span<std::uint32_t>(objects, 1)), 4u);
-}
-
 }  // namespace
 }  // namespace dmise
