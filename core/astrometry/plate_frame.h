@@ -37,15 +37,16 @@ struct PlateSolution {
   PlateFit fit;
   std::vector<SeenStar> stars;
   std::vector<PlateMatch> matches;  // of `stars` with sources, by the order given
-  double log_odds = 0.0;            // that it is no chance, of all that was tried
-  std::size_t tried = 0;            // candidates that were looked at
+  double log_odds = 0.0;            // that it is no chance match among all that were tried
+  std::size_t tried = 0;            // candidates
 };
 
-/// A frame's sources beside the sky: extends a guess of the plate over the frame and judges it.
+/// Compares a frame's sources with the sky: extends a guess of the plate over the frame and judges
+/// it.
 class PlateFrame {
  public:
-  /// Sources in any order; those with numbers that are not finite or out of the frame are passed
-  /// over, as are those within half a pixel of a brighter one.
+  /// Sources in any order; those with numbers that are not finite, out of the frame or within half
+  /// a pixel of a brighter one are ignored.
   PlateFrame(std::span<const PlateSource> sources, const PlateBelief& belief, const PlateSky& sky,
              const PlateSearch& search);
 
@@ -59,8 +60,9 @@ class PlateFrame {
   /// Angle from a plate's axis to the farthest corner.
   double reach_rad(const PlateModel& model) const;
 
-  /// Whether stars beside a pattern of stars (by number in the catalogue) are there, too, as far as
-  /// there are any; `from` is the first star's image, `size_px` the distance of the second's.
+  /// Whether the stars around a pattern of stars (by number in the catalogue) have images, too, as
+  /// far as there are any; `from` is the first star's image, `size_px` the distance of the
+  /// second's.
   bool stars_beside(const PlateModel& model, std::span<const std::uint32_t> pattern,
                     PixelPosition from, double size_px) const;
   /// Extends a plate that holds around a place over the frame; empty if the stars do not follow.
@@ -70,7 +72,7 @@ class PlateFrame {
   std::optional<PlateSolution> fit(PlateModel model) const;
 
  private:
-  /// The chosen fit to matches: of a list of freedoms the one that the stars call for.
+  /// Fits matches with each of a list of freedoms and chooses by Bayes' information criterion.
   std::optional<PlateFit> best_fit(const PlateModel& model,
                                    std::span<const PlateMatch> pairs) const;
   /// Stars about the frame, of which it shows somewhat more than it has sources.

@@ -44,10 +44,10 @@ std::vector<PlateMatch> match(const PlateModel& model, std::span<const SeenStar>
                               std::span<const PlateSource> sources, const SourceGrid& grid,
                               int columns, int rows, const MatchReach& reach);
 
-/// Logarithm of the odds that stars (by rising magnitude) are what sources are, against chance:
-/// each star speaks for it if it has a source where it should be, by how near that is, and against
-/// it if it has none. The most that the stars from the brightest to any other say. Matches that
-/// only determine the `parameters` of the plate say nothing.
+/// Logarithm of the odds, against chance, that the sources are images of the stars (by rising
+/// magnitude): each star with a source near its place raises them, each without lowers them.
+/// Returns the maximum over the stars from the brightest to any other. As many matches as determine
+/// the plate's parameters do not count.
 double log_odds(const PlateModel& model, std::span<const SeenStar> stars, const PlateFit& fit,
                 std::span<const PlateMatch> pairs, std::size_t sources, int columns, int rows);
 

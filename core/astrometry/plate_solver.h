@@ -7,7 +7,7 @@
 namespace dmise {
 
 /// Finds the plate of a frame from its sources (in any order; those with numbers that are not
-/// finite or out of the frame are passed over). With a believed pointing or axis the sky around
+/// finite or out of the frame are ignored). With a believed pointing or axis the sky around
 /// it is searched, else all of it. A `cache` of the sky's catalogue saves the next blind solution
 /// time. Deterministic. Throws `Error` with the reason if there is none.
 PlateSolution solve_plate(std::span<const PlateSource> sources, const PlateBelief& belief,

@@ -26,7 +26,7 @@ std::complex<double> plane_place(const Vec<F>& centre, const Vec<F>& d) {
 }
 
 /// A pattern of a star and others by falling distance from it. The code is where the second and the
-/// third lie if the star is at 0 and the first at 1, so it keeps under rotation and change of
+/// third lie if the star is at 0 and the first at 1, so that it does not depend on rotation and
 /// scale.
 struct StarPattern {
   using Code = std::array<std::int16_t, 4>;         // second and third, real and imaginary
@@ -53,7 +53,7 @@ void visit_patterns(std::span<const std::complex<double>> places, int others, Vi
       sort_two(1, 2);
       sort_two(0, 1);
     }
-    // z / first by hand: the library's division minds infinities.
+    // z / first written out: the library's division also handles infinities.
     const std::complex<double> first = places[p.others[0]];
     const double unit = 1 / (StarPattern::code_unit * std::norm(first));
     if (!std::isfinite(unit)) return;

@@ -8,7 +8,7 @@
 
 namespace dmise {
 
-/// A camera in orbit as far as the noise in an aperture goes.
+/// What determines the noise of a camera in orbit within an aperture.
 struct SpectralImager {
   Optics optics;
   double quantum_efficiency = 1.0;
@@ -17,10 +17,10 @@ struct SpectralImager {
   double aperture_px = 4.0;             // radius of the photometric aperture
 };
 
-/// What it looks at.
+/// The object that it observes.
 struct ReflectingTarget {
-  double area_m2 = 1.0;  // times the phase function: what of the sunlight goes to the sensor, per
-                         // steradian and reflectance
+  // Times the phase function: the sunlight to the sensor per steradian if the reflectance is 1.
+  double area_m2 = 1.0;
   double range_m = 2.4e6;
 };
 

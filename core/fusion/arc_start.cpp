@@ -22,8 +22,7 @@ constexpr double fastest_rad_per_s = 0.035;  // 2 deg/s: 8 km/s at 230 km
 constexpr double sigmas = 5.0;
 /// Largest attraction over the speed across the line of sight, and range rate over range [1/s].
 constexpr double gravity_over_speed = 9.8 / 3000.0, range_rate_over_range = 0.005;
-/// Expected number of arcs of chance that end in a source and are as long and as smooth: more, and
-/// no orbit is tried.
+/// No orbit is tried if more chance arcs as long and as smooth are expected to end in a source.
 constexpr double most_by_chance = 1e-3;
 constexpr double largest_range_sigma = 0.1;  // of the range: a filter takes no wider ellipse
 constexpr double as_likely = 9.2;            // chi-square by which another orbit must be worse
@@ -33,7 +32,7 @@ constexpr OrbitLimits limits{.least_perigee_m = 6.45e6, .largest_apogee_m = 1e8}
 /// after the other.
 auto order(const LooseSource& s) { return std::tie(s.frame, seen(s).time, seen(s).detection_id); }
 
-/// Where a path goes on to earlier times, and how far from there it may be.
+/// Where a path continues at an earlier time, and how far off it may be.
 struct Continued {
   Vec<Gcrs> direction, along;
   double along_rad = 0.0, across_rad = 0.0;

@@ -10,16 +10,15 @@
 
 namespace dmise {
 
-/// Begins orbits of what one site alone sees: sources of one sensor over several exposures that lie
-/// on a smooth path, and whose arc determines a range. What two sites see begins sooner by
-/// `TrackStart`.
+/// Begins orbits from one site: sources of one sensor in several exposures that lie on a smooth
+/// path whose curvature determines the range. From two sites `TrackStart` begins them sooner.
 class ArcStart {
  public:
   ArcStart(const ForceModel& forces, const FusionSettings& settings);
 
   /// The orbits whose arcs end in these sources; at most two are tried.
   std::vector<StartedOrbit> add(const std::vector<LooseSource>& sources);
-  /// What has been taken is not to begin another track.
+  /// Removes sources that a track has taken.
   void forget(const std::vector<std::string>& detection_ids);
 
  private:

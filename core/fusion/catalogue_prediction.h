@@ -17,7 +17,7 @@ class CataloguePrediction {
   CataloguePrediction(std::vector<MeanElements> elements, const Clock& clock,
                       const FusionSettings& settings);
 
-  /// Works out the states of all objects at a time.
+  /// Computes the states of all objects at a time.
   void move(SimTime time);
 
   std::size_t size() const { return elements_.size(); }

@@ -9,7 +9,7 @@
 
 namespace dmise {
 
-/// A narrow-field sensor on the ground that is told where to look.
+/// A narrow-field sensor on the ground that is cued.
 struct CuedSensor {
   std::string name;
   Site site;

@@ -17,16 +17,17 @@
 
 namespace dmise {
 
-/// What a fusion tells of one tick.
+/// Result of one tick.
 struct FusionTick {
-  std::vector<Track> tracks;       // that changed, by id
+  std::vector<Track> tracks;       // those that changed, by id
   std::uint32_t live = 0;          // tracks that have not ended
   std::uint32_t unassociated = 0;  // sources of the tick that no track took
 };
 
 /// Tracks of objects from the frames of all sensors: global nearest neighbours with gates, one
 /// assignment per frame over tracks and catalogued objects; orbits of what is in no catalogue begin
-/// by triangulation; square-root unscented filters. docs/models/fusion.md says which and why.
+/// by triangulation from two sites or by the arc of one; square-root unscented filters.
+/// docs/models/fusion.md says which and why.
 ///
 /// The result of a tick depends on its frames, not on their order.
 class Fusion {
@@ -37,7 +38,8 @@ class Fusion {
   Fusion(const Fusion&) = delete;  // filters refer to its forces
   Fusion& operator=(const Fusion&) = delete;
 
-  /// The work of one tick. Frames may be of earlier exposures than those of the tick before.
+  /// Performs the work of one tick. Frames may be of earlier exposures than those of the tick
+  /// before.
   FusionTick step(SimTime time, std::vector<SensorFrame> frames);
 
   /// The tracks that have not ended, by id, with their states at `time`: what a scheduler chooses

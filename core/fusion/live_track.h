@@ -9,7 +9,7 @@
 
 namespace dmise {
 
-/// A track while it lives.
+/// A track that has not ended.
 struct LiveTrack {
   LiveTrack(std::uint32_t number, OrbitFilter&& start, std::optional<std::size_t> of_catalogue);
 
@@ -26,13 +26,13 @@ struct LiveTrack {
   std::vector<std::string> associated;  // since the last tick
   bool changed = true;
 
-  // For a coarse search: the state at a common time, and what is not known of it.
+  // For a coarse search: the state at a common time, and its uncertainty.
   OrbitState rough;
   double sigma_m = 0.0, sigma_m_per_s = 0.0, age_s = 0.0;
 
   double existence() const;
   double magnitude(double range_m) const;
-  /// Moves `rough` to a time. False if it can't be moved.
+  /// Propagates the state to a time as `rough`. False if it has no path.
   bool place_roughly(const ForceModel& forces, SimTime time);
   /// Bound of the error of `rough` [m], one sigma.
   double rough_sigma_m(double acceleration_noise_m2_per_s3) const;

@@ -17,7 +17,7 @@
 
 namespace dmise {
 
-/// A track as a scheduler takes it.
+/// A track among which a scheduler chooses.
 struct CueTarget {
   std::uint32_t track = 0;             // its id
   std::uint32_t catalogue_number = 0;  // 0: in no catalogue
@@ -29,7 +29,7 @@ struct CueTarget {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// The sky over the next minutes.
+/// The Earth, Sun, Moon and the Earth's shadow over the next minutes.
 struct CueSky {
   CueSky(const Clock& clock, SimTime time, const Ellipsoid& ellipsoid = wgs84);
 
@@ -52,16 +52,16 @@ struct ObservationPlan {
   double seconds() const { return (end - start).seconds(); }
 };
 
-/// What a target at the epoch of `target.estimate` would be seen like by a sensor that stands at
-/// `from` until `start`. Nothing if it can't be observed: out of reach of the mount, in the shadow,
-/// near the Sun or the Moon, faster than the mount, or after `last`.
+/// Plans exposures of a target by a sensor whose mount stands at `from` until `start`. Empty if it
+/// can't be observed: out of reach of the mount, in the shadow, near the Sun or the Moon, faster
+/// than the mount, or after `last`.
 std::optional<ObservationPlan> plan_observation(const ForceModel& forces, const CueSky& sky,
                                                 const CuedSensor& sensor, const CueTarget& target,
                                                 const MountPosition& from, SimTime start,
                                                 SimTime last, double best_detection_probability);
 
-/// About the rate at which a plan would tell [nats/s], for most targets need no plan: the target
-/// by two-body motion, one exposure. 0 below the horizon.
+/// Estimates the rate at which a plan would gain information [nats/s], by two-body motion and one
+/// exposure, so that few targets need a plan. 0 below the horizon.
 double rough_rate(const CueSky& sky, const CuedSensor& sensor, const CueTarget& target,
                   const MountPosition& from, SimTime start);
 
@@ -74,7 +74,8 @@ Matrix6 information_of(const ForceModel& forces, const CueSky& sky, const CuedSe
 /// which `known` will be known [nats].
 double gain_nats(const OrbitEstimate& estimate, const Matrix6& known, const Matrix6& added);
 
-/// The path of a task: the state at `from`, and so on, to `to` or after.
+/// Puts the states from `from` to `to` or later into the path of a task; less if it enters the
+/// Earth.
 void put_path(const ForceModel& forces, const OrbitState& state, SimTime from, SimTime to,
               Task& task);
 

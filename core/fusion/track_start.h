@@ -34,7 +34,7 @@ class TrackStart {
 
   /// The orbits that end in these sources, the best fit first; no source is in two.
   std::vector<StartedOrbit> add(const std::vector<LooseSource>& sources);
-  /// What has been taken is not to begin another track.
+  /// Removes sources that a track has taken.
   void forget(const std::vector<std::string>& detection_ids);
   /// Loose sources of the window, by time.
   const std::vector<LooseSource>& loose() const { return loose_; }

@@ -6,7 +6,7 @@
 #include "core/orbit/two_body.h"
 #include "core/tracking/forces.h"
 
-// The accelerations for any kind of number: doubles, and numbers with derivatives.
+// Accelerations for any type of number: double, and numbers with derivatives.
 namespace dmise {
 
 /// Zonal harmonics of EGM2008, unnormalised, tide-free, and their radius [m] (Pavlis et al. 2012).
@@ -14,15 +14,15 @@ inline constexpr double earth_j2 = 1.0826261738522e-3;
 inline constexpr double earth_j3 = -2.5324105185677e-6;
 inline constexpr double earth_j4 = -1.6198975999170e-6;
 inline constexpr double earth_zonal_radius_m = 6378136.3;
-/// Of the solid Earth, to tell heights and shadow [m].
+/// The ellipsoid of heights, and the radius of the shadow [m].
 inline constexpr double earth_equatorial_radius_m = 6378137.0;
 inline constexpr double earth_flattening = 1 / 298.257223563;
-/// Of sunlight on a black plate at 1 au [N/m^2]: 1361 W/m^2 (Kopp & Lean 2011) over c.
+/// Pressure of sunlight on a black plate at 1 au [N/m^2]: 1361 W/m^2 (Kopp & Lean 2011) over c.
 inline constexpr double solar_pressure_n_per_m2 = 1361.0 / speed_of_light_m_per_s;
 inline constexpr double sun_gm_m3_per_s2 = 1.32712440018e20;  // DE405
 inline constexpr double moon_gm_m3_per_s2 = 4.902800066e12;   // DE421
 
-/// A vector of any kind of number.
+/// A vector of any type of number.
 template <class T>
 struct Triple {
   T x, y, z;
@@ -87,7 +87,7 @@ void add_drag(const Vec<Gcrs>& pole, const Triple<T>& r, const Triple<T>& v, con
   a.z += factor * u;
 }
 
-/// Nothing in the cylinder behind the Earth.
+/// Pressure of sunlight; none in the cylinder behind the Earth.
 template <class T>
 void add_radiation(const Vec<Gcrs>& sun_m, const Triple<T>& r, const T& srp_m2_per_kg,
                    Triple<T>& a) {
@@ -120,7 +120,7 @@ void add_point(double gm, const Vec<Gcrs>& body_m, const Triple<T>& r, const T& 
   a.z += factor * (r.z + f * body_m.z);
 }
 
-/// [m/s^2].
+/// Sum of the accelerations by the forces of `settings` [m/s^2].
 template <class T>
 Triple<T> acceleration(const ForceSettings& settings, const ForceInputs& around, const Triple<T>& r,
                        const Triple<T>& v, const T& drag_m2_per_kg, const T& srp_m2_per_kg) {

@@ -23,7 +23,7 @@ std::vector<double> weights_of(const LinearisedArc& linear, const std::vector<bo
   return out;
 }
 
-/// What is made small: squares, beyond Huber's threshold straight.
+/// The cost that is minimised: squares of residuals, linear beyond Huber's threshold.
 double cost_of(const LinearisedArc& linear, const std::vector<bool>& taken, double huber_sigma) {
   double sum = 0;
   for (std::size_t i = 0; i < taken.size(); ++i) {
@@ -38,8 +38,8 @@ double cost_of(const LinearisedArc& linear, const std::vector<bool>& taken, doub
 struct Normal {
   OrbitMatrix upper = OrbitMatrix::Zero(), inverse = OrbitMatrix::Zero();
   OrbitVector right = OrbitVector::Zero(), scale = OrbitVector::Ones();
-  bool usable = false;      // every unknown has an effect
-  bool determined = false;  // and one of its own
+  bool usable = false;      // every unknown has an effect on the residuals
+  bool determined = false;  // and the effects are independent
 };
 
 Normal normal_of(const BatchProblem& problem, const OrbitState& start, const LinearisedArc& linear,
@@ -89,7 +89,7 @@ std::string_view descend(const BatchProblem& problem, const BatchSettings& setti
     OrbitState trial;
     for (int tries = 0; tries < 40 && !better; ++tries) {
       const OrbitVector change = damped_change(normal, lambda);
-      // In units of the errors: what one step still changes.
+      // The length of the step in units of the errors.
       small = (normal.upper * normal.scale.cwiseProduct(change)).norm() < 1e-3;
       trial = problem.moved(state, change);
       LinearisedArc there;

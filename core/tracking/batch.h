@@ -15,11 +15,11 @@ namespace dmise {
 
 struct BatchSettings {
   bool estimate_drag = false, estimate_srp = false;
-  // What is known before the observations, at the starting state's time, added as observations.
+  // Estimate before the observations, at the starting state's time; counts as observations.
   std::optional<OrbitEstimate> prior;
   // Huber's threshold in sigmas: observations beyond count with less weight; 0: plain squares.
   double huber_sigma = 0.0;
-  // Observations beyond are left out in the end and the rest is fitted again; 0: none.
+  // Observations beyond are left out after a fit, and the rest is fitted again; 0: none are.
   double reject_sigma = 0.0;
   int most_iterations = 50;
   PropagationSettings propagation;

@@ -7,12 +7,12 @@
 
 namespace dmise {
 
-/// Observations about one starting state, whitened: residuals, and derivatives of the computed
-/// angles by the unknowns over their errors, unused columns 0.
+/// Residuals of the observations for one starting state, and derivatives of the computed angles by
+/// the unknowns over the observations' errors; unused columns are 0.
 struct LinearisedArc {
   std::vector<Eigen::Vector2d> residuals_rad;
-  std::vector<Eigen::Vector2d> white;
-  std::vector<double> sigmas;  // lengths of the whitened residuals
+  std::vector<Eigen::Vector2d> white;  // residuals over the observations' errors
+  std::vector<double> sigmas;          // lengths of the whitened residuals
   std::vector<Eigen::Matrix<double, 2, orbit_size>> derivatives;
 };
 

@@ -59,7 +59,7 @@ struct OrbitFilter::Body {
   const ForceModel* forces;
   FilterSettings settings;
   EstimatedRows rows;
-  std::vector<Event> events;  // a ring; the oldest is what all others follow from
+  std::vector<Event> events;  // ring buffer; the others follow from the oldest
   std::size_t oldest = 0, held = 1;
   mutable std::vector<double> steps;
 

@@ -9,7 +9,7 @@
 
 namespace dmise {
 
-/// What acts on an object.
+/// Forces that act on an object.
 struct ForceSettings {
   int zonals = 4;         // highest zonal harmonic of the Earth: 0 (two-body), 2, 3 or 4
   bool drag = true;       // of states with drag_m2_per_kg != 0
@@ -32,8 +32,8 @@ struct ForceInputs {
 /// what is left out.
 class ForceModel {
  public:
-  /// Pole and bodies are tabulated for 10 days around `reference` and stay as they are at its ends
-  /// beyond. Throws `Error` for settings out of range.
+  /// Pole and bodies are tabulated within 10 days of `reference`; beyond, the values at the ends
+  /// hold. Throws `Error` for settings out of range.
   ForceModel(const Clock& clock, SimTime reference, const ForceSettings& settings = {});
   /// Two-body and zonals about the z axis of GCRS, without Sun and Moon, for tests and examples.
   explicit ForceModel(const ForceSettings& settings);

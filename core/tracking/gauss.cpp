@@ -127,7 +127,7 @@ Outcome<std::vector<OrbitState>> gauss_orbit(std::span<const AngleObservation> t
   const Lines lines(three);
   const double sines = norm(cross(three[0].direction, three[1].direction)) *
                        norm(cross(three[1].direction, three[2].direction));
-  // The volume is that of errors if the lines lie in one plane.
+  // If the lines lie in one plane, errors alone give the volume.
   const double sigma = largest_sigma_rad(three);
   const double widest = angle_rad(three[0].direction, three[2].direction);
   if (!(std::fabs(lines.d0) > std::max(1e-14, 3 * sigma * std::min(widest, sines / widest))))

@@ -11,7 +11,7 @@ namespace {
 
 using Result = Outcome<std::vector<OrbitState>>;
 
-/// What Lambert's path through the ends misses the middle line by.
+/// By how much Lambert's path between the outer lines misses the middle line.
 class Problem {
  public:
   Problem(std::span<const AngleObservation> three, bool short_way, int turns, bool other_branch)
@@ -48,7 +48,8 @@ class Problem {
     return miss_rad.allFinite();
   }
 
-  /// Damped Newton's steps on the logarithms of both ranges. False if they lead nowhere.
+  /// Damped Newton's steps on the logarithms of both ranges. False if they do
+  /// not converge.
   bool solve(Eigen::Vector2d& at, OrbitState& state) const {
     Eigen::Vector2d miss_rad;
     if (!miss(at, miss_rad, state)) return false;
@@ -143,7 +144,7 @@ Outcome<std::vector<OrbitState>> gooding_orbit(std::span<const AngleObservation>
             undetermined = true;
             continue;
           }
-          // Of one time, so that equal orbits are told.
+          // At one time, so that equal orbits are recognised.
           OrbitState common = state;
           if (!move_two_body(common, (three[0].time - state.time).seconds())) continue;
           common.time = three[0].time;

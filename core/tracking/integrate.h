@@ -8,7 +8,7 @@
 #include "core/tracking/acceleration.h"
 #include "core/tracking/propagate.h"
 
-// Dormand-Prince 5(4) for any kind of number (Dormand & Prince 1980, J. Comp. Appl. Math. 6, 19).
+// Dormand-Prince 5(4) for any type of number (Dormand & Prince 1980, J. Comp. Appl. Math. 6, 19).
 namespace dmise {
 
 /// Below it a path is within the Earth [m].
@@ -39,8 +39,9 @@ Triple<T> plus(const Triple<T>& a, double h, const std::array<double, N>& weight
   return out;
 }
 
-/// One step of `h` [s]; the slopes at its start are `first`, at its end they are left in `last`.
-/// Returns the estimated error [m]: of the position, and of the velocity over the orbit's time.
+/// One step of `h` [s] with the acceleration `first` at its start; `last` gets that at its end.
+/// Returns the estimated error [m]: the larger of that of the position and that of the velocity
+/// times sqrt(r^3 / gm).
 template <class T>
 double step(const ForceSettings& acting, const ForceInputs& around, const Path<T>& from, double h,
             const Triple<T>& first, Path<T>& to, Triple<T>& last) {
@@ -80,7 +81,8 @@ double step(const ForceSettings& acting, const ForceInputs& around, const Path<T
          std::max(std::hypot(er[0], er[1], er[2]), time * std::hypot(ev[0], ev[1], ev[2]));
 }
 
-/// Which forces act on a path: those without a scale, and without a derivative by it, are left out.
+/// The forces that act on a path: drag and radiation are left out if their scale is 0 and does not
+/// vary.
 template <class T>
 ForceSettings acting_on(const ForceSettings& settings, const Path<T>& path, bool drag_varies,
                         bool srp_varies) {
@@ -91,7 +93,7 @@ ForceSettings acting_on(const ForceSettings& settings, const Path<T>& path, bool
 }
 
 /// Moves `path` by `duration_s` from `start`. `steps`, if not null, gets the lengths of the steps
-/// [s]. Returns the reason if there is no way, else an empty text.
+/// [s]. Returns the reason if there is no such path, else an empty text.
 template <class T>
 std::string_view integrate(const ForceModel& forces, const ForceSettings& acting, SimTime start,
                            double duration_s, const PropagationSettings& settings, Path<T>& path,

@@ -25,7 +25,7 @@ inline LineOfLight line_of_light(const Eigen::Vector3d& position_m,
   const Eigen::Vector3d pull = -earth_gm_m3_per_s2 / (r2 * std::sqrt(r2)) * position_m;
   const Eigen::Vector3d now_m = position_m - sensor_m;
   LineOfLight out{now_m, velocity_m_per_s};
-  // Each turn gains a factor v/c.
+  // Each iteration reduces the error by a factor v/c.
   for (int i = 0; i < 3; ++i) {
     const double t = out.line_m.norm() / speed_of_light_m_per_s;
     out.light_time_s = t;

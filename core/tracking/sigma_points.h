@@ -50,7 +50,8 @@ class SigmaPoints {
       }
   }
 
-  /// Moves all points to `to`. All take the steps of the middle one.
+  /// Propagates all points to `to` with the steps of the middle one. Returns the reason if a point
+  /// has no path, else an empty text.
   std::string_view move(const ForceModel& forces, SimTime to, const PropagationSettings& settings,
                         std::vector<double>& steps) {
     steps.clear();
@@ -84,7 +85,7 @@ class SigmaPoints {
     return out;
   }
 
-  /// Direction, its covariance and that with the state, as the root of their joint covariance.
+  /// The predicted direction with its covariance, and what `updated` needs of the points.
   struct Seen {
     PredictedDirection direction;
     std::array<Eigen::Vector2d, std::size_t(count)> angles;  // about `direction`

@@ -39,7 +39,7 @@ std::array<double, 2> half_sides_px(const Optics& o) {
 }
 
 /// Samples `sky` on a grid of Chebyshev points.
-std::vector<Sample> look(const Optics& optics, const SkyOfPixel& sky, int points) {
+std::vector<Sample> samples_of(const Optics& optics, const SkyOfPixel& sky, int points) {
   const PixelPosition centre = principal_point(optics);
   const auto half = half_sides_px(optics);
   std::vector<Sample> all;
@@ -107,8 +107,8 @@ class Fit {
   Fit(const Optics& optics, const SkyOfPixel& sky)
       : optics_(optics),
         half_(half_sides_px(optics)),
-        samples_(look(optics, sky, fit_points)),
-        checks_(look(optics, sky, check_points)) {
+        samples_(samples_of(optics, sky, fit_points)),
+        checks_(samples_of(optics, sky, check_points)) {
     const auto reference = sky(principal_point(optics));
     if (!reference) throw Error("fit_wcs: the frame's centre sees no sky");
     reference_ = unit(*reference);
