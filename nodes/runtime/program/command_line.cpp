@@ -104,9 +104,7 @@ std::string unknown_argument(const CLI::App& app) {
         known.push_back(sub->get_name());
       if (known.empty()) return "unexpected argument " + word;
     }
-    const std::string hint = nearest_name(word, known);
-    return (option ? "unknown option " : "unknown command ") + word +
-           (hint.empty() ? "" : ", did you mean " + hint + "?");
+    return (option ? "unknown option " : "unknown command ") + word + did_you_mean(word, known);
   }
   return "";
 }
