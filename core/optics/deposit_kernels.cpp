@@ -22,27 +22,34 @@ DMISE_INLINE void place(const PsfTableView& t, float phase, float scale, int off
     for (int j = 0; j < block; ++j) out[i + j] = scale * (a[i + j] + f * (b[i + j] - a[i + j]));
 }
 
-// The same sums for a narrow table and nodes that are near each other, without memory between.
-template <int Nodes>
-DMISE_INLINE void add_narrow(const PanelView& panel, const PsfTableView& t, const BandView& band,
+constexpr int window = 2 * block;
+
+// Sums for a narrow table and nodes that are near each other, without memory between: within a
+// window from the least `column` and `row` of the nodes on.
+template <int Nodes, class Points>
+DMISE_INLINE void add_narrow(const Points& points, const PsfTableView& table, const BandView& band,
                              int column, int row, int last_row) {
-  constexpr int most = 2 * block;
-  float along_x[Nodes][most] = {}, along_y[Nodes][most] = {};
+  PsfTableView t = table;
+  t.stride = block;
+  float along_x[Nodes][window] = {}, along_y[Nodes][window] = {};
   for (int k = 0; k < Nodes; ++k) {
-    place(t, panel.phase_x[k], 1.0f, panel.column[k] - column, along_x[k]);
-    place(t, panel.phase_y[k], panel.weight[k], panel.row[k] - row, along_y[k]);
+    place(t, points.phase_x[k], 1.0f, points.column[k] - column, along_x[k]);
+    place(t, points.phase_y[k], points.weight[k], points.row[k] - row, along_y[k]);
   }
+  constexpr int parts = window / lanes;
+  F32 x[Nodes][parts];
+  for (int k = 0; k < Nodes; ++k)
+    for (int p = 0; p < parts; ++p) x[k][p] = load<F32>(along_x[k] + p * lanes);
   const int top = row + t.first;
   const int y_begin = larger(0, band.row_begin - top);
   const int y_end = smaller(last_row - row + t.size, band.row_end - top);
   float* out = band.pixels + std::ptrdiff_t(top + y_begin) * band.stride + column + t.first;
-  for (int y = y_begin; y < y_end; ++y, out += band.stride) {
-    float sum[most];
-    for (int j = 0; j < most; ++j) sum[j] = along_y[0][y] * along_x[0][j];
-    for (int k = 1; k < Nodes; ++k)
-      for (int j = 0; j < most; ++j) sum[j] += along_y[k][y] * along_x[k][j];
-    for (int j = 0; j < most; ++j) out[j] += sum[j];
-  }
+  for (int y = y_begin; y < y_end; ++y, out += band.stride)
+    for (int p = 0; p < parts; ++p) {
+      F32 sum = splat(along_y[0][y]) * x[0][p];
+      for (int k = 1; k < Nodes; ++k) sum += splat(along_y[k][y]) * x[k][p];
+      store(out + p * lanes, load<F32>(out + p * lanes) + sum);
+    }
 }
 
 template <int Nodes>
@@ -63,8 +70,8 @@ DMISE_INLINE void add(const PanelView& panel, const PsfTableView& t, const BandV
   const int y_begin = larger(0, band.row_begin - top);
   const int y_end = smaller(last_row - row + t.size, band.row_end - top);
   if (x_begin >= x_end || y_begin >= y_end) return;
-  if (t.stride == block && width <= 2 * block && height <= 2 * block && left >= 0 &&
-      left + 2 * block <= band.columns) {
+  if (t.stride == block && width <= window && height <= window && left >= 0 &&
+      left + window <= band.columns) {
     add_narrow<Nodes>(panel, t, band, column, row, last_row);
     return;
   }
@@ -90,8 +97,6 @@ DMISE_INLINE void add(const PanelView& panel, const PsfTableView& t, const BandV
     for (int x = x_begin; x < x_end; ++x) out[x] += sum[x];
   }
 }
-
-constexpr int short_window = 2 * block;
 
 /// Nodes and weights of Gauss and Legendre on [0, 1].
 template <int Nodes>
@@ -159,45 +164,28 @@ DMISE_INLINE int floor_of(double x) {
 template <int Nodes>
 DMISE_INLINE void add_short_of(const ShortArc& arc, const PsfTableView& table,
                                const BandView& band) {
-  PsfTableView t = table;
-  t.stride = block;
-  int columns[Nodes], rows[Nodes];
-  float phase_x[Nodes], phase_y[Nodes], share[Nodes];
+  struct {
+    float weight[Nodes];
+    int column[Nodes], row[Nodes];
+    float phase_x[Nodes], phase_y[Nodes];
+  } points;
   for (int k = 0; k < Nodes; ++k) {
     const double tau = Quadrature<Nodes>::tau[k];
     const double x = arc.x_px + tau * (arc.slope_x + tau * arc.curve_x);
     const double y = arc.y_px + tau * (arc.slope_y + tau * arc.curve_y);
-    columns[k] = floor_of(x);
-    rows[k] = floor_of(y);
-    phase_x[k] = float(x - columns[k]);
-    phase_y[k] = float(y - rows[k]);
-    share[k] = arc.signal_e * float(Quadrature<Nodes>::weight[k]);
+    points.column[k] = floor_of(x);
+    points.row[k] = floor_of(y);
+    points.phase_x[k] = float(x - points.column[k]);
+    points.phase_y[k] = float(y - points.row[k]);
+    points.weight[k] = arc.signal_e * float(Quadrature<Nodes>::weight[k]);
   }
-  int column = columns[0], row = rows[0], last_row = row;
+  int column = points.column[0], row = points.row[0], last_row = row;
   for (int k = 1; k < Nodes; ++k) {
-    column = smaller(column, columns[k]);
-    row = smaller(row, rows[k]);
-    last_row = larger(last_row, rows[k]);
+    column = smaller(column, points.column[k]);
+    row = smaller(row, points.row[k]);
+    last_row = larger(last_row, points.row[k]);
   }
-  float along_x[Nodes][short_window] = {}, along_y[Nodes][short_window] = {};
-  for (int k = 0; k < Nodes; ++k) {
-    place(t, phase_x[k], 1.0f, columns[k] - column, along_x[k]);
-    place(t, phase_y[k], share[k], rows[k] - row, along_y[k]);
-  }
-  constexpr int parts = short_window / lanes;
-  F32 x[Nodes][parts];
-  for (int k = 0; k < Nodes; ++k)
-    for (int p = 0; p < parts; ++p) x[k][p] = load<F32>(along_x[k] + p * lanes);
-  const int top = row + t.first;
-  const int y_begin = larger(0, band.row_begin - top);
-  const int y_end = smaller(last_row - row + t.size, band.row_end - top);
-  float* out = band.pixels + std::ptrdiff_t(top + y_begin) * band.stride + column + t.first;
-  for (int y = y_begin; y < y_end; ++y, out += band.stride)
-    for (int p = 0; p < parts; ++p) {
-      F32 sum = splat(along_y[0][y]) * x[0][p];
-      for (int k = 1; k < Nodes; ++k) sum += splat(along_y[k][y]) * x[k][p];
-      store(out + p * lanes, load<F32>(out + p * lanes) + sum);
-    }
+  add_narrow<Nodes>(points, table, band, column, row, last_row);
 }
 
 }  // namespace
