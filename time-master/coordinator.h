@@ -123,8 +123,6 @@ class Coordinator {
   Tick granted() const { return granted_; }
   /// Last tick that all have done.
   Tick settled() const { return settled_; }
-  /// Paused, and all granted ticks are done.
-  bool frozen() const { return pace_.paused() && settled_ >= granted_; }
   const Pace& pace() const { return pace_; }
   /// When `check` has something to grant, if only time is needed.
   std::optional<Instant> next_due() const;

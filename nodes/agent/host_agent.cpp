@@ -28,11 +28,9 @@ std::string beside(const std::string& address, const std::string& what) {
 }
 
 PulseLimits limits_of(const v1::Welcome& welcome) {
-  PulseLimits limits;
-  limits.silent_after = from_seconds(welcome.silent_after_s());
-  limits.heartbeat = from_seconds(welcome.heartbeat_s());
-  limits.progress_after = from_seconds(welcome.progress_after_s());
-  return limits;
+  return {.silent_after = from_seconds(welcome.silent_after_s()),
+          .heartbeat = from_seconds(welcome.heartbeat_s()),
+          .progress_after = from_seconds(welcome.progress_after_s())};
 }
 
 static_assert(int(HostBarrier::News::What::lost) == v1::NodeNews::WHAT_LOST &&

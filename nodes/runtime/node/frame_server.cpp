@@ -34,10 +34,8 @@ void release(void*, void* hint) {
 }
 
 ConnectionLimits limits() {
-  ConnectionLimits limits;
-  limits.usual_strangers = limits.most_strangers = std::size_t(FrameServer::most_readers);
-  limits.stranger_bytes = 128 << 10;
-  return limits;
+  constexpr std::size_t readers = FrameServer::most_readers;
+  return {.usual_strangers = readers, .most_strangers = readers, .stranger_bytes = 128 << 10};
 }
 
 }  // namespace

@@ -124,7 +124,6 @@ class Node {
     const v1::Welcome welcome = link_.join(request, within);
     run_ = {welcome.run_id(), {welcome.tick_ns()}, welcome.last_tick()};
     incarnation_ = welcome.incarnation();
-    result_->incarnation = incarnation_;
     inputs_.start(run_);
     outbox_.emplace(run_, request.name(), incarnation_, produces_,
                     Tick(welcome.window_ticks()) + 1);

@@ -34,7 +34,6 @@ struct NodeResult {
   std::uint64_t resend_requests_known = 0;  // of these, for messages known to be published
   std::uint64_t lost = 0;                   // dropped by `lose_every`
   std::uint64_t missed = 0;                 // messages no longer available; of an observer
-  std::uint64_t incarnation = 1;            // of its name in the run
 };
 
 /// Runs a participant as a node of a network: joins at the master, waits until every consumed topic

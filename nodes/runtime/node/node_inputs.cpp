@@ -48,18 +48,18 @@ void NodeInputs::connect(const v1::Topology& topology) {
 }
 
 void NodeInputs::follow(const v1::Publisher& publisher) {
-  std::vector<std::string> through_broker, direct;
+  std::vector<std::string> topics, direct;
   for (const std::string& topic : publisher.topics())
-    if (consumes(topic)) through_broker.push_back(topic);
+    if (consumes(topic)) topics.push_back(topic);
   for (const std::string& topic : publisher.direct_topics())
     if (consumes(topic)) direct.push_back(topic);
-  if (through_broker.empty() && direct.empty()) return;
+  topics.insert(topics.end(), direct.begin(), direct.end());
+  if (topics.empty()) return;
   Source& source = sources_[publisher.name()];
   if (source.incarnation == publisher.incarnation()) return;
   const bool follows_another = source.incarnation != 0;
-  source = {publisher.incarnation(), publisher.resend_endpoint(), through_broker, {}, {}};
-  source.topics.insert(source.topics.end(), direct.begin(), direct.end());
-  for (const std::string& topic : source.topics) {
+  source = {publisher.incarnation(), publisher.resend_endpoint(), {}, {}};
+  for (const std::string& topic : topics) {
     receiver_->allow(topic, publisher.name(), publisher.incarnation());
     publisher_of_[topic] = publisher.name();
     inbox_.set_schedule(

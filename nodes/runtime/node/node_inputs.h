@@ -66,7 +66,6 @@ class NodeInputs {
   struct Source {  // a publisher of consumed topics
     std::uint64_t incarnation = 0;
     std::string resend_endpoint;
-    std::vector<std::string> topics;
     std::optional<zmq::socket_t> direct;  // SUB, to its own socket
     std::optional<zmq::socket_t> asker;   // DEALER, to its resend endpoint
   };

@@ -57,6 +57,31 @@ std::vector<std::string> options_of(const std::vector<const CLI::App*>& chain) {
   return names;
 }
 
+/// Describes the first unknown argument: "unknown option --thread, did you mean --threads?". Empty
+/// if there is none.
+std::string unknown_argument(const CLI::App& app) {
+  const auto chain = chain_of(app);
+  for (auto at = chain.rbegin(); at != chain.rend(); ++at) {
+    // The value of an unknown option is not an argument itself.
+    const auto left = (*at)->remaining(false);
+    const auto flag = std::find_if(left.begin(), left.end(),
+                                   [](const std::string& word) { return word.starts_with('-'); });
+    if (left.empty()) continue;
+    const bool option = flag != left.end();
+    const std::string word = option ? flag->substr(0, flag->find('=')) : left.front();
+    std::vector<std::string> known = options_of(chain);
+    if (!option) {
+      known.clear();
+      for (const CLI::App* sub :
+           chain.back()->get_subcommands([](const CLI::App*) { return true; }))
+        known.push_back(sub->get_name());
+      if (known.empty()) return "unexpected argument " + word;
+    }
+    return (option ? "unknown option " : "unknown command ") + word + did_you_mean(word, known);
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string address_error(const std::string& address) {
@@ -84,29 +109,6 @@ CLI::Validator number_between(double low, double high) {
             return range(text);
           },
           range.get_description(), "number"};
-}
-
-std::string unknown_argument(const CLI::App& app) {
-  const auto chain = chain_of(app);
-  for (auto at = chain.rbegin(); at != chain.rend(); ++at) {
-    // The value of an unknown option is not an argument itself.
-    const auto left = (*at)->remaining(false);
-    const auto flag = std::find_if(left.begin(), left.end(),
-                                   [](const std::string& word) { return word.starts_with('-'); });
-    if (left.empty()) continue;
-    const bool option = flag != left.end();
-    const std::string word = option ? flag->substr(0, flag->find('=')) : left.front();
-    std::vector<std::string> known = options_of(chain);
-    if (!option) {
-      known.clear();
-      for (const CLI::App* sub :
-           chain.back()->get_subcommands([](const CLI::App*) { return true; }))
-        known.push_back(sub->get_name());
-      if (known.empty()) return "unexpected argument " + word;
-    }
-    return (option ? "unknown option " : "unknown command ") + word + did_you_mean(word, known);
-  }
-  return "";
 }
 
 int end_of_command_line(const CLI::App& app, const CLI::ParseError& error) {

@@ -14,10 +14,6 @@ CLI::Validator transport_address();
 /// Restricts an option to numbers from `low` to `high`; unlike CLI::Range it refuses NaN.
 CLI::Validator number_between(double low, double high);
 
-/// Describes the first unknown argument: "unknown option --thread, did you mean --threads?". Empty
-/// if there is none.
-std::string unknown_argument(const CLI::App& app);
-
 /// Prints what is wrong with a command line, or the requested help. Returns the exit code of the
 /// program: 0 or 2.
 int end_of_command_line(const CLI::App& app, const CLI::ParseError& error);
