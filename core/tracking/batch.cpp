@@ -42,15 +42,12 @@ struct Normal {
   bool determined = false;  // and the effects are independent
 };
 
-Normal normal_of(const BatchProblem& problem, const OrbitState& start, const LinearisedArc& linear,
-                 const std::vector<double>& weights) {
+Normal normal_of(int n, const LinearisedArc& linear, const std::vector<double>& weights) {
   BatchTriangle triangle = BatchTriangle::Zero();
   for (std::size_t i = 0; i < weights.size(); ++i)
     for (int k = 0; k < 2; ++k)
       fold(triangle, weights[i] * linear.derivatives[i].row(k), weights[i] * linear.white[i][k]);
-  problem.fold_prior(start, triangle);
   Normal out;
-  const int n = problem.unknowns();
   for (int k = 0; k < n; ++k) out.scale[k] = triangle.col(k).norm();
   if (!triangle.allFinite() || !(out.scale.minCoeff() > 0)) return out;
   out.usable = true;
@@ -80,10 +77,10 @@ std::string_view descend(const BatchProblem& problem, const BatchSettings& setti
                          Normal& normal, int& iterations) {
   if (const auto reason = problem.linearise(state, true, linear); !reason.empty()) return reason;
   double lambda = 1e-6;
-  double cost = cost_of(linear, taken, settings.huber_sigma) + problem.prior_chi2(state);
+  double cost = cost_of(linear, taken, settings.huber_sigma);
   while (iterations < settings.most_iterations) {
     ++iterations;
-    normal = normal_of(problem, state, linear, weights_of(linear, taken, settings.huber_sigma));
+    normal = normal_of(problem.unknowns(), linear, weights_of(linear, taken, settings.huber_sigma));
     if (!normal.usable) return "the observations do not determine the orbit";
     bool better = false, small = false;
     OrbitState trial;
@@ -95,7 +92,7 @@ std::string_view descend(const BatchProblem& problem, const BatchSettings& setti
       LinearisedArc there;
       double now = INFINITY;
       if (change.allFinite() && is_sane(trial) && problem.linearise(trial, false, there).empty())
-        now = cost_of(there, taken, settings.huber_sigma) + problem.prior_chi2(trial);
+        now = cost_of(there, taken, settings.huber_sigma);
       better = now <= cost * (1 + 1e-12);
       if (better) {
         cost = now;
@@ -111,7 +108,8 @@ std::string_view descend(const BatchProblem& problem, const BatchSettings& setti
         return reason;
     }
     if (small) {
-      normal = normal_of(problem, state, linear, weights_of(linear, taken, settings.huber_sigma));
+      normal =
+          normal_of(problem.unknowns(), linear, weights_of(linear, taken, settings.huber_sigma));
       return normal.determined ? "" : "the observations do not determine the orbit";
     }
     if (!better) return "the fit does not converge";
@@ -127,14 +125,9 @@ Outcome<BatchFit> fit_orbit(const ForceModel& forces,
   if (!is_sane(start)) return Result::refused("the start is not finite or out of range");
   for (const AngleObservation& o : observations)
     if (const auto fault = fault_of(o); !fault.empty()) return Result::refused(fault);
-  if (settings.prior && (!is_sane(*settings.prior) || settings.prior->state.time != start.time))
-    return Result::refused("the prior is not finite or of another time than the start");
   const BatchProblem problem(forces, observations, start, settings);
-  if (settings.prior && !problem.has_prior())
-    return Result::refused("the prior's covariance is not positive definite");
   const auto enough = [&](const std::vector<bool>& taken) {
-    const auto count = std::count(taken.begin(), taken.end(), true);
-    return problem.has_prior() || 2 * count >= problem.unknowns();
+    return 2 * std::count(taken.begin(), taken.end(), true) >= problem.unknowns();
   };
   BatchFit fit;
   fit.taken.assign(observations.size(), true);
@@ -164,9 +157,8 @@ Outcome<BatchFit> fit_orbit(const ForceModel& forces,
       fit.estimate.covariance(problem.rows()[std::size_t(i)], problem.rows()[std::size_t(j)]) =
           covariance(i, j);
   fit.residuals_rad = linear.residuals_rad;
-  fit.chi2 = cost_of(linear, fit.taken, 0) + problem.prior_chi2(state);
-  fit.degrees_of_freedom =
-      2 * int(std::count(fit.taken.begin(), fit.taken.end(), true)) - (problem.has_prior() ? 0 : n);
+  fit.chi2 = cost_of(linear, fit.taken, 0);
+  fit.degrees_of_freedom = 2 * int(std::count(fit.taken.begin(), fit.taken.end(), true)) - n;
   if (!is_sane(fit.estimate)) return Result::refused("the observations do not determine the orbit");
   return fit;
 }

@@ -1,5 +1,4 @@
 #pragma once
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,8 +14,6 @@ namespace dmise {
 
 struct BatchSettings {
   bool estimate_drag = false, estimate_srp = false;
-  // Estimate before the observations, at the starting state's time; counts as observations.
-  std::optional<OrbitEstimate> prior;
   // Huber's threshold in sigmas: observations beyond count with less weight; 0: plain squares.
   double huber_sigma = 0.0;
   // Observations beyond are left out after a fit, and the rest is fitted again; 0: none are.

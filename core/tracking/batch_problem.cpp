@@ -30,7 +30,6 @@ BatchProblem::BatchProblem(const ForceModel& forces, std::span<const AngleObserv
   for (const AngleObservation& o : observations)
     whitening_.push_back(
         Eigen::Matrix2d(Eigen::LLT<Eigen::Matrix2d>(covariance_of(o)).matrixL()).inverse());
-  if (settings.prior) weigh_prior();
 }
 
 std::string_view BatchProblem::linearise(const OrbitState& start, bool with_derivatives,
@@ -65,16 +64,6 @@ std::string_view BatchProblem::linearise(const OrbitState& start, bool with_deri
   return {};
 }
 
-void BatchProblem::fold_prior(const OrbitState& start, BatchTriangle& triangle) const {
-  if (!has_prior_) return;
-  const OrbitVector white = prior_weight_ * prior_difference(start);
-  for (int i = 0; i < unknowns(); ++i) fold(triangle, prior_weight_.row(i), white[i]);
-}
-
-double BatchProblem::prior_chi2(const OrbitState& start) const {
-  return has_prior_ ? (prior_weight_ * prior_difference(start)).squaredNorm() : 0;
-}
-
 OrbitState BatchProblem::moved(const OrbitState& start, const OrbitVector& change) const {
   OrbitVector x = vector_of(start);
   for (int i = 0; i < unknowns(); ++i) x[unknowns_[std::size_t(i)]] += change[i];
@@ -95,24 +84,6 @@ void BatchProblem::observe(std::size_t i, const StateTransition& at, bool with_d
       whitening_[i] * angle_derivatives(line, sky_tangents(direction)) * at.transition.topRows<6>();
   out.derivatives[i].setZero();
   for (int k = 0; k < unknowns(); ++k) out.derivatives[i].col(k) = h.col(unknowns_[std::size_t(k)]);
-}
-
-void BatchProblem::weigh_prior() {
-  const auto [scaled, sigma] = unit_variances(settings_.prior->covariance, unknowns_);
-  if (!scaled.allFinite()) return;
-  const Eigen::LLT<OrbitMatrix> root(scaled);
-  if (root.info() != Eigen::Success) return;
-  prior_weight_ = root.matrixL().solve(OrbitMatrix::Identity());
-  prior_weight_ = (prior_weight_ * sigma.cwiseInverse().asDiagonal()).eval();
-  for (int i = unknowns(); i < orbit_size; ++i) prior_weight_(i, i) = 0;
-  has_prior_ = true;
-}
-
-OrbitVector BatchProblem::prior_difference(const OrbitState& start) const {
-  const OrbitVector difference = vector_of(settings_.prior->state) - vector_of(start);
-  OrbitVector out = OrbitVector::Zero();
-  for (int i = 0; i < unknowns(); ++i) out[i] = difference[unknowns_[std::size_t(i)]];
-  return out;
 }
 
 void fold(BatchTriangle& triangle, const Eigen::Matrix<double, 1, orbit_size>& row, double white) {

@@ -22,8 +22,8 @@ using BatchTriangle = Eigen::Matrix<double, orbit_size, orbit_size + 1>;
 /// Adds a row to the triangle.
 void fold(BatchTriangle& triangle, const Eigen::Matrix<double, 1, orbit_size>& row, double white);
 
-/// What stays the same while an orbit is fitted: observations in order, their weights, unknowns and
-/// prior. Forces, observations and settings must outlive it.
+/// What stays the same while an orbit is fitted: observations in order, their weights and the
+/// unknowns. Forces, observations and settings must outlive it.
 class BatchProblem {
  public:
   BatchProblem(const ForceModel& forces, std::span<const AngleObservation> observations,
@@ -31,22 +31,16 @@ class BatchProblem {
 
   int unknowns() const { return int(unknowns_.size()); }
   const std::vector<int>& rows() const { return unknowns_; }
-  bool has_prior() const { return has_prior_; }
 
   /// Returns the reason if there is no path from `start` through all times, else an empty text.
   std::string_view linearise(const OrbitState& start, bool with_derivatives,
                              LinearisedArc& out) const;
-
-  void fold_prior(const OrbitState& start, BatchTriangle& triangle) const;
-  double prior_chi2(const OrbitState& start) const;
 
   OrbitState moved(const OrbitState& start, const OrbitVector& change) const;
 
  private:
   void observe(std::size_t i, const StateTransition& at, bool with_derivatives,
                LinearisedArc& out) const;
-  void weigh_prior();
-  OrbitVector prior_difference(const OrbitState& start) const;
 
   const ForceModel& forces_;
   std::span<const AngleObservation> observations_;
@@ -55,8 +49,6 @@ class BatchProblem {
   std::vector<int> unknowns_;
   std::vector<std::size_t> later_, earlier_;  // indices, by growing distance from the epoch
   std::vector<Eigen::Matrix2d> whitening_;
-  bool has_prior_ = false;
-  OrbitMatrix prior_weight_ = OrbitMatrix::Zero();
 };
 
 }  // namespace dmise

@@ -66,13 +66,11 @@ void add_region(const std::vector<AngleObservation>& sorted, const OrbitLimits& 
     out.insert(out.end(), region->begin(), region->end());
 }
 
-/// Fits of the candidates without a prior, within the limits; none: the reason. Residuals are in
-/// order of time.
+/// Fits of the candidates, within the limits; none: the reason. Residuals are in order of time.
 Outcome<std::vector<BatchFit>> fits_of(const ForceModel& forces,
                                        std::span<const AngleObservation> observations,
-                                       BatchSettings settings, const OrbitLimits& limits) {
+                                       const BatchSettings& settings, const OrbitLimits& limits) {
   using Result = Outcome<std::vector<BatchFit>>;
-  settings.prior.reset();
   if (observations.size() < 3) return Result::refused("fewer than three observations");
   std::vector<AngleObservation> sorted(observations.begin(), observations.end());
   for (const AngleObservation& o : sorted)
@@ -143,9 +141,7 @@ Outcome<BatchFit> one_arc_orbit(const ForceModel& forces,
   if (!(batch.huber_sigma > 0) && best->chi2 > degrees + 6 * std::sqrt(2 * degrees) + 12)
     return Result::refused("no orbit fits the observations: they are of several objects");
   // Residuals in the order of the input.
-  BatchSettings settings = batch;
-  settings.prior.reset();
-  return fit_orbit(forces, observations, best->estimate.state, settings);
+  return fit_orbit(forces, observations, best->estimate.state, batch);
 }
 
 }  // namespace dmise

@@ -81,10 +81,6 @@ Outcome<BatchFit> two_site_orbit(const ForceModel& forces,
                              (second->time - first.time).seconds(), lamberts);
   if (!paths) return Result::refused(paths.reason);
   OrbitState start{first.time, first.position_m, paths->front().start_velocity_m_per_s};
-  if (batch.prior) {
-    start.drag_m2_per_kg = batch.prior->state.drag_m2_per_kg;
-    start.srp_m2_per_kg = batch.prior->state.srp_m2_per_kg;
-  }
   // The arc between both positions first, then all.
   std::vector<AngleObservation> between;
   const SimTime last = second->time + sim_seconds(triangulation.longest_s + 1);
@@ -100,9 +96,7 @@ Outcome<BatchFit> two_site_orbit(const ForceModel& forces,
       start.velocity_m_per_s = arc->estimate.state.velocity_m_per_s;
     }
   }
-  BatchSettings last_fit = batch;
-  if (last_fit.prior && last_fit.prior->state.time != start.time) last_fit.prior.reset();
-  return fit_orbit(forces, observations, start, last_fit);
+  return fit_orbit(forces, observations, start, batch);
 }
 
 }  // namespace dmise

@@ -95,21 +95,6 @@ TEST(Batch, EstimatesDrag) {
   EXPECT_EQ(fit->estimate.covariance(srp_row, srp_row), 0);
 }
 
-// A prior that is the fit of the first half stands for it.
-TEST(Batch, PriorStandsForObservations) {
-  const ForceModel forces(ForceSettings{});
-  const TrackingTrial trial = tracking_trial(forces, {}, 8);
-  const std::span<const AngleObservation> all = trial.observations;
-  const auto first = fit_orbit(forces, all.first(30), trial.truth);
-  ASSERT_TRUE(first) << first.reason;
-  BatchSettings settings;
-  settings.prior = first->estimate;
-  const auto second = fit_orbit(forces, all.subspan(30), first->estimate.state, settings);
-  const auto both = fit_orbit(forces, all, trial.truth);
-  ASSERT_TRUE(second) << second.reason;
-  EXPECT_LT(nees(both->estimate, second->estimate.state), 1e-4);
-}
-
 TEST(Batch, RefusesWithAReason) {
   const ForceModel forces(ForceSettings{});
   const TrackingTrial trial = tracking_trial(forces, {}, 2);
