@@ -1,5 +1,7 @@
 #include "core/orbit/element_text.h"
 
+#include <erfa.h>
+
 #include <cmath>
 
 #include "core/base/error.h"
@@ -38,25 +40,17 @@ std::string exponent_field(double value) {
                    std::abs(power));
 }
 
-/// Year and day of the year of a midnight.
-struct Ordinal {
-  int year, day;
-};
-Ordinal ordinal_of(double midnight_jd) {
-  int year = static_cast<int>(std::floor((midnight_jd - 1721425.5) / 365.2425)) + 1;
-  while (julian_midnight(year, 1) > midnight_jd) --year;
-  while (julian_midnight(year + 1, 1) <= midnight_jd) ++year;
-  return {year, static_cast<int>(midnight_jd - julian_midnight(year, 1)) + 1};
-}
-
 std::string epoch_field(const MeanElements& e) {
   long fraction = std::lround(e.epoch_jd2 * 1e8);
   const double midnight = e.epoch_jd1 + (fraction >= 100000000 ? 1 : 0);
   fraction %= 100000000;
-  const Ordinal date = ordinal_of(midnight);
-  if (date.year < 1957 || date.year > 2056)
-    throw Error("epoch does not fit a TLE, got year " + std::to_string(date.year));
-  return formatted("%02d%03d.%08ld", date.year % 100, date.day, fraction);
+  int year = 0, month = 0, day = 0;
+  double rest = 0.0;
+  eraJd2cal(midnight, 0.0, &year, &month, &day, &rest);
+  if (year < 1957 || year > 2056)
+    throw Error("epoch does not fit a TLE, got year " + std::to_string(year));
+  const int day_of_year = static_cast<int>(midnight - julian_midnight(year, 1)) + 1;
+  return formatted("%02d%03d.%08ld", year % 100, day_of_year, fraction);
 }
 
 std::string with_checksum(const std::string& line) {

@@ -3,7 +3,6 @@
 #include <erfa.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -13,18 +12,6 @@
 namespace dmise {
 
 namespace {
-
-constexpr std::array<int, 12> month_days = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-
-int days_in_month(int year, int month) {
-  return month_days[static_cast<std::size_t>(month - 1)] + (month == 2 && is_leap_year(year));
-}
-
-int day_of_year(int year, int month, int day) {
-  int days = day;
-  for (int m = 1; m < month; ++m) days += days_in_month(year, m);
-  return days;
-}
 
 /// Exactly `width` digits at `at`.
 std::optional<int> digits(std::string_view text, std::size_t at, std::size_t width) {
@@ -66,17 +53,17 @@ std::optional<CalendarTime> parse_calendar_time(std::string_view text) {
 
   const auto year = digits(date, 0, 4);
   if (!year || *year < 1583 || date.size() < 8 || date[4] != '-') return std::nullopt;
-  int ordinal = 0;
+  double midnight_jd = 0.0;
   if (date.size() == 8) {
     const auto day = digits(date, 5, 3);
     if (!day || *day < 1 || *day > 365 + is_leap_year(*year)) return std::nullopt;
-    ordinal = *day;
+    midnight_jd = julian_midnight(*year, *day);
   } else {
     const auto month = digits(date, 5, 2), day = digits(date, 8, 2);
     if (date.size() != 10 || date[7] != '-' || !month || !day) return std::nullopt;
-    if (*month < 1 || *month > 12) return std::nullopt;
-    if (*day < 1 || *day > days_in_month(*year, *month)) return std::nullopt;
-    ordinal = day_of_year(*year, *month, *day);
+    double mjd_zero = 0.0, mjd = 0.0;
+    if (eraCal2jd(*year, *month, *day, &mjd_zero, &mjd) != 0) return std::nullopt;
+    midnight_jd = mjd_zero + mjd;
   }
 
   const auto hour = digits(time, 0, 2), minute = digits(time, 3, 2);
@@ -88,7 +75,7 @@ std::optional<CalendarTime> parse_calendar_time(std::string_view text) {
   if (!second || *second < 0 || *second >= 61) return std::nullopt;
 
   if (*second >= 60 && (*hour != 23 || *minute != 59)) return std::nullopt;
-  return CalendarTime{julian_midnight(*year, ordinal), (*hour * 60.0 + *minute) * 60.0 + *second};
+  return CalendarTime{midnight_jd, (*hour * 60.0 + *minute) * 60.0 + *second};
 }
 
 std::optional<Utc> parse_iso_epoch(std::string_view text) {

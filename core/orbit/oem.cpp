@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/text_fields.h"
@@ -16,10 +18,9 @@ namespace dmise {
 
 namespace {
 
-enum class TimeSystem { utc, tai, tt, gps };
-
-constexpr double tt_minus_tai_s = 32.184;
-constexpr double tai_minus_gps_s = 19.0;
+/// Time systems other than UTC, and TAI minus each [s].
+constexpr std::pair<std::string_view, double> time_systems[] = {
+    {"TAI", 0.0}, {"TT", -32.184}, {"GPS", 19.0}};
 
 /// Parses one file from top to bottom; the members are the state of the parser.
 class OemReader {
@@ -71,7 +72,7 @@ class OemReader {
  private:
   struct Declared {
     bool frame = false, time = false, eme2000 = false;
-    TimeSystem system = TimeSystem::utc;
+    std::optional<double> tai_minus_system_s;  // none: UTC
     std::string usable_start, usable_stop;
   };
 
@@ -123,16 +124,12 @@ class OemReader {
 
   void set_time_system(const std::string& system) {
     declared_.time = true;
-    if (system == "UTC")
-      declared_.system = TimeSystem::utc;
-    else if (system == "TAI")
-      declared_.system = TimeSystem::tai;
-    else if (system == "TT")
-      declared_.system = TimeSystem::tt;
-    else if (system == "GPS")
-      declared_.system = TimeSystem::gps;
-    else
-      fail("TIME_SYSTEM is not supported", system);
+    declared_.tai_minus_system_s.reset();
+    if (system == "UTC") return;
+    const auto* known =
+        std::ranges::find(time_systems, system, [](const auto& s) { return s.first; });
+    if (known == std::end(time_systems)) fail("TIME_SYSTEM is not supported", system);
+    declared_.tai_minus_system_s = known->second;
   }
 
   void check_metadata() const {
@@ -143,16 +140,13 @@ class OemReader {
   Tai tai_of(std::string_view text) const {
     const auto time = parse_calendar_time(text);
     if (!time) fail("not a time", text);
-    if (declared_.system == TimeSystem::utc) {
+    if (!declared_.tai_minus_system_s) {
       const auto utc = parse_iso_epoch(text);
       Tai tai;
       if (!utc || eraUtctai(utc->jd1, utc->jd2, &tai.jd1, &tai.jd2) < 0) fail("not a time", text);
       return tai;
     }
-    double offset_s = 0.0;
-    if (declared_.system == TimeSystem::tt) offset_s = -tt_minus_tai_s;
-    if (declared_.system == TimeSystem::gps) offset_s = tai_minus_gps_s;
-    return {time->midnight_jd, (time->second_of_day + offset_s) / day_s};
+    return {time->midnight_jd, (time->second_of_day + *declared_.tai_minus_system_s) / day_s};
   }
 
   void add_state(std::string_view line) {

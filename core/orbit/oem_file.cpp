@@ -69,7 +69,7 @@ void OemFile::keep_before(const std::string& utc) {
   held_utc_.clear();
   last_utc_ = last;
   stop_at_ = long(stop);
-  if (!last.empty()) overwrite_stop_time(last);
+  if (!last.empty()) write(last, stop_at_, SEEK_SET);
 }
 
 void OemFile::add(const std::string& utc, const std::string& previous_utc, const Vec<Gcrs>& r,
@@ -77,7 +77,7 @@ void OemFile::add(const std::string& utc, const std::string& previous_utc, const
   const std::string line = oem_state_line(utc, r, v);
   if (!last_utc_.empty() && last_utc_ == previous_utc) {
     write(line);
-    overwrite_stop_time(utc);
+    write(utc, stop_at_, SEEK_SET);
     last_utc_ = utc;
     return;
   }
@@ -99,15 +99,9 @@ void OemFile::add(const std::string& utc, const std::string& previous_utc, const
   held_utc_.clear();
 }
 
-void OemFile::write(const std::string& text) {
-  if (std::fseek(file_, 0, SEEK_END) != 0 ||
+void OemFile::write(const std::string& text, long offset, int from) {
+  if (std::fseek(file_, offset, from) != 0 ||
       std::fwrite(text.data(), 1, text.size(), file_) != text.size() || std::fflush(file_) != 0)
-    fail();
-}
-
-void OemFile::overwrite_stop_time(const std::string& utc) {
-  if (std::fseek(file_, stop_at_, SEEK_SET) != 0 ||
-      std::fwrite(utc.data(), 1, utc.size(), file_) != utc.size() || std::fflush(file_) != 0)
     fail();
 }
 

@@ -39,8 +39,7 @@ class OemFile {
 
  private:
   void open(const char* mode);
-  void write(const std::string& text);
-  void overwrite_stop_time(const std::string& utc);
+  void write(const std::string& text, long offset = 0, int from = SEEK_END);
   [[noreturn]] void fail() const;
 
   std::string path_;

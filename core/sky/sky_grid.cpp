@@ -50,8 +50,11 @@ struct Grid {
     return nodes[std::size_t(j + 1) * stride + std::size_t(i + 1)];
   }
 
-  /// Values at the grid's corners; those beyond its ends continue the parabola of the last three,
-  /// or the line of two.
+  /// The value beyond an end continues the parabola of the last three nodes, or the line of two.
+  static double beyond(int cells, double last, double second, double third) {
+    return cells > 1 ? 3 * (last - second) + third : 2 * last - second;
+  }
+
   void make_nodes(Threads& threads) {
     nodes.assign(std::size_t(stride) * std::size_t(down.cells + 3), 0.0);
     threads.for_ranges(std::size_t(down.cells) + 1, 2, [&](std::size_t first, std::size_t last) {
@@ -60,18 +63,14 @@ struct Grid {
           node(i, j) =
               f(std::min(i * across.width, columns - 1.0), std::min(j * down.width, rows - 1.0));
         const int n = across.cells;
-        node(-1, j) =
-            n > 1 ? 3 * (node(0, j) - node(1, j)) + node(2, j) : 2 * node(0, j) - node(1, j);
-        node(n + 1, j) = n > 1 ? 3 * (node(n, j) - node(n - 1, j)) + node(n - 2, j)
-                               : 2 * node(n, j) - node(n - 1, j);
+        node(-1, j) = beyond(n, node(0, j), node(1, j), node(2, j));
+        node(n + 1, j) = beyond(n, node(n, j), node(n - 1, j), node(n - 2, j));
       }
     });
     const int m = down.cells;
     for (int i = -1; i <= across.cells + 1; ++i) {
-      node(i, -1) =
-          m > 1 ? 3 * (node(i, 0) - node(i, 1)) + node(i, 2) : 2 * node(i, 0) - node(i, 1);
-      node(i, m + 1) = m > 1 ? 3 * (node(i, m) - node(i, m - 1)) + node(i, m - 2)
-                             : 2 * node(i, m) - node(i, m - 1);
+      node(i, -1) = beyond(m, node(i, 0), node(i, 1), node(i, 2));
+      node(i, m + 1) = beyond(m, node(i, m), node(i, m - 1), node(i, m - 2));
     }
   }
 
@@ -111,10 +110,10 @@ struct Piece {
 
   void fill_cell(int i, int j) {
     const Axis &across = grid.across, &down = grid.down;
-    const auto row_at = [&](int k, double v) {
-      return at(
-          cubic(grid.node(k, j - 1), grid.node(k, j), grid.node(k, j + 1), grid.node(k, j + 2)), v);
+    const auto column = [&](int k) {
+      return cubic(grid.node(k, j - 1), grid.node(k, j), grid.node(k, j + 1), grid.node(k, j + 2));
     };
+    const auto row_at = [&](int k, double v) { return at(column(k), v); };
     const auto cubic_at = [&](double v) {
       return cubic(row_at(i - 1, v), row_at(i, v), row_at(i + 1, v), row_at(i + 2, v));
     };
@@ -133,9 +132,7 @@ struct Piece {
       patch.v0 = float(y0 / down.width - j);
       patch.dv = float(1.0 / down.width);
       std::array<std::array<double, 4>, 4> columns;  // polynomials of v
-      for (int k = 0; k < 4; ++k)
-        columns[k] = cubic(grid.node(i - 1 + k, j - 1), grid.node(i - 1 + k, j),
-                           grid.node(i - 1 + k, j + 1), grid.node(i - 1 + k, j + 2));
+      for (int k = 0; k < 4; ++k) columns[k] = column(i - 1 + k);
       for (std::size_t b = 0; b < 4; ++b) {
         const auto c = cubic(columns[0][b], columns[1][b], columns[2][b], columns[3][b]);
         for (std::size_t a = 0; a < 4; ++a) patch.coefficient[4 * b + a] = float(c[a]);

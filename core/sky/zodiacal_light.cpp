@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/base/table_place.h"
 #include "core/base/units.h"
 #include "core/photometry/spectrum.h"
 
@@ -16,17 +17,12 @@ namespace {
 constexpr int rows = std::size(longitude_deg), columns = std::size(latitude_deg);
 constexpr double one_s10 = 1.28;
 
-/// Place on an ascending axis: node below and fraction to the next, for every 5 degrees looked up
-/// at once.
-struct Place {
-  int node;
-  double fraction;
-};
-
+/// Place on an ascending axis whose node below is known for every 5 degrees.
 template <int N>
-Place place_on(const double (&axis)[N], const std::array<int, 37>& node_at_5_deg, double at_deg) {
+TablePlace place_on(const double (&axis)[N], const std::array<int, 37>& node_at_5_deg,
+                    double at_deg) {
   const int node = std::min(node_at_5_deg[std::size_t(at_deg / 5)], N - 2);
-  return {node, (at_deg - axis[node]) / (axis[node + 1] - axis[node])};
+  return {std::size_t(node), (at_deg - axis[node]) / (axis[node + 1] - axis[node])};
 }
 
 template <int N>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/visibility/batch_states.h"
 
 namespace dmise {
 namespace {
@@ -20,6 +21,12 @@ struct Place {
   Vec<Teme> line_m() const { return state.position_m - camera.apex_m; }
   double range_m() const { return ok() ? norm(line_m()) : 1e300; }
 };
+
+/// Index of the first place at which `value` is greatest.
+template <class Value>
+std::size_t greatest(const std::vector<Place>& places, const Value& value) {
+  return std::size_t(std::ranges::max_element(places, {}, value) - places.begin());
+}
 
 /// Evaluates one object relative to a sensor at any instant.
 class Follower {
@@ -40,8 +47,7 @@ class Follower {
     }
     batch_.propagate_times(object_, minutes, position, velocity, code);
     for (std::size_t k = 0; k < n; ++k)
-      places[k].state = {{position[k], position[n + k], position[2 * n + k]},
-                         {velocity[k], velocity[n + k], velocity[2 * n + k]},
+      places[k].state = {BatchStates::vec(position, k), BatchStates::vec(velocity, k),
                          static_cast<Sgp4Code>(code[k])};
     return places;
   }
@@ -107,9 +113,7 @@ class Follower {
     for (;;) {
       const auto times = between(a, b);
       auto places = along(times);
-      std::size_t best = 0;
-      for (std::size_t k = 1; k < places.size(); ++k)
-        if (value(places[k]) > value(places[best])) best = k;
+      const std::size_t best = greatest(places, value);
       if ((b - a).seconds() < top_error_s) return places[best];
       if (best > 0) a = times[best - 1];
       if (best + 1 < times.size()) b = times[best + 1];
@@ -172,19 +176,17 @@ void describe(const Follower& object, SimTime rise, SimTime set, Pass& pass) {
   pass.excluded = object.is_flagged() && std::ranges::any_of(places, [](const Place& p) {
                     return p.camera.excluded.any();
                   });
-  const auto greatest = [&](auto&& value) {
-    std::size_t best = 0;
-    for (std::size_t k = 1; k < places.size(); ++k)
-      if (value(places[k]) > value(places[best])) best = k;
+  const auto peak = [&](auto&& value) {
+    const std::size_t best = greatest(places, value);
     const SimTime a = places[best > 0 ? best - 1 : 0].time();
     const SimTime b = places[std::min(best + 1, places.size() - 1)].time();
     const Place inner = object.peak(a, b, value);
     return value(inner) > value(places[best]) ? inner : places[best];
   };
   pass.rise = object.moment(rise);
-  pass.top = object.moment(greatest([&](const Place& p) { return object.height(p); }).time());
+  pass.top = object.moment(peak([&](const Place& p) { return object.height(p); }).time());
   pass.set = object.moment(set);
-  pass.least_range_m = greatest([](const Place& p) { return -p.range_m(); }).range_m();
+  pass.least_range_m = peak([](const Place& p) { return -p.range_m(); }).range_m();
   if (!pass.top.sun_elevation_rad) return;
   pass.least_sun_elevation_rad = *pass.top.sun_elevation_rad;
   for (std::size_t k = 0; k <= 16; ++k)
