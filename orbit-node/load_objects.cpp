@@ -88,7 +88,6 @@ class Loader {
                              ? std::string()
                              : ": " + catalogue.describe(catalogue.refused[0])));
     require_all_found(source, catalogue.elements);
-    const DiffuseSphere unknown{source.radius_m, source.albedo};
     ObjectFactsFile facts;
     if (!source.facts_path.empty())
       facts = at_key(source.where, [&] { return read_object_facts(source.facts_path); });
@@ -103,12 +102,13 @@ class Loader {
           (e.catalogue_number != 0 && !taken_.insert(e.catalogue_number).second))
         continue;
       const auto known = facts.facts.find(e.catalogue_number);
-      const DiffuseSphere sphere =
-          known == facts.facts.end() ? unknown : sphere_of(known->second, unknown).sphere;
+      const DiffuseSphere sphere = known == facts.facts.end()
+                                       ? source.sphere
+                                       : sphere_of(known->second, source.sphere).sphere;
       population_.roster.objects.push_back({.catalogue_number = e.catalogue_number,
                                             .name = e.name,
                                             .designator = e.designator,
-                                            .geometry = sphere,
+                                            .sphere = sphere,
                                             .element_age_s = aged(element_age_days(e, start_))});
       population_.elements.push_back(e);
     }
@@ -123,7 +123,7 @@ class Loader {
     }
     population_.roster.objects.push_back({.catalogue_number = object.catalogue_number,
                                           .name = object.name,
-                                          .geometry = object.sphere,
+                                          .sphere = object.sphere,
                                           .element_age_s = aged(age_days),
                                           .panel = object.panel});
   }

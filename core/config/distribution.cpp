@@ -154,15 +154,15 @@ std::vector<Distribution::Value> Distribution::ends() const {
                         .what = "choice " + std::to_string(k + 1) + " of its one_of"});
     return values;
   }
-  const auto add = [&](double end, double otherwise, const char* which) {
+  const auto add = [&](double end, double otherwise, const char* which, const char* key) {
     const bool has = std::isfinite(end);
-    values.push_back({.scalar = scalar(has ? end : otherwise),
-                      .what = has ? std::string(which) + " of its " + name_
-                                  : "5 sigma from the mean of its normal, which has no " +
-                                        std::string(which[4] == 'l' ? "min" : "max")});
+    values.push_back(
+        {.scalar = scalar(has ? end : otherwise),
+         .what = has ? std::string(which) + " of its " + name_
+                     : "5 sigma from the mean of its normal, which has no " + std::string(key)});
   };
-  add(least_, mean_ - far_sigmas * sigma_, "the least");
-  add(most_, mean_ + far_sigmas * sigma_, "the most");
+  add(least_, mean_ - far_sigmas * sigma_, "the least", "min");
+  add(most_, mean_ + far_sigmas * sigma_, "the most", "max");
   return values;
 }
 

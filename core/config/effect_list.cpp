@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "core/base/error.h"
@@ -28,7 +29,7 @@
 namespace dmise {
 namespace {
 
-// A later effect changes the digests of those runs alone that switch it.
+// In every digest. An effect that is not listed changes only the digests of runs that switch it.
 constexpr std::string_view always_listed[] = {"proper_motion",
                                               "parallax",
                                               "light_deflection",
@@ -202,13 +203,13 @@ EffectSet recorded_effects(std::span<const PlannableEffect> effects, const Senso
     const auto named = recorded->second.find(std::string(facts.name));
     if (named == recorded->second.end())
       fail("no level of " + std::string(facts.name) + ", which the scenario has");
-    const auto level = std::find(facts.levels.begin(), facts.levels.end(), named->second);
+    const auto level = std::ranges::find(facts.levels, named->second);
     if (level == facts.levels.end())
       fail(std::string(facts.name) + " has no level " + printable(named->second));
     set.force_level(facts, int(level - facts.levels.begin()));
   }
   for (const auto& planned : recorded->second)
-    if (std::none_of(effects.begin(), effects.end(), [&](const PlannableEffect& effect) {
+    if (std::ranges::none_of(effects, [&](const PlannableEffect& effect) {
           return effect.facts->name == planned.first;
         }))
       fail(printable(planned.first) + " is no effect of the scenario's sensor");
@@ -322,14 +323,12 @@ std::vector<std::string> effects_in_digest(const EffectSet& effects) {
                     (effects.is_forced(effect) ? "!" : ""));
   };
   const auto named = [](std::string_view name) {
-    return *std::find_if(all_effects().begin(), all_effects().end(),
-                         [&](const EffectFacts* effect) { return effect->name == name; });
+    return *std::ranges::find(all_effects(), name, &EffectFacts::name);
   };
   for (const auto name : always_listed)
     if (effects.has(*named(name)) || effects.is_forced(*named(name))) add(*named(name));
   for (const EffectFacts* effect : all_effects())
-    if (std::find(std::begin(always_listed), std::end(always_listed), effect->name) ==
-            std::end(always_listed) &&
+    if (std::ranges::find(always_listed, effect->name) == std::end(always_listed) &&
         (effects.level(*effect) != effect->unplanned() || effects.is_forced(*effect)))
       add(*effect);
   return names;

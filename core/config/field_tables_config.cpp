@@ -13,6 +13,8 @@ namespace {
 constexpr double widest_deg = 180.0, widest_px = 1e6, widest_fwhm_px = 200.0, most_nm = 1e5;
 constexpr std::size_t most_radii = 1000;
 
+Forms widths() { return form::list(form::number(0.3, widest_fwhm_px)); }
+
 std::vector<Key> radius_keys() {
   return {optional("radius_deg", form::list(form::number(0.0, widest_deg)),
                    "Angles from the boresight [deg], rising."),
@@ -84,23 +86,20 @@ int noll_index(const std::string& key, int least, const YamlValue& value) {
 }
 
 const Section& vignetting_section() {
-  static const Section section = [] {
-    Section made{
-        "vignetting",
-        "Light lost away from the axis.",
-        {optional("natural", form::flag(), "Applies the cosine of the pupil's projection.", "off"),
-         optional("corner", form::above(0.0, 1.0), "Share of the light that reaches a corner.",
-                  "1"),
-         optional("power", form::number(1.0, 16.0),
-                  "Power of the distance from the axis with which light is lost.", "2")}};
-    for (Key& key : radius_keys()) made.keys.push_back(std::move(key));
-    made.keys.push_back(optional(
-        "relative_illumination", form::list(form::number(0.0, 1.0)),
-        "A measured lens, in place of `natural`, `corner` and `power`: light at each radius, "
-        "relative "
-        "to that of the axis. It is smooth and monotone between, and constant beyond the ends."));
-    return made;
-  }();
+  static const Section section{
+      "vignetting", "Light lost away from the axis.",
+      with_keys(
+          {optional("natural", form::flag(), "Applies the cosine of the pupil's projection.",
+                    "off"),
+           optional("corner", form::above(0.0, 1.0), "Share of the light that reaches a corner.",
+                    "1"),
+           optional("power", form::number(1.0, 16.0),
+                    "Power of the distance from the axis with which light is lost.", "2")},
+          with_keys(radius_keys(),
+                    {optional("relative_illumination", form::list(form::number(0.0, 1.0)),
+                              "A measured lens, in place of `natural`, `corner` and `power`: light "
+                              "at each radius, relative to that of the axis. It is smooth and "
+                              "monotone between, and constant beyond the ends.")}))};
   return section;
 }
 
@@ -128,22 +127,19 @@ Vignetting read_vignetting(const YamlValue& value) {
 }
 
 const Section& psf_field_section() {
-  static const Section section = [] {
-    Section made{"psf_field",
-                 "A point spread that changes with the distance from the axis: widths with `psf: "
-                 "gaussian`, aberrations with `psf: diffraction`. Smooth and monotone between the "
-                 "radii, constant beyond their ends.",
-                 radius_keys()};
-    const Forms widths = form::list(form::number(0.3, widest_fwhm_px));
-    made.keys.push_back(optional("fwhm_radial_px", widths,
-                                 "Full width at half maximum along the radius [px], before "
-                                 "diffraction; in place of `psf_fwhm_px`."));
-    made.keys.push_back(optional("fwhm_tangential_px", widths,
-                                 "The same across the radius; as along it if not given."));
-    made.keys.push_back(optional("zernike_nm", form::map(field_zernike_section),
-                                 "Aberrations, beside those of the whole field."));
-    return made;
-  }();
+  static const Section section{
+      "psf_field",
+      "A point spread that changes with the distance from the axis: widths with `psf: gaussian`, "
+      "aberrations with `psf: diffraction`. Smooth and monotone between the radii, constant beyond "
+      "their ends.",
+      with_keys(radius_keys(),
+                {optional("fwhm_radial_px", widths(),
+                          "Full width at half maximum along the radius [px], before diffraction; "
+                          "in place of `psf_fwhm_px`."),
+                 optional("fwhm_tangential_px", widths(),
+                          "The same across the radius; as along it if not given."),
+                 optional("zernike_nm", form::map(field_zernike_section),
+                          "Aberrations, beside those of the whole field.")})};
   return section;
 }
 

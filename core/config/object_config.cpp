@@ -49,9 +49,10 @@ const Section& own_section() {
   return section;
 }
 
-void read_sphere(YamlMap& map, double& radius_m, double& albedo) {
-  radius_m = map.number_or("radius_m", 1.0);
-  albedo = map.number_or("albedo", 0.2);
+DiffuseSphere read_sphere(YamlMap& map) {
+  const DiffuseSphere usual;
+  return {.radius_m = map.number_or("radius_m", usual.radius_m),
+          .albedo = map.number_or("albedo", usual.albedo)};
 }
 
 ObjectSource read_object_source(const YamlValue& value) {
@@ -64,7 +65,7 @@ ObjectSource read_object_source(const YamlValue& value) {
       source.named == "gpredict" ? find_catalogue("satellites.dat") : catalogue.existing_file();
   if (source.path.empty())
     catalogue.fail("Debian's gpredict catalogue is missing; ./dmise setup fetches it");
-  read_sphere(map, source.radius_m, source.albedo);
+  source.sphere = read_sphere(map);
   if (const auto facts = map.find("facts")) source.facts_path = facts->existing_file();
   if (const auto only = map.find("only")) {
     for (const auto& name : only->list()) {
@@ -100,7 +101,7 @@ OwnObject read_own_object(const YamlValue& value, const Utc& start, const EarthC
     if (!object.attitude) geometry->fail("needs an attitude", false);
     object.geometry = read_geometry(*geometry);
   }
-  read_sphere(map, object.sphere.radius_m, object.sphere.albedo);
+  object.sphere = read_sphere(map);
   map.done();
   if (const auto* elements = std::get_if<MeanElements>(&object.motion.model))
     if (object.catalogue_number == 0) object.catalogue_number = elements->catalogue_number;

@@ -14,10 +14,9 @@ namespace dmise {
 
 /// A catalogue of element sets: `{catalogue: gpredict}`.
 struct ObjectSource {
-  std::string path;       // resolved
-  std::string named;      // as in the scenario: "gpredict" or a path
-  double radius_m = 1.0;  // of the equivalent diffuse sphere, by default
-  double albedo = 0.2;
+  std::string path;                     // resolved
+  std::string named;                    // as in the scenario: "gpredict" or a path
+  DiffuseSphere sphere;                 // of objects of which no facts are known
   std::string facts_path;               // CSV of brightness facts by catalogue number, may be empty
   std::vector<std::string> only;        // catalogue numbers or names; empty: all
   std::string where;                    // `file:line:column: objects[0].catalogue`, for messages

@@ -79,8 +79,8 @@ void write_objects(JsonWriter& json, const std::vector<ObjectSource>& catalogues
                    const std::vector<OwnObject>& own) {
   json.key("objects").begin_array();
   for (const auto& source : catalogues) {
-    json.begin_object().field("catalogue", source.named).field("radius_m", source.radius_m);
-    json.field("albedo", source.albedo).list("only", source.only).end_object();
+    json.begin_object().field("catalogue", source.named).field("radius_m", source.sphere.radius_m);
+    json.field("albedo", source.sphere.albedo).list("only", source.only).end_object();
   }
   for (const auto& object : own) write_own(json, object);
   json.end_array();

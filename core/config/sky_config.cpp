@@ -14,11 +14,9 @@
 namespace dmise {
 namespace {
 
-const Bounds brightness_bounds = Bounds::between(-10.0, 30.0);
-const Bounds extinction_bounds = Bounds::between(0.0, 5.0);
 constexpr std::int64_t most_seed = std::numeric_limits<std::int64_t>::max();
 
-Forms brightness() { return form::number(brightness_bounds.least, brightness_bounds.most); }
+Forms brightness() { return form::number(-10.0, 30.0); }
 Forms share() { return form::number(0.0, 1.0); }
 Forms sky_names() { return form::choice({"urban", "suburban", "dark", "space"}); }
 
@@ -101,13 +99,10 @@ const Section& atmosphere_section() {
   static const Section section{
       "atmosphere",
       "What the air does to light.",
-      {optional("extinction",
-                form::number(extinction_bounds.least, extinction_bounds.most) |
-                    form::text(extinction_site_names()),
+      {optional("extinction", form::number(0.0, 5.0) | form::text(extinction_site_names()),
                 "A site's curve, or k at 550 nm [mag/airmass].", "0.17"),
        optional("refraction", form::flag(),
-                "Whether the air bends light. The plan decides if "
-                "not given."),
+                "Whether the air bends light. The plan decides if not given."),
        optional("turbulence", form::choice({"hv57"}) | form::map(turbulence_section),
                 "Turbulence over the site, for scintillation.")}};
   return section;
@@ -156,7 +151,7 @@ bool is_number(const YamlValue& value) {
 
 /// Adds lamps that bring the zenith to `zenith` together with the natural sky.
 void read_zenith(const YamlValue& value, SkyConfig& sky) {
-  const double zenith = value.number(brightness_bounds);
+  const double zenith = value.number();
   sky.zenith_mag_per_arcsec2 = zenith;
   if (sky.preset == "space") {
     sky.parts.uniform = UniformSky{zenith};
