@@ -12,8 +12,8 @@ constexpr double most_shift_px = 0.2;  // of the stars from where the header has
 constexpr double most_shift_sigmas = 5.0;
 constexpr int least_stars = 8;  // expected, and seen, before the header is doubted
 
-/// Whether a frame's stars are elsewhere than by its header. Without anything like stars, as in
-/// clouds, that cannot be told.
+/// Whether a frame's stars are not where its header says. False where there is nothing like stars,
+/// as in clouds.
 bool is_wrong(const DetectionResult& result) {
   const StarsSeen& stars = result.stars;
   if (stars.expected < least_stars) return false;
@@ -49,7 +49,7 @@ CalibratedDetector::Result CalibratedDetector::detect(const Frame& frame,
     if (!may_be_solved || (CatalogueSky::can_expect(unknown) && !is_wrong(result.detection)))
       return result;
   }
-  if (!map_) throw Error("blind detection takes a catalogue of stars");
+  if (!map_) throw Error("blind detection needs a catalogue of stars");
   try {
     result.solution =
         solve_frame(frame, *map_, {.blind = blind, .elsewhere = blind, .search = {}}, threads);

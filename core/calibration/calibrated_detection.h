@@ -8,7 +8,7 @@
 
 namespace dmise {
 
-/// A detector with a catalogue of stars, which finds where a frame points if its header is wrong.
+/// Detection with a catalogue of stars, which solves a frame whose header's pointing is wrong.
 class CalibratedDetector {
  public:
   /// Without a map it detects by the header alone.
@@ -20,14 +20,14 @@ class CalibratedDetector {
     std::optional<FrameSolution> solution;  // if the header's pointing was wrong
   };
 
-  /// Told of the header of a solved frame whose pointing was not known, before detection by it: who
-  /// knows more may complete it.
+  /// Called with the counts and the header of a solved frame whose pointing was unknown, before
+  /// detection; may complete the header.
   std::function<void(const CountImage&, FrameHeader&)> after_solution;
 
-  /// Detects by the header if the frame's stars are where it says, and by the plate that its stars
-  /// show if they are elsewhere, or the header does not know their light, and there is a solution
-  /// near the header's pointing. A `blind` one believes no pointing, and throws `Error` if there is
-  /// no solution.
+  /// Detects by the header if the frame's stars are where it says. If they are elsewhere, or if the
+  /// header lacks what expecting them needs, solves the frame near the header's pointing and
+  /// detects by the solution, if there is one. If `blind`, solves it without the header's pointing,
+  /// and throws `Error` if there is no solution.
   Result detect(const Frame& frame, const DetectorSettings& settings, Threads& threads,
                 bool blind = false) const;
 

@@ -17,7 +17,7 @@ struct SolveSettings {
   PlateSearch search;
 };
 
-/// What the stars of a frame tell of it.
+/// The calibration of a frame by its stars.
 struct FrameSolution {
   PlateSolution plate;
   Wcs wcs;  // astrometric, so annual aberration and refraction are in it
@@ -25,9 +25,9 @@ struct FrameSolution {
   std::size_t sources = 0;
 };
 
-/// Solves a frame by its counts and by what its header states of site, time, lens and detector; the
-/// header's pointing, or RA and DEC alone, are a hint, and without one the sky is searched. Throws
-/// `Error` if there is no solution, or no time.
+/// Solves a frame by its counts and its header's site, time, lens and detector. The header's
+/// pointing, or RA and DEC alone, is a hint; without one the whole sky is searched. Throws `Error`
+/// if there is no solution or the header has no time.
 FrameSolution solve_frame(const Frame& frame, const StarMap& stars, const SolveSettings& settings,
                           Threads& threads);
 

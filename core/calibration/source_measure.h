@@ -23,7 +23,7 @@ struct SourceMoments {
   double angle_rad() const { return 0.5 * std::atan2(2 * xy, xx - yy); }
 };
 
-/// Length of the line that makes an image longer than wide.
+/// Returns the length of the uniform trail that has the image's moments, without the star's width.
 double trail_length_px(const SourceMoments& m, double sigma_px);
 
 /// Measures single images in a frame.
@@ -58,8 +58,8 @@ class SourceMeasure {
 
   SourceMoments of_component(const Component& c, double sigma_px) const;
 
-  /// One step of Bernstein & Jarvis' adaptive moments (2002, AJ 123, 583): of a Gaussian they are
-  /// its own.
+  /// One step of the adaptive moments of Bernstein & Jarvis 2002, AJ 123, 583, which for a Gaussian
+  /// are its own moments.
   bool improve(SourceMoments& m) const;
 
   const CountImage& counts_;

@@ -15,8 +15,8 @@ struct ExpectedStar {
   double signal_e = 0.0;  // in the whole exposure
 };
 
-/// A catalogue of stars as a detector uses it: what has a place in it is no satellite, and what is
-/// brighter than its faintest stars and has none is no star.
+/// A catalogue of stars for detection. A source at the place of one of its stars is that star; a
+/// source elsewhere that is bright enough for the catalogue is no star.
 class CatalogueSky {
  public:
   explicit CatalogueSky(std::shared_ptr<const StarMap> map);
@@ -28,8 +28,8 @@ class CatalogueSky {
   /// Whether enough is known of a frame to expect stars at their places with their light.
   static bool can_expect(const UnknownFacts& unknown);
 
-  /// The stars of at least `least_signal_e` in a frame and up to `beyond_px` beside it, by the
-  /// header's WCS, zero point, band and air; noise and clouds have no say. In the catalogue's
+  /// Returns the stars of at least `least_signal_e` in a frame and up to `beyond_px` beside it, by
+  /// the header's WCS, zero point, band and air, without noise and clouds. In the catalogue's
   /// order. None unless `can_expect`.
   std::vector<ExpectedStar> stars_in(const FrameHeader& header, int columns, int rows,
                                      double least_signal_e, double beyond_px = 20.0) const;
@@ -39,7 +39,7 @@ class CatalogueSky {
   double complete_to_v_mag_ = -std::numeric_limits<double>::infinity();
 };
 
-/// Light [e-] above which the catalogue knows every star, at a pixel of a frame.
+/// Returns the light [e-] above which the catalogue has every star, at a pixel of a frame.
 double complete_to_e(const CatalogueSky& sky, const FrameHeader& header, PixelPosition pixel);
 
 }  // namespace dmise

@@ -22,7 +22,7 @@ class CellMesh {
   }
   /// The values along row `y` of the frame, of the columns from `begin` to before `end`.
   void row(int y, int begin, int end, float* out) const;
-  /// A cell's value; that of the nearest cell beside the mesh.
+  /// Returns a cell's value; beside the mesh that of the nearest cell.
   float cell(int i, int j) const;
 
   int across = 0, down = 0;

@@ -7,8 +7,8 @@
 
 namespace dmise {
 
-/// What a component is: a source, or a star of this frame, or several, or what cannot be
-/// distinguished from them; or neither.
+/// What a component is: a source; or `star_like`, which is a star of this frame, several, or what
+/// cannot be distinguished from them; or neither.
 struct CompactJudgement {
   std::optional<Source> source;
   bool star_like = false;

@@ -17,7 +17,7 @@ struct DetectorSettings {
   double seed_snr = 5.0;             // minimum peak of a source in the filtered frame
   double connect_snr = 3.0;          // threshold of its pixels
   double least_snr = 6.0;            // minimum SNR of the fitted flux
-  double least_light_snr = 3.0;      // likewise with the errors of its ends: less is hardly seen
+  double least_light_snr = 3.0;      // likewise where the flux has the errors of the ends
   double least_difference_px = 1.5;  // minimum difference between a source's and a star's trail
   double least_snr_in_stars = 10.0;  // of a streak against the scatter of stars beside it
   // Minimum SNR at which a streak's evenness is measurable: in total, and per px.
@@ -42,12 +42,12 @@ struct DetectionResult {
   StarsSeen stars;                    // nothing without a catalogue
 };
 
-/// Detects what is no star, from the counts and the header alone. With a catalogue of stars, what
-/// it knows is hidden, and what is bright enough for it and not in it is no star whatever it looks
-/// like; if the frame does not show the catalogue's stars where they should be, and without one,
-/// what does not move like the stars is detected. Equal for any number of threads. Nothing is
-/// looked for where the header has the shutter closed. Needs memory for two images of 16 bits, a
-/// few rows and the sources, besides the frame.
+/// Detects what is no star, from the counts and the header alone. With a catalogue of stars, its
+/// stars are hidden, and a source that is bright enough for it and not in it is no star, whatever
+/// its shape. Without one, or if the frame does not show its stars where they should be, sources
+/// are detected that do not move like the stars. Equal for any number of threads. Detects nothing
+/// if the header says that the shutter was closed. Needs memory for two images of 16 bits, a few
+/// rows and the sources, besides the frame.
 DetectionResult detect(const CountImage& counts, const FrameHeader& header,
                        const DetectorSettings& settings, Threads& threads,
                        const CatalogueSky* sky = nullptr);

@@ -12,7 +12,7 @@ namespace dmise {
 using UtcText = std::function<std::string(SimTime)>;
 
 // One line of JSON each, without the line end, with a fixed order of keys. Times are in nanoseconds
-// since the scenario's start and UTC; angles in degrees; units are in the keys. What follows from
+// since the scenario's start and UTC; angles in degrees; units are in the keys. What depends on
 // an unknown fact is null. Throws `Error` with the key for a value that is not finite.
 std::string to_json(const Detection& detection, const UtcText& utc,
                     const UnknownFacts& unknown = {});

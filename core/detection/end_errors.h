@@ -4,9 +4,9 @@
 
 namespace dmise {
 
-/// What of a streak depends on where it ends: the place of its middle along the line, its light,
-/// length and slope of brightness, and how far its middle is beside the line, if the ends are on
-/// one that is turned.
+/// Parameters of a streak that depend on its ends: the place of its middle along the line, its
+/// light, its length, its slope of brightness, and the distance of its middle from the line, where
+/// the ends are on a turned one.
 enum EndParameter : std::size_t {
   end_middle,
   end_flux,

@@ -3,10 +3,10 @@
 
 namespace dmise {
 
-/// Even and complete enough to be one object's path.
+/// Whether a trail's light is even and complete enough for one object's path.
 bool is_continuous(const Scene& scene, const Trail& trail);
 
-/// Not worth a fit: even an inaccurate first guess is not this uneven.
+/// Whether it is so uneven that a fit is not worth it, even if the trail is a rough first guess.
 bool is_hopeless(const Scene& scene, const Trail& trail);
 
 }  // namespace dmise

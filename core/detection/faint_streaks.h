@@ -8,17 +8,18 @@
 
 namespace dmise {
 
-/// Lengthens a streak of which only the pixels above a threshold were found, where its light goes
-/// on in a frame in which nothing is hidden yet.
+/// Lengthens a streak of which only the pixels above a threshold were found, as far as its light
+/// continues in `frame`, in which no sources are hidden yet.
 void extend(const Scene& scene, const FilteredFrame& frame, Source& source);
 
-/// Least SNR of the best trail of a length, so that noise alone gives at most 0.1 of them in a
-/// frame of 8.3 Mpx: longer lines can be laid through it in more ways, and from 40 px on be bent.
+/// Returns the least SNR of a trail of this length at which noise alone gives at most 0.1 of them
+/// in a frame of 8.3 Mpx. More lines of greater length fit into a frame, from 40 px on also bent
+/// ones.
 double least_streak_snr(double length_px);
 
-/// Factor of the least SNR of a trail where more than a tenth of the frame is hidden, or the sky
-/// scatters more than noise: between so many stars are others that were not hidden, and their sums
-/// have a longer tail.
+/// Returns the factor by which the least SNR of a trail is raised where more than a tenth of the
+/// frame is hidden or the sky scatters more than noise: fainter stars that were not hidden give
+/// sums a longer tail.
 double crowding(const FilteredFrame& frame, const Trail& trail);
 
 /// Finds streaks that no threshold of single pixels shows, strongest first, from the beamlets of a

@@ -21,8 +21,8 @@ struct FilteredFrame {
 
   /// A cell of a mesh over the frame, as `flatten` found it.
   struct Cell {
-    float middle = 0.0f, scatter = 1.0f;  // of what is not hidden: its median, and what divides it
-    float hidden = 0.0f;                  // share of its pixels, those with light of stars included
+    float middle = 0.0f, scatter = 1.0f;  // of the pixels that are not hidden: median, divisor
+    float hidden = 0.0f;  // share of the pixels that are hidden or have light of stars
   };
   std::vector<Cell> mesh;  // empty until the frame is flat
 
@@ -41,12 +41,12 @@ struct FilteredFrame {
     last = std::min(last, columns - 1);
     if (first <= last) std::fill(row(y) + first, row(y) + last + 1, std::int8_t(0));
   }
-  /// Subtracts the local median of what is not hidden and divides by its scatter: stars too faint
-  /// to be hidden, and what is left of others, are light and scatter of the sky; and where stars
-  /// were taken for noise when that was measured, it is less. `lit`, if not null: pixels with light
-  /// of stars that were subtracted.
+  /// Subtracts the local median of the pixels that are not hidden and divides by their scatter.
+  /// Stars too faint to be hidden and the remains of others then count as light and scatter of the
+  /// sky; where stars made the noise seem too large when it was measured, the scatter is below 1.
+  /// `lit`, if not null: pixels with light of stars that were subtracted.
   void flatten(Threads& threads, const BitMask* lit = nullptr);
-  /// The cell around a place; one of noise alone before `flatten`.
+  /// Returns the cell around a place; before `flatten` one of noise alone.
   Cell cell_at(double x_px, double y_px) const;
 
   /// Correlation of noise at `distance_px`.

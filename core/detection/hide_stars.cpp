@@ -20,8 +20,8 @@ constexpr double lit_noise = 0.4;        // light in a pixel [its noise] that a 
 // By how many sigmas of its scatter a star may be brighter than expected: when its light is hidden,
 // and when it is compared with a source.
 constexpr double subtracted_sigmas = 3.0, most_sigmas = 7.0;
-constexpr double flickering =
-    0.35;  // scatter from which on any star may be as bright as any source
+// Scatter from which on any star may be as bright as any source.
+constexpr double flickering = 0.35;
 
 /// Subtracts a star from the filtered frame, and hides where more than `hidden` of it is.
 void subtract(const StarImage& image, float hidden, FilteredFrame& frame) {

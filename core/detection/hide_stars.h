@@ -7,9 +7,9 @@
 
 namespace dmise {
 
-/// Subtracts the stars of a catalogue from the filtered frame and hides what is left of bright
-/// ones, if it shows them where the header says that they are; otherwise changes nothing and
-/// returns nothing. `seen` gets how they agree.
+/// Subtracts the stars of a catalogue from the filtered frame and hides the remains of bright ones,
+/// if the frame shows them where the header says that they are; otherwise changes nothing and
+/// returns nothing. Sets `seen` to how they agree.
 std::optional<KnownStars> hide_stars(const Scene& scene, FilteredFrame& frame,
                                      const CatalogueSky& sky, const FrameHeader& header,
                                      StarsSeen& seen);

@@ -7,7 +7,7 @@
 
 namespace dmise {
 
-/// The stars of a catalogue that a frame shows, as what else is in it is compared with them.
+/// The stars of a catalogue that a frame shows, with which its sources are compared.
 class KnownStars {
  public:
   /// A star where the frame has it, and the most light that may come from it.
@@ -24,7 +24,7 @@ class KnownStars {
   const BitMask& lit() const { return lit_; }
   /// Whether a star of this light at a place would be in the catalogue.
   bool would_know(PixelPosition place, double flux_e) const;
-  /// Whether a star is within a distance of a place that may be as bright as that.
+  /// Whether a star within a distance of a place may be as bright as `flux_e`.
   bool may_be_at(PixelPosition place, double within_px, double flux_e) const;
 
  private:

@@ -9,7 +9,7 @@ namespace dmise {
 /// with r = (k - centre) to_r. 0 is a pixel that is hidden.
 struct LineSamples {
   const std::int8_t* pixels = nullptr;
-  std::size_t count = 0;                        // of pixels, for kernels read four of them at once
+  std::size_t count = 0;                        // of pixels: kernels read four at once
   std::size_t along_step = 1, across_step = 1;  // from one row or column to the next, and beside it
   int from = 0, to = -1;
   int across = 0;  // pixels of a row or column

@@ -73,8 +73,8 @@ double median_level(const std::vector<Slice>& s);
 /// Mean with values clipped at twice `level` (a star on the line), and its SNR.
 std::array<double, 2> clipped_mean(const std::vector<Slice>& s, double level);
 
-/// The slices within an extent between which a line of `level` is dark, and not by noise: none of
-/// its light is there. The most significant such gap, if it is longer than the PSF.
+/// Returns the most significant gap within an extent in which a line of `level` has no light, if it
+/// is longer than the PSF and not made by noise.
 std::optional<Extent> dark_gap(const Scene& scene, const Line& line, const Extent& extent,
                                double level, double offset_px = 0.0);
 

@@ -7,9 +7,9 @@
 
 namespace dmise {
 
-/// Light of a point source over pixels: concentric round Gaussians whose weights sum to the share
-/// of its light that they follow: 1, but for what is far out. Each includes the pixel: 1/12 px^2 of
-/// its variance. Weights of a mixture may be negative, as the dark rings of diffraction are.
+/// Light of a point source over pixels: concentric Gaussians. Their weights sum to the share of the
+/// light that they describe, 1 less the light far out; some may be negative, as for the dark rings
+/// of diffraction. The variance of each includes the pixel's, 1/12 px^2.
 struct Psf {
   struct Part {
     double weight = 1.0, sigma_px = 1.0;
@@ -18,6 +18,8 @@ struct Psf {
 
   std::array<Part, most> parts{};
   std::size_t count = 1;
+  // Ellipticity: relative change of the variance without pixel along x, and along the diagonal;
+  // across them it is the opposite.
   double along_x = 0.0, along_diagonal = 0.0;
 
   Psf(double sigma_px = 1.0) { parts[0].sigma_px = sigma_px; }  // one Gaussian

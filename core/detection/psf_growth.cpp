@@ -19,10 +19,10 @@ constexpr double outlier_sigmas = 4.0;
 constexpr double model_error = 0.15;      // relative, that does not make a pixel an outlier
 constexpr double sky_error = 0.3;         // around a star, in units of its background's prior
 constexpr double most_difference = 0.25;  // from the mixture's light
-// Light beyond a distance falls with the power 5/3 (Kolmogorov) to 3 (Moffat, beta 2.5) in seeing,
-// 1.9 to 2.8 so near.
-// Diffraction leaves dark rings; between them it does not grow, so that no power describes it.
-constexpr double dark_ring = -1.0;  // least weight of a part
+// A part of less weight is a dark ring of diffraction, whose curve of growth is no power.
+constexpr double dark_ring = -1.0;
+// In seeing, light beyond a distance falls with the power 5/3 (Kolmogorov) to 3 (Moffat, beta 2.5)
+// far out, and 1.9 to 2.8 at the zones' distances.
 constexpr double power_of_seeing = 2.4;
 constexpr std::array obscurations = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
 constexpr double growth_error = 1e-3;  // of light within a distance
@@ -85,12 +85,12 @@ struct MeasuredGrowth {
   Growth light{}, by_sky{};
 };
 
-/// All light of a shape of growth, an error of the sky and how well both explain what was measured.
+/// All light of a shape of growth, and the chi2 of that shape with an error of the sky.
 struct Extrapolation {
   double total = 0.0, chi2 = HUGE_VAL;
 };
 
-/// `fall`: what a share of the light may be less by, if that is fitted, too; null: all is known.
+/// `fall`: the shape of light that is missing, of which an amount is fitted too; null: none is.
 Extrapolation extrapolated(const MeasuredGrowth& measured, const Growth& shape,
                            const Growth* fall) {
   const std::size_t n = fall ? 3 : 2;
@@ -146,7 +146,7 @@ Extrapolation by_aperture(const MeasuredGrowth& measured, double width_px) {
 
 double light_by_growth(const std::vector<ShapeStar>& stars, const PsfField& mixture) {
   // Of each star excess = flux * (excess of a point) + area * (error of the sky): the sky between
-  // stars has of their wings, and a star's own background takes of them.
+  // stars contains light of their wings, as a star's fitted background does.
   constexpr std::size_t sky = zones;
   SmallMatrix matrix{};
   SmallVector right{};

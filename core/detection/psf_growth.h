@@ -5,12 +5,12 @@
 
 namespace dmise {
 
-/// All light of a point in units of that of a mixture with which `stars` were fitted, by its growth
-/// with the distance: what pixels within ten widths have over the mixture is added, and beyond them
-/// light falls as it does behind the aperture that explains the growth best, or by a power where
-/// there are no dark rings. Wide Gaussians say little about either: they are fitted to a slope. An
-/// error of the sky, which has of the stars' wings, is fitted, too. Seeing, lenses and apertures
-/// without or with an obscuration come out to 0.5 %. 1 where that cannot be told.
+/// Returns all light of a point source over that of the mixture with which `stars` were fitted, by
+/// its curve of growth. Within ten widths it adds the light of pixels over the mixture's; farther
+/// out, light falls as behind the aperture that fits the curve best, or by a power of the distance
+/// where there are no dark rings. The mixture's wide Gaussians are no measure of this light. The
+/// error of the sky, which contains some light of the stars' wings, is fitted too. Right to 0.5 %
+/// for seeing, lenses and apertures with and without an obscuration; 1 where it cannot be measured.
 double light_by_growth(const std::vector<ShapeStar>& stars, const PsfField& mixture);
 
 }  // namespace dmise

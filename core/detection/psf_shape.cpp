@@ -180,7 +180,7 @@ void simplify(const NormalEquations& total, std::vector<std::size_t>& used, Solu
 
 }  // namespace
 
-bool fit_psf_shape(std::vector<ShapeStar> stars, PsfField& field) {
+void fit_psf_shape(std::vector<ShapeStar> stars, PsfField& field) {
   PsfField mixture = field;
   mixture.count = parts;
   mixture.ratios = ratios;
@@ -197,14 +197,14 @@ bool fit_psf_shape(std::vector<ShapeStar> stars, PsfField& field) {
       for (std::size_t l = 0; l < parts; ++l)
         total.right[k] += total.matrix[std::max(k, l)][std::min(k, l)] * now.weights[l];
     auto next = solved(total, used);
-    if (!next) return false;
+    if (!next) return;
     if (round == 0) {
       const auto single = solved(total, {nearest});
-      if (!single || next->gain < single->gain + significant_chi2) return false;
+      if (!single || next->gain < single->gain + significant_chi2) return;
     }
     if (round == rounds - 1) simplify(total, used, *next);
     const double sum = std::accumulate(next->weights.begin(), next->weights.end(), 0.0);
-    if (!(sum > 0.5 && sum < 2.0)) return false;
+    if (!(sum > 0.5 && sum < 2.0)) return;
     SmallVector step{};
     for (std::size_t k = 0; k < parts; ++k) step[k] = next->weights[k] - now.weights[k];
     for (std::size_t i = 0; i < stars.size(); ++i) move(stars[i], steps[i], step);
@@ -219,7 +219,6 @@ bool fit_psf_shape(std::vector<ShapeStar> stars, PsfField& field) {
   const double light = light_by_growth(stars, mixture);
   for (std::size_t i = 0; i < used.size(); ++i) mixture.weights[i] /= light;
   field = mixture;
-  return true;
 }
 
 }  // namespace dmise

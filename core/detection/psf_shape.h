@@ -13,9 +13,9 @@ struct ShapeStar {
   std::vector<FitPixel> pixels;
 };
 
-/// Measures weights of the Gaussians that make up the PSF, from all stars together, with each
-/// star's flux, place and background free. Leaves the field one Gaussian, and returns false, where
-/// a mixture does not fit significantly better. `field` knows the width of the Gaussian.
-bool fit_psf_shape(std::vector<ShapeStar> stars, PsfField& field);
+/// Measures the weights of the Gaussians that make up the PSF, from all stars together, with each
+/// star's flux, place and background free. Leaves `field`, which has the width of one Gaussian, as
+/// it is where a mixture does not fit significantly better.
+void fit_psf_shape(std::vector<ShapeStar> stars, PsfField& field);
 
 }  // namespace dmise

@@ -6,9 +6,8 @@
 
 namespace dmise {
 
-/// Components that may be a star from which the PSF is measured: bright, not saturated, no other
-/// within its core, whole in the frame; spread over the frame, by falling brightness in each part
-/// of it.
+/// Returns components that may be stars from which the PSF is measured: bright, of a star's extent
+/// and whole in the frame; spread over the frame, by falling brightness in each part of it.
 std::vector<const Component*> psf_candidates(const Scene& scene,
                                              const std::vector<Component>& components);
 

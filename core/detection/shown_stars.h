@@ -14,9 +14,9 @@ struct ShownStar {
   double light_error = 0.0;  // relative, 1 sigma, of flux_e
 };
 
-/// The stars with the light that they have on average where they are. Those that are well above the
-/// noise get their own place and light by least squares of their pixels, of which the agreement's
-/// scatters are the prior; the light of their neighbours is subtracted.
+/// Returns the stars with the light that stars around them have on average. Those well above the
+/// noise get their own place and light by least squares over their pixels, with the agreement's
+/// scatters as prior and without the light of their neighbours.
 std::vector<ShownStar> shown_stars(const Scene& scene, const StarAgreement& agreement,
                                    const std::vector<ExpectedStar>& expected);
 

@@ -43,7 +43,7 @@ std::vector<FitPixel> without_outliers(const std::vector<FitPixel>& pixels,
 /// Whether a trail is finite, of positive flux and centred in the frame.
 bool plausible(const Scene& scene, const Trail& trail);
 
-/// Final fit of a source that is not a star, over all pixels near `start` of any component, with a
+/// Fits a source that is not a star, over all pixels near `start` of any component, with a
 /// free local background; outlying pixels (stars underneath) are rejected. Empty if the fit fails
 /// or leaves the frame. A `draft` stops before the ends have converged. `free`: the parameters of
 /// the trail that are fitted; 0: those that its length can show.

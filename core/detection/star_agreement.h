@@ -7,7 +7,7 @@
 
 namespace dmise {
 
-/// How a catalogue's stars shine in a part of a frame.
+/// Light of a catalogue's stars in a part of a frame.
 struct StarLightRatio {
   double middle = 1.0;    // of their light over what is expected
   double scatter = 0.15;  // of its logarithm: scintillation, errors of the catalogue, blends

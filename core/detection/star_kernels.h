@@ -40,7 +40,7 @@ struct StarSums {
                       std::int8_t* steps);                                                       \
   /* Bits of up to 64 values that are above `least`. */                                          \
   std::uint64_t bits_above(const float* values, std::size_t count, float least);                 \
-  /* Sums of rows of pixels, without those that are no numbers. The weight of a pixel is         \
+  /* Sums over rows of pixels, without those that are NaN. The weight of a pixel is              \
      1 / (1 + photons light + (model_error light)^2). */                                         \
   void add_pixels(const float* light, const float* by_x, const float* by_y, const float* pixels, \
                   std::size_t stride, std::size_t rows, float photons, float model_error,        \

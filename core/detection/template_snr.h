@@ -10,9 +10,9 @@ struct StarlitSky {
 
 StarlitSky starlit_sky(const Scene& scene, const Trail& trail);
 
-/// SNR of a source of known shape in the noise and the scatter of the sky: the sum of pixels
-/// weighted by the shape, which is the best of all statistics. What is hidden, lit by stars or
-/// clipped does not count.
+/// Returns the SNR of a source of known shape in the noise and the scatter of the sky: the sum of
+/// pixels weighted by the shape, the most sensitive statistic. Pixels that are hidden, lit by stars
+/// or clipped do not count.
 double template_snr(const Scene& scene, const Trail& trail);
 
 /// A trail and its `template_snr`.

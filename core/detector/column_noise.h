@@ -19,7 +19,7 @@ struct ColumnNoise {
   using Prepared = std::vector<float>;  // by column [e-]
   Prepared prepare(const ExposureFacts& exposed) const;
   void apply(const ExposureFacts& exposed, const Prepared& offsets_e, Piece& piece) const;
-  /// Five and a half deviations: one column in 26 million is beyond.
+  /// Of a pixel's noise alone, because the offsets are new in each frame.
   ErrorBound error(int, const PlanFacts& f) const {
     return {.noise = f.without_charge(column_noise_e * column_noise_e).noise};
   }

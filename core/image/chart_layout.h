@@ -27,7 +27,7 @@ struct TextStyle {
   bool upwards = false;  // rotated by 90 deg, read from below
 };
 
-/// Output of a chart. To add a format: implement it and call `draw_chart`.
+/// Draws the elements of a chart in a format. To add a format: implement it and call `draw_chart`.
 class ChartPen {
  public:
   virtual ~ChartPen() = default;

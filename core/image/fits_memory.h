@@ -19,8 +19,8 @@ struct Fits {
   std::string reason() const;
 };
 
-/// Adds the cards of the present header to `values`, which keep what they have; `status` says
-/// whether all could be read.
+/// Adds the cards of the current HDU to `values`; keywords that are there keep their values.
+/// `status` says whether all could be read.
 void add_cards(Fits& fits, FitsValues& values);
 
 }  // namespace dmise

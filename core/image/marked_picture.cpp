@@ -69,7 +69,7 @@ void draw_scale_bar(Picture& picture, int x, int y, double arcsec_per_px, double
   draw_text(picture, x, y + 7, best->second, text_colour, scale);
 }
 
-/// North and east at the picture's centre.
+/// Draws arrows to north and east, as they are at the picture's centre.
 void draw_compass(Picture& picture, double x, double y, double radius, const Wcs& wcs,
                   PixelPosition centre, int scale) {
   const Vec<Gcrs> here = wcs_direction(wcs, centre);
