@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -11,7 +12,7 @@
 #include "core/frames/vec.h"
 #include "core/orbit/attitude_interpolation.h"
 #include "core/orbit/elements.h"
-#include "core/sim/geometry.h"
+#include "core/photometry/diffuse_sphere.h"
 
 // Data exchanged between actors and evaluators, the same in one process and across a network.
 namespace dmise {
@@ -20,12 +21,12 @@ namespace dmise {
 struct ObjectInfo {
   std::uint32_t catalogue_number = 0;  // up to 9 digits
   std::string name;
-  std::string designator;  // international designator, may be empty
-  Geometry geometry;
+  std::string designator;        // international designator, may be empty
+  DiffuseSphere sphere;          // its brightness, unless it has a shape
   double element_age_s = 0.0;    // start of the run minus the epoch of the elements
   Rare<SunTrackingPanel> panel;  // of an object with an attitude
 
-  bool operator==(const ObjectInfo&) const = default;
+  bool operator==(const ObjectInfo &) const = default;
 };
 
 /// All objects of a run; the position in this list is the object's index everywhere else.
@@ -33,7 +34,7 @@ struct ObjectRoster {
   std::vector<ObjectInfo> objects;
   std::vector<MeanElements> elements;  // of the first objects, those that SGP4 moves
 
-  bool operator==(const ObjectRoster&) const = default;
+  bool operator==(const ObjectRoster &) const = default;
 };
 
 /// States of all objects at one tick in GCRS, as a structure of arrays. Slope is the derivative of
@@ -59,9 +60,16 @@ struct ObjectStates {
     return {slope_m_per_s[i], slope_m_per_s[count + i], slope_m_per_s[2 * count + i]};
   }
   /// Attitude of object `i`; empty if it has none.
-  std::optional<AttitudeState> attitude(std::size_t i) const;
+  std::optional<AttitudeState> attitude(std::size_t i) const {
+    const auto found = std::ranges::lower_bound(attitude_object, i);
+    if (found == attitude_object.end() || *found != i || code[i] != 0) return std::nullopt;
+    const std::size_t m = attitude_object.size();
+    const auto k = static_cast<std::size_t>(found - attitude_object.begin());
+    const double *q = gcrs_from_body.data() + k, *w = attitude_rate_rad_per_s.data() + k;
+    return AttitudeState{{q[0], q[m], q[2 * m], q[3 * m]}, {w[0], w[m], w[2 * m]}};
+  }
 
-  bool operator==(const ObjectStates&) const = default;
+  bool operator==(const ObjectStates &) const = default;
 };
 
 /// Atmosphere above one ground sensor, at one tick; valid until the next one.
@@ -78,7 +86,7 @@ struct SiteState {
   double tau0_s = 0.0;
   double turbulence_m_per_s = 0.0;
 
-  bool operator==(const SiteState&) const = default;
+  bool operator==(const SiteState &) const = default;
 };
 
 /// Environment common to all sensors, at one tick.
@@ -95,7 +103,7 @@ struct EnvironmentState {
   /// `slope_half_step_s` before and after `time`, where sensors propagate objects.
   std::optional<std::array<EarthOrientation, 2>> earth_beside;
 
-  bool operator==(const EnvironmentState&) const = default;
+  bool operator==(const EnvironmentState &) const = default;
 };
 
 }  // namespace dmise

@@ -91,9 +91,8 @@ Encoded encode_body(const ObjectRoster& roster) {
     o->set_catalogue_number(object.catalogue_number);
     o->set_name(object.name);
     o->set_designator(object.designator);
-    const auto& sphere = std::get<DiffuseSphere>(object.geometry);
-    o->set_radius_m(sphere.radius_m);
-    o->set_albedo(sphere.albedo);
+    o->set_radius_m(object.sphere.radius_m);
+    o->set_albedo(object.sphere.albedo);
     o->set_element_age_s(object.element_age_s);
     if (object.panel) encode_panel(*object.panel, o->mutable_panel());
   }
@@ -116,7 +115,7 @@ ObjectRoster decode_roster(std::string_view payload, std::string_view arrays) {
     roster.objects.push_back({.catalogue_number = o.catalogue_number(),
                               .name = o.name(),
                               .designator = o.designator(),
-                              .geometry = DiffuseSphere{o.radius_m(), o.albedo()},
+                              .sphere = {o.radius_m(), o.albedo()},
                               .element_age_s = o.element_age_s(),
                               .panel = o.has_panel() ? decode_panel(o.panel()) : std::nullopt});
   if (const std::size_t k = element_count(message); k > 0) {

@@ -39,9 +39,8 @@ void check(const ObjectRoster& roster) {
     if (object.catalogue_number > 999999999) refuse("catalogue_number", "has up to 9 digits");
     name_text(object.name, "name");
     name_text(object.designator, "designator");
-    const auto& sphere = std::get<DiffuseSphere>(object.geometry);
-    in_range(sphere.radius_m, std::numeric_limits<double>::min(), 1e9, "radius_m");
-    in_range(sphere.albedo, std::numeric_limits<double>::min(), 1.0, "albedo");
+    in_range(object.sphere.radius_m, std::numeric_limits<double>::min(), 1e9, "radius_m");
+    in_range(object.sphere.albedo, std::numeric_limits<double>::min(), 1.0, "albedo");
     finite(object.element_age_s, "element_age_s");
     if (object.panel) check(*object.panel);
   }

@@ -69,14 +69,11 @@ Illumination ObjectSampler::illumination(const Motion& motion, const Vec<Gcrs>& 
 
 double ObjectSampler::magnitude(std::size_t object, const Motion& motion,
                                 const ExposureInstant& at) const {
-  const auto& facts = view_.world().roster().objects[object];
   if (const ObjectShape* own_shape = shape(object))
     if (const auto pose = shape_pose(view_, object, at.time, at.observer.position_m, 0))
       return shape_magnitude(*own_shape, *pose);
-  const Illumination seen = illumination(motion, at.observer.position_m);
-  return std::visit(
-      [&](const DiffuseSphere& sphere) { return diffuse_sphere_magnitude(sphere, seen); },
-      facts.geometry);
+  return diffuse_sphere_magnitude(view_.world().roster().objects[object].sphere,
+                                  illumination(motion, at.observer.position_m));
 }
 
 const ObjectShape* ObjectSampler::shape(std::size_t object) const {
@@ -92,7 +89,7 @@ double ObjectSampler::shape_photons(std::size_t object, const ObjectShape& shape
 double ObjectSampler::secondary_photons(std::size_t object, const Motion& motion,
                                         const ExposureInstant& at) const {
   if (!with_secondary_) return 0.0;
-  const auto& sphere = std::get<DiffuseSphere>(view_.world().roster().objects[object].geometry);
+  const DiffuseSphere& sphere = view_.world().roster().objects[object].sphere;
   Rotation<Body, Gcrs> axes;  // a sphere looks the same in any
   const Illumination seen = illumination(motion, at.observer.position_m);
   const Vec<Body> to_viewer = axes * unit(at.observer.position_m - motion.position_m);

@@ -49,7 +49,7 @@ struct TwoSites {
     for (const MeanElements& e : roster.elements)
       roster.objects.push_back({.catalogue_number = e.catalogue_number,
                                 .name = "OBJECT " + std::to_string(e.catalogue_number),
-                                .geometry = DiffuseSphere{1.0, 0.2}});
+                                .sphere = {1.0, 0.2}});
     FusionTrialSettings settings;
     for (int k = 0; k < 2; ++k) settings.sites.push_back({32, -88 + 4.2 * k, 200});
     settings.half_angle_rad = 50 * deg;

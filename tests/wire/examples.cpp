@@ -20,7 +20,7 @@ ObjectRoster roster(Numbers& n) {
     r.objects.push_back({.catalogue_number = 999999999 - i,
                          .name = "ÉTOILE " + std::to_string(i),
                          .designator = i % 2 ? "" : "1998-067A",
-                         .geometry = DiffuseSphere{n.in(0.01, 50), n.in(0.01, 1)},
+                         .sphere = {n.in(0.01, 50), n.in(0.01, 1)},
                          .element_age_s = n.in(-1e7, 1e7)});
   for (std::size_t i = 0; i < 3; ++i)
     r.elements.push_back({.epoch_jd1 = 2458138.5,

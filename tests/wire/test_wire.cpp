@@ -200,8 +200,8 @@ TEST(Wire, DoesNotSendWhatItWouldRefuse) {
   expect_unsent<ObjectStates>([](auto& s) { s.position_m[0] = nan; });
   expect_unsent<ObjectStates>([](auto& s) { s.position_m.pop_back(); });
   expect_unsent<ObjectStates>([](auto& s) { s.velocity_m_per_s[2] = 4e8; });
-  expect_unsent<ObjectRoster>([](auto& s) { s.objects[0].geometry = DiffuseSphere{1, 0}; });
-  expect_unsent<ObjectRoster>([](auto& s) { s.objects[0].geometry = DiffuseSphere{-1, 0.2}; });
+  expect_unsent<ObjectRoster>([](auto& s) { s.objects[0].sphere = {1, 0}; });
+  expect_unsent<ObjectRoster>([](auto& s) { s.objects[0].sphere = {-1, 0.2}; });
   expect_unsent<ObjectRoster>([](auto& s) { s.objects[0].name = "\xff\xfe"; });
   expect_unsent<EnvironmentState>([](auto& s) { s.earth.cirs_from_gcrs.m[0][0] += 1e-6; });
   expect_unsent<EnvironmentState>([](auto& s) { s.earth_beside->back().era_rad = nan; });
