@@ -177,7 +177,8 @@ void add_pace_verb(CLI::App& clock) {
   verb->add_option("--keys", options->keys, "directory with operator.key");
   verb->callback([options] {
     const Security security(options->keys, operator_name);
-    std::fputs(table(pace_master(options->master, patience_s, options->factor, security)).c_str(),
+    const ClockRequest request{.action = ClockAction::pace, .factor = options->factor};
+    std::fputs(table(control_master(options->master, patience_s, request, security)).c_str(),
                stdout);
   });
 }
@@ -219,8 +220,8 @@ void add_clock_command(CLI::App& app) {
     verb->add_option("--tick", options->tick, "tick, or number of ticks");
     verb->add_option("--reason", options->reason, "cause to record");
     verb->callback([options, what = action.first] {
-      std::fputs(table(control_master(options->master, patience_s, what, options->tick,
-                                      options->reason, security_of(*options)))
+      const ClockRequest request{.action = what, .tick = options->tick, .reason = options->reason};
+      std::fputs(table(control_master(options->master, patience_s, request, security_of(*options)))
                      .c_str(),
                  stdout);
     });

@@ -1,7 +1,5 @@
 #include "launch/star_catalogue_option.h"
 
-#include <filesystem>
-
 #include "core/base/error.h"
 #include "core/base/user_directories.h"
 #include "core/config/search_path.h"
@@ -23,10 +21,7 @@ std::shared_ptr<const StarMap> load_star_catalogue(const std::string& name) {
   const char* file = star_catalogue_file(named);
   const std::string path = file ? find_catalogue(file) : named;
   if (path.empty()) throw ConfigError("--catalogue: " + missing_star_catalogue(named));
-  const std::string cache = cache_directory();
-  std::error_code ignored;  // without the directory nothing is kept, that is all
-  if (!cache.empty()) std::filesystem::create_directories(cache, ignored);
-  return std::make_shared<const StarMap>(load_star_map(path, cache));
+  return std::make_shared<const StarMap>(load_star_map(path, cache_directory()));
 }
 
 }  // namespace dmise

@@ -1,6 +1,5 @@
 #include "launch/survey_map.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

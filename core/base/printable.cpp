@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
+
+#include "core/base/formatted.h"
 
 namespace dmise {
 namespace {
@@ -36,12 +37,6 @@ bool is_control(std::uint32_t c) {
          (c >= 0x2028 && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069) || c == 0xfeff;
 }
 
-void append_escape(std::string& out, const char* format, std::uint32_t value) {
-  char escape[16];
-  std::snprintf(escape, sizeof escape, format, value);
-  out += escape;
-}
-
 }  // namespace
 
 std::string printable(std::string_view text, std::size_t most_bytes) {
@@ -50,7 +45,7 @@ std::string printable(std::string_view text, std::size_t most_bytes) {
   while (at < text.size() && out.size() < most_bytes) {
     const CodePoint c = code_point(text.substr(at));
     if (c.bytes == 0)
-      append_escape(out, "\\x%02x", static_cast<unsigned char>(text[at]));
+      out += formatted("\\x%02x", static_cast<unsigned char>(text[at]));
     else if (!is_control(c.value))
       out += text.substr(at, c.bytes);
     else if (c.value == '\n')
@@ -60,7 +55,7 @@ std::string printable(std::string_view text, std::size_t most_bytes) {
     else if (c.value == '\t')
       out += "\\t";
     else
-      append_escape(out, c.value < 0x100 ? "\\x%02x" : "\\u%04x", c.value);
+      out += formatted(c.value < 0x100 ? "\\x%02x" : "\\u%04x", c.value);
     at += std::max<std::size_t>(1, c.bytes);
   }
   if (at < text.size()) out += "... (" + std::to_string(text.size()) + " bytes)";

@@ -51,6 +51,10 @@ std::string got(std::string_view text) {
   return ", got \"" + shown + (text.size() > longest ? "...\"" : "\"");
 }
 
+std::string at_line(const std::string& source, int line, const std::string& reason) {
+  return source + ":" + std::to_string(line) + ": " + reason;
+}
+
 std::string upper_case(std::string_view text) {
   std::string upper(text);
   for (char& c : upper)

@@ -23,6 +23,9 @@ std::optional<int> parse_integer(std::string_view text);
 /// Returns `, got "text"` for messages, with at most 80 characters and no control characters.
 std::string got(std::string_view text);
 
+/// Returns `source:line: reason`, for messages.
+std::string at_line(const std::string& source, int line, const std::string& reason);
+
 /// `text` in upper case (ASCII).
 std::string upper_case(std::string_view text);
 

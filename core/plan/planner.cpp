@@ -1,6 +1,5 @@
 #include "core/plan/planner.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"

@@ -1,6 +1,5 @@
 #include "core/score/association.h"
 
-#include <cmath>
 #include <limits>
 #include <queue>
 

@@ -1,7 +1,6 @@
 #include "core/score/foreign_frames.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/paths.h"
 #include "core/base/text_file.h"
 #include "core/sky/star_cache_file.h"
 #include "core/sky/star_file.h"
@@ -27,6 +28,7 @@ StarMap load_star_map(const std::string& path, const std::string& cache_dir) {
   StarMap map = read_star_map(path);
   if (star_source(path) != source) return map;  // changed meanwhile: may be of either version
   try {
+    make_directories(cache_dir);
     write_star_cache(cache_path, map, *source);
   } catch (const Error& error) {
     map.cache_problem = error.what();

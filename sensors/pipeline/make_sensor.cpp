@@ -1,7 +1,6 @@
 #include "sensors/pipeline/make_sensor.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "core/base/error.h"
 #include "core/base/user_directories.h"
@@ -12,11 +11,9 @@ namespace dmise {
 
 std::shared_ptr<const StarMap> load_stars(const Scenario& scenario) {
   if (scenario.star_catalogue_path.empty()) return nullptr;
-  const std::string cache = cache_directory();
-  std::error_code ignored;  // without the directory nothing is cached
-  if (!cache.empty()) std::filesystem::create_directories(cache, ignored);
   try {
-    return std::make_shared<const StarMap>(load_star_map(scenario.star_catalogue_path, cache));
+    return std::make_shared<const StarMap>(
+        load_star_map(scenario.star_catalogue_path, cache_directory()));
   } catch (const Error& e) {
     if (scenario.star_catalogue_where.empty()) throw;
     throw ConfigError(scenario.star_catalogue_where + ": " + e.what());

@@ -317,7 +317,7 @@ TEST_F(StarCache, ProcessesThatMakeItAtOnceLeaveOne) {
 }
 
 TEST_F(StarCache, NoPlaceToKeepItIsNoError) {
-  const StarMap map = load_star_map(source_, directory_ + "/absent");
+  const StarMap map = load_star_map(source_, source_ + "/below-a-file");
   EXPECT_EQ(map.stars.size(), 2u);
   EXPECT_FALSE(map.cache_problem.empty());
   fs::create_directories(star_cache_path(cache_, *star_source(source_)) + "/taken");
