@@ -111,7 +111,7 @@ struct Hosts {
     master = std::make_unique<Child>(command);
     if (!master->says("\n")) return;
     address = master->output().substr(0, master->output().find('\n'));
-    if (stops_at >= 0) control_master(address, 60, ClockAction::pause, stops_at);
+    if (stops_at >= 0) control_master(address, 60, {ClockAction::pause, stops_at});
     if (!with_agents) local = {{"east", address}, {"west", address}};
     start("broker");
     if (with_agents) start("east"), start("west");
@@ -257,10 +257,10 @@ TEST(Agents, ARestartedAgentLeavesTheRunAsItWas) {
       EXPECT_THAT(run[name].output(), HasSubstr("another has taken its place"));
       run.start(name);
     }
-    control_master(run.address, 60, ClockAction::step, between);
+    control_master(run.address, 60, {ClockAction::step, between});
     stops_at += between;
   }
-  control_master(run.address, 60, ClockAction::go_on);
+  control_master(run.address, 60, {ClockAction::go_on});
   run.expect_all_exit(0, "", 120);
   EXPECT_EQ(digest_in(report), undisturbed);
   EXPECT_EQ(undisturbed.size(), 16u);

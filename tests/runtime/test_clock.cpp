@@ -35,7 +35,7 @@ struct Network {
     nodes.push_back(start(camera, master.address));
   }
   RunStatus ask(ClockAction action, Tick tick = 0, const std::string& reason = "") {
-    return control_master(master.address, patience_s, action, tick, reason);
+    return control_master(master.address, patience_s, {action, tick, 0.0, reason});
   }
   ToyOrbit orbit;
   ToyCamera camera{"a"};
@@ -83,7 +83,8 @@ TEST(Clock, ChangesItsPace) {
   network.begin();
   EXPECT_TRUE(becomes(network.master.address, [](const auto& s) { return s.settled == 0; }));
   EXPECT_EQ(ask_master(network.master.address, patience_s).pace, 2e-3);
-  EXPECT_EQ(pace_master(network.master.address, patience_s, 1e3).pace, 1e3);
+  EXPECT_EQ(control_master(network.master.address, patience_s, {ClockAction::pace, 0, 1e3}).pace,
+            1e3);
   EXPECT_EQ(network.master.result.get().exit_code, 0);
 }
 

@@ -25,7 +25,7 @@ struct PausedRun {
   PausedRun() : master(run_of({"orbit", "a"}, 20, 3)), broker(start_broker(master.address)) {
     stranger = make_socket(context, zmq::socket_type::dealer, max_control_bytes);
     connect_to(stranger, master.address);
-    control_master(master.address, patience_s, ClockAction::pause, 3);
+    control_master(master.address, patience_s, {ClockAction::pause, 3});
     nodes.push_back(start(orbit, master.address));
     nodes.push_back(start(camera, master.address));
     const auto deadline = now() + seconds(20);
@@ -53,7 +53,7 @@ struct PausedRun {
   }
   /// The run goes on and ends as if nothing had been.
   void expect_a_good_end() {
-    control_master(master.address, patience_s, ClockAction::go_on);
+    control_master(master.address, patience_s, {ClockAction::go_on});
     const MasterResult result = master.result.get();
     EXPECT_EQ(result.exit_code, 0) << result.reason;
     for (auto& node : nodes) EXPECT_EQ(node.get().exit_code, 0);

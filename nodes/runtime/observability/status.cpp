@@ -11,7 +11,7 @@ namespace dmise {
 namespace {
 
 static_assert(int(ClockAction::pause) == v1::Control::ACTION_PAUSE &&
-              int(ClockAction::abort) == v1::Control::ACTION_ABORT);
+              int(ClockAction::pace) == v1::Control::ACTION_PACE);
 
 /// A phase that is not known here counts as the first.
 Phase from_wire(v1::Phase phase) {
@@ -44,13 +44,6 @@ class Conversation {
     if (!frame || !from_frame(*frame, &answer) || !answer.has_endpoints())
       throw Error("no answer from a time-master at " + address_);
     return status_of(answer.endpoints());
-  }
-
-  RunStatus ask_to(const v1::Control& control) {
-    v1::NodeMessage question;
-    question.set_run_id(ask(hello()).run_id);
-    *question.mutable_control() = control;
-    return ask(question);
   }
 
  private:
@@ -97,21 +90,17 @@ RunStatus ask_master(const std::string& address, double within_s, const Security
   return Conversation(address, within_s, security).ask(hello());
 }
 
-RunStatus control_master(const std::string& address, double within_s, ClockAction action, Tick tick,
-                         const std::string& reason, const Security& security) {
-  v1::Control control;
-  control.set_action(static_cast<v1::Control::Action>(action));
-  control.set_tick(tick);
-  control.set_reason(reason);
-  return Conversation(address, within_s, security).ask_to(control);
-}
-
-RunStatus pace_master(const std::string& address, double within_s, double factor,
-                      const Security& security) {
-  v1::Control control;
-  control.set_action(v1::Control::ACTION_PACE);
-  control.set_factor(factor);
-  return Conversation(address, within_s, security).ask_to(control);
+RunStatus control_master(const std::string& address, double within_s, const ClockRequest& request,
+                         const Security& security) {
+  Conversation conversation(address, within_s, security);
+  v1::NodeMessage question;
+  question.set_run_id(conversation.ask(hello()).run_id);
+  auto* control = question.mutable_control();
+  control->set_action(static_cast<v1::Control::Action>(request.action));
+  control->set_tick(request.tick);
+  control->set_factor(request.factor);
+  control->set_reason(request.reason);
+  return conversation.ask(question);
 }
 
 }  // namespace dmise

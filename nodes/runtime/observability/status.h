@@ -51,16 +51,17 @@ struct RunStatus {
 RunStatus status_of(const v1::Endpoints& answer);
 
 /// Values are those of Control.Action in proto/dmise/v1/node.proto.
-enum class ClockAction { pause = 1, step, go_on, end_early, abort };
+enum class ClockAction { pause = 1, step, go_on, end_early, abort, pace };
 
-/// Changes the clock's pace and returns the resulting state. `factor`: simulated seconds per
-/// second, 0 to 1e6; 0: as fast as possible.
-RunStatus pace_master(const std::string& address, double within_s, double factor,
-                      const Security& security = {});
+struct ClockRequest {
+  ClockAction action = ClockAction::pause;
+  Tick tick = 0;            // to pause after, or number of steps
+  double factor = 0.0;      // pace: simulated seconds per second, 0 to 1e6; 0: as fast as possible
+  std::string reason = {};  // to end
+};
 
-/// Controls the clock and returns the resulting state. `tick`: to pause after, or number of steps.
-RunStatus control_master(const std::string& address, double within_s, ClockAction action,
-                         Tick tick = 0, const std::string& reason = "",
+/// Controls the clock and returns the resulting state. Throws as `ask_master`.
+RunStatus control_master(const std::string& address, double within_s, const ClockRequest& request,
                          const Security& security = {});
 
 /// Queries the master at `address`. Throws `Error` if it does not answer in time.

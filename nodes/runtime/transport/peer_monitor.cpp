@@ -69,7 +69,7 @@ ConnectionLimits bytes_alone(std::int64_t stranger_bytes) {
 }
 
 PeerMonitor::PeerMonitor(zmq::context_t& context, zmq::socket_t& watched,
-                         std::optional<ConnectionLimits> limits)
+                         const ConnectionLimits& limits)
     : watched_(watched),
       events_(make_socket(context, zmq::socket_type::pair, max_control_bytes)),
       limits_(limits) {
@@ -124,7 +124,7 @@ const std::string& PeerMonitor::name_of(zmq::message_t& frame) {
 }
 
 void PeerMonitor::count_read(zmq::message_t& frame) {
-  Connection* connection = limits_ ? connection_of(frame) : nullptr;
+  Connection* connection = connection_of(frame);
   if (!connection) return;
   if (!sealed_) sealed_ = watched_.get(zmq::sockopt::mechanism) == ZMQ_CURVE;
   connection->taken_bytes += bytes_on_wire(frame.size(), *sealed_);
@@ -142,7 +142,7 @@ bool PeerMonitor::is_stuck(zmq::message_t& frame) {
 
 void PeerMonitor::look_at(Connection& connection, std::vector<std::string>* closed) const {
   const auto brought = bytes_brought(connection.fd);
-  const std::int64_t most = connection.guest ? limits_->stranger_bytes : limits_->known_bytes;
+  const std::int64_t most = connection.guest ? limits_.stranger_bytes : limits_.known_bytes;
   if (!brought || *brought - connection.taken_bytes <= most + handshake_bytes) return;
   connection.closed = true;
   shutdown(connection.fd, SHUT_RDWR);
@@ -153,7 +153,6 @@ void PeerMonitor::look_at(Connection& connection, std::vector<std::string>* clos
 
 std::vector<std::string> PeerMonitor::enforce(nanoseconds now) {
   std::vector<std::string> closed;
-  if (!limits_) return closed;
   read_events();
   const bool at_all = now >= next_look_;
   if (at_all) next_look_ = now + look_interval;
@@ -164,14 +163,14 @@ std::vector<std::string> PeerMonitor::enforce(nanoseconds now) {
     if (connection.guest || at_all) look_at(connection, &closed);
     if (connection.name.empty() && !connection.closed) strangers.push_back(&connection);
   }
-  if (strangers.size() <= limits_->usual_strangers) return closed;
+  if (strangers.size() <= limits_.usual_strangers) return closed;
   std::sort(strangers.begin(), strangers.end(),
             [](const Connection* a, const Connection* b) { return a->since < b->since; });
   auto first = strangers.begin(), last = strangers.end();
-  while (std::size_t(last - first) > limits_->usual_strangers &&
-         now - (*first)->since >= limits_->grace)
+  while (std::size_t(last - first) > limits_.usual_strangers &&
+         now - (*first)->since >= limits_.grace)
     ++first;
-  last = std::min(last, first + std::ptrdiff_t(limits_->most_strangers));
+  last = std::min(last, first + std::ptrdiff_t(limits_.most_strangers));
   const std::size_t refused = strangers.size() - std::size_t(last - first);
   if (refused == 0) return closed;
   strangers.erase(first, last);
@@ -180,7 +179,7 @@ std::vector<std::string> PeerMonitor::enforce(nanoseconds now) {
     shutdown(connection->fd, SHUT_RDWR);
   }
   closed.push_back(fmt::format("closed {} anonymous connections: at most {} are allowed", refused,
-                               limits_->usual_strangers));
+                               limits_.usual_strangers));
   return closed;
 }
 

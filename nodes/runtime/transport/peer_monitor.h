@@ -34,9 +34,7 @@ ConnectionLimits bytes_alone(std::int64_t stranger_bytes);
 /// limits. A broken connection is a hint, not a proof: nodes may reconnect.
 class PeerMonitor {
  public:
-  /// Without `limits` nothing is closed.
-  PeerMonitor(zmq::context_t& context, zmq::socket_t& watched,
-              std::optional<ConnectionLimits> limits = std::nullopt);
+  PeerMonitor(zmq::context_t& context, zmq::socket_t& watched, const ConnectionLimits& limits);
 
   /// `frame` came from the node `name`. `guest`: the limits of anonymous connections apply.
   void identify(zmq::message_t& frame, const std::string& name, bool guest = false);
@@ -76,7 +74,7 @@ class PeerMonitor {
   zmq::socket_t& watched_;
   zmq::socket_t events_;
   std::optional<bool> sealed_;  // frames of CURVE are longer on the wire
-  std::optional<ConnectionLimits> limits_;
+  ConnectionLimits limits_;
   std::map<std::uint64_t, Connection> connections_;  // by order of arrival
   std::map<int, std::uint64_t> at_;                  // open ones, by file descriptor
   std::vector<std::uint64_t> broken_;
