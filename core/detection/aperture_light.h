@@ -3,8 +3,8 @@
 
 namespace dmise {
 
-/// Light of a point within a distance of it, as a circular aperture with a central obscuration
-/// diffracts it.
+/// Light of a point source within a distance of it, diffracted by a circular aperture with a
+/// central obscuration.
 class ApertureLight {
  public:
   /// `obscuration`: its diameter over the aperture's, 0 to less than 1.
@@ -12,7 +12,7 @@ class ApertureLight {
 
   static constexpr double most_radius = 12.0;  // wavelength / diameter
 
-  /// Share within `radius`, at most `most_radius`, of light that is spread by a narrow blur of
+  /// Returns the share of light within `radius`, at most `most_radius`, after a narrow blur of
   /// `variance` along each axis [wavelength / diameter and its square].
   double within(double radius, double variance) const;
 

@@ -4,7 +4,7 @@
 
 namespace dmise {
 
-/// A sum that is large enough: its column and which of the rows beside each other it is in.
+/// A sum that is large enough: its column, and in which of the joined rows it is.
 struct BeamletHit {
   std::uint32_t column = 0;
   std::int16_t row = 0, sum = 0;
@@ -17,7 +17,7 @@ struct BeamletHits {
   std::size_t in_whole = 0, in_halves = 0;
 };
 
-/// From how large a sum on it is a hit, the larger half and the whole by row.
+/// Least sums that are hits, by row, of the whole strip and of its halves.
 struct BeamletLeast {
   std::int16_t whole[4] = {32767, 32767, 32767, 32767};
   std::int16_t halves[2] = {32767, 32767};

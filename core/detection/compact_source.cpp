@@ -113,7 +113,7 @@ class Candidate {
                                   : settings.model_error;
   }
 
-  /// Whether there are pixels enough to compare anything.
+  /// Whether there are enough pixels to compare fits.
   bool has_light() const { return around_.usable.size() >= 8; }
   bool is_saturated() const { return !around_.clipped.empty(); }
   /// Uniform trail of the same light and spread.
@@ -189,7 +189,7 @@ class Candidate {
   double model_error_ = 0.0;
 };
 
-/// The judgement where every star is known: a point or a line, whatever stars look like.
+/// The judgement where every star is known: a point or a line, whatever the shape of stars.
 std::optional<Source> judge_without_stars(const Candidate& candidate,
                                           const DetectorSettings& settings) {
   const TrailFit as_point = candidate.as_point(), as_line = candidate.as_line();

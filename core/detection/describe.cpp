@@ -187,7 +187,8 @@ MidPoint mid_point(const Source& source, const FrameHeader& header) {
   const PixelPosition way = *pixel - PixelPosition{t.x_px, t.y_px};
   double along_px = way.x_px * c + way.y_px * s, uneven_px = 0.0;
   if (!(source.free & trail_slope)) {
-    // Fitted as even: its centroid is nearer to the end that is brighter, being nearer and higher.
+    // Fitted as even: its centroid is towards the brighter end, where the object is nearer and
+    // higher.
     const double slope = slope_of(header, line_point(source, -1).place, line_point(source, 1).place,
                                   mid.end1_range_over_end2);
     uneven_px = slope * t.length_px / 6;
@@ -225,7 +226,7 @@ void describe_direction(const Source& source, const FrameHeader& header, Detecti
 
   d.covariance_rad2 = on_the_sky(mid.point.covariance_px2, header.wcs, mid.point.place);
   const Tangent tangent = tangent_at(here);
-  // Who knows the range takes it away where `corrected` is: near a pole east turns in between.
+  // A user who knows the range removes it at `corrected`, where east differs near a pole.
   const Tangent there = tangent_at(unit(corrected));
   add_along(d.covariance_rad2, dot(parallax.upwards, there.east),
             dot(parallax.upwards, there.north), parallax.sigma_rad * parallax.sigma_rad);
@@ -237,8 +238,8 @@ void describe_direction(const Source& source, const FrameHeader& header, Detecti
   add_along(d.covariance_rad2, e / chord, n / chord, mid.sigma_rad * mid.sigma_rad);
 }
 
-/// A fit places a source's shape where noise adds to its light: by 1 / (2 SNR) of its error for
-/// each parameter of the shape, in the next order (Refregier et al. 2012, MNRAS 425, 1951).
+/// Returns the light without the noise that a fit adds to it by the choice of the shape: on average
+/// 1 / (2 SNR^2) of it for each parameter of the shape (Refregier et al. 2012, MNRAS 425, 1951).
 double light_without_noise_e(const Source& source) {
   constexpr unsigned shape = trail_x | trail_y | trail_length | trail_angle | trail_sagitta;
   const double snr = std::max(source.snr(), 5.0);

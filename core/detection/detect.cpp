@@ -172,7 +172,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
   std::optional<KnownStars> known;
   if (sky) known = hide_stars(scene, filtered, *sky, header, result.stars);
   if (known) {
-    // Beside the stars it is lower, and so is its noise.
+    // Between the stars the background is lower and has less noise.
     background.measure_without(known->lit(), counts, threads);
     filtered.flatten(threads, &known->lit());
     scene.flat = &filtered;
@@ -201,7 +201,7 @@ DetectionResult detect(const CountImage& counts, const FrameHeader& header,
     if (!wcs_sees_sky(header.wcs, {source.trail().x_px, source.trail().y_px})) continue;
     source.at_edge |= may_leave(counts, source);
     const auto ends = errors_of_faint_ends(scene, source);
-    Source seen = source;  // by errors that don't depend on what noise lies beside its ends
+    Source seen = source;  // with errors that do not depend on the noise beside its ends
     add_steps_at_ends(seen, scene.sigma_px);
     add_errors_of_hidden_ends(scene, seen);
     if (seen.snr() < settings.least_light_snr) continue;

@@ -46,7 +46,8 @@ void for_pairs_of_ends(const Scene& scene, const Source& source, const Visit& vi
   }
 }
 
-/// The likeliest trail on these lines an end of which is not that of the fit.
+/// Returns the likeliest trail on these lines with another end than the fit's; empty if it is so
+/// unlikely that a fit of it is not worthwhile.
 std::optional<Trail> other_ends(const Scene& scene, const Source& source) {
   const Trail& t = source.trail();
   const double near_px = 3 * scene.sigma_px;
@@ -71,7 +72,8 @@ std::optional<Trail> other_ends(const Scene& scene, const Source& source) {
   return best;
 }
 
-/// What one fit has of deviance less than another, over the pixels of both.
+/// Returns by how much the deviance of one fit is less than that of another, over the pixels of
+/// both.
 double gain_over(const Scene& scene, const Source& better, const Source& than) {
   const double margin_px = 3 * scene.sigma_px + 2.5;
   std::vector<FitPixel> pixels = pixels_near(scene, better.trail(), margin_px);
@@ -94,9 +96,9 @@ double gain_over(const Scene& scene, const Source& better, const Source& than) {
   return deviance(than) - deviance(better);
 }
 
-/// The least gain of deviance of a fit with other ends: where all that is added to a streak or
-/// taken from it is as bright as the rest, it is its SNR^2 with twice that SNR as deviation. Less
-/// by three deviations is light of something else.
+/// Returns the least gain of deviance by a fit with other ends. If what is added to a streak or
+/// taken from it is as bright as the rest, the gain is the square of its SNR, with twice that SNR
+/// as deviation. Light of a gain that is lower by three deviations belongs to something else.
 double least_gain_of(const Source& other, const Source& than) {
   const double length_px = std::max(other.trail().length_px, 1.0);
   const double snr =

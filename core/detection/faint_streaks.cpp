@@ -243,7 +243,7 @@ std::vector<Source> find_faint_streaks(const Scene& scene, FilteredFrame& frame,
   int failures = 0;
   for (const Beamlet& beamlet : beamlets) {
     Trail trail = trail_of(beamlet);
-    if (beamlet.snr < candidate_snr) continue;  // as all that is beside it would say
+    if (beamlet.snr < candidate_snr) continue;  // `find_beamlets` rounds its threshold down
     if (snr_along(frame, trail) < 0.8 * candidate_snr) continue;  // hidden meanwhile
     if (std::any_of(tried.begin(), tried.end(),
                     [&](const Trail& t) { return is_part_of(trail, t, margin_px); }))

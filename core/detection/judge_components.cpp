@@ -62,7 +62,7 @@ Judged judge_components(const Scene& scene, const FilteredFrame& filtered,
                         Threads& threads) {
   Judged out;
   out.reach_px.resize(components.size(), int(std::ceil(2 * scene.sigma_px)));
-  // Where the sky is not calm, what is no source is likely no part of one.
+  // Where faint stars scatter the sky, a component that is no source is hardly a part of one.
   const auto is_calm = [&](const Component& c) {
     return scene.known && filtered.cell_at(c.peak_x, c.peak_y).scatter < 1.2f;
   };

@@ -14,8 +14,8 @@ constexpr double edge_sigmas = 4.0;              // of the PSF, within which lig
 constexpr double across_sigmas = 2.5;            // within which pixels are used
 constexpr double outlier = 4.0;                  // standard deviations
 
-/// A pixel's light over its variance and the inverse of that, both of a line of one electron per
-/// px, at a place along the line.
+/// A pixel in the fit of a line's light per px: its light and weight at a place along the line, by
+/// the share of that light in it and its variance.
 struct Sample {
   double along_px, light, weight;
 };

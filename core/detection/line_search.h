@@ -42,9 +42,9 @@ struct LineBand {
   BandSums of(int reach);
 };
 
-/// Lines parallel to a trail: the middle of their SNRs, at least 0, and its scatter, at least 1.
-/// Where faint stars are dense or the sky is uneven both exceed those of noise. The scatter is that
-/// of the upper half, because stars only add light.
+/// Lines parallel to a trail: the median of their SNRs, at least 0, and their scatter, at least 1.
+/// Where faint stars are dense or the sky is uneven, both exceed those of noise. The scatter is
+/// that of the upper half, because stars only add light.
 struct Beside {
   double middle = 0.0, scatter = 1.0;
 };

@@ -8,9 +8,9 @@ namespace dmise {
 /// worth of length (Yao 1987, Annals of Statistics 15, 1321).
 double end_error_px(double snr2_per_px);
 
-/// Adds to a covariance what the curvature of chi2 at the fit does not show.
-///  - Ends that are faint for each pixel: `ends` takes the place of all that has to do with the
-///    place along the line, flux, length and slope. Null: ends are as sharp as chi2 says.
+/// Adds to a covariance the errors that the curvature of chi2 at the fit does not show.
+///  - Ends that are faint in each pixel: `ends` replaces all covariances of the place along the
+///    line, flux, length and slope. Null: ends are as sharp as chi2 says.
 ///  - The next order of the expansion in 1 / SNR: all but the flux of a streak times
 ///    1 + 10 / SNR^2. A parameter alone would have 3 / SNR^2, by the noise of the curvature at the
 ///    fit less its correlation with the flux; each of the 4 to 6 others takes its share of noise
@@ -21,8 +21,8 @@ double end_error_px(double snr2_per_px);
 ///    twilight lacked (`FisheyeDirections`).
 void add_neglected_errors(Source& source, const EndErrors* ends);
 
-/// Adds to the variance of a streak's light what both ends have as steps in noise: 26 / SNR^4 px^2
-/// by the SNR of a pixel's length, which `sigma_px` of blur ends by exp(-sigma_px SNR^2 / 2).
+/// Adds to the variance of a streak's light that of both ends as steps in noise: 26 / SNR^4 px^2 by
+/// the SNR of a pixel's length, times exp(-sigma_px SNR^2 / 2) by the blur.
 void add_steps_at_ends(Source& source, double sigma_px);
 
 }  // namespace dmise

@@ -92,7 +92,7 @@ double median_log_width(const std::vector<Star>& stars) {
   return median_of(std::move(values));
 }
 
-/// Without blends and what else fits worse than most.
+/// Drops blends and others that fit worse than most.
 void drop_bad_fits(std::vector<Star>& stars) {
   std::vector<double> values;
   for (const Star& star : stars) values.push_back(star.fit.reduced_chi2);

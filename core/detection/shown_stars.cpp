@@ -23,7 +23,7 @@ constexpr double most_trail_px = 60.0;  // light of longer ones is faint in a pi
 constexpr std::size_t parameters = 3;   // light relative to what is expected, x, y
 constexpr std::int32_t least_pixels = 5;
 
-/// Where a star is expected; by y.
+/// The place of a star; ordered by y.
 struct Expected {
   float y_px, x_px;
   std::uint32_t star;
@@ -32,7 +32,7 @@ struct Expected {
 };
 using Rows = std::vector<Expected>;
 
-/// Those with light in the rows of an image, but for the star itself.
+/// Calls visit(star) for the stars with light in an image, except the star `own`.
 template <class Visit>
 void for_neighbours(const std::vector<ShownStar>& stars, const Rows& rows, const StarImage& image,
                     float reach_px, std::size_t own, const Visit& visit) {

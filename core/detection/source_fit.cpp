@@ -65,7 +65,7 @@ double way_to_edge_px(const Trail& t, const Scene& scene, double side) {
   return std::min(way(t.x_px, c, scene.counts.columns), way(t.y_px, s, scene.counts.rows));
 }
 
-/// Puts an end outside the frame on its edge: of what is beyond, no pixel tells, so that length and
+/// Puts an end outside the frame on its edge: no pixel measures what is beyond, so that length and
 /// light would have no bound. The part in the frame stays as it is; errors are those after a
 /// measurement of that end, by the gain of a Kalman filter.
 void end_at_edge(TrailFit& fit, const Scene& scene, double side) {

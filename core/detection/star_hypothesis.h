@@ -25,7 +25,7 @@ bool moves_like_star(const Scene& scene, const Source& source, const Trail& star
 bool point_beats_star(const Scene& scene, const Source& source, const DetectorSettings& settings);
 
 /// Whether a line explains the light around the source better than two, three or four stars in a
-/// row, and than a piece of one star's trail; or these would be known from a catalogue.
+/// row, and than a piece of one star's trail; true also if a catalogue would have these stars.
 bool beats_stars(const Scene& scene, const Source& source, const DetectorSettings& settings);
 
 }  // namespace dmise

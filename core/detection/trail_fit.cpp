@@ -190,9 +190,9 @@ class Problem {
   std::size_t size_ = 0;
 };
 
-/// How much of a step to take after the one before: weights change with the model, so that an end
-/// swings about its place, each step `-back` of the last one; all that remains is the step over 1 +
-/// back.
+/// Returns the share of a step to take. Weights change with the model, so that steps of an end may
+/// alternate about its place, each `-back` times the one before; all of them together are the step
+/// over 1 + back.
 double share_of_step(const SmallMatrix& matrix, const SmallVector& step, const SmallVector& before,
                      std::size_t n) {
   constexpr double least_back = 0.2;

@@ -46,7 +46,7 @@ bool of_observer(std::string_view key, const UnknownFacts& unknown) {
          std::ranges::find(corrections, key) != std::end(corrections);
 }
 
-/// Instants: that of the start is 0 without an exposure time, too.
+/// Times. That of the start is 0, also without an exposure time.
 bool of_time(std::string_view key, const UnknownFacts& unknown) {
   const bool is_start = key.starts_with("start_");
   if (key.ends_with("_utc"))

@@ -38,7 +38,7 @@ class ConstantPoisson {
 
  private:
   float mean_;
-  int steps_ = 0;                                 // 0: by the general way
+  int steps_ = 0;                                 // 0: by the general method
   std::uint32_t thresholds_[poisson_most_steps];  // floor(2^32 P(N <= k))
 };
 

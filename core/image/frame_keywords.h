@@ -101,7 +101,7 @@ void visit_detector(Visitor& v, FrameHeader& h) {
   d.bias_dn = h.bias_dn;
 }
 
-/// Limits of a camera that has some, and whether they were kept.
+/// Exclusion angles of a camera that has some, and whether a body was within them.
 template <class Visitor>
 void visit_exclusion(Visitor& v, FrameHeader& h) {
   if (!v.present("EXCLACT", h.exclusion.any())) return;
