@@ -12,11 +12,11 @@ Cn2Table parse_cn2(std::string_view text, const std::string& name) {
   Cn2Table table;
   bool header_read = false;
   std::vector<std::string_view> fields;
-  star_text::for_lines(text, [&](std::string_view line, std::size_t number) {
+  star_text::for_lines(text, [&](std::string_view line, int number) {
     line = trimmed(line.substr(0, line.find('#')));
     if (line.empty()) return;
     const auto fail = [&](const char* reason) {
-      throw ConfigError(star_text::problem(name, number, reason) + ", got " + std::string(line));
+      throw ConfigError(at_line(name, number, reason) + ", got " + std::string(line));
     };
     star_text::split_csv(line, fields);
     if (!header_read) {

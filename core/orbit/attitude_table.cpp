@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "core/base/error.h"
-#include "core/base/text_fields.h"
 #include "core/base/text_file.h"
 #include "core/orbit/time_table.h"
 
@@ -21,8 +19,7 @@ TableAttitude parse_attitude_table(std::string_view text, const std::string& sou
     const double* q = row.values.data() + 1;
     const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
     if (!(length > least_length && length < most_length))
-      throw ConfigError(source + ":" + std::to_string(row.line) + ": a quaternion of length " +
-                        std::to_string(length) + " is no attitude" + got(row.text));
+      row.fail("a quaternion of length " + std::to_string(length) + " is no attitude");
     table.time_s.push_back(row.values[0]);
     table.gcrs_from_body.push_back({q[0] / length, q[1] / length, q[2] / length, q[3] / length});
   });

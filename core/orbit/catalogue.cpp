@@ -73,7 +73,7 @@ const char* name_of(CatalogueFormat format) {
 }
 
 std::string CatalogueFile::describe(const CatalogueProblem& problem) const {
-  return source + ":" + std::to_string(problem.line) + ": " + problem.reason;
+  return at_line(source, problem.line, problem.reason);
 }
 
 CatalogueFile parse_catalogue(std::string_view text, const std::string& source,

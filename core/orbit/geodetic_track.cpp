@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/error.h"
-#include "core/base/text_fields.h"
 #include "core/base/text_file.h"
 #include "core/frames/geodesy.h"
 #include "core/orbit/time_table.h"
@@ -49,11 +47,6 @@ Trajectory track_of(std::string_view text, const std::string& source, const Tai&
   return {source, start, {std::move(s)}};
 }
 
-[[noreturn]] void refuse(const TimeTableRow& row, const std::string& source,
-                         const std::string& reason) {
-  throw ConfigError(source + ":" + std::to_string(row.line) + ": " + reason + got(row.text));
-}
-
 }  // namespace
 
 Trajectory parse_geodetic_track(std::string_view text, const std::string& source, const Tai& start,
@@ -63,9 +56,9 @@ Trajectory parse_geodetic_track(std::string_view text, const std::string& source
                     const Site site{row.values[1], row.values[2], row.values[3], ellipsoid};
                     if (std::abs(site.latitude_deg) > 90 || std::abs(site.longitude_deg) > 360 ||
                         !(site.height_m >= least_height_m && site.height_m <= most_height_m))
-                      refuse(row, source,
-                             "latitude must be in -90..90, longitude in -360..360 and height in "
-                             "2..1e9 m");
+                      row.fail(
+                          "latitude must be in -90..90, longitude in -360..360 and height in "
+                          "2..1e9 m");
                     return itrs_from_geodetic(site);
                   });
 }
@@ -77,10 +70,10 @@ Trajectory read_enu_track(const std::string& path, const Tai& start, const std::
   return track_of(read_text_file(path), path, start, name, "time_s,east_m,north_m,up_m",
                   [&](const TimeTableRow& row) {
                     const Vec<Enu> place{row.values[1], row.values[2], row.values[3]};
-                    if (!(norm(place) <= most_height_m)) refuse(row, path, "must be within 1e9 m");
+                    if (!(norm(place) <= most_height_m)) row.fail("must be within 1e9 m");
                     const Vec<Itrs> p = origin_m + itrs_from_enu * place;
                     if (!(geodetic_from_itrs(p, origin.ellipsoid).height_m >= least_height_m))
-                      refuse(row, path, "must be 2 m above the ellipsoid or higher");
+                      row.fail("must be 2 m above the ellipsoid or higher");
                     return p;
                   });
 }

@@ -69,8 +69,7 @@ ObjectFactsFile parse_object_facts(std::string_view text, const std::string& sou
       columns = columns_of(*next);
       width = csv_fields(*next).size();
       if (!columns->number)
-        throw ConfigError(source + ":" + std::to_string(lines.line()) +
-                          ": no column catalogue_number" + got(*next));
+        throw ConfigError(at_line(source, lines.line(), "no column catalogue_number" + got(*next)));
       continue;
     }
     try {

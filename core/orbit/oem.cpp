@@ -77,8 +77,7 @@ class OemReader {
   };
 
   [[noreturn]] void fail(const std::string& reason, std::string_view value) const {
-    throw ConfigError(trajectory_.source + ":" + std::to_string(lines_.line()) + ": " + reason +
-                      got(value));
+    throw ConfigError(at_line(trajectory_.source, lines_.line(), reason + got(value)));
   }
 
   void metadata(std::string_view key, std::string_view value) {

@@ -77,7 +77,7 @@ class MessageHandler : public nlohmann::json_sax<nlohmann::json> {
   }
   bool parse_error(std::size_t, const std::string& token,
                    const nlohmann::detail::exception&) override {
-    throw ConfigError(file_.source + ":" + std::to_string(line_) + ": invalid JSON" + got(token));
+    throw ConfigError(at_line(file_.source, line_, "invalid JSON" + got(token)));
   }
 
  private:

@@ -46,8 +46,8 @@ void read_omm_xml(std::string_view text, CatalogueFile& file) {
   const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
   LineCounter lines(text);
   if (!result)
-    throw ConfigError(file.source + ":" + std::to_string(lines.line_at(result.offset)) +
-                      ": invalid XML: " + result.description());
+    throw ConfigError(at_line(file.source, lines.line_at(result.offset),
+                              std::string("invalid XML: ") + result.description()));
 
   // Iterative, because the depth is up to the input.
   pugi::xml_node node = document.first_child();

@@ -7,12 +7,16 @@
 
 namespace dmise {
 
+void TimeTableRow::fail(const std::string& reason) const {
+  throw ConfigError(at_line(source, line, reason + got(text)));
+}
+
 void parse_time_table(std::string_view text, const std::string& source, std::string_view header,
                       const std::function<void(const TimeTableRow&)>& use) {
   const std::size_t columns = std::size_t(std::ranges::count(header, ',')) + 1;
   LineReader lines(without_byte_order_mark(text));
   const auto fail = [&](const std::string& reason, std::string_view value) {
-    throw ConfigError(source + ":" + std::to_string(lines.line()) + ": " + reason + got(value));
+    throw ConfigError(at_line(source, lines.line(), reason + got(value)));
   };
   std::size_t rows = 0;
   double last = 0.0;
@@ -25,10 +29,10 @@ void parse_time_table(std::string_view text, const std::string& source, std::str
       seen_header = true;
       continue;
     }
-    TimeTableRow row{lines.line(), std::string(line), {}};
+    TimeTableRow row{source, lines.line(), std::string(line)};
     const auto fields = csv_fields(line);
     if (fields.size() != columns)
-      fail("expected a time and " + std::to_string(columns - 1) + " numbers", line);
+      row.fail("expected a time and " + std::to_string(columns - 1) + " numbers");
     for (const auto& field : fields) {
       const auto number = parse_real(trimmed(field));
       if (!number) fail("not a number", field);

@@ -8,9 +8,13 @@ namespace dmise {
 
 /// A row of a table over time.
 struct TimeTableRow {
-  int line = 0;                // in the file, from 1
-  std::string text;            // for messages
-  std::vector<double> values;  // the time first
+  const std::string& source;     // for messages
+  int line = 0;                  // in the file, from 1
+  std::string text;              // for messages
+  std::vector<double> values{};  // the time first
+
+  /// Throws `ConfigError` `source:line: reason, got "text"`.
+  [[noreturn]] void fail(const std::string& reason) const;
 };
 
 /// Parses a CSV of numbers with this header, whose first column is an increasing time, and calls

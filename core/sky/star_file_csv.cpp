@@ -38,26 +38,26 @@ void for_rows(std::string_view text, const std::string& name,
   std::vector<std::string_view> fields;
   std::vector<int> places;
   std::uint32_t count = 0;
-  for_lines(text, [&](std::string_view line, std::size_t at) {
+  for_lines(text, [&](std::string_view line, int at) {
     if (trimmed(line).empty() || line.front() == '#') return;
     split_csv(line, fields);
     if (places.empty()) {
       places = find_columns(fields, names);
       for (std::size_t i = 0; i < needed; ++i)
         if (places[i] < 0)
-          throw ConfigError(problem(name, at, "the header has no column " + std::string(names[i])));
+          throw ConfigError(at_line(name, at, "the header has no column " + std::string(names[i])));
       return;
     }
     ++count;
     const Row row{fields, places};
     for (std::size_t i = 0; i < numbers; ++i)
       if (i < needed ? !row.value(i) : row.garbled(i)) {
-        problems.push_back(problem(
+        problems.push_back(at_line(
             name, at,
             std::string(names[i]) + ": must be a number, got '" + std::string(row.text(i)) + "'"));
         return;
       }
-    if (const char* why = use(row, count)) problems.push_back(problem(name, at, why));
+    if (const char* why = use(row, count)) problems.push_back(at_line(name, at, why));
   });
 }
 

@@ -15,11 +15,11 @@ using namespace star_text;
 StarReading parse_kstars(std::string_view text, const std::string& name) {
   StarReading reading;
   std::uint32_t count = 0;
-  for_lines(text, [&](std::string_view line, std::size_t at) {
+  for_lines(text, [&](std::string_view line, int at) {
     if (trimmed(line).empty() || line.front() == '#') return;
     StarRecord star{.id = ++count};
-    const auto refuse = [&](std::string_view why) {
-      reading.problems.push_back(problem(name, at, why));
+    const auto refuse = [&](const char* why) {
+      reading.problems.push_back(at_line(name, at, why));
     };
     const auto ra_h = sexagesimal(columns(line, 1, 2), columns(line, 3, 4), columns(line, 5, 9));
     const auto dec =
@@ -54,10 +54,10 @@ StarReading parse_kstars(std::string_view text, const std::string& name) {
 // over.
 StarReading parse_bsc5(std::string_view text, const std::string& name) {
   StarReading reading;
-  for_lines(text, [&](std::string_view line, std::size_t at) {
+  for_lines(text, [&](std::string_view line, int at) {
     if (trimmed(line).empty() || line.front() == '#') return;
-    const auto refuse = [&](std::string_view why) {
-      reading.problems.push_back(problem(name, at, why));
+    const auto refuse = [&](const char* why) {
+      reading.problems.push_back(at_line(name, at, why));
     };
     const auto hr = parse_real(columns(line, 1, 4));
     if (!hr || *hr < 1 || *hr > 9999) return refuse("columns 1-4: no HR number");

@@ -41,8 +41,4 @@ std::optional<double> sexagesimal(std::string_view whole, std::string_view minut
   return *w + *m / 60 + *s / 3600;
 }
 
-std::string problem(const std::string& file, std::size_t line, std::string_view reason) {
-  return file + ":" + std::to_string(line) + ": " + std::string(reason);
-}
-
 }  // namespace dmise::star_text

@@ -18,7 +18,7 @@ std::string_view columns(std::string_view line, std::size_t first, std::size_t l
 template <class Use>
 void for_lines(std::string_view text, Use&& use) {
   LineReader lines(text);
-  while (const auto line = lines.next()) use(*line, std::size_t(lines.line()));
+  while (const auto line = lines.next()) use(*line, lines.line());
 }
 
 /// Splits a CSV line (RFC 4180, no line ends inside quotes) into trimmed fields; quotes are taken
@@ -34,8 +34,5 @@ std::vector<int> find_columns(const std::vector<std::string_view>& header,
 /// or out of range.
 std::optional<double> sexagesimal(std::string_view whole, std::string_view minutes,
                                   std::string_view seconds);
-
-/// `file:line: reason`
-std::string problem(const std::string& file, std::size_t line, std::string_view reason);
 
 }  // namespace dmise::star_text
