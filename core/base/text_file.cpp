@@ -28,7 +28,8 @@ std::string read_to_end(int descriptor, const std::string& name, std::size_t lim
     if (text.size() > limit_bytes) reason = "larger than " + std::to_string(limit_bytes) + " bytes";
   }
   if (got < 0) reason = "can't be read or unpacked";
-  gzclose(file);
+  if (gzclose(file) == Z_BUF_ERROR && reason.empty())
+    reason = "is cut off: its gzip data do not end";
   if (!reason.empty()) throw ConfigError(printable(name) + ": " + reason);
   return text;
 }

@@ -37,6 +37,22 @@ TEST_F(TextFile, ReadsGzip) {
   EXPECT_EQ(read_text_file(path("a.gz")), "packed\n");
 }
 
+TEST_F(TextFile, RefusesGzipThatIsCutOff) {
+  gzFile file = gzopen(path("a.gz").c_str(), "wb");
+  for (int i = 0; i < 100'000; ++i) gzprintf(file, "%d\n", i);
+  gzclose(file);
+  const auto whole = fs::file_size(path("a.gz"));
+  for (const auto size : {whole - 1, whole / 2, std::uintmax_t(5)}) {
+    fs::resize_file(path("a.gz"), size);
+    try {
+      read_text_file(path("a.gz"));
+      FAIL() << size;
+    } catch (const ConfigError& e) {
+      EXPECT_EQ(e.what(), path("a.gz") + ": is cut off: its gzip data do not end");
+    }
+  }
+}
+
 TEST_F(TextFile, NamesTheFileThatItCannotRead) {
   try {
     read_text_file(path("none"));
