@@ -177,6 +177,10 @@ void RunReader::measure_frame(std::size_t sensor, std::uint32_t number, std::siz
       leave_out("is saturated");
       continue;
     }
+    if (!(m.flux.sigma_e > 0.0)) {  // no weight among bands
+      leave_out("has neither light nor noise");
+      continue;
+    }
     m.light = reflected({m.flux.flux_e, m.flux.sigma_e}, sunlight_e, s.aperture_fraction);
     frames_[slot].measured[object] = m;
   }
