@@ -5,7 +5,7 @@
 #include "core/config/detector_config.h"
 #include "core/config/exclusion_config.h"
 #include "core/config/optics_config.h"
-#include "core/config/proportion.h"
+#include "core/config/plausibility.h"
 #include "core/photometry/magnitude.h"
 
 namespace dmise {
@@ -69,7 +69,7 @@ Camera read_camera(const YamlValue& value) {
     apply_quantum_efficiency(*efficiency, camera);
   if (const auto system = map.find("magnitude_system")) read_magnitude_system(*system, camera);
   if (const auto exclusion = map.find("exclusion")) camera.exclusion = read_exclusion(*exclusion);
-  camera.warnings = disproportions_of_camera(value, camera);
+  camera.warnings = unusual_camera_values(value, camera);
   map.done();
   return camera;
 }

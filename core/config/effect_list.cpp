@@ -29,7 +29,8 @@
 namespace dmise {
 namespace {
 
-// In every digest. An effect that is not listed changes only the digests of runs that switch it.
+// Digests name these wherever they run, any other effect only where a scenario switches it, so that
+// a new effect leaves the digests of older scenarios as they are.
 constexpr std::string_view always_listed[] = {"proper_motion",
                                               "parallax",
                                               "light_deflection",
@@ -68,8 +69,8 @@ constexpr std::string_view always_listed[] = {"proper_motion",
                                               "read_noise",
                                               "quantisation"};
 
-/// What makes expected electrons of sources and of the sky, in the order in which it runs. The
-/// sky's parts, the air's effects and those of the image have lists of their own, where they run.
+/// The effects that make expected electrons of sources and of the sky, in the order in which they
+/// run. The parts of the sky and the effects of the air and of the image have lists of their own.
 using LightEffects =
     EffectList<SkyBackground, SkyGrid, Airglow, ZodiacalLight, FaintStarlight, ScatteredMoonlight,
                Twilight, LightPollution, StrayLight, SunDisc, MoonDisc, EarthDisc, LimbAir,
@@ -160,8 +161,8 @@ std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const Sce
 
 namespace {
 
-/// An effect with its error and cost as `parameters` have it; static functions of it where it has
-/// no parameters there.
+/// An effect with its error and cost: by `parameters`, or by static functions of an effect that has
+/// no parameters.
 template <class Effect, class Parameters>
 PlannableEffect plannable(const Parameters& parameters) {
   PlannableEffect p{.facts = &Effect::facts};
@@ -218,7 +219,7 @@ EffectSet recorded_effects(std::span<const PlannableEffect> effects, const Senso
 
 namespace {
 
-/// All keys for documents, else those that are in use.
+/// The keys in use; all of them for a lens without vignetting, for documents.
 std::vector<ParameterValue> parameters_of(const Vignetting& v) {
   std::vector<ParameterValue> numbers;
   if (v.table.empty())

@@ -12,19 +12,20 @@ namespace dmise {
 /// All effects: those of place, of light and of the detector, each family in its order.
 std::span<const EffectFacts* const> all_effects();
 
-/// What decides whether effects act in a sensor's frames, as far as the sensor says.
+/// Returns what the sensor alone says of whether effects act in its frames.
 SceneFacts scene_facts(const SensorConfig& sensor);
 
-/// What runs in a sensor's frames, in the same order. `scene` as above, with what else is known.
+/// Returns the effects that run in a sensor's frames, in the order of `all_effects`. `scene`:
+/// `scene_facts` with what else is known of the exposure.
 std::vector<const EffectFacts*> effects_in(const SensorConfig& sensor, const SceneFacts& scene);
 
-/// The same for the planner, with errors and costs by the sensor's parameters, and all that the
-/// scenario switches off. `sensor` need not outlive them.
+/// Returns them for the planner, with errors and costs by the sensor's parameters, including those
+/// that the scenario switches off. `sensor` need not outlive them.
 std::vector<PlannableEffect> plannable_effects(const SensorConfig& sensor, const SceneFacts& scene);
 
-/// The levels of a frame of a sensor's recorded plans, all forced. Throws `ConfigError` that names
-/// the sensor, the frame and what of the record does not fit: a frame or an effect that it does not
-/// have, an effect or a level that there is not.
+/// Returns the levels of a frame in a sensor's recorded plans, all forced. Throws `ConfigError`
+/// that names the sensor and the frame if the record lacks the frame or an effect, or has an effect
+/// or a level that does not exist.
 EffectSet recorded_effects(std::span<const PlannableEffect> effects, const SensorConfig& sensor,
                            std::uint32_t frame);
 
@@ -37,11 +38,11 @@ struct ParameterValue {
 /// The parameters of an effect in a sensor.
 std::vector<ParameterValue> parameters_in(const SensorConfig& sensor, const EffectFacts& effect);
 
-/// docs/models/effects.md.
+/// Returns the text of docs/models/effects.md.
 std::string effects_markdown();
 
-/// The names of the effects that a run's digest lists: those that run, of the ones that it always
-/// had, and what else is not as usual.
+/// Returns the names of the effects that a run's digest lists, with levels that are not the usual
+/// ones: `NAME:LEVEL`, and `NAME!` if the scenario forces it.
 std::vector<std::string> effects_in_digest(const EffectSet& effects);
 
 }  // namespace dmise

@@ -9,11 +9,11 @@ class JsonWriter;
 /// Reads `clock_error` and `pointing_error` of a sensor.
 void read_instrument(YamlMap& sensor, Instrument& instrument);
 
-/// Refuses a clock by which the first exposure may begin before the run or end after it. `map`: of
-/// the sensor, which is read.
+/// Throws `ConfigError` if by its clock a sensor's first exposure may begin before the run or end
+/// after it. `map`: the keys of the sensor.
 void check_clock(YamlMap& map, const SensorConfig& sensor, SimTime duration);
 
-/// What is not 0 of it, for digests; nothing where all is.
+/// Writes the errors that are not 0, for digests.
 void write_instrument_json(JsonWriter& json, const Instrument& instrument);
 
 /// Returns the numbers of a parameter in the unit of its key: one, or x, y and roll.

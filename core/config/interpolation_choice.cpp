@@ -9,10 +9,10 @@ namespace {
 
 constexpr double share_of_budget = 0.25;
 constexpr double least_range_on_ground_m = 200e3, least_range_in_orbit_m = 10e3;
-/// Of the standard budget, for sensors whose budget is no error.
+/// Least budget, in shares of the standard one: some sensors ask for no error at all.
 constexpr double least_share = 0.1;
 
-/// Greatest error between ticks that a sensor does not mind [m].
+/// Greatest error between ticks that a sensor tolerates [m].
 double most_error_m(const SensorConfig& sensor) {
   if (!sensor.accuracy.is_planned()) return unbounded;
   const bool timed = sensor.accuracy.name == "seconds";

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/units.h"
-#include "core/config/proportion.h"
+#include "core/config/plausibility.h"
 #include "core/config/vector_values.h"
 #include "core/frames/geodesy.h"
 #include "core/frames/oblate_earth.h"
@@ -135,7 +135,7 @@ TwoBodyMotion read_two_body(const YamlValue& value, const Utc& start, const Elli
     const double apoapsis_m = k.eccentricity < 1
                                   ? k.periapsis_m * (1 + k.eccentricity) / (1 - k.eccentricity)
                                   : std::numeric_limits<double>::infinity();
-    warnings = disproportions_of_orbit(value, k.periapsis_m, apoapsis_m, ellipsoid);
+    warnings = unusual_orbit_values(value, k.periapsis_m, apoapsis_m, ellipsoid);
   }
   map.done();
   return motion;

@@ -14,7 +14,7 @@ namespace dmise {
 struct MotionConfig {
   std::variant<MotionModel, MeanElements> model;
   std::string trajectory_path;             // of an OEM or a track, resolved; empty for other models
-  std::vector<std::string> warnings = {};  // see `disproportions_of_orbit`
+  std::vector<std::string> warnings = {};  // see `unusual_orbit_values`
 };
 
 /// Reads one of `two_body`, `oem`, `fixed`, `track`, `enu`, `sgp4` of the object `name`; `start` is

@@ -52,7 +52,8 @@ class JsonWriter;
 void write_objects(JsonWriter& json, const std::vector<ObjectSource>& catalogues,
                    const std::vector<OwnObject>& own);
 
-/// All files that they name, in order; an empty path for an optional file that is not given.
+/// Returns all files that they name, in order; an empty path for an optional file that is not
+/// given.
 std::vector<std::string> files_of(const std::vector<ObjectSource>& catalogues,
                                   const std::vector<OwnObject>& own);
 

@@ -34,7 +34,7 @@ struct Camera {
   Detector detector;
   Band band;
   MagnitudeScale magnitudes;               // of detections and of PHOTZP
-  std::vector<std::string> warnings = {};  // see `disproportions_of_camera`
+  std::vector<std::string> warnings = {};  // see `unusual_camera_values`
   Exclusion exclusion = {};
 };
 

@@ -31,10 +31,10 @@ class ScenarioDraws {
   explicit ScenarioDraws(const std::string& path);
 
   const std::string& text() const { return text_; }
-  /// Draws all values and reads the scenario. Throws `ConfigError` "...: seed N".
+  /// Draws all values and reads the scenario. Throws `ConfigError` "... (as drawn for seed N)".
   DrawnScenario draw(std::uint64_t seed) const;
   /// Reads the scenario with each distribution at its ends and the others in the middle. Throws
-  /// `ConfigError` with the value that does not do, and the end that it is.
+  /// `ConfigError` with the value that is refused and which end it is.
   void check_ends() const;
 
  private:

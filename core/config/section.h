@@ -54,7 +54,7 @@ struct Section {
   std::string name;  // unique among all sections
   std::string what;
   std::vector<Key> keys;
-  std::optional<Key> any_other = {};  // for keys that are no words of ours: `name` is their pattern
+  std::optional<Key> any_other = {};  // for keys that users choose: `name` is their pattern
 
   const Key* find(std::string_view key) const;
 };

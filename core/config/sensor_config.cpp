@@ -63,7 +63,7 @@ void read_sensor_surroundings(YamlMap& map, SensorConfig& sensor) {
   sensor.weather = around.weather.value_or(WeatherConfig{});
 }
 
-/// Adds to the point spread what an exposure sees of the camera's vibration as blur.
+/// Adds to the point spread the blur of the camera's vibration in an exposure.
 void add_blur_of_vibration(YamlMap& map, SensorConfig& sensor) {
   const Vibration vibration = acting_instrument(sensor.instrument, sensor.effects);
   if (!vibration.applies()) return;
@@ -72,7 +72,7 @@ void add_blur_of_vibration(YamlMap& map, SensorConfig& sensor) {
   constexpr double widest_px = 1000.0;
   if (fwhm_per_sigma * blur_rad > widest_px * optics.pixel_angle_rad())
     map.require(Vibration::facts.name)
-        .fail("what an exposure sees of it as blur must be at most 1000 px wide", false);
+        .fail("its blur in an exposure must be at most 1000 px wide", false);
   if (optics.spread.model == PointSpread::Model::gaussian)
     optics.psf_fwhm_px =
         std::hypot(optics.psf_fwhm_px, fwhm_per_sigma * blur_rad / optics.pixel_angle_rad());
@@ -80,8 +80,8 @@ void add_blur_of_vibration(YamlMap& map, SensorConfig& sensor) {
     optics.spread.jitter_rad = std::hypot(optics.spread.jitter_rad, blur_rad);
 }
 
-/// Refuses a rolling shutter that is not through with the first frame when the run ends, or during
-/// which a camera turns too far.
+/// Refuses a rolling shutter that has not finished the first frame when the run ends, or during
+/// which the camera turns too far.
 void check_rows(const YamlValue& exposure, const SensorConfig& sensor, double rate_deg_per_s,
                 SimTime duration) {
   if (!sensor.effects.has(RollingShutter::facts)) return;
@@ -95,8 +95,8 @@ void check_rows(const YamlValue& exposure, const SensorConfig& sensor, double ra
     exposure.fail("the camera must turn by no more than 10 deg until the last row is exposed");
 }
 
-// Refuses a point spread without a possible kernel. An error "a.b: reason" is reported at that key,
-// or at its nearest ancestor in this file (a camera may be a preset).
+/// Refuses a point spread for which no kernel is possible. An error "a.b: reason" is reported at
+/// that key, or at its nearest ancestor in this file (a camera may be a preset).
 void check_point_spread(const YamlValue& value, const SensorConfig& sensor) {
   const Camera& camera = sensor.camera;
   try {

@@ -58,7 +58,7 @@ AtmosphereConfig standard_atmosphere(double k_v_mag_per_airmass);
 /// `known` unchanged.
 void read_surroundings(YamlMap& map, Surroundings& known);
 
-/// Whether `seeing:` of a sensor names a turbulence profile.
+/// Returns whether `seeing:` of a sensor names a turbulence profile.
 bool names_profile(const YamlValue& seeing);
 /// Reads `seeing: {profile: hv57 | FILE.csv, ...}`: r0 and wind of the profile's turbulence at this
 /// airmass; the profile itself is stored in `turbulence_over`.

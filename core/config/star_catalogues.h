@@ -3,13 +3,13 @@
 
 namespace dmise {
 
-/// The file of a star catalogue that has a name, for `find_catalogue`; null for any other name.
+/// Returns the file of a star catalogue by name, for `find_catalogue`; null for an unknown name.
 const char* star_catalogue_file(const std::string& name);
 
-/// The same on every host, whatever was fetched there.
+/// The catalogue of scenarios that name none. It does not depend on what a host has fetched.
 inline constexpr const char* default_star_catalogue = "kstars";
 
-/// What to say of a named catalogue that is absent.
+/// Returns the message about a named catalogue that is absent.
 std::string missing_star_catalogue(const std::string& name);
 
 }  // namespace dmise

@@ -93,7 +93,8 @@ class YamlMap {
   std::optional<YamlValue> find(std::string_view key);
   YamlValue require(std::string_view key);
   std::vector<std::string> keys() const;
-  /// Refuses a key that users may expect here; it is in no section.
+  /// Throws `ConfigError` with the reason if there is a key that users may expect but no section
+  /// has.
   void refuse(std::string_view key, const std::string& reason);
 
   double number(std::string_view key) { return require(key).number(); }

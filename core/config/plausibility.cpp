@@ -1,4 +1,4 @@
-#include "core/config/proportion.h"
+#include "core/config/plausibility.h"
 
 #include <array>
 #include <cmath>
@@ -39,7 +39,7 @@ std::string unusual(double value_m, const UsualLength& length) {
 
 }  // namespace
 
-std::vector<std::string> disproportions_of_camera(const YamlValue& camera, const Camera& read) {
+std::vector<std::string> unusual_camera_values(const YamlValue& camera, const Camera& read) {
   std::vector<std::string> lines;
   YamlMap map(camera);
   const auto optics_value = map.require("optics"), detector_value = map.require("detector");
@@ -80,8 +80,8 @@ std::vector<std::string> disproportions_of_camera(const YamlValue& camera, const
   return lines;
 }
 
-std::vector<std::string> disproportions_of_orbit(const YamlValue& two_body, double periapsis_m,
-                                                 double apoapsis_m, const Ellipsoid& ellipsoid) {
+std::vector<std::string> unusual_orbit_values(const YamlValue& two_body, double periapsis_m,
+                                              double apoapsis_m, const Ellipsoid& ellipsoid) {
   const double radius_m = ellipsoid.equatorial_radius_m;
   if (periapsis_m >= radius_m) return {};
   YamlMap map(two_body);
