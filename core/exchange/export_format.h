@@ -17,7 +17,7 @@ enum class ProductKind { detections, truth, tracks };
 struct ExportedFile {
   std::string path;  // below the output directory; empty: the output is this file
   std::string content;
-  std::string copy_of;  // if not empty: a file to copy instead
+  std::string copy_of;  // if not empty: a file to copy instead of `content`
 };
 
 struct ExportRequest {
@@ -41,8 +41,8 @@ const std::vector<ExportFormat>& export_formats();
 /// "detections", "truth" or "tracks".
 const char* name_of(ProductKind kind);
 
-/// Throws `ConfigError` that `kind` of the run has nothing for `message`, "a TDM", which must not
-/// be empty.
+/// Throws `ConfigError` that the run has no `kind` for `message` ("a TDM"), which must not be
+/// empty.
 [[noreturn]] void fail_empty(const RunProducts& run, const char* message, ProductKind kind);
 
 }  // namespace dmise

@@ -12,7 +12,7 @@
 namespace dmise {
 namespace {
 
-/// A text between braces, which has no other rule than that they end it.
+/// A text in braces; braces within it, which would end it, become parentheses.
 std::string braced(const std::string& text) {
   std::string out = "{";
   for (const char c : text)

@@ -47,10 +47,10 @@ struct RunProducts {
   std::uint64_t seed = 0;
   Clock clock;
   std::vector<RunSensor> sensors;
-  std::vector<RunFrame> frames;                // by time, sensor and index, as are
-  std::vector<Truth> truths;                   // if they were asked for
-  std::vector<Detection> detections;           // if they were asked for
-  std::vector<Track> tracks;                   // likewise; by time and id
+  std::vector<RunFrame> frames;                // by time, sensor and index
+  std::vector<Truth> truths;                   // if they were asked for, in the same order
+  std::vector<Detection> detections;           // likewise
+  std::vector<Track> tracks;                   // likewise, by time and id
   std::vector<std::string> catalogues;         // of element sets, as the scenario names them
   std::vector<std::vector<std::string>> only;  // of each: numbers or names; empty: all
 

@@ -20,7 +20,7 @@ struct FrameChoice {
 using TakeFrame = std::function<void(const Frame&)>;
 
 /// Reads a FITS file of any camera. A file with this program's own keywords is read by them alone
-/// (`decode_frame`). Any other is read by standard ones: pixels of any type, brought onto 16 bits,
+/// (`decode_frame`). Any other is read by standard ones: pixels of any type, mapped to 16 bits,
 /// and what its header says of time, site, pointing and detector. `Frame::notes` and
 /// `FrameHeader::unknown` say what it leaves unsaid. Three planes are colours, whose sum is the
 /// frame, unless CTYPE3 says otherwise; other numbers of planes are frames. Throws `ConfigError`

@@ -7,7 +7,7 @@
 
 namespace dmise {
 
-/// How values of any range are brought onto 16 bits: count = (value - zero) / step, rounded, and
+/// How values of any range are mapped to 16 bits: count = (value - zero) / step, rounded, and
 /// clipped to 0..65535. Whole numbers in 0..65535 stay as they are.
 struct CountMap {
   double zero = 0.0, step = 1.0;

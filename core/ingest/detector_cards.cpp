@@ -20,9 +20,9 @@ std::optional<double> stated_gain(const StandardCards& cards, double noise) {
     const auto gain = cards.number(key);
     if (!gain) continue;
     if (!(*gain > 0 && *gain <= most))
-      cards.reject(key, "gain: is none in electrons per count");
+      cards.reject(key, "gain: is not in electrons per count");
     else if (*gain * noise < least_noise_e)
-      cards.reject(key, "gain: by it the sky's noise is less than 0.1 electrons");
+      cards.reject(key, "gain: makes the sky's noise less than 0.1 electrons");
     else
       return gain;
   }
@@ -98,7 +98,7 @@ void set_gain(const StandardCards& cards, const CountMap& map, const CountImage&
 void set_bias(const StandardCards& cards, const CountMap& map, int planes, FrameHeader& header) {
   std::optional<double> bias = cards.number("BIASLVL");
   if (const auto pedestal = cards.number("PEDESTAL"); !bias && pedestal) {
-    bias = std::abs(*pedestal);  // its sign is told in both ways
+    bias = std::abs(*pedestal);  // both signs are in use
     cards.assumed("bias: the size of PEDESTAL");
   }
   header.bias_dn = map.count(planes * bias.value_or(0.0));
@@ -117,8 +117,8 @@ void set_read_noise(const StandardCards& cards, double noise_dn, int planes, Fra
   cards.assumed("read noise: that of the sky, which is more");
 }
 
-/// Of added planes one alone may be clipped: the sum is then at least its limit and the others'
-/// bias.
+/// Of added planes a single one may be clipped: the sum is then at least its limit and the bias of
+/// the others.
 void set_saturation(const StandardCards& cards, const CountSource& source, double sky_dn,
                     FrameHeader& header) {
   constexpr double highest = 65535.0;
@@ -154,8 +154,8 @@ void set_detector(const StandardCards& cards, const CountSource& source, const C
   set_read_noise(cards, background.median_sigma_dn(), source.planes, header);
   set_saturation(cards, source, background.median_level_dn(), header);
   if (!map.is_identity())
-    cards.assumed(formatted("pixels: brought onto 16 bits in steps of %.4g from %.6g on", map.step,
-                            map.zero));
+    cards.assumed(
+        formatted("pixels: mapped to 16 bits in steps of %.4g from %.6g on", map.step, map.zero));
 }
 
 }  // namespace dmise

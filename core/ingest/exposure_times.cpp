@@ -20,7 +20,7 @@ bool in_range(const Utc& time) {
   return mjd >= first_mjd && mjd < last_mjd;
 }
 
-/// Seconds by which a time scale is ahead of TAI; empty: the scale is UTC.
+/// Time scale of a header: seconds by which it is ahead of TAI; empty: it is UTC.
 struct Scale {
   std::optional<double> ahead_of_tai_s;
   bool known = true;
@@ -33,7 +33,7 @@ Scale scale_of(const StandardCards& cards) {
   if (name == "TAI" || name == "IAT") return {0.0};
   if (name == "TT" || name == "TDT" || name == "ET" || name == "TDB") return {32.184};
   if (name == "GPS") return {-19.0};
-  cards.reject("TIMESYS", "time: is no time scale of a camera");
+  cards.reject("TIMESYS", "time: is not a known time scale");
   return {std::nullopt, false};
 }
 

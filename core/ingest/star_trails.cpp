@@ -19,7 +19,7 @@ constexpr double fwhm_of_sigma = 2.3548200450309493;
 constexpr double least_fwhm_px = 0.5, most_fwhm_px = 50.0;
 constexpr double otherwise_fwhm_px = 2.0;
 
-/// Turns a camera by a rotation vector on its axes.
+/// Turns a camera by a rotation vector in its axes.
 Quaternion turned(const Quaternion& camera, double x_rad, double y_rad) {
   const double half = 0.5 * std::hypot(x_rad, y_rad);
   if (!(half > 0)) return camera;
@@ -129,7 +129,7 @@ std::string trail_text(const PixelPosition& trail) {
                    std::hypot(trail.x_px, trail.y_px), std::atan2(trail.y_px, trail.x_px) / deg);
 }
 
-/// By the stars: the mount at rest, an even drift, or none.
+/// Finds by the stars whether the mount is at rest, drifts evenly or follows them.
 void measure_attitudes(const StandardCards& cards, const CountImage& counts, const StarShape& shape,
                        FrameHeader& header) {
   if (may_be_at_rest(header)) {

@@ -28,7 +28,7 @@ double rounded(double value, int digits) {
 
 double degrees(double rad) { return rounded(rad / deg, 6); }
 
-/// `value` with so many decimals; null if it is none.
+/// `value` with so many decimals; null if it is not known or not finite.
 void number(JsonWriter& json, std::optional<double> value, int digits) {
   if (value && std::isfinite(*value))
     json.value(rounded(*value, digits));
@@ -72,7 +72,7 @@ class SkyPlace {
   std::optional<std::array<Vec<Gcrs>, 3>> axes_;  // north, east and up
 };
 
-/// Everything of one frame that is read from its FITS file; its reasons if it can't be read.
+/// Everything of one frame that is read from its FITS file; the problem if it can't be read.
 std::string view_of(const RunContents& run, const ReportFrame& row, const StarMap* stars,
                     std::size_t most_pixels) {
   JsonWriter json;

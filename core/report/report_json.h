@@ -8,7 +8,8 @@
 namespace dmise {
 
 /// What the page of a run shows, as JSON: summary, sensors, frames with the pixels of some, truth,
-/// detections, score, plan, tracks, clock and files. Numbers that are none are null.
+/// detections, score, plan, tracks, clock and files. Numbers that are not known or not finite are
+/// null.
 std::string report_json(const RunContents& run, const StarMap* stars, Threads& threads,
                         const ReportSettings& settings);
 

@@ -76,11 +76,11 @@ void read_record(RunContents& run) {
     run.sensors.push_back(sensor_of(sensor));
     if (const std::string& name = run.sensors.back().name;
         name.empty() || name.find('/') != std::string::npos || name.starts_with('.'))
-      sensor.fail("name", "is no name of a directory: " + printable(name));
+      sensor.fail("name", "can't be the name of a directory: " + printable(name));
   }
 }
 
-/// Sensors that have left frames and of which run.json does not tell.
+/// Adds sensors that have left frames and are not in run.json.
 void find_sensors(RunContents& run) {
   std::set<std::string> known, more;
   for (const ReportSensor& s : run.sensors) known.insert(s.name);
@@ -160,7 +160,7 @@ void read_camera(const std::string& directory, ReportSensor& sensor) {
   }
 }
 
-/// The lines of one sensor; what a line says of a frame without a report is left out.
+/// Reads the lines of one sensor; those of a frame without a report are left out.
 void read_sensor(RunContents& run, std::size_t index, ScoreInput& input) {
   ReportSensor& sensor = run.sensors[index];
   const std::string directory = run.directory + "/" + sensor.name + "/";
@@ -223,7 +223,7 @@ void read_sensor(RunContents& run, std::size_t index, ScoreInput& input) {
     sensor.log = "logs/" + sensor.name + ".log";
 }
 
-/// Joins what the score says with the lines: which truth was found, which detection is of none.
+/// Scores the run, and marks which truth was found and which detection is of a truth.
 void judge(RunContents& run, ScoreInput input) {
   input.source = run.directory;
   input.status = run.status;
@@ -289,7 +289,7 @@ void read_tracks(RunContents& run) {
   }
 }
 
-/// What the time-master of `dmise launch` reports of its ticks.
+/// Reads what the time-master of `dmise launch` reports of its ticks.
 void read_ticks(RunContents& run) {
   const std::string path = run.directory + "/logs/master.json";
   if (!path_exists(path)) return;

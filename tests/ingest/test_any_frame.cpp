@@ -161,7 +161,7 @@ TEST(AnyFrame, AGainThatCannotBeIsRejected) {
   for (double& v : image.values) v /= 65535;
   const Frame frame = read_one(image);
   EXPECT_TRUE(frame.header.unknown.has(FrameFact::gain));
-  EXPECT_THAT(frame.notes.missing, Contains(HasSubstr("EGAIN: gain: by it the sky's noise")));
+  EXPECT_THAT(frame.notes.missing, Contains(HasSubstr("EGAIN: gain: makes the sky's noise")));
   EXPECT_EQ(detections_in(frame).size(), 2u);
 }
 
