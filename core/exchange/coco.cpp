@@ -4,6 +4,7 @@
 #include "core/exchange/export_format.h"
 #include "core/exchange/image_label.h"
 #include "core/products/frame_file.h"
+#include "core/score/trail.h"
 
 namespace dmise {
 namespace {
@@ -18,12 +19,6 @@ std::size_t image_id(const RunProducts& run, const std::string& sensor, std::uin
 void write_box(JsonWriter& json, const PixelBox& box) {
   json.key("bbox").begin_array().value(box.left_px + 0.5).value(box.top_px + 0.5);
   json.value(box.right_px - box.left_px).value(box.bottom_px - box.top_px).end_array();
-}
-
-void write_keypoint(JsonWriter& json, PixelPosition p, const RunSensor& camera) {
-  const bool inside = p.x_px >= -0.5 && p.y_px >= -0.5 && p.x_px < camera.columns - 0.5 &&
-                      p.y_px < camera.rows - 0.5;
-  json.value(inside ? p.x_px + 0.5 : 0.0).value(inside ? p.y_px + 0.5 : 0.0).value(inside ? 2 : 0);
 }
 
 void write_images(const RunProducts& run, JsonWriter& json) {
@@ -48,9 +43,16 @@ void write_annotation(const RunProducts& run, const Truth& t, const ImageLabel& 
   json.field("area", area_px2(outline)).key("segmentation").begin_array().begin_array();
   for (const PixelPosition& p : outline) json.value(p.x_px + 0.5).value(p.y_px + 0.5);
   json.end_array().end_array().key("keypoints").begin_array();
-  write_keypoint(json, label.start, camera);
-  write_keypoint(json, label.end, camera);
-  json.end_array().field("num_keypoints", 2);
+  int labelled = 0;  // those inside the image
+  for (const PixelPosition& p : {label.start, label.end}) {
+    const bool visible = is_inside(p, camera.columns, camera.rows);
+    labelled += visible;
+    if (visible)
+      json.value(p.x_px + 0.5).value(p.y_px + 0.5).value(2);
+    else
+      json.value(0.0).value(0.0).value(0);
+  }
+  json.end_array().field("num_keypoints", labelled);
   json.field("object_name", t.name).field("catalogue_number", t.catalogue_number);
   json.field("magnitude", t.true_magnitude).field("sunlit", t.sunlit);
   json.field("signal_e", t.rendered_signal_e).end_object();

@@ -35,6 +35,15 @@ TEST(ExportFormat, CocoHasBoxesFromCornersOfPixels) {
   EXPECT_EQ(annotation["keypoints"], Json::parse("[20.5,30.5,2,60.5,50.5,2]"));
 }
 
+TEST(ExportFormat, CocoLabelsOnlyKeypointsInTheImage) {
+  RunProducts run = run_with_truth();
+  run.truths[0].end_x_px = 260;
+  const Json coco = Json::parse(exported("coco", {run, ProductKind::truth, {}})[0].content);
+  const auto& annotation = coco["annotations"][0];
+  EXPECT_EQ(annotation["keypoints"], Json::parse("[20.5,30.5,2,0.0,0.0,0]"));
+  EXPECT_EQ(annotation["num_keypoints"], 1);
+}
+
 TEST(ExportFormat, SatnetHasFractionsOfTheImage) {
   const RunProducts run = run_with_truth();
   const auto files = exported("satnet", {run, ProductKind::truth, {}});
