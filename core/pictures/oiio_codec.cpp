@@ -101,7 +101,8 @@ class OiioCodec final : public PictureCodec {
     return out.finish();
   }
 
-  std::string encode_exr(const ExrImage& image, const std::vector<ExrChannel>& channels) override {
+  std::string encode_exr(const ExrImage& image) override {
+    const std::vector<ExrChannel>& channels = image.channels;
     const int count = int(channels.size());
     OIIO::ImageSpec spec(image.columns, image.rows, count, OIIO::TypeDesc::FLOAT);
     spec.channelnames.clear();

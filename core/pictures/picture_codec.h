@@ -9,9 +9,8 @@ class PictureCodec {
  public:
   virtual ~PictureCodec() = default;
   virtual std::string encode(const Picture& picture, const std::string& format) = 0;
-  /// Writes `channels` in the given order.
-  virtual std::string encode_exr(const ExrImage& image,
-                                 const std::vector<ExrChannel>& channels) = 0;
+  /// Writes the channels in the given order.
+  virtual std::string encode_exr(const ExrImage& image) = 0;
   virtual LinearPicture decode(std::string_view bytes, const std::string& format,
                                PictureOf what) = 0;
 };

@@ -45,27 +45,6 @@ void check_name(const std::string& name) {
     throw Error("EXR can't be written: a name must have 1..31 characters, got " + name);
 }
 
-/// Channels in file order: by name.
-std::vector<ExrChannel> channels_of(const ExrImage& image) {
-  std::vector<ExrChannel> channels{{image.channel, image.pixels}};
-  channels.insert(channels.end(), image.more.begin(), image.more.end());
-  std::sort(channels.begin(), channels.end(),
-            [](const auto& a, const auto& b) { return a.name < b.name; });
-  for (std::size_t i = 1; i < channels.size(); ++i)
-    if (channels[i].name == channels[i - 1].name)
-      throw Error("EXR can't be written: two channels " + channels[i].name);
-  const std::size_t count = std::size_t(image.columns) * std::size_t(image.rows);
-  for (const ExrChannel& channel : channels) {
-    check_name(channel.name);
-    if (image.columns < 1 || image.rows < 1 || !channel.pixels)
-      throw Error("EXR can't be written: no pixels");
-    for (std::size_t i = 0; i < count; ++i)
-      if (!std::isfinite(channel.pixels[i]))
-        throw Error("EXR can't be written: not a finite number at pixel " + std::to_string(i));
-  }
-  return channels;
-}
-
 /// Returns `work()`; errors get the file's name.
 template <class Work>
 auto of_file(const std::string& path, Work&& work) {
@@ -91,9 +70,24 @@ void write_picture(const std::string& path, const Picture& picture) {
                    of_file(path, [&] { return encode_picture(picture, format_by_ending(path)); }));
 }
 
-std::string encode_exr(const ExrImage& image) {
+std::string encode_exr(ExrImage image) {
   for (const auto& attribute : image.attributes) check_name(attribute.name);
-  return codec().encode_exr(image, channels_of(image));
+  std::vector<ExrChannel>& channels = image.channels;
+  std::ranges::sort(channels, {}, &ExrChannel::name);  // the order in files
+  for (std::size_t i = 1; i < channels.size(); ++i)
+    if (channels[i].name == channels[i - 1].name)
+      throw Error("EXR can't be written: two channels " + channels[i].name);
+  if (image.columns < 1 || image.rows < 1 || channels.empty())
+    throw Error("EXR can't be written: no pixels");
+  const std::size_t count = std::size_t(image.columns) * std::size_t(image.rows);
+  for (const ExrChannel& channel : channels) {
+    check_name(channel.name);
+    if (!channel.pixels) throw Error("EXR can't be written: no pixels");
+    for (std::size_t i = 0; i < count; ++i)
+      if (!std::isfinite(channel.pixels[i]))
+        throw Error("EXR can't be written: not a finite number at pixel " + std::to_string(i));
+  }
+  return codec().encode_exr(image);
 }
 
 void write_exr(const std::string& path, const ExrImage& image) {

@@ -30,18 +30,16 @@ struct ExrChannel {
 
 /// An EXR image of one or more channels of 32-bit floats.
 struct ExrImage {
-  std::string channel = "Y";      // at most 31 characters; viewers show Y as grey
-  const float* pixels = nullptr;  // rows x columns, first row first
   int columns = 0, rows = 0;
+  std::vector<ExrChannel> channels;  // of different names; viewers show Y as grey
   std::vector<ExrAttribute> attributes;
   // "YYYY:MM:DD hh:mm:ss", the Exif format; blanks if unknown.
   std::string taken_utc = "    :  :     :  :  ";
-  std::vector<ExrChannel> more;  // further channels, of other names
 };
 
 /// Encodes OpenEXR in scan lines with lossless ZIP compression. Throws `Error` for invalid channel
 /// names, duplicate channels, no pixels or values that are not finite.
-std::string encode_exr(const ExrImage& image);
+std::string encode_exr(ExrImage image);
 void write_exr(const std::string& path, const ExrImage& image);
 
 /// Meaning of the samples: light is converted to linear if the file is sRGB; another quantity is

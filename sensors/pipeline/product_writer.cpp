@@ -42,9 +42,9 @@ std::string exif_time(std::string utc) {
 /// The whole band is channel Y; its parts are named by their middle, and described by attributes.
 ExrImage radiance_exr(const FramePlanes& planes, const FrameHeader& h) {
   const RadianceMap& map = planes.radiance;
-  ExrImage image{.pixels = map.pixels.data(),
-                 .columns = map.columns,
+  ExrImage image{.columns = map.columns,
                  .rows = map.rows,
+                 .channels = {{"Y", map.pixels.data()}},
                  .attributes = {{"quantity", "radiance in the band, at the aperture"},
                                 {"unit", "photon s-1 m-2 sr-1"},
                                 {"band", h.band.name},
@@ -59,7 +59,7 @@ ExrImage radiance_exr(const FramePlanes& planes, const FrameHeader& h) {
                  .taken_utc = exif_time(h.start_utc)};
   for (const auto& [band, part] : planes.radiance_parts) {
     const std::string name = formatted("%08.2fnm", band.centre_m * 1e9);
-    image.more.push_back({name, part.pixels.data()});
+    image.channels.push_back({name, part.pixels.data()});
     image.attributes.push_back({name + ".low_m", band.low_m()});
     image.attributes.push_back({name + ".high_m", band.high_m()});
   }

@@ -29,7 +29,7 @@ std::string complaint_of_files(const std::string& mtl) {
   const std::string folder = testing::TempDir() + ".";
   write_picture(folder + "/obj-2x2.png", Picture{2, 2, 1, {0, 255, 128, 7}});
   write_exr(folder + "/obj-bright.exr",
-            {.pixels = std::array{0.0f, 3.5f}.data(), .columns = 2, .rows = 1});
+            {.columns = 2, .rows = 1, .channels = {{"Y", std::array{0.0f, 3.5f}.data()}}});
   write_file_whole(folder + "/obj-a.mtl", "newmtl hull\n" + mtl + "\n");
   write_file_whole(folder + "/obj-a.obj",
                    "mtllib obj-a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"

@@ -144,7 +144,7 @@ std::uint32_t next(std::uint32_t& state) { return state = state * 1664525u + 101
 TEST(Pictures, ChangedBytesAreAPictureOrOneLine) {
   const ExpectedElectronImage map = sample_map();
   std::vector<std::string> whole{
-      encode_exr({.pixels = map.pixels.data(), .columns = 200, .rows = 20})};
+      encode_exr({.columns = 200, .rows = 20, .channels = {{"Y", map.pixels.data()}}})};
   for (const int channels : {1, 3})
     for (const std::string format : {"png", "tiff", "jpeg"})
       whole.push_back(encode_picture(sample_picture(channels), format));
@@ -226,9 +226,9 @@ TEST(Exr, OpenExrReadsEveryPixel) {
       v = columns == 64 ? float(state) * 1e-3f : 300.0f + float(state >> 28);
     }
     image.pixels.front() = 1e12f;
-    write_exr(scratch("map.exr"), {.pixels = image.pixels.data(),
-                                   .columns = columns,
+    write_exr(scratch("map.exr"), {.columns = columns,
                                    .rows = rows,
+                                   .channels = {{"Y", image.pixels.data()}},
                                    .attributes = {{"unit", "photon"}, {"frame", 7.0}}});
     const auto [status, output] = command_output(
         python + " " DMISE_SOURCE_DIR "/tests/reference/read_exr.py " + scratch("map.exr"));
@@ -251,12 +251,12 @@ TEST(Exr, OpenExrReadsEveryChannel) {
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t i = 0; i < images[k].pixels.size(); ++i)
       images[k].pixels[i] = float(k + 1) * 1000.0f + float(i % 97);
-  write_exr(scratch("bands.exr"),
-            {.pixels = images[1].pixels.data(),
-             .columns = columns,
-             .rows = rows,
-             .attributes = {{"unit", "photon"}, {"frame", 7.0}},
-             .more = {{"Z", images[2].pixels.data()}, {"00500.00nm", images[0].pixels.data()}}});
+  write_exr(scratch("bands.exr"), {.columns = columns,
+                                   .rows = rows,
+                                   .channels = {{"Y", images[1].pixels.data()},
+                                                {"Z", images[2].pixels.data()},
+                                                {"00500.00nm", images[0].pixels.data()}},
+                                   .attributes = {{"unit", "photon"}, {"frame", 7.0}}});
   const auto [status, output] = command_output(
       python + " " DMISE_SOURCE_DIR "/tests/reference/read_exr.py " + scratch("bands.exr"));
   std::string expected;
@@ -273,16 +273,16 @@ TEST(Exr, OpenExrReadsEveryChannel) {
   }
   EXPECT_EQ(status, 0) << output;
   EXPECT_EQ(output, expected);
-  EXPECT_THROW(encode_exr({.pixels = images[0].pixels.data(),
-                           .columns = columns,
-                           .rows = rows,
-                           .more = {{"Y", images[1].pixels.data()}}}),
-               Error);
+  EXPECT_THROW(
+      encode_exr({.columns = columns,
+                  .rows = rows,
+                  .channels = {{"Y", images[0].pixels.data()}, {"Y", images[1].pixels.data()}}}),
+      Error);
 }
 
 TEST(Exr, EqualImagesAreEqualBytesAndSmoothOnesAreSmaller) {
   const ExpectedElectronImage image = sample_map();
-  const ExrImage exr{.pixels = image.pixels.data(), .columns = 200, .rows = 150};
+  const ExrImage exr{.columns = 200, .rows = 150, .channels = {{"Y", image.pixels.data()}}};
   EXPECT_EQ(encode_exr(exr), encode_exr(exr));
   EXPECT_LT(encode_exr(exr).size(), 200 * 150 * 4 * 0.7);
 }
@@ -290,7 +290,7 @@ TEST(Exr, EqualImagesAreEqualBytesAndSmoothOnesAreSmaller) {
 // What writes the time of day into the attribute capDate makes other bytes a second later.
 TEST(Exr, HoldsTheTimeOfTheExposureAndNotOfItsWriting) {
   const ExpectedElectronImage image = sample_map();
-  ExrImage exr{.pixels = image.pixels.data(), .columns = 200, .rows = 150};
+  ExrImage exr{.columns = 200, .rows = 150, .channels = {{"Y", image.pixels.data()}}};
   const auto date_of = [](const std::string& bytes) {
     const std::string name("capDate\0string\0", 15);
     const std::size_t at = bytes.find(name);
@@ -304,10 +304,11 @@ TEST(Exr, HoldsTheTimeOfTheExposureAndNotOfItsWriting) {
 TEST(Exr, RefusesWhatNoFileHolds) {
   const ExpectedElectronImage image = sample_map();
   EXPECT_THROW(encode_exr({.columns = 2, .rows = 2}), Error);
-  EXPECT_THROW(encode_exr({.pixels = image.pixels.data(), .columns = 0, .rows = 2}), Error);
-  EXPECT_THROW(encode_exr({.pixels = image.pixels.data(),
-                           .columns = 2,
+  EXPECT_THROW(encode_exr({.columns = 0, .rows = 2, .channels = {{"Y", image.pixels.data()}}}),
+               Error);
+  EXPECT_THROW(encode_exr({.columns = 2,
                            .rows = 2,
+                           .channels = {{"Y", image.pixels.data()}},
                            .attributes = {{std::string(32, 'x'), 1.0}}}),
                Error);
 }
@@ -315,7 +316,8 @@ TEST(Exr, RefusesWhatNoFileHolds) {
 TEST(Exr, NoNanLeaves) {
   ExpectedElectronImage image = sample_map();
   image.at(0, 1) = std::numeric_limits<float>::infinity();
-  EXPECT_THROW(encode_exr({.pixels = image.pixels.data(), .columns = 200, .rows = 150}), Error);
+  EXPECT_THROW(encode_exr({.columns = 200, .rows = 150, .channels = {{"Y", image.pixels.data()}}}),
+               Error);
 }
 
 }  // namespace
