@@ -76,4 +76,13 @@ void normals_of(const std::uint32_t* words, std::size_t count, float* out, SimdL
   kernel_of(level, sse2::normals_of, avx2::normals_of, avx512::normals_of)(words, count, out);
 }
 
+void rng_normals(const RngKey& key, std::uint32_t first, std::uint32_t draw, std::span<float> out) {
+  std::array<std::uint32_t, 1024> words;
+  for (std::size_t i = 0; i < out.size(); i += words.size()) {
+    const std::size_t n = std::min(words.size(), out.size() - i);
+    rng_words(key, first + std::uint32_t(i), n, draw, words.data());
+    normals_of(words.data(), n, out.data() + i);
+  }
+}
+
 }  // namespace dmise

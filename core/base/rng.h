@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "core/base/simd_level.h"
@@ -46,5 +47,7 @@ constexpr double uniform_of(std::uint32_t word) { return (double(word) + 0.5) * 
 float normal_of(std::uint32_t word);
 void normals_of(const std::uint32_t* words, std::size_t count, float* out,
                 SimdLevel level = best_simd_level());
+/// Normal deviates of consecutive pixels: out[i] = normal_of(rng_word(key, first + i, draw)).
+void rng_normals(const RngKey& key, std::uint32_t first, std::uint32_t draw, std::span<float> out);
 
 }  // namespace dmise

@@ -12,10 +12,8 @@ std::span<const DetectorParameter> ColumnNoise::parameters() {
 }
 
 ColumnNoise::Prepared ColumnNoise::prepare(const ExposureFacts& exposed) const {
-  std::vector<std::uint32_t> words(static_cast<std::size_t>(exposed.light.columns));
-  rng_words(exposed.key, 0, words.size(), 0, words.data());
-  Prepared offsets(words.size());
-  normals_of(words.data(), words.size(), offsets.data());
+  Prepared offsets(static_cast<std::size_t>(exposed.light.columns));
+  rng_normals(exposed.key, 0, 0, offsets);
   for (float& e : offsets) e *= float(column_noise_e);
   return offsets;
 }

@@ -16,13 +16,11 @@ enum Draw : std::uint32_t { pixel_gain, pixel_offset, column_gain, column_offset
 void add_normals(const RngKey& key, Draw draw, std::size_t first, double scale,
                  std::span<float> sums) {
   constexpr std::size_t part = 1024;
-  std::array<std::uint32_t, part> words;
   std::array<float, part> normals;
   if (!(scale > 0.0)) return;
   for (std::size_t i = 0; i < sums.size(); i += part) {
     const std::size_t n = std::min(part, sums.size() - i);
-    rng_words(key, std::uint32_t(first + i), n, draw, words.data());
-    normals_of(words.data(), n, normals.data());
+    rng_normals(key, std::uint32_t(first + i), draw, std::span(normals).first(n));
     for (std::size_t j = 0; j < n; ++j) sums[i + j] += float(scale) * normals[j];
   }
 }

@@ -19,26 +19,19 @@ std::span<const DetectorParameter> ReadNoise::parameters() {
 
 void ReadNoise::rms_of_pixels(const RngKey& fixed_key, std::size_t first,
                               std::span<float> rms_e) const {
-  std::array<std::uint32_t, 1024> words;
   const double median_e = read_noise_e * std::exp(-read_noise_spread * read_noise_spread);
-  for (std::size_t i = 0; i < rms_e.size(); i += words.size()) {
-    const std::size_t n = std::min(words.size(), rms_e.size() - i);
-    rng_words(fixed_key, std::uint32_t(first + i), n, 0, words.data());
-    normals_of(words.data(), n, rms_e.data() + i);
-  }
+  rng_normals(fixed_key, std::uint32_t(first), 0, rms_e);
   for (float& e : rms_e) e = float(median_e * std::exp(read_noise_spread * double(e)));
 }
 
 void ReadNoise::apply(const ExposureFacts& exposed, Piece& piece) const {
   if (is_spread()) {
     std::array<float, 1024> rms_e, normals;
-    std::array<std::uint32_t, 1024> words;
     const auto e = piece.electrons;
-    for (std::size_t i = 0; i < e.size(); i += words.size()) {
-      const std::size_t n = std::min(words.size(), e.size() - i), first = piece.first + i;
+    for (std::size_t i = 0; i < e.size(); i += normals.size()) {
+      const std::size_t n = std::min(normals.size(), e.size() - i), first = piece.first + i;
       rms_of_pixels(exposed.fixed_key, first, std::span(rms_e).first(n));
-      rng_words(exposed.key, std::uint32_t(first), n, 0, words.data());
-      normals_of(words.data(), n, normals.data());
+      rng_normals(exposed.key, std::uint32_t(first), 0, std::span(normals).first(n));
       for (std::size_t j = 0; j < n; ++j) e[i + j] += rms_e[j] * normals[j];
     }
     return;

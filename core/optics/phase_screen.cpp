@@ -85,12 +85,10 @@ KolmogorovScreens::KolmogorovScreens(int side, double outer_scale)
 
 void KolmogorovScreens::transform_noise(const RngKey& key, std::uint32_t draw) {
   const auto torus = std::size_t(torus_), n = torus / 2 + 1;
-  std::vector<std::uint32_t> words(2 * torus);
   for (std::size_t y = 0; y < torus; ++y) {
     const float* a = amplitude_.data() + std::min(y, torus - y) * n;
     float* row = field_.data() + 2 * y * torus;
-    rng_words(key, std::uint32_t(2 * y * torus), words.size(), 2 * draw, words.data());
-    normals_of(words.data(), words.size(), row);
+    rng_normals(key, std::uint32_t(2 * y * torus), 2 * draw, {row, 2 * torus});
     for (std::size_t x = 0; x < torus; ++x) {
       const float amplitude = a[std::min(x, torus - x)];
       row[2 * x] *= amplitude;

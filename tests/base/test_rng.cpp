@@ -44,6 +44,14 @@ TEST(Rng, ARunOfPixelsIsTheSameOnEveryInstructionSetAndFromAnyFirstPixel) {
   }
 }
 
+TEST(Rng, NormalsOfARunOfPixelsAreThoseOfTheirWords) {
+  const RngKey key = rng_key(7, "s", 3, "e");
+  std::vector<float> normals(2500);
+  rng_normals(key, 77, 5, normals);
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    ASSERT_EQ(normals[i], normal_of(rng_word(key, 77 + std::uint32_t(i), 5))) << i;
+}
+
 // Reference: the normal distribution function by the C library's erfc.
 TEST(Rng, NormalsAreTheQuantileFunctionToSinglePrecision) {
   for (std::uint64_t k = 0; k <= 4096; ++k) {
