@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/base/table_place.h"
 #include "core/base/units.h"
 
 namespace dmise {
@@ -36,9 +37,7 @@ ApertureLight::ApertureLight(double obscuration) {
 }
 
 double ApertureLight::within(double radius, double variance) const {
-  const double place = std::clamp(radius, 0.0, most_radius) / step;
-  const auto i = std::min(std::size_t(place), within_.size() - 2);
-  const double next = place - double(i);
+  const auto [i, next] = table_place(std::min(radius, most_radius) / step, within_.size());
   // A blur moves light down the slope of the brightness.
   const double slope = (brightness_[i + 1] - brightness_[i]) / step;
   return within_[i] + next * (within_[i + 1] - within_[i]) + pi * radius * variance * slope;

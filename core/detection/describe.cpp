@@ -178,8 +178,8 @@ struct MidPoint {
 MidPoint mid_point(const Source& source, const FrameHeader& header) {
   if (!source.streak) return {line_point(source, 0.0), {}, 0.0};
   const Trail& t = source.trail();
-  const Vec<Gcrs> end1 = wcs_direction(header.wcs, line_point(source, -1).place);
-  const Vec<Gcrs> end2 = wcs_direction(header.wcs, line_point(source, 1).place);
+  const PixelPosition first = line_point(source, -1).place, last = line_point(source, 1).place;
+  const Vec<Gcrs> end1 = wcs_direction(header.wcs, first), end2 = wcs_direction(header.wcs, last);
   const MidExposure mid = mid_exposure(header, end1, end2, source.at_edge);
   const auto pixel = wcs_pixel(header.wcs, mid.direction);
   if (!pixel || !(t.length_px > 0)) return {line_point(source, 0.0), end2 - end1, mid.sigma_rad};
@@ -189,8 +189,7 @@ MidPoint mid_point(const Source& source, const FrameHeader& header) {
   if (!(source.free & trail_slope)) {
     // Fitted as even: its centroid is towards the brighter end, where the object is nearer and
     // higher.
-    const double slope = slope_of(header, line_point(source, -1).place, line_point(source, 1).place,
-                                  mid.end1_range_over_end2);
+    const double slope = slope_of(header, first, last, mid.end1_range_over_end2);
     uneven_px = slope * t.length_px / 6;
     along_px -= uneven_px;
   }
