@@ -17,7 +17,7 @@ void add_view_command(CLI::App& app) {
                       "directory of the run: previews of frames that no sensor serves any more");
   command
       ->add_option("--listen", options->listen,
-                   "IP address and port of the pages; other than loopback only with --tokens")
+                   "IP address and port of the pages; addresses other than loopback need --tokens")
       ->capture_default_str();
   command->add_option("--keys", options->keys,
                       "directory with gateway.key, and operator.key to control the clock");
@@ -28,7 +28,7 @@ void add_view_command(CLI::App& app) {
       "--truth", options->truth,
       "show truth beside detections to whoever may see it; with keys gateway.key must "
       "be one of `dmise keygen --truth`");
-  command->add_flag("--no-control", options->no_control, "nobody controls the clock from here");
+  command->add_flag("--no-control", options->no_control, "viewers cannot control the clock");
   command->callback([options] { become(gateway_command(*options)); });
 }
 

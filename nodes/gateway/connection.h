@@ -11,8 +11,8 @@
 
 #include "nodes/gateway/web_server.h"
 
-// What the connections of the web server share. Boost.Beast is slow to compile: only what is a
-// connection includes this.
+// What the connections of the web server share. Boost.Beast is slow to compile: only files of
+// connections include this.
 namespace dmise {
 
 namespace beast = boost::beast;
@@ -23,11 +23,11 @@ using tcp = boost::asio::ip::tcp;
 class Connection {
  public:
   virtual ~Connection() = default;
-  /// There may be new messages.
+  /// Called when there may be new messages.
   virtual void pump() {}
 };
 
-/// Hands work to the server's thread from any other, as long as there is a server.
+/// Passes work from any thread to the server's thread, as long as there is a server.
 class ServerThread {
  public:
   explicit ServerThread(boost::asio::io_context& io) : io_(&io) {}
@@ -47,14 +47,14 @@ class ServerThread {
   boost::asio::io_context* io_;
 };
 
-/// Used on the server's thread alone.
+/// State of the server, used on its thread only.
 struct Hub {
   WebServerOptions options;
   WebContent content;
   std::shared_ptr<ServerThread> thread;
   std::set<Connection*> connections;
-  // Connections that wait for a preview, by a number that whoever makes it passes back: it never
-  // holds what belongs to this thread.
+  // Callbacks of connections that wait for a preview, by ticket. The thread that draws previews has
+  // the ticket only, so that connections stay on this thread.
   std::map<std::uint64_t, std::function<void(SharedPreview)>> waiting;
   std::uint64_t last_ticket = 0;
 };
@@ -64,10 +64,10 @@ inline std::chrono::milliseconds milliseconds_of(double seconds) {
 }
 inline std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
-/// Begins to answer the requests of HTTP that come over a socket.
+/// Starts to answer HTTP requests that arrive over a socket.
 void serve_http(Hub& hub, tcp::socket socket);
 
-/// Accepts the WebSocket that `request` asks for, and sends what there is to see.
+/// Accepts the WebSocket that `request` asks for, and sends messages to the viewer.
 void serve_viewer(Hub& hub, beast::tcp_stream stream,
                   const http::request<http::empty_body>& request, Access access);
 

@@ -29,8 +29,8 @@ using std::chrono::seconds;
 constexpr int picture_columns = 1024;
 constexpr std::int64_t max_fits_bytes = std::int64_t(256) << 20;
 constexpr std::size_t kept_bytes = std::size_t(32) << 20;
-constexpr seconds patience{2};        // with a sensor, until the directory is looked at
-constexpr seconds connected_for{60};  // after the last request: sensors may encode frames for it
+constexpr seconds patience{2};        // with a sensor, before the directory is searched
+constexpr seconds connected_for{60};  // after the last request: a sensor encodes frames meanwhile
 
 using FrameKey = std::pair<std::string, std::uint32_t>;  // sensor, number
 
@@ -75,14 +75,14 @@ struct FramePreviews::Work {
     std::uint32_t frame = 0;
     std::vector<Answer> answers;
   };
-  /// What is asked of one sensor: one frame at a time, as its endpoint wants it.
+  /// Requests to one sensor; one at a time is sent, as its endpoint requires.
   struct Line {
     std::string endpoint;
     std::optional<zmq::socket_t> socket;
     std::deque<Wanted> wanted;     // the first is asked for
     std::optional<Instant> asked;  // empty: not yet
     Instant used{0};
-    bool silent = false;  // gave no answer: the directory is looked at first
+    bool silent = false;  // gave no answer: the directory is searched first
   };
 
   Work(const std::string& keys, const std::string& name, PreviewDirectory files)
@@ -203,7 +203,7 @@ struct FramePreviews::Work {
     }
   }
 
-  /// Answers those who want the first frame; without a preview the directory may have one.
+  /// Answers all requests for the first frame of the queue, without `png` from the directory.
   void settle(const std::string& sensor, Line& line, SharedPreview png) {
     const Wanted wanted = std::move(line.wanted.front());
     line.wanted.pop_front();

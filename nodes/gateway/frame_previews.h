@@ -8,13 +8,13 @@
 
 namespace dmise {
 
-/// Draws the counts of a FITS file: a grey PNG, at most 1024 pixels wide. Throws `ConfigError` for
-/// what is no frame.
+/// Returns a grey PNG of the counts of a FITS file, at most 1024 pixels wide. Throws `ConfigError`
+/// if it is not a frame.
 std::string draw_preview(std::string_view fits);
 
-/// Previews drawn of the frames that sensors serve while they run (docs/wire.md, Frames), of those
-/// alone that somebody asks for; the last 32 MiB are kept. A frame that its sensor does not serve
-/// is looked for in the run's directory. Works on a thread of its own.
+/// Draws previews, when they are requested, of frames that sensors serve while they run
+/// (docs/wire.md, Frames), and keeps the last 32 MiB. The preview of a frame that its sensor does
+/// not serve is read from the run's directory. Has a thread of its own.
 class FramePreviews : public PreviewSource {
  public:
   /// `keys`, `name`: as in `RunObserverOptions`. Throws `ConfigError` for keys that cannot be used.
@@ -23,7 +23,7 @@ class FramePreviews : public PreviewSource {
   FramePreviews(const FramePreviews&) = delete;
   FramePreviews& operator=(const FramePreviews&) = delete;
 
-  /// Frame endpoints by sensor, of a run; none: the run is over. From any thread.
+  /// Sets the frame endpoints of a run, by sensor; none: the run is over. From any thread.
   void follow(std::uint64_t run_id, std::map<std::string, std::string> endpoints);
   void request(const std::string& sensor, std::uint32_t frame, Answer answer) override;
 

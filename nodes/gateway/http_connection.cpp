@@ -8,8 +8,8 @@ namespace {
 constexpr std::size_t max_head_bytes = 8192;
 constexpr const char* cookie_name = "dmise_token";
 
-// Only what comes from this server is loaded. Cesium compiles WebAssembly and begins its workers
-// from blobs; elements get their styles by script.
+// Pages load nothing from other servers. Cesium compiles WebAssembly and starts its workers from
+// blobs; scripts set styles of elements.
 constexpr const char* content_policy =
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval' blob:; worker-src 'self' blob:; "
     "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self'; "
@@ -20,7 +20,7 @@ constexpr const char* no_dashboard =
     "<h1>The dashboard is not built</h1><p>The gateway runs, and has no pages to show. "
     "<code>./dmise dashboard</code> builds them: it needs npm.</p></html>";
 
-/// A connection of HTTP, until it becomes a viewer's.
+/// A connection that speaks HTTP, until it becomes a WebSocket.
 class HttpConnection : public Connection, public std::enable_shared_from_this<HttpConnection> {
  public:
   HttpConnection(Hub& hub, tcp::socket socket) : hub_(hub), stream_(std::move(socket)) {
@@ -45,11 +45,12 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   void take() {
     const auto& request = parser_->get();
     const std::string_view host = view_of(request[http::field::host]);
-    // Of a name that is not loopback's, a foreign page could make this server its own.
+    // A foreign page could resolve any other name to this machine (DNS rebinding).
     if (!hub_.options.tokens.any() && !is_loopback_host(host))
-      return refuse(http::status::misdirected_request, "this server is loopback's alone");
+      return refuse(http::status::misdirected_request,
+                    "this server answers requests for localhost only");
     if (request.method() != http::verb::get && request.method() != http::verb::head)
-      return refuse(http::status::method_not_allowed, "GET and HEAD alone");
+      return refuse(http::status::method_not_allowed, "only GET and HEAD");
     const auto target = parse_target(view_of(request.target()));
     if (!target) return refuse(http::status::not_found, "no such page");
     const std::string presented =
@@ -66,14 +67,14 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   void become_viewer(const http::request<http::empty_body>& request, Access access) {
     if (!beast::websocket::is_upgrade(request))
-      return refuse(http::status::upgrade_required, "a WebSocket");
+      return refuse(http::status::upgrade_required, "this is a WebSocket");
     if (!is_own_origin(view_of(request[http::field::origin]), view_of(request[http::field::host])))
-      return refuse(http::status::forbidden, "a page of another site");
+      return refuse(http::status::forbidden, "a page of another site may not connect");
     if (access == Access::control && !hub_.options.may_control) access = Access::truth;
     serve_viewer(hub_, std::move(stream_), request, access);
   }
 
-  /// The token moves from the address, which is seen and remembered, to a cookie.
+  /// Moves the token from the address, which browsers show and store, to a cookie.
   void keep_token(const RequestTarget& target) {
     Answer answer = begin(http::status::see_other);
     answer.set(http::field::location, "/");

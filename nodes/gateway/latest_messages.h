@@ -8,8 +8,8 @@
 
 namespace dmise {
 
-/// What viewers are told. Each message is the whole state of its kind, so the newest replaces all
-/// before.
+/// Kinds of messages to viewers. Each message has the whole state of its kind, so the newest
+/// replaces all before.
 enum class MessageSlot {
   run,
   status,
@@ -19,7 +19,7 @@ enum class MessageSlot {
   detections,
   tracks,
   tasks,
-  truth,  // for those alone who may see it
+  truth,  // only for viewers that may see it
   notice,
   count
 };
@@ -32,8 +32,8 @@ struct ViewerMessage {
 };
 using SharedMessage = std::shared_ptr<const ViewerMessage>;
 
-/// The newest message of each kind, from the thread that observes the run to the one that serves
-/// viewers. A viewer that is slow misses messages; nothing is queued.
+/// The newest message of each kind, passed from the thread that observes the run to the one that
+/// serves viewers. A slow viewer misses messages; nothing is queued.
 class LatestMessages {
  public:
   struct Slot {

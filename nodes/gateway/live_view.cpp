@@ -25,7 +25,7 @@ constexpr double unix_epoch_jd = 2440587.5;
 
 template <class F>
 void put(JsonWriter& json, std::string_view name, const Vec<F>& v, double scale, double per_unit) {
-  // Rounded, for a message has many of them and a screen few pixels.
+  // Rounded: a message has many of them, and a screen few pixels.
   const auto round = [&](double x) { return std::round(x * scale * per_unit) / per_unit; };
   json.key(name).begin_array();
   json.value(round(v.x)).value(round(v.y)).value(round(v.z)).end_array();
@@ -93,7 +93,7 @@ void LiveView::take(const ObjectRoster& roster) {
 }
 
 void LiveView::take(const ObjectStates& states) {
-  if (!earth_) return;  // comes with the same tick: the next state has it
+  if (!earth_) return;  // it is published at the same tick, so the next states have it
   time_s_ = std::max(time_s_, states.time.seconds());
   latest_.set(MessageSlot::objects,
               {encode_objects(states, *earth_, utc_ms(states.time.seconds())), true});
@@ -226,7 +226,7 @@ void LiveView::encode_run(const RunStatus& status) {
       const Utc start = parse_utc(status.start_utc);
       start_utc_ms_ = (start.jd1 - unix_epoch_jd + start.jd2) * 86400e3;
     } catch (const ConfigError&) {
-      // Told by another process: shown as it is, without a calendar.
+      // From another process: shown as it is, without dates.
     }
   JsonWriter json;
   json.begin_object().field("type", "run").field("start_utc", status.start_utc);

@@ -24,11 +24,11 @@ inline constexpr std::size_t objects_header_bytes = 24;
 std::string encode_objects(const ObjectStates& states, const EarthOrientation& earth,
                            double utc_ms);
 
-/// What viewers see of a run, made of what is published in it. Has no socket; used from one thread.
-/// Texts and numbers passed the checks of nodes/wire before.
+/// Makes the messages to viewers from what is published in a run. Has no socket; used from one
+/// thread. Its input has passed the checks of nodes/wire.
 class LiveView {
  public:
-  /// `takes_truth`: otherwise truth is ignored, and none can reach a viewer.
+  /// Without `takes_truth` truth is ignored, so that none can reach a viewer.
   LiveView(LatestMessages& latest, ViewHistory& history, bool takes_truth = false)
       : latest_(latest), history_(history), takes_truth_(takes_truth) {}
 
@@ -37,12 +37,12 @@ class LiveView {
   /// Takes the state of the run; that of another run replaces all that was taken before. `gaps`:
   /// messages of each publisher that were missed.
   void take(const RunStatus& status, const std::map<std::string, std::uint64_t>& gaps);
-  /// Tells viewers that something they asked for failed, or was done.
+  /// Sends viewers a notice: something that they asked for failed.
   void notify(const std::string& text);
   /// Encodes what has changed since the last call. Call some ten times a second.
   void publish();
 
-  /// Whether objects have names: the roster is published once, and may have to be asked for.
+  /// Whether objects have names. The roster is published once; a late observer must request it.
   bool has_roster() const { return has_roster_; }
 
  private:
@@ -53,7 +53,7 @@ class LiveView {
     std::vector<Detection> detections;  // of the last frame
     std::uint32_t detections_frame = 0;
     std::uint64_t detections_total = 0;
-    std::vector<Truth> truths;  // of the last frame, of what is in it
+    std::vector<Truth> truths;  // of the objects in the last frame
     std::uint32_t truths_frame = 0;
     std::optional<Task> task;
   };
@@ -88,7 +88,7 @@ class LiveView {
   std::map<std::uint32_t, Track> tracks_;
   std::set<MessageSlot> changed_;
   bool has_roster_ = false;
-  double time_s_ = 0.0;  // the latest of all that was taken
+  double time_s_ = 0.0;  // simulation time of the latest state taken
   std::uint64_t notices_ = 0;
   // Progress of the clock and of each node between answers of the time-master.
   struct Progress {

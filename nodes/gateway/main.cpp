@@ -88,19 +88,19 @@ int main(int argc, char** argv) {
   CLI::App app("Shows a run to browsers: observes it and serves the dashboard.", "dmise-gateway");
   dmise::add_common_flags(app, flags);
   app.add_option("--listen", options.listen,
-                 "IP address and port of the pages; port 0: any free port; other than loopback "
-                 "only with --tokens")
+                 "IP address and port of the pages; port 0: any free port; addresses other than "
+                 "loopback need --tokens")
       ->capture_default_str();
   app.add_option("--tokens", options.tokens,
                  "file with `view TOKEN`, `truth TOKEN` and `operator TOKEN`: who may watch, also "
                  "see truth, also control the clock");
   app.add_option("--products", options.products,
-                 "directory of the run: previews of frames that no sensor serves any more");
+                 "directory of the run, for previews of frames that no sensor serves any more");
   app.add_option("--dashboard", options.dashboard, "directory of the built dashboard");
   app.add_option("--announce", options.announce_file, "file to write the URL to");
   app.add_flag("--truth", options.truth,
-               "show truth beside detections to whoever may see it; with keys the own one must be "
-               "allowed to receive truth");
-  app.add_flag("--no-control", options.no_control, "nobody controls the clock from here");
+               "show truth beside detections to whoever may see it; with keys, the gateway's own "
+               "must be allowed to receive truth");
+  app.add_flag("--no-control", options.no_control, "viewers cannot control the clock");
   return dmise::run_program(app, flags, argc, argv, [&] { return dmise::serve(flags, options); });
 }

@@ -6,7 +6,7 @@
 
 namespace dmise {
 
-/// A PNG of a frame without marks of any kind; null if there is none.
+/// A PNG of a frame without annotations; null if there is none.
 using SharedPreview = std::shared_ptr<const std::string>;
 
 /// Where previews of frames come from.
@@ -15,7 +15,7 @@ class PreviewSource {
   using Answer = std::function<void(SharedPreview)>;
 
   virtual ~PreviewSource() = default;
-  /// Calls `answer` once, within seconds, from any thread. Does not wait for anything itself.
+  /// Calls `answer` once, within seconds, from any thread. Returns at once.
   virtual void request(const std::string& sensor, std::uint32_t frame, Answer answer) = 0;
 };
 
@@ -24,7 +24,7 @@ class PreviewDirectory {
  public:
   static constexpr std::size_t max_bytes = std::size_t(64) << 20;
 
-  /// "": there is none.
+  /// `directory`: empty if there is none.
   explicit PreviewDirectory(std::string directory) : directory_(std::move(directory)) {}
   SharedPreview find(const std::string& sensor, std::uint32_t frame) const;
 

@@ -26,7 +26,7 @@ bool is_token(std::string_view text) {
          std::ranges::all_of(text, is_word);
 }
 
-/// Compares digests of the texts, so that the time tells nothing of either.
+/// Compares digests of the texts, so that the time reveals nothing about either.
 bool same_token(std::string_view a, std::string_view b) {
   unsigned char left[crypto_generichash_BYTES], right[crypto_generichash_BYTES];
   const auto digest = [](std::string_view text, unsigned char* out) {
@@ -39,7 +39,7 @@ bool same_token(std::string_view a, std::string_view b) {
   return sodium_memcmp(left, right, sizeof left) == 0;
 }
 
-/// Removes "%41"; empty for what is not complete, or a control character.
+/// Decodes "%41"; empty for an incomplete escape or a control character.
 std::optional<std::string> unescape(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -84,7 +84,7 @@ std::optional<FrameRequest> frame_of(std::string_view path) {
   return request;
 }
 
-/// Parts of letters, digits, ., -, _ and @ that do not begin with a point.
+/// Whether `path` has parts of letters, digits, ., -, _ and @ that do not begin with a point.
 bool is_file_path(std::string_view path) {
   char last = '/';
   for (const char c : path) {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <variant>
 
-// Which requests are answered: pure functions of the text of a request, which may be hostile.
+// Which requests are answered: functions of the text of a request, which may be hostile.
 namespace dmise {
 
 /// What a viewer may do; each includes those before it.
@@ -26,12 +26,12 @@ AccessTokens read_access_tokens(const std::string& path);
 /// Access of a presented token; full access if no tokens are set. Compares in constant time.
 Access access_of(const AccessTokens& tokens, std::string_view presented);
 
-/// Whether `host`, the value of a Host header, names this machine's loopback: of another name a
-/// page of a foreign site could make its own (DNS rebinding).
+/// Whether `host`, the value of a Host header, names this machine's loopback. A foreign site could
+/// resolve another name to this machine (DNS rebinding).
 bool is_loopback_host(std::string_view host);
 
-/// Whether a page of `origin`, an Origin header, may open a WebSocket of the server `host`. Empty:
-/// the client is no browser.
+/// Whether a page of `origin`, an Origin header, may open a WebSocket of the server `host`. An
+/// empty origin, of clients that are not browsers, may.
 bool is_own_origin(std::string_view origin, std::string_view host);
 
 /// `/frames/SENSOR/NUMBER.png`; frames count from 1.
@@ -62,10 +62,10 @@ struct RequestTarget {
   bool operator==(const RequestTarget&) const = default;
 };
 
-/// Reads the target of a request; empty if it is none that exists here.
+/// Parses the target of a request; empty if there is no such target.
 std::optional<RequestTarget> parse_target(std::string_view target);
 
-/// Value of `name` in a Cookie header; "" if it is not there.
+/// Returns the value of `name` in a Cookie header, a token; "" if there is none.
 std::string cookie_value(std::string_view cookies, std::string_view name);
 
 }  // namespace dmise

@@ -26,7 +26,7 @@ constexpr milliseconds receive_at_most{50};  // before viewers are told
 constexpr int unread_messages = 64;          // of the broker; further ones wait there, then drop
 constexpr std::size_t most_commands = 16;
 
-// What every viewer may see. Not truth, which has endpoints of its own.
+// Topics that every viewer may see; truth has endpoints of its own.
 constexpr const char* topics[] = {objects_topic,    environment_topic, frame_prefix,
                                   detection_prefix, track_prefix,      task_prefix};
 
@@ -37,7 +37,7 @@ using RawMessage = std::vector<zmq::message_t>;
 
 }  // namespace
 
-/// Sockets of one observation. A time-master that is started again is another run.
+/// Sockets of an observer. A time-master that was started again has another run.
 class RunObserver::Connections {
  public:
   Connections(const RunObserverOptions& options, LatestMessages& latest, ViewHistory& history)
@@ -87,7 +87,7 @@ class RunObserver::Connections {
     }
   }
 
-  /// Asks the master where the run stands, and for what is missing.
+  /// Asks the master for the state of the run, and the orbit node for the roster.
   void ask() {
     if (now() - asked_ < hello_interval) return;
     if (now() - answered_ > silence && asked_ > answered_) {
@@ -194,7 +194,8 @@ class RunObserver::Connections {
     options_.frames_served_at(status.run_id, std::move(by_sensor));
   }
 
-  /// A message of the broker. Of objects only the newest is read, and only when viewers are told.
+  /// Takes a message of the broker. Of the states of objects only the newest is decoded, when
+  /// viewers are told.
   void heard(RawMessage message) {
     if (!receiver_ || message.size() < 3) return;
     v1::Envelope envelope;
@@ -229,7 +230,7 @@ class RunObserver::Connections {
     }
   }
 
-  /// The roster is published once: who comes later gets it from its publisher.
+  /// The roster is published once: a late observer requests it from its publisher.
   void ask_for_roster() {
     if (view_.has_roster()) {
       roster_.reset();

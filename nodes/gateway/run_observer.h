@@ -19,14 +19,14 @@ struct RunObserverOptions {
   std::string keys;              // directory of keys; empty: none
   bool takes_truth = false;      // from each sensor; with keys its key must allow that
   const Event* stop = nullptr;
-  /// Told where sensors serve their frames, by sensor, some times a second; none: the run is over.
+  /// Called about twice a second with the frame endpoints of sensors; none: the run is over.
   std::function<void(std::uint64_t run_id, std::map<std::string, std::string> endpoints)>
       frames_served_at = [](std::uint64_t, const std::map<std::string, std::string>&) {};
 };
 
-/// Observes a run from outside, as any subscriber does: asks the time-master where it stands,
-/// subscribes at the broker, and asks the orbit node once for the roster. It is not a member of the
-/// clock, is waited for by nobody, and takes truth only if it is told to.
+/// Observes a run from outside, as any subscriber does: asks the time-master for its state,
+/// subscribes at the broker, and requests the roster from the orbit node once. It is not a member
+/// of the run, nobody waits for it, and it takes truth only if its options say so.
 class RunObserver {
  public:
   RunObserver(RunObserverOptions options, LatestMessages& latest, ViewHistory& history)
@@ -36,7 +36,7 @@ class RunObserver {
   /// there is news. Throws `ConfigError` for keys that cannot be used.
   void run(const std::function<void()>& changed);
 
-  /// Asks the clock to do something, soon, with the operator's key; from any thread. False: too
+  /// Queues a command for the clock, sent with the operator's key; from any thread. False if too
   /// many commands wait.
   bool command(const ClockCommand& command);
 

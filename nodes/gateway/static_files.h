@@ -9,7 +9,7 @@ struct StaticFile {
   std::string content, type, etag;
 };
 
-/// The files of the dashboard, read once: no request can name another file.
+/// The files of the dashboard, read once, so that no request can name another file.
 class StaticFiles {
  public:
   static constexpr std::size_t max_bytes = std::size_t(128) << 20, max_files = 5000;

@@ -14,14 +14,14 @@ inline constexpr MessageSlot slots_of_history[] = {MessageSlot::objects, Message
                                                    MessageSlot::detections, MessageSlot::tracks,
                                                    MessageSlot::tasks};
 
-/// What viewers saw at one time of the simulation.
+/// What viewers saw at one simulation time.
 struct ViewSnapshot {
   double time_s = 0.0;
   std::vector<SharedMessage> messages;  // of `slots_of_history`, those there are
 };
 
-/// The past of a run, for viewers that look back. Covers the whole run within a bound of memory:
-/// when it is full, every second snapshot goes, and from then on snapshots are twice as far apart.
+/// The past of a run, for viewers that look back. Covers the whole run in limited memory: when it
+/// is full, every second snapshot is removed, and later ones are twice as far apart.
 class ViewHistory {
  public:
   explicit ViewHistory(std::size_t max_bytes = std::size_t(64) << 20,

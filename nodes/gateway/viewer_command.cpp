@@ -20,7 +20,7 @@ ViewerCommand read_step(const Json& object) {
   ClockCommand command{ClockCommand::Action::step, 1};
   if (const auto ticks = object.find("ticks"); ticks != object.end()) {
     if (!ticks->is_number_integer()) return CommandError{"ticks: must be a whole number"};
-    // An unsigned number beyond the signed ones turns negative here, and is refused.
+    // An unsigned number above the signed range becomes negative here, and is refused.
     command.ticks = ticks->get<std::int64_t>();
     if (command.ticks < 1 || command.ticks > max_step_ticks)
       return CommandError{"ticks: must be 1 to " + std::to_string(max_step_ticks)};
@@ -51,7 +51,7 @@ ViewerCommand read_past(const Json& object) {
 ViewerCommand parse_viewer_command(std::string_view text) {
   if (text.size() > max_command_bytes) return CommandError{"too long"};
   const Json object = Json::parse(text.begin(), text.end(), nullptr, false);
-  if (!object.is_object()) return CommandError{"not an object of JSON"};
+  if (!object.is_object()) return CommandError{"not a JSON object"};
   const auto verb = object.find("do");
   if (verb == object.end() || !verb->is_string()) return CommandError{"do: must be a text"};
   const auto& name = verb->get_ref<const std::string&>();

@@ -19,7 +19,7 @@ struct ClockCommand {
   bool operator==(const ClockCommand&) const = default;
 };
 
-/// Shows the state at, or last before, a simulation time that the gateway keeps.
+/// Shows the last state that the gateway keeps at or before a simulation time.
 struct PastCommand {
   double time_s = 0.0;
 
@@ -31,7 +31,7 @@ struct LiveCommand {
   bool operator==(const LiveCommand&) const = default;
 };
 
-/// Why a message is no command.
+/// Why a message is not a command.
 struct CommandError {
   std::string reason;
 

@@ -22,7 +22,7 @@ struct WebServer::Work {
     const std::string where = hub.options.host + ":" + std::to_string(hub.options.port);
     if (error) throw ConfigError(where + ": must be an IP address and a port");
     if (!address.is_loopback() && !hub.options.tokens.any())
-      throw ConfigError(where + ": others could watch: needs a file of tokens, or loopback");
+      throw ConfigError(where + ": not loopback: needs a file of tokens");
     const tcp::endpoint endpoint(address, hub.options.port);
     acceptor.open(endpoint.protocol(), error);
     if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);

@@ -35,9 +35,9 @@ struct WebContent {
   std::function<bool(const ClockCommand&)> control;  // false: busy
 };
 
-/// Serves the dashboard over HTTP/1.1 and its data over a WebSocket, from one thread. A viewer has
-/// one message on its way at a time; when it is through, the newest of each kind follows, so that a
-/// slow one gets fewer and needs no memory.
+/// Serves the dashboard over HTTP/1.1 and its data over a WebSocket, from one thread. Each viewer
+/// is sent one message at a time, the newest of each kind in turn, so that a slow viewer gets fewer
+/// and nothing is queued.
 class WebServer {
  public:
   /// Binds. Throws `ConfigError` for an address that is not loopback without tokens, `Error` if it
@@ -48,7 +48,7 @@ class WebServer {
   WebServer& operator=(const WebServer&) = delete;
 
   int port() const;
-  /// There are new messages; from any thread.
+  /// Tells viewers that there are new messages; from any thread.
   void changed();
 
  private:
