@@ -1,7 +1,8 @@
 #include "core/config/detector_config.h"
 
-namespace dmise {
+#include "core/base/formatted.h"
 
+namespace dmise {
 namespace {
 
 Forms forms_of(const DetectorParameter& p) {
@@ -18,7 +19,7 @@ std::string default_of(const DetectorParameter& p) {
   if (p.key == "temperature_c") return "dark_reference_c";
   const double number = p.number_of(Detector());
   if (std::holds_alternative<bool Detector::*>(p.value)) return number != 0.0 ? "on" : "off";
-  return yaml_text(number);
+  return shortest_text(number);
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ std::string Distribution::scalar(double x) const {
   const std::string text = formatted(kind_ == Kind::integers ? "%.0f" : "%.12g", x);
   const double rounded = *parse_real(text);
   if (rounded >= least_ && rounded <= most_) return text;
-  return yaml_text(rounded < least_ ? least_ : most_);
+  return shortest_text(rounded < least_ ? least_ : most_);
 }
 
 Distribution::Value Distribution::at(double share) const {

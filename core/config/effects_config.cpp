@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/base/formatted.h"
 #include "core/config/effect_list.h"
 #include "core/effects/frame_effects.h"
 #include "core/sky/place_effects.h"
@@ -88,7 +89,7 @@ const Section& accuracy_section() {
         if (key == kind.key)
           made.keys.push_back(optional(kind.key, form::number(0.0, 1e6),
                                        std::string(meaning) + " [" + kind.unit + "].",
-                                       yaml_text(standard_budget.*kind.value)));
+                                       shortest_text(standard_budget.*kind.value)));
     return made;
   }();
   return section;

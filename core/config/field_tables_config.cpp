@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/formatted.h"
 #include "core/base/text_fields.h"
 #include "core/optics/pupil.h"
 
@@ -189,7 +190,7 @@ const Section& focus_drift_section() {
                  {}};
     for (const FocusParameter& p : focus_parameters())
       made.keys.push_back(optional(std::string(p.key), form::number(p.least, p.most),
-                                   sentence_of(p.meaning), yaml_text(FocusDrift().*p.value)));
+                                   sentence_of(p.meaning), shortest_text(FocusDrift().*p.value)));
     return made;
   }();
   return section;

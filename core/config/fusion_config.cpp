@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/base/formatted.h"
+
 namespace dmise {
 namespace {
 
@@ -40,7 +42,7 @@ const Section& fusion_section() {
                 "Greatest time between detections of two sites that give a position [s].", "0.5"),
        optional("arc_window_s", form::number(10.0, 3600.0),
                 "Greatest time between the exposures of one site that begin a track [s].",
-                yaml_text(FusionSettings().arc_window_s)),
+                shortest_text(FusionSettings().arc_window_s)),
        optional("arc_exposures", form::integer(0, 1000),
                 "Least exposures of one site that begin a track. 0: one site begins none; else 4 "
                 "or more.",

@@ -261,7 +261,7 @@ const Section& optics_section() {
                   "off")}};
     for (const ImageParameter& p : image_parameters())
       made.keys.push_back(optional(std::string(p.key), form::number(p.least, p.most),
-                                   sentence_of(p.meaning), yaml_text(ImageOptics().*p.value)));
+                                   sentence_of(p.meaning), shortest_text(ImageOptics().*p.value)));
     return made;
   }();
   return section;

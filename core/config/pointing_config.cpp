@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/base/formatted.h"
 #include "core/base/json.h"
 #include "core/base/printable.h"
 #include "core/config/vector_values.h"
@@ -85,11 +86,11 @@ const Section& cued_section() {
        optional(
            "azimuth_deg_per_s", form::above(0.0, 360.0),
            "Fastest turn in azimuth [deg/s], of an altazimuth mount; by default as in elevation.",
-           yaml_text(CueSettings().azimuth_deg_per_s)),
+           shortest_text(CueSettings().azimuth_deg_per_s)),
        optional("azimuth_deg_per_s2", form::number(0.0, 1000.0),
                 "Acceleration in azimuth [deg/s^2], of an altazimuth mount. 0: it has its speed at "
                 "once.",
-                yaml_text(CueSettings().azimuth_deg_per_s2)),
+                shortest_text(CueSettings().azimuth_deg_per_s2)),
        optional("azimuth_range_deg", form::numbers(2, -3600.0, 3600.0),
                 "Least and greatest azimuth that cables allow [deg], of an altazimuth mount.",
                 "[-270, 270]"),
@@ -98,7 +99,7 @@ const Section& cued_section() {
                 "Lowest elevation that it observes at [deg].", "20"),
        optional("greatest_elevation_deg", form::number(0.0, 90.0),
                 "Highest elevation that it observes at [deg], above the lowest.",
-                yaml_text(CueSettings().greatest_elevation_deg)),
+                shortest_text(CueSettings().greatest_elevation_deg)),
        optional("sun_exclusion_deg", form::number(0.0, 180.0), "Least angle from the Sun [deg].",
                 "30"),
        optional("moon_exclusion_deg", form::number(0.0, 180.0), "Least angle from the Moon [deg].",

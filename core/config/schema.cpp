@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/base/formatted.h"
 #include "core/base/json.h"
 #include "core/base/text_fields.h"
 #include "core/config/camera_config.h"
@@ -210,7 +211,7 @@ std::string range_text(const Form& form) {
                 : " " + std::to_string(form.least) + " to " + std::to_string(form.most);
   }
   const bool least = std::isfinite(form.bounds.least), most = std::isfinite(form.bounds.most);
-  const std::string from = yaml_text(form.bounds.least), to = yaml_text(form.bounds.most);
+  const std::string from = shortest_text(form.bounds.least), to = shortest_text(form.bounds.most);
   if (least && most && !form.bounds.least_open) return " " + from + " to " + to;
   std::string text;
   if (least) text += (form.bounds.least_open ? " > " : " >= ") + from;

@@ -1,7 +1,6 @@
 #include "core/config/section.h"
 
 #include <algorithm>
-#include <charconv>
 #include <iterator>
 #include <utility>
 
@@ -53,11 +52,6 @@ Forms positive_numbers(std::size_t count, double most) {
 Forms map(const Section& (*section)()) { return {{.kind = Kind::map, .section = section}}; }
 
 }  // namespace form
-
-std::string yaml_text(double number) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr};
-}
 
 std::string sentence_of(std::string_view comment) {
   std::string unit;

@@ -80,9 +80,6 @@ Forms map(const Section& (*section)());
 
 }  // namespace form
 
-/// The shortest text of a number, for defaults.
-std::string yaml_text(double number);
-
 /// "[unit] what it is" of a FITS comment as a sentence: "What it is [unit]."
 std::string sentence_of(std::string_view comment);
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/base/formatted.h"
 #include "core/base/printable.h"
 #include "core/base/text_fields.h"
 #include "core/base/text_file.h"
@@ -115,8 +116,8 @@ double YamlValue::number(Bounds bounds) const {
   if (!parsed) fail("must be a number");
   const double x = *parsed;
   if (bounds.least_open ? x <= bounds.least : x < bounds.least)
-    fail("must be " + std::string(bounds.least_open ? "> " : ">= ") + yaml_text(bounds.least));
-  if (x > bounds.most) fail("must be <= " + yaml_text(bounds.most));
+    fail("must be " + std::string(bounds.least_open ? "> " : ">= ") + shortest_text(bounds.least));
+  if (x > bounds.most) fail("must be <= " + shortest_text(bounds.most));
   return x;
 }
 
@@ -282,7 +283,7 @@ void YamlMap::check_default(std::string_view key, double otherwise) const {
   const auto said = parse_real(is->otherwise);
   // Angles are kept in radians, which changes their last digit.
   const bool same = said && std::abs(*said - otherwise) <= 1e-12 * std::abs(otherwise);
-  if (!same) check_default(key, yaml_text(otherwise));
+  if (!same) check_default(key, shortest_text(otherwise));
 }
 
 double YamlMap::number_or(std::string_view key, double otherwise) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "core/base/formatted.h"
 #include "core/base/units.h"
 #include "core/exchange/export_format.h"
 #include "core/exchange/kvn_text.h"
@@ -52,7 +53,7 @@ void write(const RunProducts& run, const Segment& s, KvnText& kvn) {
   kvn.key("STOP_TIME", run.utc(s.sightings.back().time));
   kvn.key("PARTICIPANT_1", s.sensor).key("PARTICIPANT_2", s.object);
   kvn.key("MODE", "SEQUENTIAL").key("PATH", "2,1").key("TIMETAG_REF", "RECEIVE");
-  kvn.key("INTEGRATION_INTERVAL", exact_text(s.exposure_s)).key("INTEGRATION_REF", "MIDDLE");
+  kvn.key("INTEGRATION_INTERVAL", shortest_text(s.exposure_s)).key("INTEGRATION_REF", "MIDDLE");
   kvn.key("ANGLE_TYPE", "RADEC").key("REFERENCE_FRAME", "ICRF").key("DATA_QUALITY", s.quality);
   for (const auto& [key, value] : s.corrections) kvn.key(key, value);
   kvn.key("CORRECTIONS_APPLIED", "YES").line("META_STOP").line("DATA_START");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 namespace dmise {
 namespace {
 
@@ -15,6 +17,12 @@ TEST(Formatted, HasAnyLength) {
     const std::string word(length, 'x');
     EXPECT_EQ(formatted("<%s>", word.c_str()), "<" + word + ">");
   }
+}
+
+TEST(ShortestText, ReadsBackToTheSameBits) {
+  for (const double value : {0.1, 1.0 / 3.0, 6.02e23, -5e-324, 1.7976931348623157e308})
+    EXPECT_EQ(std::strtod(shortest_text(value).c_str(), nullptr), value);
+  EXPECT_EQ(shortest_text(0.1), "0.1");
 }
 
 }  // namespace
